@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Filters composed at run time: a closed set of the shipped ones. Each step dispatches once and then runs the same
+// template as C++ does, so that both give the same bits.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/filter/square_root_ukf.hpp"
+#include "wakeline/filter/ukf.hpp"
+#include "wakeline/measurement/position.hpp"
+#include "wakeline/measurement/range_bearing.hpp"
+#include "wakeline/measurement/range_bearing_doppler.hpp"
+#include "wakeline/motion/constant_acceleration.hpp"
+#include "wakeline/motion/constant_velocity.hpp"
+#include "wakeline/motion/coordinated_turn.hpp"
+#include "wakeline/motion/singer.hpp"
+#include "wakeline/multimodel/imm.hpp"
+
+namespace wakeline::python {
+
+/// The state layouts of the shipped motion models.
+enum class StateLayout : std::uint8_t { kKinematics, kTurn, kAcceleration };
+
+inline constexpr int kMaxStates = 6;
+
+template <class Motion>
+inline constexpr StateLayout kLayoutOf = kStatesOf<Motion> == 4   ? StateLayout::kKinematics
+                                         : kStatesOf<Motion> == 5 ? StateLayout::kTurn
+                                                                  : StateLayout::kAcceleration;
+
+constexpr int states_of(StateLayout layout) noexcept {
+  return layout == StateLayout::kKinematics ? 4 : layout == StateLayout::kTurn ? 5 : 6;
+}
+
+/// A belief over any of the layouts, without heap.
+struct AnyBelief {
+  StateLayout layout = StateLayout::kKinematics;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStates, 1> mean = Eigen::Vector4d::Zero();
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates> covariance =
+      Eigen::Matrix4d::Identity();
+
+  [[nodiscard]] int states() const noexcept { return states_of(layout); }
+};
+
+AnyBelief zero_like(const AnyBelief& belief) noexcept;
+void add_mean(AnyBelief& sum, double weight, const AnyBelief& part, const AnyBelief& own) noexcept;
+void add_spread(AnyBelief& sum, double weight, const AnyBelief& part, const AnyBelief& own) noexcept;
+
+/// One of the shipped filters over one of the shipped motion models. A linear one takes linear sensors only.
+class AnyFilter {
+ public:
+  using Scalar = double;
+  using Variant =
+      std::variant<Ekf<ConstantVelocity>, Ekf<ConstantAcceleration>, Ekf<CoordinatedTurn>,
+                   Ekf<CoordinatedTurnRate>, Ekf<Singer>, Ukf<ConstantVelocity>,
+                   Ukf<ConstantAcceleration>, Ukf<CoordinatedTurn>, Ukf<CoordinatedTurnRate>,
+                   Ukf<Singer>, SquareRootUkf<ConstantVelocity>, SquareRootUkf<ConstantAcceleration>,
+                   SquareRootUkf<CoordinatedTurn>, SquareRootUkf<CoordinatedTurnRate>,
+                   SquareRootUkf<Singer>>;
+
+  explicit AnyFilter(const Variant& filter, bool linear = false) : filter_(filter), linear_(linear) {}
+
+  /// Begins with a belief over the filter's state or over `[x, vx, y, vy]`.
+  Status start(const AnyBelief& belief) noexcept;
+  Status assign(const AnyBelief& belief) noexcept;
+  Status predict(double dt_s) noexcept;
+
+  template <class Sensor>
+  Step<Sensor::kMeasurements> update(const Sensor& sensor,
+                                     const Vec<double, Sensor::kMeasurements>& z) noexcept;
+
+  [[nodiscard]] AnyBelief estimate() const noexcept;
+  [[nodiscard]] bool started() const noexcept;
+  [[nodiscard]] StateLayout layout() const noexcept;
+  [[nodiscard]] bool linear() const noexcept { return linear_; }
+  [[nodiscard]] const Variant& variant() const noexcept { return filter_; }
+  [[nodiscard]] Variant& variant() noexcept { return filter_; }
+
+ private:
+  Variant filter_;
+  bool linear_;  ///< a Kalman filter
+};
+
+extern template Step<2> AnyFilter::update(const RangeBearing&, const Vec<double, 2>&) noexcept;
+extern template Step<2> AnyFilter::update(const ConvertedRangeBearing&, const Vec<double, 2>&) noexcept;
+extern template Step<2> AnyFilter::update(const Position&, const Vec<double, 2>&) noexcept;
+extern template Step<3> AnyFilter::update(const RangeBearingDoppler&, const Vec<double, 3>&) noexcept;
+
+/// The filters of a multi-model estimator, composed at run time: the face of `wakeline::FilterBank`.
+class AnyFilterBank {
+ public:
+  static constexpr int kModels = kRuntimeModes;
+  using Scalar = double;
+
+  /// Throws `std::invalid_argument` without filters or with more than `kMaxModes`.
+  explicit AnyFilterBank(const std::vector<AnyFilter>& filters);
+
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(slots_.size()); }
+
+  template <class Function>
+  void for_each(Function&& function) noexcept {
+    for (int k = 0; Slot& slot : slots_) function(k++, slot.filter, slot.before);
+  }
+
+  template <class Function>
+  void for_each_belief(Function&& function) const noexcept {
+    for (int k = 0; const Slot& slot : slots_) function(k++, slot.filter.estimate());
+  }
+
+  template <class Function>
+  void for_each_before(Function&& function) const noexcept {
+    for (int k = 0; const Slot& slot : slots_) function(k++, slot.before);
+  }
+
+  [[nodiscard]] AnyBelief empty_estimate() const noexcept { return empty_; }
+  [[nodiscard]] const AnyFilter& filter(std::size_t index) const { return slots_.at(index).filter; }
+
+ private:
+  struct Slot {
+    AnyFilter filter;
+    AnyBelief before;
+  };
+  std::vector<Slot> slots_;
+  AnyBelief empty_;
+};
+
+using AnyImm = Imm<AnyFilterBank>;
+
+}  // namespace wakeline::python

@@ -1,0 +1,6 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "any_filter_update.hpp"
+
+template wakeline::Step<2> wakeline::python::AnyFilter::update(
+    const RangeBearing&, const Vec<double, 2>&) noexcept;

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// The border between numpy arrays and Eigen, with errors that name the argument, the wanted and the given shape.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace wakeline::python {
+
+namespace py = pybind11;
+
+using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// "(3, 2)".
+inline std::string shape_text(const std::vector<py::ssize_t>& shape) {
+  std::string text = "(";
+  for (std::size_t k = 0; k < shape.size(); ++k)
+    text += (k ? ", " : "") + std::to_string(shape[k]);
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
+
+inline std::vector<py::ssize_t> shape_of(const py::array& array) {
+  return {array.shape(), array.shape() + array.ndim()};
+}
+
+/// Throws ValueError unless the condition holds: "z must have shape (T, 2), got (5,)".
+inline void require_shape(bool condition, const std::string& name, const std::string& wanted,
+                          const py::array& array) {
+  if (!condition)
+    throw py::value_error(name + " must have shape " + wanted + ", got " +
+                          shape_text(shape_of(array)));
+}
+
+/// Any Eigen vector or matrix as a new numpy array.
+template <class Derived>
+py::array_t<double> to_array(const Eigen::MatrixBase<Derived>& matrix) {
+  if constexpr (Derived::ColsAtCompileTime == 1) {
+    py::array_t<double> array(matrix.rows());
+    auto view = array.mutable_unchecked<1>();
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) view(i) = matrix(i, 0);
+    return array;
+  } else {
+    py::array_t<double> array({matrix.rows(), matrix.cols()});
+    auto view = array.mutable_unchecked<2>();
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+      for (Eigen::Index j = 0; j < matrix.cols(); ++j) view(i, j) = matrix(i, j);
+    return array;
+  }
+}
+
+/// A numpy vector; `size` of -1 takes any.
+inline Eigen::VectorXd to_vector(const std::string& name, const DoubleArray& array,
+                                 py::ssize_t size = -1) {
+  require_shape(array.ndim() == 1 && (size < 0 || array.shape(0) == size), name,
+                size < 0 ? "(N,)" : shape_text({size}), array);
+  Eigen::VectorXd vector(array.shape(0));
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) vector[i] = array.at(i);
+  return vector;
+}
+
+inline Eigen::MatrixXd to_matrix(const std::string& name, const DoubleArray& array,
+                                 py::ssize_t rows, py::ssize_t cols) {
+  require_shape(array.ndim() == 2 && array.shape(0) == rows && array.shape(1) == cols, name,
+                shape_text({rows, cols}), array);
+  Eigen::MatrixXd matrix(rows, cols);
+  for (py::ssize_t i = 0; i < rows; ++i)
+    for (py::ssize_t j = 0; j < cols; ++j) matrix(i, j) = array.at(i, j);
+  return matrix;
+}
+
+}  // namespace wakeline::python

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/core/chi_square.hpp"
+
+#include "types.hpp"
+
+namespace wakeline::python {
+namespace {
+
+PyGaussian make_gaussian(const DoubleArray& mean, const DoubleArray& covariance) {
+  PyGaussian belief;
+  belief.mean = to_vector("mean", mean);
+  belief.covariance = to_matrix("covariance", covariance, belief.mean.size(), belief.mean.size());
+  return belief;
+}
+
+}  // namespace
+
+void define_core(py::module_& parent) {
+  py::module_ m = parent.def_submodule("core", "Beliefs, statuses, angles and the chi-square law.");
+  py::register_exception<FilterError>(m, "FilterError", PyExc_RuntimeError).attr("__doc__") =
+      "An estimator could not be started, predicted or updated; its belief is as it was.";
+
+  py::enum_<Status>(m, "Status", "What became of one step; anything but `ok` changed nothing.")
+      .value("ok", Status::kOk)
+      .value("missed", Status::kMissed, "no measurement in this scan: predicted only")
+      .value("not_started", Status::kNotStarted, "the estimator has no belief yet")
+      .value("not_finite", Status::kNotFinite, "an input or a result is not finite")
+      .value("not_positive_definite", Status::kNotPositiveDefinite,
+             "a covariance is not positive definite")
+      .value("negative_time_step", Status::kNegativeTimeStep, "time would run backwards");
+
+  py::class_<PyGaussian>(m, "Gaussian", R"(A Gaussian belief.
+
+Parameters
+----------
+mean : (N,) array
+covariance : (N, N) array
+    Symmetric positive definite; checked when an estimator starts with it.
+
+Raises
+------
+ValueError
+    When the shapes do not fit.)")
+      .def(py::init(&make_gaussian), py::arg("mean"), py::arg("covariance"))
+      .def_property_readonly("mean", [](const PyGaussian& g) { return to_array(g.mean); }, "(N,)")
+      .def_property_readonly(
+          "covariance", [](const PyGaussian& g) { return to_array(g.covariance); }, "(N, N)")
+      .def("__repr__", [](const PyGaussian& g) {
+        return "Gaussian(mean=" + py::repr(to_array(g.mean)).cast<std::string>() +
+               ", covariance=" + py::repr(to_array(g.covariance)).cast<std::string>() + ")";
+      });
+
+  py::class_<PyStep>(m, "Step", "What one measurement update has found.")
+      .def_readonly("status", &PyStep::status)
+      .def_property_readonly(
+          "innovation", [](const PyStep& s) { return to_array(s.innovation); },
+          "(M,) measured minus predicted, angles wrapped")
+      .def_property_readonly(
+          "innovation_covariance",
+          [](const PyStep& s) { return to_array(s.innovation_covariance); }, "(M, M)")
+      .def_readonly("nis", &PyStep::nis, "normalised innovation squared")
+      .def_readonly("log_likelihood", &PyStep::log_likelihood);
+
+  m.def("wrap_angle", py::vectorize([](double angle_rad) { return wrap_angle(angle_rad); }),
+        py::arg("angle_rad"), "The same angle in [-pi, pi], rad.");
+  m.def("chi_square_quantile", &chi_square_quantile, py::arg("probability"), py::arg("dof"),
+        "The value that a chi-square variable of `dof` degrees of freedom stays below with `probability`.");
+  m.def("chi_square_probability", &chi_square_probability, py::arg("value"), py::arg("dof"),
+        "Probability that a chi-square variable of `dof` degrees of freedom stays below `value`.");
+}
+
+}  // namespace wakeline::python

@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/filter/rts_smoother.hpp"
+
+#include "run.hpp"
+
+namespace wakeline::python {
+
+std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs) {
+  if (py::isinstance<PyGaussian>(start))
+    return {start.cast<const PyGaussian&>().to_belief("start")};
+  std::vector<AnyBelief> beliefs;
+  for (const py::handle item : start)
+    beliefs.push_back(item.cast<const PyGaussian&>().to_belief("start"));
+  if (beliefs.size() != runs)
+    throw py::value_error("start must be one Gaussian or one per run (" + std::to_string(runs) +
+                          "), got " + std::to_string(beliefs.size()));
+  return beliefs;
+}
+
+std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans) {
+  const DoubleArray array = dt_s.cast<DoubleArray>();
+  if (array.ndim() == 0) return std::vector<double>(scans, *array.data());
+  require_shape(array.ndim() == 1 && array.shape(0) == static_cast<py::ssize_t>(scans), "dt_s",
+                "() or " + shape_text({static_cast<py::ssize_t>(scans)}), array);
+  return {array.data(), array.data() + scans};
+}
+
+namespace {
+
+// One Python class a filter, all over the same run-time composed filter.
+struct PyKalman : AnyFilter {
+  template <class Motion>
+  explicit PyKalman(const Motion& motion) : AnyFilter(Ekf<Motion>(motion), true) {}
+};
+struct PyEkf : AnyFilter {
+  template <class Motion>
+  explicit PyEkf(const Motion& motion) : AnyFilter(Ekf<Motion>(motion)) {}
+};
+struct PyUkf : AnyFilter {
+  template <class Motion>
+  PyUkf(const Motion& motion, double alpha, double beta, double kappa)
+      : AnyFilter(Ukf<Motion>(motion, Unscented{alpha, beta, kappa})) {}
+};
+struct PySquareRootUkf : AnyFilter {
+  template <class Motion>
+  PySquareRootUkf(const Motion& motion, double alpha, double beta, double kappa)
+      : AnyFilter(SquareRootUkf<Motion>(motion, Unscented{alpha, beta, kappa})) {}
+};
+
+template <class Filter, class... Motions>
+void define_plain(py::class_<Filter, AnyFilter>& filter) {
+  (filter.def(py::init<const Motions&>(), py::arg("motion")), ...);
+}
+
+template <class Filter, class... Motions>
+void define_unscented(py::class_<Filter, AnyFilter>& filter) {
+  (filter.def(py::init<const Motions&, double, double, double>(), py::arg("motion"), py::kw_only(),
+              py::arg("alpha") = Unscented{}.alpha, py::arg("beta") = Unscented{}.beta,
+              py::arg("kappa") = Unscented{}.kappa),
+   ...);
+}
+
+/// RTS smoothing of arrays (T, N) and (T, N, N).
+py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
+                        const DoubleArray& covariance, const py::object& dt_s) {
+  const py::ssize_t states = states_of(filter.layout());
+  require_shape(mean.ndim() == 2 && mean.shape(1) == states && mean.shape(0) > 0, "mean",
+                "(T, " + std::to_string(states) + ")", mean);
+  const py::ssize_t scans = mean.shape(0);
+  require_shape(covariance.ndim() == 3 && covariance.shape(0) == scans &&
+                    covariance.shape(1) == states && covariance.shape(2) == states,
+                "covariance", shape_text({scans, states, states}), covariance);
+  const std::vector<double> steps = parse_steps(dt_s, static_cast<std::size_t>(scans));
+  py::array_t<double> smooth_mean({scans, states});
+  py::array_t<double> smooth_covariance({scans, states, states});
+  std::visit(
+      [&]<class Filter>(const Filter& model) {
+        constexpr int kN = Filter::kStates;
+        using RowMajor = Eigen::Matrix<double, kN, kN, Eigen::RowMajor>;
+        std::vector<Gaussian<kN>> beliefs(static_cast<std::size_t>(scans));
+        for (std::size_t k = 0; k < beliefs.size(); ++k) {
+          beliefs[k].mean = Eigen::Map<const Vec<double, kN>>(mean.data() + k * kN);
+          beliefs[k].covariance = Eigen::Map<const RowMajor>(covariance.data() + k * kN * kN);
+        }
+        require_ok(smooth<typename Filter::Motion, double>(
+                       model.motion(), beliefs,
+                       std::span<const double>(steps).subspan(1)),
+                   "smooth");
+        for (std::size_t k = 0; k < beliefs.size(); ++k) {
+          Eigen::Map<Vec<double, kN>>(smooth_mean.mutable_data() + k * kN) = beliefs[k].mean;
+          Eigen::Map<RowMajor>(smooth_covariance.mutable_data() + k * kN * kN) =
+              beliefs[k].covariance;
+        }
+      },
+      filter.variant());
+  return py::make_tuple(smooth_mean, smooth_covariance);
+}
+
+}  // namespace
+
+void define_filter(py::module_& parent) {
+  py::module_ m = parent.def_submodule("filter", "Estimators with one motion model.");
+
+  py::class_<RunResult>(m, "RunResult", "What `run` returns: arrays over scans, and over runs where there are several.")
+      .def_readonly("mean", &RunResult::mean, "(..., T, N)")
+      .def_readonly("covariance", &RunResult::covariance, "(..., T, N, N)")
+      .def_readonly("mode_probability", &RunResult::mode_probability,
+                    "(..., T, K), None for a single filter")
+      .def_readonly("nis", &RunResult::nis, "(..., T), NaN where there was no update")
+      .def_readonly("log_likelihood", &RunResult::log_likelihood, "(..., T)")
+      .def_readonly("status", &RunResult::status, "(..., T) values of Status");
+
+  py::class_<AnyFilter>(m, "Filter", "What Kalman, Ekf, Ukf and SquareRootUkf share.")
+      .def(
+          "start",
+          [](AnyFilter& filter, const PyGaussian& belief) {
+            require_ok(filter.start(belief.to_belief("belief")), "start");
+          },
+          py::arg("belief"), "Begins with a belief over the filter's state or over [x, vx, y, vy].")
+      .def(
+          "predict",
+          [](AnyFilter& filter, double dt_s) { require_ok(filter.predict(dt_s), "predict"); },
+          py::arg("dt_s"), "Moves the belief dt_s seconds on.")
+      .def(
+          "update",
+          [](AnyFilter& filter, const py::object& sensor, const DoubleArray& z) {
+            return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
+              require_linear<Sensor>(filter);
+              constexpr int kM = Sensor::kMeasurements;
+              const auto step = filter.update(model, Vec<double, kM>(to_vector("z", z, kM)));
+              require_ok(step.status, "update");
+              return to_step(step);
+            });
+          },
+          py::arg("sensor"), py::arg("z"), "Corrects the belief by a reading; returns the Step.")
+      .def("estimate", [](const AnyFilter& filter) { return PyGaussian::from(filter.estimate()); },
+           "The belief.")
+      .def_property_readonly("started", &AnyFilter::started)
+      .def("run", &run<AnyFilter>, py::arg("z"), py::arg("dt_s"), py::arg("sensor"),
+           py::arg("start"), py::arg("own_position_m") = py::none(), kRunDoc)
+      .def("smooth", &smooth_arrays, py::arg("mean"), py::arg("covariance"), py::arg("dt_s"),
+           R"(Rauch-Tung-Striebel smoother over the results of `run`.
+
+Parameters
+----------
+mean : (T, N) array
+covariance : (T, N, N) array
+dt_s : float or (T,) array
+    As for `run`.
+
+Returns
+-------
+(mean, covariance)
+    Smoothed, same shapes.)");
+
+  py::class_<PyKalman, AnyFilter> kalman(
+      m, "Kalman", "The Kalman filter: linear motion and linear sensors, nothing approximated.");
+  define_plain<PyKalman, ConstantVelocity, ConstantAcceleration, CoordinatedTurn, Singer>(kalman);
+  py::class_<PyEkf, AnyFilter> ekf(
+      m, "Ekf", "The extended Kalman filter: motion and sensor linearised about the mean.");
+  define_plain<PyEkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn, CoordinatedTurnRate,
+               Singer>(ekf);
+  py::class_<PyUkf, AnyFilter> ukf(
+      m, "Ukf", "The unscented Kalman filter, with the scaled transform's alpha, beta and kappa.");
+  define_unscented<PyUkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn,
+                   CoordinatedTurnRate, Singer>(ukf);
+  py::class_<PySquareRootUkf, AnyFilter> square_root(
+      m, "SquareRootUkf", "The unscented Kalman filter on a square root of the covariance, for long runs.");
+  define_unscented<PySquareRootUkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn,
+                   CoordinatedTurnRate, Singer>(square_root);
+
+  m.def(
+      "one_point",
+      [](const py::object& sensor, const DoubleArray& z, double speed_std_mps) {
+        return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
+          constexpr int kM = Sensor::kMeasurements;
+          return PyGaussian::from(
+              one_point(model, Vec<double, kM>(to_vector("z", z, kM)), speed_std_mps));
+        });
+      },
+      py::arg("sensor"), py::arg("z"), py::arg("speed_std_mps"),
+      "Start over [x, vx, y, vy] from one plot and a velocity of zero with that standard deviation per axis.");
+  m.def(
+      "two_point",
+      [](const py::object& sensor, const DoubleArray& first, const DoubleArray& second, double dt_s) {
+        if (!(dt_s > 0.0)) throw py::value_error("dt_s must be positive, got " + std::to_string(dt_s));
+        return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
+          constexpr int kM = Sensor::kMeasurements;
+          return PyGaussian::from(two_point<Sensor, double>(
+              model, Vec<double, kM>(to_vector("first", first, kM)),
+              Vec<double, kM>(to_vector("second", second, kM)), dt_s));
+        });
+      },
+      py::arg("sensor"), py::arg("first"), py::arg("second"), py::arg("dt_s"),
+      "Start over [x, vx, y, vy] from two plots dt_s apart.");
+}
+
+}  // namespace wakeline::python

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "types.hpp"
+
+namespace wakeline::python {
+namespace {
+
+/// What every motion model offers in Python.
+template <class Motion>
+void define_model(py::class_<Motion>& model) {
+  constexpr int kStates = kStatesOf<Motion>;
+  using State = Vec<double, kStates>;
+  model.def_property_readonly_static("states", [](const py::object&) { return kStates; },
+                                     "number of states N");
+  if constexpr (LinearMotionModel<Motion>) {
+    model.def("matrix", [](const Motion& motion, double dt_s) { return to_array(motion.matrix(dt_s)); },
+              py::arg("dt_s"), "F(dt), (N, N).");
+    model.def(
+        "process_noise",
+        [](const Motion& motion, double dt_s) { return to_array(motion.process_noise(dt_s)); },
+        py::arg("dt_s"), "Q(dt), (N, N).");
+  } else {
+    model.def(
+        "transition",
+        [](const Motion& motion, const DoubleArray& x, double dt_s) {
+          return to_array(motion.transition(State(to_vector("x", x, kStates)), dt_s));
+        },
+        py::arg("x"), py::arg("dt_s"), "f(x, dt), (N,).");
+    model.def(
+        "jacobian",
+        [](const Motion& motion, const DoubleArray& x, double dt_s) {
+          return to_array(motion.jacobian(State(to_vector("x", x, kStates)), dt_s));
+        },
+        py::arg("x"), py::arg("dt_s"), "df/dx, (N, N).");
+    model.def(
+        "process_noise",
+        [](const Motion& motion, const DoubleArray& x, double dt_s) {
+          return to_array(motion.process_noise(State(to_vector("x", x, kStates)), dt_s));
+        },
+        py::arg("x"), py::arg("dt_s"), "Q(x, dt), (N, N).");
+  }
+}
+
+/// Builds a model and refuses parameters that make no sense.
+template <class Motion>
+Motion checked(const Motion& motion) {
+  motion.validate();
+  return motion;
+}
+
+}  // namespace
+
+void define_motion(py::module_& parent) {
+  py::module_ m = parent.def_submodule("motion", "How a vessel moves.");
+
+  py::class_<WhiteAcceleration>(m, "WhiteAcceleration",
+                                "Continuous white acceleration per axis; Q is right for any dt.")
+      .def(py::init([](double psd) { return WhiteAcceleration{psd}; }), py::kw_only(),
+           py::arg("psd_m2s3") = WhiteAcceleration{}.psd_m2s3)
+      .def_readonly("psd_m2s3", &WhiteAcceleration::psd_m2s3);
+  py::class_<PiecewiseAcceleration>(m, "PiecewiseAcceleration",
+                                    "Acceleration drawn for each step, Q = G s² Gᵀ: the papers' form.")
+      .def(py::init([](double std) { return PiecewiseAcceleration{std}; }), py::kw_only(),
+           py::arg("std_mps2") = PiecewiseAcceleration{}.std_mps2)
+      .def_readonly("std_mps2", &PiecewiseAcceleration::std_mps2);
+  py::class_<WhiteJerk>(m, "WhiteJerk",
+                        "Continuous white jerk per axis, for states that hold an acceleration.")
+      .def(py::init([](double psd) { return WhiteJerk{psd}; }), py::kw_only(),
+           py::arg("psd_m2s5") = WhiteJerk{}.psd_m2s5)
+      .def_readonly("psd_m2s5", &WhiteJerk::psd_m2s5);
+  py::class_<ProcessNoise>(m, "ProcessNoise", "One of the process-noise policies.")
+      .def(py::init<WhiteAcceleration>())
+      .def(py::init<PiecewiseAcceleration>())
+      .def(py::init<WhiteJerk>());
+  py::implicitly_convertible<WhiteAcceleration, ProcessNoise>();
+  py::implicitly_convertible<PiecewiseAcceleration, ProcessNoise>();
+  py::implicitly_convertible<WhiteJerk, ProcessNoise>();
+
+  py::class_<ConstantVelocity> cv(m, "ConstantVelocity",
+                                  "Straight and steady: state [x, vx, y, vy] (m, m/s).");
+  cv.def(py::init([](const ProcessNoise& noise) { return checked(ConstantVelocity{noise}); }),
+         py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
+  define_model(cv);
+
+  py::class_<ConstantAcceleration> ca(
+      m, "ConstantAcceleration",
+      "Acceleration that stays: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).");
+  ca.def(py::init([](const ProcessNoise& noise, double prior) {
+           return checked(ConstantAcceleration{noise, prior});
+         }),
+         py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteJerk{}), "WhiteJerk()"),
+         py::arg("prior_accel_std_mps2") = ConstantAcceleration{}.prior_accel_std_mps2);
+  define_model(ca);
+
+  py::class_<CoordinatedTurn> ct(m, "CoordinatedTurn",
+                                 "A steady turn at a known rate, positive to starboard: state [x, vx, y, vy].");
+  ct.def(py::init([](double rate, const ProcessNoise& noise) {
+           return checked(CoordinatedTurn{rate, noise});
+         }),
+         py::kw_only(), py::arg("turn_rate_rad_s") = 0.0,
+         py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
+  ct.def_readonly("turn_rate_rad_s", &CoordinatedTurn::turn_rate_rad_s);
+  define_model(ct);
+
+  py::class_<CoordinatedTurnRate> ctr(
+      m, "CoordinatedTurnRate",
+      "A turn whose rate is part of the state and wanders: [x, vx, y, vy, omega] (m, m/s, rad/s).");
+  ctr.def(py::init([](const ProcessNoise& noise, double psd, double prior) {
+            return checked(CoordinatedTurnRate{noise, psd, prior});
+          }),
+          py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"),
+          py::arg("turn_rate_psd_rad2s3") = CoordinatedTurnRate{}.turn_rate_psd_rad2s3,
+          py::arg("prior_turn_rate_std_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_std_rad_s);
+  define_model(ctr);
+
+  py::class_<Singer> singer(m, "Singer",
+                            "Singer's maneuvering target: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).");
+  singer.def(py::init([](double time, double std) { return checked(Singer{time, std}); }),
+             py::kw_only(), py::arg("maneuver_time_s") = Singer{}.maneuver_time_s,
+             py::arg("accel_std_mps2") = Singer{}.accel_std_mps2);
+  define_model(singer);
+}
+
+}  // namespace wakeline::python

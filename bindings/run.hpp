@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// `run`: whole recordings through an estimator, without Python between the steps.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "types.hpp"
+
+namespace wakeline::python {
+
+/// Arrays (..., T, ...) of one or R runs.
+struct RunResult {
+  py::array_t<double> mean;
+  py::array_t<double> covariance;
+  py::object mode_probability;  ///< None for a single filter
+  py::array_t<double> nis;
+  py::array_t<double> log_likelihood;
+  py::array_t<std::uint8_t> status;
+};
+
+inline int models_of(const AnyFilter&) noexcept { return 0; }
+inline int models_of(const AnyImm& imm) noexcept { return imm.bank().size(); }
+inline int states_of(const AnyFilter& filter) noexcept { return states_of(filter.layout()); }
+inline int states_of(const AnyImm& imm) noexcept { return imm.bank().empty_estimate().states(); }
+inline void write_modes(const AnyFilter&, double*) noexcept {}
+inline void write_modes(const AnyImm& imm, double* out) noexcept {
+  for (int k = 0; k < imm.bank().size(); ++k) out[k] = imm.mode_probability()[k];
+}
+
+/// The measurements, steps and own positions of all runs, as plain memory.
+struct RunInput {
+  std::size_t runs, scans, measurements;
+  const double* z;
+  std::vector<double> dt_s;          ///< (T)
+  const double* own = nullptr;       ///< (T, 2) or null
+  std::vector<AnyBelief> start;      ///< 1 or R
+};
+
+template <class Sensor>
+Sensor seen_from(const Sensor& sensor, const double* own) noexcept {
+  Sensor moved = sensor;
+  if constexpr (requires { moved.own; }) {
+    if (own != nullptr) {
+      moved.own.north_m = own[0];
+      moved.own.east_m = own[1];
+    }
+  }
+  return moved;
+}
+
+/// Memory of the results, `states` and `models` to a scan.
+struct RunOutput {
+  double *mean, *covariance, *modes, *nis, *log_likelihood;
+  std::uint8_t* status;
+};
+
+template <class Estimator, class Sensor>
+void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std::size_t run,
+             const RunOutput& out) noexcept {
+  constexpr int kM = Sensor::kMeasurements;
+  const auto states = static_cast<std::size_t>(states_of(estimator));
+  const auto models = static_cast<std::size_t>(models_of(estimator));
+  for (std::size_t scan = 0; scan < in.scans; ++scan) {
+    const std::size_t row = run * in.scans + scan;
+    const Vec<double, kM> z = Eigen::Map<const Vec<double, kM>>(in.z + row * kM);
+    Status status = estimator.predict(in.dt_s[scan]);
+    double nis = std::numeric_limits<double>::quiet_NaN();
+    double log_likelihood = nis;
+    if (status == Status::kOk) {
+      if (z.array().isNaN().all()) {
+        status = Status::kMissed;
+      } else {
+        const auto step =
+            estimator.update(seen_from(sensor, in.own ? in.own + 2 * scan : nullptr), z);
+        status = step.status;
+        if (step) {
+          nis = step.nis;
+          log_likelihood = step.log_likelihood;
+        }
+      }
+    }
+    const AnyBelief belief = estimator.estimate();
+    for (std::size_t i = 0; i < states; ++i) {
+      const auto a = static_cast<Eigen::Index>(i);
+      out.mean[row * states + i] = belief.mean[a];
+      for (std::size_t j = 0; j < states; ++j)
+        out.covariance[(row * states + i) * states + j] =
+            belief.covariance(a, static_cast<Eigen::Index>(j));
+    }
+    write_modes(estimator, out.modes + row * models);
+    out.nis[row] = nis;
+    out.log_likelihood[row] = log_likelihood;
+    out.status[row] = static_cast<std::uint8_t>(status);
+  }
+}
+
+/// The beliefs that `start` means: one Gaussian for all runs or a sequence of R.
+std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs);
+
+/// A scalar step or one per scan.
+std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans);
+
+template <class Estimator>
+RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object& dt_s,
+              const py::object& sensor, const py::object& start,
+              const std::optional<DoubleArray>& own_position_m) {
+  return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
+    constexpr int kM = Sensor::kMeasurements;
+    require_linear<Sensor>(prototype);
+    const bool many = z.ndim() == 3;
+    require_shape((z.ndim() == 2 || many) && z.shape(z.ndim() - 1) == kM, "z",
+                  "(T, " + std::to_string(kM) + ") or (R, T, " + std::to_string(kM) + ")", z);
+    RunInput in{};
+    in.runs = many ? static_cast<std::size_t>(z.shape(0)) : 1;
+    in.scans = static_cast<std::size_t>(z.shape(many ? 1 : 0));
+    in.measurements = kM;
+    in.z = z.data();
+    in.dt_s = parse_steps(dt_s, in.scans);
+    in.start = parse_starts(start, in.runs);
+    if (own_position_m) {
+      if constexpr (!requires { model.own; })
+        throw py::value_error("own_position_m must be None for a sensor without own ship");
+      require_shape(own_position_m->ndim() == 2 && own_position_m->shape(1) == 2 &&
+                        own_position_m->shape(0) == static_cast<py::ssize_t>(in.scans),
+                    "own_position_m", "(T, 2)", *own_position_m);
+      in.own = own_position_m->data();
+    }
+
+    const py::ssize_t states = states_of(prototype);
+    const py::ssize_t models = models_of(prototype);
+    std::vector<py::ssize_t> shape;
+    if (many) shape.push_back(z.shape(0));
+    shape.push_back(z.shape(many ? 1 : 0));
+    const auto with = [&](std::initializer_list<py::ssize_t> more) {
+      std::vector<py::ssize_t> extended = shape;
+      extended.insert(extended.end(), more);
+      return extended;
+    };
+    RunResult result{py::array_t<double>(with({states})),
+                     py::array_t<double>(with({states, states})),
+                     py::none(),
+                     py::array_t<double>(shape),
+                     py::array_t<double>(shape),
+                     py::array_t<std::uint8_t>(shape)};
+    py::array_t<double> modes(with({models}));
+    if (models > 0) result.mode_probability = modes;
+    const RunOutput out{result.mean.mutable_data(),
+                        result.covariance.mutable_data(),
+                        modes.mutable_data(),
+                        result.nis.mutable_data(),
+                        result.log_likelihood.mutable_data(),
+                        result.status.mutable_data()};
+    {
+      const py::gil_scoped_release release;
+      Estimator estimator = prototype;
+      for (std::size_t r = 0; r < in.runs; ++r) {
+        const Status started = estimator.start(in.start[in.start.size() == 1 ? 0 : r]);
+        if (started != Status::kOk)
+          throw FilterError("start of run " + std::to_string(r) + ": " + to_string(started));
+        run_one(estimator, model, in, r, out);
+      }
+    }
+    return result;
+  });
+}
+
+const char* const kRunDoc = R"(Runs whole recordings.
+
+Parameters
+----------
+z : (T, M) or (R, T, M) array
+    Readings of one run or of R independent ones; a row of NaN is a missed scan.
+dt_s : float or (T,) array
+    Time before each reading, s; the first counts from the start.
+sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+start : Gaussian or sequence of R of them
+    Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
+own_position_m : (T, 2) array, optional
+    North and east of own ship at each reading.
+
+Returns
+-------
+RunResult
+    mean (..., T, N), covariance (..., T, N, N), mode_probability (..., T, K), nis, log_likelihood and status (..., T).
+
+Raises
+------
+ValueError
+    When a shape does not fit.
+FilterError
+    When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.)";
+
+}  // namespace wakeline::python

@@ -1,0 +1,24 @@
+# wakeline_developer: how our own tests, examples, benchmarks and bindings are compiled. Never linked by users.
+add_library(wakeline_developer INTERFACE)
+target_link_libraries(wakeline_developer INTERFACE wakeline::wakeline)
+
+set(WAKELINE_WARNING_FLAGS -Wall -Wextra -Wconversion)
+if(WAKELINE_WARNINGS_AS_ERRORS)
+  list(APPEND WAKELINE_WARNING_FLAGS -Werror)
+endif()
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+  target_compile_options(wakeline_developer INTERFACE ${WAKELINE_WARNING_FLAGS})
+  if(WAKELINE_SANITIZE)
+    set(WAKELINE_SANITIZE_FLAGS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_compile_options(wakeline_developer INTERFACE ${WAKELINE_SANITIZE_FLAGS})
+    target_link_options(wakeline_developer INTERFACE ${WAKELINE_SANITIZE_FLAGS})
+  endif()
+endif()
+
+# wakeline_find(<package> <debian package> <option that asks for it>): find_package with an error one can act on.
+macro(wakeline_find package debian_package option)
+  find_package(${package} CONFIG QUIET)
+  if(NOT ${package}_FOUND)
+    message(FATAL_ERROR "${package} is missing: install it (Debian: ${debian_package}) or configure with -D${option}=OFF.")
+  endif()
+endmacro()

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// The loop of a radar console: plots in, scan by scan, tracks out.
+//
+//   console_loop SCANS.csv PLOTS.csv
+//
+// reads columns `scan, time_s, own_north_m, own_east_m` and `scan, north_m, east_m`; without arguments it makes up a
+// scene of its own. After start no scan allocates memory, which the program counts and says.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <new>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "wakeline/track/tracker.hpp"
+#include "wakeline/track/vessel_models.hpp"
+
+namespace {
+long allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace {
+
+using namespace wakeline;
+
+struct Scan {
+  double time_s;
+  std::vector<Plot> plots;
+};
+
+/// The numbers of the named columns, row by row.
+std::vector<std::vector<double>> read_columns(const std::string& path,
+                                              const std::vector<std::string>& names) {
+  std::ifstream file(path);
+  std::string line, field;
+  std::getline(file, line);
+  std::map<std::string, std::size_t> place;
+  for (std::istringstream header(line); std::getline(header, field, ',');)
+    place.emplace(field, place.size());
+  std::vector<std::vector<double>> rows;
+  while (std::getline(file, line)) {
+    std::vector<std::string> fields;
+    for (std::istringstream row(line); std::getline(row, field, ',');) fields.push_back(field);
+    std::vector<double> numbers;
+    for (const std::string& name : names) numbers.push_back(std::stod(fields.at(place.at(name))));
+    rows.push_back(numbers);
+  }
+  return rows;
+}
+
+std::vector<Scan> read_scans(const std::string& scans_path, const std::string& plots_path) {
+  std::vector<Scan> scans;
+  std::map<double, std::size_t> index;
+  std::vector<OwnShip> own;
+  for (const auto& row : read_columns(scans_path, {"scan", "time_s", "own_north_m", "own_east_m"})) {
+    index[row[0]] = scans.size();
+    scans.push_back({row[1], {}});
+    own.push_back({.north_m = row[2], .east_m = row[3]});
+  }
+  for (const auto& row : read_columns(plots_path, {"scan", "north_m", "east_m"})) {
+    const std::size_t k = index.at(row[0]);
+    const double north = row[1] - own[k].north_m, east = row[2] - own[k].east_m;
+    scans[k].plots.push_back(
+        {scans[k].time_s, std::hypot(north, east), std::atan2(east, north), own[k]});
+  }
+  return scans;
+}
+
+/// Eight boats on straight courses among false plots.
+std::vector<Scan> made_up_scans() {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  std::vector<Scan> scans;
+  for (int k = 0; k < 100; ++k) {
+    Scan scan{2.5 * k, {}};
+    for (int boat = 0; boat < 8; ++boat) {
+      if (uniform(random) > 0.9) continue;
+      const double course = boat * 0.8, distance = 500.0 + 6.0 * scan.time_s;
+      const double north = distance * std::cos(course), east = distance * std::sin(course);
+      scan.plots.push_back({scan.time_s, std::hypot(north, east) + 8 * normal(random),
+                            std::atan2(east, north) + deg(0.5) * normal(random)});
+    }
+    for (int k2 = 0; k2 < 5; ++k2)
+      scan.plots.push_back({scan.time_s, 3000 * uniform(random), 6.28 * uniform(random)});
+    scans.push_back(scan);
+  }
+  return scans;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Radar radar{.range_std_m = 8.0, .bearing_std_rad = deg(0.6), .period_s = 2.5, .max_speed_mps = 25.0};
+  const std::vector<Scan> scans = argc > 2 ? read_scans(argv[1], argv[2]) : made_up_scans();
+  Tracker tracker(radar, TrackerConfig{}, vessel_imm(radar));
+
+  const long before = allocations;
+  double worst_us = 0.0, total_us = 0.0;
+  for (const Scan& scan : scans) {
+    const auto start = std::chrono::steady_clock::now();
+    const ScanReport report = tracker.process(scan.time_s, scan.plots);
+    const double us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    worst_us = std::max(worst_us, us);
+    total_us += us;
+    for (const Event& event : report.events)
+      if (event.kind == TrackEvent::kConfirmed)
+        std::printf("%10.1f s  track %lld confirmed\n", event.time_s, static_cast<long long>(event.track_id));
+  }
+  tracker.for_each([](const auto& track) {
+    if (!track.shown()) return;
+    std::printf("track %lld at %8.1f N %8.1f E, %4.1f m/s\n", static_cast<long long>(track.id),
+                track.kinematics.mean[0], track.kinematics.mean[2], track.speed_mps());
+  });
+  std::printf("%zu scans, %.1f us a scan, at worst %.1f us, %ld allocations\n", scans.size(),
+              total_us / static_cast<double>(scans.size()), worst_us, allocations - before);
+  return allocations == before ? 0 : 1;
+}

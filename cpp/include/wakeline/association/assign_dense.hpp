@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "wakeline/association/candidates.hpp"
+#include "wakeline/association/global_nearest_neighbour.hpp"
+
+namespace wakeline {
+
+/// Rectangular assignment on a dense cost matrix: as many pairs as can be, and of these the least
+/// total cost.
+///
+/// An element that is not finite forbids its pair. Leaving a row out costs (min(rows, columns) + 1)
+/// times the spread of the finite costs, which no gain elsewhere outweighs; the optimum is
+/// therefore exact to about 1e-16 times that. For scoring and small problems: memory grows with
+/// rows x columns.
+template <class Scalar = double>
+class DenseAssignment {
+ public:
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+  /// Takes all memory. Throws `std::invalid_argument` when a capacity is negative.
+  DenseAssignment(int row_capacity, int column_capacity)
+      : candidates_(Candidates<Scalar>::dense(row_capacity, column_capacity)),
+        solver_(row_capacity, column_capacity) {}
+
+  /// False, and an empty assignment, when the matrix is larger than the capacities.
+  [[nodiscard]] bool solve(const Eigen::Ref<const Matrix>& cost) noexcept {
+    const int rows = static_cast<int>(cost.rows());
+    const int columns = static_cast<int>(cost.cols());
+    candidates_.clear(columns);
+    if (rows > candidates_.row_capacity()) {
+      (void)solver_.solve(candidates_);
+      return false;
+    }
+    Scalar least = std::numeric_limits<Scalar>::max();
+    Scalar most = std::numeric_limits<Scalar>::lowest();
+    for (int column = 0; column < columns; ++column)
+      for (int row = 0; row < rows; ++row) {
+        const Scalar element = cost(row, column);
+        if (!std::isfinite(element)) continue;
+        least = std::min(least, element);
+        most = std::max(most, element);
+      }
+    const Scalar spread = most > least ? most - least : Scalar(1);
+    const Scalar unassigned_cost = static_cast<Scalar>(std::min(rows, columns) + 1) * spread;
+
+    // Costs count from the least one, which changes no choice among assignments of equally many
+    // pairs.
+    for (int row = 0; row < rows; ++row) {
+      candidates_.start_row(unassigned_cost);
+      for (int column = 0; column < columns; ++column)
+        candidates_.add(column, cost(row, column) - least);  // refuses what is not finite
+    }
+    return solver_.solve(candidates_);
+  }
+
+  /// The column of each row, or `kUnassigned`.
+  [[nodiscard]] std::span<const int> column_of_row() const noexcept {
+    return solver_.assignment().column_of_row();
+  }
+  /// The row of each column, or `kUnassigned`.
+  [[nodiscard]] std::span<const int> row_of_column() const noexcept {
+    return solver_.assignment().row_of_column();
+  }
+  [[nodiscard]] int pairs() const noexcept { return solver_.assignment().pairs(); }
+
+ private:
+  Candidates<Scalar> candidates_;
+  GlobalNearestNeighbour<Scalar> solver_;
+};
+
+/// The column of each row, or `kUnassigned`, by `DenseAssignment` with memory taken for this call.
+template <class Derived>
+[[nodiscard]] std::vector<int> assign_dense(const Eigen::MatrixBase<Derived>& cost) {
+  using Scalar = typename Derived::Scalar;
+  DenseAssignment<Scalar> assignment(static_cast<int>(cost.rows()), static_cast<int>(cost.cols()));
+  const typename DenseAssignment<Scalar>::Matrix matrix = cost;
+  if (!assignment.solve(matrix)) return {};
+  const auto columns = assignment.column_of_row();
+  return {columns.begin(), columns.end()};
+}
+
+}  // namespace wakeline

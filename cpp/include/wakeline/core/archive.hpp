@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// Writes or reads the state of an object, field by field, as plain bytes of this machine.
+///
+/// An object lists its fields once, in `archive(Archive&)`, which serves both ways. Reading past the end fails and
+/// leaves the rest of the fields as they were; ask `ok()` at the end.
+class Archive {
+ public:
+  /// For writing.
+  Archive() = default;
+  /// For reading.
+  explicit Archive(std::span<const std::byte> bytes) : bytes_(bytes.begin(), bytes.end()), loading_(true) {}
+
+  [[nodiscard]] bool loading() const noexcept { return loading_; }
+  [[nodiscard]] bool ok() const noexcept { return ok_; }
+  /// True when all has been read.
+  [[nodiscard]] bool at_end() const noexcept { return position_ == bytes_.size(); }
+  [[nodiscard]] const std::vector<std::byte>& bytes() const noexcept { return bytes_; }
+
+  /// A number, an enumeration or a plain struct of them.
+  template <class T>
+    requires(std::is_trivially_copyable_v<T>)
+  void operator()(T& value) {
+    raw(&value, sizeof(T));
+  }
+
+  /// An Eigen vector or matrix, of fixed size or of the size it has.
+  template <class Scalar, int Rows, int Cols, int Options, int MaxRows, int MaxCols>
+  void operator()(Eigen::Matrix<Scalar, Rows, Cols, Options, MaxRows, MaxCols>& matrix) {
+    raw(matrix.data(), sizeof(Scalar) * static_cast<std::size_t>(matrix.size()));
+  }
+
+  /// A vector of plain values, with its length; a length beyond `capacity` fails.
+  template <class T>
+    requires(std::is_trivially_copyable_v<T>)
+  void operator()(std::vector<T>& values, std::size_t capacity) {
+    auto size = static_cast<std::uint64_t>(values.size());
+    (*this)(size);
+    if (loading_) {
+      if (!ok_ || size > capacity) {
+        ok_ = false;
+        return;
+      }
+      values.resize(static_cast<std::size_t>(size));
+    }
+    raw(values.data(), sizeof(T) * values.size());
+  }
+
+  /// Marks what was read as unusable.
+  void fail() noexcept { ok_ = false; }
+
+ private:
+  void raw(void* data, std::size_t size) {
+    if (!loading_) {
+      const auto* begin = static_cast<const std::byte*>(data);
+      bytes_.insert(bytes_.end(), begin, begin + size);
+      return;
+    }
+    if (!ok_ || bytes_.size() - position_ < size) {
+      ok_ = false;
+      return;
+    }
+    if (size > 0) std::memcpy(data, bytes_.data() + position_, size);
+    position_ += size;
+  }
+
+  std::vector<std::byte> bytes_;
+  std::size_t position_ = 0;
+  bool loading_ = false;
+  bool ok_ = true;
+};
+
+}  // namespace wakeline

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "wakeline/core/status.hpp"
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// The checked Cholesky factorisation A = L Lᵀ of a symmetric matrix (its lower triangle is read).
+///
+/// The one place where Wakeline factorises a covariance. `ok()` is false when A is not positive definite or not
+/// finite; the other members may then not be used. No heap, no exception.
+template <int N, class Scalar = double>
+class Cholesky {
+ public:
+  Cholesky() = default;
+  explicit Cholesky(const Mat<Scalar, N, N>& matrix) noexcept { compute(matrix); }
+
+  /// Factorises another matrix.
+  void compute(const Mat<Scalar, N, N>& matrix) noexcept {
+    using std::sqrt;
+    ok_ = false;
+    for (int column = 0; column < N; ++column) {
+      Scalar pivot = matrix(column, column);
+      for (int k = 0; k < column; ++k) pivot -= lower_(column, k) * lower_(column, k);
+      if (!(pivot > Scalar(0)) || !(pivot <= std::numeric_limits<Scalar>::max())) return;
+      const Scalar diagonal = sqrt(pivot);
+      lower_(column, column) = diagonal;
+      inverse_diagonal_[column] = Scalar(1) / diagonal;
+      for (int row = column + 1; row < N; ++row) {
+        Scalar sum = matrix(row, column);
+        for (int k = 0; k < column; ++k) sum -= lower_(row, k) * lower_(column, k);
+        lower_(row, column) = sum * inverse_diagonal_[column];
+      }
+    }
+    ok_ = true;
+  }
+
+  [[nodiscard]] bool ok() const noexcept { return ok_; }
+
+  /// L, with zeros above its diagonal.
+  const Mat<Scalar, N, N>& lower() const noexcept { return lower_; }
+
+  /// L⁻¹ B: whitens the columns of B, so that Bᵀ A⁻¹ B = (L⁻¹ B)ᵀ (L⁻¹ B).
+  template <int Cols>
+  Mat<Scalar, N, Cols> whiten(Mat<Scalar, N, Cols> right) const noexcept {
+    for (int column = 0; column < Cols; ++column)
+      for (int row = 0; row < N; ++row) {
+        Scalar sum = right(row, column);
+        for (int k = 0; k < row; ++k) sum -= lower_(row, k) * right(k, column);
+        right(row, column) = sum * inverse_diagonal_[row];
+      }
+    return right;
+  }
+
+  /// A⁻¹ B.
+  template <int Cols>
+  Mat<Scalar, N, Cols> solve(const Mat<Scalar, N, Cols>& right) const noexcept {
+    Mat<Scalar, N, Cols> x = whiten<Cols>(right);
+    for (int column = 0; column < Cols; ++column)
+      for (int row = N - 1; row >= 0; --row) {
+        Scalar sum = x(row, column);
+        for (int k = row + 1; k < N; ++k) sum -= lower_(k, row) * x(k, column);
+        x(row, column) = sum * inverse_diagonal_[row];
+      }
+    return x;
+  }
+
+  /// ln det A.
+  Scalar log_determinant() const noexcept {
+    using std::log;
+    Scalar product = Scalar(1);
+    for (int k = 0; k < N; ++k) product *= inverse_diagonal_[k];
+    return Scalar(-2) * log(product);
+  }
+
+ private:
+  Mat<Scalar, N, N> lower_ = Mat<Scalar, N, N>::Zero();
+  Vec<Scalar, N> inverse_diagonal_ = Vec<Scalar, N>::Zero();
+  bool ok_ = false;
+};
+
+/// A root G with G Gᵀ = A of a matrix that is only positive semidefinite, as process noise may be: a Cholesky
+/// factorisation that leaves out the directions without variance.
+template <int N, class Scalar>
+Mat<Scalar, N, N> semidefinite_root(const Mat<Scalar, N, N>& matrix) noexcept {
+  using std::sqrt;
+  Mat<Scalar, N, N> root = Mat<Scalar, N, N>::Zero();
+  for (int column = 0; column < N; ++column) {
+    Scalar pivot = matrix(column, column);
+    for (int k = 0; k < column; ++k) pivot -= root(column, k) * root(column, k);
+    if (!(pivot > Scalar(8) * std::numeric_limits<Scalar>::epsilon() * matrix(column, column))) continue;
+    const Scalar diagonal = sqrt(pivot);
+    root(column, column) = diagonal;
+    for (int row = column + 1; row < N; ++row) {
+      Scalar sum = matrix(row, column);
+      for (int k = 0; k < column; ++k) sum -= root(row, k) * root(column, k);
+      root(row, column) = sum / diagonal;
+    }
+  }
+  return root;
+}
+
+/// True when every element is finite.
+template <class Derived>
+bool is_finite(const Eigen::MatrixBase<Derived>& matrix) noexcept {
+  using Scalar = typename Derived::Scalar;
+  // 0 x is NaN for an infinite or NaN x, and a sum with a NaN is NaN.
+  const Scalar sum = (matrix.array() * Scalar(0)).sum();
+  return sum == Scalar(0);
+}
+
+/// Says what is wrong with a belief, or `kOk`.
+template <int N, class Scalar>
+Status check(const Gaussian<N, Scalar>& belief) noexcept {
+  using std::abs;
+  if (!is_finite(belief.mean) || !is_finite(belief.covariance)) return Status::kNotFinite;
+  const Scalar tolerance = Scalar(64) * std::numeric_limits<Scalar>::epsilon() *
+                           belief.covariance.diagonal().cwiseAbs().maxCoeff();
+  const bool symmetric =
+      (belief.covariance - belief.covariance.transpose()).cwiseAbs().maxCoeff() <= tolerance;
+  return symmetric && Cholesky<N, Scalar>(belief.covariance).ok() ? Status::kOk
+                                                                 : Status::kNotPositiveDefinite;
+}
+
+}  // namespace wakeline

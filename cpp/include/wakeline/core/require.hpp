@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace wakeline {
+
+/// Throws `std::invalid_argument` that says what was wanted and what came. For constructors only.
+inline void require(bool condition, const char* name, const char* wanted, double value) {
+  if (condition) return;
+  std::ostringstream message;
+  message << name << " must be " << wanted << ", got " << value;
+  throw std::invalid_argument(message.str());
+}
+
+inline void require_not_negative(const char* name, double value) {
+  require(value >= 0.0 && std::isfinite(value), name, "finite and not negative", value);
+}
+
+inline void require_positive(const char* name, double value) {
+  require(value > 0.0 && std::isfinite(value), name, "finite and positive", value);
+}
+
+inline void require_finite(const char* name, double value) {
+  require(std::isfinite(value), name, "finite", value);
+}
+
+inline void require_probability(const char* name, double value) {
+  require(value >= 0.0 && value <= 1.0, name, "a probability between 0 and 1", value);
+}
+
+}  // namespace wakeline

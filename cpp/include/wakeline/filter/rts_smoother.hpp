@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "wakeline/core/cholesky.hpp"
+#include "wakeline/motion/concept.hpp"
+
+namespace wakeline {
+
+/// Rauch-Tung-Striebel smoother, in place: turns the filtered beliefs of T scans into smoothed ones.
+///
+/// `dt_s[k]` leads from scan k to scan k + 1 (T - 1 of them). The covariance is kept in a form that stays positive
+/// definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q) Gᵀ. Returns the first failure, with everything before that scan left
+/// as filtered.
+/// Source: Bar-Shalom, Li, Kirubarajan, 8.6.
+template <MotionModel Motion, class Scalar>
+Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs,
+              std::span<const Scalar> dt_s) noexcept {
+  constexpr int kStates = kStatesOf<Motion>;
+  using Matrix = Mat<Scalar, kStates, kStates>;
+  for (std::size_t k = beliefs.size(); k-- > 1;) {
+    const Gaussian<kStates, Scalar>& later = beliefs[k];
+    Gaussian<kStates, Scalar>& belief = beliefs[k - 1];
+    const Scalar dt = dt_s[k - 1];
+    const Vec<Scalar, kStates> predicted = transition(motion, belief.mean, dt);
+    const Matrix f = transition_jacobian(motion, belief.mean, dt);
+    const Matrix q = process_noise(motion, belief.mean, dt);
+    const Matrix fp = f * belief.covariance;
+    const Cholesky<kStates, Scalar> factor(Matrix(fp * f.transpose() + q));
+    if (!factor.ok()) return Status::kNotPositiveDefinite;
+    const Matrix gain = factor.template solve<kStates>(fp).transpose();
+    const Matrix rest = Matrix::Identity() - gain * f;
+    belief.mean += gain * (later.mean - predicted);
+    belief.covariance = rest * belief.covariance * rest.transpose() +
+                        gain * (later.covariance + q) * gain.transpose();
+    mirror_lower<Scalar, kStates>(belief.covariance);
+    if (!is_finite(belief.mean) || !is_finite(belief.covariance)) return Status::kNotFinite;
+  }
+  return Status::kOk;
+}
+
+}  // namespace wakeline

@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/QR>
+
+#include "wakeline/filter/unscented.hpp"
+
+namespace wakeline {
+
+/// Lower-triangular L with L Lᵀ = A Aᵀ and a positive diagonal, by orthogonal transformations of A.
+template <class Scalar, int N, int Cols>
+Mat<Scalar, N, N> lower_root(const Mat<Scalar, N, Cols>& a) noexcept {
+  const Eigen::HouseholderQR<Mat<Scalar, Cols, N>> qr(a.transpose());
+  Mat<Scalar, N, N> lower = Mat<Scalar, N, N>::Zero();
+  for (int column = 0; column < N; ++column) {
+    const Scalar sign = qr.matrixQR()(column, column) < Scalar(0) ? Scalar(-1) : Scalar(1);
+    for (int row = column; row < N; ++row) lower(row, column) = sign * qr.matrixQR()(column, row);
+  }
+  return lower;
+}
+
+/// The unscented Kalman filter on a square root of the covariance, for long unattended runs: the covariance is L Lᵀ and
+/// cannot lose its definiteness. Both steps are one triangularisation of an array, without any downdate; beta must
+/// therefore not be below alpha².
+/// Source: R. van der Merwe, E. A. Wan, ICASSP 2001; the array form after Bar-Shalom, Li, Kirubarajan, 7.4.
+template <class MotionType, class ScalarType = double>
+class SquareRootUkf {
+  static_assert(MotionModel<MotionType>, "wakeline: not a motion model; see cpp/docs/concepts.md");
+
+ public:
+  using Motion = MotionType;
+  using Scalar = ScalarType;
+  static constexpr auto kComponents = Motion::kComponents;
+  static constexpr int kStates = kStatesOf<Motion>;
+  static constexpr int kPoints = 2 * kStates;
+
+  /// Throws `std::invalid_argument` on parameters that make no sense.
+  explicit SquareRootUkf(const MotionType& motion, const Unscented& unscented = {})
+      : motion_(validated(motion)), unscented_(unscented) {
+    unscented.validate(kStates);
+    require(unscented.beta >= unscented.alpha * unscented.alpha, "beta", "at least alpha squared",
+            unscented.beta);
+  }
+
+  /// Begins with `belief`; refuses one whose covariance is not symmetric positive definite.
+  Status start(const Gaussian<kStates, Scalar>& belief) noexcept {
+    const Status status = check(belief);
+    return status == Status::kOk ? assign(belief) : status;
+  }
+
+  /// Begins with a belief over `[x, vx, y, vy]`; the other components get the model's prior.
+  Status start(const Gaussian<4, Scalar>& kinematics) noexcept
+    requires(kStates != 4 && holds(kComponents, kKinematics))
+  {
+    return start(lift(motion_, kinematics));
+  }
+
+  /// Replaces the belief.
+  Status assign(const Gaussian<kStates, Scalar>& belief) noexcept {
+    const Cholesky<kStates, Scalar> root(belief.covariance);
+    if (!root.ok()) return Status::kNotPositiveDefinite;
+    mean_ = belief.mean;
+    root_ = root.lower();
+    started_ = true;
+    return Status::kOk;
+  }
+
+  /// Saves or restores the belief.
+  void archive(Archive& fields) {
+    fields(mean_);
+    fields(root_);
+    fields(started_);
+  }
+
+  /// The belief, its covariance as L Lᵀ.
+  [[nodiscard]] Gaussian<kStates, Scalar> estimate() const noexcept {
+    return {mean_, root_ * root_.transpose()};
+  }
+
+  [[nodiscard]] const Mat<Scalar, kStates, kStates>& root() const noexcept { return root_; }
+  [[nodiscard]] const Motion& motion() const noexcept { return motion_; }
+  [[nodiscard]] const Unscented& unscented() const noexcept { return unscented_; }
+  [[nodiscard]] bool started() const noexcept { return started_; }
+
+  /// The root of the array [sqrt(w) e_i, sqrt(beta - alpha²) d, Q^(1/2)].
+  Status predict(Scalar dt_s) noexcept {
+    using std::sqrt;
+    if (!started_) return Status::kNotStarted;
+    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
+    const MovedPoints<Scalar, kStates> moved(motion_, dt_s, mean_, points());
+    const Vec<Scalar, kStates> shift = weight() * moved.differences.rowwise().sum();
+    Mat<Scalar, kStates, kPoints + 1 + kStates> array;
+    array << sqrt(weight()) * moved.differences, centre_root() * shift,
+        semidefinite_root<kStates, Scalar>(process_noise(motion_, mean_, dt_s));
+    if (!is_finite(moved.centre) || !is_finite(array)) return Status::kNotFinite;
+    mean_ = moved.centre + shift;
+    root_ = lower_root(array);
+    return Status::kOk;
+  }
+
+  /// The innovation of a reading and its likelihood, without taking it.
+  template <class Sensor>
+  Step<Sensor::kMeasurements, Scalar> innovation(
+      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
+    return SquareRootUkf(*this).update(sensor, z);
+  }
+
+  /// Corrects the belief by the reading z of a sensor: the root of [sqrt(w) e_z, sqrt(beta - alpha²) d_z, R^(1/2);
+  /// sqrt(w) (points - x), 0, 0] is [S^(1/2), 0; K S^(1/2), P^(1/2)].
+  template <class Sensor>
+  Step<Sensor::kMeasurements, Scalar> update(
+      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    using std::sqrt;
+    check_sensor<Sensor, SquareRootUkf>();
+    constexpr int kM = Sensor::kMeasurements;
+    if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
+    const Gaussian<kM, Scalar> reading = sensor.observe(z);
+    const Mat<Scalar, kStates, kPoints> sigma = points();
+    const MeasuredPoints<Scalar, kM, kPoints> images(sensor, kComponents, mean_, sigma);
+    const Vec<Scalar, kM> shift = weight() * images.differences.rowwise().sum();
+
+    Mat<Scalar, kM + kStates, kPoints + 1 + kM> array =
+        Mat<Scalar, kM + kStates, kPoints + 1 + kM>::Zero();
+    array.template topLeftCorner<kM, kPoints>() = sqrt(weight()) * images.differences;
+    array.template block<kM, 1>(0, kPoints) = centre_root() * shift;
+    array.template topRightCorner<kM, kM>() = semidefinite_root<kM, Scalar>(reading.covariance);
+    array.template bottomLeftCorner<kStates, kPoints>() =
+        sqrt(weight()) * (sigma.colwise() - mean_);
+    const Vec<Scalar, kM> innovation =
+        sensor.residual(reading.mean, Vec<Scalar, kM>(images.centre + shift));
+    if (!is_finite(array) || !is_finite(innovation))
+      return failed_step<kM, Scalar>(Status::kNotFinite);
+
+    const Mat<Scalar, kM + kStates, kM + kStates> root = lower_root(array);
+    const Mat<Scalar, kM, kM> s_root = root.template topLeftCorner<kM, kM>();
+    Step<kM, Scalar> step;
+    step.innovation = innovation;
+    step.innovation_covariance = s_root * s_root.transpose();
+    const Cholesky<kM, Scalar> factor(step.innovation_covariance);
+    if (!factor.ok()) return failed_step<kM, Scalar>(Status::kNotPositiveDefinite);
+    const Vec<Scalar, kM> whitened = factor.template whiten<1>(innovation);
+    score(step, whitened, factor);
+    mean_.noalias() += root.template bottomLeftCorner<kStates, kM>() * whitened;
+    root_ = root.template bottomRightCorner<kStates, kStates>();
+    return step;
+  }
+
+ private:
+  Mat<Scalar, kStates, kPoints> points() const noexcept {
+    return sigma_points<Scalar, kStates>(mean_, root_,
+                                         unscented_.template spread<Scalar>(kStates));
+  }
+  Scalar weight() const noexcept { return unscented_.template weight<Scalar>(kStates); }
+  Scalar centre_root() const noexcept {
+    using std::sqrt;
+    return sqrt(unscented_.template centre_correction<Scalar>());
+  }
+
+  Motion motion_;
+  Unscented unscented_;
+  Vec<Scalar, kStates> mean_ = Vec<Scalar, kStates>::Zero();
+  Mat<Scalar, kStates, kStates> root_ = Mat<Scalar, kStates, kStates>::Identity();
+  bool started_ = false;
+};
+
+}  // namespace wakeline

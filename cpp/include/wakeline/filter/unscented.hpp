@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+
+#include "wakeline/core/require.hpp"
+#include "wakeline/filter/belief.hpp"
+
+namespace wakeline {
+
+/// The scaled unscented transform's three parameters.
+///
+/// Sigma points stand at x and x ± sqrt(alpha² (n + kappa)) columns of the Cholesky factor. With e_i the image of a
+/// point less that of the centre and w = 1 / (2 alpha² (n + kappa)), the weighted mean and covariance of the textbook
+/// are, whatever the sign of the centre weight,
+///
+///     d = w Σ e_i,   mean = f(x) + d,   covariance = w Σ e_i e_iᵀ + (beta - alpha²) d dᵀ,
+///
+/// in which no large weights cancel, and which is positive semidefinite for beta >= alpha².
+/// Source: S. J. Julier, "The scaled unscented transformation", ACC 2002; E. A. Wan, R. van der Merwe, 2000.
+struct Unscented {
+  double alpha = 1.0;
+  double beta = 2.0;
+  double kappa = 0.0;
+
+  /// How far the points stand from the centre, in columns of the factor: sqrt(alpha² (n + kappa)).
+  template <class Scalar>
+  [[nodiscard]] Scalar spread(int states) const noexcept {
+    return Scalar(alpha * std::sqrt(states + kappa));
+  }
+
+  /// Weight w of each point but the centre.
+  template <class Scalar>
+  [[nodiscard]] Scalar weight(int states) const noexcept {
+    return Scalar(1.0 / (2.0 * alpha * alpha * (states + kappa)));
+  }
+
+  /// beta - alpha².
+  template <class Scalar>
+  [[nodiscard]] Scalar centre_correction() const noexcept {
+    return Scalar(beta - alpha * alpha);
+  }
+
+  void validate(int states) const {
+    require_positive("alpha", alpha);
+    require_finite("beta", beta);
+    require(states + kappa > 0.0, "kappa", "greater than minus the number of states", kappa);
+  }
+};
+
+/// The 2 N sigma points about a mean, without the mean itself.
+template <class Scalar, int N>
+Mat<Scalar, N, 2 * N> sigma_points(const Vec<Scalar, N>& mean, const Mat<Scalar, N, N>& lower,
+                                   Scalar spread) noexcept {
+  Mat<Scalar, N, 2 * N> points;
+  for (int k = 0; k < N; ++k) {
+    points.col(2 * k) = mean + spread * lower.col(k);
+    points.col(2 * k + 1) = mean - spread * lower.col(k);
+  }
+  return points;
+}
+
+/// Sigma points after the motion: the centre, and the differences of the others from it.
+template <class Scalar, int N>
+struct MovedPoints {
+  Vec<Scalar, N> centre;
+  Mat<Scalar, N, 2 * N> differences;
+
+  template <class Motion>
+  MovedPoints(const Motion& motion, Scalar dt_s, const Vec<Scalar, N>& mean,
+              const Mat<Scalar, N, 2 * N>& points) noexcept {
+    if constexpr (LinearMotionModel<Motion>) {
+      const Mat<Scalar, N, N> f = motion.matrix(dt_s);
+      centre = f * mean;
+      differences = (f * points).colwise() - centre;
+    } else {
+      centre = motion.transition(mean, dt_s);
+      for (int k = 0; k < 2 * N; ++k)
+        differences.col(k) = motion.transition(Vec<Scalar, N>(points.col(k)), dt_s) - centre;
+    }
+  }
+};
+
+/// Sigma points as a sensor sees them: the centre, and the wrapped differences of the others from it.
+template <class Scalar, int M, int Points>
+struct MeasuredPoints {
+  Vec<Scalar, M> centre;
+  Mat<Scalar, M, Points> differences;
+
+  template <class Sensor, std::size_t Components, int N>
+  MeasuredPoints(const Sensor& sensor, const std::array<Component, Components>& components,
+                 const Vec<Scalar, N>& mean, const Mat<Scalar, N, Points>& points) noexcept {
+    const auto rows = rows_read<Sensor>(components);
+    const auto see = [&](const auto& state) {
+      Vec<Scalar, kReadsOf<Sensor>> read;
+      for (int k = 0; k < read.size(); ++k) read[k] = state[rows[k]];
+      return Vec<Scalar, M>(sensor.measure(read));
+    };
+    centre = see(mean);
+    for (int k = 0; k < Points; ++k)
+      differences.col(k) = sensor.residual(see(points.col(k)), centre);
+  }
+};
+
+/// N(mean, covariance) of the images, given the centre's image and the differences e of the others from it.
+template <class Scalar, int M, int Points>
+Gaussian<M, Scalar> unscented_moments(const Unscented& unscented, int states,
+                                      const Vec<Scalar, M>& centre,
+                                      const Mat<Scalar, M, Points>& differences) noexcept {
+  const Scalar w = unscented.template weight<Scalar>(states);
+  const Vec<Scalar, M> shift = w * differences.rowwise().sum();
+  Gaussian<M, Scalar> moments;
+  moments.mean = centre + shift;
+  moments.covariance.noalias() = w * differences * differences.transpose();
+  moments.covariance.noalias() +=
+      unscented.template centre_correction<Scalar>() * shift * shift.transpose();
+  mirror_lower<Scalar, M>(moments.covariance);
+  return moments;
+}
+
+}  // namespace wakeline

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/scalar.hpp"
+#include "wakeline/core/types.hpp"
+#include "wakeline/measurement/own_ship.hpp"
+
+namespace wakeline {
+
+/// The unit vector towards a bearing, north and east.
+template <class Scalar>
+Vec<Scalar, 2> towards(Scalar bearing_rad) noexcept {
+  using std::cos, std::sin;
+  return {cos(bearing_rad), sin(bearing_rad)};
+}
+
+/// A covariance of `along` (m²) in the direction `u` and `across` (m²) square to it.
+template <class Scalar>
+Mat<Scalar, 2, 2> oriented_covariance(const Vec<Scalar, 2>& u, Scalar along, Scalar across) noexcept {
+  const Scalar nn = along * u[0] * u[0] + across * u[1] * u[1];
+  const Scalar ne = (along - across) * u[0] * u[1];
+  const Scalar ee = along * u[1] * u[1] + across * u[0] * u[0];
+  Mat<Scalar, 2, 2> covariance;
+  covariance << nn, ne, ne, ee;
+  return covariance;
+}
+
+/// Polar plot to north/east about the antenna, first order: [r cos b, r sin b], covariance sr² along the bearing and
+/// (r sb)² across it.
+/// Source: Bar-Shalom, Li, Kirubarajan, 10.4.2; paper A, equation (6).
+template <class Scalar>
+Gaussian<2, Scalar> convert_plain(Scalar range_m, Scalar bearing_rad, Scalar range_var_m2,
+                                  Scalar bearing_var_rad2) noexcept {
+  const Vec<Scalar, 2> u = towards(bearing_rad);
+  return {range_m * u,
+          oriented_covariance<Scalar>(u, range_var_m2, range_m * range_m * bearing_var_rad2)};
+}
+
+/// Polar plot to north/east about the antenna without bias: the plain point times exp(sb²/2), with its exact average
+/// covariance given the plot. Unlike the plain one it keeps a variance across the bearing at zero range.
+/// Source: M. Longbin, S. Xiaoquan, Z. Yiyu, S. Z. Kang, Y. Bar-Shalom, "Unbiased converted measurements for tracking",
+/// IEEE Trans. AES-34, 1998, equations (10) and (12), written along and across the bearing, where nothing cancels.
+template <class Scalar>
+Gaussian<2, Scalar> convert_unbiased(Scalar range_m, Scalar bearing_rad, Scalar range_var_m2,
+                                     Scalar bearing_var_rad2) noexcept {
+  using std::exp, std::expm1;
+  const Vec<Scalar, 2> u = towards(bearing_rad);
+  const Scalar range2 = range_m * range_m;
+  const Scalar shrink = expm1(-2 * bearing_var_rad2);  // exp(-2 sb²) - 1
+  const Scalar along = range2 * (expm1(bearing_var_rad2) + shrink / 2) +
+                       range_var_m2 * (1 + shrink / 2);
+  const Scalar across = -(range2 + range_var_m2) * shrink / 2;
+  return {exp(bearing_var_rad2 / 2) * range_m * u, oriented_covariance<Scalar>(u, along, across)};
+}
+
+/// r sb² / sr: twice the bias r sb² / 2 of the plain conversion over the range error.
+inline double conversion_bias_ratio(double range_m, double range_std_m,
+                                    double bearing_std_rad) noexcept {
+  return range_m * bearing_std_rad * bearing_std_rad / range_std_m;
+}
+
+/// True when the plain conversion is biased enough to matter: r sb² / sr > 0.4.
+/// Source: Bar-Shalom, Li, Kirubarajan, 10.4.3, equation (10.4.3-19).
+inline bool conversion_bias_matters(double range_m, double range_std_m,
+                                    double bearing_std_rad) noexcept {
+  return conversion_bias_ratio(range_m, range_std_m, bearing_std_rad) > 0.4;
+}
+
+/// What every radar reading of range and bearing shares: errors of the radar, of the echo and of own ship.
+///
+/// The echo of a vessel wanders over its hull: `extent_std_m` per axis, as own ship's position error does. Own ship's
+/// heading error adds to the bearing error. `bearing_offset_rad` is how much too large the radar reads bearings.
+struct PolarErrors {
+  double range_std_m;
+  double bearing_std_rad;
+  double extent_std_m;
+  double bearing_offset_rad;
+  OwnShip own;
+
+  /// Variance per axis (m²) that does not depend on range: echo extent and own position.
+  [[nodiscard]] double isotropic_variance_m2() const noexcept {
+    return extent_std_m * extent_std_m + own.position_std_m * own.position_std_m;
+  }
+
+  [[nodiscard]] double range_variance_m2() const noexcept { return range_std_m * range_std_m; }
+
+  /// Variance of the true bearing (rad²): radar and heading.
+  [[nodiscard]] double bearing_variance_rad2() const noexcept {
+    return bearing_std_rad * bearing_std_rad + own.heading_std_rad * own.heading_std_rad;
+  }
+
+  /// Plot `[range, bearing]` to north/east in the plane, with all errors.
+  template <class Scalar>
+  Gaussian<2, Scalar> position(Scalar range_m, Scalar bearing_rad, bool unbiased) const noexcept {
+    const Scalar bearing = bearing_rad - Scalar(bearing_offset_rad);
+    const Scalar range_var = Scalar(range_variance_m2());
+    const Scalar bearing_var = Scalar(bearing_variance_rad2());
+    Gaussian<2, Scalar> fix = unbiased ? convert_unbiased(range_m, bearing, range_var, bearing_var)
+                                       : convert_plain(range_m, bearing, range_var, bearing_var);
+    fix.mean += own.position<Scalar>();
+    fix.covariance.diagonal().array() += Scalar(isotropic_variance_m2());
+    return fix;
+  }
+
+  void validate() const {
+    require_positive("range_std_m", range_std_m);
+    require_positive("bearing_std_rad", bearing_std_rad);
+    require_not_negative("extent_std_m", extent_std_m);
+    require_finite("bearing_offset_rad", bearing_offset_rad);
+    own.validate();
+  }
+};
+
+}  // namespace wakeline

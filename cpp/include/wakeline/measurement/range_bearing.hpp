@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "wakeline/measurement/concept.hpp"
+#include "wakeline/measurement/polar.hpp"
+
+namespace wakeline {
+
+/// Ranges below this (m) are taken as this in derivatives, which have no limit at the antenna.
+inline constexpr double kMinRange_m = 1e-3;
+
+/// A plot `[range m, bearing rad]` for EKF and UKF.
+/// Source: Bar-Shalom, Li, Kirubarajan, 10.4.1; paper A, equation (6).
+struct RangeBearing {
+  static constexpr int kMeasurements = 2;
+  static constexpr auto kReads = kPosition;
+  static constexpr bool kLinear = false;
+
+  double range_std_m = 10.0;
+  double bearing_std_rad = deg(1.0);
+  double extent_std_m = 0.0;        ///< wander of the echo over the hull, per axis
+  double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
+  OwnShip own = {};
+
+  /// z and R = diag(sr² + se², sb² + (se / r)²).
+  template <class Scalar>
+  Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
+    const PolarErrors e = errors();
+    const Scalar isotropic = Scalar(e.isotropic_variance_m2());
+    const Scalar range2 = select(z[0] * z[0] > kMinRange2<Scalar>, z[0] * z[0], kMinRange2<Scalar>);
+    Gaussian<2, Scalar> reading{z, Mat<Scalar, 2, 2>::Zero()};
+    reading.covariance(0, 0) = Scalar(e.range_variance_m2()) + isotropic;
+    reading.covariance(1, 1) = Scalar(e.bearing_variance_rad2()) + isotropic / range2;
+    return reading;
+  }
+
+  template <class Scalar>
+  Vec<Scalar, 2> measure(const Vec<Scalar, 2>& position) const noexcept {
+    using std::atan2, std::sqrt;
+    const Vec<Scalar, 2> d = position - own.position<Scalar>();
+    return {sqrt(d.squaredNorm()), atan2(d[1], d[0]) + Scalar(bearing_offset_rad)};
+  }
+
+  template <class Scalar>
+  Mat<Scalar, 2, 2> jacobian(const Vec<Scalar, 2>& position) const noexcept {
+    using std::sqrt;
+    const Vec<Scalar, 2> d = position - own.position<Scalar>();
+    const Scalar true_range2 = d.squaredNorm();
+    const Scalar range2 = select(true_range2 > kMinRange2<Scalar>, true_range2, kMinRange2<Scalar>);
+    const Scalar range = sqrt(range2);
+    Mat<Scalar, 2, 2> h;
+    h << d[0] / range, d[1] / range, -d[1] / range2, d[0] / range2;
+    return h;
+  }
+
+  template <class Scalar>
+  Vec<Scalar, 2> residual(const Vec<Scalar, 2>& a, const Vec<Scalar, 2>& b) const noexcept {
+    return {a[0] - b[0], wrap_angle<Scalar>(a[1] - b[1])};
+  }
+
+  /// The plot in north/east, for starts and gates.
+  template <class Scalar>
+  Gaussian<2, Scalar> position(const Vec<Scalar, 2>& z) const noexcept {
+    return errors().position(z[0], z[1], true);
+  }
+
+  void validate() const { errors().validate(); }
+
+  [[nodiscard]] PolarErrors errors() const noexcept {
+    return {range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own};
+  }
+
+ private:
+  template <class Scalar>
+  static constexpr Scalar kMinRange2 = Scalar(kMinRange_m * kMinRange_m);
+};
+
+/// A plot `[range m, bearing rad]` turned into north/east with its own covariance, which makes it linear: the form of
+/// the papers. `unbiased` corrects the mean and covariance for the curvature of the bearing error.
+struct ConvertedRangeBearing {
+  static constexpr int kMeasurements = 2;
+  static constexpr auto kReads = kPosition;
+  static constexpr bool kLinear = true;
+
+  double range_std_m = 10.0;
+  double bearing_std_rad = deg(1.0);
+  bool unbiased = true;
+  double extent_std_m = 0.0;        ///< wander of the echo over the hull, per axis
+  double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
+  OwnShip own = {};
+
+  /// The plot as north/east.
+  template <class Scalar>
+  Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
+    return errors().position(z[0], z[1], unbiased);
+  }
+
+  template <class Scalar>
+  Vec<Scalar, 2> measure(const Vec<Scalar, 2>& position) const noexcept {
+    return position;
+  }
+
+  template <class Scalar>
+  Mat<Scalar, 2, 2> jacobian(const Vec<Scalar, 2>&) const noexcept {
+    return Mat<Scalar, 2, 2>::Identity();
+  }
+
+  template <class Scalar>
+  Vec<Scalar, 2> residual(const Vec<Scalar, 2>& a, const Vec<Scalar, 2>& b) const noexcept {
+    return a - b;
+  }
+
+  template <class Scalar>
+  Gaussian<2, Scalar> position(const Vec<Scalar, 2>& z) const noexcept {
+    return observe(z);
+  }
+
+  void validate() const { errors().validate(); }
+
+  [[nodiscard]] PolarErrors errors() const noexcept {
+    return {range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own};
+  }
+};
+
+}  // namespace wakeline

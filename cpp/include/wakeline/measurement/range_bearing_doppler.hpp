@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "wakeline/measurement/range_bearing.hpp"
+
+namespace wakeline {
+
+/// A plot `[range m, bearing rad, range rate m/s]`; the range rate is that seen from own ship, which moves.
+/// Source: Bar-Shalom, Li, Kirubarajan, 10.4.1, with the range rate d·v / r.
+struct RangeBearingDoppler {
+  static constexpr int kMeasurements = 3;
+  static constexpr auto kReads = kKinematics;
+  static constexpr bool kLinear = false;
+
+  double range_std_m = 10.0;
+  double bearing_std_rad = deg(1.0);
+  double range_rate_std_mps = 1.0;
+  double extent_std_m = 0.0;        ///< wander of the echo over the hull, per axis
+  double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
+  OwnShip own = {};
+
+  /// z and R: that of RangeBearing, and the variance of the range rate with own ship's velocity error.
+  template <class Scalar>
+  Gaussian<3, Scalar> observe(const Vec<Scalar, 3>& z) const noexcept {
+    Gaussian<3, Scalar> reading{z, Mat<Scalar, 3, 3>::Zero()};
+    reading.covariance.template topLeftCorner<2, 2>() =
+        range_bearing().observe(Vec<Scalar, 2>(z.template head<2>())).covariance;
+    reading.covariance(2, 2) = Scalar(range_rate_std_mps * range_rate_std_mps +
+                                      own.velocity_std_mps * own.velocity_std_mps);
+    return reading;
+  }
+
+  /// h of `[x, vx, y, vy]`.
+  template <class Scalar>
+  Vec<Scalar, 3> measure(const Vec<Scalar, 4>& kinematics) const noexcept {
+    const View<Scalar> view(kinematics, own);
+    Vec<Scalar, 3> z;
+    z.template head<2>() = range_bearing().measure(view.position);
+    z[2] = view.line_of_sight.dot(view.velocity);
+    return z;
+  }
+
+  /// dh / d[x, vx, y, vy], 3 x 4.
+  template <class Scalar>
+  Mat<Scalar, 3, 4> jacobian(const Vec<Scalar, 4>& kinematics) const noexcept {
+    const View<Scalar> view(kinematics, own);
+    const Mat<Scalar, 2, 2> polar = range_bearing().jacobian(view.position);
+    const Scalar rate = view.line_of_sight.dot(view.velocity);
+    const Vec<Scalar, 2> rate_by_position =
+        (view.velocity - rate * view.line_of_sight) / view.range;
+    Mat<Scalar, 3, 4> h = Mat<Scalar, 3, 4>::Zero();
+    h.template block<2, 1>(0, 0) = polar.col(0);
+    h.template block<2, 1>(0, 2) = polar.col(1);
+    h(2, 0) = rate_by_position[0];
+    h(2, 1) = view.line_of_sight[0];
+    h(2, 2) = rate_by_position[1];
+    h(2, 3) = view.line_of_sight[1];
+    return h;
+  }
+
+  template <class Scalar>
+  Vec<Scalar, 3> residual(const Vec<Scalar, 3>& a, const Vec<Scalar, 3>& b) const noexcept {
+    return {a[0] - b[0], wrap_angle<Scalar>(a[1] - b[1]), a[2] - b[2]};
+  }
+
+  template <class Scalar>
+  Gaussian<2, Scalar> position(const Vec<Scalar, 3>& z) const noexcept {
+    return range_bearing().errors().position(z[0], z[1], true);
+  }
+
+  void validate() const {
+    range_bearing().validate();
+    require_positive("range_rate_std_mps", range_rate_std_mps);
+  }
+
+ private:
+  [[nodiscard]] RangeBearing range_bearing() const noexcept {
+    return {range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own};
+  }
+
+  /// The target as own ship sees it.
+  template <class Scalar>
+  struct View {
+    Vec<Scalar, 2> position;       ///< in the plane
+    Vec<Scalar, 2> velocity;       ///< relative to own ship
+    Vec<Scalar, 2> line_of_sight;  ///< unit vector from own ship to the target
+    Scalar range;
+
+    View(const Vec<Scalar, 4>& x, const OwnShip& own) noexcept
+        : position(x[0], x[2]), velocity(Vec<Scalar, 2>(x[1], x[3]) - own.velocity<Scalar>()) {
+      using std::sqrt;
+      const Vec<Scalar, 2> d = position - own.position<Scalar>();
+      const Scalar distance = sqrt(d.squaredNorm());
+      range = select(distance > Scalar(kMinRange_m), distance, Scalar(kMinRange_m));
+      line_of_sight = d / range;
+    }
+  };
+};
+
+}  // namespace wakeline

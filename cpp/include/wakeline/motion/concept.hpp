@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <concepts>
+
+#include "wakeline/core/types.hpp"
+#include "wakeline/core/component.hpp"
+
+namespace wakeline {
+
+template <class Motion>
+inline constexpr int kStatesOf = static_cast<int>(Motion::kComponents.size());
+
+template <class Motion, class Scalar = double>
+using StateOf = Vec<Scalar, kStatesOf<Motion>>;
+
+template <class Motion, class Scalar = double>
+using StateMatrixOf = Mat<Scalar, kStatesOf<Motion>, kStatesOf<Motion>>;
+
+/// A vessel that moves as x' = F(dt) x + w, w ~ N(0, Q(dt)).
+///
+/// `kComponents`, `matrix(dt_s)` and `process_noise(dt_s)`, the last two templated on the scalar of `dt_s`.
+template <class Motion>
+concept LinearMotionModel = requires(const Motion& motion, double dt_s) {
+  Motion::kComponents.size();
+  { motion.matrix(dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
+  { motion.process_noise(dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
+};
+
+/// A vessel that moves as x' = f(x, dt) + w, w ~ N(0, Q(x, dt)).
+///
+/// `kComponents`, `transition(x, dt_s)`, `jacobian(x, dt_s)` and `process_noise(x, dt_s)`.
+template <class Motion>
+concept NonlinearMotionModel = requires(const Motion& motion, const StateOf<Motion>& x, double dt_s) {
+  Motion::kComponents.size();
+  { motion.transition(x, dt_s) } -> std::convertible_to<StateOf<Motion>>;
+  { motion.jacobian(x, dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
+  { motion.process_noise(x, dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
+};
+
+template <class Motion>
+concept MotionModel = LinearMotionModel<Motion> || NonlinearMotionModel<Motion>;
+
+/// f(x, dt).
+template <MotionModel Motion, class Scalar>
+StateOf<Motion, Scalar> transition(const Motion& motion, const StateOf<Motion, Scalar>& x,
+                                   Scalar dt_s) noexcept {
+  if constexpr (LinearMotionModel<Motion>)
+    return motion.matrix(dt_s) * x;
+  else
+    return motion.transition(x, dt_s);
+}
+
+/// F = df/dx at x.
+template <MotionModel Motion, class Scalar>
+StateMatrixOf<Motion, Scalar> transition_jacobian(const Motion& motion,
+                                                  const StateOf<Motion, Scalar>& x,
+                                                  Scalar dt_s) noexcept {
+  if constexpr (LinearMotionModel<Motion>)
+    return motion.matrix(dt_s);
+  else
+    return motion.jacobian(x, dt_s);
+}
+
+/// Q, the covariance that the motion gains in dt.
+template <MotionModel Motion, class Scalar>
+StateMatrixOf<Motion, Scalar> process_noise(const Motion& motion, const StateOf<Motion, Scalar>& x,
+                                            Scalar dt_s) noexcept {
+  if constexpr (LinearMotionModel<Motion>)
+    return motion.process_noise(dt_s);
+  else
+    return motion.process_noise(x, dt_s);
+}
+
+/// Variance of a component that a start does not know (a turn rate, an acceleration): the model's own
+/// `prior_variance(component)` where it has one, else 1.
+template <class Motion>
+double prior_variance(const Motion& motion, Component component) noexcept {
+  if constexpr (requires { motion.prior_variance(component); })
+    return motion.prior_variance(component);
+  else
+    return 1.0;
+}
+
+}  // namespace wakeline

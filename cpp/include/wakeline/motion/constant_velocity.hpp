@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "wakeline/motion/concept.hpp"
+#include "wakeline/motion/process_noise.hpp"
+
+namespace wakeline {
+
+/// Straight and steady: state `[x, vx, y, vy]` (m, m/s), x' = x + vx dt.
+/// Source: Bar-Shalom, Li, Kirubarajan, 6.2.2; paper A, equation (1).
+struct ConstantVelocity {
+  static constexpr auto kComponents = kKinematics;
+
+  ProcessNoise noise = WhiteAcceleration{};
+
+  /// F(dt), 4 x 4.
+  template <class Scalar>
+  Mat<Scalar, 4, 4> matrix(Scalar dt_s) const noexcept {
+    Mat<Scalar, 4, 4> f = Mat<Scalar, 4, 4>::Identity();
+    f(0, 1) = f(2, 3) = dt_s;
+    return f;
+  }
+
+  /// Q(dt), 4 x 4.
+  template <class Scalar>
+  Mat<Scalar, 4, 4> process_noise(Scalar dt_s) const noexcept {
+    Mat<Scalar, 4, 4> q = Mat<Scalar, 4, 4>::Zero();
+    q.template topLeftCorner<2, 2>() = q.template bottomRightCorner<2, 2>() =
+        noise.of_velocity_axis(dt_s);
+    return q;
+  }
+
+  void validate() const { noise.validate(false); }
+};
+
+}  // namespace wakeline

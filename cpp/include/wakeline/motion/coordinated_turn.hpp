@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/motion/concept.hpp"
+#include "wakeline/motion/turn.hpp"
+#include "wakeline/motion/wandering_course.hpp"
+
+namespace wakeline {
+
+/// A steady turn at a known rate: state `[x, vx, y, vy]` (m, m/s); at zero rate exactly ConstantVelocity.
+/// Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
+struct CoordinatedTurn {
+  static constexpr auto kComponents = kKinematics;
+
+  double turn_rate_rad_s = 0.0;  ///< positive to starboard
+  ProcessNoise noise = WhiteAcceleration{};
+
+  /// F(dt), 4 x 4.
+  template <class Scalar>
+  Mat<Scalar, 4, 4> matrix(Scalar dt_s) const noexcept {
+    return Turn<Scalar>(Scalar(turn_rate_rad_s), dt_s).matrix();
+  }
+
+  /// Q(dt), 4 x 4.
+  template <class Scalar>
+  Mat<Scalar, 4, 4> process_noise(Scalar dt_s) const noexcept {
+    return Turn<Scalar>(Scalar(turn_rate_rad_s), dt_s).noise(noise);
+  }
+
+  void validate() const {
+    require_finite("turn_rate_rad_s", turn_rate_rad_s);
+    noise.validate(false);
+  }
+};
+
+/// A turn whose rate is part of the state and wanders: `[x, vx, y, vy, omega]` (m, m/s, rad/s).
+/// Source: Bar-Shalom, Li, Kirubarajan, 11.7.2.
+struct CoordinatedTurnRate {
+  static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
+                                          Component::kVeast, Component::kTurnRate};
+
+  ProcessNoise noise = WhiteAcceleration{};
+  double turn_rate_psd_rad2s3 = 1e-4;          ///< density of the white noise that drives omega
+  double prior_turn_rate_std_rad_s = deg(3.0);  ///< what a start without turn rate assumes of it
+  double course_psd_rad2s = 0.0;                ///< wander of the course, as in WanderingCourse
+  double max_speed_mps = 30.0;                  ///< speed that this wander grows up to
+
+  /// f(x, dt).
+  template <class Scalar>
+  Vec<Scalar, 5> transition(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
+    Vec<Scalar, 5> next = x;
+    next.template head<4>() = Turn<Scalar>(x[4], dt_s).matrix() * x.template head<4>();
+    return next;
+  }
+
+  /// df/dx, 5 x 5.
+  template <class Scalar>
+  Mat<Scalar, 5, 5> jacobian(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
+    const Turn<Scalar> turn(x[4], dt_s);
+    const Vec<Scalar, 2> slope = turn.rate_derivatives();
+    const Scalar vx = x[1], vy = x[3];
+    Mat<Scalar, 5, 5> f = Mat<Scalar, 5, 5>::Identity();
+    f.template topLeftCorner<4, 4>() = turn.matrix();
+    f(0, 4) = slope[0] * vx - slope[1] * vy;
+    f(1, 4) = dt_s * (-turn.sine * vx - turn.cosine * vy);
+    f(2, 4) = slope[1] * vx + slope[0] * vy;
+    f(3, 4) = dt_s * (turn.cosine * vx - turn.sine * vy);
+    return f;
+  }
+
+  /// Q(x, dt), 5 x 5: the acceleration noise of the turn, and white noise q on omega which reaches the velocity and
+  /// the position through the acceleration omega x v, with v held at its value of x: per axis the chain of
+  /// integrators of white jerk q v², across the course.
+  template <class Scalar>
+  Mat<Scalar, 5, 5> process_noise(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
+    const ProcessNoise wander = WhiteJerk{turn_rate_psd_rad2s3};
+    const Mat<Scalar, 3, 3> chain = wander.of_acceleration_axis(dt_s);
+    Mat<Scalar, 5, 3> spread = Mat<Scalar, 5, 3>::Zero();  // [position, velocity, rate] -> state
+    spread(0, 0) = spread(1, 1) = -x[3];
+    spread(2, 0) = spread(3, 1) = x[1];
+    spread(4, 2) = Scalar(1);
+    Mat<Scalar, 5, 5> q = spread * chain * spread.transpose();
+    const Turn<Scalar> turn(x[4], dt_s);
+    q.template topLeftCorner<4, 4>() +=
+        turn.noise(noise) + course_wander_psd(course_psd_rad2s, max_speed_mps, x[1], x[3]) *
+                                turn.noise(WhiteAcceleration{1.0});
+    return q;
+  }
+
+  double prior_variance(Component) const noexcept {
+    return prior_turn_rate_std_rad_s * prior_turn_rate_std_rad_s;
+  }
+
+  void validate() const {
+    noise.validate(false);
+    require_not_negative("turn_rate_psd_rad2s3", turn_rate_psd_rad2s3);
+    require_positive("prior_turn_rate_std_rad_s", prior_turn_rate_std_rad_s);
+    require_not_negative("course_psd_rad2s", course_psd_rad2s);
+    require_positive("max_speed_mps", max_speed_mps);
+  }
+};
+
+}  // namespace wakeline

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "wakeline/core/require.hpp"
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// Continuous white acceleration of the given power spectral density per axis; its Q is right for any dt, which
+/// means Q(a + b) = F(b) Q(a) F(b)ᵀ + Q(b).
+/// Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 6.2.2.
+struct WhiteAcceleration {
+  double psd_m2s3 = 0.1;
+};
+
+/// An acceleration per axis drawn anew for each step and constant during it: Q = G s² Gᵀ, G = [dt²/2, dt]ᵀ
+/// (and [dt²/2, dt, 1]ᵀ where the acceleration is a state). The papers' form: how much noise a second brings
+/// depends on the step.
+/// Source: Bar-Shalom, Li, Kirubarajan, 6.3.2 and 6.3.3; paper A, equations (1)-(3).
+struct PiecewiseAcceleration {
+  double std_mps2 = 0.1;
+};
+
+/// Continuous white jerk per axis, for states that hold an acceleration; right for any dt.
+/// Source: Bar-Shalom, Li, Kirubarajan, 6.2.3.
+struct WhiteJerk {
+  double psd_m2s5 = 0.01;
+};
+
+/// Process noise of a motion model: one of the policies above.
+class ProcessNoise {
+ public:
+  enum class Kind { kWhiteAcceleration, kPiecewiseAcceleration, kWhiteJerk };
+
+  // NOLINTBEGIN(google-explicit-constructor): a policy is a process noise.
+  constexpr ProcessNoise(WhiteAcceleration noise) noexcept
+      : kind_(Kind::kWhiteAcceleration), parameter_(noise.psd_m2s3) {}
+  constexpr ProcessNoise(PiecewiseAcceleration noise) noexcept
+      : kind_(Kind::kPiecewiseAcceleration), parameter_(noise.std_mps2) {}
+  constexpr ProcessNoise(WhiteJerk noise) noexcept
+      : kind_(Kind::kWhiteJerk), parameter_(noise.psd_m2s5) {}
+  // NOLINTEND(google-explicit-constructor)
+
+  [[nodiscard]] constexpr Kind kind() const noexcept { return kind_; }
+
+  /// The density of white noise, or the variance s² of a piecewise acceleration.
+  [[nodiscard]] constexpr double strength() const noexcept {
+    return kind_ == Kind::kPiecewiseAcceleration ? parameter_ * parameter_ : parameter_;
+  }
+
+  /// Throws `std::invalid_argument` on a parameter that is negative or not finite, and on white jerk where the
+  /// state holds no acceleration.
+  void validate(bool holds_acceleration) const {
+    switch (kind_) {
+      case Kind::kWhiteAcceleration: require_not_negative("noise.psd_m2s3", parameter_); break;
+      case Kind::kPiecewiseAcceleration: require_not_negative("noise.std_mps2", parameter_); break;
+      case Kind::kWhiteJerk: require_not_negative("noise.psd_m2s5", parameter_); break;
+    }
+    if (kind_ == Kind::kWhiteJerk && !holds_acceleration)
+      throw std::invalid_argument("white jerk needs an acceleration in the state, this model has none");
+  }
+
+  /// Q of one axis `[position, velocity]` without turning.
+  template <class Scalar>
+  Mat<Scalar, 2, 2> of_velocity_axis(Scalar dt_s) const noexcept {
+    const Scalar q = Scalar(strength());
+    const Scalar dt2 = dt_s * dt_s;
+    Mat<Scalar, 2, 2> noise;
+    if (kind_ == Kind::kPiecewiseAcceleration)
+      noise << dt2 * dt2 / 4, dt2 * dt_s / 2, dt2 * dt_s / 2, dt2;
+    else
+      noise << dt2 * dt_s / 3, dt2 / 2, dt2 / 2, dt_s;
+    return q * noise;
+  }
+
+  /// Q of one axis `[position, velocity, acceleration]`.
+  template <class Scalar>
+  Mat<Scalar, 3, 3> of_acceleration_axis(Scalar dt_s) const noexcept {
+    Mat<Scalar, 3, 3> noise = Mat<Scalar, 3, 3>::Zero();
+    if (kind_ == Kind::kWhiteAcceleration) {
+      noise.template topLeftCorner<2, 2>() = of_velocity_axis(dt_s);
+    } else if (kind_ == Kind::kPiecewiseAcceleration) {
+      const Vec<Scalar, 3> gain(dt_s * dt_s / 2, dt_s, Scalar(1));
+      noise = Scalar(strength()) * gain * gain.transpose();
+    } else {
+      const Scalar dt2 = dt_s * dt_s;
+      const Scalar dt3 = dt2 * dt_s;
+      // clang-format off
+      noise << dt2 * dt3 / 20, dt2 * dt2 / 8, dt3 / 6,
+               dt2 * dt2 / 8,  dt3 / 3,       dt2 / 2,
+               dt3 / 6,        dt2 / 2,       dt_s;
+      // clang-format on
+      noise *= Scalar(strength());
+    }
+    return noise;
+  }
+
+ private:
+  Kind kind_;
+  double parameter_;  ///< as the policy was given
+};
+
+}  // namespace wakeline

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+
+#include "wakeline/core/scalar.hpp"
+#include "wakeline/core/types.hpp"
+#include "wakeline/motion/process_noise.hpp"
+
+namespace wakeline {
+
+/// The trigonometry of a steady turn by theta = omega dt, with exact limits at zero rate.
+/// Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
+template <class Scalar>
+struct Turn {
+  Scalar angle;        ///< theta
+  Scalar sine;         ///< sin theta
+  Scalar cosine;       ///< cos theta
+  Scalar along_s;      ///< sin(theta) / omega, s: how far a unit speed goes ahead
+  Scalar across_s;     ///< (1 - cos(theta)) / omega, s: how far it goes to starboard
+  Scalar dt_s;
+
+  Turn(Scalar turn_rate_rad_s, Scalar dt) noexcept : angle(turn_rate_rad_s * dt), dt_s(dt) {
+    using std::abs, std::cos, std::sin;
+    const Scalar half_sine = sin(angle / 2);
+    const Scalar half_cosine = cos(angle / 2);
+    sine = 2 * half_sine * half_cosine;
+    cosine = 1 - 2 * half_sine * half_sine;
+    const bool straight = abs(angle) < kTiny;
+    const Scalar divisor = select(straight, Scalar(1), angle);
+    along_s = dt * select(straight, Scalar(1), sine / divisor);
+    across_s = dt * select(straight, angle / 2, 2 * half_sine * half_sine / divisor);
+  }
+
+  /// F of `[x, vx, y, vy]`.
+  Mat<Scalar, 4, 4> matrix() const noexcept {
+    Mat<Scalar, 4, 4> f;
+    // clang-format off
+    f << 1, along_s,  0, -across_s,
+         0, cosine,   0, -sine,
+         0, across_s, 1,  along_s,
+         0, sine,     0,  cosine;
+    // clang-format on
+    return f;
+  }
+
+  /// d along / d omega and d across / d omega, s².
+  Vec<Scalar, 2> rate_derivatives() const noexcept {
+    using std::abs;
+    const Scalar a2 = angle * angle;
+    const bool nearly_straight = abs(angle) < kSeries;
+    const Scalar divisor = select(nearly_straight, Scalar(1), angle);
+    const Scalar along = select(nearly_straight, -angle * (1 - a2 / 10 * (1 - a2 / 28)) / 3,
+                                (cosine - along_s / dt_s) / divisor);
+    const Scalar across = select(nearly_straight, (1 - a2 / 4 * (1 - a2 / 18 * (1 - a2 / 40))) / 2,
+                                 (sine - across_s / dt_s) / divisor);
+    return dt_s * dt_s * Vec<Scalar, 2>(along, across);
+  }
+
+  /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn. White acceleration gives the exact
+  /// integral of F(s) G q Gᵀ F(s)ᵀ; the piecewise policy is the papers' G s² Gᵀ, which knows nothing of the turn.
+  Mat<Scalar, 4, 4> noise(const ProcessNoise& policy) const noexcept {
+    using std::abs;
+    Mat<Scalar, 4, 4> q = Mat<Scalar, 4, 4>::Zero();
+    if (policy.kind() == ProcessNoise::Kind::kPiecewiseAcceleration) {
+      q.template topLeftCorner<2, 2>() = q.template bottomRightCorner<2, 2>() =
+          policy.of_velocity_axis(dt_s);
+      return q;
+    }
+    const Scalar a2 = angle * angle;
+    const bool nearly_straight = abs(angle) < kSeries;
+    const Scalar divisor = select(nearly_straight, Scalar(1), angle);
+    // 2 (theta - sin theta) / theta³ and (1 - cos theta) / theta²
+    const Scalar spread = select(nearly_straight, (1 - a2 / 20 * (1 - a2 / 42)) / 3,
+                                 2 * (angle - sine) / (divisor * divisor * divisor));
+    const Scalar coupling = select(abs(angle) < kTiny, Scalar(0.5),
+                                   across_s / select(abs(angle) < kTiny, Scalar(1), angle * dt_s));
+    const Scalar density = Scalar(policy.strength());
+    const Scalar dt2 = dt_s * dt_s;
+    const Scalar position = density * dt2 * dt_s * spread;
+    const Scalar velocity = density * dt_s;
+    const Scalar ahead = density * dt2 * coupling;
+    const Scalar aside = density * dt2 * angle * spread / 2;
+    // clang-format off
+    q << position,  ahead,    0,        aside,
+         ahead,     velocity, -aside,   0,
+         0,         -aside,   position, ahead,
+         aside,     0,        ahead,    velocity;
+    // clang-format on
+    return q;
+  }
+
+ private:
+  static constexpr Scalar kTiny = Scalar(1e-12);
+  static constexpr Scalar kSeries = sizeof(Scalar) > 4 ? Scalar(0.02) : Scalar(0.3);
+};
+
+}  // namespace wakeline

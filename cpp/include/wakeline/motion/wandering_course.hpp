@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+
+#include "wakeline/motion/concept.hpp"
+#include "wakeline/motion/process_noise.hpp"
+
+namespace wakeline {
+
+/// Density (m²/s³) of the acceleration of a course that wanders at speed v (m/s): a rate of turn of density q turns the
+/// velocity by an acceleration of density q v². Speeds beyond `max_speed_mps` count as that.
+template <class Scalar>
+Scalar course_wander_psd(double course_psd_rad2s, double max_speed_mps, Scalar vx, Scalar vy) noexcept {
+  using std::min;
+  const Scalar limit = Scalar(max_speed_mps * max_speed_mps);
+  return Scalar(course_psd_rad2s) * min(vx * vx + vy * vy, limit);
+}
+
+/// Straight and nearly steady, with an acceleration that grows with the speed: state `[x, vx, y, vy]`. A fast boat turns
+/// hard where a slow ship drifts; the noise density is `psd_m2s3 + course_psd_rad2s v²` in every direction, so that one
+/// tuning serves both.
+struct WanderingCourse {
+  static constexpr auto kComponents = kKinematics;
+
+  double psd_m2s3 = 0.01;          ///< acceleration at rest
+  double course_psd_rad2s = 0.01;  ///< wander of the course
+  double max_speed_mps = 30.0;     ///< speed that the wander grows up to
+
+  /// f(x, dt).
+  template <class Scalar>
+  Vec<Scalar, 4> transition(const Vec<Scalar, 4>& x, Scalar dt_s) const noexcept {
+    return {x[0] + dt_s * x[1], x[1], x[2] + dt_s * x[3], x[3]};
+  }
+
+  /// df/dx, 4 x 4.
+  template <class Scalar>
+  Mat<Scalar, 4, 4> jacobian(const Vec<Scalar, 4>&, Scalar dt_s) const noexcept {
+    Mat<Scalar, 4, 4> f = Mat<Scalar, 4, 4>::Identity();
+    f(0, 1) = f(2, 3) = dt_s;
+    return f;
+  }
+
+  /// Q(x, dt), 4 x 4.
+  template <class Scalar>
+  Mat<Scalar, 4, 4> process_noise(const Vec<Scalar, 4>& x, Scalar dt_s) const noexcept {
+    const Scalar density =
+        Scalar(psd_m2s3) + course_wander_psd(course_psd_rad2s, max_speed_mps, x[1], x[3]);
+    Mat<Scalar, 4, 4> q = Mat<Scalar, 4, 4>::Zero();
+    q.template topLeftCorner<2, 2>() = q.template bottomRightCorner<2, 2>() =
+        density * ProcessNoise(WhiteAcceleration{1.0}).of_velocity_axis(dt_s);
+    return q;
+  }
+
+  void validate() const {
+    require_not_negative("psd_m2s3", psd_m2s3);
+    require_not_negative("course_psd_rad2s", course_psd_rad2s);
+    require_positive("max_speed_mps", max_speed_mps);
+  }
+};
+
+}  // namespace wakeline

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "wakeline/core/component.hpp"
+#include "wakeline/filter/concept.hpp"
+
+namespace wakeline {
+
+/// A Gaussian belief that knows which component each of its rows holds.
+template <auto Components, class Scalar>
+struct StateBelief : Gaussian<static_cast<int>(Components.size()), Scalar> {
+  static constexpr auto kComponents = Components;
+  static constexpr int kStates = static_cast<int>(Components.size());
+
+  StateBelief& operator=(const Gaussian<kStates, Scalar>& belief) noexcept {
+    Gaussian<kStates, Scalar>::operator=(belief);
+    return *this;
+  }
+};
+
+/// Zero mean and covariance over the same components.
+template <auto Components, class Scalar>
+StateBelief<Components, Scalar> zero_like(const StateBelief<Components, Scalar>& belief) noexcept {
+  StateBelief<Components, Scalar> zero = belief;
+  zero.mean.setZero();
+  zero.covariance.setZero();
+  return zero;
+}
+
+/// sum.mean += weight part.mean, where what only `own` holds is taken from it.
+template <auto To, auto From, class Scalar>
+void add_mean(StateBelief<To, Scalar>& sum, Scalar weight, const StateBelief<From, Scalar>& part,
+              const StateBelief<To, Scalar>& own) noexcept {
+  constexpr auto kRows = rows_of(From, To);
+  for (int i = 0; i < own.kStates; ++i)
+    sum.mean[i] += weight * (kRows[i] >= 0 ? part.mean[kRows[i]] : own.mean[i]);
+}
+
+/// sum.covariance += weight (P + d dᵀ), d = m - sum.mean, where what only `own` holds is taken from it, without
+/// correlation to the rest.
+template <auto To, auto From, class Scalar>
+void add_spread(StateBelief<To, Scalar>& sum, Scalar weight, const StateBelief<From, Scalar>& part,
+                const StateBelief<To, Scalar>& own) noexcept {
+  constexpr auto kRows = rows_of(From, To);
+  constexpr int kStates = StateBelief<To, Scalar>::kStates;
+  Vec<Scalar, kStates> d;
+  for (int i = 0; i < kStates; ++i)
+    d[i] = (kRows[i] >= 0 ? part.mean[kRows[i]] : own.mean[i]) - sum.mean[i];
+  for (int j = 0; j < kStates; ++j)
+    for (int i = 0; i < kStates; ++i) {
+      const bool known = kRows[i] >= 0 && kRows[j] >= 0;
+      const bool unknown = kRows[i] < 0 && kRows[j] < 0;
+      const Scalar p = known     ? part.covariance(known ? kRows[i] : 0, known ? kRows[j] : 0)
+                       : unknown ? own.covariance(i, j)
+                                 : Scalar(0);
+      sum.covariance(i, j) += weight * (p + d[i] * d[j]);
+    }
+}
+
+/// The part of a belief that is about position and velocity, `[x, vx, y, vy]`.
+template <auto Components, class Scalar>
+Gaussian<4, Scalar> kinematics_of(const StateBelief<Components, Scalar>& belief) noexcept {
+  static_assert(holds(Components, kKinematics), "wakeline: this state holds no position and velocity");
+  constexpr auto kRows = rows_of(Components, kKinematics);
+  Gaussian<4, Scalar> kinematics;
+  for (int i = 0; i < 4; ++i) {
+    kinematics.mean[i] = belief.mean[kRows[i]];
+    for (int j = 0; j < 4; ++j) kinematics.covariance(i, j) = belief.covariance(kRows[i], kRows[j]);
+  }
+  return kinematics;
+}
+
+/// Filters composed at compile time, of any kinds and state sizes, each with room for the belief it had before a step.
+///
+/// A bank is what a multi-model estimator is built on: `size`, `for_each(f(k, filter, before))`,
+/// `for_each_before(f(k, before))` and `empty_estimate`; a bank composed at run time has the same face.
+template <class... Filters>
+class FilterBank {
+  static_assert((BeliefFilter<Filters> && ...),
+                "wakeline: each model of a bank must be a filter (start, assign, predict, estimate); see "
+                "cpp/docs/concepts.md");
+
+ public:
+  static constexpr int kModels = sizeof...(Filters);
+  using Scalar = typename std::tuple_element_t<0, std::tuple<Filters...>>::Scalar;
+  static_assert((std::is_same_v<Scalar, typename Filters::Scalar> && ...),
+                "wakeline: the filters of a bank must share one scalar type");
+
+  /// Components of the combined estimate: those of the filters where all agree, else position and velocity.
+  static constexpr auto kComponents = [] {
+    constexpr auto kFirst = std::tuple_element_t<0, std::tuple<Filters...>>::kComponents;
+    if constexpr ((std::is_same_v<StateBelief<Filters::kComponents, Scalar>,
+                                  StateBelief<kFirst, Scalar>> &&
+                   ...))
+      return kFirst;
+    else
+      return kKinematics;
+  }();
+
+  explicit FilterBank(const Filters&... filters) : slots_(Slot<Filters>{filters, {}}...) {}
+
+  static constexpr int size() noexcept { return kModels; }
+
+  template <class Function>
+  void for_each(Function&& function) noexcept {
+    visit(*this, [&](int k, auto& slot) { function(k, slot.filter, slot.before); });
+  }
+
+  template <class Function>
+  void for_each(Function&& function) const noexcept {
+    visit(*this, [&](int k, const auto& slot) { function(k, slot.filter); });
+  }
+
+  /// Calls `f(k, belief)` with the present belief of each filter.
+  template <class Function>
+  void for_each_belief(Function&& function) const noexcept {
+    visit(*this, [&]<class Filter>(int k, const Slot<Filter>& slot) {
+      StateBelief<Filter::kComponents, Scalar> belief;
+      belief = slot.filter.estimate();
+      function(k, belief);
+    });
+  }
+
+  template <class Function>
+  void for_each_before(Function&& function) const noexcept {
+    visit(*this, [&](int k, const auto& slot) { function(k, slot.before); });
+  }
+
+  /// A zero belief over the components of the combined estimate.
+  static StateBelief<kComponents, Scalar> empty_estimate() noexcept {
+    return zero_like(StateBelief<kComponents, Scalar>{});
+  }
+
+  template <int Index>
+  const auto& get() const noexcept {
+    return std::get<Index>(slots_).filter;
+  }
+
+ private:
+  template <class Filter>
+  struct Slot {
+    Filter filter;
+    StateBelief<Filter::kComponents, typename Filter::Scalar> before;
+  };
+
+  template <class Self, class Function>
+  static void visit(Self& self, Function&& function) noexcept {
+    [&]<std::size_t... Index>(std::index_sequence<Index...>) {
+      (function(static_cast<int>(Index), std::get<Index>(self.slots_)), ...);
+    }(std::make_index_sequence<sizeof...(Filters)>{});
+  }
+
+  std::tuple<Slot<Filters>...> slots_;
+};
+
+}  // namespace wakeline

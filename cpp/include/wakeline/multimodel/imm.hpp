@@ -1,0 +1,318 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "wakeline/filter/belief.hpp"
+#include "wakeline/multimodel/filter_bank.hpp"
+#include "wakeline/multimodel/mode_chain.hpp"
+
+namespace wakeline {
+
+/// One of several readings that may be a target's own, and its weight before its likelihood.
+template <class Sensor, class Scalar = double>
+struct Alternative {
+  Sensor sensor;
+  Vec<Scalar, Sensor::kMeasurements> z;
+  Scalar weight;
+};
+
+/// How likely a reading is under all modes, and how near it is to the mode that is nearest.
+template <class Scalar = double>
+struct Evidence {
+  Scalar likelihood = Scalar(0);
+  Scalar least_nis = std::numeric_limits<Scalar>::infinity();
+};
+
+/// Most readings that one update takes in; more are left out.
+inline constexpr std::size_t kMaxAlternatives = 16;
+
+/// The interacting multiple model estimator, over filters of any kinds and state sizes.
+///
+/// `predict` mixes and predicts, after which the mode probabilities are those the chain expects; a missed scan is a
+/// `predict` without `update`. `update` weighs each mode by its likelihood, in the log domain. What a filter cannot know
+/// of another's state (the turn rate a straight model lacks) it keeps from itself in mixing. A filter whose update fails
+/// keeps its prediction and has no weight in that scan; where all fail nothing changes.
+/// Source: H. A. P. Blom, Y. Bar-Shalom, IEEE Trans. AC-33, 1988; Bar-Shalom, Li, Kirubarajan, 11.6.6; paper A, (7)-(16).
+template <class BankType>
+class Imm {
+ public:
+  using Bank = BankType;
+  using Scalar = typename Bank::Scalar;
+  static constexpr int kModels = Bank::kModels;
+  using Probability = ModeVector<Scalar, kModels>;
+
+  /// Throws `std::invalid_argument` unless there is one mode of the chain for each filter.
+  template <class... Filters>
+    requires(kModels != kRuntimeModes)
+  explicit Imm(const ModeChain<kModels>& chain, const Filters&... filters)
+      : Imm(chain, Bank(filters...)) {}
+
+  Imm(const ModeChain<kModels>& chain, const Bank& bank)
+      : chain_(chain),
+        bank_(bank),
+        initial_(Probability::Constant(bank.size(), Scalar(1) / Scalar(bank.size()))),
+        probability_(initial_) {
+    if (chain.modes() != bank.size())
+      throw std::invalid_argument("an Imm needs one mode of its chain for each filter, got " +
+                                  std::to_string(chain.modes()) + " modes and " +
+                                  std::to_string(bank.size()) + " filters");
+  }
+
+  /// Mode probabilities that a start begins with (uniform unless set). Throws unless they sum to 1.
+  void set_initial_mode_probability(const Probability& probability) {
+    for (Eigen::Index k = 0; k < probability.size(); ++k)
+      require_probability("an initial mode probability", double(probability[k]));
+    require(probability.size() == bank_.size() && std::abs(double(probability.sum()) - 1.0) <= 1e-6,
+            "initial_mode_probability", "one number per mode that sum to 1",
+            double(probability.sum()));
+    initial_ = probability;
+  }
+
+  /// Begins every filter with the belief, over their own state or over `[x, vx, y, vy]`. Any failure: not started.
+  template <class BeliefType>
+  Status start(const BeliefType& belief) noexcept {
+    Status status = Status::kOk;
+    bank_.for_each([&](int, auto& filter, auto&) {
+      if (status == Status::kOk) status = filter.start(belief);
+    });
+    started_ = status == Status::kOk;
+    probability_ = initial_;
+    return status;
+  }
+
+  /// Mixing and prediction: equations (7)-(11) of paper A.
+  Status predict(Scalar dt_s) noexcept {
+    if (!started_) return Status::kNotStarted;
+    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
+    const Probability expected = weigh_transitions(dt_s);
+    bank_.for_each([](int, auto& filter, auto& before) { before = filter.estimate(); });
+    Status status = Status::kOk;
+    bank_.for_each([&](int mode, auto& filter, auto& before) {
+      if (status == Status::kOk) status = filter.assign(mixed(mode, before));
+      if (status == Status::kOk) status = filter.predict(dt_s);
+    });
+    if (status == Status::kOk)
+      probability_ = expected;
+    else
+      bank_.for_each([](int, auto& filter, auto& before) { (void)filter.assign(before); });
+    return status;
+  }
+
+  /// Filtering and mode probabilities: equations (12)-(14) of paper A. The innovation of the step is that of the
+  /// moment-matched prediction, its log-likelihood that of the mixture.
+  template <class Sensor>
+  Step<Sensor::kMeasurements, Scalar> update(
+      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    constexpr int kM = Sensor::kMeasurements;
+    if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
+    std::array<Step<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> steps;
+    Probability log_likelihood = Probability::Constant(bank_.size(), kImpossible);
+    bank_.for_each([&](int mode, auto& filter, auto&) {
+      auto& step = steps[static_cast<std::size_t>(mode)];
+      step = filter.update(sensor, z);
+      if (step) log_likelihood[mode] = step.log_likelihood;
+    });
+
+    Scalar best = kImpossible;
+    for (int mode = 0; mode < bank_.size(); ++mode)
+      if (probability_[mode] > Scalar(0) && log_likelihood[mode] > best) best = log_likelihood[mode];
+    if (best == kImpossible) return failed_step<kM, Scalar>(steps[0].status);
+
+    Step<kM, Scalar> step = combined(steps);
+    Scalar total = Scalar(0);
+    Probability posterior = probability_;
+    for (int mode = 0; mode < bank_.size(); ++mode) {
+      posterior[mode] *= std::exp(log_likelihood[mode] - best);
+      total += posterior[mode];
+    }
+    for (int mode = 0; mode < bank_.size(); ++mode) probability_[mode] = posterior[mode] / total;
+    step.log_likelihood = best + std::log(total);
+    return step;
+  }
+
+  /// What the modes think of a reading, without taking it.
+  template <class Sensor>
+  [[nodiscard]] Evidence<Scalar> evidence(
+      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
+    Evidence<Scalar> evidence;
+    bank_.for_each([&](int mode, const auto& filter) {
+      const auto step = filter.innovation(sensor, z);
+      if (!step) return;
+      evidence.likelihood += probability_[mode] * std::exp(step.log_likelihood);
+      evidence.least_nis = std::min(evidence.least_nis, step.nis);
+    });
+    return evidence;
+  }
+
+  /// Probabilistic data association: every mode takes in all readings that may be the target's own, each as far as the
+  /// mode finds it likely, and the belief that none is.
+  ///
+  /// `none` and each `weight` are what the hypotheses weigh before their likelihoods (1 - PD PG and PD / clutter density
+  /// of one reading, say). Returns the sum of weight times likelihood over modes and hypotheses, and in `share` the part
+  /// of it that each reading has; 0, and nothing changed, when all are impossible.
+  /// Source: Bar-Shalom, Li, Multitarget-Multisensor Tracking, 1995, 4.5 (IMM-PDA).
+  template <class Sensor>
+  Scalar update(std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
+                std::span<Scalar> share) noexcept {
+    for (Scalar& part : share) part = Scalar(0);
+    if (!started_) return Scalar(0);
+    Probability posterior = Probability::Zero(bank_.size());
+    bank_.for_each([&](int mode, auto& filter, auto& before) {
+      before = filter.estimate();
+      posterior[mode] = probability_[mode] *
+                        absorb(filter, before, readings, none, probability_[mode], share);
+    });
+    const Scalar total = posterior.sum();
+    if (!(total > Scalar(0)) || !std::isfinite(total)) {
+      bank_.for_each([](int, auto& filter, auto& before) { (void)filter.assign(before); });
+      return Scalar(0);
+    }
+    for (int mode = 0; mode < bank_.size(); ++mode) probability_[mode] = posterior[mode] / total;
+    for (Scalar& part : share) part /= total;
+    return total;
+  }
+
+  /// Saves or restores beliefs and mode probabilities.
+  void archive(Archive& fields) {
+    fields(probability_);
+    fields(started_);
+    bank_.for_each([&](int, auto& filter, auto&) { filter.archive(fields); });
+  }
+
+  /// The moment-matched estimate, over the state where all filters share one, else over `[x, vx, y, vy]`: equations
+  /// (15) and (16) of paper A.
+  [[nodiscard]] auto estimate() const noexcept {
+    auto result = bank_.empty_estimate();
+    const auto empty = result;
+    bank_.for_each_belief([&](int mode, const auto& belief) {
+      add_mean(result, probability_[mode], belief, empty);
+    });
+    bank_.for_each_belief([&](int mode, const auto& belief) {
+      add_spread(result, probability_[mode], belief, empty);
+    });
+    return result;
+  }
+
+  [[nodiscard]] const Probability& mode_probability() const noexcept { return probability_; }
+  [[nodiscard]] const Bank& bank() const noexcept { return bank_; }
+  [[nodiscard]] const ModeChain<kModels>& chain() const noexcept { return chain_; }
+  [[nodiscard]] bool started() const noexcept { return started_; }
+
+  /// One of the filters, with its belief.
+  template <int Index>
+  [[nodiscard]] const auto& filter() const noexcept {
+    return bank_.template get<Index>();
+  }
+
+ private:
+  static constexpr Scalar kImpossible = -std::numeric_limits<Scalar>::infinity();
+
+  /// Fills `weight_(i, j) = P(mode i before | mode j now)` and returns P(mode j now).
+  Probability weigh_transitions(Scalar dt_s) noexcept {
+    if (dt_s != transition_step_s_) {
+      transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
+      transition_step_s_ = dt_s;
+    }
+    Probability expected = Probability::Zero(bank_.size());
+    weight_.resize(bank_.size(), bank_.size());
+    for (int j = 0; j < bank_.size(); ++j) {
+      for (int i = 0; i < bank_.size(); ++i) {
+        weight_(i, j) = transition_(i, j) * probability_[i];
+        expected[j] += weight_(i, j);
+      }
+      const bool reachable = expected[j] > Scalar(0);
+      const Scalar scale = Scalar(1) / (reachable ? expected[j] : Scalar(1));
+      for (int i = 0; i < bank_.size(); ++i)
+        weight_(i, j) = reachable ? weight_(i, j) * scale : Scalar(i == j);
+    }
+    return expected;
+  }
+
+  /// The mixed start of one mode: mean and covariance of all beliefs, weighted by where the mode came from.
+  template <class BeliefType>
+  BeliefType mixed(int mode, const BeliefType& own) const noexcept {
+    BeliefType result = zero_like(own);
+    bank_.for_each_before(
+        [&](int i, const auto& before) { add_mean(result, weight_(i, mode), before, own); });
+    bank_.for_each_before(
+        [&](int i, const auto& before) { add_spread(result, weight_(i, mode), before, own); });
+    return result;
+  }
+
+  /// Replaces the belief of one filter by the mixture of what each reading makes of it; returns its total weight.
+  template <class Filter, class BeliefType, class Sensor>
+  static Scalar absorb(Filter& filter, const BeliefType& before,
+                       std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
+                       Scalar mode_probability, std::span<Scalar> share) noexcept {
+    std::array<BeliefType, kMaxAlternatives> after;
+    std::array<Scalar, kMaxAlternatives> weight{};
+    const std::size_t count = std::min(readings.size(), kMaxAlternatives);
+    Scalar total = none;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto step = filter.update(readings[k].sensor, readings[k].z);
+      if (step) {
+        weight[k] = readings[k].weight * std::exp(step.log_likelihood);
+        after[k] = filter.estimate();
+        (void)filter.assign(before);
+      }
+      total += weight[k];
+      share[k] += mode_probability * weight[k];
+    }
+    if (!(total > Scalar(0))) return Scalar(0);
+    BeliefType mixture = zero_like(before);
+    add_mean(mixture, none / total, before, before);
+    for (std::size_t k = 0; k < count; ++k)
+      if (weight[k] > Scalar(0)) add_mean(mixture, weight[k] / total, after[k], before);
+    add_spread(mixture, none / total, before, before);
+    for (std::size_t k = 0; k < count; ++k)
+      if (weight[k] > Scalar(0)) add_spread(mixture, weight[k] / total, after[k], before);
+    (void)filter.assign(mixture);
+    return total;
+  }
+
+  template <int M, std::size_t Capacity>
+  Step<M, Scalar> combined(const std::array<Step<M, Scalar>, Capacity>& steps) const noexcept {
+    Gaussian<M, Scalar> innovation{Vec<Scalar, M>::Zero(), Mat<Scalar, M, M>::Zero()};
+    Scalar total = Scalar(0);
+    for (int mode = 0; mode < bank_.size(); ++mode)
+      if (steps[static_cast<std::size_t>(mode)]) total += probability_[mode];
+    const auto weight = [&](int mode) {
+      return steps[static_cast<std::size_t>(mode)] ? probability_[mode] / total : Scalar(0);
+    };
+    for (int mode = 0; mode < bank_.size(); ++mode)
+      innovation.mean += weight(mode) * steps[static_cast<std::size_t>(mode)].innovation;
+    for (int mode = 0; mode < bank_.size(); ++mode) {
+      const auto& step = steps[static_cast<std::size_t>(mode)];
+      const Vec<Scalar, M> d = step.innovation - innovation.mean;
+      innovation.covariance += weight(mode) * (step.innovation_covariance + d * d.transpose());
+    }
+    Step<M, Scalar> step;
+    step.status = Status::kOk;
+    step.innovation = innovation.mean;
+    step.innovation_covariance = innovation.covariance;
+    const Cholesky<M, Scalar> factor(innovation.covariance);
+    step.nis = factor.template whiten<1>(innovation.mean).squaredNorm();
+    return step;
+  }
+
+  ModeChain<kModels> chain_;
+  Bank bank_;
+  Probability initial_;
+  Probability probability_;
+  ModeMatrix<Scalar, kModels> weight_;
+  ModeMatrix<Scalar, kModels> transition_;
+  Scalar transition_step_s_ = Scalar(-1);
+  bool started_ = false;
+};
+
+template <int K, class... Filters>
+Imm(const ModeChain<K>&, const Filters&...) -> Imm<FilterBank<Filters...>>;
+
+}  // namespace wakeline

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <sstream>
+#include <stdexcept>
+
+#include "wakeline/core/require.hpp"
+
+namespace wakeline {
+
+/// Number of modes that is known only at run time, up to `kMaxModes`.
+inline constexpr int kRuntimeModes = Eigen::Dynamic;
+inline constexpr int kMaxModes = 16;
+
+template <int K>
+inline constexpr int kModeCapacity = K == kRuntimeModes ? kMaxModes : K;
+
+template <class Scalar, int K>
+using ModeVector = Eigen::Matrix<Scalar, K, 1, 0, kModeCapacity<K>, 1>;
+template <class Scalar, int K>
+using ModeMatrix = Eigen::Matrix<Scalar, K, K, 0, kModeCapacity<K>, kModeCapacity<K>>;
+
+/// The Markov chain between the modes of a multi-model estimator: `chain(i, j) = P(mode j now | mode i before)`, so
+/// rows sum to 1.
+///
+/// Given as a matrix it is applied once per prediction, whatever the time step (the papers' way). Given as a matrix with
+/// its period, or as mean sojourn times, it is a chain in continuous time: P(dt) = exp(G dt), so that two steps of dt
+/// are one of 2 dt.
+/// Source: Bar-Shalom, Li, Kirubarajan, 11.6.2; for continuous time any text on Markov chains.
+template <int K>
+class ModeChain {
+ public:
+  using Matrix = ModeMatrix<double, K>;
+
+  /// One transition per prediction. Throws `std::invalid_argument` unless every row is a distribution.
+  explicit ModeChain(const Matrix& per_prediction) : matrix_(per_prediction) {
+    require_stochastic(matrix_);
+  }
+
+  /// The chain whose transition over `period_s` is the matrix. Throws also when no continuous-time chain has it.
+  ModeChain(const Matrix& over_period, double period_s) : ModeChain(over_period) {
+    require_positive("period_s", period_s);
+    matrix_ = logarithm(over_period) / period_s;
+    continuous_ = true;
+    clip_generator(period_s, over_period);
+  }
+
+  /// The chain that stays in mode k for `sojourn_s[k]` seconds on average and leaves to each other mode alike.
+  static ModeChain from_sojourn_s(const ModeVector<double, K>& sojourn_s) {
+    const Eigen::Index modes = sojourn_s.size();
+    Matrix generator = Matrix::Zero(modes, modes);
+    for (Eigen::Index i = 0; i < modes; ++i) {
+      require_positive("a mean sojourn time", sojourn_s[i]);
+      for (Eigen::Index j = 0; j < modes && modes > 1; ++j)
+        generator(i, j) = (i == j ? -1.0 : 1.0 / static_cast<double>(modes - 1)) / sojourn_s[i];
+    }
+    return ModeChain(Generator{generator});
+  }
+
+  static ModeChain from_sojourn_s(std::initializer_list<double> sojourn_s) {
+    if (K != kRuntimeModes && static_cast<int>(sojourn_s.size()) != K)
+      throw std::invalid_argument("from_sojourn_s needs one time for each mode");
+    ModeVector<double, K> times(static_cast<Eigen::Index>(sojourn_s.size()));
+    Eigen::Index k = 0;
+    for (const double time : sojourn_s) times[k++] = time;
+    return from_sojourn_s(times);
+  }
+
+  [[nodiscard]] Eigen::Index modes() const noexcept { return matrix_.rows(); }
+
+  /// True when the transition depends on the time step.
+  [[nodiscard]] bool continuous() const noexcept { return continuous_; }
+
+  /// P(dt), row-stochastic.
+  [[nodiscard]] Matrix transition(double dt_s) const noexcept {
+    return continuous_ ? exponential(dt_s) : matrix_;
+  }
+
+ private:
+  struct Generator {
+    Matrix matrix;
+  };
+  explicit ModeChain(const Generator& generator) : matrix_(generator.matrix), continuous_(true) {}
+
+  static void require_stochastic(const Matrix& matrix) {
+    if (matrix.rows() == 0) throw std::invalid_argument("a mode chain needs at least one mode");
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+        require_probability("every element of the mode chain", matrix(i, j));
+      if (const double sum = matrix.row(i).sum(); !(std::abs(sum - 1.0) <= 1e-9)) {
+        std::ostringstream message;
+        message << "row " << i << " of the mode chain must sum to 1, sums to " << sum
+                << " (rows: mode before; columns: mode now)";
+        throw std::invalid_argument(message.str());
+      }
+    }
+  }
+
+  /// ln P = -Σ (I - P)ⁿ / n, which converges when every eigenvalue of P lies within 1 of 1, as those of a chain that
+  /// tends to stay do.
+  static Matrix logarithm(const Matrix& p) {
+    const Matrix x = Matrix::Identity(p.rows(), p.cols()) - p;
+    Matrix power = x;
+    Matrix sum = -x;
+    for (int n = 2; n < 100'000 && power.cwiseAbs().maxCoeff() > 1e-17; ++n) {
+      power = (power * x).eval();
+      sum -= power / n;
+    }
+    return sum;
+  }
+
+  /// Refuses a logarithm that is no generator; clips its rounding.
+  void clip_generator(double period_s, const Matrix& over_period) {
+    bool valid = matrix_.allFinite();
+    for (Eigen::Index i = 0; i < modes() && valid; ++i) {
+      for (Eigen::Index j = 0; j < modes(); ++j) {
+        if (i == j) continue;
+        valid = valid && matrix_(i, j) * period_s > -1e-9;
+        matrix_(i, j) = std::max(matrix_(i, j), 0.0);
+      }
+      matrix_(i, i) = 0.0;
+      matrix_(i, i) = -matrix_.row(i).sum();
+    }
+    if (!valid || !(transition(period_s) - over_period).isZero(1e-9))
+      throw std::invalid_argument(
+          "this matrix is not the transition of a continuous-time chain over its period; leave the period out to apply "
+          "it once per prediction");
+  }
+
+  /// exp(G dt) by uniformisation, whose terms are all positive, on a step halved until it is short, then squared back.
+  Matrix exponential(double dt_s) const noexcept {
+    const Matrix identity = Matrix::Identity(modes(), modes());
+    const double fastest = -matrix_.diagonal().minCoeff();
+    if (!(fastest * dt_s > 0.0)) return identity;
+    int halvings = 0;
+    double rate = fastest * dt_s;  // expected number of (uniformised) jumps in the step
+    for (; rate > 0.5 && halvings < 60; ++halvings) rate /= 2;
+    const Matrix jump = identity + matrix_ / fastest;
+    Matrix term = identity;
+    Matrix sum = identity;
+    for (int n = 1; n <= 14; ++n) {
+      term = (term * jump).eval() * (rate / n);
+      sum += term;
+    }
+    sum *= std::exp(-rate);
+    for (int n = 0; n < halvings; ++n) sum = (sum * sum).eval();
+    for (Eigen::Index i = 0; i < modes(); ++i) sum.row(i) /= sum.row(i).sum();
+    return sum;
+  }
+
+  Matrix matrix_;  ///< transition per prediction, or the generator G (1/s)
+  bool continuous_ = false;
+};
+
+}  // namespace wakeline

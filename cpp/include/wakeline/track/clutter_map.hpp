@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "wakeline/core/archive.hpp"
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// Where plots come from that belong to no target: the density of false plots over the plane, learned with a fading
+/// memory. Fixed echoes and shore grow dense and so stop to look like targets.
+///
+/// A grid of cells, bilinear between their centres, in a table of fixed size; where two cells meet in one place of the
+/// table the weaker is forgotten.
+class ClutterMap {
+ public:
+  /// `cell_m` 0 switches the map off.
+  ClutterMap(double cell_m, double memory_s) : cell_m_(cell_m), memory_s_(memory_s) {
+    if (enabled()) cells_.resize(kCells);
+  }
+
+  [[nodiscard]] bool enabled() const noexcept { return cell_m_ > 0.0; }
+
+  /// False plots per m² and scan about a position, for scans `period_s` apart.
+  [[nodiscard]] double density(const Vec<double, 2>& position, double time_s,
+                               double period_s) const noexcept {
+    if (!enabled()) return 0.0;
+    double plots = 0.0;
+    for (const Corner& corner : corners(position)) {
+      const Cell& cell = cells_[place(corner)];
+      if (cell.north == corner.north && cell.east == corner.east)
+        plots += corner.share * faded(cell, time_s);
+    }
+    const double per_scan = 1.0 - std::exp(-period_s / memory_s_);
+    return plots * per_scan / (cell_m_ * cell_m_);
+  }
+
+  /// Takes in a plot that is false with probability `weight`.
+  void add(const Vec<double, 2>& position, double time_s, double weight) noexcept {
+    if (!enabled()) return;
+    for (const Corner& corner : corners(position)) {
+      Cell& cell = cells_[place(corner)];
+      const bool same = cell.north == corner.north && cell.east == corner.east;
+      const double before = faded(cell, time_s);
+      const double added = weight * corner.share;
+      if (!same && before > added) continue;
+      cell = {corner.north, corner.east, (same ? before : 0.0) + added, time_s};
+    }
+  }
+
+  /// Saves or restores what has been learned.
+  void archive(Archive& fields) { fields(cells_, kCells); }
+
+ private:
+  static constexpr std::size_t kCells = 1 << 14;
+
+  struct Cell {
+    std::int32_t north = 0;
+    std::int32_t east = 0;
+    double plots = 0.0;
+    double time_s = 0.0;
+  };
+  struct Corner {
+    std::int32_t north;
+    std::int32_t east;
+    double share;
+  };
+
+  [[nodiscard]] double faded(const Cell& cell, double time_s) const noexcept {
+    return cell.plots * std::exp(-std::fabs(time_s - cell.time_s) / memory_s_);
+  }
+
+  /// The four cells whose centres surround a position, with their bilinear shares.
+  [[nodiscard]] std::array<Corner, 4> corners(const Vec<double, 2>& position) const noexcept {
+    constexpr double kEdge = 1e9;  // cells beyond this index are one
+    const double u = std::clamp(position[0] / cell_m_ - 0.5, -kEdge, kEdge);
+    const double v = std::clamp(position[1] / cell_m_ - 0.5, -kEdge, kEdge);
+    const auto i = static_cast<std::int32_t>(std::floor(u));
+    const auto j = static_cast<std::int32_t>(std::floor(v));
+    const double a = u - i;
+    const double b = v - j;
+    return {{{i, j, (1 - a) * (1 - b)}, {i, j + 1, (1 - a) * b}, {i + 1, j, a * (1 - b)}, {i + 1, j + 1, a * b}}};
+  }
+
+  static std::size_t place(const Corner& corner) noexcept {
+    const auto hash = static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.north)) * 0x9E3779B97F4A7C15u ^
+                      static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.east)) * 0xC2B2AE3D27D4EB4Fu;
+    return static_cast<std::size_t>(hash >> 50);
+  }
+
+  double cell_m_;
+  double memory_s_;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace wakeline

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+#include "wakeline/core/archive.hpp"
+#include "wakeline/track/config.hpp"
+
+namespace wakeline {
+
+/// Where a track is in its life.
+enum class TrackStatus : std::uint8_t {
+  kTentative,  ///< perhaps a target
+  kConfirmed,  ///< a target, seen in this scan
+  kCoasting,   ///< a target not seen in the last scan or scans
+  kHeld,       ///< a target not seen for longer: held in mind, not shown
+};
+
+enum class TrackEvent : std::uint8_t { kStarted, kConfirmed, kCoasting, kLost };
+
+/// Something that became of a track in a scan. A tentative track has a negative number; when it is confirmed it gets
+/// the next positive one, for good.
+struct Event {
+  TrackEvent kind;
+  std::int64_t track_id;
+  std::int64_t tentative_id;  ///< the number it had before it was confirmed; 0 for a designated one
+  double time_s;
+};
+
+/// A track: an estimator, and what is known of the target's being there.
+template <class Estimator>
+struct Track {
+  Estimator estimator;
+  std::int64_t id = 0;
+  std::int64_t tentative_id = 0;
+  std::array<char, 32> name{};  ///< given by the operator, zero-terminated
+  TrackStatus status = TrackStatus::kTentative;
+  double time_s = 0.0;          ///< of the estimate
+  Gaussian<4> kinematics = {};  ///< of the estimate, `[x, vx, y, vy]`
+  double existence = 0.0;       ///< probability that there is such a target
+  double visibility = 1.0;      ///< probability that the radar can see it
+  double nis = std::numeric_limits<double>::quiet_NaN();  ///< of the likeliest plot of the scan
+  int scans = 0;
+  int hits = 0;
+  int misses = 0;               ///< in a row
+  std::uint32_t history = 0;    ///< bit k: seen k scans ago
+  int duplicate_scans = 0;
+
+  [[nodiscard]] bool confirmed() const noexcept { return status != TrackStatus::kTentative; }
+  /// Confirmed and not merely held in mind.
+  [[nodiscard]] bool shown() const noexcept {
+    return status == TrackStatus::kConfirmed || status == TrackStatus::kCoasting;
+  }
+  [[nodiscard]] double speed_mps() const noexcept {
+    return std::hypot(kinematics.mean[1], kinematics.mean[3]);
+  }
+  [[nodiscard]] double position_std_m() const noexcept {
+    return std::sqrt((kinematics.covariance(0, 0) + kinematics.covariance(2, 2)) / 2);
+  }
+  [[nodiscard]] Vec<double, 2> position() const noexcept {
+    return {kinematics.mean[0], kinematics.mean[2]};
+  }
+  [[nodiscard]] std::string_view label() const noexcept { return name.data(); }
+
+  /// Counts a scan in which the target was seen, or not.
+  void count(bool seen) noexcept {
+    ++scans;
+    history = (history << 1) | (seen ? 1u : 0u);
+    hits += seen;
+    misses = seen ? 0 : misses + 1;
+  }
+
+  /// M of the last N scans had a plot, and existence is beyond doubt.
+  [[nodiscard]] bool confirmable(const TrackerConfig& config) const noexcept {
+    const std::uint32_t window =
+        config.confirm_window >= 32 ? ~0u : (1u << config.confirm_window) - 1u;
+    return existence > config.confirm_existence &&
+           std::popcount(history & window) >= config.confirm_hits;
+  }
+
+  /// How many scans in a row the target may go unseen.
+  [[nodiscard]] double patience(const TrackerConfig& config) const noexcept {
+    if (!confirmed()) return config.tentative_misses;
+    return std::min(config.coast_scans + config.coast_scans_per_hit * hits,
+                    double(config.coast_scans_max));
+  }
+
+  /// True when the track has no future. A confirmed one is held through a silence that its age allows.
+  [[nodiscard]] bool hopeless(const TrackerConfig& config, double max_speed_mps) const noexcept {
+    const bool silent = misses > patience(config);
+    const bool doubtful = !confirmed() && existence < config.drop_existence;
+    const bool too_fast = speed_mps() > config.drop_speed_factor * max_speed_mps;
+    return silent || doubtful || too_fast || !(position_std_m() <= config.drop_position_std_m);
+  }
+
+  /// Saves or restores all but the rules.
+  void archive(Archive& fields) {
+    estimator.archive(fields);
+    fields(id);
+    fields(tentative_id);
+    fields(name);
+    fields(status);
+    fields(time_s);
+    fields(kinematics.mean);
+    fields(kinematics.covariance);
+    fields(existence);
+    fields(visibility);
+    fields(nis);
+    fields(scans);
+    fields(hits);
+    fields(misses);
+    fields(history);
+    fields(duplicate_scans);
+  }
+};
+
+}  // namespace wakeline

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/motion/coordinated_turn.hpp"
+#include "wakeline/motion/wandering_course.hpp"
+#include "wakeline/multimodel/imm.hpp"
+#include "wakeline/track/radar.hpp"
+
+namespace wakeline {
+
+/// The motion models that a tracker uses unless told otherwise: steady, restless and turning. Their noise grows with the
+/// square of the speed, so that one set serves a drifting ferry and a boat at play.
+struct VesselModels {
+  double steady_psd_m2s3 = 0.005;  ///< acceleration of a steady vessel at rest
+  double steady_course_psd_rad2s = 0.004;  ///< wander of its course
+  double restless_psd_m2s3 = 0.2;
+  double restless_course_psd_rad2s = 0.055;
+  double turning_psd_m2s3 = 8.0;
+  double turning_course_psd_rad2s = 0.08;
+  double turn_rate_psd_rad2s3 = 0.001;     ///< wander of the rate of turn
+  double prior_turn_rate_std_rad_s = 0.5;  ///< rate of turn before it is known
+  double steady_sojourn_s = 300.0;         ///< mean time in each mode
+  double restless_sojourn_s = 90.0;
+  double turning_sojourn_s = 80.0;
+
+  [[nodiscard]] WanderingCourse steady(double max_speed_mps) const noexcept {
+    return {steady_psd_m2s3, steady_course_psd_rad2s, max_speed_mps};
+  }
+  [[nodiscard]] WanderingCourse restless(double max_speed_mps) const noexcept {
+    return {restless_psd_m2s3, restless_course_psd_rad2s, max_speed_mps};
+  }
+  [[nodiscard]] CoordinatedTurnRate turning(double max_speed_mps) const noexcept {
+    return {.noise = WhiteAcceleration{turning_psd_m2s3},
+            .turn_rate_psd_rad2s3 = turn_rate_psd_rad2s3,
+            .prior_turn_rate_std_rad_s = prior_turn_rate_std_rad_s,
+            .course_psd_rad2s = turning_course_psd_rad2s,
+            .max_speed_mps = max_speed_mps};
+  }
+};
+
+/// The estimator made of them.
+using VesselImm =
+    Imm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<CoordinatedTurnRate>>>;
+
+/// The estimator of a tracker for this radar. A start believes in each mode as much as the chain in the long run.
+inline VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {}) {
+  const Vec<double, 3> sojourn_s{models.steady_sojourn_s, models.restless_sojourn_s,
+                                 models.turning_sojourn_s};
+  VesselImm imm(ModeChain<3>::from_sojourn_s(sojourn_s), Ekf(models.steady(radar.max_speed_mps)),
+                Ekf(models.restless(radar.max_speed_mps)),
+                Ekf(models.turning(radar.max_speed_mps)));
+  imm.set_initial_mode_probability(sojourn_s / sojourn_s.sum());
+  return imm;
+}
+
+}  // namespace wakeline

@@ -1,0 +1,105 @@
+"""Errors of state estimates: RMSE, NEES and the error figures of a score."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+_COURSE_MIN_SPEED_MPS = 2.0
+
+
+def rmse(error: np.ndarray, axis: int | tuple[int, ...] | None = None) -> np.ndarray | float:
+    """Root mean square of errors over `axis`, over all of them by default."""
+    return np.sqrt(np.mean(np.square(np.asarray(error, dtype=float)), axis=axis))
+
+
+def nees(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """Normalised estimation error squared, ``e' inv(P) e``.
+
+    Parameters
+    ----------
+    error : array_like (..., N)
+        Estimate minus truth.
+    covariance : array_like (..., N, N)
+        What the estimator claims; symmetric.
+
+    Returns
+    -------
+    ndarray (...)
+        Chi-square with N degrees of freedom for an honest estimator.
+
+    Raises
+    ------
+    ValueError
+        When the shapes do not fit or a covariance is not positive definite.
+    """
+    error, covariance = np.asarray(error, dtype=float), np.asarray(covariance, dtype=float)
+    wanted = (*error.shape, *error.shape[-1:])
+    if error.ndim == 0 or covariance.shape != wanted:
+        raise ValueError(f"covariance must have shape {wanted}, got {covariance.shape}")
+    try:
+        root = np.linalg.cholesky(covariance)
+    except np.linalg.LinAlgError:
+        raise ValueError("a covariance is not positive definite") from None
+    whitened = np.linalg.solve(root, error[..., np.newaxis])[..., 0]
+    return np.sum(whitened**2, axis=-1)
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Errors of matched states; every figure is None when there is none to take it over.
+
+    Attributes
+    ----------
+    matched : int
+        Number of states.
+    position_rmse_m, position_median_m : float or None
+        Root mean square and median of the distance to truth.
+    position_rmse_debiased_m : float or None
+        Root mean square distance after taking each target's mean error out.
+    mean_offset_north_m, mean_offset_east_m : float or None
+        Mean position error.
+    velocity_rmse_mps, speed_rmse_mps : float or None
+        Root mean square length of the velocity error, and of the speed error.
+    course_rms_deg : float or None
+        Root mean square course error where the true speed is above 2 m/s.
+    """
+
+    matched: int = 0
+    position_rmse_m: float | None = None
+    position_median_m: float | None = None
+    position_rmse_debiased_m: float | None = None
+    mean_offset_north_m: float | None = None
+    mean_offset_east_m: float | None = None
+    velocity_rmse_mps: float | None = None
+    speed_rmse_mps: float | None = None
+    course_rms_deg: float | None = None
+
+
+def errors_of(estimates: Sequence[np.ndarray], truths: Sequence[np.ndarray]) -> Errors:
+    """Errors of the states of one or more targets, (K, 4) each."""
+    pairs = [(e, t) for e, t in zip(estimates, truths, strict=True) if len(e)]
+    if not pairs:
+        return Errors()
+    estimate, truth = (np.concatenate(states) for states in zip(*pairs, strict=True))
+    error = estimate - truth
+    offsets_m = [(e - t)[:, 0::2] for e, t in pairs]
+    debiased_m = np.concatenate([offset - offset.mean(axis=0) for offset in offsets_m])
+    distance_m = np.hypot(error[:, 0], error[:, 2])
+    true_speed_mps = np.hypot(truth[:, 1], truth[:, 3])
+    speed_error_mps = np.hypot(estimate[:, 1], estimate[:, 3]) - true_speed_mps
+    turn = np.arctan2(estimate[:, 3], estimate[:, 1]) - np.arctan2(truth[:, 3], truth[:, 1])
+    turn = np.arctan2(np.sin(turn), np.cos(turn))[true_speed_mps > _COURSE_MIN_SPEED_MPS]
+    return Errors(
+        matched=len(error),
+        position_rmse_m=float(rmse(distance_m)),
+        position_median_m=float(np.median(distance_m)),
+        position_rmse_debiased_m=float(rmse(np.hypot(*debiased_m.T))),
+        mean_offset_north_m=float(error[:, 0].mean()),
+        mean_offset_east_m=float(error[:, 2].mean()),
+        velocity_rmse_mps=float(rmse(np.hypot(error[:, 1], error[:, 3]))),
+        speed_rmse_mps=float(rmse(speed_error_mps)),
+        course_rms_deg=float(rmse(np.degrees(turn))) if len(turn) else None,
+    )

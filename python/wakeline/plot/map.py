@@ -1,0 +1,260 @@
+"""The map: plots, tracks, own ship and truth in the plane, north up."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wakeline.recording import Episode, OwnShip, TargetTruth, Tracks
+
+from .style import INK, MUTED, TEXT_PT, dress, figure, halo, track_colors, with_gaps
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+CHI_SQUARE_95_2DOF = -2.0 * float(np.log(0.05))
+_ID_OFFSET_PT = 11.0
+_WATER_AROUND = 0.12
+_FLATTEST = 0.75
+_GRID_LINES = 10
+
+
+def map_view(
+    ax: Axes,
+    episode: Episode | None = None,
+    tracks: Tracks | None = None,
+    *,
+    ellipse_every: int = 5,
+    whole: bool = False,
+    legend: bool = True,
+) -> Axes:
+    """Draw an episode and its tracks: east to the right, north up, equal axes in metres.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Axes to draw into.
+    episode : Episode, optional
+        Its plots, own ship and, where it has it, truth are drawn.
+    tracks : Tracks, optional
+        Tracks of that episode, each with its id at its end and, where it has a covariance, the
+        95 % ellipse of every `ellipse_every`-th row.
+    ellipse_every : int
+        0 for no ellipses.
+    whole : bool
+        True: show every plot. False: show the tracks, own ship and truth with some water around
+        them, and say how many plots lie outside; without tracks and truth every plot is shown.
+    legend : bool
+        Whether to explain the marks.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        `ax`.
+    """
+    if episode is not None:
+        _draw_plots(ax, episode)
+        _draw_own_ship(ax, episode.own)
+        for k, truth in enumerate((episode.truth or {}).values()):
+            _draw_truth(ax, truth, "truth" if k == 0 else None)
+    for k, (track_id, color) in enumerate(track_colors(tracks).items()):
+        track = tracks.where(tracks.track_id == track_id)
+        if ellipse_every > 0 and track.covariance is not None:
+            _draw_ellipses(ax, track.where(slice(None, None, ellipse_every)), color, k == 0)
+        _draw_track(ax, track, track_id, color, "track" if k == 0 else None)
+    ax.set_aspect("equal", adjustable="box")
+    ax.ticklabel_format(useOffset=False, style="plain")
+    _set_window(ax, episode, tracks, whole)
+    ax.set_xlabel("east (m)")
+    ax.set_ylabel("north (m)")
+    dress(ax)
+    if legend:
+        _explain(ax)
+    return ax
+
+
+def map_figure(
+    episode: Episode | None = None,
+    tracks: Tracks | None = None,
+    *,
+    ellipse_every: int = 5,
+    whole: bool = False,
+) -> Figure:
+    """A figure of one :func:`map_view`."""
+    fig = figure(7.2, 6.4)
+    map_view(fig.add_subplot(), episode, tracks, ellipse_every=ellipse_every, whole=whole)
+    return fig
+
+
+def ellipse_outline(
+    mean: np.ndarray, covariance: np.ndarray, quantile: float = CHI_SQUARE_95_2DOF, points: int = 61
+) -> np.ndarray:
+    """Outline of the ellipse ``(x - mean)' inv(covariance) (x - mean) = quantile``.
+
+    Parameters
+    ----------
+    mean : array_like (2,)
+    covariance : array_like (2, 2)
+        Symmetric and positive semidefinite.
+    quantile : float
+        Chi-square quantile of 2 degrees of freedom; default that of 95 %.
+    points : int
+        Number of points; the last is the first again.
+
+    Returns
+    -------
+    ndarray (points, 2)
+    """
+    variance, axes = np.linalg.eigh(np.asarray(covariance, dtype=float))
+    around = np.linspace(0.0, 2.0 * np.pi, points)
+    circle = np.column_stack([np.cos(around), np.sin(around)])
+    half_axes = np.sqrt(quantile * np.maximum(variance, 0.0))
+    return np.asarray(mean, dtype=float) + (circle * half_axes) @ axes.T
+
+
+def _draw_plots(ax: Axes, episode: Episode) -> None:
+    if episode.plot_count == 0:
+        return
+    north_m, east_m = _plot_positions(episode).T
+    ax.scatter(east_m, north_m, s=11, color=MUTED, alpha=0.7, linewidths=0, label="plot", zorder=2)
+
+
+def _draw_own_ship(ax: Axes, own: OwnShip) -> None:
+    _, north_m, east_m = with_gaps(own.time_s, own.north_m, own.east_m)
+    ax.plot(east_m, north_m, color=INK, linewidth=1.0, linestyle=(0, (1, 1.5)), zorder=2)
+    ax.plot(
+        own.east_m[-1:],
+        own.north_m[-1:],
+        color=INK,
+        linestyle=(0, (1, 1.5)),
+        linewidth=1.0,
+        marker="^",
+        markersize=7,
+        markeredgecolor="white",
+        label="own ship",
+        zorder=4,
+    )
+
+
+def _draw_truth(ax: Axes, truth: TargetTruth, label: str | None) -> None:
+    _, north_m, east_m = with_gaps(truth.time_s, truth.north_m, truth.east_m)
+    ax.plot(east_m, north_m, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=label, zorder=5)
+
+
+def _draw_track(ax: Axes, track: Tracks, track_id: str, color: str, label: str | None) -> None:
+    _, north_m, east_m = with_gaps(track.time_s, track.north_m, track.east_m)
+    ax.plot(east_m, north_m, color=color, linewidth=1.8, label=label, zorder=4)
+    ax.plot(
+        track.east_m[:1],
+        track.north_m[:1],
+        color=color,
+        marker="o",
+        markersize=4.5,
+        markerfacecolor="white",
+        zorder=6,
+    )
+    end = (track.east_m[-1], track.north_m[-1])
+    ax.plot(*end, color=color, marker="o", markersize=4.5, zorder=6)
+    ahead = np.deg2rad(track.course_deg[-1])
+    ax.annotate(
+        track_id,
+        end,
+        xytext=(_ID_OFFSET_PT * np.sin(ahead), _ID_OFFSET_PT * np.cos(ahead)),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        color=color,
+        fontsize=TEXT_PT,
+        fontweight="bold",
+        path_effects=halo(),
+        zorder=7,
+    )
+
+
+def _draw_ellipses(ax: Axes, track: Tracks, color: str, labelled: bool) -> None:
+    from matplotlib.collections import PolyCollection
+
+    place = np.ix_(range(len(track)), (0, 2), (0, 2))
+    pairs = zip(track.state[:, 0::2], track.covariance[place], strict=True)
+    outlines = [ellipse_outline(mean, covariance)[:, ::-1] for mean, covariance in pairs]
+    ellipses = PolyCollection(outlines, facecolor=color, edgecolor=color, alpha=0.22, linewidth=0.8)
+    ellipses.set(zorder=3, label="95 % ellipse" if labelled else None)
+    ax.add_collection(ellipses)
+
+
+def _set_window(ax: Axes, episode: Episode | None, tracks: Tracks | None, whole: bool) -> None:
+    """Fit the axes to what is to be seen, and say how many plots are left outside."""
+    plots = np.zeros((0, 2)) if episode is None else _plot_positions(episode)
+    seen = _tracked_positions(episode, tracks)
+    if whole or len(seen) == 0:
+        seen = np.concatenate([seen, plots])
+    elif episode is not None:
+        seen = np.concatenate([seen, np.column_stack([episode.own.north_m, episode.own.east_m])])
+    if len(seen) == 0:
+        return
+    low, high = np.nanmin(seen, axis=0), np.nanmax(seen, axis=0)
+    side_m = np.maximum(high - low, 1.0) * (1.0 + 2.0 * _WATER_AROUND)
+    side_m = np.maximum(side_m, _FLATTEST * side_m.max())
+    low, high = (low + high - side_m) / 2.0, (low + high + side_m) / 2.0
+    ax.set(ylim=(low[0], high[0]), xlim=(low[1], high[1]))
+    _same_steps(ax, float(side_m.max()))
+    _count_outside(ax, ~((low <= plots) & (plots <= high)).all(axis=1))
+
+
+def _same_steps(ax: Axes, side_m: float) -> None:
+    """Grid lines at the same round distance both ways."""
+    from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+    ticks = MaxNLocator(_GRID_LINES, steps=[1, 2, 2.5, 5, 10]).tick_values(0.0, side_m)
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_locator(MultipleLocator(ticks[1] - ticks[0]))
+
+
+def _plot_positions(episode: Episode) -> np.ndarray:
+    """All plots (n, 2), north and east."""
+    return np.concatenate([np.zeros((0, 2)), *(scan.position_m for scan in episode.scans)])
+
+
+def _tracked_positions(episode: Episode | None, tracks: Tracks | None) -> np.ndarray:
+    """All positions (n, 2) of truth and tracks, north and east."""
+    paths = [] if episode is None else list((episode.truth or {}).values())
+    paths += [] if tracks is None else [tracks]
+    return np.concatenate(
+        [np.zeros((0, 2)), *(np.column_stack([path.north_m, path.east_m]) for path in paths)]
+    )
+
+
+def _count_outside(ax: Axes, outside: np.ndarray) -> None:
+    if not outside.any():
+        return
+    ax.annotate(
+        f"{np.count_nonzero(outside)} of {len(outside)} plots lie outside",
+        (1.0, 0.0),
+        xycoords="axes fraction",
+        xytext=(-4, 5),
+        textcoords="offset points",
+        ha="right",
+        fontsize=TEXT_PT - 1,
+        color=MUTED,
+        path_effects=halo(),
+    )
+
+
+def _explain(ax: Axes) -> None:
+    handles, labels = ax.get_legend_handles_labels()
+    if not handles:
+        return
+    ax.legend(
+        handles,
+        labels,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=len(handles),
+        fontsize=TEXT_PT,
+        frameon=False,
+        handlelength=1.8,
+        columnspacing=1.4,
+        borderaxespad=0.3,
+    )

@@ -1,0 +1,82 @@
+"""The look of every figure: colours that colour-blind readers can tell apart, quiet axes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wakeline.recording import Tracks, replacing
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+MODE_PALETTE = ("#DDDDDD", "#EE8866", "#77AADD", "#44BB99", "#FFAABB", "#BBCC33", "#99DDFF")
+INK = "#1F2328"
+MUTED = "#8C959F"
+GRID = "#E4E7EB"
+TEXT_PT = 9
+_GAP_STEPS = 4.0
+
+
+def figure(width_in: float = 7.2, height_in: float = 6.0) -> Figure:
+    """A new figure of the given size, independent of any window."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width_in, height_in), dpi=160, layout="constrained", facecolor="white")
+
+
+def save(fig: Figure, path: str | Path) -> None:
+    """Write a figure; what stood at `path` is replaced only when the new file is complete.
+
+    Parameters
+    ----------
+    fig : matplotlib.figure.Figure
+        The figure.
+    path : str or Path
+        Its suffix names the format, such as ``.png`` or ``.pdf``.
+    """
+    with replacing(path) as fresh:
+        fig.savefig(fresh, bbox_inches="tight", pad_inches=0.1)
+
+
+def dress(ax: Axes) -> Axes:
+    """Give axes the house look; returns `ax`."""
+    ax.set_axisbelow(True)
+    ax.grid(color=GRID, linewidth=0.8)
+    ax.tick_params(labelsize=TEXT_PT, color=MUTED, labelcolor=INK, length=3)
+    for side, spine in ax.spines.items():
+        spine.set_visible(side in ("left", "bottom"))
+        spine.set_color(MUTED)
+    for label in (ax.xaxis.label, ax.yaxis.label):
+        label.set_size(TEXT_PT)
+        label.set_color(INK)
+    return ax
+
+
+def halo(width: float = 2.0) -> list:
+    """Path effects that keep text and thin lines legible on whatever lies below."""
+    from matplotlib import patheffects
+
+    return [patheffects.withStroke(linewidth=width, foreground="white")]
+
+
+def track_colors(tracks: Tracks | None) -> dict[str, str]:
+    """Colour of each track id, the same in every view of the same tracks."""
+    ids = [] if tracks is None else tracks.ids()
+    return {track_id: PALETTE[k % len(PALETTE)] for k, track_id in enumerate(ids)}
+
+
+def with_gaps(time_s: np.ndarray, *columns: np.ndarray) -> list[np.ndarray]:
+    """Times and columns (n,) with a NaN row wherever a line must not be drawn across a gap.
+
+    A gap is a step more than four times the median one.
+    """
+    step_s = np.diff(time_s)
+    if len(step_s) == 0:
+        return [time_s, *columns]
+    before = np.flatnonzero(step_s > _GAP_STEPS * np.median(step_s)) + 1
+    return [np.insert(column.astype(float), before, np.nan) for column in (time_s, *columns)]

@@ -1,0 +1,217 @@
+"""An episode put together from the rows of a plots file and of an own-ship file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import scans as grouping
+from .errors import RecordingError
+from .model import Episode, OwnShip, Scan
+from .own_csv import OwnRows
+from .plot_rows import PlotRows
+
+
+@dataclass(frozen=True)
+class _ScanList:
+    """Numbers and times (m,) of scans, with the row of the own-ship file that lists each."""
+
+    number: np.ndarray
+    time_s: np.ndarray
+    own_row: np.ndarray
+
+
+def build_episode(
+    scenario: str,
+    plots: PlotRows,
+    own: OwnRows | None,
+    fixed: OwnShip,
+    period_s: float | None,
+    own_gap_s: float,
+) -> Episode:
+    """One scenario's scans and own ship.
+
+    Parameters
+    ----------
+    scenario : str
+        Its name.
+    plots : PlotRows
+        Rows of all scenarios, places that are not finite as NaN.
+    own : OwnRows or None
+        Rows of all scenarios.
+    fixed : OwnShip
+        Own ship where neither file knows better.
+    period_s, own_gap_s : float
+        As for ``read_plots``.
+
+    Raises
+    ------
+    RecordingError
+        When scan times do not grow, or own ship is not known at a plot.
+    """
+    own = None if own is None else own.part(scenario)
+    listed = _listed_scans(own)
+    plots, number = _numbered(plots.where(plots.scenario == scenario), listed, period_s)
+    scans = _all_scans(listed, plots, number)
+    _check_plot_times(plots, number)
+    _check_scan_times(scans, plots, number, own)
+    placed = np.isfinite(plots.place).all(axis=1)
+    plots, number = plots.where(placed), number[placed]
+    own_m, ship = _own_ship(plots, own, fixed, own_gap_s)
+    return Episode(scenario, _scans(scans, number, _plot_columns(plots, own_m)), ship)
+
+
+def _listed_scans(own: OwnRows | None) -> _ScanList:
+    if own is None or own.scan is None:
+        return _ScanList(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0, dtype=np.int64))
+    return _ScanList(own.scan, own.time_s, own.row)
+
+
+def _numbered(
+    plots: PlotRows, listed: _ScanList, period_s: float | None
+) -> tuple[PlotRows, np.ndarray]:
+    """Plots sorted by scan and, within it, by time; and the scan number (n,) of each."""
+    plots = plots.where(np.argsort(plots.time_s, kind="stable"))
+    if plots.scan is not None:
+        number = plots.scan
+    elif len(listed.number):
+        number = grouping.by_list(plots.time_s, listed.time_s, listed.number)
+    else:
+        number = grouping.by_time(plots.time_s, period_s)
+    order = np.argsort(number, kind="stable")
+    return plots.where(order), number[order]
+
+
+def _all_scans(listed: _ScanList, plots: PlotRows, number: np.ndarray) -> _ScanList:
+    """Listed scans and scans of plots in order of number; -1 stands for no row of the list."""
+    every = np.union1d(listed.number, number)
+    time_s = np.empty(len(every))
+    own_row = np.full(len(every), -1)
+    time_s[np.searchsorted(every, number)] = plots.time_s
+    place = np.searchsorted(every, listed.number)
+    time_s[place], own_row[place] = listed.time_s, listed.own_row
+    return _ScanList(every, time_s, own_row)
+
+
+def _check_plot_times(plots: PlotRows, number: np.ndarray) -> None:
+    """Plots must not be earlier than plots of the scans before theirs."""
+    back = np.flatnonzero(np.diff(plots.time_s) < 0)
+    if len(back):
+        k = int(back[0])
+        raise plots.table.error(
+            plots.row[k + 1],
+            "time_s",
+            f"a time not before {plots.time_s[k]}, the last plot of scan {number[k]}",
+            problem="scan times go back",
+        )
+
+
+def _check_scan_times(
+    scans: _ScanList, plots: PlotRows, number: np.ndarray, own: OwnRows | None
+) -> None:
+    """Times of scans must grow with their numbers."""
+    stuck = np.flatnonzero(np.diff(scans.time_s) <= 0)
+    if not len(stuck):
+        return
+    k = int(stuck[0]) + 1
+    if scans.own_row[k] >= 0:
+        table, row = own.table, scans.own_row[k]
+    else:
+        table = plots.table
+        row = plots.row[np.searchsorted(number, scans.number[k], side="right") - 1]
+    raise table.error(
+        row,
+        "time_s",
+        f"a time after {scans.time_s[k - 1]} of scan {scans.number[k - 1]}",
+        problem="scan times do not grow",
+    )
+
+
+def _own_ship(
+    plots: PlotRows, own: OwnRows | None, fixed: OwnShip, own_gap_s: float
+) -> tuple[np.ndarray, OwnShip]:
+    """Own position (n, 2) at each plot, and own ship's track."""
+    if own is not None and own.has_position:
+        rows = own.by_time()
+        ship = rows.ship() if len(rows.row) else fixed
+        if plots.own_m is None:
+            _check_covered(plots, rows, own_gap_s)
+            return ship.position_at(plots.time_s), ship
+        return plots.own_m, ship
+    if plots.own_m is not None and len(plots):
+        time_s, first = np.unique(plots.time_s, return_index=True)
+        return plots.own_m, OwnShip(time_s, *plots.own_m[first].T)
+    return fixed.position_at(plots.time_s), fixed
+
+
+def _check_covered(plots: PlotRows, own: OwnRows, own_gap_s: float) -> None:
+    """Own ship must be known at each plot; `own` is sorted by time."""
+    if len(plots) == 0:
+        return
+    if len(own.row) == 0:
+        raise _not_covered(plots, 0, own, "no position at all")
+    step_s = np.diff(own.time_s)
+    margin_s = min(float(np.median(step_s)), own_gap_s) if len(step_s) else 0.0
+    start_s, end_s = own.time_s[0] - margin_s, own.time_s[-1] + margin_s
+    outside = (plots.time_s < start_s) | (plots.time_s > end_s)
+    if outside.any():
+        span = f"positions from {own.time_s[0]} to {own.time_s[-1]}"
+        raise _not_covered(plots, int(np.argmax(outside)), own, span)
+    after = np.clip(np.searchsorted(own.time_s, plots.time_s), 1, max(len(step_s), 1))
+    if len(step_s):
+        inside = (plots.time_s > own.time_s[after - 1]) & (plots.time_s < own.time_s[after])
+        lost = inside & (step_s[after - 1] > own_gap_s)
+        if lost.any():
+            k = int(np.argmax(lost))
+            line = own.table.line(own.row[after[k] - 1])
+            gap = f"a gap of {step_s[after[k] - 1]:g} s after its line {line}"
+            raise _not_covered(plots, k, own, gap)
+
+
+def _not_covered(plots: PlotRows, k: int, own: OwnRows, got: str) -> RecordingError:
+    return RecordingError(
+        plots.table.path,
+        f"own ship is not known at {plots.time_s[k]}",
+        line=plots.table.line(plots.row[k]),
+        column=plots.table.name("time_s"),
+        wanted=f"a time that {own.table.path} covers",
+        got=got,
+    )
+
+
+def _plot_columns(plots: PlotRows, own_m: np.ndarray) -> dict[str, np.ndarray]:
+    """The per-plot fields of ``Scan`` for all plots, each (n,)."""
+    if plots.polar:
+        range_m, bearing_rad = plots.place[:, 0], _within_half_turn(plots.place[:, 1])
+        north_m = own_m[:, 0] + range_m * np.cos(bearing_rad)
+        east_m = own_m[:, 1] + range_m * np.sin(bearing_rad)
+    else:
+        north_m, east_m = plots.place.T
+        relative_m = plots.place - own_m
+        range_m = np.hypot(*relative_m.T)
+        bearing_rad = np.arctan2(relative_m[:, 1], relative_m[:, 0])
+    return {
+        "plot_time_s": plots.time_s,
+        "north_m": north_m,
+        "east_m": east_m,
+        "range_m": range_m,
+        "bearing_rad": bearing_rad,
+        "own_north_m": own_m[:, 0],
+        "own_east_m": own_m[:, 1],
+    }
+
+
+def _within_half_turn(angle_rad: np.ndarray) -> np.ndarray:
+    """Angles of at most one turn either way, brought into [-pi, pi]; those inside stay as is."""
+    return angle_rad - 2.0 * np.pi * ((angle_rad > np.pi) * 1.0 - (angle_rad < -np.pi) * 1.0)
+
+
+def _scans(scans: _ScanList, number: np.ndarray, columns: dict[str, np.ndarray]) -> list[Scan]:
+    """Cut the columns, sorted by scan number (n,), into scans."""
+    begin = np.searchsorted(number, scans.number, side="left")
+    end = np.searchsorted(number, scans.number, side="right")
+    return [
+        Scan(float(t), int(n), **{name: values[a:b] for name, values in columns.items()})
+        for t, n, a, b in zip(scans.time_s, scans.number, begin, end, strict=True)
+    ]

@@ -1,0 +1,64 @@
+"""The one error a reader raises: file, line, column, what was wanted, what came."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class RecordingError(ValueError):
+    """A recording cannot be read as it stands.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file at fault.
+    problem : str
+        What is wrong, in words.
+    line : int, optional
+        Line of the file, 1 for the header.
+    column : str, optional
+        Name of the column as it stands in the file.
+    wanted, got : str, optional
+        What a correct file holds there and what this file holds.
+
+    All parameters are kept as attributes; ``str(error)`` is one line made of them.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        problem: str,
+        *,
+        line: int | None = None,
+        column: str | None = None,
+        wanted: str | None = None,
+        got: str | None = None,
+    ) -> None:
+        self.path = Path(path)
+        self.problem = problem
+        self.line = line
+        self.column = column
+        self.wanted = wanted
+        self.got = got
+        super().__init__(self._sentence())
+
+    def __reduce__(self):
+        places = {"line": self.line, "column": self.column, "wanted": self.wanted, "got": self.got}
+        return _rebuild, (self.path, self.problem, places)
+
+    def _sentence(self) -> str:
+        place = [str(self.path)]
+        if self.line is not None:
+            place.append(f"line {self.line}")
+        if self.column is not None:
+            place.append(f"column {self.column}")
+        sentence = f"{', '.join(place)}: {self.problem}"
+        if self.wanted is not None:
+            sentence += f"; wanted {self.wanted}"
+        if self.got is not None:
+            sentence += f", got {self.got}"
+        return sentence
+
+
+def _rebuild(path: Path, problem: str, places: dict) -> RecordingError:
+    return RecordingError(path, problem, **places)

@@ -1,0 +1,203 @@
+"""What a recording is: episodes of scans of plots, own ship beside them, truth where it is known.
+
+All positions are metres in one local plane, north and east; all times are seconds (UTC seconds
+since 1970 in files); bearings are radians clockwise from north.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .truth import TargetTruth
+
+
+@dataclass(frozen=True)
+class Scan:
+    """The plots of one antenna turn; no plots at all is a scan like any other.
+
+    Attributes
+    ----------
+    time_s : float
+        The scan's own time: as listed with the scans, else the time of its last plot.
+    number : int
+        The scan's number, as listed or counted from 0.
+    plot_time_s, north_m, east_m, range_m, bearing_rad : ndarray (n,)
+        Time and place of each plot, sorted by time; range and bearing as seen from own ship at the
+        time of the plot, bearing in [-pi, pi].
+    own_north_m, own_east_m : ndarray (n,)
+        Own ship at the time of each plot.
+    """
+
+    time_s: float
+    number: int
+    plot_time_s: np.ndarray
+    north_m: np.ndarray
+    east_m: np.ndarray
+    range_m: np.ndarray
+    bearing_rad: np.ndarray
+    own_north_m: np.ndarray
+    own_east_m: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.plot_time_s)
+
+    @property
+    def position_m(self) -> np.ndarray:
+        """Plots as (n, 2), north and east."""
+        return np.column_stack([self.north_m, self.east_m])
+
+    @property
+    def range_bearing(self) -> np.ndarray:
+        """Plots as (n, 2), range in metres and bearing in radians."""
+        return np.column_stack([self.range_m, self.bearing_rad])
+
+
+@dataclass(frozen=True)
+class OwnShip:
+    """Where the radar was, sorted by time; one row is a radar that does not move.
+
+    Attributes
+    ----------
+    time_s, north_m, east_m : ndarray (n,)
+        Positions of the radar, at least one.
+    vnorth_mps, veast_mps : ndarray (n,) or None
+        Velocity over ground, where recorded.
+    heading_rad : ndarray (n,) or None
+        Heading, clockwise from north, where recorded.
+    """
+
+    time_s: np.ndarray
+    north_m: np.ndarray
+    east_m: np.ndarray
+    vnorth_mps: np.ndarray | None = None
+    veast_mps: np.ndarray | None = None
+    heading_rad: np.ndarray | None = None
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    @classmethod
+    def fixed(cls, north_m: float = 0.0, east_m: float = 0.0) -> OwnShip:
+        """A radar that does not move."""
+        return cls(np.zeros(1), np.array([float(north_m)]), np.array([float(east_m)]))
+
+    def position_at(self, time_s: np.ndarray) -> np.ndarray:
+        """Positions (T, 2), north and east, by linear interpolation.
+
+        Before the first and after the last row the ship goes on straight at the speed it has there.
+        """
+        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        position_m = np.column_stack([self.north_m, self.east_m])
+        if len(self) == 1:
+            return np.repeat(position_m, len(time_s), axis=0)
+        after = np.clip(np.searchsorted(self.time_s, time_s), 1, len(self) - 1)
+        step_s = self.time_s[after] - self.time_s[after - 1]
+        weight = ((time_s - self.time_s[after - 1]) / step_s)[:, np.newaxis]
+        return (1 - weight) * position_m[after - 1] + weight * position_m[after]
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One stretch of a recording that is tracked from a fresh start.
+
+    Attributes
+    ----------
+    name : str
+        Value of the ``scenario`` column, '' when the recording has none.
+    scans : list of Scan
+        In order of time.
+    own : OwnShip
+        Own ship over the episode.
+    truth : dict of str to TargetTruth, or None
+        Truth of each target by name; None when no truth was given.
+    """
+
+    name: str
+    scans: list[Scan]
+    own: OwnShip = field(default_factory=OwnShip.fixed)
+    truth: dict[str, TargetTruth] | None = None
+
+    def __len__(self) -> int:
+        return len(self.scans)
+
+    @property
+    def time_s(self) -> np.ndarray:
+        """Times of the scans, (T,)."""
+        return np.array([scan.time_s for scan in self.scans], dtype=float)
+
+    @property
+    def plot_count(self) -> int:
+        """Number of plots in all scans."""
+        return sum(len(scan) for scan in self.scans)
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A radar recording.
+
+    Attributes
+    ----------
+    name : str
+        Name of the bundled recording or stem of the plots file.
+    episodes : list of Episode
+        At least one.
+    notes : list of str
+        What the reader left out or repaired, one counted remark each; empty for a clean recording.
+    """
+
+    name: str
+    episodes: list[Episode]
+    notes: list[str] = field(default_factory=list)
+
+    def __iter__(self) -> Iterator[Episode]:
+        return iter(self.episodes)
+
+    def __len__(self) -> int:
+        return len(self.episodes)
+
+    def episode_of(self, scenario: np.ndarray, time_s: np.ndarray) -> np.ndarray:
+        """Index of the episode that each row of another table belongs to.
+
+        A row belongs to the episode its ``scenario`` names; a row that names none, to the episode
+        that holds its time or is nearest to it. A recording of one episode takes every row.
+
+        Parameters
+        ----------
+        scenario : array_like of str (n,)
+            '' where a row names no scenario.
+        time_s : array_like (n,)
+            Time of each row.
+
+        Returns
+        -------
+        ndarray of int (n,)
+
+        Raises
+        ------
+        ValueError
+            When a row names a scenario that the recording does not have.
+        """
+        scenario = np.asarray(scenario, dtype=str)
+        if len(self.episodes) == 1:
+            return np.zeros(len(scenario), dtype=int)
+        index = self._episode_by_time(np.asarray(time_s, dtype=float))
+        known = {episode.name: k for k, episode in enumerate(self.episodes)}
+        for name in np.unique(scenario[scenario != ""]):
+            if name not in known:
+                raise ValueError(
+                    f"scenario {str(name)!r} is not in recording {self.name!r}, "
+                    f"which has {', '.join(map(repr, known))}"
+                )
+            index[scenario == name] = known[name]
+        return index
+
+    def _episode_by_time(self, time_s: np.ndarray) -> np.ndarray:
+        """Index (n,) of the episode nearest in time; of equals, the one that starts first."""
+        never = (np.inf, np.inf)
+        spans = [(e.time_s[0], e.time_s[-1]) if len(e) else never for e in self.episodes]
+        order = sorted(range(len(spans)), key=lambda k: spans[k])
+        outside_s = [np.maximum(spans[k][0] - time_s, time_s - spans[k][1]) for k in order]
+        return np.array(order)[np.argmin(np.maximum(outside_s, 0.0), axis=0)]

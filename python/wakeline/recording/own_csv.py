@@ -1,0 +1,150 @@
+"""Own ship from CSV: where the radar was, and the list of scans when the file holds one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .errors import RecordingError
+from .model import OwnShip
+from .table import Table
+
+COLUMNS = {
+    "time_s": ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime"),
+    "scan": ("scan", "scan_number", "scan_id"),
+    "scenario": ("scenario",),
+    "north_m": ("own_north_m", "north_m"),
+    "east_m": ("own_east_m", "east_m"),
+    "vnorth_mps": ("own_vnorth_mps", "vnorth_mps"),
+    "veast_mps": ("own_veast_mps", "veast_mps"),
+    "heading_deg": ("own_heading_deg", "heading_deg"),
+    "heading_rad": ("own_heading_rad", "heading_rad"),
+}
+
+
+@dataclass(frozen=True)
+class OwnRows:
+    """Rows of an own-ship file, in the order of the file.
+
+    Attributes
+    ----------
+    table : Table
+        The file, to name lines in errors.
+    row : ndarray of int (n,)
+        Row of the file behind each entry.
+    scenario : ndarray of str (n,) or None
+    scan : ndarray of int (n,) or None
+        None when the file lists no scans.
+    time_s : ndarray (n,)
+    columns : dict of str to ndarray (n,)
+        ``north_m``, ``east_m`` and what else of velocity and ``heading_rad`` the file holds.
+    """
+
+    table: Table
+    row: np.ndarray
+    scenario: np.ndarray | None
+    scan: np.ndarray | None
+    time_s: np.ndarray
+    columns: dict[str, np.ndarray]
+
+    @property
+    def has_position(self) -> bool:
+        """Whether the file says where own ship was."""
+        return "north_m" in self.columns
+
+    def part(self, scenario: str) -> OwnRows:
+        """Rows of one scenario; all rows when the file has no scenario column."""
+        return self if self.scenario is None else self._where(self.scenario == scenario)
+
+    def by_time(self) -> OwnRows:
+        """Rows with a finite position, sorted by time; of equal times the last in the file."""
+        placed = np.isfinite(self.columns["north_m"]) & np.isfinite(self.columns["east_m"])
+        rows = self._where(np.flatnonzero(placed))
+        rows = rows._where(np.argsort(rows.time_s, kind="stable"))
+        return rows._where(np.append(np.diff(rows.time_s) > 0, True)[: len(rows.time_s)])
+
+    def ship(self) -> OwnShip:
+        """These rows, which must be sorted, as own ship's track."""
+        return OwnShip(time_s=self.time_s, **self.columns)
+
+    def _where(self, chosen: np.ndarray) -> OwnRows:
+        return OwnRows(
+            table=self.table,
+            row=self.row[chosen],
+            scenario=None if self.scenario is None else self.scenario[chosen],
+            scan=None if self.scan is None else self.scan[chosen],
+            time_s=self.time_s[chosen],
+            columns={name: values[chosen] for name, values in self.columns.items()},
+        )
+
+
+def read_own(path: str | Path, notes: list[str]) -> OwnRows:
+    """Read an own-ship file.
+
+    Columns: a time; ``own_north_m, own_east_m`` (or ``north_m, east_m``); where known
+    ``own_vnorth_mps, own_veast_mps, own_heading_deg``; ``scan`` when each row is a scan (positions
+    may then be absent); ``scenario``. An empty or NaN position is a gap.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    notes : list of str
+        Remarks are added to it.
+
+    Raises
+    ------
+    RecordingError
+        When a column is missing, a cell cannot be read, a scan is listed twice, or no row follows
+        the header.
+    """
+    table = Table(path, COLUMNS)
+    table.require("time_s")
+    if len(table) == 0:
+        raise RecordingError(
+            table.path, "no row follows the header", line=1, wanted="own-ship rows"
+        )
+    rows = OwnRows(
+        table=table,
+        row=np.arange(len(table)),
+        scenario=np.array(table.text("scenario")) if "scenario" in table else None,
+        scan=table.whole_numbers("scan") if "scan" in table else None,
+        time_s=table.times("time_s"),
+        columns=_motion(table, notes),
+    )
+    _check_scans_once(rows)
+    return rows
+
+
+def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
+    if "north_m" not in table and "east_m" not in table and "scan" in table:
+        notes.append(f"{table.path.name}: no own-ship position, so the radar stands still")
+        return {}
+    table.require("north_m", "east_m")
+    motion = {"north_m": table.numbers("north_m"), "east_m": table.numbers("east_m")}
+    lost = ~(np.isfinite(motion["north_m"]) & np.isfinite(motion["east_m"]))
+    if lost.any():
+        first = table.line(int(np.argmax(lost)))
+        notes.append(
+            f"{table.path.name}: {np.count_nonzero(lost)} rows without a finite own-ship position "
+            f"left out (first in line {first})"
+        )
+    motion |= {c: table.numbers(c) for c in ("vnorth_mps", "veast_mps") if c in table}
+    if "heading_deg" in table:
+        motion["heading_rad"] = np.deg2rad(table.numbers("heading_deg"))
+    elif "heading_rad" in table:
+        motion["heading_rad"] = table.numbers("heading_rad")
+    return motion
+
+
+def _check_scans_once(rows: OwnRows) -> None:
+    if rows.scan is None:
+        return
+    seen = set()
+    scenarios = rows.scenario if rows.scenario is not None else np.full(len(rows.scan), "")
+    for row, key in enumerate(zip(scenarios.tolist(), rows.scan.tolist(), strict=True)):
+        if key in seen:
+            raise rows.table.error(row, "scan", "each scan listed once")
+        seen.add(key)

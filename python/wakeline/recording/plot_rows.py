@@ -1,0 +1,213 @@
+"""The rows of a plots file: columns known by name, cells checked, metres and radians."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .errors import RecordingError
+from .scans import repeated
+from .table import Table
+
+METRES_PER_NAUTICAL_MILE = 1852.0
+
+COLUMNS = {
+    "time_s": ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime"),
+    "scan": ("scan", "scan_number", "scan_id"),
+    "scenario": ("scenario",),
+    "north_m": ("north_m",),
+    "east_m": ("east_m",),
+    "range_m": ("range_m", "distance_m"),
+    "range_nm": ("range_nm", "distance_nm"),
+    "bearing_deg": ("bearing_deg", "azimuth_deg"),
+    "bearing_rad": ("bearing_rad", "azimuth_rad"),
+    "own_north_m": ("own_north_m",),
+    "own_east_m": ("own_east_m",),
+}
+
+_MEASUREMENT_WANTED = (
+    "north_m and east_m, or range_m (or range_nm) and bearing_deg (or bearing_rad, azimuth_deg, "
+    "azimuth_rad)"
+)
+
+
+@dataclass(frozen=True)
+class PlotRows:
+    """Rows of a plots file, in the order of the file.
+
+    Attributes
+    ----------
+    table : Table or None
+        The file, to name lines in errors; None when there is no file and so no row.
+    row : ndarray of int (n,)
+        Row of the file behind each entry.
+    scenario : ndarray of str (n,)
+        '' where the file has no scenario column.
+    scan : ndarray of int (n,) or None
+    time_s : ndarray (n,)
+    place : ndarray (n, 2)
+        North and east in metres, or range in metres and bearing in radians; NaN where not finite.
+    polar : bool
+        Whether `place` is range and bearing.
+    own_m : ndarray (n, 2) or None
+        Own position beside each plot, where the file has it.
+    """
+
+    table: Table | None
+    row: np.ndarray
+    scenario: np.ndarray
+    scan: np.ndarray | None
+    time_s: np.ndarray
+    place: np.ndarray
+    polar: bool
+    own_m: np.ndarray | None
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    @classmethod
+    def none(cls) -> PlotRows:
+        """No rows of no file."""
+        return cls(
+            table=None,
+            row=np.zeros(0, dtype=int),
+            scenario=np.zeros(0, dtype=str),
+            scan=None,
+            time_s=np.zeros(0),
+            place=np.zeros((0, 2)),
+            polar=False,
+            own_m=None,
+        )
+
+    def where(self, chosen: np.ndarray) -> PlotRows:
+        """The chosen rows, by mask or by index."""
+        return PlotRows(
+            table=self.table,
+            row=self.row[chosen],
+            scenario=self.scenario[chosen],
+            scan=None if self.scan is None else self.scan[chosen],
+            time_s=self.time_s[chosen],
+            place=self.place[chosen],
+            polar=self.polar,
+            own_m=None if self.own_m is None else self.own_m[chosen],
+        )
+
+
+def read_plot_rows(path: str | Path, notes: list[str]) -> PlotRows:
+    """Read the rows of a plots file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    notes : list of str
+        Remarks are added to it: plots without a finite place (kept here as NaN), repeated rows
+        (left out), no plots at all.
+
+    Raises
+    ------
+    RecordingError
+        When a column is missing or a cell cannot be read or makes no sense.
+    """
+    table = Table(path, COLUMNS)
+    table.require("time_s")
+    place, polar = _places(table, notes)
+    scenario = table.text("scenario") if "scenario" in table else [""] * len(table)
+    rows = PlotRows(
+        table=table,
+        row=np.arange(len(table)),
+        scenario=np.array(scenario, dtype=str),
+        scan=table.whole_numbers("scan") if "scan" in table else None,
+        time_s=table.times("time_s"),
+        place=place,
+        polar=polar,
+        own_m=_own_beside(table),
+    )
+    if len(rows) == 0:
+        notes.append(f"{table.path.name}: no plots")
+    return _without_repeats(rows, notes)
+
+
+def remark(rows: PlotRows, chosen: np.ndarray, what: str, notes: list[str]) -> None:
+    """Add a counted note about the chosen rows (mask), if there are any."""
+    if chosen.any():
+        first = rows.table.line(int(rows.row[np.argmax(chosen)]))
+        count = np.count_nonzero(chosen)
+        notes.append(f"{rows.table.path.name}: {count} plots {what} (first in line {first})")
+
+
+def _places(table: Table, notes: list[str]) -> tuple[np.ndarray, bool]:
+    """Measured places (n, 2), NaN where not finite, and whether they are polar."""
+    _at_most_one(table, ("range_m", "range_nm"))
+    _at_most_one(table, ("bearing_deg", "bearing_rad"))
+    cartesian = "north_m" in table and "east_m" in table
+    polar = ("range_m" in table or "range_nm" in table) and (
+        "bearing_deg" in table or "bearing_rad" in table
+    )
+    if cartesian and polar:
+        notes.append(f"{table.path.name}: north and east are used, range and bearing are not")
+    if cartesian:
+        columns = [table.numbers("north_m"), table.numbers("east_m")]
+    elif polar:
+        columns = [_ranges_m(table), _bearings_rad(table)]
+    else:
+        raise RecordingError(
+            table.path,
+            "a column is missing",
+            line=1,
+            wanted=_MEASUREMENT_WANTED,
+            got=", ".join(table.header),
+        )
+    place = np.column_stack(columns)
+    place[~np.isfinite(place).all(axis=1)] = np.nan
+    return place, not cartesian
+
+
+def _at_most_one(table: Table, columns: Sequence[str]) -> None:
+    present = [table.name(c) for c in columns if c in table]
+    if len(present) > 1:
+        raise RecordingError(
+            table.path,
+            "a column is repeated in another unit",
+            line=1,
+            column=present[1],
+            wanted="one of them",
+            got=" and ".join(present),
+        )
+
+
+def _ranges_m(table: Table) -> np.ndarray:
+    column = "range_m" if "range_m" in table else "range_nm"
+    values = table.numbers(column)
+    table.check(column, ~(values < 0), "a range of 0 or more")
+    return values if column == "range_m" else values * METRES_PER_NAUTICAL_MILE
+
+
+def _bearings_rad(table: Table) -> np.ndarray:
+    """Bearings from north; anything beyond a whole turn either way is an error."""
+    if "bearing_deg" in table:
+        values = table.numbers("bearing_deg")
+        table.check("bearing_deg", ~(np.abs(values) > 360.0), "a bearing from -360 to 360 degrees")
+        return np.deg2rad(values)
+    values = table.numbers("bearing_rad")
+    sense = ~(np.abs(values) > 2.0 * np.pi)
+    table.check("bearing_rad", sense, "a bearing from -2 pi to 2 pi radians")
+    return values
+
+
+def _own_beside(table: Table) -> np.ndarray | None:
+    if "own_north_m" not in table and "own_east_m" not in table:
+        return None
+    table.require("own_north_m", "own_east_m")
+    return np.column_stack([table.finite("own_north_m"), table.finite("own_east_m")])
+
+
+def _without_repeats(rows: PlotRows, notes: list[str]) -> PlotRows:
+    _, scenario = np.unique(rows.scenario, return_inverse=True)
+    scan = rows.scan if rows.scan is not None else np.zeros(len(rows), dtype=int)
+    again = repeated(scenario, scan, rows.time_s, *rows.place.T)
+    remark(rows, again, "that repeat an earlier row left out", notes)
+    return rows.where(~again)

@@ -1,0 +1,219 @@
+"""A CSV file as named columns, each cell traceable to its line."""
+
+from __future__ import annotations
+
+import csv
+import datetime
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from .errors import RecordingError
+
+TIME_WANTED = "UTC seconds or ISO 8601 text such as 2021-05-04T07:54:53.034Z"
+
+_ISO_TIME = re.compile(
+    r"(\d{4}-\d{2}-\d{2})[T ](\d{2}:\d{2}(?::\d{2})?)(?:[.,](\d+))?\s*(Z|[+-]\d{2}(?::?\d{2})?)?",
+    re.IGNORECASE,
+)
+
+
+class Table:
+    """Columns of text read from a CSV file with one header line.
+
+    A byte-order mark, CRLF line ends, blank lines and spaces around cells do not matter. Column
+    names are compared in lower case with every run of other characters as one underscore, so
+    ``Range [m]`` is ``range_m``.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    meanings : dict of str to sequence of str
+        For each column the caller knows, the names a file may give it. Other columns are left out.
+
+    Raises
+    ------
+    RecordingError
+        When the file cannot be read or is empty, when two columns mean the same, or when a row has
+        more or fewer cells than the header.
+    """
+
+    def __init__(self, path: str | Path, meanings: dict[str, Sequence[str]]) -> None:
+        self.path = Path(path)
+        self._meanings = meanings
+        rows = _rows(self.path)
+        _, header = next(rows, (0, []))
+        if not header:
+            raise RecordingError(self.path, "the file is empty", line=1, wanted="a header line")
+        self.header = [name.strip() for name in header]
+        self._place = self._recognise(self.header)
+        self._line, cells = self._body(rows)
+        self._cells = dict(zip(range(len(header)), zip(*cells, strict=True), strict=False))
+
+    def __len__(self) -> int:
+        return len(self._line)
+
+    def __contains__(self, column: str) -> bool:
+        return column in self._place
+
+    def line(self, row: int) -> int:
+        """Line of the file that holds `row`."""
+        return int(self._line[row])
+
+    def require(self, *columns: str) -> None:
+        """Raise RecordingError unless the file has each of `columns`."""
+        for column in columns:
+            if column not in self:
+                raise RecordingError(
+                    self.path,
+                    "a column is missing",
+                    line=1,
+                    column=column,
+                    wanted=" or ".join(self._meanings[column]),
+                    got=", ".join(self.header),
+                )
+
+    def name(self, column: str) -> str:
+        """Name that the file gives `column`."""
+        return self.header[self._place[column]]
+
+    def text(self, column: str) -> list[str]:
+        """Cells of a column without the spaces around them."""
+        return [cell.strip() for cell in self._cells.get(self._place[column], ())]
+
+    def numbers(self, column: str) -> np.ndarray:
+        """Cells of a column as floats (n,); an empty cell is NaN."""
+        return self._parsed(column, _number, "a number")
+
+    def finite(self, column: str) -> np.ndarray:
+        """Cells of a column as finite floats (n,)."""
+        values = self.numbers(column)
+        self.check(column, np.isfinite(values), "a finite number")
+        return values
+
+    def whole_numbers(self, column: str) -> np.ndarray:
+        """Cells of a column as integers (n,)."""
+        values = self.numbers(column)
+        with np.errstate(invalid="ignore"):
+            whole = (np.abs(values) < 2**53) & (values == np.rint(values))
+        self.check(column, whole, "a whole number")
+        return values.astype(np.int64)
+
+    def times(self, column: str) -> np.ndarray:
+        """Cells of a column as UTC seconds (n,), read from numbers or ISO 8601 text."""
+        values = self._parsed(column, _time_s, TIME_WANTED)
+        self.check(column, np.isfinite(values), TIME_WANTED)
+        return values
+
+    def check(self, column: str, good: np.ndarray, wanted: str) -> None:
+        """Raise RecordingError at the first row of a column that is not `good` (n,)."""
+        if not np.all(good):
+            raise self.error(int(np.argmin(good)), column, wanted)
+
+    def error(
+        self, row: int, column: str, wanted: str, *, problem: str = "a cell cannot be read"
+    ) -> RecordingError:
+        """The error that a cell is not what it should be."""
+        cell = self._cells[self._place[column]][row].strip()
+        return RecordingError(
+            self.path,
+            problem,
+            line=self.line(row),
+            column=self.name(column),
+            wanted=wanted,
+            got=repr(cell) if cell else "an empty cell",
+        )
+
+    def _recognise(self, header: list[str]) -> dict[str, int]:
+        """Where each known column stands."""
+        meaning = {name: column for column, names in self._meanings.items() for name in names}
+        place: dict[str, int] = {}
+        for k, name in enumerate(header):
+            column = meaning.get(_plain(name))
+            if column is None:
+                continue
+            if column in place:
+                raise RecordingError(
+                    self.path,
+                    "a column is repeated",
+                    line=1,
+                    column=name,
+                    wanted=f"one column for {column}",
+                    got=f"{header[place[column]]} and {name}",
+                )
+            place[column] = k
+        return place
+
+    def _body(self, rows: Iterable[tuple[int, list[str]]]) -> tuple[np.ndarray, list[list[str]]]:
+        """Line numbers and cells of the rows below the header."""
+        lines, cells = [], []
+        width = len(self.header)
+        for line, row in rows:
+            if len(row) != width:
+                raise RecordingError(
+                    self.path,
+                    "a row does not fit the header",
+                    line=line,
+                    wanted=f"{width} cells",
+                    got=str(len(row)),
+                )
+            lines.append(line)
+            cells.append(row)
+        return np.array(lines, dtype=np.int64), cells
+
+    def _parsed(self, column: str, parse: Callable[[str], float], wanted: str) -> np.ndarray:
+        values: list[float] = []
+        try:
+            values.extend(map(parse, self._cells.get(self._place[column], ())))
+        except (ValueError, OverflowError):
+            raise self.error(len(values), column, wanted) from None
+        return np.array(values, dtype=float)
+
+
+def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Line number and cells of each line that is not blank."""
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            reader = csv.reader(file)
+            for row in reader:
+                if row and not (len(row) == 1 and not row[0].strip()):
+                    yield reader.line_num, row
+    except OSError as error:
+        raise RecordingError(path, f"the file cannot be read ({error.strerror})") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise RecordingError(path, "the file is not CSV text in UTF-8", got=str(error)) from error
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+
+
+def _number(cell: str) -> float:
+    if "_" in cell:
+        raise ValueError(cell)
+    return float(cell) if cell.strip() else math.nan
+
+
+def _time_s(cell: str) -> float:
+    """UTC seconds from a number or from ISO 8601 text; text without a zone is UTC."""
+    try:
+        return _number(cell)
+    except ValueError:
+        match = _ISO_TIME.fullmatch(cell.strip())
+    if match is None:
+        raise ValueError(cell)
+    day, clock, fraction, zone = match.groups()
+    moment = datetime.datetime.fromisoformat(f"{day}T{clock}").replace(tzinfo=datetime.timezone.utc)
+    return moment.timestamp() + float(f"0.{fraction or 0}") - _zone_offset_s(zone)
+
+
+def _zone_offset_s(zone: str | None) -> float:
+    if zone is None or zone in "Zz":
+        return 0.0
+    sign = -1.0 if zone[0] == "-" else 1.0
+    digits = zone[1:].replace(":", "").ljust(4, "0")
+    return sign * (3600.0 * int(digits[:2]) + 60.0 * int(digits[2:]))

@@ -1,0 +1,241 @@
+"""Tracks as CSV: one row a confirmed track and scan."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+from .errors import RecordingError
+from .files import replacing
+from .table import Table
+
+_FIRST = ("time_s", "north_m", "east_m", "vnorth_mps", "veast_mps")
+_STATE = ("north_m", "vnorth_mps", "east_m", "veast_mps")
+COVARIANCE_COLUMNS = (
+    "var_north_m2",
+    "cov_north_vnorth_m2ps",
+    "cov_north_east_m2",
+    "cov_north_veast_m2ps",
+    "var_vnorth_m2ps2",
+    "cov_vnorth_east_m2ps",
+    "cov_vnorth_veast_m2ps2",
+    "var_east_m2",
+    "cov_east_veast_m2ps",
+    "var_veast_m2ps2",
+)
+_UPPER = np.triu_indices(4)
+_MAX_MODES = 64
+_NAMES = (
+    "track_id",
+    *_FIRST,
+    *COVARIANCE_COLUMNS,
+    "status",
+    "nis",
+    "scenario",
+    *(f"mode_{k}" for k in range(1, _MAX_MODES + 1)),
+)
+
+
+@dataclass(frozen=True)
+class Tracks:
+    """Rows of tracks, one a track and scan.
+
+    Attributes
+    ----------
+    track_id : ndarray of str (n,)
+    time_s : ndarray (n,)
+        Time of the scan.
+    state : ndarray (n, 4)
+        ``[north, vnorth, east, veast]``, metres and metres per second.
+    covariance : ndarray (n, 4, 4) or None
+        Of the state.
+    mode_probability : ndarray (n, K) or None
+        Of a multiple-model estimator.
+    status : ndarray of str (n,) or None
+        Word for what the track did at the scan, such as ``updated`` or ``coasting``.
+    nis : ndarray (n,) or None
+        Normalised innovation squared of the plot used, NaN where none was.
+    scenario : ndarray of str (n,) or None
+        Episode of the recording that a row belongs to.
+
+    Raises
+    ------
+    ValueError
+        When an array does not have the shape above.
+    """
+
+    track_id: np.ndarray
+    time_s: np.ndarray
+    state: np.ndarray
+    covariance: np.ndarray | None = None
+    mode_probability: np.ndarray | None = None
+    status: np.ndarray | None = None
+    nis: np.ndarray | None = None
+    scenario: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        n = len(self.time_s)
+        wanted = {"track_id": (n,), "time_s": (n,), "state": (n, 4)}
+        optional = {"covariance": (n, 4, 4), "status": (n,), "nis": (n,), "scenario": (n,)}
+        wanted |= {k: shape for k, shape in optional.items() if getattr(self, k) is not None}
+        for name, shape in wanted.items():
+            kind = str if name in ("track_id", "status", "scenario") else float
+            array = np.asarray(getattr(self, name), dtype=kind)
+            _check_shape(name, array.shape, shape)
+            object.__setattr__(self, name, array)
+        if self.mode_probability is not None:
+            modes = np.asarray(self.mode_probability, dtype=float)
+            object.__setattr__(self, "mode_probability", modes)
+            _check_shape("mode_probability", modes.shape, (n, modes.shape[-1] if modes.ndim else 0))
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    def where(self, chosen: np.ndarray) -> Tracks:
+        """The chosen rows, by mask or by index."""
+        columns = {name: getattr(self, name) for name in self._names()}
+        return Tracks(**{k: None if v is None else v[chosen] for k, v in columns.items()})
+
+    @classmethod
+    def joined(cls, parts: Sequence[Tracks]) -> Tracks:
+        """The rows of all parts in their order, with the columns that every part has."""
+        if not parts:
+            return cls(np.zeros(0, dtype=str), np.zeros(0), np.zeros((0, 4)))
+        columns = {name: [getattr(part, name) for part in parts] for name in cls._names()}
+        shared = {k: v for k, v in columns.items() if all(values is not None for values in v)}
+        return cls(**{name: np.concatenate(values) for name, values in shared.items()})
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [column.name for column in fields(cls)]
+
+    def ids(self) -> list[str]:
+        """The track ids in the order in which they first come."""
+        return list(dict.fromkeys(self.track_id.tolist()))
+
+    @property
+    def north_m(self) -> np.ndarray:
+        """Positions north, (n,)."""
+        return self.state[:, 0]
+
+    @property
+    def east_m(self) -> np.ndarray:
+        """Positions east, (n,)."""
+        return self.state[:, 2]
+
+    @property
+    def course_deg(self) -> np.ndarray:
+        """Courses over ground, (n,), clockwise from north in [0, 360)."""
+        course = np.degrees(np.arctan2(self.state[:, 3], self.state[:, 1])) % 360.0
+        return np.where(course == 360.0, 0.0, course)
+
+    @property
+    def speed_mps(self) -> np.ndarray:
+        """Speeds over ground, (n,)."""
+        return np.hypot(self.state[:, 1], self.state[:, 3])
+
+
+def read_tracks(path: str | Path) -> Tracks:
+    """Read a tracks file.
+
+    Columns: ``track_id, time_s, north_m, east_m, vnorth_mps, veast_mps``; where the file has all of
+    them the covariance terms, ``mode_1`` onwards, ``status``, ``nis``, ``scenario``. Other columns
+    are left alone. Numbers may be NaN, times may not. A file with a header only has no rows.
+
+    Raises
+    ------
+    RecordingError
+        When a column is missing or a cell cannot be read.
+    """
+    table = Table(path, {name: (name,) for name in _NAMES})
+    table.require("track_id", *_FIRST)
+    number = table.numbers
+    return Tracks(
+        track_id=np.array(table.text("track_id"), dtype=str),
+        time_s=table.times("time_s"),
+        state=np.column_stack([number(name) for name in _STATE]),
+        covariance=_covariance(table),
+        mode_probability=_modes(table),
+        status=np.array(table.text("status"), dtype=str) if "status" in table else None,
+        nis=number("nis") if "nis" in table else None,
+        scenario=np.array(table.text("scenario"), dtype=str) if "scenario" in table else None,
+    )
+
+
+def write_tracks(path: str | Path, tracks: Tracks) -> None:
+    """Write a tracks file; what stood at `path` is replaced only when the new file is complete.
+
+    The columns are ``track_id, time_s, north_m, east_m, vnorth_mps, veast_mps, course_deg,
+    speed_mps``, then, as far as `tracks` has them, the ten upper covariance terms of
+    ``[north, vnorth, east, veast]`` row by row, ``mode_1`` onwards, ``status``, ``nis``,
+    ``scenario``. Numbers are written so that reading gives the same bits.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file to write. Its folder must exist.
+    tracks : Tracks
+        The rows, written in their order.
+    """
+    columns = _columns(tracks)
+    with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(zip(*columns.values(), strict=True))
+
+
+def _columns(tracks: Tracks) -> dict[str, list]:
+    """Columns by name, in the order in which they are written."""
+    north, vnorth, east, veast = tracks.state.T
+    columns = {
+        "track_id": tracks.track_id,
+        "time_s": tracks.time_s,
+        "north_m": north,
+        "east_m": east,
+        "vnorth_mps": vnorth,
+        "veast_mps": veast,
+        "course_deg": tracks.course_deg,
+        "speed_mps": tracks.speed_mps,
+    }
+    if tracks.covariance is not None:
+        terms = tracks.covariance[:, _UPPER[0], _UPPER[1]].T
+        columns |= dict(zip(COVARIANCE_COLUMNS, terms, strict=True))
+    if tracks.mode_probability is not None:
+        columns |= {f"mode_{k}": p for k, p in enumerate(tracks.mode_probability.T, start=1)}
+    for name in ("status", "nis", "scenario"):
+        if getattr(tracks, name) is not None:
+            columns[name] = getattr(tracks, name)
+    return {name: values.tolist() for name, values in columns.items()}
+
+
+def _covariance(table: Table) -> np.ndarray | None:
+    if not all(name in table for name in COVARIANCE_COLUMNS):
+        return None
+    covariance = np.empty((len(table), 4, 4))
+    for i, j, name in zip(*_UPPER, COVARIANCE_COLUMNS, strict=True):
+        covariance[:, i, j] = covariance[:, j, i] = table.numbers(name)
+    return covariance
+
+
+def _modes(table: Table) -> np.ndarray | None:
+    names = [name for name in (f"mode_{k}" for k in range(1, _MAX_MODES + 1)) if name in table]
+    if not names:
+        return None
+    if names != [f"mode_{k}" for k in range(1, len(names) + 1)]:
+        raise RecordingError(
+            table.path,
+            "a mode column is missing",
+            line=1,
+            wanted=f"mode_1 to {names[-1]}",
+            got=", ".join(names),
+        )
+    return np.column_stack([table.numbers(name) for name in names])
+
+
+def _check_shape(name: str, got: tuple[int, ...], wanted: tuple[int, ...]) -> None:
+    if got != wanted:
+        raise ValueError(f"{name} must have shape {wanted}, got {got}")

@@ -1,0 +1,104 @@
+"""Where a target really was: recorded positions, and its state at any time between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+_SAME_SAMPLE_S = 0.02
+_SAME_TIME_S = 1e-6
+_FIT_POINTS = 4
+_FIT_SIDE_S = 0.5
+
+
+@dataclass(frozen=True)
+class TargetTruth:
+    """Recorded truth of one target, sorted by time, each time once.
+
+    Attributes
+    ----------
+    time_s, north_m, east_m : ndarray (n,)
+        Positions.
+    vnorth_mps, veast_mps : ndarray (n,)
+        Velocities, NaN where none was recorded.
+    """
+
+    time_s: np.ndarray
+    north_m: np.ndarray
+    east_m: np.ndarray
+    vnorth_mps: np.ndarray
+    veast_mps: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    def state_at(
+        self, time_s: np.ndarray, *, max_gap_s: float = 2.5, window_s: float = 2.0
+    ) -> np.ndarray:
+        """State ``[north, vnorth, east, veast]`` at the given times.
+
+        A sample with a velocity, less than 0.02 s away, is taken as it is. Otherwise the position
+        is interpolated linearly and the velocity is the slope, at that time, of a polynomial fitted
+        by least squares to the samples within `window_s` on either side (the nearest four when
+        there are fewer): a parabola where samples lie more than 0.5 s away on both sides, else a
+        line.
+
+        Parameters
+        ----------
+        time_s : array_like (T,)
+            Times asked for.
+        max_gap_s : float
+            Longest step between samples that is interpolated across.
+        window_s : float
+            Half width of the velocity fit.
+
+        Returns
+        -------
+        ndarray (T, 4)
+            NaN rows outside the record and inside longer gaps. Metres and metres per second.
+        """
+        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        state = np.full((len(time_s), 4), np.nan)
+        if len(self) == 0:
+            return state
+        recorded = np.column_stack([self.north_m, self.vnorth_mps, self.east_m, self.veast_mps])
+        for row, t in zip(state, time_s, strict=True):
+            near = int(np.argmin(np.abs(self.time_s - t)))
+            here = abs(self.time_s[near] - t) < _SAME_SAMPLE_S
+            if here and np.isfinite(recorded[near, 1::2]).all():
+                row[:] = recorded[near]
+                continue
+            position = self._position_at(t, near, max_gap_s)
+            if position is not None:
+                row[0::2] = position
+                row[1::2] = self._fitted_velocity(t, window_s)
+        return state
+
+    def _position_at(self, t: float, near: int, max_gap_s: float) -> np.ndarray | None:
+        """North and east at `t`, None where there is no truth; `near` is the nearest sample."""
+        position_m = np.array([self.north_m, self.east_m])
+        if abs(self.time_s[near] - t) < _SAME_TIME_S:
+            return position_m[:, near]
+        after = int(np.searchsorted(self.time_s, t))
+        if not 0 < after < len(self):
+            return None
+        step_s = self.time_s[after] - self.time_s[after - 1]
+        if step_s > max_gap_s:
+            return None
+        weight = (t - self.time_s[after - 1]) / step_s
+        return (1 - weight) * position_m[:, after - 1] + weight * position_m[:, after]
+
+    def _fitted_velocity(self, t: float, window_s: float) -> np.ndarray:
+        """Slope (2,) at `t` of the least-squares polynomial through the samples around it."""
+        away_s = np.abs(self.time_s - t)
+        chosen = away_s <= window_s
+        if np.count_nonzero(chosen) < _FIT_POINTS:
+            chosen = np.zeros(len(self), dtype=bool)
+            chosen[np.argsort(away_s)[:_FIT_POINTS]] = True
+        offset_s = self.time_s[chosen] - t
+        both_sides = offset_s.min() < -_FIT_SIDE_S and offset_s.max() > _FIT_SIDE_S
+        degree = 2 if both_sides and len(offset_s) >= _FIT_POINTS else 1
+        basis = np.vander(offset_s, degree + 1, increasing=True)
+        position_m = np.column_stack([self.north_m[chosen], self.east_m[chosen]])
+        return np.linalg.lstsq(basis, position_m, rcond=None)[0][1]

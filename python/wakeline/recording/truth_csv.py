@@ -1,0 +1,96 @@
+"""Truth from CSV: recorded positions of targets, with or without velocities."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from .errors import RecordingError
+from .model import Recording
+from .table import Table
+from .truth import TargetTruth
+
+COLUMNS = {
+    "time_s": ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime"),
+    "scenario": ("scenario",),
+    "target": ("target", "target_id", "mmsi"),
+    "north_m": ("north_m",),
+    "east_m": ("east_m",),
+    "vnorth_mps": ("vnorth_mps",),
+    "veast_mps": ("veast_mps",),
+}
+_STATE = ("north_m", "east_m", "vnorth_mps", "veast_mps")
+
+
+def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetTruth]]:
+    """Read the truth of each episode of a recording.
+
+    Columns: a time, ``target``, ``north_m``, ``east_m``; where known ``vnorth_mps``, ``veast_mps``;
+    ``scenario``. Rows need not be sorted; of equal times of a target the last row counts. Rows
+    without a finite position, and rows of scenarios the recording does not have, are left out with
+    a note on the recording.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    recording : Recording
+        Its episodes take the rows; its notes take the remarks.
+
+    Returns
+    -------
+    list of dict of str to TargetTruth
+        One an episode: the targets by name.
+
+    Raises
+    ------
+    RecordingError
+        When a column is missing, a cell cannot be read, or no row follows the header.
+    """
+    table = Table(path, COLUMNS)
+    table.require("time_s", "target", "north_m", "east_m")
+    if len(table) == 0:
+        raise RecordingError(table.path, "no row follows the header", line=1, wanted="truth rows")
+    time_s = table.times("time_s")
+    state = np.column_stack(
+        [table.numbers(c) if c in table else np.full(len(table), np.nan) for c in _STATE]
+    )
+    target = np.array(table.text("target"))
+    scenario = np.array(table.text("scenario") if "scenario" in table else [""] * len(table))
+    kept = _kept(table, state, scenario, recording)
+    episode = recording.episode_of(scenario[kept], time_s[kept])
+    return [
+        _targets(target[kept][mine], time_s[kept][mine], state[kept][mine])
+        for mine in (episode == k for k in range(len(recording)))
+    ]
+
+
+def _kept(
+    table: Table, state: np.ndarray, scenario: np.ndarray, recording: Recording
+) -> np.ndarray:
+    """Mask (n,) of the rows that can be used; the others leave a note."""
+    finite = np.isfinite(state[:, :2]).all(axis=1)
+    known = np.isin(scenario, ["", *(episode.name for episode in recording)])
+    known |= len(recording) == 1
+    reasons = ((finite, "without a finite position"), (known, "of scenarios without scans"))
+    for good, what in reasons:
+        if not good.all():
+            first = table.line(int(np.argmin(good)))
+            recording.notes.append(
+                f"{table.path.name}: {np.count_nonzero(~good)} rows {what} left out "
+                f"(first in line {first})"
+            )
+    return finite & known
+
+
+def _targets(target: np.ndarray, time_s: np.ndarray, state: np.ndarray) -> dict[str, TargetTruth]:
+    """Truth by target; names in order of length, then letters, so that 2 comes before 10."""
+    names = sorted(np.unique(target).tolist(), key=lambda name: (len(name), name))
+    return {name: _one_target(time_s[target == name], state[target == name]) for name in names}
+
+
+def _one_target(time_s: np.ndarray, state: np.ndarray) -> TargetTruth:
+    order = np.argsort(time_s, kind="stable")
+    last = order[np.append(np.diff(time_s[order]) > 0, True)]
+    return TargetTruth(time_s[last], *state[last].T)

@@ -1,0 +1,236 @@
+"""A simulated radar: noise, misses, clutter, and an antenna that takes its time to turn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from wakeline.recording import Episode, OwnShip, Recording, Scan, TargetTruth
+
+from .truth import Truth
+
+_TURN_RAD = 2.0 * np.pi
+_SWEEP_STEPS = 20
+
+
+@dataclass(frozen=True)
+class RadarSimulator:
+    """A radar that reports range and bearing, clockwise from north.
+
+    Attributes
+    ----------
+    range_std_m, bearing_std_rad : float
+        Standard deviations of the errors, Gaussian and independent.
+    period_s : float
+        Time from scan to scan.
+    detection_probability : float
+        Chance that a scan holds a plot of a target in range.
+    clutter_per_scan : float
+        Mean number of false plots in a scan, Poisson, evenly spread over the disc in range.
+    max_range_m : float
+        Farthest range seen; must be finite for clutter.
+    rotating : bool
+        True: the antenna points north when a scan begins and turns clockwise once in `period_s`,
+        and a plot has the time at which the antenna points at it. False: all plots of a scan have
+        the time of the scan.
+
+    Raises
+    ------
+    ValueError
+        When a value makes no sense.
+    """
+
+    range_std_m: float
+    bearing_std_rad: float
+    period_s: float
+    detection_probability: float = 1.0
+    clutter_per_scan: float = 0.0
+    max_range_m: float = np.inf
+    rotating: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("range_std_m", "bearing_std_rad", "clutter_per_scan"):
+            if not 0 <= getattr(self, name) < np.inf:
+                raise ValueError(f"{name} must not be negative, got {getattr(self, name)}")
+        if not 0 < self.period_s < np.inf:
+            raise ValueError(f"period_s must be positive, got {self.period_s}")
+        if not 0 <= self.detection_probability <= 1:
+            raise ValueError(
+                f"detection_probability must be from 0 to 1, got {self.detection_probability}"
+            )
+        if not self.max_range_m > 0 or (self.clutter_per_scan and np.isinf(self.max_range_m)):
+            raise ValueError(
+                f"max_range_m must be positive, and finite for clutter, got {self.max_range_m}"
+            )
+
+    def observe(
+        self,
+        truth: Truth,
+        scans: int,
+        rng: np.random.Generator | int,
+        *,
+        own: Truth | None = None,
+        start_time_s: float = 0.0,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Plots of one target, as estimators take them.
+
+        Parameters
+        ----------
+        truth : Truth
+            The target.
+        scans : int
+            Number of scans, T.
+        rng : numpy.random.Generator or int
+            Source of chance, or its seed.
+        own : Truth, optional
+            Own ship; default at rest at north 0, east 0.
+        start_time_s : float
+            Time at which the first scan begins.
+
+        Returns
+        -------
+        time_s : ndarray (T,)
+            Time at which the antenna points at the target.
+        z : ndarray (T, 2)
+            Range in metres and bearing in [-pi, pi]; NaN rows where the target is missed.
+        """
+        rng = np.random.default_rng(rng)
+        own = _at_rest() if own is None else own
+        begin_s = start_time_s + self.period_s * np.arange(scans)
+        time_s = self._looking_time_s(truth, own, begin_s)
+        relative_m = (truth.state_at(time_s) - own.state_at(time_s))[:, 0::2]
+        range_m = np.hypot(*relative_m.T)
+        noise = rng.standard_normal((scans, 2)) * [self.range_std_m, self.bearing_std_rad]
+        z = np.column_stack([range_m, np.arctan2(relative_m[:, 1], relative_m[:, 0])]) + noise
+        z = _proper(z)
+        missed = rng.random(scans) >= self.detection_probability
+        z[missed | (range_m > self.max_range_m)] = np.nan
+        return time_s, z
+
+    def record(
+        self,
+        truths: Mapping[str, Truth],
+        scans: int,
+        rng: np.random.Generator | int,
+        *,
+        own: Truth | None = None,
+        start_time_s: float = 0.0,
+        name: str = "simulated",
+    ) -> Recording:
+        """A recording of several targets among clutter, with truth.
+
+        Parameters
+        ----------
+        truths : mapping of str to Truth
+            The targets by name.
+        scans, rng, own, start_time_s
+            As for :meth:`observe`.
+        name : str
+            Name of the recording.
+
+        Returns
+        -------
+        Recording
+            One episode. The time of a scan is that of its begin, or of its end for a rotating
+            antenna; truth stands at those times, with velocities.
+        """
+        rng = np.random.default_rng(rng)
+        own = _at_rest() if own is None else own
+        begin_s = start_time_s + self.period_s * np.arange(scans)
+        scan_time_s = begin_s + (self.period_s if self.rotating else 0.0)
+        looks = [
+            self.observe(truth, scans, rng, own=own, start_time_s=start_time_s)
+            for truth in truths.values()
+        ]
+        found = [self._scan(k, begin_s[k], scan_time_s[k], looks, own, rng) for k in range(scans)]
+        own_state = own.state_at(scan_time_s)
+        ship = OwnShip(
+            time_s=scan_time_s,
+            north_m=own_state[:, 0],
+            east_m=own_state[:, 2],
+            vnorth_mps=own_state[:, 1],
+            veast_mps=own_state[:, 3],
+        )
+        known = {key: _sampled(truth, scan_time_s) for key, truth in truths.items()}
+        return Recording(name, [Episode("", found, ship, known)])
+
+    def _looking_time_s(self, truth: Truth, own: Truth, begin_s: np.ndarray) -> np.ndarray:
+        """Time (T,) in each scan at which the antenna points at the target.
+
+        Solves ``time = begin + period * bearing(time) / turn`` by fixed point; it contracts as long
+        as the target's bearing changes slower than the antenna turns.
+        """
+        if not self.rotating:
+            return begin_s
+        bearing_rad = _bearing_rad(truth, own, begin_s) % _TURN_RAD
+        for _ in range(_SWEEP_STEPS):
+            time_s = begin_s + self.period_s * bearing_rad / _TURN_RAD
+            bearing_rad = bearing_rad + _wrapped(_bearing_rad(truth, own, time_s) - bearing_rad)
+        return begin_s + self.period_s * bearing_rad / _TURN_RAD
+
+    def _scan(
+        self,
+        k: int,
+        begin_s: float,
+        scan_time_s: float,
+        looks: list[tuple[np.ndarray, np.ndarray]],
+        own: Truth,
+        rng: np.random.Generator,
+    ) -> Scan:
+        """Scan k: what was seen of the targets, and clutter, in order of time."""
+        clutter = self._clutter(rng)
+        clutter_s = begin_s + np.zeros(len(clutter))
+        if self.rotating:
+            clutter_s += self.period_s * (clutter[:, 1] % _TURN_RAD) / _TURN_RAD
+        time_s = np.concatenate([[look[0][k] for look in looks], clutter_s])
+        z = np.concatenate([*(look[1][k : k + 1] for look in looks), clutter])
+        order = np.argsort(time_s, kind="stable")
+        order = order[np.isfinite(z[order, 0])]
+        time_s, range_m, bearing_rad = time_s[order], z[order, 0], z[order, 1]
+        own_north_m, own_east_m = own.state_at(time_s)[:, 0::2].T
+        return Scan(
+            time_s=float(scan_time_s),
+            number=k,
+            plot_time_s=time_s,
+            north_m=own_north_m + range_m * np.cos(bearing_rad),
+            east_m=own_east_m + range_m * np.sin(bearing_rad),
+            range_m=range_m,
+            bearing_rad=bearing_rad,
+            own_north_m=own_north_m,
+            own_east_m=own_east_m,
+        )
+
+    def _clutter(self, rng: np.random.Generator) -> np.ndarray:
+        """False plots (n, 2), range and bearing, evenly over the disc."""
+        if self.clutter_per_scan == 0:
+            return np.zeros((0, 2))
+        count = rng.poisson(self.clutter_per_scan)
+        range_m = self.max_range_m * np.sqrt(rng.random(count))
+        return np.column_stack([range_m, rng.uniform(-np.pi, np.pi, count)])
+
+
+def _at_rest() -> Truth:
+    return Truth([0.0, 0.0, 0.0, 0.0])
+
+
+def _bearing_rad(truth: Truth, own: Truth, time_s: np.ndarray) -> np.ndarray:
+    relative = truth.state_at(time_s) - own.state_at(time_s)
+    return np.arctan2(relative[:, 2], relative[:, 0])
+
+
+def _wrapped(angle_rad: np.ndarray) -> np.ndarray:
+    """Angles in [-pi, pi)."""
+    return (angle_rad + np.pi) % _TURN_RAD - np.pi
+
+
+def _proper(z: np.ndarray) -> np.ndarray:
+    """Range-bearing pairs (n, 2) with range not negative: the same place seen the other way."""
+    behind = z[:, 0] < 0
+    return np.column_stack([np.abs(z[:, 0]), _wrapped(z[:, 1] + np.pi * behind)])
+
+
+def _sampled(truth: Truth, time_s: np.ndarray) -> TargetTruth:
+    north_m, vnorth_mps, east_m, veast_mps = truth.state_at(time_s).T
+    return TargetTruth(time_s, north_m, east_m, vnorth_mps, veast_mps)

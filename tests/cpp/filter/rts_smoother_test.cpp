@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/filter/rts_smoother.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "support/draw.hpp"
+#include "support/matrix_assert.hpp"
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/measurement/position.hpp"
+#include "wakeline/measurement/range_bearing.hpp"
+#include "wakeline/motion/coordinated_turn.hpp"
+
+namespace wakeline {
+namespace {
+
+using test::Draw;
+using test::matrices_near;
+
+constexpr int kScans = 6;
+constexpr std::array<double, kScans - 1> kSteps{2.5, 2.5, 0.7, 6.0, 2.5};
+const CoordinatedTurn kMotion{.turn_rate_rad_s = 0.06, .noise = WhiteAcceleration{0.4}};
+const Position kSensor{.position_std_m = 12};
+
+struct Voyage {
+  std::vector<Gaussian<4>> beliefs;
+  std::vector<Vec<double, 2>> plots;
+  Gaussian<4> start;
+};
+
+/// Filtered beliefs of a short run; scan 2 is missed.
+Voyage filtered() {
+  Draw draw(31);
+  Voyage run;
+  run.start.mean << 100, 5, -50, 8;
+  run.start.covariance = Vec<double, 4>(900, 16, 900, 16).asDiagonal();
+  Kalman<CoordinatedTurn> kalman{kMotion};
+  EXPECT_EQ(kalman.start(run.start), Status::kOk);
+  Vec<double, 4> truth = draw.of(run.start);
+  for (int scan = 0; scan < kScans; ++scan) {
+    if (scan > 0) {
+      const double dt = kSteps[std::size_t(scan - 1)];
+      EXPECT_EQ(kalman.predict(dt), Status::kOk);
+      truth = (kMotion.matrix(dt) * truth + draw.error(kMotion.process_noise(dt))).eval();
+    }
+    const Vec<double, 2> z(truth[0] + 12 * draw.normal(), truth[2] + 12 * draw.normal());
+    run.plots.push_back(z);
+    if (scan == 2) {
+      run.beliefs.push_back(kalman.estimate());
+      continue;
+    }
+    EXPECT_TRUE(kalman.update(kSensor, z));
+    run.beliefs.push_back(kalman.estimate());
+  }
+  return run;
+}
+
+Status smooth_run(std::vector<Gaussian<4>>& beliefs) {
+  return smooth<CoordinatedTurn, double>(kMotion, beliefs, kSteps);
+}
+
+// The smoothed beliefs are the marginals of one Gaussian over the whole trajectory, whose information matrix and vector
+// add up from the start, the motions and the plots.
+TEST(RtsSmoother, IsTheBatchSolution) {
+  Voyage run = filtered();
+  constexpr int kSize = 4 * kScans;
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kSize, kSize);
+  Eigen::VectorXd vector = Eigen::VectorXd::Zero(kSize);
+  information.topLeftCorner<4, 4>() += run.start.covariance.inverse();
+  vector.head<4>() += run.start.covariance.inverse() * run.start.mean;
+  for (int k = 0; k + 1 < kScans; ++k) {
+    Eigen::MatrixXd change(4, kSize);  // x(k+1) - F x(k)
+    change.setZero();
+    change.block<4, 4>(0, 4 * k) = -kMotion.matrix(kSteps[std::size_t(k)]);
+    change.block<4, 4>(0, 4 * k + 4).setIdentity();
+    const Mat<double, 4, 4> q = kMotion.process_noise(kSteps[std::size_t(k)]);
+    information += change.transpose() * q.inverse() * change;
+  }
+  for (int k = 0; k < kScans; ++k) {
+    if (k == 2) continue;
+    for (int axis = 0; axis < 2; ++axis) {
+      information(4 * k + 2 * axis, 4 * k + 2 * axis) += 1.0 / 144;
+      vector(4 * k + 2 * axis) += run.plots[std::size_t(k)][axis] / 144;
+    }
+  }
+  const Eigen::LLT<Eigen::MatrixXd> solver(information);
+  ASSERT_EQ(solver.info(), Eigen::Success);
+  const Eigen::VectorXd means = solver.solve(vector);
+  const Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(kSize, kSize));
+
+  ASSERT_EQ(smooth_run(run.beliefs), Status::kOk);
+  for (int k = 0; k < kScans; ++k) {
+    const Gaussian<4>& belief = run.beliefs[std::size_t(k)];
+    EXPECT_TRUE(matrices_near(belief.mean, means.segment<4>(4 * k), {.absolute = 1e-7, .relative = 1e-9})) << k;
+    const Mat<double, 4, 4> expected = covariance.block<4, 4>(4 * k, 4 * k);
+    EXPECT_LT(test::covariance_difference(belief.covariance, expected), 1e-8) << k;
+  }
+}
+
+TEST(RtsSmoother, NeverWidensABelief) {
+  Voyage run = filtered();
+  const std::vector<Gaussian<4>> before = run.beliefs;
+  ASSERT_EQ(smooth_run(run.beliefs), Status::kOk);
+  EXPECT_TRUE(test::matrices_identical(run.beliefs.back().covariance, before.back().covariance));
+  EXPECT_TRUE(test::matrices_identical(run.beliefs.back().mean, before.back().mean));
+  for (std::size_t k = 0; k + 1 < before.size(); ++k) {
+    EXPECT_TRUE(test::is_covariance(run.beliefs[k].covariance));
+    const Mat<double, 4, 4> gained = before[k].covariance - run.beliefs[k].covariance;
+    const Mat<double, 4, 4> slightly = gained + 1e-9 * before[k].covariance;
+    EXPECT_TRUE(Cholesky<4>(slightly).ok()) << "scan " << k << ": smaller in every direction";
+    EXPECT_LT(run.beliefs[k].covariance(0, 0), 0.99 * before[k].covariance(0, 0)) << "and really smaller";
+  }
+}
+
+TEST(RtsSmoother, SmoothsANonlinearMotion) {
+  const CoordinatedTurnRate motion{.noise = WhiteAcceleration{0.05}, .turn_rate_psd_rad2s3 = 1e-4};
+  const RangeBearing radar{.range_std_m = 15, .bearing_std_rad = deg(0.5)};
+  constexpr int kRuns = 200;
+  double filtered_error = 0.0, smoothed_error = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    Draw draw(std::uint64_t(400 + run));
+    Gaussian<5> start;
+    start.mean << 2000, 8, 1500, -4, 0.03;
+    start.covariance = Vec<double, 5>(400, 4, 400, 4, 4e-4).asDiagonal();
+    Vec<double, 5> truth = draw.of(start);
+    Ekf ekf{motion};
+    ASSERT_EQ(ekf.start(start), Status::kOk);
+    std::vector<Gaussian<5>> beliefs;
+    std::vector<Vec<double, 5>> truths;
+    for (int scan = 0; scan < 30; ++scan) {
+      truth = (motion.transition(truth, 2.5) + draw.error(motion.process_noise(truth, 2.5))).eval();
+      ASSERT_EQ(ekf.predict(2.5), Status::kOk);
+      const Vec<double, 2> exact = radar.measure(Vec<double, 2>(truth[0], truth[2]));
+      ASSERT_TRUE(ekf.update(radar, Vec<double, 2>(exact + draw.error(radar.observe(exact).covariance))));
+      beliefs.push_back(ekf.estimate());
+      truths.push_back(truth);
+    }
+    const std::vector<double> steps(beliefs.size() - 1, 2.5);
+    const Gaussian<5> middle = beliefs[15];
+    ASSERT_EQ((smooth<CoordinatedTurnRate, double>(motion, beliefs, steps)), Status::kOk);
+    filtered_error += (middle.mean - truths[15])[4] * (middle.mean - truths[15])[4];
+    smoothed_error += (beliefs[15].mean - truths[15])[4] * (beliefs[15].mean - truths[15])[4];
+  }
+  EXPECT_LT(smoothed_error, 0.6 * filtered_error) << "the turn rate, from both sides";
+}
+
+TEST(RtsSmoother, LeavesTheRestFilteredWhereItFails) {
+  Voyage run = filtered();
+  run.beliefs[2].covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Gaussian<4>> before = run.beliefs;
+  EXPECT_NE(smooth_run(run.beliefs), Status::kOk);
+  for (const std::size_t k : {0u, 1u, 2u}) {
+    EXPECT_TRUE(test::matrices_identical(run.beliefs[k].mean, before[k].mean)) << k;
+    EXPECT_TRUE(test::matrices_identical(run.beliefs[k].covariance, before[k].covariance)) << k;
+  }
+  run.beliefs = before;
+  run.beliefs[5].mean[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(smooth_run(run.beliefs), Status::kNotFinite);
+  for (const std::size_t k : {0u, 1u, 3u, 4u}) {
+    EXPECT_TRUE(test::matrices_identical(run.beliefs[k].mean, before[k].mean)) << k;
+    EXPECT_TRUE(test::matrices_identical(run.beliefs[k].covariance, before[k].covariance)) << k;
+  }
+}
+
+TEST(RtsSmoother, OfNothingAndOfOneScan) {
+  std::vector<Gaussian<4>> none;
+  EXPECT_EQ((smooth<CoordinatedTurn, double>(kMotion, none, std::span<const double>{})), Status::kOk);
+  std::vector<Gaussian<4>> one(1);
+  EXPECT_EQ((smooth<CoordinatedTurn, double>(kMotion, one, std::span<const double>{})), Status::kOk);
+  EXPECT_TRUE(test::matrices_identical(one[0].covariance, Gaussian<4>{}.covariance));
+}
+
+}  // namespace
+}  // namespace wakeline

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "support/draw.hpp"
+#include "support/matrix_assert.hpp"
+#include "support/numeric_jacobian.hpp"
+#include "wakeline/motion/constant_velocity.hpp"
+#include "wakeline/motion/coordinated_turn.hpp"
+
+namespace wakeline {
+namespace {
+
+using test::covariance_difference;
+using test::matrices_near;
+using test::numeric_jacobian;
+
+template <class Scalar>
+class TurnOf : public ::testing::Test {
+ protected:
+  static constexpr double kEpsilon = std::numeric_limits<Scalar>::epsilon();
+};
+using Scalars = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(TurnOf, Scalars, );
+
+TYPED_TEST(TurnOf, AtZeroRateIsConstantVelocity) {
+  using Scalar = TypeParam;
+  for (const ProcessNoise noise : {ProcessNoise(WhiteAcceleration{0.3}), ProcessNoise(PiecewiseAcceleration{0.3})}) {
+    const CoordinatedTurn turn{.turn_rate_rad_s = 0.0, .noise = noise};
+    const ConstantVelocity straight{.noise = noise};
+    for (const double step : {0.0, 0.1, 2.5, 60.0, 3600.0}) {
+      const Scalar dt = Scalar(step);
+      EXPECT_TRUE(matrices_near(turn.matrix(dt), straight.matrix(dt), {0, 0}));
+      EXPECT_LE(covariance_difference(turn.process_noise(dt), straight.process_noise(dt)),
+                4 * this->kEpsilon);
+    }
+  }
+}
+
+TYPED_TEST(TurnOf, PassesThroughZeroRateWithoutAStep) {
+  using Scalar = TypeParam;
+  // Neighbouring rates, across every threshold at which the formulas change.
+  for (const double threshold : {1e-12, 0.02, 0.3})
+    for (const double sign : {-1.0, 1.0}) {
+      const double rate = sign * threshold / 2.0;  // the angle of a step of 2 s
+      const Turn<Scalar> below(Scalar(rate * (1 - 1e-6)), Scalar(2));
+      const Turn<Scalar> above(Scalar(rate * (1 + 1e-6)), Scalar(2));
+      EXPECT_TRUE(matrices_near(below.matrix(), above.matrix(),
+                                {.absolute = 8e-6 * threshold + 40 * this->kEpsilon, .relative = 0}));
+      EXPECT_TRUE(matrices_near(below.rate_derivatives(), above.rate_derivatives(),
+                                {.absolute = 8e-6 * threshold + 200 * this->kEpsilon, .relative = 0}));
+      EXPECT_LT(covariance_difference(below.noise(WhiteAcceleration{1.0}), above.noise(WhiteAcceleration{1.0})),
+                8e-6 * threshold + 200 * this->kEpsilon);
+    }
+  for (const double rate : {1e-300, 1e-30, 1e-15, 1e-9}) {
+    const Turn<Scalar> slow(Scalar(rate), Scalar(2)), straight(Scalar(0), Scalar(2));
+    EXPECT_TRUE(matrices_near(slow.matrix(), straight.matrix(),
+                              {.absolute = 4 * rate + 4 * this->kEpsilon, .relative = 0}));
+    EXPECT_TRUE(matrices_near(slow.rate_derivatives(), straight.rate_derivatives(),
+                              {.absolute = 8 * rate + 4 * this->kEpsilon, .relative = 0}));
+  }
+}
+
+TYPED_TEST(TurnOf, IsACircleToStarboard) {
+  using Scalar = TypeParam;
+  const double rate = deg(6.0);
+  const CoordinatedTurn turn{.turn_rate_rad_s = rate};
+  Vec<Scalar, 4> x(0, 10, 0, 0);  // northward at 10 m/s
+  const Scalar radius = Scalar(10.0 / rate);
+  for (int k = 1; k <= 24; ++k) {
+    x = (turn.matrix(Scalar(2.5)) * x).eval();
+    const Scalar course = Scalar(k * 2.5 * rate);
+    const Scalar rounding = Scalar(2e3 * this->kEpsilon);
+    EXPECT_NEAR(x[1], 10 * std::cos(course), rounding);
+    EXPECT_NEAR(x[3], 10 * std::sin(course), rounding);  // east first: starboard
+    EXPECT_NEAR(std::hypot(x[0], x[2] - radius), radius, 10 * rounding);
+  }
+  EXPECT_NEAR(x[0], 0, 2e4 * this->kEpsilon) << "a full circle";
+  EXPECT_NEAR(x[2], 0, 2e4 * this->kEpsilon);
+}
+
+TEST(CoordinatedTurn, PiecewiseNoiseIsThePapersWhateverTheTurn) {
+  const double dt = 3.0, std = 0.05;
+  Mat<double, 4, 2> gain = Mat<double, 4, 2>::Zero();
+  gain(0, 0) = gain(2, 1) = dt * dt / 2;
+  gain(1, 0) = gain(3, 1) = dt;
+  const Mat<double, 4, 4> expected = std * std * gain * gain.transpose();
+  for (const double rate : {0.0, 0.05, -0.2})
+    EXPECT_TRUE(matrices_near(
+        CoordinatedTurn{.turn_rate_rad_s = rate, .noise = PiecewiseAcceleration{std}}.process_noise(dt),
+        expected, {.absolute = 0, .relative = 1e-14}));
+}
+
+// The rates include zero, both sides of the thresholds of the series, and a half turn a step.
+constexpr double kRates[] = {0.0, 1e-300, 1e-13, 1e-7, -1e-7, 1e-4, 7.9e-3, 8.1e-3, -8.1e-3, 0.05, 0.119, 0.121, -0.3, 1.2};
+
+TEST(CoordinatedTurnRate, JacobianIsTheDerivative) {
+  const CoordinatedTurnRate motion;
+  for (const double rate : kRates)
+    for (const double dt : {0.1, 2.5, 10.0}) {
+      Vec<double, 5> x;
+      x << 500, 7, -300, -4, rate;
+      const auto move = [&](const Vec<double, 5>& state) { return motion.transition(state, dt); };
+      // Central differences over h = 6e-6 of values near 1000: rounding 1000 eps / h = 4e-8, times dt of truncation.
+      EXPECT_TRUE(matrices_near(motion.jacobian(x, dt), numeric_jacobian(move, x),
+                                {.absolute = 3e-7, .relative = 1e-7}))
+          << "rate " << rate << ", dt " << dt;
+    }
+}
+
+TEST(CoordinatedTurnRate, FloatJacobianIsThatOfDouble) {
+  const CoordinatedTurnRate motion;
+  for (const double rate : kRates)
+    for (const double dt : {0.0, 0.1, 2.5, 10.0}) {
+      Vec<double, 5> x;
+      x << 500, 7, -300, -4, rate;
+      EXPECT_TRUE(matrices_near(motion.jacobian(Vec<float, 5>(x.cast<float>()), float(dt)),
+                                motion.jacobian(x, dt).cast<float>().eval(),
+                                {.absolute = 1e-3, .relative = 1e-4}))
+          << "rate " << rate << ", dt " << dt;
+    }
+}
+
+TYPED_TEST(TurnOf, RateOfTheStateMovesAsTheKnownRate) {
+  using Scalar = TypeParam;
+  for (const double rate : kRates) {
+    Vec<Scalar, 5> x;
+    x << Scalar(500), Scalar(7), Scalar(-300), Scalar(-4), Scalar(rate);
+    const Vec<Scalar, 5> moved = CoordinatedTurnRate{}.transition(x, Scalar(2.5));
+    const Vec<Scalar, 4> known =
+        CoordinatedTurn{.turn_rate_rad_s = double(x[4])}.matrix(Scalar(2.5)) * x.template head<4>();
+    EXPECT_TRUE(matrices_near(moved.template head<4>(), known, {0, 0}));
+    EXPECT_EQ(moved[4], x[4]);
+  }
+}
+
+TYPED_TEST(TurnOf, NoiseOfTheRateActsAcrossTheCourse) {
+  using Scalar = TypeParam;
+  const CoordinatedTurnRate motion{.noise = WhiteAcceleration{0.0}, .turn_rate_psd_rad2s3 = 1e-3};
+  for (const double rate : kRates) {
+    Vec<Scalar, 5> x;
+    x << Scalar(0), Scalar(6), Scalar(0), Scalar(8), Scalar(rate);
+    const Mat<Scalar, 5, 5> q = motion.process_noise(x, Scalar(2));
+    EXPECT_NEAR(q(4, 4), 2e-3, 1e-9);
+    const Scalar along = q(1, 1) * 36 + 2 * q(1, 3) * 48 + q(3, 3) * 64;
+    EXPECT_NEAR(along, 0.0, 1e-4) << "a turn does not change the speed";
+    EXPECT_NEAR(q(1, 1) + q(3, 3), 100 * 1e-3 * 8.0 / 3.0, 1e-6) << "v² q dt³/3";
+    const auto root = semidefinite_root<5, Scalar>(q);
+    EXPECT_LT(covariance_difference(Mat<Scalar, 5, 5>(root * root.transpose()), q),
+              1e3 * this->kEpsilon);
+  }
+}
+
+TYPED_TEST(TurnOf, WithoutNoiseOfTheRateIsTheNoiseOfTheTurn) {
+  using Scalar = TypeParam;
+  const CoordinatedTurnRate motion{.noise = WhiteAcceleration{0.4}, .turn_rate_psd_rad2s3 = 0.0};
+  for (const double rate : kRates) {
+    Vec<Scalar, 5> x;
+    x << Scalar(0), Scalar(6), Scalar(0), Scalar(8), Scalar(rate);
+    const Mat<Scalar, 5, 5> q = motion.process_noise(x, Scalar(2));
+    const CoordinatedTurn known{.turn_rate_rad_s = double(x[4]), .noise = WhiteAcceleration{0.4}};
+    EXPECT_TRUE(matrices_near(q.template topLeftCorner<4, 4>(), known.process_noise(Scalar(2)), {0, 0}));
+    EXPECT_TRUE((q.row(4).array() == Scalar(0)).all());
+  }
+}
+
+}  // namespace
+}  // namespace wakeline

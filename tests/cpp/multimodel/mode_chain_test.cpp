@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/multimodel/mode_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "support/matrix_assert.hpp"
+
+namespace wakeline {
+namespace {
+
+using test::matrices_near;
+using Two = ModeChain<2>;
+using Three = ModeChain<3>;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+const Three::Matrix kStaying{{0.95, 0.03, 0.02}, {0.10, 0.80, 0.10}, {0.02, 0.08, 0.90}};
+
+template <class Function>
+std::string complaint(const Function& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+template <int K>
+void expect_stochastic(const ModeMatrix<double, K>& p) {
+  EXPECT_TRUE((p.array() >= 0.0).all() && (p.array() <= 1.0).all()) << p;
+  for (Eigen::Index i = 0; i < p.rows(); ++i) EXPECT_NEAR(p.row(i).sum(), 1.0, 1e-14);
+}
+
+// The docstring of filterpy gives the matrix transposed: a matrix whose columns sum to 1 must not pass for one.
+TEST(ModeChain, RowsThatDoNotSumToOneAreNamed) {
+  const std::string message = complaint([] { Two(Two::Matrix{{0.9, 0.1}, {0.3, 0.8}}); });
+  EXPECT_NE(message.find("row 1 of the mode chain must sum to 1, sums to 1.1"), std::string::npos) << message;
+  EXPECT_NE(message.find("rows: mode before"), std::string::npos) << message;
+  EXPECT_NE(complaint([] { Two(Two::Matrix{{0.9, 0.4}, {0.1, 0.6}}); }), "") << "transposed";
+}
+
+TEST(ModeChain, ElementsThatAreNoProbabilitiesAreRefused) {
+  for (const double bad : {-0.1, 1.1, kNan}) {
+    const std::string message = complaint([&] { Two(Two::Matrix{{bad, 1.0 - bad}, {0.1, 0.9}}); });
+    EXPECT_NE(message.find("mode chain must be a probability"), std::string::npos) << message;
+  }
+}
+
+// vortex-vkf compares the sum of a row with 1.0 exactly.
+TEST(ModeChain, RoundingOfTheRowsIsForgiven) {
+  const double third = 1.0 / 3.0;
+  EXPECT_NO_THROW(Three(Three::Matrix::Constant(third)));
+  EXPECT_NO_THROW(Three(Three::Matrix{{0.7, 0.1, 0.2}, {0.1, 0.1, 0.8}, {0.3, 0.6, 0.1}}));
+}
+
+TEST(ModeChain, PerPredictionIsTheMatrixWhateverTheStep) {
+  const Three chain(kStaying);
+  EXPECT_FALSE(chain.continuous());
+  for (const double dt : {0.0, 1.0, 3600.0}) EXPECT_TRUE(matrices_near(chain.transition(dt), kStaying, {0, 0}));
+}
+
+/// Laws of every chain in continuous time.
+template <int K>
+void expect_continuous(const ModeChain<K>& chain) {
+  ASSERT_TRUE(chain.continuous());
+  const auto identity = ModeMatrix<double, K>::Identity(chain.modes(), chain.modes());
+  EXPECT_TRUE(matrices_near(chain.transition(0.0), identity, {0, 0}));
+  for (const double a : {1e-6, 0.1, 2.5, 60.0, 3600.0})
+    for (const double b : {1e-3, 2.5, 30.0, 86400.0}) {
+      const ModeMatrix<double, K> both = chain.transition(a) * chain.transition(b);
+      EXPECT_TRUE(matrices_near(chain.transition(a + b), both, {.absolute = 1e-12, .relative = 0}))
+          << a << " + " << b;
+      expect_stochastic<K>(chain.transition(a + b));
+    }
+}
+
+TEST(ModeChain, StepsOfTimeAddUp) {
+  expect_continuous(Three::from_sojourn_s({60.0, 30.0, 10.0}));
+  expect_continuous(Two::from_sojourn_s({1e-3, 1e9}));
+  expect_continuous(Three(kStaying, 2.5));
+  expect_continuous(ModeChain<1>::from_sojourn_s({5.0}));
+  expect_continuous(ModeChain<kRuntimeModes>::from_sojourn_s({60.0, 30.0, 10.0, 20.0}));
+}
+
+TEST(ModeChain, StaysForTheSojournTime) {
+  const double times[] = {60.0, 30.0, 10.0};
+  const Three chain = Three::from_sojourn_s({times[0], times[1], times[2]});
+  const Three::Matrix p = chain.transition(1e-6);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR((1.0 - p(i, i)) / 1e-6 * times[i], 1.0, 1e-6) << "leaves at the rate 1 / time";
+    EXPECT_NEAR(p(i, (i + 1) % 3) / p(i, (i + 2) % 3), 1.0, 1e-6) << "to each other mode alike";
+  }
+  // In the long run each mode has its share of the time.
+  for (const double dt : {1e5, 1e9, 1e300}) {
+    const Three::Matrix late = chain.transition(dt);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR(late(i, j), times[j] / 100.0, 1e-9) << dt;
+  }
+}
+
+TEST(ModeChain, WithItsPeriodHasTheMatrixOverIt) {
+  for (const double period : {1e-3, 2.5, 3600.0}) {
+    const Three chain(kStaying, period);
+    EXPECT_TRUE(matrices_near(chain.transition(period), kStaying, {.absolute = 1e-12, .relative = 0}));
+    EXPECT_TRUE(matrices_near(chain.transition(2 * period), (kStaying * kStaying).eval(),
+                              {.absolute = 1e-12, .relative = 0}));
+    const Three::Matrix half = chain.transition(period / 2);
+    EXPECT_TRUE(matrices_near((half * half).eval(), kStaying, {.absolute = 1e-12, .relative = 0}));
+  }
+  using Five = ModeChain<5>;
+  Five::Matrix papers = Five::Matrix::Constant(0.025);
+  papers.diagonal().setConstant(0.9);
+  EXPECT_TRUE(matrices_near(Five(papers, 3.0).transition(3.0), papers, {.absolute = 1e-12, .relative = 0}));
+  EXPECT_TRUE(matrices_near(Two(Two::Matrix::Identity(), 3.0).transition(99.0), Two::Matrix::Identity()));
+}
+
+TEST(ModeChain, WhatIsNoChainInContinuousTimeIsRefused) {
+  const auto says_so = [](const auto& matrix) {
+    using Chain = ModeChain<std::decay_t<decltype(matrix)>::RowsAtCompileTime>;
+    const std::string message = complaint([&] { Chain(matrix, 2.5); });
+    EXPECT_NE(message.find("leave the period out"), std::string::npos) << matrix << "\n" << message;
+    EXPECT_NO_THROW((Chain(matrix))) << "once per prediction it is fine";
+  };
+  says_so(Two::Matrix{{0.1, 0.9}, {0.9, 0.1}});  // negative eigenvalue
+  says_so(Two::Matrix{{0.5, 0.5}, {0.5, 0.5}});  // singular
+  says_so(Two::Matrix{{0.0, 1.0}, {1.0, 0.0}});
+  says_so(Three::Matrix{{0.9, 0.1, 0.0}, {0.0, 0.9, 0.1}, {0.1, 0.0, 0.9}});  // goes from 0 to 2 only through 1, yet not in one period
+  EXPECT_THROW(Two(Two::Matrix{{0.9, 0.1}, {0.1, 0.9}}, 0.0), std::invalid_argument);
+  EXPECT_THROW(Two(Two::Matrix{{0.9, 0.1}, {0.1, 0.9}}, kNan), std::invalid_argument);
+}
+
+TEST(ModeChain, SojournTimesThatAreNoneAreRefused) {
+  for (const double bad : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()})
+    EXPECT_NE(complaint([&] { (void)Two::from_sojourn_s({10.0, bad}); }).find("sojourn time"), std::string::npos);
+  EXPECT_NE(complaint([] { (void)Three::from_sojourn_s({10.0, 20.0}); }), "");
+  EXPECT_NE(complaint([] { (void)ModeChain<kRuntimeModes>(ModeMatrix<double, kRuntimeModes>()); }), "") << "no modes";
+}
+
+}  // namespace
+}  // namespace wakeline

@@ -1,0 +1,5 @@
+#include <wakeline/wakeline.hpp>
+
+int other();
+
+int main() { return other(); }

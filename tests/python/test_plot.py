@@ -1,0 +1,154 @@
+"""Figures: what is drawn is where and when it is, and the house rules of the axes hold."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from wakeline import metrics, recording
+from wakeline.recording import Episode, Tracks
+
+pytest.importorskip("matplotlib")
+
+from wakeline import plot
+
+
+@pytest.fixture(scope="module")
+def episode():
+    return recording.load("autoferry").episodes[0]
+
+
+@pytest.fixture(scope="module")
+def tracks(episode):
+    """The truth itself as tracks, with what a multiple-model tracker adds."""
+    parts = []
+    for name, truth in episode.truth.items():
+        state = truth.state_at(episode.time_s)
+        known = np.isfinite(state).all(axis=1)
+        n = np.count_nonzero(known)
+        rng = np.random.default_rng(n)
+        parts.append(
+            Tracks(
+                [f"T{name}"] * n,
+                episode.time_s[known],
+                state[known],
+                covariance=np.broadcast_to(np.diag([9.0, 1.0, 4.0, 1.0]), (n, 4, 4)),
+                mode_probability=rng.dirichlet(np.ones(3), n),
+                nis=np.where(np.arange(n) == 3, 99.0, rng.chisquare(2, n)),
+            )
+        )
+    return Tracks.joined(parts)
+
+
+def texts(ax):
+    return [text.get_text() for text in ax.texts]
+
+
+def test_the_map_has_north_up_and_equal_axes(episode, tracks):
+    ax = plot.figure().add_subplot()
+    assert plot.map_view(ax, episode, tracks) is ax
+    assert ax.get_aspect() == 1.0
+    assert ax.get_xlabel() == "east (m)"
+    assert ax.get_ylabel() == "north (m)"
+    np.testing.assert_allclose(np.diff(ax.get_xticks())[0], np.diff(ax.get_yticks())[0])
+
+
+def test_tracks_lie_where_they_are_and_carry_their_ids(episode, tracks):
+    ax = plot.map_figure(episode, tracks).axes[0]
+    one = tracks.where(tracks.track_id == "T1")
+    drawn = [line.get_xydata() for line in ax.lines]
+    assert any(np.array_equal(d, np.column_stack([one.east_m, one.north_m])) for d in drawn)
+    assert {"T1", "T2"} <= set(texts(ax))
+    for end in ax.texts[:2]:
+        low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
+        assert (low <= end.xy).all()
+        assert (end.xy <= high).all()
+
+
+def test_every_kind_of_mark_is_explained_once(episode, tracks):
+    legend = plot.map_figure(episode, tracks).axes[0].get_legend()
+    names = sorted(text.get_text() for text in legend.get_texts())
+    assert names == ["95 % ellipse", "own ship", "plot", "track", "truth"]
+
+
+def test_plots_out_of_sight_are_counted_and_shown_on_request(episode, tracks):
+    ax = plot.map_figure(episode, tracks).axes[0]
+    (note,) = [text for text in texts(ax) if "outside" in text]
+    (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
+    places = np.concatenate([scan.position_m for scan in episode.scans])
+    inside = (places >= [south, west]).all(axis=1) & (places <= [north, east]).all(axis=1)
+    assert note == f"{np.count_nonzero(~inside)} of {len(places)} plots lie outside"
+    whole = plot.map_figure(episode, tracks, whole=True).axes[0]
+    assert not [text for text in texts(whole) if "outside" in text]
+
+
+def test_an_ellipse_holds_what_it_says():
+    rng = np.random.default_rng(1)
+    root = np.array([[30.0, 0.0], [20.0, 5.0]])
+    covariance, mean = root @ root.T, np.array([5.0, -7.0])
+    outline = plot.ellipse_outline(mean, covariance)
+    bound = metrics.nees(outline - mean, np.broadcast_to(covariance, (len(outline), 2, 2)))
+    np.testing.assert_allclose(bound, 5.991464547107979)
+    error = rng.standard_normal((40_000, 2)) @ root.T
+    inside = metrics.nees(error, np.broadcast_to(covariance, (40_000, 2, 2))) < bound[0]
+    assert inside.mean() == pytest.approx(0.95, abs=0.005)
+
+
+def test_panels_share_the_time_from_the_first_scan(episode, tracks):
+    fig = plot.figure()
+    axes = plot.time_view(fig, episode, tracks, mode_names=["straight", "port", "starboard"])
+    labels = [ax.get_ylabel().split("\n")[0] for ax in axes]
+    assert labels == ["speed (m/s)", "course (°)", "NIS", "mode probability"]
+    assert axes[-1].get_xlabel() == "time from start (s)"
+    assert len({ax.get_xlim() for ax in axes}) == 1
+    low, high = axes[0].get_xlim()
+    assert low <= 0.0
+    assert high >= episode.time_s[-1] - episode.time_s[0]
+
+
+def test_panels_follow_what_the_tracks_have(episode):
+    plain = Tracks(["1", "1"], episode.time_s[:2], np.ones((2, 4)))
+    assert len(plot.time_view(plot.figure(), episode, plain)) == 2
+    assert len(plot.time_view(plot.figure(), episode)) == 2
+
+
+def test_course_lines_are_cut_at_north():
+    course = np.radians([350.0, 358.0, 4.0, 10.0, 355.0])
+    state = np.column_stack([course * 0, np.cos(course), course * 0, np.sin(course)])
+    ax = plot.figure().add_subplot()
+    plot.course_panel(ax, Tracks(["1"] * 5, np.arange(5.0), state))
+    (line,) = ax.lines
+    drawn = line.get_ydata()
+    steps = np.abs(np.diff(drawn))
+    assert np.isnan(drawn).sum() == 2
+    assert (steps[np.isfinite(steps)] < 180.0).all()
+
+
+def test_nis_has_its_bound_and_hides_nothing(tracks):
+    ax = plot.figure().add_subplot()
+    plot.nis_panel(ax, tracks)
+    assert "95 %: 5.99" in texts(ax)
+    shown = np.concatenate([group.get_offsets() for group in ax.collections])
+    assert len(shown) == len(tracks)
+    assert shown[:, 1].max() <= ax.get_ylim()[1]
+
+
+def test_mode_names_must_be_as_many_as_modes(tracks):
+    with pytest.raises(ValueError, match="3 names, got 1"):
+        plot.mode_panel(plot.figure().add_subplot(), tracks, "T1", mode_names=["one"])
+
+
+@pytest.mark.parametrize("make", [plot.map_figure, plot.time_figure])
+def test_figures_are_written_even_of_nothing(tmp_path, make, episode, tracks):
+    nothing = Tracks([], [], np.zeros((0, 4)))
+    for k, arguments in enumerate([(episode, tracks), (episode,), (Episode("", []), nothing), ()]):
+        path = tmp_path / f"{k}.png"
+        plot.save(make(*arguments), path)
+        assert path.read_bytes().startswith(b"\x89PNG")
+    assert len(list(tmp_path.iterdir())) == 4
+
+
+def test_wakeline_plot_is_imported_without_matplotlib():
+    code = "import sys, wakeline.plot; sys.exit('matplotlib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

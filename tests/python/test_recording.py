@@ -1,0 +1,427 @@
+"""Recordings: what a good file becomes, and what is said about each bad one."""
+
+import pickle
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from wakeline import recording
+from wakeline.recording import OwnShip, RecordingError, read_plots
+from wakeline.recording.scans import by_time
+
+OWN = "scan,time_s,own_north_m,own_east_m\n0,0,0,0\n1,2,20,0\n2,4,40,0\n"
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Writes text to a named file in a fresh folder and gives its path."""
+
+    def write(text, name="plots.csv"):
+        path = tmp_path / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    return write
+
+
+def only(read):
+    """The single episode of a recording."""
+    (episode,) = read.episodes
+    return episode
+
+
+def places(episode):
+    return [scan.position_m.tolist() for scan in episode.scans]
+
+
+# ------------------------------------------------------------------ recordings that ship
+
+
+@pytest.mark.parametrize(
+    ("name", "episodes", "scans", "plots"), [("joyride", 1, 115, 147), ("autoferry", 5, 381, 2046)]
+)
+def test_bundled_recordings_are_whole_and_clean(name, episodes, scans, plots):
+    loaded = recording.load(name)
+    assert name in recording.names()
+    assert loaded.name == name
+    assert loaded.notes == []
+    assert len(loaded) == episodes
+    assert sum(len(e) for e in loaded) == scans
+    assert sum(e.plot_count for e in loaded) == plots
+    for episode in loaded:
+        assert (np.diff(episode.time_s) > 0).all()
+        assert len(episode.own) == len(episode)
+        assert episode.truth
+
+
+@pytest.mark.parametrize("name", ["joyride", "autoferry"])
+def test_range_and_bearing_lead_from_own_ship_back_to_the_plot(name):
+    for episode in recording.load(name):
+        for scan in episode.scans:
+            north = scan.own_north_m + scan.range_m * np.cos(scan.bearing_rad)
+            east = scan.own_east_m + scan.range_m * np.sin(scan.bearing_rad)
+            np.testing.assert_allclose(np.column_stack([north, east]), scan.position_m, atol=1e-9)
+
+
+def test_unknown_recording_is_named_beside_the_known_ones():
+    with pytest.raises(ValueError, match=r"'joyrid'.*autoferry, joyride"):
+        recording.load("joyrid")
+
+
+# ------------------------------------------------------------------ columns, times, text
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "time_s,range_m,bearing_deg",
+        "Time,Range [m],Bearing (deg)",
+        "UTC,RANGE_M,Azimuth_Deg",
+        " timestamp , distance_m , azimuth deg ",
+    ],
+)
+def test_columns_are_known_by_name(file, header):
+    episode = only(read_plots(file(f"{header}\n5,100,90\n"), own=(10.0, 20.0)))
+    (scan,) = episode.scans
+    np.testing.assert_allclose(scan.position_m, [[10.0, 120.0]], atol=1e-12)
+    assert scan.time_s == 5.0
+
+
+@pytest.mark.parametrize(
+    ("columns", "row"),
+    [
+        ("range_nm,bearing_rad", "1,-1.5707963267948966"),
+        ("distance_nm,azimuth_rad", "1,4.71238898038469"),
+        ("range_m,bearing_deg", "1852,270"),
+        ("range_m,bearing_deg", "1852,-90"),
+        ("north_m,east_m", "0,-1852"),
+    ],
+)
+def test_units_and_turns_agree(file, columns, row):
+    (scan,) = only(read_plots(file(f"time_s,{columns}\n0,{row}\n"))).scans
+    np.testing.assert_allclose(scan.position_m, [[0.0, -1852.0]], atol=1e-9)
+    np.testing.assert_allclose(scan.range_bearing, [[1852.0, -np.pi / 2]], atol=1e-9)
+
+
+def test_north_and_east_win_over_range_and_bearing(file):
+    text = "time_s,north_m,east_m,range_m,bearing_deg\n0,3,4,99,99\n"
+    read = read_plots(file(text))
+    assert places(only(read)) == [[[3.0, 4.0]]]
+    assert "north and east are used" in read.notes[0]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1620114893.5",
+        "2021-05-04T07:54:53.500Z",
+        "2021-05-04 07:54:53.5",
+        "2021-05-04T09:54:53,5+02:00",
+        "2021-05-04T07:24:53.5-0030",
+        "2021-05-04T09:54:53.5+02",
+    ],
+)
+def test_times_are_utc_seconds_or_iso_text(file, text):
+    path = file(f'time,north_m,east_m\n"{text}",1,2\n')
+    assert only(read_plots(path)).time_s == pytest.approx([1620114893.5], abs=1e-6)
+
+
+def test_byte_order_mark_crlf_blank_lines_and_spaces_do_not_matter(file):
+    plain = file("scan,time_s,north_m,east_m\n0,1,2,3\n1,2,4,5\n", "plain.csv")
+    odd = file(
+        b"\xef\xbb\xbfscan , time_s,north_m,east_m\r\n\r\n0, 1 ,2,3\r\n   \r\n1,2,4, 5\r\n\r\n",
+        "odd.csv",
+    )
+    assert places(only(read_plots(odd))) == places(only(read_plots(plain)))
+
+
+def test_own_columns_beside_the_plots_are_used(file):
+    text = "time_s,range_m,bearing_deg,own_north_m,own_east_m\n0,10,0,100,200\n2,10,0,110,200\n"
+    episode = only(read_plots(file(text)))
+    np.testing.assert_allclose(places(episode), [[[110.0, 200.0]], [[120.0, 200.0]]])
+    assert episode.own.north_m.tolist() == [100.0, 110.0]
+
+
+# ------------------------------------------------------------------ scans
+
+
+def test_scans_without_plots_stay(file):
+    plots = file("scan,time_s,north_m,east_m\n1,2,5,6\n")
+    episode = only(read_plots(plots, file(OWN, "own.csv")))
+    assert [len(scan) for scan in episode.scans] == [0, 1, 0]
+    assert episode.time_s.tolist() == [0.0, 2.0, 4.0]
+
+
+def test_a_header_alone_has_no_plots(file):
+    plots = file("scan,time_s,north_m,east_m\n")
+    assert len(only(read_plots(plots))) == 0
+    read = read_plots(plots, file(OWN, "own.csv"))
+    assert [len(scan) for scan in only(read).scans] == [0, 0, 0]
+    assert read.notes == ["plots.csv: no plots"]
+
+
+def test_scans_can_be_read_without_plots(file):
+    episode = only(read_plots(None, file(OWN, "own.csv")))
+    assert len(episode) == 3
+    assert episode.plot_count == 0
+    with pytest.raises(ValueError, match="plots file or an own-ship file"):
+        read_plots(None)
+
+
+def test_equal_times_make_a_scan(file):
+    text = "time_s,north_m,east_m\n0,1,1\n0,2,2\n3,3,3\n"
+    assert [len(s) for s in only(read_plots(file(text))).scans] == [2, 1]
+
+
+def test_plots_without_scan_numbers_go_to_the_listed_scan_nearest_in_time(file):
+    plots = file("time_s,north_m,east_m\n0.3,1,1\n3.6,2,2\n4.2,3,3\n")
+    episode = only(read_plots(plots, file(OWN, "own.csv")))
+    assert [len(scan) for scan in episode.scans] == [1, 0, 2]
+
+
+def test_a_turning_antenna_makes_a_scan_of_each_turn(file):
+    period, turns = 2.5, 40
+    phases = np.array([0.05, 0.3, 0.35, 0.8])
+    times = (np.arange(turns)[:, np.newaxis] + phases).ravel() * period * 0.998
+    rows = "".join(f"{t:.6f},{k},0\n" for k, t in enumerate(times))
+    episode = only(read_plots(file("time_s,north_m,east_m\n" + rows), period_s=period))
+    sizes = [len(scan) for scan in episode.scans]
+    assert sum(sizes) == len(times)
+    assert max(sizes) <= len(phases)
+    assert abs(len(sizes) - turns) <= 1
+
+
+@given(st.lists(st.floats(0, 1000), min_size=1, max_size=60), st.floats(0.5, 50))
+def test_no_scan_is_as_long_as_the_period(times, period_s):
+    times = np.sort(np.array(times))
+    number = by_time(times, period_s)
+    assert number[0] == 0
+    assert set(np.diff(number)) <= {0, 1}
+    for k in np.unique(number):
+        assert np.ptp(times[number == k]) < period_s or np.ptp(times[number == k]) == 0
+        assert (np.diff(times[number == k]) <= period_s / 2).all()
+
+
+def test_plots_are_sorted_within_a_scan_and_between_scans(file):
+    text = "scan,time_s,north_m,east_m\n1,3,3,0\n0,1,1,0\n0,0,0,0\n1,2,2,0\n"
+    episode = only(read_plots(file(text)))
+    assert places(episode) == [[[0.0, 0.0], [1.0, 0.0]], [[2.0, 0.0], [3.0, 0.0]]]
+    assert episode.time_s.tolist() == [1.0, 3.0]
+
+
+def test_scenarios_become_episodes(file):
+    plots = file("scenario,scan,time_s,north_m,east_m\nb,0,9,1,1\na,0,0,2,2\na,1,1,3,3\n")
+    own = file(
+        "scenario,scan,time_s,own_north_m,own_east_m\nb,0,9,0,0\nb,1,10,0,0\na,0,0,5,5\na,1,1,5,5\n",
+        "own.csv",
+    )
+    read = read_plots(plots, own)
+    assert [(e.name, len(e), e.plot_count) for e in read] == [("b", 2, 1), ("a", 2, 2)]
+    assert read.episodes[1].own.north_m.tolist() == [5.0, 5.0]
+    assert read.episode_of(["", "", "a"], [0.4, 9.2, 9.2]).tolist() == [1, 0, 1]
+    with pytest.raises(ValueError, match="'c'"):
+        read.episode_of(["c"], [0.0])
+
+
+def test_a_long_recording_is_read_in_reasonable_time(file):
+    n = 200_000
+    rows = "".join(f"{k // 50},{k // 50 * 2.5},{k % 97}.5,{k % 89}.25\n" for k in range(n))
+    path = file("scan,time_s,north_m,east_m\n" + rows)
+    start = time.perf_counter()
+    episode = only(read_plots(path))
+    assert time.perf_counter() - start < 20.0
+    assert episode.plot_count == n
+    assert len(episode) == n // 50
+
+
+def test_ten_thousand_plots_in_a_scan_and_a_plot_at_the_radar(file):
+    rows = "".join(f"0,{k % 100},{k // 100}\n" for k in range(10_000))
+    (scan,) = only(read_plots(file("time_s,north_m,east_m\n" + rows))).scans
+    assert len(scan) == 10_000
+    assert np.isfinite(scan.range_bearing).all()
+    assert scan.range_m[0] == 0.0
+
+
+# ------------------------------------------------------------------ what is left out, with a note
+
+
+@pytest.mark.parametrize("cell", ["nan", "NaN", "", "inf", "-inf"])
+def test_plots_without_a_finite_place_are_left_out_and_counted(file, cell):
+    text = f"scan,time_s,north_m,east_m\n0,0,1,1\n1,2,{cell},1\n2,4,1,{cell}\n"
+    read = read_plots(file(text))
+    assert [len(scan) for scan in only(read).scans] == [1, 0, 0]
+    (note,) = read.notes
+    assert "plots.csv: 2 plots without a finite place" in note
+    assert "line 3" in note
+
+
+def test_repeated_rows_are_left_out_and_counted(file):
+    text = "scan,time_s,north_m,east_m\n0,0,1,1\n0,0,1,1\n0,0,1,2\n1,1,1,1\n0,0,1,1\n"
+    read = read_plots(file(text))
+    assert [len(scan) for scan in only(read).scans] == [2, 1]
+    (note,) = read.notes
+    assert "2 plots that repeat an earlier row" in note
+    assert "line 3" in note
+
+
+# ------------------------------------------------------------------ own ship
+
+
+def test_own_ship_is_interpolated_to_each_plot(file):
+    plots = file("scan,time_s,range_m,bearing_deg\n0,0.5,0,0\n0,1.5,0,0\n2,4.5,0,0\n")
+    episode = only(read_plots(plots, file(OWN, "own.csv")))
+    np.testing.assert_allclose(episode.scans[0].own_north_m, [5.0, 15.0])
+    np.testing.assert_allclose(episode.scans[2].own_north_m, [45.0])
+
+
+def test_own_ship_goes_straight_on_beyond_its_record():
+    ship = OwnShip(np.array([0.0, 2.0]), np.array([0.0, 4.0]), np.array([1.0, 1.0]))
+    np.testing.assert_allclose(ship.position_at([-1.0, 1.0, 3.0]), [[-2, 1], [2, 1], [6, 1]])
+    np.testing.assert_allclose(OwnShip.fixed(3, 4).position_at([0, 9]), [[3, 4], [3, 4]])
+
+
+def test_a_plot_beyond_own_ship_is_an_error(file):
+    plots = file("time_s,north_m,east_m\n1,0,0\n7,0,0\n")
+    own = file("time_s,north_m,east_m\n0,0,0\n2,0,0\n", "own.csv")
+    with pytest.raises(RecordingError) as caught:
+        read_plots(plots, own)
+    assert_says(caught, plots, 3, "time_s", "own ship is not known at 7", "own.csv", "0.0 to 2.0")
+
+
+def test_a_plot_inside_an_own_ship_gap_is_an_error(file):
+    plots = file("time_s,north_m,east_m\n1,0,0\n20,0,0\n")
+    own = file("time_s,north_m,east_m\n0,0,0\n1,0,0\n2,nan,0\n30,0,0\n31,0,0\n", "own.csv")
+    with pytest.raises(RecordingError) as caught:
+        read_plots(plots, own)
+    assert_says(caught, plots, 3, "time_s", "own.csv", "a gap of 29 s after its line 3")
+    read = read_plots(plots, own, own_gap_s=30.0)
+    assert "1 rows without a finite own-ship position" in read.notes[0]
+
+
+def test_a_scan_list_without_positions_is_a_radar_at_rest(file):
+    plots = file("scan,time_s,range_m,bearing_deg\n1,2,10,0\n")
+    read = read_plots(plots, file("scan,time_s\n0,0\n1,2\n", "own.csv"), own=(5.0, 6.0))
+    assert places(only(read)) == [[], [[15.0, 6.0]]]
+    assert "the radar stands still" in read.notes[0]
+
+
+# ------------------------------------------------------------------ errors
+
+
+def assert_says(caught, path, line, column, *parts):
+    error = caught.value
+    assert isinstance(error, ValueError)
+    assert (error.path, error.line, error.column) == (path, line, column)
+    message = str(error)
+    assert "\n" not in message
+    for part in (str(path), f"line {line}", *([f"column {column}"] if column else []), *parts):
+        assert part in message
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "column", "parts"),
+    [
+        ("", 1, None, ["empty", "wanted a header"]),
+        ("\n\n", 1, None, ["empty"]),
+        (
+            "scan,north_m,east_m\n0,1,2\n",
+            1,
+            "time_s",
+            ["missing", "time_s or", "got scan, north_m"],
+        ),
+        ("time_s,north_m\n0,1\n", 1, None, ["missing", "north_m and east_m, or range_m"]),
+        ("time_s,range_m\n0,1\n", 1, None, ["missing", "bearing_deg"]),
+        ("time_s,north_m,east_m,own_north_m\n0,1,1,1\n", 1, "own_east_m", ["missing"]),
+        ("time_s,north_m,east_m\n0,1,2\n1,x,2\n", 3, "north_m", ["wanted a number", "got 'x'"]),
+        ("time_s,north_m,east_m\n0,1,1_0\n", 2, "east_m", ["wanted a number", "got '1_0'"]),
+        ("time_s,Range m,bearing_deg\n0,-5,0\n", 2, "Range m", ["0 or more", "got '-5'"]),
+        ("time_s,range_m,bearing_deg\n0,5,361\n", 2, "bearing_deg", ["-360 to 360", "'361'"]),
+        ("time_s,range_m,bearing_rad\n0,5,90\n", 2, "bearing_rad", ["2 pi", "'90'"]),
+        ("time_s,north_m,east_m\nnoon,1,1\n", 2, "time_s", ["UTC seconds or ISO 8601", "'noon'"]),
+        ("time,north_m,east_m\n2021-13-04T00:00:00Z,1,1\n", 2, "time", ["ISO 8601"]),
+        ("time_s,north_m,east_m\n,1,1\n", 2, "time_s", ["UTC seconds", "an empty cell"]),
+        ("time_s,north_m,east_m\nnan,1,1\n", 2, "time_s", ["UTC seconds", "'nan'"]),
+        ("scan,time_s,north_m,east_m\n1.5,0,1,1\n", 2, "scan", ["a whole number", "'1.5'"]),
+        ("time_s,north_m,east_m,north_m\n0,1,1,1\n", 1, "north_m", ["repeated"]),
+        ("time_s,utc,north_m,east_m\n0,0,1,1\n", 1, "utc", ["repeated", "time_s and utc"]),
+        ("time_s,range_m,range_nm,bearing_deg\n0,1,1,1\n", 1, "range_nm", ["range_m and range_nm"]),
+        ("time_s,north_m,east_m\n0,1\n", 2, None, ["wanted 3 cells, got 2"]),
+        ("time_s,north_m,east_m\n0,1,1\n\n0,1,1,1\n", 4, None, ["wanted 3 cells, got 4"]),
+        ("scan,time_s,north_m,east_m\n0,5,1,1\n1,4,1,1\n", 3, "time_s", ["go back", "scan 0"]),
+        ("scan,time_s,north_m,east_m\n0,5,1,1\n1,5,1,1\n", 3, "time_s", ["do not grow", "scan 0"]),
+        ("time_s,north_m,east_m,own_north_m,own_east_m\n0,1,1,,1\n", 2, "own_north_m", ["finite"]),
+    ],
+)
+def test_bad_plots_are_told_by_file_line_and_column(file, text, line, column, parts):
+    path = file(text)
+    with pytest.raises(RecordingError) as caught:
+        read_plots(path)
+    assert_says(caught, path, line, column, *parts)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "column", "parts"),
+    [
+        ("", 1, None, ["empty"]),
+        ("scan,time_s,own_north_m,own_east_m\n", 1, None, ["no row follows the header"]),
+        ("time_s,own_north_m\n0,1\n", 1, "east_m", ["missing", "own_east_m or east_m"]),
+        ("time_s,speed\n0,1\n", 1, "north_m", ["missing"]),
+        ("scan,time_s,north_m,east_m\n0,0,0,0\n0,1,0,0\n", 3, "scan", ["each scan listed once"]),
+        ("scan,time_s,north_m,east_m\n0,2,0,0\n1,1,0,0\n", 3, "time_s", ["do not grow", "scan 0"]),
+        ("scan,time_s,north_m,east_m\n0,0,zero,0\n", 2, "north_m", ["a number", "'zero'"]),
+    ],
+)
+def test_bad_own_ship_is_told_by_file_line_and_column(file, text, line, column, parts):
+    path = file(text, "own.csv")
+    with pytest.raises(RecordingError) as caught:
+        read_plots(None, path)
+    assert_says(caught, path, line, column, *parts)
+
+
+def test_scenarios_must_be_told_apart_in_both_files(file):
+    with_scenario = file("scenario,scan,time_s,north_m,east_m\na,0,0,1,1\nb,0,9,1,1\n")
+    with pytest.raises(RecordingError) as caught:
+        read_plots(with_scenario, file(OWN, "own.csv"))
+    assert_says(caught, with_scenario.with_name("own.csv"), 1, "scenario", "missing")
+    without = file("scan,time_s,north_m,east_m\n0,0,1,1\n", "without.csv")
+    with pytest.raises(RecordingError) as caught:
+        read_plots(without, with_scenario)
+    assert_says(caught, without, 1, "scenario", "missing")
+
+
+def test_files_that_are_no_text_or_not_there(file, tmp_path):
+    with pytest.raises(RecordingError, match="UTF-8"):
+        read_plots(file(b"time_s,north_m,east_m\n0,\xff\xfe,1\n"))
+    with pytest.raises(RecordingError, match=r"none\.csv: the file cannot be read"):
+        read_plots(tmp_path / "none.csv")
+    with pytest.raises(RecordingError, match="cannot be read"):
+        read_plots(tmp_path)
+
+
+@pytest.mark.parametrize("arguments", [{"period_s": 0.0}, {"own_gap_s": -1.0}])
+def test_parameters_that_make_no_sense(file, arguments):
+    path = file("time_s,north_m,east_m\n0,1,1\n")
+    with pytest.raises(ValueError, match=next(iter(arguments))):
+        read_plots(path, **arguments)
+
+
+def test_an_error_survives_pickling():
+    error = RecordingError("a.csv", "bad", line=3, column="x", wanted="y", got="z")
+    again = pickle.loads(pickle.dumps(error))
+    assert str(again) == str(error)
+    assert again.line == 3
+
+
+@given(st.binary(max_size=200))
+def test_any_bytes_give_a_recording_or_a_recording_error(tmp_path_factory, data):
+    path = tmp_path_factory.mktemp("bytes") / "plots.csv"
+    path.write_bytes(b"time_s,range_m,bearing_deg\n" + data)
+    try:
+        read = read_plots(path)
+    except RecordingError:
+        return
+    for scan in only(read).scans:
+        assert np.isfinite(scan.position_m).all()

@@ -1,0 +1,182 @@
+"""Scenarios: truth obeys its equations of motion, the radar has the errors it says."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from wakeline.scenario import RadarSimulator, Segment, Truth
+
+rates = st.floats(-0.3, 0.3)
+accelerations = st.floats(0.0, 0.5)
+START = [100.0, 6.0, -50.0, 8.0]
+
+
+def runge_kutta(state, duration_s, turn_rate, acceleration, steps=400):
+    """The same motion by small steps."""
+
+    def slope(s):
+        speed = np.hypot(s[1], s[3])
+        along = acceleration * np.array([s[1], s[3]]) / speed
+        return np.array([s[1], along[0] - turn_rate * s[3], s[3], along[1] + turn_rate * s[1]])
+
+    h = duration_s / steps
+    for _ in range(steps):
+        k1 = slope(state)
+        k2 = slope(state + h / 2 * k1)
+        k3 = slope(state + h / 2 * k2)
+        k4 = slope(state + h * k3)
+        state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    return state
+
+
+@pytest.mark.parametrize("turn_rate", [0.0, 1e-12, 1e-6, 1e-3, -0.015, 0.03, 0.3, -0.3])
+@pytest.mark.parametrize("acceleration", [0.0, 0.2, -0.2])
+def test_truth_obeys_its_equation_of_motion(turn_rate, acceleration):
+    truth = Truth(START, [Segment(40.0, turn_rate, acceleration)])
+    for at in (0.5, 20.0, 40.0):
+        wanted = runge_kutta(np.array(START), at, turn_rate, acceleration)
+        np.testing.assert_allclose(truth.state_at(at)[0], wanted, atol=1e-5)
+
+
+@given(rates, accelerations, st.floats(1.0, 30.0))
+def test_a_segment_cut_in_two_is_the_same_motion(turn_rate, acceleration, cut_s):
+    whole = Truth(START, [Segment(60.0, turn_rate, acceleration)])
+    halves = Truth(
+        START,
+        [Segment(cut_s, turn_rate, acceleration), Segment(60.0 - cut_s, turn_rate, acceleration)],
+    )
+    time_s = np.linspace(0.0, 60.0, 41)
+    np.testing.assert_allclose(halves.state_at(time_s), whole.state_at(time_s), atol=1e-8)
+
+
+@given(rates)
+def test_small_and_large_turns_join_smoothly(turn_rate):
+    near = Truth(START, [Segment(2.0, turn_rate, 0.3)]).state_at(2.0)
+    next_to_it = Truth(START, [Segment(2.0, turn_rate + 1e-9, 0.3)]).state_at(2.0)
+    np.testing.assert_allclose(near, next_to_it, atol=1e-6)
+
+
+def test_a_full_turn_to_starboard_comes_back():
+    truth = Truth([0.0, 10.0, 0.0, 0.0], [Segment(2 * np.pi / 0.1, 0.1)])
+    quarter = truth.state_at(0.5 * np.pi / 0.1)[0]
+    np.testing.assert_allclose(quarter, [100.0, 0.0, 100.0, 10.0], atol=1e-9)
+    np.testing.assert_allclose(truth.state_at(truth.end_time_s)[0], [0, 10, 0, 0], atol=1e-9)
+
+
+def test_outside_its_segments_a_vessel_goes_straight_on():
+    truth = Truth(START, [Segment(10.0, 0.2, 0.5)], start_time_s=5.0)
+    before, start = truth.state_at([-5.0, 5.0])
+    np.testing.assert_allclose(before[0::2], start[0::2] - 10.0 * start[1::2])
+    end, after = truth.state_at([15.0, 25.0])
+    np.testing.assert_allclose(after[1::2], end[1::2])
+    np.testing.assert_allclose(after[0::2], end[0::2] + 10.0 * end[1::2])
+    assert np.hypot(*end[1::2]) == pytest.approx(15.0)
+    np.testing.assert_array_equal(truth.turn_rate_at([0.0, 5.0, 14.9, 15.0]), [0.0, 0.2, 0.2, 0.0])
+
+
+def test_a_vessel_may_start_at_rest_on_a_given_course():
+    truth = Truth([0, 0, 0, 0], [Segment(10.0, 0.0, 1.0)], start_course_rad=np.pi / 2)
+    np.testing.assert_allclose(truth.state_at(10.0)[0], [0, 0, 50, 10], atol=1e-12)
+
+
+def test_truths_that_make_no_sense():
+    with pytest.raises(ValueError, match="duration_s"):
+        Segment(0.0)
+    with pytest.raises(ValueError, match="finite"):
+        Segment(1.0, np.nan)
+    with pytest.raises(ValueError, match="segment 1 brings the speed below zero"):
+        Truth(START, [Segment(10.0), Segment(100.0, 0.0, -0.2)])
+    with pytest.raises(ValueError, match="4 finite numbers"):
+        Truth([0.0, 1.0])
+
+
+# ------------------------------------------------------------------ radar
+
+RADAR = RadarSimulator(range_std_m=20.0, bearing_std_rad=0.01, period_s=2.5)
+FAR = Truth([3000.0, 5.0, 1000.0, 0.0])
+
+
+def test_the_same_seed_gives_the_same_plots():
+    first, again = RADAR.observe(FAR, 30, 7), RADAR.observe(FAR, 30, 7)
+    np.testing.assert_array_equal(first[1], again[1])
+    assert not np.array_equal(first[1], RADAR.observe(FAR, 30, 8)[1])
+
+
+def test_plots_have_the_errors_of_the_radar():
+    time_s, z = RADAR.observe(FAR, 20_000, 1, own=Truth([10.0, 5.0, 0.0, 0.0]))
+    relative = (FAR.state_at(time_s) - Truth([10.0, 5.0, 0.0, 0.0]).state_at(time_s))[:, 0::2]
+    error = z - np.column_stack([np.hypot(*relative.T), np.arctan2(*relative.T[::-1])])
+    np.testing.assert_allclose(error.mean(axis=0) / [20.0, 0.01], 0.0, atol=0.04)
+    np.testing.assert_allclose(error.std(axis=0) / [20.0, 0.01], 1.0, atol=0.03)
+
+
+def test_targets_are_missed_as_often_as_said():
+    radar = RadarSimulator(20.0, 0.01, 2.5, detection_probability=0.7)
+    _, z = radar.observe(FAR, 10_000, 3)
+    seen = np.isfinite(z)
+    assert (seen[:, 0] == seen[:, 1]).all()
+    assert seen[:, 0].mean() == pytest.approx(0.7, abs=0.02)
+
+
+def test_targets_out_of_range_are_not_seen():
+    near = RadarSimulator(20.0, 0.01, 2.5, max_range_m=1000.0)
+    assert np.isnan(near.observe(FAR, 5, 1)[1]).all()
+
+
+def test_a_rotating_antenna_points_at_the_target_when_it_sees_it():
+    radar = RadarSimulator(0.0, 0.0, 2.5, rotating=True)
+    crossing = Truth([200.0, -10.0, -300.0, 12.0])
+    time_s, z = radar.observe(crossing, 40, 1)
+    state = crossing.state_at(time_s)
+    np.testing.assert_allclose(z[:, 1], np.arctan2(state[:, 2], state[:, 0]), atol=1e-9)
+    pointing = 2 * np.pi * (time_s - 2.5 * np.arange(40)) / 2.5
+    np.testing.assert_allclose(np.exp(1j * pointing), np.exp(1j * z[:, 1]), atol=1e-9)
+
+
+@pytest.mark.parametrize("rotating", [False, True])
+def test_a_recording_holds_targets_and_clutter_in_order(rotating):
+    radar = RadarSimulator(
+        10.0, 0.01, 2.5, 0.9, clutter_per_scan=6.0, max_range_m=5000.0, rotating=rotating
+    )
+    truths = {"a": FAR, "b": Truth([-500.0, 0.0, 800.0, 6.0])}
+    made = radar.record(truths, 400, 5, own=Truth([0.0, 4.0, 0.0, 3.0]))
+    (episode,) = made.episodes
+    assert (np.diff(episode.time_s) > 0).all()
+    assert set(episode.truth) == {"a", "b"}
+    assert episode.plot_count / 400 == pytest.approx(6.0 + 2 * 0.9, abs=0.4)
+    for scan in episode.scans:
+        assert (np.diff(scan.plot_time_s) >= 0).all()
+        north = scan.own_north_m + scan.range_m * np.cos(scan.bearing_rad)
+        np.testing.assert_allclose(scan.north_m, north)
+        np.testing.assert_allclose(
+            np.column_stack([scan.own_north_m, scan.own_east_m]),
+            episode.own.position_at(scan.plot_time_s),
+            atol=1e-6,
+        )
+    truth = episode.truth["a"].state_at(episode.time_s)
+    np.testing.assert_allclose(truth, FAR.state_at(episode.time_s))
+
+
+def test_clutter_is_even_over_the_disc():
+    radar = RadarSimulator(10.0, 0.01, 1.0, clutter_per_scan=20.0, max_range_m=1000.0)
+    (episode,) = radar.record({}, 500, 9).episodes
+    range_m = np.concatenate([scan.range_m for scan in episode.scans])
+    assert np.mean(range_m < 500.0) == pytest.approx(0.25, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ({"range_std_m": -1.0}, "range_std_m"),
+        ({"period_s": 0.0}, "period_s"),
+        ({"detection_probability": 1.5}, "detection_probability"),
+        ({"clutter_per_scan": 3.0}, "max_range_m"),
+        ({"max_range_m": 0.0}, "max_range_m"),
+    ],
+)
+def test_radars_that_make_no_sense(arguments, name):
+    with pytest.raises(ValueError, match=name):
+        RadarSimulator(
+            **({"range_std_m": 1.0, "bearing_std_rad": 0.01, "period_s": 1.0} | arguments)
+        )
