@@ -73,6 +73,24 @@ Status AnyFilter::start(const AnyBelief& belief) noexcept {
       filter_);
 }
 
+Gaussian<4> kinematics_of(const AnyBelief& belief) noexcept {
+  const int* row = rows(belief.layout, StateLayout::kKinematics);
+  Gaussian<4> kinematics;
+  for (int i = 0; i < 4; ++i) {
+    kinematics.mean[i] = belief.mean[row[i]];
+    for (int j = 0; j < 4; ++j) kinematics.covariance(i, j) = belief.covariance(row[i], row[j]);
+  }
+  return kinematics;
+}
+
+Status AnyFilter::start(const Gaussian<4>& kinematics) noexcept {
+  return std::visit([&](auto& filter) { return filter.start(kinematics); }, filter_);
+}
+
+void AnyFilter::archive(Archive& fields) {
+  std::visit([&](auto& filter) { filter.archive(fields); }, filter_);
+}
+
 Status AnyFilter::assign(const AnyBelief& belief) noexcept {
   return std::visit(
       [&]<class Filter>(Filter& filter) { return filter.assign(fixed<Filter>(belief)); }, filter_);

@@ -12,6 +12,7 @@
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/filter/ukf.hpp"
+#include "wakeline/measurement/fix.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/measurement/range_bearing_doppler.hpp"
@@ -19,6 +20,7 @@
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/singer.hpp"
+#include "wakeline/motion/wandering_course.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
 namespace wakeline::python {
@@ -50,29 +52,39 @@ struct AnyBelief {
 AnyBelief zero_like(const AnyBelief& belief) noexcept;
 void add_mean(AnyBelief& sum, double weight, const AnyBelief& part, const AnyBelief& own) noexcept;
 void add_spread(AnyBelief& sum, double weight, const AnyBelief& part, const AnyBelief& own) noexcept;
+Gaussian<4> kinematics_of(const AnyBelief& belief) noexcept;
 
 /// One of the shipped filters over one of the shipped motion models. A linear one takes linear sensors only.
 class AnyFilter {
  public:
   using Scalar = double;
   using Variant =
-      std::variant<Ekf<ConstantVelocity>, Ekf<ConstantAcceleration>, Ekf<CoordinatedTurn>,
-                   Ekf<CoordinatedTurnRate>, Ekf<Singer>, Ukf<ConstantVelocity>,
-                   Ukf<ConstantAcceleration>, Ukf<CoordinatedTurn>, Ukf<CoordinatedTurnRate>,
-                   Ukf<Singer>, SquareRootUkf<ConstantVelocity>, SquareRootUkf<ConstantAcceleration>,
-                   SquareRootUkf<CoordinatedTurn>, SquareRootUkf<CoordinatedTurnRate>,
-                   SquareRootUkf<Singer>>;
+      std::variant<Ekf<ConstantVelocity>, Ekf<WanderingCourse>, Ekf<ConstantAcceleration>,
+                   Ekf<CoordinatedTurn>, Ekf<CoordinatedTurnRate>, Ekf<Singer>,
+                   Ukf<ConstantVelocity>, Ukf<WanderingCourse>, Ukf<ConstantAcceleration>,
+                   Ukf<CoordinatedTurn>, Ukf<CoordinatedTurnRate>, Ukf<Singer>,
+                   SquareRootUkf<ConstantVelocity>, SquareRootUkf<WanderingCourse>,
+                   SquareRootUkf<ConstantAcceleration>, SquareRootUkf<CoordinatedTurn>,
+                   SquareRootUkf<CoordinatedTurnRate>, SquareRootUkf<Singer>>;
 
   explicit AnyFilter(const Variant& filter, bool linear = false) : filter_(filter), linear_(linear) {}
 
   /// Begins with a belief over the filter's state or over `[x, vx, y, vy]`.
   Status start(const AnyBelief& belief) noexcept;
+  Status start(const Gaussian<4>& kinematics) noexcept;
   Status assign(const AnyBelief& belief) noexcept;
   Status predict(double dt_s) noexcept;
 
   template <class Sensor>
   Step<Sensor::kMeasurements> update(const Sensor& sensor,
                                      const Vec<double, Sensor::kMeasurements>& z) noexcept;
+
+  /// The innovation of a reading, without taking it.
+  template <class Sensor>
+  Step<Sensor::kMeasurements> innovation(
+      const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) const noexcept;
+
+  void archive(Archive& fields);
 
   [[nodiscard]] AnyBelief estimate() const noexcept;
   [[nodiscard]] bool started() const noexcept;
@@ -89,6 +101,8 @@ class AnyFilter {
 extern template Step<2> AnyFilter::update(const RangeBearing&, const Vec<double, 2>&) noexcept;
 extern template Step<2> AnyFilter::update(const ConvertedRangeBearing&, const Vec<double, 2>&) noexcept;
 extern template Step<2> AnyFilter::update(const Position&, const Vec<double, 2>&) noexcept;
+extern template Step<2> AnyFilter::update(const Fix&, const Vec<double, 2>&) noexcept;
+extern template Step<2> AnyFilter::innovation(const Fix&, const Vec<double, 2>&) const noexcept;
 extern template Step<3> AnyFilter::update(const RangeBearingDoppler&, const Vec<double, 3>&) noexcept;
 
 /// The filters of a multi-model estimator, composed at run time: the face of `wakeline::FilterBank`.
@@ -105,6 +119,11 @@ class AnyFilterBank {
   template <class Function>
   void for_each(Function&& function) noexcept {
     for (int k = 0; Slot& slot : slots_) function(k++, slot.filter, slot.before);
+  }
+
+  template <class Function>
+  void for_each(Function&& function) const noexcept {
+    for (int k = 0; const Slot& slot : slots_) function(k++, slot.filter);
   }
 
   template <class Function>

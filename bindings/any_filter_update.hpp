@@ -14,4 +14,10 @@ Step<Sensor::kMeasurements> AnyFilter::update(
   return std::visit([&](auto& filter) { return filter.update(sensor, z); }, filter_);
 }
 
+template <class Sensor>
+Step<Sensor::kMeasurements> AnyFilter::innovation(
+    const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) const noexcept {
+  return std::visit([&](const auto& filter) { return filter.innovation(sensor, z); }, filter_);
+}
+
 }  // namespace wakeline::python

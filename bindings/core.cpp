@@ -3,6 +3,7 @@
 #include "wakeline/core/chi_square.hpp"
 
 #include "types.hpp"
+#include "wakeline/core/angle.hpp"
 
 namespace wakeline::python {
 namespace {

@@ -8,10 +8,10 @@ namespace wakeline::python {
 
 std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs) {
   if (py::isinstance<PyGaussian>(start))
-    return {start.cast<const PyGaussian&>().to_belief("start")};
+    return {to_belief("start", start.cast<const PyGaussian&>())};
   std::vector<AnyBelief> beliefs;
   for (const py::handle item : start)
-    beliefs.push_back(item.cast<const PyGaussian&>().to_belief("start"));
+    beliefs.push_back(to_belief("start", item.cast<const PyGaussian&>()));
   if (beliefs.size() != runs)
     throw py::value_error("start must be one Gaussian or one per run (" + std::to_string(runs) +
                           "), got " + std::to_string(beliefs.size()));
@@ -115,7 +115,7 @@ void define_filter(py::module_& parent) {
       .def(
           "start",
           [](AnyFilter& filter, const PyGaussian& belief) {
-            require_ok(filter.start(belief.to_belief("belief")), "start");
+            require_ok(filter.start(to_belief("belief", belief)), "start");
           },
           py::arg("belief"), "Begins with a belief over the filter's state or over [x, vx, y, vy].")
       .def(
@@ -134,7 +134,7 @@ void define_filter(py::module_& parent) {
             });
           },
           py::arg("sensor"), py::arg("z"), "Corrects the belief by a reading; returns the Step.")
-      .def("estimate", [](const AnyFilter& filter) { return PyGaussian::from(filter.estimate()); },
+      .def("estimate", [](const AnyFilter& filter) { return to_gaussian(filter.estimate()); },
            "The belief.")
       .def_property_readonly("started", &AnyFilter::started)
       .def("run", &run<AnyFilter>, py::arg("z"), py::arg("dt_s"), py::arg("sensor"),
@@ -160,15 +160,15 @@ Returns
   py::class_<PyEkf, AnyFilter> ekf(
       m, "Ekf", "The extended Kalman filter: motion and sensor linearised about the mean.");
   define_plain<PyEkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn, CoordinatedTurnRate,
-               Singer>(ekf);
+               Singer, WanderingCourse>(ekf);
   py::class_<PyUkf, AnyFilter> ukf(
       m, "Ukf", "The unscented Kalman filter, with the scaled transform's alpha, beta and kappa.");
   define_unscented<PyUkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn,
-                   CoordinatedTurnRate, Singer>(ukf);
+                   CoordinatedTurnRate, Singer, WanderingCourse>(ukf);
   py::class_<PySquareRootUkf, AnyFilter> square_root(
       m, "SquareRootUkf", "The unscented Kalman filter on a square root of the covariance, for long runs.");
   define_unscented<PySquareRootUkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn,
-                   CoordinatedTurnRate, Singer>(square_root);
+                   CoordinatedTurnRate, Singer, WanderingCourse>(square_root);
 
   m.def(
       "one_point",

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "types.hpp"
+#include "wakeline/measurement/position.hpp"
+#include "wakeline/measurement/range_bearing.hpp"
+#include "wakeline/measurement/range_bearing_doppler.hpp"
 
 namespace wakeline::python {
 namespace {

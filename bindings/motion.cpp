@@ -1,6 +1,11 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "types.hpp"
+#include "wakeline/motion/constant_acceleration.hpp"
+#include "wakeline/motion/constant_velocity.hpp"
+#include "wakeline/motion/coordinated_turn.hpp"
+#include "wakeline/motion/singer.hpp"
+#include "wakeline/motion/wandering_course.hpp"
 
 namespace wakeline::python {
 namespace {
@@ -82,6 +87,17 @@ void define_motion(py::module_& parent) {
          py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
   define_model(cv);
 
+  py::class_<WanderingCourse> wandering(
+      m, "WanderingCourse",
+      "Straight and nearly steady, with an acceleration that grows with the speed: state [x, vx, y, vy].");
+  wandering.def(py::init([](double psd, double course_psd, double max_speed) {
+                  return checked(WanderingCourse{psd, course_psd, max_speed});
+                }),
+                py::kw_only(), py::arg("psd_m2s3") = WanderingCourse{}.psd_m2s3,
+                py::arg("course_psd_rad2s") = WanderingCourse{}.course_psd_rad2s,
+                py::arg("max_speed_mps") = WanderingCourse{}.max_speed_mps);
+  define_model(wandering);
+
   py::class_<ConstantAcceleration> ca(
       m, "ConstantAcceleration",
       "Acceleration that stays: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).");
@@ -105,12 +121,15 @@ void define_motion(py::module_& parent) {
   py::class_<CoordinatedTurnRate> ctr(
       m, "CoordinatedTurnRate",
       "A turn whose rate is part of the state and wanders: [x, vx, y, vy, omega] (m, m/s, rad/s).");
-  ctr.def(py::init([](const ProcessNoise& noise, double psd, double prior) {
-            return checked(CoordinatedTurnRate{noise, psd, prior});
+  ctr.def(py::init([](const ProcessNoise& noise, double psd, double prior, double course_psd,
+                      double max_speed) {
+            return checked(CoordinatedTurnRate{noise, psd, prior, course_psd, max_speed});
           }),
           py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"),
           py::arg("turn_rate_psd_rad2s3") = CoordinatedTurnRate{}.turn_rate_psd_rad2s3,
-          py::arg("prior_turn_rate_std_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_std_rad_s);
+          py::arg("prior_turn_rate_std_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_std_rad_s,
+          py::arg("course_psd_rad2s") = CoordinatedTurnRate{}.course_psd_rad2s,
+          py::arg("max_speed_mps") = CoordinatedTurnRate{}.max_speed_mps);
   define_model(ctr);
 
   py::class_<Singer> singer(m, "Singer",

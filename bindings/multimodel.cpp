@@ -88,7 +88,7 @@ initial_mode_probability : (K,) array, optional
       .def(
           "start",
           [](AnyImm& imm, const PyGaussian& belief) {
-            require_ok(imm.start(belief.to_belief("belief")), "start");
+            require_ok(imm.start(to_belief("belief", belief)), "start");
           },
           py::arg("belief"), "Begins with a belief over [x, vx, y, vy], or over the state that all filters share.")
       .def(
@@ -106,14 +106,14 @@ initial_mode_probability : (K,) array, optional
             });
           },
           py::arg("sensor"), py::arg("z"), "Corrects every model and weighs them; returns the Step.")
-      .def("estimate", [](const AnyImm& imm) { return PyGaussian::from(imm.estimate()); },
+      .def("estimate", [](const AnyImm& imm) { return to_gaussian(imm.estimate()); },
            "The moment-matched belief: over the state where all filters share one, else over [x, vx, y, vy].")
       .def("mode_probability", [](const AnyImm& imm) { return to_array(imm.mode_probability()); },
            "(K,)")
       .def(
           "filter_estimate",
           [](const AnyImm& imm, std::size_t index) {
-            return PyGaussian::from(imm.bank().filter(index).estimate());
+            return to_gaussian(imm.bank().filter(index).estimate());
           },
           py::arg("index"), "The belief of one of the filters, over its own state.")
       .def_property_readonly("models", [](const AnyImm& imm) { return imm.bank().size(); })

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "types.hpp"
+#include "estimators.hpp"
 
 namespace wakeline::python {
 

@@ -13,7 +13,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+PALETTE = (
+    *("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"),
+    *("#56B4E9", "#882255", "#999933", "#332288", "#44AA99"),
+)
 MODE_PALETTE = ("#DDDDDD", "#EE8866", "#77AADD", "#44BB99", "#FFAABB", "#BBCC33", "#99DDFF")
 INK = "#1F2328"
 MUTED = "#8C959F"

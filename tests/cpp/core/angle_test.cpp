@@ -44,7 +44,8 @@ TYPED_TEST(Angle, CompassAngleIsTheSameAngleFromZeroToATurn) {
     EXPECT_NEAR(std::sin(compass), std::sin(angle), 64 * this->kEpsilon) << angle;
     EXPECT_NEAR(std::cos(compass), std::cos(angle), 64 * this->kEpsilon) << angle;
   }
-  EXPECT_EQ(compass_angle(Scalar(-1e-30)), Scalar(0));  // rounds to a whole turn, which is not shown
+  EXPECT_EQ(compass_angle(Scalar(-1e-30)),
+            Scalar(0));  // rounds to a whole turn, which is not shown
 }
 
 TYPED_TEST(Angle, NotANumberStaysSo) {

@@ -27,7 +27,8 @@ template <class Function>
 void for_sizes(const Function& f) {
   [&]<int... N>(std::integer_sequence<int, N...>) {
     (f(std::integral_constant<int, N + 1>{}), ...);
-  }(std::make_integer_sequence<int, 6>{});
+  }
+  (std::make_integer_sequence<int, 6>{});
 }
 
 template <class Scalar>
@@ -119,10 +120,8 @@ TYPED_TEST(CholeskyOf, SemidefiniteRootOfEveryRank) {
 TEST(SemidefiniteRoot, LeavesOutDirectionsWithoutVarianceWhereverTheyStand) {
   Mat<double, 3, 3> a = Mat<double, 3, 3>::Zero();
   a(1, 1) = 4.0;
-  EXPECT_TRUE(matrices_identical((semidefinite_root<3, double>(a) *
-                                  semidefinite_root<3, double>(a).transpose())
-                                     .eval(),
-                                 a));
+  EXPECT_TRUE(matrices_identical(
+      (semidefinite_root<3, double>(a) * semidefinite_root<3, double>(a).transpose()).eval(), a));
   a(0, 0) = 1e-30;  // small is not zero
   EXPECT_DOUBLE_EQ((semidefinite_root<3, double>(a)(0, 0)), 1e-15);
 }

@@ -20,11 +20,11 @@
 namespace wakeline::test {
 
 /// Every kind of filter in double, and in float.
-using EveryFilter = ::testing::Types<Kalman<ConstantVelocity>, Ekf<CoordinatedTurnRate>, Ukf<CoordinatedTurnRate>,
-                                     SquareRootUkf<CoordinatedTurnRate>>;
+using EveryFilter = ::testing::Types<Kalman<ConstantVelocity>, Ekf<CoordinatedTurnRate>,
+                                     Ukf<CoordinatedTurnRate>, SquareRootUkf<CoordinatedTurnRate>>;
 using EveryFloatFilter =
-    ::testing::Types<Kalman<CoordinatedTurn, float>, Ekf<CoordinatedTurnRate, float>, Ukf<ConstantVelocity, float>,
-                     SquareRootUkf<ConstantVelocity, float>>;
+    ::testing::Types<Kalman<CoordinatedTurn, float>, Ekf<CoordinatedTurnRate, float>,
+                     Ukf<ConstantVelocity, float>, SquareRootUkf<ConstantVelocity, float>>;
 
 template <class Filter>
 inline constexpr bool kIsKalman =

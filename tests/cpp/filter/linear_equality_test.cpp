@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// On a linear motion and a linear sensor every filter is the Kalman filter, whatever the spread of its sigma points.
+// On a linear motion and a linear sensor every filter is the Kalman filter, whatever the spread of
+// its sigma points.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -53,11 +54,13 @@ void expect_kalman(Filter filter, double tolerance) {
       ASSERT_TRUE(expected);
       ASSERT_TRUE(step);
       EXPECT_NEAR(double(step.nis), expected.nis, 10 * tolerance * (1 + expected.nis));
-      EXPECT_NEAR(double(step.log_likelihood), expected.log_likelihood, 10 * tolerance * (10 + expected.nis));
+      EXPECT_NEAR(double(step.log_likelihood), expected.log_likelihood,
+                  10 * tolerance * (10 + expected.nis));
       EXPECT_TRUE(matrices_near(step.innovation.template cast<double>(), expected.innovation,
                                 {.absolute = 1e3 * tolerance, .relative = tolerance}));
-      EXPECT_LT(covariance_difference(Mat<double, 2, 2>(step.innovation_covariance.template cast<double>()),
-                                      expected.innovation_covariance),
+      EXPECT_LT(covariance_difference(
+                    Mat<double, 2, 2>(step.innovation_covariance.template cast<double>()),
+                    expected.innovation_covariance),
                 tolerance);
     }
     const auto belief = filter.estimate();
@@ -83,15 +86,18 @@ TEST(LinearEquality, Ekf) { expect_kalman(Ekf{kMotion}, 1e-15); }
 
 TEST(LinearEquality, Ukf) {
   for (const Unscented& unscented : kSpreads) {
-    SCOPED_TRACE(testing::Message() << "alpha " << unscented.alpha << ", kappa " << unscented.kappa);
-    // A small alpha loses digits in the differences: positions of 1e3 over 1e-3 standard deviations.
+    SCOPED_TRACE(testing::Message()
+                 << "alpha " << unscented.alpha << ", kappa " << unscented.kappa);
+    // A small alpha loses digits in the differences: positions of 1e3 over 1e-3 standard
+    // deviations.
     expect_kalman(Ukf{kMotion, unscented}, unscented.alpha < 0.1 ? 1e-8 : 1e-11);
   }
 }
 
 TEST(LinearEquality, SquareRootUkf) {
   for (const Unscented& unscented : kSpreads) {
-    SCOPED_TRACE(testing::Message() << "alpha " << unscented.alpha << ", kappa " << unscented.kappa);
+    SCOPED_TRACE(testing::Message()
+                 << "alpha " << unscented.alpha << ", kappa " << unscented.kappa);
     expect_kalman(SquareRootUkf{kMotion, unscented}, unscented.alpha < 0.1 ? 1e-8 : 1e-11);
   }
 }
@@ -145,7 +151,8 @@ void expect_gain(Filter filter) {
   EXPECT_NEAR(filter.estimate().covariance(0, 0), 0.4, 1e-12);
 }
 
-// WPILib paired the sigma points of the prediction with those drawn for the update: gain .566 for P = Q = 1, R = .5.
+// WPILib paired the sigma points of the prediction with those drawn for the update: gain .566 for P
+// = Q = 1, R = .5.
 TEST(Traps, SigmaPointsOfTheUpdateAreThoseOfThePredictedBelief) {
   expect_gain(Kalman{Walk{}});
   expect_gain(Ekf{Walk{}});
@@ -160,7 +167,8 @@ TEST(Traps, SigmaPointsHaveTheCovarianceOfACorrelatedBelief) {
   const Cholesky<4> root(belief.covariance);
   ASSERT_TRUE(root.ok());
   const Unscented unscented{.alpha = 0.7, .kappa = 1.0};
-  const auto points = sigma_points<double, 4>(belief.mean, root.lower(), unscented.spread<double>(4));
+  const auto points =
+      sigma_points<double, 4>(belief.mean, root.lower(), unscented.spread<double>(4));
   const Mat<double, 4, 8> differences = points.colwise() - belief.mean;
   EXPECT_TRUE(matrices_near(
       Mat<double, 4, 4>(unscented.weight<double>(4) * differences * differences.transpose()),
@@ -180,20 +188,25 @@ TEST(Unscented, WrongParametersAreNamed) {
   EXPECT_NE(complaint({.alpha = 0.0}).find("alpha"), std::string::npos);
   EXPECT_NE(complaint({.beta = std::nan("")}).find("beta"), std::string::npos);
   EXPECT_NE(complaint({.kappa = -4.0}).find("kappa"), std::string::npos);
-  EXPECT_THROW((SquareRootUkf{kMotion, Unscented{.alpha = 1.0, .beta = 0.5}}), std::invalid_argument);
+  EXPECT_THROW((SquareRootUkf{kMotion, Unscented{.alpha = 1.0, .beta = 0.5}}),
+               std::invalid_argument);
 }
 
-/// y = x² of a normal x has mean m² + s² and variance 4 m² s² + 2 s⁴: what the transform must find for beta = 2.
+/// y = x² of a normal x has mean m² + s² and variance 4 m² s² + 2 s⁴: what the transform must find
+/// for beta = 2.
 TEST(Unscented, SquareOfANormalVariable) {
   for (const double alpha : {1.0, 0.1, 1e-3}) {
     const Unscented unscented{.alpha = alpha, .beta = 2.0, .kappa = 0.0};
     const double mean = 3.0, std = 0.7;
-    const auto points = sigma_points<double, 1>(Vec<double, 1>(mean), Mat<double, 1, 1>(std), unscented.spread<double>(1));
+    const auto points = sigma_points<double, 1>(Vec<double, 1>(mean), Mat<double, 1, 1>(std),
+                                                unscented.spread<double>(1));
     const Vec<double, 1> centre(mean * mean);
     const Mat<double, 1, 2> differences = points.array().square() - mean * mean;
     const Gaussian<1> moments = unscented_moments<double, 1, 2>(unscented, 1, centre, differences);
     EXPECT_NEAR(moments.mean[0], mean * mean + std * std, 1e-8) << alpha;
-    EXPECT_NEAR(moments.covariance(0, 0), 4 * mean * mean * std * std + 2 * std * std * std * std, 1e-4) << alpha;
+    EXPECT_NEAR(moments.covariance(0, 0), 4 * mean * mean * std * std + 2 * std * std * std * std,
+                1e-4)
+        << alpha;
   }
 }
 

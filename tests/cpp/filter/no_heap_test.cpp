@@ -28,7 +28,8 @@ TYPED_TEST(FilterHeap, IsNotTouched) {
     (void)filter.update(radar, bad);
   }
   (void)filter.predict(Scalar(3600));
-  (void)filter.update(Position{.position_std_m = 0.1}, Vec<Scalar, 2>(3000, 4000));  // the Joseph form
+  (void)filter.update(Position{.position_std_m = 0.1},
+                      Vec<Scalar, 2>(3000, 4000));  // the Joseph form
   EXPECT_EQ(fence.allocations(), 0);
   EXPECT_EQ(worst, Status::kOk);
 }

@@ -65,8 +65,8 @@ Status smooth_run(std::vector<Gaussian<4>>& beliefs) {
   return smooth<CoordinatedTurn, double>(kMotion, beliefs, kSteps);
 }
 
-// The smoothed beliefs are the marginals of one Gaussian over the whole trajectory, whose information matrix and vector
-// add up from the start, the motions and the plots.
+// The smoothed beliefs are the marginals of one Gaussian over the whole trajectory, whose
+// information matrix and vector add up from the start, the motions and the plots.
 TEST(RtsSmoother, IsTheBatchSolution) {
   Voyage run = filtered();
   constexpr int kSize = 4 * kScans;
@@ -97,7 +97,9 @@ TEST(RtsSmoother, IsTheBatchSolution) {
   ASSERT_EQ(smooth_run(run.beliefs), Status::kOk);
   for (int k = 0; k < kScans; ++k) {
     const Gaussian<4>& belief = run.beliefs[std::size_t(k)];
-    EXPECT_TRUE(matrices_near(belief.mean, means.segment<4>(4 * k), {.absolute = 1e-7, .relative = 1e-9})) << k;
+    EXPECT_TRUE(
+        matrices_near(belief.mean, means.segment<4>(4 * k), {.absolute = 1e-7, .relative = 1e-9}))
+        << k;
     const Mat<double, 4, 4> expected = covariance.block<4, 4>(4 * k, 4 * k);
     EXPECT_LT(test::covariance_difference(belief.covariance, expected), 1e-8) << k;
   }
@@ -114,7 +116,8 @@ TEST(RtsSmoother, NeverWidensABelief) {
     const Mat<double, 4, 4> gained = before[k].covariance - run.beliefs[k].covariance;
     const Mat<double, 4, 4> slightly = gained + 1e-9 * before[k].covariance;
     EXPECT_TRUE(Cholesky<4>(slightly).ok()) << "scan " << k << ": smaller in every direction";
-    EXPECT_LT(run.beliefs[k].covariance(0, 0), 0.99 * before[k].covariance(0, 0)) << "and really smaller";
+    EXPECT_LT(run.beliefs[k].covariance(0, 0), 0.99 * before[k].covariance(0, 0))
+        << "and really smaller";
   }
 }
 
@@ -137,7 +140,8 @@ TEST(RtsSmoother, SmoothsANonlinearMotion) {
       truth = (motion.transition(truth, 2.5) + draw.error(motion.process_noise(truth, 2.5))).eval();
       ASSERT_EQ(ekf.predict(2.5), Status::kOk);
       const Vec<double, 2> exact = radar.measure(Vec<double, 2>(truth[0], truth[2]));
-      ASSERT_TRUE(ekf.update(radar, Vec<double, 2>(exact + draw.error(radar.observe(exact).covariance))));
+      ASSERT_TRUE(
+          ekf.update(radar, Vec<double, 2>(exact + draw.error(radar.observe(exact).covariance))));
       beliefs.push_back(ekf.estimate());
       truths.push_back(truth);
     }
@@ -170,9 +174,11 @@ TEST(RtsSmoother, LeavesTheRestFilteredWhereItFails) {
 
 TEST(RtsSmoother, OfNothingAndOfOneScan) {
   std::vector<Gaussian<4>> none;
-  EXPECT_EQ((smooth<CoordinatedTurn, double>(kMotion, none, std::span<const double>{})), Status::kOk);
+  EXPECT_EQ((smooth<CoordinatedTurn, double>(kMotion, none, std::span<const double>{})),
+            Status::kOk);
   std::vector<Gaussian<4>> one(1);
-  EXPECT_EQ((smooth<CoordinatedTurn, double>(kMotion, one, std::span<const double>{})), Status::kOk);
+  EXPECT_EQ((smooth<CoordinatedTurn, double>(kMotion, one, std::span<const double>{})),
+            Status::kOk);
   EXPECT_TRUE(test::matrices_identical(one[0].covariance, Gaussian<4>{}.covariance));
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// South of the radar bearings jump from pi to -pi. No filter may notice: the scene turned by 180 degrees must give the
-// estimate turned by 180 degrees.
+// South of the radar bearings jump from pi to -pi. No filter may notice: the scene turned by 180
+// degrees must give the estimate turned by 180 degrees.
 #include <gtest/gtest.h>
 
 #include "filter/cases.hpp"
@@ -40,11 +40,14 @@ void expect_the_same_all_round(const Sensor& sensor) {
     const auto step = south.update(sensor, turned);
     ASSERT_TRUE(expected);
     ASSERT_TRUE(step);
-    EXPECT_TRUE(test::matrices_near(step.innovation, expected.innovation, {.absolute = 1e-9, .relative = 1e-9}));
+    EXPECT_TRUE(test::matrices_near(step.innovation, expected.innovation,
+                                    {.absolute = 1e-9, .relative = 1e-9}));
     EXPECT_TRUE(test::matrices_near(south.estimate().mean.cwiseProduct(sign), north.estimate().mean,
                                     {.absolute = 1e-8, .relative = 1e-9}));
-    const Mat<double, N, N> back = sign.asDiagonal() * south.estimate().covariance * sign.asDiagonal();
-    EXPECT_LT(test::covariance_difference(back, Mat<double, N, N>(north.estimate().covariance)), 1e-9);
+    const Mat<double, N, N> back =
+        sign.asDiagonal() * south.estimate().covariance * sign.asDiagonal();
+    EXPECT_LT(test::covariance_difference(back, Mat<double, N, N>(north.estimate().covariance)),
+              1e-9);
   }
   EXPECT_TRUE(west && east) << "the plots lie on both sides of the seam";
 }

@@ -30,7 +30,8 @@ TEST(TwoPoint, ErrorsAreThoseItClaims) {
   for (int run = 0; run < kRuns; ++run) {
     const auto plot = [&](double age) {
       const Vec<double, 2> position(truth[0] - age * truth[1], truth[2] - age * truth[3]);
-      return Vec<double, 2>(radar.measure(position) + draw.error(radar.observe(radar.measure(position)).covariance));
+      return Vec<double, 2>(radar.measure(position) +
+                            draw.error(radar.observe(radar.measure(position)).covariance));
     };
     const Vec<double, 2> first = plot(dt);
     const Vec<double, 2> second = plot(0.0);
@@ -49,11 +50,13 @@ TEST(TwoPoint, ErrorsAreThoseItClaims) {
 
 TEST(TwoPoint, IsTheFormulaOfTwoFixes) {
   Draw draw(22);
-  const Gaussian<2> first{draw.normals<2>(), draw.definite<2>()}, second{draw.normals<2>(), draw.definite<2>()};
+  const Gaussian<2> first{draw.normals<2>(), draw.definite<2>()},
+      second{draw.normals<2>(), draw.definite<2>()};
   const double dt = 3.0;
   const Gaussian<4> belief = two_point(first, second, dt);
   const Vec<double, 2> velocity = (second.mean - first.mean) / dt;
-  EXPECT_TRUE(matrices_near(belief.mean, Vec<double, 4>(second.mean[0], velocity[0], second.mean[1], velocity[1])));
+  EXPECT_TRUE(matrices_near(
+      belief.mean, Vec<double, 4>(second.mean[0], velocity[0], second.mean[1], velocity[1])));
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j) {
       const double r1 = first.covariance(i, j), r2 = second.covariance(i, j);
@@ -68,7 +71,8 @@ TEST(TwoPoint, OfTwoPlotsAtOneTimeIsRefusedByTheStart) {
   const RangeBearing radar;
   Ekf ekf{CoordinatedTurn{}};
   for (const double separation : {0.0, 10.0})
-    EXPECT_EQ(ekf.start(two_point(radar, Vec<double, 2>(1000, 1), Vec<double, 2>(1000 + separation, 1), 0.0)),
+    EXPECT_EQ(ekf.start(two_point(radar, Vec<double, 2>(1000, 1),
+                                  Vec<double, 2>(1000 + separation, 1), 0.0)),
               Status::kNotFinite);
   EXPECT_FALSE(ekf.started());
 }
@@ -99,7 +103,8 @@ TEST(Lift, GivesTheUnknownComponentsTheModelsPrior) {
   const int rows[] = {0, 1, 3, 4};  // x, vx, y, vy of [x, vx, ax, y, vy, ay]
   for (int i = 0; i < 4; ++i) {
     EXPECT_EQ(six.mean[rows[i]], kinematics.mean[i]);
-    for (int j = 0; j < 4; ++j) EXPECT_EQ(six.covariance(rows[i], rows[j]), kinematics.covariance(i, j));
+    for (int j = 0; j < 4; ++j)
+      EXPECT_EQ(six.covariance(rows[i], rows[j]), kinematics.covariance(i, j));
   }
   EXPECT_EQ(six.covariance(2, 2), 9.0);
   EXPECT_EQ(six.covariance(5, 5), 9.0);
@@ -110,7 +115,8 @@ TEST(Lift, HappensInAStartWithFourComponents) {
   const Gaussian<4> kinematics{Draw(24).normals<4>(), Draw(24).definite<4>()};
   Ekf ekf{CoordinatedTurnRate{}};
   ASSERT_EQ(ekf.start(kinematics), Status::kOk);
-  EXPECT_TRUE(matrices_near(ekf.estimate().covariance, lift(CoordinatedTurnRate{}, kinematics).covariance, {0, 0}));
+  EXPECT_TRUE(matrices_near(ekf.estimate().covariance,
+                            lift(CoordinatedTurnRate{}, kinematics).covariance, {0, 0}));
 }
 
 }  // namespace

@@ -24,14 +24,15 @@ struct Score {
   double nees = 0.0;
 };
 
-Score score_conversion(const ConvertedRangeBearing& radar, const Vec<double, 2>& target, int draws) {
+Score score_conversion(const ConvertedRangeBearing& radar, const Vec<double, 2>& target,
+                       int draws) {
   Draw draw(11);
   const RangeBearing truth{.bearing_offset_rad = radar.bearing_offset_rad, .own = radar.own};
   const Vec<double, 2> exact = truth.measure(target);
   Score score;
   for (int k = 0; k < draws; ++k) {
-    const Vec<double, 2> z =
-        exact + Vec<double, 2>(radar.range_std_m * draw.normal(), radar.bearing_std_rad * draw.normal());
+    const Vec<double, 2> z = exact + Vec<double, 2>(radar.range_std_m * draw.normal(),
+                                                    radar.bearing_std_rad * draw.normal());
     const Gaussian<2> fix = radar.observe(z);
     const Vec<double, 2> error = fix.mean - target;
     const Cholesky<2> cholesky(fix.covariance);
@@ -42,7 +43,8 @@ Score score_conversion(const ConvertedRangeBearing& radar, const Vec<double, 2>&
   return score;
 }
 
-// 30 km, 3 degrees, 50 m: the plain conversion puts the plot r sb²/2 = 41 m short, nearly the range error.
+// 30 km, 3 degrees, 50 m: the plain conversion puts the plot r sb²/2 = 41 m short, nearly the range
+// error.
 TEST(Conversion, UnbiasedHasNoBiasWhereThePlainOneHas) {
   constexpr int kDraws = 40'000;
   const OwnShip own{.north_m = 500, .east_m = -800};
@@ -68,7 +70,8 @@ TEST(Conversion, BothAgreeWhereTheBearingIsPrecise) {
   const ConvertedRangeBearing unbiased{.range_std_m = 30, .bearing_std_rad = 1e-4};
   ConvertedRangeBearing plain = unbiased;
   plain.unbiased = false;
-  EXPECT_TRUE(matrices_near(unbiased.observe(z).mean, plain.observe(z).mean, {.absolute = 0, .relative = 1e-8}));
+  EXPECT_TRUE(matrices_near(unbiased.observe(z).mean, plain.observe(z).mean,
+                            {.absolute = 0, .relative = 1e-8}));
   EXPECT_TRUE(matrices_near(unbiased.observe(z).covariance, plain.observe(z).covariance,
                             {.absolute = 0, .relative = 1e-6}));
 }
@@ -88,7 +91,8 @@ TEST(Conversion, PlainCovarianceLiesAlongTheBearing) {
     const Gaussian<2> fix = radar.observe(Vec<double, 2>(1000, b));
     EXPECT_TRUE(matrices_near(fix.covariance, Mat<double, 2, 2>(turn * expected * turn.transpose()),
                               {.absolute = 1e-9, .relative = 1e-9}));
-    EXPECT_TRUE(matrices_near(fix.mean, (turn * north.mean).eval(), {.absolute = 1e-9, .relative = 1e-9}));
+    EXPECT_TRUE(
+        matrices_near(fix.mean, (turn * north.mean).eval(), {.absolute = 1e-9, .relative = 1e-9}));
   }
 }
 
@@ -101,7 +105,8 @@ TYPED_TEST(ConversionOf, CovarianceIsPositiveDefiniteAtEveryRange) {
   using Scalar = TypeParam;
   for (const double range : {0.0, 1e-3, 1.0, 100.0, 1e4, 1e5})
     for (const double bearing_std : {deg(0.01), deg(0.1), deg(1.0), deg(10.0), 1.0}) {
-      // At zero range the axes of the ellipse are as sb : 1, squared in the covariance: beyond float at 0.01 degrees.
+      // At zero range the axes of the ellipse are as sb : 1, squared in the covariance: beyond
+      // float at 0.01 degrees.
       if (sizeof(Scalar) == 4 && bearing_std < deg(0.1)) continue;
       const ConvertedRangeBearing radar{.range_std_m = 20, .bearing_std_rad = bearing_std};
       const Gaussian<2, Scalar> fix = radar.observe(Vec<Scalar, 2>(Scalar(range), Scalar(2)));
@@ -109,8 +114,8 @@ TYPED_TEST(ConversionOf, CovarianceIsPositiveDefiniteAtEveryRange) {
     }
 }
 
-// At the radar itself the plain form claims to know the position across the bearing exactly: a stated limit. With an
-// extent of the echo it does not.
+// At the radar itself the plain form claims to know the position across the bearing exactly: a
+// stated limit. With an extent of the echo it does not.
 TEST(Conversion, PlainNeedsAnExtentAtTheRadarItself) {
   ConvertedRangeBearing radar{.unbiased = false};
   const Vec<double, 2> z(0, 0.4);
@@ -127,7 +132,8 @@ TEST(Conversion, TellsWhenTheBiasMatters) {
   EXPECT_TRUE(conversion_bias_matters(limit * 1.001, 50, deg(3)));
   EXPECT_FALSE(conversion_bias_matters(limit * 0.999, 50, deg(3)));
   // What it says: twice the bias over the range error.
-  const ConvertedRangeBearing plain{.range_std_m = 50, .bearing_std_rad = deg(3), .unbiased = false};
+  const ConvertedRangeBearing plain{
+      .range_std_m = 50, .bearing_std_rad = deg(3), .unbiased = false};
   const double bias = -score_conversion(plain, Vec<double, 2>(30e3, 0), 40'000).bias[0];
   EXPECT_NEAR(2 * bias / 50, conversion_bias_ratio(30e3, 50, deg(3)), 0.07);
 }
@@ -135,7 +141,8 @@ TEST(Conversion, TellsWhenTheBiasMatters) {
 TEST(Errors, HeadingErrorIsABearingError) {
   const OwnShip rolling{.heading_std_rad = 0.03};
   const Vec<double, 2> z(2000, 0.5);
-  EXPECT_NEAR((RangeBearing{.bearing_std_rad = 0.04, .own = rolling}.observe(z).covariance(1, 1)), 0.05 * 0.05, 1e-15);
+  EXPECT_NEAR((RangeBearing{.bearing_std_rad = 0.04, .own = rolling}.observe(z).covariance(1, 1)),
+              0.05 * 0.05, 1e-15);
   for (const bool unbiased : {false, true}) {
     const ConvertedRangeBearing with{.bearing_std_rad = 0.04, .unbiased = unbiased, .own = rolling};
     const ConvertedRangeBearing same{.bearing_std_rad = 0.05, .unbiased = unbiased};
@@ -154,7 +161,8 @@ TEST(Errors, ExtentAndOwnPositionCountPerAxis) {
   const Gaussian<2> point = ConvertedRangeBearing{}.observe(z);
   const Gaussian<2> hull = ConvertedRangeBearing{.extent_std_m = 3, .own = own}.observe(z);
   EXPECT_TRUE(matrices_near(Mat<double, 2, 2>(hull.covariance - point.covariance),
-                            (25 * Mat<double, 2, 2>::Identity()).eval(), {.absolute = 1e-9, .relative = 0}));
+                            (25 * Mat<double, 2, 2>::Identity()).eval(),
+                            {.absolute = 1e-9, .relative = 0}));
 }
 
 TEST(Errors, OffsetTurnsThePlotBack) {
@@ -189,14 +197,20 @@ TEST(SensorParameters, AWrongOneIsNamed) {
   const double nan = std::nan("");
   for (const double bad : {-1.0, 0.0, nan}) {
     EXPECT_NE(complaint(RangeBearing{.range_std_m = bad}).find("range_std_m"), std::string::npos);
-    EXPECT_NE(complaint(ConvertedRangeBearing{.bearing_std_rad = bad}).find("bearing_std_rad"), std::string::npos);
-    EXPECT_NE(complaint(RangeBearingDoppler{.range_rate_std_mps = bad}).find("range_rate_std_mps"), std::string::npos);
+    EXPECT_NE(complaint(ConvertedRangeBearing{.bearing_std_rad = bad}).find("bearing_std_rad"),
+              std::string::npos);
+    EXPECT_NE(complaint(RangeBearingDoppler{.range_rate_std_mps = bad}).find("range_rate_std_mps"),
+              std::string::npos);
     EXPECT_NE(complaint(Position{.position_std_m = bad}).find("position_std_m"), std::string::npos);
   }
   EXPECT_NE(complaint(RangeBearing{.extent_std_m = -1}).find("extent_std_m"), std::string::npos);
-  EXPECT_NE(complaint(RangeBearing{.bearing_offset_rad = nan}).find("bearing_offset_rad"), std::string::npos);
-  EXPECT_NE(complaint(RangeBearing{.own = {.north_m = nan}}).find("own.north_m"), std::string::npos);
-  EXPECT_NE(complaint(RangeBearingDoppler{.own = {.heading_std_rad = -1}}).find("own.heading_std_rad"), std::string::npos);
+  EXPECT_NE(complaint(RangeBearing{.bearing_offset_rad = nan}).find("bearing_offset_rad"),
+            std::string::npos);
+  EXPECT_NE(complaint(RangeBearing{.own = {.north_m = nan}}).find("own.north_m"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint(RangeBearingDoppler{.own = {.heading_std_rad = -1}}).find("own.heading_std_rad"),
+      std::string::npos);
 }
 
 }  // namespace

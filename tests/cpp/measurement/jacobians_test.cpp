@@ -36,7 +36,8 @@ TEST(RangeBearing, JacobianIsTheDerivativeAllRound) {
   for (const double range : {5.0, 300.0, 40e3})
     for (int k = 0; k < 24; ++k) {
       const Vec<double, 2> x = kOwn.position<double>() + range * towards(deg(15.0 * k));
-      EXPECT_TRUE(derivative_agrees(radar, x, {.absolute = 1e-7, .relative = 1e-6})) << range << ", " << k;
+      EXPECT_TRUE(derivative_agrees(radar, x, {.absolute = 1e-7, .relative = 1e-6}))
+          << range << ", " << k;
     }
 }
 
@@ -46,7 +47,8 @@ TEST(RangeBearingDoppler, JacobianIsTheDerivativeAllRound) {
     for (int k = 0; k < 24; ++k) {
       const Vec<double, 2> p = kOwn.position<double>() + range * towards(deg(15.0 * k));
       const Vec<double, 4> x(p[0], 8.0, p[1], -5.0);
-      EXPECT_TRUE(derivative_agrees(radar, x, {.absolute = 1e-6, .relative = 1e-6})) << range << ", " << k;
+      EXPECT_TRUE(derivative_agrees(radar, x, {.absolute = 1e-6, .relative = 1e-6}))
+          << range << ", " << k;
     }
 }
 
@@ -75,17 +77,27 @@ TEST(RangeBearingDoppler, RangeRateIsRelativeToOwnShip) {
 }
 
 TEST(RangeBearingDoppler, IsARangeBearingWithARangeRate) {
-  const OwnShip own{.north_m = 5, .position_std_m = 3, .velocity_std_mps = 0.3, .heading_std_rad = 0.02};
-  const RangeBearing plain{.range_std_m = 7, .bearing_std_rad = 0.01, .extent_std_m = 4, .bearing_offset_rad = 0.1, .own = own};
-  const RangeBearingDoppler radar{.range_std_m = 7, .bearing_std_rad = 0.01, .range_rate_std_mps = 0.4,
-                                  .extent_std_m = 4, .bearing_offset_rad = 0.1, .own = own};
+  const OwnShip own{
+      .north_m = 5, .position_std_m = 3, .velocity_std_mps = 0.3, .heading_std_rad = 0.02};
+  const RangeBearing plain{.range_std_m = 7,
+                           .bearing_std_rad = 0.01,
+                           .extent_std_m = 4,
+                           .bearing_offset_rad = 0.1,
+                           .own = own};
+  const RangeBearingDoppler radar{.range_std_m = 7,
+                                  .bearing_std_rad = 0.01,
+                                  .range_rate_std_mps = 0.4,
+                                  .extent_std_m = 4,
+                                  .bearing_offset_rad = 0.1,
+                                  .own = own};
   const Vec<double, 3> z(900, 1.2, -4);
   EXPECT_TRUE(matrices_near(radar.observe(z).covariance.topLeftCorner<2, 2>(),
                             plain.observe(Vec<double, 2>(900, 1.2)).covariance, {0, 0}));
   EXPECT_NEAR(radar.observe(z).covariance(2, 2), 0.4 * 0.4 + 0.3 * 0.3, 1e-12);
   EXPECT_TRUE(matrices_near(radar.measure(Vec<double, 4>(100, 1, 200, 2)).head<2>(),
                             plain.measure(Vec<double, 2>(100, 200)), {0, 0}));
-  EXPECT_TRUE(matrices_near(radar.position(z).mean, plain.position(Vec<double, 2>(900, 1.2)).mean, {0, 0}));
+  EXPECT_TRUE(
+      matrices_near(radar.position(z).mean, plain.position(Vec<double, 2>(900, 1.2)).mean, {0, 0}));
 }
 
 template <class Sensor>
@@ -129,7 +141,8 @@ TYPED_TEST(AtTheRadar, EverythingIsFinite) {
     const Vec<Scalar, 2> x(Scalar(100), Scalar(100 + distance));
     const Vec<Scalar, 4> moving(x[0], Scalar(5), x[1], Scalar(-5));
     EXPECT_TRUE(is_finite(radar.measure(x)) && is_finite(radar.jacobian(x))) << distance;
-    EXPECT_TRUE(is_finite(doppler.measure(moving)) && is_finite(doppler.jacobian(moving))) << distance;
+    EXPECT_TRUE(is_finite(doppler.measure(moving)) && is_finite(doppler.jacobian(moving)))
+        << distance;
 
     const Vec<Scalar, 2> z(Scalar(distance), Scalar(1));
     Vec<Scalar, 3> zd(Scalar(distance), Scalar(1), Scalar(3));

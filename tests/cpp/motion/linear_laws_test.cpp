@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// What every linear motion model must obey: F is a flow, F(a + b) = F(b) F(a), and Q is what the noise of a step adds
-// up to, Q(a + b) = F(b) Q(a) F(b)' + Q(b). Together with Q(dt) / dt for a short step this determines Q.
+// What every linear motion model must obey: F is a flow, F(a + b) = F(b) F(a), and Q is what the
+// noise of a step adds up to, Q(a + b) = F(b) Q(a) F(b)' + Q(b). Together with Q(dt) / dt for a
+// short step this determines Q.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -32,7 +33,8 @@ class LinearMotion : public ::testing::Test {
     f(ConstantVelocity{.noise = WhiteAcceleration{0.3}}, "CV");
     f(ConstantAcceleration{.noise = WhiteJerk{0.02}}, "CA, white jerk");
     f(ConstantAcceleration{.noise = WhiteAcceleration{0.3}}, "CA, white acceleration");
-    for (const double rate : {0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3, 0.01, 0.05, 0.3, -0.3, 2.0})
+    for (const double rate :
+         {0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3, 0.01, 0.05, 0.3, -0.3, 2.0})
       f(CoordinatedTurn{.turn_rate_rad_s = rate, .noise = WhiteAcceleration{0.3}}, rate);
     for (const double tau : {0.01, 0.5, 2.0, 20.0, 1e3, 1e7})
       f(Singer{.maneuver_time_s = tau, .accel_std_mps2 = 0.5}, tau);
@@ -41,8 +43,8 @@ class LinearMotion : public ::testing::Test {
 using Scalars = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(LinearMotion, Scalars, );
 
-constexpr double kSteps[][2] = {{0.0, 0.0}, {0.0, 2.5},  {2.5, 0.0},  {1e-3, 1e-3}, {0.02, 3.0},
-                                {3.0, 0.4}, {1.0, 2.0},  {2.5, 2.5},  {0.5, 40.0},  {60.0, 60.0}};
+constexpr double kSteps[][2] = {{0.0, 0.0}, {0.0, 2.5}, {2.5, 0.0}, {1e-3, 1e-3}, {0.02, 3.0},
+                                {3.0, 0.4}, {1.0, 2.0}, {2.5, 2.5}, {0.5, 40.0},  {60.0, 60.0}};
 
 TYPED_TEST(LinearMotion, TwoStepsAreOne) {
   using Scalar = TypeParam;
@@ -87,12 +89,14 @@ TYPED_TEST(LinearMotion, NoiseIsSymmetricSemidefiniteAndGrows) {
     auto before = model.process_noise(Scalar(0)).diagonal().eval();
     for (const double dt : {1e-3, 0.1, 1.0, 2.5, 10.0, 60.0, 3600.0}) {
       const auto q = model.process_noise(Scalar(dt));
-      EXPECT_TRUE(matrices_near(q, q.transpose(), {.absolute = 0, .relative = 8 * this->kEpsilon})) << name;
+      EXPECT_TRUE(matrices_near(q, q.transpose(), {.absolute = 0, .relative = 8 * this->kEpsilon}))
+          << name;
       EXPECT_TRUE(is_finite(q)) << name << ", " << dt;
       const auto root = semidefinite_root<q.RowsAtCompileTime, Scalar>(q);
       const std::decay_t<decltype(q)> rebuilt = root * root.transpose();
       EXPECT_LT(covariance_difference(rebuilt, q), 1e4 * this->kEpsilon) << name << ", " << dt;
-      // Variances never shrink; of a Singer acceleration they end at s², which rounding may undercut by its last bit.
+      // Variances never shrink; of a Singer acceleration they end at s², which rounding may
+      // undercut by its last bit.
       EXPECT_TRUE(((q.diagonal() - before).array() >= -this->kEpsilon * before.array()).all())
           << name << ", " << dt;
       before = q.diagonal();

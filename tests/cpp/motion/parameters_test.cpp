@@ -47,17 +47,20 @@ TEST(MotionParameters, NoNoiseIsAllowed) {
 
 TEST(MotionParameters, AWrongNoiseIsNamed) {
   for (const double bad : {-0.1, kNan, kInfinity}) {
-    EXPECT_TRUE(names(complaint(ConstantVelocity{.noise = WhiteAcceleration{bad}}), "psd_m2s3")) << bad;
-    EXPECT_TRUE(names(complaint(CoordinatedTurn{.noise = PiecewiseAcceleration{bad}}), "std_mps2")) << bad;
+    EXPECT_TRUE(names(complaint(ConstantVelocity{.noise = WhiteAcceleration{bad}}), "psd_m2s3"))
+        << bad;
+    EXPECT_TRUE(names(complaint(CoordinatedTurn{.noise = PiecewiseAcceleration{bad}}), "std_mps2"))
+        << bad;
     EXPECT_TRUE(names(complaint(ConstantAcceleration{.noise = WhiteJerk{bad}}), "psd_m2s5")) << bad;
-    EXPECT_TRUE(names(complaint(CoordinatedTurnRate{.noise = WhiteAcceleration{bad}}), "psd_m2s3")) << bad;
+    EXPECT_TRUE(names(complaint(CoordinatedTurnRate{.noise = WhiteAcceleration{bad}}), "psd_m2s3"))
+        << bad;
   }
 }
 
 TEST(MotionParameters, WhiteJerkNeedsAnAcceleration) {
-  for (const std::string& message :
-       {complaint(ConstantVelocity{.noise = WhiteJerk{}}), complaint(CoordinatedTurn{.noise = WhiteJerk{}}),
-        complaint(CoordinatedTurnRate{.noise = WhiteJerk{}})})
+  for (const std::string& message : {complaint(ConstantVelocity{.noise = WhiteJerk{}}),
+                                     complaint(CoordinatedTurn{.noise = WhiteJerk{}}),
+                                     complaint(CoordinatedTurnRate{.noise = WhiteJerk{}})})
     EXPECT_TRUE(names(message, "white jerk needs an acceleration in the state")) << message;
   EXPECT_EQ(complaint(ConstantAcceleration{.noise = WhiteJerk{}}), "");
 }
@@ -74,15 +77,19 @@ TEST(MotionParameters, AWrongParameterIsNamedWithItsValue) {
         << bad;
   }
   for (const double bad : {kNan, kInfinity})
-    EXPECT_TRUE(names(complaint(CoordinatedTurn{.turn_rate_rad_s = bad}), "turn_rate_rad_s")) << bad;
+    EXPECT_TRUE(names(complaint(CoordinatedTurn{.turn_rate_rad_s = bad}), "turn_rate_rad_s"))
+        << bad;
   EXPECT_TRUE(
       names(complaint(CoordinatedTurnRate{.turn_rate_psd_rad2s3 = -2.5}), "turn_rate_psd_rad2s3"));
   EXPECT_TRUE(names(complaint(CoordinatedTurnRate{.turn_rate_psd_rad2s3 = -2.5}), "got -2.5"));
 }
 
 TEST(MotionParameters, PriorOfWhatAStartDoesNotKnow) {
-  EXPECT_DOUBLE_EQ(prior_variance(CoordinatedTurnRate{.prior_turn_rate_std_rad_s = 0.2}, Component::kTurnRate), 0.04);
-  EXPECT_DOUBLE_EQ(prior_variance(ConstantAcceleration{.prior_accel_std_mps2 = 3.0}, Component::kAeast), 9.0);
+  EXPECT_DOUBLE_EQ(
+      prior_variance(CoordinatedTurnRate{.prior_turn_rate_std_rad_s = 0.2}, Component::kTurnRate),
+      0.04);
+  EXPECT_DOUBLE_EQ(
+      prior_variance(ConstantAcceleration{.prior_accel_std_mps2 = 3.0}, Component::kAeast), 9.0);
   EXPECT_DOUBLE_EQ(prior_variance(Singer{.accel_std_mps2 = 0.5}, Component::kAnorth), 0.25);
   EXPECT_DOUBLE_EQ(prior_variance(ConstantVelocity{}, Component::kUser), 1.0) << "no opinion";
 }

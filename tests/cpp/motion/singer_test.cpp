@@ -58,7 +58,8 @@ TYPED_TEST(SingerOf, AccelerationForgetsItselfInTau) {
   // The stationary acceleration stays stationary.
   for (const double dt : {0.1, 8.0, 100.0}) {
     const Scalar keeps = singer.matrix(Scalar(dt))(2, 2);
-    EXPECT_NEAR(keeps * keeps * 0.25 + singer.process_noise(Scalar(dt))(2, 2), 0.25, 8 * this->kEpsilon);
+    EXPECT_NEAR(keeps * keeps * 0.25 + singer.process_noise(Scalar(dt))(2, 2), 0.25,
+                8 * this->kEpsilon);
   }
 }
 
@@ -82,7 +83,8 @@ TYPED_TEST(SingerOf, ExponentialRemainders) {
     EXPECT_NEAR(double(exponential_remainder<1>(Scalar(u))) / first, 1.0, 8 * this->kEpsilon) << u;
     if (u >= 0.3 || u == 0.0) {  // where the closed form does not cancel
       const double second = u == 0 ? 0.5 : double((v + std::expm1(-v)) / (v * v));
-      EXPECT_NEAR(double(exponential_remainder<2>(Scalar(u))) / second, 1.0, 16 * this->kEpsilon) << u;
+      EXPECT_NEAR(double(exponential_remainder<2>(Scalar(u))) / second, 1.0, 16 * this->kEpsilon)
+          << u;
     }
   }
 }

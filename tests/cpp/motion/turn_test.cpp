@@ -27,7 +27,8 @@ TYPED_TEST_SUITE(TurnOf, Scalars, );
 
 TYPED_TEST(TurnOf, AtZeroRateIsConstantVelocity) {
   using Scalar = TypeParam;
-  for (const ProcessNoise noise : {ProcessNoise(WhiteAcceleration{0.3}), ProcessNoise(PiecewiseAcceleration{0.3})}) {
+  for (const ProcessNoise noise :
+       {ProcessNoise(WhiteAcceleration{0.3}), ProcessNoise(PiecewiseAcceleration{0.3})}) {
     const CoordinatedTurn turn{.turn_rate_rad_s = 0.0, .noise = noise};
     const ConstantVelocity straight{.noise = noise};
     for (const double step : {0.0, 0.1, 2.5, 60.0, 3600.0}) {
@@ -47,11 +48,14 @@ TYPED_TEST(TurnOf, PassesThroughZeroRateWithoutAStep) {
       const double rate = sign * threshold / 2.0;  // the angle of a step of 2 s
       const Turn<Scalar> below(Scalar(rate * (1 - 1e-6)), Scalar(2));
       const Turn<Scalar> above(Scalar(rate * (1 + 1e-6)), Scalar(2));
-      EXPECT_TRUE(matrices_near(below.matrix(), above.matrix(),
-                                {.absolute = 8e-6 * threshold + 40 * this->kEpsilon, .relative = 0}));
-      EXPECT_TRUE(matrices_near(below.rate_derivatives(), above.rate_derivatives(),
-                                {.absolute = 8e-6 * threshold + 200 * this->kEpsilon, .relative = 0}));
-      EXPECT_LT(covariance_difference(below.noise(WhiteAcceleration{1.0}), above.noise(WhiteAcceleration{1.0})),
+      EXPECT_TRUE(
+          matrices_near(below.matrix(), above.matrix(),
+                        {.absolute = 8e-6 * threshold + 40 * this->kEpsilon, .relative = 0}));
+      EXPECT_TRUE(
+          matrices_near(below.rate_derivatives(), above.rate_derivatives(),
+                        {.absolute = 8e-6 * threshold + 200 * this->kEpsilon, .relative = 0}));
+      EXPECT_LT(covariance_difference(below.noise(WhiteAcceleration{1.0}),
+                                      above.noise(WhiteAcceleration{1.0})),
                 8e-6 * threshold + 200 * this->kEpsilon);
     }
   for (const double rate : {1e-300, 1e-30, 1e-15, 1e-9}) {
@@ -89,12 +93,14 @@ TEST(CoordinatedTurn, PiecewiseNoiseIsThePapersWhateverTheTurn) {
   const Mat<double, 4, 4> expected = std * std * gain * gain.transpose();
   for (const double rate : {0.0, 0.05, -0.2})
     EXPECT_TRUE(matrices_near(
-        CoordinatedTurn{.turn_rate_rad_s = rate, .noise = PiecewiseAcceleration{std}}.process_noise(dt),
+        CoordinatedTurn{.turn_rate_rad_s = rate, .noise = PiecewiseAcceleration{std}}.process_noise(
+            dt),
         expected, {.absolute = 0, .relative = 1e-14}));
 }
 
 // The rates include zero, both sides of the thresholds of the series, and a half turn a step.
-constexpr double kRates[] = {0.0, 1e-300, 1e-13, 1e-7, -1e-7, 1e-4, 7.9e-3, 8.1e-3, -8.1e-3, 0.05, 0.119, 0.121, -0.3, 1.2};
+constexpr double kRates[] = {0.0,    1e-300,  1e-13, 1e-7,  -1e-7, 1e-4, 7.9e-3,
+                             8.1e-3, -8.1e-3, 0.05,  0.119, 0.121, -0.3, 1.2};
 
 TEST(CoordinatedTurnRate, JacobianIsTheDerivative) {
   const CoordinatedTurnRate motion;
@@ -103,7 +109,8 @@ TEST(CoordinatedTurnRate, JacobianIsTheDerivative) {
       Vec<double, 5> x;
       x << 500, 7, -300, -4, rate;
       const auto move = [&](const Vec<double, 5>& state) { return motion.transition(state, dt); };
-      // Central differences over h = 6e-6 of values near 1000: rounding 1000 eps / h = 4e-8, times dt of truncation.
+      // Central differences over h = 6e-6 of values near 1000: rounding 1000 eps / h = 4e-8, times
+      // dt of truncation.
       EXPECT_TRUE(matrices_near(motion.jacobian(x, dt), numeric_jacobian(move, x),
                                 {.absolute = 3e-7, .relative = 1e-7}))
           << "rate " << rate << ", dt " << dt;
@@ -161,7 +168,8 @@ TYPED_TEST(TurnOf, WithoutNoiseOfTheRateIsTheNoiseOfTheTurn) {
     x << Scalar(0), Scalar(6), Scalar(0), Scalar(8), Scalar(rate);
     const Mat<Scalar, 5, 5> q = motion.process_noise(x, Scalar(2));
     const CoordinatedTurn known{.turn_rate_rad_s = double(x[4]), .noise = WhiteAcceleration{0.4}};
-    EXPECT_TRUE(matrices_near(q.template topLeftCorner<4, 4>(), known.process_noise(Scalar(2)), {0, 0}));
+    EXPECT_TRUE(
+        matrices_near(q.template topLeftCorner<4, 4>(), known.process_noise(Scalar(2)), {0, 0}));
     EXPECT_TRUE((q.row(4).array() == Scalar(0)).all());
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// An Imm on truths drawn from its own models and chain claims about the errors that it makes. It is not exact (it keeps
-// one Gaussian a mode), so the band is wider than chi-square's.
+// An Imm on truths drawn from its own models and chain claims about the errors that it makes. It is
+// not exact (it keeps one Gaussian a mode), so the band is wider than chi-square's.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,16 +20,18 @@ namespace {
 TEST(ImmConsistency, NeesAndModesOnItsOwnModel) {
   const RangeBearing radar{.range_std_m = 15, .bearing_std_rad = deg(0.3)};
   const auto chain = ModeChain<3>::from_sojourn_s({60.0, 40.0, 40.0});
-  const CoordinatedTurn motions[] = {{.turn_rate_rad_s = 0.0, .noise = WhiteAcceleration{0.02}},
-                                     {.turn_rate_rad_s = deg(3), .noise = WhiteAcceleration{0.02}},
-                                     {.turn_rate_rad_s = deg(-3), .noise = WhiteAcceleration{0.02}}};
+  const CoordinatedTurn motions[] = {
+      {.turn_rate_rad_s = 0.0, .noise = WhiteAcceleration{0.02}},
+      {.turn_rate_rad_s = deg(3), .noise = WhiteAcceleration{0.02}},
+      {.turn_rate_rad_s = deg(-3), .noise = WhiteAcceleration{0.02}}};
   Gaussian<4> start;
   start.mean << 3000, -6, 3000, 9;
   start.covariance = Vec<double, 4>(400, 4, 400, 4).asDiagonal();
   const double dt = 2.5;
   constexpr int kRuns = 500, kScans = 60;
   ConsistencyAverage nees_average(4);
-  double claimed = 0.0, right = 0.0;  // the probability of the true mode, and how often the likeliest is true
+  double claimed = 0.0,
+         right = 0.0;  // the probability of the true mode, and how often the likeliest is true
   double likeliest_claims = 0.0;
   for (int run = 0; run < kRuns; ++run) {
     test::Draw draw(std::uint64_t(5000 + run));
@@ -48,7 +50,8 @@ TEST(ImmConsistency, NeesAndModesOnItsOwnModel) {
       ASSERT_EQ(imm.predict(dt), Status::kOk);
       if (scan % 5 == 2) continue;
       const Vec<double, 2> exact = radar.measure(Vec<double, 2>(truth[0], truth[2]));
-      ASSERT_TRUE(imm.update(radar, Vec<double, 2>(exact + draw.error(radar.observe(exact).covariance))));
+      ASSERT_TRUE(
+          imm.update(radar, Vec<double, 2>(exact + draw.error(radar.observe(exact).covariance))));
     }
     const auto belief = imm.estimate();
     nees_average.add(nees<4, double>(belief.mean - truth, belief.covariance));

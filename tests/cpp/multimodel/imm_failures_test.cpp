@@ -36,8 +36,10 @@ struct Moody : Ekf<ConstantVelocity> {
     return refuses_time ? Status::kNotPositiveDefinite : Ekf::predict(dt_s);
   }
   template <class Sensor>
-  Step<Sensor::kMeasurements> update(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) noexcept {
-    if (refuses_plots) return failed_step<Sensor::kMeasurements, double>(Status::kNotPositiveDefinite);
+  Step<Sensor::kMeasurements> update(const Sensor& sensor,
+                                     const Vec<double, Sensor::kMeasurements>& z) noexcept {
+    if (refuses_plots)
+      return failed_step<Sensor::kMeasurements, double>(Status::kNotPositiveDefinite);
     return Ekf::update(sensor, z);
   }
 };
@@ -45,11 +47,18 @@ struct Moody : Ekf<ConstantVelocity> {
 template <class ImmType>
 struct Snapshot {
   explicit Snapshot(const ImmType& imm)
-      : probability(imm.mode_probability()), first(imm.template filter<0>().estimate()), second(imm.template filter<1>().estimate()) {}
+      : probability(imm.mode_probability()),
+        first(imm.template filter<0>().estimate()),
+        second(imm.template filter<1>().estimate()) {}
   testing::AssertionResult matches(const ImmType& imm) const {
-    if (const auto same = matrices_identical(imm.mode_probability(), probability); !same) return same;
-    if (const auto same = beliefs_identical<decltype(first.mean)::RowsAtCompileTime>(imm.template filter<0>().estimate(), first); !same) return same;
-    return beliefs_identical<decltype(second.mean)::RowsAtCompileTime>(imm.template filter<1>().estimate(), second);
+    if (const auto same = matrices_identical(imm.mode_probability(), probability); !same)
+      return same;
+    if (const auto same = beliefs_identical<decltype(first.mean)::RowsAtCompileTime>(
+            imm.template filter<0>().estimate(), first);
+        !same)
+      return same;
+    return beliefs_identical<decltype(second.mean)::RowsAtCompileTime>(
+        imm.template filter<1>().estimate(), second);
   }
   typename ImmType::Probability probability;
   std::decay_t<decltype(std::declval<ImmType>().template filter<0>().estimate())> first;
@@ -88,7 +97,8 @@ void expect_unmoved_by_bad_input(ImmType imm) {
 
 TEST(ImmFailures, BadInputLeavesEverything) {
   expect_unmoved_by_bad_input(Imm{kChain, straight(), Ukf{CoordinatedTurnRate{}}});
-  expect_unmoved_by_bad_input(Imm{kChain, SquareRootUkf{CoordinatedTurnRate{}}, SquareRootUkf{ConstantVelocity{}}});
+  expect_unmoved_by_bad_input(
+      Imm{kChain, SquareRootUkf{CoordinatedTurnRate{}}, SquareRootUkf{ConstantVelocity{}}});
 }
 
 TEST(ImmFailures, NotStarted) {
@@ -102,7 +112,8 @@ TEST(ImmFailures, NotStarted) {
   EXPECT_FALSE(imm.started());
 }
 
-// FilterPy clamps underflowed likelihoods to one tiny number, so that a far outlier tells the modes nothing.
+// FilterPy clamps underflowed likelihoods to one tiny number, so that a far outlier tells the modes
+// nothing.
 TEST(ImmFailures, AFarOutlierStillOrdersTheModes) {
   for (const double away : {1e4, 1e5, 1e6}) {
     Imm imm{kChain, straight(1e-3), straight(10.0)};
@@ -169,7 +180,8 @@ TEST(ImmFailures, WhereAllFailNothingChanges) {
   EXPECT_TRUE(before.matches(imm));
 }
 
-// The only mode with any probability fails while an impossible one succeeds: that is a failure, not a success.
+// The only mode with any probability fails while an impossible one succeeds: that is a failure, not
+// a success.
 TEST(ImmFailures, SuccessOfAnImpossibleModeAloneIsAFailure) {
   const ModeChain<2> stay(ModeChain<2>::Matrix::Identity());
   for (const int possible : {0, 1}) {

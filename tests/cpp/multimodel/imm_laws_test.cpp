@@ -24,7 +24,8 @@ auto turning(double deg_s, double psd = 0.05) {
 }
 
 Vec<double, 2> plot_near(const Gaussian<4>& belief, Draw& draw) {
-  return kRadar.measure(Vec<double, 2>(belief.mean[0] + 30 * draw.normal(), belief.mean[2] + 30 * draw.normal()));
+  return kRadar.measure(
+      Vec<double, 2>(belief.mean[0] + 30 * draw.normal(), belief.mean[2] + 30 * draw.normal()));
 }
 
 template <class Filter>
@@ -38,7 +39,8 @@ void expect_its_filter(Filter filter) {
     ASSERT_EQ(imm.predict(dt), Status::kOk);
     ASSERT_EQ(filter.predict(dt), Status::kOk);
     if (scan % 4 != 3) {
-      const Vec<double, 2> z = kRadar.measure(Vec<double, 2>(3000 + 40 * draw.normal(), 4000 + 40 * draw.normal()));
+      const Vec<double, 2> z =
+          kRadar.measure(Vec<double, 2>(3000 + 40 * draw.normal(), 4000 + 40 * draw.normal()));
       const auto step = imm.update(kRadar, z);
       const auto expected = filter.update(kRadar, z);
       ASSERT_TRUE(step && expected);
@@ -47,7 +49,8 @@ void expect_its_filter(Filter filter) {
       EXPECT_EQ(step.nis, expected.nis);
       EXPECT_EQ(step.log_likelihood, expected.log_likelihood);
     }
-    ASSERT_TRUE(beliefs_identical<Filter::kStates>(imm.estimate(), filter.estimate())) << "scan " << scan;
+    ASSERT_TRUE(beliefs_identical<Filter::kStates>(imm.estimate(), filter.estimate()))
+        << "scan " << scan;
     EXPECT_EQ(imm.mode_probability()[0], 1.0);
   }
 }
@@ -72,13 +75,17 @@ TEST(Imm, OfIdenticalModelsIsOneFilter) {
     const auto expected = filter.update(kRadar, z);
     ASSERT_TRUE(step && expected);
     EXPECT_NEAR(step.log_likelihood, expected.log_likelihood, 1e-10);
-    EXPECT_TRUE(matrices_near(imm.estimate().mean, filter.estimate().mean, {.absolute = 1e-9, .relative = 1e-11}));
-    EXPECT_LT((test::covariance_difference<double, 4>(imm.estimate().covariance, filter.estimate().covariance)), 1e-11);
+    EXPECT_TRUE(matrices_near(imm.estimate().mean, filter.estimate().mean,
+                              {.absolute = 1e-9, .relative = 1e-11}));
+    EXPECT_LT((test::covariance_difference<double, 4>(imm.estimate().covariance,
+                                                      filter.estimate().covariance)),
+              1e-11);
   }
 }
 
-// vortex-vkf handed the mixing matrix to the routine that wants the transition matrix: with equal likelihoods .695/.305
-// became .664/.336. With equal likelihoods the modes follow the chain, and an asymmetric chain shows its orientation.
+// vortex-vkf handed the mixing matrix to the routine that wants the transition matrix: with equal
+// likelihoods .695/.305 became .664/.336. With equal likelihoods the modes follow the chain, and an
+// asymmetric chain shows its orientation.
 TEST(Imm, EqualLikelihoodsGiveTheProbabilitiesOfTheChain) {
   Imm imm{ModeChain<2>(kAsymmetric), turning(0.0), turning(0.0)};
   imm.set_initial_mode_probability(Vec<double, 2>(0.59, 0.41));
@@ -93,8 +100,8 @@ TEST(Imm, EqualLikelihoodsGiveTheProbabilitiesOfTheChain) {
   }
 }
 
-// FilterPy recomputes the likelihood of a missed scan with a zero innovation and a stale S, so that each miss raises the
-// mode of less noise: .961 -> .974 in five misses, where the chain relaxes.
+// FilterPy recomputes the likelihood of a missed scan with a zero innovation and a stale S, so that
+// each miss raises the mode of less noise: .961 -> .974 in five misses, where the chain relaxes.
 TEST(Imm, MissedScansRelaxTheModesAlongTheChain) {
   ModeChain<2>::Matrix sticky{{0.95, 0.05}, {0.05, 0.95}};
   Imm imm{ModeChain<2>(sticky), turning(0.0, 1e-3), turning(0.0, 10.0)};
@@ -129,15 +136,18 @@ TEST(Imm, WeighsTheModesByBayes) {
   Ekf second = imm.filter<1>();
   const auto a = first.update(kRadar, z);
   const auto b = second.update(kRadar, z);
-  const Vec<double, 2> joint(prior[0] * std::exp(a.log_likelihood), prior[1] * std::exp(b.log_likelihood));
+  const Vec<double, 2> joint(prior[0] * std::exp(a.log_likelihood),
+                             prior[1] * std::exp(b.log_likelihood));
   const auto step = imm.update(kRadar, z);
   ASSERT_TRUE(step);
   EXPECT_TRUE(matrices_near(imm.mode_probability(), (joint / joint.sum()).eval()));
   EXPECT_NEAR(step.log_likelihood, std::log(joint.sum()), 1e-12) << "the likelihood of the mixture";
   // The innovation is that of the moment-matched prediction.
-  EXPECT_TRUE(matrices_near(step.innovation, (prior[0] * a.innovation + prior[1] * b.innovation).eval()));
+  EXPECT_TRUE(
+      matrices_near(step.innovation, (prior[0] * a.innovation + prior[1] * b.innovation).eval()));
   const Vec<double, 2> apart = a.innovation - b.innovation;
-  const Mat<double, 2, 2> s = prior[0] * a.innovation_covariance + prior[1] * b.innovation_covariance +
+  const Mat<double, 2, 2> s = prior[0] * a.innovation_covariance +
+                              prior[1] * b.innovation_covariance +
                               prior[0] * prior[1] * apart * apart.transpose();
   EXPECT_LT(test::covariance_difference(step.innovation_covariance, s), 1e-12);
   // A second sensor in the same scan: an update without a prediction.
@@ -145,7 +155,8 @@ TEST(Imm, WeighsTheModesByBayes) {
   const auto c = first.update(kRadar, z);
   const auto d = second.update(kRadar, z);
   ASSERT_TRUE(imm.update(kRadar, z));
-  const Vec<double, 2> again(before[0] * std::exp(c.log_likelihood), before[1] * std::exp(d.log_likelihood));
+  const Vec<double, 2> again(before[0] * std::exp(c.log_likelihood),
+                             before[1] * std::exp(d.log_likelihood));
   EXPECT_TRUE(matrices_near(imm.mode_probability(), (again / again.sum()).eval()));
 }
 
@@ -157,10 +168,12 @@ TEST(Imm, MixingKeepsTheMomentsOfTheMixture) {
     ASSERT_TRUE(imm.update(kRadar, test::plot_of<double>(2900, 4100)));
   }
   const Gaussian<4> before = imm.estimate();
-  EXPECT_GT((imm.filter<0>().estimate().mean - imm.filter<1>().estimate().mean).norm(), 1.0) << "the modes disagree";
+  EXPECT_GT((imm.filter<0>().estimate().mean - imm.filter<1>().estimate().mean).norm(), 1.0)
+      << "the modes disagree";
   ASSERT_EQ(imm.predict(0.0), Status::kOk);  // the chain jumps, the vessel does not move
   EXPECT_TRUE(matrices_near(imm.estimate().mean, before.mean));
-  EXPECT_LT((test::covariance_difference<double, 4>(imm.estimate().covariance, before.covariance)), 1e-12);
+  EXPECT_LT((test::covariance_difference<double, 4>(imm.estimate().covariance, before.covariance)),
+            1e-12);
 }
 
 TEST(Imm, EstimateIsTheMixturesMeanAndCovariance) {
@@ -171,11 +184,13 @@ TEST(Imm, EstimateIsTheMixturesMeanAndCovariance) {
   const Gaussian<4> a = imm.filter<0>().estimate(), b = imm.filter<1>().estimate();
   const Vec<double, 4> apart = a.mean - b.mean;
   EXPECT_TRUE(matrices_near(imm.estimate().mean, (p[0] * a.mean + p[1] * b.mean).eval()));
-  const Mat<double, 4, 4> covariance = p[0] * a.covariance + p[1] * b.covariance + p[0] * p[1] * apart * apart.transpose();
+  const Mat<double, 4, 4> covariance =
+      p[0] * a.covariance + p[1] * b.covariance + p[0] * p[1] * apart * apart.transpose();
   EXPECT_LT((test::covariance_difference<double, 4>(imm.estimate().covariance, covariance)), 1e-12);
 }
 
-// vortex-vkf keeps the transition of the first step in a function-local static, shared by every instance.
+// vortex-vkf keeps the transition of the first step in a function-local static, shared by every
+// instance.
 TEST(Imm, InstancesOfDifferentStepsAreIndependent) {
   const auto chain = ModeChain<2>::from_sojourn_s({60.0, 15.0});
   const auto run = [&](auto& imm, double dt) {
@@ -184,7 +199,8 @@ TEST(Imm, InstancesOfDifferentStepsAreIndependent) {
   };
   const Imm fresh{chain, turning(0.0), turning(3.0)};
   auto alone = fresh, fast = fresh, slow = fresh;
-  for (auto* imm : {&alone, &fast, &slow}) ASSERT_EQ(imm->start(test::five_km_off<double>()), Status::kOk);
+  for (auto* imm : {&alone, &fast, &slow})
+    ASSERT_EQ(imm->start(test::five_km_off<double>()), Status::kOk);
   for (int scan = 0; scan < 5; ++scan) run(alone, 1.0);
   for (int scan = 0; scan < 5; ++scan) {
     run(slow, 10.0);
@@ -208,13 +224,15 @@ TEST(Imm, InstancesOfDifferentStepsAreIndependent) {
 }
 
 TEST(Imm, ProbabilitiesSumToOneOverALongRun) {
-  Imm imm{ModeChain<3>::from_sojourn_s({60.0, 30.0, 30.0}), turning(0.0), turning(3.0), turning(-3.0)};
+  Imm imm{ModeChain<3>::from_sojourn_s({60.0, 30.0, 30.0}), turning(0.0), turning(3.0),
+          turning(-3.0)};
   ASSERT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);
   Draw draw(63);
   for (int scan = 0; scan < 2000; ++scan) {
     ASSERT_EQ(imm.predict(draw.uniform(0, 10)), Status::kOk);
     if (draw.uniform(0, 1) < 0.7)
-      (void)imm.update(kRadar, test::plot_of<double>(3000 + 200 * draw.normal(), 4000 + 200 * draw.normal()));
+      (void)imm.update(
+          kRadar, test::plot_of<double>(3000 + 200 * draw.normal(), 4000 + 200 * draw.normal()));
     ASSERT_NEAR(imm.mode_probability().sum(), 1.0, 1e-12);
     ASSERT_TRUE((imm.mode_probability().array() >= 0.0).all());
     ASSERT_TRUE((test::is_covariance<double, 4>(imm.estimate().covariance))) << "scan " << scan;
@@ -225,9 +243,11 @@ TEST(Imm, InitialProbabilitiesThatAreNoneAreRefused) {
   Imm imm{ModeChain<2>(kAsymmetric), turning(0.0), turning(3.0)};
   EXPECT_THROW(imm.set_initial_mode_probability(Vec<double, 2>(0.5, 0.6)), std::invalid_argument);
   EXPECT_THROW(imm.set_initial_mode_probability(Vec<double, 2>(1.5, -0.5)), std::invalid_argument);
-  EXPECT_THROW(imm.set_initial_mode_probability(Vec<double, 2>(std::nan(""), 1.0)), std::invalid_argument);
+  EXPECT_THROW(imm.set_initial_mode_probability(Vec<double, 2>(std::nan(""), 1.0)),
+               std::invalid_argument);
   ASSERT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);
-  EXPECT_TRUE(matrices_near(imm.mode_probability(), Vec<double, 2>(0.5, 0.5), {0, 0})) << "uniform unless set";
+  EXPECT_TRUE(matrices_near(imm.mode_probability(), Vec<double, 2>(0.5, 0.5), {0, 0}))
+      << "uniform unless set";
 }
 
 }  // namespace

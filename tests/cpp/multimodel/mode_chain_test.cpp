@@ -37,10 +37,12 @@ void expect_stochastic(const ModeMatrix<double, K>& p) {
   for (Eigen::Index i = 0; i < p.rows(); ++i) EXPECT_NEAR(p.row(i).sum(), 1.0, 1e-14);
 }
 
-// The docstring of filterpy gives the matrix transposed: a matrix whose columns sum to 1 must not pass for one.
+// The docstring of filterpy gives the matrix transposed: a matrix whose columns sum to 1 must not
+// pass for one.
 TEST(ModeChain, RowsThatDoNotSumToOneAreNamed) {
   const std::string message = complaint([] { Two(Two::Matrix{{0.9, 0.1}, {0.3, 0.8}}); });
-  EXPECT_NE(message.find("row 1 of the mode chain must sum to 1, sums to 1.1"), std::string::npos) << message;
+  EXPECT_NE(message.find("row 1 of the mode chain must sum to 1, sums to 1.1"), std::string::npos)
+      << message;
   EXPECT_NE(message.find("rows: mode before"), std::string::npos) << message;
   EXPECT_NE(complaint([] { Two(Two::Matrix{{0.9, 0.4}, {0.1, 0.6}}); }), "") << "transposed";
 }
@@ -62,7 +64,8 @@ TEST(ModeChain, RoundingOfTheRowsIsForgiven) {
 TEST(ModeChain, PerPredictionIsTheMatrixWhateverTheStep) {
   const Three chain(kStaying);
   EXPECT_FALSE(chain.continuous());
-  for (const double dt : {0.0, 1.0, 3600.0}) EXPECT_TRUE(matrices_near(chain.transition(dt), kStaying, {0, 0}));
+  for (const double dt : {0.0, 1.0, 3600.0})
+    EXPECT_TRUE(matrices_near(chain.transition(dt), kStaying, {0, 0}));
 }
 
 /// Laws of every chain in continuous time.
@@ -107,7 +110,8 @@ TEST(ModeChain, StaysForTheSojournTime) {
 TEST(ModeChain, WithItsPeriodHasTheMatrixOverIt) {
   for (const double period : {1e-3, 2.5, 3600.0}) {
     const Three chain(kStaying, period);
-    EXPECT_TRUE(matrices_near(chain.transition(period), kStaying, {.absolute = 1e-12, .relative = 0}));
+    EXPECT_TRUE(
+        matrices_near(chain.transition(period), kStaying, {.absolute = 1e-12, .relative = 0}));
     EXPECT_TRUE(matrices_near(chain.transition(2 * period), (kStaying * kStaying).eval(),
                               {.absolute = 1e-12, .relative = 0}));
     const Three::Matrix half = chain.transition(period / 2);
@@ -116,8 +120,10 @@ TEST(ModeChain, WithItsPeriodHasTheMatrixOverIt) {
   using Five = ModeChain<5>;
   Five::Matrix papers = Five::Matrix::Constant(0.025);
   papers.diagonal().setConstant(0.9);
-  EXPECT_TRUE(matrices_near(Five(papers, 3.0).transition(3.0), papers, {.absolute = 1e-12, .relative = 0}));
-  EXPECT_TRUE(matrices_near(Two(Two::Matrix::Identity(), 3.0).transition(99.0), Two::Matrix::Identity()));
+  EXPECT_TRUE(
+      matrices_near(Five(papers, 3.0).transition(3.0), papers, {.absolute = 1e-12, .relative = 0}));
+  EXPECT_TRUE(
+      matrices_near(Two(Two::Matrix::Identity(), 3.0).transition(99.0), Two::Matrix::Identity()));
 }
 
 TEST(ModeChain, WhatIsNoChainInContinuousTimeIsRefused) {
@@ -130,16 +136,24 @@ TEST(ModeChain, WhatIsNoChainInContinuousTimeIsRefused) {
   says_so(Two::Matrix{{0.1, 0.9}, {0.9, 0.1}});  // negative eigenvalue
   says_so(Two::Matrix{{0.5, 0.5}, {0.5, 0.5}});  // singular
   says_so(Two::Matrix{{0.0, 1.0}, {1.0, 0.0}});
-  says_so(Three::Matrix{{0.9, 0.1, 0.0}, {0.0, 0.9, 0.1}, {0.1, 0.0, 0.9}});  // goes from 0 to 2 only through 1, yet not in one period
+  says_so(
+      Three::Matrix{{0.9, 0.1, 0.0},
+                    {0.0, 0.9, 0.1},
+                    {0.1, 0.0, 0.9}});  // goes from 0 to 2 only through 1, yet not in one period
   EXPECT_THROW(Two(Two::Matrix{{0.9, 0.1}, {0.1, 0.9}}, 0.0), std::invalid_argument);
   EXPECT_THROW(Two(Two::Matrix{{0.9, 0.1}, {0.1, 0.9}}, kNan), std::invalid_argument);
 }
 
 TEST(ModeChain, SojournTimesThatAreNoneAreRefused) {
   for (const double bad : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()})
-    EXPECT_NE(complaint([&] { (void)Two::from_sojourn_s({10.0, bad}); }).find("sojourn time"), std::string::npos);
+    EXPECT_NE(complaint([&] {
+                (void)Two::from_sojourn_s({10.0, bad});
+              }).find("sojourn time"),
+              std::string::npos);
   EXPECT_NE(complaint([] { (void)Three::from_sojourn_s({10.0, 20.0}); }), "");
-  EXPECT_NE(complaint([] { (void)ModeChain<kRuntimeModes>(ModeMatrix<double, kRuntimeModes>()); }), "") << "no modes";
+  EXPECT_NE(complaint([] { (void)ModeChain<kRuntimeModes>(ModeMatrix<double, kRuntimeModes>()); }),
+            "")
+      << "no modes";
 }
 
 }  // namespace

@@ -30,9 +30,10 @@ void expect_no_heap(ImmType imm) {
 TEST(ImmHeap, IsNotTouched) {
   const Ekf straight{ConstantVelocity{}};
   expect_no_heap(Imm{ModeChain<2>::from_sojourn_s({60.0, 30.0}), straight, straight});
-  expect_no_heap(Imm{ModeChain<2>(ModeChain<2>::Matrix{{0.9, 0.1}, {0.1, 0.9}}), straight, straight});
-  expect_no_heap(Imm{ModeChain<3>::from_sojourn_s({60.0, 30.0, 30.0}), straight, Ukf{CoordinatedTurnRate{}},
-                     SquareRootUkf{ConstantAcceleration{}}});
+  expect_no_heap(
+      Imm{ModeChain<2>(ModeChain<2>::Matrix{{0.9, 0.1}, {0.1, 0.9}}), straight, straight});
+  expect_no_heap(Imm{ModeChain<3>::from_sojourn_s({60.0, 30.0, 30.0}), straight,
+                     Ukf{CoordinatedTurnRate{}}, SquareRootUkf{ConstantAcceleration{}}});
 }
 
 TEST(ChainHeap, RuntimeChainNeedsNone) {

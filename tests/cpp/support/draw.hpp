@@ -54,8 +54,9 @@ class Draw {
   std::normal_distribution<double> normal_;
 };
 
-/// The largest difference of two covariances, each element in units of the standard deviations of its row and column:
-/// what a tolerance means for matrices whose elements differ by orders of magnitude.
+/// The largest difference of two covariances, each element in units of the standard deviations of
+/// its row and column: what a tolerance means for matrices whose elements differ by orders of
+/// magnitude.
 template <class Scalar, int N>
 double covariance_difference(const Mat<Scalar, N, N>& actual, const Mat<Scalar, N, N>& expected) {
   double worst = 0.0;

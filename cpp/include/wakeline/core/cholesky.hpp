@@ -24,10 +24,14 @@ class Cholesky {
   void compute(const Mat<Scalar, N, N>& matrix) noexcept {
     using std::sqrt;
     ok_ = false;
+    if constexpr (N == 2) {
+      compute_2x2(matrix(0, 0), matrix(1, 0), matrix(1, 1));
+      return;
+    }
     for (int column = 0; column < N; ++column) {
       Scalar pivot = matrix(column, column);
       for (int k = 0; k < column; ++k) pivot -= lower_(column, k) * lower_(column, k);
-      if (!(pivot > Scalar(0)) || !(pivot <= std::numeric_limits<Scalar>::max())) return;
+      if (!is_variance(pivot)) return;
       const Scalar diagonal = sqrt(pivot);
       lower_(column, column) = diagonal;
       inverse_diagonal_[column] = Scalar(1) / diagonal;
@@ -57,6 +61,39 @@ class Cholesky {
     return right;
   }
 
+  /// vᵀ A⁻¹ v.
+  Scalar squared_norm(const Vec<Scalar, N>& v) const noexcept {
+    Scalar whitened[N];
+    Scalar norm = Scalar(0);
+    for (int row = 0; row < N; ++row) {
+      Scalar sum = v[row];
+      for (int k = 0; k < row; ++k) sum -= lower_(row, k) * whitened[k];
+      whitened[row] = sum * inverse_diagonal_[row];
+      norm += whitened[row] * whitened[row];
+    }
+    return norm;
+  }
+
+  /// B L⁻ᵀ: whitens the rows of B.
+  template <int Rows>
+  Mat<Scalar, Rows, N> whiten_rows(Mat<Scalar, Rows, N> left) const noexcept {
+    for (int column = 0; column < N; ++column) {
+      for (int k = 0; k < column; ++k) left.col(column) -= lower_(column, k) * left.col(k);
+      left.col(column) *= inverse_diagonal_[column];
+    }
+    return left;
+  }
+
+  /// W L⁻¹: what turns whitened rows W = B L⁻ᵀ into B A⁻¹.
+  template <int Rows>
+  Mat<Scalar, Rows, N> unwhiten_rows(Mat<Scalar, Rows, N> left) const noexcept {
+    for (int column = N - 1; column >= 0; --column) {
+      for (int k = column + 1; k < N; ++k) left.col(column) -= lower_(k, column) * left.col(k);
+      left.col(column) *= inverse_diagonal_[column];
+    }
+    return left;
+  }
+
   /// A⁻¹ B.
   template <int Cols>
   Mat<Scalar, N, Cols> solve(const Mat<Scalar, N, Cols>& right) const noexcept {
@@ -79,13 +116,30 @@ class Cholesky {
   }
 
  private:
+  static bool is_variance(Scalar pivot) noexcept {
+    return pivot > Scalar(0) && pivot <= std::numeric_limits<Scalar>::max();
+  }
+
+  /// In closed form: both roots at once instead of one after the other, which is most of the time an update takes.
+  void compute_2x2(Scalar a, Scalar b, Scalar c) noexcept {
+    using std::sqrt;
+    const Scalar determinant = a * c - b * b;
+    if (!is_variance(a) || !is_variance(determinant)) return;
+    inverse_diagonal_[0] = sqrt(Scalar(1) / a);
+    inverse_diagonal_[1] = sqrt(a / determinant);
+    lower_(0, 0) = a * inverse_diagonal_[0];
+    lower_(1, 0) = b * inverse_diagonal_[0];
+    lower_(1, 1) = determinant * (inverse_diagonal_[0] * inverse_diagonal_[0]) * inverse_diagonal_[1];
+    ok_ = true;
+  }
+
   Mat<Scalar, N, N> lower_ = Mat<Scalar, N, N>::Zero();
   Vec<Scalar, N> inverse_diagonal_ = Vec<Scalar, N>::Zero();
   bool ok_ = false;
 };
 
 /// A root G with G Gᵀ = A of a matrix that is only positive semidefinite, as process noise may be: a Cholesky
-/// factorisation that leaves out the directions without variance.
+/// factorisation that leaves out the directions without variance. Not finite where A is not.
 template <int N, class Scalar>
 Mat<Scalar, N, N> semidefinite_root(const Mat<Scalar, N, N>& matrix) noexcept {
   using std::sqrt;
@@ -93,7 +147,10 @@ Mat<Scalar, N, N> semidefinite_root(const Mat<Scalar, N, N>& matrix) noexcept {
   for (int column = 0; column < N; ++column) {
     Scalar pivot = matrix(column, column);
     for (int k = 0; k < column; ++k) pivot -= root(column, k) * root(column, k);
-    if (!(pivot > Scalar(8) * std::numeric_limits<Scalar>::epsilon() * matrix(column, column))) continue;
+    const Scalar variance = matrix(column, column);
+    if (pivot <= Scalar(8) * std::numeric_limits<Scalar>::epsilon() * variance &&
+        variance <= std::numeric_limits<Scalar>::max())
+      continue;
     const Scalar diagonal = sqrt(pivot);
     root(column, column) = diagonal;
     for (int row = column + 1; row < N; ++row) {

@@ -102,6 +102,21 @@ constexpr void check_sensor() noexcept {
                 "wakeline: this sensor reads a component that the state of the motion model does not hold");
 }
 
+/// True when a posterior variance is lost in the rounding of the prior one, and P - K S Kᵀ will not do.
+template <class Scalar, int N>
+bool cancels(const Mat<Scalar, N, N>& prior, const Mat<Scalar, N, N>& posterior) noexcept {
+  constexpr Scalar kSafe = sizeof(Scalar) > 4 ? Scalar(1e-8) : Scalar(1e-3);
+  bool safe = true;
+  for (int i = 0; i < N; ++i) safe = safe && posterior(i, i) > kSafe * prior(i, i);
+  return !safe;
+}
+
+/// Why an innovation covariance has no Cholesky factor.
+template <class Scalar, int M>
+Status refusal(const Mat<Scalar, M, M>& innovation_covariance) noexcept {
+  return is_finite(innovation_covariance) ? Status::kNotPositiveDefinite : Status::kNotFinite;
+}
+
 /// The likelihood part of a step, NIS = |L⁻¹ v|² and ln N(v; 0, S), and its status.
 template <int M, class Scalar>
 void score(Step<M, Scalar>& step, const Vec<Scalar, M>& whitened,

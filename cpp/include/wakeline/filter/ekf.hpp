@@ -30,27 +30,24 @@ class Ekf : public Belief<MotionType, ScalarType> {
   Status predict(Scalar dt_s) noexcept {
     if (!this->started_) return Status::kNotStarted;
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
-    Gaussian<kStates, Scalar> next;
+    const Vec<Scalar, kStates>& x = this->belief_.mean;
     if constexpr (LinearMotionModel<Motion>) {
-      if (dt_s != kept_.step_s) kept_ = {dt_s, this->motion_.matrix(dt_s), this->motion_.process_noise(dt_s)};
-      next.mean.noalias() = kept_.f * this->belief_.mean;
-      next.covariance = propagated(kept_.f, kept_.q);
+      if (dt_s != kept_.step_s)
+        kept_ = {dt_s, this->motion_.matrix(dt_s), this->motion_.process_noise(dt_s)};
+      return move(kept_.f * x, kept_.f, kept_.q);
     } else {
-      const Vec<Scalar, kStates>& x = this->belief_.mean;
-      next.mean = this->motion_.transition(x, dt_s);
-      next.covariance =
-          propagated(this->motion_.jacobian(x, dt_s), this->motion_.process_noise(x, dt_s));
+      return move(this->motion_.transition(x, dt_s), this->motion_.jacobian(x, dt_s),
+                  this->motion_.process_noise(x, dt_s));
     }
-    if (!is_finite(next.mean) || !is_finite(next.covariance.diagonal())) return Status::kNotFinite;
-    this->belief_ = next;
-    return Status::kOk;
   }
 
   /// The innovation of a reading and its likelihood, without taking it.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> innovation(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
-    return Innovation<Sensor>(*this, sensor, z).step;
+    Step<Sensor::kMeasurements, Scalar> step;
+    (void)Innovation<Sensor>(*this, sensor, z, step);
+    return step;
   }
 
   /// Corrects the belief by the reading z of a sensor.
@@ -58,19 +55,18 @@ class Ekf : public Belief<MotionType, ScalarType> {
   Step<Sensor::kMeasurements, Scalar> update(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
-    const Innovation<Sensor> innovation(*this, sensor, z);
-    if (!innovation.step) return innovation.step;
+    Step<kM, Scalar> step;
+    const Innovation<Sensor> innovation(*this, sensor, z, step);
+    if (!step) return step;
     Gaussian<kStates, Scalar>& belief = this->belief_;
-    const Mat<Scalar, kM, kStates> gain =
-        innovation.factor.template whiten<kStates>(innovation.hp);  // L⁻¹ H P
-    const Mat<Scalar, kStates, kStates> posterior = belief.covariance - gain.transpose() * gain;
-    belief.mean.noalias() += gain.transpose() * innovation.whitened;
-    belief.covariance =
-        cancels(belief.covariance, posterior)
-            ? joseph<Sensor>(innovation.h, innovation.factor.template solve<kStates>(innovation.hp),
-                             innovation.r)
-            : posterior;
-    return innovation.step;
+    const Mat<Scalar, kStates, kM> gain = innovation.factor.whiten_rows(innovation.ph);  // P Hᵀ L⁻ᵀ
+    const Mat<Scalar, kStates, kStates> posterior = belief.covariance - gain * gain.transpose();
+    belief.mean.noalias() += gain * innovation.whitened;
+    if (cancels<Scalar, kStates>(belief.covariance, posterior)) [[unlikely]]
+      belief.covariance = joseph(sensor, innovation.h, innovation.factor.unwhiten_rows(gain), z);
+    else
+      belief.covariance = posterior;
+    return step;
   }
 
  private:
@@ -81,60 +77,65 @@ class Ekf : public Belief<MotionType, ScalarType> {
     static constexpr int kReads = kReadsOf<Sensor>;
     static constexpr auto kRows = rows_read<Sensor>(kComponents);
 
-    Step<kM, Scalar> step;
     Mat<Scalar, kM, kReads> h;
-    Mat<Scalar, kM, kStates> hp;  ///< H P
-    Mat<Scalar, kM, kM> r;
+    Mat<Scalar, kStates, kM> ph;  ///< P Hᵀ
     Cholesky<kM, Scalar> factor;  ///< of S
     Vec<Scalar, kM> whitened;     ///< L⁻¹ v
 
-    Innovation(const Ekf& filter, const Sensor& sensor, const Vec<Scalar, kM>& z) noexcept {
+    /// Fills `step`, too.
+    Innovation(const Ekf& filter, const Sensor& sensor, const Vec<Scalar, kM>& z,
+               Step<kM, Scalar>& step) noexcept {
       check_sensor<Sensor, Ekf>();
       if (!filter.started_) return;
       const Gaussian<kStates, Scalar>& belief = filter.belief_;
       Vec<Scalar, kReads> read;
       for (int k = 0; k < kReads; ++k) read[k] = belief.mean[kRows[k]];
       const Gaussian<kM, Scalar> reading = sensor.observe(z);
-      r = reading.covariance;
-      h = sensor.jacobian(read);
-      hp.noalias() = h.col(0) * belief.covariance.row(kRows[0]);
-      for (int k = 1; k < kReads; ++k) hp.noalias() += h.col(k) * belief.covariance.row(kRows[k]);
+      // First, because an arc tangent takes as long as all that follows, which the processor does meanwhile.
       step.innovation = sensor.residual(reading.mean, sensor.measure(read));
-      step.innovation_covariance = r;
-      for (int k = 0; k < kReads; ++k)
-        step.innovation_covariance.noalias() += hp.col(kRows[k]) * h.col(k).transpose();
+      h = sensor.jacobian(read);
+      for (int m = 0; m < kM; ++m) {
+        ph.col(m) = h(m, 0) * belief.covariance.col(kRows[0]);
+        for (int k = 1; k < kReads; ++k) ph.col(m) += h(m, k) * belief.covariance.col(kRows[k]);
+      }
+      for (int n = 0; n < kM; ++n)
+        for (int m = n; m < kM; ++m) {
+          Scalar s = reading.covariance(m, n);
+          for (int k = 0; k < kReads; ++k) s += h(m, k) * ph(kRows[k], n);
+          step.innovation_covariance(m, n) = step.innovation_covariance(n, m) = s;
+        }
       factor.compute(step.innovation_covariance);
-      step.status = Status::kNotPositiveDefinite;
-      if (!factor.ok()) return;
+      if (!factor.ok()) {
+        step.status = refusal<Scalar, kM>(step.innovation_covariance);
+        return;
+      }
       whitened = factor.template whiten<1>(step.innovation);
       score(step, whitened, factor);
     }
   };
 
- private:
-  Mat<Scalar, kStates, kStates> propagated(const Mat<Scalar, kStates, kStates>& f,
-                                           const Mat<Scalar, kStates, kStates>& q) const noexcept {
-    const Mat<Scalar, kStates, kStates> fp = f * this->belief_.covariance;
+  /// Takes x and F P Fᵀ + Q as the belief, when they are finite.
+  [[gnu::flatten]] Status move(const Vec<Scalar, kStates>& x,
+                               const Mat<Scalar, kStates, kStates>& f,
+                               const Mat<Scalar, kStates, kStates>& q) noexcept {
+    Gaussian<kStates, Scalar>& belief = this->belief_;
+    const Mat<Scalar, kStates, kStates> fp = f * belief.covariance;
     Mat<Scalar, kStates, kStates> p = q;
     p.noalias() += fp * f.transpose();
-    mirror_lower<Scalar, kStates>(p);
-    return p;
-  }
-
-  /// True when the posterior variance is lost in the rounding of the prior one.
-  static bool cancels(const Mat<Scalar, kStates, kStates>& prior,
-                      const Mat<Scalar, kStates, kStates>& posterior) noexcept {
-    constexpr Scalar kSafe = sizeof(Scalar) > 4 ? Scalar(1e-8) : Scalar(1e-3);
-    return !(posterior.diagonal().array() > kSafe * prior.diagonal().array()).all();
+    if (!is_finite(x) || !is_finite(p.diagonal())) return Status::kNotFinite;
+    belief.mean = x;
+    belief.covariance = p;
+    mirror_lower<Scalar, kStates>(belief.covariance);
+    return Status::kOk;
   }
 
   /// (I - K H) P (I - K H)ᵀ + K R Kᵀ.
   template <class Sensor, int M, int Reads>
-  Mat<Scalar, kStates, kStates> joseph(const Mat<Scalar, M, Reads>& h,
-                                       const Mat<Scalar, M, kStates>& gain_transposed,
-                                       const Mat<Scalar, M, M>& r) const noexcept {
+  [[gnu::cold, gnu::noinline]] Mat<Scalar, kStates, kStates> joseph(
+      const Sensor& sensor, const Mat<Scalar, M, Reads>& h, const Mat<Scalar, kStates, M>& gain,
+      const Vec<Scalar, M>& z) const noexcept {
     constexpr auto kRows = rows_read<Sensor>(kComponents);
-    const Mat<Scalar, kStates, M> gain = gain_transposed.transpose();
+    const Mat<Scalar, M, M> r = sensor.observe(z).covariance;
     Mat<Scalar, kStates, kStates> rest = Mat<Scalar, kStates, kStates>::Identity();
     for (int k = 0; k < Reads; ++k) rest.col(kRows[k]) -= gain * h.col(k);
     Mat<Scalar, kStates, kStates> p =

@@ -12,8 +12,8 @@ namespace wakeline {
 /// Rauch-Tung-Striebel smoother, in place: turns the filtered beliefs of T scans into smoothed ones.
 ///
 /// `dt_s[k]` leads from scan k to scan k + 1 (T - 1 of them). The covariance is kept in a form that stays positive
-/// definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q) Gᵀ. Returns the first failure, with everything before that scan left
-/// as filtered.
+/// definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q) Gᵀ. Returns the first failure, with that scan and everything before it
+/// left as filtered.
 /// Source: Bar-Shalom, Li, Kirubarajan, 8.6.
 template <MotionModel Motion, class Scalar>
 Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs,
@@ -32,11 +32,13 @@ Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar
     if (!factor.ok()) return Status::kNotPositiveDefinite;
     const Matrix gain = factor.template solve<kStates>(fp).transpose();
     const Matrix rest = Matrix::Identity() - gain * f;
-    belief.mean += gain * (later.mean - predicted);
-    belief.covariance = rest * belief.covariance * rest.transpose() +
-                        gain * (later.covariance + q) * gain.transpose();
-    mirror_lower<Scalar, kStates>(belief.covariance);
-    if (!is_finite(belief.mean) || !is_finite(belief.covariance)) return Status::kNotFinite;
+    Gaussian<kStates, Scalar> smoothed;
+    smoothed.mean = belief.mean + gain * (later.mean - predicted);
+    smoothed.covariance = rest * belief.covariance * rest.transpose() +
+                          gain * (later.covariance + q) * gain.transpose();
+    mirror_lower<Scalar, kStates>(smoothed.covariance);
+    if (!is_finite(smoothed.mean) || !is_finite(smoothed.covariance)) return Status::kNotFinite;
+    belief = smoothed;
   }
   return Status::kOk;
 }

@@ -2,21 +2,38 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <Eigen/QR>
+#include <cmath>
 
 #include "wakeline/filter/unscented.hpp"
 
 namespace wakeline {
 
-/// Lower-triangular L with L Lᵀ = A Aᵀ and a positive diagonal, by orthogonal transformations of A.
+/// Lower-triangular L with L Lᵀ = A Aᵀ and a diagonal that is not negative: Householder reflections from the right, one
+/// for each row of A.
+/// Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 5.2.
 template <class Scalar, int N, int Cols>
-Mat<Scalar, N, N> lower_root(const Mat<Scalar, N, Cols>& a) noexcept {
-  const Eigen::HouseholderQR<Mat<Scalar, Cols, N>> qr(a.transpose());
-  Mat<Scalar, N, N> lower = Mat<Scalar, N, N>::Zero();
-  for (int column = 0; column < N; ++column) {
-    const Scalar sign = qr.matrixQR()(column, column) < Scalar(0) ? Scalar(-1) : Scalar(1);
-    for (int row = column; row < N; ++row) lower(row, column) = sign * qr.matrixQR()(column, row);
+Mat<Scalar, N, N> lower_root(Mat<Scalar, N, Cols> a) noexcept {
+  using std::abs, std::sqrt;
+  for (int row = 0; row < N; ++row) {
+    Scalar squares = Scalar(0);
+    for (int k = row; k < Cols; ++k) squares += a(row, k) * a(row, k);
+    const Scalar norm = sqrt(squares);
+    const bool negative = a(row, row) < Scalar(0);
+    const Scalar head = a(row, row) + (negative ? -norm : norm);
+    const Scalar scale = norm > Scalar(0) ? Scalar(1) / (norm * abs(head)) : Scalar(0);
+    for (int other = row + 1; other < N; ++other) {
+      Scalar dot = head * a(other, row);
+      for (int k = row + 1; k < Cols; ++k) dot += a(row, k) * a(other, k);
+      dot *= scale;
+      const Scalar reflected = a(other, row) - dot * head;
+      a(other, row) = negative ? reflected : -reflected;
+      for (int k = row + 1; k < Cols; ++k) a(other, k) -= dot * a(row, k);
+    }
+    a(row, row) = norm;
   }
+  Mat<Scalar, N, N> lower = Mat<Scalar, N, N>::Zero();
+  for (int row = 0; row < N; ++row)
+    for (int column = 0; column <= row; ++column) lower(row, column) = a(row, column);
   return lower;
 }
 
@@ -75,7 +92,9 @@ class SquareRootUkf {
 
   /// The belief, its covariance as L Lᵀ.
   [[nodiscard]] Gaussian<kStates, Scalar> estimate() const noexcept {
-    return {mean_, root_ * root_.transpose()};
+    Gaussian<kStates, Scalar> belief{mean_, root_ * root_.transpose()};
+    mirror_lower<Scalar, kStates>(belief.covariance);
+    return belief;
   }
 
   [[nodiscard]] const Mat<Scalar, kStates, kStates>& root() const noexcept { return root_; }
@@ -131,6 +150,8 @@ class SquareRootUkf {
         sensor.residual(reading.mean, Vec<Scalar, kM>(images.centre + shift));
     if (!is_finite(array) || !is_finite(innovation))
       return failed_step<kM, Scalar>(Status::kNotFinite);
+    if ((reading.covariance.diagonal().array() < Scalar(0)).any())
+      return failed_step<kM, Scalar>(Status::kNotPositiveDefinite);
 
     const Mat<Scalar, kM + kStates, kM + kStates> root = lower_root(array);
     const Mat<Scalar, kM, kM> s_root = root.template topLeftCorner<kM, kM>();
@@ -138,9 +159,11 @@ class SquareRootUkf {
     step.innovation = innovation;
     step.innovation_covariance = s_root * s_root.transpose();
     const Cholesky<kM, Scalar> factor(step.innovation_covariance);
-    if (!factor.ok()) return failed_step<kM, Scalar>(Status::kNotPositiveDefinite);
+    if (!factor.ok())
+      return failed_step<kM, Scalar>(refusal<Scalar, kM>(step.innovation_covariance));
     const Vec<Scalar, kM> whitened = factor.template whiten<1>(innovation);
     score(step, whitened, factor);
+    if (!step) return step;
     mean_.noalias() += root.template bottomLeftCorner<kStates, kM>() * whitened;
     root_ = root.template bottomRightCorner<kStates, kStates>();
     return step;

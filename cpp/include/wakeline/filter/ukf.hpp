@@ -6,7 +6,9 @@
 
 namespace wakeline {
 
-/// The unscented Kalman filter. Sigma points are drawn anew for the update, from the predicted belief.
+/// The unscented Kalman filter. Sigma points are drawn anew for the update, from the predicted belief. Covariances are
+/// updated as P - K S Kᵀ, and from the points themselves where a prior so much wider than the plot would make that
+/// difference cancel.
 /// Source: S. J. Julier, J. K. Uhlmann, Proc. IEEE 92, 2004; parameters as in `Unscented`.
 template <class MotionType, class ScalarType = double>
 class Ukf : public Belief<MotionType, ScalarType> {
@@ -37,7 +39,8 @@ class Ukf : public Belief<MotionType, ScalarType> {
     Gaussian<kStates, Scalar> next =
         unscented_moments(unscented_, kStates, moved.centre, moved.differences);
     next.covariance += process_noise(this->motion_, x, dt_s);
-    if (!is_finite(next.mean) || !is_finite(next.covariance)) return Status::kNotFinite;
+    mirror_lower<Scalar, kStates>(next.covariance);
+    if (const Status status = check(next); status != Status::kOk) return status;
     this->belief_ = next;
     return Status::kOk;
   }
@@ -69,25 +72,46 @@ class Ukf : public Belief<MotionType, ScalarType> {
     step.innovation = sensor.residual(reading.mean, predicted.mean);
     step.innovation_covariance = predicted.covariance + reading.covariance;
     const Cholesky<kM, Scalar> factor(step.innovation_covariance);
-    if (!factor.ok()) return failed_step<kM, Scalar>(Status::kNotPositiveDefinite);
+    if (!factor.ok())
+      return failed_step<kM, Scalar>(refusal<Scalar, kM>(step.innovation_covariance));
     const Vec<Scalar, kM> whitened = factor.template whiten<1>(step.innovation);
     score(step, whitened, factor);
     if (!step) return step;
 
+    const Mat<Scalar, kStates, kPoints> spread = sigma.colwise() - this->belief_.mean;
     const Mat<Scalar, kM, kStates> cross =
-        unscented_.template weight<Scalar>(kStates) * images.differences *
-        (sigma.colwise() - this->belief_.mean).transpose();
+        unscented_.template weight<Scalar>(kStates) * images.differences * spread.transpose();
     const Mat<Scalar, kM, kStates> gain = factor.template whiten<kStates>(cross);
     Gaussian<kStates, Scalar> next = this->belief_;
     next.mean.noalias() += gain.transpose() * whitened;
     next.covariance.noalias() -= gain.transpose() * gain;
-    if (!(next.covariance.diagonal().array() > Scalar(0)).all())
+    if (cancels<Scalar, kStates>(this->belief_.covariance, next.covariance))
+      next.covariance = joseph(spread, images.differences,
+                               factor.template solve<kStates>(cross), reading.covariance);
+    if (!Cholesky<kStates, Scalar>(next.covariance).ok())
       return failed_step<kM, Scalar>(Status::kNotPositiveDefinite);
     this->belief_ = next;
     return step;
   }
 
  private:
+  /// P - K S Kᵀ as what the points keep of their spread, Σ w (e_x - K e_z)(e_x - K e_z)ᵀ, with K of the rest of S.
+  template <int M>
+  Mat<Scalar, kStates, kStates> joseph(const Mat<Scalar, kStates, kPoints>& spread,
+                                       const Mat<Scalar, M, kPoints>& differences,
+                                       const Mat<Scalar, M, kStates>& gain_transposed,
+                                       const Mat<Scalar, M, M>& r) const noexcept {
+    const Scalar w = unscented_.template weight<Scalar>(kStates);
+    const Vec<Scalar, M> shift = w * differences.rowwise().sum();
+    const Mat<Scalar, kStates, kPoints> kept = spread - gain_transposed.transpose() * differences;
+    const Mat<Scalar, M, M> rest =
+        r + unscented_.template centre_correction<Scalar>() * shift * shift.transpose();
+    Mat<Scalar, kStates, kStates> p =
+        w * kept * kept.transpose() + gain_transposed.transpose() * rest * gain_transposed;
+    mirror_lower<Scalar, kStates>(p);
+    return p;
+  }
+
   Mat<Scalar, kStates, kPoints> points(const Cholesky<kStates, Scalar>& root) const noexcept {
     return sigma_points<Scalar, kStates>(this->belief_.mean, root.lower(),
                                          unscented_.template spread<Scalar>(kStates));

@@ -24,43 +24,62 @@ struct StateBelief : Gaussian<static_cast<int>(Components.size()), Scalar> {
   }
 };
 
+/// The belief that a filter keeps, with what its rows hold; valid as long as the belief is.
+template <auto Components, class Scalar>
+struct BeliefView {
+  static constexpr auto kComponents = Components;
+  static constexpr int kStates = static_cast<int>(Components.size());
+  const Vec<Scalar, kStates>& mean;
+  const Mat<Scalar, kStates, kStates>& covariance;
+};
+
 /// Zero mean and covariance over the same components.
 template <auto Components, class Scalar>
-StateBelief<Components, Scalar> zero_like(const StateBelief<Components, Scalar>& belief) noexcept {
-  StateBelief<Components, Scalar> zero = belief;
+StateBelief<Components, Scalar> zero_like(const StateBelief<Components, Scalar>&) noexcept {
+  StateBelief<Components, Scalar> zero;
   zero.mean.setZero();
   zero.covariance.setZero();
   return zero;
 }
 
-/// sum.mean += weight part.mean, where what only `own` holds is taken from it.
-template <auto To, auto From, class Scalar>
-void add_mean(StateBelief<To, Scalar>& sum, Scalar weight, const StateBelief<From, Scalar>& part,
-              const StateBelief<To, Scalar>& own) noexcept {
-  constexpr auto kRows = rows_of(From, To);
-  for (int i = 0; i < own.kStates; ++i)
-    sum.mean[i] += weight * (kRows[i] >= 0 ? part.mean[kRows[i]] : own.mean[i]);
+/// What `part`, a StateBelief or BeliefView, says of the state of `own`: what only `own` holds is taken from it, without
+/// correlation to the rest.
+template <auto To, class Scalar, class Part>
+decltype(auto) in_terms_of(const StateBelief<To, Scalar>& own, const Part& part) noexcept {
+  constexpr auto kFrom = Part::kComponents;
+  if constexpr (std::is_same_v<StateBelief<kFrom, Scalar>, StateBelief<To, Scalar>>) {
+    return (part);
+  } else {
+    constexpr auto kRows = rows_of(kFrom, To);
+    StateBelief<To, Scalar> said = own;
+    for (int j = 0; j < own.kStates; ++j) {
+      if (kRows[j] >= 0) said.mean[j] = part.mean[kRows[j]];
+      for (int i = 0; i < own.kStates; ++i) {
+        if (kRows[i] >= 0 && kRows[j] >= 0)
+          said.covariance(i, j) = part.covariance(kRows[i], kRows[j]);
+        else if (kRows[i] >= 0 || kRows[j] >= 0)
+          said.covariance(i, j) = Scalar(0);
+      }
+    }
+    return said;
+  }
 }
 
-/// sum.covariance += weight (P + d dᵀ), d = m - sum.mean, where what only `own` holds is taken from it, without
-/// correlation to the rest.
-template <auto To, auto From, class Scalar>
-void add_spread(StateBelief<To, Scalar>& sum, Scalar weight, const StateBelief<From, Scalar>& part,
+/// sum.mean += weight m.
+template <auto To, class Scalar, class Part>
+void add_mean(StateBelief<To, Scalar>& sum, Scalar weight, const Part& part,
+              const StateBelief<To, Scalar>& own) noexcept {
+  sum.mean += weight * in_terms_of(own, part).mean;
+}
+
+/// sum.covariance += weight (P + d dᵀ), d = m - sum.mean.
+template <auto To, class Scalar, class Part>
+void add_spread(StateBelief<To, Scalar>& sum, Scalar weight, const Part& part,
                 const StateBelief<To, Scalar>& own) noexcept {
-  constexpr auto kRows = rows_of(From, To);
-  constexpr int kStates = StateBelief<To, Scalar>::kStates;
-  Vec<Scalar, kStates> d;
-  for (int i = 0; i < kStates; ++i)
-    d[i] = (kRows[i] >= 0 ? part.mean[kRows[i]] : own.mean[i]) - sum.mean[i];
-  for (int j = 0; j < kStates; ++j)
-    for (int i = 0; i < kStates; ++i) {
-      const bool known = kRows[i] >= 0 && kRows[j] >= 0;
-      const bool unknown = kRows[i] < 0 && kRows[j] < 0;
-      const Scalar p = known     ? part.covariance(known ? kRows[i] : 0, known ? kRows[j] : 0)
-                       : unknown ? own.covariance(i, j)
-                                 : Scalar(0);
-      sum.covariance(i, j) += weight * (p + d[i] * d[j]);
-    }
+  const auto& said = in_terms_of(own, part);
+  const Vec<Scalar, StateBelief<To, Scalar>::kStates> d = said.mean - sum.mean;
+  for (int j = 0; j < own.kStates; ++j)
+    sum.covariance.col(j) += weight * (said.covariance.col(j) + d[j] * d);
 }
 
 /// The part of a belief that is about position and velocity, `[x, vx, y, vy]`.
@@ -121,9 +140,8 @@ class FilterBank {
   template <class Function>
   void for_each_belief(Function&& function) const noexcept {
     visit(*this, [&]<class Filter>(int k, const Slot<Filter>& slot) {
-      StateBelief<Filter::kComponents, Scalar> belief;
-      belief = slot.filter.estimate();
-      function(k, belief);
+      const auto& belief = slot.filter.estimate();
+      function(k, BeliefView<Filter::kComponents, Scalar>{belief.mean, belief.covariance});
     });
   }
 

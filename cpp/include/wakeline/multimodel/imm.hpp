@@ -8,7 +8,9 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 
+#include "wakeline/core/scalar.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/multimodel/filter_bank.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
@@ -54,11 +56,13 @@ class Imm {
   explicit Imm(const ModeChain<kModels>& chain, const Filters&... filters)
       : Imm(chain, Bank(filters...)) {}
 
-  Imm(const ModeChain<kModels>& chain, const Bank& bank)
+  Imm(const ModeChain<kModels>& chain, const std::type_identity_t<Bank>& bank)
       : chain_(chain),
         bank_(bank),
         initial_(Probability::Constant(bank.size(), Scalar(1) / Scalar(bank.size()))),
-        probability_(initial_) {
+        probability_(initial_),
+        weight_(ModeMatrix<Scalar, kModels>::Zero(bank.size(), bank.size())),
+        transition_(weight_) {
     if (chain.modes() != bank.size())
       throw std::invalid_argument("an Imm needs one mode of its chain for each filter, got " +
                                   std::to_string(chain.modes()) + " modes and " +
@@ -123,13 +127,19 @@ class Imm {
     Scalar best = kImpossible;
     for (int mode = 0; mode < bank_.size(); ++mode)
       if (probability_[mode] > Scalar(0) && log_likelihood[mode] > best) best = log_likelihood[mode];
-    if (best == kImpossible) return failed_step<kM, Scalar>(steps[0].status);
+    if (best == kImpossible) {
+      for (const Step<kM, Scalar>& failure : steps)
+        if (!failure) return failed_step<kM, Scalar>(failure.status);
+      return failed_step<kM, Scalar>(Status::kNotFinite);
+    }
 
     Step<kM, Scalar> step = combined(steps);
     Scalar total = Scalar(0);
     Probability posterior = probability_;
     for (int mode = 0; mode < bank_.size(); ++mode) {
-      posterior[mode] *= std::exp(log_likelihood[mode] - best);
+      // Where the prior is zero the likelihood may be beyond exp: 0 times infinity is 0 here.
+      posterior[mode] = select(posterior[mode] > Scalar(0),
+                               posterior[mode] * std::exp(log_likelihood[mode] - best), Scalar(0));
       total += posterior[mode];
     }
     for (int mode = 0; mode < bank_.size(); ++mode) probability_[mode] = posterior[mode] / total;
@@ -169,7 +179,8 @@ class Imm {
       posterior[mode] = probability_[mode] *
                         absorb(filter, before, readings, none, probability_[mode], share);
     });
-    const Scalar total = posterior.sum();
+    Scalar total = Scalar(0);
+    for (int mode = 0; mode < bank_.size(); ++mode) total += posterior[mode];
     if (!(total > Scalar(0)) || !std::isfinite(total)) {
       bank_.for_each([](int, auto& filter, auto& before) { (void)filter.assign(before); });
       return Scalar(0);
@@ -188,16 +199,15 @@ class Imm {
 
   /// The moment-matched estimate, over the state where all filters share one, else over `[x, vx, y, vy]`: equations
   /// (15) and (16) of paper A.
-  [[nodiscard]] auto estimate() const noexcept {
-    auto result = bank_.empty_estimate();
-    const auto empty = result;
+  [[nodiscard, gnu::flatten]] auto estimate() const noexcept {
+    auto sum = bank_.empty_estimate();
     bank_.for_each_belief([&](int mode, const auto& belief) {
-      add_mean(result, probability_[mode], belief, empty);
+      add_mean(sum, probability_[mode], belief, sum);
     });
     bank_.for_each_belief([&](int mode, const auto& belief) {
-      add_spread(result, probability_[mode], belief, empty);
+      add_spread(sum, probability_[mode], belief, sum);
     });
-    return result;
+    return decltype(sum)(sum);  // a copy, so that the sum itself stays in registers
   }
 
   [[nodiscard]] const Probability& mode_probability() const noexcept { return probability_; }
@@ -221,7 +231,6 @@ class Imm {
       transition_step_s_ = dt_s;
     }
     Probability expected = Probability::Zero(bank_.size());
-    weight_.resize(bank_.size(), bank_.size());
     for (int j = 0; j < bank_.size(); ++j) {
       for (int i = 0; i < bank_.size(); ++i) {
         weight_(i, j) = transition_(i, j) * probability_[i];
@@ -237,7 +246,7 @@ class Imm {
 
   /// The mixed start of one mode: mean and covariance of all beliefs, weighted by where the mode came from.
   template <class BeliefType>
-  BeliefType mixed(int mode, const BeliefType& own) const noexcept {
+  [[gnu::flatten]] BeliefType mixed(int mode, const BeliefType& own) const noexcept {
     BeliefType result = zero_like(own);
     bank_.for_each_before(
         [&](int i, const auto& before) { add_mean(result, weight_(i, mode), before, own); });
@@ -279,26 +288,29 @@ class Imm {
 
   template <int M, std::size_t Capacity>
   Step<M, Scalar> combined(const std::array<Step<M, Scalar>, Capacity>& steps) const noexcept {
-    Gaussian<M, Scalar> innovation{Vec<Scalar, M>::Zero(), Mat<Scalar, M, M>::Zero()};
+    Probability weight = probability_;
     Scalar total = Scalar(0);
-    for (int mode = 0; mode < bank_.size(); ++mode)
-      if (steps[static_cast<std::size_t>(mode)]) total += probability_[mode];
-    const auto weight = [&](int mode) {
-      return steps[static_cast<std::size_t>(mode)] ? probability_[mode] / total : Scalar(0);
-    };
-    for (int mode = 0; mode < bank_.size(); ++mode)
-      innovation.mean += weight(mode) * steps[static_cast<std::size_t>(mode)].innovation;
     for (int mode = 0; mode < bank_.size(); ++mode) {
-      const auto& step = steps[static_cast<std::size_t>(mode)];
-      const Vec<Scalar, M> d = step.innovation - innovation.mean;
-      innovation.covariance += weight(mode) * (step.innovation_covariance + d * d.transpose());
+      if (!steps[static_cast<std::size_t>(mode)]) weight[mode] = Scalar(0);
+      total += weight[mode];
     }
+    for (int mode = 0; mode < bank_.size(); ++mode) weight[mode] /= total;
     Step<M, Scalar> step;
     step.status = Status::kOk;
-    step.innovation = innovation.mean;
-    step.innovation_covariance = innovation.covariance;
-    const Cholesky<M, Scalar> factor(innovation.covariance);
-    step.nis = factor.template whiten<1>(innovation.mean).squaredNorm();
+    step.innovation_covariance.setZero();
+    for (int mode = 0; mode < bank_.size(); ++mode)
+      if (weight[mode] > Scalar(0))
+        step.innovation += weight[mode] * steps[static_cast<std::size_t>(mode)].innovation;
+    for (int mode = 0; mode < bank_.size(); ++mode) {
+      if (!(weight[mode] > Scalar(0))) continue;
+      const auto& of_mode = steps[static_cast<std::size_t>(mode)];
+      const Vec<Scalar, M> d = of_mode.innovation - step.innovation;
+      for (int j = 0; j < M; ++j)
+        for (int i = 0; i < M; ++i)
+          step.innovation_covariance(i, j) +=
+              weight[mode] * (of_mode.innovation_covariance(i, j) + d[i] * d[j]);
+    }
+    step.nis = Cholesky<M, Scalar>(step.innovation_covariance).squared_norm(step.innovation);
     return step;
   }
 
@@ -314,5 +326,9 @@ class Imm {
 
 template <int K, class... Filters>
 Imm(const ModeChain<K>&, const Filters&...) -> Imm<FilterBank<Filters...>>;
+
+template <int K, class Bank>
+  requires requires { Bank::kModels; }
+Imm(const ModeChain<K>&, const Bank&) -> Imm<Bank>;
 
 }  // namespace wakeline

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -138,8 +139,9 @@ class ModeChain {
     const double fastest = -matrix_.diagonal().minCoeff();
     if (!(fastest * dt_s > 0.0)) return identity;
     int halvings = 0;
-    double rate = fastest * dt_s;  // expected number of (uniformised) jumps in the step
-    for (; rate > 0.5 && halvings < 60; ++halvings) rate /= 2;
+    // Expected number of (uniformised) jumps in the step.
+    double rate = std::min(fastest * dt_s, std::numeric_limits<double>::max());
+    for (; rate > 0.5; ++halvings) rate /= 2;
     const Matrix jump = identity + matrix_ / fastest;
     Matrix term = identity;
     Matrix sum = identity;
@@ -147,9 +149,10 @@ class ModeChain {
       term = (term * jump).eval() * (rate / n);
       sum += term;
     }
-    sum *= std::exp(-rate);
-    for (int n = 0; n < halvings; ++n) sum = (sum * sum).eval();
-    for (Eigen::Index i = 0; i < modes(); ++i) sum.row(i) /= sum.row(i).sum();
+    for (int n = 0; n <= halvings; ++n) {
+      if (n > 0) sum = (sum * sum).eval();
+      for (Eigen::Index i = 0; i < modes(); ++i) sum.row(i) /= sum.row(i).sum();
+    }
     return sum;
   }
 

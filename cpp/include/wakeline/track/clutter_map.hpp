@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -55,7 +54,13 @@ class ClutterMap {
   }
 
   /// Saves or restores what has been learned.
-  void archive(Archive& fields) { fields(cells_, kCells); }
+  void archive(Archive& fields) {
+    const std::size_t size = cells_.size();
+    fields(cells_, size);
+    if (cells_.size() == size) return;
+    cells_.resize(size);
+    fields.fail();
+  }
 
  private:
   static constexpr std::size_t kCells = 1 << 14;
@@ -78,9 +83,9 @@ class ClutterMap {
 
   /// The four cells whose centres surround a position, with their bilinear shares.
   [[nodiscard]] std::array<Corner, 4> corners(const Vec<double, 2>& position) const noexcept {
-    constexpr double kEdge = 1e9;  // cells beyond this index are one
-    const double u = std::clamp(position[0] / cell_m_ - 0.5, -kEdge, kEdge);
-    const double v = std::clamp(position[1] / cell_m_ - 0.5, -kEdge, kEdge);
+    constexpr double kEdge = 1e9;  // cells beyond this index are one, and so is no number
+    const double u = std::fmin(std::fmax(position[0] / cell_m_ - 0.5, -kEdge), kEdge);
+    const double v = std::fmin(std::fmax(position[1] / cell_m_ - 0.5, -kEdge), kEdge);
     const auto i = static_cast<std::int32_t>(std::floor(u));
     const auto j = static_cast<std::int32_t>(std::floor(v));
     const double a = u - i;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <tuple>
 
@@ -46,7 +47,7 @@ struct TrackerConfig {
   double survival_time_s = 1000.0;   ///< mean time until a target leaves
   double drop_existence = 0.005;      ///< a track below this probability of existence is dropped
   int tentative_misses = 4;          ///< a tentative track is dropped after more misses in a row
-  double coast_scans = 3.0;          ///< a confirmed one after more than this,
+  double coast_scans = 5.0;          ///< a confirmed one after more than this,
   double coast_scans_per_hit = 0.3;  ///< and this for each plot it ever had,
   int coast_scans_max = 15;          ///< but never more than this
   int shown_scans = 4;  ///< a coasting track is shown for this many scans, then held in mind
@@ -90,7 +91,8 @@ struct TrackerConfig {
     require_positive("clutter_density_per_m2", clutter_density_per_m2);
     require(wild_probability >= 0.0 && wild_probability < 1.0, "wild_probability",
             "at least 0 and below 1", wild_probability);
-    require(wild_scale >= 1.0, "wild_scale", "at least 1", wild_scale);
+    require(wild_scale >= 1.0 && std::isfinite(wild_scale), "wild_scale", "finite and at least 1",
+            wild_scale);
     require_not_negative("clutter_cell_m", clutter_cell_m);
     require_positive("clutter_memory_s", clutter_memory_s);
     require_not_negative("clutter_weight", clutter_weight);

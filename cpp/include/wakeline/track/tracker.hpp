@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -27,9 +30,9 @@ namespace wakeline {
 /// What a scan has brought. The spans are valid until the next call.
 struct ScanReport {
   Status status = Status::kOk;
-  std::span<const std::int64_t> plot_track_id;  ///< of each plot the track it most likely belongs to, or 0
+  std::span<const std::int64_t> plot_track_id;  ///< of each plot up to `max_plots` the track it belongs to, or 0
   std::span<const Event> events;
-  int refused_plots = 0;  ///< not finite, behind the antenna, or beyond `max_plots`
+  int refused_plots = 0;  ///< not finite, behind the antenna, of another time than the scan, or beyond `max_plots`
 };
 
 /// Keeps tracks of all vessels a radar sees, scan by scan.
@@ -47,15 +50,13 @@ class Tracker {
 
   /// Throws `std::invalid_argument` on a setting that makes no sense.
   Tracker(const Radar& radar, const TrackerConfig& config, const Estimator& prototype)
-      : radar_(radar),
-        config_(config),
+      : radar_(validated(radar)),
+        config_(validated(config)),
         prototype_(prototype),
         map_(config.clutter_cell_m, config.clutter_memory_s),
         candidates_(config.max_tracks, config.max_tracks * kPairs),
         global_(config.max_tracks, config.max_plots),
         nearest_(config.max_tracks, config.max_plots, config.max_tracks * kPairs) {
-    radar.validate();
-    config.validate();
     const auto tracks = static_cast<std::size_t>(config.max_tracks);
     const auto plots = static_cast<std::size_t>(config.max_plots);
     pool_.assign(tracks, TrackType{.estimator = prototype});
@@ -81,7 +82,7 @@ class Tracker {
     if (!std::isfinite(time_s)) return {Status::kNotFinite, {}, {}, 0};
     if (started_ && time_s < time_s_) return {Status::kNegativeTimeStep, {}, {}, 0};
     const double dt_s = started_ ? time_s - time_s_ : 0.0;
-    const int refused = take_plots(time_s, plots);
+    const int refused = take_plots(time_s, dt_s, plots);
     for (const int slot : order_) advance(pool_[at(slot)], time_s, dt_s);
     for (const int slot : order_) gate(slot);
     claim_plots();
@@ -123,21 +124,17 @@ class Tracker {
   /// or the position makes no sense.
   std::int64_t designate(double time_s, double north_m, double east_m,
                          double position_std_m) noexcept {
+    if (!std::isfinite(time_s) || !(position_std_m > 0.0)) return 0;
     const Gaussian<2> place{{north_m, east_m},
                             position_std_m * position_std_m * Mat<double, 2, 2>::Identity()};
     const Gaussian<4> belief =
         kinematics_from<double>(place, resting_velocity(), Mat<double, 2, 2>::Zero());
-    TrackType* track = open_track(time_s, belief, kDesignatedExistence);
+    TrackType* track = open_track(time_s, belief, kDesignatedExistence, time_s);
     if (track == nullptr) return 0;
     track->tentative_id = 0;
-    track->hits = config_.confirm_hits;
-    track->history = (1u << config_.confirm_hits) - 1u;
+    track->scans = track->hits = config_.confirm_hits;
     track->status = TrackStatus::kConfirmed;
     track->id = next_id_++;
-    if (!started_) {
-      started_ = true;
-      time_s_ = time_s;
-    }
     return track->id;
   }
 
@@ -164,20 +161,28 @@ class Tracker {
   [[nodiscard]] std::vector<std::byte> save() const {
     Archive fields;
     const_cast<Tracker*>(this)->archive(fields);  // writing changes nothing
+    std::uint64_t sum = checksum(fields.bytes());
+    fields(sum);
     return fields.bytes();
   }
 
   /// Goes on bit for bit where the saved tracker was. False, and nothing changed, when the bytes are not the state of a
   /// tracker with the same settings.
   [[nodiscard]] bool restore(std::span<const std::byte> bytes) {
+    std::uint64_t sum = 0;
+    if (bytes.size() < sizeof(sum)) return false;
+    const std::span<const std::byte> state = bytes.first(bytes.size() - sizeof(sum));
+    std::memcpy(&sum, bytes.data() + state.size(), sizeof(sum));
+    if (sum != checksum(state)) return false;
     Tracker other(radar_, config_, prototype_);
-    Archive fields(bytes);
+    Archive fields(state);
     other.archive(fields);
     if (!fields.ok() || !fields.at_end()) return false;
     *this = std::move(other);
     return true;
   }
 
+  [[nodiscard]] const Estimator& prototype() const noexcept { return prototype_; }
   [[nodiscard]] const Radar& radar() const noexcept { return radar_; }
   [[nodiscard]] const TrackerConfig& config() const noexcept { return config_; }
   [[nodiscard]] double time_s() const noexcept { return time_s_; }
@@ -186,6 +191,7 @@ class Tracker {
   static constexpr int kPairs = 8;  ///< most plots that one track looks at
   static constexpr double kCertain = 0.9999;  ///< no claim is more certain than this
   static constexpr double kDesignatedExistence = 0.999;
+  static constexpr double kClockPeriods = 10.0;  ///< a plot farther in time from its scan has a wrong clock
   static constexpr std::uint32_t kArchiveVersion = 1;
 
   /// A plot as a position, and what the tracks say of it.
@@ -237,17 +243,18 @@ class Tracker {
   }
 
   /// Converts the plots; sorts them by north for the search. Returns how many were refused.
-  int take_plots(double time_s, std::span<const Plot> plots) noexcept {
+  int take_plots(double time_s, double dt_s, std::span<const Plot> plots) noexcept {
     echoes_.clear();
     by_north_.clear();
     largest_variance_ = 0.0;
+    const double slack_s = std::max(kClockPeriods * radar_.period_s, dt_s);
     const std::size_t count = std::min(plots.size(), static_cast<std::size_t>(config_.max_plots));
     plot_track_id_.assign(count, 0);
     int refused = static_cast<int>(plots.size() - count);
     for (std::size_t k = 0; k < count; ++k) {
       const Plot& plot = plots[k];
       const Gaussian<2> position = radar_.position(plot.range_m, plot.bearing_rad, plot.own);
-      const bool usable = std::isfinite(plot.time_s) && plot.range_m >= 0.0 &&
+      const bool usable = std::fabs(plot.time_s - time_s) <= slack_s && plot.range_m >= 0.0 &&
                           is_finite(position.mean) && Cholesky<2>(position.covariance).ok();
       if (!usable) {
         ++refused;
@@ -580,9 +587,23 @@ class Tracker {
 
   /// A free plot and one of the scan before, near enough for the speed limit, start a tentative track.
   void start_tracks(double time_s) noexcept {
+    double earliest_s = std::numeric_limits<double>::infinity();
+    double largest_variance = 0.0;
+    for (const FreePlot& plot : free_) {
+      earliest_s = std::min(earliest_s, plot.time_s);
+      largest_variance = std::max(largest_variance, plot.position.covariance.trace());
+    }
     for (const Echo& echo : echoes_) {
       if (!(echo.free > config_.free_plot)) continue;
-      for (const FreePlot& earlier : free_) {
+      const double reach =
+          radar_.max_speed_mps * std::max(echo.time_s - earliest_s, 0.0) +
+          config_.start_gate_sigma * std::sqrt(largest_variance + echo.position.covariance.trace());
+      const double north = echo.position.mean[0];
+      auto place = std::lower_bound(
+          free_.begin(), free_.end(), north - reach,
+          [](const FreePlot& plot, double limit) { return plot.position.mean[0] < limit; });
+      for (; place != free_.end() && place->position.mean[0] <= north + reach; ++place) {
+        const FreePlot& earlier = *place;
         const double dt_s = echo.time_s - earlier.time_s;
         if (!(dt_s > 0.0) ||
             !within_speed_limit(earlier.position, echo.position, dt_s, radar_.max_speed_mps,
@@ -593,23 +614,26 @@ class Tracker {
           belief = with_speed_prior(belief, std::sqrt(resting_velocity().covariance(0, 0)));
         TrackType* track = open_track(
             echo.time_s, belief,
-            config_.initial_existence * config_.clutter_density_per_m2 / echo.density);
+            config_.initial_existence * config_.clutter_density_per_m2 / echo.density, time_s);
         if (track != nullptr) track->history = 3u;
         if (track != nullptr) announce(TrackEvent::kStarted, *track, time_s);
       }
     }
     free_.clear();
-    for (const Echo& echo : echoes_)
-      if (echo.free > config_.free_plot) free_.push_back({echo.position, echo.time_s});
+    for (const int index : by_north_)
+      if (const Echo& echo = echoes_[at(index)]; echo.free > config_.free_plot)
+        free_.push_back({echo.position, echo.time_s});
   }
 
   /// A new tentative track of two plots; null when it cannot start or there is no room.
-  TrackType* open_track(double time_s, const Gaussian<4>& belief, double existence) noexcept {
-    if (vacant_.empty() && !make_room(existence)) return nullptr;
+  TrackType* open_track(double time_s, const Gaussian<4>& belief, double existence,
+                        double scan_time_s) noexcept {
+    Estimator estimator = prototype_;
+    if (estimator.start(belief) != Status::kOk) return nullptr;
+    if (vacant_.empty() && !make_room(scan_time_s, existence)) return nullptr;
     const int slot = vacant_.back();
     TrackType& track = pool_[at(slot)];
-    track.estimator = prototype_;
-    if (track.estimator.start(belief) != Status::kOk) return nullptr;
+    track.estimator = estimator;
     vacant_.pop_back();
     order_.push_back(slot);
     track.id = track.tentative_id = next_tentative_id_--;
@@ -627,7 +651,7 @@ class Tracker {
   }
 
   /// Gives up the weakest tentative track if it is weaker than a new one would be.
-  bool make_room(double existence) noexcept {
+  bool make_room(double time_s, double existence) noexcept {
     auto weakest = order_.end();
     for (auto place = order_.begin(); place != order_.end(); ++place) {
       const TrackType& track = pool_[at(*place)];
@@ -636,9 +660,17 @@ class Tracker {
         weakest = place;
     }
     if (weakest == order_.end()) return false;
-    vacant_.push_back(*weakest);
+    end(*weakest, time_s);
     order_.erase(weakest);
     return true;
+  }
+
+  /// The end of a track: its plots are nobody's, its slot is free.
+  void end(int slot, double time_s) noexcept {
+    const TrackType& track = pool_[at(slot)];
+    announce(TrackEvent::kLost, track, time_s);
+    std::replace(plot_track_id_.begin(), plot_track_id_.end(), track.id, std::int64_t{0});
+    vacant_.push_back(slot);
   }
 
   template <class Predicate>
@@ -648,8 +680,7 @@ class Tracker {
       const int slot = order_[k];
       TrackType& track = pool_[at(slot)];
       if (predicate(track)) {
-        announce(TrackEvent::kLost, track, time_s);
-        vacant_.push_back(slot);
+        end(slot, time_s);
         track.existence = -1.0;
       } else {
         order_[kept++] = slot;
@@ -661,6 +692,13 @@ class Tracker {
   void announce(TrackEvent kind, const TrackType& track, double time_s) noexcept {
     if (events_.size() < events_.capacity())
       events_.push_back({kind, track.id, track.tentative_id, time_s});
+  }
+
+  /// FNV-1a, 64 bits.
+  static std::uint64_t checksum(std::span<const std::byte> bytes) noexcept {
+    std::uint64_t sum = 0xCBF29CE484222325u;
+    for (const std::byte byte : bytes) sum = (sum ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001B3u;
+    return sum;
   }
 
   void archive(Archive& fields) {
@@ -711,7 +749,7 @@ class Tracker {
   std::vector<Pairs> pairs_;  ///< by slot
   std::vector<Echo> echoes_;
   std::vector<int> by_north_;
-  std::vector<FreePlot> free_;  ///< of the scan before
+  std::vector<FreePlot> free_;  ///< of the scan before, from south to north
   std::vector<std::int64_t> plot_track_id_;
   std::vector<Event> events_;
   std::vector<int> row_track_;

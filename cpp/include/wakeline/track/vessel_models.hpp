@@ -25,6 +25,20 @@ struct VesselModels {
   double restless_sojourn_s = 90.0;
   double turning_sojourn_s = 80.0;
 
+  void validate() const {
+    require_not_negative("steady_psd_m2s3", steady_psd_m2s3);
+    require_not_negative("steady_course_psd_rad2s", steady_course_psd_rad2s);
+    require_not_negative("restless_psd_m2s3", restless_psd_m2s3);
+    require_not_negative("restless_course_psd_rad2s", restless_course_psd_rad2s);
+    require_not_negative("turning_psd_m2s3", turning_psd_m2s3);
+    require_not_negative("turning_course_psd_rad2s", turning_course_psd_rad2s);
+    require_not_negative("turn_rate_psd_rad2s3", turn_rate_psd_rad2s3);
+    require_positive("prior_turn_rate_std_rad_s", prior_turn_rate_std_rad_s);
+    require_positive("steady_sojourn_s", steady_sojourn_s);
+    require_positive("restless_sojourn_s", restless_sojourn_s);
+    require_positive("turning_sojourn_s", turning_sojourn_s);
+  }
+
   [[nodiscard]] WanderingCourse steady(double max_speed_mps) const noexcept {
     return {steady_psd_m2s3, steady_course_psd_rad2s, max_speed_mps};
   }

@@ -1,0 +1,8 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "any_filter_update.hpp"
+
+template wakeline::Step<2> wakeline::python::AnyFilter::update(const Fix&,
+                                                               const Vec<double, 2>&) noexcept;
+template wakeline::Step<2> wakeline::python::AnyFilter::innovation(
+    const Fix&, const Vec<double, 2>&) const noexcept;

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// What the bindings of filters, multi-model estimators and trackers share.
+#pragma once
+
+#include "any_filter.hpp"
+#include "types.hpp"
+
+namespace wakeline::python {
+
+inline PyGaussian to_gaussian(const AnyBelief& belief) { return {belief.mean, belief.covariance}; }
+
+/// As a belief over the state layout of its size: 4, 5 or 6.
+inline AnyBelief to_belief(const char* name, const PyGaussian& gaussian) {
+  if (gaussian.mean.size() < 4 || gaussian.mean.size() > kMaxStates)
+    throw py::value_error(std::string(name) + " must have a mean of 4, 5 or 6 states, got " +
+                          std::to_string(gaussian.mean.size()));
+  AnyBelief belief;
+  belief.layout = gaussian.mean.size() == 4   ? StateLayout::kKinematics
+                  : gaussian.mean.size() == 5 ? StateLayout::kTurn
+                                              : StateLayout::kAcceleration;
+  belief.mean = gaussian.mean;
+  belief.covariance = gaussian.covariance;
+  return belief;
+}
+
+/// Calls `function(sensor)` with the C++ sensor behind a Python one.
+template <class Function>
+auto visit_sensor(const py::handle& sensor, Function&& function) {
+  if (py::isinstance<RangeBearing>(sensor)) return function(sensor.cast<const RangeBearing&>());
+  if (py::isinstance<ConvertedRangeBearing>(sensor))
+    return function(sensor.cast<const ConvertedRangeBearing&>());
+  if (py::isinstance<Position>(sensor)) return function(sensor.cast<const Position&>());
+  if (py::isinstance<RangeBearingDoppler>(sensor))
+    return function(sensor.cast<const RangeBearingDoppler&>());
+  throw py::type_error("sensor must be RangeBearing, ConvertedRangeBearing, Position or "
+                       "RangeBearingDoppler, got " +
+                       py::str(py::type::of(sensor).attr("__name__")).cast<std::string>());
+}
+
+/// Throws ValueError when a Kalman filter is given a sensor that is not linear.
+template <class Sensor>
+void require_linear(const AnyFilter& filter) {
+  if (filter.linear() && !Sensor::kLinear)
+    throw py::value_error("sensor must be linear for Kalman: use ConvertedRangeBearing or Position, or Ekf or Ukf");
+}
+
+template <class Sensor>
+void require_linear(const AnyImm& imm) {
+  for (int k = 0; k < imm.bank().size(); ++k)
+    require_linear<Sensor>(imm.bank().filter(static_cast<std::size_t>(k)));
+}
+
+}  // namespace wakeline::python

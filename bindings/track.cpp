@@ -1,0 +1,405 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include <map>
+#include <optional>
+
+#include "estimators.hpp"
+#include "wakeline/track/tracker.hpp"
+#include "wakeline/track/vessel_models.hpp"
+
+namespace wakeline::python {
+namespace {
+
+using AnyTracker = Tracker<AnyImm>;
+
+/// A plain struct of settings as a Python class: keyword arguments, attributes, and an error that names what is unknown.
+template <class Settings>
+class SettingsClass {
+ public:
+  SettingsClass(py::module_& m, const char* name, const char* doc) : class_(m, name, doc) {
+    class_.def(py::init([](const py::kwargs& values) {
+      py::object settings = py::cast(Settings{});
+      for (const auto& [key, value] : values) {
+        if (!py::hasattr(settings, key))
+          throw py::type_error("no setting is called " + py::str(key).cast<std::string>());
+        settings.attr(key) = value;
+      }
+      const Settings result = settings.cast<Settings>();
+      if constexpr (requires { result.validate(); }) result.validate();
+      return result;
+    }));
+    class_.def("__eq__", [](const py::object& self, const py::object& other) {
+      return py::isinstance<Settings>(other) &&
+             self.attr("as_dict")().equal(other.attr("as_dict")());
+    });
+  }
+
+  template <class Field>
+  SettingsClass& field(const char* name, Field Settings::*member) {
+    class_.def_readwrite(name, member);
+    names_.push_back(name);
+    return *this;
+  }
+
+  /// A field that is a property of its own.
+  SettingsClass& name(const char* name) {
+    names_.push_back(name);
+    return *this;
+  }
+
+  /// Closes the list of fields.
+  void done() {
+    class_.def("as_dict", [names = names_](const py::object& self) {
+      py::dict values;
+      for (const std::string& name : names) values[name.c_str()] = self.attr(name.c_str());
+      return values;
+    }, "The settings by name.");
+    class_.def("__repr__", [names = names_](const py::object& self) {
+      std::string text = py::type::of(self).attr("__name__").cast<std::string>() + "(";
+      for (std::size_t k = 0; k < names.size(); ++k)
+        text += (k ? ", " : "") + names[k] + "=" +
+                py::repr(self.attr(names[k].c_str())).cast<std::string>();
+      return text + ")";
+    });
+  }
+
+  py::class_<Settings>& python() { return class_; }
+
+ private:
+  py::class_<Settings> class_;
+  std::vector<std::string> names_;
+};
+
+const std::map<std::string, Association> kAssociations{
+    {"probabilistic", Association::kProbabilistic},
+    {"global_nearest", Association::kGlobalNearest},
+    {"nearest", Association::kNearest}};
+
+std::string association_name(const TrackerConfig& config) {
+  for (const auto& [name, value] : kAssociations)
+    if (value == config.association) return name;
+  return "";
+}
+
+void set_association(TrackerConfig& config, const std::string& name) {
+  const auto found = kAssociations.find(name);
+  if (found == kAssociations.end())
+    throw py::value_error("association must be probabilistic, global_nearest or nearest, got " + name);
+  config.association = found->second;
+}
+
+const char* status_name(TrackStatus status) {
+  switch (status) {
+    case TrackStatus::kTentative: return "tentative";
+    case TrackStatus::kConfirmed: return "confirmed";
+    case TrackStatus::kCoasting: return "coasting";
+    case TrackStatus::kHeld: return "held";
+  }
+  return "";
+}
+
+const char* event_name(TrackEvent event) {
+  switch (event) {
+    case TrackEvent::kStarted: return "started";
+    case TrackEvent::kConfirmed: return "confirmed";
+    case TrackEvent::kCoasting: return "coasting";
+    case TrackEvent::kLost: return "lost";
+  }
+  return "";
+}
+
+/// `vessel_imm` over filters composed at run time; the same bits.
+AnyImm any_vessel_imm(const Radar& radar, const VesselModels& models) {
+  const Eigen::Vector3d sojourn_s{models.steady_sojourn_s, models.restless_sojourn_s,
+                                  models.turning_sojourn_s};
+  AnyImm imm(ModeChain<kRuntimeModes>::from_sojourn_s(ModeVector<double, kRuntimeModes>(sojourn_s)),
+             AnyFilterBank({AnyFilter(Ekf(models.steady(radar.max_speed_mps))),
+                            AnyFilter(Ekf(models.restless(radar.max_speed_mps))),
+                            AnyFilter(Ekf(models.turning(radar.max_speed_mps)))}));
+  imm.set_initial_mode_probability(ModeVector<double, kRuntimeModes>(sojourn_s / sojourn_s.sum()));
+  return imm;
+}
+
+struct PyReport {
+  py::array_t<std::int64_t> plot_track_id;
+  std::vector<Event> events;
+  int refused_plots;
+};
+
+/// Tracks as arrays.
+struct PyTracks {
+  py::array_t<std::int64_t> track_id;
+  std::vector<std::string> status;
+  py::array_t<double> time_s, mean, covariance, mode_probability, nis, existence, visibility;
+  py::array_t<std::int64_t> hits, misses;
+  std::vector<std::string> name;
+};
+
+/// A column given as one number for all plots or one for each.
+DoubleArray column(const char* name, const py::object& values, py::ssize_t plots) {
+  const DoubleArray array = values.cast<DoubleArray>();
+  if (array.ndim() == 0) {
+    DoubleArray filled(plots);
+    std::fill_n(filled.mutable_data(), plots, *array.data());
+    return filled;
+  }
+  require_shape(array.ndim() == 1 && array.shape(0) == plots, name, shape_text({plots}), array);
+  return array;
+}
+
+PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
+                 const DoubleArray& bearing_rad, const py::object& plot_time_s,
+                 const py::object& own_north_m, const py::object& own_east_m,
+                 double heading_std_rad) {
+  require_shape(range_m.ndim() == 1, "range_m", "(n,)", range_m);
+  const py::ssize_t count = range_m.shape(0);
+  const DoubleArray bearing = column("bearing_rad", bearing_rad, count);
+  const DoubleArray time =
+      column("plot_time_s", plot_time_s.is_none() ? py::object(py::float_(time_s)) : plot_time_s, count);
+  const DoubleArray north = column("own_north_m", own_north_m, count);
+  const DoubleArray east = column("own_east_m", own_east_m, count);
+  std::vector<Plot> plots(static_cast<std::size_t>(count));
+  for (std::size_t k = 0; k < plots.size(); ++k)
+    plots[k] = {time.data()[k], range_m.data()[k], bearing.data()[k],
+                OwnShip{.north_m = north.data()[k],
+                        .east_m = east.data()[k],
+                        .heading_std_rad = heading_std_rad}};
+  ScanReport report;
+  {
+    const py::gil_scoped_release release;
+    report = tracker.process(time_s, plots);
+  }
+  require_ok(report.status, "process");
+  PyReport result{py::array_t<std::int64_t>(count), {report.events.begin(), report.events.end()},
+                  report.refused_plots};
+  std::fill_n(result.plot_track_id.mutable_data(), count, 0);
+  std::copy(report.plot_track_id.begin(), report.plot_track_id.end(),
+            result.plot_track_id.mutable_data());
+  return result;
+}
+
+PyTracks tracks(const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {
+  std::vector<const Track<AnyImm>*> wanted;
+  tracker.for_each([&](const Track<AnyImm>& track) {
+    if (tentative || track.shown()) wanted.push_back(&track);
+  });
+  const auto count = static_cast<py::ssize_t>(wanted.size());
+  const py::ssize_t modes = tracker.prototype().bank().size();
+  PyTracks table{py::array_t<std::int64_t>(count),
+                 {},
+                 py::array_t<double>(count),
+                 py::array_t<double>({count, py::ssize_t{4}}),
+                 py::array_t<double>({count, py::ssize_t{4}, py::ssize_t{4}}),
+                 py::array_t<double>({count, modes}),
+                 py::array_t<double>(count),
+                 py::array_t<double>(count),
+                 py::array_t<double>(count),
+                 py::array_t<std::int64_t>(count),
+                 py::array_t<std::int64_t>(count),
+                 {}};
+  for (py::ssize_t k = 0; k < count; ++k) {
+    const Track<AnyImm>& track = *wanted[static_cast<std::size_t>(k)];
+    const Gaussian<4> belief = time_s ? tracker.kinematics_at(track, *time_s) : track.kinematics;
+    table.track_id.mutable_at(k) = track.id;
+    table.status.emplace_back(status_name(track.status));
+    table.time_s.mutable_at(k) = time_s ? std::max(*time_s, track.time_s) : track.time_s;
+    for (int i = 0; i < 4; ++i) {
+      table.mean.mutable_at(k, i) = belief.mean[i];
+      for (int j = 0; j < 4; ++j) table.covariance.mutable_at(k, i, j) = belief.covariance(i, j);
+    }
+    for (py::ssize_t mode = 0; mode < modes; ++mode)
+      table.mode_probability.mutable_at(k, mode) = track.estimator.mode_probability()[mode];
+    table.nis.mutable_at(k) = track.nis;
+    table.existence.mutable_at(k) = track.existence;
+    table.visibility.mutable_at(k) = track.visibility;
+    table.hits.mutable_at(k) = track.hits;
+    table.misses.mutable_at(k) = track.misses;
+    table.name.emplace_back(track.label());
+  }
+  return table;
+}
+
+}  // namespace
+
+void define_track(py::module_& parent) {
+  py::module_ m = parent.def_submodule("track", "The life of tracks.");
+
+  SettingsClass<Radar> radar(m, "Radar", "What a console knows of its radar and of the vessels it looks at.");
+  radar
+      .field("range_std_m", &Radar::range_std_m)
+      .field("bearing_std_rad", &Radar::bearing_std_rad)
+      .field("extent_std_m", &Radar::extent_std_m)
+      .field("period_s", &Radar::period_s)
+      .field("max_speed_mps", &Radar::max_speed_mps)
+      .field("bearing_offset_rad", &Radar::bearing_offset_rad)
+      .done();
+  radar.python().def(
+      "position",
+      [](const Radar& r, double range_m, double bearing_rad, const OwnShip& own) {
+        return PyGaussian::from(r.position(range_m, bearing_rad, own));
+      },
+      py::arg("range_m"), py::arg("bearing_rad"), py::arg_v("own", OwnShip{}, "OwnShip()"),
+      "A plot seen from own ship as a position [north, east] with its covariance.");
+
+  SettingsClass<TrackerConfig> config(m, "TrackerConfig", "The rules by which tracks live; one set of defaults for all radars.");
+  config.python().def_property("association", &association_name, &set_association,
+                               "probabilistic, global_nearest or nearest");
+  config
+      .field("detection_probability", &TrackerConfig::detection_probability)
+      .field("gate_probability", &TrackerConfig::gate_probability)
+      .field("clutter_density_per_m2", &TrackerConfig::clutter_density_per_m2)
+      .field("wild_probability", &TrackerConfig::wild_probability)
+      .field("wild_scale", &TrackerConfig::wild_scale)
+      .field("clutter_cell_m", &TrackerConfig::clutter_cell_m)
+      .field("clutter_memory_s", &TrackerConfig::clutter_memory_s)
+      .field("clutter_weight", &TrackerConfig::clutter_weight)
+      .field("visible_time_s", &TrackerConfig::visible_time_s)
+      .field("hidden_time_s", &TrackerConfig::hidden_time_s)
+      .field("initial_existence", &TrackerConfig::initial_existence)
+      .field("free_plot", &TrackerConfig::free_plot)
+      .field("start_gate_sigma", &TrackerConfig::start_gate_sigma)
+      .field("start_speed_factor", &TrackerConfig::start_speed_factor)
+      .field("confirm_existence", &TrackerConfig::confirm_existence)
+      .field("confirm_hits", &TrackerConfig::confirm_hits)
+      .field("confirm_window", &TrackerConfig::confirm_window)
+      .field("survival_time_s", &TrackerConfig::survival_time_s)
+      .field("drop_existence", &TrackerConfig::drop_existence)
+      .field("tentative_misses", &TrackerConfig::tentative_misses)
+      .field("coast_scans", &TrackerConfig::coast_scans)
+      .field("coast_scans_per_hit", &TrackerConfig::coast_scans_per_hit)
+      .field("coast_scans_max", &TrackerConfig::coast_scans_max)
+      .field("shown_scans", &TrackerConfig::shown_scans)
+      .field("drop_position_std_m", &TrackerConfig::drop_position_std_m)
+      .field("drop_speed_factor", &TrackerConfig::drop_speed_factor)
+      .field("duplicate_distance", &TrackerConfig::duplicate_distance)
+      .field("duplicate_scans", &TrackerConfig::duplicate_scans)
+      .field("max_tracks", &TrackerConfig::max_tracks)
+      .field("max_plots", &TrackerConfig::max_plots)
+      .name("association")
+      .done();
+
+  SettingsClass<VesselModels> models(m, "VesselModels", "The motion models of a tracker: steady, restless and turning.");
+  models
+      .field("steady_psd_m2s3", &VesselModels::steady_psd_m2s3)
+      .field("steady_course_psd_rad2s", &VesselModels::steady_course_psd_rad2s)
+      .field("restless_psd_m2s3", &VesselModels::restless_psd_m2s3)
+      .field("restless_course_psd_rad2s", &VesselModels::restless_course_psd_rad2s)
+      .field("turning_psd_m2s3", &VesselModels::turning_psd_m2s3)
+      .field("turning_course_psd_rad2s", &VesselModels::turning_course_psd_rad2s)
+      .field("turn_rate_psd_rad2s3", &VesselModels::turn_rate_psd_rad2s3)
+      .field("prior_turn_rate_std_rad_s", &VesselModels::prior_turn_rate_std_rad_s)
+      .field("steady_sojourn_s", &VesselModels::steady_sojourn_s)
+      .field("restless_sojourn_s", &VesselModels::restless_sojourn_s)
+      .field("turning_sojourn_s", &VesselModels::turning_sojourn_s)
+      .done();
+
+  m.def("vessel_imm", &any_vessel_imm, py::arg("radar"),
+        py::arg_v("models", VesselModels{}, "VesselModels()"),
+        "The estimator that a tracker uses for this radar unless told otherwise.");
+
+  py::class_<Event>(m, "Event", "Something that became of a track in a scan.")
+      .def_property_readonly("kind", [](const Event& event) { return event_name(event.kind); },
+                             "started, confirmed, coasting or lost")
+      .def_readonly("track_id", &Event::track_id)
+      .def_readonly("tentative_id", &Event::tentative_id,
+                    "the negative number it had before it was confirmed; 0 for a designated track")
+      .def_readonly("time_s", &Event::time_s)
+      .def("__repr__", [](const Event& event) {
+        return "Event(kind=" + std::string(event_name(event.kind)) +
+               ", track_id=" + std::to_string(event.track_id) + ")";
+      });
+  py::class_<PyReport>(m, "ScanReport", "What a scan has brought.")
+      .def_readonly("plot_track_id", &PyReport::plot_track_id,
+                    "(n,) the track each plot most likely belongs to; negative for a tentative one, 0 for none")
+      .def_readonly("events", &PyReport::events)
+      .def_readonly("refused_plots", &PyReport::refused_plots,
+                    "plots not finite, behind the antenna, or beyond max_plots");
+  py::class_<PyTracks>(m, "TrackTable", "Tracks as arrays, older ones first.")
+      .def_readonly("track_id", &PyTracks::track_id, "(k,)")
+      .def_readonly("status", &PyTracks::status, "tentative, confirmed, coasting or held")
+      .def_readonly("time_s", &PyTracks::time_s, "(k,) of the belief")
+      .def_readonly("mean", &PyTracks::mean, "(k, 4) [x, vx, y, vy]")
+      .def_readonly("covariance", &PyTracks::covariance, "(k, 4, 4)")
+      .def_readonly("mode_probability", &PyTracks::mode_probability, "(k, K)")
+      .def_readonly("nis", &PyTracks::nis, "(k,) of the likeliest plot; NaN where there was none")
+      .def_readonly("existence", &PyTracks::existence, "(k,)")
+      .def_readonly("visibility", &PyTracks::visibility, "(k,)")
+      .def_readonly("hits", &PyTracks::hits, "(k,)")
+      .def_readonly("misses", &PyTracks::misses, "(k,) scans in a row without a plot")
+      .def_readonly("name", &PyTracks::name, "given by the operator")
+      .def("__len__", [](const PyTracks& table) { return table.track_id.size(); });
+
+  py::class_<AnyTracker>(m, "Tracker", R"(Keeps tracks of all vessels a radar sees, scan by scan.
+
+Use it from one thread at a time; trackers share nothing.
+
+Parameters
+----------
+radar : Radar
+config : TrackerConfig, optional
+models : VesselModels, optional
+    Motion models of the estimator.
+estimator : Imm, optional
+    Another estimator in place of that made of `models`.
+
+Raises
+------
+ValueError
+    When a setting makes no sense.)")
+      .def(py::init([](const Radar& r, const TrackerConfig& c, const VesselModels& v,
+                       const std::optional<AnyImm>& estimator) {
+             return AnyTracker(r, c, estimator ? *estimator : any_vessel_imm(r, v));
+           }),
+           py::arg("radar"), py::arg_v("config", TrackerConfig{}, "TrackerConfig()"),
+           py::arg_v("models", VesselModels{}, "VesselModels()"),
+           py::arg("estimator") = py::none())
+      .def("process", &process, py::arg("time_s"), py::kw_only(), py::arg("range_m"),
+           py::arg("bearing_rad"), py::arg("plot_time_s") = py::none(),
+           py::arg("own_north_m") = 0.0, py::arg("own_east_m") = 0.0,
+           py::arg("heading_std_rad") = 0.0,
+           R"(Takes in the plots of one scan.
+
+Parameters
+----------
+time_s : float
+    Time of the scan; not before the last one.
+range_m, bearing_rad : (n,) arrays
+plot_time_s, own_north_m, own_east_m : float or (n,) arrays
+    When each plot was seen, and from where.
+heading_std_rad : float
+    Error of own ship's heading.
+
+Returns
+-------
+ScanReport
+
+Raises
+------
+FilterError
+    When time runs backwards or is not finite; nothing changed.)")
+      .def("tracks", &tracks, py::arg("time_s") = py::none(), py::arg("tentative") = false,
+           "The confirmed and coasting tracks (with `tentative` all), predicted to `time_s` when given; a TrackTable.")
+      .def("designate", &AnyTracker::designate, py::arg("time_s"), py::arg("north_m"),
+           py::arg("east_m"), py::arg("position_std_m") = 50.0,
+           "The operator says that there is a target; returns the track's number, or 0 when there is no room.")
+      .def("drop", &AnyTracker::drop, py::arg("track_id"), "Ends a track; False when there is none of that number.")
+      .def("rename", &AnyTracker::rename, py::arg("track_id"), py::arg("name"),
+           "Names a track (31 bytes at most are kept); False when there is none of that number.")
+      .def("save",
+           [](const AnyTracker& tracker) {
+             const std::vector<std::byte> state = tracker.save();
+             return py::bytes(reinterpret_cast<const char*>(state.data()), state.size());
+           },
+           "The whole state as bytes, for a tracker with the same settings on the same kind of machine.")
+      .def("restore",
+           [](AnyTracker& tracker, const py::bytes& state) {
+             const std::string_view text = state;
+             if (!tracker.restore({reinterpret_cast<const std::byte*>(text.data()), text.size()}))
+               throw py::value_error("state is not that of a tracker with the same settings");
+           },
+           py::arg("state"), "Goes on bit for bit where the saved tracker was.")
+      .def_property_readonly("radar", &AnyTracker::radar)
+      .def_property_readonly("config", &AnyTracker::config);
+}
+
+}  // namespace wakeline::python

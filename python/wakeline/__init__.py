@@ -1,0 +1,131 @@
+"""Wakeline tracks maneuvering vessels with radar.
+
+The engine is C++; its nouns are name spaces here, and their names stand at the top as well:
+`wakeline.filter.Ekf` is `wakeline.Ekf`. Python adds recordings, scenarios, scores, pictures and
+the `wakeline` command.
+
+Axes are north and east in metres, angles radians clockwise from north, turn rates positive to
+starboard.
+"""
+
+import sys as _sys
+from importlib.metadata import PackageNotFoundError as _PackageNotFoundError
+from importlib.metadata import version as _version
+
+from . import _engine
+from ._engine.core import (
+    FilterError,
+    Gaussian,
+    Status,
+    Step,
+    chi_square_probability,
+    chi_square_quantile,
+    wrap_angle,
+)
+from ._engine.eval import consistency_bounds
+from ._engine.filter import (
+    Ekf,
+    Filter,
+    Kalman,
+    RunResult,
+    SquareRootUkf,
+    Ukf,
+    one_point,
+    two_point,
+)
+from ._engine.gating import ChiSquareGate, RadiusGate
+from ._engine.measurement import (
+    ConvertedRangeBearing,
+    OwnShip,
+    Position,
+    RangeBearing,
+    RangeBearingDoppler,
+    conversion_bias_matters,
+    conversion_bias_ratio,
+)
+from ._engine.motion import (
+    ConstantAcceleration,
+    ConstantVelocity,
+    CoordinatedTurn,
+    CoordinatedTurnRate,
+    PiecewiseAcceleration,
+    ProcessNoise,
+    Singer,
+    WanderingCourse,
+    WhiteAcceleration,
+    WhiteJerk,
+)
+from ._engine.multimodel import Imm, ModeChain
+from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, vessel_imm
+
+# The engine's nouns, importable as modules of the package.
+for _noun in (
+    "core",
+    "motion",
+    "measurement",
+    "filter",
+    "multimodel",
+    "gating",
+    "association",
+    "track",
+    "eval",
+):
+    _module = getattr(_engine, _noun)
+    _sys.modules[f"{__name__}.{_noun}"] = _module
+    globals()[_noun] = _module
+
+from . import metrics, recording, scenario  # noqa: E402  (they use the nouns above)
+
+try:
+    __version__ = _version("wakeline")
+except _PackageNotFoundError:  # run from a checkout that is not installed
+    __version__ = "0+unknown"
+
+__all__ = [
+    "ChiSquareGate",
+    "ConstantAcceleration",
+    "ConstantVelocity",
+    "ConvertedRangeBearing",
+    "CoordinatedTurn",
+    "CoordinatedTurnRate",
+    "Ekf",
+    "Event",
+    "Filter",
+    "FilterError",
+    "Gaussian",
+    "Imm",
+    "Kalman",
+    "ModeChain",
+    "OwnShip",
+    "PiecewiseAcceleration",
+    "Position",
+    "ProcessNoise",
+    "Radar",
+    "RadiusGate",
+    "RangeBearing",
+    "RangeBearingDoppler",
+    "RunResult",
+    "Singer",
+    "SquareRootUkf",
+    "Status",
+    "Step",
+    "Tracker",
+    "TrackerConfig",
+    "Ukf",
+    "VesselModels",
+    "WanderingCourse",
+    "WhiteAcceleration",
+    "WhiteJerk",
+    "chi_square_probability",
+    "chi_square_quantile",
+    "consistency_bounds",
+    "conversion_bias_matters",
+    "conversion_bias_ratio",
+    "metrics",
+    "one_point",
+    "recording",
+    "scenario",
+    "two_point",
+    "vessel_imm",
+    "wrap_angle",
+]

@@ -1,0 +1,89 @@
+"""The ``wakeline`` command.
+
+Built on argparse of the standard library, so that it works where nothing but numpy is installed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from wakeline import FilterError, __version__
+
+from . import bench, demo, score, track
+
+_BAD_INPUT = 2
+_INTERRUPTED = 130
+_NOBODY_READS = 141
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Arguments without the name of the program; default those of the process.
+
+    Returns
+    -------
+    int
+        Exit status: 0 on success, 2 after one line on stderr about bad input, 130 when interrupted,
+        141 when the reader of the output has gone.
+    """
+    try:
+        arguments = _parser().parse_args(argv)
+        if arguments.json is not None:
+            arguments.json.parent.mkdir(parents=True, exist_ok=True)
+        arguments.run(arguments)
+        sys.stdout.flush()
+    except SystemExit as done:  # --help and --version
+        return int(done.code or 0)
+    except KeyboardInterrupt:
+        print("wakeline: interrupted", file=sys.stderr)
+        return _INTERRUPTED
+    except BrokenPipeError:
+        _close_output()
+        return _NOBODY_READS
+    except (ValueError, OSError, FilterError) as error:
+        print(f"wakeline: {_one_line(error)}", file=sys.stderr)
+        return _BAD_INPUT
+    return 0
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose complaint is one line like any other about bad input."""
+
+    def error(self, message: str) -> NoReturn:
+        raise ValueError(f"{message} (see {self.prog} --help)")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="wakeline", description="Tracks maneuvering vessels with radar, and scores the tracks."
+    )
+    parser.add_argument("--version", action="version", version=f"wakeline {__version__}")
+    commands = parser.add_subparsers(
+        title="commands", required=True, metavar="COMMAND", parser_class=_Parser
+    )
+    for command in (demo, track, score, bench):
+        command.add_to(commands)
+    return parser
+
+
+def _one_line(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        place = f"{error.filename}: " if error.filename is not None else ""
+        return f"{place}{error.strerror}"
+    return " ".join(str(error).split())
+
+
+def _close_output() -> None:
+    """Give stdout a place to go, so that the interpreter does not complain at its end."""
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (OSError, ValueError):  # stdout has no file behind it
+        pass

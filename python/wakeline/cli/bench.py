@@ -1,0 +1,259 @@
+"""``wakeline bench``: what the engine does in a second on this machine, from Python."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import wakeline as wl
+
+from . import outputs, report
+from .progress import progress
+
+OURS = "scalar_double"
+
+_SEED = 0
+_REPEATS = 5
+_RUNS, _SCANS = 500, 250
+_DT_S = 3.0
+_LOOP_STEPS = 500
+_TRACKS, _PLOTS, _TRACKER_SCANS = 100, 200, 40
+_RANGE_STD_M, _BEARING_STD_RAD = 20.0, np.deg2rad(0.5)
+
+
+@dataclass(frozen=True)
+class _Work:
+    """One row of the benchmark.
+
+    Attributes
+    ----------
+    name, estimator : str
+        The work, and who does it.
+    metric : str
+        ``ns_per_step`` or ``ms_per_scan``.
+    call : callable
+        Does it once.
+    count : int
+        Steps or scans in one call.
+    """
+
+    name: str
+    estimator: str
+    metric: str
+    call: Callable[[], Any]
+    count: int
+
+
+def add_to(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the program."""
+    parser = commands.add_parser(
+        "bench",
+        help="throughput on this machine",
+        description="Measures throughput per estimator on this machine, from Python: the best of "
+        f"{_REPEATS} times, with ratios within the run. filterpy and scipy are measured beside "
+        "where they are installed.",
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help="write the figures as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do what the command line asks for."""
+    works = _works()
+    rows = [_measured(work) for work in progress(works, len(works), "measuring")]
+    _add_ratios(rows)
+    print(_table(rows))
+    if arguments.json is not None:
+        outputs.write_json(arguments.json, "bench", rows, seed=_SEED, runs=_REPEATS)
+
+
+def _works() -> list[_Work]:
+    return [*_step_works(), *_imm_run_works(), *_tracker_works(), *_assignment_works()]
+
+
+def _measured(work: _Work) -> dict[str, Any]:
+    best_s = min(_elapsed_s(work.call) for _ in range(_REPEATS))
+    unit_s = {"ns_per_step": 1e-9, "ms_per_scan": 1e-3}[work.metric]
+    return {
+        "scenario": work.name,
+        "estimator": work.estimator,
+        work.metric: best_s / work.count / unit_s,
+    }
+
+
+def _elapsed_s(call: Callable[[], Any]) -> float:
+    began_s = time.perf_counter()
+    call()
+    return time.perf_counter() - began_s
+
+
+def _add_ratios(rows: list[dict[str, Any]]) -> None:
+    """To the steps how many Kalman steps they take, to other programs how many times ours."""
+    ours = {row["scenario"]: row for row in rows if row["estimator"] == OURS}
+    kalman_ns = ours["kf_step"]["ns_per_step"]
+    for row in rows:
+        metric = "ns_per_step" if "ns_per_step" in row else "ms_per_scan"
+        if metric == "ns_per_step" and row["estimator"] == OURS:
+            row["times_kf_step"] = row[metric] / kalman_ns
+        elif row["estimator"] != OURS:
+            row[f"times_{OURS}"] = row[metric] / ours[row["scenario"]][metric]
+
+
+def _table(rows: list[dict[str, Any]]) -> str:
+    cells = [["work", "estimator", "time", "ratio"]]
+    for row in rows:
+        if "ns_per_step" in row:
+            figure = f"{row['ns_per_step']:.0f} ns a step"
+        else:
+            figure = f"{row['ms_per_scan']:.3f} ms a scan"
+        ratios = [(key, value) for key, value in row.items() if key.startswith("times_")]
+        ratio = "".join(f"{value:.1f} x {key[len('times_') :]}" for key, value in ratios)
+        cells.append([row["scenario"], row["estimator"], figure, ratio])
+    return report.aligned(cells, left=2, text=(3,))
+
+
+# Steps of one estimator ---------------------------------------------------------------------------
+
+
+def _step_works() -> Iterator[_Work]:
+    polar = wl.RangeBearing(range_std_m=_RANGE_STD_M, bearing_std_rad=_BEARING_STD_RAD)
+    converted = wl.ConvertedRangeBearing(range_std_m=_RANGE_STD_M, bearing_std_rad=_BEARING_STD_RAD)
+    z = _recordings(_RUNS // 10)
+    for name, estimator, sensor in (
+        ("kf_step", wl.Kalman(_constant_velocity()), converted),
+        ("ekf_polar_step", wl.Ekf(_constant_velocity()), polar),
+        ("ukf5_step", wl.Ukf(wl.CoordinatedTurnRate(noise=_noise())), polar),
+        ("imm3_step", _imm(0.0, 1.0, -1.0), polar),
+        ("imm5_step", _imm(0.0, 1.0, -1.0, 3.0, -3.0), polar),
+    ):
+        yield _Work(name, OURS, "ns_per_step", _whole_run(estimator, z, sensor), z[..., 0].size)
+
+
+def _imm_run_works() -> Iterator[_Work]:
+    """500 runs of 250 scans through an IMM of three models; others do a part of it."""
+    name, metric = "imm3_run_python", "ns_per_step"
+    sensor = wl.RangeBearing(range_std_m=_RANGE_STD_M, bearing_std_rad=_BEARING_STD_RAD)
+    imm, z = _imm(0.0, 1.0, -1.0), _recordings(_RUNS)
+    yield _Work(name, OURS, metric, _whole_run(imm, z, sensor), z[..., 0].size)
+    one = np.concatenate(list(z))[:_LOOP_STEPS]
+
+    def loop() -> None:
+        imm.start(_start())
+        for plot in one:
+            imm.predict(_DT_S)
+            imm.update(sensor, plot)
+
+    yield _Work(name, "python_loop", metric, loop, len(one))
+    try:
+        from filterpy.kalman import IMMEstimator, KalmanFilter
+    except ImportError:
+        return
+    peer = _filterpy_imm(IMMEstimator, KalmanFilter)
+    position_m = np.column_stack([one[:, 0] * np.cos(one[:, 1]), one[:, 0] * np.sin(one[:, 1])])
+
+    def filterpy_loop() -> None:
+        for place in position_m:
+            peer.predict()
+            peer.update(place)
+
+    yield _Work(name, "filterpy", metric, filterpy_loop, len(one))
+
+
+def _whole_run(estimator: Any, z: np.ndarray, sensor: Any) -> Callable[[], Any]:
+    return lambda: estimator.run(z, dt_s=_DT_S, sensor=sensor, start=_start())
+
+
+def _noise() -> Any:
+    return wl.WhiteAcceleration(psd_m2s3=0.01)
+
+
+def _constant_velocity() -> Any:
+    return wl.ConstantVelocity(noise=_noise())
+
+
+def _imm(*turn_rate_deg_s: float) -> Any:
+    filters = [
+        wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=np.deg2rad(rate), noise=_noise()))
+        for rate in turn_rate_deg_s
+    ]
+    return wl.Imm(filters=filters, chain=wl.ModeChain(_chain(len(filters))))
+
+
+def _chain(modes: int) -> np.ndarray:
+    leave = 0.05
+    return np.full((modes, modes), leave / (modes - 1)) + (
+        1 - leave - leave / (modes - 1)
+    ) * np.eye(modes)
+
+
+def _start() -> Any:
+    return wl.Gaussian([5000.0, 0.0, 0.0, 5.0], np.diag([400.0, 25.0, 1900.0, 25.0]))
+
+
+def _recordings(runs: int) -> np.ndarray:
+    """Plots (runs, scans, 2) of a vessel that steams steadily across the radar's view."""
+    rng = np.random.default_rng(_SEED)
+    after_s = _DT_S * np.arange(1, _SCANS + 1)
+    north_m, east_m = np.full(_SCANS, 5000.0), 5.0 * after_s
+    truth = np.column_stack([np.hypot(north_m, east_m), np.arctan2(east_m, north_m)])
+    return truth + rng.normal(size=(runs, _SCANS, 2)) * [_RANGE_STD_M, _BEARING_STD_RAD]
+
+
+def _filterpy_imm(estimator_class: type, filter_class: type) -> Any:
+    """The same three models over converted positions, as filterpy has no polar IMM."""
+    cross_m = (5000.0 * _BEARING_STD_RAD) ** 2
+    filters = []
+    for rate in np.deg2rad([0.0, 1.0, -1.0]):
+        motion = wl.CoordinatedTurn(turn_rate_rad_s=rate, noise=_noise())
+        one = filter_class(dim_x=4, dim_z=2)
+        one.x, one.P = np.asarray(_start().mean), np.asarray(_start().covariance)
+        one.F, one.Q = motion.matrix(_DT_S), motion.process_noise(_DT_S)
+        one.H = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0]])
+        one.R = np.diag([_RANGE_STD_M**2, cross_m])
+        filters.append(one)
+    return estimator_class(filters, np.full(3, 1 / 3), _chain(3))
+
+
+# Whole scans --------------------------------------------------------------------------------------
+
+
+def _tracker_works() -> Iterator[_Work]:
+    """100 tracks that have settled, and 200 plots a scan: one of each target and false ones."""
+    rng = np.random.default_rng(_SEED)
+    radar = wl.Radar(range_std_m=10.0, bearing_std_rad=np.deg2rad(0.3), period_s=_DT_S)
+    tracker = wl.Tracker(radar)
+    place_m = rng.uniform(-15e3, 15e3, (_TRACKS, 2))
+    velocity_mps = rng.uniform(-6.0, 6.0, (_TRACKS, 2))
+    scans = []
+    for k in range(20 + _REPEATS * _TRACKER_SCANS):
+        false_m = rng.uniform(-20e3, 20e3, (_PLOTS - _TRACKS, 2))
+        seen_m = place_m + k * _DT_S * velocity_mps + rng.normal(scale=5.0, size=place_m.shape)
+        north_m, east_m = np.concatenate([seen_m, false_m]).T
+        scans.append((k * _DT_S, np.hypot(north_m, east_m), np.arctan2(east_m, north_m)))
+    waiting = iter(scans)
+
+    def track(count: int) -> None:
+        for _ in range(count):
+            time_s, range_m, bearing_rad = next(waiting)
+            tracker.process(time_s, range_m=range_m, bearing_rad=bearing_rad)
+
+    track(20)
+    call = lambda: track(_TRACKER_SCANS)  # noqa: E731
+    yield _Work("tracker_scan", OURS, "ms_per_scan", call, _TRACKER_SCANS)
+
+
+def _assignment_works() -> Iterator[_Work]:
+    """Optimal assignment of a dense 200 x 200 matrix."""
+    cost = np.random.default_rng(_SEED).uniform(size=(200, 200))
+    yield _Work("gnn_200", OURS, "ms_per_scan", lambda: wl.association.assign(cost), 1)
+    try:
+        from scipy.optimize import linear_sum_assignment
+    except ImportError:
+        return
+    yield _Work("gnn_200", "scipy", "ms_per_scan", lambda: linear_sum_assignment(cost), 1)

@@ -1,0 +1,280 @@
+"""Settings of tracking as TOML: what the radar is, how tracks live, how vessels move.
+
+Settings are kept as a file holds them, with angles of the radar in degrees, so that writing and
+reading them again changes nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import wakeline as wl
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+Value = float | int | str
+
+
+class ConfigError(ValueError):
+    """A file of settings cannot be used as it stands; the message names file and key."""
+
+
+_RADAR = {
+    "range_std_m": "m, standard deviation of the range of a plot",
+    "bearing_std_deg": "degrees, standard deviation of its bearing",
+    "extent_std_m": "m per axis, wander of an echo over the hull of its vessel",
+    "period_s": "s, one turn of the antenna; 0: the median step of the recording's scans",
+    "max_speed_mps": "m/s, no vessel is faster",
+    "bearing_offset_deg": "degrees, bearing read minus true bearing; taken off every plot",
+}
+
+_TRACKER = {
+    "detection_probability": "0..1, chance that a target which is visible gives a plot in a scan",
+    "gate_probability": "0..1, chance that the plot of a target lies in its gate",
+    "clutter_density_per_m2": "1/m² and scan, false plots where the clutter map knows of none",
+    "wild_probability": "0..1, share of plots with a wild error",
+    "wild_scale": "how many times larger that error is",
+    "clutter_cell_m": "m, cell of the clutter map; 0: no map",
+    "clutter_memory_s": "s, fading memory of the clutter map",
+    "clutter_weight": "how far the clutter map is believed; 1: fully",
+    "visible_time_s": "s, mean time until a target is hidden from the radar; 0: never",
+    "hidden_time_s": "s, mean time until a hidden target is seen again",
+    "association": "how plots are given to tracks: probabilistic, global_nearest or nearest",
+    "initial_existence": "0..1, chance that a new pair of plots is a target",
+    "free_plot": "0..1, a plot may start a track when it is no other track's with this chance",
+    "start_gate_sigma": "plot errors by which the speed limit of a start is widened",
+    "start_speed_factor": "expected speed of a start over the radar's speed limit; 0: anything",
+    "confirm_existence": "0..1, a track is confirmed above this probability of existence",
+    "confirm_hits": "plots, and with at least so many of them",
+    "confirm_window": "scans, in so many of its last ones",
+    "survival_time_s": "s, mean time until a target leaves",
+    "drop_existence": "0..1, a tentative track is dropped below this probability of existence",
+    "tentative_misses": "scans, a tentative track is dropped after more of them without a plot",
+    "coast_scans": "scans, a confirmed track is dropped after more of them without a plot,",
+    "coast_scans_per_hit": "scans, with so many more for each plot that it ever had,",
+    "coast_scans_max": "scans, but after this many at the latest",
+    "shown_scans": "scans, a coasting track is shown for so many, then only held in mind",
+    "drop_position_std_m": "m, a track that knows its place worse than this is dropped",
+    "drop_speed_factor": "a track faster than this times the radar's speed limit is dropped",
+    "duplicate_distance": "squared sigmas, two tracks nearer than this are one",
+    "duplicate_scans": "scans, once they have been so for so many",
+    "max_tracks": "tracks at a time; when full a new one replaces the weakest tentative one",
+    "max_plots": "plots of a scan; those beyond are refused",
+}
+
+_MODELS = {
+    "steady_psd_m2s3": "m²/s³, acceleration noise of a steady vessel at rest",
+    "steady_course_psd_rad2s": "rad²/s, wander of the course of a steady vessel",
+    "restless_psd_m2s3": "m²/s³, acceleration noise of a restless vessel at rest",
+    "restless_course_psd_rad2s": "rad²/s, wander of the course of a restless vessel",
+    "turning_psd_m2s3": "m²/s³, acceleration noise of a turning vessel at rest",
+    "turning_course_psd_rad2s": "rad²/s, wander of the course of a turning vessel",
+    "turn_rate_psd_rad2s3": "rad²/s³, wander of the rate of turn",
+    "prior_turn_rate_std_rad_s": "rad/s, rate of turn before it is known",
+    "steady_sojourn_s": "s, mean time for which a vessel goes on steadily",
+    "restless_sojourn_s": "s, mean time for which it is restless",
+    "turning_sojourn_s": "s, mean time for which it turns",
+}
+
+KEYS = {"radar": _RADAR, "tracker": _TRACKER, "models": _MODELS}
+
+_CLASSES = {"radar": wl.Radar, "tracker": wl.TrackerConfig, "models": wl.VesselModels}
+_ABOUT = {
+    "radar": "What a console knows of its radar, as its plots come.",
+    "tracker": "How tracks live; one set of defaults for all radars.",
+    "models": "How vessels move; the noise of the course matters more the faster they are.",
+}
+_MANY = 2**31
+_WHAT = {float: "a number", int: "a whole number", str: "a text"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """All settings, by section and key as in a file.
+
+    Attributes
+    ----------
+    radar, tracker, models : dict of str to float, int or str
+        Complete; the keys are those of `KEYS`.
+    """
+
+    radar: dict[str, Value]
+    tracker: dict[str, Value]
+    models: dict[str, Value]
+
+    @classmethod
+    def default(cls) -> Settings:
+        """The settings of the engine, with the period left to the recording."""
+        return cls(**{section: _defaults(section) for section in KEYS})
+
+    @property
+    def period_s(self) -> float | None:
+        """Period of the antenna, None where it is left to the recording."""
+        return float(self.radar["period_s"]) or None
+
+    def tracker_of(self, period_s: float | None = None) -> wl.Tracker:
+        """A fresh tracker; `period_s` stands in where the settings leave the period open."""
+        radar = dict(self.radar)
+        radar["period_s"] = self.period_s or period_s or 0.0
+        return wl.Tracker(
+            _engine("radar", radar),
+            _engine("tracker", self.tracker),
+            _engine("models", self.models),
+        )
+
+    def toml(self) -> str:
+        """Every setting with a line that explains it; reading it gives the same settings."""
+        return "\n".join(line for section in KEYS for line in self._section(section))
+
+    def _section(self, section: str) -> Iterator[str]:
+        yield f"# {_ABOUT[section]}"
+        yield f"[{section}]"
+        for key, value in getattr(self, section).items():
+            yield f"# {KEYS[section][key]}"
+            yield f"{key} = {json.dumps(value)}"
+        yield ""
+
+
+def radar_names() -> list[str]:
+    """Names of the radars that ship with the package."""
+    return sorted(Path(file.name).stem for file in _radars().iterdir())
+
+
+def read_settings(config: Path | None = None, radar: str | None = None) -> Settings:
+    """The defaults, changed by a configuration file and then by a description of the radar.
+
+    Parameters
+    ----------
+    config : Path, optional
+        TOML with any of the sections and keys of `KEYS`.
+    radar : str, optional
+        Name of a radar that ships with the package, or a TOML file with keys of its section.
+
+    Raises
+    ------
+    ConfigError
+        When a key is not known or its value is no good.
+    """
+    settings = Settings.default()
+    if config is not None:
+        document = _read_toml(config)
+        for section, values in document.items():
+            if section not in KEYS:
+                raise ConfigError(f"{config}: unknown section {section}; {_one_of(KEYS)}")
+            settings = _changed(settings, section, values, config)
+    if radar is not None:
+        path, document = _read_radar(radar)
+        values = document["radar"] if list(document) == ["radar"] else document
+        settings = _changed(settings, "radar", values, path)
+    return settings
+
+
+def _changed(settings: Settings, section: str, values: Any, path: Path) -> Settings:
+    """The settings with some of one section's replaced."""
+    if not isinstance(values, dict):
+        raise ConfigError(f"{path}: {section} must be a section with keys of its own")
+    before = getattr(settings, section)
+    for key, value in values.items():
+        if key not in before:
+            raise ConfigError(f"{path}: unknown key {key} in [{section}]; {_one_of(before)}")
+        _check_type(path, f"[{section}] {key}", value, type(before[key]))
+    after = before | {k: float(v) if type(before[k]) is float else v for k, v in values.items()}
+    _check_values(path, section, before, after)
+    return Settings(**(vars(settings) | {section: after}))
+
+
+def _check_type(path: Path, place: str, value: Any, wanted: type) -> None:
+    good = (int, float) if wanted is float else wanted
+    if isinstance(value, bool) or not isinstance(value, good):
+        raise ConfigError(f"{path}: {place} must be {_WHAT[wanted]}, got {value!r}")
+    if wanted is int and not abs(value) < _MANY:
+        raise ConfigError(f"{path}: {place} must be below {_MANY}, got {value}")
+
+
+def _check_values(
+    path: Path, section: str, before: dict[str, Value], after: dict[str, Value]
+) -> None:
+    """Raise ConfigError naming the key that the engine refuses, if there is one."""
+    try:
+        _check_engine(section, after)
+    except ValueError as error:
+        for key, value in after.items():
+            if value != before[key] and str(error).startswith(f"{_engine_name(key)} "):
+                raise ConfigError(f"{path}: [{section}] {key} = {value!r}: {error}") from None
+        raise ConfigError(f"{path}: [{section}]: {error}") from None
+
+
+def _check_engine(section: str, values: dict[str, Value]) -> None:
+    for key, value in values.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ValueError(f"{_engine_name(key)} must be finite, got {value}")
+        if section == "models" and not value > 0:
+            raise ValueError(f"{key} must be positive, got {value}")
+    if section == "radar" and values["period_s"] < 0:
+        raise ValueError(f"period_s must not be negative, got {values['period_s']}")
+    _engine(section, values)
+
+
+def _engine(section: str, values: dict[str, Value]) -> Any:
+    """The engine's object of a section; a period of 0 is left at the engine's default."""
+    given = {_engine_name(key): _to_engine(key, value) for key, value in values.items()}
+    if section == "radar" and given["period_s"] == 0:
+        del given["period_s"]
+    return _CLASSES[section](**given)
+
+
+def _engine_name(key: str) -> str:
+    return f"{key[:-4]}_rad" if key.endswith("_deg") else key
+
+
+def _to_engine(key: str, value: Value) -> Value:
+    return math.radians(value) if key.endswith("_deg") else value
+
+
+def _defaults(section: str) -> dict[str, Value]:
+    engine = _CLASSES[section]().as_dict()
+    values = {}
+    for key in KEYS[section]:
+        value = engine[_engine_name(key)]
+        values[key] = float(f"{math.degrees(value):.12g}") if key.endswith("_deg") else value
+    if section == "radar":
+        values["period_s"] = 0.0
+    return values
+
+
+def _read_radar(name: str) -> tuple[Path, dict[str, Any]]:
+    if name in radar_names():
+        file = _radars() / f"{name}.toml"
+        return Path(file.name), tomllib.loads(file.read_text(encoding="utf-8"))
+    if not Path(name).exists():
+        raise ConfigError(
+            f"no radar {name!r}: neither a file nor one that ships ({', '.join(radar_names())})"
+        )
+    return Path(name), _read_toml(Path(name))
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{path}: not TOML: {error}") from None
+    except UnicodeDecodeError:
+        raise ConfigError(f"{path}: not text in UTF-8") from None
+
+
+def _radars():
+    return resources.files(__package__) / "radars"
+
+
+def _one_of(names) -> str:
+    return f"known are {', '.join(names)}"

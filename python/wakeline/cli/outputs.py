@@ -1,0 +1,111 @@
+"""The files that tracking leaves behind, each replaced only when the new one is complete."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from wakeline import __version__, plot
+from wakeline.recording import Tracks, replacing, write_tracks
+
+from .tracking import MODE_NAMES, TrackedEpisode
+
+HOW_TO_GET_PICTURES = "no pictures without matplotlib: pip install 'wakeline[plot]'"
+
+
+def write_results(folder: Path, parts: Sequence[TrackedEpisode], suffix: str = "") -> list[Path]:
+    """Write ``tracks.csv``, ``events.csv`` and ``plots_tracks.csv``.
+
+    Parameters
+    ----------
+    folder : Path
+        Must exist.
+    parts : sequence of TrackedEpisode
+    suffix : str
+        Put before ``.csv``.
+
+    Returns
+    -------
+    list of Path
+        The files.
+    """
+    tracks, events, plots = (
+        folder / f"{stem}{suffix}.csv" for stem in ("tracks", "events", "plots_tracks")
+    )
+    scenario = ["scenario"] if any(part.tracks.scenario is not None for part in parts) else []
+    write_tracks(tracks, Tracks.joined([part.tracks for part in parts]))
+    head = ["time_s", "event", "track_id", "tentative_id", *scenario]
+    _write_csv(events, head, (row for part in parts for row in _event_rows(part)))
+    head = ["scan", "time_s", "north_m", "east_m", "track_id", *scenario]
+    _write_csv(plots, head, (row for part in parts for row in _plot_rows(part)))
+    return [tracks, events, plots]
+
+
+def write_pictures(folder: Path, parts: Sequence[TrackedEpisode]) -> list[Path]:
+    """Write ``map.png`` and ``time.png``, one each an episode; nothing without matplotlib."""
+    if not can_draw():
+        return []
+    files = []
+    for part in parts:
+        end = f"-{_file_name(part.episode.name)}" if len(parts) > 1 else ""
+        modes = part.tracks.mode_probability.shape[1]
+        names = MODE_NAMES if modes == len(MODE_NAMES) else None
+        for stem, figure in (
+            ("map", plot.map_figure(part.episode, part.tracks)),
+            ("time", plot.time_figure(part.episode, part.tracks, mode_names=names)),
+        ):
+            files.append(folder / f"{stem}{end}.png")
+            plot.save(figure, files[-1])
+    return files
+
+
+def can_draw() -> bool:
+    """Whether matplotlib is there."""
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        return False
+    return True
+
+
+def write_json(
+    path: Path, name: str, rows: list[dict[str, Any]], *, seed: int | None = None, runs: int = 1
+) -> None:
+    """Write machine-readable results; `seed` is None where nothing is drawn at random."""
+    results = {"name": name, "version": __version__, "seed": seed, "runs": runs, "rows": rows}
+    with replacing(path) as fresh:
+        fresh.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _event_rows(part: TrackedEpisode) -> Iterable[list]:
+    scenario = _scenario(part)
+    for event in part.events:
+        yield [event.time_s, event.kind, event.track_id, event.tentative_id, *scenario]
+
+
+def _plot_rows(part: TrackedEpisode) -> Iterable[list]:
+    scenario = _scenario(part)
+    for scan, ids in zip(part.episode.scans, part.plot_track_id, strict=True):
+        columns = (scan.plot_time_s, scan.north_m, scan.east_m, ids)
+        for row in zip(*(column.tolist() for column in columns), strict=True):
+            yield [scan.number, *row, *scenario]
+
+
+def _scenario(part: TrackedEpisode) -> list[str]:
+    return [] if part.tracks.scenario is None else [part.episode.name]
+
+
+def _write_csv(path: Path, head: list[str], rows: Iterable[list]) -> None:
+    with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(head)
+        writer.writerows(rows)
+
+
+def _file_name(scenario: str) -> str:
+    """A scenario's name without what a file name cannot hold."""
+    return re.sub(r"[^\w.+-]+", "_", scenario) or "unnamed"

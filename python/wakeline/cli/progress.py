@@ -1,0 +1,48 @@
+"""How far long work has come, on a terminal; nothing in a pipe."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from typing import TypeVar
+
+T = TypeVar("T")
+
+_EVERY_S = 0.1
+_WIDTH = 24
+
+
+def progress(items: Iterable[T], total: int, label: str) -> Iterator[T]:
+    """Hand on `items`, with a bar on stderr where that is a terminal.
+
+    Parameters
+    ----------
+    items : iterable
+    total : int
+        How many there are.
+    label : str
+        What is being done.
+    """
+    if not sys.stderr.isatty():
+        yield from items
+        return
+    drawn_s = time.monotonic()
+    try:
+        for done, item in enumerate(items):
+            if time.monotonic() - drawn_s > _EVERY_S:
+                drawn_s = time.monotonic()
+                _draw(f"{label} {_bar(done, total)} {done}/{total}")
+            yield item
+    finally:
+        _draw("")
+
+
+def _bar(done: int, total: int) -> str:
+    full = _WIDTH * done // max(total, 1)
+    return "█" * full + "░" * (_WIDTH - full)
+
+
+def _draw(text: str) -> None:
+    sys.stderr.write(f"\r\x1b[K{text}")
+    sys.stderr.flush()

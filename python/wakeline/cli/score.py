@@ -1,0 +1,51 @@
+"""``wakeline score``: tracks against truth."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from wakeline import metrics
+from wakeline.recording import read_plots, read_tracks
+
+from . import outputs, report
+
+
+def add_to(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the program."""
+    parser = commands.add_parser(
+        "score",
+        help="score tracks against truth",
+        description="Scores tracks against truth: accuracy, continuity, false tracks. The JSON has "
+        "a row for each scenario, named after the tracks file where it has no name, and one of all "
+        "together, scenario all.",
+    )
+    parser.add_argument("tracks", type=Path, metavar="TRACKS.csv")
+    parser.add_argument("truth", type=Path, metavar="TRUTH.csv")
+    parser.add_argument("--scans", type=Path, metavar="SCANS.csv", required=True)
+    parser.add_argument(
+        "--plots",
+        type=Path,
+        metavar="PLOTS.csv",
+        help="radar plots; default plots.csv beside the scans, if there",
+    )
+    parser.add_argument(
+        "--gate", type=float, default=50.0, metavar="M", help="m, farthest match (default 50)"
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help="write the score as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do what the command line asks for."""
+    beside = arguments.scans.with_name("plots.csv")
+    plots = arguments.plots or (beside if beside.exists() else None)
+    recording = read_plots(plots, arguments.scans, arguments.truth)
+    tracks = read_tracks(arguments.tracks)
+    score = metrics.score(tracks, recording, gate_m=arguments.gate)
+    for note in recording.notes:
+        print(f"note: {note}")
+    print(report.score_table(score))
+    if arguments.json is not None:
+        rows = report.score_rows(score, arguments.tracks.name)
+        outputs.write_json(arguments.json, "score", rows)

@@ -1,0 +1,160 @@
+"""``wakeline track``: a recording in, tracks and pictures out."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from wakeline import FilterError, metrics
+from wakeline.recording import Recording, Tracks, read_plots
+
+from . import outputs, report
+from .config import Settings, radar_names, read_settings
+from .tracking import TrackedEpisode, has_names, median_step_s, track_episode
+
+_PARTIAL = "-partial"
+
+
+def add_to(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the program."""
+    parser = commands.add_parser(
+        "track",
+        help="track a recording",
+        description="Tracks the plots of a recording and writes tracks.csv, events.csv, "
+        "plots_tracks.csv and pictures. Each value of a scenario column is tracked from a fresh "
+        "start. When one of several scenarios fails, the files of those before it are written with "
+        "-partial in their names, and files of an earlier run stay as they were.",
+    )
+    parser.add_argument("plots", nargs="?", type=Path, metavar="PLOTS.csv", help="radar plots")
+    parser.add_argument(
+        "--own", type=Path, metavar="SCANS.csv", help="own ship; with a scan column, every scan too"
+    )
+    parser.add_argument("--truth", type=Path, metavar="TRUTH.csv", help="truth, drawn and scored")
+    parser.add_argument(
+        "--radar",
+        metavar="NAME|F.toml",
+        help=f"what is known of the radar: {', '.join(radar_names())}, or a TOML file",
+    )
+    parser.add_argument(
+        "--config", type=Path, metavar="F.toml", help="settings, in the form of --print-config"
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help="counts, and scores with --truth")
+    parser.add_argument(
+        "--print-config", action="store_true", help="print every setting, explained, and end"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do what the command line asks for."""
+    settings = read_settings(arguments.config, arguments.radar)
+    if arguments.print_config:
+        print(settings.toml(), end="")
+        return
+    if arguments.plots is None:
+        raise ValueError("track needs a file of plots (see wakeline track --help)")
+    recording = read_plots(
+        arguments.plots, arguments.own, arguments.truth, period_s=settings.period_s
+    )
+    radar = f"radar {arguments.radar}" if arguments.radar else "radar by default"
+    parts = track_into(arguments.out, recording, settings, radar)
+    rows = _rows(parts, arguments.plots.name)
+    if arguments.truth is not None:
+        score = score_of(recording, parts)
+        print(f"\n{report.score_table(score)}")
+        scores = report.score_rows(score, arguments.plots.name)
+        rows = [scored | row for scored, row in zip(scores, rows, strict=True)]
+    if arguments.json is not None:
+        outputs.write_json(arguments.json, "track", rows)
+
+
+def track_into(
+    folder: Path, recording: Recording, settings: Settings, radar: str
+) -> list[TrackedEpisode]:
+    """Track every episode, write files and pictures into `folder`, and say so on the screen."""
+    folder.mkdir(parents=True, exist_ok=True)
+    print(_input_lines(recording, settings, radar), flush=True)
+    parts: list[TrackedEpisode] = []
+    try:
+        for episode in recording:
+            parts.append(track_episode(episode, settings, named=has_names(recording)))
+    except (ValueError, FilterError, KeyboardInterrupt):
+        if parts:
+            files = outputs.write_results(folder, parts, _PARTIAL)
+            print(f"of the scenarios before: {_listed(files)}", file=sys.stderr)
+        raise
+    files = outputs.write_results(folder, parts)
+    print(_track_lines(parts))
+    files += outputs.write_pictures(folder, parts)
+    print(f"written to {folder}: {_listed(files)}")
+    if not outputs.can_draw():
+        print(outputs.HOW_TO_GET_PICTURES)
+    return parts
+
+
+def score_of(recording: Recording, parts: Sequence[TrackedEpisode]) -> metrics.Score:
+    """The score of the tracks against the truth of the recording."""
+    return metrics.score(Tracks.joined([part.tracks for part in parts]), recording)
+
+
+def _input_lines(recording: Recording, settings: Settings, radar: str) -> str:
+    scans = sum(map(len, recording.episodes))
+    plots = sum(episode.plot_count for episode in recording)
+    scenarios = f", {len(recording)} scenarios" if len(recording) > 1 else ""
+    lines = [f"{recording.name}: {scans} scans, {plots} plots{scenarios}"]
+    lines += [f"note: {note}" for note in recording.notes]
+    lines.append(f"{radar}, period {_period(recording, settings)}")
+    return "\n".join(lines)
+
+
+def _period(recording: Recording, settings: Settings) -> str:
+    if settings.period_s:
+        return f"{settings.period_s:g} s"
+    steps_s = [step for step in map(median_step_s, recording) if step]
+    if not steps_s:
+        return "by default"
+    low, high = (f"{step:.3g}" for step in (min(steps_s), max(steps_s)))
+    return f"{low if low == high else f'{low} to {high}'} s as between the scans"
+
+
+def _track_lines(parts: Sequence[TrackedEpisode]) -> str:
+    tracks = sum(len(part.tracks.ids()) for part in parts)
+    rows = sum(len(part.tracks) for part in parts)
+    coasting = sum(Counter(part.tracks.status.tolist())["coasting"] for part in parts)
+    plural = "" if tracks == 1 else "s"
+    lines = [f"{tracks} track{plural} in {rows} rows, {coasting} of them coasting"]
+    refused = sum(part.refused_plots for part in parts)
+    if refused:
+        lines.append(f"note: {refused} plots that the tracker could not take")
+    return "\n".join(lines)
+
+
+def _listed(files: Sequence[Path]) -> str:
+    return ", ".join(file.name for file in files)
+
+
+def _rows(parts: Sequence[TrackedEpisode], file: str) -> list[dict[str, Any]]:
+    rows = [_row(part.episode.name or file, [part]) for part in parts]
+    return [*rows, _row(report.ALL, parts)]
+
+
+def _row(scenario: str, parts: Sequence[TrackedEpisode]) -> dict[str, Any]:
+    scans = sum(len(part.episode) for part in parts)
+    elapsed_ms = 1e3 * sum(part.elapsed_s for part in parts)
+    return {
+        "scenario": scenario,
+        "estimator": "tracks",
+        "scans": scans,
+        "plots": sum(part.episode.plot_count for part in parts),
+        "tracks": sum(len(part.tracks.ids()) for part in parts),
+        "track_scans": sum(len(part.tracks) for part in parts),
+        "refused_plots": sum(part.refused_plots for part in parts),
+        "ms_per_scan": elapsed_ms / scans if scans else None,
+    }

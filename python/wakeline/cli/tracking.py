@@ -1,0 +1,116 @@
+"""A recording through the tracker: tracks, events, and which plot went to which track."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+import wakeline as wl
+from wakeline.recording import Episode, Recording, Scan, Tracks
+
+from .config import Settings
+from .progress import progress
+
+MODE_NAMES = ("steady", "restless", "turning")
+
+
+@dataclass(frozen=True)
+class TrackedEpisode:
+    """What tracking made of an episode.
+
+    Attributes
+    ----------
+    episode : Episode
+    tracks : Tracks
+        One row a shown track and scan, predicted to the time of the scan.
+    events : list of wakeline.Event
+    plot_track_id : list of ndarray of int
+        For each scan the track of each plot: 0 none, negative a tentative one.
+    refused_plots : int
+        Plots that the tracker could not take.
+    elapsed_s : float
+        Time the tracker needed.
+    """
+
+    episode: Episode
+    tracks: Tracks
+    events: list[wl.Event]
+    plot_track_id: list[np.ndarray]
+    refused_plots: int
+    elapsed_s: float
+
+
+def track_episode(episode: Episode, settings: Settings, *, named: bool = False) -> TrackedEpisode:
+    """Track one episode with a fresh tracker.
+
+    Parameters
+    ----------
+    episode : Episode
+    settings : Settings
+    named : bool
+        Whether the tracks carry the name of the episode as their scenario.
+    """
+    tracker = settings.tracker_of(median_step_s(episode))
+    tables, events, plot_track_id, refused = [(None, tracker.tracks())], [], [], 0
+    end_s, began_s = -np.inf, time.perf_counter()
+    for scan in progress(episode.scans, len(episode), f"tracking {episode.name}".strip()):
+        end_s = max(end_s, scan.time_s, scan.plot_time_s.max(initial=-np.inf))
+        report = _process(tracker, end_s, scan)
+        tables.append((scan.time_s, tracker.tracks(time_s=scan.time_s)))
+        events += report.events
+        plot_track_id.append(report.plot_track_id)
+        refused += report.refused_plots
+    elapsed_s = time.perf_counter() - began_s
+    tracks = _joined(tables, episode.name if named else None)
+    return TrackedEpisode(episode, tracks, events, plot_track_id, refused, elapsed_s)
+
+
+def median_step_s(episode: Episode) -> float | None:
+    """Median step between scans, None where there are fewer than two."""
+    return float(np.median(np.diff(episode.time_s))) if len(episode) > 1 else None
+
+
+def has_names(recording: Recording) -> bool:
+    """Whether the recording tells its episodes apart by name."""
+    return any(episode.name for episode in recording)
+
+
+def _process(tracker: wl.Tracker, end_s: float, scan: Scan):
+    """One scan into the tracker; a scan ends with its last plot, wherever its own time lies."""
+    return tracker.process(
+        end_s,
+        range_m=scan.range_m,
+        bearing_rad=scan.bearing_rad,
+        plot_time_s=scan.plot_time_s,
+        own_north_m=scan.own_north_m,
+        own_east_m=scan.own_east_m,
+    )
+
+
+def _joined(tables: Iterable, scenario: str | None) -> Tracks:
+    """Tables of tracks, each with the time of its scan, as rows."""
+    column = {
+        name: np.concatenate([np.asarray(getattr(table, name)) for _, table in tables])
+        for name in (
+            "track_id",
+            "status",
+            "time_s",
+            "mean",
+            "covariance",
+            "mode_probability",
+            "nis",
+        )
+    }
+    return Tracks(
+        track_id=column["track_id"].astype(str),
+        time_s=column["time_s"],
+        state=column["mean"],
+        covariance=column["covariance"],
+        mode_probability=column["mode_probability"],
+        status=column["status"].astype(str),
+        nis=column["nis"],
+        scenario=None if scenario is None else np.full(len(column["time_s"]), scenario),
+    )

@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// From the first plots of a target to the end of its track.
+#include <string>
+
+#include "track/scene.hpp"
+
+namespace wakeline {
+namespace {
+
+using namespace test;
+
+const Boat kBoat{{1500.0, 800.0}, {-4.0, 6.0}};
+
+TEST(Life, AStraightBoatIsConfirmedOnceAndKeepsItsNumber) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Sea sea(seed);
+    VesselTracker tracker = make_tracker();
+    Ledger ledger;
+    int confirmed = 0;
+    for (int k = 1; k <= 60; ++k) {
+      const double time_s = 2.5 * k;
+      const Plot plot = sea.plot(kBoat.at(time_s), time_s);
+      const ScanReport report = tracker.process(time_s, {&plot, 1});
+      ledger.note(report);
+      ASSERT_EQ(report.status, Status::kOk);
+      for (const Event& event : events_of(report, TrackEvent::kConfirmed)) {
+        ++confirmed;
+        EXPECT_EQ(event.track_id, 1);
+        EXPECT_LT(event.tentative_id, 0);
+        EXPECT_EQ(event.time_s, time_s);
+      }
+      if (k <= 2) {
+        EXPECT_EQ(confirmed, 0) << "two plots are not enough";
+      } else if (k >= 6) {
+        ASSERT_EQ(confirmed, 1) << "seed " << seed << ", scan " << k;
+        const VesselTrack* track = tracker.find(1);
+        ASSERT_NE(track, nullptr);
+        EXPECT_LT((track->position() - kBoat.at(time_s)).norm(), 80.0);
+      }
+    }
+    EXPECT_EQ(ledger.ids, ids_of(tracker));
+    EXPECT_LT((Vec<double, 2>(tracker.find(1)->kinematics.mean[1], tracker.find(1)->kinematics.mean[3]) -
+               kBoat.velocity_mps).norm(), 6.0);
+  }
+}
+
+/// The scan in which an errorless boat, seen as in the pattern, is confirmed; 0: never.
+int confirmation_scan(const TrackerConfig& config, const std::string& pattern) {
+  VesselTracker tracker = make_tracker(config);
+  int k = 0;
+  for (const char seen : pattern) {
+    const double time_s = 2.5 * ++k;
+    const Plot plot = exact_plot(kBoat.at(time_s), time_s);
+    const ScanReport report = tracker.process(time_s, {&plot, seen == '1' ? 1u : 0u});
+    if (!events_of(report, TrackEvent::kConfirmed).empty()) return k;
+  }
+  return 0;
+}
+
+TEST(Life, ConfirmationNeedsMOfTheLastN) {
+  TrackerConfig config;
+  config.confirm_existence = 0.5;  // so that only the count decides
+  config.clutter_cell_m = 0.0;
+  EXPECT_EQ(confirmation_scan(config, "11111"), 3);
+  EXPECT_EQ(confirmation_scan(config, "110000"), 0);
+  EXPECT_EQ(confirmation_scan(config, "11011"), 4);
+  config.confirm_hits = 5;
+  EXPECT_EQ(confirmation_scan(config, "1111111"), 5);
+  EXPECT_EQ(confirmation_scan(config, "110111111"), 8) << "four of five are not five of five";
+  config.confirm_hits = 4;
+  EXPECT_EQ(confirmation_scan(config, "11011"), 5);
+  config.confirm_hits = config.confirm_window = 32;
+  EXPECT_EQ(confirmation_scan(config, std::string(40, '1')), 32);
+}
+
+TEST(Life, ConfirmationNeedsExistence) {
+  TrackerConfig config;
+  config.confirm_existence = 1.0;
+  EXPECT_EQ(confirmation_scan(config, std::string(40, '1')), 0);
+}
+
+TEST(Life, PlotsAreGivenToTheirTrack) {
+  Sea sea(3);
+  VesselTracker tracker = make_tracker();
+  for (int k = 1; k <= 40; ++k) {
+    const double time_s = 2.5 * k;
+    const std::vector<Plot> plots{sea.plot({-3000.0, 2000.0 - 300.0 * (k % 7)}, time_s),
+                                  sea.plot(kBoat.at(time_s), time_s)};
+    const ScanReport report = tracker.process(time_s, plots);
+    ASSERT_EQ(report.plot_track_id.size(), 2u);
+    EXPECT_EQ(report.plot_track_id[0], 0) << "an echo that jumps about is nobody's";
+    EXPECT_TRUE(k > 1 || report.plot_track_id[1] == 0);
+    EXPECT_TRUE(k < 6 || report.plot_track_id[1] == 1) << "scan " << k;
+    for (const std::int64_t id : report.plot_track_id)
+      EXPECT_TRUE(id == 0 || tracker.find(id) != nullptr) << id;
+  }
+}
+
+/// One boat, seen in each of its first scans and then as the repeated pattern says, keeps one number.
+void expect_held(int first_scans, const std::string& pattern, double speed_mps, std::uint64_t seed) {
+  SCOPED_TRACE(pattern + " at " + std::to_string(speed_mps) + " m/s, seed " + std::to_string(seed));
+  Sea sea(seed);
+  VesselTracker tracker = make_tracker();
+  const Boat boat{{200.0, -0.5 * speed_mps * 750.0}, {0.0, speed_mps}};
+  bool confirmed = false;
+  for (int k = 0; k < 300; ++k) {
+    const double time_s = 2.5 * k;
+    const Plot plot = sea.plot(boat.at(time_s), time_s);
+    const bool seen =
+        k < first_scans || pattern[static_cast<std::size_t>(k - first_scans) % pattern.size()] == '1';
+    const ScanReport report = tracker.process(time_s, {&plot, seen ? 1u : 0u});
+    for (const Event& event : report.events) {
+      if (event.kind == TrackEvent::kConfirmed) {
+        ASSERT_FALSE(confirmed) << "a second number in scan " << k;
+        confirmed = true;
+      }
+      const bool kept = event.kind != TrackEvent::kLost || event.track_id < 0;
+      ASSERT_TRUE(kept) << "lost in scan " << k;
+    }
+  }
+  ASSERT_TRUE(confirmed);
+  const VesselTrack* track = tracker.find(1);
+  EXPECT_LT((track->position() - boat.at(track->time_s)).norm(), 150.0);
+}
+
+TEST(Life, ATargetSeenInFiveOfTenScansIsHeld) {
+  for (const double speed_mps : {0.0, 3.0, 8.0, 15.0, 20.0})
+    for (const int first_scans : {5, 10})
+      for (const char* pattern :
+           {"1010101010", "0000011111", "1110000011", "1111100000", "1110110000", "1100110010", "1101101000"})
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_held(first_scans, pattern, speed_mps, seed);
+}
+
+TEST(Life, CoastsThenIsHeldThenLostOnce) {
+  const TrackerConfig config;
+  Sea sea(5);
+  VesselTracker tracker = make_tracker(config);
+  double time_s = 0.0;
+  for (int k = 0; k < 20; ++k, time_s += 2.5) {
+    const Plot plot = sea.plot(kBoat.at(time_s), time_s);
+    EXPECT_TRUE(events_of(tracker.process(time_s, {&plot, 1}), TrackEvent::kCoasting).empty());
+  }
+  ASSERT_NE(tracker.find(1), nullptr);
+  EXPECT_EQ(tracker.find(1)->status, TrackStatus::kConfirmed);
+  const double patience = tracker.find(1)->patience(config);
+  std::vector<TrackEvent> story;
+  for (int missed = 1; missed <= 30; ++missed, time_s += 2.5) {
+    for (const Event& event : tracker.process(time_s, {}).events) {
+      EXPECT_EQ(event.track_id, 1);
+      EXPECT_LT(event.tentative_id, 0);
+      story.push_back(event.kind);
+    }
+    const VesselTrack* track = tracker.find(1);
+    if (track == nullptr) continue;
+    EXPECT_LE(missed, patience);
+    EXPECT_EQ(track->status, missed <= config.shown_scans ? TrackStatus::kCoasting : TrackStatus::kHeld);
+    EXPECT_EQ(track->shown(), missed <= config.shown_scans);
+    EXPECT_EQ(track->time_s, time_s);
+    EXPECT_TRUE(std::isnan(track->nis));
+  }
+  EXPECT_EQ(story, (std::vector<TrackEvent>{TrackEvent::kCoasting, TrackEvent::kLost}));
+  EXPECT_EQ(tracker.size(), 0);
+}
+
+TEST(Life, ATrackThatIsSeenAgainCoastsAgain) {
+  Sea sea(6);
+  VesselTracker tracker = make_tracker();
+  int coasting = 0;
+  for (int k = 0; k < 40; ++k) {
+    const double time_s = 2.5 * k;
+    const Plot plot = sea.plot(kBoat.at(time_s), time_s);
+    const bool seen = k < 10 || (k % 10 != 3 && k % 10 != 4);
+    const ScanReport report = tracker.process(time_s, {&plot, seen ? 1u : 0u});
+    for (const Event& event : events_of(report, TrackEvent::kCoasting)) {
+      EXPECT_EQ(event.track_id, 1);
+      EXPECT_EQ(k % 10, 3);
+      ++coasting;
+    }
+  }
+  EXPECT_EQ(coasting, 3);
+  EXPECT_EQ(tracker.find(1)->status, TrackStatus::kConfirmed);
+}
+
+TEST(Life, NothingAboveTheSpeedLimitIsEverConfirmed) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Sea sea(seed);
+    VesselTracker tracker = make_tracker();
+    const Boat plane{{-4000.0, 1000.0}, {60.0, 10.0}};
+    for (int k = 0; k < 60; ++k) {
+      const double time_s = 2.5 * k;
+      const Plot plot = sea.plot(plane.at(time_s), time_s);
+      const ScanReport report = tracker.process(time_s, {&plot, 1});
+      EXPECT_TRUE(events_of(report, TrackEvent::kConfirmed).empty());
+    }
+    EXPECT_TRUE(tracks_of(tracker, true).empty());
+  }
+}
+
+TEST(Life, AnEchoThatWandersOverItsSpotIsOneTrackAtRest) {
+  Sea sea(8);
+  VesselTracker tracker = make_tracker();
+  std::set<std::int64_t> ids;
+  for (int k = 0; k < 200; ++k) {
+    const double time_s = 2.5 * k;
+    std::vector<Plot> plots{sea.plot(kBoat.at(time_s), time_s)};
+    if (sea.draw.uniform(0, 1) < 0.9) plots.push_back(sea.plot({-900.0, 300.0}, time_s));
+    (void)tracker.process(time_s, plots);
+    for (const VesselTrack* track : tracks_of(tracker, true)) ids.insert(track->id);
+  }
+  EXPECT_EQ(ids.size(), 2u);
+  const VesselTrack* rock = track_at(tracker, {-900.0, 300.0});
+  ASSERT_NE(rock, nullptr);
+  EXPECT_LT(rock->speed_mps(), 3.0);
+}
+
+}  // namespace
+}  // namespace wakeline

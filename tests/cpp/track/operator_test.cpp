@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// What an operator does: designate, drop, rename.
+#include <limits>
+#include <string>
+
+#include "track/scene.hpp"
+
+namespace wakeline {
+namespace {
+
+using namespace test;
+
+const Boat kBoat{{1500.0, 800.0}, {-4.0, 6.0}};
+
+void follow(VesselTracker& tracker, Sea& sea, int from, int to) {
+  for (int k = from; k < to; ++k) {
+    const Plot plot = sea.plot(kBoat.at(2.5 * k), 2.5 * k);
+    (void)tracker.process(2.5 * k, {&plot, 1});
+  }
+}
+
+TEST(Operator, DesignatesATargetBeforeTheFirstScan) {
+  Sea sea(1);
+  VesselTracker tracker = make_tracker();
+  const std::int64_t id = tracker.designate(0.0, kBoat.at(0)[0], kBoat.at(0)[1], 30.0);
+  EXPECT_EQ(id, 1);
+  const VesselTrack* track = tracker.find(id);
+  ASSERT_NE(track, nullptr);
+  EXPECT_EQ(track->status, TrackStatus::kConfirmed);
+  EXPECT_EQ(track->tentative_id, 0);
+  EXPECT_EQ(track->speed_mps(), 0.0);
+  EXPECT_NEAR(track->position_std_m(), 30.0, 1e-9);
+  expect_sound(tracker);
+  follow(tracker, sea, 1, 30);
+  EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1}) << "it takes the boat's plots, and nothing else starts";
+  EXPECT_LT((tracker.find(1)->position() - kBoat.at(2.5 * 29)).norm(), 60.0);
+}
+
+TEST(Operator, DesignatingAheadOfTheClockHoldsUpNoScan) {
+  Sea sea(2);
+  VesselTracker tracker = make_tracker();
+  ASSERT_EQ(tracker.designate(3.0, kBoat.at(3)[0], kBoat.at(3)[1], 30.0), 1);
+  const Plot plot = sea.plot(kBoat.at(2.5), 2.5);
+  EXPECT_EQ(tracker.process(2.5, {&plot, 1}).status, Status::kOk);
+  follow(tracker, sea, 2, 20);
+  EXPECT_NE(tracker.find(1), nullptr);
+}
+
+TEST(Operator, ADesignatedTargetThatIsNotThereIsLost) {
+  VesselTracker tracker = make_tracker();
+  (void)tracker.process(0.0, {});
+  ASSERT_EQ(tracker.designate(0.0, 500.0, 500.0, 20.0), 1);
+  std::vector<TrackEvent> story;
+  for (int k = 1; k < 30; ++k)
+    for (const Event& event : tracker.process(2.5 * k, {}).events) {
+      EXPECT_EQ(event.track_id, 1);
+      EXPECT_EQ(event.tentative_id, 0);
+      story.push_back(event.kind);
+    }
+  EXPECT_EQ(story, (std::vector<TrackEvent>{TrackEvent::kCoasting, TrackEvent::kLost}));
+}
+
+TEST(Operator, WhatMakesNoSenseIsNotDesignated) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  VesselTracker tracker = make_tracker();
+  const auto before = tracker.save();
+  for (const double bad : {kNan, kInf, -kInf}) {
+    EXPECT_EQ(tracker.designate(bad, 0.0, 0.0, 10.0), 0);
+    EXPECT_EQ(tracker.designate(0.0, bad, 0.0, 10.0), 0);
+    EXPECT_EQ(tracker.designate(0.0, 0.0, bad, 10.0), 0);
+    EXPECT_EQ(tracker.designate(0.0, 0.0, 0.0, bad), 0);
+  }
+  for (const double std : {0.0, -10.0, 1e200}) EXPECT_EQ(tracker.designate(0.0, 0.0, 0.0, std), 0);
+  EXPECT_EQ(tracker.save(), before);
+  EXPECT_EQ(tracker.process(1.0, {}).status, Status::kOk);
+}
+
+TEST(Operator, DesignatesIntoAFullTrackerOnlyOverTentativeTracks) {
+  TrackerConfig config;
+  config.max_tracks = 3;
+  VesselTracker tracker = make_tracker(config);
+  for (const double time_s : {0.0, 2.5}) {
+    std::vector<Plot> plots;
+    for (const double north : {1000.0, 2000.0, 3000.0}) plots.push_back(exact_plot({north, 0.0}, time_s));
+    (void)tracker.process(time_s, plots);
+  }
+  ASSERT_EQ(tracker.size(), 3);
+  for (int k = 1; k <= 3; ++k) EXPECT_EQ(tracker.designate(2.5, -1000.0 * k, 0.0, 10.0), k);
+  EXPECT_EQ(tracker.designate(2.5, -4000.0, 0.0, 10.0), 0);
+  EXPECT_EQ(ids_of(tracker), (std::set<std::int64_t>{1, 2, 3}));
+}
+
+TEST(Operator, DropsATrackAndItsNumberForGood) {
+  Sea sea(3);
+  VesselTracker tracker = make_tracker();
+  follow(tracker, sea, 0, 20);
+  EXPECT_FALSE(tracker.drop(99));
+  EXPECT_FALSE(tracker.drop(0));
+  EXPECT_FALSE(tracker.drop(-1)) << "its number before it was confirmed";
+  EXPECT_TRUE(tracker.drop(1));
+  EXPECT_EQ(tracker.find(1), nullptr);
+  EXPECT_FALSE(tracker.drop(1));
+  EXPECT_EQ(tracker.size(), 0);
+  follow(tracker, sea, 20, 40);
+  EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{2});
+}
+
+TEST(Operator, RenamesATrack) {
+  Sea sea(4);
+  VesselTracker tracker = make_tracker();
+  follow(tracker, sea, 0, 20);
+  EXPECT_EQ(tracker.find(1)->label(), "");
+  EXPECT_FALSE(tracker.rename(7, "nobody"));
+  EXPECT_TRUE(tracker.rename(1, "pilot boat"));
+  follow(tracker, sea, 20, 22);
+  EXPECT_EQ(tracker.find(1)->label(), "pilot boat");
+  EXPECT_TRUE(tracker.rename(1, "tug"));
+  EXPECT_EQ(tracker.find(1)->label(), "tug");
+  const std::string name(1000, 'x');
+  EXPECT_TRUE(tracker.rename(1, name));
+  EXPECT_EQ(tracker.find(1)->label(), name.substr(0, 31));
+  EXPECT_TRUE(tracker.rename(1, ""));
+  EXPECT_EQ(tracker.find(1)->label(), "");
+}
+
+TEST(Operator, ANewTrackHasNoNameOfAnOldOne) {
+  TrackerConfig config;
+  config.max_tracks = 1;
+  VesselTracker tracker = make_tracker(config);
+  ASSERT_EQ(tracker.designate(0.0, 100.0, 0.0, 10.0), 1);
+  EXPECT_TRUE(tracker.rename(1, "old"));
+  EXPECT_TRUE(tracker.drop(1));
+  ASSERT_EQ(tracker.designate(0.0, 100.0, 0.0, 10.0), 2);
+  EXPECT_EQ(tracker.find(2)->label(), "");
+}
+
+}  // namespace
+}  // namespace wakeline

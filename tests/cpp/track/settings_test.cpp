@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Settings that make no sense are refused by a sentence that names them.
+#include <functional>
+#include <limits>
+#include <string>
+#include <tuple>
+
+#include "track/scene.hpp"
+
+namespace wakeline {
+namespace {
+
+using test::kTestRadar;
+using test::make_tracker;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// What refusing says, or nothing.
+std::string refusal(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_refused(const char* name, const std::function<void(TrackerConfig&)>& spoil) {
+  TrackerConfig config;
+  spoil(config);
+  const std::string message = refusal([&] { config.validate(); });
+  EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u) << name << ": '" << message << "'";
+  EXPECT_EQ(refusal([&] { (void)make_tracker(config); }), message) << "the tracker says the same";
+}
+
+TEST(TrackerConfig, TheDefaultsAreValid) {
+  EXPECT_EQ(refusal([] { TrackerConfig{}.validate(); }), "");
+  EXPECT_EQ(refusal([] { Radar{}.validate(); }), "");
+}
+
+TEST(TrackerConfig, NamesWhatItRefuses) {
+#define WAKELINE_EXPECT_REFUSED(field, ...)                                      \
+  for (const double value : {__VA_ARGS__})                                       \
+  expect_refused(#field, [value](TrackerConfig& config) { config.field = value; })
+#define WAKELINE_EXPECT_REFUSED_COUNT(field, ...)                                \
+  for (const int value : {__VA_ARGS__})                                          \
+  expect_refused(#field, [value](TrackerConfig& config) { config.field = value; })
+  WAKELINE_EXPECT_REFUSED(detection_probability, -0.1, 1.1, kNan);
+  WAKELINE_EXPECT_REFUSED(gate_probability, 0.0, 1.0, kNan);
+  WAKELINE_EXPECT_REFUSED(clutter_density_per_m2, 0.0, -1.0, kNan, kInf);
+  WAKELINE_EXPECT_REFUSED(wild_probability, -0.1, 1.0, kNan);
+  WAKELINE_EXPECT_REFUSED(wild_scale, 0.9, kNan, kInf);
+  WAKELINE_EXPECT_REFUSED(clutter_cell_m, -1.0, kNan, kInf);
+  WAKELINE_EXPECT_REFUSED(clutter_memory_s, 0.0, kNan);
+  WAKELINE_EXPECT_REFUSED(clutter_weight, -1.0, kNan);
+  WAKELINE_EXPECT_REFUSED(visible_time_s, -1.0, kNan);
+  WAKELINE_EXPECT_REFUSED(hidden_time_s, 0.0, kNan);
+  WAKELINE_EXPECT_REFUSED(initial_existence, -0.1, 1.1, kNan);
+  WAKELINE_EXPECT_REFUSED(free_plot, -0.1, 1.1, kNan);
+  WAKELINE_EXPECT_REFUSED(start_gate_sigma, -1.0, kNan);
+  WAKELINE_EXPECT_REFUSED(start_speed_factor, -1.0, kNan);
+  WAKELINE_EXPECT_REFUSED(confirm_existence, -0.1, 1.1, kNan);
+  WAKELINE_EXPECT_REFUSED_COUNT(confirm_hits, 0, -3);
+  WAKELINE_EXPECT_REFUSED_COUNT(confirm_window, 2, 33);
+  WAKELINE_EXPECT_REFUSED(survival_time_s, 0.0, kNan);
+  WAKELINE_EXPECT_REFUSED(drop_existence, -0.1, 1.1, kNan);
+  WAKELINE_EXPECT_REFUSED_COUNT(tentative_misses, -1);
+  WAKELINE_EXPECT_REFUSED(coast_scans, -1.0, kNan, kInf);
+  WAKELINE_EXPECT_REFUSED(coast_scans_per_hit, -1.0, kNan);
+  WAKELINE_EXPECT_REFUSED_COUNT(coast_scans_max, -1);
+  WAKELINE_EXPECT_REFUSED_COUNT(shown_scans, -1);
+  WAKELINE_EXPECT_REFUSED(drop_position_std_m, 0.0, kNan);
+  WAKELINE_EXPECT_REFUSED(drop_speed_factor, 0.0, kNan);
+  WAKELINE_EXPECT_REFUSED(duplicate_distance, -1.0, kNan);
+  WAKELINE_EXPECT_REFUSED_COUNT(duplicate_scans, 0);
+  WAKELINE_EXPECT_REFUSED_COUNT(max_tracks, 0, -1, 1'000'000'000);
+  WAKELINE_EXPECT_REFUSED_COUNT(max_plots, 0, -1, 1'000'000'000);
+}
+
+TEST(TrackerConfig, SettingsListEveryField) {
+  // Each field, changed alone, changes the settings: none is forgotten in what is saved and compared.
+  const TrackerConfig defaults;
+  TrackerConfig config;
+  std::apply([](auto&... field) { ((field = std::remove_reference_t<decltype(field)>{}), ...); }, config.settings());
+  EXPECT_NE(config.settings(), defaults.settings());
+  std::size_t bytes = 0;
+  std::apply([&](const auto&... field) { bytes = (sizeof(field) + ...); }, defaults.settings());
+  EXPECT_LE(sizeof(TrackerConfig) - bytes, 2 * alignof(TrackerConfig)) << "a field is missing from settings()";
+}
+
+TEST(RadarSettings, NamesWhatItRefuses) {
+  const auto expect = [](const char* name, const std::function<void(Radar&)>& spoil) {
+    Radar radar = kTestRadar;
+    spoil(radar);
+    const std::string message = refusal([&] { radar.validate(); });
+    EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u) << name << ": '" << message << "'";
+    EXPECT_EQ(refusal([&] { (void)test::VesselTracker(radar, {}, vessel_imm(kTestRadar)); }), message);
+  };
+  for (const double value : {0.0, -1.0, kNan, kInf}) {
+    expect("range_std_m", [=](Radar& radar) { radar.range_std_m = value; });
+    expect("bearing_std_rad", [=](Radar& radar) { radar.bearing_std_rad = value; });
+    expect("period_s", [=](Radar& radar) { radar.period_s = value; });
+    expect("max_speed_mps", [=](Radar& radar) { radar.max_speed_mps = value; });
+  }
+  for (const double value : {-1.0, kNan, kInf}) expect("extent_std_m", [=](Radar& radar) { radar.extent_std_m = value; });
+  for (const double value : {kNan, kInf})
+    expect("bearing_offset_rad", [=](Radar& radar) { radar.bearing_offset_rad = value; });
+}
+
+TEST(VesselModelSettings, NamesWhatItRefuses) {
+  const auto expect = [](const char* word, const std::function<void(VesselModels&)>& spoil) {
+    VesselModels models;
+    spoil(models);
+    const std::string message = refusal([&] { (void)vessel_imm(kTestRadar, models); });
+    EXPECT_NE(message.find(word), std::string::npos) << word << ": '" << message << "'";
+    EXPECT_NE(message.find(" must be "), std::string::npos) << message;
+  };
+  for (const double value : {-1.0, kNan}) {
+    expect("psd_m2s3", [=](VesselModels& models) { models.steady_psd_m2s3 = value; });
+    expect("course_psd_rad2s", [=](VesselModels& models) { models.steady_course_psd_rad2s = value; });
+    expect("psd_m2s3", [=](VesselModels& models) { models.restless_psd_m2s3 = value; });
+    expect("course_psd_rad2s", [=](VesselModels& models) { models.restless_course_psd_rad2s = value; });
+    expect("psd_m2s3", [=](VesselModels& models) { models.turning_psd_m2s3 = value; });
+    expect("course_psd_rad2s", [=](VesselModels& models) { models.turning_course_psd_rad2s = value; });
+    expect("turn_rate_psd_rad2s3", [=](VesselModels& models) { models.turn_rate_psd_rad2s3 = value; });
+    expect("prior_turn_rate_std_rad_s", [=](VesselModels& models) { models.prior_turn_rate_std_rad_s = value; });
+    expect("sojourn", [=](VesselModels& models) { models.steady_sojourn_s = value; });
+    expect("sojourn", [=](VesselModels& models) { models.restless_sojourn_s = value; });
+    expect("sojourn", [=](VesselModels& models) { models.turning_sojourn_s = value; });
+  }
+}
+
+}  // namespace
+}  // namespace wakeline

@@ -1,0 +1,82 @@
+"""Optimal assignment against trying everything."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from wakeline.association import assign
+
+sizes = st.tuples(st.integers(0, 5), st.integers(0, 5))
+costs = hnp.arrays(float, sizes, elements=st.floats(-100.0, 100.0))
+gated = hnp.arrays(float, sizes, elements=st.floats(-100.0, 100.0) | st.just(np.inf))
+
+
+def best(cost):
+    """(pairs, total) of the best assignment: the most pairs, then the least cost."""
+    rows, columns = cost.shape
+    if rows > columns:
+        return best(cost.T)
+    found = (0, 0.0)
+    for chosen in itertools.permutations(range(columns), rows):
+        picked = cost[range(rows), list(chosen)] if rows else np.zeros(0)
+        picked = picked[np.isfinite(picked)]
+        found = min(found, (-len(picked), picked.sum()))
+    return -found[0], found[1]
+
+
+@given(costs | gated)
+def test_the_assignment_is_the_best_there_is(cost):
+    pairs = assign(cost)
+    count, total = best(cost)
+    assert len(pairs) == count
+    picked = cost[pairs[:, 0], pairs[:, 1]]
+    assert np.isfinite(picked).all()
+    assert picked.sum() == pytest.approx(total, abs=1e-9)
+
+
+@given(gated)
+def test_no_row_and_no_column_is_used_twice(cost):
+    pairs = assign(cost)
+    assert pairs.dtype == np.int64
+    assert len(set(pairs[:, 0])) == len(set(pairs[:, 1])) == len(pairs)
+    assert (np.diff(pairs[:, 0]) > 0).all()
+
+
+@given(costs, st.floats(-1e3, 1e3))
+def test_a_constant_changes_nothing_about_the_total(cost, constant):
+    moved = assign(cost + constant)
+    picked = cost[moved[:, 0], moved[:, 1]]
+    assert picked.sum() == pytest.approx(best(cost)[1], abs=1e-7)
+
+
+@pytest.mark.parametrize("shape", [(0, 0), (0, 4), (4, 0)])
+def test_nothing_to_assign(shape):
+    assert assign(np.zeros(shape)).shape == (0, 2)
+
+
+def test_everything_forbidden():
+    assert assign(np.full((3, 3), np.inf)).shape == (0, 2)
+
+
+def test_the_greedy_choice_is_not_the_best():
+    np.testing.assert_array_equal(assign([[1.0, 2.0], [2.0, 100.0]]), [[0, 1], [1, 0]])
+
+
+def test_nan_is_an_error():
+    with pytest.raises(ValueError, match="NaN"):
+        assign([[1.0, np.nan]])
+
+
+@pytest.mark.parametrize("shape", [(3,), (2, 2, 2), ()])
+def test_a_cost_must_be_a_matrix(shape):
+    with pytest.raises(ValueError, match=r"cost must have shape \(rows, columns\), got"):
+        assign(np.zeros(shape))
+
+
+def test_strides_and_integers_are_taken():
+    cost = np.arange(64).reshape(8, 8) * -1
+    np.testing.assert_array_equal(assign(cost[::2, ::3]), assign(cost[::2, ::3].copy()))

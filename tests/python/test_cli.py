@@ -1,0 +1,509 @@
+"""The command: files in, files out, one clear line on bad input."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from importlib import resources
+
+import numpy as np
+import pytest
+
+import wakeline as wl
+from wakeline import cli, metrics, recording
+from wakeline.cli import main, outputs
+from wakeline.cli import track as track_command
+from wakeline.recording import read_tracks
+
+PNG = b"\x89PNG"
+BUNDLED = resources.files("wakeline.recording") / "data"
+PERIOD_S = 2.5
+
+# coverage, ids, switches, breaks, debiased position, velocity, course, false-track scans a scan
+MUST = {
+    "joyride": (0.97, 1, 0, 2, 20.0, 3.5, 19.0, 0.0),
+    "autoferry": (0.94, 12, 2, 3, 5.5, 0.60, 8.5, 1.2),
+}
+METRICS = (
+    *("coverage", "ids", "switches", "breaks", "position_rmse_m", "position_rmse_debiased_m"),
+    *("velocity_rmse_mps", "course_rms_deg", "speed_rmse_mps", "false_tracks"),
+    *("false_track_scans_per_scan", "gospa_m"),
+)
+
+
+@pytest.fixture(autouse=True)
+def no_pictures(request, monkeypatch):
+    """Pictures take most of the time; they are drawn where a test asks for `pictures`."""
+    if "pictures" not in request.fixturenames:
+        monkeypatch.setattr(outputs, "can_draw", lambda: False)
+
+
+@pytest.fixture
+def pictures():
+    pytest.importorskip("matplotlib")
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory):
+    """Folder with the tracks and the scores of each bundled recording."""
+    folder = tmp_path_factory.mktemp("demo")
+    for name in MUST:
+        out = ["--out", str(folder / name), "--json", str(folder / f"{name}.json")]
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(outputs, "can_draw", lambda: False)
+            assert main(["demo", "--recording", name, *out]) == 0
+    return folder
+
+
+@pytest.fixture
+def plots_csv(tmp_path):
+    """A boat that steams north-east at 10 m/s, plotted every 2.5 s, 40 scans."""
+    return write_plots(tmp_path / "plots.csv", boat(40))
+
+
+def boat(scans, start_s=1000.0):
+    """Rows time_s, north_m, east_m."""
+    rng = np.random.default_rng(1)
+    after_s = PERIOD_S * np.arange(scans)
+    place = np.column_stack([1000.0 + 6.0 * after_s, 500.0 + 8.0 * after_s])
+    return np.column_stack([start_s + after_s, place + rng.normal(scale=3.0, size=place.shape)])
+
+
+def write_plots(path, rows, head="time_s,north_m,east_m"):
+    lines = [",".join(map(str, row)) for row in rows]
+    path.write_text("\n".join([head, *lines]) + "\n")
+    return path
+
+
+def read_rows(path):
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def track(*arguments):
+    return main(["track", *map(str, arguments)])
+
+
+def bundled(name, kind):
+    return str(BUNDLED / name / f"{kind}.csv")
+
+
+def refused(capsys, *arguments):
+    """The one line with which the command refuses its input."""
+    assert main([*map(str, arguments)]) == 2
+    captured = capsys.readouterr()
+    assert captured.err.startswith("wakeline: ")
+    assert captured.err.count("\n") == 1
+    return captured.err
+
+
+# The recordings that ship -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", MUST)
+def test_the_tracks_of_a_real_recording_are_as_good_as_they_must_be(demo, name):
+    score = json.loads((demo / f"{name}.json").read_text())["rows"][-1]
+    coverage, ids, switches, breaks, position_m, velocity_mps, course_deg, false = MUST[name]
+    assert score["scenario"] == "all"
+    assert score["coverage"] >= coverage
+    assert score["ids"] <= ids
+    assert score["switches"] <= switches
+    assert score["breaks"] <= breaks
+    assert score["position_rmse_debiased_m"] <= position_m
+    assert score["velocity_rmse_mps"] <= velocity_mps
+    assert score["course_rms_deg"] <= course_deg
+    assert score["false_track_scans_per_scan"] <= false
+
+
+def test_demo_explains_itself_and_says_what_it_wrote(tmp_path, capsys):
+    assert main(["demo", "--out", str(tmp_path / "here")]) == 0
+    text = capsys.readouterr().out
+    for word in ("joyride", "coverage", "switches", "velocity", "false tracks", "tracks.csv"):
+        assert word in text
+    assert (tmp_path / "here" / "tracks.csv").exists()
+
+
+@pytest.mark.parametrize("name", MUST)
+def test_score_says_what_metrics_says(demo, name, tmp_path, capsys):
+    tracks_csv, result = demo / name / "tracks.csv", tmp_path / "score.json"
+    files = [str(tracks_csv), bundled(name, "truth"), "--scans", bundled(name, "scans")]
+    assert main(["score", *files, "--json", str(result)]) == 0
+    written = json.loads(result.read_text())
+    assert set(written) == {"name", "version", "seed", "runs", "rows"}
+    assert written["name"] == "score"
+    assert written["version"] == wl.__version__
+    score = metrics.score(read_tracks(tracks_csv), recording.load(name))
+    summaries = {episode.name or "tracks.csv": episode.summary for episode in score.episodes}
+    summaries["all"] = score.overall
+    assert [row["scenario"] for row in written["rows"]] == list(summaries)
+    for row in written["rows"]:
+        assert row["estimator"] == "tracks"
+        figures = summaries[row["scenario"]].as_dict()
+        assert tuple(row)[2:] == METRICS
+        assert {key: row[key] for key in METRICS} == {key: figures[key] for key in METRICS}
+    text = capsys.readouterr().out
+    assert "coverage" in text
+    assert "GOSPA" in text
+    # without plots given, those beside the scans are used
+    plots = ["--plots", bundled(name, "plots")]
+    assert main(["score", *files, *plots, "--json", str(tmp_path / "again.json")]) == 0
+    assert json.loads((tmp_path / "again.json").read_text()) == written
+
+
+def test_score_with_another_gate(demo, tmp_path):
+    files = [demo / "joyride" / "tracks.csv", bundled("joyride", "truth")]
+    scans = ["--scans", bundled("joyride", "scans"), "--json", tmp_path / "score.json"]
+    assert main([*map(str, ["score", *files, *scans, "--gate", 10])]) == 0
+    row = json.loads((tmp_path / "score.json").read_text())["rows"][-1]
+    assert row["coverage"] < 0.97
+
+
+# What track writes --------------------------------------------------------------------------------
+
+
+def test_track_writes_tracks_events_and_plots(plots_csv, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert track(plots_csv, "--out", out, "--json", tmp_path / "track.json") == 0
+    head = (out / "tracks.csv").read_text().splitlines()[0]
+    assert head.startswith("track_id,time_s,north_m,east_m,vnorth_mps,veast_mps,course_deg")
+    tracks = read_tracks(out / "tracks.csv")
+    assert tracks.ids() == ["1"]
+    assert set(tracks.status) <= {"confirmed", "coasting"}
+    assert np.isin(tracks.time_s, boat(40)[:, 0]).all()
+    assert np.isfinite(tracks.state).all()
+    assert np.isfinite(tracks.covariance).all()
+    np.testing.assert_allclose(tracks.mode_probability.sum(axis=1), 1.0)
+    np.testing.assert_allclose(tracks.state[-1], [1585.0, 6.0, 1280.0, 8.0], atol=8.0)
+    events = read_rows(out / "events.csv")
+    assert [event["event"] for event in events[:2]] == ["started", "confirmed"]
+    plots = read_rows(out / "plots_tracks.csv")
+    assert len(plots) == 40
+    assert plots[-1]["track_id"] == "1"
+    row = json.loads((tmp_path / "track.json").read_text())["rows"][-1]
+    assert (row["scans"], row["plots"], row["tracks"]) == (40, 40, 1)
+    text = capsys.readouterr().out
+    assert "40 scans, 40 plots" in text
+    assert "period 2.5 s as between the scans" in text
+
+
+def test_track_draws_a_map_and_a_picture_over_time(plots_csv, tmp_path, pictures):
+    assert track(plots_csv, "--out", tmp_path) == 0
+    for name in ("map.png", "time.png"):
+        assert (tmp_path / name).read_bytes().startswith(PNG)
+
+
+def test_without_matplotlib_the_tracks_are_written_all_the_same(
+    plots_csv, tmp_path, capsys, monkeypatch, pictures
+):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert track(plots_csv, "--out", tmp_path / "out") == 0
+    assert "pip install 'wakeline[plot]'" in capsys.readouterr().out
+    files = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert files == ["events.csv", "plots_tracks.csv", "tracks.csv"]
+
+
+def test_track_with_truth_scores_as_well(tmp_path, capsys):
+    files = [bundled("joyride", kind) for kind in ("plots", "scans", "truth")]
+    own_truth = ["--own", files[1], "--truth", files[2], "--radar", "joyride"]
+    result = tmp_path / "track.json"
+    assert track(files[0], *own_truth, "--out", tmp_path, "--json", result) == 0
+    row = json.loads(result.read_text())["rows"][-1]
+    assert row["coverage"] >= 0.97
+    assert row["scans"] == 115
+    assert "coverage" in capsys.readouterr().out
+
+
+def test_range_and_bearing_give_the_tracks_of_north_and_east(plots_csv, tmp_path):
+    time_s, north_m, east_m = boat(40).T
+    polar = np.column_stack(
+        [time_s, np.hypot(north_m, east_m), np.degrees(np.arctan2(east_m, north_m))]
+    )
+    polar_csv = write_plots(tmp_path / "polar.csv", polar, "Time,Range [m],Azimuth (deg)")
+    assert track(plots_csv, "--out", tmp_path / "a") == 0
+    assert track(polar_csv, "--out", tmp_path / "b") == 0
+    a, b = (read_tracks(tmp_path / name / "tracks.csv") for name in "ab")
+    np.testing.assert_allclose(a.state, b.state, rtol=1e-9)
+
+
+def test_each_scenario_starts_afresh_and_is_carried_to_the_output(tmp_path):
+    rows = [(f"run {k}", *row) for k in (1, 2) for row in boat(20, start_s=1000.0 * k)]
+    plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")
+    assert track(plots, "--out", tmp_path / "out") == 0
+    tracks = read_tracks(tmp_path / "out" / "tracks.csv")
+    assert set(tracks.scenario) == {"run 1", "run 2"}
+    assert set(tracks.track_id) == {"1"}
+    one, two = (tracks.where(tracks.scenario == name) for name in ("run 1", "run 2"))
+    np.testing.assert_allclose(one.state, two.state)
+    for name in ("events.csv", "plots_tracks.csv"):
+        rows = read_rows(tmp_path / "out" / name)
+        assert {row["scenario"] for row in rows} == {"run 1", "run 2"}
+
+
+def test_each_scenario_has_pictures_of_its_own(tmp_path, pictures):
+    rows = [(name, *boat(1)[0]) for name in ("run/1", "run 2")]
+    plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")
+    assert track(plots, "--out", tmp_path) == 0
+    drawn = sorted(path.name for path in tmp_path.glob("*.png"))
+    assert drawn == ["map-run_1.png", "map-run_2.png", "time-run_1.png", "time-run_2.png"]
+
+
+def test_an_empty_recording_is_drawn_too(tmp_path, pictures):
+    assert track(write_plots(tmp_path / "plots.csv", []), "--out", tmp_path) == 0
+    assert (tmp_path / "map.png").read_bytes().startswith(PNG)
+
+
+def test_a_later_scenario_that_fails_leaves_what_was_there_and_what_was_done(
+    tmp_path, capsys, monkeypatch
+):
+    rows = [(k, *row) for k in (1, 2) for row in boat(20, start_s=1000.0 * k)]
+    plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")
+    out = tmp_path / "out"
+    assert track(plots, "--out", out) == 0
+    before = (out / "tracks.csv").read_bytes()
+    whole = track_command.track_episode
+
+    def fails_on_the_second(episode, *arguments, **options):
+        if episode.name == "2":
+            raise wl.FilterError("the engine gives up")
+        return whole(episode, *arguments, **options)
+
+    monkeypatch.setattr(track_command, "track_episode", fails_on_the_second)
+    assert track(plots, "--out", out) == 2
+    assert "the engine gives up" in capsys.readouterr().err
+    assert (out / "tracks.csv").read_bytes() == before
+    assert set(read_tracks(out / "tracks-partial.csv").scenario) == {"1"}
+
+
+def test_a_radar_with_a_period_groups_plots_that_have_times_of_their_own(tmp_path):
+    rows = boat(40)
+    second = rows + np.array([0.9, 800.0, -2000.0])
+    plots = write_plots(tmp_path / "plots.csv", np.concatenate([rows, second]))
+    assert track(plots, "--radar", "joyride", "--out", tmp_path / "out") == 0
+    tracks = read_tracks(tmp_path / "out" / "tracks.csv")
+    assert len(tracks.ids()) == 2
+    assert len(read_rows(tmp_path / "out" / "plots_tracks.csv")) == 80
+    assert len(np.unique(tracks.time_s)) <= 40
+
+
+# Bad input ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("time_s,north_m\n1,2\n", "a column is missing"),
+        ("north_m,east_m\n1,2\n", "column time_s: a column is missing"),
+        ("time_s,north_m,east_m\n1,2,three\n", "line 2, column east_m"),
+        ("time_s,north_m,east_m\nsoon,2,3\n", "line 2, column time_s"),
+        ("time_s,north_m,east_m\nnan,2,3\n", "line 2, column time_s"),
+        ("time_s,north_m,east_m\n1,2\n", "line 2: a row does not fit the header"),
+        ("scan,time_s,north_m,east_m\n0,9,2,3\n1,8,2,3\n", "scan times go back"),
+        ("scan,time_s,north_m,east_m\n0,9,2,3\n1,9,5,3\n", "scan times do not grow"),
+        ("time_s,range_m,bearing_deg\n1,-5,3\n", "line 2, column range_m"),
+        ("time_s,range_m,bearing_deg\n1,5,900\n", "line 2, column bearing_deg"),
+        ("", "the file is empty"),
+    ],
+)
+def test_plots_that_cannot_be_read_are_refused(tmp_path, capsys, text, wanted):
+    plots = tmp_path / "plots.csv"
+    plots.write_text(text)
+    out = tmp_path / "out"
+    message = refused(capsys, "track", plots, "--out", out)
+    assert wanted in message
+    assert str(plots) in message
+    assert not (out / "tracks.csv").exists()
+
+
+def test_bad_input_leaves_earlier_files_alone(plots_csv, tmp_path, capsys):
+    assert track(plots_csv, "--out", tmp_path) == 0
+    before = (tmp_path / "tracks.csv").read_bytes()
+    plots_csv.write_text("time_s,north_m,east_m\n1,2,three\n")
+    capsys.readouterr()
+    refused(capsys, "track", plots_csv, "--out", tmp_path)
+    assert (tmp_path / "tracks.csv").read_bytes() == before
+
+
+def test_a_gap_of_own_ship_is_refused(plots_csv, tmp_path, capsys):
+    own = write_plots(
+        tmp_path / "own.csv", [(1000, 0, 0), (1001, 1, 0), (1080, 9, 0), (1110, 9, 0)]
+    )
+    message = refused(capsys, "track", plots_csv, "--own", own, "--out", tmp_path)
+    assert "gap of 79 s" in message
+
+
+def test_own_ship_that_ends_early_is_refused(plots_csv, tmp_path, capsys):
+    own = write_plots(tmp_path / "own.csv", [(1000 + k, k, 0) for k in range(30)])
+    message = refused(capsys, "track", plots_csv, "--own", own, "--out", tmp_path)
+    assert "positions from 1000.0 to 1029.0" in message
+
+
+def test_plots_without_a_place_are_left_out_with_a_note(tmp_path, capsys):
+    rows = boat(30)
+    rows[[7, 12], 1] = np.nan
+    plots = write_plots(tmp_path / "plots.csv", rows)
+    assert track(plots, "--out", tmp_path) == 0
+    assert "2 plots without a finite place left out" in capsys.readouterr().out
+    assert np.isfinite(read_tracks(tmp_path / "tracks.csv").state).all()
+
+
+def test_unsorted_times_are_sorted_and_repeated_rows_count_once(plots_csv, tmp_path, capsys):
+    rows = boat(40)
+    shuffled = np.random.default_rng(2).permutation(np.concatenate([rows, rows[5:8]]))
+    mixed = write_plots(tmp_path / "mixed.csv", shuffled)
+    assert track(plots_csv, "--out", tmp_path / "a") == 0
+    capsys.readouterr()
+    assert track(mixed, "--out", tmp_path / "b") == 0
+    assert "3 plots that repeat an earlier row" in capsys.readouterr().out
+    a, b = ((tmp_path / name / "tracks.csv").read_bytes() for name in "ab")
+    assert a == b
+
+
+def test_a_file_with_a_header_only_gives_empty_tracks(tmp_path, capsys):
+    plots = write_plots(tmp_path / "plots.csv", [])
+    assert track(plots, "--out", tmp_path / "out") == 0
+    assert "no plots" in capsys.readouterr().out
+    assert len(read_tracks(tmp_path / "out" / "tracks.csv")) == 0
+
+
+def test_scans_without_plots_are_coasted_through(tmp_path):
+    rows = boat(40)
+    scans = write_plots(
+        tmp_path / "scans.csv",
+        [(k, row[0], 0, 0) for k, row in enumerate(rows)],
+        "scan,time_s,own_north_m,own_east_m",
+    )
+    seen = np.delete(np.column_stack([np.arange(40), rows]), [20, 21], axis=0)
+    plots = write_plots(tmp_path / "plots.csv", seen, "scan,time_s,north_m,east_m")
+    assert track(plots, "--own", scans, "--out", tmp_path / "out") == 0
+    tracks = read_tracks(tmp_path / "out" / "tracks.csv")
+    coasting = tracks.time_s[tracks.status == "coasting"]
+    np.testing.assert_array_equal(coasting, rows[[20, 21], 0])
+    assert tracks.ids() == ["1"]
+
+
+@pytest.mark.parametrize("pause_s", [0.0, 1e-6, 3600.0])
+def test_scans_no_time_apart_or_an_hour(tmp_path, pause_s):
+    rows = boat(40)
+    rows[20:, 0] += pause_s - PERIOD_S
+    plots = write_plots(tmp_path / "plots.csv", rows)
+    assert track(plots, "--out", tmp_path / "out") == 0
+    tracks = read_tracks(tmp_path / "out" / "tracks.csv")
+    assert np.isfinite(tracks.state).all()
+    assert len(tracks.ids()) == (2 if pause_s == 3600.0 else 1)
+
+
+def test_ten_thousand_plots_in_a_scan(tmp_path):
+    rng = np.random.default_rng(3)
+    crowd = np.column_stack([np.full(10_000, 1050.0), rng.uniform(-2e4, 2e4, (10_000, 2))])
+    plots = write_plots(tmp_path / "plots.csv", np.concatenate([boat(40), crowd]))
+    assert track(plots, "--out", tmp_path / "out") == 0
+    tracks = read_tracks(tmp_path / "out" / "tracks.csv")
+    assert np.isfinite(tracks.state).all()
+    assert "1" in tracks.ids()
+
+
+def test_plots_at_the_radar_itself(tmp_path):
+    rows = boat(40)
+    rows[:, 1:] -= rows[20, 1:]  # passes through the radar
+    rows[::4, 1:] = 0.0
+    plots = write_plots(tmp_path / "plots.csv", rows)
+    assert track(plots, "--out", tmp_path / "out") == 0
+    assert np.isfinite(read_tracks(tmp_path / "out" / "tracks.csv").state).all()
+
+
+def test_files_that_are_not_there(tmp_path, capsys):
+    message = refused(capsys, "track", tmp_path / "none.csv", "--out", tmp_path)
+    assert "none.csv: the file cannot be read" in message
+
+
+def test_an_output_folder_that_is_a_file(plots_csv, tmp_path, capsys):
+    (tmp_path / "taken").write_text("mine")
+    assert "taken: File exists" in refused(capsys, "track", plots_csv, "--out", tmp_path / "taken")
+    assert (tmp_path / "taken").read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "wanted"),
+    [
+        (["track"], "needs a file of plots"),
+        (["sail"], "invalid choice: 'sail'"),
+        ([], "COMMAND"),
+        (["score", "a.csv", "b.csv"], "--scans"),
+        (["demo", "--recording", "none"], "invalid choice: 'none'"),
+        (["score", "a.csv", "b.csv", "--scans", "c.csv", "--gate", "wide"], "invalid float"),
+    ],
+)
+def test_a_command_line_that_makes_no_sense(capsys, arguments, wanted):
+    assert wanted in refused(capsys, *arguments)
+
+
+def test_a_gate_that_makes_no_sense(demo, capsys):
+    files = [demo / "joyride" / "tracks.csv", bundled("joyride", "truth")]
+    scans = ["--scans", bundled("joyride", "scans")]
+    capsys.readouterr()
+    assert "gate_m must be positive" in refused(capsys, "score", *files, *scans, "--gate", -1)
+
+
+# The program --------------------------------------------------------------------------------------
+
+
+def test_version_and_help(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"wakeline {wl.__version__}\n"
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    for command in ("demo", "track", "score", "bench"):
+        assert command in text
+
+
+def test_bench_measures_every_work(tmp_path, monkeypatch, capsys):
+    from wakeline.cli import bench
+
+    for name, value in (("_REPEATS", 1), ("_RUNS", 10), ("_SCANS", 20), ("_LOOP_STEPS", 20)):
+        monkeypatch.setattr(bench, name, value)
+    monkeypatch.setattr(bench, "_TRACKER_SCANS", 2)
+    assert main(["bench", "--json", str(tmp_path / "bench.json")]) == 0
+    result = json.loads((tmp_path / "bench.json").read_text())
+    assert result["name"] == "bench"
+    rows = {(row["scenario"], row["estimator"]): row for row in result["rows"]}
+    for work in ("kf_step", "ekf_polar_step", "ukf5_step", "imm3_step", "imm5_step"):
+        assert rows[work, "scalar_double"]["ns_per_step"] > 0
+    assert rows["imm3_run_python", "scalar_double"]["ns_per_step"] > 0
+    assert rows["imm3_run_python", "python_loop"]["times_scalar_double"] > 0
+    assert rows["tracker_scan", "scalar_double"]["ms_per_scan"] > 0
+    assert rows["gnn_200", "scalar_double"]["ms_per_scan"] > 0
+    assert "ns a step" in capsys.readouterr().out
+
+
+def test_an_interrupt_is_no_traceback(plots_csv, tmp_path, capsys, monkeypatch):
+    def interrupted(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(track_command, "track_episode", interrupted)
+    assert track(plots_csv, "--out", tmp_path) == 130
+    assert capsys.readouterr().err == "wakeline: interrupted\n"
+
+
+def test_a_reader_that_leaves_and_a_silent_stderr():
+    """Into a pipe: no progress bar, and no complaint when nobody reads to the end."""
+    command = [sys.executable, "-m", cli.__name__, "track", "--print-config"]
+    environment = os.environ | {"PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
+    ) as process:
+        process.stdout.close()
+        errors = process.stderr.read()
+    assert process.returncode == 141
+    assert errors == b""
+
+
+def test_progress_is_drawn_on_a_terminal_only(monkeypatch, capsys):
+    from wakeline.cli import progress
+
+    assert list(progress.progress(range(5), 5, "counting")) == list(range(5))
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setattr(progress, "_EVERY_S", -1.0)
+    assert list(progress.progress(range(5), 5, "counting")) == list(range(5))
+    assert "counting" in capsys.readouterr().err

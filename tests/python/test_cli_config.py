@@ -1,0 +1,137 @@
+"""Settings as TOML: they survive a file, and what is wrong in a file is named."""
+
+import math
+
+import pytest
+
+import wakeline as wl
+from wakeline.cli import main
+from wakeline.cli.config import KEYS, ConfigError, Settings, radar_names, read_settings
+
+
+def read(tmp_path, text, name="mine.toml", **kwargs):
+    path = tmp_path / name
+    path.write_text(text)
+    return read_settings(config=path, **kwargs)
+
+
+def test_every_setting_of_the_engine_has_a_line_that_explains_it():
+    engine = {"radar": wl.Radar, "tracker": wl.TrackerConfig, "models": wl.VesselModels}
+    for section, kind in engine.items():
+        names = {key.replace("_deg", "_rad") for key in KEYS[section]}
+        assert names == set(kind().as_dict()), section
+
+
+def test_the_defaults_are_those_of_the_engine():
+    settings = Settings.default()
+    assert settings.tracker == wl.TrackerConfig().as_dict()
+    assert settings.models == wl.VesselModels().as_dict()
+    assert settings.radar["bearing_std_deg"] == pytest.approx(
+        math.degrees(wl.Radar().bearing_std_rad)
+    )
+    assert settings.period_s is None
+    assert settings.tracker_of().radar == wl.Radar()
+
+
+def test_printed_settings_read_back_the_same(tmp_path, capsys):
+    assert main(["track", "--print-config"]) == 0
+    text = capsys.readouterr().out
+    assert read(tmp_path, text) == Settings.default()
+    for section, keys in KEYS.items():
+        assert f"[{section}]" in text
+        for key, about in keys.items():
+            assert f"# {about}\n{key} = " in text
+
+
+def test_changed_settings_read_back_the_same(tmp_path, capsys):
+    changed = """
+        [tracker]
+        confirm_hits = 4
+        association = "global_nearest"
+        clutter_density_per_m2 = 1.25e-9
+        [models]
+        steady_sojourn_s = 123
+        [radar]
+        bearing_offset_deg = 1.1
+    """
+    path = tmp_path / "changed.toml"
+    path.write_text(changed)
+    assert main(["track", "--config", str(path), "--radar", "joyride", "--print-config"]) == 0
+    printed = read(tmp_path, capsys.readouterr().out)
+    assert printed == read_settings(path, "joyride")
+    assert printed.tracker["confirm_hits"] == 4
+    assert printed.tracker["association"] == "global_nearest"
+    assert printed.models["steady_sojourn_s"] == 123.0
+
+
+def test_radars_that_ship_are_complete_and_win_over_the_configuration(tmp_path):
+    assert radar_names() == ["autoferry", "joyride"]
+    settings = read(tmp_path, "[radar]\nrange_std_m = 99.0\nperiod_s = 9.0", radar="joyride")
+    assert settings.radar == {
+        "range_std_m": 6.0,
+        "bearing_std_deg": 0.3,
+        "extent_std_m": 6.5,
+        "period_s": 2.5,
+        "max_speed_mps": 25.0,
+        "bearing_offset_deg": 0.0,
+    }
+    autoferry = read_settings(radar="autoferry").tracker_of().radar
+    assert autoferry.bearing_std_rad == math.radians(1.5)
+    assert autoferry.period_s == 1.68
+
+
+@pytest.mark.parametrize("head", ["", "[radar]\n"])
+def test_a_radar_of_ones_own(tmp_path, head):
+    path = tmp_path / "radar.toml"
+    path.write_text(f"{head}range_std_m = 30\nbearing_offset_deg = 2.0\n")
+    radar = read_settings(radar=str(path)).tracker_of(4.0).radar
+    assert radar.range_std_m == 30.0
+    assert radar.bearing_offset_rad == math.radians(2.0)
+    assert radar.period_s == 4.0
+    assert radar.max_speed_mps == wl.Radar().max_speed_mps
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("[tracker]\nconfirm_hitz = 3", "unknown key confirm_hitz in [tracker]"),
+        ("[trackers]\nconfirm_hits = 3", "unknown section trackers"),
+        ("confirm_hits = 3", "unknown section confirm_hits"),
+        ("tracker = 3", "tracker must be a section"),
+        ("[tracker]\nconfirm_hits = 3.5", "[tracker] confirm_hits must be a whole number"),
+        ("[tracker]\nconfirm_hits = true", "[tracker] confirm_hits must be a whole number"),
+        ("[tracker]\ngate_probability = 'high'", "gate_probability must be a number, got 'high'"),
+        ("[tracker]\ngate_probability = 1.5", "[tracker] gate_probability = 1.5"),
+        ("[tracker]\ngate_probability = nan", "[tracker] gate_probability = nan"),
+        ("[tracker]\nassociation = 'best'", "[tracker] association = 'best'"),
+        ("[tracker]\nassociation = 1", "association must be a text"),
+        ("[tracker]\nconfirm_hits = 6", "confirm_window"),
+        ("[tracker]\nmax_tracks = 100000000000000", "[tracker] max_tracks"),
+        ("[models]\nsteady_psd_m2s3 = -1.0", "[models] steady_psd_m2s3 = -1.0"),
+        ("[models]\nturning_sojourn_s = 0.0", "[models] turning_sojourn_s = 0.0"),
+        ("[radar]\nbearing_std_deg = -1", "[radar] bearing_std_deg = -1.0"),
+        ("[radar]\nperiod_s = -2.5", "[radar] period_s = -2.5"),
+        ("[radar]\nrange_std_m = inf", "[radar] range_std_m = inf"),
+        ("[radar\n", "not TOML"),
+    ],
+)
+def test_what_is_wrong_is_named(tmp_path, capsys, text, wanted):
+    with pytest.raises(ConfigError) as caught:
+        read(tmp_path, text)
+    assert wanted in str(caught.value)
+    assert "mine.toml" in str(caught.value)
+    assert main(["track", "--config", str(tmp_path / "mine.toml"), "--print-config"]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("wakeline: ")
+    assert error.count("\n") == 1
+    assert wanted in error
+
+
+def test_a_radar_that_does_not_exist(capsys):
+    assert main(["track", "--radar", "nonesuch", "--print-config"]) == 2
+    assert "no radar 'nonesuch'" in capsys.readouterr().err
+
+
+def test_a_configuration_that_does_not_exist(tmp_path, capsys):
+    assert main(["track", "--config", str(tmp_path / "no.toml"), "--print-config"]) == 2
+    assert "no.toml: No such file or directory" in capsys.readouterr().err

@@ -1,0 +1,53 @@
+"""The stubs name what the engine has, and do not stand in its way."""
+
+import ast
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
+
+import pytest
+
+import wakeline as wl
+from wakeline import _engine
+
+PACKAGE = Path(wl.__file__).parent
+STUBS = PACKAGE / "_engine"
+NOUNS = sorted(name for name, value in vars(_engine).items() if type(value) is type(_engine))
+
+
+def names_in(body):
+    """What a module or class stub defines."""
+    names = set()
+    for node in body:
+        if isinstance(node, ast.ClassDef | ast.FunctionDef):
+            names.add(node.name)
+        elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            names.add(node.target.id)
+        elif isinstance(node, ast.Assign):
+            names.update(t.id for t in node.targets if isinstance(t, ast.Name))
+    return names
+
+
+def public(namespace):
+    return {name for name in vars(namespace) if not name.startswith("_")}
+
+
+def test_the_engine_is_the_extension_and_the_package_is_typed():
+    assert _engine.__file__.endswith(tuple(EXTENSION_SUFFIXES))
+    assert (PACKAGE / "py.typed").exists()
+
+
+def test_there_is_a_stub_for_each_noun_and_no_other():
+    assert sorted(path.stem for path in STUBS.glob("*.pyi")) == sorted(["__init__", *NOUNS])
+    assert not list(STUBS.glob("*.py"))  # it would be imported in place of the extension
+
+
+@pytest.mark.parametrize("noun", NOUNS)
+def test_a_stub_names_all_that_its_noun_has(noun):
+    module = getattr(_engine, noun)
+    body = ast.parse((STUBS / f"{noun}.pyi").read_text()).body
+    assert public(module) <= names_in(body)
+    for node in body:
+        if isinstance(node, ast.ClassDef):
+            wanted = public(getattr(module, node.name)) - {"name", "value", "add_note"}
+            if not issubclass(getattr(module, node.name), BaseException):
+                assert wanted <= names_in(node.body), node.name
