@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::array kTurnComponents = CoordinatedTurnRate::kComponents;
 
-/// Where each layout holds the components of each other one: `rows(from, to)[i]`, -1 where it does not.
+/// Where each layout holds the components of each other one: `rows(from, to)[i]`, -1 where it does
+/// not.
 const int* rows(StateLayout from, StateLayout to) noexcept {
   static constexpr auto k44 = rows_of(kKinematics, kKinematics);
   static constexpr auto k45 = rows_of(kKinematics, kTurnComponents);
@@ -118,8 +119,8 @@ bool AnyFilter::started() const noexcept {
 }
 
 StateLayout AnyFilter::layout() const noexcept {
-  return std::visit(
-      []<class Filter>(const Filter&) { return kLayoutOf<typename Filter::Motion>; }, filter_);
+  return std::visit([]<class Filter>(const Filter&) { return kLayoutOf<typename Filter::Motion>; },
+                    filter_);
 }
 
 AnyFilterBank::AnyFilterBank(const std::vector<AnyFilter>& filters) {
@@ -128,9 +129,8 @@ AnyFilterBank::AnyFilterBank(const std::vector<AnyFilter>& filters) {
                                 " filters, got " + std::to_string(filters.size()));
   for (const AnyFilter& filter : filters) slots_.push_back({filter, filter.estimate()});
   const StateLayout first = filters.front().layout();
-  const bool same = std::all_of(filters.begin(), filters.end(), [&](const AnyFilter& filter) {
-    return filter.layout() == first;
-  });
+  const bool same = std::all_of(filters.begin(), filters.end(),
+                                [&](const AnyFilter& filter) { return filter.layout() == first; });
   if (same) empty_ = filters.front().estimate();
   empty_ = zero_like(empty_);
 }

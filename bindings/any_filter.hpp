@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Filters composed at run time: a closed set of the shipped ones. Each step dispatches once and then runs the same
-// template as C++ does, so that both give the same bits.
+// Filters composed at run time: a closed set of the shipped ones. Each step dispatches once and
+// then runs the same template as C++ does, so that both give the same bits.
 #pragma once
 
 #include <cstdint>
@@ -51,10 +51,12 @@ struct AnyBelief {
 
 AnyBelief zero_like(const AnyBelief& belief) noexcept;
 void add_mean(AnyBelief& sum, double weight, const AnyBelief& part, const AnyBelief& own) noexcept;
-void add_spread(AnyBelief& sum, double weight, const AnyBelief& part, const AnyBelief& own) noexcept;
+void add_spread(AnyBelief& sum, double weight, const AnyBelief& part,
+                const AnyBelief& own) noexcept;
 Gaussian<4> kinematics_of(const AnyBelief& belief) noexcept;
 
-/// One of the shipped filters over one of the shipped motion models. A linear one takes linear sensors only.
+/// One of the shipped filters over one of the shipped motion models. A linear one takes linear
+/// sensors only.
 class AnyFilter {
  public:
   using Scalar = double;
@@ -67,7 +69,8 @@ class AnyFilter {
                    SquareRootUkf<ConstantAcceleration>, SquareRootUkf<CoordinatedTurn>,
                    SquareRootUkf<CoordinatedTurnRate>, SquareRootUkf<Singer>>;
 
-  explicit AnyFilter(const Variant& filter, bool linear = false) : filter_(filter), linear_(linear) {}
+  explicit AnyFilter(const Variant& filter, bool linear = false)
+      : filter_(filter), linear_(linear) {}
 
   /// Begins with a belief over the filter's state or over `[x, vx, y, vy]`.
   Status start(const AnyBelief& belief) noexcept;
@@ -99,13 +102,16 @@ class AnyFilter {
 };
 
 extern template Step<2> AnyFilter::update(const RangeBearing&, const Vec<double, 2>&) noexcept;
-extern template Step<2> AnyFilter::update(const ConvertedRangeBearing&, const Vec<double, 2>&) noexcept;
+extern template Step<2> AnyFilter::update(const ConvertedRangeBearing&,
+                                          const Vec<double, 2>&) noexcept;
 extern template Step<2> AnyFilter::update(const Position&, const Vec<double, 2>&) noexcept;
 extern template Step<2> AnyFilter::update(const Fix&, const Vec<double, 2>&) noexcept;
 extern template Step<2> AnyFilter::innovation(const Fix&, const Vec<double, 2>&) const noexcept;
-extern template Step<3> AnyFilter::update(const RangeBearingDoppler&, const Vec<double, 3>&) noexcept;
+extern template Step<3> AnyFilter::update(const RangeBearingDoppler&,
+                                          const Vec<double, 3>&) noexcept;
 
-/// The filters of a multi-model estimator, composed at run time: the face of `wakeline::FilterBank`.
+/// The filters of a multi-model estimator, composed at run time: the face of
+/// `wakeline::FilterBank`.
 class AnyFilterBank {
  public:
   static constexpr int kModels = kRuntimeModes;
@@ -118,7 +124,7 @@ class AnyFilterBank {
 
   template <class Function>
   void for_each(Function&& function) noexcept {
-    for (int k = 0; Slot& slot : slots_) function(k++, slot.filter, slot.before);
+    for (int k = 0; Slot & slot : slots_) function(k++, slot.filter, slot.before);
   }
 
   template <class Function>

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// The one dispatch of an update; instantiated in a translation unit per sensor, because they are slow to compile.
+// The one dispatch of an update; instantiated in a translation unit per sensor, because they are
+// slow to compile.
 #pragma once
 
 #include "any_filter.hpp"

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// The border between numpy arrays and Eigen, with errors that name the argument, the wanted and the given shape.
+// The border between numpy arrays and Eigen, with errors that name the argument, the wanted and the
+// given shape.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -20,8 +21,7 @@ using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecas
 /// "(3, 2)".
 inline std::string shape_text(const std::vector<py::ssize_t>& shape) {
   std::string text = "(";
-  for (std::size_t k = 0; k < shape.size(); ++k)
-    text += (k ? ", " : "") + std::to_string(shape[k]);
+  for (std::size_t k = 0; k < shape.size(); ++k) text += (k ? ", " : "") + std::to_string(shape[k]);
   return text + (shape.size() == 1 ? ",)" : ")");
 }
 

@@ -12,7 +12,8 @@ py::array_t<std::int64_t> assign(const DoubleArray& cost) {
   require_shape(cost.ndim() == 2, "cost", "(rows, columns)", cost);
   const Eigen::MatrixXd matrix = to_matrix("cost", cost, cost.shape(0), cost.shape(1));
   for (const double element : matrix.reshaped())
-    if (std::isnan(element)) throw py::value_error("cost must not hold NaN; forbid a pair with inf");
+    if (std::isnan(element))
+      throw py::value_error("cost must not hold NaN; forbid a pair with inf");
   const std::vector<int> columns = matrix.size() > 0 ? assign_dense(matrix) : std::vector<int>{};
   py::ssize_t pairs = 0;
   for (const int column : columns) pairs += column != kUnassigned;

@@ -44,7 +44,8 @@ Raises
 ValueError
     When the shapes do not fit.)")
       .def(py::init(&make_gaussian), py::arg("mean"), py::arg("covariance"))
-      .def_property_readonly("mean", [](const PyGaussian& g) { return to_array(g.mean); }, "(N,)")
+      .def_property_readonly(
+          "mean", [](const PyGaussian& g) { return to_array(g.mean); }, "(N,)")
       .def_property_readonly(
           "covariance", [](const PyGaussian& g) { return to_array(g.covariance); }, "(N, N)")
       .def("__repr__", [](const PyGaussian& g) {
@@ -66,7 +67,8 @@ ValueError
   m.def("wrap_angle", py::vectorize([](double angle_rad) { return wrap_angle(angle_rad); }),
         py::arg("angle_rad"), "The same angle in [-pi, pi], rad.");
   m.def("chi_square_quantile", &chi_square_quantile, py::arg("probability"), py::arg("dof"),
-        "The value that a chi-square variable of `dof` degrees of freedom stays below with `probability`.");
+        "The value that a chi-square variable of `dof` degrees of freedom stays below with "
+        "`probability`.");
   m.def("chi_square_probability", &chi_square_probability, py::arg("value"), py::arg("dof"),
         "Probability that a chi-square variable of `dof` degrees of freedom stays below `value`.");
 }

@@ -34,16 +34,18 @@ auto visit_sensor(const py::handle& sensor, Function&& function) {
   if (py::isinstance<Position>(sensor)) return function(sensor.cast<const Position&>());
   if (py::isinstance<RangeBearingDoppler>(sensor))
     return function(sensor.cast<const RangeBearingDoppler&>());
-  throw py::type_error("sensor must be RangeBearing, ConvertedRangeBearing, Position or "
-                       "RangeBearingDoppler, got " +
-                       py::str(py::type::of(sensor).attr("__name__")).cast<std::string>());
+  throw py::type_error(
+      "sensor must be RangeBearing, ConvertedRangeBearing, Position or "
+      "RangeBearingDoppler, got " +
+      py::str(py::type::of(sensor).attr("__name__")).cast<std::string>());
 }
 
 /// Throws ValueError when a Kalman filter is given a sensor that is not linear.
 template <class Sensor>
 void require_linear(const AnyFilter& filter) {
   if (filter.linear() && !Sensor::kLinear)
-    throw py::value_error("sensor must be linear for Kalman: use ConvertedRangeBearing or Position, or Ekf or Ukf");
+    throw py::value_error(
+        "sensor must be linear for Kalman: use ConvertedRangeBearing or Position, or Ekf or Ukf");
 }
 
 template <class Sensor>

@@ -84,8 +84,7 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
           beliefs[k].covariance = Eigen::Map<const RowMajor>(covariance.data() + k * kN * kN);
         }
         require_ok(smooth<typename Filter::Motion, double>(
-                       model.motion(), beliefs,
-                       std::span<const double>(steps).subspan(1)),
+                       model.motion(), beliefs, std::span<const double>(steps).subspan(1)),
                    "smooth");
         for (std::size_t k = 0; k < beliefs.size(); ++k) {
           Eigen::Map<Vec<double, kN>>(smooth_mean.mutable_data() + k * kN) = beliefs[k].mean;
@@ -102,7 +101,9 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
 void define_filter(py::module_& parent) {
   py::module_ m = parent.def_submodule("filter", "Estimators with one motion model.");
 
-  py::class_<RunResult>(m, "RunResult", "What `run` returns: arrays over scans, and over runs where there are several.")
+  py::class_<RunResult>(
+      m, "RunResult",
+      "What `run` returns: arrays over scans, and over runs where there are several.")
       .def_readonly("mean", &RunResult::mean, "(..., T, N)")
       .def_readonly("covariance", &RunResult::covariance, "(..., T, N, N)")
       .def_readonly("mode_probability", &RunResult::mode_probability,
@@ -134,8 +135,9 @@ void define_filter(py::module_& parent) {
             });
           },
           py::arg("sensor"), py::arg("z"), "Corrects the belief by a reading; returns the Step.")
-      .def("estimate", [](const AnyFilter& filter) { return to_gaussian(filter.estimate()); },
-           "The belief.")
+      .def(
+          "estimate", [](const AnyFilter& filter) { return to_gaussian(filter.estimate()); },
+          "The belief.")
       .def_property_readonly("started", &AnyFilter::started)
       .def("run", &run<AnyFilter>, py::arg("z"), py::arg("dt_s"), py::arg("sensor"),
            py::arg("start"), py::arg("own_position_m") = py::none(), kRunDoc)
@@ -166,7 +168,8 @@ Returns
   define_unscented<PyUkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn,
                    CoordinatedTurnRate, Singer, WanderingCourse>(ukf);
   py::class_<PySquareRootUkf, AnyFilter> square_root(
-      m, "SquareRootUkf", "The unscented Kalman filter on a square root of the covariance, for long runs.");
+      m, "SquareRootUkf",
+      "The unscented Kalman filter on a square root of the covariance, for long runs.");
   define_unscented<PySquareRootUkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn,
                    CoordinatedTurnRate, Singer, WanderingCourse>(square_root);
 
@@ -180,16 +183,19 @@ Returns
         });
       },
       py::arg("sensor"), py::arg("z"), py::arg("speed_std_mps"),
-      "Start over [x, vx, y, vy] from one plot and a velocity of zero with that standard deviation per axis.");
+      "Start over [x, vx, y, vy] from one plot and a velocity of zero with that standard deviation "
+      "per axis.");
   m.def(
       "two_point",
-      [](const py::object& sensor, const DoubleArray& first, const DoubleArray& second, double dt_s) {
-        if (!(dt_s > 0.0)) throw py::value_error("dt_s must be positive, got " + std::to_string(dt_s));
+      [](const py::object& sensor, const DoubleArray& first, const DoubleArray& second,
+         double dt_s) {
+        if (!(dt_s > 0.0))
+          throw py::value_error("dt_s must be positive, got " + std::to_string(dt_s));
         return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
           constexpr int kM = Sensor::kMeasurements;
-          return PyGaussian::from(two_point<Sensor, double>(
-              model, Vec<double, kM>(to_vector("first", first, kM)),
-              Vec<double, kM>(to_vector("second", second, kM)), dt_s));
+          return PyGaussian::from(
+              two_point<Sensor, double>(model, Vec<double, kM>(to_vector("first", first, kM)),
+                                        Vec<double, kM>(to_vector("second", second, kM)), dt_s));
         });
       },
       py::arg("sensor"), py::arg("first"), py::arg("second"), py::arg("dt_s"),

@@ -9,8 +9,9 @@ namespace wakeline::python {
 
 void define_gating(py::module_& parent) {
   py::module_ m = parent.def_submodule("gating", "Where to look for a target's plot.");
-  py::class_<ChiSquareGate>(m, "ChiSquareGate",
-                            "The ellipsoid that holds the target's own plot with a given probability.")
+  py::class_<ChiSquareGate>(
+      m, "ChiSquareGate",
+      "The ellipsoid that holds the target's own plot with a given probability.")
       .def(py::init([](double probability) {
              const ChiSquareGate gate{probability};
              gate.validate();

@@ -20,8 +20,8 @@ void define_sensor(py::class_<Sensor>& sensor) {
   constexpr int kM = Sensor::kMeasurements;
   using Reading = Vec<double, kM>;
   using Read = Vec<double, kReadsOf<Sensor>>;
-  sensor.def_property_readonly_static("measurements", [](const py::object&) { return kM; },
-                                      "numbers per reading, M");
+  sensor.def_property_readonly_static(
+      "measurements", [](const py::object&) { return kM; }, "numbers per reading, M");
   sensor.def(
       "observe",
       [](const Sensor& s, const DoubleArray& z) {
@@ -66,7 +66,8 @@ own : OwnShip
 void define_measurement(py::module_& parent) {
   py::module_ m = parent.def_submodule("measurement", "What a sensor reports.");
 
-  py::class_<OwnShip>(m, "OwnShip", "Where the antenna is when it measures, and how well that is known.")
+  py::class_<OwnShip>(m, "OwnShip",
+                      "Where the antenna is when it measures, and how well that is known.")
       .def(py::init([](double north, double east, double vnorth, double veast, double position,
                        double velocity, double heading) {
              return checked(OwnShip{north, east, vnorth, veast, position, velocity, heading});
@@ -82,12 +83,14 @@ void define_measurement(py::module_& parent) {
       .def_readwrite("velocity_std_mps", &OwnShip::velocity_std_mps)
       .def_readwrite("heading_std_rad", &OwnShip::heading_std_rad);
 
-  const std::string polar = std::string("A plot [range m, bearing rad] for Ekf and Ukf.") + kPolarParameters;
+  const std::string polar =
+      std::string("A plot [range m, bearing rad] for Ekf and Ukf.") + kPolarParameters;
   py::class_<RangeBearing> range_bearing(m, "RangeBearing", polar.c_str());
   range_bearing
-      .def(py::init([](double range, double bearing, double extent, double offset, const OwnShip& own) {
-             return checked(RangeBearing{range, bearing, extent, offset, own});
-           }),
+      .def(py::init(
+               [](double range, double bearing, double extent, double offset, const OwnShip& own) {
+                 return checked(RangeBearing{range, bearing, extent, offset, own});
+               }),
            py::kw_only(), py::arg("range_std_m") = RangeBearing{}.range_std_m,
            py::arg("bearing_std_rad") = RangeBearing{}.bearing_std_rad,
            py::arg("extent_std_m") = 0.0, py::arg("bearing_offset_rad") = 0.0,
@@ -100,8 +103,10 @@ void define_measurement(py::module_& parent) {
   define_sensor(range_bearing);
 
   const std::string converted =
-      std::string("A plot [range m, bearing rad] turned into north/east with its own covariance: linear.") +
-      kPolarParameters + "\nunbiased : bool\n    Correct mean and covariance for the curvature of the bearing error.";
+      std::string(
+          "A plot [range m, bearing rad] turned into north/east with its own covariance: linear.") +
+      kPolarParameters +
+      "\nunbiased : bool\n    Correct mean and covariance for the curvature of the bearing error.";
   py::class_<ConvertedRangeBearing> converted_range_bearing(m, "ConvertedRangeBearing",
                                                             converted.c_str());
   converted_range_bearing
@@ -138,8 +143,8 @@ void define_measurement(py::module_& parent) {
       .def_readwrite("own", &RangeBearingDoppler::own);
   define_sensor(range_bearing_doppler);
 
-  py::class_<Position> position(m, "Position",
-                                "A position [north m, east m] with equal error in every direction.");
+  py::class_<Position> position(
+      m, "Position", "A position [north m, east m] with equal error in every direction.");
   position
       .def(py::init([](double std) { return checked(Position{std}); }), py::kw_only(),
            py::arg("position_std_m") = Position{}.position_std_m)

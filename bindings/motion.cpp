@@ -15,11 +15,12 @@ template <class Motion>
 void define_model(py::class_<Motion>& model) {
   constexpr int kStates = kStatesOf<Motion>;
   using State = Vec<double, kStates>;
-  model.def_property_readonly_static("states", [](const py::object&) { return kStates; },
-                                     "number of states N");
+  model.def_property_readonly_static(
+      "states", [](const py::object&) { return kStates; }, "number of states N");
   if constexpr (LinearMotionModel<Motion>) {
-    model.def("matrix", [](const Motion& motion, double dt_s) { return to_array(motion.matrix(dt_s)); },
-              py::arg("dt_s"), "F(dt), (N, N).");
+    model.def(
+        "matrix", [](const Motion& motion, double dt_s) { return to_array(motion.matrix(dt_s)); },
+        py::arg("dt_s"), "F(dt), (N, N).");
     model.def(
         "process_noise",
         [](const Motion& motion, double dt_s) { return to_array(motion.process_noise(dt_s)); },
@@ -63,8 +64,9 @@ void define_motion(py::module_& parent) {
       .def(py::init([](double psd) { return WhiteAcceleration{psd}; }), py::kw_only(),
            py::arg("psd_m2s3") = WhiteAcceleration{}.psd_m2s3)
       .def_readonly("psd_m2s3", &WhiteAcceleration::psd_m2s3);
-  py::class_<PiecewiseAcceleration>(m, "PiecewiseAcceleration",
-                                    "Acceleration drawn for each step, Q = G s² Gᵀ: the papers' form.")
+  py::class_<PiecewiseAcceleration>(
+      m, "PiecewiseAcceleration",
+      "Acceleration drawn for each step, Q = G s² Gᵀ: the papers' form.")
       .def(py::init([](double std) { return PiecewiseAcceleration{std}; }), py::kw_only(),
            py::arg("std_mps2") = PiecewiseAcceleration{}.std_mps2)
       .def_readonly("std_mps2", &PiecewiseAcceleration::std_mps2);
@@ -84,12 +86,13 @@ void define_motion(py::module_& parent) {
   py::class_<ConstantVelocity> cv(m, "ConstantVelocity",
                                   "Straight and steady: state [x, vx, y, vy] (m, m/s).");
   cv.def(py::init([](const ProcessNoise& noise) { return checked(ConstantVelocity{noise}); }),
-         py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
+         py::kw_only(),
+         py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
   define_model(cv);
 
-  py::class_<WanderingCourse> wandering(
-      m, "WanderingCourse",
-      "Straight and nearly steady, with an acceleration that grows with the speed: state [x, vx, y, vy].");
+  py::class_<WanderingCourse> wandering(m, "WanderingCourse",
+                                        "Straight and nearly steady, with an acceleration that "
+                                        "grows with the speed: state [x, vx, y, vy].");
   wandering.def(py::init([](double psd, double course_psd, double max_speed) {
                   return checked(WanderingCourse{psd, course_psd, max_speed});
                 }),
@@ -108,8 +111,9 @@ void define_motion(py::module_& parent) {
          py::arg("prior_accel_std_mps2") = ConstantAcceleration{}.prior_accel_std_mps2);
   define_model(ca);
 
-  py::class_<CoordinatedTurn> ct(m, "CoordinatedTurn",
-                                 "A steady turn at a known rate, positive to starboard: state [x, vx, y, vy].");
+  py::class_<CoordinatedTurn> ct(
+      m, "CoordinatedTurn",
+      "A steady turn at a known rate, positive to starboard: state [x, vx, y, vy].");
   ct.def(py::init([](double rate, const ProcessNoise& noise) {
            return checked(CoordinatedTurn{rate, noise});
          }),
@@ -125,16 +129,19 @@ void define_motion(py::module_& parent) {
                       double max_speed) {
             return checked(CoordinatedTurnRate{noise, psd, prior, course_psd, max_speed});
           }),
-          py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"),
+          py::kw_only(),
+          py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"),
           py::arg("turn_rate_psd_rad2s3") = CoordinatedTurnRate{}.turn_rate_psd_rad2s3,
           py::arg("prior_turn_rate_std_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_std_rad_s,
           py::arg("course_psd_rad2s") = CoordinatedTurnRate{}.course_psd_rad2s,
           py::arg("max_speed_mps") = CoordinatedTurnRate{}.max_speed_mps);
   define_model(ctr);
 
-  py::class_<Singer> singer(m, "Singer",
-                            "Singer's maneuvering target: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).");
-  singer.def(py::init([](double time, double std) { return checked(Singer{time, std}); }),
+  py::class_<Singer> singer(
+      m, "Singer", "Singer's maneuvering target: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).");
+  singer.def(py::init([](double time, double std) {
+               return checked(Singer{time, std});
+             }),
              py::kw_only(), py::arg("maneuver_time_s") = Singer{}.maneuver_time_s,
              py::arg("accel_std_mps2") = Singer{}.accel_std_mps2);
   define_model(singer);

@@ -19,8 +19,8 @@ AnyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
                 const std::optional<DoubleArray>& initial) {
   AnyImm imm(chain, AnyFilterBank(filters));
   if (initial)
-    imm.set_initial_mode_probability(to_vector("initial_mode_probability", *initial,
-                                               static_cast<py::ssize_t>(filters.size())));
+    imm.set_initial_mode_probability(
+        to_vector("initial_mode_probability", *initial, static_cast<py::ssize_t>(filters.size())));
   return imm;
 }
 
@@ -40,7 +40,9 @@ std::vector<AnyFilter> to_filters(const py::sequence& sequence) {
 void define_multimodel(py::module_& parent) {
   py::module_ m = parent.def_submodule("multimodel", "Estimators with several motion models.");
 
-  py::class_<Chain>(m, "ModeChain", R"(The Markov chain between modes: `matrix[i, j] = P(mode j now | mode i before)`.
+  py::class_<Chain>(
+      m, "ModeChain",
+      R"(The Markov chain between modes: `matrix[i, j] = P(mode j now | mode i before)`.
 
 Parameters
 ----------
@@ -65,9 +67,12 @@ ValueError
             return Chain::from_sojourn_s(ModeVector<double, kRuntimeModes>(times));
           },
           py::arg("sojourn_s"),
-          "The chain that stays in mode k for sojourn_s[k] seconds on average and leaves to each other mode alike.")
-      .def("transition", [](const Chain& chain, double dt_s) { return to_array(chain.transition(dt_s)); },
-           py::arg("dt_s"), "P(dt), (K, K).")
+          "The chain that stays in mode k for sojourn_s[k] seconds on average and leaves to each "
+          "other mode alike.")
+      .def(
+          "transition",
+          [](const Chain& chain, double dt_s) { return to_array(chain.transition(dt_s)); },
+          py::arg("dt_s"), "P(dt), (K, K).")
       .def_property_readonly("modes", [](const Chain& chain) { return chain.modes(); })
       .def_property_readonly("continuous", &Chain::continuous);
 
@@ -90,7 +95,8 @@ initial_mode_probability : (K,) array, optional
           [](AnyImm& imm, const PyGaussian& belief) {
             require_ok(imm.start(to_belief("belief", belief)), "start");
           },
-          py::arg("belief"), "Begins with a belief over [x, vx, y, vy], or over the state that all filters share.")
+          py::arg("belief"),
+          "Begins with a belief over [x, vx, y, vy], or over the state that all filters share.")
       .def(
           "predict", [](AnyImm& imm, double dt_s) { require_ok(imm.predict(dt_s), "predict"); },
           py::arg("dt_s"), "Mixes and moves dt_s seconds on; mode probabilities follow the chain.")
@@ -105,11 +111,15 @@ initial_mode_probability : (K,) array, optional
               return to_step(step);
             });
           },
-          py::arg("sensor"), py::arg("z"), "Corrects every model and weighs them; returns the Step.")
-      .def("estimate", [](const AnyImm& imm) { return to_gaussian(imm.estimate()); },
-           "The moment-matched belief: over the state where all filters share one, else over [x, vx, y, vy].")
-      .def("mode_probability", [](const AnyImm& imm) { return to_array(imm.mode_probability()); },
-           "(K,)")
+          py::arg("sensor"), py::arg("z"),
+          "Corrects every model and weighs them; returns the Step.")
+      .def(
+          "estimate", [](const AnyImm& imm) { return to_gaussian(imm.estimate()); },
+          "The moment-matched belief: over the state where all filters share one, else over [x, "
+          "vx, y, vy].")
+      .def(
+          "mode_probability", [](const AnyImm& imm) { return to_array(imm.mode_probability()); },
+          "(K,)")
       .def(
           "filter_estimate",
           [](const AnyImm& imm, std::size_t index) {

@@ -36,9 +36,9 @@ inline void write_modes(const AnyImm& imm, double* out) noexcept {
 struct RunInput {
   std::size_t runs, scans, measurements;
   const double* z;
-  std::vector<double> dt_s;          ///< (T)
-  const double* own = nullptr;       ///< (T, 2) or null
-  std::vector<AnyBelief> start;      ///< 1 or R
+  std::vector<double> dt_s;      ///< (T)
+  const double* own = nullptr;   ///< (T, 2) or null
+  std::vector<AnyBelief> start;  ///< 1 or R
 };
 
 template <class Sensor>

@@ -12,7 +12,8 @@ namespace {
 
 using AnyTracker = Tracker<AnyImm>;
 
-/// A plain struct of settings as a Python class: keyword arguments, attributes, and an error that names what is unknown.
+/// A plain struct of settings as a Python class: keyword arguments, attributes, and an error that
+/// names what is unknown.
 template <class Settings>
 class SettingsClass {
  public:
@@ -49,11 +50,14 @@ class SettingsClass {
 
   /// Closes the list of fields.
   void done() {
-    class_.def("as_dict", [names = names_](const py::object& self) {
-      py::dict values;
-      for (const std::string& name : names) values[name.c_str()] = self.attr(name.c_str());
-      return values;
-    }, "The settings by name.");
+    class_.def(
+        "as_dict",
+        [names = names_](const py::object& self) {
+          py::dict values;
+          for (const std::string& name : names) values[name.c_str()] = self.attr(name.c_str());
+          return values;
+        },
+        "The settings by name.");
     class_.def("__repr__", [names = names_](const py::object& self) {
       std::string text = py::type::of(self).attr("__name__").cast<std::string>() + "(";
       for (std::size_t k = 0; k < names.size(); ++k)
@@ -84,26 +88,35 @@ std::string association_name(const TrackerConfig& config) {
 void set_association(TrackerConfig& config, const std::string& name) {
   const auto found = kAssociations.find(name);
   if (found == kAssociations.end())
-    throw py::value_error("association must be probabilistic, global_nearest or nearest, got " + name);
+    throw py::value_error("association must be probabilistic, global_nearest or nearest, got " +
+                          name);
   config.association = found->second;
 }
 
 const char* status_name(TrackStatus status) {
   switch (status) {
-    case TrackStatus::kTentative: return "tentative";
-    case TrackStatus::kConfirmed: return "confirmed";
-    case TrackStatus::kCoasting: return "coasting";
-    case TrackStatus::kHeld: return "held";
+    case TrackStatus::kTentative:
+      return "tentative";
+    case TrackStatus::kConfirmed:
+      return "confirmed";
+    case TrackStatus::kCoasting:
+      return "coasting";
+    case TrackStatus::kHeld:
+      return "held";
   }
   return "";
 }
 
 const char* event_name(TrackEvent event) {
   switch (event) {
-    case TrackEvent::kStarted: return "started";
-    case TrackEvent::kConfirmed: return "confirmed";
-    case TrackEvent::kCoasting: return "coasting";
-    case TrackEvent::kLost: return "lost";
+    case TrackEvent::kStarted:
+      return "started";
+    case TrackEvent::kConfirmed:
+      return "confirmed";
+    case TrackEvent::kCoasting:
+      return "coasting";
+    case TrackEvent::kLost:
+      return "lost";
   }
   return "";
 }
@@ -154,8 +167,8 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
   require_shape(range_m.ndim() == 1, "range_m", "(n,)", range_m);
   const py::ssize_t count = range_m.shape(0);
   const DoubleArray bearing = column("bearing_rad", bearing_rad, count);
-  const DoubleArray time =
-      column("plot_time_s", plot_time_s.is_none() ? py::object(py::float_(time_s)) : plot_time_s, count);
+  const DoubleArray time = column(
+      "plot_time_s", plot_time_s.is_none() ? py::object(py::float_(time_s)) : plot_time_s, count);
   const DoubleArray north = column("own_north_m", own_north_m, count);
   const DoubleArray east = column("own_east_m", own_east_m, count);
   std::vector<Plot> plots(static_cast<std::size_t>(count));
@@ -170,7 +183,8 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
     report = tracker.process(time_s, plots);
   }
   require_ok(report.status, "process");
-  PyReport result{py::array_t<std::int64_t>(count), {report.events.begin(), report.events.end()},
+  PyReport result{py::array_t<std::int64_t>(count),
+                  {report.events.begin(), report.events.end()},
                   report.refused_plots};
   std::fill_n(result.plot_track_id.mutable_data(), count, 0);
   std::copy(report.plot_track_id.begin(), report.plot_track_id.end(),
@@ -224,9 +238,9 @@ PyTracks tracks(const AnyTracker& tracker, const std::optional<double>& time_s, 
 void define_track(py::module_& parent) {
   py::module_ m = parent.def_submodule("track", "The life of tracks.");
 
-  SettingsClass<Radar> radar(m, "Radar", "What a console knows of its radar and of the vessels it looks at.");
-  radar
-      .field("range_std_m", &Radar::range_std_m)
+  SettingsClass<Radar> radar(m, "Radar",
+                             "What a console knows of its radar and of the vessels it looks at.");
+  radar.field("range_std_m", &Radar::range_std_m)
       .field("bearing_std_rad", &Radar::bearing_std_rad)
       .field("extent_std_m", &Radar::extent_std_m)
       .field("period_s", &Radar::period_s)
@@ -241,11 +255,11 @@ void define_track(py::module_& parent) {
       py::arg("range_m"), py::arg("bearing_rad"), py::arg_v("own", OwnShip{}, "OwnShip()"),
       "A plot seen from own ship as a position [north, east] with its covariance.");
 
-  SettingsClass<TrackerConfig> config(m, "TrackerConfig", "The rules by which tracks live; one set of defaults for all radars.");
+  SettingsClass<TrackerConfig> config(
+      m, "TrackerConfig", "The rules by which tracks live; one set of defaults for all radars.");
   config.python().def_property("association", &association_name, &set_association,
                                "probabilistic, global_nearest or nearest");
-  config
-      .field("detection_probability", &TrackerConfig::detection_probability)
+  config.field("detection_probability", &TrackerConfig::detection_probability)
       .field("gate_probability", &TrackerConfig::gate_probability)
       .field("clutter_density_per_m2", &TrackerConfig::clutter_density_per_m2)
       .field("wild_probability", &TrackerConfig::wild_probability)
@@ -278,9 +292,9 @@ void define_track(py::module_& parent) {
       .name("association")
       .done();
 
-  SettingsClass<VesselModels> models(m, "VesselModels", "The motion models of a tracker: steady, restless and turning.");
-  models
-      .field("steady_psd_m2s3", &VesselModels::steady_psd_m2s3)
+  SettingsClass<VesselModels> models(
+      m, "VesselModels", "The motion models of a tracker: steady, restless and turning.");
+  models.field("steady_psd_m2s3", &VesselModels::steady_psd_m2s3)
       .field("steady_course_psd_rad2s", &VesselModels::steady_course_psd_rad2s)
       .field("restless_psd_m2s3", &VesselModels::restless_psd_m2s3)
       .field("restless_course_psd_rad2s", &VesselModels::restless_course_psd_rad2s)
@@ -298,8 +312,9 @@ void define_track(py::module_& parent) {
         "The estimator that a tracker uses for this radar unless told otherwise.");
 
   py::class_<Event>(m, "Event", "Something that became of a track in a scan.")
-      .def_property_readonly("kind", [](const Event& event) { return event_name(event.kind); },
-                             "started, confirmed, coasting or lost")
+      .def_property_readonly(
+          "kind", [](const Event& event) { return event_name(event.kind); },
+          "started, confirmed, coasting or lost")
       .def_readonly("track_id", &Event::track_id)
       .def_readonly("tentative_id", &Event::tentative_id,
                     "the negative number it had before it was confirmed; 0 for a designated track")
@@ -310,7 +325,8 @@ void define_track(py::module_& parent) {
       });
   py::class_<PyReport>(m, "ScanReport", "What a scan has brought.")
       .def_readonly("plot_track_id", &PyReport::plot_track_id,
-                    "(n,) the track each plot most likely belongs to; negative for a tentative one, 0 for none")
+                    "(n,) the track each plot most likely belongs to; negative for a tentative "
+                    "one, 0 for none")
       .def_readonly("events", &PyReport::events)
       .def_readonly("refused_plots", &PyReport::refused_plots,
                     "plots not finite, behind the antenna, or beyond max_plots");
@@ -351,8 +367,7 @@ ValueError
              return AnyTracker(r, c, estimator ? *estimator : any_vessel_imm(r, v));
            }),
            py::arg("radar"), py::arg_v("config", TrackerConfig{}, "TrackerConfig()"),
-           py::arg_v("models", VesselModels{}, "VesselModels()"),
-           py::arg("estimator") = py::none())
+           py::arg_v("models", VesselModels{}, "VesselModels()"), py::arg("estimator") = py::none())
       .def("process", &process, py::arg("time_s"), py::kw_only(), py::arg("range_m"),
            py::arg("bearing_rad"), py::arg("plot_time_s") = py::none(),
            py::arg("own_north_m") = 0.0, py::arg("own_east_m") = 0.0,
@@ -378,26 +393,32 @@ Raises
 FilterError
     When time runs backwards or is not finite; nothing changed.)")
       .def("tracks", &tracks, py::arg("time_s") = py::none(), py::arg("tentative") = false,
-           "The confirmed and coasting tracks (with `tentative` all), predicted to `time_s` when given; a TrackTable.")
+           "The confirmed and coasting tracks (with `tentative` all), predicted to `time_s` when "
+           "given; a TrackTable.")
       .def("designate", &AnyTracker::designate, py::arg("time_s"), py::arg("north_m"),
            py::arg("east_m"), py::arg("position_std_m") = 50.0,
-           "The operator says that there is a target; returns the track's number, or 0 when there is no room.")
-      .def("drop", &AnyTracker::drop, py::arg("track_id"), "Ends a track; False when there is none of that number.")
+           "The operator says that there is a target; returns the track's number, or 0 when there "
+           "is no room.")
+      .def("drop", &AnyTracker::drop, py::arg("track_id"),
+           "Ends a track; False when there is none of that number.")
       .def("rename", &AnyTracker::rename, py::arg("track_id"), py::arg("name"),
            "Names a track (31 bytes at most are kept); False when there is none of that number.")
-      .def("save",
-           [](const AnyTracker& tracker) {
-             const std::vector<std::byte> state = tracker.save();
-             return py::bytes(reinterpret_cast<const char*>(state.data()), state.size());
-           },
-           "The whole state as bytes, for a tracker with the same settings on the same kind of machine.")
-      .def("restore",
-           [](AnyTracker& tracker, const py::bytes& state) {
-             const std::string_view text = state;
-             if (!tracker.restore({reinterpret_cast<const std::byte*>(text.data()), text.size()}))
-               throw py::value_error("state is not that of a tracker with the same settings");
-           },
-           py::arg("state"), "Goes on bit for bit where the saved tracker was.")
+      .def(
+          "save",
+          [](const AnyTracker& tracker) {
+            const std::vector<std::byte> state = tracker.save();
+            return py::bytes(reinterpret_cast<const char*>(state.data()), state.size());
+          },
+          "The whole state as bytes, for a tracker with the same settings on the same kind of "
+          "machine.")
+      .def(
+          "restore",
+          [](AnyTracker& tracker, const py::bytes& state) {
+            const std::string_view text = state;
+            if (!tracker.restore({reinterpret_cast<const std::byte*>(text.data()), text.size()}))
+              throw py::value_error("state is not that of a tracker with the same settings");
+          },
+          py::arg("state"), "Goes on bit for bit where the saved tracker was.")
       .def_property_readonly("radar", &AnyTracker::radar)
       .def_property_readonly("config", &AnyTracker::config);
 }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 
-// One step (predict, update) of one-model filters, beside hand-written loops of the same equations: textbook form,
-// fixed-size Eigen, F and Q computed once. Both run along the same closed course; before the timing the loop is checked
-// against ours.
+// One step (predict, update) of one-model filters, beside hand-written loops of the same equations:
+// textbook form, fixed-size Eigen, F and Q computed once. Both run along the same closed course;
+// before the timing the loop is checked against ours.
 //
 //   kf_step         Kalman filter, 4 states, a position
 //   ekf_polar_step  extended Kalman filter, 4 states, range and bearing
@@ -36,7 +36,8 @@ constexpr CoordinatedTurnRate kTurning{.noise = WhiteAcceleration{0.01}};
 
 /// ln N(v; 0, S).
 template <class Scalar>
-Scalar log_normal(const Vec<Scalar, 2>& v, const Mat<Scalar, 2, 2>& s, const Mat<Scalar, 2, 2>& s_inverse) {
+Scalar log_normal(const Vec<Scalar, 2>& v, const Mat<Scalar, 2, 2>& s,
+                  const Mat<Scalar, 2, 2>& s_inverse) {
   return -(v.dot(s_inverse * v) + std::log(s.determinant())) / 2 - std::log(2 * kPi<Scalar>);
 }
 
@@ -64,9 +65,11 @@ struct HandKalman {
   Mat<Scalar, 2, 4> h = Mat<Scalar, 2, 4>::Zero();
   Mat<Scalar, 2, 2> r = radar_covariance<Scalar>();
 
-  explicit HandKalman(const Gaussian<4, Scalar>& start) : mean(start.mean), covariance(start.covariance) {
+  explicit HandKalman(const Gaussian<4, Scalar>& start)
+      : mean(start.mean), covariance(start.covariance) {
     h(0, 0) = h(1, 2) = Scalar(1);
-    if (!Polar) r = Scalar(kFix.position_std_m * kFix.position_std_m) * Mat<Scalar, 2, 2>::Identity();
+    if (!Polar)
+      r = Scalar(kFix.position_std_m * kFix.position_std_m) * Mat<Scalar, 2, 2>::Identity();
   }
 
   void step(const Vec<Scalar, 2>& z) {
@@ -92,7 +95,8 @@ struct HandKalman {
   }
 };
 
-/// The unscented Kalman filter of the book, kappa = 0: 2 N points of equal weight and the centre for the covariance.
+/// The unscented Kalman filter of the book, kappa = 0: 2 N points of equal weight and the centre
+/// for the covariance.
 template <class Scalar>
 struct HandUkf {
   static constexpr int kN = 5;
@@ -103,10 +107,12 @@ struct HandUkf {
   Scalar log_likelihood = Scalar(0);
   Mat<Scalar, 2, 2> r = radar_covariance<Scalar>();
 
-  explicit HandUkf(const Gaussian<kN, Scalar>& start) : mean(start.mean), covariance(start.covariance) {}
+  explicit HandUkf(const Gaussian<kN, Scalar>& start)
+      : mean(start.mean), covariance(start.covariance) {}
 
   Points points() const {
-    const Mat<Scalar, kN, kN> root = std::sqrt(Scalar(kN)) * covariance.llt().matrixL().toDenseMatrix();
+    const Mat<Scalar, kN, kN> root =
+        std::sqrt(Scalar(kN)) * covariance.llt().matrixL().toDenseMatrix();
     Points sigma;
     sigma << root.colwise() + mean, (-root).colwise() + mean;
     return sigma;
@@ -122,7 +128,8 @@ struct HandUkf {
     const Vec<Scalar, kN> centre = kTurning.transition(mean, Scalar(kStep_s));
     mean = w * sigma.rowwise().sum();
     const Points e = sigma.colwise() - mean;
-    covariance = w * e * e.transpose() + w_centre * (centre - mean) * (centre - mean).transpose() + q;
+    covariance =
+        w * e * e.transpose() + w_centre * (centre - mean) * (centre - mean).transpose() + q;
 
     sigma = points();
     const Vec<Scalar, 2> at_mean = polar(mean);
@@ -217,7 +224,8 @@ void ukf_ours(benchmark::State& state) {
   run_ours(state, filter, kRadar, course().polar);
 }
 void ukf_hand(benchmark::State& state) {
-  run_hand(state, HandUkf<double>(started<Ukf<CoordinatedTurnRate>>(kTurning).estimate()), course().polar);
+  run_hand(state, HandUkf<double>(started<Ukf<CoordinatedTurnRate>>(kTurning).estimate()),
+           course().polar);
 }
 
 }  // namespace

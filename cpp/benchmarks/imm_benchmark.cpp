@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 
-// One step (predict, update, estimate) of an IMM with 3 or 5 coordinated turns of 4 states and a range-bearing EKF each,
-// beside a hand-written loop of the same equations: textbook form, fixed-size Eigen, F and Q computed once. Both run
-// along the same closed course; before the timing the loop is checked against ours.
+// One step (predict, update, estimate) of an IMM with 3 or 5 coordinated turns of 4 states and a
+// range-bearing EKF each, beside a hand-written loop of the same equations: textbook form,
+// fixed-size Eigen, F and Q computed once. Both run along the same closed course; before the timing
+// the loop is checked against ours.
 
 #include <benchmark/benchmark.h>
 
@@ -54,7 +55,8 @@ class HandImm {
   StateMatrix covariance;
 
   explicit HandImm(const Gaussian<4, Scalar>& start)
-      : probability(Vec<Scalar, K>::Constant(Scalar(1) / K)), chain_(transition<K>().template cast<Scalar>()) {
+      : probability(Vec<Scalar, K>::Constant(Scalar(1) / K)),
+        chain_(transition<K>().template cast<Scalar>()) {
     for (int j = 0; j < K; ++j) {
       f_[j] = turning(j).matrix(Scalar(kStep_s));
       q_[j] = turning(j).process_noise(Scalar(kStep_s));
@@ -99,7 +101,8 @@ class HandImm {
       const Mat<Scalar, 4, 2> gain = pht * s_inverse;
       x_[j] += gain * v;
       p_[j] -= gain * s * gain.transpose();
-      likelihood[j] = std::exp(-v.dot(s_inverse * v) / 2) / (2 * kPi<Scalar> * std::sqrt(s.determinant()));
+      likelihood[j] =
+          std::exp(-v.dot(s_inverse * v) / 2) / (2 * kPi<Scalar> * std::sqrt(s.determinant()));
     }
     // Mode probabilities and combined estimate
     probability = expected.cwiseProduct(likelihood);
@@ -126,7 +129,8 @@ class HandImm {
 template <class Scalar, int... Modes>
 auto make_imm(std::integer_sequence<int, Modes...>) {
   constexpr int kModes = sizeof...(Modes);
-  return Imm{ModeChain<kModes>(transition<kModes>()), Ekf<CoordinatedTurn, Scalar>(turning(Modes))...};
+  return Imm{ModeChain<kModes>(transition<kModes>()),
+             Ekf<CoordinatedTurn, Scalar>(turning(Modes))...};
 }
 
 template <class Scalar, int K>
@@ -148,10 +152,11 @@ bool agree(const Course<Scalar>& course) {
     const auto step = imm.update(kRadar, z);
     const auto estimate = imm.estimate();
     hand.step(z);
-    error = std::max({error, relative_error(estimate.mean, hand.mean),
-                      relative_error(estimate.covariance, hand.covariance),
-                      relative_error(imm.mode_probability(), hand.probability),
-                      std::abs(step.log_likelihood - hand.log_likelihood) / std::abs(hand.log_likelihood)});
+    error = std::max(
+        {error, relative_error(estimate.mean, hand.mean),
+         relative_error(estimate.covariance, hand.covariance),
+         relative_error(imm.mode_probability(), hand.probability),
+         std::abs(step.log_likelihood - hand.log_likelihood) / std::abs(hand.log_likelihood)});
   }
   return error <= tolerance;
 }

@@ -5,8 +5,9 @@
 //
 //   console_loop SCANS.csv PLOTS.csv
 //
-// reads columns `scan, time_s, own_north_m, own_east_m` and `scan, north_m, east_m`; without arguments it makes up a
-// scene of its own. After start no scan allocates memory, which the program counts and says.
+// reads columns `scan, time_s, own_north_m, own_east_m` and `scan, north_m, east_m`; without
+// arguments it makes up a scene of its own. After start no scan allocates memory, which the program
+// counts and says.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -66,7 +67,8 @@ std::vector<Scan> read_scans(const std::string& scans_path, const std::string& p
   std::vector<Scan> scans;
   std::map<double, std::size_t> index;
   std::vector<OwnShip> own;
-  for (const auto& row : read_columns(scans_path, {"scan", "time_s", "own_north_m", "own_east_m"})) {
+  for (const auto& row :
+       read_columns(scans_path, {"scan", "time_s", "own_north_m", "own_east_m"})) {
     index[row[0]] = scans.size();
     scans.push_back({row[1], {}});
     own.push_back({.north_m = row[2], .east_m = row[3]});
@@ -105,7 +107,8 @@ std::vector<Scan> made_up_scans() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Radar radar{.range_std_m = 8.0, .bearing_std_rad = deg(0.6), .period_s = 2.5, .max_speed_mps = 25.0};
+  const Radar radar{
+      .range_std_m = 8.0, .bearing_std_rad = deg(0.6), .period_s = 2.5, .max_speed_mps = 25.0};
   const std::vector<Scan> scans = argc > 2 ? read_scans(argv[1], argv[2]) : made_up_scans();
   Tracker tracker(radar, TrackerConfig{}, vessel_imm(radar));
 
@@ -114,12 +117,14 @@ int main(int argc, char** argv) {
   for (const Scan& scan : scans) {
     const auto start = std::chrono::steady_clock::now();
     const ScanReport report = tracker.process(scan.time_s, scan.plots);
-    const double us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    const double us =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     worst_us = std::max(worst_us, us);
     total_us += us;
     for (const Event& event : report.events)
       if (event.kind == TrackEvent::kConfirmed)
-        std::printf("%10.1f s  track %lld confirmed\n", event.time_s, static_cast<long long>(event.track_id));
+        std::printf("%10.1f s  track %lld confirmed\n", event.time_s,
+                    static_cast<long long>(event.track_id));
   }
   tracker.for_each([](const auto& track) {
     if (!track.shown()) return;

@@ -12,7 +12,17 @@ import sys as _sys
 from importlib.metadata import PackageNotFoundError as _PackageNotFoundError
 from importlib.metadata import version as _version
 
-from . import _engine
+from ._engine import (
+    association,
+    core,
+    eval,
+    filter,
+    gating,
+    measurement,
+    motion,
+    multimodel,
+    track,
+)
 from ._engine.core import (
     FilterError,
     Gaussian,
@@ -59,20 +69,8 @@ from ._engine.multimodel import Imm, ModeChain
 from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, vessel_imm
 
 # The engine's nouns, importable as modules of the package.
-for _noun in (
-    "core",
-    "motion",
-    "measurement",
-    "filter",
-    "multimodel",
-    "gating",
-    "association",
-    "track",
-    "eval",
-):
-    _module = getattr(_engine, _noun)
-    _sys.modules[f"{__name__}.{_noun}"] = _module
-    globals()[_noun] = _module
+for _noun in (association, core, eval, filter, gating, measurement, motion, multimodel, track):
+    _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
 from . import metrics, recording, scenario  # noqa: E402  (they use the nouns above)
 

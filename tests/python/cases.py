@@ -1,4 +1,4 @@
-"""What the tests of the engine share: a vessel, a radar that sees it, and estimators of every kind."""
+"""What the tests of the engine share: a vessel, a radar that sees it, estimators of every kind."""
 
 import numpy as np
 
@@ -68,7 +68,7 @@ def readings(scans=30, seed=1, miss=()):
 
 
 def stepwise(estimator, z, dt_s=DT_S, sensor=RADAR, start=START):
-    """What `run` shall give, by single steps: one (mean, covariance, nis, log-likelihood) a scan."""
+    """What `run` shall give, by single steps: mean, covariance, NIS and log-likelihood."""
     estimator.start(start)
     rows = []
     for row in z:

@@ -1,5 +1,7 @@
 """One-model estimators: laws, failures that change nothing, and `run` against single steps."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -117,7 +119,7 @@ def test_smoothing_without_noise_is_one_straight_line():
     kalman = wl.Kalman(motion)
     filtered = run(kalman, readings(20), sensor=CONVERTED)
     mean, _ = kalman.smooth(filtered.mean, filtered.covariance, DT_S)
-    for before, after in zip(mean[:-1], mean[1:], strict=True):
+    for before, after in pairwise(mean):
         np.testing.assert_allclose(motion.matrix(DT_S) @ before, after, atol=1e-4)
 
 

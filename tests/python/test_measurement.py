@@ -36,7 +36,7 @@ def test_a_moved_own_ship_moves_what_it_sees(range_m, bearing_rad, north_m, east
     )
     z = [range_m, bearing_rad]
     np.testing.assert_allclose(
-        moved.position(z).mean, at_rest.position(z).mean + [north_m, east_m], atol=1e-6
+        moved.position(z).mean - [north_m, east_m], at_rest.position(z).mean, atol=1e-6
     )
     np.testing.assert_allclose(
         moved.position(z).covariance, at_rest.position(z).covariance, rtol=1e-9, atol=1e-9

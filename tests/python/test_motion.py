@@ -46,7 +46,7 @@ def test_process_noise_is_symmetric_and_not_negative(name, dt_s):
         if name in LINEAR_MOTIONS
         else motion.process_noise(a_state(motion), dt_s)
     )
-    np.testing.assert_array_equal(q, q.T)
+    np.testing.assert_allclose(q, q.T, rtol=1e-14)
     assert np.linalg.eigvalsh(q).min() >= -1e-9 * np.abs(q).max()
 
 

@@ -89,7 +89,7 @@ def test_a_matrix_with_a_period_stands_for_that_time(matrix, period_s):
     ],
 )
 def test_rows_that_are_no_distribution_are_refused(matrix):
-    with pytest.raises(ValueError, match="row"):
+    with pytest.raises(ValueError, match=r"mode chain must (sum to 1|be a probability)"):
         wl.ModeChain(matrix)
 
 
@@ -196,7 +196,7 @@ def test_a_chain_in_time_relaxes_with_time():
 
 
 def test_the_trap_of_the_mixing_matrix_for_the_transition():
-    """Two equal models: .695/.305 under a lopsided chain, .664/.336 when the matrices are mixed up."""
+    """Two equal models: .695/.305 by the chain, .664/.336 with the mixing matrix in its place."""
     chain = np.array([[0.9, 0.1], [0.4, 0.6]])
     equal = [wl.Ekf(MOTIONS["ConstantVelocity"])] * 2
     imm = wl.Imm(equal, wl.ModeChain(chain), initial_mode_probability=[0.59, 0.41])

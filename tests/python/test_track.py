@@ -118,7 +118,7 @@ def test_each_vessel_has_one_track_that_knows_where_it_is():
 def test_what_is_seen_from_a_moving_own_ship_is_tracked_over_ground():
     own = Truth([0.0, 6.0, 0.0, -4.0], [Segment(50.0), Segment(100.0, 0.01)])
     truths = {"one": Truth([1500.0, 4.0, -800.0, 3.0])}
-    recorded = scans(50, truths=truths, own=own, clutter=0.0)
+    recorded = scans(50, truths=truths, own=own, clutter=0.0, detection=1.0)
     table = track_all(recorded)[-1]
     assert table.status == ["confirmed"]
     wanted = truths["one"].state_at(table.time_s[0])[0]
@@ -127,16 +127,20 @@ def test_what_is_seen_from_a_moving_own_ship_is_tracked_over_ground():
     assert np.hypot(error[1], error[3]) < 3.0
 
 
-def test_a_target_seen_in_half_of_the_scans_is_held():
-    truths = {"one": Truth([1500.0, 4.0, -800.0, 3.0])}
-    for seed in range(5):
-        recorded = scans(80, seed, truths, detection=0.5, clutter=0.0)
-        ids = set()
-        for table in track_all(recorded)[30:]:
-            shown = [k for k, s in zip(table.track_id, table.status, strict=True) if k > 0]
-            ids.update(shown)
-            assert len(shown) == 1, f"seed {seed}"
-        assert len(ids) == 1, f"seed {seed}"
+@pytest.mark.parametrize("pattern", ["10", "1100", "1110100010", "1111100000"])
+def test_a_target_seen_in_five_of_ten_scans_is_held(pattern):
+    truth = Truth([1500.0, 4.0, -800.0, 3.0])
+    time_s, z = simulator(1.0, 0.0).observe(truth, 110, 7)
+    tracker = wl.Tracker(RADAR)
+    for k, (range_m, bearing_rad) in enumerate(z):
+        seen = k < 10 or pattern[k % len(pattern)] == "1"
+        plots = {"range_m": [range_m] * seen, "bearing_rad": [bearing_rad] * seen}
+        tracker.process((k + 1) * PERIOD_S, **plots, plot_time_s=[time_s[k]] * seen)
+        table = tracker.tracks(tentative=True)
+        if k >= 10:
+            assert list(table.track_id) == [1], f"scan {k}"
+            place = truth.state_at(table.time_s[0])[0, [0, 2]]
+            assert np.hypot(*(table.mean[0, [0, 2]] - place)) < 100.0
 
 
 def test_events_tell_the_life_of_a_track():

@@ -214,8 +214,7 @@ TEST(GlobalNearestNeighbour, SettlesTheBidWarOfManyRowsForFewColumns) {
   problem.rows.resize(40);
   problem.unassigned_cost.assign(40, 1e6);
   for (auto& row : problem.rows)
-    for (int column = 0; column < problem.columns; ++column)
-      row.emplace_back(column, cost(random));
+    for (int column = 0; column < problem.columns; ++column) row.emplace_back(column, cost(random));
   EXPECT_NEAR(optimal_cost(problem), hungarian_cost(problem), 1e-6);
 }
 
@@ -260,8 +259,8 @@ TEST(GlobalNearestNeighbour, AUsedWorkspaceSolvesAsAFreshOneDoes) {
     GlobalNearestNeighbour<double> fresh(40, 40);
     ASSERT_TRUE(used.solve(problem.candidates()));
     ASSERT_TRUE(fresh.solve(problem.candidates()));
-    EXPECT_TRUE(std::ranges::equal(used.assignment().column_of_row(),
-                                   fresh.assignment().column_of_row()));
+    EXPECT_TRUE(
+        std::ranges::equal(used.assignment().column_of_row(), fresh.assignment().column_of_row()));
   }
 }
 

@@ -127,9 +127,9 @@ TEST(ProbabilisticData, BadInputIsRefusedAndNothingWritten) {
     EXPECT_EQ(probability, (std::vector<double>{7.0, 7.0}));
   }
   const std::vector<double> two = {0.0, 0.0};
-  EXPECT_EQ(pda.association_probability(std::span<const double>(two),
-                                        std::span<double>(probability)),
-            Status::kNotFinite);
+  EXPECT_EQ(
+      pda.association_probability(std::span<const double>(two), std::span<double>(probability)),
+      Status::kNotFinite);
   EXPECT_THROW(ProbabilisticData{.detection_probability = 1.1}.validate(), std::invalid_argument);
   EXPECT_THROW(ProbabilisticData{.gate_probability = -0.1}.validate(), std::invalid_argument);
   EXPECT_THROW(ProbabilisticData{.clutter_density = -1.0}.validate(), std::invalid_argument);
@@ -149,13 +149,9 @@ struct LinearUpdate {
     Mat<double, 2, 4> observe;
     observe << 1, 0, 0, 0, 0, 0, 1, 0;
     const Mat<double, 2, 2> innovation_covariance =
-        observe * predicted.covariance * observe.transpose() +
-        25.0 * Mat<double, 2, 2>::Identity();
-    gain = Cholesky<2>(innovation_covariance)
-               .solve<4>(observe * predicted.covariance)
-               .transpose();
-    updated_covariance =
-        predicted.covariance - gain * innovation_covariance * gain.transpose();
+        observe * predicted.covariance * observe.transpose() + 25.0 * Mat<double, 2, 2>::Identity();
+    gain = Cholesky<2>(innovation_covariance).solve<4>(observe * predicted.covariance).transpose();
+    updated_covariance = predicted.covariance - gain * innovation_covariance * gain.transpose();
   }
 };
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Filters composed at run time, as Python has them, against the same composed at compile time: bit for bit.
+// Filters composed at run time, as Python has them, against the same composed at compile time: bit
+// for bit.
 #include "any_filter.hpp"
 
 #include <gtest/gtest.h>
@@ -64,7 +65,8 @@ void expect_same_bits(Fixed fixed, AnyImm composed, const Sensor& sensor) {
 
 TEST(AnyFilterBank, EqualsThreeTurnsBitForBit) {
   const auto turn = [](double deg_s) {
-    return Ekf{CoordinatedTurn{.turn_rate_rad_s = deg(deg_s), .noise = PiecewiseAcceleration{0.05}}};
+    return Ekf{
+        CoordinatedTurn{.turn_rate_rad_s = deg(deg_s), .noise = PiecewiseAcceleration{0.05}}};
   };
   const Mat<double, 3, 3> matrix{{0.95, 0.025, 0.025}, {0.025, 0.95, 0.025}, {0.025, 0.025, 0.95}};
   expect_same_bits(

@@ -11,7 +11,7 @@ namespace wakeline {
 namespace {
 
 constexpr double kDofs[] = {0.3, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 9.0, 31.0, 32.5, 100.0, 1e3, 1e5};
-constexpr double kProbabilities[] = {1e-9, 1e-4, 0.01, 0.05, 0.3,  0.5,
+constexpr double kProbabilities[] = {1e-9, 1e-4, 0.01, 0.05,  0.3,       0.5,
                                      0.7,  0.95, 0.99, 0.999, 1.0 - 1e-9};
 
 TEST(ChiSquare, QuantileInvertsTheDistribution) {

@@ -74,8 +74,8 @@ TEST(NoHeap, CountsEveryWayToTheHeap) {
   block = ::operator new(64);
   ::operator delete(block);
   EXPECT_EQ(fence.allocations(), 3);
-  block = ::operator new(64, std::align_val_t{64});
-  ::operator delete(block, std::align_val_t{64});
+  block = ::operator new (64, std::align_val_t{64});
+  ::operator delete (block, std::align_val_t{64});
   EXPECT_EQ(fence.allocations(), 4);
 }
 

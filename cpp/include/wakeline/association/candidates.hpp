@@ -45,8 +45,8 @@ class Candidates {
     require_not_negative("row_capacity", row_capacity);
     require_not_negative("column_capacity", column_capacity);
     const double pairs = static_cast<double>(row_capacity) * column_capacity;
-    require(pairs <= std::numeric_limits<int>::max(), "row_capacity * column_capacity",
-            "an int", pairs);
+    require(pairs <= std::numeric_limits<int>::max(), "row_capacity * column_capacity", "an int",
+            pairs);
     return Candidates(row_capacity, row_capacity * column_capacity);
   }
 
@@ -106,9 +106,7 @@ class Candidates {
   [[nodiscard]] int candidate_capacity() const noexcept { return static_cast<int>(cost_.size()); }
 
   /// What it costs to leave the row without a column.
-  [[nodiscard]] Scalar unassigned_cost(int row) const noexcept {
-    return unassigned_cost_[at(row)];
-  }
+  [[nodiscard]] Scalar unassigned_cost(int row) const noexcept { return unassigned_cost_[at(row)]; }
 
   /// The row's candidate columns, in the order in which they were added.
   [[nodiscard]] std::span<const int> columns_of(int row) const noexcept {

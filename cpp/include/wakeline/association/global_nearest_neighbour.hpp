@@ -81,7 +81,7 @@ class GlobalNearestNeighbour {
     Scalar distance = Scalar(0);
     Scalar cost = Scalar(0);  // of the pair (from_row, this column)
     int from_row = kUnassigned;
-    int search = 0;  // the search this belongs to
+    int search = 0;        // the search this belongs to
     int place = kSettled;  // index in the frontier
   };
 

@@ -23,7 +23,8 @@ template <class Scalar>
 Scalar wrap_angle(Scalar angle_rad) noexcept {
   using std::floor;
   constexpr Scalar turn = Scalar(2) * kPi<Scalar>;
-  return angle_rad - turn * floor(angle_rad / turn + Scalar(0.5));
+  constexpr Scalar turns_per_rad = Scalar(1) / turn;
+  return angle_rad - turn * floor(angle_rad * turns_per_rad + Scalar(0.5));
 }
 
 /// The same angle in [0, 2 pi): how bearings and courses are shown.

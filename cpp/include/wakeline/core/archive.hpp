@@ -15,14 +15,15 @@ namespace wakeline {
 
 /// Writes or reads the state of an object, field by field, as plain bytes of this machine.
 ///
-/// An object lists its fields once, in `archive(Archive&)`, which serves both ways. Reading past the end fails and
-/// leaves the rest of the fields as they were; ask `ok()` at the end.
+/// An object lists its fields once, in `archive(Archive&)`, which serves both ways. Reading past
+/// the end fails and leaves the rest of the fields as they were; ask `ok()` at the end.
 class Archive {
  public:
   /// For writing.
   Archive() = default;
   /// For reading.
-  explicit Archive(std::span<const std::byte> bytes) : bytes_(bytes.begin(), bytes.end()), loading_(true) {}
+  explicit Archive(std::span<const std::byte> bytes)
+      : bytes_(bytes.begin(), bytes.end()), loading_(true) {}
 
   [[nodiscard]] bool loading() const noexcept { return loading_; }
   [[nodiscard]] bool ok() const noexcept { return ok_; }
@@ -32,10 +33,7 @@ class Archive {
 
   /// A number, an enumeration or a plain struct of them.
   template <class T>
-    requires(std::is_trivially_copyable_v<T>)
-  void operator()(T& value) {
-    raw(&value, sizeof(T));
-  }
+  requires(std::is_trivially_copyable_v<T>) void operator()(T& value) { raw(&value, sizeof(T)); }
 
   /// An Eigen vector or matrix, of fixed size or of the size it has.
   template <class Scalar, int Rows, int Cols, int Options, int MaxRows, int MaxCols>
@@ -45,8 +43,8 @@ class Archive {
 
   /// A vector of plain values, with its length; a length beyond `capacity` fails.
   template <class T>
-    requires(std::is_trivially_copyable_v<T>)
-  void operator()(std::vector<T>& values, std::size_t capacity) {
+  requires(std::is_trivially_copyable_v<T>) void operator()(std::vector<T>& values,
+                                                            std::size_t capacity) {
     auto size = static_cast<std::uint64_t>(values.size());
     (*this)(size);
     if (loading_) {

@@ -39,8 +39,8 @@ inline double stirling_error(double a) noexcept {
 /// Source: Loader 2000, the saddle-point form, here for real a.
 inline double poisson_term(double a, double x) noexcept {
   const double excess = (x - a) / a;
-  const double deviance = std::abs(excess) < 0.5 ? a * (excess - std::log1p(excess))
-                                                 : (x - a) - a * std::log(x / a);
+  const double deviance =
+      std::abs(excess) < 0.5 ? a * (excess - std::log1p(excess)) : (x - a) - a * std::log(x / a);
   return std::exp(-stirling_error(a) - deviance) / std::sqrt(2.0 * kPi<double> * a);
 }
 
@@ -134,8 +134,8 @@ inline double chi_square_quantile(double probability, double dof) noexcept {
   const double normal = t - (2.30753 + 0.27061 * t) / (1.0 + t * (0.99229 + 0.04481 * t));
   const double cube_root =
       1.0 - 1.0 / (9.0 * a) + (lower_tail ? -normal : normal) / (3.0 * std::sqrt(a));
-  const double log_gamma_a1 = detail::stirling_error(a) + (a + 0.5) * std::log(a) - a +
-                              0.5 * std::log(2.0 * kPi<double>);
+  const double log_gamma_a1 =
+      detail::stirling_error(a) + (a + 0.5) * std::log(a) - a + 0.5 * std::log(2.0 * kPi<double>);
   const double series_start = std::exp((std::log(probability) + log_gamma_a1) / a);
   double x = a * cube_root * cube_root * cube_root;
   if (!(cube_root > 0.0) || series_start < 0.2 * (a + 1.0)) x = series_start;
@@ -147,12 +147,11 @@ inline double chi_square_quantile(double probability, double dof) noexcept {
     const detail::GammaTails at = detail::gamma_tails(a, x);
     const bool too_high = lower_tail ? at.lower > tail : at.upper < tail;
     (too_high ? high : low) = x;
-    const double step = lower_tail
-        ? x * std::expm1(std::log(tail / at.lower) * at.lower / (a * at.poisson_term))
-        : x * std::log(at.upper / tail) * at.upper / (a * at.poisson_term);
+    const double step =
+        lower_tail ? x * std::expm1(std::log(tail / at.lower) * at.lower / (a * at.poisson_term))
+                   : x * std::log(at.upper / tail) * at.upper / (a * at.poisson_term);
     double next = x + step;
-    if (!(next > low && next < high))
-      next = std::isinf(high) ? 2.0 * low : 0.5 * (low + high);
+    if (!(next > low && next < high)) next = std::isinf(high) ? 2.0 * low : 0.5 * (low + high);
     const bool settled = std::abs(next - x) <= 2.0 * std::numeric_limits<double>::epsilon() * x;
     x = next;
     if (settled) break;

@@ -12,8 +12,8 @@ namespace wakeline {
 
 /// The checked Cholesky factorisation A = L Lᵀ of a symmetric matrix (its lower triangle is read).
 ///
-/// The one place where Wakeline factorises a covariance. `ok()` is false when A is not positive definite or not
-/// finite; the other members may then not be used. No heap, no exception.
+/// The one place where Wakeline factorises a covariance. `ok()` is false when A is not positive
+/// definite or not finite; the other members may then not be used. No heap, no exception.
 template <int N, class Scalar = double>
 class Cholesky {
  public:
@@ -120,7 +120,8 @@ class Cholesky {
     return pivot > Scalar(0) && pivot <= std::numeric_limits<Scalar>::max();
   }
 
-  /// In closed form: both roots at once instead of one after the other, which is most of the time an update takes.
+  /// In closed form: both roots at once instead of one after the other, which is most of the time
+  /// an update takes.
   void compute_2x2(Scalar a, Scalar b, Scalar c) noexcept {
     using std::sqrt;
     const Scalar determinant = a * c - b * b;
@@ -129,7 +130,8 @@ class Cholesky {
     inverse_diagonal_[1] = sqrt(a / determinant);
     lower_(0, 0) = a * inverse_diagonal_[0];
     lower_(1, 0) = b * inverse_diagonal_[0];
-    lower_(1, 1) = determinant * (inverse_diagonal_[0] * inverse_diagonal_[0]) * inverse_diagonal_[1];
+    lower_(1, 1) =
+        determinant * (inverse_diagonal_[0] * inverse_diagonal_[0]) * inverse_diagonal_[1];
     ok_ = true;
   }
 
@@ -138,8 +140,9 @@ class Cholesky {
   bool ok_ = false;
 };
 
-/// A root G with G Gᵀ = A of a matrix that is only positive semidefinite, as process noise may be: a Cholesky
-/// factorisation that leaves out the directions without variance. Not finite where A is not.
+/// A root G with G Gᵀ = A of a matrix that is only positive semidefinite, as process noise may be:
+/// a Cholesky factorisation that leaves out the directions without variance. Not finite where A is
+/// not.
 template <int N, class Scalar>
 Mat<Scalar, N, N> semidefinite_root(const Mat<Scalar, N, N>& matrix) noexcept {
   using std::sqrt;
@@ -181,7 +184,7 @@ Status check(const Gaussian<N, Scalar>& belief) noexcept {
   const bool symmetric =
       (belief.covariance - belief.covariance.transpose()).cwiseAbs().maxCoeff() <= tolerance;
   return symmetric && Cholesky<N, Scalar>(belief.covariance).ok() ? Status::kOk
-                                                                 : Status::kNotPositiveDefinite;
+                                                                  : Status::kNotPositiveDefinite;
 }
 
 }  // namespace wakeline

@@ -7,8 +7,8 @@
 
 namespace wakeline {
 
-/// What a row of a state vector holds. A sensor names the components it reads, a motion model those it has;
-/// components of your own start at `kUser`.
+/// What a row of a state vector holds. A sensor names the components it reads, a motion model those
+/// it has; components of your own start at `kUser`.
 enum class Component : int {
   kNorth,     ///< x, m
   kVnorth,    ///< vx, m/s

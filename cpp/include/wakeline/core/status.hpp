@@ -22,12 +22,18 @@ enum class Status : std::uint8_t {
 /// The status in words, for messages and logs.
 constexpr const char* to_string(Status status) noexcept {
   switch (status) {
-    case Status::kOk: return "ok";
-    case Status::kMissed: return "missed: no measurement";
-    case Status::kNotStarted: return "not started";
-    case Status::kNotFinite: return "not finite";
-    case Status::kNotPositiveDefinite: return "covariance not positive definite";
-    case Status::kNegativeTimeStep: return "negative time step";
+    case Status::kOk:
+      return "ok";
+    case Status::kMissed:
+      return "missed: no measurement";
+    case Status::kNotStarted:
+      return "not started";
+    case Status::kNotFinite:
+      return "not finite";
+    case Status::kNotPositiveDefinite:
+      return "covariance not positive definite";
+    case Status::kNegativeTimeStep:
+      return "negative time step";
   }
   return "unknown";
 }
@@ -38,7 +44,8 @@ struct [[nodiscard]] Step {
   Status status = Status::kNotStarted;
   Vec<Scalar, M> innovation = Vec<Scalar, M>::Zero();  ///< measured minus predicted, angles wrapped
   Mat<Scalar, M, M> innovation_covariance = Mat<Scalar, M, M>::Identity();
-  Scalar nis = std::numeric_limits<Scalar>::quiet_NaN();  ///< normalised innovation squared, chi-square with M dof
+  Scalar nis = std::numeric_limits<Scalar>::quiet_NaN();  ///< normalised innovation squared,
+                                                          ///< chi-square with M dof
   Scalar log_likelihood = -std::numeric_limits<Scalar>::infinity();
 
   explicit operator bool() const noexcept { return status == Status::kOk; }

@@ -106,8 +106,7 @@ class Gospa {
     result.gospa = root(result.localisation + result.missed + result.false_tracks);
     const int larger = std::max(targets, tracks);
     if (larger > 0)
-      result.ospa =
-          root((result.localisation + cutoff_power_ * (larger - result.pairs)) / larger);
+      result.ospa = root((result.localisation + cutoff_power_ * (larger - result.pairs)) / larger);
     return result;
   }
 

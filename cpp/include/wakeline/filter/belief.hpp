@@ -33,8 +33,10 @@ Status check_time_step(Scalar dt_s) noexcept {
 template <class MotionType, class ScalarType>
 class Belief {
   static_assert(MotionModel<MotionType>,
-                "wakeline: this motion model is neither linear (kComponents, matrix(dt_s), process_noise(dt_s)) nor "
-                "nonlinear (kComponents, transition(x, dt_s), jacobian(x, dt_s), process_noise(x, dt_s)); see "
+                "wakeline: this motion model is neither linear (kComponents, matrix(dt_s), "
+                "process_noise(dt_s)) nor "
+                "nonlinear (kComponents, transition(x, dt_s), jacobian(x, dt_s), process_noise(x, "
+                "dt_s)); see "
                 "cpp/docs/concepts.md");
 
  public:
@@ -57,13 +59,12 @@ class Belief {
 
   /// Begins with a belief over `[x, vx, y, vy]`; the other components get the model's prior.
   Status start(const Gaussian<4, Scalar>& kinematics) noexcept
-    requires(kStates != 4 && holds(kComponents, kKinematics))
-  {
+      requires(kStates != 4 && holds(kComponents, kKinematics)) {
     return start(lift(motion_, kinematics));
   }
 
   /// Replaces the belief, unchecked.
-  Status assign(const Gaussian<kStates, Scalar>& belief) noexcept {
+  [[gnu::flatten]] Status assign(const Gaussian<kStates, Scalar>& belief) noexcept {
     belief_ = belief;
     started_ = true;
     return Status::kOk;
@@ -95,14 +96,17 @@ constexpr Rows<Sensor::kReads.size()> rows_read(
 
 template <class Sensor, class Filter>
 constexpr void check_sensor() noexcept {
-  static_assert(MeasurementModel<Sensor>,
-                "wakeline: this sensor needs kReads, kMeasurements, observe(z), measure(x), jacobian(x) and "
-                "residual(a, b); see cpp/docs/concepts.md");
-  static_assert(holds(Filter::kComponents, Sensor::kReads),
-                "wakeline: this sensor reads a component that the state of the motion model does not hold");
+  static_assert(
+      MeasurementModel<Sensor>,
+      "wakeline: this sensor needs kReads, kMeasurements, observe(z), measure(x), jacobian(x) and "
+      "residual(a, b); see cpp/docs/concepts.md");
+  static_assert(
+      holds(Filter::kComponents, Sensor::kReads),
+      "wakeline: this sensor reads a component that the state of the motion model does not hold");
 }
 
-/// True when a posterior variance is lost in the rounding of the prior one, and P - K S Kᵀ will not do.
+/// True when a posterior variance is lost in the rounding of the prior one, and P - K S Kᵀ will not
+/// do.
 template <class Scalar, int N>
 bool cancels(const Mat<Scalar, N, N>& prior, const Mat<Scalar, N, N>& posterior) noexcept {
   constexpr Scalar kSafe = sizeof(Scalar) > 4 ? Scalar(1e-8) : Scalar(1e-3);
@@ -117,15 +121,21 @@ Status refusal(const Mat<Scalar, M, M>& innovation_covariance) noexcept {
   return is_finite(innovation_covariance) ? Status::kNotPositiveDefinite : Status::kNotFinite;
 }
 
-/// The likelihood part of a step, NIS = |L⁻¹ v|² and ln N(v; 0, S), and its status.
+/// NIS = |L⁻¹ v|², and the status of a step that got so far.
+template <int M, class Scalar>
+void rate(Step<M, Scalar>& step, const Vec<Scalar, M>& whitened) noexcept {
+  using std::isfinite;
+  step.nis = whitened.squaredNorm();
+  step.status = isfinite(step.nis) ? Status::kOk : Status::kNotFinite;
+}
+
+/// The likelihood part of a step, NIS and ln N(v; 0, S), and its status.
 template <int M, class Scalar>
 void score(Step<M, Scalar>& step, const Vec<Scalar, M>& whitened,
            const Cholesky<M, Scalar>& factor) noexcept {
-  using std::isfinite;
   constexpr Scalar kLog2Pi = Scalar(1.837877066409345483560659472811235279723);
-  step.nis = whitened.squaredNorm();
+  rate(step, whitened);
   step.log_likelihood = -(step.nis + factor.log_determinant() + Scalar(M) * kLog2Pi) / 2;
-  step.status = isfinite(step.nis) ? Status::kOk : Status::kNotFinite;
 }
 
 }  // namespace wakeline

@@ -11,8 +11,9 @@ namespace wakeline {
 
 /// A one-model estimator: owns its belief, and is started, predicted and updated.
 ///
-/// `assign(belief)` replaces the belief as `start` does, without checking that it is one: what mixing needs.
-/// `update(sensor, z)` is a template on the sensor and therefore not part of the concept.
+/// `assign(belief)` replaces the belief as `start` does, without checking that it is one: what
+/// mixing needs. `update(sensor, z)` is a template on the sensor and therefore not part of the
+/// concept.
 template <class Filter>
 concept BeliefFilter = requires(Filter filter, const Filter& constant,
                                 const Gaussian<Filter::kStates, typename Filter::Scalar>& belief,
@@ -21,7 +22,9 @@ concept BeliefFilter = requires(Filter filter, const Filter& constant,
   { filter.start(belief) } -> std::same_as<Status>;
   { filter.assign(belief) } -> std::same_as<Status>;
   { filter.predict(dt_s) } -> std::same_as<Status>;
-  { constant.estimate() } -> std::convertible_to<Gaussian<Filter::kStates, typename Filter::Scalar>>;
+  {
+    constant.estimate()
+    } -> std::convertible_to<Gaussian<Filter::kStates, typename Filter::Scalar>>;
   { constant.started() } -> std::same_as<bool>;
   constant.motion();
 };

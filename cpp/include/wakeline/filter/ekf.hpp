@@ -10,19 +10,19 @@ namespace wakeline {
 
 /// The extended Kalman filter: motion and sensor linearised about the mean.
 ///
-/// Covariances are updated as P - Wᵀ W with the whitened gain, which keeps them symmetric, and in Joseph form where a
-/// prior so much wider than the plot (after an hour without one) would make that difference cancel. F and Q of a linear
-/// model are kept as long as the step stays the same.
+/// Covariances are updated as P - Wᵀ W with the whitened gain, which keeps them symmetric, and in
+/// Joseph form where a prior so much wider than the plot (after an hour without one) would make
+/// that difference cancel. F and Q of a linear model are kept as long as the step stays the same.
 /// Source: Bar-Shalom, Li, Kirubarajan, 5.2.3 (linear) and 10.3.3 (extended).
 template <class MotionType, class ScalarType = double>
 class Ekf : public Belief<MotionType, ScalarType> {
   using Base = Belief<MotionType, ScalarType>;
 
  public:
-  using typename Base::Motion;
-  using typename Base::Scalar;
   using Base::kComponents;
   using Base::kStates;
+  using typename Base::Motion;
+  using typename Base::Scalar;
 
   explicit Ekf(const MotionType& motion) : Base(motion) {}
 
@@ -46,13 +46,14 @@ class Ekf : public Belief<MotionType, ScalarType> {
   Step<Sensor::kMeasurements, Scalar> innovation(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     Step<Sensor::kMeasurements, Scalar> step;
-    (void)Innovation<Sensor>(*this, sensor, z, step);
+    const Innovation<Sensor> innovation(*this, sensor, z, step);
+    if (step) score(step, innovation.whitened, innovation.factor);
     return step;
   }
 
   /// Corrects the belief by the reading z of a sensor.
   template <class Sensor>
-  Step<Sensor::kMeasurements, Scalar> update(
+  [[gnu::flatten]] Step<Sensor::kMeasurements, Scalar> update(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     Step<kM, Scalar> step;
@@ -66,6 +67,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
       belief.covariance = joseph(sensor, innovation.h, innovation.factor.unwhiten_rows(gain), z);
     else
       belief.covariance = posterior;
+    score(step, innovation.whitened, innovation.factor);  // last: nothing waits for the logarithm
     return step;
   }
 
@@ -82,7 +84,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
     Cholesky<kM, Scalar> factor;  ///< of S
     Vec<Scalar, kM> whitened;     ///< L⁻¹ v
 
-    /// Fills `step`, too.
+    /// Fills all of `step` but the likelihood, too.
     Innovation(const Ekf& filter, const Sensor& sensor, const Vec<Scalar, kM>& z,
                Step<kM, Scalar>& step) noexcept {
       check_sensor<Sensor, Ekf>();
@@ -91,7 +93,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
       Vec<Scalar, kReads> read;
       for (int k = 0; k < kReads; ++k) read[k] = belief.mean[kRows[k]];
       const Gaussian<kM, Scalar> reading = sensor.observe(z);
-      // First, because an arc tangent takes as long as all that follows, which the processor does meanwhile.
+      // First, because an arc tangent takes as long as all that follows, which the processor does
+      // meanwhile.
       step.innovation = sensor.residual(reading.mean, sensor.measure(read));
       h = sensor.jacobian(read);
       for (int m = 0; m < kM; ++m) {
@@ -110,7 +113,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
         return;
       }
       whitened = factor.template whiten<1>(step.innovation);
-      score(step, whitened, factor);
+      rate(step, whitened);
     }
   };
 
@@ -154,7 +157,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
   [[no_unique_address]] std::conditional_t<LinearMotionModel<Motion>, Transition, Nothing> kept_;
 };
 
-/// The Kalman filter: an Ekf whose motion model and sensors are linear, so that nothing is approximated.
+/// The Kalman filter: an Ekf whose motion model and sensors are linear, so that nothing is
+/// approximated.
 template <class MotionType, class ScalarType = double>
 class Kalman : public Ekf<MotionType, ScalarType> {
   static_assert(!MotionModel<MotionType> || LinearMotionModel<MotionType>,
@@ -166,10 +170,11 @@ class Kalman : public Ekf<MotionType, ScalarType> {
   explicit Kalman(const MotionType& motion) : Ekf<MotionType, ScalarType>(motion) {}
 
   template <class Sensor>
-  Step<Sensor::kMeasurements, Scalar> update(
-      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+  Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
+                                             const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     static_assert(LinearMeasurementModel<Sensor>,
-                  "wakeline: Kalman needs a linear sensor (kLinear = true); use ConvertedRangeBearing, or Ekf or Ukf");
+                  "wakeline: Kalman needs a linear sensor (kLinear = true); use "
+                  "ConvertedRangeBearing, or Ekf or Ukf");
     return Ekf<MotionType, ScalarType>::update(sensor, z);
   }
 };

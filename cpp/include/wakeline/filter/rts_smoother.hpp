@@ -9,12 +9,12 @@
 
 namespace wakeline {
 
-/// Rauch-Tung-Striebel smoother, in place: turns the filtered beliefs of T scans into smoothed ones.
+/// Rauch-Tung-Striebel smoother, in place: turns the filtered beliefs of T scans into smoothed
+/// ones.
 ///
-/// `dt_s[k]` leads from scan k to scan k + 1 (T - 1 of them). The covariance is kept in a form that stays positive
-/// definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q) Gᵀ. Returns the first failure, with that scan and everything before it
-/// left as filtered.
-/// Source: Bar-Shalom, Li, Kirubarajan, 8.6.
+/// `dt_s[k]` leads from scan k to scan k + 1 (T - 1 of them). The covariance is kept in a form that
+/// stays positive definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q) Gᵀ. Returns the first failure, with
+/// that scan and everything before it left as filtered. Source: Bar-Shalom, Li, Kirubarajan, 8.6.
 template <MotionModel Motion, class Scalar>
 Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs,
               std::span<const Scalar> dt_s) noexcept {

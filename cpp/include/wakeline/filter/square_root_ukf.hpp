@@ -8,9 +8,9 @@
 
 namespace wakeline {
 
-/// Lower-triangular L with L Lᵀ = A Aᵀ and a diagonal that is not negative: Householder reflections from the right, one
-/// for each row of A.
-/// Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 5.2.
+/// Lower-triangular L with L Lᵀ = A Aᵀ and a diagonal that is not negative: Householder reflections
+/// from the right, one for each row of A. Source: G. H. Golub, C. F. Van Loan, Matrix
+/// Computations, 5.2.
 template <class Scalar, int N, int Cols>
 Mat<Scalar, N, N> lower_root(Mat<Scalar, N, Cols> a) noexcept {
   using std::abs, std::sqrt;
@@ -37,10 +37,10 @@ Mat<Scalar, N, N> lower_root(Mat<Scalar, N, Cols> a) noexcept {
   return lower;
 }
 
-/// The unscented Kalman filter on a square root of the covariance, for long unattended runs: the covariance is L Lᵀ and
-/// cannot lose its definiteness. Both steps are one triangularisation of an array, without any downdate; beta must
-/// therefore not be below alpha².
-/// Source: R. van der Merwe, E. A. Wan, ICASSP 2001; the array form after Bar-Shalom, Li, Kirubarajan, 7.4.
+/// The unscented Kalman filter on a square root of the covariance, for long unattended runs: the
+/// covariance is L Lᵀ and cannot lose its definiteness. Both steps are one triangularisation of an
+/// array, without any downdate; beta must therefore not be below alpha². Source: R. van der Merwe,
+/// E. A. Wan, ICASSP 2001; the array form after Bar-Shalom, Li, Kirubarajan, 7.4.
 template <class MotionType, class ScalarType = double>
 class SquareRootUkf {
   static_assert(MotionModel<MotionType>, "wakeline: not a motion model; see cpp/docs/concepts.md");
@@ -68,8 +68,7 @@ class SquareRootUkf {
 
   /// Begins with a belief over `[x, vx, y, vy]`; the other components get the model's prior.
   Status start(const Gaussian<4, Scalar>& kinematics) noexcept
-    requires(kStates != 4 && holds(kComponents, kKinematics))
-  {
+      requires(kStates != 4 && holds(kComponents, kKinematics)) {
     return start(lift(motion_, kinematics));
   }
 
@@ -125,11 +124,11 @@ class SquareRootUkf {
     return SquareRootUkf(*this).update(sensor, z);
   }
 
-  /// Corrects the belief by the reading z of a sensor: the root of [sqrt(w) e_z, sqrt(beta - alpha²) d_z, R^(1/2);
-  /// sqrt(w) (points - x), 0, 0] is [S^(1/2), 0; K S^(1/2), P^(1/2)].
+  /// Corrects the belief by the reading z of a sensor: the root of [sqrt(w) e_z, sqrt(beta -
+  /// alpha²) d_z, R^(1/2); sqrt(w) (points - x), 0, 0] is [S^(1/2), 0; K S^(1/2), P^(1/2)].
   template <class Sensor>
-  Step<Sensor::kMeasurements, Scalar> update(
-      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+  Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
+                                             const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     using std::sqrt;
     check_sensor<Sensor, SquareRootUkf>();
     constexpr int kM = Sensor::kMeasurements;
@@ -171,8 +170,7 @@ class SquareRootUkf {
 
  private:
   Mat<Scalar, kStates, kPoints> points() const noexcept {
-    return sigma_points<Scalar, kStates>(mean_, root_,
-                                         unscented_.template spread<Scalar>(kStates));
+    return sigma_points<Scalar, kStates>(mean_, root_, unscented_.template spread<Scalar>(kStates));
   }
   Scalar weight() const noexcept { return unscented_.template weight<Scalar>(kStates); }
   Scalar centre_root() const noexcept {

@@ -26,18 +26,19 @@ Gaussian<4, Scalar> kinematics_from(const Gaussian<2, Scalar>& position,
   return belief;
 }
 
-/// Start from one plot: its position, and a velocity of zero with standard deviation `speed_std_mps` per axis.
+/// Start from one plot: its position, and a velocity of zero with standard deviation
+/// `speed_std_mps` per axis.
 template <PositionSensor Sensor, class Scalar>
 Gaussian<4, Scalar> one_point(const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z,
                               Scalar speed_std_mps) noexcept {
-  const Gaussian<2, Scalar> velocity{
-      Vec<Scalar, 2>::Zero(), speed_std_mps * speed_std_mps * Mat<Scalar, 2, 2>::Identity()};
+  const Gaussian<2, Scalar> velocity{Vec<Scalar, 2>::Zero(),
+                                     speed_std_mps * speed_std_mps * Mat<Scalar, 2, 2>::Identity()};
   return kinematics_from<Scalar>(sensor.position(z), velocity, Mat<Scalar, 2, 2>::Zero());
 }
 
-/// Start from two position fixes dt apart: the second fix and their difference over dt, with the covariance that
-/// follows: `[R2, R2/dt; R2/dt, (R1 + R2)/dt²]`.
-/// Source: Bar-Shalom, Li, Kirubarajan, 5.5.3.
+/// Start from two position fixes dt apart: the second fix and their difference over dt, with the
+/// covariance that follows: `[R2, R2/dt; R2/dt, (R1 + R2)/dt²]`. Source: Bar-Shalom, Li,
+/// Kirubarajan, 5.5.3.
 template <class Scalar>
 Gaussian<4, Scalar> two_point(const Gaussian<2, Scalar>& first, const Gaussian<2, Scalar>& second,
                               Scalar dt_s) noexcept {
@@ -54,8 +55,8 @@ Gaussian<4, Scalar> two_point(const Sensor& sensor, const Vec<Scalar, Sensor::kM
   return two_point<Scalar>(sensor.position(first), sensor.position(second), dt_s);
 }
 
-/// The belief over `[x, vx, y, vy]` as the belief over the state of `motion`: components that it lacks start at zero
-/// with the model's prior variance.
+/// The belief over `[x, vx, y, vy]` as the belief over the state of `motion`: components that it
+/// lacks start at zero with the model's prior variance.
 template <MotionModel Motion, class Scalar>
 Gaussian<kStatesOf<Motion>, Scalar> lift(const Motion& motion,
                                          const Gaussian<4, Scalar>& kinematics) noexcept {
@@ -71,8 +72,7 @@ Gaussian<kStatesOf<Motion>, Scalar> lift(const Motion& motion,
   constexpr auto kRows = rows_of(Motion::kComponents, kKinematics);
   for (int i = 0; i < 4; ++i) {
     belief.mean[kRows[i]] = kinematics.mean[i];
-    for (int j = 0; j < 4; ++j)
-      belief.covariance(kRows[i], kRows[j]) = kinematics.covariance(i, j);
+    for (int j = 0; j < 4; ++j) belief.covariance(kRows[i], kRows[j]) = kinematics.covariance(i, j);
   }
   return belief;
 }

@@ -6,19 +6,19 @@
 
 namespace wakeline {
 
-/// The unscented Kalman filter. Sigma points are drawn anew for the update, from the predicted belief. Covariances are
-/// updated as P - K S Kᵀ, and from the points themselves where a prior so much wider than the plot would make that
-/// difference cancel.
-/// Source: S. J. Julier, J. K. Uhlmann, Proc. IEEE 92, 2004; parameters as in `Unscented`.
+/// The unscented Kalman filter. Sigma points are drawn anew for the update, from the predicted
+/// belief. Covariances are updated as P - K S Kᵀ, and from the points themselves where a prior so
+/// much wider than the plot would make that difference cancel. Source: S. J. Julier, J. K. Uhlmann,
+/// Proc. IEEE 92, 2004; parameters as in `Unscented`.
 template <class MotionType, class ScalarType = double>
 class Ukf : public Belief<MotionType, ScalarType> {
   using Base = Belief<MotionType, ScalarType>;
 
  public:
-  using typename Base::Motion;
-  using typename Base::Scalar;
   using Base::kComponents;
   using Base::kStates;
+  using typename Base::Motion;
+  using typename Base::Scalar;
   static constexpr int kPoints = 2 * kStates;
 
   explicit Ukf(const MotionType& motion, const Unscented& unscented = {})
@@ -54,8 +54,8 @@ class Ukf : public Belief<MotionType, ScalarType> {
 
   /// Corrects the belief by the reading z of a sensor.
   template <class Sensor>
-  Step<Sensor::kMeasurements, Scalar> update(
-      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+  Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
+                                             const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     check_sensor<Sensor, Ukf>();
     constexpr int kM = Sensor::kMeasurements;
     if (!this->started_) return failed_step<kM, Scalar>(Status::kNotStarted);
@@ -64,7 +64,8 @@ class Ukf : public Belief<MotionType, ScalarType> {
 
     const Gaussian<kM, Scalar> reading = sensor.observe(z);
     const Mat<Scalar, kStates, kPoints> sigma = points(root);
-    const MeasuredPoints<Scalar, kM, kPoints> images(sensor, kComponents, this->belief_.mean, sigma);
+    const MeasuredPoints<Scalar, kM, kPoints> images(sensor, kComponents, this->belief_.mean,
+                                                     sigma);
     Gaussian<kM, Scalar> predicted =
         unscented_moments(unscented_, kStates, images.centre, images.differences);
 
@@ -86,8 +87,8 @@ class Ukf : public Belief<MotionType, ScalarType> {
     next.mean.noalias() += gain.transpose() * whitened;
     next.covariance.noalias() -= gain.transpose() * gain;
     if (cancels<Scalar, kStates>(this->belief_.covariance, next.covariance))
-      next.covariance = joseph(spread, images.differences,
-                               factor.template solve<kStates>(cross), reading.covariance);
+      next.covariance = joseph(spread, images.differences, factor.template solve<kStates>(cross),
+                               reading.covariance);
     if (!Cholesky<kStates, Scalar>(next.covariance).ok())
       return failed_step<kM, Scalar>(Status::kNotPositiveDefinite);
     this->belief_ = next;
@@ -95,7 +96,8 @@ class Ukf : public Belief<MotionType, ScalarType> {
   }
 
  private:
-  /// P - K S Kᵀ as what the points keep of their spread, Σ w (e_x - K e_z)(e_x - K e_z)ᵀ, with K of the rest of S.
+  /// P - K S Kᵀ as what the points keep of their spread, Σ w (e_x - K e_z)(e_x - K e_z)ᵀ, with K of
+  /// the rest of S.
   template <int M>
   Mat<Scalar, kStates, kStates> joseph(const Mat<Scalar, kStates, kPoints>& spread,
                                        const Mat<Scalar, M, kPoints>& differences,

@@ -11,14 +11,15 @@ namespace wakeline {
 
 /// The scaled unscented transform's three parameters.
 ///
-/// Sigma points stand at x and x ± sqrt(alpha² (n + kappa)) columns of the Cholesky factor. With e_i the image of a
-/// point less that of the centre and w = 1 / (2 alpha² (n + kappa)), the weighted mean and covariance of the textbook
-/// are, whatever the sign of the centre weight,
+/// Sigma points stand at x and x ± sqrt(alpha² (n + kappa)) columns of the Cholesky factor. With
+/// e_i the image of a point less that of the centre and w = 1 / (2 alpha² (n + kappa)), the
+/// weighted mean and covariance of the textbook are, whatever the sign of the centre weight,
 ///
 ///     d = w Σ e_i,   mean = f(x) + d,   covariance = w Σ e_i e_iᵀ + (beta - alpha²) d dᵀ,
 ///
 /// in which no large weights cancel, and which is positive semidefinite for beta >= alpha².
-/// Source: S. J. Julier, "The scaled unscented transformation", ACC 2002; E. A. Wan, R. van der Merwe, 2000.
+/// Source: S. J. Julier, "The scaled unscented transformation", ACC 2002; E. A. Wan, R. van der
+/// Merwe, 2000.
 struct Unscented {
   double alpha = 1.0;
   double beta = 2.0;
@@ -82,7 +83,8 @@ struct MovedPoints {
   }
 };
 
-/// Sigma points as a sensor sees them: the centre, and the wrapped differences of the others from it.
+/// Sigma points as a sensor sees them: the centre, and the wrapped differences of the others from
+/// it.
 template <class Scalar, int M, int Points>
 struct MeasuredPoints {
   Vec<Scalar, M> centre;
@@ -103,7 +105,8 @@ struct MeasuredPoints {
   }
 };
 
-/// N(mean, covariance) of the images, given the centre's image and the differences e of the others from it.
+/// N(mean, covariance) of the images, given the centre's image and the differences e of the others
+/// from it.
 template <class Scalar, int M, int Points>
 Gaussian<M, Scalar> unscented_moments(const Unscented& unscented, int states,
                                       const Vec<Scalar, M>& centre,

@@ -5,27 +5,32 @@
 #include <array>
 #include <concepts>
 
-#include "wakeline/core/types.hpp"
 #include "wakeline/core/component.hpp"
+#include "wakeline/core/types.hpp"
 
 namespace wakeline {
 
 template <class Sensor>
 inline constexpr int kReadsOf = static_cast<int>(Sensor::kReads.size());
 
-/// A sensor that reports z = h(x_r) + v, v ~ N(0, R), of those state components `kReads` that it reads.
+/// A sensor that reports z = h(x_r) + v, v ~ N(0, R), of those state components `kReads` that it
+/// reads.
 ///
 /// - `kReads`: a `std::array<Component, N>`; `kMeasurements`: M;
-/// - `observe(z) -> Gaussian<M>`: the reading as value and covariance R, corrected and converted where need be;
+/// - `observe(z) -> Gaussian<M>`: the reading as value and covariance R, corrected and converted
+/// where need be;
 /// - `measure(x_r) -> Vec<M>`: h; `jacobian(x_r) -> Mat<M, N>`: dh/dx_r;
 /// - `residual(a, b) -> Vec<M>`: a - b, angles wrapped;
 /// all of them templated on the scalar.
 template <class Sensor>
-concept MeasurementModel = requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z,
+concept MeasurementModel = requires(const Sensor& sensor,
+                                    const Vec<double, Sensor::kMeasurements>& z,
                                     const Vec<double, kReadsOf<Sensor>>& x) {
   { sensor.observe(z) } -> std::convertible_to<Gaussian<Sensor::kMeasurements>>;
   { sensor.measure(x) } -> std::convertible_to<Vec<double, Sensor::kMeasurements>>;
-  { sensor.jacobian(x) } -> std::convertible_to<Mat<double, Sensor::kMeasurements, kReadsOf<Sensor>>>;
+  {
+    sensor.jacobian(x)
+    } -> std::convertible_to<Mat<double, Sensor::kMeasurements, kReadsOf<Sensor>>>;
   { sensor.residual(z, z) } -> std::convertible_to<Vec<double, Sensor::kMeasurements>>;
 };
 
@@ -35,11 +40,10 @@ concept LinearMeasurementModel = MeasurementModel<Sensor> && Sensor::kLinear;
 
 /// A sensor that fixes a position: `position(z) -> Gaussian<2>`, north and east in metres.
 template <class Sensor>
-concept PositionSensor =
-    MeasurementModel<Sensor> &&
+concept PositionSensor = MeasurementModel<Sensor> &&
     requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) {
-      { sensor.position(z) } -> std::convertible_to<Gaussian<2>>;
-    };
+  { sensor.position(z) } -> std::convertible_to<Gaussian<2>>;
+};
 
 /// What a sensor reads.
 inline constexpr std::array kPosition{Component::kNorth, Component::kEast};

@@ -13,9 +13,9 @@ struct OwnShip {
   double east_m = 0.0;
   double vnorth_mps = 0.0;
   double veast_mps = 0.0;
-  double position_std_m = 0.0;   ///< error of the position, per axis
+  double position_std_m = 0.0;    ///< error of the position, per axis
   double velocity_std_mps = 0.0;  ///< error of the velocity, per axis
-  double heading_std_rad = 0.0;  ///< error of the heading, which turns every bearing
+  double heading_std_rad = 0.0;   ///< error of the heading, which turns every bearing
 
   template <class Scalar>
   Vec<Scalar, 2> position() const noexcept {

@@ -20,7 +20,8 @@ Vec<Scalar, 2> towards(Scalar bearing_rad) noexcept {
 
 /// A covariance of `along` (m²) in the direction `u` and `across` (m²) square to it.
 template <class Scalar>
-Mat<Scalar, 2, 2> oriented_covariance(const Vec<Scalar, 2>& u, Scalar along, Scalar across) noexcept {
+Mat<Scalar, 2, 2> oriented_covariance(const Vec<Scalar, 2>& u, Scalar along,
+                                      Scalar across) noexcept {
   const Scalar nn = along * u[0] * u[0] + across * u[1] * u[1];
   const Scalar ne = (along - across) * u[0] * u[1];
   const Scalar ee = along * u[1] * u[1] + across * u[0] * u[0];
@@ -29,9 +30,9 @@ Mat<Scalar, 2, 2> oriented_covariance(const Vec<Scalar, 2>& u, Scalar along, Sca
   return covariance;
 }
 
-/// Polar plot to north/east about the antenna, first order: [r cos b, r sin b], covariance sr² along the bearing and
-/// (r sb)² across it.
-/// Source: Bar-Shalom, Li, Kirubarajan, 10.4.2; paper A, equation (6).
+/// Polar plot to north/east about the antenna, first order: [r cos b, r sin b], covariance sr²
+/// along the bearing and (r sb)² across it. Source: Bar-Shalom, Li, Kirubarajan, 10.4.2; paper A,
+/// equation (6).
 template <class Scalar>
 Gaussian<2, Scalar> convert_plain(Scalar range_m, Scalar bearing_rad, Scalar range_var_m2,
                                   Scalar bearing_var_rad2) noexcept {
@@ -40,10 +41,11 @@ Gaussian<2, Scalar> convert_plain(Scalar range_m, Scalar bearing_rad, Scalar ran
           oriented_covariance<Scalar>(u, range_var_m2, range_m * range_m * bearing_var_rad2)};
 }
 
-/// Polar plot to north/east about the antenna without bias: the plain point times exp(sb²/2), with its exact average
-/// covariance given the plot. Unlike the plain one it keeps a variance across the bearing at zero range.
-/// Source: M. Longbin, S. Xiaoquan, Z. Yiyu, S. Z. Kang, Y. Bar-Shalom, "Unbiased converted measurements for tracking",
-/// IEEE Trans. AES-34, 1998, equations (10) and (12), written along and across the bearing, where nothing cancels.
+/// Polar plot to north/east about the antenna without bias: the plain point times exp(sb²/2), with
+/// its exact average covariance given the plot. Unlike the plain one it keeps a variance across the
+/// bearing at zero range. Source: M. Longbin, S. Xiaoquan, Z. Yiyu, S. Z. Kang, Y. Bar-Shalom,
+/// "Unbiased converted measurements for tracking", IEEE Trans. AES-34, 1998, equations (10) and
+/// (12), written along and across the bearing, where nothing cancels.
 template <class Scalar>
 Gaussian<2, Scalar> convert_unbiased(Scalar range_m, Scalar bearing_rad, Scalar range_var_m2,
                                      Scalar bearing_var_rad2) noexcept {
@@ -51,8 +53,8 @@ Gaussian<2, Scalar> convert_unbiased(Scalar range_m, Scalar bearing_rad, Scalar 
   const Vec<Scalar, 2> u = towards(bearing_rad);
   const Scalar range2 = range_m * range_m;
   const Scalar shrink = expm1(-2 * bearing_var_rad2);  // exp(-2 sb²) - 1
-  const Scalar along = range2 * (expm1(bearing_var_rad2) + shrink / 2) +
-                       range_var_m2 * (1 + shrink / 2);
+  const Scalar along =
+      range2 * (expm1(bearing_var_rad2) + shrink / 2) + range_var_m2 * (1 + shrink / 2);
   const Scalar across = -(range2 + range_var_m2) * shrink / 2;
   return {exp(bearing_var_rad2 / 2) * range_m * u, oriented_covariance<Scalar>(u, along, across)};
 }
@@ -70,10 +72,12 @@ inline bool conversion_bias_matters(double range_m, double range_std_m,
   return conversion_bias_ratio(range_m, range_std_m, bearing_std_rad) > 0.4;
 }
 
-/// What every radar reading of range and bearing shares: errors of the radar, of the echo and of own ship.
+/// What every radar reading of range and bearing shares: errors of the radar, of the echo and of
+/// own ship.
 ///
-/// The echo of a vessel wanders over its hull: `extent_std_m` per axis, as own ship's position error does. Own ship's
-/// heading error adds to the bearing error. `bearing_offset_rad` is how much too large the radar reads bearings.
+/// The echo of a vessel wanders over its hull: `extent_std_m` per axis, as own ship's position
+/// error does. Own ship's heading error adds to the bearing error. `bearing_offset_rad` is how much
+/// too large the radar reads bearings.
 struct PolarErrors {
   double range_std_m;
   double bearing_std_rad;

@@ -73,11 +73,12 @@ struct RangeBearing {
 
  private:
   template <class Scalar>
-  static constexpr Scalar kMinRange2 = Scalar(kMinRange_m * kMinRange_m);
+  static constexpr Scalar kMinRange2 = Scalar(kMinRange_m* kMinRange_m);
 };
 
-/// A plot `[range m, bearing rad]` turned into north/east with its own covariance, which makes it linear: the form of
-/// the papers. `unbiased` corrects the mean and covariance for the curvature of the bearing error.
+/// A plot `[range m, bearing rad]` turned into north/east with its own covariance, which makes it
+/// linear: the form of the papers. `unbiased` corrects the mean and covariance for the curvature of
+/// the bearing error.
 struct ConvertedRangeBearing {
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;

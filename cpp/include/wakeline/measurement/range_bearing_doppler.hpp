@@ -6,8 +6,8 @@
 
 namespace wakeline {
 
-/// A plot `[range m, bearing rad, range rate m/s]`; the range rate is that seen from own ship, which moves.
-/// Source: Bar-Shalom, Li, Kirubarajan, 10.4.1, with the range rate d·v / r.
+/// A plot `[range m, bearing rad, range rate m/s]`; the range rate is that seen from own ship,
+/// which moves. Source: Bar-Shalom, Li, Kirubarajan, 10.4.1, with the range rate d·v / r.
 struct RangeBearingDoppler {
   static constexpr int kMeasurements = 3;
   static constexpr auto kReads = kKinematics;
@@ -20,7 +20,8 @@ struct RangeBearingDoppler {
   double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
   OwnShip own = {};
 
-  /// z and R: that of RangeBearing, and the variance of the range rate with own ship's velocity error.
+  /// z and R: that of RangeBearing, and the variance of the range rate with own ship's velocity
+  /// error.
   template <class Scalar>
   Gaussian<3, Scalar> observe(const Vec<Scalar, 3>& z) const noexcept {
     Gaussian<3, Scalar> reading{z, Mat<Scalar, 3, 3>::Zero()};

@@ -4,8 +4,8 @@
 
 #include <concepts>
 
-#include "wakeline/core/types.hpp"
 #include "wakeline/core/component.hpp"
+#include "wakeline/core/types.hpp"
 
 namespace wakeline {
 
@@ -20,7 +20,8 @@ using StateMatrixOf = Mat<Scalar, kStatesOf<Motion>, kStatesOf<Motion>>;
 
 /// A vessel that moves as x' = F(dt) x + w, w ~ N(0, Q(dt)).
 ///
-/// `kComponents`, `matrix(dt_s)` and `process_noise(dt_s)`, the last two templated on the scalar of `dt_s`.
+/// `kComponents`, `matrix(dt_s)` and `process_noise(dt_s)`, the last two templated on the scalar of
+/// `dt_s`.
 template <class Motion>
 concept LinearMotionModel = requires(const Motion& motion, double dt_s) {
   Motion::kComponents.size();
@@ -32,7 +33,8 @@ concept LinearMotionModel = requires(const Motion& motion, double dt_s) {
 ///
 /// `kComponents`, `transition(x, dt_s)`, `jacobian(x, dt_s)` and `process_noise(x, dt_s)`.
 template <class Motion>
-concept NonlinearMotionModel = requires(const Motion& motion, const StateOf<Motion>& x, double dt_s) {
+concept NonlinearMotionModel = requires(const Motion& motion, const StateOf<Motion>& x,
+                                        double dt_s) {
   Motion::kComponents.size();
   { motion.transition(x, dt_s) } -> std::convertible_to<StateOf<Motion>>;
   { motion.jacobian(x, dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
@@ -73,8 +75,8 @@ StateMatrixOf<Motion, Scalar> process_noise(const Motion& motion, const StateOf<
     return motion.process_noise(x, dt_s);
 }
 
-/// Variance of a component that a start does not know (a turn rate, an acceleration): the model's own
-/// `prior_variance(component)` where it has one, else 1.
+/// Variance of a component that a start does not know (a turn rate, an acceleration): the model's
+/// own `prior_variance(component)` where it has one, else 1.
 template <class Motion>
 double prior_variance(const Motion& motion, Component component) noexcept {
   if constexpr (requires { motion.prior_variance(component); })

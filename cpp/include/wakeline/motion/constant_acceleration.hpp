@@ -8,9 +8,9 @@
 namespace wakeline {
 
 /// State layout `[x, vx, ax, y, vy, ay]` (m, m/s, m/s²).
-inline constexpr std::array kAccelerationKinematics{
-    Component::kNorth, Component::kVnorth, Component::kAnorth,
-    Component::kEast,  Component::kVeast,  Component::kAeast};
+inline constexpr std::array kAccelerationKinematics{Component::kNorth,  Component::kVnorth,
+                                                    Component::kAnorth, Component::kEast,
+                                                    Component::kVeast,  Component::kAeast};
 
 /// Two equal axes on the diagonal of a 6 x 6 matrix.
 template <class Scalar>
@@ -20,8 +20,8 @@ Mat<Scalar, 6, 6> both_axes(const Mat<Scalar, 3, 3>& axis) noexcept {
   return matrix;
 }
 
-/// Acceleration that stays: state `[x, vx, ax, y, vy, ay]`, x' = x + vx dt + ax dt²/2, vx' = vx + ax dt.
-/// Source: Bar-Shalom, Li, Kirubarajan, 6.2.3; paper A, equation (2).
+/// Acceleration that stays: state `[x, vx, ax, y, vy, ay]`, x' = x + vx dt + ax dt²/2, vx' = vx +
+/// ax dt. Source: Bar-Shalom, Li, Kirubarajan, 6.2.3; paper A, equation (2).
 struct ConstantAcceleration {
   static constexpr auto kComponents = kAccelerationKinematics;
 

@@ -9,8 +9,8 @@
 
 namespace wakeline {
 
-/// A steady turn at a known rate: state `[x, vx, y, vy]` (m, m/s); at zero rate exactly ConstantVelocity.
-/// Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
+/// A steady turn at a known rate: state `[x, vx, y, vy]` (m, m/s); at zero rate exactly
+/// ConstantVelocity. Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
 struct CoordinatedTurn {
   static constexpr auto kComponents = kKinematics;
 
@@ -42,7 +42,7 @@ struct CoordinatedTurnRate {
                                           Component::kVeast, Component::kTurnRate};
 
   ProcessNoise noise = WhiteAcceleration{};
-  double turn_rate_psd_rad2s3 = 1e-4;          ///< density of the white noise that drives omega
+  double turn_rate_psd_rad2s3 = 1e-4;           ///< density of the white noise that drives omega
   double prior_turn_rate_std_rad_s = deg(3.0);  ///< what a start without turn rate assumes of it
   double course_psd_rad2s = 0.0;                ///< wander of the course, as in WanderingCourse
   double max_speed_mps = 30.0;                  ///< speed that this wander grows up to
@@ -70,9 +70,9 @@ struct CoordinatedTurnRate {
     return f;
   }
 
-  /// Q(x, dt), 5 x 5: the acceleration noise of the turn, and white noise q on omega which reaches the velocity and
-  /// the position through the acceleration omega x v, with v held at its value of x: per axis the chain of
-  /// integrators of white jerk q v², across the course.
+  /// Q(x, dt), 5 x 5: the acceleration noise of the turn, and white noise q on omega which reaches
+  /// the velocity and the position through the acceleration omega x v, with v held at its value of
+  /// x: per axis the chain of integrators of white jerk q v², across the course.
   template <class Scalar>
   Mat<Scalar, 5, 5> process_noise(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
     const ProcessNoise wander = WhiteJerk{turn_rate_psd_rad2s3};

@@ -7,17 +7,17 @@
 
 namespace wakeline {
 
-/// Continuous white acceleration of the given power spectral density per axis; its Q is right for any dt, which
-/// means Q(a + b) = F(b) Q(a) F(b)ᵀ + Q(b).
-/// Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 6.2.2.
+/// Continuous white acceleration of the given power spectral density per axis; its Q is right for
+/// any dt, which means Q(a + b) = F(b) Q(a) F(b)ᵀ + Q(b). Source: Bar-Shalom, Li, Kirubarajan,
+/// Estimation with Applications to Tracking and Navigation, 6.2.2.
 struct WhiteAcceleration {
   double psd_m2s3 = 0.1;
 };
 
-/// An acceleration per axis drawn anew for each step and constant during it: Q = G s² Gᵀ, G = [dt²/2, dt]ᵀ
-/// (and [dt²/2, dt, 1]ᵀ where the acceleration is a state). The papers' form: how much noise a second brings
-/// depends on the step.
-/// Source: Bar-Shalom, Li, Kirubarajan, 6.3.2 and 6.3.3; paper A, equations (1)-(3).
+/// An acceleration per axis drawn anew for each step and constant during it: Q = G s² Gᵀ, G =
+/// [dt²/2, dt]ᵀ (and [dt²/2, dt, 1]ᵀ where the acceleration is a state). The papers' form: how much
+/// noise a second brings depends on the step. Source: Bar-Shalom, Li, Kirubarajan, 6.3.2 and 6.3.3;
+/// paper A, equations (1)-(3).
 struct PiecewiseAcceleration {
   double std_mps2 = 0.1;
 };
@@ -49,16 +49,23 @@ class ProcessNoise {
     return kind_ == Kind::kPiecewiseAcceleration ? parameter_ * parameter_ : parameter_;
   }
 
-  /// Throws `std::invalid_argument` on a parameter that is negative or not finite, and on white jerk where the
-  /// state holds no acceleration.
+  /// Throws `std::invalid_argument` on a parameter that is negative or not finite, and on white
+  /// jerk where the state holds no acceleration.
   void validate(bool holds_acceleration) const {
     switch (kind_) {
-      case Kind::kWhiteAcceleration: require_not_negative("noise.psd_m2s3", parameter_); break;
-      case Kind::kPiecewiseAcceleration: require_not_negative("noise.std_mps2", parameter_); break;
-      case Kind::kWhiteJerk: require_not_negative("noise.psd_m2s5", parameter_); break;
+      case Kind::kWhiteAcceleration:
+        require_not_negative("noise.psd_m2s3", parameter_);
+        break;
+      case Kind::kPiecewiseAcceleration:
+        require_not_negative("noise.std_mps2", parameter_);
+        break;
+      case Kind::kWhiteJerk:
+        require_not_negative("noise.psd_m2s5", parameter_);
+        break;
     }
     if (kind_ == Kind::kWhiteJerk && !holds_acceleration)
-      throw std::invalid_argument("white jerk needs an acceleration in the state, this model has none");
+      throw std::invalid_argument(
+          "white jerk needs an acceleration in the state, this model has none");
   }
 
   /// Q of one axis `[position, velocity]` without turning.

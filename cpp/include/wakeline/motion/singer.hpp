@@ -8,8 +8,8 @@
 
 namespace wakeline {
 
-/// phi_k(u) = sum over n of (-u)ⁿ / (n + k)!, which is e⁻ᵘ, (1 - e⁻ᵘ)/u, (u - 1 + e⁻ᵘ)/u² for k = 0, 1, 2, without their
-/// cancellation near u = 0.
+/// phi_k(u) = sum over n of (-u)ⁿ / (n + k)!, which is e⁻ᵘ, (1 - e⁻ᵘ)/u, (u - 1 + e⁻ᵘ)/u² for k =
+/// 0, 1, 2, without their cancellation near u = 0.
 template <int K, class Scalar>
 Scalar exponential_remainder(Scalar u) noexcept {
   using std::exp;
@@ -24,9 +24,9 @@ Scalar exponential_remainder(Scalar u) noexcept {
   }
 }
 
-/// Singer's maneuvering target: an acceleration that forgets itself, da/dt = -a/tau + w, with stationary standard
-/// deviation `accel_std_mps2` per axis. State `[x, vx, ax, y, vy, ay]` (m, m/s, m/s²).
-/// Source: R. A. Singer, IEEE Trans. AES-6, 1970; Bar-Shalom, Li, Kirubarajan, 8.2.
+/// Singer's maneuvering target: an acceleration that forgets itself, da/dt = -a/tau + w, with
+/// stationary standard deviation `accel_std_mps2` per axis. State `[x, vx, ax, y, vy, ay]` (m, m/s,
+/// m/s²). Source: R. A. Singer, IEEE Trans. AES-6, 1970; Bar-Shalom, Li, Kirubarajan, 8.2.
 struct Singer {
   static constexpr auto kComponents = kAccelerationKinematics;
 
@@ -68,7 +68,8 @@ struct Singer {
             exponential_remainder<0>(u)};
   }
 
-  /// Gauss-Legendre with eight nodes: exact to rounding for steps up to tau, where the closed form cancels.
+  /// Gauss-Legendre with eight nodes: exact to rounding for steps up to tau, where the closed form
+  /// cancels.
   template <class Scalar>
   Mat<Scalar, 3, 3> short_step_noise(Scalar dt_s) const noexcept {
     constexpr std::array kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,

@@ -14,11 +14,11 @@ namespace wakeline {
 /// Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
 template <class Scalar>
 struct Turn {
-  Scalar angle;        ///< theta
-  Scalar sine;         ///< sin theta
-  Scalar cosine;       ///< cos theta
-  Scalar along_s;      ///< sin(theta) / omega, s: how far a unit speed goes ahead
-  Scalar across_s;     ///< (1 - cos(theta)) / omega, s: how far it goes to starboard
+  Scalar angle;     ///< theta
+  Scalar sine;      ///< sin theta
+  Scalar cosine;    ///< cos theta
+  Scalar along_s;   ///< sin(theta) / omega, s: how far a unit speed goes ahead
+  Scalar across_s;  ///< (1 - cos(theta)) / omega, s: how far it goes to starboard
   Scalar dt_s;
 
   Turn(Scalar turn_rate_rad_s, Scalar dt) noexcept : angle(turn_rate_rad_s * dt), dt_s(dt) {
@@ -58,8 +58,9 @@ struct Turn {
     return dt_s * dt_s * Vec<Scalar, 2>(along, across);
   }
 
-  /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn. White acceleration gives the exact
-  /// integral of F(s) G q Gᵀ F(s)ᵀ; the piecewise policy is the papers' G s² Gᵀ, which knows nothing of the turn.
+  /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn. White
+  /// acceleration gives the exact integral of F(s) G q Gᵀ F(s)ᵀ; the piecewise policy is the
+  /// papers' G s² Gᵀ, which knows nothing of the turn.
   Mat<Scalar, 4, 4> noise(const ProcessNoise& policy) const noexcept {
     using std::abs;
     Mat<Scalar, 4, 4> q = Mat<Scalar, 4, 4>::Zero();

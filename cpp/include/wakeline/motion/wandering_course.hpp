@@ -9,18 +9,20 @@
 
 namespace wakeline {
 
-/// Density (m²/s³) of the acceleration of a course that wanders at speed v (m/s): a rate of turn of density q turns the
-/// velocity by an acceleration of density q v². Speeds beyond `max_speed_mps` count as that.
+/// Density (m²/s³) of the acceleration of a course that wanders at speed v (m/s): a rate of turn of
+/// density q turns the velocity by an acceleration of density q v². Speeds beyond `max_speed_mps`
+/// count as that.
 template <class Scalar>
-Scalar course_wander_psd(double course_psd_rad2s, double max_speed_mps, Scalar vx, Scalar vy) noexcept {
+Scalar course_wander_psd(double course_psd_rad2s, double max_speed_mps, Scalar vx,
+                         Scalar vy) noexcept {
   using std::min;
   const Scalar limit = Scalar(max_speed_mps * max_speed_mps);
   return Scalar(course_psd_rad2s) * min(vx * vx + vy * vy, limit);
 }
 
-/// Straight and nearly steady, with an acceleration that grows with the speed: state `[x, vx, y, vy]`. A fast boat turns
-/// hard where a slow ship drifts; the noise density is `psd_m2s3 + course_psd_rad2s v²` in every direction, so that one
-/// tuning serves both.
+/// Straight and nearly steady, with an acceleration that grows with the speed: state `[x, vx, y,
+/// vy]`. A fast boat turns hard where a slow ship drifts; the noise density is `psd_m2s3 +
+/// course_psd_rad2s v²` in every direction, so that one tuning serves both.
 struct WanderingCourse {
   static constexpr auto kComponents = kKinematics;
 

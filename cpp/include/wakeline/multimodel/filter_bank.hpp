@@ -18,7 +18,7 @@ struct StateBelief : Gaussian<static_cast<int>(Components.size()), Scalar> {
   static constexpr auto kComponents = Components;
   static constexpr int kStates = static_cast<int>(Components.size());
 
-  StateBelief& operator=(const Gaussian<kStates, Scalar>& belief) noexcept {
+  [[gnu::flatten]] StateBelief& operator=(const Gaussian<kStates, Scalar>& belief) noexcept {
     Gaussian<kStates, Scalar>::operator=(belief);
     return *this;
   }
@@ -42,8 +42,8 @@ StateBelief<Components, Scalar> zero_like(const StateBelief<Components, Scalar>&
   return zero;
 }
 
-/// What `part`, a StateBelief or BeliefView, says of the state of `own`: what only `own` holds is taken from it, without
-/// correlation to the rest.
+/// What `part`, a StateBelief or BeliefView, says of the state of `own`: what only `own` holds is
+/// taken from it, without correlation to the rest.
 template <auto To, class Scalar, class Part>
 decltype(auto) in_terms_of(const StateBelief<To, Scalar>& own, const Part& part) noexcept {
   constexpr auto kFrom = Part::kComponents;
@@ -85,7 +85,8 @@ void add_spread(StateBelief<To, Scalar>& sum, Scalar weight, const Part& part,
 /// The part of a belief that is about position and velocity, `[x, vx, y, vy]`.
 template <auto Components, class Scalar>
 Gaussian<4, Scalar> kinematics_of(const StateBelief<Components, Scalar>& belief) noexcept {
-  static_assert(holds(Components, kKinematics), "wakeline: this state holds no position and velocity");
+  static_assert(holds(Components, kKinematics),
+                "wakeline: this state holds no position and velocity");
   constexpr auto kRows = rows_of(Components, kKinematics);
   Gaussian<4, Scalar> kinematics;
   for (int i = 0; i < 4; ++i) {
@@ -95,15 +96,18 @@ Gaussian<4, Scalar> kinematics_of(const StateBelief<Components, Scalar>& belief)
   return kinematics;
 }
 
-/// Filters composed at compile time, of any kinds and state sizes, each with room for the belief it had before a step.
+/// Filters composed at compile time, of any kinds and state sizes, each with room for the belief it
+/// had before a step.
 ///
 /// A bank is what a multi-model estimator is built on: `size`, `for_each(f(k, filter, before))`,
-/// `for_each_before(f(k, before))` and `empty_estimate`; a bank composed at run time has the same face.
+/// `for_each_before(f(k, before))` and `empty_estimate`; a bank composed at run time has the same
+/// face.
 template <class... Filters>
 class FilterBank {
-  static_assert((BeliefFilter<Filters> && ...),
-                "wakeline: each model of a bank must be a filter (start, assign, predict, estimate); see "
-                "cpp/docs/concepts.md");
+  static_assert(
+      (BeliefFilter<Filters> && ...),
+      "wakeline: each model of a bank must be a filter (start, assign, predict, estimate); see "
+      "cpp/docs/concepts.md");
 
  public:
   static constexpr int kModels = sizeof...(Filters);
@@ -111,7 +115,8 @@ class FilterBank {
   static_assert((std::is_same_v<Scalar, typename Filters::Scalar> && ...),
                 "wakeline: the filters of a bank must share one scalar type");
 
-  /// Components of the combined estimate: those of the filters where all agree, else position and velocity.
+  /// Components of the combined estimate: those of the filters where all agree, else position and
+  /// velocity.
   static constexpr auto kComponents = [] {
     constexpr auto kFirst = std::tuple_element_t<0, std::tuple<Filters...>>::kComponents;
     if constexpr ((std::is_same_v<StateBelief<Filters::kComponents, Scalar>,
@@ -171,7 +176,8 @@ class FilterBank {
   static void visit(Self& self, Function&& function) noexcept {
     [&]<std::size_t... Index>(std::index_sequence<Index...>) {
       (function(static_cast<int>(Index), std::get<Index>(self.slots_)), ...);
-    }(std::make_index_sequence<sizeof...(Filters)>{});
+    }
+    (std::make_index_sequence<sizeof...(Filters)>{});
   }
 
   std::tuple<Slot<Filters>...> slots_;

@@ -37,11 +37,12 @@ inline constexpr std::size_t kMaxAlternatives = 16;
 
 /// The interacting multiple model estimator, over filters of any kinds and state sizes.
 ///
-/// `predict` mixes and predicts, after which the mode probabilities are those the chain expects; a missed scan is a
-/// `predict` without `update`. `update` weighs each mode by its likelihood, in the log domain. What a filter cannot know
-/// of another's state (the turn rate a straight model lacks) it keeps from itself in mixing. A filter whose update fails
-/// keeps its prediction and has no weight in that scan; where all fail nothing changes.
-/// Source: H. A. P. Blom, Y. Bar-Shalom, IEEE Trans. AC-33, 1988; Bar-Shalom, Li, Kirubarajan, 11.6.6; paper A, (7)-(16).
+/// `predict` mixes and predicts, after which the mode probabilities are those the chain expects; a
+/// missed scan is a `predict` without `update`. `update` weighs each mode by its likelihood, in the
+/// log domain. What a filter cannot know of another's state (the turn rate a straight model lacks)
+/// it keeps from itself in mixing. A filter whose update fails keeps its prediction and has no
+/// weight in that scan; where all fail nothing changes. Source: H. A. P. Blom, Y. Bar-Shalom, IEEE
+/// Trans. AC-33, 1988; Bar-Shalom, Li, Kirubarajan, 11.6.6; paper A, (7)-(16).
 template <class BankType>
 class Imm {
  public:
@@ -52,8 +53,8 @@ class Imm {
 
   /// Throws `std::invalid_argument` unless there is one mode of the chain for each filter.
   template <class... Filters>
-    requires(kModels != kRuntimeModes)
-  explicit Imm(const ModeChain<kModels>& chain, const Filters&... filters)
+  requires(kModels != kRuntimeModes) explicit Imm(const ModeChain<kModels>& chain,
+                                                  const Filters&... filters)
       : Imm(chain, Bank(filters...)) {}
 
   Imm(const ModeChain<kModels>& chain, const std::type_identity_t<Bank>& bank)
@@ -79,15 +80,21 @@ class Imm {
     initial_ = probability;
   }
 
-  /// Begins every filter with the belief, over their own state or over `[x, vx, y, vy]`. Any failure: not started.
+  /// Begins every filter with the belief, over their own state or over `[x, vx, y, vy]`. Where one
+  /// refuses it nothing changes.
   template <class BeliefType>
   Status start(const BeliefType& belief) noexcept {
     Status status = Status::kOk;
-    bank_.for_each([&](int, auto& filter, auto&) {
+    bank_.for_each([&](int, auto& filter, auto& before) {
+      before = filter.estimate();
       if (status == Status::kOk) status = filter.start(belief);
     });
-    started_ = status == Status::kOk;
-    probability_ = initial_;
+    if (status == Status::kOk) {
+      started_ = true;
+      probability_ = initial_;
+    } else if (started_) {
+      bank_.for_each([](int, auto& filter, auto& before) { (void)filter.assign(before); });
+    }
     return status;
   }
 
@@ -109,11 +116,11 @@ class Imm {
     return status;
   }
 
-  /// Filtering and mode probabilities: equations (12)-(14) of paper A. The innovation of the step is that of the
-  /// moment-matched prediction, its log-likelihood that of the mixture.
+  /// Filtering and mode probabilities: equations (12)-(14) of paper A. The innovation of the step
+  /// is that of the moment-matched prediction, its log-likelihood that of the mixture.
   template <class Sensor>
-  Step<Sensor::kMeasurements, Scalar> update(
-      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+  Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
+                                             const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
     std::array<Step<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> steps;
@@ -126,7 +133,8 @@ class Imm {
 
     Scalar best = kImpossible;
     for (int mode = 0; mode < bank_.size(); ++mode)
-      if (probability_[mode] > Scalar(0) && log_likelihood[mode] > best) best = log_likelihood[mode];
+      if (probability_[mode] > Scalar(0) && log_likelihood[mode] > best)
+        best = log_likelihood[mode];
     if (best == kImpossible) {
       for (const Step<kM, Scalar>& failure : steps)
         if (!failure) return failed_step<kM, Scalar>(failure.status);
@@ -161,13 +169,14 @@ class Imm {
     return evidence;
   }
 
-  /// Probabilistic data association: every mode takes in all readings that may be the target's own, each as far as the
-  /// mode finds it likely, and the belief that none is.
+  /// Probabilistic data association: every mode takes in all readings that may be the target's own,
+  /// each as far as the mode finds it likely, and the belief that none is.
   ///
-  /// `none` and each `weight` are what the hypotheses weigh before their likelihoods (1 - PD PG and PD / clutter density
-  /// of one reading, say). Returns the sum of weight times likelihood over modes and hypotheses, and in `share` the part
-  /// of it that each reading has; 0, and nothing changed, when all are impossible.
-  /// Source: Bar-Shalom, Li, Multitarget-Multisensor Tracking, 1995, 4.5 (IMM-PDA).
+  /// `none` and each `weight` are what the hypotheses weigh before their likelihoods (1 - PD PG and
+  /// PD / clutter density of one reading, say). Returns the sum of weight times likelihood over
+  /// modes and hypotheses, and in `share` the part of it that each reading has; 0, and nothing
+  /// changed, when all are impossible. Source: Bar-Shalom, Li, Multitarget-Multisensor Tracking,
+  /// 1995, 4.5 (IMM-PDA).
   template <class Sensor>
   Scalar update(std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
                 std::span<Scalar> share) noexcept {
@@ -176,8 +185,8 @@ class Imm {
     Probability posterior = Probability::Zero(bank_.size());
     bank_.for_each([&](int mode, auto& filter, auto& before) {
       before = filter.estimate();
-      posterior[mode] = probability_[mode] *
-                        absorb(filter, before, readings, none, probability_[mode], share);
+      posterior[mode] =
+          probability_[mode] * absorb(filter, before, readings, none, probability_[mode], share);
     });
     Scalar total = Scalar(0);
     for (int mode = 0; mode < bank_.size(); ++mode) total += posterior[mode];
@@ -197,16 +206,14 @@ class Imm {
     bank_.for_each([&](int, auto& filter, auto&) { filter.archive(fields); });
   }
 
-  /// The moment-matched estimate, over the state where all filters share one, else over `[x, vx, y, vy]`: equations
-  /// (15) and (16) of paper A.
+  /// The moment-matched estimate, over the state where all filters share one, else over `[x, vx, y,
+  /// vy]`: equations (15) and (16) of paper A.
   [[nodiscard, gnu::flatten]] auto estimate() const noexcept {
     auto sum = bank_.empty_estimate();
-    bank_.for_each_belief([&](int mode, const auto& belief) {
-      add_mean(sum, probability_[mode], belief, sum);
-    });
-    bank_.for_each_belief([&](int mode, const auto& belief) {
-      add_spread(sum, probability_[mode], belief, sum);
-    });
+    bank_.for_each_belief(
+        [&](int mode, const auto& belief) { add_mean(sum, probability_[mode], belief, sum); });
+    bank_.for_each_belief(
+        [&](int mode, const auto& belief) { add_spread(sum, probability_[mode], belief, sum); });
     return decltype(sum)(sum);  // a copy, so that the sum itself stays in registers
   }
 
@@ -244,7 +251,8 @@ class Imm {
     return expected;
   }
 
-  /// The mixed start of one mode: mean and covariance of all beliefs, weighted by where the mode came from.
+  /// The mixed start of one mode: mean and covariance of all beliefs, weighted by where the mode
+  /// came from.
   template <class BeliefType>
   [[gnu::flatten]] BeliefType mixed(int mode, const BeliefType& own) const noexcept {
     BeliefType result = zero_like(own);
@@ -255,7 +263,8 @@ class Imm {
     return result;
   }
 
-  /// Replaces the belief of one filter by the mixture of what each reading makes of it; returns its total weight.
+  /// Replaces the belief of one filter by the mixture of what each reading makes of it; returns its
+  /// total weight.
   template <class Filter, class BeliefType, class Sensor>
   static Scalar absorb(Filter& filter, const BeliefType& before,
                        std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
@@ -328,7 +337,7 @@ template <int K, class... Filters>
 Imm(const ModeChain<K>&, const Filters&...) -> Imm<FilterBank<Filters...>>;
 
 template <int K, class Bank>
-  requires requires { Bank::kModels; }
-Imm(const ModeChain<K>&, const Bank&) -> Imm<Bank>;
+requires requires { Bank::kModels; }
+Imm(const ModeChain<K>&, const Bank&)->Imm<Bank>;
 
 }  // namespace wakeline

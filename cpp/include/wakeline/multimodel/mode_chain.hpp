@@ -26,24 +26,26 @@ using ModeVector = Eigen::Matrix<Scalar, K, 1, 0, kModeCapacity<K>, 1>;
 template <class Scalar, int K>
 using ModeMatrix = Eigen::Matrix<Scalar, K, K, 0, kModeCapacity<K>, kModeCapacity<K>>;
 
-/// The Markov chain between the modes of a multi-model estimator: `chain(i, j) = P(mode j now | mode i before)`, so
-/// rows sum to 1.
+/// The Markov chain between the modes of a multi-model estimator: `chain(i, j) = P(mode j now |
+/// mode i before)`, so rows sum to 1.
 ///
-/// Given as a matrix it is applied once per prediction, whatever the time step (the papers' way). Given as a matrix with
-/// its period, or as mean sojourn times, it is a chain in continuous time: P(dt) = exp(G dt), so that two steps of dt
-/// are one of 2 dt.
-/// Source: Bar-Shalom, Li, Kirubarajan, 11.6.2; for continuous time any text on Markov chains.
+/// Given as a matrix it is applied once per prediction, whatever the time step (the papers' way).
+/// Given as a matrix with its period, or as mean sojourn times, it is a chain in continuous time:
+/// P(dt) = exp(G dt), so that two steps of dt are one of 2 dt. Source: Bar-Shalom, Li,
+/// Kirubarajan, 11.6.2; for continuous time any text on Markov chains.
 template <int K>
 class ModeChain {
  public:
   using Matrix = ModeMatrix<double, K>;
 
-  /// One transition per prediction. Throws `std::invalid_argument` unless every row is a distribution.
+  /// One transition per prediction. Throws `std::invalid_argument` unless every row is a
+  /// distribution.
   explicit ModeChain(const Matrix& per_prediction) : matrix_(per_prediction) {
     require_stochastic(matrix_);
   }
 
-  /// The chain whose transition over `period_s` is the matrix. Throws also when no continuous-time chain has it.
+  /// The chain whose transition over `period_s` is the matrix. Throws also when no continuous-time
+  /// chain has it.
   ModeChain(const Matrix& over_period, double period_s) : ModeChain(over_period) {
     require_positive("period_s", period_s);
     matrix_ = logarithm(over_period) / period_s;
@@ -51,7 +53,8 @@ class ModeChain {
     clip_generator(period_s, over_period);
   }
 
-  /// The chain that stays in mode k for `sojourn_s[k]` seconds on average and leaves to each other mode alike.
+  /// The chain that stays in mode k for `sojourn_s[k]` seconds on average and leaves to each other
+  /// mode alike.
   static ModeChain from_sojourn_s(const ModeVector<double, K>& sojourn_s) {
     const Eigen::Index modes = sojourn_s.size();
     Matrix generator = Matrix::Zero(modes, modes);
@@ -102,8 +105,8 @@ class ModeChain {
     }
   }
 
-  /// ln P = -Σ (I - P)ⁿ / n, which converges when every eigenvalue of P lies within 1 of 1, as those of a chain that
-  /// tends to stay do.
+  /// ln P = -Σ (I - P)ⁿ / n, which converges when every eigenvalue of P lies within 1 of 1, as
+  /// those of a chain that tends to stay do.
   static Matrix logarithm(const Matrix& p) {
     const Matrix x = Matrix::Identity(p.rows(), p.cols()) - p;
     Matrix power = x;
@@ -129,11 +132,13 @@ class ModeChain {
     }
     if (!valid || !(transition(period_s) - over_period).isZero(1e-9))
       throw std::invalid_argument(
-          "this matrix is not the transition of a continuous-time chain over its period; leave the period out to apply "
+          "this matrix is not the transition of a continuous-time chain over its period; leave the "
+          "period out to apply "
           "it once per prediction");
   }
 
-  /// exp(G dt) by uniformisation, whose terms are all positive, on a step halved until it is short, then squared back.
+  /// exp(G dt) by uniformisation, whose terms are all positive, on a step halved until it is short,
+  /// then squared back.
   Matrix exponential(double dt_s) const noexcept {
     const Matrix identity = Matrix::Identity(modes(), modes());
     const double fastest = -matrix_.diagonal().minCoeff();

@@ -12,6 +12,7 @@
 
 #include "wakeline/core/archive.hpp"
 #include "wakeline/track/config.hpp"
+#include "wakeline/track/radar.hpp"
 
 namespace wakeline {
 
@@ -77,11 +78,11 @@ struct Track {
     misses = seen ? 0 : misses + 1;
   }
 
-  /// M of the last N scans had a plot, and existence is beyond doubt.
+  /// M of the last N scans had a plot, this one too, and existence is beyond doubt.
   [[nodiscard]] bool confirmable(const TrackerConfig& config) const noexcept {
     const std::uint32_t window =
         config.confirm_window >= 32 ? ~0u : (1u << config.confirm_window) - 1u;
-    return existence > config.confirm_existence &&
+    return misses == 0 && existence > config.confirm_existence &&
            std::popcount(history & window) >= config.confirm_hits;
   }
 
@@ -93,11 +94,13 @@ struct Track {
   }
 
   /// True when the track has no future. A confirmed one is held through a silence that its age allows.
-  [[nodiscard]] bool hopeless(const TrackerConfig& config, double max_speed_mps) const noexcept {
+  [[nodiscard]] bool hopeless(const TrackerConfig& config, const Radar& radar) const noexcept {
     const bool silent = misses > patience(config);
     const bool doubtful = !confirmed() && existence < config.drop_existence;
-    const bool too_fast = speed_mps() > config.drop_speed_factor * max_speed_mps;
-    return silent || doubtful || too_fast || !(position_std_m() <= config.drop_position_std_m);
+    const bool too_fast = speed_mps() > config.drop_speed_factor * radar.max_speed_mps;
+    const double run_m = radar.max_speed_mps * radar.period_s * config.coast_scans;
+    const double roam_m = confirmed() ? std::max(config.drop_position_std_m, run_m) : config.drop_position_std_m;
+    return silent || doubtful || too_fast || !(position_std_m() <= roam_m);
   }
 
   /// Saves or restores all but the rules.

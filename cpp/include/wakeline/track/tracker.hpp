@@ -526,7 +526,7 @@ class Tracker {
                        : track.misses <= config_.shown_scans ? TrackStatus::kCoasting
                                                              : TrackStatus::kHeld;
       if (was_confirmed && track.misses == 1) announce(TrackEvent::kCoasting, track, time_s);
-      return track.hopeless(config_, radar_.max_speed_mps);
+      return track.hopeless(config_, radar_);
     });
   }
 

@@ -1,0 +1,144 @@
+"""Writes the stubs of the engine anew: ``python bindings/stubs.py`` where `wakeline` is installed.
+
+What pybind11-stubgen finds out is put into the words of the documentation: arrays are `ArrayLike`,
+numbers `float` and `int`, sensors and settings are told by name. Needs pybind11-stubgen and ruff.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from wakeline import _engine
+
+STUBS = Path(__file__).parents[1] / "python" / "wakeline" / "_engine"
+SENSOR = "RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position"
+NOISE = "ProcessNoise | WhiteAcceleration | PiecewiseAcceleration | WhiteJerk"
+WORDS = [
+    (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
+    (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
+    (r"typing\.Annotated\[numpy\.typing\.ArrayLike, [\w.]+\]", "ArrayLike"),
+    (r"numpy\.typing\.NDArray\[numpy\.(\w+)\]", r"NDArray[np.\1]"),
+    (r"\bsensor: typing\.Any", f"sensor: {SENSOR}"),
+    (r"\bnoise: ProcessNoise\b", f"noise: {NOISE}"),
+    (r"\bstart: typing\.Any", "start: Gaussian | Sequence[Gaussian]"),
+    (r"\bdt_s: typing\.Any", "dt_s: ArrayLike"),
+    (r"\b(own_\w+|bearing_rad): (typing\.Any|ArrayLike) = 0\.0", r"\1: ArrayLike = 0.0"),
+    (r"\bplot_time_s: typing\.Any", "plot_time_s: ArrayLike | None"),
+    (r"filters: collections\.abc\.Sequence", "filters: Sequence[Filter]"),
+    (r"(def mode_probability\(self\)) -> typing\.Any", r"\1 -> NDArray[np.float64] | None"),
+    (r"-> typing\.Any:", "-> NDArray[np.float64]:"),
+    (r"(def conversion_bias_matters\(.*\)) -> NDArray\[np\.float64\]", r"\1 -> NDArray[np.bool_]"),
+    (r"(def smooth\(.*\)) -> tuple:", r"\1 -> tuple[NDArray[np.float64], NDArray[np.float64]]:"),
+    (r"-> tuple:", "-> tuple[float, float]:"),
+    (r"-> list:", "-> list[str]:"),
+    (r"-> dict:", "-> dict[str, float | int | str]:"),
+    (r"def __eq__\(self, \w+: typing\.Any\)", "def __eq__(self, other: object)"),
+    (r"def __ne__\(self, \w+: typing\.Any\)", "def __ne__(self, other: object)"),
+    (r"\barg0: (WhiteAcceleration|PiecewiseAcceleration|WhiteJerk)", r"policy: \1, /"),
+    (r"wakeline\._engine\.\w+\.", ""),
+    (r"(__hash__: typing\.ClassVar\[None\]) = None", r"\1  # type: ignore[assignment]"),
+    (r"    def __(repr|str)__\(self\) -> str:\n        \.\.\.\n", ""),
+]
+# A property that can be set is an attribute.
+ATTRIBUTE = re.compile(
+    r"    @property\n    def (\w+)\(self\) -> ([^\n]+):\n((?:        [^\n]*\n|\n)*)"
+    r"    @\1\.setter\n    def \1\(self, [^\n]*\) -> None:\n        \.\.\.\n"
+)
+HOMES = {
+    "core": ["Gaussian", "Step"],
+    "measurement": [
+        "ConvertedRangeBearing",
+        "OwnShip",
+        "Position",
+        "RangeBearing",
+        "RangeBearingDoppler",
+    ],
+    "filter": ["Filter", "RunResult"],
+    "motion": [
+        "ConstantAcceleration",
+        "ConstantVelocity",
+        "CoordinatedTurn",
+        "CoordinatedTurnRate",
+        "Singer",
+        "WanderingCourse",
+    ],
+    "multimodel": ["Imm"],
+}
+
+
+def as_attribute(match: re.Match) -> str:
+    name, kind, body = match.groups()
+    told = re.sub(r"^    ", "", body, flags=re.MULTILINE) if '"""' in body else ""
+    return f"    {name}: {kind}\n{told}"
+
+
+def with_settings(text: str, module) -> str:
+    """The keywords that a class of settings takes, in place of ``**kwargs``."""
+
+    def tell(match: re.Match) -> str:
+        settings = getattr(module, match[1])().as_dict()
+        keywords = ", ".join(f"{k}: {type(v).__name__} = {v!r}" for k, v in settings.items())
+        return match[0].replace("**kwargs", f"*, {keywords}")
+
+    return re.sub(
+        r"class (\w+):\n(?:    [^\n]*\n)*?    def __init__\(self, \*\*kwargs\)", tell, text
+    )
+
+
+def imports(noun: str, text: str) -> str:
+    """The imports that the stub of a noun needs."""
+    lines = []
+    if "Sequence[" in text:
+        lines.append("from collections.abc import Sequence")
+    if "typing." in text:
+        lines.append("import typing")
+    if "np." in text:
+        lines.append("import numpy as np")
+    arrays = [name for name in ("ArrayLike", "NDArray") if re.search(rf"\b{name}\b", text)]
+    if arrays:
+        lines.append(f"from numpy.typing import {', '.join(arrays)}")
+    code = re.sub(r'""".*?"""', "", text, flags=re.DOTALL)
+    for home, names in HOMES.items():
+        used = [name for name in names if re.search(rf"\b{name}\b", code)]
+        if home != noun and used:
+            lines.append(f"from .{home} import {', '.join(used)}")
+    return "\n".join(lines)
+
+
+def tidy(noun: str, text: str) -> str:
+    """The stub of a noun in our words."""
+    for pattern, word in WORDS:
+        text = re.sub(pattern, word, text)
+    text = re.sub(r"^(import|from) [^\n]*\n", "", text, flags=re.MULTILINE)
+    text = re.sub(r"^__all__: list\[str\]", "__all__", text, flags=re.MULTILINE)
+    text = with_settings(text, getattr(_engine, noun))
+    text = ATTRIBUTE.sub(as_attribute, text)
+    end = text.index('"""', 3) + 4
+    return text[:end] + imports(noun, text[end:]) + "\n" + text[end:]
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(
+            [sys.executable, "-m", "pybind11_stubgen", "wakeline._engine", "-o", folder], check=True
+        )
+        STUBS.mkdir(exist_ok=True)
+        for path in Path(folder).rglob("*.pyi"):
+            noun, text = path.stem, path.read_text()
+            if noun == "__init__":
+                nouns = re.findall(r"^from \. import (\w+)", text, flags=re.MULTILINE)
+                text = f'"""{_engine.__doc__}"""\n\nfrom . import {", ".join(sorted(nouns))}\n'
+                text += f"\n__all__ = {sorted(nouns)}\n"
+            else:
+                text = tidy(noun, text)
+            (STUBS / path.name).write_text(text)
+    ruff = shutil.which("ruff") or Path(sys.executable).with_name("ruff")
+    for command in (["check", "--select=I", "--fix", "--quiet"], ["format", "--quiet"]):
+        subprocess.run([ruff, *command, STUBS], check=True)
+
+
+if __name__ == "__main__":
+    main()

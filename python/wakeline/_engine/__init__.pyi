@@ -1,0 +1,15 @@
+"""The C++ engine of Wakeline."""
+
+from . import association, core, eval, filter, gating, measurement, motion, multimodel, track
+
+__all__ = [
+    "association",
+    "core",
+    "eval",
+    "filter",
+    "gating",
+    "measurement",
+    "motion",
+    "multimodel",
+    "track",
+]

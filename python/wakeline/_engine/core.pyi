@@ -1,0 +1,134 @@
+"""
+Beliefs, statuses, angles and the chi-square law.
+"""
+
+import typing
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "FilterError",
+    "Gaussian",
+    "Status",
+    "Step",
+    "chi_square_probability",
+    "chi_square_quantile",
+    "wrap_angle",
+]
+
+class FilterError(RuntimeError):
+    """
+    An estimator could not be started, predicted or updated; its belief is as it was.
+    """
+
+class Status:
+    """
+    What became of one step; anything but `ok` changed nothing.
+
+    Members:
+
+      ok
+
+      missed : no measurement in this scan: predicted only
+
+      not_started : the estimator has no belief yet
+
+      not_finite : an input or a result is not finite
+
+      not_positive_definite : a covariance is not positive definite
+
+      negative_time_step : time would run backwards
+    """
+
+    __members__: typing.ClassVar[dict[str, Status]]
+    missed: typing.ClassVar[Status]
+    negative_time_step: typing.ClassVar[Status]
+    not_finite: typing.ClassVar[Status]
+    not_positive_definite: typing.ClassVar[Status]
+    not_started: typing.ClassVar[Status]
+    ok: typing.ClassVar[Status]
+    @typing.overload
+    def __eq__(self, other: Status) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: object) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: int) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: Status) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: object) -> bool: ...
+    def __setstate__(self, state: int) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class Gaussian:
+    """
+    A Gaussian belief.
+
+    Parameters
+    ----------
+    mean : (N,) array
+    covariance : (N, N) array
+        Symmetric positive definite; checked when an estimator starts with it.
+
+    Raises
+    ------
+    ValueError
+        When the shapes do not fit.
+    """
+    def __init__(self, mean: ArrayLike, covariance: ArrayLike) -> None: ...
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """
+        (N, N)
+        """
+    @property
+    def mean(self) -> NDArray[np.float64]:
+        """
+        (N,)
+        """
+
+class Step:
+    """
+    What one measurement update has found.
+    """
+    @property
+    def innovation(self) -> NDArray[np.float64]:
+        """
+        (M,) measured minus predicted, angles wrapped
+        """
+    @property
+    def innovation_covariance(self) -> NDArray[np.float64]:
+        """
+        (M, M)
+        """
+    @property
+    def log_likelihood(self) -> float: ...
+    @property
+    def nis(self) -> float:
+        """
+        normalised innovation squared
+        """
+    @property
+    def status(self) -> Status: ...
+
+def chi_square_probability(value: float, dof: float) -> float:
+    """
+    Probability that a chi-square variable of `dof` degrees of freedom stays below `value`.
+    """
+
+def chi_square_quantile(probability: float, dof: float) -> float:
+    """
+    The value that a chi-square variable of `dof` degrees of freedom stays below with `probability`.
+    """
+
+def wrap_angle(angle_rad: ArrayLike) -> NDArray[np.float64]:
+    """
+    The same angle in [-pi, pi], rad.
+    """
