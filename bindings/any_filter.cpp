@@ -31,6 +31,17 @@ Gaussian<Filter::kStates> fixed(const AnyBelief& belief) noexcept {
   return {belief.mean, belief.covariance};
 }
 
+/// `add_spread` between beliefs of one layout, of N states.
+template <int N>
+void add_spread_alike(AnyBelief& sum, double weight, const AnyBelief& part) noexcept {
+  const double* p = part.covariance.data();
+  double* covariance = sum.covariance.data();
+  double d[N];
+  for (int i = 0; i < N; ++i) d[i] = part.mean[i] - sum.mean[i];
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) covariance[N * j + i] += weight * (p[N * j + i] + d[i] * d[j]);
+}
+
 }  // namespace
 
 AnyBelief zero_like(const AnyBelief& belief) noexcept {
@@ -48,6 +59,11 @@ void add_mean(AnyBelief& sum, double weight, const AnyBelief& part, const AnyBel
 
 void add_spread(AnyBelief& sum, double weight, const AnyBelief& part,
                 const AnyBelief& own) noexcept {
+  if (part.layout == own.layout) {
+    if (own.layout == StateLayout::kKinematics) return add_spread_alike<4>(sum, weight, part);
+    if (own.layout == StateLayout::kTurn) return add_spread_alike<5>(sum, weight, part);
+    return add_spread_alike<6>(sum, weight, part);
+  }
   const int* row = rows(part.layout, own.layout);
   double d[kMaxStates];
   for (int i = 0; i < own.states(); ++i)

@@ -1,6 +1,8 @@
 """One-model estimators: laws, failures that change nothing, and `run` against single steps."""
 
+import time
 from itertools import pairwise
+from threading import Thread
 
 import numpy as np
 import pytest
@@ -242,6 +244,14 @@ def test_a_reading_that_is_not_finite_is_marked_and_changes_nothing(bad):
     assert np.isfinite(result.mean).all()
 
 
+def test_an_own_position_that_is_not_finite_is_marked_and_changes_nothing():
+    own = np.zeros((3, 2))
+    own[1, 0] = np.nan
+    result = run(ekf(), readings(3), own_position_m=own)
+    assert wl.Status(result.status[1]) == wl.Status.not_finite
+    assert np.isfinite(result.mean).all()
+
+
 @pytest.mark.parametrize(
     ("dt_s", "status"),
     [(-1.0, wl.Status.negative_time_step), (np.nan, wl.Status.not_finite)],
@@ -268,6 +278,17 @@ def test_no_scans_and_no_runs(name):
     none = run(ESTIMATORS[name](), np.zeros((0, 7, 2)))
     assert none.covariance.shape == (0, 7, states, states)
     assert none.status.shape == (0, 7)
+
+
+def test_a_long_run_lets_other_threads_work():
+    z = np.tile(readings(), (300, 1, 1))
+    worker = Thread(target=lambda: [run(ESTIMATORS["Imm-mixed"](), z) for _ in range(5)])
+    turns = 0
+    worker.start()
+    while worker.is_alive():
+        time.sleep(1e-3)
+        turns += 1
+    assert turns > 10
 
 
 # --- the Python edge --------------------------------------------------------------------------

@@ -53,7 +53,8 @@ TEST(BadTime, AScanAtTheSameTimeIsTaken) {
     EXPECT_EQ(tracker.process(50.0, {&plot, 1}).status, Status::kOk);
     expect_sound(tracker);
   }
-  EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1}) << "nothing starts from two plots of one moment";
+  EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1})
+      << "nothing starts from two plots of one moment";
   EXPECT_LT((tracker.find(1)->position() - kBoat.at(50.0)).norm(), 60.0);
 }
 
@@ -171,10 +172,11 @@ TEST(EmptyScans, AreNoTrouble) {
   EXPECT_EQ(tracker.size(), 0);
 }
 
-/// A scene of turning boats, clutter, bad plots, gaps and crowded moments; everything in every track stays sound, and
-/// events tell the whole story.
+/// A scene of turning boats, clutter, bad plots, gaps and crowded moments; everything in every
+/// track stays sound, and events tell the whole story.
 void survive(Association association, std::uint64_t seed, bool rotating) {
-  SCOPED_TRACE("association " + std::to_string(int(association)) + ", seed " + std::to_string(seed));
+  SCOPED_TRACE("association " + std::to_string(int(association)) + ", seed " +
+               std::to_string(seed));
   TrackerConfig config;
   config.association = association;
   config.max_tracks = 60;
@@ -184,11 +186,15 @@ void survive(Association association, std::uint64_t seed, bool rotating) {
   Ledger ledger;
   std::vector<Boat> boats;
   for (int k = 0; k < 12; ++k)
-    boats.push_back({{draw.uniform(-3000, 3000), draw.uniform(-3000, 3000)}, 8.0 * draw.normals<2>()});
+    boats.push_back(
+        {{draw.uniform(-3000, 3000), draw.uniform(-3000, 3000)}, 8.0 * draw.normals<2>()});
   double time_s = 0.0;
   for (int k = 0; k < 400; ++k) {
     const double chance = draw.uniform(0, 1);
-    const double dt_s = chance < 0.02 ? 0.0 : chance < 0.03 ? 600.0 : chance < 0.06 ? draw.uniform(0, 60) : 2.5;
+    const double dt_s = chance < 0.02   ? 0.0
+                        : chance < 0.03 ? 600.0
+                        : chance < 0.06 ? draw.uniform(0, 60)
+                                        : 2.5;
     time_s += dt_s;
     std::vector<Plot> plots;
     for (Boat& boat : boats) {
@@ -215,7 +221,8 @@ void survive(Association association, std::uint64_t seed, bool rotating) {
     ASSERT_EQ(ledger.ids, ids_of(tracker)) << "scan " << k;
     ASSERT_EQ(report.plot_track_id.size(), plots.size());
     for (const std::int64_t id : report.plot_track_id)
-      ASSERT_TRUE(id == 0 || tracker.find(id) != nullptr) << "a plot of track " << id << " which is no more, scan " << k;
+      ASSERT_TRUE(id == 0 || tracker.find(id) != nullptr)
+          << "a plot of track " << id << " which is no more, scan " << k;
     for (const Event& event : report.events) {
       ASSERT_EQ(event.time_s, time_s);
       ASSERT_TRUE(event.kind != TrackEvent::kConfirmed ||

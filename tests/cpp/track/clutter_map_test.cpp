@@ -28,7 +28,8 @@ double total(const ClutterMap& map, const Place& about, double time_s) {
 
 TEST(ClutterMap, OnePlotWeighsTheSameWhereverItLies) {
   const double per_scan = 1.0 - std::exp(-kPeriod / kMemory);
-  for (const Place& place : {Place(50.0, 50.0), Place(20.0, 90.0), Place(-730.0, 1234.5), Place(0.0, 0.0)}) {
+  for (const Place& place :
+       {Place(50.0, 50.0), Place(20.0, 90.0), Place(-730.0, 1234.5), Place(0.0, 0.0)}) {
     ClutterMap map(kCell, kMemory);
     map.add(place, 0.0, 0.7);
     EXPECT_NEAR(total(map, place, 0.0), 0.7 * per_scan, 0.01 * per_scan);
@@ -84,7 +85,8 @@ TEST(ClutterMap, ForgetsTheWeakerWhenItIsFull) {
   ClutterMap map(kCell, kMemory);
   const auto flood = [&](double weight) {
     for (int n = 0; n < 400; ++n)
-      for (int e = 0; e < 400; ++e) map.add({kCell * (n + 100.5), kCell * (e + 100.5)}, 0.0, weight);
+      for (int e = 0; e < 400; ++e)
+        map.add({kCell * (n + 100.5), kCell * (e + 100.5)}, 0.0, weight);
   };
   map.add({50.0, 50.0}, 0.0, 1.0);
   const double before = map.density({50.0, 50.0}, 0.0, kPeriod);
@@ -103,7 +105,8 @@ TEST(ClutterMap, SavesAndRestores) {
   copy.archive(in);
   EXPECT_TRUE(in.ok() && in.at_end());
   for (int k = 0; k < 200; ++k)
-    EXPECT_EQ(copy.density({9.0 * k, -3.0 * k}, 60.0, kPeriod), map.density({9.0 * k, -3.0 * k}, 60.0, kPeriod));
+    EXPECT_EQ(copy.density({9.0 * k, -3.0 * k}, 60.0, kPeriod),
+              map.density({9.0 * k, -3.0 * k}, 60.0, kPeriod));
   Archive again(out.bytes());
   off.archive(again);
   EXPECT_FALSE(again.ok()) << "a map that is off takes no cells";

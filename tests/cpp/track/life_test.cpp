@@ -41,8 +41,11 @@ TEST(Life, AStraightBoatIsConfirmedOnceAndKeepsItsNumber) {
       }
     }
     EXPECT_EQ(ledger.ids, ids_of(tracker));
-    EXPECT_LT((Vec<double, 2>(tracker.find(1)->kinematics.mean[1], tracker.find(1)->kinematics.mean[3]) -
-               kBoat.velocity_mps).norm(), 6.0);
+    EXPECT_LT(
+        (Vec<double, 2>(tracker.find(1)->kinematics.mean[1], tracker.find(1)->kinematics.mean[3]) -
+         kBoat.velocity_mps)
+            .norm(),
+        6.0);
   }
 }
 
@@ -98,8 +101,10 @@ TEST(Life, PlotsAreGivenToTheirTrack) {
   }
 }
 
-/// One boat, seen in each of its first scans and then as the repeated pattern says, keeps one number.
-void expect_held(int first_scans, const std::string& pattern, double speed_mps, std::uint64_t seed) {
+/// One boat, seen in each of its first scans and then as the repeated pattern says, keeps one
+/// number.
+void expect_held(int first_scans, const std::string& pattern, double speed_mps,
+                 std::uint64_t seed) {
   SCOPED_TRACE(pattern + " at " + std::to_string(speed_mps) + " m/s, seed " + std::to_string(seed));
   Sea sea(seed);
   VesselTracker tracker = make_tracker();
@@ -108,8 +113,8 @@ void expect_held(int first_scans, const std::string& pattern, double speed_mps, 
   for (int k = 0; k < 300; ++k) {
     const double time_s = 2.5 * k;
     const Plot plot = sea.plot(boat.at(time_s), time_s);
-    const bool seen =
-        k < first_scans || pattern[static_cast<std::size_t>(k - first_scans) % pattern.size()] == '1';
+    const bool seen = k < first_scans ||
+                      pattern[static_cast<std::size_t>(k - first_scans) % pattern.size()] == '1';
     const ScanReport report = tracker.process(time_s, {&plot, seen ? 1u : 0u});
     for (const Event& event : report.events) {
       if (event.kind == TrackEvent::kConfirmed) {
@@ -128,9 +133,10 @@ void expect_held(int first_scans, const std::string& pattern, double speed_mps, 
 TEST(Life, ATargetSeenInFiveOfTenScansIsHeld) {
   for (const double speed_mps : {0.0, 3.0, 8.0, 15.0, 20.0})
     for (const int first_scans : {5, 10})
-      for (const char* pattern :
-           {"1010101010", "0000011111", "1110000011", "1111100000", "1110110000", "1100110010", "1101101000"})
-        for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_held(first_scans, pattern, speed_mps, seed);
+      for (const char* pattern : {"1010101010", "0000011111", "1110000011", "1111100000",
+                                  "1110110000", "1100110010", "1101101000"})
+        for (std::uint64_t seed = 1; seed <= 3; ++seed)
+          expect_held(first_scans, pattern, speed_mps, seed);
 }
 
 TEST(Life, CoastsThenIsHeldThenLostOnce) {
@@ -155,7 +161,8 @@ TEST(Life, CoastsThenIsHeldThenLostOnce) {
     const VesselTrack* track = tracker.find(1);
     if (track == nullptr) continue;
     EXPECT_LE(missed, patience);
-    EXPECT_EQ(track->status, missed <= config.shown_scans ? TrackStatus::kCoasting : TrackStatus::kHeld);
+    EXPECT_EQ(track->status,
+              missed <= config.shown_scans ? TrackStatus::kCoasting : TrackStatus::kHeld);
     EXPECT_EQ(track->shown(), missed <= config.shown_scans);
     EXPECT_EQ(track->time_s, time_s);
     EXPECT_TRUE(std::isnan(track->nis));

@@ -15,11 +15,13 @@ using namespace test;
 constexpr Association kAssociations[] = {Association::kProbabilistic, Association::kGlobalNearest,
                                          Association::kNearest};
 
-/// Follows two boats, in every association, and expects that each keeps its number from the tenth scan to the last.
+/// Follows two boats, in every association, and expects that each keeps its number from the tenth
+/// scan to the last.
 void expect_each_keeps_its_number(const Boat& a, const Boat& b, int scans) {
   for (const Association association : kAssociations)
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-      SCOPED_TRACE("association " + std::to_string(int(association)) + ", seed " + std::to_string(seed));
+      SCOPED_TRACE("association " + std::to_string(int(association)) + ", seed " +
+                   std::to_string(seed));
       TrackerConfig config;
       config.association = association;
       Sea sea(seed);
@@ -27,7 +29,8 @@ void expect_each_keeps_its_number(const Boat& a, const Boat& b, int scans) {
       std::int64_t id_a = 0, id_b = 0;
       for (int k = 0; k < scans; ++k) {
         const double time_s = 2.5 * k;
-        const std::vector<Plot> plots{sea.plot(a.at(time_s), time_s), sea.plot(b.at(time_s), time_s)};
+        const std::vector<Plot> plots{sea.plot(a.at(time_s), time_s),
+                                      sea.plot(b.at(time_s), time_s)};
         const ScanReport report = tracker.process(time_s, plots);
         if (k < 10) continue;
         if (report.plot_track_id[0] > 0 && k > 10) {
@@ -111,7 +114,8 @@ TEST(Room, MoreTargetsThanTracks) {
     EXPECT_EQ(ledger.ids, ids_of(tracker)) << "scan " << k;
     ASSERT_LE(tracker.size(), 10);
     for (const std::int64_t id : confirmed) EXPECT_NE(tracker.find(id), nullptr) << "displaced";
-    for (const Event& event : events_of(report, TrackEvent::kConfirmed)) confirmed.insert(event.track_id);
+    for (const Event& event : events_of(report, TrackEvent::kConfirmed))
+      confirmed.insert(event.track_id);
     for (const std::int64_t id : report.plot_track_id) {
       EXPECT_TRUE(id == 0 || tracker.find(id) != nullptr) << id;
     }
@@ -218,7 +222,8 @@ int tracks_of_a_shoal(double clutter_cell_m) {
     const double time_s = 2.5 * k;
     std::vector<Plot> plots;
     for (int n = 0; n < 4; ++n)
-      plots.push_back(exact_plot({900.0 + sea.draw.uniform(-150, 150), 500.0 + sea.draw.uniform(-150, 150)}, time_s));
+      plots.push_back(exact_plot(
+          {900.0 + sea.draw.uniform(-150, 150), 500.0 + sea.draw.uniform(-150, 150)}, time_s));
     const ScanReport report = tracker.process(time_s, plots);
     if (k >= 200) late += static_cast<int>(events_of(report, TrackEvent::kConfirmed).size());
   }

@@ -34,7 +34,8 @@ TEST(Operator, DesignatesATargetBeforeTheFirstScan) {
   EXPECT_NEAR(track->position_std_m(), 30.0, 1e-9);
   expect_sound(tracker);
   follow(tracker, sea, 1, 30);
-  EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1}) << "it takes the boat's plots, and nothing else starts";
+  EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1})
+      << "it takes the boat's plots, and nothing else starts";
   EXPECT_LT((tracker.find(1)->position() - kBoat.at(2.5 * 29)).norm(), 60.0);
 }
 
@@ -84,7 +85,8 @@ TEST(Operator, DesignatesIntoAFullTrackerOnlyOverTentativeTracks) {
   VesselTracker tracker = make_tracker(config);
   for (const double time_s : {0.0, 2.5}) {
     std::vector<Plot> plots;
-    for (const double north : {1000.0, 2000.0, 3000.0}) plots.push_back(exact_plot({north, 0.0}, time_s));
+    for (const double north : {1000.0, 2000.0, 3000.0})
+      plots.push_back(exact_plot({north, 0.0}, time_s));
     (void)tracker.process(time_s, plots);
   }
   ASSERT_EQ(tracker.size(), 3);

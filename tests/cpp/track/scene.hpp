@@ -58,7 +58,8 @@ class Sea {
     return plot;
   }
 
-  /// A plot of a boat at the moment when the antenna, north at the beginning of the scan, passes it.
+  /// A plot of a boat at the moment when the antenna, north at the beginning of the scan, passes
+  /// it.
   Plot swept(const Boat& boat, double scan_start_s) {
     double time_s = scan_start_s;
     for (int k = 0; k < 3; ++k) {
@@ -71,8 +72,8 @@ class Sea {
 
   /// A plot of nothing, anywhere in a square.
   Plot clutter(double time_s, double half_side_m) {
-    return exact_plot({draw.uniform(-half_side_m, half_side_m), draw.uniform(-half_side_m, half_side_m)},
-                      time_s);
+    return exact_plot(
+        {draw.uniform(-half_side_m, half_side_m), draw.uniform(-half_side_m, half_side_m)}, time_s);
   }
 
   Draw draw;
@@ -82,7 +83,8 @@ class Sea {
   Radar radar_;
 };
 
-inline std::vector<const VesselTrack*> tracks_of(const VesselTracker& tracker, bool confirmed_only) {
+inline std::vector<const VesselTrack*> tracks_of(const VesselTracker& tracker,
+                                                 bool confirmed_only) {
   std::vector<const VesselTrack*> tracks;
   tracker.for_each([&](const VesselTrack& track) {
     if (track.confirmed() || !confirmed_only) tracks.push_back(&track);
@@ -149,11 +151,12 @@ inline std::set<std::int64_t> ids_of(const VesselTracker& tracker) {
 inline void expect_sound(const VesselTracker& tracker) {
   tracker.for_each([](const VesselTrack& track) {
     EXPECT_TRUE(is_finite(track.kinematics.mean)) << track.id;
-    EXPECT_TRUE(is_covariance(track.kinematics.covariance))
-        << track.id << "\n" << track.kinematics.covariance;
+    EXPECT_TRUE(is_covariance(track.kinematics.covariance)) << track.id << "\n"
+                                                            << track.kinematics.covariance;
     EXPECT_TRUE(track.existence >= 0.0 && track.existence <= 1.0) << track.existence;
     EXPECT_TRUE(track.visibility >= 0.0 && track.visibility <= 1.0) << track.visibility;
-    EXPECT_TRUE(std::isnan(track.nis) || (track.nis >= 0.0 && std::isfinite(track.nis))) << track.nis;
+    EXPECT_TRUE(std::isnan(track.nis) || (track.nis >= 0.0 && std::isfinite(track.nis)))
+        << track.nis;
     EXPECT_TRUE(std::isfinite(track.time_s));
     EXPECT_NEAR(track.estimator.mode_probability().sum(), 1.0, 1e-9);
     EXPECT_GE(track.estimator.mode_probability().minCoeff(), 0.0);

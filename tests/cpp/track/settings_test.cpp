@@ -32,7 +32,8 @@ void expect_refused(const char* name, const std::function<void(TrackerConfig&)>&
   TrackerConfig config;
   spoil(config);
   const std::string message = refusal([&] { config.validate(); });
-  EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u) << name << ": '" << message << "'";
+  EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u)
+      << name << ": '" << message << "'";
   EXPECT_EQ(refusal([&] { (void)make_tracker(config); }), message) << "the tracker says the same";
 }
 
@@ -42,11 +43,11 @@ TEST(TrackerConfig, TheDefaultsAreValid) {
 }
 
 TEST(TrackerConfig, NamesWhatItRefuses) {
-#define WAKELINE_EXPECT_REFUSED(field, ...)                                      \
-  for (const double value : {__VA_ARGS__})                                       \
+#define WAKELINE_EXPECT_REFUSED(field, ...) \
+  for (const double value : {__VA_ARGS__})  \
   expect_refused(#field, [value](TrackerConfig& config) { config.field = value; })
-#define WAKELINE_EXPECT_REFUSED_COUNT(field, ...)                                \
-  for (const int value : {__VA_ARGS__})                                          \
+#define WAKELINE_EXPECT_REFUSED_COUNT(field, ...) \
+  for (const int value : {__VA_ARGS__})           \
   expect_refused(#field, [value](TrackerConfig& config) { config.field = value; })
   WAKELINE_EXPECT_REFUSED(detection_probability, -0.1, 1.1, kNan);
   WAKELINE_EXPECT_REFUSED(gate_probability, 0.0, 1.0, kNan);
@@ -81,14 +82,17 @@ TEST(TrackerConfig, NamesWhatItRefuses) {
 }
 
 TEST(TrackerConfig, SettingsListEveryField) {
-  // Each field, changed alone, changes the settings: none is forgotten in what is saved and compared.
+  // Each field, changed alone, changes the settings: none is forgotten in what is saved and
+  // compared.
   const TrackerConfig defaults;
   TrackerConfig config;
-  std::apply([](auto&... field) { ((field = std::remove_reference_t<decltype(field)>{}), ...); }, config.settings());
+  std::apply([](auto&... field) { ((field = std::remove_reference_t<decltype(field)>{}), ...); },
+             config.settings());
   EXPECT_NE(config.settings(), defaults.settings());
   std::size_t bytes = 0;
   std::apply([&](const auto&... field) { bytes = (sizeof(field) + ...); }, defaults.settings());
-  EXPECT_LE(sizeof(TrackerConfig) - bytes, 2 * alignof(TrackerConfig)) << "a field is missing from settings()";
+  EXPECT_LE(sizeof(TrackerConfig) - bytes, 2 * alignof(TrackerConfig))
+      << "a field is missing from settings()";
 }
 
 TEST(RadarSettings, NamesWhatItRefuses) {
@@ -96,8 +100,10 @@ TEST(RadarSettings, NamesWhatItRefuses) {
     Radar radar = kTestRadar;
     spoil(radar);
     const std::string message = refusal([&] { radar.validate(); });
-    EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u) << name << ": '" << message << "'";
-    EXPECT_EQ(refusal([&] { (void)test::VesselTracker(radar, {}, vessel_imm(kTestRadar)); }), message);
+    EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u)
+        << name << ": '" << message << "'";
+    EXPECT_EQ(refusal([&] { (void)test::VesselTracker(radar, {}, vessel_imm(kTestRadar)); }),
+              message);
   };
   for (const double value : {0.0, -1.0, kNan, kInf}) {
     expect("range_std_m", [=](Radar& radar) { radar.range_std_m = value; });
@@ -105,7 +111,8 @@ TEST(RadarSettings, NamesWhatItRefuses) {
     expect("period_s", [=](Radar& radar) { radar.period_s = value; });
     expect("max_speed_mps", [=](Radar& radar) { radar.max_speed_mps = value; });
   }
-  for (const double value : {-1.0, kNan, kInf}) expect("extent_std_m", [=](Radar& radar) { radar.extent_std_m = value; });
+  for (const double value : {-1.0, kNan, kInf})
+    expect("extent_std_m", [=](Radar& radar) { radar.extent_std_m = value; });
   for (const double value : {kNan, kInf})
     expect("bearing_offset_rad", [=](Radar& radar) { radar.bearing_offset_rad = value; });
 }
@@ -120,13 +127,18 @@ TEST(VesselModelSettings, NamesWhatItRefuses) {
   };
   for (const double value : {-1.0, kNan}) {
     expect("psd_m2s3", [=](VesselModels& models) { models.steady_psd_m2s3 = value; });
-    expect("course_psd_rad2s", [=](VesselModels& models) { models.steady_course_psd_rad2s = value; });
+    expect("course_psd_rad2s",
+           [=](VesselModels& models) { models.steady_course_psd_rad2s = value; });
     expect("psd_m2s3", [=](VesselModels& models) { models.restless_psd_m2s3 = value; });
-    expect("course_psd_rad2s", [=](VesselModels& models) { models.restless_course_psd_rad2s = value; });
+    expect("course_psd_rad2s",
+           [=](VesselModels& models) { models.restless_course_psd_rad2s = value; });
     expect("psd_m2s3", [=](VesselModels& models) { models.turning_psd_m2s3 = value; });
-    expect("course_psd_rad2s", [=](VesselModels& models) { models.turning_course_psd_rad2s = value; });
-    expect("turn_rate_psd_rad2s3", [=](VesselModels& models) { models.turn_rate_psd_rad2s3 = value; });
-    expect("prior_turn_rate_std_rad_s", [=](VesselModels& models) { models.prior_turn_rate_std_rad_s = value; });
+    expect("course_psd_rad2s",
+           [=](VesselModels& models) { models.turning_course_psd_rad2s = value; });
+    expect("turn_rate_psd_rad2s3",
+           [=](VesselModels& models) { models.turn_rate_psd_rad2s3 = value; });
+    expect("prior_turn_rate_std_rad_s",
+           [=](VesselModels& models) { models.prior_turn_rate_std_rad_s = value; });
     expect("sojourn", [=](VesselModels& models) { models.steady_sojourn_s = value; });
     expect("sojourn", [=](VesselModels& models) { models.restless_sojourn_s = value; });
     expect("sojourn", [=](VesselModels& models) { models.turning_sojourn_s = value; });

@@ -46,7 +46,8 @@ TEST(SpeedPrior, SlowsButNeverTurnsRound) {
   EXPECT_GT(slower.mean[3], 0.0);
   EXPECT_LT(slower.mean[3], belief.mean[3]);
   EXPECT_NEAR(slower.mean[1], 0.0, 1e-12);
-  EXPECT_TRUE(matrices_near(with_speed_prior(belief, 1e9).mean, belief.mean, {.absolute = 1e-6, .relative = 1e-9}));
+  EXPECT_TRUE(matrices_near(with_speed_prior(belief, 1e9).mean, belief.mean,
+                            {.absolute = 1e-6, .relative = 1e-9}));
 }
 
 TEST(SpeedGate, IsTheDistanceAndTheErrorAlongIt) {
@@ -65,7 +66,9 @@ TEST(SpeedGate, IsTheDistanceAndTheErrorAlongIt) {
 }
 
 TEST(RadarPlots, HaveTheErrorsThatTheirCovarianceSays) {
-  const Radar radar{.range_std_m = 20.0, .bearing_std_rad = deg(2.0), .extent_std_m = 5.0,
+  const Radar radar{.range_std_m = 20.0,
+                    .bearing_std_rad = deg(2.0),
+                    .extent_std_m = 5.0,
                     .bearing_offset_rad = deg(3.0)};
   const Vec<double, 2> truth(1200.0, -900.0);
   test::Draw draw(2);
@@ -74,9 +77,9 @@ TEST(RadarPlots, HaveTheErrorsThatTheirCovarianceSays) {
   constexpr int kDraws = 20'000;
   for (int k = 0; k < kDraws; ++k) {
     const Vec<double, 2> echo = truth + 5.0 * draw.normals<2>();
-    const Gaussian<2> position = radar.position(
-        echo.norm() + 20.0 * draw.normal(),
-        std::atan2(echo[1], echo[0]) + deg(3.0) + deg(2.0) * draw.normal(), {});
+    const Gaussian<2> position =
+        radar.position(echo.norm() + 20.0 * draw.normal(),
+                       std::atan2(echo[1], echo[0]) + deg(3.0) + deg(2.0) * draw.normal(), {});
     const Vec<double, 2> error = position.mean - truth;
     mean += error / kDraws;
     nis += Cholesky<2>(position.covariance).whiten<1>(error).squaredNorm() / kDraws;

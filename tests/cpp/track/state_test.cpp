@@ -23,12 +23,14 @@ std::vector<Scan> busy_scans(std::uint64_t seed, int count) {
   Sea sea(seed);
   std::vector<Boat> boats;
   for (int k = 0; k < 10; ++k)
-    boats.push_back({{sea.draw.uniform(-2500, 2500), sea.draw.uniform(-2500, 2500)}, 6.0 * sea.draw.normals<2>()});
+    boats.push_back({{sea.draw.uniform(-2500, 2500), sea.draw.uniform(-2500, 2500)},
+                     6.0 * sea.draw.normals<2>()});
   std::vector<Scan> scans;
   for (int k = 0; k < count; ++k) {
     Scan scan{2.5 * k, {}};
     for (const Boat& boat : boats)
-      if (sea.draw.uniform(0, 1) < 0.8) scan.plots.push_back(sea.plot(boat.at(scan.time_s), scan.time_s));
+      if (sea.draw.uniform(0, 1) < 0.8)
+        scan.plots.push_back(sea.plot(boat.at(scan.time_s), scan.time_s));
     for (int n = 0; n < 10; ++n) scan.plots.push_back(sea.clutter(scan.time_s, 3000.0));
     scans.push_back(scan);
   }
@@ -73,7 +75,8 @@ void expect_same(const Told& a, const Told& b) {
     EXPECT_TRUE(matrices_identical(x.kinematics.covariance, y.kinematics.covariance));
     EXPECT_TRUE(matrices_identical(x.estimator.mode_probability(), y.estimator.mode_probability()));
     EXPECT_EQ(std::bit_cast<std::uint64_t>(x.existence), std::bit_cast<std::uint64_t>(y.existence));
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(x.visibility), std::bit_cast<std::uint64_t>(y.visibility));
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(x.visibility),
+              std::bit_cast<std::uint64_t>(y.visibility));
     EXPECT_TRUE(std::isnan(x.nis) ? std::isnan(y.nis) : x.nis == y.nis);
     EXPECT_EQ(x.scans, y.scans);
     EXPECT_EQ(x.hits, y.hits);
@@ -144,7 +147,8 @@ TEST(Saving, TheOtherAssociationsToo) {
     const std::vector<Scan> scans = busy_scans(4, 60);
     for (std::size_t k = 0; k < 30; ++k) (void)process(tracker, scans[k]);
     ASSERT_TRUE(restored.restore(tracker.save()));
-    for (std::size_t k = 30; k < 60; ++k) expect_same(process(restored, scans[k]), process(tracker, scans[k]));
+    for (std::size_t k = 30; k < 60; ++k)
+      expect_same(process(restored, scans[k]), process(tracker, scans[k]));
   }
 }
 
@@ -177,7 +181,8 @@ TEST(TrackerHeap, IsNotTouchedAfterStart) {
   std::vector<Scan> scans = busy_scans(8, 80);
   Sea sea(9);
   for (const std::size_t k : {40u, 41u})  // more than there is room for
-    while (scans[k].plots.size() < 3000) scans[k].plots.push_back(sea.clutter(scans[k].time_s, 5000.0));
+    while (scans[k].plots.size() < 3000)
+      scans[k].plots.push_back(sea.clutter(scans[k].time_s, 5000.0));
   scans[50].plots[0].range_m = std::nan("");
   for (const Association association :
        {Association::kProbabilistic, Association::kGlobalNearest, Association::kNearest}) {
@@ -186,7 +191,8 @@ TEST(TrackerHeap, IsNotTouchedAfterStart) {
     config.max_tracks = 50;
     config.max_plots = 2000;
     VesselTracker restored = make_tracker(config);
-    for (VesselTracker tracker = make_tracker(config); VesselTracker* each : {&tracker, &restored}) {
+    for (VesselTracker tracker = make_tracker(config);
+         VesselTracker * each : {&tracker, &restored}) {
       if (each == &restored) {
         ASSERT_TRUE(restored.restore(make_tracker(config).save()));
       }
@@ -195,7 +201,8 @@ TEST(TrackerHeap, IsNotTouchedAfterStart) {
       for (const Scan& scan : scans) {
         good += each->process(scan.time_s, scan.plots).status == Status::kOk;
         good -= each->process(-1.0, scan.plots).status == Status::kOk;
-        (void)each->rename(each->designate(scan.time_s, 5.0, 5.0, 10.0), "a name longer than any small string buffer");
+        (void)each->rename(each->designate(scan.time_s, 5.0, 5.0, 10.0),
+                           "a name longer than any small string buffer");
         (void)each->drop(each->size() % 7);
       }
       EXPECT_EQ(fence.allocations(), 0);

@@ -11,8 +11,8 @@ namespace {
 
 using namespace test;
 
-/// Position RMSE of confirmed tracks against boats that pass on all sides, each at the time of its track's estimate.
-/// `see` gives the plot of a boat in the scan that begins at a time.
+/// Position RMSE of confirmed tracks against boats that pass on all sides, each at the time of its
+/// track's estimate. `see` gives the plot of a boat in the scan that begins at a time.
 double rmse(const std::function<Plot(Sea&, const Boat&, double)>& see) {
   double sum = 0.0;
   int count = 0;
@@ -45,7 +45,8 @@ double rmse(const std::function<Plot(Sea&, const Boat&, double)>& see) {
 }
 
 TEST(RotatingAntenna, IsAsAccurateAsOneThatSeesAllAtOnce) {
-  const double rotating = rmse([](Sea& sea, const Boat& boat, double start_s) { return sea.swept(boat, start_s); });
+  const double rotating =
+      rmse([](Sea& sea, const Boat& boat, double start_s) { return sea.swept(boat, start_s); });
   const double at_once = rmse([](Sea& sea, const Boat& boat, double start_s) {
     return sea.plot(boat.at(start_s + 2.5), start_s + 2.5);
   });

@@ -12,11 +12,12 @@
 
 namespace wakeline {
 
-/// Where plots come from that belong to no target: the density of false plots over the plane, learned with a fading
-/// memory. Fixed echoes and shore grow dense and so stop to look like targets.
+/// Where plots come from that belong to no target: the density of false plots over the plane,
+/// learned with a fading memory. Fixed echoes and shore grow dense and so stop to look like
+/// targets.
 ///
-/// A grid of cells, bilinear between their centres, in a table of fixed size; where two cells meet in one place of the
-/// table the weaker is forgotten.
+/// A grid of cells, bilinear between their centres, in a table of fixed size; where two cells meet
+/// in one place of the table the weaker is forgotten.
 class ClutterMap {
  public:
   /// `cell_m` 0 switches the map off.
@@ -90,12 +91,16 @@ class ClutterMap {
     const auto j = static_cast<std::int32_t>(std::floor(v));
     const double a = u - i;
     const double b = v - j;
-    return {{{i, j, (1 - a) * (1 - b)}, {i, j + 1, (1 - a) * b}, {i + 1, j, a * (1 - b)}, {i + 1, j + 1, a * b}}};
+    return {{{i, j, (1 - a) * (1 - b)},
+             {i, j + 1, (1 - a) * b},
+             {i + 1, j, a * (1 - b)},
+             {i + 1, j + 1, a * b}}};
   }
 
   static std::size_t place(const Corner& corner) noexcept {
-    const auto hash = static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.north)) * 0x9E3779B97F4A7C15u ^
-                      static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.east)) * 0xC2B2AE3D27D4EB4Fu;
+    const auto hash =
+        static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.north)) * 0x9E3779B97F4A7C15u ^
+        static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.east)) * 0xC2B2AE3D27D4EB4Fu;
     return static_cast<std::size_t>(hash >> 50);
   }
 

@@ -12,7 +12,8 @@ namespace wakeline {
 
 /// How plots are given to tracks.
 enum class Association : std::uint8_t {
-  kProbabilistic,  ///< every gated plot as far as it is likely (PDA), less what other tracks claim of it
+  kProbabilistic,  ///< every gated plot as far as it is likely (PDA), less what other tracks claim
+                   ///< of it
   kGlobalNearest,  ///< one plot each, the best total (GNN)
   kNearest,        ///< one plot each, the best pair first
 };
@@ -20,75 +21,79 @@ enum class Association : std::uint8_t {
 /// The rules by which tracks live. The defaults are one set for all radars.
 struct TrackerConfig {
   // Detection
-  double detection_probability = 0.8;   ///< PD of a target that is visible at all
-  double gate_probability = 0.95;       ///< PG of the gate
-  double clutter_density_per_m2 = 1e-7;  ///< false plots per m² and scan, where the map knows of none
-  double wild_probability = 0.2;        ///< share of plots with a wild error
-  double wild_scale = 4.0;             ///< how many times larger that error is
-  double clutter_cell_m = 150.0;        ///< cell of the clutter map; 0: no map
-  double clutter_memory_s = 60.0;       ///< fading memory of the map
-  double clutter_weight = 1.0;          ///< how far the map is believed
-  double visible_time_s = 60.0;         ///< mean time until a target is hidden from the radar; 0: never
-  double hidden_time_s = 40.0;          ///< mean time until a hidden target is seen again
+  double detection_probability = 0.8;  ///< PD of a target that is visible at all
+  double gate_probability = 0.95;      ///< PG of the gate
+  double clutter_density_per_m2 =
+      1e-7;                        ///< false plots per m² and scan, where the map knows of none
+  double wild_probability = 0.2;   ///< share of plots with a wild error
+  double wild_scale = 4.0;         ///< how many times larger that error is
+  double clutter_cell_m = 150.0;   ///< cell of the clutter map; 0: no map
+  double clutter_memory_s = 60.0;  ///< fading memory of the map
+  double clutter_weight = 1.0;     ///< how far the map is believed
+  double visible_time_s = 60.0;    ///< mean time until a target is hidden from the radar; 0: never
+  double hidden_time_s = 40.0;     ///< mean time until a hidden target is seen again
   Association association = Association::kProbabilistic;
 
   // Start
   double initial_existence = 0.08;  ///< probability that two plots a speed limit apart are a target
-  double free_plot = 0.8;           ///< a plot starts a track when free of others with this probability
-  double start_gate_sigma = 3.0;    ///< plot errors that the speed limit of a start is widened by
-  double start_speed_factor = 1.0;  ///< prior speed of a start over the radar's speed limit; 0: none
+  double free_plot = 0.8;  ///< a plot starts a track when free of others with this probability
+  double start_gate_sigma = 3.0;  ///< plot errors that the speed limit of a start is widened by
+  double start_speed_factor =
+      1.0;  ///< prior speed of a start over the radar's speed limit; 0: none
 
   // Confirm
   double confirm_existence = 0.99;  ///< a track is confirmed above this probability of existence
-  int confirm_hits = 3;              ///< and with at least this many plots
-  int confirm_window = 5;            ///< in this many of its last scans
+  int confirm_hits = 3;             ///< and with at least this many plots
+  int confirm_window = 5;           ///< in this many of its last scans
 
   // Coast and drop
   double survival_time_s = 1000.0;   ///< mean time until a target leaves
-  double drop_existence = 0.005;      ///< a track below this probability of existence is dropped
+  double drop_existence = 0.005;     ///< a track below this probability of existence is dropped
   int tentative_misses = 4;          ///< a tentative track is dropped after more misses in a row
   double coast_scans = 5.0;          ///< a confirmed one after more than this,
   double coast_scans_per_hit = 0.3;  ///< and this for each plot it ever had,
   int coast_scans_max = 15;          ///< but never more than this
   int shown_scans = 4;  ///< a coasting track is shown for this many scans, then held in mind
-  double drop_position_std_m = 100.0;  ///< a track that knows its place worse than this (a confirmed one: than
-                                       ///< a vessel runs in `coast_scans`, if that is more) is dropped
-  double drop_speed_factor = 1.0;    ///< a track faster than this times the radar's speed limit is dropped
+  double drop_position_std_m =
+      100.0;  ///< a track that knows its place worse than this (a confirmed one: than
+              ///< a vessel runs in `coast_scans`, if that is more) is dropped
+  double drop_speed_factor =
+      1.0;  ///< a track faster than this times the radar's speed limit is dropped
 
   // Duplicates
-  double duplicate_distance = 0.5;  ///< two tracks nearer than this, in squared sigmas of their difference, are one
-  int duplicate_scans = 3;          ///< once they have been so for this many scans
+  double duplicate_distance =
+      0.5;  ///< two tracks nearer than this, in squared sigmas of their difference, are one
+  int duplicate_scans = 3;  ///< once they have been so for this many scans
 
   // Room
-  int max_tracks = 500;  ///< when full, a new track takes the place of the weakest tentative one, or is not started
+  int max_tracks = 500;   ///< when full, a new track takes the place of the weakest tentative one,
+                          ///< or is not started
   int max_plots = 20000;  ///< plots of a scan beyond this are refused
 
   /// All settings in order, to be compared and saved.
   [[nodiscard]] auto settings() noexcept {
     return std::tie(detection_probability, gate_probability, clutter_density_per_m2,
-                    wild_probability, wild_scale, clutter_cell_m, clutter_memory_s,
-                    clutter_weight, visible_time_s, hidden_time_s, association,
-                    initial_existence, free_plot, start_gate_sigma, start_speed_factor,
-                    confirm_existence, confirm_hits, confirm_window, survival_time_s,
-                    drop_existence, tentative_misses, coast_scans, coast_scans_per_hit,
-                    coast_scans_max, shown_scans, drop_position_std_m, drop_speed_factor, duplicate_distance,
-                    duplicate_scans, max_tracks, max_plots);
+                    wild_probability, wild_scale, clutter_cell_m, clutter_memory_s, clutter_weight,
+                    visible_time_s, hidden_time_s, association, initial_existence, free_plot,
+                    start_gate_sigma, start_speed_factor, confirm_existence, confirm_hits,
+                    confirm_window, survival_time_s, drop_existence, tentative_misses, coast_scans,
+                    coast_scans_per_hit, coast_scans_max, shown_scans, drop_position_std_m,
+                    drop_speed_factor, duplicate_distance, duplicate_scans, max_tracks, max_plots);
   }
   [[nodiscard]] auto settings() const noexcept {
     return std::tie(detection_probability, gate_probability, clutter_density_per_m2,
-                    wild_probability, wild_scale, clutter_cell_m, clutter_memory_s,
-                    clutter_weight, visible_time_s, hidden_time_s, association,
-                    initial_existence, free_plot, start_gate_sigma, start_speed_factor,
-                    confirm_existence, confirm_hits, confirm_window, survival_time_s,
-                    drop_existence, tentative_misses, coast_scans, coast_scans_per_hit,
-                    coast_scans_max, shown_scans, drop_position_std_m, drop_speed_factor, duplicate_distance,
-                    duplicate_scans, max_tracks, max_plots);
+                    wild_probability, wild_scale, clutter_cell_m, clutter_memory_s, clutter_weight,
+                    visible_time_s, hidden_time_s, association, initial_existence, free_plot,
+                    start_gate_sigma, start_speed_factor, confirm_existence, confirm_hits,
+                    confirm_window, survival_time_s, drop_existence, tentative_misses, coast_scans,
+                    coast_scans_per_hit, coast_scans_max, shown_scans, drop_position_std_m,
+                    drop_speed_factor, duplicate_distance, duplicate_scans, max_tracks, max_plots);
   }
 
   void validate() const {
     require_probability("detection_probability", detection_probability);
-    require(gate_probability > 0.0 && gate_probability < 1.0, "gate_probability",
-            "between 0 and 1", gate_probability);
+    require(gate_probability > 0.0 && gate_probability < 1.0, "gate_probability", "between 0 and 1",
+            gate_probability);
     require_positive("clutter_density_per_m2", clutter_density_per_m2);
     require(wild_probability >= 0.0 && wild_probability < 1.0, "wild_probability",
             "at least 0 and below 1", wild_probability);

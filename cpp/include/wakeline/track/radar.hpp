@@ -22,8 +22,8 @@ struct Radar {
   /// A plot seen from own ship as a position with its covariance.
   [[nodiscard]] Gaussian<2> position(double range_m, double bearing_rad,
                                      const OwnShip& own) const noexcept {
-    return PolarErrors{range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own}.position(
-        range_m, bearing_rad, true);
+    return PolarErrors{range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own}
+        .position(range_m, bearing_rad, true);
   }
 
   /// All settings in order, to be compared and saved.

@@ -9,8 +9,8 @@
 
 namespace wakeline {
 
-/// A belief over `[x, vx, y, vy]` after learning that the velocity is drawn from N(0, std² I): what a speed limit says
-/// of a start from two plots.
+/// A belief over `[x, vx, y, vy]` after learning that the velocity is drawn from N(0, std² I): what
+/// a speed limit says of a start from two plots.
 inline Gaussian<4> with_speed_prior(const Gaussian<4>& belief, double speed_std_mps) noexcept {
   Mat<double, 2, 4> velocity_rows;
   velocity_rows << belief.covariance.row(1), belief.covariance.row(3);
@@ -21,12 +21,11 @@ inline Gaussian<4> with_speed_prior(const Gaussian<4>& belief, double speed_std_
   if (!factor.ok()) return belief;
   const Mat<double, 2, 4> gain = factor.whiten<4>(velocity_rows);
   const Vec<double, 2> excess = factor.whiten<1>(Vec<double, 2>(-belief.mean[1], -belief.mean[3]));
-  return {belief.mean + gain.transpose() * excess,
-          belief.covariance - gain.transpose() * gain};
+  return {belief.mean + gain.transpose() * excess, belief.covariance - gain.transpose() * gain};
 }
 
-/// Whether a target under a speed limit can have given both plots: their distance is at most what it covers in dt, and
-/// `sigmas` standard deviations of the plots' difference along it.
+/// Whether a target under a speed limit can have given both plots: their distance is at most what
+/// it covers in dt, and `sigmas` standard deviations of the plots' difference along it.
 inline bool within_speed_limit(const Gaussian<2>& first, const Gaussian<2>& second, double dt_s,
                                double max_speed_mps, double sigmas) noexcept {
   const Vec<double, 2> d = second.mean - first.mean;

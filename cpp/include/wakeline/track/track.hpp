@@ -26,8 +26,8 @@ enum class TrackStatus : std::uint8_t {
 
 enum class TrackEvent : std::uint8_t { kStarted, kConfirmed, kCoasting, kLost };
 
-/// Something that became of a track in a scan. A tentative track has a negative number; when it is confirmed it gets
-/// the next positive one, for good.
+/// Something that became of a track in a scan. A tentative track has a negative number; when it is
+/// confirmed it gets the next positive one, for good.
 struct Event {
   TrackEvent kind;
   std::int64_t track_id;
@@ -50,8 +50,8 @@ struct Track {
   double nis = std::numeric_limits<double>::quiet_NaN();  ///< of the likeliest plot of the scan
   int scans = 0;
   int hits = 0;
-  int misses = 0;               ///< in a row
-  std::uint32_t history = 0;    ///< bit k: seen k scans ago
+  int misses = 0;             ///< in a row
+  std::uint32_t history = 0;  ///< bit k: seen k scans ago
   int duplicate_scans = 0;
 
   [[nodiscard]] bool confirmed() const noexcept { return status != TrackStatus::kTentative; }
@@ -93,13 +93,15 @@ struct Track {
                     double(config.coast_scans_max));
   }
 
-  /// True when the track has no future. A confirmed one is held through a silence that its age allows.
+  /// True when the track has no future. A confirmed one is held through a silence that its age
+  /// allows.
   [[nodiscard]] bool hopeless(const TrackerConfig& config, const Radar& radar) const noexcept {
     const bool silent = misses > patience(config);
     const bool doubtful = !confirmed() && existence < config.drop_existence;
     const bool too_fast = speed_mps() > config.drop_speed_factor * radar.max_speed_mps;
     const double run_m = radar.max_speed_mps * radar.period_s * config.coast_scans;
-    const double roam_m = confirmed() ? std::max(config.drop_position_std_m, run_m) : config.drop_position_std_m;
+    const double roam_m =
+        confirmed() ? std::max(config.drop_position_std_m, run_m) : config.drop_position_std_m;
     return silent || doubtful || too_fast || !(position_std_m() <= roam_m);
   }
 

@@ -30,19 +30,22 @@ namespace wakeline {
 /// What a scan has brought. The spans are valid until the next call.
 struct ScanReport {
   Status status = Status::kOk;
-  std::span<const std::int64_t> plot_track_id;  ///< of each plot up to `max_plots` the track it belongs to, or 0
+  std::span<const std::int64_t>
+      plot_track_id;  ///< of each plot up to `max_plots` the track it belongs to, or 0
   std::span<const Event> events;
-  int refused_plots = 0;  ///< not finite, behind the antenna, of another time than the scan, or beyond `max_plots`
+  int refused_plots =
+      0;  ///< not finite, behind the antenna, of another time than the scan, or beyond `max_plots`
 };
 
 /// Keeps tracks of all vessels a radar sees, scan by scan.
 ///
-/// Each track is an estimator of `Estimator`'s kind with a probability of existence and of visibility. A scan goes
-/// through: prediction to the time of the plots, gating, association, update, confirmation and drop, removal of
-/// duplicates, and starts from plots that nobody claims. All memory is taken by the constructor; `process` neither
-/// allocates nor throws. A tracker may be used from one thread at a time; trackers share nothing.
-/// Sources: D. Mušicki, R. Evans, "Joint integrated probabilistic data association" and its linear multitarget form,
-/// IEEE Trans. AES-40, 2004, and IET RSN 2008 (existence, claims of other tracks); Bar-Shalom, Li 1995 (PDA, M of N).
+/// Each track is an estimator of `Estimator`'s kind with a probability of existence and of
+/// visibility. A scan goes through: prediction to the time of the plots, gating, association,
+/// update, confirmation and drop, removal of duplicates, and starts from plots that nobody claims.
+/// All memory is taken by the constructor; `process` neither allocates nor throws. A tracker may be
+/// used from one thread at a time; trackers share nothing. Sources: D. Mušicki, R. Evans, "Joint
+/// integrated probabilistic data association" and its linear multitarget form, IEEE Trans. AES-40,
+/// 2004, and IET RSN 2008 (existence, claims of other tracks); Bar-Shalom, Li 1995 (PDA, M of N).
 template <class Estimator>
 class Tracker {
  public:
@@ -75,7 +78,8 @@ class Tracker {
   Tracker(Tracker&&) noexcept = default;
   Tracker& operator=(Tracker&&) noexcept = default;
 
-  /// Takes in the plots of one scan, which ends at `time_s`. Refuses a scan that lies before the last one.
+  /// Takes in the plots of one scan, which ends at `time_s`. Refuses a scan that lies before the
+  /// last one.
   ScanReport process(double time_s, std::span<const Plot> plots) noexcept {
     events_.clear();
     plot_track_id_.clear();
@@ -120,8 +124,8 @@ class Tracker {
     return kinematics_of(ahead.estimate());
   }
 
-  /// The operator says that there is a target: a confirmed track at rest. Returns its number, or 0 when there is no room
-  /// or the position makes no sense.
+  /// The operator says that there is a target: a confirmed track at rest. Returns its number, or 0
+  /// when there is no room or the position makes no sense.
   std::int64_t designate(double time_s, double north_m, double east_m,
                          double position_std_m) noexcept {
     if (!std::isfinite(time_s) || !(position_std_m > 0.0)) return 0;
@@ -166,8 +170,8 @@ class Tracker {
     return fields.bytes();
   }
 
-  /// Goes on bit for bit where the saved tracker was. False, and nothing changed, when the bytes are not the state of a
-  /// tracker with the same settings.
+  /// Goes on bit for bit where the saved tracker was. False, and nothing changed, when the bytes
+  /// are not the state of a tracker with the same settings.
   [[nodiscard]] bool restore(std::span<const std::byte> bytes) {
     std::uint64_t sum = 0;
     if (bytes.size() < sizeof(sum)) return false;
@@ -188,19 +192,20 @@ class Tracker {
   [[nodiscard]] double time_s() const noexcept { return time_s_; }
 
  private:
-  static constexpr int kPairs = 8;  ///< most plots that one track looks at
+  static constexpr int kPairs = 8;            ///< most plots that one track looks at
   static constexpr double kCertain = 0.9999;  ///< no claim is more certain than this
   static constexpr double kDesignatedExistence = 0.999;
-  static constexpr double kClockPeriods = 10.0;  ///< a plot farther in time from its scan has a wrong clock
+  static constexpr double kClockPeriods =
+      10.0;  ///< a plot farther in time from its scan has a wrong clock
   static constexpr std::uint32_t kArchiveVersion = 1;
 
   /// A plot as a position, and what the tracks say of it.
   struct Echo {
     Gaussian<2> position;
     double time_s;
-    double density;         ///< of false plots about it, per m²
-    double odds = 0.0;      ///< of all tracks that claim it
-    double free = 1.0;      ///< probability that it is no track's
+    double density;     ///< of false plots about it, per m²
+    double odds = 0.0;  ///< of all tracks that claim it
+    double free = 1.0;  ///< probability that it is no track's
     double best_claim = 0.5;
     int plot;
   };
@@ -288,19 +293,20 @@ class Tracker {
     }
   }
 
-  /// Time passes for a track: to the time of the plot nearest to where it should be, else to the scan's.
+  /// Time passes for a track: to the time of the plot nearest to where it should be, else to the
+  /// scan's.
   void advance(TrackType& track, double scan_time_s, double dt_s) noexcept {
     track.existence *= std::exp(-dt_s / config_.survival_time_s);
     if (config_.visible_time_s > 0.0) {
       const double hide = 1.0 / config_.visible_time_s;
       const double show = 1.0 / config_.hidden_time_s;
       const double settled = show / (hide + show);
-      track.visibility =
-          settled + (track.visibility - settled) * std::exp(-(hide + show) * dt_s);
+      track.visibility = settled + (track.visibility - settled) * std::exp(-(hide + show) * dt_s);
     }
     const double ahead_s = std::max(scan_time_s - track.time_s, 0.0);
     const Vec<double, 2> expected =
-        track.position() + ahead_s * Vec<double, 2>(track.kinematics.mean[1], track.kinematics.mean[3]);
+        track.position() +
+        ahead_s * Vec<double, 2>(track.kinematics.mean[1], track.kinematics.mean[3]);
     const double reach =
         3.0 * track.position_std_m() + 3.0 * std::sqrt(largest_variance_) + 5.0 * ahead_s;
     double least = std::numeric_limits<double>::infinity();
@@ -325,9 +331,8 @@ class Tracker {
     pairs.count = 0;
     pairs.assigned = false;
     const double threshold = -2.0 * std::log1p(-config_.gate_probability);
-    const double wild_variance = config_.wild_probability > 0.0
-                                     ? config_.wild_scale * config_.wild_scale
-                                     : 1.0;
+    const double wild_variance =
+        config_.wild_probability > 0.0 ? config_.wild_scale * config_.wild_scale : 1.0;
     // Generous: the widest mode of an estimator may be some times wider than the mixture.
     const double reach = 3.0 * std::sqrt(threshold * (track.kinematics.covariance(0, 0) +
                                                       track.kinematics.covariance(2, 2))) +
@@ -339,9 +344,9 @@ class Tracker {
       const Fix wild{wild_variance * echo.position.covariance};
       const Evidence<double> wide = track.estimator.evidence(wild, pair.z);
       if (!(wide.least_nis <= threshold)) return;
-      pair.likelihood = (1.0 - config_.wild_probability) *
-                            track.estimator.evidence(nominal, pair.z).likelihood +
-                        config_.wild_probability * wide.likelihood;
+      pair.likelihood =
+          (1.0 - config_.wild_probability) * track.estimator.evidence(nominal, pair.z).likelihood +
+          config_.wild_probability * wide.likelihood;
       pair.nis = squared_distance(track, pair.z, echo.position.covariance);
       insert(pairs, pair);
     });
@@ -377,8 +382,8 @@ class Tracker {
     pairs.count = std::min(pairs.count + 1, kPairs);
   }
 
-  /// The odds with which each track claims each of its plots, and their sum for each plot. To the others a claimed plot
-  /// is as good as denser clutter (linear multitarget).
+  /// The odds with which each track claims each of its plots, and their sum for each plot. To the
+  /// others a claimed plot is as good as denser clutter (linear multitarget).
   void claim_plots() noexcept {
     for (const int slot : order_) {
       const TrackType& track = pool_[at(slot)];
@@ -389,8 +394,7 @@ class Tracker {
       const double norm = 1.0 - track.existence + track.existence * sum;
       for (int k = 0; k < pairs.count; ++k) {
         Pair& pair = pairs.pair[at(k)];
-        const double claim =
-            std::min(track.existence * weight(track, pair) / norm, kCertain);
+        const double claim = std::min(track.existence * weight(track, pair) / norm, kCertain);
         pair.odds = pair.likelihood * claim / (1.0 - claim);
         echoes_[at(pair.echo)].odds += pair.odds;
       }
@@ -454,9 +458,9 @@ class Tracker {
     const std::size_t count = list_readings(track, pairs, readings);
     double total = none;
     if (count > 0) {
-      const double sum = track.estimator.update(
-          std::span<const Alternative<Fix>>(readings.data(), count), none,
-          std::span<double>(share.data(), count));
+      const double sum =
+          track.estimator.update(std::span<const Alternative<Fix>>(readings.data(), count), none,
+                                 std::span<double>(share.data(), count));
       if (sum > 0.0) total = sum;
     }
     if (total > 0.0) weigh_existence(track, total, none, pairs.assigned);
@@ -471,7 +475,8 @@ class Tracker {
         best = claim;
         track.nis = pairs.pair[at(k)].nis;
       }
-      claim_echo(track, echoes_[at(pairs.pair[at(k)].echo)], std::min(claim, 1.0) * track.existence);
+      claim_echo(track, echoes_[at(pairs.pair[at(k)].echo)],
+                 std::min(claim, 1.0) * track.existence);
     }
     track.kinematics = kinematics_of(track.estimator.estimate());
     track.count(claimed > 0.5);
@@ -485,8 +490,8 @@ class Tracker {
       const Pair& pair = pairs.pair[at(k)];
       const Echo& echo = echoes_[at(pair.echo)];
       const double claimed_by_others = std::max(echo.odds - pair.odds, 0.0);
-      const double weight = config_.detection_probability * track.visibility /
-                            (echo.density + claimed_by_others);
+      const double weight =
+          config_.detection_probability * track.visibility / (echo.density + claimed_by_others);
       const double wild = config_.wild_scale * config_.wild_scale;
       readings[count++] = {Fix{echo.position.covariance}, pair.z,
                            (1.0 - config_.wild_probability) * weight};
@@ -496,7 +501,8 @@ class Tracker {
     return count;
   }
 
-  /// Bayes' rule for "the target exists" and for "it is visible", given how well the scan fits the track.
+  /// Bayes' rule for "the target exists" and for "it is visible", given how well the scan fits the
+  /// track.
   void weigh_existence(TrackType& track, double total, double none, bool assigned) const noexcept {
     if (config_.visible_time_s > 0.0) {
       const double fit = (total - none) / track.visibility;
@@ -551,7 +557,8 @@ class Tracker {
     return a.existence > b.existence || (a.existence == b.existence && a.id > b.id);
   }
 
-  /// Squared distance of position and of velocity, each in standard deviations of the difference, under the limit.
+  /// Squared distance of position and of velocity, each in standard deviations of the difference,
+  /// under the limit.
   bool same_target(const TrackType& a, const TrackType& b) const noexcept {
     const Vec<double, 4> d = a.kinematics.mean - b.kinematics.mean;
     const Mat<double, 4, 4> s = a.kinematics.covariance + b.kinematics.covariance;
@@ -585,7 +592,8 @@ class Tracker {
     for (const Echo& echo : echoes_) map_.add(echo.position.mean, time_s, echo.free);
   }
 
-  /// A free plot and one of the scan before, near enough for the speed limit, start a tentative track.
+  /// A free plot and one of the scan before, near enough for the speed limit, start a tentative
+  /// track.
   void start_tracks(double time_s) noexcept {
     double earliest_s = std::numeric_limits<double>::infinity();
     double largest_variance = 0.0;
@@ -605,9 +613,8 @@ class Tracker {
       for (; place != free_.end() && place->position.mean[0] <= north + reach; ++place) {
         const FreePlot& earlier = *place;
         const double dt_s = echo.time_s - earlier.time_s;
-        if (!(dt_s > 0.0) ||
-            !within_speed_limit(earlier.position, echo.position, dt_s, radar_.max_speed_mps,
-                                config_.start_gate_sigma))
+        if (!(dt_s > 0.0) || !within_speed_limit(earlier.position, echo.position, dt_s,
+                                                 radar_.max_speed_mps, config_.start_gate_sigma))
           continue;
         Gaussian<4> belief = two_point<double>(earlier.position, echo.position, dt_s);
         if (config_.start_speed_factor > 0.0)
@@ -697,7 +704,8 @@ class Tracker {
   /// FNV-1a, 64 bits.
   static std::uint64_t checksum(std::span<const std::byte> bytes) noexcept {
     std::uint64_t sum = 0xCBF29CE484222325u;
-    for (const std::byte byte : bytes) sum = (sum ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001B3u;
+    for (const std::byte byte : bytes)
+      sum = (sum ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001B3u;
     return sum;
   }
 
@@ -744,8 +752,8 @@ class Tracker {
   Estimator prototype_;
   ClutterMap map_;
   std::vector<TrackType> pool_;
-  std::vector<int> order_;   ///< slots of the pool in use, older tracks first
-  std::vector<int> vacant_;  ///< the others
+  std::vector<int> order_;    ///< slots of the pool in use, older tracks first
+  std::vector<int> vacant_;   ///< the others
   std::vector<Pairs> pairs_;  ///< by slot
   std::vector<Echo> echoes_;
   std::vector<int> by_north_;

@@ -10,10 +10,11 @@
 
 namespace wakeline {
 
-/// The motion models that a tracker uses unless told otherwise: steady, restless and turning. Their noise grows with the
-/// square of the speed, so that one set serves a drifting ferry and a boat at play.
+/// The motion models that a tracker uses unless told otherwise: steady, restless and turning. Their
+/// noise grows with the square of the speed, so that one set serves a drifting ferry and a boat at
+/// play.
 struct VesselModels {
-  double steady_psd_m2s3 = 0.005;  ///< acceleration of a steady vessel at rest
+  double steady_psd_m2s3 = 0.005;          ///< acceleration of a steady vessel at rest
   double steady_course_psd_rad2s = 0.004;  ///< wander of its course
   double restless_psd_m2s3 = 0.2;
   double restless_course_psd_rad2s = 0.055;
@@ -58,7 +59,8 @@ struct VesselModels {
 using VesselImm =
     Imm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<CoordinatedTurnRate>>>;
 
-/// The estimator of a tracker for this radar. A start believes in each mode as much as the chain in the long run.
+/// The estimator of a tracker for this radar. A start believes in each mode as much as the chain in
+/// the long run.
 inline VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {}) {
   const Vec<double, 3> sojourn_s{models.steady_sojourn_s, models.restless_sojourn_s,
                                  models.turning_sojourn_s};
