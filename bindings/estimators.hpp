@@ -25,6 +25,15 @@ inline AnyBelief to_belief(const char* name, const PyGaussian& gaussian) {
   return belief;
 }
 
+/// The belief that an estimator of so many states starts with: over these, or over [x, vx, y, vy].
+inline AnyBelief to_start(const char* name, const PyGaussian& gaussian, int states) {
+  if (gaussian.mean.size() != 4 && gaussian.mean.size() != states)
+    throw py::value_error(std::string(name) + " must have a mean of 4" +
+                          (states == 4 ? "" : " or " + std::to_string(states)) + " states, got " +
+                          std::to_string(gaussian.mean.size()));
+  return to_belief(name, gaussian);
+}
+
 /// Calls `function(sensor)` with the C++ sensor behind a Python one.
 template <class Function>
 auto visit_sensor(const py::handle& sensor, Function&& function) {

@@ -6,12 +6,16 @@
 
 namespace wakeline::python {
 
-std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs) {
-  if (py::isinstance<PyGaussian>(start))
-    return {to_belief("start", start.cast<const PyGaussian&>())};
+std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs, int states) {
+  const auto one = [&](const py::handle& item) {
+    if (!py::isinstance<PyGaussian>(item))
+      throw py::type_error("start must be a Gaussian or a sequence of them, got " +
+                           py::str(py::type::of(item).attr("__name__")).cast<std::string>());
+    return to_start("start", item.cast<const PyGaussian&>(), states);
+  };
+  if (!py::isinstance<py::sequence>(start)) return {one(start)};
   std::vector<AnyBelief> beliefs;
-  for (const py::handle item : start)
-    beliefs.push_back(to_belief("start", item.cast<const PyGaussian&>()));
+  for (const py::handle item : start) beliefs.push_back(one(item));
   if (beliefs.size() != runs)
     throw py::value_error("start must be one Gaussian or one per run (" + std::to_string(runs) +
                           "), got " + std::to_string(beliefs.size()));
@@ -19,6 +23,7 @@ std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs) {
 }
 
 std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans) {
+  if (dt_s.is_none()) throw py::type_error("dt_s must be a number or an array, got None");
   const DoubleArray array = dt_s.cast<DoubleArray>();
   if (array.ndim() == 0) return std::vector<double>(scans, *array.data());
   require_shape(array.ndim() == 1 && array.shape(0) == static_cast<py::ssize_t>(scans), "dt_s",
@@ -116,7 +121,7 @@ void define_filter(py::module_& parent) {
       .def(
           "start",
           [](AnyFilter& filter, const PyGaussian& belief) {
-            require_ok(filter.start(to_belief("belief", belief)), "start");
+            require_ok(filter.start(to_start("belief", belief, states_of(filter))), "start");
           },
           py::arg("belief"), "Begins with a belief over the filter's state or over [x, vx, y, vy].")
       .def(

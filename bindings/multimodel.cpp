@@ -93,7 +93,7 @@ initial_mode_probability : (K,) array, optional
       .def(
           "start",
           [](AnyImm& imm, const PyGaussian& belief) {
-            require_ok(imm.start(to_belief("belief", belief)), "start");
+            require_ok(imm.start(to_start("belief", belief, states_of(imm))), "start");
           },
           py::arg("belief"),
           "Begins with a belief over [x, vx, y, vy], or over the state that all filters share.")

@@ -100,7 +100,7 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
 }
 
 /// The beliefs that `start` means: one Gaussian for all runs or a sequence of R.
-std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs);
+std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs, int states);
 
 /// A scalar step or one per scan.
 std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans);
@@ -121,13 +121,14 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
     in.measurements = kM;
     in.z = z.data();
     in.dt_s = parse_steps(dt_s, in.scans);
-    in.start = parse_starts(start, in.runs);
+    in.start = parse_starts(start, in.runs, states_of(prototype));
     if (own_position_m) {
       if constexpr (!requires { model.own; })
         throw py::value_error("own_position_m must be None for a sensor without own ship");
       require_shape(own_position_m->ndim() == 2 && own_position_m->shape(1) == 2 &&
                         own_position_m->shape(0) == static_cast<py::ssize_t>(in.scans),
-                    "own_position_m", "(T, 2)", *own_position_m);
+                    "own_position_m", shape_text({static_cast<py::ssize_t>(in.scans), 2}),
+                    *own_position_m);
       in.own = own_position_m->data();
     }
 

@@ -20,8 +20,9 @@ class SettingsClass {
   SettingsClass(py::module_& m, const char* name, const char* doc) : class_(m, name, doc) {
     class_.def(py::init([](const py::kwargs& values) {
       py::object settings = py::cast(Settings{});
+      const py::object known = settings.attr("as_dict")();
       for (const auto& [key, value] : values) {
-        if (!py::hasattr(settings, key))
+        if (!known.contains(key))
           throw py::type_error("no setting is called " + py::str(key).cast<std::string>());
         settings.attr(key) = value;
       }
@@ -193,6 +194,7 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
 }
 
 PyTracks tracks(const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {
+  if (time_s && !std::isfinite(*time_s)) throw py::value_error("time_s must be finite");
   std::vector<const Track<AnyImm>*> wanted;
   tracker.for_each([&](const Track<AnyImm>& track) {
     if (tentative || track.shown()) wanted.push_back(&track);
@@ -419,8 +421,10 @@ FilterError
               throw py::value_error("state is not that of a tracker with the same settings");
           },
           py::arg("state"), "Goes on bit for bit where the saved tracker was.")
-      .def_property_readonly("radar", &AnyTracker::radar)
-      .def_property_readonly("config", &AnyTracker::config);
+      .def_property_readonly("radar",
+                             [](const AnyTracker& tracker) { return Radar(tracker.radar()); })
+      .def_property_readonly(
+          "config", [](const AnyTracker& tracker) { return TrackerConfig(tracker.config()); });
 }
 
 }  // namespace wakeline::python

@@ -81,4 +81,12 @@ class Archive {
   bool ok_ = true;
 };
 
+/// FNV-1a of 64 bits, to find bytes that were damaged.
+inline std::uint64_t checksum(std::span<const std::byte> bytes) noexcept {
+  std::uint64_t sum = 0xCBF29CE484222325u;
+  for (const std::byte byte : bytes)
+    sum = (sum ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001B3u;
+  return sum;
+}
+
 }  // namespace wakeline

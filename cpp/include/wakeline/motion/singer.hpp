@@ -82,6 +82,7 @@ struct Singer {
         const Vec<Scalar, 3> g = impulse_response(dt_s * Scalar((1.0 + node) / 2));
         noise += Scalar(kWeight[k]) * g * g.transpose();
       }
+    mirror_lower<Scalar, 3>(noise);
     return dt_s / Scalar(maneuver_time_s) * noise;
   }
 

@@ -70,6 +70,16 @@ struct TrackerConfig {
                           ///< or is not started
   int max_plots = 20000;  ///< plots of a scan beyond this are refused
 
+  /// PD PG: a visible target gives a plot, and that in its gate.
+  [[nodiscard]] double detection() const noexcept {
+    return detection_probability * gate_probability;
+  }
+
+  /// k², by which the covariance of a wild plot is larger; 1 where there are none.
+  [[nodiscard]] double wild_variance() const noexcept {
+    return wild_probability > 0.0 ? wild_scale * wild_scale : 1.0;
+  }
+
   /// All settings in order, to be compared and saved.
   [[nodiscard]] auto settings() noexcept {
     return std::tie(detection_probability, gate_probability, clutter_density_per_m2,

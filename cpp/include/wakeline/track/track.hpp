@@ -68,7 +68,35 @@ struct Track {
   [[nodiscard]] Vec<double, 2> position() const noexcept {
     return {kinematics.mean[0], kinematics.mean[2]};
   }
+  [[nodiscard]] Vec<double, 2> velocity() const noexcept {
+    return {kinematics.mean[1], kinematics.mean[3]};
+  }
   [[nodiscard]] std::string_view label() const noexcept { return name.data(); }
+
+  /// Time passes: the target may leave, be hidden from the radar, or be seen again.
+  void age(const TrackerConfig& config, double dt_s) noexcept {
+    existence *= std::exp(-dt_s / config.survival_time_s);
+    if (!(config.visible_time_s > 0.0)) return;
+    const double hide = 1.0 / config.visible_time_s;
+    const double show = 1.0 / config.hidden_time_s;
+    const double settled = show / (hide + show);
+    visibility = settled + (visibility - settled) * std::exp(-(hide + show) * dt_s);
+  }
+
+  /// Bayes' rule for "the target exists" and "it is visible", given how well the scan fits the
+  /// track: `total` for all that its plots may mean, of which `none` is that it gave none. A
+  /// `certain` track was given its plot and cannot have none.
+  void weigh(const TrackerConfig& config, double total, double none, bool certain) noexcept {
+    if (config.visible_time_s > 0.0) {
+      const double fit = (total - none) / visibility;
+      const double if_visible = certain ? fit : 1.0 - config.detection() + fit;
+      const double if_hidden = certain ? 0.0 : 1.0;
+      const double visible = visibility * if_visible;
+      visibility = visible / (visible + (1.0 - visibility) * if_hidden);
+    }
+    const double exists = existence * total;
+    existence = std::min(exists / (1.0 - existence + exists), 0.99999);
+  }
 
   /// Counts a scan in which the target was seen, or not.
   void count(bool seen) noexcept {
