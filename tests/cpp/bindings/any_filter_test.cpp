@@ -10,6 +10,7 @@
 #include <random>
 
 #include "support/matrix_assert.hpp"
+#include "wakeline/track/vessel_models.hpp"
 
 namespace wakeline::python {
 namespace {
@@ -87,6 +88,21 @@ TEST(AnyFilterBank, EqualsMixedSizesBitForBit) {
              AnyFilterBank({AnyFilter(straight), AnyFilter(turn), AnyFilter(accelerated),
                             AnyFilter(square_root)})),
       RangeBearing{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)});
+}
+
+TEST(AnyFilterBank, EqualsTheTrackersEstimatorBitForBit) {
+  const Radar radar{.max_speed_mps = 20.0};
+  const VesselModels models;
+  const Vec<double, 3> sojourn_s{models.steady_sojourn_s, models.restless_sojourn_s,
+                                 models.turning_sojourn_s};
+  AnyImm composed(
+      ModeChain<kRuntimeModes>::from_sojourn_s(ModeVector<double, kRuntimeModes>(sojourn_s)),
+      AnyFilterBank({AnyFilter(Ekf(models.steady(20.0))), AnyFilter(Ekf(models.restless(20.0))),
+                     AnyFilter(Ekf(models.turning(20.0)))}));
+  composed.set_initial_mode_probability(
+      ModeVector<double, kRuntimeModes>(sojourn_s / sojourn_s.sum()));
+  expect_same_bits(vessel_imm(radar, models), composed,
+                   ConvertedRangeBearing{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)});
 }
 
 TEST(AnyFilterBank, RefusesNoneAndTooMany) {

@@ -112,7 +112,7 @@ class ModeChain {
     Matrix power = x;
     Matrix sum = -x;
     for (int n = 2; n < 100'000 && power.cwiseAbs().maxCoeff() > 1e-17; ++n) {
-      power = (power * x).eval();
+      power = product(power, x);
       sum -= power / n;
     }
     return sum;
@@ -128,13 +128,29 @@ class ModeChain {
         matrix_(i, j) = std::max(matrix_(i, j), 0.0);
       }
       matrix_(i, i) = 0.0;
-      matrix_(i, i) = -matrix_.row(i).sum();
+      matrix_(i, i) = -row_sum(matrix_, i);
     }
     if (!valid || !(transition(period_s) - over_period).isZero(1e-9))
       throw std::invalid_argument(
           "this matrix is not the transition of a continuous-time chain over its period; leave the "
           "period out to apply "
           "it once per prediction");
+  }
+
+  // Sums in loops, whose order does not depend on whether K is known at compile time.
+
+  static double row_sum(const Matrix& matrix, Eigen::Index row) noexcept {
+    double sum = 0.0;
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) sum += matrix(row, j);
+    return sum;
+  }
+
+  static Matrix product(const Matrix& a, const Matrix& b) noexcept {
+    Matrix result = Matrix::Zero(a.rows(), a.cols());
+    for (Eigen::Index j = 0; j < a.cols(); ++j)
+      for (Eigen::Index k = 0; k < a.cols(); ++k)
+        for (Eigen::Index i = 0; i < a.rows(); ++i) result(i, j) += a(i, k) * b(k, j);
+    return result;
   }
 
   /// exp(G dt) by uniformisation, whose terms are all positive, on a step halved until it is short,
@@ -151,12 +167,12 @@ class ModeChain {
     Matrix term = identity;
     Matrix sum = identity;
     for (int n = 1; n <= 14; ++n) {
-      term = (term * jump).eval() * (rate / n);
+      term = product(term, jump) * (rate / n);
       sum += term;
     }
     for (int n = 0; n <= halvings; ++n) {
-      if (n > 0) sum = (sum * sum).eval();
-      for (Eigen::Index i = 0; i < modes(); ++i) sum.row(i) /= sum.row(i).sum();
+      if (n > 0) sum = product(sum, sum);
+      for (Eigen::Index i = 0; i < modes(); ++i) sum.row(i) /= row_sum(sum, i);
     }
     return sum;
   }
