@@ -72,7 +72,7 @@ inline double squared_distance(const Gaussian<4>& kinematics, const Vec<double, 
   s += r;
   const Cholesky<2> factor(s);
   const Vec<double, 2> d(z[0] - kinematics.mean[0], z[1] - kinematics.mean[2]);
-  return factor.ok() ? factor.whiten<1>(d).squaredNorm() : std::numeric_limits<double>::infinity();
+  return factor.ok() ? factor.squared_norm(d) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace wakeline

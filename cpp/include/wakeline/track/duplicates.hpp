@@ -32,7 +32,7 @@ inline bool same_target(const Gaussian<4>& a, const Gaussian<4>& b, double limit
         s(i, j) = a.covariance(k + 2 * i, k + 2 * j) + b.covariance(k + 2 * i, k + 2 * j);
     const Cholesky<2> factor(s);
     if (!factor.ok()) return false;
-    sum += factor.whiten<1>(Vec<double, 2>(d[k], d[k + 2])).squaredNorm();
+    sum += factor.squared_norm(Vec<double, 2>(d[k], d[k + 2]));
   }
   return sum < limit;
 }

@@ -17,6 +17,7 @@
 
 #include "wakeline/association/global_nearest_neighbour.hpp"
 #include "wakeline/association/nearest_neighbour.hpp"
+#include "wakeline/gating/chi_square_gate.hpp"
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/track/claims.hpp"
@@ -60,6 +61,7 @@ class Tracker {
       : radar_(validated(radar)),
         config_(validated(config)),
         prototype_(prototype),
+        gate_(ChiSquareGate{config.gate_probability}),
         map_(config.clutter_cell_m, config.clutter_memory_s),
         tracks_(config.max_tracks, prototype),
         claims_(static_cast<std::size_t>(config.max_tracks)),
@@ -245,7 +247,7 @@ class Tracker {
   /// Finds the plots that a track may own.
   void gate(const TrackType& track, Claims& claims) noexcept {
     claims.clear();
-    const double threshold = -2.0 * std::log1p(-config_.gate_probability);
+    const double threshold = gate_.threshold();
     const auto& p = track.kinematics.covariance;
     // Generous: the widest mode of an estimator may be some times wider than the mixture.
     const double reach =
@@ -258,7 +260,7 @@ class Tracker {
       Claim claim{.echo = index, .z = position.mean + dt_s * track.velocity()};
       const Evidence<double> wild =
           track.estimator.evidence(Fix{config_.wild_variance() * position.covariance}, claim.z);
-      if (!(wild.least_nis <= threshold)) return;
+      if (!gate_.contains(wild.least_nis)) return;
       const Evidence<double> nominal = track.estimator.evidence(Fix{position.covariance}, claim.z);
       claim.likelihood = (1.0 - config_.wild_probability) * nominal.likelihood +
                          config_.wild_probability * wild.likelihood;
@@ -537,6 +539,7 @@ class Tracker {
   Radar radar_;
   TrackerConfig config_;
   Estimator prototype_;
+  EllipsoidalGate<2> gate_;
   ClutterMap map_;
   TrackList<Estimator> tracks_;
   std::vector<Claims> claims_;  ///< by slot of the list
