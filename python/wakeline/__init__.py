@@ -72,7 +72,7 @@ from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, v
 for _noun in (association, core, eval, filter, gating, measurement, motion, multimodel, track):
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
-from . import metrics, recording, scenario  # noqa: E402  (they use the nouns above)
+from . import metrics, montecarlo, recording, scenario  # noqa: E402  (they use the nouns above)
 
 try:
     __version__ = _version("wakeline")
@@ -120,6 +120,7 @@ __all__ = [
     "conversion_bias_matters",
     "conversion_bias_ratio",
     "metrics",
+    "montecarlo",
     "one_point",
     "recording",
     "scenario",

@@ -499,7 +499,7 @@ def test_a_reader_that_leaves_and_a_silent_stderr():
 
 
 def test_progress_is_drawn_on_a_terminal_only(monkeypatch, capsys):
-    from wakeline.cli import progress
+    from wakeline import _progress as progress
 
     assert list(progress.progress(range(5), 5, "counting")) == list(range(5))
     assert capsys.readouterr().err == ""

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 import wakeline as wl
+from wakeline._progress import progress
 
 from . import outputs, report
-from .progress import progress
 
 OURS = "scalar_double"
 

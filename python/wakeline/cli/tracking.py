@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import wakeline as wl
+from wakeline._progress import progress
 from wakeline.recording import Episode, Recording, Scan, Tracks
 
 from .config import Settings
-from .progress import progress
 
 MODE_NAMES = ("steady", "restless", "turning")
 

@@ -1,8 +1,16 @@
-"""Scores of tracks against truth: coverage, continuity, accuracy, false tracks, OSPA and GOSPA.
+"""Scores of tracks against truth, and of many runs: errors as curves, consistency, settling.
 
 States are ``[north, vnorth, east, veast]`` in metres and metres per second.
 """
 
+from .consistency import share_inside, squared_distance
+from .curves import (
+    SegmentFigures,
+    by_segment,
+    detection_delays_scans,
+    rmse_curve,
+    settling_times_s,
+)
 from .results import EpisodeScore, Score, Summary, TargetScore
 from .scoring import score
 from .sets import Gospa, gospa, ospa
@@ -13,11 +21,18 @@ __all__ = [
     "Errors",
     "Gospa",
     "Score",
+    "SegmentFigures",
     "Summary",
     "TargetScore",
+    "by_segment",
+    "detection_delays_scans",
     "gospa",
     "nees",
     "ospa",
     "rmse",
+    "rmse_curve",
     "score",
+    "settling_times_s",
+    "share_inside",
+    "squared_distance",
 ]

@@ -12,7 +12,7 @@ _SERIES_BELOW_RAD = 0.3
 
 @dataclass(frozen=True)
 class Segment:
-    """A stretch of constant turn rate and constant acceleration along the course.
+    """A stretch of constant turn rate, constant thrust and constant accelerations north and east.
 
     Attributes
     ----------
@@ -21,32 +21,103 @@ class Segment:
     turn_rate_rad_s : float
         Positive to starboard.
     acceleration_mps2 : float
-        Change of speed per second.
+        Thrust: change of speed per second, along the course.
+    control_mps2 : (float, float)
+        A known acceleration north and east, on top of the turn and the thrust: the ``u`` of the
+        papers.
+    disturbance_mps2 : (float, float)
+        An acceleration north and east that nobody knows of: the ``w`` of the papers. It moves the
+        vessel as `control_mps2` does and is not part of :meth:`Truth.control_at`.
 
     Raises
     ------
     ValueError
-        When a value is not finite or the duration is not positive.
+        When a value is not finite, the duration is not positive or an acceleration is no pair.
     """
 
     duration_s: float
     turn_rate_rad_s: float = 0.0
     acceleration_mps2: float = 0.0
+    control_mps2: tuple[float, float] = (0.0, 0.0)
+    disturbance_mps2: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
+        for name in ("control_mps2", "disturbance_mps2"):
+            pair = tuple(np.asarray(getattr(self, name), dtype=float).ravel().tolist())
+            if len(pair) != 2:
+                raise ValueError(f"{name} must be two numbers, north and east, got {pair}")
+            object.__setattr__(self, name, pair)
         values = (self.duration_s, self.turn_rate_rad_s, self.acceleration_mps2)
-        if not np.isfinite(values).all():
+        if not np.isfinite([*values, *self.control_mps2, *self.disturbance_mps2]).all():
             raise ValueError(f"a segment must be finite, got {self}")
         if self.duration_s <= 0:
             raise ValueError(f"duration_s must be positive, got {self.duration_s}")
+
+    @property
+    def push_mps2(self) -> complex:
+        """Sum of the accelerations north and east, as north + i east."""
+        return complex(*self.control_mps2) + complex(*self.disturbance_mps2)
+
+
+def segments_from_table(
+    rows: Sequence[Sequence[float]], *, max_turn_rate_rad_s: float | None = None
+) -> tuple[Segment, ...]:
+    """Segments from rows of begin, end and turn rate.
+
+    Parameters
+    ----------
+    rows : sequence of (begin_s, end_s, turn_rate_rad_s)
+        In order, each beginning where the one before it ends.
+    max_turn_rate_rad_s : float, optional
+        Fastest turn allowed, either side.
+
+    Returns
+    -------
+    tuple of Segment
+
+    Raises
+    ------
+    ValueError
+        Naming the row, counted from 0: not three finite numbers, an end that is not after its
+        begin, rows that overlap or leave a gap, a turn that is too fast; or when there is no row.
+    """
+    if len(rows) == 0:
+        raise ValueError("a table of segments must have at least one row")
+    segments = []
+    last_end_s = None
+    for k, row in enumerate(rows):
+        if len(row) != 3 or not np.isfinite(np.asarray(row, dtype=float)).all():
+            raise ValueError(f"row {k} must be three finite numbers, begin, end and rate: {row}")
+        begin_s, end_s, rate_rad_s = (float(value) for value in row)
+        if end_s <= begin_s:
+            raise ValueError(f"row {k} ends at {end_s} s, not after its begin at {begin_s} s")
+        if last_end_s is not None and begin_s != last_end_s:
+            fault = "overlaps with" if begin_s < last_end_s else "leaves a gap to"
+            raise ValueError(
+                f"row {k} begins at {begin_s} s and {fault} row {k - 1}, which ends at "
+                f"{last_end_s} s"
+            )
+        if max_turn_rate_rad_s is not None and abs(rate_rad_s) > max_turn_rate_rad_s:
+            raise ValueError(
+                f"row {k} turns at {rate_rad_s} rad/s, faster than {max_turn_rate_rad_s} rad/s"
+            )
+        segments.append(Segment(end_s - begin_s, rate_rad_s))
+        last_end_s = end_s
+    return tuple(segments)
 
 
 class Truth:
     """Where a vessel truly is, in closed form at any time.
 
-    Within a segment the speed is ``v(s) = v + a s``, the course ``c(s) = c + w s``, and the way
-    made is the integral of ``v(s) [cos c(s), sin c(s)]``, north and east, taken exactly. Before the
-    first and after the last segment the vessel goes straight on at constant speed.
+    Within a segment of turn rate ``w``, thrust ``a`` and accelerations ``u`` north and east,
+
+        ``dv/dt = w x v + a e(c) + u``
+
+    where ``w x v`` turns the velocity and ``e(c)`` points along the course steered: that of the
+    velocity when the segment begins, turned since at ``w``. All of it is taken exactly: the speed
+    ``v + a t`` along the steered course, the way made by it, and what ``u`` adds while the turn
+    turns it, too. Without ``u`` the steered course is the course over ground. Before the first and
+    after the last segment the vessel goes straight on at constant speed.
 
     Parameters
     ----------
@@ -59,10 +130,16 @@ class Truth:
     start_course_rad : float, optional
         Course at the beginning of a vessel that starts at rest; default that of the velocity.
 
+    Attributes
+    ----------
+    segments : tuple of Segment
+    start_time_s : float
+
     Raises
     ------
     ValueError
-        When the start is not four finite numbers or a segment brings the speed below zero.
+        When the start is not four finite numbers or the thrust of a segment brings the speed below
+        zero.
     """
 
     def __init__(
@@ -77,17 +154,26 @@ class Truth:
         if start.shape != (4,) or not np.isfinite(start).all():
             raise ValueError(f"start must be 4 finite numbers, got {start.tolist()}")
         north_m, vnorth_mps, east_m, veast_mps = start
-        self._start_m = np.array([north_m, east_m])
         speed_mps = float(np.hypot(vnorth_mps, veast_mps))
         course_rad = float(np.arctan2(veast_mps, vnorth_mps))
         self.segments = tuple(segments)
         self.start_time_s = float(start_time_s)
-        self._lay_legs(speed_mps, course_rad if start_course_rad is None else start_course_rad)
+        self._lay_legs(
+            complex(north_m, east_m),
+            speed_mps,
+            course_rad if start_course_rad is None else start_course_rad,
+        )
 
     @property
     def end_time_s(self) -> float:
         """Time at which the last segment ends."""
         return float(self._time_s[-1])
+
+    @property
+    def switch_times_s(self) -> np.ndarray:
+        """Times (S,) from the start on at which the turn rate changes, in order."""
+        change = np.flatnonzero(np.diff(self._turn_rate_rad_s[1:]))
+        return self._time_s[1:][change]
 
     def state_at(self, time_s: np.ndarray | float) -> np.ndarray:
         """States ``[north, vnorth, east, veast]`` at the given times.
@@ -102,62 +188,72 @@ class Truth:
         ndarray (T, 4)
             One row for a single time.
         """
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
-        leg = np.searchsorted(self._time_s, time_s, side="right")
-        since_s = time_s - self._time_s[np.maximum(leg - 1, 0)]
-        way_m = self._way(leg, since_s)
-        speed_mps = self._speed_mps[leg] + self._acceleration_mps2[leg] * since_s
-        course_rad = self._course_rad[leg] + self._turn_rate_rad_s[leg] * since_s
-        return np.column_stack(
-            [
-                self._north_m[leg] + way_m.real,
-                speed_mps * np.cos(course_rad),
-                self._east_m[leg] + way_m.imag,
-                speed_mps * np.sin(course_rad),
-            ]
-        )
+        leg, since_s = self._legs_at(time_s)
+        place_m, velocity_mps = self._motion(leg, since_s)
+        return np.column_stack([place_m.real, velocity_mps.real, place_m.imag, velocity_mps.imag])
 
     def turn_rate_at(self, time_s: np.ndarray | float) -> np.ndarray:
         """Turn rates (T,) in radians per second; at a change that of the segment that begins."""
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
-        return self._turn_rate_rad_s[np.searchsorted(self._time_s, time_s, side="right")]
+        return self._turn_rate_rad_s[self._legs_at(time_s)[0]]
 
-    def _lay_legs(self, speed_mps: float, course_rad: float) -> None:
+    def control_at(self, time_s: np.ndarray | float) -> np.ndarray:
+        """Known accelerations (T, 2) north and east in m/s²; at a change those that begin."""
+        return self._control_mps2[self._legs_at(time_s)[0]]
+
+    def _legs_at(self, time_s: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+        """Leg (T,) in force at each time, and the time (T,) since it began."""
+        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        leg = np.searchsorted(self._time_s, time_s, side="right")
+        return leg, time_s - self._time_s[np.maximum(leg - 1, 0)]
+
+    def _lay_legs(self, place_m: complex, speed_mps: float, course_rad: float) -> None:
         """Legs are the straight run before the start, the segments, the straight run after them.
 
         Leg k begins at time k - 1 of `_time_s`; the leg before the start is told from there, too.
         """
+        legs = [None, *self.segments, None]
         duration_s = [segment.duration_s for segment in self.segments]
         self._time_s = self.start_time_s + np.concatenate([[0.0], np.cumsum(duration_s)])
-        self._turn_rate_rad_s = np.array([0.0, *(s.turn_rate_rad_s for s in self.segments), 0.0])
-        self._acceleration_mps2 = np.array(
-            [0.0, *(s.acceleration_mps2 for s in self.segments), 0.0]
-        )
-        gained_mps = self._acceleration_mps2[1:-1] * duration_s
-        turned_rad = self._turn_rate_rad_s[1:-1] * duration_s
-        self._speed_mps = speed_mps + np.concatenate([[0.0, 0.0], np.cumsum(gained_mps)])
-        self._course_rad = course_rad + np.concatenate([[0.0, 0.0], np.cumsum(turned_rad)])
-        slow = np.flatnonzero(self._speed_mps < -1e-9 * max(speed_mps, 1.0))
-        if len(slow):
-            raise ValueError(f"segment {slow[0] - 2} brings the speed below zero")
-        legs = np.arange(1, len(self.segments) + 1)
-        way_m = np.concatenate([[0.0, 0.0], np.cumsum(self._way(legs, np.array(duration_s)))])
-        self._north_m = self._start_m[0] + way_m.real
-        self._east_m = self._start_m[1] + way_m.imag
+        self._turn_rate_rad_s = np.array([s.turn_rate_rad_s if s else 0.0 for s in legs])
+        self._acceleration_mps2 = np.array([s.acceleration_mps2 if s else 0.0 for s in legs])
+        self._control_mps2 = np.array([s.control_mps2 if s else (0.0, 0.0) for s in legs])
+        self._push_mps2 = np.array([s.push_mps2 if s else 0.0 for s in legs], dtype=complex)
+        self._place_m = np.full(len(legs), place_m)
+        self._speed_mps = np.full(len(legs), speed_mps)
+        self._course_rad = np.full(len(legs), course_rad)
+        least_mps = -1e-9 * max(speed_mps, 1.0)
+        for leg, segment in enumerate(self.segments, start=1):
+            end_m, velocity_mps = self._motion(np.array([leg]), np.array([segment.duration_s]))
+            end_mps = self._speed_mps[leg] + segment.acceleration_mps2 * segment.duration_s
+            if end_mps < least_mps:
+                raise ValueError(f"segment {leg - 1} brings the speed below zero")
+            end_rad = self._course_rad[leg] + segment.turn_rate_rad_s * segment.duration_s
+            if segment.push_mps2 and velocity_mps[0]:
+                end_mps, end_rad = abs(velocity_mps[0]), np.angle(velocity_mps[0])
+            self._place_m[leg + 1] = end_m[0]
+            self._speed_mps[leg + 1], self._course_rad[leg + 1] = end_mps, end_rad
 
-    def _way(self, leg: np.ndarray, since_s: np.ndarray) -> np.ndarray:
-        """Way made on each leg (T,) since it began, as north + i east in metres.
+    def _motion(self, leg: np.ndarray, since_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Places and velocities (T,) on each leg so long after it began, as north + i east.
 
-        With ``h = w t / 2`` and the course ``m`` half way, the integral is
-        ``t e^(i m) [(v + a t / 2) sin(h) / h + i (a t / 2) (sin(h) - h cos(h)) / h^2]``.
+        With ``h = w t / 2`` and the steered course ``m`` half way, the way made by the vessel is
+        ``t e^(i m) [(v + a t / 2) sin(h) / h + i (a t / 2) (sin(h) - h cos(h)) / h^2]`` and what
+        the push ``u`` adds is ``u t^2 (e^(2 i h) - 1 - 2 i h) / (2 i h)^2``.
         """
         half_turn_rad = 0.5 * self._turn_rate_rad_s[leg] * since_s
         half_gain_mps = 0.5 * self._acceleration_mps2[leg] * since_s
-        mean_speed_mps = self._speed_mps[leg] + half_gain_mps
-        ahead = mean_speed_mps * np.sinc(half_turn_rad / np.pi)
+        middle = np.exp(1j * (self._course_rad[leg] + half_turn_rad))
+        swing = np.exp(1j * half_turn_rad)
+        shrink = np.sinc(half_turn_rad / np.pi)
+        ahead = (self._speed_mps[leg] + half_gain_mps) * shrink
         aside = half_gain_mps * _bow(half_turn_rad)
-        mid_course_rad = self._course_rad[leg] + half_turn_rad
-        return since_s * np.exp(1j * mid_course_rad) * (ahead + 1j * aside)
+        pushed_mps = self._push_mps2[leg] * since_s
+        pushed = 0.5 * shrink**2 + 1j * _lag(2.0 * half_turn_rad)
+        place_m = self._place_m[leg] + since_s * (
+            middle * (ahead + 1j * aside) + pushed_mps * pushed
+        )
+        speed_mps = self._speed_mps[leg] + 2.0 * half_gain_mps
+        return place_m, middle * swing * speed_mps + pushed_mps * swing * shrink
 
 
 def _bow(h: np.ndarray) -> np.ndarray:
@@ -166,3 +262,11 @@ def _bow(h: np.ndarray) -> np.ndarray:
     series = h / 3 * (1 - square / 10 * (1 - square / 28 * (1 - square / 54 * (1 - square / 88))))
     far = np.where(np.abs(h) < _SERIES_BELOW_RAD, 1.0, h)
     return np.where(far == h, (np.sin(far) - far * np.cos(far)) / far**2, series)
+
+
+def _lag(angle: np.ndarray) -> np.ndarray:
+    """``(a - sin(a)) / a^2``, by its series where the difference would lose digits."""
+    square = angle * angle
+    series = angle / 6 * (1 - square / 20 * (1 - square / 42 * (1 - square / 72)))
+    far = np.where(np.abs(angle) < _SERIES_BELOW_RAD, 1.0, angle)
+    return np.where(far == angle, (far - np.sin(far)) / far**2, series)

@@ -1,0 +1,144 @@
+"""What competes in a Monte Carlo study: an estimator and the sensor it is told of."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from wakeline import core, filter, motion
+from wakeline.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An estimator, the sensor it is told of and, where it has such, the turn rates of its models.
+
+    Each of them may be a function of the scenario that gives the thing itself. A function of a
+    module is also what can be sent to the workers of a cluster, where the engine's own objects
+    cannot.
+
+    Attributes
+    ----------
+    estimator : object or callable
+        Anything with ``run(z, dt_s=, sensor=, start=)``, or ``estimator(scenario)`` that builds it.
+    sensor : {"polar", "converted"}, object or callable
+        The scenario's radar as ``RangeBearing`` or as ``ConvertedRangeBearing(unbiased=False)``, a
+        sensor, or ``sensor(scenario)``.
+    turn_rates_rad_s : sequence of K float, or callable, optional
+        Turn rate of each model, or ``turn_rates_rad_s(scenario)``. Gives the estimated turn rate
+        and tells which model is right, where the run itself does not tell ``turn_rate_rad_s``.
+    """
+
+    estimator: Any
+    sensor: Any = "polar"
+    turn_rates_rad_s: Sequence[float] | Callable[[Scenario], Sequence[float]] | None = None
+
+    def __call__(self, scenario: Scenario, z: np.ndarray) -> Any:
+        """Run the readings (R, T, 2) of a scenario: a ``RunResult`` or what looks like one."""
+        estimator = self.estimator
+        if not hasattr(estimator, "run"):
+            estimator = estimator(scenario)
+        return estimator.run(
+            z,
+            dt_s=scenario.radar.period_s,
+            sensor=_sensor(self.sensor, scenario),
+            start=scenario.start,
+        )
+
+    def rates(self, scenario: Scenario) -> np.ndarray | None:
+        """Turn rates (K,) of the models in rad/s, None where they are not told."""
+        rates = self.turn_rates_rad_s
+        if callable(rates):
+            rates = rates(scenario)
+        return None if rates is None else np.asarray(rates, dtype=float)
+
+
+def clairvoyant(
+    scenario: Scenario, z: np.ndarray, *, sensor: Any = "converted", noise: Any = None
+) -> SimpleNamespace:
+    """The Kalman filter that is told the turn rate at each instant: what no candidate can beat.
+
+    Where the rate switches between two scans it moves in two pieces. It is not told of thrust,
+    control or disturbance. Bind options by ``functools.partial``.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    z : ndarray (R, T, 2)
+        Readings, as of ``scenario.draw``.
+    sensor : {"polar", "converted"}, object or callable
+        As of :class:`Candidate`.
+    noise : process-noise policy, optional
+        Default none at all.
+
+    Returns
+    -------
+    namespace
+        ``mean`` (R, T, 4), ``covariance`` (R, T, 4, 4), ``mode_probability`` None, ``nis``,
+        ``log_likelihood``, ``status`` and ``turn_rate_rad_s`` (R, T).
+
+    Raises
+    ------
+    FilterError
+        When the filter cannot start.
+    """
+    sensor = _sensor(sensor, scenario)
+    noise = motion.PiecewiseAcceleration(std_mps2=0.0) if noise is None else noise
+    starts: Any = scenario.start
+    fields: dict[str, list[np.ndarray]] = {
+        name: [] for name in ("mean", "covariance", "nis", "log_likelihood", "status")
+    }
+    for rate_rad_s, steps in stretches(scenario):
+        dt_s = np.array([step.dt_s for step in steps])
+        told = np.full((len(z), len(steps), z.shape[-1]), np.nan)
+        read = [k for k, step in enumerate(steps) if step.scan is not None]
+        told[:, read] = z[:, [steps[k].scan for k in read]]
+        known = filter.Ekf(motion.CoordinatedTurn(turn_rate_rad_s=rate_rad_s, noise=noise))
+        piece = known.run(told, dt_s=dt_s, sensor=sensor, start=starts)
+        starts = list(map(core.Gaussian, piece.mean[:, -1], piece.covariance[:, -1]))
+        for name, parts in fields.items():
+            parts.append(getattr(piece, name)[:, read])
+    joined = {name: np.concatenate(parts, axis=1) for name, parts in fields.items()}
+    rates = np.broadcast_to(scenario.turn_rates_rad_s, z.shape[:2])
+    return SimpleNamespace(**joined, mode_probability=None, turn_rate_rad_s=rates)
+
+
+@dataclass(frozen=True)
+class PieceOfScan:
+    """A time of steady turn: `dt_s` long, ending at the reading of `scan` or at a switch (None)."""
+
+    turn_rate_rad_s: float
+    dt_s: float
+    scan: int | None
+
+
+def pieces(scenario: Scenario) -> list[PieceOfScan]:
+    """The time from the start to the last reading, cut at every reading and at every switch."""
+    time_s, switch_s = scenario.time_s, scenario.switch_times_s
+    cuts_s = np.union1d(time_s, switch_s)
+    begins_s = np.concatenate([[scenario.start_time_s], cuts_s[:-1]])
+    rates = scenario.truth.turn_rate_at(0.5 * (begins_s + cuts_s))
+    scan_at = {t: k for k, t in enumerate(time_s.tolist())}
+    return [
+        PieceOfScan(float(rate), float(end - begin), scan_at.get(float(end)))
+        for rate, begin, end in zip(rates, begins_s, cuts_s, strict=True)
+    ]
+
+
+def stretches(scenario: Scenario) -> list[tuple[float, list[PieceOfScan]]]:
+    """The pieces in groups of the same turn rate, one after the other."""
+    groups = itertools.groupby(pieces(scenario), key=lambda piece: piece.turn_rate_rad_s)
+    return [(rate, list(group)) for rate, group in groups]
+
+
+def _sensor(sensor: Any, scenario: Scenario) -> Any:
+    if isinstance(sensor, str):
+        if sensor not in ("polar", "converted"):
+            raise ValueError(f'sensor must be "polar" or "converted" where text, got {sensor!r}')
+        return getattr(scenario, f"{sensor}_sensor")
+    return sensor(scenario) if callable(sensor) else sensor

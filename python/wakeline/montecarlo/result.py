@@ -1,0 +1,283 @@
+"""What many runs came to: curves and figures of every candidate on every scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from wakeline import metrics
+from wakeline.scenario import Scenario
+
+from . import archive
+from .sums import Sums
+
+_STATES, _MEASUREMENTS = 4, 2
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What one candidate did on one scenario. Curves are over the T readings.
+
+    Attributes
+    ----------
+    scenario, candidate : str
+        Names.
+    time_s : ndarray (T,)
+    switch_times_s : ndarray (S,)
+        When the true turn rate switches.
+    true_turn_rate_rad_s : ndarray (T,)
+        In force before each reading.
+    runs : int
+        Runs that the curves are over.
+    failed_runs : int
+        Runs left out: they could not start or gave estimates that are not finite.
+    lost_runs : int
+        Runs whose last position is too far off; the curves hold them.
+    failed_steps : int
+        Steps that an estimator reported as failed, over all runs.
+    position_rmse_m, velocity_rmse_mps : ndarray (T,)
+        Root mean square over the runs of the distance to the true position and velocity.
+    nees : ndarray (T,)
+        Mean over the runs, of 4 states; NaN where a covariance is not positive definite.
+    nis, nis_count : ndarray (T,)
+        Mean over the runs with a reading, and their number; NaN without any.
+    mode_probability : ndarray (T, K) or None
+        Mean over the runs.
+    turn_rate_rad_s : ndarray (T,) or None
+        Estimate, mean over the runs.
+    right_mode_share : ndarray (T,) or None
+        Share of the runs whose most probable model is the one nearest to the true turn rate.
+    cpu_s : float
+        CPU time of the estimator over all runs.
+    """
+
+    scenario: str
+    candidate: str
+    time_s: np.ndarray
+    switch_times_s: np.ndarray
+    true_turn_rate_rad_s: np.ndarray
+    runs: int
+    failed_runs: int
+    lost_runs: int
+    failed_steps: int
+    position_rmse_m: np.ndarray
+    velocity_rmse_mps: np.ndarray
+    nees: np.ndarray
+    nis: np.ndarray
+    nis_count: np.ndarray
+    mode_probability: np.ndarray | None
+    turn_rate_rad_s: np.ndarray | None
+    right_mode_share: np.ndarray | None
+    cpu_s: float
+
+    @classmethod
+    def of(cls, scenario: Scenario, candidate: str, sums: Sums) -> Outcome:
+        """From the sums over all runs; curves over no run are NaN."""
+
+        def mean(total: np.ndarray | None) -> np.ndarray | None:
+            return None if total is None else _divided(total, sums.runs)
+
+        return cls(
+            scenario=scenario.name,
+            candidate=candidate,
+            time_s=scenario.time_s,
+            switch_times_s=scenario.switch_times_s,
+            true_turn_rate_rad_s=scenario.turn_rates_rad_s,
+            runs=sums.runs,
+            failed_runs=sums.failed_runs,
+            lost_runs=sums.lost_runs,
+            failed_steps=sums.failed_steps,
+            position_rmse_m=np.sqrt(mean(sums.position_m2)),
+            velocity_rmse_mps=np.sqrt(mean(sums.velocity_m2s2)),
+            nees=mean(sums.nees),
+            nis=_divided(sums.nis, sums.nis_count),
+            nis_count=sums.nis_count,
+            mode_probability=mean(sums.mode_probability),
+            turn_rate_rad_s=mean(sums.turn_rate_rad_s),
+            right_mode_share=mean(sums.right_mode),
+            cpu_s=sums.cpu_s,
+        )
+
+    def summary(self) -> dict[str, float | None]:
+        """The figures by name; None where a figure has no meaning here.
+
+        Returns
+        -------
+        dict
+            ``mean_position_m``, ``peak_position_m``, ``mean_velocity_mps``, ``peak_velocity_mps``:
+            mean and maximum over the scans of the RMSE curves. ``nees``: mean over the scans, 4 for
+            a consistent estimator. ``settling_s``: mean over the switches of
+            :func:`wakeline.metrics.settling_times_s` of the position RMSE. ``ns_per_step``: CPU
+            time of a run's step. Besides: ``nis``, ``nees_inside_share`` and ``nis_inside_share``
+            (scans within 95 % bounds), ``right_mode_share``, ``detection_delay_scans`` (mean over
+            the switches), ``runs``, ``failed_runs``, ``lost_runs``, ``failed_steps``.
+        """
+        right = self.right_mode_share
+        delays = (
+            metrics.detection_delays_scans(self.time_s, right, self.switch_times_s)
+            if right is not None
+            else np.zeros(0)
+        )
+        settling_s = metrics.settling_times_s(
+            self.time_s, self.position_rmse_m, self.switch_times_s
+        )
+        steps = (self.runs + self.failed_runs) * len(self.time_s)
+        return {
+            "mean_position_m": _number(np.mean(self.position_rmse_m)),
+            "peak_position_m": _number(np.max(self.position_rmse_m)),
+            "mean_velocity_mps": _number(np.mean(self.velocity_rmse_mps)),
+            "peak_velocity_mps": _number(np.max(self.velocity_rmse_mps)),
+            "nees": _number(np.mean(self.nees)),
+            "settling_s": _mean(settling_s) if self.runs else None,
+            "ns_per_step": _number(1e9 * self.cpu_s / steps),
+            "nis": _mean(self.nis),
+            "nees_inside_share": _share(self.nees, _STATES, self.runs),
+            "nis_inside_share": _share(self.nis, _MEASUREMENTS, self.nis_count),
+            "right_mode_share": None if right is None else _mean(right),
+            "detection_delay_scans": _mean(delays),
+            "runs": self.runs,
+            "failed_runs": self.failed_runs,
+            "lost_runs": self.lost_runs,
+            "failed_steps": self.failed_steps,
+        }
+
+    def segments(self) -> list[metrics.SegmentFigures]:
+        """Mean and peak of the position RMSE in each segment of the truth."""
+        return metrics.by_segment(self.time_s, self.position_rmse_m, self.switch_times_s)
+
+
+@dataclass(frozen=True)
+class Result:
+    """The outcomes of a Monte Carlo run.
+
+    ``result[scenario, candidate]`` is an :class:`Outcome`.
+
+    Attributes
+    ----------
+    outcomes : mapping of (str, str) to Outcome
+        By names of scenario and candidate, in the order in which they were given.
+    runs, seed : int
+        As given to :func:`wakeline.montecarlo.run`.
+    parameters : mapping of str to number
+        What else the figures depend on.
+    version : str
+        Of Wakeline, that made it.
+    """
+
+    outcomes: Mapping[tuple[str, str], Outcome]
+    runs: int
+    seed: int
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    version: str = field(default_factory=archive.current_version)
+
+    def __getitem__(self, names: tuple[str, str]) -> Outcome:
+        try:
+            return self.outcomes[names]
+        except KeyError:
+            raise KeyError(
+                f"no outcome {names!r}; scenarios: {', '.join(self.scenarios)}; "
+                f"candidates: {', '.join(self.candidates)}"
+            ) from None
+
+    @property
+    def scenarios(self) -> list[str]:
+        """Names in the order in which they were given."""
+        return list(dict.fromkeys(scenario for scenario, _ in self.outcomes))
+
+    @property
+    def candidates(self) -> list[str]:
+        """Names in the order in which they were given."""
+        return list(dict.fromkeys(candidate for _, candidate in self.outcomes))
+
+    def summary(self) -> dict[str, dict[str, dict[str, float | None]]]:
+        """Figures by scenario, then candidate: see :meth:`Outcome.summary`."""
+        return {
+            scenario: {name: self[scenario, name].summary() for name in self.candidates}
+            for scenario in self.scenarios
+        }
+
+    def merged(
+        self, candidate: str, scenarios: Sequence[str] | None = None
+    ) -> dict[str, float | None]:
+        """Figures of one candidate over several scenarios of the same length.
+
+        The squared errors are averaged over the scenarios, reading by reading, before their root
+        is taken: ``mean_...`` and ``peak_...`` are mean and maximum of these curves. The other
+        figures, and ``scenario_mean_position_m`` and ``scenario_mean_velocity_mps``, are means of
+        the scenarios' own; counts are sums.
+
+        Parameters
+        ----------
+        candidate : str
+        scenarios : sequence of str, optional
+            Default all.
+
+        Returns
+        -------
+        dict
+            As of :meth:`Outcome.summary`, and the two figures above.
+
+        Raises
+        ------
+        ValueError
+            When there is no scenario or their lengths differ.
+        KeyError
+            For a name that is not there.
+        """
+        parts = [self[name, candidate] for name in scenarios or self.scenarios]
+        lengths = sorted({len(part.time_s) for part in parts})
+        if len(lengths) != 1:
+            raise ValueError(f"scenarios must have the same number of scans, got {lengths}")
+        own = [part.summary() for part in parts]
+        figures = {name: _mean_of([one[name] for one in own]) for name in own[0]}
+        for name in ("runs", "failed_runs", "lost_runs", "failed_steps"):
+            figures[name] = sum(one[name] for one in own)
+        for what, unit in (("position", "m"), ("velocity", "mps")):
+            curve = np.sqrt(
+                np.mean([getattr(part, f"{what}_rmse_{unit}") ** 2 for part in parts], axis=0)
+            )
+            figures[f"scenario_mean_{what}_{unit}"] = figures[f"mean_{what}_{unit}"]
+            figures[f"mean_{what}_{unit}"] = _number(np.mean(curve))
+            figures[f"peak_{what}_{unit}"] = _number(np.max(curve))
+        return figures
+
+    def save(self, path: str | Path) -> None:
+        """Write everything to one NPZ file, which replaces what stood there when it is complete."""
+        archive.save(path, self.outcomes, self.runs, self.seed, self.parameters, self.version)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Result:
+        """Read what :meth:`save` wrote.
+
+        Raises
+        ------
+        ValueError
+            Naming the file, when it cannot be read or is no such file.
+        """
+        return archive.load(path, cls, Outcome)
+
+
+def _divided(total: np.ndarray, count: int | np.ndarray) -> np.ndarray:
+    count = np.broadcast_to(np.asarray(count, dtype=float), total.shape)
+    return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _mean(values: np.ndarray) -> float | None:
+    """Mean of the finite ones."""
+    values = np.asarray(values)[np.isfinite(values)]
+    return float(np.mean(values)) if len(values) else None
+
+
+def _mean_of(values: Sequence[float | None]) -> float | None:
+    return _mean(np.array([value for value in values if value is not None], dtype=float))
+
+
+def _share(curve: np.ndarray, dof: int, samples: int | np.ndarray) -> float | None:
+    return _number(metrics.share_inside(curve, dof, np.asarray(samples).astype(int)))

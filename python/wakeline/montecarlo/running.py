@@ -1,0 +1,197 @@
+"""Runs cut into chunks, worked off by threads or by a cluster, added up in one order."""
+
+from __future__ import annotations
+
+import os
+import pickle
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from wakeline import _progress
+from wakeline.scenario import Scenario
+
+from .candidate import Candidate
+from .result import Outcome, Result
+from .sums import Chunk, Sums, sums_of
+
+CHUNK_RUNS = 25
+"""Runs in a chunk: fixed, so that sums are added alike on any number of threads or workers."""
+
+
+def run(
+    scenarios: Scenario | Sequence[Scenario],
+    candidates: Mapping[str, Candidate | Callable[[Scenario, np.ndarray], Any]],
+    runs: int,
+    seed: int = 0,
+    *,
+    threads: int | None = None,
+    client: Any = None,
+    progress: bool | Callable[[int, int], None] = True,
+    lost_beyond_m: float = 500.0,
+) -> Result:
+    """Run every candidate on the same readings of every scenario.
+
+    Results are the same bits for any number of threads or workers, the CPU time aside; those of a
+    candidate on a scenario do not depend on what else is run.
+
+    Parameters
+    ----------
+    scenarios : Scenario or sequence of Scenario
+        With names that differ.
+    candidates : mapping of str to Candidate or callable
+        By name. A callable takes the scenario and readings (R, T, 2), for R of 1 and more, and
+        gives what looks like a ``RunResult``: ``mean`` (R, T, N), ``covariance`` (R, T, N, N) with
+        N of 4, 5 or 6 in the engine's state orders, ``nis`` (R, T), ``status`` (R, T),
+        ``mode_probability`` (R, T, K) or None; where it also has ``turn_rate_rad_s``, that is the
+        estimated turn rate (R, T) or the models' turn rates (R, T, K). It raises ``FilterError``
+        when a run cannot start.
+    runs : int
+        Number of runs, the readings being those of ``scenario.draw(runs, seed)``.
+    seed : int
+        Not negative.
+    threads : int, optional
+        Default as many as there are processors; not together with `client`.
+    client : object, optional
+        A ``dask.distributed.Client``, the module ``ray`` after ``ray.init()``, or an executor with
+        ``submit``: does the work elsewhere. Candidates are then built by functions, as engine
+        objects cannot be sent.
+    progress : bool or callable
+        True draws a bar where stderr is a terminal; a callable is told chunks done and in all.
+    lost_beyond_m : float
+        A run is counted as lost when its last position is farther off than this.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    ValueError
+        When there is nothing to run, two scenarios have the same name, a number makes no sense, a
+        candidate gives arrays of another shape or cannot be sent to a client.
+    TypeError
+        When a candidate or the client is of a kind that does not fit.
+    """
+    scenarios = [scenarios] if isinstance(scenarios, Scenario) else list(scenarios)
+    _check(scenarios, candidates, runs, seed, threads, client, lost_beyond_m)
+    pairs = [(scenario, name) for scenario in scenarios for name in candidates]
+    firsts = range(0, runs, CHUNK_RUNS)
+    chunks = [
+        Chunk(
+            scenario,
+            name,
+            candidates[name],
+            first,
+            min(CHUNK_RUNS, runs - first),
+            seed,
+            float(lost_beyond_m),
+        )
+        for scenario, name in pairs
+        for first in firsts
+    ]
+    done = _told(_worked_off(chunks, threads, client), len(chunks), progress)
+    outcomes = {
+        (scenario.name, name): Outcome.of(scenario, name, _total([next(done) for _ in firsts]))
+        for scenario, name in pairs
+    }
+    next(done, None)
+    return Result(
+        outcomes, runs, seed, {"chunk_runs": CHUNK_RUNS, "lost_beyond_m": float(lost_beyond_m)}
+    )
+
+
+def _check(
+    scenarios: list[Scenario],
+    candidates: Mapping[str, Any],
+    runs: int,
+    seed: int,
+    threads: int | None,
+    client: Any,
+    lost_beyond_m: float,
+) -> None:
+    if not scenarios or not candidates:
+        raise ValueError("there must be at least one scenario and one candidate")
+    names = [scenario.name for scenario in scenarios]
+    if len(set(names)) < len(names):
+        raise ValueError(f"scenarios must have names that differ, got {names}")
+    for name, candidate in candidates.items():
+        if not callable(candidate):
+            raise TypeError(
+                f"candidate {name!r} must be a Candidate or callable, got {type(candidate)}"
+            )
+    for what, value, least in (("runs", runs, 1), ("seed", seed, 0), ("threads", threads, 1)):
+        if value is None and what == "threads":
+            continue
+        if not isinstance(value, (int, np.integer)) or value < least:
+            raise ValueError(f"{what} must be a whole number, at least {least}, got {value!r}")
+    if not lost_beyond_m > 0:
+        raise ValueError(f"lost_beyond_m must be positive, got {lost_beyond_m}")
+    if client is not None and threads is not None:
+        raise ValueError("threads must be left out together with client")
+    if client is not None and not isinstance(client, ThreadPoolExecutor):
+        for name, candidate in candidates.items():
+            _check_can_be_sent(name, candidate)
+
+
+def _check_can_be_sent(name: str, candidate: Any) -> None:
+    parts = (candidate.estimator, candidate.sensor) if isinstance(candidate, Candidate) else ()
+    for part in parts:
+        if callable(part) or isinstance(part, str):
+            continue
+        try:
+            pickle.dumps(part)
+        except (TypeError, AttributeError, pickle.PicklingError) as error:
+            raise ValueError(
+                f"candidate {name!r} cannot be sent to the workers of a client ({error}): give "
+                "functions of the scenario that build its estimator and sensor"
+            ) from None
+
+
+def _worked_off(chunks: list[Chunk], threads: int | None, client: Any) -> Iterator[Sums]:
+    """Sums of the chunks in their order."""
+    if client is None:
+        with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
+            yield from _gathered([pool.submit(sums_of, chunk) for chunk in chunks])
+    elif hasattr(client, "submit"):
+        yield from _gathered([client.submit(sums_of, chunk) for chunk in chunks])
+    elif hasattr(client, "remote") and hasattr(client, "get"):
+        remote = client.remote(sums_of)
+        waiting = [remote.remote(chunk) for chunk in chunks]
+        yield from map(client.get, waiting)
+    else:
+        raise TypeError(
+            "client must be a dask.distributed.Client, the module ray or an executor, "
+            f"got {type(client)}"
+        )
+
+
+def _gathered(futures: list[Future]) -> Iterator[Sums]:
+    """Results in order; the first failure calls off what has not begun."""
+    try:
+        for future in futures:
+            yield future.result()
+    finally:
+        for future in futures:
+            future.cancel()
+
+
+def _told(
+    sums: Iterable[Sums], total: int, progress: bool | Callable[[int, int], None]
+) -> Iterator[Sums]:
+    """Hand on, telling how far the work has come."""
+    if not callable(progress):
+        yield from _progress.progress(sums, total, "runs") if progress else sums
+        return
+    for done, item in enumerate(sums, start=1):
+        progress(done, total)
+        yield item
+
+
+def _total(sums: Sequence[Sums]) -> Sums:
+    total = sums[0]
+    for part in sums[1:]:
+        total = total + part
+    return total

@@ -1,0 +1,194 @@
+"""What one chunk of runs leaves behind: sums, which add up to those of all runs."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from wakeline import core
+from wakeline.metrics import squared_distance
+from wakeline.scenario import Scenario
+
+from .candidate import Candidate
+
+_KINEMATICS = {4: [0, 1, 2, 3], 5: [0, 1, 2, 3], 6: [0, 1, 3, 4]}
+_FINE = [int(core.Status.ok), int(core.Status.missed)]
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Sums over the runs of a chunk; those over nothing are None.
+
+    Attributes
+    ----------
+    runs : int
+        Runs that the curves hold.
+    failed_runs, lost_runs, failed_steps : int
+        See :class:`wakeline.montecarlo.Outcome`.
+    position_m2, velocity_m2s2, nees : ndarray (T,)
+    nis, nis_count : ndarray (T,)
+        Over the runs with a reading.
+    mode_probability : ndarray (T, K) or None
+    turn_rate_rad_s : ndarray (T,) or None
+    right_mode : ndarray (T,) or None
+        Runs whose most probable model is the right one.
+    cpu_s : float
+        Time the estimator took, starts included.
+    """
+
+    runs: int
+    failed_runs: int
+    lost_runs: int
+    failed_steps: int
+    position_m2: np.ndarray
+    velocity_m2s2: np.ndarray
+    nees: np.ndarray
+    nis: np.ndarray
+    nis_count: np.ndarray
+    mode_probability: np.ndarray | None
+    turn_rate_rad_s: np.ndarray | None
+    right_mode: np.ndarray | None
+    cpu_s: float
+
+    def __add__(self, other: Sums) -> Sums:
+        """A chunk without runs that count adds its counts only."""
+        return replace(
+            self,
+            **{field.name: _added(self, other, field.name) for field in fields(self)},
+        )
+
+
+def _added(a: Sums, b: Sums, name: str) -> Any:
+    mine, its = getattr(a, name), getattr(b, name)
+    if mine is None or its is None:
+        return its if a.runs == 0 else mine if b.runs == 0 else None
+    return mine + its
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """A piece of work: some runs of one candidate on one scenario."""
+
+    scenario: Scenario
+    candidate_name: str
+    candidate: Any
+    first_run: int
+    runs: int
+    seed: int
+    lost_beyond_m: float
+
+
+def sums_of(chunk: Chunk) -> Sums:
+    """Draw the readings, run the candidate and sum up."""
+    scenario = chunk.scenario
+    z = scenario.draw(chunk.runs, chunk.seed, first_run=chunk.first_run)
+    began_s = time.thread_time()
+    try:
+        results = [chunk.candidate(scenario, z)]
+        started = chunk.runs
+    except core.FilterError:
+        results = [r for k in range(chunk.runs) if (r := _tried(chunk, z[k : k + 1])) is not None]
+        started = len(results)
+    cpu_s = time.thread_time() - began_s
+    total = _nothing(scenario.scans, chunk.runs - started, cpu_s)
+    for result in results:
+        total = total + _summed(chunk, result)
+    return total
+
+
+def _tried(chunk: Chunk, z: np.ndarray) -> Any:
+    """The result of one run, None where it cannot start."""
+    try:
+        return chunk.candidate(chunk.scenario, z)
+    except core.FilterError:
+        return None
+
+
+def _nothing(scans: int, failed_runs: int, cpu_s: float) -> Sums:
+    zero = np.zeros(scans)
+    return Sums(0, failed_runs, 0, 0, zero, zero, zero, zero, zero, None, None, None, cpu_s)
+
+
+def _summed(chunk: Chunk, result: Any) -> Sums:
+    mean, covariance = _kinematics(chunk, result)
+    usable = np.isfinite(mean).all(axis=(1, 2))
+    failed = np.count_nonzero(~usable)
+    status = np.asarray(result.status)
+    error = mean[usable] - chunk.scenario.truth_states
+    position_m2 = error[..., 0] ** 2 + error[..., 2] ** 2
+    nis = np.asarray(result.nis, dtype=float)[usable]
+    modes = getattr(result, "mode_probability", None)
+    modes = None if modes is None else np.asarray(modes, dtype=float)[usable]
+    rates, estimated_rate = _rates(chunk, result, modes, usable)
+    return Sums(
+        runs=int(np.count_nonzero(usable)),
+        failed_runs=int(failed),
+        lost_runs=int(np.count_nonzero(position_m2[:, -1] > chunk.lost_beyond_m**2)),
+        failed_steps=int(np.count_nonzero(~np.isin(status, _FINE))),
+        position_m2=position_m2.sum(axis=0),
+        velocity_m2s2=(error[..., 1] ** 2 + error[..., 3] ** 2).sum(axis=0),
+        nees=squared_distance(error, covariance[usable]).sum(axis=0),
+        nis=np.where(np.isnan(nis), 0.0, nis).sum(axis=0),
+        nis_count=np.isfinite(nis).sum(axis=0).astype(float),
+        mode_probability=None if modes is None else modes.sum(axis=0),
+        turn_rate_rad_s=None if estimated_rate is None else estimated_rate.sum(axis=0),
+        right_mode=_right_mode(chunk.scenario, modes, rates),
+        cpu_s=0.0,
+    )
+
+
+def _kinematics(chunk: Chunk, result: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Means (R, T, 4) and covariances (R, T, 4, 4) over ``[north, vnorth, east, veast]``."""
+    mean = np.asarray(result.mean, dtype=float)
+    covariance = np.asarray(result.covariance, dtype=float)
+    states = mean.shape[-1] if mean.ndim else 0
+    told = mean.ndim == 3 and mean.shape[1] == chunk.scenario.scans
+    if not (told and states in _KINEMATICS and covariance.shape == (*mean.shape, states)):
+        raise ValueError(
+            f"candidate {chunk.candidate_name!r} must give mean (R, T, N) and covariance "
+            f"(R, T, N, N) with N of 4, 5 or 6 and T = {chunk.scenario.scans}, "
+            f"got {mean.shape} and {covariance.shape}"
+        )
+    at = _KINEMATICS[states]
+    return mean[..., at], covariance[..., at, :][..., at]
+
+
+def _rates(
+    chunk: Chunk, result: Any, modes: np.ndarray | None, usable: np.ndarray
+) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Turn rates of the models, that broadcast to (R, T, K), and the estimated rate (R, T)."""
+    told = getattr(result, "turn_rate_rad_s", None)
+    mean = np.asarray(result.mean)
+    if told is not None:
+        told = np.asarray(told, dtype=float)[usable]
+        if told.ndim == 2:
+            return None, told
+        return told, None if modes is None else (modes * told).sum(axis=-1)
+    rates = (
+        chunk.candidate.rates(chunk.scenario) if isinstance(chunk.candidate, Candidate) else None
+    )
+    if mean.shape[-1] == 5:
+        return rates, mean[usable, :, 4]
+    if rates is None or modes is None:
+        return rates, None
+    if rates.shape != modes.shape[-1:]:
+        raise ValueError(
+            f"candidate {chunk.candidate_name!r} must have one turn rate for each of its "
+            f"{modes.shape[-1]} models, got {rates.shape}"
+        )
+    return rates, modes @ rates
+
+
+def _right_mode(
+    scenario: Scenario, modes: np.ndarray | None, rates: np.ndarray | None
+) -> np.ndarray | None:
+    """Runs (T,) whose most probable model is one of those nearest to the true turn rate."""
+    if modes is None or rates is None:
+        return None
+    distance = np.abs(rates - scenario.turn_rates_rad_s[:, np.newaxis])
+    distance = np.broadcast_to(distance, modes.shape)
+    chosen = np.take_along_axis(distance, modes.argmax(axis=-1)[..., np.newaxis], axis=-1)[..., 0]
+    return (chosen <= distance.min(axis=-1) + 1e-12).sum(axis=0)

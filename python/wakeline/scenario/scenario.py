@@ -1,0 +1,173 @@
+"""A scenario: one truth, the radar that looks at it, and the prior an estimator starts with."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from wakeline import core, measurement
+
+from .radar import RadarSimulator
+
+
+@runtime_checkable
+class AnyTruth(Protocol):
+    """What a scenario asks of a truth: :class:`Truth`, :class:`TrackTruth` or one of your own."""
+
+    def state_at(self, time_s: np.ndarray | float) -> np.ndarray:
+        """States (T, 4), ``[north, vnorth, east, veast]``."""
+
+    def turn_rate_at(self, time_s: np.ndarray | float) -> np.ndarray:
+        """Turn rates (T,), rad/s, positive to starboard."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One target in front of a radar at north 0, east 0, and what an estimator knows of its start.
+
+    The first reading comes one period after the start.
+
+    Attributes
+    ----------
+    name : str
+        Results go by it, and it is part of the seed of the readings.
+    truth : Truth
+        Or anything with ``state_at`` and ``turn_rate_at``.
+    radar : RadarSimulator
+        Without clutter and not rotating: every scan is one reading at its time.
+    scans : int
+        Number of readings, T.
+    position_std_m, velocity_std_mps : float
+        Prior of the start, per axis; positive.
+    start_time_s : float
+        Time of the start.
+
+    Raises
+    ------
+    ValueError
+        When a value makes no sense.
+    TypeError
+        When the truth cannot tell states and turn rates.
+    """
+
+    name: str
+    truth: AnyTruth
+    radar: RadarSimulator
+    scans: int
+    position_std_m: float = 10.0
+    velocity_std_mps: float = 1.0
+    start_time_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name:
+            raise ValueError(f"name must be text that is not empty, got {self.name!r}")
+        if not isinstance(self.truth, AnyTruth):
+            raise TypeError(f"truth must have state_at and turn_rate_at, got {self.truth!r}")
+        if not (isinstance(self.scans, (int, np.integer)) and self.scans >= 1):
+            raise ValueError(f"scans must be a whole number, at least 1, got {self.scans!r}")
+        for name in ("position_std_m", "velocity_std_mps"):
+            if not 0 < getattr(self, name) < np.inf:
+                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+        if not np.isfinite(self.start_time_s):
+            raise ValueError(f"start_time_s must be finite, got {self.start_time_s}")
+        if self.radar.rotating or self.radar.clutter_per_scan:
+            raise ValueError("radar must not rotate nor have clutter: a scan is one reading here")
+
+    @property
+    def time_s(self) -> np.ndarray:
+        """Times (T,) of the readings."""
+        return self.start_time_s + self.radar.period_s * np.arange(1, self.scans + 1)
+
+    @property
+    def truth_states(self) -> np.ndarray:
+        """True states (T, 4) at the readings, ``[north, vnorth, east, veast]``."""
+        return self.truth.state_at(self.time_s)
+
+    @property
+    def turn_rates_rad_s(self) -> np.ndarray:
+        """Turn rates (T,): at each reading the one in force half a period before it.
+
+        Where the rate does not switch within a scan that is the rate of the whole interval that
+        ends at the reading.
+        """
+        return self.truth.turn_rate_at(self.time_s - 0.5 * self.radar.period_s)
+
+    @property
+    def switch_times_s(self) -> np.ndarray:
+        """Times (S,) after the start and before the last reading at which the turn rate switches.
+
+        Empty for a truth that does not tell ``switch_times_s``, as a recorded track.
+        """
+        switch_s = np.asarray(getattr(self.truth, "switch_times_s", ()), dtype=float)
+        return switch_s[(switch_s > self.start_time_s) & (switch_s < self.time_s[-1])]
+
+    @property
+    def start(self) -> core.Gaussian:
+        """What an estimator starts with: the true state and the prior's covariance."""
+        position_m2, velocity_m2s2 = self.position_std_m**2, self.velocity_std_mps**2
+        return core.Gaussian(
+            self.truth.state_at(self.start_time_s)[0],
+            np.diag([position_m2, velocity_m2s2, position_m2, velocity_m2s2]),
+        )
+
+    def draw(self, runs: int, seed: int | Sequence[int] = 0, *, first_run: int = 0) -> np.ndarray:
+        """Readings of independent runs: the true range and bearing plus Gaussian errors.
+
+        The errors are added as the papers do, with nothing done to the sum: near the antenna a
+        range may come out negative, and a bearing may leave [-pi, pi].
+
+        Parameters
+        ----------
+        runs : int
+            Number of runs, R.
+        seed : int or sequence of int
+            Not negative. Run r of a scenario of this name has the same errors whatever R is.
+        first_run : int
+            Number of the first of them.
+
+        Returns
+        -------
+        ndarray (R, T, 2)
+            Range in metres and bearing in radians; NaN rows where the radar misses the target or
+            it is out of range.
+
+        Raises
+        ------
+        ValueError
+            When runs, first_run or a seed is negative.
+        """
+        if runs < 0 or first_run < 0:
+            raise ValueError(f"runs and first_run must not be negative, got {runs}, {first_run}")
+        entropy = [*np.atleast_1d(seed).tolist(), zlib.crc32(self.name.encode())]
+        north_m, _, east_m, _ = self.truth_states.T
+        range_m = np.hypot(north_m, east_m)
+        exact = np.column_stack([range_m, np.arctan2(east_m, north_m)])
+        std = np.array([self.radar.range_std_m, self.radar.bearing_std_rad])
+        z = np.empty((runs, self.scans, 2))
+        for run in range(runs):
+            rng = np.random.default_rng([*entropy, first_run + run])
+            z[run] = exact + std * rng.standard_normal((self.scans, 2))
+            if self.radar.detection_probability < 1:
+                z[run, rng.random(self.scans) >= self.radar.detection_probability] = np.nan
+        z[:, range_m > self.radar.max_range_m] = np.nan
+        return z
+
+    @property
+    def polar_sensor(self) -> measurement.RangeBearing:
+        """The radar as a filter takes it: range and bearing, for Ekf and Ukf."""
+        return measurement.RangeBearing(
+            range_std_m=self.radar.range_std_m, bearing_std_rad=self.radar.bearing_std_rad
+        )
+
+    @property
+    def converted_sensor(self) -> measurement.ConvertedRangeBearing:
+        """The radar with readings turned into north and east, as the papers do (not unbiased)."""
+        return measurement.ConvertedRangeBearing(
+            range_std_m=self.radar.range_std_m,
+            bearing_std_rad=self.radar.bearing_std_rad,
+            unbiased=False,
+        )
