@@ -152,3 +152,71 @@ def test_figures_are_written_even_of_nothing(tmp_path, make, episode, tracks):
 def test_wakeline_plot_is_imported_without_matplotlib():
     code = "import sys, wakeline.plot; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+# Comparisons of estimators ------------------------------------------------------------------------
+
+
+@pytest.fixture
+def ax():
+    return plot.figure().add_subplot()
+
+
+TIME_S = np.arange(3.0, 33.0, 3.0)
+TRUE_RATE = np.deg2rad([0.0] * 4 + [2.0] * 3 + [-1.0] * 3)
+
+
+def test_every_comparison_draws_into_the_axes_it_was_given(ax):
+    state = np.column_stack([TIME_S, TIME_S, 2 * TIME_S, TIME_S])
+    curve = {"one": np.ones(10), "two": np.full(10, 2.0)}
+    assert plot.error_panel(ax, TIME_S, curve, bound=np.full(10, 0.5)) is ax
+    assert plot.turn_rate_panel(ax, TIME_S, TRUE_RATE, curve) is ax
+    assert plot.probability_panel(ax, TIME_S, np.full((10, 2), 0.5), [0.0, 0.1]) is ax
+    assert plot.paths_view(ax, state, {"one": state}) is ax
+    assert plot.ranking_panel(ax, ["one"], {"here": [1.0]}, xlabel="error (m)") is ax
+    assert plot.mark_switches(ax, [5.0]) is ax
+
+
+def test_paths_are_in_kilometres_with_north_up_and_equal_axes(ax):
+    state = np.array([[1000.0, 1.0, 5000.0, 0.0], [2000.0, 1.0, 5000.0, 0.0]])
+    plot.paths_view(ax, state, {"one": state + 1.0}, plots_m=state[:, 0::2], switch=[1])
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("east (km)", "north (km)")
+    assert ax.get_aspect() == 1.0
+    drawn = [line.get_xydata().tolist() for line in ax.lines]
+    assert [[5.0, 1.0], [5.0, 2.0]] in drawn
+
+
+def test_errors_start_at_nothing_and_their_lines_are_named(ax):
+    plot.error_panel(ax, TIME_S, {"one": np.linspace(1, 9, 10)}, bound=np.ones(10), switch_s=[12.0])
+    low, high = ax.get_ylim()
+    assert low == 0.0
+    assert 9.0 < high < 11.0
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["bound", "one"]
+
+
+def test_bands_stand_in_order_of_turn_rate_under_the_true_turn(ax):
+    probability = np.tile([0.5, 0.2, 0.3], (10, 1))
+    plot.probability_panel(
+        ax, TIME_S, probability, np.deg2rad([0, 2, -1]), true_rate_rad_s=TRUE_RATE
+    )
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert names == ["-1 °/s", "0 °/s", "+2 °/s"]
+    *bands, strip = ax.collections
+    first = bands[0].get_paths()[0].get_extents()
+    assert (first.y0, first.y1) == (0.0, pytest.approx(0.3))
+    edges_s = [path.get_extents().x0 for path in strip.get_paths()]
+    assert edges_s == [3.0, 12.0, 21.0]
+    colors = [band.get_facecolor()[0].tolist() for band in bands]
+    assert strip.get_facecolor().tolist() == [colors[1], colors[2], colors[0]]
+
+
+def test_turns_to_either_side_have_colours_of_their_own():
+    colors = plot.turn_colors([-4, -2, 0, 2, 4])
+    assert len(set(colors)) == 5
+    assert plot.turn_colors([0.0]) == [colors[2]]
+
+
+def test_the_best_estimator_stands_on_top(ax):
+    plot.ranking_panel(ax, ["a", "b", "c"], {"m": [3.0, 1.0, 2.0]}, xlabel="error (m)")
+    assert [label.get_text() for label in ax.get_yticklabels()] == ["a", "c", "b"]
+    assert ax.get_xlim()[0] == 0.0

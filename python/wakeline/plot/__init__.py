@@ -1,25 +1,56 @@
-"""Figures of recordings and tracks, drawn with matplotlib (installed by the extra ``plot``).
+"""Figures of recordings, tracks and studies, drawn by matplotlib (installed by the extra ``plot``).
 
 Each ``..._view`` and ``..._panel`` draws into axes or a figure of the caller's; ``..._figure``
 makes one of its own, which :func:`save` writes.
 """
 
+from .comparison import (
+    error_panel,
+    mark_switches,
+    paths_view,
+    probability_panel,
+    ranking_panel,
+    turn_colors,
+    turn_rate_panel,
+)
 from .map import ellipse_outline, map_figure, map_view
-from .style import dress, figure, save, track_colors
-from .time import course_panel, mode_panel, nis_panel, speed_panel, time_figure, time_view
+from .style import INK, MUTED, PALETTE, TEXT_PT, dress, figure, halo, name_lines, save, track_colors
+from .time import (
+    course_panel,
+    draw_bands,
+    mode_panel,
+    nis_panel,
+    speed_panel,
+    time_figure,
+    time_view,
+)
 
 __all__ = [
+    "INK",
+    "MUTED",
+    "PALETTE",
+    "TEXT_PT",
     "course_panel",
+    "draw_bands",
     "dress",
     "ellipse_outline",
+    "error_panel",
     "figure",
+    "halo",
     "map_figure",
     "map_view",
+    "mark_switches",
     "mode_panel",
+    "name_lines",
     "nis_panel",
+    "paths_view",
+    "probability_panel",
+    "ranking_panel",
     "save",
     "speed_panel",
     "time_figure",
     "time_view",
     "track_colors",
+    "turn_colors",
+    "turn_rate_panel",
 ]

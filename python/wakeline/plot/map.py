@@ -8,7 +8,7 @@ import numpy as np
 
 from wakeline.recording import Episode, OwnShip, TargetTruth, Tracks
 
-from .style import INK, MUTED, TEXT_PT, dress, figure, halo, track_colors, with_gaps
+from .style import INK, MUTED, TEXT_PT, dress, figure, halo, name_lines, track_colors, with_gaps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,7 +71,7 @@ def map_view(
     ax.set_ylabel("north (m)")
     dress(ax)
     if legend:
-        _explain(ax)
+        name_lines(ax)
     return ax
 
 
@@ -239,22 +239,4 @@ def _count_outside(ax: Axes, outside: np.ndarray) -> None:
         fontsize=TEXT_PT - 1,
         color=MUTED,
         path_effects=halo(),
-    )
-
-
-def _explain(ax: Axes) -> None:
-    handles, labels = ax.get_legend_handles_labels()
-    if not handles:
-        return
-    ax.legend(
-        handles,
-        labels,
-        loc="lower left",
-        bbox_to_anchor=(0.0, 1.0),
-        ncols=len(handles),
-        fontsize=TEXT_PT,
-        frameon=False,
-        handlelength=1.8,
-        columnspacing=1.4,
-        borderaxespad=0.3,
     )

@@ -67,6 +67,26 @@ def halo(width: float = 2.0) -> list:
     return [patheffects.withStroke(linewidth=width, foreground="white")]
 
 
+def name_lines(ax: Axes, columns: int | None = None) -> Axes:
+    """A legend above the axes, where it covers nothing, in one row by default; returns `ax`."""
+    handles, labels = ax.get_legend_handles_labels()
+    if handles:
+        ax.legend(
+            handles,
+            labels,
+            loc="lower left",
+            bbox_to_anchor=(0.0, 1.0),
+            ncols=columns or len(handles),
+            fontsize=TEXT_PT,
+            frameon=False,
+            handlelength=1.8,
+            columnspacing=1.4,
+            borderaxespad=0.3,
+            labelcolor=INK,
+        )
+    return ax
+
+
 def track_colors(tracks: Tracks | None) -> dict[str, str]:
     """Colour of each track id, the same in every view of the same tracks."""
     ids = [] if tracks is None else tracks.ids()

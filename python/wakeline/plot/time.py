@@ -10,7 +10,17 @@ import numpy as np
 from wakeline.recording import Episode, Tracks
 
 from .map import CHI_SQUARE_95_2DOF
-from .style import INK, MODE_PALETTE, TEXT_PT, dress, figure, halo, track_colors, with_gaps
+from .style import (
+    INK,
+    MODE_PALETTE,
+    TEXT_PT,
+    dress,
+    figure,
+    halo,
+    name_lines,
+    track_colors,
+    with_gaps,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -156,9 +166,21 @@ def mode_panel(
     names = mode_names or [f"mode {k}" for k in range(1, modes + 1)]
     if len(names) != modes:
         raise ValueError(f"mode_names must have {modes} names, got {len(names)}")
-    colors = [MODE_PALETTE[k % len(MODE_PALETTE)] for k in range(modes)]
-    bands = track.mode_probability.T
-    ax.stackplot(track.time_s - start_s, bands, colors=colors, labels=names, linewidth=0)
+    draw_bands(ax, track.time_s - start_s, track.mode_probability, names)
+    return _finish(ax, f"mode probability\nof track {track_id}")
+
+
+def draw_bands(
+    ax: Axes,
+    time_s: np.ndarray,
+    probability: np.ndarray,
+    names: Sequence[str],
+    colors: Sequence[str] | None = None,
+) -> Axes:
+    """Probabilities (T, K) as bands that add up to 1, explained above the axes; returns `ax`."""
+    modes = probability.shape[1]
+    colors = colors or [MODE_PALETTE[k % len(MODE_PALETTE)] for k in range(modes)]
+    ax.stackplot(time_s, probability.T, colors=colors, labels=names, linewidth=0)
     ax.set_ylim(0.0, 1.0)
     ax.legend(
         loc="lower right",
@@ -170,7 +192,7 @@ def mode_panel(
         columnspacing=1.2,
         borderaxespad=0.1,
     )
-    return _finish(ax, f"mode probability\nof track {track_id}")
+    return ax
 
 
 _TRUTH_LINE = {"color": INK, "linewidth": 0.9, "linestyle": (0, (4, 2)), "zorder": 3}
@@ -213,14 +235,4 @@ def _name_tracks(ax: Axes, tracks: Tracks | None) -> None:
     ids = [] if tracks is None else tracks.ids()
     if not 0 < len(ids) <= _MANY_TRACKS:
         return
-    ax.legend(
-        loc="lower left",
-        bbox_to_anchor=(0.0, 1.0),
-        ncols=(len(ids) + 2) // (1 + (len(ids) > _ONE_ROW)),
-        fontsize=TEXT_PT,
-        frameon=False,
-        handlelength=1.6,
-        columnspacing=1.2,
-        borderaxespad=0.2,
-        labelcolor=INK,
-    )
+    name_lines(ax, columns=(len(ids) + 2) // (1 + (len(ids) > _ONE_ROW)))

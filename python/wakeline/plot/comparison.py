@@ -1,0 +1,305 @@
+"""Several estimators on one scenario: their paths, errors, turn rates and mode probabilities.
+
+Every function draws into `ax` and returns it. Times are seconds from the start of the scenario,
+states ``[north, vnorth, east, veast]``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .style import GRID, INK, MUTED, PALETTE, dress, name_lines
+from .time import draw_bands
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_TRUTH_DASHES = (0, (4, 2))
+_ROOM_ABOVE = 1.08
+_STRIP = (1.02, 0.06)
+_MIDDLE = "#DDDDDD"
+_PORT = ("#F4A582", "#B2182B")
+_STARBOARD = ("#92C5DE", "#2166AC")
+
+
+def paths_view(
+    ax: Axes,
+    truth: np.ndarray,
+    tracks: Mapping[str, np.ndarray] | None = None,
+    *,
+    plots_m: np.ndarray | None = None,
+    switch: Sequence[int] = (),
+    radar: bool = True,
+    colors: Mapping[str, str] | None = None,
+) -> Axes:
+    """Map of a true path and of tracks of it, north up, equal axes in kilometres.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Axes to draw into.
+    truth : ndarray (T, 4)
+        True states.
+    tracks : mapping of str to ndarray (T, 4)
+        Estimated states by name of the estimator.
+    plots_m : ndarray (T, 2), optional
+        Radar plots, north and east.
+    switch : sequence of int
+        Scans at which the turn rate changes, marked on the true path.
+    radar : bool
+        Whether to mark the radar at the origin.
+    colors : mapping of str to str, optional
+        Colour of each track.
+    """
+    if plots_m is not None:
+        ax.scatter(*_km(plots_m), s=6, color=MUTED, alpha=0.6, linewidths=0, label="plot", zorder=2)
+    for name, color in _colored(tracks or {}, colors):
+        ax.plot(*_km(tracks[name][:, 0::2]), color=color, linewidth=1.3, label=name, zorder=3)
+    place = truth[:, 0::2]
+    line = {"color": INK, "linewidth": 1.1, "linestyle": _TRUTH_DASHES if tracks else "-"}
+    ax.plot(*_km(place), **line, label="truth", zorder=4)
+    ax.scatter(*_km(place[list(switch)]), s=14, color=INK, linewidths=0, zorder=5)
+    ax.plot(*_km(place[:1]), color=INK, marker="o", markersize=6, markerfacecolor="white", zorder=5)
+    if radar:
+        ax.plot(0, 0, color=INK, marker="^", markersize=7, linestyle="", label="radar", zorder=5)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("east (km)")
+    ax.set_ylabel("north (km)")
+    return name_lines(dress(ax))
+
+
+def error_panel(
+    ax: Axes,
+    time_s: np.ndarray,
+    errors: Mapping[str, np.ndarray],
+    *,
+    bound: np.ndarray | None = None,
+    ylabel: str = "position RMSE (m)",
+    switch_s: Iterable[float] = (),
+    colors: Mapping[str, str] | None = None,
+    top: float | None = None,
+    legend: bool = True,
+) -> Axes:
+    """Root mean square errors over time, with what no estimator can be below shaded.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Axes to draw into.
+    time_s : ndarray (T,)
+        Times.
+    errors : mapping of str to ndarray (T,)
+        Errors by name of the estimator.
+    bound : ndarray (T,), optional
+        The lower bound.
+    ylabel : str
+        What the errors are, with their unit.
+    switch_s : iterable of float
+        Times at which the turn rate changes.
+    colors : mapping of str to str, optional
+        Colour of each estimator.
+    top : float, optional
+        Upper end of the axis; default just above the highest curve.
+    legend : bool
+        Whether to name the lines.
+    """
+    mark_switches(ax, switch_s)
+    if bound is not None:
+        ax.fill_between(time_s, bound, color=GRID, linewidth=0, zorder=1.5)
+        ax.plot(time_s, bound, color=MUTED, linewidth=1.1, label="bound", zorder=2)
+    for name, color in _colored(errors, colors):
+        ax.plot(time_s, errors[name], color=color, linewidth=1.4, label=name, zorder=3)
+    highest = max((np.nanmax(curve) for curve in errors.values()), default=1.0)
+    ax.set_ylim(0.0, _ROOM_ABOVE * highest if top is None else top)
+    return _over_time(ax, time_s, ylabel, legend)
+
+
+def turn_rate_panel(
+    ax: Axes,
+    time_s: np.ndarray,
+    true_rate_rad_s: np.ndarray,
+    rates_rad_s: Mapping[str, np.ndarray],
+    *,
+    colors: Mapping[str, str] | None = None,
+    ylabel: str = "turn rate (°/s)",
+    legend: bool = True,
+) -> Axes:
+    """Turn rates in degrees a second, positive to starboard, beside the true one.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Axes to draw into.
+    time_s, true_rate_rad_s : ndarray (T,)
+        Times, and the true turn rate of the step that ends at each.
+    rates_rad_s : mapping of str to ndarray (T,)
+        Turn rates by name.
+    colors : mapping of str to str, optional
+        Colour of each.
+    ylabel : str
+        What the rates are, with their unit.
+    legend : bool
+        Whether to name the lines.
+    """
+    ax.axhline(0.0, color=MUTED, linewidth=0.6)
+    for name, color in _colored(rates_rad_s, colors):
+        rate_deg_s = np.degrees(rates_rad_s[name])
+        ax.plot(time_s, rate_deg_s, color=color, linewidth=1.4, label=name, zorder=3)
+    true_deg_s = np.degrees(true_rate_rad_s)
+    ax.step(
+        time_s,
+        true_deg_s,
+        where="pre",
+        color=INK,
+        linewidth=1.1,
+        linestyle=_TRUTH_DASHES,
+        label="truth",
+        zorder=4,
+    )
+    return _over_time(ax, time_s, ylabel, legend)
+
+
+def probability_panel(
+    ax: Axes,
+    time_s: np.ndarray,
+    probability: np.ndarray,
+    turn_rate_rad_s: Sequence[float],
+    *,
+    true_rate_rad_s: np.ndarray | None = None,
+    switch_s: Iterable[float] = (),
+    ylabel: str = "mode probability",
+    legend: bool = True,
+) -> Axes:
+    """Mode probabilities as bands that add up to 1, starboard on top, the true turn above them.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Axes to draw into.
+    time_s : ndarray (T,)
+        Times.
+    probability : ndarray (T, K)
+        Probabilities of the modes.
+    turn_rate_rad_s : sequence of K floats
+        Turn rate of each mode.
+    true_rate_rad_s : ndarray (T,), optional
+        The true turn rate of the step that ends at each time: a strip in the colour of that rate.
+    switch_s : iterable of float
+        Times at which the turn rate changes.
+    ylabel : str
+        Whose probabilities they are.
+    legend : bool
+        Whether to name the bands.
+    """
+    rate_deg_s = np.degrees(np.asarray(turn_rate_rad_s, dtype=float))
+    order = np.argsort(rate_deg_s)
+    names = [f"{rate:+.3g} °/s" if rate else "0 °/s" for rate in rate_deg_s[order]]
+    true_deg_s = np.degrees(np.zeros(0) if true_rate_rad_s is None else true_rate_rad_s)
+    colors = turn_colors(np.concatenate([rate_deg_s[order], true_deg_s]))
+    draw_bands(ax, time_s, np.asarray(probability)[:, order], names, colors[: len(order)])
+    if not legend:
+        ax.get_legend().remove()
+    if len(true_deg_s):
+        _draw_strip(ax, time_s, true_deg_s, colors[len(order) :])
+    ax.set_yticks([0.0, 0.5, 1.0])
+    mark_switches(ax, switch_s, color="white")
+    return _over_time(ax, time_s, ylabel, False)
+
+
+def ranking_panel(
+    ax: Axes,
+    names: Sequence[str],
+    values: Mapping[str, Sequence[float]],
+    *,
+    xlabel: str,
+    best_first: str | None = None,
+) -> Axes:
+    """One row an estimator, one mark for each of several circumstances, best estimator on top.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Axes to draw into.
+    names : sequence of K str
+        The estimators.
+    values : mapping of str to sequence of K floats
+        Their figures by circumstance.
+    xlabel : str
+        What the figures are, with their unit.
+    best_first : str, optional
+        The circumstance to sort by; default the last.
+    """
+    table = {key: np.asarray(row, dtype=float) for key, row in values.items()}
+    by = table[best_first if best_first is not None else list(table)[-1]]
+    order = np.argsort(by)[::-1]
+    rows = np.arange(len(order))
+    low, high = np.min(list(table.values()), axis=0), np.max(list(table.values()), axis=0)
+    ax.hlines(rows, low[order], high[order], color=GRID, linewidth=3, zorder=1)
+    for (key, row), color in zip(table.items(), PALETTE, strict=False):
+        ax.scatter(row[order], rows, s=34, color=color, linewidths=0, label=key, zorder=3)
+    ax.set_yticks(rows, [names[k] for k in order])
+    ax.set_ylim(-0.6, len(order) - 0.4)
+    ax.set_xlim(left=0.0)
+    ax.set_xlabel(xlabel)
+    dress(ax)
+    ax.grid(visible=False, axis="y")
+    return name_lines(ax)
+
+
+def mark_switches(ax: Axes, switch_s: Iterable[float], color: str = MUTED) -> Axes:
+    """Faint vertical lines at the given times."""
+    for time_s in switch_s:
+        ax.axvline(time_s, color=color, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.8)
+    return ax
+
+
+def turn_colors(turn_rate_deg_s: Sequence[float]) -> list[str]:
+    """Colours of turn rates: grey straight on, red to port, blue to starboard, dark when hard."""
+    from matplotlib.colors import LinearSegmentedColormap, to_hex
+
+    rates = np.asarray(turn_rate_deg_s, dtype=float)
+    hardest = max(np.abs(rates).max(initial=0.0), 1e-12)
+    port = LinearSegmentedColormap.from_list("port", _PORT)
+    starboard = LinearSegmentedColormap.from_list("starboard", _STARBOARD)
+    least = np.abs(rates[rates != 0.0]).min(initial=hardest)
+
+    def color(rate: float) -> str:
+        if rate == 0.0:
+            return _MIDDLE
+        depth = (abs(rate) - least) / (hardest - least) if hardest > least else 0.5
+        return to_hex((port if rate < 0 else starboard)(depth))
+
+    return [color(rate) for rate in rates]
+
+
+def _colored(
+    named: Mapping[str, object], colors: Mapping[str, str] | None
+) -> list[tuple[str, str]]:
+    """Names with their colours; those without one take the palette in order."""
+    colors = colors or {}
+    return [(name, colors.get(name, PALETTE[k % len(PALETTE)])) for k, name in enumerate(named)]
+
+
+def _draw_strip(ax: Axes, time_s: np.ndarray, rate: np.ndarray, colors: Sequence[str]) -> None:
+    """A strip above 1 in the colour of the rate of each stretch of equal rate."""
+    begins = np.flatnonzero(np.diff(rate, prepend=np.nan) != 0.0)
+    edges_s = np.append(time_s[np.maximum(begins - 1, 0)], time_s[-1])
+    bars = list(zip(edges_s[:-1], np.diff(edges_s), strict=True))
+    ax.broken_barh(bars, _STRIP, facecolors=[colors[k] for k in begins], linewidth=0)
+    ax.set_ylim(0.0, sum(_STRIP))
+
+
+def _over_time(ax: Axes, time_s: np.ndarray, ylabel: str, legend: bool) -> Axes:
+    ax.set_xlim(float(time_s[0]), float(time_s[-1]))
+    ax.set_xlabel("time (s)")
+    ax.set_ylabel(ylabel)
+    dress(ax)
+    return name_lines(ax) if legend else ax
+
+
+def _km(position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """East and north in kilometres of positions (n, 2), north and east in metres."""
+    return position_m[:, 1] / 1e3, position_m[:, 0] / 1e3
