@@ -20,6 +20,7 @@
 #include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/eval/consistency.hpp"
+#include "wakeline/eval/cramer_rao_bound.hpp"
 #include "wakeline/eval/gospa.hpp"
 #include "wakeline/eval/rmse.hpp"
 #include "wakeline/filter/belief.hpp"
