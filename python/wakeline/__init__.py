@@ -72,7 +72,7 @@ from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, v
 for _noun in (association, core, eval, filter, gating, measurement, motion, multimodel, track):
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
-from . import metrics, montecarlo, recording, scenario  # noqa: E402  (they use the nouns above)
+from . import metrics, montecarlo, recording, scenario, study  # noqa: E402  (they use the nouns above)
 
 try:
     __version__ = _version("wakeline")
@@ -124,6 +124,7 @@ __all__ = [
     "one_point",
     "recording",
     "scenario",
+    "study",
     "two_point",
     "vessel_imm",
     "wrap_angle",

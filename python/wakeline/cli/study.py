@@ -1,0 +1,101 @@
+"""``wakeline study``: the scenarios of papers, run again, beside what the papers report."""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import os
+from pathlib import Path
+
+from wakeline import study
+
+from . import outputs, report
+
+_RUNS = 500
+_SEED = 0
+
+
+def add_to(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the program."""
+    parser = commands.add_parser(
+        "study",
+        help="a paper's study: its figures beside ours",
+        description="Runs the scenarios of papers again, and prints a table of the papers' figures "
+        "beside ours.",
+    )
+    actions = parser.add_subparsers(
+        title="actions", required=True, metavar="ACTION", parser_class=type(parser)
+    )
+    listing = actions.add_parser("list", help="the studies", description="Names the studies.")
+    listing.set_defaults(run=list_studies, json=None)
+    one = actions.add_parser(
+        "run",
+        help="run a study",
+        description="Runs a study, prints its table, and draws its figures.",
+    )
+    one.add_argument("name", choices=study.names(), metavar="NAME", help=", ".join(study.names()))
+    one.add_argument(
+        "--runs", type=_runs, default=_RUNS, metavar="N", help="Monte Carlo runs, default 500"
+    )
+    one.add_argument("--seed", type=_seed, default=_SEED, metavar="S", help="default 0")
+    one.add_argument("--json", type=Path, metavar="F", help="write the table as JSON")
+    one.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        default=Path("wakeline-study"),
+        help="folder of the figures, default %(default)s",
+    )
+    one.add_argument(
+        "--full", action="store_true", help="also what the outcome hangs on; takes minutes"
+    )
+    one.set_defaults(run=run_study)
+
+
+def list_studies(arguments: argparse.Namespace) -> None:
+    """Print each name and what it is."""
+    print(report.aligned([[name, study.load(name).SUMMARY] for name in study.names()], text=(1,)))
+
+
+def run_study(arguments: argparse.Namespace) -> None:
+    """Do what the command line asks for."""
+    _make_folder(arguments.out)
+    done = study.load(arguments.name).run(
+        arguments.runs, arguments.seed, full=arguments.full, progress=True
+    )
+    print(f"{done.name}: {done.runs} runs, seed {done.seed}\n")
+    print(report.aligned(done.table(), left=2))
+    for note in done.notes:
+        print(f"\n{note}")
+    if arguments.json is not None:
+        outputs.write_json(arguments.json, done.name, done.rows, seed=done.seed, runs=done.runs)
+    if not outputs.can_draw():
+        print(f"\n{outputs.HOW_TO_GET_PICTURES}")
+        return
+    files = done.save_pictures(arguments.out)
+    print(f"\nwritten to {arguments.out}: {', '.join(file.name for file in files)}")
+
+
+def _make_folder(folder: Path) -> None:
+    """Fail before the work, not after it, where nothing can be written."""
+    folder.mkdir(parents=True, exist_ok=True)
+    if not os.access(folder, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
+
+
+def _runs(text: str) -> int:
+    return _whole(text, 1)
+
+
+def _seed(text: str) -> int:
+    return _whole(text, 0)
+
+
+def _whole(text: str, least: int) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = least - 1
+    if value < least:
+        raise argparse.ArgumentTypeError(f"wanted a whole number from {least} on, got {text!r}")
+    return value

@@ -1,0 +1,52 @@
+"""Studies: the scenarios of papers, run again, with the papers' figures beside ours.
+
+>>> from wakeline import study
+>>> report = study.imm.run(runs=20, seed=0)
+>>> report.row("scans", "imm3")["mean_position_m"] < report.row("scans", "imm2")["mean_position_m"]
+True
+
+A study is a module with a ``SUMMARY`` of one line and a function
+``run(runs, seed, *, full=False, threads=None, progress=False) -> Report``.
+"""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+from . import imm, variable_structure
+from .base import Picture, Published, Report
+
+__all__ = [
+    "Picture",
+    "Published",
+    "Report",
+    "imm",
+    "load",
+    "names",
+    "variable_structure",
+]
+
+_STUDIES = {"imm": imm, "variable-structure": variable_structure}
+
+
+def names() -> list[str]:
+    """Names of the studies."""
+    return list(_STUDIES)
+
+
+def load(name: str) -> ModuleType:
+    """The module of a study.
+
+    Parameters
+    ----------
+    name : str
+        One of ``names()``.
+
+    Raises
+    ------
+    ValueError
+        When there is no study of that name.
+    """
+    if name not in _STUDIES:
+        raise ValueError(f"no study {name!r}; there are {', '.join(_STUDIES)}")
+    return _STUDIES[name]

@@ -1,0 +1,181 @@
+"""What every study has: rows, a table of them beside published figures, and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wakeline import plot
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Panel = Callable[["Axes"], "Axes"]
+Rows = list[dict[str, Any]]
+
+_HEADS = {
+    "mean_position_m": "mean m",
+    "peak_position_m": "peak m",
+    "mean_velocity_mps": "mean m/s",
+    "peak_velocity_mps": "peak m/s",
+    "nees": "NEES",
+    "ns_per_step": "ns a step",
+}
+_UNITS = {"mps": "m/s", "deg": "°"}
+_DIGITS = {"m": 1, "s": 0, "deg": 1, "step": 0}
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure to be: panels that draw into axes, one above the other or in columns.
+
+    Attributes
+    ----------
+    name : str
+        Stem of its file.
+    title : str
+        What it shows.
+    panels : tuple of callables
+        Each takes axes, draws into them and returns them.
+    size_in : (float, float)
+        Width and height.
+    columns : int
+    shared : bool
+        Whether the panels share their horizontal axis; then it is labelled once.
+    """
+
+    name: str
+    title: str
+    panels: tuple[Panel, ...]
+    size_in: tuple[float, float] = (7.2, 6.0)
+    columns: int = 1
+    shared: bool = True
+
+    def draw(self) -> Figure:
+        """Make the figure."""
+        fig = plot.figure(*self.size_in)
+        rows = -(-len(self.panels) // self.columns)
+        axes = fig.subplots(rows, self.columns, squeeze=False, sharex=self.shared)
+        for ax, panel in zip(axes.flat, self.panels, strict=False):
+            panel(ax)
+        for ax in axes.flat[len(self.panels) :]:
+            ax.set_axis_off()
+        if self.shared:
+            for ax in axes[:-1].flat:
+                ax.set_xlabel("")
+        fig.suptitle(self.title, x=0.01, ha="left", fontsize=plot.TEXT_PT + 2, color=plot.INK)
+        fig.align_ylabels(axes)
+        return fig
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a study found.
+
+    Attributes
+    ----------
+    name : str
+        Name of the study.
+    seed, runs : int
+        What it was run with.
+    rows : list of dict
+        ``scenario``, ``estimator`` and metrics with their unit, None where there is none.
+    result : object
+        The Monte Carlo results by scenario, where the study has them.
+    pictures : tuple of Picture
+        Not drawn yet.
+    published : mapping of str to Published
+        Figures of others by source, such as ``paper``.
+    notes : tuple of str
+        What to know when reading the table.
+    """
+
+    name: str
+    seed: int
+    runs: int
+    rows: Rows
+    result: Any = None
+    pictures: tuple[Picture, ...] = ()
+    published: Mapping[str, Published] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def row(self, scenario: str, estimator: str) -> dict[str, Any]:
+        """The row of an estimator on a scenario; raises KeyError where there is none."""
+        for row in self.rows:
+            if (row["scenario"], row["estimator"]) == (scenario, estimator):
+                return row
+        raise KeyError(f"no row of {estimator} on {scenario}")
+
+    def save_pictures(self, folder: str | Path) -> list[Path]:
+        """Draw every picture into `folder` as ``NAME.png``; returns the files."""
+        files = []
+        for picture in self.pictures:
+            files.append(Path(folder) / f"{picture.name}.png")
+            plot.save(picture.draw(), files[-1])
+        return files
+
+    def table(self) -> list[list[str]]:
+        """Cells: a head, then a row an estimator and scenario, what others report below it."""
+        metrics = list(dict.fromkeys(key for row in self.rows for key in list(row)[2:]))
+        cells = [["scenario", "estimator", *map(label, metrics)]]
+        before = ""
+        for row in self.rows:
+            key = (row["scenario"], row["estimator"])
+            shown = key[0] if key[0] != before else ""
+            before = key[0]
+            cells.append([shown, key[1], *(figure_text(m, row.get(m)) for m in metrics)])
+            for source, figures in self.published.items():
+                if key in figures.figures:
+                    values = (figures.get(*key, m) for m in metrics)
+                    texts = map(figure_text, metrics, values)
+                    cells.append(["", f"  {source}", *("" if t == "-" else t for t in texts)])
+        return cells
+
+
+@dataclass(frozen=True)
+class Published:
+    """Figures of a publication.
+
+    Attributes
+    ----------
+    metrics : tuple of str
+        What it reports.
+    figures : mapping of (scenario, estimator) to sequence of float
+        In the order of `metrics`; NaN where it is silent.
+    """
+
+    metrics: tuple[str, ...]
+    figures: Mapping[tuple[str, str], Sequence[float]]
+
+    def get(self, scenario: str, estimator: str, metric: str) -> float | None:
+        """The figure, None where there is none."""
+        row = self.figures.get((scenario, estimator))
+        if row is None or metric not in self.metrics:
+            return None
+        value = row[self.metrics.index(metric)]
+        return None if np.isnan(value) else value
+
+
+def label(metric: str) -> str:
+    """Head of a metric's column, such as "mean m/s" for ``mean_velocity_mps``."""
+    if metric in _HEADS:
+        return _HEADS[metric]
+    name, _, unit = metric.rpartition("_")
+    return f"{name.replace('_', ' ')} {_UNITS.get(unit, unit)}".strip()
+
+
+def figure_text(metric: str, value: float | None) -> str:
+    """A figure with the digits that mean something."""
+    if value is None or not np.isfinite(value):
+        return "-"
+    return f"{value:.{_DIGITS.get(metric.split('_')[-1], 2)}f}"
+
+
+def finite(value: float | None) -> float | None:
+    """The value for a file, None for one that is not finite."""
+    return None if value is None or not np.isfinite(value) else float(value)

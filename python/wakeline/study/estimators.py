@@ -1,0 +1,67 @@
+"""The estimators that studies compare, built from a few numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+import wakeline as wl
+from wakeline.montecarlo import Candidate
+
+
+def turn_filter(rate_deg_s: float, noise: Any) -> wl.Ekf:
+    """The filter of a coordinated turn at a known rate."""
+    return wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=np.deg2rad(rate_deg_s), noise=noise))
+
+
+def turn_imm(
+    rates_deg_s: Sequence[float], noise: Any, *, stay: float = 0.9, straight: float | None = None
+) -> wl.Imm:
+    """An IMM of coordinated turns at known rates.
+
+    Parameters
+    ----------
+    rates_deg_s : sequence of K floats
+        Turn rates in degrees a second, 0 among them.
+    noise : process noise
+    stay : float
+        Probability to stay in a mode from scan to scan; the rest is shared alike.
+    straight : float, optional
+        Initial probability of rate 0, the rest is shared alike; default `stay`.
+    """
+    filters = [turn_filter(rate, noise) for rate in rates_deg_s]
+    return wl.Imm(
+        filters=filters,
+        chain=wl.ModeChain(sticky_chain(len(filters), stay)),
+        initial_mode_probability=peaked(
+            len(filters), list(rates_deg_s).index(0), stay if straight is None else straight
+        ),
+    )
+
+
+def sticky_chain(modes: int, stay: float) -> np.ndarray:
+    """Transition matrix (K, K) that stays with one probability and shares the rest alike."""
+    return np.array([peaked(modes, mode, stay) for mode in range(modes)])
+
+
+def peaked(modes: int, at: int, probability: float) -> np.ndarray:
+    """Probabilities (K,), the given one at one mode and the rest shared alike."""
+    shared = np.full(modes, (1.0 - probability) / max(modes - 1, 1))
+    shared[at] = probability
+    return shared
+
+
+def exists(*names: str) -> bool:
+    """Whether the engine has all these estimators."""
+    return all(hasattr(wl, name) for name in names)
+
+
+def turn_candidate(
+    rates_deg_s: Sequence[float], noise: Any, sensor: str, *, stay: float = 0.9
+) -> Candidate:
+    """A candidate for a Monte Carlo run that is a :func:`turn_imm`."""
+    return Candidate(
+        turn_imm(rates_deg_s, noise, stay=stay), sensor, np.deg2rad(np.asarray(rates_deg_s))
+    )

@@ -1,0 +1,157 @@
+"""Paper A: an IMM of two and of three models on a vessel that turns each way.
+
+"Interacting multiple model algorithm for tracking maneuvering surface vessels", Vestnik NovSU,
+2023, 3(132), 394-404. The paper shows curves, reports no figures, and claims: the right model wins
+in each segment, the error peaks at the switches, IMM3 is better than IMM2.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from wakeline import PiecewiseAcceleration, montecarlo, plot
+from wakeline.scenario import Scenario, papers
+
+from . import curves
+from .base import Picture, Published, Report
+from .estimators import turn_candidate
+
+SUMMARY = "IMM of two and three models, paper A: turns at 1 deg/s either way"
+
+LABELS = {"imm2": "IMM2", "imm3": "IMM3", "clairvoyant": "clairvoyant"}
+_NOISE = PiecewiseAcceleration(std_mps2=0.05)
+_RATES_DEG_S = {"imm2": (0, 1), "imm3": (0, 1, -1)}
+_READINGS = {
+    "scans": "the table of turns counts scans",
+    "seconds": "the table of turns counts seconds",
+}
+
+REFERENCE = Published(
+    ("peak_position_m", "peak_velocity_mps", "mean_position_m", "mean_velocity_mps"),
+    {("scans", "imm2"): (95.3, 4.86, 33.2, 1.59), ("scans", "imm3"): (28.4, 2.38, 23.4, 1.04)},
+)
+
+
+def estimators() -> dict[str, Any]:
+    """The candidates by name; plain converted measurements and 0.05 m/s² as of the paper."""
+    return {
+        name: turn_candidate(rates, _NOISE, "converted", stay=0.95)
+        for name, rates in _RATES_DEG_S.items()
+    } | {"clairvoyant": montecarlo.clairvoyant}
+
+
+def run(
+    runs: int = 500,
+    seed: int = 0,
+    *,
+    full: bool = False,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Report:
+    """Run the study.
+
+    Parameters
+    ----------
+    runs, seed : int
+        Of the Monte Carlo runs.
+    full : bool
+        Nothing more to do here.
+    threads : int, optional
+        Default as many as there are processors.
+    progress : bool
+        Whether to draw a bar where stderr is a terminal.
+
+    Returns
+    -------
+    Report
+        Scenarios ``scans`` and ``seconds``, the two readings of the paper's table of turns.
+    """
+    scenarios = {reading: papers.imm(reading) for reading in _READINGS}
+    result = montecarlo.run(
+        list(scenarios.values()), estimators(), runs, seed, threads=threads, progress=progress
+    )
+    rows = []
+    for reading, scenario in scenarios.items():
+        rows += curves.rows(result, reading, scenario)
+    return Report(
+        name="imm",
+        seed=seed,
+        runs=runs,
+        rows=rows,
+        result=result,
+        pictures=tuple(_pictures(result, scenarios, seed)),
+        published={"reference": REFERENCE},
+        notes=(_wins(result, scenarios),),
+    )
+
+
+def _pictures(
+    result: montecarlo.Result, scenarios: dict[str, Scenario], seed: int
+) -> list[Picture]:
+    names = {name: LABELS[name] for name in _RATES_DEG_S}
+    pictures = [
+        Picture(
+            "imm-truth",
+            "Paper A: the true path, its table of turns read as scans and as seconds",
+            tuple(partial(curves.draw_truth, scenario=scenario) for scenario in scenarios.values()),
+            size_in=(9.0, 5.0),
+            columns=2,
+            shared=False,
+        ),
+        Picture(
+            "imm-tracks",
+            "One run: plots and filtered tracks",
+            (
+                partial(
+                    curves.draw_tracks,
+                    scenario=scenarios["scans"],
+                    candidates={LABELS[name]: estimators()[name] for name in names},
+                    seed=seed,
+                ),
+            ),
+            shared=False,
+        ),
+    ]
+    for reading, scenario in scenarios.items():
+        pictures += [
+            Picture(
+                f"imm-modes-{reading}",
+                f"Mode probabilities, mean of {result.runs} runs; {_READINGS[reading]}",
+                tuple(
+                    partial(
+                        curves.draw_modes,
+                        outcome=result[scenario.name, name],
+                        rates_rad_s=np.deg2rad(_RATES_DEG_S[name]),
+                        ylabel=f"{LABELS[name]}\nmode probability",
+                    )
+                    for name in names
+                ),
+                size_in=(7.2, 5.2),
+            ),
+            curves.error_picture(
+                f"imm-errors-{reading}",
+                f"RMSE of {result.runs} runs over the bound; {_READINGS[reading]}",
+                result,
+                scenario,
+                LABELS,
+                {"clairvoyant": plot.INK},
+            ),
+        ]
+    return pictures
+
+
+def _wins(result: montecarlo.Result, scenarios: dict[str, Scenario]) -> str:
+    """How much of each segment the right model is the most probable one, on average."""
+    lines = ["Share of the scans of each segment in which the right model is the most probable:"]
+    for reading, scenario in scenarios.items():
+        for name, rates in _RATES_DEG_S.items():
+            shares = curves.wins_by_segment(result[scenario.name, name], np.deg2rad(rates))
+            parts = [
+                f"{rate:+.0f} °/s " + (f"{100 * share:.0f} %" if share is not None else "no model")
+                for rate, share in shares
+            ]
+            lines.append(f"  {reading}, {name}: {', '.join(parts)}")
+    return "\n".join(lines)

@@ -1,0 +1,219 @@
+"""Studies: rows in one shape, the same for a seed, beside what others report; errors in a line."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import wakeline as wl
+from wakeline import montecarlo, scenario, study
+from wakeline.cli import main, outputs
+from wakeline.study import curves, estimators
+
+PNG = b"\x89PNG"
+RUNS = 6
+METRICS = (
+    *("mean_position_m", "peak_position_m", "mean_velocity_mps", "peak_velocity_mps"),
+    *("nees", "settling_s", "ns_per_step"),
+)
+SCENARIOS = {"imm": ["scans", "seconds"], "variable-structure": ["example1", "example2", "random"]}
+ESTIMATORS = {
+    "imm": ["imm2", "imm3", "clairvoyant", "bound"],
+    "variable-structure": ["imm5", "imm9", "imm5_converted", "clairvoyant", "bound"],
+}
+
+
+@pytest.fixture(scope="module")
+def reports():
+    return {name: study.load(name).run(RUNS, 3) for name in SCENARIOS}
+
+
+@pytest.fixture
+def no_pictures(monkeypatch):
+    monkeypatch.setattr(outputs, "can_draw", lambda: False)
+
+
+def run(*arguments):
+    return main(["study", *map(str, arguments)])
+
+
+# What a study finds -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_rows_have_the_scenarios_the_estimators_and_the_metrics(reports, name):
+    rows = reports[name].rows
+    assert list(dict.fromkeys(row["scenario"] for row in rows)) == SCENARIOS[name]
+    for scene in SCENARIOS[name]:
+        found = [row["estimator"] for row in rows if row["scenario"] == scene]
+        assert set(ESTIMATORS[name]) <= set(found)
+        assert len(set(found)) == len(found)
+    for row in rows:
+        assert tuple(row)[2:] == METRICS
+        assert all(value is None or math.isfinite(value) for value in list(row.values())[2:])
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_study_is_the_same_for_a_seed_and_another_for_another(reports, name):
+    def figures(report):
+        return [{k: v for k, v in row.items() if k != "ns_per_step"} for row in report.rows]
+
+    again, other = (study.load(name).run(RUNS, seed, threads=1) for seed in (3, 4))
+    assert figures(again) == figures(reports[name])
+    assert figures(other) != figures(reports[name])
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_nobody_beats_the_bound_by_more_than_chance_and_a_true_start_allow(reports, name):
+    report = reports[name]
+    for scene in SCENARIOS[name]:
+        bound = report.row(scene, "bound")
+        told = report.row(scene, "clairvoyant")
+        assert bound["mean_position_m"] < 1.4 * told["mean_position_m"]
+        for row in report.rows:
+            if row["scenario"] == scene:
+                assert row["mean_position_m"] >= 0.95 * told["mean_position_m"]
+
+
+def test_three_models_are_better_than_two_when_the_vessel_turns_both_ways(reports):
+    two, three = (reports["imm"].row("scans", name) for name in ("imm2", "imm3"))
+    assert three["peak_position_m"] < 0.5 * two["peak_position_m"]
+    assert three["mean_position_m"] < two["mean_position_m"]
+
+
+def test_the_figures_of_a_reference_are_met():
+    """Of an independent program; the tolerance is what 40 runs leave to chance."""
+    result = montecarlo.run(
+        scenario.named("example1"),
+        study.variable_structure.estimators(study.variable_structure.SETTINGS["example1"]),
+        40,
+    )
+    figures = result.summary()["example1"]
+    for name in ("imm5", "imm5_converted", "clairvoyant"):
+        published = study.variable_structure.REFERENCE.figures["example1", name]
+        ours = [figures[name][metric] for metric in study.variable_structure.REFERENCE.metrics]
+        np.testing.assert_allclose(ours, published, rtol=0.2)
+
+
+def test_the_right_model_leads_where_there_is_one(reports):
+    outcome = reports["imm"].result["imm-scans", "imm2"]
+    shares = curves.wins_by_segment(outcome, np.deg2rad([0, 1]))
+    assert [round(rate) for rate, _ in shares] == [0, 1, -1, 0]
+    assert shares[2][1] is None
+    assert shares[0][1] > 0.9
+
+
+def test_a_row_that_is_not_there(reports):
+    with pytest.raises(KeyError, match="no row of imm7 on scans"):
+        reports["imm"].row("scans", "imm7")
+
+
+# The table ----------------------------------------------------------------------------------------
+
+
+def test_the_table_has_what_the_paper_and_a_reference_report_below_ours(reports):
+    head, *cells = reports["variable-structure"].table()
+    assert head[:4] == ["scenario", "estimator", "mean m", "peak m"]
+    assert {len(row) for row in cells} == {len(head)}
+    k = next(k for k, row in enumerate(cells) if row[:2] == ["example1", "imm5"])
+    assert cells[k + 1][1:6] == ["  paper", "17.6", "69.5", "0.91", "4.74"]
+    assert cells[k + 2][1:6] == ["  reference", "25.4", "34.5", "1.79", "3.05"]
+
+
+def test_published_figures_are_silent_where_the_source_is():
+    published = study.variable_structure.REFERENCE
+    assert published.get("random", "imm5", "mean_position_m") == 29.8
+    assert published.get("random", "imm5", "peak_position_m") is None
+    assert published.get("random", "imm5", "nees") is None
+    assert published.get("nowhere", "imm5", "mean_position_m") is None
+
+
+# The estimators -----------------------------------------------------------------------------------
+
+
+def test_a_chain_stays_and_shares_the_rest():
+    chain = estimators.sticky_chain(5, 0.9)
+    np.testing.assert_allclose(chain.sum(axis=1), 1.0)
+    np.testing.assert_allclose(np.diag(chain), 0.9)
+    np.testing.assert_allclose(chain[0, 1:], 0.025)
+    np.testing.assert_allclose(estimators.peaked(1, 0, 1.0), [1.0])
+
+
+def test_an_imm_of_turns_starts_straight():
+    imm = estimators.turn_imm((-2, 0, 2), wl.PiecewiseAcceleration(std_mps2=0.1))
+    imm.start(wl.Gaussian(np.zeros(4), np.eye(4)))
+    np.testing.assert_allclose(imm.mode_probability(), [0.05, 0.9, 0.05])
+
+
+# The command --------------------------------------------------------------------------------------
+
+
+def test_list_names_each_study_in_a_line(capsys):
+    assert run("list") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == study.names()
+
+
+def test_run_prints_the_table_and_writes_json(tmp_path, capsys, no_pictures):
+    result = tmp_path / "sub" / "imm.json"
+    assert run("run", "imm", "--runs", 2, "--json", result, "--out", tmp_path / "out") == 0
+    written = json.loads(result.read_text())
+    assert set(written) == {"name", "version", "seed", "runs", "rows"}
+    assert (written["name"], written["seed"], written["runs"]) == ("imm", 0, 2)
+    assert len(written["rows"]) == 8
+    text = capsys.readouterr().out
+    for word in ("imm: 2 runs, seed 0", "mean m/s", "reference", "95.3", "bound"):
+        assert word in text
+
+
+def test_run_draws_the_figures_of_the_paper(tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    assert run("run", "imm", "--runs", 2, "--out", tmp_path) == 0
+    drawn = sorted(tmp_path.iterdir())
+    assert [path.suffix for path in drawn] == [".png"] * 6
+    assert all(path.read_bytes().startswith(PNG) for path in drawn)
+    text = capsys.readouterr().out
+    assert all(path.name in text for path in drawn)
+
+
+def test_every_panel_returns_the_axes_it_drew_into(reports):
+    pytest.importorskip("matplotlib")
+    from wakeline import plot
+
+    for picture in reports["variable-structure"].pictures:
+        for panel in picture.panels:
+            ax = plot.figure().add_subplot()
+            assert panel(ax) is ax
+            assert ax.get_xlabel()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "wanted"),
+    [
+        (["run", "none"], "invalid choice: 'none'"),
+        (["run"], "NAME"),
+        ([], "ACTION"),
+        (["run", "imm", "--runs", "0"], "wanted a whole number from 1 on, got '0'"),
+        (["run", "imm", "--runs", "-3"], "wanted a whole number from 1 on, got '-3'"),
+        (["run", "imm", "--runs", "many"], "wanted a whole number from 1 on, got 'many'"),
+        (["run", "imm", "--seed", "-1"], "wanted a whole number from 0 on, got '-1'"),
+    ],
+)
+def test_a_study_that_makes_no_sense(capsys, arguments, wanted):
+    assert run(*arguments) == 2
+    message = capsys.readouterr().err
+    assert message.startswith("wakeline: ")
+    assert message.count("\n") == 1
+    assert wanted in message
+
+
+def test_an_output_folder_that_is_a_file(tmp_path, capsys):
+    (tmp_path / "taken").write_text("mine")
+    assert run("run", "imm", "--runs", 1, "--out", tmp_path / "taken") == 2
+    assert "taken: File exists" in capsys.readouterr().err
+
+
+def test_there_is_no_study_of_that_name():
+    with pytest.raises(ValueError, match=r"no study 'none'; there are imm"):
+        study.load("none")
