@@ -11,6 +11,7 @@ from .curves import (
     rmse_curve,
     settling_times_s,
 )
+from .modes import right_mode
 from .results import EpisodeScore, Score, Summary, TargetScore
 from .scoring import score
 from .sets import Gospa, gospa, ospa
@@ -29,6 +30,7 @@ __all__ = [
     "gospa",
     "nees",
     "ospa",
+    "right_mode",
     "rmse",
     "rmse_curve",
     "score",

@@ -96,7 +96,7 @@ def by_segment(
 
 
 def settling_times_s(
-    time_s: np.ndarray, curve: np.ndarray, switch_times_s: np.ndarray, *, factor: float = 1.5
+    time_s: np.ndarray, curve: np.ndarray, switch_times_s: np.ndarray, *, factor: float = 1.2
 ) -> np.ndarray:
     """How long after each switch a curve of errors takes to calm down.
 

@@ -47,10 +47,12 @@ def bound(scenario: Scenario, noise: Any = None) -> np.ndarray:
         if piece.scan is not None:
             transition[piece.scan], process_noise[piece.scan] = moved, gained
             moved, gained = np.eye(4), np.zeros((4, 4))
+    states = scenario.truth_states
+    states[np.hypot(states[:, 0], states[:, 2]) > scenario.radar.max_range_m] = np.nan
     return eval.cramer_rao_bound(
         transition,
         process_noise,
-        scenario.truth_states,
+        states,
         sensor=scenario.polar_sensor,
         start_covariance=scenario.start.covariance,
         detection_probability=scenario.radar.detection_probability,

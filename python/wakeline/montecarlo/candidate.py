@@ -59,7 +59,7 @@ class Candidate:
 
 
 def clairvoyant(
-    scenario: Scenario, z: np.ndarray, *, sensor: Any = "converted", noise: Any = None
+    scenario: Scenario, z: np.ndarray, *, sensor: Any = "polar", noise: Any = None
 ) -> SimpleNamespace:
     """The Kalman filter that is told the turn rate at each instant: what no candidate can beat.
 
@@ -72,7 +72,7 @@ def clairvoyant(
     z : ndarray (R, T, 2)
         Readings, as of ``scenario.draw``.
     sensor : {"polar", "converted"}, object or callable
-        As of :class:`Candidate`.
+        As of :class:`Candidate`. Converted readings err where the antenna is near.
     noise : process-noise policy, optional
         Default none at all.
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import core
-from wakeline.metrics import squared_distance
+from wakeline.metrics import right_mode, squared_distance
 from wakeline.scenario import Scenario
 
 from .candidate import Candidate
@@ -185,10 +185,7 @@ def _rates(
 def _right_mode(
     scenario: Scenario, modes: np.ndarray | None, rates: np.ndarray | None
 ) -> np.ndarray | None:
-    """Runs (T,) whose most probable model is one of those nearest to the true turn rate."""
+    """Runs (T,) whose most probable model is the right one."""
     if modes is None or rates is None:
         return None
-    distance = np.abs(rates - scenario.turn_rates_rad_s[:, np.newaxis])
-    distance = np.broadcast_to(distance, modes.shape)
-    chosen = np.take_along_axis(distance, modes.argmax(axis=-1)[..., np.newaxis], axis=-1)[..., 0]
-    return (chosen <= distance.min(axis=-1) + 1e-12).sum(axis=0)
+    return right_mode(modes, rates, scenario.turn_rates_rad_s).sum(axis=0)

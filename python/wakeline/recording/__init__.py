@@ -1,4 +1,4 @@
-"""Radar plots, own ship, truth and tracks in files, and the recordings that ship with Wakeline.
+"""Radar plots, own ship, truth, tracks and AIS in files, and recordings that ship with Wakeline.
 
 >>> from wakeline import recording
 >>> joyride = recording.load("joyride")
@@ -10,15 +10,20 @@ from __future__ import annotations
 
 from importlib import resources
 
+from .ais_csv import AisRecording, AisTrack, read_ais
 from .errors import RecordingError
 from .files import replacing
+from .local_plane import LocalPlane
 from .model import Episode, OwnShip, Recording, Scan
 from .plots_csv import read_plots
 from .tracks_csv import Tracks, read_tracks, write_tracks
 from .truth import TargetTruth
 
 __all__ = [
+    "AisRecording",
+    "AisTrack",
     "Episode",
+    "LocalPlane",
     "OwnShip",
     "Recording",
     "RecordingError",
@@ -26,7 +31,9 @@ __all__ = [
     "TargetTruth",
     "Tracks",
     "load",
+    "load_ais",
     "names",
+    "read_ais",
     "read_plots",
     "read_tracks",
     "replacing",
@@ -35,8 +42,8 @@ __all__ = [
 
 
 def names() -> list[str]:
-    """Names of the recordings that ship with the package."""
-    return sorted(folder.name for folder in _data().iterdir() if folder.is_dir())
+    """Names of the radar recordings that ship with the package."""
+    return sorted(f.name for f in _data().iterdir() if f.is_dir() and (f / "plots.csv").is_file())
 
 
 def load(name: str) -> Recording:
@@ -64,6 +71,15 @@ def load(name: str) -> Recording:
     with resources.as_file(_data() / name) as folder:
         plots, scans, truth = (folder / f"{kind}.csv" for kind in ("plots", "scans", "truth"))
         return read_plots(plots, scans, truth, name=name)
+
+
+def load_ais() -> AisRecording:
+    """AIS tracks that ship with the package: 14 vessels that maneuver in the Solent in 2016.
+
+    Source and licence lie beside the data.
+    """
+    with resources.as_file(_data() / "solent") as folder:
+        return read_ais(folder / "ais.csv")
 
 
 def _data():

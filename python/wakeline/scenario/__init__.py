@@ -13,6 +13,7 @@ from .disturbance import disturbed
 from .maneuvers import random_maneuvers
 from .radar import RadarSimulator
 from .scenario import AnyTruth, Scenario
+from .track_truth import TrackTruth, smoothed
 from .truth import Segment, Truth, segments_from_table
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "RadarSimulator",
     "Scenario",
     "Segment",
+    "TrackTruth",
     "Truth",
     "disturbed",
     "named",
@@ -27,6 +29,7 @@ __all__ = [
     "papers",
     "random_maneuvers",
     "segments_from_table",
+    "smoothed",
 ]
 
 

@@ -1,0 +1,48 @@
+"""Whether the most probable of several models is the right one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+_SAME_RATE_RAD_S = 1e-12
+
+
+def right_mode(
+    mode_probability: np.ndarray, turn_rates_rad_s: np.ndarray, true_turn_rate_rad_s: np.ndarray
+) -> np.ndarray:
+    """Whether the most probable model is the one whose turn rate is nearest to the true one.
+
+    Parameters
+    ----------
+    mode_probability : array_like (..., T, K)
+        Of one or more runs, or their mean.
+    turn_rates_rad_s : array_like (K,), (T, K) or (..., T, K)
+        Turn rates of the models, fixed or as they move.
+    true_turn_rate_rad_s : array_like (T,)
+
+    Returns
+    -------
+    ndarray of bool (..., T)
+        Of models equally near each is right; of models equally probable the first counts.
+
+    Raises
+    ------
+    ValueError
+        When the shapes do not fit.
+    """
+    modes = np.asarray(mode_probability, dtype=float)
+    rates = np.asarray(turn_rates_rad_s, dtype=float)
+    truth = np.asarray(true_turn_rate_rad_s, dtype=float)
+    if modes.ndim < 2 or modes.shape[-1] == 0 or truth.shape != modes.shape[-2:-1]:
+        raise ValueError(
+            "mode_probability must have shape (..., T, K) and true_turn_rate_rad_s (T,), "
+            f"got {modes.shape} and {truth.shape}"
+        )
+    if rates.shape not in (modes.shape[-1:], modes.shape[-2:], modes.shape):
+        raise ValueError(
+            f"turn_rates_rad_s must have shape (K,), (T, K) or {modes.shape}, got {rates.shape}"
+        )
+    distance = np.broadcast_to(np.abs(rates - truth[:, np.newaxis]), modes.shape)
+    first = modes.argmax(axis=-1)[..., np.newaxis]
+    chosen = np.take_along_axis(distance, first, axis=-1)[..., 0]
+    return chosen <= distance.min(axis=-1) + _SAME_RATE_RAD_S
