@@ -131,7 +131,7 @@ def _summed(chunk: Chunk, result: Any) -> Sums:
         position_m2=position_m2.sum(axis=0),
         velocity_m2s2=(error[..., 1] ** 2 + error[..., 3] ** 2).sum(axis=0),
         nees=squared_distance(error, covariance[usable]).sum(axis=0),
-        nis=np.where(np.isnan(nis), 0.0, nis).sum(axis=0),
+        nis=np.where(np.isfinite(nis), nis, 0.0).sum(axis=0),
         nis_count=np.isfinite(nis).sum(axis=0).astype(float),
         mode_probability=None if modes is None else modes.sum(axis=0),
         turn_rate_rad_s=None if estimated_rate is None else estimated_rate.sum(axis=0),

@@ -88,7 +88,12 @@ def disturbed(
             )
         )
     start = truth.state_at(truth.start_time_s)[0]
-    return Truth(start, pieces, start_time_s=truth.start_time_s)
+    return Truth(
+        start,
+        pieces,
+        start_time_s=truth.start_time_s,
+        start_course_rad=truth.start_course_rad,
+    )
 
 
 def _heavy_tailed(

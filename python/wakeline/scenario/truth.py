@@ -170,6 +170,11 @@ class Truth:
         return float(self._time_s[-1])
 
     @property
+    def start_course_rad(self) -> float:
+        """Course steered at the beginning, in (-pi, pi] unless it was given otherwise."""
+        return float(self._course_rad[1])
+
+    @property
     def switch_times_s(self) -> np.ndarray:
         """Times (S,) from the start on at which the turn rate changes, in order."""
         change = np.flatnonzero(np.diff(self._turn_rate_rad_s[1:]))
