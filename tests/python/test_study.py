@@ -13,14 +13,24 @@ from wakeline.study import curves, estimators
 
 PNG = b"\x89PNG"
 RUNS = 6
-METRICS = (
+MANEUVERS = ("imm", "variable-structure")
+CURVE_METRICS = (
     *("mean_position_m", "peak_position_m", "mean_velocity_mps", "peak_velocity_mps"),
     *("nees", "settling_s", "ns_per_step"),
 )
-SCENARIOS = {"imm": ["scans", "seconds"], "variable-structure": ["example1", "example2", "random"]}
+ERRORS = ("position_rmse_m", "speed_rmse_mps", "course_rms_deg")
+METRICS = dict.fromkeys(MANEUVERS, CURVE_METRICS) | {
+    "solent": (*ERRORS, *(f"after_turn_{metric}" for metric in ERRORS))
+}
+SCENARIOS = {
+    "imm": ["scans", "seconds"],
+    "variable-structure": ["example1", "example2", "random"],
+    "solent": ["coastal_60m", "coastal_15m"],
+}
 ESTIMATORS = {
     "imm": ["imm2", "imm3", "clairvoyant", "bound"],
     "variable-structure": ["imm5", "imm9", "imm5_converted", "clairvoyant", "bound"],
+    "solent": ["kalman_cv", "imm3", "imm5", "vessel_imm"],
 }
 
 
@@ -50,7 +60,7 @@ def test_rows_have_the_scenarios_the_estimators_and_the_metrics(reports, name):
         assert set(ESTIMATORS[name]) <= set(found)
         assert len(set(found)) == len(found)
     for row in rows:
-        assert tuple(row)[2:] == METRICS
+        assert tuple(row)[2:] == METRICS[name]
         assert all(value is None or math.isfinite(value) for value in list(row.values())[2:])
 
 
@@ -64,7 +74,7 @@ def test_a_study_is_the_same_for_a_seed_and_another_for_another(reports, name):
     assert figures(other) != figures(reports[name])
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("name", MANEUVERS)
 def test_nobody_beats_the_bound_by_more_than_chance_and_a_true_start_allow(reports, name):
     report = reports[name]
     for scene in SCENARIOS[name]:
@@ -107,6 +117,35 @@ def test_the_right_model_leads_where_there_is_one(reports):
 def test_a_row_that_is_not_there(reports):
     with pytest.raises(KeyError, match="no row of imm7 on scans"):
         reports["imm"].row("scans", "imm7")
+
+
+# Real vessels -------------------------------------------------------------------------------------
+
+
+def test_a_finer_radar_gives_finer_tracks(reports):
+    report = reports["solent"]
+    for name in ESTIMATORS["solent"]:
+        fine, coarse = (report.row(f"coastal_{m}m", name) for m in (15, 60))
+        assert fine["position_rmse_m"] < 0.5 * coarse["position_rmse_m"]
+        assert fine["course_rms_deg"] < coarse["course_rms_deg"]
+
+
+def test_every_stretch_is_under_way_and_in_sight():
+    for scene in study.solent.scenes("coastal_60m"):
+        north_m, vnorth_mps, east_m, veast_mps = scene.truth_states.T
+        assert np.hypot(north_m, east_m).max() < 10e3
+        assert np.hypot(vnorth_mps, veast_mps).min() > 1.5
+        assert scene.time_s[-1] > 175.0
+
+
+def test_after_a_turn_are_the_scans_of_it_and_of_half_a_minute_more():
+    straight, turn = scenario.Segment(120.0), scenario.Segment(60.0, np.deg2rad(3.0))
+    truth = scenario.Truth([4000.0, 5.0, 0.0, 0.0], [straight, turn, straight])
+    scene = scenario.Scenario("bend", truth, study.solent.RADARS["coastal_60m"], scans=99)
+    after_s = scene.time_s[study.solent.after_turn(scene)]
+    assert abs(after_s[0] - 120.0) <= 5.0
+    assert abs(after_s[-1] - 210.0) <= 5.0
+    assert len(after_s) == round((after_s[-1] - after_s[0]) / 3.0) + 1
 
 
 # The table ----------------------------------------------------------------------------------------

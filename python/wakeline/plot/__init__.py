@@ -14,7 +14,19 @@ from .comparison import (
     turn_rate_panel,
 )
 from .map import ellipse_outline, map_figure, map_view
-from .style import INK, MUTED, PALETTE, TEXT_PT, dress, figure, halo, name_lines, save, track_colors
+from .style import (
+    INK,
+    MUTED,
+    PALETTE,
+    TEXT_PT,
+    dress,
+    dress_map,
+    figure,
+    halo,
+    name_lines,
+    save,
+    track_colors,
+)
 from .time import (
     course_panel,
     draw_bands,
@@ -33,6 +45,7 @@ __all__ = [
     "course_panel",
     "draw_bands",
     "dress",
+    "dress_map",
     "ellipse_outline",
     "error_panel",
     "figure",

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .style import GRID, INK, MUTED, PALETTE, dress, name_lines
+from .style import GRID, INK, MUTED, PALETTE, dress, dress_map, name_lines
 from .time import draw_bands
 
 if TYPE_CHECKING:
@@ -65,10 +65,7 @@ def paths_view(
     ax.plot(*_km(place[:1]), color=INK, marker="o", markersize=6, markerfacecolor="white", zorder=5)
     if radar:
         ax.plot(0, 0, color=INK, marker="^", markersize=7, linestyle="", label="radar", zorder=5)
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel("east (km)")
-    ax.set_ylabel("north (km)")
-    return name_lines(dress(ax))
+    return name_lines(dress_map(ax))
 
 
 def error_panel(

@@ -60,6 +60,14 @@ def dress(ax: Axes) -> Axes:
     return ax
 
 
+def dress_map(ax: Axes) -> Axes:
+    """The house look of a map in kilometres, north up; returns `ax`."""
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("east (km)")
+    ax.set_ylabel("north (km)")
+    return dress(ax)
+
+
 def halo(width: float = 2.0) -> list:
     """Path effects that keep text and thin lines legible on whatever lies below."""
     from matplotlib import patheffects

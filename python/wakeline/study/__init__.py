@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from . import imm, variable_structure
+from . import imm, solent, variable_structure
 from .base import Picture, Published, Report
 
 __all__ = [
@@ -23,10 +23,11 @@ __all__ = [
     "imm",
     "load",
     "names",
+    "solent",
     "variable_structure",
 ]
 
-_STUDIES = {"imm": imm, "variable-structure": variable_structure}
+_STUDIES = {"imm": imm, "variable-structure": variable_structure, "solent": solent}
 
 
 def names() -> list[str]:

@@ -23,6 +23,12 @@ _HEADS = {
     "peak_position_m": "peak m",
     "mean_velocity_mps": "mean m/s",
     "peak_velocity_mps": "peak m/s",
+    "position_rmse_m": "position m",
+    "speed_rmse_mps": "speed m/s",
+    "course_rms_deg": "course °",
+    "after_turn_position_rmse_m": "after turn m",
+    "after_turn_speed_rmse_mps": "after turn m/s",
+    "after_turn_course_rms_deg": "after turn °",
     "nees": "NEES",
     "ns_per_step": "ns a step",
 }

@@ -122,13 +122,11 @@ def draw_tracks(
     """Plots and filtered tracks of the first run."""
     z = scenario.draw(1, seed)
     tracks = {name: kinematics(call(scenario, z).mean[0]) for name, call in candidates.items()}
-    range_m, bearing_rad = z[0].T
-    plots_m = np.column_stack([range_m * np.cos(bearing_rad), range_m * np.sin(bearing_rad)])
     return plot.paths_view(
         ax,
         scenario.truth_states,
         tracks,
-        plots_m=plots_m,
+        plots_m=place_m(z[0]),
         switch=switch_scans(scenario),
         colors=colors,
     )
@@ -178,6 +176,12 @@ def wins_by_segment(
 def switch_scans(scenario: Scenario) -> list[int]:
     """The scans at or after the switches."""
     return np.searchsorted(scenario.time_s, scenario.switch_times_s).tolist()
+
+
+def place_m(z: np.ndarray) -> np.ndarray:
+    """North and east (..., 2) of readings (..., 2) of range and bearing."""
+    range_m, bearing_rad = np.moveaxis(z, -1, 0)
+    return np.stack([range_m * np.cos(bearing_rad), range_m * np.sin(bearing_rad)], axis=-1)
 
 
 def kinematics(mean: np.ndarray) -> np.ndarray:

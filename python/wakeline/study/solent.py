@@ -1,0 +1,382 @@
+"""Real maneuvers: vessels of the Solent, replayed from AIS under a simulated coastal radar.
+
+The truth is where vessels went in January 2016 off Portsmouth. A radar at Gilkicker Point sees
+those within ten kilometres at every scan with Gaussian errors in range and bearing, and every
+estimator, with one tuning for all vessels and both radars, starts from the first plot.
+
+AIS is heard with delays of seconds, at random, so that a vessel seems to jump along its path. The
+time of each report is therefore told anew: from report to report passes the way made divided by the
+mean of the two reported speeds. Stretches count in which a vessel makes more than 2 m/s for three
+minutes and is heard every 7 s or oftener.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import wakeline as wl
+from wakeline import WhiteAcceleration, plot, recording
+from wakeline._progress import progress as told
+from wakeline.recording import AisTrack
+from wakeline.scenario import RadarSimulator, Scenario, TrackTruth
+
+from . import curves
+from .base import Picture, Report, Rows
+from .estimators import exists, sticky_chain, turn_filter, turn_imm
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SUMMARY = "real maneuvers replayed from AIS under coastal radars: every estimator by name"
+
+RADARS = {
+    "coastal_60m": RadarSimulator(60.0, np.deg2rad(0.5), period_s=3.0),
+    "coastal_15m": RadarSimulator(15.0, np.deg2rad(0.1), period_s=2.5),
+}
+RADAR_AT_DEG = (50.7743, -1.1407)
+TURN_RATE_DEG_S = 1.5
+AFTER_TURN_S = 30.0
+METRICS = ("position_rmse_m", "speed_rmse_mps", "course_rms_deg")
+AFTER = "after_turn_"
+
+_WINDOW_S = 10.0
+_SETTLE_S = 30.0
+_MIN_SPEED_MPS = 2.0
+_MIN_STEP_S, _MAX_STEP_S, _MAX_GAP_S = 0.5, 7.0, 25.0
+_MIN_DURATION_S = 180.0
+_COVERAGE_M = 10e3
+_START_SPEED_STD_MPS = 10.0
+_NOISE = WhiteAcceleration(psd_m2s3=0.01)
+_SHOWN = ("kalman_cv", "imm5", "mode_history")
+_SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
+
+
+# The vessels --------------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=1)
+def vessels() -> dict[str, TrackTruth]:
+    """Stretches by name, with the radar at north 0, east 0."""
+    ais = recording.load_ais()
+    radar_m = [
+        float(np.ravel(part)[0]) for part in ais.plane.position_m(*map(np.array, RADAR_AT_DEG))
+    ]
+    found = {}
+    for mmsi, track in ais.tracks.items():
+        stretches = [part for gapless in track.parts(_MAX_GAP_S) for part in _under_way(gapless)]
+        for k, truth in enumerate(filter(None, map(_retimed, stretches))):
+            found[f"{mmsi}-{k}"] = truth.moved(-radar_m[0], -radar_m[1])
+    return {name: truth for name, truth in found.items() if _covered(truth)}
+
+
+def _under_way(track: AisTrack) -> Iterator[AisTrack]:
+    """The parts of a track in which the vessel makes way."""
+    moving = (track.speed_mps > _MIN_SPEED_MPS) & np.isfinite(track.course_rad)
+    rows = np.flatnonzero(moving)
+    for part in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
+        if len(part) > 1 and np.median(np.diff(track.time_s[part])) < _MAX_STEP_S:
+            yield track.rows(part)
+
+
+def _retimed(track: AisTrack) -> TrackTruth | None:
+    """The track with times that fit way and speed; None for one that is too short."""
+    way_m = np.hypot(np.diff(track.north_m), np.diff(track.east_m))
+    step_s = way_m / (0.5 * (track.speed_mps[1:] + track.speed_mps[:-1]))
+    time_s = np.concatenate([[0.0], np.cumsum(step_s)])
+    kept = np.concatenate([[True], step_s > _MIN_STEP_S])
+    if time_s[-1] < _MIN_DURATION_S:
+        return None
+    return TrackTruth(time_s[kept], track.north_m[kept], track.east_m[kept])
+
+
+def _covered(truth: TrackTruth) -> bool:
+    """Whether the radar sees the vessel all the time."""
+    place_m = truth.state_at(np.arange(0.0, truth.end_time_s))[:, 0::2]
+    return bool(np.hypot(*place_m.T).max() < _COVERAGE_M)
+
+
+def scenes(radar: str) -> list[Scenario]:
+    """A scenario of each stretch under a radar of :data:`RADARS`."""
+    simulator = RADARS[radar]
+    return [
+        Scenario(f"{radar}-{name}", truth, simulator, int(truth.end_time_s // simulator.period_s))
+        for name, truth in vessels().items()
+    ]
+
+
+def after_turn(scenario: Scenario) -> np.ndarray:
+    """Scans (T,) at which a turn goes on, or began or ended less than 30 s ago.
+
+    A vessel turns where its course changes by more than 1.5 deg/s in the mean of 10 s.
+    """
+    time_s = scenario.time_s
+    fine_s = np.arange(0.0, time_s[-1] + _WINDOW_S, 1.0)
+    velocity = scenario.truth.state_at(fine_s)[:, 1::2]
+    course_deg = np.degrees(np.unwrap(np.arctan2(velocity[:, 1], velocity[:, 0])))
+    half = int(_WINDOW_S / 2)
+    rate_deg_s = (course_deg[2 * half :] - course_deg[: -2 * half]) / _WINDOW_S
+    turning_s = fine_s[half:-half][np.abs(rate_deg_s) > TURN_RATE_DEG_S]
+    since_s = time_s[:, np.newaxis] - turning_s
+    return ((since_s >= 0.0) & (since_s <= AFTER_TURN_S)).any(axis=1)
+
+
+# The estimators -----------------------------------------------------------------------------------
+
+
+def estimators() -> dict[str, Any]:
+    """Every estimator by name, with its one tuning.
+
+    Models of one filter have the defaults of the library; turns at known rates have a white
+    acceleration of 0.01 m²/s³ and stay with 0.95 from scan to scan; what else there is stands at
+    its default.
+    """
+    return {name: build() for name, (build, *needs) in _TABLE.items() if exists(*needs)}
+
+
+def _imm_rate() -> wl.Imm:
+    """Straight on, and a turn whose rate is part of the state."""
+    return wl.Imm(
+        [wl.Ekf(wl.ConstantVelocity(noise=_NOISE)), wl.Ekf(wl.CoordinatedTurnRate(noise=_NOISE))],
+        wl.ModeChain(sticky_chain(2, 0.95)),
+        [0.95, 0.05],
+    )
+
+
+def _vessel_imm() -> wl.Imm:
+    radar = RADARS["coastal_60m"]
+    return wl.vessel_imm(
+        wl.Radar(range_std_m=radar.range_std_m, bearing_std_rad=radar.bearing_std_rad)
+    )
+
+
+def _adaptive() -> Any:
+    return wl.AdaptiveGridImm(filter=turn_filter(0.0, _NOISE), max_turn_rate_rad_s=np.deg2rad(5.0))
+
+
+def _switching() -> Any:
+    grid_rad_s = np.deg2rad([-4.0, -2.0, 0.0, 2.0, 4.0])
+    return wl.SwitchingGridImm(filter=turn_filter(0.0, _NOISE), grid_rad_s=grid_rad_s)
+
+
+_TABLE: dict[str, tuple[Any, ...]] = {
+    "kalman_cv": (lambda: wl.Ekf(wl.ConstantVelocity()),),
+    "wandering_course": (lambda: wl.Ekf(wl.WanderingCourse()),),
+    "kalman_ca": (lambda: wl.Ekf(wl.ConstantAcceleration()),),
+    "singer": (lambda: wl.Ekf(wl.Singer()),),
+    "ekf_turn_rate": (lambda: wl.Ekf(wl.CoordinatedTurnRate()),),
+    "ukf_turn_rate": (lambda: wl.Ukf(wl.CoordinatedTurnRate()),),
+    "imm3": (lambda: turn_imm((0, 2, -2), _NOISE, stay=0.95),),
+    "imm5": (lambda: turn_imm((-4, -2, 0, 2, 4), _NOISE, stay=0.95),),
+    "imm_turn_rate": (_imm_rate,),
+    "vessel_imm": (_vessel_imm,),
+    "agmm": (_adaptive, "AdaptiveGridImm"),
+    "sgmm": (_switching, "SwitchingGridImm"),
+}
+
+
+# Runs ---------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Sums:
+    """Squared errors of position, speed and course (3,) and scans, of all and after turns."""
+
+    squared: np.ndarray
+    scans: int
+    squared_after: np.ndarray
+    scans_after: int
+
+    def __add__(self, other: _Sums) -> _Sums:
+        return _Sums(
+            self.squared + other.squared,
+            self.scans + other.scans,
+            self.squared_after + other.squared_after,
+            self.scans_after + other.scans_after,
+        )
+
+    def figures(self) -> dict[str, float]:
+        every = np.sqrt(self.squared / self.scans)
+        after = np.sqrt(self.squared_after / self.scans_after)
+        return dict(zip(METRICS, every.tolist(), strict=True)) | {
+            f"{AFTER}{metric}": value for metric, value in zip(METRICS, after.tolist(), strict=True)
+        }
+
+
+_NOTHING = _Sums(np.zeros(3), 0, np.zeros(3), 0)
+
+
+def run(
+    runs: int = 500,
+    seed: int = 0,
+    *,
+    full: bool = False,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Report:
+    """Run the study.
+
+    Parameters
+    ----------
+    runs, seed : int
+        Of the Monte Carlo runs. Each stretch has as many of them as make up `runs`, rounded up.
+    full : bool
+        Nothing more to do here.
+    threads : int, optional
+        Default as many as there are processors.
+    progress : bool
+        Whether to draw a bar where stderr is a terminal.
+
+    Returns
+    -------
+    Report
+        Scenarios are the radars. Errors are root mean squares over all vessels, runs and scans from
+        30 s after the start on; those that begin with ``after_turn_`` are over the scans of
+        :func:`after_turn`.
+    """
+    if runs < 1:
+        raise ValueError(f"runs must be at least 1, got {runs}")
+    each, built = -(-runs // len(vessels())), estimators()
+    jobs = [(radar, name, scene) for radar in RADARS for name in built for scene in scenes(radar)]
+    totals: dict[tuple[str, str], _Sums] = {}
+    with ThreadPoolExecutor(threads) as pool:
+        found = pool.map(lambda job: _score(job[2], built[job[1]], each, seed), jobs)
+        bar = told(found, len(jobs), "runs") if progress else found
+        for (*key, _), sums in zip(jobs, bar, strict=True):
+            totals[tuple(key)] = totals.get(tuple(key), _NOTHING) + sums
+    rows = [
+        {"scenario": radar, "estimator": name} | sums.figures()
+        for (radar, name), sums in totals.items()
+    ]
+    return Report(
+        name="solent",
+        seed=seed,
+        runs=runs,
+        rows=rows,
+        pictures=_pictures(rows, seed),
+        notes=(_note(totals, each),),
+    )
+
+
+def track(scene: Scenario, estimator: Any, z: np.ndarray) -> np.ndarray:
+    """States (R, T - 1, 4) after the second plot of runs (R, T, 2) and after every later one."""
+    dt_s, sensor = scene.radar.period_s, scene.polar_sensor
+    starts = [wl.one_point(sensor, first, _START_SPEED_STD_MPS) for first in z[:, 0]]
+    found = estimator.run(z[:, 1:], dt_s=dt_s, sensor=sensor, start=starts)
+    return curves.kinematics(np.asarray(found.mean))
+
+
+def _score(scene: Scenario, estimator: Any, runs: int, seed: int) -> _Sums:
+    states = track(scene, estimator, scene.draw(runs, seed))
+    settled = scene.time_s[1:] > _SETTLE_S
+    after = after_turn(scene)[1:] & settled
+    truth = scene.truth_states[1:]
+    error = states - truth
+    speed_mps = np.hypot(states[..., 1], states[..., 3]) - np.hypot(truth[:, 1], truth[:, 3])
+    course_deg = np.degrees(wl.wrap_angle(_course_rad(states) - _course_rad(truth)))
+    squared = np.stack(
+        [error[..., 0] ** 2 + error[..., 2] ** 2, speed_mps**2, course_deg**2], axis=-1
+    )
+    return _Sums(
+        squared[:, settled].sum(axis=(0, 1)),
+        runs * int(settled.sum()),
+        squared[:, after].sum(axis=(0, 1)),
+        runs * int(after.sum()),
+    )
+
+
+def _course_rad(states: np.ndarray) -> np.ndarray:
+    return np.arctan2(states[..., 3], states[..., 1])
+
+
+def _note(totals: Mapping[tuple[str, str], _Sums], each: int) -> str:
+    minutes = sum(truth.end_time_s for truth in vessels().values()) / 60.0
+    sums = next(iter(totals.values()))
+    return (
+        f"{len(vessels())} stretches of {len(set(map(_vessel, vessels())))} vessels, "
+        f"{minutes:.0f} min in all, {each} runs of each; "
+        f"{100.0 * sums.scans_after / sums.scans:.0f} % of the scans are after a turn: at most\n"
+        f"{AFTER_TURN_S:.0f} s after the course changed by more than {TURN_RATE_DEG_S:g}°/s "
+        f"in the mean of {_WINDOW_S:.0f} s."
+    )
+
+
+# Pictures -----------------------------------------------------------------------------------------
+
+
+def _pictures(rows: Rows, seed: int) -> tuple[Picture, ...]:
+    return (
+        Picture(
+            "solent-map",
+            "Vessels off Portsmouth, 12 January 2016, seen from Gilkicker Point",
+            (_draw_map,),
+            shared=False,
+        ),
+        Picture(
+            "solent-track",
+            "Three minutes of a fast craft: one run under the radars of 60 m and of 15 m",
+            tuple(partial(_draw_track, radar=radar, seed=seed) for radar in RADARS),
+            size_in=(10.4, 5.6),
+            columns=2,
+            shared=False,
+        ),
+        Picture(
+            "solent-ranking",
+            "After a turn: errors of every estimator under either radar",
+            tuple(
+                partial(_draw_ranking, rows=rows, metric=f"{AFTER}{metric}", xlabel=label)
+                for metric, label in zip(
+                    METRICS,
+                    ("position RMSE (m)", "speed RMSE (m/s)", "course RMS error (°)"),
+                    strict=True,
+                )
+            ),
+            size_in=(12.0, 5.2),
+            columns=3,
+            shared=False,
+        ),
+    )
+
+
+def _draw_map(ax: Axes) -> Axes:
+    colors = dict(zip(dict.fromkeys(map(_vessel, vessels())), plot.PALETTE, strict=False))
+    for name, truth in vessels().items():
+        place_m = truth.state_at(np.arange(0.0, truth.end_time_s, 2.0))[:, 0::2]
+        ax.plot(place_m[:, 1] / 1e3, place_m[:, 0] / 1e3, color=colors[_vessel(name)])
+        ax.plot(*place_m[0, ::-1] / 1e3, color=colors[_vessel(name)], marker="o", markersize=4)
+    ax.plot(0, 0, color=plot.INK, marker="^", markersize=7, linestyle="", label="radar")
+    return plot.name_lines(plot.dress_map(ax))
+
+
+def _vessel(stretch: str) -> str:
+    return stretch.partition("-")[0]
+
+
+def _draw_track(ax: Axes, radar: str, seed: int) -> Axes:
+    """The part of a stretch with the most turning, as the shown estimators see it."""
+    scene = next(one for one in scenes(radar) if one.name.endswith(_SHOWN_STRETCH))
+    z, built = scene.draw(1, seed), estimators()
+    count = int(_SHOWN_S // scene.radar.period_s)
+    turning = after_turn(scene)[1:] & (scene.time_s[1:] > _SETTLE_S)
+    first = int(np.convolve(turning, np.ones(count), "valid").argmax())
+    part = slice(first, first + count)
+    tracks = {name: track(scene, built[name], z)[0, part] for name in _SHOWN if name in built}
+    return plot.paths_view(
+        ax,
+        scene.truth_states[1:][part],
+        tracks,
+        plots_m=curves.place_m(z[0, 1:][part]),
+        radar=False,
+    )
+
+
+def _draw_ranking(ax: Axes, rows: Rows, metric: str, xlabel: str) -> Axes:
+    names = list(dict.fromkeys(row["estimator"] for row in rows))
+    found = {(row["scenario"], row["estimator"]): row[metric] for row in rows}
+    values = {radar: [found[radar, name] for name in names] for radar in RADARS}
+    return plot.ranking_panel(ax, names, values, xlabel=xlabel)
