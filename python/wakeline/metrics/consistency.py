@@ -47,6 +47,32 @@ def squared_distance(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
     return np.asarray(sum(w**2 for w in whitened))
 
 
+def nees(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """Normalised estimation error squared, where every covariance must be right in form.
+
+    Parameters
+    ----------
+    error : array_like (..., N)
+        Estimate minus truth.
+    covariance : array_like (..., N, N)
+        What the estimator claims.
+
+    Returns
+    -------
+    ndarray (...)
+        As of :func:`squared_distance`.
+
+    Raises
+    ------
+    ValueError
+        When the shapes do not fit, a covariance is not positive definite or an error is NaN.
+    """
+    distance = squared_distance(error, covariance)
+    if np.isnan(distance).any():
+        raise ValueError("a covariance is not positive definite, or an error is NaN")
+    return distance
+
+
 def share_inside(
     curve: np.ndarray, dof: int, samples: int | np.ndarray, *, confidence: float = 0.95
 ) -> float:

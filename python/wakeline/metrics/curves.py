@@ -184,6 +184,39 @@ def detection_delays_scans(
     return delays
 
 
+def steady_scans(time_s: np.ndarray, switch_times_s: np.ndarray, *, scans: int = 3) -> np.ndarray:
+    """The readings that are not right after a switch.
+
+    No causal estimator knows of a switch before some readings have shown it; what is asked of its
+    consistency is asked of the other readings.
+
+    Parameters
+    ----------
+    time_s : array_like (T,)
+        Increasing.
+    switch_times_s : array_like (S,)
+        Increasing.
+    scans : int
+        Readings left out after each switch.
+
+    Returns
+    -------
+    ndarray of bool (T,)
+
+    Raises
+    ------
+    ValueError
+        When the times do not increase or `scans` is negative.
+    """
+    if scans < 0:
+        raise ValueError(f"scans must not be negative, got {scans}")
+    time_s, _, switch_times_s = _checked(time_s, time_s, switch_times_s)
+    steady = np.ones(len(time_s), dtype=bool)
+    for part in _parts(time_s, switch_times_s)[1:]:
+        steady[part.start : part.start + scans] = False
+    return steady
+
+
 def _parts(time_s: np.ndarray, switch_times_s: np.ndarray) -> list[slice]:
     """Readings of each of the S + 1 segments."""
     tolerance_s = 1e-9 * max(float(np.abs(time_s).max()), 1.0)

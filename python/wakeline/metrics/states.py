@@ -1,4 +1,4 @@
-"""Errors of state estimates: RMSE, NEES and the error figures of a score."""
+"""Errors of state estimates: RMSE and the error figures of a score."""
 
 from __future__ import annotations
 
@@ -13,38 +13,6 @@ _COURSE_MIN_SPEED_MPS = 2.0
 def rmse(error: np.ndarray, axis: int | tuple[int, ...] | None = None) -> np.ndarray | float:
     """Root mean square of errors over `axis`, over all of them by default."""
     return np.sqrt(np.mean(np.square(np.asarray(error, dtype=float)), axis=axis))
-
-
-def nees(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
-    """Normalised estimation error squared, ``e' inv(P) e``.
-
-    Parameters
-    ----------
-    error : array_like (..., N)
-        Estimate minus truth.
-    covariance : array_like (..., N, N)
-        What the estimator claims; symmetric.
-
-    Returns
-    -------
-    ndarray (...)
-        Chi-square with N degrees of freedom for an honest estimator.
-
-    Raises
-    ------
-    ValueError
-        When the shapes do not fit or a covariance is not positive definite.
-    """
-    error, covariance = np.asarray(error, dtype=float), np.asarray(covariance, dtype=float)
-    wanted = (*error.shape, *error.shape[-1:])
-    if error.ndim == 0 or covariance.shape != wanted:
-        raise ValueError(f"covariance must have shape {wanted}, got {covariance.shape}")
-    try:
-        root = np.linalg.cholesky(covariance)
-    except np.linalg.LinAlgError:
-        raise ValueError("a covariance is not positive definite") from None
-    whitened = np.linalg.solve(root, error[..., np.newaxis])[..., 0]
-    return np.sum(whitened**2, axis=-1)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,162 @@
+"""AIS reports: what is read, what is left out and said so, what is refused; the Solent."""
+
+import numpy as np
+import pytest
+
+from wakeline import recording
+from wakeline.recording import RecordingError, read_ais
+
+HEAD = "Time,MMSI,Latitude_degrees,Longitude_degrees,COG_degrees,SOG_knots"
+KNOT_MPS = 1852.0 / 3600.0
+SECOND_DEG = 10.0 / 111_200.0  # about 10 m north
+
+
+def row(second, mmsi="211", latitude=54.0, longitude=10.0, cog=0.0, sog=20.0):
+    return f"2026-05-01 12:00:{second:06.3f},{mmsi},{latitude},{longitude},{cog},{sog}"
+
+
+def written(tmp_path, *rows, head=HEAD):
+    path = tmp_path / "ais.csv"
+    path.write_text("\n".join([head, *rows]) + "\n")
+    return path
+
+
+def northbound(seconds, mmsi="211"):
+    return [row(s, mmsi, latitude=54.0 + s * SECOND_DEG) for s in seconds]
+
+
+def test_reports_become_a_track_in_the_local_plane(tmp_path):
+    ais = read_ais(written(tmp_path, *northbound([0, 3, 7.5])), origin_deg=(54.0, 10.0))
+    (track,) = ais.tracks.values()
+    assert (track.mmsi, len(track)) == ("211", 3)
+    np.testing.assert_allclose(np.diff(track.time_s), [3.0, 4.5])
+    np.testing.assert_allclose(track.north_m, [0.0, 30.0, 75.0], atol=0.3)
+    np.testing.assert_allclose(track.east_m, 0.0, atol=1e-6)
+    np.testing.assert_allclose(track.course_rad, 0.0, atol=1e-6)
+    np.testing.assert_allclose(track.vnorth_mps, 20 * KNOT_MPS)
+    np.testing.assert_allclose(track.veast_mps, 0.0, atol=1e-4)
+    assert ais.notes == []
+
+
+def test_rows_need_no_order_and_vessels_are_told_apart(tmp_path):
+    mixed = [*northbound([9, 0, 6], "2"), *northbound([3, 1], "1")]
+    ais = read_ais(written(tmp_path, *mixed))
+    assert list(ais.tracks) == ["2", "1"]
+    assert [len(track) for track in ais.tracks.values()] == [3, 2]
+    for track in ais.tracks.values():
+        assert (np.diff(track.time_s) > 0).all()
+        assert (np.diff(track.north_m) > 0).all()
+
+
+def test_the_origin_is_the_middle_where_none_is_given(tmp_path):
+    ais = read_ais(written(tmp_path, row(0, latitude=54.0), row(5, "9", 54.2, 10.4)))
+    assert (ais.plane.latitude_deg, ais.plane.longitude_deg) == pytest.approx((54.1, 10.2))
+
+
+def test_other_programs_names_of_columns(tmp_path):
+    path = written(tmp_path, "2026-05-01T12:00:00Z,211,54,10", head="BaseDateTime,MMSI,LAT,LON")
+    (track,) = read_ais(path).tracks.values()
+    assert np.isnan([*track.speed_mps, *track.course_rad, *track.vnorth_mps]).all()
+
+
+@pytest.mark.parametrize(("cog", "sog"), [("360", "5"), ("", "5"), ("90", "102.3"), ("90", "")])
+def test_what_is_not_available_is_not_a_number(tmp_path, cog, sog):
+    (track,) = read_ais(written(tmp_path, row(0, cog=cog, sog=sog))).tracks.values()
+    assert np.isnan(track.vnorth_mps).all()
+    assert np.isfinite(track.north_m).all()
+
+
+def test_a_vessel_at_rest_needs_no_course(tmp_path):
+    (track,) = read_ais(written(tmp_path, row(0, cog="360", sog="0"))).tracks.values()
+    assert (track.vnorth_mps[0], track.veast_mps[0]) == (0.0, 0.0)
+
+
+def test_what_is_left_out_is_said(tmp_path):
+    rows = northbound([0, 3, 6, 6.4, 9])
+    rows.insert(1, row(1, latitude=91, longitude=181))
+    rows.insert(4, row(7.9, latitude=54.5))  # 55 km away within two seconds
+    ais = read_ais(written(tmp_path, *rows))
+    (track,) = ais.tracks.values()
+    np.testing.assert_allclose(track.time_s - track.time_s[0], [0.0, 3.0, 6.4, 9.0])
+    assert [note.split("left out")[0] for note in ais.notes] == [
+        "ais.csv: 1 reports without a position ",
+        "ais.csv: 1 reports less than 1 s before the next of the vessel ",
+        "ais.csv: 1 reports farther off than a vessel gets at 40 m/s ",
+    ]
+    assert [note.split("line ")[1] for note in ais.notes] == ["3)", "5)", "6)"]
+
+
+def test_three_reports_in_a_row_are_believed_though_they_are_far(tmp_path):
+    far = [row(s, latitude=54.5 + s * SECOND_DEG) for s in (12, 15, 18)]
+    (track,) = read_ais(written(tmp_path, *northbound([0, 3, 6, 9]), *far)).tracks.values()
+    assert len(track) == 7
+    (track,) = read_ais(written(tmp_path, *northbound([0, 3]), *far)).tracks.values()
+    assert len(track) == 3  # the first two were the ones that were wrong
+
+
+def test_parts_are_cut_at_gaps(tmp_path):
+    (track,) = read_ais(written(tmp_path, *northbound([0, 3, 6, 40, 43, 59]))).tracks.values()
+    parts = track.parts(max_gap_s=15.0)
+    assert [len(part) for part in parts] == [3, 2]
+    assert [len(part) for part in track.parts(15.0, min_reports=1)] == [3, 2, 1]
+    assert [len(part) for part in track.parts()] == [6]
+    np.testing.assert_array_equal(parts[1].north_m, track.north_m[3:5])
+    assert len(track.rows(track.time_s > track.time_s[2])) == 3
+
+
+@pytest.mark.parametrize(
+    ("rows", "wanted"),
+    [
+        ([row(0, latitude=90.5)], ["line 2", "latitude", "-90 to 90", "90.5"]),
+        ([row(0), row(1, longitude=-181)], ["line 3", "longitude", "-180 to 180", "-181"]),
+        ([row(0, cog=361)], ["line 2", "cog", "0 to 360", "361"]),
+        ([row(0, sog=-1)], ["line 2", "sog", "0 to 102.4", "-1"]),
+        ([row(0, sog="fast")], ["line 2", "SOG", "fast"]),
+        ([row(0, mmsi="")], ["line 2", "mmsi"]),
+        ([row(0).replace("2026-05-01", "May")], ["line 2", "Time"]),
+        ([row(0, latitude=91)], ["no report has a position"]),
+    ],
+)
+def test_cells_that_make_no_sense_are_told_by_line_and_column(tmp_path, rows, wanted):
+    with pytest.raises(RecordingError) as caught:
+        read_ais(written(tmp_path, *rows))
+    for word in ("ais.csv", *wanted):
+        assert word.lower() in str(caught.value).lower()
+
+
+def test_files_and_parameters_that_make_no_sense(tmp_path):
+    with pytest.raises(RecordingError, match="cannot be read"):
+        read_ais(tmp_path / "none.csv")
+    with pytest.raises(RecordingError, match="mmsi"):
+        read_ais(written(tmp_path, "12:00,54,10", head="Time,Latitude,Longitude"))
+    path = written(tmp_path, row(0))
+    for name in ("min_step_s", "max_speed_mps"):
+        for wrong in (0.0, np.nan):
+            with pytest.raises(ValueError, match=name):
+                read_ais(path, **{name: wrong})
+
+
+# ------------------------------------------------------------------ the Solent
+
+
+def test_the_solent_holds_its_vessels():
+    ais = recording.load_ais()
+    assert len(ais.tracks) == 14
+    assert 4500 < sum(map(len, ais.tracks.values())) <= 5015
+    for track in ais.tracks.values():
+        assert (np.diff(track.time_s) >= 1.0).all()
+        assert np.hypot(track.north_m, track.east_m).max() < 40_000.0
+
+
+def test_reported_velocities_are_those_of_the_positions():
+    """Which they would not be with a wrong plane, course or unit."""
+    for track in recording.load_ais().tracks.values():
+        dt_s = np.diff(track.time_s)
+        way_mps = (np.diff(track.north_m) + 1j * np.diff(track.east_m)) / dt_s
+        told = track.vnorth_mps + 1j * track.veast_mps
+        between_mps = 0.5 * (told[:-1] + told[1:])
+        fast = (np.abs(between_mps) > 5.0) & (dt_s < 15.0)
+        if fast.sum() > 30:
+            ratio = way_mps[fast] / between_mps[fast]
+            assert np.median(ratio.real) == pytest.approx(1.0, abs=0.03)
+            assert np.median(ratio.imag) == pytest.approx(0.0, abs=0.03)
