@@ -10,6 +10,7 @@ from .comparison import (
     paths_view,
     probability_panel,
     ranking_panel,
+    steps_panel,
     turn_colors,
     turn_rate_panel,
 )
@@ -61,6 +62,7 @@ __all__ = [
     "ranking_panel",
     "save",
     "speed_panel",
+    "steps_panel",
     "time_figure",
     "time_view",
     "track_colors",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _TRUTH_DASHES = (0, (4, 2))
 _ROOM_ABOVE = 1.08
 _STRIP = (1.02, 0.06)
+_ROUND = (1.0, 2.0, 5.0)
 _MIDDLE = "#DDDDDD"
 _PORT = ("#F4A582", "#B2182B")
 _STARBOARD = ("#92C5DE", "#2166AC")
@@ -244,6 +245,50 @@ def ranking_panel(
     dress(ax)
     ax.grid(visible=False, axis="y")
     return name_lines(ax)
+
+
+def steps_panel(
+    ax: Axes,
+    steps: Sequence[str],
+    values: Mapping[str, Sequence[float]],
+    *,
+    xlabel: str,
+    ylabel: str,
+    colors: Mapping[str, str] | None = None,
+    legend: bool = True,
+) -> Axes:
+    """Figures of several estimators in a few circumstances, logarithmic.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Axes to draw into.
+    steps : sequence of K str
+        The circumstances, from left to right.
+    values : mapping of str to sequence of K floats
+        Figures by name of the estimator.
+    xlabel, ylabel : str
+        What the circumstances and the figures are.
+    colors : mapping of str to str, optional
+        Colour of each estimator.
+    legend : bool
+        Whether to name the lines.
+    """
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    at = np.arange(len(steps))
+    for name, color in _colored(values, colors):
+        ax.plot(at, values[name], color=color, linewidth=1.4, marker="o", markersize=5, label=name)
+    ax.set_xticks(at, steps)
+    ax.set_xlim(-0.3, len(steps) - 0.7)
+    ax.set_yscale("log")
+    ax.yaxis.set_major_locator(LogLocator(subs=_ROUND))
+    ax.yaxis.set_major_formatter("{x:g}")
+    ax.yaxis.set_minor_locator(NullLocator())
+    ax.set_xlabel(xlabel)
+    ax.set_ylabel(ylabel)
+    dress(ax)
+    return name_lines(ax) if legend else ax
 
 
 def mark_switches(ax: Axes, switch_s: Iterable[float], color: str = MUTED) -> Axes:

@@ -42,6 +42,11 @@ def merged_rows(result: montecarlo.Result, name: str, scenarios: Sequence[Scenar
     return [*found, _row(name, BOUND, bound_figures(scenarios))]
 
 
+def figures(rows: Rows, metric: str) -> dict[tuple[str, str], float]:
+    """One metric of all rows by scenario and estimator."""
+    return {(row["scenario"], row["estimator"]): row[metric] for row in rows}
+
+
 def bound_figures(scenarios: Sequence[Scenario]) -> dict[str, float]:
     """Mean and peak of the bound, squared errors averaged over the scenarios scan by scan."""
     position_m, velocity_mps = (
@@ -56,9 +61,9 @@ def bound_figures(scenarios: Sequence[Scenario]) -> dict[str, float]:
     }
 
 
-def _row(scenario: str, estimator: str, figures: Mapping[str, Any]) -> dict[str, Any]:
+def _row(scenario: str, estimator: str, found: Mapping[str, Any]) -> dict[str, Any]:
     return {"scenario": scenario, "estimator": estimator} | {
-        metric: figures.get(metric) for metric in METRICS
+        metric: found.get(metric) for metric in METRICS
     }
 
 

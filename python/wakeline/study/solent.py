@@ -377,6 +377,6 @@ def _draw_track(ax: Axes, radar: str, seed: int) -> Axes:
 
 def _draw_ranking(ax: Axes, rows: Rows, metric: str, xlabel: str) -> Axes:
     names = list(dict.fromkeys(row["estimator"] for row in rows))
-    found = {(row["scenario"], row["estimator"]): row[metric] for row in rows}
+    found = curves.figures(rows, metric)
     values = {radar: [found[radar, name] for name in names] for radar in RADARS}
     return plot.ranking_panel(ax, names, values, xlabel=xlabel)

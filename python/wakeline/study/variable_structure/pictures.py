@@ -1,0 +1,237 @@
+"""The figures of the paper, and one of all estimators."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wakeline import montecarlo, plot, scenario
+from wakeline.montecarlo import Candidate
+from wakeline.scenario import Scenario
+
+from .. import curves
+from ..base import Picture, Rows
+from .candidates import COLORS, LABELS, POLAR, SETTINGS, agmm, centre_rates, estimators, sgmm
+from .sweeps import NOISES, RATES, robustness_name
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_DRAWN_RUNS = 100
+
+
+def _present(*names: str) -> tuple[str, ...]:
+    return tuple(name for name in names if name in estimators(SETTINGS["example1"]))
+
+
+_IN_TRACKS = _present("imm5", "agmm", "sgmm", "mode_history")
+_IN_ERRORS = _present("imm5", "agmm", "sgmm", "mode_history", "clairvoyant")
+_IN_RATES = _present("imm5", "agmm", "sgmm", "mode_history")
+_IN_ROBUSTNESS = _present("imm5", "imm9", "agmm", "sgmm", "mode_history", "clairvoyant")
+
+
+def pictures_of(
+    results: Mapping[str, montecarlo.Result], rows: Rows, seed: int
+) -> Iterator[Picture]:
+    """The figures of both examples, of the influence of thresholds, and of the ranking."""
+    for name in ("example1", "example2"):
+        yield from _example_pictures(name, results[name], seed)
+    for what, values, label, build in (
+        ("t", (0.3, 0.7, 0.9), "SGMM", lambda setting, t: sgmm(setting, POLAR, threshold=t)),
+        ("t1", (0.3, 0.7), "AGMM", lambda setting, t1: agmm(setting, POLAR, centre_threshold=t1)),
+    ):
+        yield Picture(
+            f"influence-{what}",
+            f"Turn rate of {label}'s centre model in one run, by the threshold {what}",
+            tuple(
+                partial(
+                    _draw_influence, name=name, build=build, what=what, values=values, seed=seed
+                )
+                for name in ("example1", "example2")
+            ),
+            shared=False,
+        )
+    yield Picture(
+        "variable-structure-ranking",
+        "Mean position error of every estimator",
+        (partial(_draw_ranking, rows=rows),),
+        size_in=(7.2, 4.6),
+    )
+
+
+def robustness_picture(rows: Rows) -> Picture:
+    """Mean position error over the bound, by turn rates and by noise."""
+    return Picture(
+        "robustness",
+        "Example 1 with other turn rates, finer radars: mean position RMSE over the bound",
+        tuple(partial(_draw_robustness, rows=rows, noise=noise) for noise in NOISES),
+        size_in=(7.2, 7.2),
+    )
+
+
+def _example_pictures(name: str, result: montecarlo.Result, seed: int) -> Iterator[Picture]:
+    example, candidates = scenario.named(name), estimators(SETTINGS[name])
+    title = f"Example {name[-1]}"
+    yield Picture(
+        f"{name}-truth",
+        f"{title}: the true path",
+        (partial(curves.draw_truth, scenario=example),),
+        shared=False,
+    )
+    yield Picture(
+        f"{name}-tracks",
+        f"{title}: plots and filtered tracks of one run",
+        (
+            partial(
+                curves.draw_tracks,
+                scenario=example,
+                candidates={LABELS[key]: candidates[key] for key in _IN_TRACKS},
+                seed=seed,
+                colors=COLORS,
+            ),
+        ),
+        shared=False,
+    )
+    yield Picture(
+        f"{name}-turn-rate",
+        f"{title}: turn rate of the centre model in one run, and of the estimate in the mean",
+        (
+            partial(_draw_centres, example=example, candidates=candidates, seed=seed),
+            partial(_draw_rates, example=example, result=result),
+        ),
+        size_in=(7.2, 6.2),
+    )
+    z = example.draw(min(_DRAWN_RUNS, result.runs), seed)
+    yield Picture(
+        f"{name}-modes",
+        f"{title}: mode probabilities, mean of {len(z)} runs",
+        tuple(
+            partial(_draw_modes, example=example, candidate=candidates[key], label=LABELS[key], z=z)
+            for key in _IN_TRACKS
+        ),
+        size_in=(7.2, 2.2 * len(_IN_TRACKS) + 0.4),
+    )
+    yield curves.error_picture(
+        f"{name}-errors",
+        f"{title}: RMSE of {result.runs} runs over the bound",
+        result,
+        example,
+        {key: LABELS[key] for key in _IN_ERRORS},
+        COLORS,
+    )
+
+
+# Panels -------------------------------------------------------------------------------------------
+
+
+def _draw_modes(
+    ax: Axes, example: Scenario, candidate: Candidate, label: str, z: np.ndarray
+) -> Axes:
+    """Probability of each turn rate; rates that move are put into steps of 1 deg/s."""
+    found = candidate(example, z)
+    moving = found.turn_rate_rad_s
+    rates_rad_s = candidate.rates(example) if moving is None else moving
+    step_deg_s = np.broadcast_to(np.round(np.degrees(rates_rad_s)), found.mode_probability.shape)
+    steps_deg_s = np.unique(step_deg_s)
+    share = np.stack(
+        [
+            np.where(step_deg_s == step, found.mode_probability, 0.0).sum(axis=-1).mean(axis=0)
+            for step in steps_deg_s
+        ],
+        axis=-1,
+    )
+    return plot.probability_panel(
+        ax,
+        example.time_s,
+        share,
+        np.deg2rad(steps_deg_s),
+        true_rate_rad_s=example.turn_rates_rad_s,
+        switch_s=example.switch_times_s,
+        ylabel=f"{label}\nmode probability",
+    )
+
+
+def _draw_centres(ax: Axes, example: Scenario, candidates: Mapping[str, Any], seed: int) -> Axes:
+    """Turn rate of the centre model in the first run."""
+    return plot.turn_rate_panel(
+        ax,
+        example.time_s,
+        example.turn_rates_rad_s,
+        {LABELS[key]: _first_centre(candidates[key], example, seed) for key in ("agmm", "sgmm")},
+        colors=COLORS,
+        ylabel="turn rate of\nthe centre model (°/s)",
+    )
+
+
+def _draw_rates(ax: Axes, example: Scenario, result: montecarlo.Result) -> Axes:
+    """Estimated turn rate, mean of the runs."""
+    return plot.turn_rate_panel(
+        ax,
+        example.time_s,
+        example.turn_rates_rad_s,
+        {LABELS[key]: result[example.name, key].turn_rate_rad_s for key in _IN_RATES},
+        colors=COLORS,
+        ylabel="estimated turn rate,\nmean of the runs (°/s)",
+    )
+
+
+def _draw_influence(
+    ax: Axes,
+    name: str,
+    build: Callable[[Any, float], Candidate],
+    what: str,
+    values: tuple[float, ...],
+    seed: int,
+) -> Axes:
+    example = scenario.named(name)
+    rates = {
+        f"{what} = {value:g}": _first_centre(build(SETTINGS[name], value), example, seed)
+        for value in values
+    }
+    return plot.turn_rate_panel(
+        ax,
+        example.time_s,
+        example.turn_rates_rad_s,
+        rates,
+        ylabel=f"example {name[-1]}, rate of\nthe centre model (°/s)",
+    )
+
+
+def _first_centre(candidate: Candidate, example: Scenario, seed: int) -> np.ndarray:
+    """Turn rate (T,) of the centre model in the first run."""
+    return centre_rates(candidate, example, example.draw(1, seed))[0]
+
+
+def _draw_ranking(ax: Axes, rows: Rows) -> Axes:
+    """Mean position error by estimator in each scenario."""
+    names = list(dict.fromkeys(row["estimator"] for row in rows if row["scenario"] == "random"))
+    found = curves.figures(rows, "mean_position_m")
+    values = {
+        scene: [found[scene, name] for name in names]
+        for scene in ("example1", "example2", "random")
+    }
+    return plot.ranking_panel(
+        ax, [LABELS.get(name, name) for name in names], values, xlabel="mean position RMSE (m)"
+    )
+
+
+def _draw_robustness(ax: Axes, rows: Rows, noise: float) -> Axes:
+    """Position error over the bound for turn rates on, between and outside the IMM's own."""
+    found = curves.figures(rows, "mean_position_m")
+    scenes = [robustness_name(where, noise) for where in RATES]
+    values = {
+        LABELS[key]: [found[scene, key] / found[scene, curves.BOUND] for scene in scenes]
+        for key in _IN_ROBUSTNESS
+    }
+    return plot.steps_panel(
+        ax,
+        list(RATES),
+        values,
+        xlabel="turn rates against those of IMM5",
+        ylabel=f"{60 * noise:g} m, {0.5 * noise:g}°\nRMSE / bound",
+        colors=COLORS,
+        legend=noise == NOISES[0],
+    )

@@ -1,0 +1,209 @@
+"""What the outcome hangs on: turn rates, noise, thresholds, what is not printed, the start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+import wakeline as wl
+from wakeline import montecarlo, scenario
+from wakeline.montecarlo import Candidate
+from wakeline.scenario import Scenario
+
+from . import candidates
+from .candidates import CONVERTED, POLAR, SETTINGS, Setting
+
+RATES = {"on": 1.0, "between": 0.75, "outside": 1.5}
+"""By what the turn rates of example 1 are multiplied to lie on, between, outside the IMM's own."""
+NOISES = (1.0, 0.3, 0.1)
+"""By what both errors of the radar are multiplied."""
+_SURVEY = 60
+
+
+def robustness_name(where: str, noise: float) -> str:
+    """Name of a scenario of the sweep over rates and noise."""
+    return f"example1_{where}_noise_x{noise:g}"
+
+
+def swept() -> Iterator[tuple[Scenario, dict[str, Any]]]:
+    """Scenarios, each with its candidates."""
+    first, setting = scenario.named("example1"), SETTINGS["example1"]
+    polar = {k: v for k, v in candidates.estimators(setting).items() if "_converted" not in k}
+    for noise in NOISES:
+        for where, times in RATES.items():
+            yield (
+                replace(
+                    first,
+                    name=robustness_name(where, noise),
+                    truth=_turning(first, times),
+                    radar=_finer(first.radar, noise),
+                ),
+                polar,
+            )
+    for name in ("example1", "example2"):
+        example = scenario.named(name)
+        yield replace(example, name=f"{name}_settings"), _variants(SETTINGS[name])
+        yield replace(example, name=f"{name}_from_plots"), _from_plots(example, SETTINGS[name])
+
+
+def _turning(example: Scenario, times: float) -> scenario.Truth:
+    """The truth of an example with all its turn rates so many times as large."""
+    segments = [
+        replace(segment, turn_rate_rad_s=times * segment.turn_rate_rad_s)
+        for segment in example.truth.segments
+    ]
+    return scenario.Truth(example.truth.state_at(0.0)[0], segments)
+
+
+def _finer(radar: scenario.RadarSimulator, times: float) -> scenario.RadarSimulator:
+    return replace(
+        radar,
+        range_std_m=times * radar.range_std_m,
+        bearing_std_rad=times * radar.bearing_std_rad,
+    )
+
+
+def _variants(setting: Setting) -> dict[str, Candidate]:
+    """AGMM and SGMM as they are, with other thresholds, with other choices of what is not printed.
+
+    Rates of AGMM are in degrees a second.
+    """
+    adaptive = {
+        "agmm": {},
+        **{f"agmm_t1_{t1:g}": {"centre_threshold": t1} for t1 in (0.3, 0.7)},
+        **{f"agmm_r_{r:g}": {"min_spacing_rad_s": np.deg2rad(r)} for r in (0.5, 1.0, 2.0)},
+        **{
+            f"agmm_initial_{side:g}": {"initial_turn_rates_rad_s": np.deg2rad([-side, 0.0, side])}
+            for side in (0.5, 1.0, 2.0)
+        },
+    }
+    switching = {
+        "sgmm": {},
+        **{f"sgmm_t_{t:g}": {"threshold": t} for t in (0.3, 0.7, 0.9)},
+        "sgmm_identity": {"carry": "identity"},
+        "sgmm_literal": {"rule": "literal"},
+        "sgmm_literal_t_0.9": {"rule": "literal", "threshold": 0.9},
+    }
+    return {
+        "imm5": candidates.imm5(setting, POLAR),
+        **{name: candidates.agmm(setting, POLAR, **given) for name, given in adaptive.items()},
+        **{name: candidates.sgmm(setting, POLAR, **given) for name, given in switching.items()},
+    }
+
+
+# Counts ------------------------------------------------------------------------------------------
+
+
+def moves(runs: int, seed: int) -> str:
+    """How often the centre model moves in a run, by the thresholds."""
+    lines = ["Moves of the centre model in a run, mean of the runs:"]
+    for name in ("example1", "example2"):
+        example, setting = scenario.named(name), SETTINGS[name]
+        z = example.draw(runs, seed)
+        kinds = {
+            f"SGMM t = {t:g}": candidates.sgmm(setting, POLAR, threshold=t)
+            for t in (0.3, 0.7, 0.87, 0.9)
+        } | {
+            f"AGMM t1 = {t1:g}": candidates.agmm(setting, POLAR, centre_threshold=t1)
+            for t1 in (0.3, 0.7)
+        }
+        counts = {
+            kind: np.count_nonzero(np.diff(candidates.centre_rates(candidate, example, z))) / runs
+            for kind, candidate in kinds.items()
+        }
+        lines.append(f"  {name}: " + ", ".join(f"{kind}: {n:.1f}" for kind, n in counts.items()))
+    return "\n".join(lines)
+
+
+def survey(runs: int, seed: int, threads: int | None) -> str:
+    """How often random settings of AGMM and of SGMM have a lower mean error than IMM5."""
+    ratios = {}
+    for name in ("example1", "example2"):
+        example, setting = scenario.named(name), SETTINGS[name]
+        drawn = {"imm5": candidates.imm5(setting, POLAR)} | _drawn(setting)
+        figures = montecarlo.run(
+            example, drawn, runs, seed, threads=threads, progress=False
+        ).summary()[example.name]
+        imm5_m = figures["imm5"]["mean_position_m"]
+        ratios[name] = {k: figures[k]["mean_position_m"] / imm5_m for k in drawn if k != "imm5"}
+    lines = [f"Mean position error over IMM5's, of {_SURVEY} random settings of everything else:"]
+    for kind in ("agmm", "sgmm"):
+        each = np.array([[of[f"{kind}-{k}"] for k in range(_SURVEY)] for of in ratios.values()])
+        less = (each < 1.0).all(axis=0).mean()
+        least, middle = each.min(axis=1), np.median(each, axis=1)
+        lines.append(
+            f"  {kind.upper()}: less in both examples {less:.0%}, least {least[0]:.2f} and "
+            f"{least[1]:.2f}, in the middle {middle[0]:.2f} and {middle[1]:.2f}"
+        )
+    return "\n".join(lines)
+
+
+def _drawn(setting: Setting) -> dict[str, Candidate]:
+    rng = np.random.default_rng(0)
+    found = {}
+    for k in range(_SURVEY):
+        side_deg_s = rng.uniform(0.2, setting.agmm_max_deg_s)
+        found[f"agmm-{k}"] = candidates.agmm(
+            setting,
+            POLAR,
+            min_spacing_rad_s=np.deg2rad(rng.uniform(0.2, 3.0)),
+            initial_turn_rates_rad_s=np.deg2rad([-side_deg_s, 0.0, side_deg_s]),
+            centre_threshold=rng.uniform(0.1, 0.9),
+            unlikely_threshold=rng.uniform(0.02, 0.4),
+            likely_threshold=rng.uniform(0.5, 0.98),
+        )
+        found[f"sgmm-{k}"] = candidates.sgmm(
+            setting,
+            POLAR,
+            threshold=rng.uniform(0.3, 0.95),
+            rule=str(rng.choice(["symmetric", "literal"])),
+            carry=str(rng.choice(["slot", "identity"])),
+        )
+    return found
+
+
+# From plots ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _FromPlots:
+    """A candidate that starts from the first two plots, which stand for its first two estimates."""
+
+    estimator: Any
+    sensor: Any
+
+    def __call__(self, scene: Scenario, z: np.ndarray) -> SimpleNamespace:
+        dt_s, sensor = scene.radar.period_s, self.sensor
+        starts = [wl.two_point(sensor, first, second, dt_s) for first, second in z[:, :2]]
+        found = self.estimator.run(z[:, 2:], dt_s=dt_s, sensor=sensor, start=starts)
+        none = np.full((len(z), 2), np.nan)
+        return SimpleNamespace(
+            mean=_led_by(np.array([start.mean for start in starts]), found.mean),
+            covariance=_led_by(np.array([start.covariance for start in starts]), found.covariance),
+            nis=np.concatenate([none, found.nis], axis=1),
+            status=np.concatenate([np.zeros((len(z), 2), int), found.status], axis=1),
+            mode_probability=None,
+        )
+
+
+def _led_by(start: np.ndarray, later: np.ndarray) -> np.ndarray:
+    """Values (R, T + 2, ...) of which the first two are those of the start."""
+    return np.concatenate([start[:, np.newaxis], start[:, np.newaxis], later], axis=1)
+
+
+def _from_plots(example: Scenario, setting: Setting) -> dict[str, _FromPlots]:
+    """IMM5 with each form of the measurement."""
+    radar = example.radar
+    unbiased = wl.ConvertedRangeBearing(
+        range_std_m=radar.range_std_m, bearing_std_rad=radar.bearing_std_rad, unbiased=True
+    )
+    polar, converted = (candidates.imm5(setting, form).estimator for form in (POLAR, CONVERTED))
+    return {
+        "imm5": _FromPlots(polar, example.polar_sensor),
+        "imm5_converted": _FromPlots(converted, example.converted_sensor),
+        "imm5_unbiased": _FromPlots(converted, unbiased),
+    }
