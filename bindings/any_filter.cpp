@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "wakeline/multimodel/turn_rate_grid.hpp"
+
 namespace wakeline::python {
 namespace {
 
@@ -117,6 +119,27 @@ Status AnyFilter::predict(double dt_s) noexcept {
   return std::visit([&](auto& filter) { return filter.predict(dt_s); }, filter_);
 }
 
+Status AnyFilter::predict(double dt_s, const Vec<double, 2>& acceleration_mps2) noexcept {
+  return std::visit([&](auto& filter) { return filter.predict(dt_s, acceleration_mps2); }, filter_);
+}
+
+bool AnyFilter::turns() const noexcept {
+  return std::visit(
+      [](const auto& filter) {
+        return requires { filter.motion().turn_rate_rad_s; };
+      },
+      filter_);
+}
+
+void AnyFilter::set_turn_rate(double turn_rate_rad_s) noexcept {
+  std::visit(
+      [&](auto& filter) {
+        if constexpr (requires { filter.motion().turn_rate_rad_s; })
+          wakeline::set_turn_rate(filter, turn_rate_rad_s);
+      },
+      filter_);
+}
+
 AnyBelief AnyFilter::estimate() const noexcept {
   return std::visit(
       [](const auto& filter) {
@@ -143,7 +166,7 @@ AnyFilterBank::AnyFilterBank(const std::vector<AnyFilter>& filters) {
   if (filters.empty() || filters.size() > kMaxModes)
     throw std::invalid_argument("filters must be 1 to " + std::to_string(kMaxModes) +
                                 " filters, got " + std::to_string(filters.size()));
-  for (const AnyFilter& filter : filters) slots_.push_back({filter, filter.estimate()});
+  for (const AnyFilter& filter : filters) slots_.push_back({filter, filter.estimate(), true});
   const StateLayout first = filters.front().layout();
   const bool same = std::all_of(filters.begin(), filters.end(),
                                 [&](const AnyFilter& filter) { return filter.layout() == first; });

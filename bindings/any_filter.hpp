@@ -77,6 +77,8 @@ class AnyFilter {
   Status start(const Gaussian<4>& kinematics) noexcept;
   Status assign(const AnyBelief& belief) noexcept;
   Status predict(double dt_s) noexcept;
+  /// Under a known acceleration, [north, east].
+  Status predict(double dt_s, const Vec<double, 2>& acceleration_mps2) noexcept;
 
   template <class Sensor>
   Step<Sensor::kMeasurements> update(const Sensor& sensor,
@@ -93,6 +95,10 @@ class AnyFilter {
   [[nodiscard]] bool started() const noexcept;
   [[nodiscard]] StateLayout layout() const noexcept;
   [[nodiscard]] bool linear() const noexcept { return linear_; }
+  /// True over a motion model with a known turn rate.
+  [[nodiscard]] bool turns() const noexcept;
+  /// Changes that turn rate; nothing where there is none.
+  void set_turn_rate(double turn_rate_rad_s) noexcept;
   [[nodiscard]] const Variant& variant() const noexcept { return filter_; }
   [[nodiscard]] Variant& variant() noexcept { return filter_; }
 
@@ -100,6 +106,10 @@ class AnyFilter {
   Variant filter_;
   bool linear_;  ///< a Kalman filter
 };
+
+inline void set_turn_rate(AnyFilter& filter, double turn_rate_rad_s) noexcept {
+  filter.set_turn_rate(turn_rate_rad_s);
+}
 
 extern template Step<2> AnyFilter::update(const RangeBearing&, const Vec<double, 2>&) noexcept;
 extern template Step<2> AnyFilter::update(const ConvertedRangeBearing&,
@@ -111,7 +121,7 @@ extern template Step<3> AnyFilter::update(const RangeBearingDoppler&,
                                           const Vec<double, 3>&) noexcept;
 
 /// The filters of a multi-model estimator, composed at run time: the face of
-/// `wakeline::FilterBank`.
+/// `wakeline::FilterBank` and of `wakeline::UniformBank`.
 class AnyFilterBank {
  public:
   static constexpr int kModels = kRuntimeModes;
@@ -121,25 +131,31 @@ class AnyFilterBank {
   explicit AnyFilterBank(const std::vector<AnyFilter>& filters);
 
   [[nodiscard]] int size() const noexcept { return static_cast<int>(slots_.size()); }
+  [[nodiscard]] bool active(int k) const noexcept {
+    return slots_[static_cast<std::size_t>(k)].active;
+  }
+  void set_active(int k, bool active) noexcept {
+    slots_[static_cast<std::size_t>(k)].active = active;
+  }
 
   template <class Function>
   void for_each(Function&& function) noexcept {
-    for (int k = 0; Slot & slot : slots_) function(k++, slot.filter, slot.before);
+    visit(slots_, [&](int k, Slot& slot) { function(k, slot.filter, slot.before); });
   }
 
   template <class Function>
   void for_each(Function&& function) const noexcept {
-    for (int k = 0; const Slot& slot : slots_) function(k++, slot.filter);
+    visit(slots_, [&](int k, const Slot& slot) { function(k, slot.filter); });
   }
 
   template <class Function>
   void for_each_belief(Function&& function) const noexcept {
-    for (int k = 0; const Slot& slot : slots_) function(k++, slot.filter.estimate());
+    visit(slots_, [&](int k, const Slot& slot) { function(k, slot.filter.estimate()); });
   }
 
   template <class Function>
   void for_each_before(Function&& function) const noexcept {
-    for (int k = 0; const Slot& slot : slots_) function(k++, slot.before);
+    visit(slots_, [&](int k, const Slot& slot) { function(k, slot.before); });
   }
 
   [[nodiscard]] AnyBelief empty_estimate() const noexcept { return empty_; }
@@ -149,7 +165,17 @@ class AnyFilterBank {
   struct Slot {
     AnyFilter filter;
     AnyBelief before;
+    bool active = true;
   };
+
+  template <class Slots, class Function>
+  static void visit(Slots& slots, Function&& function) noexcept {
+    for (int k = 0; auto& slot : slots) {
+      if (slot.active) function(k, slot);
+      ++k;
+    }
+  }
+
   std::vector<Slot> slots_;
   AnyBelief empty_;
 };

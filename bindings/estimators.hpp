@@ -4,6 +4,8 @@
 // What the bindings of filters, multi-model estimators and trackers share.
 #pragma once
 
+#include <optional>
+
 #include "any_filter.hpp"
 #include "types.hpp"
 
@@ -57,10 +59,47 @@ void require_linear(const AnyFilter& filter) {
         "sensor must be linear for Kalman: use ConvertedRangeBearing or Position, or Ekf or Ukf");
 }
 
-template <class Sensor>
-void require_linear(const AnyImm& imm) {
-  for (int k = 0; k < imm.bank().size(); ++k)
-    require_linear<Sensor>(imm.bank().filter(static_cast<std::size_t>(k)));
+template <class Sensor, class Estimator>
+void require_linear(const Estimator& estimator) {
+  if constexpr (requires { estimator.bank(); })
+    for (int k = 0; k < estimator.bank().size(); ++k)
+      require_linear<Sensor>(estimator.bank().filter(static_cast<std::size_t>(k)));
+}
+
+// What `run` and the faces ask of an estimator.
+
+inline int states_of(const AnyFilter& filter) noexcept { return states_of(filter.layout()); }
+
+template <class Estimator>
+int states_of(const Estimator& estimator) noexcept {
+  return estimator.estimate().states();
+}
+
+/// Number of models; 0 for a single filter.
+template <class Estimator>
+int models_of(const Estimator& estimator) noexcept {
+  if constexpr (requires { estimator.mode_probability(); })
+    return static_cast<int>(estimator.mode_probability().size());
+  return 0;
+}
+
+/// True for an estimator whose models change their turn rates.
+template <class Estimator>
+inline constexpr bool kHasTurnRates = requires(const Estimator& estimator) {
+  estimator.turn_rates_rad_s();
+};
+
+/// A known acceleration, (2,) array or None.
+inline std::optional<Vec<double, 2>> to_acceleration(const std::optional<DoubleArray>& array) {
+  if (!array) return std::nullopt;
+  return Vec<double, 2>(to_vector("acceleration_mps2", *array, 2));
+}
+
+/// `predict` with or without a known acceleration.
+template <class Estimator>
+Status predict(Estimator& estimator, double dt_s,
+               const std::optional<Vec<double, 2>>& acceleration_mps2) noexcept {
+  return acceleration_mps2 ? estimator.predict(dt_s, *acceleration_mps2) : estimator.predict(dt_s);
 }
 
 }  // namespace wakeline::python

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "wakeline/filter/rts_smoother.hpp"
 
-#include "run.hpp"
+#include "face.hpp"
 
 namespace wakeline::python {
 
@@ -29,6 +29,13 @@ std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans) {
   require_shape(array.ndim() == 1 && array.shape(0) == static_cast<py::ssize_t>(scans), "dt_s",
                 "() or " + shape_text({static_cast<py::ssize_t>(scans)}), array);
   return {array.data(), array.data() + scans};
+}
+
+const double* per_scan(const char* name, const DoubleArray& array, std::size_t scans) {
+  const auto rows = static_cast<py::ssize_t>(scans);
+  require_shape(array.ndim() == 2 && array.shape(0) == rows && array.shape(1) == 2, name,
+                shape_text({rows, 2}), array);
+  return array.data();
 }
 
 namespace {
@@ -113,41 +120,17 @@ void define_filter(py::module_& parent) {
       .def_readonly("covariance", &RunResult::covariance, "(..., T, N, N)")
       .def_readonly("mode_probability", &RunResult::mode_probability,
                     "(..., T, K), None for a single filter")
+      .def_readonly("turn_rate_rad_s", &RunResult::turn_rate_rad_s,
+                    "(..., T, K), of the models in each scan, NaN for one at rest; None where they "
+                    "do not change")
       .def_readonly("nis", &RunResult::nis, "(..., T), NaN where there was no update")
       .def_readonly("log_likelihood", &RunResult::log_likelihood, "(..., T)")
       .def_readonly("status", &RunResult::status, "(..., T) values of Status");
 
-  py::class_<AnyFilter>(m, "Filter", "What Kalman, Ekf, Ukf and SquareRootUkf share.")
-      .def(
-          "start",
-          [](AnyFilter& filter, const PyGaussian& belief) {
-            require_ok(filter.start(to_start("belief", belief, states_of(filter))), "start");
-          },
-          py::arg("belief"), "Begins with a belief over the filter's state or over [x, vx, y, vy].")
-      .def(
-          "predict",
-          [](AnyFilter& filter, double dt_s) { require_ok(filter.predict(dt_s), "predict"); },
-          py::arg("dt_s"), "Moves the belief dt_s seconds on.")
-      .def(
-          "update",
-          [](AnyFilter& filter, const py::object& sensor, const DoubleArray& z) {
-            return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
-              require_linear<Sensor>(filter);
-              constexpr int kM = Sensor::kMeasurements;
-              const auto step = filter.update(model, Vec<double, kM>(to_vector("z", z, kM)));
-              require_ok(step.status, "update");
-              return to_step(step);
-            });
-          },
-          py::arg("sensor"), py::arg("z"), "Corrects the belief by a reading; returns the Step.")
-      .def(
-          "estimate", [](const AnyFilter& filter) { return to_gaussian(filter.estimate()); },
-          "The belief.")
-      .def_property_readonly("started", &AnyFilter::started)
-      .def("run", &run<AnyFilter>, py::arg("z"), py::arg("dt_s"), py::arg("sensor"),
-           py::arg("start"), py::arg("own_position_m") = py::none(), kRunDoc)
-      .def("smooth", &smooth_arrays, py::arg("mean"), py::arg("covariance"), py::arg("dt_s"),
-           R"(Rauch-Tung-Striebel smoother over the results of `run`.
+  py::class_<AnyFilter> filter(m, "Filter", "What Kalman, Ekf, Ukf and SquareRootUkf share.");
+  define_face(filter);
+  filter.def("smooth", &smooth_arrays, py::arg("mean"), py::arg("covariance"), py::arg("dt_s"),
+             R"(Rauch-Tung-Striebel smoother over the results of `run`.
 
 Parameters
 ----------

@@ -1,11 +1,17 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "run.hpp"
+#include <algorithm>
+
+#include "face.hpp"
+#include "wakeline/multimodel/adaptive_grid_imm.hpp"
+#include "wakeline/multimodel/switching_grid_imm.hpp"
 
 namespace wakeline::python {
 namespace {
 
 using Chain = ModeChain<kRuntimeModes>;
+using AnyAdaptiveGridImm = AdaptiveGridImm<AnyFilterBank>;
+using AnySwitchingGridImm = SwitchingGridImm<AnyFilterBank>;
 
 Chain make_chain(const DoubleArray& matrix, const std::optional<double>& period_s) {
   require_shape(matrix.ndim() == 2 && matrix.shape(0) == matrix.shape(1) && matrix.shape(0) > 0 &&
@@ -33,6 +39,175 @@ std::vector<AnyFilter> to_filters(const py::sequence& sequence) {
     filters.push_back(item.cast<const AnyFilter&>());
   }
   return filters;
+}
+
+/// `count` filters like `filter`, which must have a known turn rate.
+AnyFilterBank turning_bank(const AnyFilter& filter, int count) {
+  if (!filter.turns())
+    throw py::value_error("filter must be one over CoordinatedTurn, whose turn rate can change");
+  return AnyFilterBank(std::vector<AnyFilter>(static_cast<std::size_t>(count), filter));
+}
+
+/// The chain given, or the one that stays with that probability.
+Chain chain_of(const std::optional<Chain>& chain, double stay_probability, int modes) {
+  return chain ? *chain : Chain::staying(stay_probability, modes);
+}
+
+TurnRateGrid to_grid(const DoubleArray& rates) {
+  const Eigen::VectorXd vector = to_vector("grid_rad_s", rates);
+  return TurnRateGrid(
+      std::span<const double>(vector.data(), static_cast<std::size_t>(vector.size())));
+}
+
+/// One of the words of an option.
+template <class Option>
+Option to_option(const char* name, const std::string& word,
+                 const std::vector<std::pair<std::string, Option>>& words) {
+  std::string wanted;
+  for (const auto& [known, option] : words) {
+    if (word == known) return option;
+    wanted += (wanted.empty() ? "'" : " or '") + known + "'";
+  }
+  throw py::value_error(std::string(name) + " must be " + wanted + ", got '" + word + "'");
+}
+
+template <class Estimator>
+Estimator with_initial(Estimator estimator, const std::optional<DoubleArray>& initial) {
+  if (initial)
+    estimator.set_initial_mode_probability(
+        to_vector("initial_mode_probability", *initial, estimator.mode_probability().size()));
+  return estimator;
+}
+
+void define_adaptive_grid(py::module_& m) {
+  const AdaptiveGrid grid;
+  py::class_<AnyAdaptiveGridImm> adaptive(m, "AdaptiveGridImm",
+                                          R"(Three turn models whose rates move with the target.
+
+The turn rates move before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
+
+Parameters
+----------
+filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+    What all three models are like; its turn rate does not matter.
+max_turn_rate_rad_s : float
+    No model turns faster.
+initial_turn_rates_rad_s : (3,) array, optional
+    Left, centre and right at a start, rising; zero and half the maximum to each side when left out. Not printed.
+min_spacing_rad_s : float
+    The least spacing that a move starts from. Not printed.
+centre_threshold : float
+    A centre less probable than this moves to the probable rate.
+unlikely_threshold : float
+    A side less probable than this comes half way nearer.
+likely_threshold : float
+    A side more probable than this goes twice as far.
+stay_probability : float
+    Of the models' chain: to stay, the rest to each other model alike.
+chain : ModeChain, optional
+    Another chain of three modes.
+initial_mode_probability : (3,) array, optional
+    What a start begins with; 0.9 for the centre when left out. Not printed.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense.
+
+References
+----------
+Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.1.)");
+  adaptive.def(
+      py::init([](const AnyFilter& filter, double max_rate,
+                  const std::optional<DoubleArray>& initial_rates, double min_spacing,
+                  double centre, double unlikely, double likely, double stay,
+                  const std::optional<Chain>& chain, const std::optional<DoubleArray>& initial) {
+        AdaptiveGrid grid{.max_turn_rate_rad_s = max_rate,
+                          .min_spacing_rad_s = min_spacing,
+                          .centre_threshold = centre,
+                          .unlikely_threshold = unlikely,
+                          .likely_threshold = likely};
+        if (initial_rates) {
+          const Eigen::VectorXd rates = to_vector("initial_turn_rates_rad_s", *initial_rates, 3);
+          grid.initial_turn_rates_rad_s = {rates[0], rates[1], rates[2]};
+        }
+        return with_initial(
+            AnyAdaptiveGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial);
+      }),
+      py::arg("filter"), py::kw_only(), py::arg("max_turn_rate_rad_s") = grid.max_turn_rate_rad_s,
+      py::arg("initial_turn_rates_rad_s") = py::none(),
+      py::arg("min_spacing_rad_s") = grid.min_spacing_rad_s,
+      py::arg("centre_threshold") = grid.centre_threshold,
+      py::arg("unlikely_threshold") = grid.unlikely_threshold,
+      py::arg("likely_threshold") = grid.likely_threshold, py::arg("stay_probability") = 0.9,
+      py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none());
+  define_face(adaptive);
+}
+
+void define_switching_grid(py::module_& m) {
+  const SwitchingGrid grid;
+  py::class_<AnySwitchingGridImm> switching(
+      m, "SwitchingGridImm", R"(Three turn models in a window on a fixed grid of turn rates.
+
+The window moves before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
+
+Parameters
+----------
+filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+    What all three models are like; its turn rate does not matter.
+grid_rad_s : (3 to 16,) array
+    Turn rates, rising.
+threshold : float
+    A model more probable than this decides.
+rule : 'symmetric' or 'literal'
+    Left if the left model is above the threshold, right if the right one is, else stay; or as printed: left if the left
+    one is, stay if the centre is, else right.
+carry : 'slot' or 'identity'
+    Whether each slot keeps its estimate and probability, or each model that stays does and the entering one begins with
+    the combined estimate and the probability of the leaving one. Not printed.
+initial_centre : int, optional
+    Index of the window's middle at a start; the straightest rate when left out. Not printed.
+stay_probability : float
+    Of the models' chain: to stay, the rest to each other model alike.
+chain : ModeChain, optional
+    Another chain of three modes.
+initial_mode_probability : (3,) array, optional
+    What a start begins with; 0.9 for the centre when left out. Not printed.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense.
+
+References
+----------
+Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.2.)");
+  switching.def(
+      py::init([](const AnyFilter& filter, const DoubleArray& rates, double threshold,
+                  const std::string& rule, const std::string& carry,
+                  const std::optional<int>& centre, double stay, const std::optional<Chain>& chain,
+                  const std::optional<DoubleArray>& initial) {
+        const SwitchingGrid grid{
+            .grid_rad_s = to_grid(rates),
+            .threshold = threshold,
+            .rule = to_option<SwitchRule>(
+                "rule", rule,
+                {{"symmetric", SwitchRule::kSymmetric}, {"literal", SwitchRule::kLiteral}}),
+            .carry = to_option<SwitchCarry>(
+                "carry", carry,
+                {{"slot", SwitchCarry::kSlot}, {"identity", SwitchCarry::kIdentity}}),
+            .initial_centre = centre};
+        return with_initial(
+            AnySwitchingGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial);
+      }),
+      py::arg("filter"), py::arg("grid_rad_s"), py::kw_only(),
+      py::arg("threshold") = grid.threshold, py::arg("rule") = "symmetric",
+      py::arg("carry") = "slot", py::arg("initial_centre") = py::none(),
+      py::arg("stay_probability") = 0.9, py::arg("chain") = py::none(),
+      py::arg("initial_mode_probability") = py::none());
+  switching.def_property_readonly("centre", &AnySwitchingGridImm::centre,
+                                  "Index of the window's middle in the grid.");
+  define_face(switching);
 }
 
 }  // namespace
@@ -76,7 +251,7 @@ ValueError
       .def_property_readonly("modes", [](const Chain& chain) { return chain.modes(); })
       .def_property_readonly("continuous", &Chain::continuous);
 
-  py::class_<AnyImm>(m, "Imm", R"(The interacting multiple model estimator.
+  py::class_<AnyImm> imm(m, "Imm", R"(The interacting multiple model estimator.
 
 Parameters
 ----------
@@ -84,52 +259,16 @@ filters : sequence of K filters
     Of any kinds and state sizes.
 chain : ModeChain
 initial_mode_probability : (K,) array, optional
-    What a start begins with; uniform when left out.)")
-      .def(py::init([](const py::sequence& filters, const Chain& chain,
-                       const std::optional<DoubleArray>& initial) {
-             return make_imm(to_filters(filters), chain, initial);
-           }),
-           py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none())
-      .def(
-          "start",
-          [](AnyImm& imm, const PyGaussian& belief) {
-            require_ok(imm.start(to_start("belief", belief, states_of(imm))), "start");
-          },
-          py::arg("belief"),
-          "Begins with a belief over [x, vx, y, vy], or over the state that all filters share.")
-      .def(
-          "predict", [](AnyImm& imm, double dt_s) { require_ok(imm.predict(dt_s), "predict"); },
-          py::arg("dt_s"), "Mixes and moves dt_s seconds on; mode probabilities follow the chain.")
-      .def(
-          "update",
-          [](AnyImm& imm, const py::object& sensor, const DoubleArray& z) {
-            return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
-              require_linear<Sensor>(imm);
-              constexpr int kM = Sensor::kMeasurements;
-              const auto step = imm.update(model, Vec<double, kM>(to_vector("z", z, kM)));
-              require_ok(step.status, "update");
-              return to_step(step);
-            });
-          },
-          py::arg("sensor"), py::arg("z"),
-          "Corrects every model and weighs them; returns the Step.")
-      .def(
-          "estimate", [](const AnyImm& imm) { return to_gaussian(imm.estimate()); },
-          "The moment-matched belief: over the state where all filters share one, else over [x, "
-          "vx, y, vy].")
-      .def(
-          "mode_probability", [](const AnyImm& imm) { return to_array(imm.mode_probability()); },
-          "(K,)")
-      .def(
-          "filter_estimate",
-          [](const AnyImm& imm, std::size_t index) {
-            return to_gaussian(imm.bank().filter(index).estimate());
-          },
-          py::arg("index"), "The belief of one of the filters, over its own state.")
-      .def_property_readonly("models", [](const AnyImm& imm) { return imm.bank().size(); })
-      .def_property_readonly("started", &AnyImm::started)
-      .def("run", &run<AnyImm>, py::arg("z"), py::arg("dt_s"), py::arg("sensor"), py::arg("start"),
-           py::arg("own_position_m") = py::none(), kRunDoc);
+    What a start begins with; uniform when left out.)");
+  imm.def(py::init([](const py::sequence& filters, const Chain& chain,
+                      const std::optional<DoubleArray>& initial) {
+            return make_imm(to_filters(filters), chain, initial);
+          }),
+          py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none());
+  define_face(imm);
+
+  define_adaptive_grid(m);
+  define_switching_grid(m);
 }
 
 }  // namespace wakeline::python

@@ -18,27 +18,20 @@ struct RunResult {
   py::array_t<double> mean;
   py::array_t<double> covariance;
   py::object mode_probability;  ///< None for a single filter
+  py::object turn_rate_rad_s;   ///< None where no model changes its turn rate
   py::array_t<double> nis;
   py::array_t<double> log_likelihood;
   py::array_t<std::uint8_t> status;
 };
 
-inline int models_of(const AnyFilter&) noexcept { return 0; }
-inline int models_of(const AnyImm& imm) noexcept { return imm.bank().size(); }
-inline int states_of(const AnyFilter& filter) noexcept { return states_of(filter.layout()); }
-inline int states_of(const AnyImm& imm) noexcept { return imm.bank().empty_estimate().states(); }
-inline void write_modes(const AnyFilter&, double*) noexcept {}
-inline void write_modes(const AnyImm& imm, double* out) noexcept {
-  for (int k = 0; k < imm.bank().size(); ++k) out[k] = imm.mode_probability()[k];
-}
-
 /// The measurements, steps and own positions of all runs, as plain memory.
 struct RunInput {
   std::size_t runs, scans, measurements;
   const double* z;
-  std::vector<double> dt_s;      ///< (T)
-  const double* own = nullptr;   ///< (T, 2) or null
-  std::vector<AnyBelief> start;  ///< 1 or R
+  std::vector<double> dt_s;              ///< (T)
+  const double* own = nullptr;           ///< (T, 2) or null
+  const double* acceleration = nullptr;  ///< (T, 2) or null
+  std::vector<AnyBelief> start;          ///< 1 or R
 };
 
 template <class Sensor>
@@ -55,7 +48,7 @@ Sensor seen_from(const Sensor& sensor, const double* own) noexcept {
 
 /// Memory of the results, `states` and `models` to a scan.
 struct RunOutput {
-  double *mean, *covariance, *modes, *nis, *log_likelihood;
+  double *mean, *covariance, *modes, *rates, *nis, *log_likelihood;
   std::uint8_t* status;
 };
 
@@ -68,7 +61,10 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
   for (std::size_t scan = 0; scan < in.scans; ++scan) {
     const std::size_t row = run * in.scans + scan;
     const Vec<double, kM> z = Eigen::Map<const Vec<double, kM>>(in.z + row * kM);
-    Status status = estimator.predict(in.dt_s[scan]);
+    std::optional<Vec<double, 2>> acceleration;
+    if (in.acceleration != nullptr)
+      acceleration = Vec<double, 2>(in.acceleration[2 * scan], in.acceleration[2 * scan + 1]);
+    Status status = predict(estimator, in.dt_s[scan], acceleration);
     double nis = std::numeric_limits<double>::quiet_NaN();
     double log_likelihood = nis;
     if (status == Status::kOk) {
@@ -92,7 +88,13 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
         out.covariance[(row * states + i) * states + j] =
             belief.covariance(a, static_cast<Eigen::Index>(j));
     }
-    write_modes(estimator, out.modes + row * models);
+    for (std::size_t k = 0; k < models; ++k) {
+      const auto mode = static_cast<Eigen::Index>(k);
+      if constexpr (requires { estimator.mode_probability(); })
+        out.modes[row * models + k] = estimator.mode_probability()[mode];
+      if constexpr (kHasTurnRates<Estimator>)
+        out.rates[row * models + k] = estimator.turn_rates_rad_s()[mode];
+    }
     out.nis[row] = nis;
     out.log_likelihood[row] = log_likelihood;
     out.status[row] = static_cast<std::uint8_t>(status);
@@ -102,13 +104,17 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
 /// The beliefs that `start` means: one Gaussian for all runs or a sequence of R.
 std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs, int states);
 
+/// The memory of an array (T, 2).
+const double* per_scan(const char* name, const DoubleArray& array, std::size_t scans);
+
 /// A scalar step or one per scan.
 std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans);
 
 template <class Estimator>
 RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object& dt_s,
               const py::object& sensor, const py::object& start,
-              const std::optional<DoubleArray>& own_position_m) {
+              const std::optional<DoubleArray>& own_position_m,
+              const std::optional<DoubleArray>& acceleration_mps2) {
   return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
     constexpr int kM = Sensor::kMeasurements;
     require_linear<Sensor>(prototype);
@@ -125,12 +131,10 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
     if (own_position_m) {
       if constexpr (!requires { model.own; })
         throw py::value_error("own_position_m must be None for a sensor without own ship");
-      require_shape(own_position_m->ndim() == 2 && own_position_m->shape(1) == 2 &&
-                        own_position_m->shape(0) == static_cast<py::ssize_t>(in.scans),
-                    "own_position_m", shape_text({static_cast<py::ssize_t>(in.scans), 2}),
-                    *own_position_m);
-      in.own = own_position_m->data();
+      in.own = per_scan("own_position_m", *own_position_m, in.scans);
     }
+    if (acceleration_mps2)
+      in.acceleration = per_scan("acceleration_mps2", *acceleration_mps2, in.scans);
 
     const py::ssize_t states = states_of(prototype);
     const py::ssize_t models = models_of(prototype);
@@ -145,16 +149,17 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
     RunResult result{py::array_t<double>(with({states})),
                      py::array_t<double>(with({states, states})),
                      py::none(),
+                     py::none(),
                      py::array_t<double>(shape),
                      py::array_t<double>(shape),
                      py::array_t<std::uint8_t>(shape)};
     py::array_t<double> modes(with({models}));
     if (models > 0) result.mode_probability = modes;
-    const RunOutput out{result.mean.mutable_data(),
-                        result.covariance.mutable_data(),
-                        modes.mutable_data(),
-                        result.nis.mutable_data(),
-                        result.log_likelihood.mutable_data(),
+    py::array_t<double> rates(with({kHasTurnRates<Estimator> ? models : 0}));
+    if (kHasTurnRates<Estimator>) result.turn_rate_rad_s = rates;
+    const RunOutput out{result.mean.mutable_data(),  result.covariance.mutable_data(),
+                        modes.mutable_data(),        rates.mutable_data(),
+                        result.nis.mutable_data(),   result.log_likelihood.mutable_data(),
                         result.status.mutable_data()};
     {
       const py::gil_scoped_release release;
@@ -183,11 +188,14 @@ start : Gaussian or sequence of R of them
     Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
 own_position_m : (T, 2) array, optional
     North and east of own ship at each reading.
+acceleration_mps2 : (T, 2) array, optional
+    Known acceleration, north and east, in the step before each reading.
 
 Returns
 -------
 RunResult
-    mean (..., T, N), covariance (..., T, N, N), mode_probability (..., T, K), nis, log_likelihood and status (..., T).
+    mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
+    and status (..., T).
 
 Raises
 ------

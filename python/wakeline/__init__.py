@@ -65,7 +65,7 @@ from ._engine.motion import (
     WhiteAcceleration,
     WhiteJerk,
 )
-from ._engine.multimodel import Imm, ModeChain
+from ._engine.multimodel import AdaptiveGridImm, Imm, ModeChain, SwitchingGridImm
 from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, vessel_imm
 
 # The engine's nouns, importable as modules of the package.
@@ -80,6 +80,7 @@ except _PackageNotFoundError:  # run from a checkout that is not installed
     __version__ = "0+unknown"
 
 __all__ = [
+    "AdaptiveGridImm",
     "ChiSquareGate",
     "ConstantAcceleration",
     "ConstantVelocity",
@@ -107,6 +108,7 @@ __all__ = [
     "SquareRootUkf",
     "Status",
     "Step",
+    "SwitchingGridImm",
     "Tracker",
     "TrackerConfig",
     "Ukf",

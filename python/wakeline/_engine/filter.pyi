@@ -55,6 +55,11 @@ class RunResult:
         """
         (..., T) values of Status
         """
+    @property
+    def turn_rate_rad_s(self) -> NDArray[np.float64]:
+        """
+        (..., T, K), of the models in each scan, NaN for one at rest; None where they do not change
+        """
 
 class Filter:
     """
@@ -62,11 +67,11 @@ class Filter:
     """
     def estimate(self) -> Gaussian:
         """
-        The belief.
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
         """
-    def predict(self, dt_s: float) -> None:
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
         """
-        Moves the belief dt_s seconds on.
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
     def run(
         self,
@@ -75,6 +80,7 @@ class Filter:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
     ) -> RunResult:
         """
         Runs whole recordings.
@@ -90,11 +96,14 @@ class Filter:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
 
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability (..., T, K), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
+            and status (..., T).
 
         Raises
         ------
@@ -123,7 +132,7 @@ class Filter:
         """
     def start(self, belief: Gaussian) -> None:
         """
-        Begins with a belief over the filter's state or over [x, vx, y, vy].
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
         """
     def update(
         self,

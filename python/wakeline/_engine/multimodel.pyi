@@ -11,7 +11,7 @@ from .core import Gaussian, Step
 from .filter import Filter, RunResult
 from .measurement import ConvertedRangeBearing, Position, RangeBearing, RangeBearingDoppler
 
-__all__ = ["Imm", "ModeChain"]
+__all__ = ["AdaptiveGridImm", "Imm", "ModeChain", "SwitchingGridImm"]
 
 class ModeChain:
     """
@@ -65,7 +65,7 @@ class Imm:
     ) -> None: ...
     def estimate(self) -> Gaussian:
         """
-        The moment-matched belief: over the state where all filters share one, else over [x, vx, y, vy].
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
         """
     def filter_estimate(self, index: int) -> Gaussian:
         """
@@ -75,9 +75,9 @@ class Imm:
         """
         (K,)
         """
-    def predict(self, dt_s: float) -> None:
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
         """
-        Mixes and moves dt_s seconds on; mode probabilities follow the chain.
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
     def run(
         self,
@@ -86,6 +86,7 @@ class Imm:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
     ) -> RunResult:
         """
         Runs whole recordings.
@@ -101,11 +102,14 @@ class Imm:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
 
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability (..., T, K), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
+            and status (..., T).
 
         Raises
         ------
@@ -116,7 +120,7 @@ class Imm:
         """
     def start(self, belief: Gaussian) -> None:
         """
-        Begins with a belief over [x, vx, y, vy], or over the state that all filters share.
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
         """
     def update(
         self,
@@ -124,7 +128,267 @@ class Imm:
         z: ArrayLike,
     ) -> Step:
         """
-        Corrects every model and weighs them; returns the Step.
+        Corrects the belief by a reading; returns the Step.
+        """
+    @property
+    def models(self) -> int: ...
+    @property
+    def started(self) -> bool: ...
+
+class AdaptiveGridImm:
+    """
+    Three turn models whose rates move with the target.
+
+    The turn rates move before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
+
+    Parameters
+    ----------
+    filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+        What all three models are like; its turn rate does not matter.
+    max_turn_rate_rad_s : float
+        No model turns faster.
+    initial_turn_rates_rad_s : (3,) array, optional
+        Left, centre and right at a start, rising; zero and half the maximum to each side when left out. Not printed.
+    min_spacing_rad_s : float
+        The least spacing that a move starts from. Not printed.
+    centre_threshold : float
+        A centre less probable than this moves to the probable rate.
+    unlikely_threshold : float
+        A side less probable than this comes half way nearer.
+    likely_threshold : float
+        A side more probable than this goes twice as far.
+    stay_probability : float
+        Of the models' chain: to stay, the rest to each other model alike.
+    chain : ModeChain, optional
+        Another chain of three modes.
+    initial_mode_probability : (3,) array, optional
+        What a start begins with; 0.9 for the centre when left out. Not printed.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense.
+
+    References
+    ----------
+    Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.1.
+    """
+    def __init__(
+        self,
+        filter: Filter,
+        *,
+        max_turn_rate_rad_s: float = 0.05235987755982989,
+        initial_turn_rates_rad_s: ArrayLike | None = None,
+        min_spacing_rad_s: float = 0.03490658503988659,
+        centre_threshold: float = 0.3,
+        unlikely_threshold: float = 0.25,
+        likely_threshold: float = 0.75,
+        stay_probability: float = 0.9,
+        chain: ModeChain | None = None,
+        initial_mode_probability: ArrayLike | None = None,
+    ) -> None: ...
+    def estimate(self) -> Gaussian:
+        """
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
+        """
+    def filter_estimate(self, index: int) -> Gaussian:
+        """
+        The belief of one of the filters, over its own state.
+        """
+    def mode_probability(self) -> NDArray[np.float64]:
+        """
+        (K,)
+        """
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
+        """
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
+        """
+    def run(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+        own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
+    ) -> RunResult:
+        """
+        Runs whole recordings.
+
+        Parameters
+        ----------
+        z : (T, M) or (R, T, M) array
+            Readings of one run or of R independent ones; a row of NaN is a missed scan.
+        dt_s : float or (T,) array
+            Time before each reading, s; the first counts from the start.
+        sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+        start : Gaussian or sequence of R of them
+            Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
+        own_position_m : (T, 2) array, optional
+            North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
+
+        Returns
+        -------
+        RunResult
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
+            and status (..., T).
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+        """
+    def start(self, belief: Gaussian) -> None:
+        """
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
+        """
+    def turn_rates_rad_s(self) -> NDArray[np.float64]:
+        """
+        (K,) turn rates of the models, positive to starboard; NaN for one at rest.
+        """
+    def update(
+        self,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        z: ArrayLike,
+    ) -> Step:
+        """
+        Corrects the belief by a reading; returns the Step.
+        """
+    @property
+    def models(self) -> int: ...
+    @property
+    def started(self) -> bool: ...
+
+class SwitchingGridImm:
+    """
+    Three turn models in a window on a fixed grid of turn rates.
+
+    The window moves before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
+
+    Parameters
+    ----------
+    filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+        What all three models are like; its turn rate does not matter.
+    grid_rad_s : (3 to 16,) array
+        Turn rates, rising.
+    threshold : float
+        A model more probable than this decides.
+    rule : 'symmetric' or 'literal'
+        Left if the left model is above the threshold, right if the right one is, else stay; or as printed: left if the left
+        one is, stay if the centre is, else right.
+    carry : 'slot' or 'identity'
+        Whether each slot keeps its estimate and probability, or each model that stays does and the entering one begins with
+        the combined estimate and the probability of the leaving one. Not printed.
+    initial_centre : int, optional
+        Index of the window's middle at a start; the straightest rate when left out. Not printed.
+    stay_probability : float
+        Of the models' chain: to stay, the rest to each other model alike.
+    chain : ModeChain, optional
+        Another chain of three modes.
+    initial_mode_probability : (3,) array, optional
+        What a start begins with; 0.9 for the centre when left out. Not printed.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense.
+
+    References
+    ----------
+    Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.2.
+    """
+    def __init__(
+        self,
+        filter: Filter,
+        grid_rad_s: ArrayLike,
+        *,
+        threshold: float = 0.7,
+        rule: str = "symmetric",
+        carry: str = "slot",
+        initial_centre: int | None = None,
+        stay_probability: float = 0.9,
+        chain: ModeChain | None = None,
+        initial_mode_probability: ArrayLike | None = None,
+    ) -> None: ...
+    def estimate(self) -> Gaussian:
+        """
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
+        """
+    def filter_estimate(self, index: int) -> Gaussian:
+        """
+        The belief of one of the filters, over its own state.
+        """
+    def mode_probability(self) -> NDArray[np.float64]:
+        """
+        (K,)
+        """
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
+        """
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
+        """
+    def run(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+        own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
+    ) -> RunResult:
+        """
+        Runs whole recordings.
+
+        Parameters
+        ----------
+        z : (T, M) or (R, T, M) array
+            Readings of one run or of R independent ones; a row of NaN is a missed scan.
+        dt_s : float or (T,) array
+            Time before each reading, s; the first counts from the start.
+        sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+        start : Gaussian or sequence of R of them
+            Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
+        own_position_m : (T, 2) array, optional
+            North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
+
+        Returns
+        -------
+        RunResult
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
+            and status (..., T).
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+        """
+    def start(self, belief: Gaussian) -> None:
+        """
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
+        """
+    def turn_rates_rad_s(self) -> NDArray[np.float64]:
+        """
+        (K,) turn rates of the models, positive to starboard; NaN for one at rest.
+        """
+    def update(
+        self,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        z: ArrayLike,
+    ) -> Step:
+        """
+        Corrects the belief by a reading; returns the Step.
+        """
+    @property
+    def centre(self) -> int:
+        """
+        Index of the window's middle in the grid.
         """
     @property
     def models(self) -> int: ...

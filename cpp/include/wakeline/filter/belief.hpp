@@ -8,6 +8,7 @@
 #include "wakeline/core/archive.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/status.hpp"
+#include "wakeline/filter/control.hpp"
 #include "wakeline/filter/start.hpp"
 #include "wakeline/measurement/concept.hpp"
 #include "wakeline/motion/concept.hpp"
@@ -70,6 +71,9 @@ class Belief {
     return Status::kOk;
   }
 
+  /// Replaces the motion model, unchecked; the belief stays.
+  void set_motion(const Motion& motion) noexcept { motion_ = motion; }
+
   /// Saves or restores the belief.
   void archive(Archive& fields) {
     fields(belief_.mean);
@@ -82,6 +86,9 @@ class Belief {
   [[nodiscard]] bool started() const noexcept { return started_; }
 
  protected:
+  friend struct Control;
+  Vec<Scalar, kStates>& mean() noexcept { return belief_.mean; }
+
   Motion motion_;
   Gaussian<kStates, Scalar> belief_;
   bool started_ = false;

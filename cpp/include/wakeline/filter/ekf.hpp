@@ -41,6 +41,17 @@ class Ekf : public Belief<MotionType, ScalarType> {
     }
   }
 
+  /// The same under a known acceleration, [north, east]; see `Control`.
+  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+    return Control::predict(*this, dt_s, acceleration_mps2);
+  }
+
+  /// Replaces the motion model, unchecked; the belief stays.
+  void set_motion(const Motion& motion) noexcept {
+    Base::set_motion(motion);
+    kept_ = {};
+  }
+
   /// The innovation of a reading and its likelihood, without taking it.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> innovation(

@@ -82,6 +82,9 @@ class SquareRootUkf {
     return Status::kOk;
   }
 
+  /// Replaces the motion model, unchecked; the belief stays.
+  void set_motion(const Motion& motion) noexcept { motion_ = motion; }
+
   /// Saves or restores the belief.
   void archive(Archive& fields) {
     fields(mean_);
@@ -115,6 +118,11 @@ class SquareRootUkf {
     mean_ = moved.centre + shift;
     root_ = lower_root(array);
     return Status::kOk;
+  }
+
+  /// The same under a known acceleration, [north, east]; see `Control`.
+  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+    return Control::predict(*this, dt_s, acceleration_mps2);
   }
 
   /// The innovation of a reading and its likelihood, without taking it.
@@ -169,6 +177,9 @@ class SquareRootUkf {
   }
 
  private:
+  friend struct Control;
+
+  Vec<Scalar, kStates>& mean() noexcept { return mean_; }
   Mat<Scalar, kStates, kPoints> points() const noexcept {
     return sigma_points<Scalar, kStates>(mean_, root_, unscented_.template spread<Scalar>(kStates));
   }

@@ -45,6 +45,11 @@ class Ukf : public Belief<MotionType, ScalarType> {
     return Status::kOk;
   }
 
+  /// The same under a known acceleration, [north, east]; see `Control`.
+  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+    return Control::predict(*this, dt_s, acceleration_mps2);
+  }
+
   /// The innovation of a reading and its likelihood, without taking it.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> innovation(

@@ -12,28 +12,10 @@
 
 #include "wakeline/core/scalar.hpp"
 #include "wakeline/filter/belief.hpp"
-#include "wakeline/multimodel/filter_bank.hpp"
+#include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
 
 namespace wakeline {
-
-/// One of several readings that may be a target's own, and its weight before its likelihood.
-template <class Sensor, class Scalar = double>
-struct Alternative {
-  Sensor sensor;
-  Vec<Scalar, Sensor::kMeasurements> z;
-  Scalar weight;
-};
-
-/// How likely a reading is under all modes, and how near it is to the mode that is nearest.
-template <class Scalar = double>
-struct Evidence {
-  Scalar likelihood = Scalar(0);
-  Scalar least_nis = std::numeric_limits<Scalar>::infinity();
-};
-
-/// Most readings that one update takes in; more are left out.
-inline constexpr std::size_t kMaxAlternatives = 16;
 
 /// The interacting multiple model estimator, over filters of any kinds and state sizes.
 ///
@@ -58,10 +40,10 @@ class Imm {
       : Imm(chain, Bank(filters...)) {}
 
   Imm(const ModeChain<kModels>& chain, const std::type_identity_t<Bank>& bank)
-      : chain_(chain),
-        bank_(bank),
+      : bank_(bank),
         initial_(Probability::Constant(bank.size(), Scalar(1) / Scalar(bank.size()))),
         probability_(initial_),
+        chain_(chain),
         weight_(ModeMatrix<Scalar, kModels>::Zero(bank.size(), bank.size())),
         transition_(weight_) {
     if (chain.modes() != bank.size())
@@ -72,11 +54,7 @@ class Imm {
 
   /// Mode probabilities that a start begins with (uniform unless set). Throws unless they sum to 1.
   void set_initial_mode_probability(const Probability& probability) {
-    for (Eigen::Index k = 0; k < probability.size(); ++k)
-      require_probability("an initial mode probability", double(probability[k]));
-    require(probability.size() == bank_.size() && std::abs(double(probability.sum()) - 1.0) <= 1e-6,
-            "initial_mode_probability", "one number per mode that sum to 1",
-            double(probability.sum()));
+    require_distribution("initial_mode_probability", probability, bank_.size());
     initial_ = probability;
   }
 
@@ -99,21 +77,11 @@ class Imm {
   }
 
   /// Mixing and prediction: equations (7)-(11) of paper A.
-  Status predict(Scalar dt_s) noexcept {
-    if (!started_) return Status::kNotStarted;
-    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
-    const Probability expected = weigh_transitions(dt_s);
-    bank_.for_each([](int, auto& filter, auto& before) { before = filter.estimate(); });
-    Status status = Status::kOk;
-    bank_.for_each([&](int mode, auto& filter, auto& before) {
-      if (status == Status::kOk) status = filter.assign(mixed(mode, before));
-      if (status == Status::kOk) status = filter.predict(dt_s);
-    });
-    if (status == Status::kOk)
-      probability_ = expected;
-    else
-      bank_.for_each([](int, auto& filter, auto& before) { (void)filter.assign(before); });
-    return status;
+  Status predict(Scalar dt_s) noexcept { return mix_and_move(dt_s); }
+
+  /// The same under a known acceleration, [north, east]; see `Control`.
+  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+    return mix_and_move(dt_s, acceleration_mps2);
   }
 
   /// Filtering and mode probabilities: equations (12)-(14) of paper A. The innovation of the step
@@ -124,34 +92,20 @@ class Imm {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
     std::array<Step<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> steps;
-    Probability log_likelihood = Probability::Constant(bank_.size(), kImpossible);
+    Probability log_likelihood = Probability::Constant(bank_.size(), kImpossible<Scalar>);
     bank_.for_each([&](int mode, auto& filter, auto&) {
       auto& step = steps[static_cast<std::size_t>(mode)];
       step = filter.update(sensor, z);
       if (step) log_likelihood[mode] = step.log_likelihood;
     });
 
-    Scalar best = kImpossible;
-    for (int mode = 0; mode < bank_.size(); ++mode)
-      if (probability_[mode] > Scalar(0) && log_likelihood[mode] > best)
-        best = log_likelihood[mode];
-    if (best == kImpossible) {
-      for (const Step<kM, Scalar>& failure : steps)
-        if (!failure) return failed_step<kM, Scalar>(failure.status);
-      return failed_step<kM, Scalar>(Status::kNotFinite);
-    }
-
-    Step<kM, Scalar> step = combined(steps);
-    Scalar total = Scalar(0);
-    Probability posterior = probability_;
-    for (int mode = 0; mode < bank_.size(); ++mode) {
-      // Where the prior is zero the likelihood may be beyond exp: 0 times infinity is 0 here.
-      posterior[mode] = select(posterior[mode] > Scalar(0),
-                               posterior[mode] * std::exp(log_likelihood[mode] - best), Scalar(0));
-      total += posterior[mode];
-    }
-    for (int mode = 0; mode < bank_.size(); ++mode) probability_[mode] = posterior[mode] / total;
-    step.log_likelihood = best + std::log(total);
+    const auto count = static_cast<std::size_t>(bank_.size());
+    const std::span<const Step<kM, Scalar>> taken(steps.data(), count);
+    Step<kM, Scalar> step = mixed_step<kM, Scalar>(taken, {probability_.data(), count});
+    step.log_likelihood =
+        reweigh<Scalar>({probability_.data(), count}, {log_likelihood.data(), count});
+    if (step.log_likelihood == kImpossible<Scalar>)
+      return failed_step<kM, Scalar>(failure_of(taken));
     return step;
   }
 
@@ -161,10 +115,7 @@ class Imm {
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     Evidence<Scalar> evidence;
     bank_.for_each([&](int mode, const auto& filter) {
-      const auto step = filter.innovation(sensor, z);
-      if (!step) return;
-      evidence.likelihood += probability_[mode] * std::exp(step.log_likelihood);
-      evidence.least_nis = std::min(evidence.least_nis, step.nis);
+      evidence.add(probability_[mode], filter.innovation(sensor, z));
     });
     return evidence;
   }
@@ -228,9 +179,31 @@ class Imm {
     return bank_.template get<Index>();
   }
 
- private:
-  static constexpr Scalar kImpossible = -std::numeric_limits<Scalar>::infinity();
+ protected:
+  template <class... Known>
+  Status mix_and_move(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+    if (!started_) return Status::kNotStarted;
+    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
+    const Probability expected = weigh_transitions(dt_s);
+    bank_.for_each([](int, auto& filter, auto& before) { before = filter.estimate(); });
+    Status status = Status::kOk;
+    bank_.for_each([&](int mode, auto& filter, auto& before) {
+      if (status == Status::kOk) status = filter.assign(mixed(mode, before));
+      if (status == Status::kOk) status = filter.predict(dt_s, acceleration_mps2...);
+    });
+    if (status == Status::kOk)
+      probability_ = expected;
+    else
+      bank_.for_each([](int, auto& filter, auto& before) { (void)filter.assign(before); });
+    return status;
+  }
 
+  Bank bank_;
+  Probability initial_;
+  Probability probability_;
+  bool started_ = false;
+
+ private:
   /// Fills `weight_(i, j) = P(mode i before | mode j now)` and returns P(mode j now).
   Probability weigh_transitions(Scalar dt_s) noexcept {
     if (dt_s != transition_step_s_) {
@@ -263,74 +236,10 @@ class Imm {
     return result;
   }
 
-  /// Replaces the belief of one filter by the mixture of what each reading makes of it; returns its
-  /// total weight.
-  template <class Filter, class BeliefType, class Sensor>
-  static Scalar absorb(Filter& filter, const BeliefType& before,
-                       std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
-                       Scalar mode_probability, std::span<Scalar> share) noexcept {
-    std::array<BeliefType, kMaxAlternatives> after;
-    std::array<Scalar, kMaxAlternatives> weight{};
-    const std::size_t count = std::min(readings.size(), kMaxAlternatives);
-    Scalar total = none;
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto step = filter.update(readings[k].sensor, readings[k].z);
-      if (step) {
-        weight[k] = readings[k].weight * std::exp(step.log_likelihood);
-        after[k] = filter.estimate();
-        (void)filter.assign(before);
-      }
-      total += weight[k];
-      share[k] += mode_probability * weight[k];
-    }
-    if (!(total > Scalar(0))) return Scalar(0);
-    BeliefType mixture = zero_like(before);
-    add_mean(mixture, none / total, before, before);
-    for (std::size_t k = 0; k < count; ++k)
-      if (weight[k] > Scalar(0)) add_mean(mixture, weight[k] / total, after[k], before);
-    add_spread(mixture, none / total, before, before);
-    for (std::size_t k = 0; k < count; ++k)
-      if (weight[k] > Scalar(0)) add_spread(mixture, weight[k] / total, after[k], before);
-    (void)filter.assign(mixture);
-    return total;
-  }
-
-  template <int M, std::size_t Capacity>
-  Step<M, Scalar> combined(const std::array<Step<M, Scalar>, Capacity>& steps) const noexcept {
-    Probability weight = probability_;
-    Scalar total = Scalar(0);
-    for (int mode = 0; mode < bank_.size(); ++mode) {
-      if (!steps[static_cast<std::size_t>(mode)]) weight[mode] = Scalar(0);
-      total += weight[mode];
-    }
-    for (int mode = 0; mode < bank_.size(); ++mode) weight[mode] /= total;
-    Step<M, Scalar> step;
-    step.status = Status::kOk;
-    step.innovation_covariance.setZero();
-    for (int mode = 0; mode < bank_.size(); ++mode)
-      if (weight[mode] > Scalar(0))
-        step.innovation += weight[mode] * steps[static_cast<std::size_t>(mode)].innovation;
-    for (int mode = 0; mode < bank_.size(); ++mode) {
-      if (!(weight[mode] > Scalar(0))) continue;
-      const auto& of_mode = steps[static_cast<std::size_t>(mode)];
-      const Vec<Scalar, M> d = of_mode.innovation - step.innovation;
-      for (int j = 0; j < M; ++j)
-        for (int i = 0; i < M; ++i)
-          step.innovation_covariance(i, j) +=
-              weight[mode] * (of_mode.innovation_covariance(i, j) + d[i] * d[j]);
-    }
-    step.nis = Cholesky<M, Scalar>(step.innovation_covariance).squared_norm(step.innovation);
-    return step;
-  }
-
   ModeChain<kModels> chain_;
-  Bank bank_;
-  Probability initial_;
-  Probability probability_;
   ModeMatrix<Scalar, kModels> weight_;
   ModeMatrix<Scalar, kModels> transition_;
   Scalar transition_step_s_ = Scalar(-1);
-  bool started_ = false;
 };
 
 template <int K, class... Filters>

@@ -75,6 +75,17 @@ class ModeChain {
     return from_sojourn_s(times);
   }
 
+  /// The chain that stays with the given probability per prediction and leaves to each other mode
+  /// alike: the papers' 0.9 and 0.1 / (K - 1).
+  static ModeChain staying(double probability, Eigen::Index modes = K) {
+    require_probability("the probability to stay", probability);
+    require(modes >= 2 && modes <= kModeCapacity<K>, "modes", "2 to 16", double(modes));
+    Matrix matrix =
+        Matrix::Constant(modes, modes, (1.0 - probability) / static_cast<double>(modes - 1));
+    matrix.diagonal().setConstant(probability);
+    return ModeChain(matrix);
+  }
+
   [[nodiscard]] Eigen::Index modes() const noexcept { return matrix_.rows(); }
 
   /// True when the transition depends on the time step.

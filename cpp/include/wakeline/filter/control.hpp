@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "wakeline/core/cholesky.hpp"
+#include "wakeline/core/component.hpp"
+#include "wakeline/core/status.hpp"
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// A known acceleration: of own ship, or commanded. It acts on a state that has moved already, x +=
+/// G u, u = [north, east] (m/s²), and is constant during the step: G = [dt²/2; dt] per axis, and
+/// [dt²/2; dt; 1] where the acceleration is a state. What a state does not hold is left out.
+/// Source: paper A, equations (1)-(3).
+struct Control {
+  /// G u, one row for each component.
+  template <class Scalar, std::size_t N>
+  static Vec<Scalar, static_cast<int>(N)> shift(const std::array<Component, N>& components,
+                                                Scalar dt_s,
+                                                const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+    Vec<Scalar, static_cast<int>(N)> shift = Vec<Scalar, static_cast<int>(N)>::Zero();
+    const Scalar gain[] = {dt_s * dt_s / 2, dt_s, Scalar(1)};
+    const Component rows[2][3] = {{Component::kNorth, Component::kVnorth, Component::kAnorth},
+                                  {Component::kEast, Component::kVeast, Component::kAeast}};
+    for (int axis = 0; axis < 2; ++axis)
+      for (int order = 0; order < 3; ++order)
+        if (const int row = index_of(components, rows[axis][order]); row >= 0)
+          shift[row] = gain[order] * acceleration_mps2[axis];
+    return shift;
+  }
+
+  /// `filter.predict(dt_s)` under the acceleration; where that is not finite nothing changes.
+  template <class Filter>
+  static Status predict(Filter& filter, typename Filter::Scalar dt_s,
+                        const Vec<typename Filter::Scalar, 2>& acceleration_mps2) noexcept {
+    const auto pushed = shift(Filter::kComponents, dt_s, acceleration_mps2);
+    const Filter before = filter;
+    if (const Status status = filter.predict(dt_s); status != Status::kOk) return status;
+    filter.mean() += pushed;
+    if (is_finite(filter.mean())) return Status::kOk;
+    filter = before;
+    return Status::kNotFinite;
+  }
+};
+
+}  // namespace wakeline

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/multimodel/turn_grid_imm.hpp"
+
+namespace wakeline {
+
+/// How the three turn rates of an `AdaptiveGridImm` move: left, centre and right in `[-max, max]`.
+/// Source: paper B, step 1.1.
+struct AdaptiveGrid {
+  using Rates = std::array<double, 3>;
+
+  double max_turn_rate_rad_s = deg(3.0);
+  /// Where they begin, in rising order; not printed. Half the maximum to each side when left out.
+  std::optional<Rates> initial_turn_rates_rad_s = std::nullopt;
+  double min_spacing_rad_s = deg(2.0);      ///< r; not printed
+  double centre_threshold = 0.3;            ///< t1: a centre less probable than this moves
+  double unlikely_threshold = 0.25;         ///< t2: a side less probable than this comes nearer
+  double likely_threshold = 0.75;           ///< t3: a side more probable than this goes further
+  double initial_centre_probability = 0.9;  ///< of the centre at a start; not printed
+
+  [[nodiscard]] Rates initial() const noexcept {
+    return initial_turn_rates_rad_s.value_or(
+        Rates{-max_turn_rate_rad_s / 2, 0.0, max_turn_rate_rad_s / 2});
+  }
+
+  /// The next rates, given the mode probabilities of the last update.
+  [[nodiscard]] Rates moved(const Rates& rates, const Rates& probability) const noexcept {
+    const auto [left, centre, right] = rates;
+    const auto [mu_left, mu_centre, mu_right] = probability;
+    const double next = mu_centre < centre_threshold
+                            ? mu_left * left + mu_centre * centre + mu_right * right
+                            : centre;
+    double to_left = std::max(centre - left, min_spacing_rad_s);
+    double to_right = std::max(right - centre, min_spacing_rad_s);
+    if (mu_left > mu_centre && mu_left > mu_right) {
+      if (mu_left > likely_threshold) to_left *= 2.0;
+    } else if (mu_right > mu_centre && mu_right > mu_left) {
+      if (mu_right > likely_threshold) to_right *= 2.0;
+    } else {
+      if (mu_left < unlikely_threshold) to_left /= 2.0;
+      if (mu_right < unlikely_threshold) to_right /= 2.0;
+    }
+    const auto clipped = [&](double rate) {
+      return std::clamp(rate, -max_turn_rate_rad_s, max_turn_rate_rad_s);
+    };
+    return {clipped(next - to_left), clipped(next), clipped(next + to_right)};
+  }
+
+  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  void validate() const {
+    require_positive("max_turn_rate_rad_s", max_turn_rate_rad_s);
+    double before = -max_turn_rate_rad_s;
+    for (const double rate : initial()) {
+      require(std::abs(rate) <= max_turn_rate_rad_s, "every rate of initial_turn_rates_rad_s",
+              "within max_turn_rate_rad_s", rate);
+      require(rate >= before, "every rate of initial_turn_rates_rad_s",
+              "not less than the one before it", rate);
+      before = rate;
+    }
+    require_positive("min_spacing_rad_s", min_spacing_rad_s);
+    require_probability("centre_threshold", centre_threshold);
+    require_probability("unlikely_threshold", unlikely_threshold);
+    require_probability("likely_threshold", likely_threshold);
+    require(unlikely_threshold <= likely_threshold, "unlikely_threshold",
+            "at most likely_threshold", unlikely_threshold);
+    require_probability("initial_centre_probability", initial_centre_probability);
+  }
+};
+
+/// Three turn models whose rates move with the target (AGMM): an Imm of three where a fixed grid
+/// needs five or more. Slots keep their estimates and probabilities when the grid moves. Has the
+/// face of `Imm`. Source: paper B, step 1.1; X. R. Li, V. P. Jilkov, IEEE Trans. AES-41, 2005.
+template <class BankType>
+class AdaptiveGridImm : public TurnGridImm<BankType> {
+  using Base = TurnGridImm<BankType>;
+
+ public:
+  using typename Base::Bank;
+  using typename Base::Scalar;
+  static constexpr int kModels = BankType::kModels;
+
+  /// Throws `std::invalid_argument` when a parameter makes no sense or there are not three filters.
+  AdaptiveGridImm(const AdaptiveGrid& grid, const ModeChain<BankType::kModels>& chain,
+                  const BankType& bank)
+      : Base(chain, bank, to_rates(validated(grid).initial())), grid_(grid) {
+    if (bank.size() != 3)
+      throw std::invalid_argument("an AdaptiveGridImm needs 3 filters, got " +
+                                  std::to_string(bank.size()));
+    const double side = (1.0 - grid.initial_centre_probability) / 2.0;
+    this->initial_ =
+        to_rates({side, grid.initial_centre_probability, side}).template cast<Scalar>();
+  }
+
+  /// Over filters like `prototype`, whose turn rate does not matter.
+  template <class Filter>
+  AdaptiveGridImm(const AdaptiveGrid& grid, const ModeChain<3>& chain,
+                  const Filter& prototype) requires(BeliefFilter<Filter>)
+      : AdaptiveGridImm(grid, chain, Bank(prototype)) {}
+
+  /// Moves the grid, mixes and predicts.
+  Status predict(Scalar dt_s) noexcept { return step(dt_s); }
+  /// The same under a known acceleration, [north, east]; see `Control`.
+  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+    return step(dt_s, acceleration_mps2);
+  }
+
+  [[nodiscard]] const AdaptiveGrid& grid() const noexcept { return grid_; }
+
+ private:
+  static typename Base::Rates to_rates(const AdaptiveGrid::Rates& rates) noexcept {
+    typename Base::Rates vector(3);
+    for (int k = 0; k < 3; ++k) vector[k] = rates[static_cast<std::size_t>(k)];
+    return vector;
+  }
+
+  template <class... Known>
+  Status step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+    const auto move = [&] {
+      const auto& w = this->turn_rates_rad_s();
+      const auto& mu = this->probability_;
+      this->set_rates(
+          to_rates(grid_.moved({w[0], w[1], w[2]}, {double(mu[0]), double(mu[1]), double(mu[2])})));
+    };
+    return Base::move_and_predict(
+        move, [] {}, dt_s, acceleration_mps2...);
+  }
+
+  AdaptiveGrid grid_;
+};
+
+template <class Filter>
+AdaptiveGridImm(const AdaptiveGrid&, const ModeChain<3>&, const Filter&)
+    -> AdaptiveGridImm<UniformBank<Filter, 3>>;
+
+}  // namespace wakeline

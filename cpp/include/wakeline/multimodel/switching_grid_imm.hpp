@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/multimodel/turn_grid_imm.hpp"
+
+namespace wakeline {
+
+/// When the window of a `SwitchingGridImm` goes on. With mu of its three models and the threshold
+/// t:
+enum class SwitchRule : std::uint8_t {
+  kSymmetric,  ///< left if mu_left > t, right if mu_right > t, else it stays
+  kLiteral,    ///< as printed: left if mu_left > t, stays if mu_centre > t, else right
+};
+
+/// What its models take along.
+enum class SwitchCarry : std::uint8_t {
+  kSlot,      ///< each slot keeps its estimate and probability, under its new turn rate
+  kIdentity,  ///< each model that stays keeps them; the entering one begins with the combined
+              ///< estimate and the probability of the leaving one
+};
+
+/// How the window of a `SwitchingGridImm` moves. Source: paper B, step 1.2.
+struct SwitchingGrid {
+  TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(2.0), 2);  ///< three or more
+  double threshold = 0.7;                                       ///< t
+  SwitchRule rule = SwitchRule::kSymmetric;  ///< the printed rule drifts right while undecided
+  SwitchCarry carry = SwitchCarry::kSlot;    ///< not printed
+  std::optional<int> initial_centre = {};    ///< its index in the grid; the straightest but the
+                                             ///< ends when left out; not printed
+  double initial_centre_probability = 0.9;   ///< at a start; not printed
+
+  [[nodiscard]] int initial() const noexcept {
+    return initial_centre.value_or(
+        std::max(1, std::min(grid_rad_s.straightest(), grid_rad_s.size() - 2)));
+  }
+
+  /// Where the centre goes: -1, 0 or 1, never off the grid.
+  template <class Probability>
+  [[nodiscard]] int direction(int centre, const Probability& mu) const noexcept {
+    int direction = 0;
+    if (mu[0] > threshold)
+      direction = -1;
+    else if (rule == SwitchRule::kSymmetric ? mu[2] > threshold : !(mu[1] > threshold))
+      direction = 1;
+    const int next = std::clamp(centre + direction, 1, grid_rad_s.size() - 2);
+    return next - centre;
+  }
+
+  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  void validate() const {
+    require(grid_rad_s.size() >= 3, "the number of rates of grid_rad_s", "3 or more",
+            grid_rad_s.size());
+    require(initial() >= 1 && initial() <= grid_rad_s.size() - 2, "initial_centre",
+            "the index of a turn rate with one on each side", initial());
+    require_probability("threshold", threshold);
+    require_probability("initial_centre_probability", initial_centre_probability);
+  }
+};
+
+/// Three turn models in a window on a fixed grid of turn rates (SGMM), which follows the target.
+/// Has the face of `Imm`. Source: paper B, step 1.2.
+template <class BankType>
+class SwitchingGridImm : public TurnGridImm<BankType> {
+  using Base = TurnGridImm<BankType>;
+  using BeliefType = std::decay_t<decltype(std::declval<const BankType&>().empty_estimate())>;
+
+ public:
+  using typename Base::Bank;
+  using typename Base::Probability;
+  using typename Base::Scalar;
+  static constexpr int kModels = BankType::kModels;
+
+  /// Throws `std::invalid_argument` when a parameter makes no sense or there are not three filters.
+  SwitchingGridImm(const SwitchingGrid& grid, const ModeChain<BankType::kModels>& chain,
+                   const BankType& bank)
+      : Base(chain, bank, window(validated(grid), grid.initial())),
+        grid_(grid),
+        centre_(grid.initial()) {
+    if (bank.size() != 3)
+      throw std::invalid_argument("a SwitchingGridImm needs 3 filters, got " +
+                                  std::to_string(bank.size()));
+    this->initial_.setConstant(Scalar((1.0 - grid.initial_centre_probability) / 2.0));
+    this->initial_[1] = Scalar(grid.initial_centre_probability);
+  }
+
+  /// Over filters like `prototype`, whose turn rate does not matter.
+  template <class Filter>
+  SwitchingGridImm(const SwitchingGrid& grid, const ModeChain<3>& chain,
+                   const Filter& prototype) requires(BeliefFilter<Filter>)
+      : SwitchingGridImm(grid, chain, Bank(prototype)) {}
+
+  /// As of `Imm`; the window is the initial one.
+  template <class StartType>
+  Status start(const StartType& belief) noexcept {
+    const Status status = Base::start(belief);
+    if (status == Status::kOk) centre_ = grid_.initial();
+    return status;
+  }
+
+  /// Moves the window, mixes and predicts.
+  Status predict(Scalar dt_s) noexcept { return step(dt_s); }
+  /// The same under a known acceleration, [north, east]; see `Control`.
+  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+    return step(dt_s, acceleration_mps2);
+  }
+
+  /// Index of the window's middle in the grid.
+  [[nodiscard]] int centre() const noexcept { return centre_; }
+  [[nodiscard]] const SwitchingGrid& grid() const noexcept { return grid_; }
+
+  /// Saves or restores beliefs, mode probabilities and the window.
+  void archive(Archive& fields) {
+    int centre = centre_;
+    fields(centre);
+    if (centre < 1 || centre > grid_.grid_rad_s.size() - 2) fields.fail();
+    if (fields.ok()) centre_ = centre;
+    Base::archive(fields);
+  }
+
+ private:
+  static typename Base::Rates window(const SwitchingGrid& grid, int centre) noexcept {
+    typename Base::Rates rates(3);
+    for (int k = 0; k < 3; ++k) rates[k] = grid.grid_rad_s[centre - 1 + k];
+    return rates;
+  }
+
+  template <class... Known>
+  Status step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+    const int before = centre_;
+    BeliefType left_out;
+    const auto move = [&] {
+      const int direction = grid_.direction(centre_, this->probability_);
+      if (direction == 0) return;
+      if (grid_.carry == SwitchCarry::kIdentity) {
+        left_out = shifted(direction, this->estimate());
+        const Probability mu = this->probability_;
+        for (int k = 0; k < 3; ++k) this->probability_[k] = mu[(k + direction + 3) % 3];
+      }
+      centre_ += direction;
+      this->set_rates(window(grid_, centre_));
+    };
+    const auto undo = [&] {
+      if (centre_ != before && grid_.carry == SwitchCarry::kIdentity)
+        (void)shifted(before - centre_, left_out);
+      centre_ = before;
+    };
+    return Base::move_and_predict(move, undo, dt_s, acceleration_mps2...);
+  }
+
+  /// Gives each filter the belief of its neighbour in that direction, and the last one `entering`;
+  /// returns the belief that none has any more.
+  BeliefType shifted(int direction, const BeliefType& entering) noexcept {
+    BeliefType leaving = entering;
+    this->bank_.for_each([&](int k, auto& filter, auto& before) {
+      before = filter.estimate();
+      if (k == 1 - direction) leaving = before;
+    });
+    this->bank_.for_each([&](int k, auto& filter, auto&) {
+      if (k == 1 + direction) (void)filter.assign(entering);
+      this->bank_.for_each_before([&](int i, const auto& before) {
+        if (i == k + direction) (void)filter.assign(before);
+      });
+    });
+    return leaving;
+  }
+
+  SwitchingGrid grid_;
+  int centre_;
+};
+
+template <class Filter>
+SwitchingGridImm(const SwitchingGrid&, const ModeChain<3>&, const Filter&)
+    -> SwitchingGridImm<UniformBank<Filter, 3>>;
+
+}  // namespace wakeline

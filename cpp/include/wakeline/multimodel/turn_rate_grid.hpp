@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <initializer_list>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "wakeline/multimodel/mode_chain.hpp"
+
+namespace wakeline {
+
+/// Turn rates (rad/s, positive to starboard) in rising order, at most kMaxModes: what the models of
+/// a variable-structure estimator are chosen from.
+class TurnRateGrid {
+ public:
+  using Rates = ModeVector<double, kRuntimeModes>;
+
+  // NOLINTNEXTLINE(google-explicit-constructor): a list of rates is a grid.
+  TurnRateGrid(std::initializer_list<double> rates_rad_s)
+      : TurnRateGrid(std::span<const double>(rates_rad_s.begin(), rates_rad_s.size())) {}
+
+  /// Throws `std::invalid_argument` unless they are 2 to kMaxModes, finite and rising.
+  explicit TurnRateGrid(std::span<const double> rates_rad_s) {
+    if (rates_rad_s.size() < 2 || rates_rad_s.size() > kMaxModes)
+      throw std::invalid_argument("grid_rad_s must have 2 to " + std::to_string(kMaxModes) +
+                                  " turn rates, got " + std::to_string(rates_rad_s.size()));
+    rates_.resize(static_cast<Eigen::Index>(rates_rad_s.size()));
+    for (int k = 0; k < size(); ++k) {
+      rates_[k] = rates_rad_s[static_cast<std::size_t>(k)];
+      require_finite("every turn rate of grid_rad_s", rates_[k]);
+      require(k == 0 || rates_[k] > rates_[k - 1], "every turn rate of grid_rad_s",
+              "greater than the one before it", rates_[k]);
+    }
+  }
+
+  /// i wmax / n for i = -n .. n: paper B, step 1.2. Throws as above.
+  static TurnRateGrid evenly(double max_turn_rate_rad_s, int steps_each_side) {
+    require_positive("max_turn_rate_rad_s", max_turn_rate_rad_s);
+    require(steps_each_side >= 1 && 2 * steps_each_side + 1 <= kMaxModes, "steps_each_side",
+            "1 to 7", double(steps_each_side));
+    std::array<double, kMaxModes> rates{};
+    const int count = 2 * steps_each_side + 1;
+    for (int k = 0; k < count; ++k)
+      rates[static_cast<std::size_t>(k)] =
+          (k - steps_each_side) * max_turn_rate_rad_s / steps_each_side;
+    return TurnRateGrid(std::span<const double>(rates.data(), static_cast<std::size_t>(count)));
+  }
+
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(rates_.size()); }
+  double operator[](int k) const noexcept { return rates_[k]; }
+  [[nodiscard]] const Rates& rates_rad_s() const noexcept { return rates_; }
+
+  /// The rate that is nearest to straight; of two equally near ones the middle one of the grid, or
+  /// the one to port.
+  [[nodiscard]] int straightest() const noexcept {
+    int best = (size() - 1) / 2;
+    for (int k = 0; k < size(); ++k)
+      if (std::abs(rates_[k]) < std::abs(rates_[best])) best = k;
+    return best;
+  }
+
+ private:
+  Rates rates_;
+};
+
+/// Gives a filter another turn rate, and leaves its belief.
+template <class Filter>
+void set_turn_rate(Filter& filter, double turn_rate_rad_s) noexcept {
+  static_assert(
+      requires { filter.motion().turn_rate_rad_s; },
+      "wakeline: the motion model of this filter has no known turn rate (turn_rate_rad_s); use "
+      "CoordinatedTurn");
+  auto motion = filter.motion();
+  motion.turn_rate_rad_s = turn_rate_rad_s;
+  filter.set_motion(motion);
+}
+
+}  // namespace wakeline
