@@ -59,7 +59,7 @@ def load(path: str | Path, result_type: type, outcome_type: type) -> Any:
     """Read a result; ValueError when the file holds none."""
     path = Path(path)
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             header = json.loads(str(file["header"]))
             if header["format"] != _FORMAT:
                 raise ValueError(f"format {header['format']!r}")

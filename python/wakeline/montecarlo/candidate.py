@@ -18,6 +18,8 @@ from wakeline.scenario import Scenario
 class Candidate:
     """An estimator, the sensor it is told of and, where it has such, the turn rates of its models.
 
+    It is told of the control that the vessel is under, where there is such.
+
     Each of them may be a function of the scenario that gives the thing itself. A function of a
     module is also what can be sent to the workers of a cluster, where the engine's own objects
     cannot.
@@ -25,7 +27,8 @@ class Candidate:
     Attributes
     ----------
     estimator : object or callable
-        Anything with ``run(z, dt_s=, sensor=, start=)``, or ``estimator(scenario)`` that builds it.
+        Anything with ``run(z, dt_s=, sensor=, start=)``, or ``estimator(scenario)`` that builds it;
+        under control also with ``acceleration_mps2=``.
     sensor : {"polar", "converted"}, object or callable
         The scenario's radar as ``RangeBearing`` or as ``ConvertedRangeBearing(unbiased=False)``, a
         sensor, or ``sensor(scenario)``.
@@ -48,6 +51,7 @@ class Candidate:
             dt_s=scenario.radar.period_s,
             sensor=_sensor(self.sensor, scenario),
             start=scenario.start,
+            **_told(scenario.control_mps2),
         )
 
     def rates(self, scenario: Scenario) -> np.ndarray | None:
@@ -63,8 +67,8 @@ def clairvoyant(
 ) -> SimpleNamespace:
     """The Kalman filter that is told the turn rate at each instant: what no candidate can beat.
 
-    Where the rate switches between two scans it moves in two pieces. It is not told of thrust,
-    control or disturbance. Bind options by ``functools.partial``.
+    Where the rate switches between two scans it moves in two pieces. It is told of the control, but
+    not of thrust and disturbance. Bind options by ``functools.partial``.
 
     Parameters
     ----------
@@ -99,7 +103,8 @@ def clairvoyant(
         read = [k for k, step in enumerate(steps) if step.scan is not None]
         told[:, read] = z[:, [steps[k].scan for k in read]]
         known = filter.Ekf(motion.CoordinatedTurn(turn_rate_rad_s=rate_rad_s, noise=noise))
-        piece = known.run(told, dt_s=dt_s, sensor=sensor, start=starts)
+        control = _told(np.array([step.control_mps2 for step in steps]))
+        piece = known.run(told, dt_s=dt_s, sensor=sensor, start=starts, **control)
         starts = list(map(core.Gaussian, piece.mean[:, -1], piece.covariance[:, -1]))
         for name, parts in fields.items():
             parts.append(getattr(piece, name)[:, read])
@@ -115,6 +120,7 @@ class PieceOfScan:
     turn_rate_rad_s: float
     dt_s: float
     scan: int | None
+    control_mps2: tuple[float, float]
 
 
 def pieces(scenario: Scenario) -> list[PieceOfScan]:
@@ -122,11 +128,12 @@ def pieces(scenario: Scenario) -> list[PieceOfScan]:
     time_s, switch_s = scenario.time_s, scenario.switch_times_s
     cuts_s = np.union1d(time_s, switch_s)
     begins_s = np.concatenate([[scenario.start_time_s], cuts_s[:-1]])
-    rates = scenario.truth.turn_rate_at(0.5 * (begins_s + cuts_s))
+    middles_s = 0.5 * (begins_s + cuts_s)
+    rates, controls = scenario.truth.turn_rate_at(middles_s), scenario.control_at(middles_s)
     scan_at = {t: k for k, t in enumerate(time_s.tolist())}
     return [
-        PieceOfScan(float(rate), float(end - begin), scan_at.get(float(end)))
-        for rate, begin, end in zip(rates, begins_s, cuts_s, strict=True)
+        PieceOfScan(float(rate), float(end - begin), scan_at.get(float(end)), tuple(control))
+        for rate, control, begin, end in zip(rates, controls, begins_s, cuts_s, strict=True)
     ]
 
 
@@ -134,6 +141,11 @@ def stretches(scenario: Scenario) -> list[tuple[float, list[PieceOfScan]]]:
     """The pieces in groups of the same turn rate, one after the other."""
     groups = itertools.groupby(pieces(scenario), key=lambda piece: piece.turn_rate_rad_s)
     return [(rate, list(group)) for rate, group in groups]
+
+
+def _told(control_mps2: np.ndarray) -> dict[str, np.ndarray]:
+    """The argument by which an estimator is told of a control (T, 2); none where it is zero."""
+    return {"acceleration_mps2": control_mps2} if control_mps2.any() else {}
 
 
 def _sensor(sensor: Any, scenario: Scenario) -> Any:

@@ -42,6 +42,8 @@ class Outcome:
         Root mean square over the runs of the distance to the true position and velocity.
     nees : ndarray (T,)
         Mean over the runs, of 4 states; NaN where a covariance is not positive definite.
+    nees_inside_share : ndarray (T,)
+        Share of the runs whose own NEES lies within the 95 % bounds of one value.
     nis, nis_count : ndarray (T,)
         Mean over the runs with a reading, and their number; NaN without any.
     mode_probability : ndarray (T, K) or None
@@ -66,6 +68,7 @@ class Outcome:
     position_rmse_m: np.ndarray
     velocity_rmse_mps: np.ndarray
     nees: np.ndarray
+    nees_inside_share: np.ndarray
     nis: np.ndarray
     nis_count: np.ndarray
     mode_probability: np.ndarray | None
@@ -93,6 +96,7 @@ class Outcome:
             position_rmse_m=np.sqrt(mean(sums.position_m2)),
             velocity_rmse_mps=np.sqrt(mean(sums.velocity_m2s2)),
             nees=mean(sums.nees),
+            nees_inside_share=mean(sums.nees_inside),
             nis=_divided(sums.nis, sums.nis_count),
             nis_count=sums.nis_count,
             mode_probability=mean(sums.mode_probability),
@@ -108,34 +112,38 @@ class Outcome:
         -------
         dict
             ``mean_position_m``, ``peak_position_m``, ``mean_velocity_mps``, ``peak_velocity_mps``:
-            mean and maximum over the scans of the RMSE curves. ``nees``: mean over the scans, 4 for
-            a consistent estimator. ``settling_s``: mean over the switches of
-            :func:`wakeline.metrics.settling_times_s` of the position RMSE. ``ns_per_step``: CPU
-            time of a run's step. Besides: ``nis``, ``nees_inside_share`` and ``nis_inside_share``
-            (scans within 95 % bounds), ``right_mode_share``, ``detection_delay_scans`` (mean over
-            the switches), ``runs``, ``failed_runs``, ``lost_runs``, ``failed_steps``.
+            mean and maximum over the scans of the RMSE curves. ``settling_s``: mean over the
+            switches of :func:`wakeline.metrics.settling_times_s` of the position RMSE.
+            ``ns_per_step``: CPU time of a run's step.
+
+            ``nees``: mean over the scans, 4 for a consistent estimator. ``nees_inside_share``:
+            share of all runs' scans whose own NEES lies within its 95 % bounds.
+            ``mean_nees_inside_share``: share of the scans whose mean over the runs lies within the
+            95 % bounds of that mean, narrow with many runs. The three again with ``steady_`` before
+            them leave out the three scans after each switch. ``nis`` and
+            ``mean_nis_inside_share``: the same of the innovations, 2 for a consistent estimator.
+
+            ``right_mode_share``, ``detection_delay_scans``: mean over the scans and over the
+            switches. ``runs``, ``failed_runs``, ``lost_runs``, ``failed_steps``: counts.
         """
-        right = self.right_mode_share
-        delays = (
-            metrics.detection_delays_scans(self.time_s, right, self.switch_times_s)
-            if right is not None
-            else np.zeros(0)
-        )
-        settling_s = metrics.settling_times_s(
-            self.time_s, self.position_rmse_m, self.switch_times_s
-        )
-        steps = (self.runs + self.failed_runs) * len(self.time_s)
+        time_s, switch_s, right = self.time_s, self.switch_times_s, self.right_mode_share
+        delays = [] if right is None else metrics.detection_delays_scans(time_s, right, switch_s)
+        settling_s = metrics.settling_times_s(time_s, self.position_rmse_m, switch_s)
+        steps = (self.runs + self.failed_runs) * len(time_s)
+        every = np.ones(len(time_s), dtype=bool)
         return {
             "mean_position_m": _number(np.mean(self.position_rmse_m)),
             "peak_position_m": _number(np.max(self.position_rmse_m)),
             "mean_velocity_mps": _number(np.mean(self.velocity_rmse_mps)),
             "peak_velocity_mps": _number(np.max(self.velocity_rmse_mps)),
-            "nees": _number(np.mean(self.nees)),
             "settling_s": _mean(settling_s) if self.runs else None,
             "ns_per_step": _number(1e9 * self.cpu_s / steps),
+            **self._consistency("", every),
+            **self._consistency("steady_", metrics.steady_scans(time_s, switch_s)),
             "nis": _mean(self.nis),
-            "nees_inside_share": _share(self.nees, _STATES, self.runs),
-            "nis_inside_share": _share(self.nis, _MEASUREMENTS, self.nis_count),
+            "mean_nis_inside_share": _number(
+                metrics.share_inside(self.nis, _MEASUREMENTS, self.nis_count)
+            ),
             "right_mode_share": None if right is None else _mean(right),
             "detection_delay_scans": _mean(delays),
             "runs": self.runs,
@@ -144,9 +152,34 @@ class Outcome:
             "failed_steps": self.failed_steps,
         }
 
-    def segments(self) -> list[metrics.SegmentFigures]:
-        """Mean and peak of the position RMSE in each segment of the truth."""
-        return metrics.by_segment(self.time_s, self.position_rmse_m, self.switch_times_s)
+    def _consistency(self, prefix: str, scans: np.ndarray) -> dict[str, float | None]:
+        """Figures of the NEES over some scans."""
+        nees, inside = self.nees[scans], self.nees_inside_share[scans]
+        return {
+            f"{prefix}nees": _number(np.mean(nees)) if len(nees) else None,
+            f"{prefix}nees_inside_share": _mean(inside),
+            f"{prefix}mean_nees_inside_share": _number(
+                metrics.share_inside(nees, _STATES, self.runs)
+            ),
+        }
+
+    def segments(self, curve: str = "position_rmse_m") -> list[metrics.SegmentFigures]:
+        """Mean and peak of a curve in each segment of the truth.
+
+        Parameters
+        ----------
+        curve : str
+            Name of an attribute (T,), such as ``velocity_rmse_mps`` or ``nees``.
+
+        Raises
+        ------
+        ValueError
+            When there is no such curve.
+        """
+        values = getattr(self, curve, None)
+        if not isinstance(values, np.ndarray) or values.shape != self.time_s.shape:
+            raise ValueError(f"curve must name a curve (T,) of the outcome, got {curve!r}")
+        return metrics.by_segment(self.time_s, values, self.switch_times_s)
 
 
 @dataclass(frozen=True)
@@ -277,7 +310,3 @@ def _mean(values: np.ndarray) -> float | None:
 
 def _mean_of(values: Sequence[float | None]) -> float | None:
     return _mean(np.array([value for value in values if value is not None], dtype=float))
-
-
-def _share(curve: np.ndarray, dof: int, samples: int | np.ndarray) -> float | None:
-    return _number(metrics.share_inside(curve, dof, np.asarray(samples).astype(int)))

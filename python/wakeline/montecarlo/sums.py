@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from wakeline import core
+from wakeline import core, eval
 from wakeline.metrics import right_mode, squared_distance
 from wakeline.scenario import Scenario
 
 from .candidate import Candidate
 
 _KINEMATICS = {4: [0, 1, 2, 3], 5: [0, 1, 2, 3], 6: [0, 1, 3, 4]}
+_NEES_BAND = eval.consistency_bounds(0.95, 4, 1)
 _FINE = [int(core.Status.ok), int(core.Status.missed)]
 
 
@@ -29,6 +30,8 @@ class Sums:
     failed_runs, lost_runs, failed_steps : int
         See :class:`wakeline.montecarlo.Outcome`.
     position_m2, velocity_m2s2, nees : ndarray (T,)
+    nees_inside : ndarray (T,)
+        Runs whose own NEES lies within its bounds.
     nis, nis_count : ndarray (T,)
         Over the runs with a reading.
     mode_probability : ndarray (T, K) or None
@@ -46,6 +49,7 @@ class Sums:
     position_m2: np.ndarray
     velocity_m2s2: np.ndarray
     nees: np.ndarray
+    nees_inside: np.ndarray
     nis: np.ndarray
     nis_count: np.ndarray
     mode_probability: np.ndarray | None
@@ -109,7 +113,7 @@ def _tried(chunk: Chunk, z: np.ndarray) -> Any:
 
 def _nothing(scans: int, failed_runs: int, cpu_s: float) -> Sums:
     zero = np.zeros(scans)
-    return Sums(0, failed_runs, 0, 0, zero, zero, zero, zero, zero, None, None, None, cpu_s)
+    return Sums(0, failed_runs, 0, 0, *[zero] * 6, None, None, None, cpu_s)
 
 
 def _summed(chunk: Chunk, result: Any) -> Sums:
@@ -119,6 +123,7 @@ def _summed(chunk: Chunk, result: Any) -> Sums:
     status = np.asarray(result.status)
     error = mean[usable] - chunk.scenario.truth_states
     position_m2 = error[..., 0] ** 2 + error[..., 2] ** 2
+    nees = squared_distance(error, covariance[usable])
     nis = np.asarray(result.nis, dtype=float)[usable]
     modes = getattr(result, "mode_probability", None)
     modes = None if modes is None else np.asarray(modes, dtype=float)[usable]
@@ -130,7 +135,8 @@ def _summed(chunk: Chunk, result: Any) -> Sums:
         failed_steps=int(np.count_nonzero(~np.isin(status, _FINE))),
         position_m2=position_m2.sum(axis=0),
         velocity_m2s2=(error[..., 1] ** 2 + error[..., 3] ** 2).sum(axis=0),
-        nees=squared_distance(error, covariance[usable]).sum(axis=0),
+        nees=nees.sum(axis=0),
+        nees_inside=((nees >= _NEES_BAND[0]) & (nees <= _NEES_BAND[1])).sum(axis=0),
         nis=np.where(np.isfinite(nis), nis, 0.0).sum(axis=0),
         nis_count=np.isfinite(nis).sum(axis=0).astype(float),
         mode_probability=None if modes is None else modes.sum(axis=0),

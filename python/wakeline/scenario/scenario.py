@@ -97,6 +97,19 @@ class Scenario:
         return self.truth.turn_rate_at(self.time_s - 0.5 * self.radar.period_s)
 
     @property
+    def control_mps2(self) -> np.ndarray:
+        """Known accelerations (T, 2), north and east, in force half a period before each reading.
+
+        Zeros for a truth that does not tell ``control_at``, as a recorded track.
+        """
+        return self.control_at(self.time_s - 0.5 * self.radar.period_s)
+
+    def control_at(self, time_s: np.ndarray) -> np.ndarray:
+        """Known accelerations (n, 2), north and east, at times (n,)."""
+        control_at = getattr(self.truth, "control_at", None)
+        return np.zeros((len(time_s), 2)) if control_at is None else control_at(time_s)
+
+    @property
     def switch_times_s(self) -> np.ndarray:
         """Times (S,) after the start and before the last reading at which the turn rate switches.
 

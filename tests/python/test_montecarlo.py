@@ -1,0 +1,760 @@
+"""Monte Carlo runs: the same bits however they are worked off, figures as worked out by hand."""
+
+import dataclasses
+import multiprocessing
+import pickle
+import sys
+import zlib
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from functools import partial
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import wakeline as wl
+from cases import MOTIONS, turning_imm
+from wakeline import metrics, montecarlo, scenario
+from wakeline.montecarlo import Candidate, Result, running
+from wakeline.scenario import RadarSimulator, Scenario, Segment, Truth
+
+RATES_DEG_S = (0.0, 1.0, -1.0)
+RUNS = 60
+NO_NOISE = wl.PiecewiseAcceleration(std_mps2=0.0)
+
+
+def case(name="case", radar=None, **change):
+    """A vessel that turns to starboard and back: switches on a scan, between scans, on a scan."""
+    segments = [Segment(30.0), Segment(31.0, np.deg2rad(1.0)), Segment(29.0, np.deg2rad(-1.0))]
+    fields = {
+        "truth": Truth([2000.0, 8.0, 1000.0, -3.0], segments),
+        "radar": radar or RadarSimulator(30.0, 0.01, 3.0),
+        "scans": 30,
+    }
+    return Scenario(name, **(fields | change))
+
+
+CASE = case()
+SELDOM = case("seldom", RadarSimulator(30.0, 0.01, 3.0, detection_probability=0.8))
+IMM = Candidate(turning_imm(rates_deg_s=RATES_DEG_S), "polar", np.deg2rad(RATES_DEG_S))
+BOTH = {"imm": IMM, "told": montecarlo.clairvoyant}
+
+
+def run(scenarios=CASE, candidates=None, runs=RUNS, seed=0, **options):
+    candidates = {"imm": IMM} if candidates is None else candidates
+    return montecarlo.run(scenarios, candidates, runs, seed, **({"progress": False} | options))
+
+
+def assert_same_bits(got, wanted):
+    """But for the CPU time, which is another each time."""
+    assert list(got.outcomes) == list(wanted.outcomes)
+    for names, outcome in wanted.outcomes.items():
+        for field in dataclasses.fields(outcome):
+            if field.name != "cpu_s":
+                a, b = getattr(got.outcomes[names], field.name), getattr(outcome, field.name)
+                np.testing.assert_array_equal(a, b, err_msg=f"{names} {field.name}", strict=True)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return run([CASE, SELDOM], BOTH, threads=1)
+
+
+# How the work is done -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("threads", [2, 5, None])
+def test_any_number_of_threads_gives_the_same_bits(result, threads):
+    assert_same_bits(run([CASE, SELDOM], BOTH, threads=threads), result)
+
+
+def test_what_else_is_run_does_not_matter(result):
+    alone = run(SELDOM)
+    wanted = {names: result[names] for names in alone.outcomes}
+    assert_same_bits(alone, SimpleNamespace(outcomes=wanted))
+
+
+@pytest.mark.parametrize("chunk_runs", [1, 7, 1000])
+def test_chunks_of_another_size_differ_by_rounding_alone(result, monkeypatch, chunk_runs):
+    monkeypatch.setattr(running, "CHUNK_RUNS", chunk_runs)
+    other = run([CASE, SELDOM], BOTH)
+    assert other.parameters["chunk_runs"] == chunk_runs
+    for names, outcome in result.outcomes.items():
+        for field in dataclasses.fields(outcome):
+            a, b = getattr(other[names], field.name), getattr(outcome, field.name)
+            if isinstance(b, np.ndarray):
+                np.testing.assert_allclose(a, b, rtol=1e-11, atol=1e-300, err_msg=field.name)
+
+
+def test_another_seed_is_another_draw(result):
+    other = run(CASE, seed=1)["case", "imm"]
+    assert (other.position_rmse_m != result["case", "imm"].position_rmse_m).all()
+
+
+def built_imm(scenario):
+    """What can be sent where an engine's object cannot."""
+    return turning_imm(rates_deg_s=RATES_DEG_S)
+
+
+def told_rates(scenario):
+    return np.deg2rad(RATES_DEG_S)
+
+
+SENT = {"imm": Candidate(built_imm, "polar", told_rates), "told": montecarlo.clairvoyant}
+
+
+def test_candidates_built_by_functions_are_the_same(result):
+    assert_same_bits(run([CASE, SELDOM], SENT), result)
+
+
+def test_executors_give_the_same_bits(result):
+    with ThreadPoolExecutor(2) as pool:
+        assert_same_bits(run([CASE, SELDOM], BOTH, client=pool), result)
+
+
+@pytest.mark.slow
+def test_other_processes_give_the_same_bits(result):
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, mp_context=spawn) as pool:
+        told = run([CASE, SELDOM], {"told": montecarlo.clairvoyant}, client=pool)
+    wanted = {names: result[names] for names in told.outcomes}
+    assert_same_bits(told, SimpleNamespace(outcomes=wanted))
+
+
+def test_a_client_in_the_manner_of_ray_gives_the_same_bits(result):
+    ray = SimpleNamespace(
+        remote=lambda function: SimpleNamespace(remote=partial(partial, function)),
+        get=lambda task: pickle.loads(pickle.dumps(task())),
+    )
+    assert_same_bits(run([CASE, SELDOM], SENT, client=ray), result)
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_gives_the_same_bits(result):
+    distributed = pytest.importorskip("distributed")
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
+        assert_same_bits(run([CASE, SELDOM], SENT, client=client), result)
+
+
+def test_progress_is_told_chunk_by_chunk():
+    heard = []
+    run([CASE, SELDOM], BOTH, progress=lambda *told: heard.append(told))
+    assert heard == [(k, 12) for k in range(1, 13)]
+
+
+def test_a_bar_is_drawn_on_a_terminal_and_nothing_in_a_pipe(monkeypatch, capsys):
+    run(progress=True)
+    assert capsys.readouterr() == ("", "")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setattr("wakeline._progress._EVERY_S", 0.0)
+    run(progress=True)
+    assert "runs" in capsys.readouterr().err
+
+
+def test_the_first_failure_calls_the_others_off():
+    calls = []
+
+    def broken(scene, z):
+        calls.append(len(z))
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        run(candidates={"broken": broken}, runs=2500, threads=1)
+    assert len(calls) < 100
+
+
+# Figures ------------------------------------------------------------------------------------------
+
+
+def test_curves_are_those_of_the_runs_taken_together(result):
+    outcome = result["seldom", "imm"]
+    z = SELDOM.draw(RUNS, 0)
+    got = IMM.estimator.run(z, dt_s=3.0, sensor=SELDOM.polar_sensor, start=SELDOM.start)
+    error = got.mean - SELDOM.truth_states
+    truth = SELDOM.turn_rates_rad_s
+    right = metrics.right_mode(got.mode_probability, np.deg2rad(RATES_DEG_S), truth)
+    nees = metrics.nees(error, got.covariance)
+    low, high = wl.consistency_bounds(0.95, 4, 1)
+    wanted = {
+        "time_s": SELDOM.time_s,
+        "switch_times_s": np.array([30.0, 61.0]),
+        "true_turn_rate_rad_s": truth,
+        "position_rmse_m": metrics.rmse_curve(error[..., 0::2]),
+        "velocity_rmse_mps": metrics.rmse_curve(error[..., 1::2]),
+        "nees": nees.mean(axis=0),
+        "nees_inside_share": ((low <= nees) & (nees <= high)).mean(axis=0),
+        "nis": np.nanmean(got.nis, axis=0),
+        "nis_count": np.isfinite(z[..., 0]).sum(axis=0),
+        "mode_probability": got.mode_probability.mean(axis=0),
+        "turn_rate_rad_s": (got.mode_probability @ np.deg2rad(RATES_DEG_S)).mean(axis=0),
+        "right_mode_share": right.mean(axis=0),
+    }
+    for name, curve in wanted.items():
+        np.testing.assert_allclose(getattr(outcome, name), curve, rtol=1e-9, err_msg=name)
+    counts = (outcome.runs, outcome.failed_runs, outcome.lost_runs, outcome.failed_steps)
+    assert counts == (RUNS, 0, 0, 0)
+    assert outcome.cpu_s > 0
+
+
+def test_a_summary_says_what_the_curves_say(result):
+    outcome = result["case", "imm"]
+    time_s, switches_s = outcome.time_s, outcome.switch_times_s
+    steady = metrics.steady_scans(time_s, switches_s)
+    inside = partial(metrics.share_inside, dof=4, samples=RUNS)
+    settling_s = metrics.settling_times_s(time_s, outcome.position_rmse_m, switches_s)
+    delays = metrics.detection_delays_scans(time_s, outcome.right_mode_share, switches_s)
+    assert outcome.summary() == pytest.approx(
+        {
+            "mean_position_m": outcome.position_rmse_m.mean(),
+            "peak_position_m": outcome.position_rmse_m.max(),
+            "mean_velocity_mps": outcome.velocity_rmse_mps.mean(),
+            "peak_velocity_mps": outcome.velocity_rmse_mps.max(),
+            "settling_s": settling_s.mean(),
+            "ns_per_step": 1e9 * outcome.cpu_s / (RUNS * 30),
+            "nees": outcome.nees.mean(),
+            "nees_inside_share": outcome.nees_inside_share.mean(),
+            "mean_nees_inside_share": inside(outcome.nees),
+            "steady_nees": outcome.nees[steady].mean(),
+            "steady_nees_inside_share": outcome.nees_inside_share[steady].mean(),
+            "steady_mean_nees_inside_share": inside(outcome.nees[steady]),
+            "nis": outcome.nis.mean(),
+            "mean_nis_inside_share": metrics.share_inside(outcome.nis, 2, RUNS),
+            "right_mode_share": outcome.right_mode_share.mean(),
+            "detection_delay_scans": delays.mean(),
+            "runs": RUNS,
+            "failed_runs": 0,
+            "lost_runs": 0,
+            "failed_steps": 0,
+        }
+    )
+    assert result.summary()["case"]["imm"] == outcome.summary()
+
+
+def test_a_summary_is_silent_where_there_is_nothing_to_say(result):
+    told = result["case", "told"].summary()
+    assert told["right_mode_share"] is told["detection_delay_scans"] is None
+    straight = run(case(truth=Truth([2000.0, 8.0, 1000.0, -3.0])))["case", "imm"].summary()
+    assert straight["settling_s"] is straight["detection_delay_scans"] is None
+    assert straight["steady_nees"] == straight["nees"]
+    always = run(case(scans=3, truth=turning_each_scan(3)))["case", "imm"].summary()
+    assert always["nees"] > 0
+    assert run(case(scans=2))["case", "imm"].summary()["mean_position_m"] > 0
+
+
+def turning_each_scan(scans):
+    return Truth([2000.0, 8.0, 1000.0, -3.0], [Segment(3.0, 0.01 * (k % 2)) for k in range(scans)])
+
+
+def test_segments_of_any_curve(result):
+    outcome = result["case", "imm"]
+    parts = (slice(0, 10), slice(10, 20), slice(20, 30))
+    for curve in ("position_rmse_m", "velocity_rmse_mps", "nees", "right_mode_share"):
+        found = outcome.segments(curve)
+        values = getattr(outcome, curve)
+        assert [s.mean for s in found] == [values[part].mean() for part in parts]
+        assert [s.peak for s in found] == [values[part].max() for part in parts]
+    assert outcome.segments() == outcome.segments("position_rmse_m")
+    for name in ("position", "mode_probability", "runs", "summary"):
+        with pytest.raises(ValueError, match=f"curve must name a curve .* got '{name}'"):
+            outcome.segments(name)
+
+
+def test_scenarios_taken_together_average_their_squares(result):
+    parts = [result[name, "imm"] for name in ("case", "seldom")]
+    curve = np.sqrt(np.mean([part.position_rmse_m**2 for part in parts], axis=0))
+    merged = result.merged("imm")
+    assert merged["mean_position_m"] == pytest.approx(curve.mean())
+    assert merged["peak_position_m"] == pytest.approx(curve.max())
+    own = [part.summary() for part in parts]
+    for name in ("nees", "settling_s", "right_mode_share"):
+        assert merged[name] == pytest.approx(np.mean([one[name] for one in own]))
+    assert merged["scenario_mean_velocity_mps"] == pytest.approx(
+        np.mean([one["mean_velocity_mps"] for one in own])
+    )
+    assert merged["runs"] == 2 * RUNS
+    alone = result.merged("imm", ["case"])
+    assert {name: alone[name] for name in own[0]} == pytest.approx(own[0])
+
+
+def test_scenarios_of_different_lengths_are_not_taken_together(result):
+    uneven = run([CASE, case("short", scans=20)], runs=2)
+    with pytest.raises(ValueError, match=r"same number of scans, got \[20, 30\]"):
+        uneven.merged("imm")
+    with pytest.raises(KeyError, match=r"no outcome .*'imm7'.*; scenarios: case, seldom"):
+        result.merged("imm7")
+
+
+@pytest.mark.parametrize("name", sorted(MOTIONS))
+def test_states_of_any_size_are_compared_in_position_and_velocity(name):
+    ekf = wl.Ekf(MOTIONS[name])
+    outcome = run(CASE, {"x": Candidate(ekf)}, runs=3)["case", "x"]
+    got = ekf.run(CASE.draw(3, 0), dt_s=3.0, sensor=CASE.polar_sensor, start=CASE.start)
+    at = [0, 1, 3, 4] if got.mean.shape[-1] == 6 else [0, 1, 2, 3]
+    error = got.mean[..., at] - CASE.truth_states
+    np.testing.assert_allclose(outcome.position_rmse_m, metrics.rmse_curve(error[..., 0::2]))
+    np.testing.assert_allclose(outcome.velocity_rmse_mps, metrics.rmse_curve(error[..., 1::2]))
+    if got.mean.shape[-1] == 5:
+        np.testing.assert_allclose(outcome.turn_rate_rad_s, got.mean[..., 4].mean(axis=0))
+    else:
+        assert outcome.turn_rate_rad_s is None
+
+
+def test_rates_that_move_with_the_run_tell_the_right_model():
+    def moving(scene, z):
+        found = IMM(scene, z)
+        rates = np.broadcast_to([0.0, 0.02, -0.02], found.mode_probability.shape)
+        names = ("mean", "covariance", "nis", "status", "mode_probability")
+        fields = {name: getattr(found, name) for name in names}
+        return SimpleNamespace(**fields, turn_rate_rad_s=rates)
+
+    outcome = run(CASE, {"moving": moving})["case", "moving"]
+    fixed = run(CASE, {"x": dataclasses.replace(IMM, turn_rates_rad_s=[0.0, 0.02, -0.02])})
+    np.testing.assert_allclose(outcome.turn_rate_rad_s, fixed["case", "x"].turn_rate_rad_s)
+    np.testing.assert_array_equal(outcome.right_mode_share, fixed["case", "x"].right_mode_share)
+
+
+# Files --------------------------------------------------------------------------------------------
+
+
+def test_what_is_saved_is_loaded(result, tmp_path):
+    path = tmp_path / "result.npz"
+    result.save(path)
+    loaded = Result.load(path)
+    assert_same_bits(loaded, result)
+    assert [o.cpu_s for o in loaded.outcomes.values()] == [
+        o.cpu_s for o in result.outcomes.values()
+    ]
+    assert (loaded.runs, loaded.seed, loaded.version) == (RUNS, 0, wl.__version__)
+    assert loaded.parameters == {"chunk_runs": 25, "lost_beyond_m": 500.0}
+    assert loaded.summary() == result.summary()
+    assert (loaded.scenarios, loaded.candidates) == (["case", "seldom"], ["imm", "told"])
+
+
+def test_saving_replaces_and_leaves_nothing_else(result, tmp_path):
+    path = tmp_path / "result.npz"
+    path.write_text("something else")
+    result.save(path)
+    assert list(tmp_path.iterdir()) == [path]
+    assert_same_bits(Result.load(str(path)), result)
+
+
+def test_files_that_hold_no_result(result, tmp_path):
+    with pytest.raises(ValueError, match=r"none\.npz: the file cannot be read \(No such file"):
+        Result.load(tmp_path / "none.npz")
+    with pytest.raises(ValueError, match="cannot be read"):
+        Result.load(tmp_path)
+    whole = tmp_path / "whole.npz"
+    result.save(whole)
+    wrong = tmp_path / "wrong.npz"
+    for content in (b"", b"time_s,north_m\n", whole.read_bytes()[:-100]):
+        wrong.write_bytes(content)
+        with pytest.raises(ValueError, match=r"wrong\.npz: not a Monte Carlo result; wanted"):
+            Result.load(wrong)
+    for arrays in ({"x": np.zeros(3)}, {"header": np.array('{"format": "other"}')}):
+        np.savez(wrong, **arrays)
+        with pytest.raises(ValueError, match=r"wrong\.npz: not a Monte Carlo result; wanted"):
+            Result.load(wrong)
+
+
+# The filter that is told --------------------------------------------------------------------------
+
+
+def kalman(scene, z, steps):
+    """One run of the extended filter by the textbook; `steps` yields (dt_s, rate, control)s."""
+    mean, covariance = scene.start.mean.copy(), scene.start.covariance.copy()
+    noise = np.diag([scene.radar.range_std_m**2, scene.radar.bearing_std_rad**2])
+    rows = []
+    for row, moves in zip(z, steps, strict=True):
+        for dt_s, rate, control in moves:
+            f = wl.CoordinatedTurn(turn_rate_rad_s=rate).matrix(dt_s)
+            push = np.kron(control, [0.5 * dt_s**2, dt_s])
+            mean, covariance = f @ mean + push, f @ covariance @ f.T
+        x, y = mean[[0, 2]]
+        r = np.hypot(x, y)
+        if np.isfinite(row).all():
+            h = np.array([[x / r, 0, y / r, 0], [-y / r**2, 0, x / r**2, 0]])
+            innovation = row - [r, np.arctan2(y, x)]
+            innovation[1] = (innovation[1] + np.pi) % (2 * np.pi) - np.pi
+            gain = covariance @ h.T @ np.linalg.inv(h @ covariance @ h.T + noise)
+            mean = mean + gain @ innovation
+            covariance = covariance - gain @ h @ covariance
+        rows.append((mean, covariance))
+    means, covariances = zip(*rows, strict=True)
+    return np.array(means), np.array(covariances)
+
+
+def told_steps(scene):
+    """On the case's scans the rate is steady, but in the one from 60 to 63 s."""
+    first, second, third = (segment.turn_rate_rad_s for segment in scene.truth.segments)
+    for t in scene.time_s:
+        if t == 63.0:
+            yield [(1.0, second, (0, 0)), (2.0, third, (0, 0))]
+        else:
+            yield [(3.0, first if t <= 30 else second if t <= 60 else third, (0, 0))]
+
+
+def test_clairvoyant_is_the_kalman_filter_that_is_told_the_rates():
+    z = SELDOM.draw(3, 4)
+    got = montecarlo.clairvoyant(SELDOM, z)
+    for k in range(3):
+        mean, covariance = kalman(SELDOM, z[k], told_steps(SELDOM))
+        np.testing.assert_allclose(got.mean[k], mean, rtol=1e-8, atol=1e-7)
+        np.testing.assert_allclose(got.covariance[k], covariance, rtol=1e-7, atol=1e-9)
+    assert got.mode_probability is None
+    np.testing.assert_array_equal(np.isnan(got.nis), np.isnan(z[..., 0]))
+    np.testing.assert_array_equal(got.turn_rate_rad_s[1], SELDOM.turn_rates_rad_s)
+
+
+@given(st.floats(-0.05, 0.05), st.sampled_from(["polar", "converted"]), st.floats(0.0, 0.5))
+@settings(max_examples=20)
+def test_clairvoyant_of_one_rate_is_the_filter_of_that_rate(rate, sensor, std_mps2):
+    turn = case(truth=Truth([2000.0, 8.0, 1000.0, -3.0], [Segment(90.0, rate)]))
+    z, noise = turn.draw(2, 0), wl.PiecewiseAcceleration(std_mps2=std_mps2)
+    got = montecarlo.clairvoyant(turn, z, sensor=sensor, noise=noise)
+    wanted = wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=rate, noise=noise)).run(
+        z, dt_s=3.0, sensor=getattr(turn, f"{sensor}_sensor"), start=turn.start
+    )
+    for name in ("mean", "covariance", "nis", "log_likelihood"):
+        np.testing.assert_allclose(
+            getattr(got, name), getattr(wanted, name), rtol=1e-7, atol=1e-7, err_msg=name
+        )
+
+
+def controlled(control):
+    """Straight on, pushed in the last 20 scans."""
+    segments = [Segment(30.0), Segment(60.0, control_mps2=control)]
+    return case("controlled", truth=Truth([2000.0, 8.0, 1000.0, -3.0], segments))
+
+
+def test_control_is_told_where_there_is_such():
+    scene = controlled((0.1, -0.05))
+    np.testing.assert_array_equal(scene.control_mps2[:10], 0.0)
+    np.testing.assert_array_equal(scene.control_mps2[10:], [(0.1, -0.05)] * 20)
+    z = scene.draw(2, 0)
+    got = montecarlo.clairvoyant(scene, z)
+    steps = [[(3.0, 0.0, control)] for control in scene.control_mps2]
+    for k in range(2):
+        mean, _ = kalman(scene, z[k], steps)
+        np.testing.assert_allclose(got.mean[k], mean, rtol=1e-8, atol=1e-6)
+    straight = Candidate(wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=0.0, noise=NO_NOISE)))
+    np.testing.assert_allclose(straight(scene, z).mean, got.mean, rtol=1e-9, atol=1e-6)
+
+
+def test_an_estimator_without_control_meets_none_where_there_is_none():
+    def without(z, dt_s, sensor, start):
+        return IMM.estimator.run(z, dt_s=dt_s, sensor=sensor, start=start)
+
+    simple = Candidate(SimpleNamespace(run=without))
+    assert run(CASE, {"simple": simple}, runs=2)["case", "simple"].runs == 2
+    with pytest.raises(TypeError, match="acceleration_mps2"):
+        run(controlled((0.1, 0.0)), {"simple": simple}, runs=2)
+
+
+# The bound ----------------------------------------------------------------------------------------
+
+
+def by_information(scene, steps):
+    """J' = (F J⁻¹ Fᵀ)⁻¹ + p Hᵀ R⁻¹ H, step by step, inverted."""
+    information = np.linalg.inv(scene.start.covariance)
+    weight = np.diag([scene.radar.range_std_m**-2.0, scene.radar.bearing_std_rad**-2.0])
+    bounds = []
+    for (x, _, y, _), moves in zip(scene.truth_states, steps, strict=True):
+        for dt_s, rate, _ in moves:
+            back = np.linalg.inv(wl.CoordinatedTurn(turn_rate_rad_s=rate).matrix(dt_s))
+            information = back.T @ information @ back
+        r = np.hypot(x, y)
+        h = np.array([[x / r, 0, y / r, 0], [-y / r**2, 0, x / r**2, 0]])
+        information = information + scene.radar.detection_probability * h.T @ weight @ h
+        bounds.append(np.linalg.inv(information))
+    return np.array(bounds)
+
+
+@pytest.mark.parametrize("scene", [CASE, SELDOM], ids=lambda scene: scene.name)
+def test_the_bound_is_the_inverse_of_the_information(scene):
+    wanted = by_information(scene, told_steps(scene))
+    np.testing.assert_allclose(montecarlo.bound(scene), wanted, rtol=1e-6, atol=1e-9)
+    position_m, velocity_mps = montecarlo.bound_curves(scene)
+    np.testing.assert_allclose(position_m**2, wanted[:, 0, 0] + wanted[:, 2, 2], rtol=1e-6)
+    np.testing.assert_allclose(velocity_mps**2, wanted[:, 1, 1] + wanted[:, 3, 3], rtol=1e-6)
+
+
+errors = st.tuples(st.floats(5.0, 200.0), st.floats(1e-3, 0.05))
+
+
+def wider(a, b):
+    """Whether covariances a are nowhere smaller than b, in any direction."""
+    scale = np.sqrt(np.diagonal(a, axis1=1, axis2=2))
+    unit = (a - b) / (scale[:, :, np.newaxis] * scale[:, np.newaxis, :])
+    return np.linalg.eigvalsh(unit).min() > -1e-9
+
+
+@given(errors, st.floats(1.0, 5.0), st.floats(1.0, 5.0), st.floats(0.0, 1.0), st.floats(0.0, 0.5))
+@settings(max_examples=25)
+def test_the_bound_grows_with_every_error_and_falls_with_every_reading(
+    std, more_range, more_bearing, seen, restless_mps2
+):
+    sharp = montecarlo.bound(case(radar=RadarSimulator(*std, 3.0)))
+    blunt = RadarSimulator(more_range * std[0], more_bearing * std[1], 3.0)
+    assert wider(montecarlo.bound(case(radar=blunt)), sharp)
+    seldom = RadarSimulator(*std, 3.0, detection_probability=seen)
+    assert wider(montecarlo.bound(case(radar=seldom)), sharp)
+    noise = wl.PiecewiseAcceleration(std_mps2=restless_mps2)
+    assert wider(montecarlo.bound(case(radar=RadarSimulator(*std, 3.0)), noise), sharp)
+    unsure = case(radar=RadarSimulator(*std, 3.0), position_std_m=50.0, velocity_std_mps=3.0)
+    assert wider(montecarlo.bound(unsure), sharp)
+
+
+def test_nothing_is_learnt_out_of_range():
+    blind = case(radar=RadarSimulator(30.0, 0.01, 3.0, max_range_m=100.0))
+    position_m, _ = montecarlo.bound_curves(blind)
+    assert (np.diff(position_m) > 0).all()
+
+
+def drawn_start(estimator, scene, z):
+    """A candidate whose start errs as the prior says, which the bound takes for granted."""
+    rng = np.random.default_rng(zlib.crc32(np.nan_to_num(z).tobytes()))
+    std = np.sqrt(np.diag(scene.start.covariance))
+    means = scene.start.mean + std * rng.standard_normal((len(z), 4))
+    starts = [wl.Gaussian(mean, scene.start.covariance) for mean in means]
+    return estimator.run(z, dt_s=3.0, sensor=scene.polar_sensor, start=starts)
+
+
+def test_no_estimator_is_below_the_bound_and_the_right_one_is_on_it():
+    turn = case(truth=Truth([2000.0, 8.0, 1000.0, -3.0], [Segment(90.0, 0.02)]))
+    right = wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=0.02, noise=NO_NOISE))
+    runs = 2000
+    result = run(
+        turn,
+        {"right": partial(drawn_start, right), "imm": partial(drawn_start, IMM.estimator)},
+        runs,
+    )
+    chance = 4 / np.sqrt(4 * runs)  # of the root of a mean of at least two squares
+    for name, curve in zip(
+        ("position_rmse_m", "velocity_rmse_mps"), montecarlo.bound_curves(turn), strict=True
+    ):
+        np.testing.assert_allclose(getattr(result["case", "right"], name), curve, rtol=1.5 * chance)
+        assert (getattr(result["case", "imm"], name) > (1 - chance) * curve).all()
+    honest = result["case", "right"].summary()
+    assert honest["nees"] == pytest.approx(4.0, abs=0.15)
+    assert honest["nis"] == pytest.approx(2.0, abs=0.05)
+    assert honest["nees_inside_share"] == pytest.approx(0.95, abs=0.01)
+    assert honest["mean_nees_inside_share"] > 0.7
+    assert honest["mean_nis_inside_share"] > 0.8
+
+
+# Estimators that fail -----------------------------------------------------------------------------
+
+
+def picky(scene, z):
+    """Cannot start where the first range of a run is long."""
+    if (z[:, 0, 0] > 2250.0).any():
+        raise wl.FilterError("too far")
+    return IMM(scene, z)
+
+
+def test_runs_that_cannot_start_are_counted_and_left_out():
+    far = CASE.draw(RUNS, 0)[:, 0, 0] > 2250.0
+    assert 0 < far.sum() < RUNS
+    outcome = run(CASE, {"picky": picky})["case", "picky"]
+    assert (outcome.runs, outcome.failed_runs) == (RUNS - far.sum(), far.sum())
+    got = IMM(CASE, CASE.draw(RUNS, 0)[~far])
+    error = got.mean - CASE.truth_states
+    np.testing.assert_allclose(outcome.position_rmse_m, metrics.rmse_curve(error[..., 0::2]))
+
+
+def test_no_run_at_all_leaves_figures_empty(tmp_path):
+    def never(scene, z):
+        raise wl.FilterError("not today")
+
+    result = run(CASE, {"never": never, "imm": IMM})
+    outcome = result["case", "never"]
+    assert (outcome.runs, outcome.failed_runs) == (0, RUNS)
+    assert np.isnan(outcome.position_rmse_m).all()
+    figures = outcome.summary()
+    counts = {"runs", "failed_runs", "lost_runs", "failed_steps", "ns_per_step"}
+    assert all(value is None for name, value in figures.items() if name not in counts)
+    assert result["case", "imm"].runs == RUNS
+    result.save(tmp_path / "never.npz")
+    assert_same_bits(Result.load(tmp_path / "never.npz"), result)
+
+
+def spoilt(scene, z, *, what, value):
+    """The IMM's estimates, those of the even runs spoilt in the last scan."""
+    found = IMM(scene, z)
+    names = ("mean", "covariance", "nis", "status", "mode_probability")
+    fields = {name: np.array(getattr(found, name)) for name in names}
+    fields[what][even(z), -1] = value
+    return SimpleNamespace(**fields)
+
+
+def even(z):
+    """Runs that begin with a range of an even number of metres."""
+    return z[:, 0, 0].astype(int) % 2 == 0
+
+
+def test_estimates_that_are_not_finite_are_failed_runs():
+    count = int(even(CASE.draw(RUNS, 0)).sum())
+    for value in (np.nan, np.inf):
+        bad = partial(spoilt, what="mean", value=value)
+        outcome = run(CASE, {"bad": bad})["case", "bad"]
+        assert (outcome.runs, outcome.failed_runs) == (RUNS - count, count)
+        assert np.isfinite(outcome.position_rmse_m).all()
+
+
+def test_runs_that_end_far_off_are_lost_but_count():
+    count = int(even(CASE.draw(RUNS, 0)).sum())
+    far = partial(spoilt, what="mean", value=1e5)
+    outcome = run(CASE, {"far": far})["case", "far"]
+    assert (outcome.runs, outcome.failed_runs, outcome.lost_runs) == (RUNS, 0, count)
+    assert outcome.position_rmse_m[-1] > 1e4
+    strict = run(lost_beyond_m=1.0)
+    assert strict["case", "imm"].lost_runs > RUNS // 2
+    assert strict.parameters["lost_beyond_m"] == 1.0
+
+
+def test_steps_that_fail_are_counted_and_a_missed_one_is_none():
+    assert run(SELDOM)["seldom", "imm"].failed_steps == 0
+    count = int(even(CASE.draw(RUNS, 0)).sum())
+    failed = partial(spoilt, what="status", value=int(wl.Status.not_finite))
+    assert run(CASE, {"x": failed})["case", "x"].failed_steps == count
+
+
+def test_a_covariance_that_is_none_leaves_its_scan_without_nees():
+    wrong = partial(spoilt, what="covariance", value=-np.eye(4))
+    outcome = run(CASE, {"wrong": wrong})["case", "wrong"]
+    assert np.isnan(outcome.nees).tolist() == [False] * 29 + [True]
+    assert outcome.summary()["nees"] is None
+    assert 0 < outcome.nees_inside_share[-1] < 1
+
+
+# Bad input ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "message"),
+    [
+        ({"scenarios": []}, ValueError, "at least one scenario"),
+        ({"candidates": {}}, ValueError, "at least one .* candidate"),
+        ({"scenarios": [CASE, case()]}, ValueError, r"names that differ, got \['case', 'case'\]"),
+        ({"candidates": {"x": 3}}, TypeError, "candidate 'x' must be a Candidate or callable"),
+        ({"runs": 0}, ValueError, "runs must be a whole number, at least 1, got 0"),
+        ({"runs": 2.5}, ValueError, r"runs must be a whole number, at least 1, got 2\.5"),
+        ({"seed": -1}, ValueError, "seed must be a whole number, at least 0, got -1"),
+        ({"threads": 0}, ValueError, "threads must be a whole number, at least 1, got 0"),
+        ({"lost_beyond_m": 0.0}, ValueError, r"lost_beyond_m must be positive, got 0\.0"),
+        ({"lost_beyond_m": np.nan}, ValueError, "lost_beyond_m must be positive, got nan"),
+        ({"client": 7, "threads": 2}, ValueError, "threads must be left out together with client"),
+        ({"client": 7, "candidates": SENT}, TypeError, "client must be a dask.distributed.Client"),
+        ({"client": 7}, ValueError, "'imm' cannot be sent .* give functions of the scenario"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(change, error, message):
+    with pytest.raises(error, match=message):
+        run(**change)
+
+
+@pytest.mark.parametrize("sensor", ["sonar", "polar_sensor"])
+def test_a_sensor_that_is_no_word_of_ours(sensor):
+    for candidate in (
+        dataclasses.replace(IMM, sensor=sensor),
+        partial(montecarlo.clairvoyant, sensor=sensor),
+    ):
+        with pytest.raises(ValueError, match=f'"polar" or "converted" where text, got {sensor!r}'):
+            run(CASE, {"x": candidate}, runs=1)
+
+
+def test_a_sensor_may_be_given_or_built():
+    given_one = dataclasses.replace(IMM, sensor=CASE.polar_sensor)
+    built = dataclasses.replace(IMM, sensor=lambda scene: scene.polar_sensor)
+    one, other, usual = (run(CASE, {"imm": c}) for c in (given_one, built, IMM))
+    assert_same_bits(one, usual)
+    assert_same_bits(other, usual)
+
+
+def test_turn_rates_that_are_not_those_of_the_models():
+    with pytest.raises(ValueError, match=r"'x' must have one turn rate for each of its 3 .*\(2,\)"):
+        run(CASE, {"x": dataclasses.replace(IMM, turn_rates_rad_s=[0.0, 0.1])}, runs=1)
+
+
+@pytest.mark.parametrize(
+    ("mean", "covariance"), [((1, 30, 3), (1, 30, 3, 3)), ((1, 29, 4), (1, 29, 4, 4)), ((), ())]
+)
+def test_estimates_of_another_shape(mean, covariance):
+    def odd(scene, z):
+        return SimpleNamespace(mean=np.zeros(mean), covariance=np.zeros(covariance), status=0)
+
+    with pytest.raises(ValueError, match=r"'odd' must give mean \(R, T, N\) .* T = 30, got"):
+        run(CASE, {"odd": odd}, runs=1)
+
+
+def test_an_outcome_that_is_not_there(result):
+    with pytest.raises(KeyError, match="scenarios: case, seldom; candidates: imm, told"):
+        result["case", "imm9"]
+
+
+# The papers' figures ------------------------------------------------------------------------------
+
+NARROW, WIDE = (wl.PiecewiseAcceleration(std_mps2=std) for std in (0.003, 0.05))
+
+
+def paper_imm(rates_deg_s, noise, sensor, stay):
+    chain = np.full((len(rates_deg_s),) * 2, (1 - stay) / (len(rates_deg_s) - 1))
+    np.fill_diagonal(chain, stay)
+    filters = [
+        wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=np.deg2rad(rate), noise=noise))
+        for rate in rates_deg_s
+    ]
+    return Candidate(wl.Imm(filters, wl.ModeChain(chain), chain[rates_deg_s.index(0)]), sensor)
+
+
+FIVE = {"example1": (-2, -1, 0, 1, 2), "example2": (-4, -2, 0, 2, 4)}
+PUBLISHED = {  # peak and mean of position (m) and velocity (m/s), of an independent program
+    ("example1", "clairvoyant"): (20.9, 0.56, 9.1, 0.10),
+    ("example1", "imm5"): (34.5, 3.05, 25.4, 1.79),
+    ("example1", "imm5_converted"): (35.4, 3.06, 26.1, 1.80),
+    ("example2", "clairvoyant"): (18.7, 0.47, 11.8, 0.15),
+    ("example2", "imm5"): (47.1, 7.60, 26.1, 2.59),
+    ("example2", "imm5_converted"): (48.8, 7.86, 27.6, 2.64),
+    ("imm-scans", "imm3"): (28.4, 2.38, 23.4, 1.04),
+    ("imm-scans", "imm2"): (95.3, 4.86, 33.2, 1.59),
+}
+BOUNDS = {
+    "example1": (23.5, 1.40, 9.7, 0.14),
+    "example2": (22.4, 1.38, 12.8, 0.22),
+}
+
+
+def figures_of(outcome):
+    figures = outcome.summary()
+    names = ("peak_position_m", "peak_velocity_mps", "mean_position_m", "mean_velocity_mps")
+    return np.array([figures[name] for name in names])
+
+
+@pytest.mark.parametrize("name", ["example1", "example2", "imm-scans"])
+def test_the_figures_of_an_independent_program_are_met(name):
+    """Over 500 runs; a peak is the largest of many errors and owes more to chance than a mean."""
+    if name == "imm-scans":
+        two, three = (paper_imm(rates, WIDE, "converted", 0.95) for rates in ((0, 1), (0, 1, -1)))
+        candidates = {"imm2": two, "imm3": three}
+    else:
+        candidates = {
+            "imm5": paper_imm(FIVE[name], NARROW, "polar", 0.9),
+            "imm5_converted": paper_imm(FIVE[name], WIDE, "converted", 0.9),
+            "clairvoyant": montecarlo.clairvoyant,
+        }
+    result = run(scenario.named(name), candidates, 500)
+    for candidate in candidates:
+        ratio = figures_of(result[name, candidate]) / PUBLISHED[name, candidate]
+        assert np.abs(ratio[:2] - 1).max() < 0.065, (candidate, ratio)
+        assert np.abs(ratio[2:] - 1).max() < 0.03, (candidate, ratio)
+
+
+@pytest.mark.parametrize("name", BOUNDS)
+def test_the_bounds_of_an_independent_program_are_met(name):
+    position_m, velocity_mps = montecarlo.bound_curves(scenario.named(name))
+    got = (position_m.max(), velocity_mps.max(), position_m.mean(), velocity_mps.mean())
+    for value, published in zip(got, BOUNDS[name], strict=True):
+        assert value == pytest.approx(published, rel=0.005, abs=0.0051)
