@@ -108,10 +108,12 @@ def test_the_figures_of_a_reference_are_met():
 
 def test_the_right_model_leads_where_there_is_one(reports):
     outcome = reports["imm"].result["imm-scans", "imm2"]
-    shares = curves.wins_by_segment(outcome, np.deg2rad([0, 1]))
-    assert [round(rate) for rate, _ in shares] == [0, 1, -1, 0]
-    assert shares[2][1] is None
-    assert shares[0][1] > 0.9
+    leads = curves.leads_by_segment(outcome, np.deg2rad([0, 1]))
+    assert [round(lead.rate_deg_s) for lead in leads] == [0, 1, -1, 0]
+    assert leads[0].share > 0.9
+    assert leads[0].delay_scans == 0
+    assert 5 <= leads[1].delay_scans <= 20
+    assert leads[2][1:] == (None, None)
 
 
 def test_a_row_that_is_not_there(reports):

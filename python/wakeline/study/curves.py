@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -155,27 +155,32 @@ def draw_modes(
 # Figures of a result ------------------------------------------------------------------------------
 
 
-def wins_by_segment(
-    outcome: montecarlo.Outcome, rates_rad_s: Sequence[float]
-) -> list[tuple[float, float | None]]:
-    """True rate (deg/s) of each segment and in what share of its scans the right model leads.
+class Lead(NamedTuple):
+    """The right model in a segment: in what share of the scans it leads, and after how many.
 
-    It leads where its probability, mean of the runs, is the greatest; None where no model has the
-    true turn rate.
+    It leads where its probability, mean of the runs, is the greatest; the delay is until it is the
+    most probable one in half of the runs. Both are None where no model has the true turn rate.
     """
+
+    rate_deg_s: float
+    share: float | None
+    delay_scans: int | None
+
+
+def leads_by_segment(outcome: montecarlo.Outcome, rates_rad_s: Sequence[float]) -> list[Lead]:
+    """How far the right model leads in each segment of a steady true turn rate."""
     rates = np.asarray(rates_rad_s, dtype=float)
     true = outcome.true_turn_rate_rad_s
     distance = np.abs(rates - true[:, np.newaxis])
     leads = outcome.mode_probability.argmax(axis=1) == distance.argmin(axis=1)
-    has_model = distance.min(axis=1) < _SAME_RATE_RAD_S
     segments = np.split(np.arange(len(true)), np.flatnonzero(np.diff(true)) + 1)
-    return [
-        (
-            float(np.degrees(true[part[0]])),
-            float(leads[part].mean()) if has_model[part[0]] else None,
-        )
-        for part in segments
-    ]
+    found = []
+    for part in segments:
+        in_half = np.append(outcome.right_mode_share[part] >= 0.5, True)
+        has_model = distance[part[0]].min() < _SAME_RATE_RAD_S
+        lead = (float(leads[part].mean()), int(in_half.argmax())) if has_model else (None, None)
+        found.append(Lead(float(np.degrees(true[part[0]])), *lead))
+    return found
 
 
 def switch_scans(scenario: Scenario) -> list[int]:

@@ -144,14 +144,22 @@ def _pictures(
 
 
 def _wins(result: montecarlo.Result, scenarios: dict[str, Scenario]) -> str:
-    """How much of each segment the right model is the most probable one, on average."""
-    lines = ["Share of the scans of each segment in which the right model is the most probable:"]
+    """How much of each segment the right model is the most probable one, and from when on."""
+    lines = [
+        "Share of the scans of each segment in which the right model is the most probable in the",
+        "mean of the runs, and scans after its begin before it is so in half of the runs:",
+    ]
     for reading, scenario in scenarios.items():
         for name, rates in _RATES_DEG_S.items():
-            shares = curves.wins_by_segment(result[scenario.name, name], np.deg2rad(rates))
+            leads = curves.leads_by_segment(result[scenario.name, name], np.deg2rad(rates))
             parts = [
-                f"{rate:+.0f} °/s " + (f"{100 * share:.0f} %" if share is not None else "no model")
-                for rate, share in shares
+                f"{lead.rate_deg_s:+.0f} °/s "
+                + (
+                    "no model"
+                    if lead.share is None
+                    else f"{lead.share:.0%} after {lead.delay_scans}"
+                )
+                for lead in leads
             ]
             lines.append(f"  {reading}, {name}: {', '.join(parts)}")
     return "\n".join(lines)

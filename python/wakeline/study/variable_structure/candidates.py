@@ -24,6 +24,9 @@ LABELS = {
     "likely_model_set": "LMS",
     "mode_history": "mode histories",
     "clairvoyant": "clairvoyant",
+    "imm5_converted": "IMM5, converted",
+    "agmm_converted": "AGMM, converted",
+    "sgmm_converted": "SGMM, converted",
 }
 COLORS = dict(zip(LABELS.values(), plot.PALETTE, strict=False)) | {"clairvoyant": plot.INK}
 

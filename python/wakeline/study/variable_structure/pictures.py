@@ -107,12 +107,19 @@ def _example_pictures(name: str, result: montecarlo.Result, seed: int) -> Iterat
     z = example.draw(min(_DRAWN_RUNS, result.runs), seed)
     yield Picture(
         f"{name}-modes",
-        f"{title}: mode probabilities, mean of {len(z)} runs",
+        f"{title}: probabilities of the turn rates, mean of {len(z)} runs",
         tuple(
-            partial(_draw_modes, example=example, candidate=candidates[key], label=LABELS[key], z=z)
+            partial(
+                _draw_modes,
+                example=example,
+                candidate=candidates[key],
+                label=LABELS[key],
+                z=z,
+                legend=key == _IN_TRACKS[0],
+            )
             for key in _IN_TRACKS
         ),
-        size_in=(7.2, 2.2 * len(_IN_TRACKS) + 0.4),
+        size_in=(7.2, 1.9 * len(_IN_TRACKS) + 0.7),
     )
     yield curves.error_picture(
         f"{name}-errors",
@@ -128,29 +135,31 @@ def _example_pictures(name: str, result: montecarlo.Result, seed: int) -> Iterat
 
 
 def _draw_modes(
-    ax: Axes, example: Scenario, candidate: Candidate, label: str, z: np.ndarray
+    ax: Axes, example: Scenario, candidate: Candidate, label: str, z: np.ndarray, legend: bool
 ) -> Axes:
-    """Probability of each turn rate; rates that move are put into steps of 1 deg/s."""
+    """Probability of each rate of IMM5, to which that of the nearest rates is added."""
     found = candidate(example, z)
     moving = found.turn_rate_rad_s
     rates_rad_s = candidate.rates(example) if moving is None else moving
-    step_deg_s = np.broadcast_to(np.round(np.degrees(rates_rad_s)), found.mode_probability.shape)
-    steps_deg_s = np.unique(step_deg_s)
-    share = np.stack(
-        [
-            np.where(step_deg_s == step, found.mode_probability, 0.0).sum(axis=-1).mean(axis=0)
-            for step in steps_deg_s
-        ],
-        axis=-1,
+    bands_deg_s = SETTINGS[example.name].imm5_deg_s
+    spacing_deg_s = bands_deg_s[1] - bands_deg_s[0]
+    nearest = spacing_deg_s * np.round(np.degrees(rates_rad_s).round(6) / spacing_deg_s)
+    band = np.broadcast_to(
+        np.clip(nearest, bands_deg_s[0], bands_deg_s[-1]), found.mode_probability.shape
     )
+    share = [
+        np.where(band == rate, found.mode_probability, 0.0).sum(axis=-1).mean(axis=0)
+        for rate in bands_deg_s
+    ]
     return plot.probability_panel(
         ax,
         example.time_s,
-        share,
-        np.deg2rad(steps_deg_s),
+        np.stack(share, axis=-1),
+        np.deg2rad(bands_deg_s),
         true_rate_rad_s=example.turn_rates_rad_s,
         switch_s=example.switch_times_s,
         ylabel=f"{label}\nmode probability",
+        legend=legend,
     )
 
 

@@ -15,7 +15,7 @@ from wakeline.montecarlo import Candidate
 from wakeline.scenario import Scenario
 
 from . import candidates
-from .candidates import CONVERTED, POLAR, SETTINGS, Setting
+from .candidates import POLAR, SETTINGS, Setting
 
 RATES = {"on": 1.0, "between": 0.75, "outside": 1.5}
 """By what the turn rates of example 1 are multiplied to lie on, between, outside the IMM's own."""
@@ -196,14 +196,14 @@ def _led_by(start: np.ndarray, later: np.ndarray) -> np.ndarray:
 
 
 def _from_plots(example: Scenario, setting: Setting) -> dict[str, _FromPlots]:
-    """IMM5 with each form of the measurement."""
+    """IMM5 with each form of the measurement and the same process noise."""
     radar = example.radar
     unbiased = wl.ConvertedRangeBearing(
         range_std_m=radar.range_std_m, bearing_std_rad=radar.bearing_std_rad, unbiased=True
     )
-    polar, converted = (candidates.imm5(setting, form).estimator for form in (POLAR, CONVERTED))
+    imm = candidates.imm5(setting, POLAR).estimator
     return {
-        "imm5": _FromPlots(polar, example.polar_sensor),
-        "imm5_converted": _FromPlots(converted, example.converted_sensor),
-        "imm5_unbiased": _FromPlots(converted, unbiased),
+        "imm5": _FromPlots(imm, example.polar_sensor),
+        "imm5_converted": _FromPlots(imm, example.converted_sensor),
+        "imm5_unbiased": _FromPlots(imm, unbiased),
     }
