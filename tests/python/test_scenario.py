@@ -87,8 +87,12 @@ def test_truths_that_make_no_sense():
         Segment(1.0, np.nan)
     with pytest.raises(ValueError, match="segment 1 brings the speed below zero"):
         Truth(START, [Segment(10.0), Segment(100.0, 0.0, -0.2)])
-    with pytest.raises(ValueError, match="4 finite numbers"):
-        Truth([0.0, 1.0])
+    for start in ([0.0, 1.0], [0.0, np.nan, 0.0, 0.0]):
+        with pytest.raises(ValueError, match="4 finite numbers"):
+            Truth(start)
+    for name in ("start_time_s", "start_course_rad"):
+        with pytest.raises(ValueError, match=f"{name} must be finite, got nan"):
+            Truth(START, **{name: np.nan})
 
 
 # ------------------------------------------------------------------ radar
@@ -169,7 +173,11 @@ def test_clutter_is_even_over_the_disc():
     ("arguments", "name"),
     [
         ({"range_std_m": -1.0}, "range_std_m"),
+        ({"bearing_std_rad": np.nan}, "bearing_std_rad"),
         ({"period_s": 0.0}, "period_s"),
+        ({"period_s": np.inf}, "period_s"),
+        ({"clutter_per_scan": -1.0}, "clutter_per_scan"),
+        ({"detection_probability": np.nan}, "detection_probability"),
         ({"detection_probability": 1.5}, "detection_probability"),
         ({"clutter_per_scan": 3.0}, "max_range_m"),
         ({"max_range_m": 0.0}, "max_range_m"),

@@ -118,6 +118,7 @@ def test_a_table_of_segments():
     [
         ([], "at least one row"),
         ([(0, 10)], "row 0 must be three finite numbers"),
+        ([0, 10, 0], "row 0 must be three finite numbers"),
         ([(0, 10, 0), (10, np.nan, 0)], "row 1 must be three finite numbers"),
         ([(0, 10, 0), (10, 10, 0)], "row 1 ends at 10.0 s, not after its begin"),
         ([(0, 10, 0), (9, 20, 0)], "row 1 begins at 9.0 s and overlaps with row 0"),
@@ -128,6 +129,12 @@ def test_a_table_of_segments():
 def test_tables_that_make_no_sense_are_told_by_row(rows, message):
     with pytest.raises(ValueError, match=message):
         segments_from_table(rows, max_turn_rate_rad_s=0.2)
+
+
+@pytest.mark.parametrize("most", [-0.1, np.nan])
+def test_a_fastest_turn_that_makes_no_sense(most):
+    with pytest.raises(ValueError, match="max_turn_rate_rad_s must not be negative"):
+        segments_from_table([(0, 10, 0)], max_turn_rate_rad_s=most)
 
 
 @pytest.mark.parametrize("name", ["control_mps2", "disturbance_mps2"])
@@ -196,6 +203,7 @@ def test_a_limit_holds():
     ("arguments", "message"),
     [
         ((ORDERS, 0.0, 1.0, 0), "scale_mps2"),
+        ((ORDERS, np.inf, 1.0, 0), "scale_mps2"),
         ((ORDERS, 0.1, 0.0, 0), "interval_s"),
         ((Truth(START), 0.1, 1.0, 0), "segments"),
     ],

@@ -165,8 +165,19 @@ def test_scenarios_that_make_no_sense(change, message):
         Scenario(**(right | change))
     with pytest.raises(TypeError, match="truth must have state_at"):
         Scenario(**(right | {"truth": None}))
-    with pytest.raises(ValueError, match="runs and first_run"):
-        Scenario(**right).draw(-1)
+
+
+def test_draws_that_make_no_sense():
+    case = Scenario("x", STRAIGHT, RADAR, 3)
+    assert case.draw(0).shape == (0, 3, 2)
+    with pytest.raises(ValueError, match="runs must be a whole number, at least 0, got -1"):
+        case.draw(-1)
+    with pytest.raises(ValueError, match=r"runs must be a whole number, at least 0, got 1\.5"):
+        case.draw(1.5)
+    with pytest.raises(ValueError, match="first_run must be a whole number, at least 0, got -2"):
+        case.draw(1, first_run=-2)
+    with pytest.raises(ValueError, match="non-negative"):
+        case.draw(1, -1)
 
 
 # ------------------------------------------------------------------ random maneuvers
@@ -203,7 +214,11 @@ def test_random_maneuvers_depend_on_the_seed_alone():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"count": 0}, "count must be at least 1"),
+        ({"count": 0}, "count must be a whole number, at least 1, got 0"),
+        ({"count": 2.0}, "count must be a whole number"),
+        ({"seed": -1}, "seed must be a whole number, at least 0, got -1"),
+        ({"turn_rate_deg_s": (-1.0, 4.0)}, "turn_rate_deg_s must be an interval from 0 up"),
+        ({"range_m": (0.0, np.inf)}, "range_m must be an interval"),
         ({"speed_mps": (5.0, 4.0)}, "speed_mps must be an interval"),
         ({"duration_s": (0.0, 4.0)}, "duration_s must be positive"),
         ({"total_s": 1.0}, "total_s hold a scan"),

@@ -9,7 +9,7 @@ import numpy as np
 from wakeline import eval, motion
 from wakeline.scenario import Scenario
 
-from .candidate import pieces
+from .pieces import pieces
 
 
 def bound(scenario: Scenario, noise: Any = None) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -12,6 +11,8 @@ import numpy as np
 
 from wakeline import core, filter, motion
 from wakeline.scenario import Scenario
+
+from .pieces import stretches
 
 
 @dataclass(frozen=True)
@@ -111,36 +112,6 @@ def clairvoyant(
     joined = {name: np.concatenate(parts, axis=1) for name, parts in fields.items()}
     rates = np.broadcast_to(scenario.turn_rates_rad_s, z.shape[:2])
     return SimpleNamespace(**joined, mode_probability=None, turn_rate_rad_s=rates)
-
-
-@dataclass(frozen=True)
-class PieceOfScan:
-    """A time of steady turn: `dt_s` long, ending at the reading of `scan` or at a switch (None)."""
-
-    turn_rate_rad_s: float
-    dt_s: float
-    scan: int | None
-    control_mps2: tuple[float, float]
-
-
-def pieces(scenario: Scenario) -> list[PieceOfScan]:
-    """The time from the start to the last reading, cut at every reading and at every switch."""
-    time_s, switch_s = scenario.time_s, scenario.switch_times_s
-    cuts_s = np.union1d(time_s, switch_s)
-    begins_s = np.concatenate([[scenario.start_time_s], cuts_s[:-1]])
-    middles_s = 0.5 * (begins_s + cuts_s)
-    rates, controls = scenario.truth.turn_rate_at(middles_s), scenario.control_at(middles_s)
-    scan_at = {t: k for k, t in enumerate(time_s.tolist())}
-    return [
-        PieceOfScan(float(rate), float(end - begin), scan_at.get(float(end)), tuple(control))
-        for rate, control, begin, end in zip(rates, controls, begins_s, cuts_s, strict=True)
-    ]
-
-
-def stretches(scenario: Scenario) -> list[tuple[float, list[PieceOfScan]]]:
-    """The pieces in groups of the same turn rate, one after the other."""
-    groups = itertools.groupby(pieces(scenario), key=lambda piece: piece.turn_rate_rad_s)
-    return [(rate, list(group)) for rate, group in groups]
 
 
 def _told(control_mps2: np.ndarray) -> dict[str, np.ndarray]:

@@ -200,7 +200,7 @@ class Result:
         Of Wakeline, that made it.
     """
 
-    outcomes: Mapping[tuple[str, str], Outcome]
+    outcomes: Mapping[tuple[str, str], Outcome] = field(repr=False)
     runs: int
     seed: int
     parameters: Mapping[str, float] = field(default_factory=dict)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import _progress
+from wakeline._checks import whole_number
 from wakeline.scenario import Scenario
 
 from .candidate import Candidate
@@ -122,11 +123,10 @@ def _check(
             raise TypeError(
                 f"candidate {name!r} must be a Candidate or callable, got {type(candidate)}"
             )
-    for what, value, least in (("runs", runs, 1), ("seed", seed, 0), ("threads", threads, 1)):
-        if value is None and what == "threads":
-            continue
-        if not isinstance(value, (int, np.integer)) or value < least:
-            raise ValueError(f"{what} must be a whole number, at least {least}, got {value!r}")
+    whole_number("runs", runs, 1)
+    whole_number("seed", seed, 0)
+    if threads is not None:
+        whole_number("threads", threads, 1)
     if not lost_beyond_m > 0:
         raise ValueError(f"lost_beyond_m must be positive, got {lost_beyond_m}")
     if client is not None and threads is not None:

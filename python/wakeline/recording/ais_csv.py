@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._units import KNOT_MPS
+
 from .errors import RecordingError
 from .local_plane import LocalPlane
 from .table import Table
@@ -21,7 +23,6 @@ COLUMNS = {
     "sog": ("sog_knots", "sog_kn", "sog", "speed_over_ground"),
 }
 
-_KNOT_MPS = 1852.0 / 3600.0
 _NO_LATITUDE_DEG, _NO_LONGITUDE_DEG = 91.0, 181.0
 _NO_COURSE_DEG, _NO_SPEED_KN = 360.0, 102.25
 _JUMP_SLACK_M, _JUMP_SLACK_S = 50.0, 2.0
@@ -183,7 +184,7 @@ def read_ais(
         jumped[row[far]] = True
         row = row[~far]
         tracks[number] = AisTrack(
-            number, time_s[row], north_m[row], east_m[row], course_rad[row], sog_kn[row] * _KNOT_MPS
+            number, time_s[row], north_m[row], east_m[row], course_rad[row], sog_kn[row] * KNOT_MPS
         )
     _note(notes, table, late, f"less than {min_step_s:g} s before the next of the vessel")
     _note(notes, table, jumped, f"farther off than a vessel gets at {max_speed_mps:g} m/s")

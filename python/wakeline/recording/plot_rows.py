@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._units import NAUTICAL_MILE_M
+
 from .errors import RecordingError
 from .scans import repeated
 from .table import Table
-
-METRES_PER_NAUTICAL_MILE = 1852.0
 
 COLUMNS = {
     "time_s": ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime"),
@@ -183,7 +183,7 @@ def _ranges_m(table: Table) -> np.ndarray:
     column = "range_m" if "range_m" in table else "range_nm"
     values = table.numbers(column)
     table.check(column, ~(values < 0), "a range of 0 or more")
-    return values if column == "range_m" else values * METRES_PER_NAUTICAL_MILE
+    return values if column == "range_m" else values * NAUTICAL_MILE_M
 
 
 def _bearings_rad(table: Table) -> np.ndarray:

@@ -49,11 +49,12 @@ def disturbed(
     Raises
     ------
     ValueError
-        When a parameter is not positive, the limit is below the scale, or the truth has no
-        segments.
+        When a parameter is not positive and finite (degrees of freedom may be infinite), the
+        limit is below the scale, or the truth has no segments.
     """
     limit_mps2 = 20.0 * scale_mps2 if limit_mps2 is None else limit_mps2
-    if not (scale_mps2 > 0 and 0 < interval_s < np.inf and degrees_of_freedom > 0):
+    finite = 0 < scale_mps2 < np.inf and 0 < interval_s < np.inf
+    if not (finite and degrees_of_freedom > 0):
         raise ValueError(
             "scale_mps2, interval_s and degrees_of_freedom must be positive, "
             f"got {scale_mps2}, {interval_s} and {degrees_of_freedom}"

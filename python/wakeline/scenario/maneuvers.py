@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from wakeline._checks import whole_number
+
 from .papers import RADAR
 from .scenario import Scenario
 from .truth import Segment, Truth
@@ -45,11 +47,11 @@ def random_maneuvers(
     Raises
     ------
     ValueError
-        When the count is below 1, an interval is empty or not finite, or a duration is not
-        positive.
+        When the count is below 1, the seed below 0, an interval is empty or not finite, or a
+        duration is not positive.
     """
-    if count < 1:
-        raise ValueError(f"count must be at least 1, got {count}")
+    whole_number("count", count, 1)
+    whole_number("seed", seed, 0)
     intervals = {
         "turn_rate_deg_s": turn_rate_deg_s,
         "speed_mps": speed_mps,

@@ -13,11 +13,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from wakeline._units import KNOT_MPS
+
 from .radar import RadarSimulator
 from .scenario import Scenario
 from .truth import Truth, segments_from_table
 
-KNOT_MPS = 1852.0 / 3600.0
 RADAR = RadarSimulator(range_std_m=60.0, bearing_std_rad=np.deg2rad(0.5), period_s=3.0)
 
 _EXAMPLE_1 = (

@@ -100,14 +100,30 @@ class RadarSimulator:
         own = _at_rest() if own is None else own
         begin_s = start_time_s + self.period_s * np.arange(scans)
         time_s = self._looking_time_s(truth, own, begin_s)
-        relative_m = (truth.state_at(time_s) - own.state_at(time_s))[:, 0::2]
-        range_m = np.hypot(*relative_m.T)
-        noise = rng.standard_normal((scans, 2)) * [self.range_std_m, self.bearing_std_rad]
-        z = np.column_stack([range_m, np.arctan2(relative_m[:, 1], relative_m[:, 0])]) + noise
-        z = _proper(z)
-        missed = rng.random(scans) >= self.detection_probability
-        z[missed | (range_m > self.max_range_m)] = np.nan
-        return time_s, z
+        exact = polar(truth.state_at(time_s) - own.state_at(time_s))
+        return time_s, _proper(self.readings(exact, rng))
+
+    def readings(self, exact: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+        """What comes of exact ranges and bearings: errors added as they are, and misses.
+
+        Near the antenna a range may come out negative, and a bearing may leave [-pi, pi].
+
+        Parameters
+        ----------
+        exact : ndarray (T, 2)
+            Range in metres and bearing in radians.
+        rng : numpy.random.Generator
+            Source of chance.
+
+        Returns
+        -------
+        ndarray (T, 2)
+            NaN rows where the target is missed or out of range.
+        """
+        z = exact + rng.standard_normal(exact.shape) * [self.range_std_m, self.bearing_std_rad]
+        missed = rng.random(len(exact)) >= self.detection_probability
+        z[missed | (exact[:, 0] > self.max_range_m)] = np.nan
+        return z
 
     def record(
         self,
@@ -164,10 +180,14 @@ class RadarSimulator:
         """
         if not self.rotating:
             return begin_s
-        bearing_rad = _bearing_rad(truth, own, begin_s) % _TURN_RAD
+
+        def bearing_at(time_s: np.ndarray) -> np.ndarray:
+            return polar(truth.state_at(time_s) - own.state_at(time_s))[:, 1]
+
+        bearing_rad = bearing_at(begin_s) % _TURN_RAD
         for _ in range(_SWEEP_STEPS):
             time_s = begin_s + self.period_s * bearing_rad / _TURN_RAD
-            bearing_rad = bearing_rad + _wrapped(_bearing_rad(truth, own, time_s) - bearing_rad)
+            bearing_rad = bearing_rad + _wrapped(bearing_at(time_s) - bearing_rad)
         return begin_s + self.period_s * bearing_rad / _TURN_RAD
 
     def _scan(
@@ -215,9 +235,10 @@ def _at_rest() -> Truth:
     return Truth([0.0, 0.0, 0.0, 0.0])
 
 
-def _bearing_rad(truth: Truth, own: Truth, time_s: np.ndarray) -> np.ndarray:
-    relative = truth.state_at(time_s) - own.state_at(time_s)
-    return np.arctan2(relative[:, 2], relative[:, 0])
+def polar(states: np.ndarray) -> np.ndarray:
+    """Range and bearing (n, 2), in metres and radians, of states (n, 4) relative to the antenna."""
+    north_m, _, east_m, _ = states.T
+    return np.column_stack([np.hypot(north_m, east_m), np.arctan2(east_m, north_m)])
 
 
 def _wrapped(angle_rad: np.ndarray) -> np.ndarray:

@@ -10,8 +10,9 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from wakeline import core, measurement
+from wakeline._checks import whole_number
 
-from .radar import RadarSimulator
+from .radar import RadarSimulator, polar
 
 
 @runtime_checkable
@@ -67,8 +68,7 @@ class Scenario:
             raise ValueError(f"name must be text that is not empty, got {self.name!r}")
         if not isinstance(self.truth, AnyTruth):
             raise TypeError(f"truth must have state_at and turn_rate_at, got {self.truth!r}")
-        if not (isinstance(self.scans, (int, np.integer)) and self.scans >= 1):
-            raise ValueError(f"scans must be a whole number, at least 1, got {self.scans!r}")
+        whole_number("scans", self.scans, 1)
         for name in ("position_std_m", "velocity_std_mps"):
             if not 0 < getattr(self, name) < np.inf:
                 raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
@@ -130,8 +130,8 @@ class Scenario:
     def draw(self, runs: int, seed: int | Sequence[int] = 0, *, first_run: int = 0) -> np.ndarray:
         """Readings of independent runs: the true range and bearing plus Gaussian errors.
 
-        The errors are added as the papers do, with nothing done to the sum: near the antenna a
-        range may come out negative, and a bearing may leave [-pi, pi].
+        The errors are added as the papers do, with nothing done to the sum: see
+        :meth:`RadarSimulator.readings`.
 
         Parameters
         ----------
@@ -151,22 +151,16 @@ class Scenario:
         Raises
         ------
         ValueError
-            When runs, first_run or a seed is negative.
+            When runs, first_run or a seed is negative or no whole number.
         """
-        if runs < 0 or first_run < 0:
-            raise ValueError(f"runs and first_run must not be negative, got {runs}, {first_run}")
+        whole_number("runs", runs, 0)
+        whole_number("first_run", first_run, 0)
         entropy = [*np.atleast_1d(seed).tolist(), zlib.crc32(self.name.encode())]
-        north_m, _, east_m, _ = self.truth_states.T
-        range_m = np.hypot(north_m, east_m)
-        exact = np.column_stack([range_m, np.arctan2(east_m, north_m)])
-        std = np.array([self.radar.range_std_m, self.radar.bearing_std_rad])
+        exact = polar(self.truth_states)
         z = np.empty((runs, self.scans, 2))
         for run in range(runs):
             rng = np.random.default_rng([*entropy, first_run + run])
-            z[run] = exact + std * rng.standard_normal((self.scans, 2))
-            if self.radar.detection_probability < 1:
-                z[run, rng.random(self.scans) >= self.radar.detection_probability] = np.nan
-        z[:, range_m > self.radar.max_range_m] = np.nan
+            z[run] = self.radar.readings(exact, rng)
         return z
 
     @property

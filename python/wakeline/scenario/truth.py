@@ -79,14 +79,17 @@ def segments_from_table(
     ------
     ValueError
         Naming the row, counted from 0: not three finite numbers, an end that is not after its
-        begin, rows that overlap or leave a gap, a turn that is too fast; or when there is no row.
+        begin, rows that overlap or leave a gap, a turn that is too fast; or when there is no row
+        or the fastest turn is negative.
     """
+    if max_turn_rate_rad_s is not None and not max_turn_rate_rad_s >= 0:
+        raise ValueError(f"max_turn_rate_rad_s must not be negative, got {max_turn_rate_rad_s}")
     if len(rows) == 0:
         raise ValueError("a table of segments must have at least one row")
     segments = []
     last_end_s = None
     for k, row in enumerate(rows):
-        if len(row) != 3 or not np.isfinite(np.asarray(row, dtype=float)).all():
+        if np.shape(row) != (3,) or not np.isfinite(row).all():
             raise ValueError(f"row {k} must be three finite numbers, begin, end and rate: {row}")
         begin_s, end_s, rate_rad_s = (float(value) for value in row)
         if end_s <= begin_s:
@@ -138,8 +141,8 @@ class Truth:
     Raises
     ------
     ValueError
-        When the start is not four finite numbers or the thrust of a segment brings the speed below
-        zero.
+        When the start, its time or its course is not finite or the thrust of a segment brings the
+        speed below zero.
     """
 
     def __init__(
@@ -153,6 +156,12 @@ class Truth:
         start = np.asarray(start, dtype=float)
         if start.shape != (4,) or not np.isfinite(start).all():
             raise ValueError(f"start must be 4 finite numbers, got {start.tolist()}")
+        for name, value in (
+            ("start_time_s", start_time_s),
+            ("start_course_rad", 0.0 if start_course_rad is None else start_course_rad),
+        ):
+            if not np.isfinite(value):
+                raise ValueError(f"{name} must be finite, got {value}")
         north_m, vnorth_mps, east_m, veast_mps = start
         speed_mps = float(np.hypot(vnorth_mps, veast_mps))
         course_rad = float(np.arctan2(veast_mps, vnorth_mps))

@@ -1,0 +1,13 @@
+"""Checks of arguments that several rooms share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+def whole_number(name: str, value: Any, least: int) -> None:
+    """ValueError unless the argument of that name is an integer, `least` or more."""
+    if not isinstance(value, (int, np.integer)) or value < least:
+        raise ValueError(f"{name} must be a whole number, at least {least}, got {value!r}")

@@ -1,0 +1,49 @@
+"""The time of a scenario in pieces of steady turn, between which its readings come."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from wakeline.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A time of steady turn.
+
+    Attributes
+    ----------
+    turn_rate_rad_s, dt_s : float
+    scan : int or None
+        The reading it ends at; None where it ends at a switch between two.
+    control_mps2 : (float, float)
+        Known acceleration north and east, half way.
+    """
+
+    turn_rate_rad_s: float
+    dt_s: float
+    scan: int | None
+    control_mps2: tuple[float, float]
+
+
+def pieces(scenario: Scenario) -> list[Piece]:
+    """The time from the start to the last reading, cut at every reading and at every switch."""
+    time_s, switch_s = scenario.time_s, scenario.switch_times_s
+    cuts_s = np.union1d(time_s, switch_s)
+    begins_s = np.concatenate([[scenario.start_time_s], cuts_s[:-1]])
+    middles_s = 0.5 * (begins_s + cuts_s)
+    rates, controls = scenario.truth.turn_rate_at(middles_s), scenario.control_at(middles_s)
+    scan_at = {t: k for k, t in enumerate(time_s.tolist())}
+    return [
+        Piece(float(rate), float(end - begin), scan_at.get(float(end)), tuple(control))
+        for rate, control, begin, end in zip(rates, controls, begins_s, cuts_s, strict=True)
+    ]
+
+
+def stretches(scenario: Scenario) -> list[tuple[float, list[Piece]]]:
+    """The pieces in groups of the same turn rate, one after the other."""
+    groups = itertools.groupby(pieces(scenario), key=lambda piece: piece.turn_rate_rad_s)
+    return [(rate, list(group)) for rate, group in groups]
