@@ -174,6 +174,7 @@ def test_every_comparison_draws_into_the_axes_it_was_given(ax):
     assert plot.probability_panel(ax, TIME_S, np.full((10, 2), 0.5), [0.0, 0.1]) is ax
     assert plot.paths_view(ax, state, {"one": state}) is ax
     assert plot.ranking_panel(ax, ["one"], {"here": [1.0]}, xlabel="error (m)") is ax
+    assert plot.steps_panel(ax, ["low"], {"one": [1.0]}, xlabel="noise", ylabel="error") is ax
     assert plot.mark_switches(ax, [5.0]) is ax
 
 
@@ -220,3 +221,13 @@ def test_the_best_estimator_stands_on_top(ax):
     plot.ranking_panel(ax, ["a", "b", "c"], {"m": [3.0, 1.0, 2.0]}, xlabel="error (m)")
     assert [label.get_text() for label in ax.get_yticklabels()] == ["a", "c", "b"]
     assert ax.get_xlim()[0] == 0.0
+
+
+def test_steps_are_named_and_their_ratios_are_alike_at_any_height(ax):
+    plot.steps_panel(
+        ax, ["low", "high"], {"a": [1.0, 2.0], "b": [10.0, 20.0]}, xlabel="noise", ylabel="error"
+    )
+    assert [label.get_text() for label in ax.get_xticklabels()] == ["low", "high"]
+    to_screen = ax.transData.transform
+    rise = [to_screen((1, high))[1] - to_screen((0, low))[1] for low, high in ((1, 2), (10, 20))]
+    assert rise[0] == pytest.approx(rise[1])

@@ -116,6 +116,37 @@ def test_the_right_model_leads_where_there_is_one(reports):
     assert leads[2][1:] == (None, None)
 
 
+def test_windows_and_centres_move_the_more_the_lower_their_threshold_asks():
+    candidates = study.variable_structure.candidates
+    example, setting = scenario.named("example1"), study.variable_structure.SETTINGS["example1"]
+    z = example.draw(5, 1)
+
+    def moves(candidate):
+        return np.count_nonzero(np.diff(candidates.centre_rates(candidate, example, z)))
+
+    windows = [moves(candidates.sgmm(setting, "polar", threshold=t)) for t in (0.3, 0.7, 0.95)]
+    assert windows[0] > 3 * windows[1] > 0
+    assert windows[2] == 0
+    eager, calm = (moves(candidates.agmm(setting, "polar", centre_threshold=t)) for t in (0.7, 0.3))
+    assert eager > 1.5 * calm > 0
+
+
+def test_in_full_it_also_tells_what_the_outcome_hangs_on():
+    report = study.variable_structure.run(1, 0, full=True)
+    keys = [(row["scenario"], row["estimator"]) for row in report.rows]
+    assert len(set(keys)) == len(keys)
+    for noise in (1, 0.3, 0.1):
+        for where in ("on", "between", "outside"):
+            assert (f"example1_{where}_noise_x{noise:g}", "imm5") in keys
+    assert {("example1_settings", "sgmm_t_0.3"), ("example2_from_plots", "imm5_unbiased")} <= set(
+        keys
+    )
+    assert "robustness" in [picture.name for picture in report.pictures]
+    _, moves, survey = report.notes
+    assert "SGMM t = 0.87" in moves
+    assert "AGMM: less in both examples" in survey
+
+
 def test_a_row_that_is_not_there(reports):
     with pytest.raises(KeyError, match="no row of imm7 on scans"):
         reports["imm"].row("scans", "imm7")

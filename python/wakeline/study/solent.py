@@ -52,7 +52,8 @@ _MIN_STEP_S, _MAX_STEP_S, _MAX_GAP_S = 0.5, 7.0, 25.0
 _MIN_DURATION_S = 180.0
 _COVERAGE_M = 10e3
 _START_SPEED_STD_MPS = 10.0
-_NOISE = WhiteAcceleration(psd_m2s3=0.01)
+_NOISE = WhiteAcceleration(psd_m2s3=0.03)
+_OTHER_NOISES_M2S3 = (0.003, 0.01, 0.1)
 _SHOWN = ("kalman_cv", "imm5", "mode_history")
 _SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
 
@@ -133,10 +134,23 @@ def estimators() -> dict[str, Any]:
     """Every estimator by name, with its one tuning.
 
     Models of one filter have the defaults of the library; turns at known rates have a white
-    acceleration of 0.01 m²/s³ and stay with 0.95 from scan to scan; what else there is stands at
+    acceleration of 0.03 m²/s³ and stay with 0.95 from scan to scan; what else there is stands at
     its default.
     """
     return {name: build() for name, (build, *needs) in _TABLE.items() if exists(*needs)}
+
+
+def noise_variants() -> dict[str, Any]:
+    """A model of one kind and an IMM with other process noise than theirs."""
+    noises = {psd: WhiteAcceleration(psd_m2s3=psd) for psd in _OTHER_NOISES_M2S3}
+    straight = {
+        f"kalman_cv_psd_{psd:g}": wl.Ekf(wl.ConstantVelocity(noise=noise))
+        for psd, noise in noises.items()
+    }
+    turns = {
+        f"imm3_psd_{psd:g}": turn_imm((0, 2, -2), noise, stay=0.95) for psd, noise in noises.items()
+    }
+    return straight | turns
 
 
 def _imm_rate() -> wl.Imm:
@@ -145,13 +159,6 @@ def _imm_rate() -> wl.Imm:
         [wl.Ekf(wl.ConstantVelocity(noise=_NOISE)), wl.Ekf(wl.CoordinatedTurnRate(noise=_NOISE))],
         wl.ModeChain(sticky_chain(2, 0.95)),
         [0.95, 0.05],
-    )
-
-
-def _vessel_imm() -> wl.Imm:
-    radar = RADARS["coastal_60m"]
-    return wl.vessel_imm(
-        wl.Radar(range_std_m=radar.range_std_m, bearing_std_rad=radar.bearing_std_rad)
     )
 
 
@@ -174,7 +181,7 @@ _TABLE: dict[str, tuple[Any, ...]] = {
     "imm3": (lambda: turn_imm((0, 2, -2), _NOISE, stay=0.95),),
     "imm5": (lambda: turn_imm((-4, -2, 0, 2, 4), _NOISE, stay=0.95),),
     "imm_turn_rate": (_imm_rate,),
-    "vessel_imm": (_vessel_imm,),
+    "vessel_imm": (lambda: wl.vessel_imm(wl.Radar()),),
     "agmm": (_adaptive, "AdaptiveGridImm"),
     "sgmm": (_switching, "SwitchingGridImm"),
 }
@@ -226,7 +233,7 @@ def run(
     runs, seed : int
         Of the Monte Carlo runs. Each stretch has as many of them as make up `runs`, rounded up.
     full : bool
-        Nothing more to do here.
+        Also how much the process noise matters.
     threads : int, optional
         Default as many as there are processors.
     progress : bool
@@ -241,7 +248,8 @@ def run(
     """
     if runs < 1:
         raise ValueError(f"runs must be at least 1, got {runs}")
-    each, built = -(-runs // len(vessels())), estimators()
+    each = -(-runs // len(vessels()))
+    built = estimators() | (noise_variants() if full else {})
     jobs = [(radar, name, scene) for radar in RADARS for name in built for scene in scenes(radar)]
     totals: dict[tuple[str, str], _Sums] = {}
     with ThreadPoolExecutor(threads) as pool:
@@ -376,7 +384,7 @@ def _draw_track(ax: Axes, radar: str, seed: int) -> Axes:
 
 
 def _draw_ranking(ax: Axes, rows: Rows, metric: str, xlabel: str) -> Axes:
-    names = list(dict.fromkeys(row["estimator"] for row in rows))
+    names = list(estimators())
     found = curves.figures(rows, metric)
     values = {radar: [found[radar, name] for name in names] for radar in RADARS}
     return plot.ranking_panel(ax, names, values, xlabel=xlabel)

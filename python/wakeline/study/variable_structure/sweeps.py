@@ -75,7 +75,7 @@ def _variants(setting: Setting) -> dict[str, Candidate]:
     adaptive = {
         "agmm": {},
         **{f"agmm_t1_{t1:g}": {"centre_threshold": t1} for t1 in (0.3, 0.7)},
-        **{f"agmm_r_{r:g}": {"min_spacing_rad_s": np.deg2rad(r)} for r in (0.5, 1.0, 2.0)},
+        **{f"agmm_r_{r:g}": {"min_spacing_rad_s": np.deg2rad(r)} for r in (0.5, 1.0, 2.0, 3.0)},
         **{
             f"agmm_initial_{side:g}": {"initial_turn_rates_rad_s": np.deg2rad([-side, 0.0, side])}
             for side in (0.5, 1.0, 2.0)
