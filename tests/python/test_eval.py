@@ -1,4 +1,4 @@
-"""Consistency bounds."""
+"""Consistency bounds, and the bound of errors."""
 
 import numpy as np
 import pytest
@@ -37,3 +37,77 @@ def test_more_samples_narrow_the_bounds(dof, samples):
 def test_what_makes_no_sense_is_refused(wrong):
     with pytest.raises(ValueError, match="confidence must lie between 0 and 1"):
         wl.consistency_bounds(*wrong)
+
+
+# The posterior Cramér-Rao bound ------------------------------------------------------------------
+
+SCANS = 12
+TURN = wl.CoordinatedTurn(turn_rate_rad_s=0.02, noise=wl.PiecewiseAcceleration(std_mps2=0.1))
+PRIOR = np.diag([100.0, 1.0, 100.0, 1.0])
+STATES = np.array([[1500.0 + 20 * k, 7.0, -800.0 + 9 * k, 3.0] for k in range(SCANS)])
+RADAR = wl.RangeBearing(range_std_m=60.0, bearing_std_rad=0.01)
+
+
+def bound(**change):
+    usual = {
+        "transition": np.broadcast_to(TURN.matrix(3.0), (SCANS, 4, 4)),
+        "process_noise": np.broadcast_to(TURN.process_noise(3.0), (SCANS, 4, 4)),
+        "states": STATES,
+        "sensor": RADAR,
+        "start_covariance": PRIOR,
+    }
+    return wl.eval.cramer_rao_bound(**(usual | change))
+
+
+def test_the_bound_of_a_linear_sensor_is_the_kalman_covariance():
+    sensor = wl.Position(position_std_m=25.0)
+    z = STATES[:, 0::2].copy()
+    z[[3, 4]] = np.nan
+    found = wl.Ekf(TURN).run(z, dt_s=3.0, sensor=sensor, start=wl.Gaussian(STATES[0], PRIOR))
+    states = STATES.copy()
+    states[[3, 4]] = np.nan
+    got = bound(sensor=sensor, states=states)
+    np.testing.assert_allclose(got, found.covariance, rtol=1e-9, atol=1e-9)
+
+
+def test_a_missed_scan_is_one_without_a_chance():
+    missed = np.full_like(STATES, np.nan)
+    never = bound(detection_probability=0.0)
+    np.testing.assert_allclose(bound(states=missed), never, rtol=1e-12, atol=1e-12)
+    growing = np.trace(bound(states=missed), axis1=1, axis2=2)
+    assert (np.diff(growing) > 0).all()
+
+
+def test_a_converted_reading_holds_no_more_than_its_plot():
+    converted = wl.ConvertedRangeBearing(range_std_m=60.0, bearing_std_rad=0.01)
+    np.testing.assert_array_equal(bound(sensor=converted), bound())
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"states": STATES[:, :3]}, r"states must have shape \(T, 4\), got \(12, 3\)"),
+        ({"transition": np.zeros((11, 4, 4))}, r"transition .*\(12, 4, 4\), got \(11, 4, 4\)"),
+        ({"process_noise": np.zeros((4, 4))}, r"process_noise .*\(12, 4, 4\), got \(4, 4\)"),
+        ({"start_covariance": np.eye(3)}, "start_covariance"),
+        ({"start_covariance": -np.eye(4)}, "start_covariance must be finite, symmetric and pos"),
+        ({"detection_probability": 1.5}, "detection_probability must be from 0 to 1, got 1.5"),
+        ({"detection_probability": np.nan}, "detection_probability must be from 0 to 1, got nan"),
+    ],
+)
+def test_bounds_that_make_no_sense(change, message):
+    with pytest.raises(ValueError, match=message):
+        bound(**change)
+
+
+def test_nothing_is_learnt_right_at_the_antenna():
+    there = np.where(np.arange(SCANS)[:, np.newaxis] == 0, [[0.0, 7.0, 0.0, 3.0]], STATES)
+    missed = np.where(np.arange(SCANS)[:, np.newaxis] == 0, np.nan, STATES)
+    np.testing.assert_allclose(bound(states=there), bound(states=missed), rtol=1e-12, atol=1e-12)
+
+
+def test_a_bound_that_cannot_be_said_names_the_scan():
+    transition = np.broadcast_to(TURN.matrix(3.0), (SCANS, 4, 4)).copy()
+    transition[2, 1, 1] = np.nan
+    with pytest.raises(wl.FilterError, match="scan 2"):
+        bound(transition=transition)
