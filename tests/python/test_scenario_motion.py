@@ -176,7 +176,7 @@ def test_accelerations_are_held_for_the_interval():
 
 
 def drawn(**options):
-    long = Truth(START, [Segment(20_000.0)])
+    long = Truth(START, [Segment(8_000.0)])
     return np.array([s.disturbance_mps2 for s in disturbed(long, 0.1, 1.0, 3, **options).segments])
 
 

@@ -14,7 +14,7 @@ from wakeline.scenario import Scenario
 
 from .candidate import Candidate
 
-_KINEMATICS = {4: [0, 1, 2, 3], 5: [0, 1, 2, 3], 6: [0, 1, 3, 4]}
+_KINEMATICS = {4: slice(4), 5: slice(4), 6: [0, 1, 3, 4]}
 _NEES_BAND = eval.consistency_bounds(0.95, 4, 1)
 _FINE = [int(core.Status.ok), int(core.Status.missed)]
 
