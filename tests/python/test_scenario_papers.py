@@ -157,6 +157,10 @@ def test_scenarios_can_be_sent_to_another_process():
         ({"velocity_std_mps": np.nan}, "velocity_std_mps must be positive"),
         ({"start_time_s": np.inf}, "start_time_s must be finite"),
         ({"radar": RadarSimulator(1.0, 0.1, 1.0, rotating=True)}, "must not rotate"),
+        (
+            {"radar": RadarSimulator(1.0, 0.1, 1.0, clutter_per_scan=2.0, max_range_m=1e3)},
+            "nor have clutter",
+        ),
     ],
 )
 def test_scenarios_that_make_no_sense(change, message):

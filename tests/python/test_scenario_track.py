@@ -83,6 +83,14 @@ def test_turn_rates_are_those_of_the_vessel():
     np.testing.assert_array_equal(drifting.turn_rate_at([5.0, 15.0]), 0.0)
 
 
+def test_truths_and_own_ships_of_recordings_are_tracks():
+    (episode,) = recording.load("joyride").episodes
+    for track in (episode.own, *episode.truth.values()):
+        truth = TrackTruth.of(track)
+        place_m = truth.state_at(track.time_s)[:, 0::2]
+        np.testing.assert_allclose(place_m, np.column_stack([track.north_m, track.east_m]))
+
+
 def test_a_track_can_be_moved_in_front_of_a_radar():
     truth = TrackTruth.of(track_of(TURN, np.arange(0.0, 181.0, 5.0)))
     moved = truth.moved(1000.0, -400.0)

@@ -61,7 +61,7 @@ class TrackTruth:
     def of(cls, track: Any) -> TrackTruth:
         """From what has ``time_s, north_m, east_m, vnorth_mps, veast_mps``.
 
-        That is :class:`wakeline.recording.AisTrack` or :class:`wakeline.recording.TargetTruth`.
+        That is an ``AisTrack``, a ``TargetTruth`` or an ``OwnShip`` of :mod:`wakeline.recording`.
 
         Raises
         ------
