@@ -574,7 +574,7 @@ def test_no_run_at_all_leaves_figures_empty(tmp_path):
     assert (outcome.runs, outcome.failed_runs) == (0, RUNS)
     assert np.isnan(outcome.position_rmse_m).all()
     figures = outcome.summary()
-    counts = {"runs", "failed_runs", "lost_runs", "failed_steps", "ns_per_step"}
+    counts = {"runs", "failed_runs", "lost_runs", "failed_steps"}
     assert all(value is None for name, value in figures.items() if name not in counts)
     assert result["case", "imm"].runs == RUNS
     result.save(tmp_path / "never.npz")
@@ -639,6 +639,8 @@ def test_a_covariance_that_is_none_leaves_its_scan_without_nees():
         ({"scenarios": []}, ValueError, "at least one scenario"),
         ({"candidates": {}}, ValueError, "at least one .* candidate"),
         ({"scenarios": [CASE, case()]}, ValueError, r"names that differ, got \['case', 'case'\]"),
+        ({"scenarios": ["case"]}, TypeError, "scenarios must be of type Scenario, got 'case'"),
+        ({"candidates": [IMM]}, TypeError, "candidates must be a mapping by name, got .*list"),
         ({"candidates": {"x": 3}}, TypeError, "candidate 'x' must be a Candidate or callable"),
         ({"runs": 0}, ValueError, "runs must be a whole number, at least 1, got 0"),
         ({"runs": 2.5}, ValueError, r"runs must be a whole number, at least 1, got 2\.5"),
@@ -680,13 +682,21 @@ def test_turn_rates_that_are_not_those_of_the_models():
 
 
 @pytest.mark.parametrize(
-    ("mean", "covariance"), [((1, 30, 3), (1, 30, 3, 3)), ((1, 29, 4), (1, 29, 4, 4)), ((), ())]
+    ("mean", "covariance"),
+    [
+        ((1, 30, 3), (1, 30, 3, 3)),
+        ((1, 29, 4), (1, 29, 4, 4)),
+        ((2, 30, 4), (2, 30, 4, 4)),
+        ((1, 30, 4), (1, 30, 4)),
+        ((30, 4), (30, 4, 4)),
+        ((), ()),
+    ],
 )
 def test_estimates_of_another_shape(mean, covariance):
     def odd(scene, z):
         return SimpleNamespace(mean=np.zeros(mean), covariance=np.zeros(covariance), status=0)
 
-    with pytest.raises(ValueError, match=r"'odd' must give mean \(R, T, N\) .* T = 30, got"):
+    with pytest.raises(ValueError, match=r"'odd' must give .* with R = 1, T = 30 .* got \("):
         run(CASE, {"odd": odd}, runs=1)
 
 

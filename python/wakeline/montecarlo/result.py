@@ -53,7 +53,7 @@ class Outcome:
     right_mode_share : ndarray (T,) or None
         Share of the runs whose most probable model is the one nearest to the true turn rate.
     cpu_s : float
-        CPU time of the estimator over all runs.
+        CPU time of the estimator over all runs that could start.
     """
 
     scenario: str
@@ -114,7 +114,7 @@ class Outcome:
             ``mean_position_m``, ``peak_position_m``, ``mean_velocity_mps``, ``peak_velocity_mps``:
             mean and maximum over the scans of the RMSE curves. ``settling_s``: mean over the
             switches of :func:`wakeline.metrics.settling_times_s` of the position RMSE.
-            ``ns_per_step``: CPU time of a run's step.
+            ``ns_per_step``: CPU time of a step of the runs that the curves are over.
 
             ``nees``: mean over the scans, 4 for a consistent estimator. ``nees_inside_share``:
             share of all runs' scans whose own NEES lies within its 95 % bounds.
@@ -129,7 +129,7 @@ class Outcome:
         time_s, switch_s, right = self.time_s, self.switch_times_s, self.right_mode_share
         delays = [] if right is None else metrics.detection_delays_scans(time_s, right, switch_s)
         settling_s = metrics.settling_times_s(time_s, self.position_rmse_m, switch_s)
-        steps = (self.runs + self.failed_runs) * len(time_s)
+        steps = self.runs * len(time_s)
         every = np.ones(len(time_s), dtype=bool)
         return {
             "mean_position_m": _number(np.mean(self.position_rmse_m)),
@@ -137,7 +137,7 @@ class Outcome:
             "mean_velocity_mps": _number(np.mean(self.velocity_rmse_mps)),
             "peak_velocity_mps": _number(np.max(self.velocity_rmse_mps)),
             "settling_s": _mean(settling_s) if self.runs else None,
-            "ns_per_step": _number(1e9 * self.cpu_s / steps),
+            "ns_per_step": 1e9 * self.cpu_s / steps if steps else None,
             **self._consistency("", every),
             **self._consistency("steady_", metrics.steady_scans(time_s, switch_s)),
             "nis": _mean(self.nis),

@@ -6,6 +6,8 @@ import os
 import pickle
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -95,7 +97,7 @@ def run(
     ]
     done = _told(_worked_off(chunks, threads, client), len(chunks), progress)
     outcomes = {
-        (scenario.name, name): Outcome.of(scenario, name, _total([next(done) for _ in firsts]))
+        (scenario.name, name): Outcome.of(scenario, name, reduce(add, [next(done) for _ in firsts]))
         for scenario, name in pairs
     }
     next(done, None)
@@ -115,9 +117,14 @@ def _check(
 ) -> None:
     if not scenarios or not candidates:
         raise ValueError("there must be at least one scenario and one candidate")
+    for scenario in scenarios:
+        if not isinstance(scenario, Scenario):
+            raise TypeError(f"scenarios must be of type Scenario, got {scenario!r}")
     names = [scenario.name for scenario in scenarios]
     if len(set(names)) < len(names):
         raise ValueError(f"scenarios must have names that differ, got {names}")
+    if not isinstance(candidates, Mapping):
+        raise TypeError(f"candidates must be a mapping by name, got {type(candidates)}")
     for name, candidate in candidates.items():
         if not callable(candidate):
             raise TypeError(
@@ -188,10 +195,3 @@ def _told(
     for done, item in enumerate(sums, start=1):
         progress(done, total)
         yield item
-
-
-def _total(sums: Sequence[Sums]) -> Sums:
-    total = sums[0]
-    for part in sums[1:]:
-        total = total + part
-    return total

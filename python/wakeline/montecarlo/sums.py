@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, fields, replace
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -39,7 +41,7 @@ class Sums:
     right_mode : ndarray (T,) or None
         Runs whose most probable model is the right one.
     cpu_s : float
-        Time the estimator took, starts included.
+        Time the estimator took.
     """
 
     runs: int
@@ -86,40 +88,30 @@ class Chunk:
 
 
 def sums_of(chunk: Chunk) -> Sums:
-    """Draw the readings, run the candidate and sum up."""
-    scenario = chunk.scenario
-    z = scenario.draw(chunk.runs, chunk.seed, first_run=chunk.first_run)
+    """Draw the readings, run the candidate and sum up; one by one where not all runs can start."""
+    z = chunk.scenario.draw(chunk.runs, chunk.seed, first_run=chunk.first_run)
+    try:
+        return _summed(chunk, z)
+    except core.FilterError:
+        ones = [_summed_one(chunk, z[k : k + 1]) for k in range(chunk.runs)]
+        return reduce(add, ones)
+
+
+def _summed_one(chunk: Chunk, z: np.ndarray) -> Sums:
+    """Of a single run, failed where it cannot start."""
+    try:
+        return _summed(chunk, z)
+    except core.FilterError:
+        zero = np.zeros(chunk.scenario.scans)
+        return Sums(0, 1, 0, 0, *[zero] * 6, None, None, None, 0.0)
+
+
+def _summed(chunk: Chunk, z: np.ndarray) -> Sums:
     began_s = time.thread_time()
-    try:
-        results = [chunk.candidate(scenario, z)]
-        started = chunk.runs
-    except core.FilterError:
-        results = [r for k in range(chunk.runs) if (r := _tried(chunk, z[k : k + 1])) is not None]
-        started = len(results)
+    result = chunk.candidate(chunk.scenario, z)
     cpu_s = time.thread_time() - began_s
-    total = _nothing(scenario.scans, chunk.runs - started, cpu_s)
-    for result in results:
-        total = total + _summed(chunk, result)
-    return total
-
-
-def _tried(chunk: Chunk, z: np.ndarray) -> Any:
-    """The result of one run, None where it cannot start."""
-    try:
-        return chunk.candidate(chunk.scenario, z)
-    except core.FilterError:
-        return None
-
-
-def _nothing(scans: int, failed_runs: int, cpu_s: float) -> Sums:
-    zero = np.zeros(scans)
-    return Sums(0, failed_runs, 0, 0, *[zero] * 6, None, None, None, cpu_s)
-
-
-def _summed(chunk: Chunk, result: Any) -> Sums:
-    mean, covariance = _kinematics(chunk, result)
+    mean, covariance = _kinematics(chunk, result, len(z))
     usable = np.isfinite(mean).all(axis=(1, 2))
-    failed = np.count_nonzero(~usable)
     status = np.asarray(result.status)
     error = mean[usable] - chunk.scenario.truth_states
     position_m2 = error[..., 0] ** 2 + error[..., 2] ** 2
@@ -130,7 +122,7 @@ def _summed(chunk: Chunk, result: Any) -> Sums:
     rates, estimated_rate = _rates(chunk, result, modes, usable)
     return Sums(
         runs=int(np.count_nonzero(usable)),
-        failed_runs=int(failed),
+        failed_runs=int(np.count_nonzero(~usable)),
         lost_runs=int(np.count_nonzero(position_m2[:, -1] > chunk.lost_beyond_m**2)),
         failed_steps=int(np.count_nonzero(~np.isin(status, _FINE))),
         position_m2=position_m2.sum(axis=0),
@@ -142,20 +134,20 @@ def _summed(chunk: Chunk, result: Any) -> Sums:
         mode_probability=None if modes is None else modes.sum(axis=0),
         turn_rate_rad_s=None if estimated_rate is None else estimated_rate.sum(axis=0),
         right_mode=_right_mode(chunk.scenario, modes, rates),
-        cpu_s=0.0,
+        cpu_s=cpu_s,
     )
 
 
-def _kinematics(chunk: Chunk, result: Any) -> tuple[np.ndarray, np.ndarray]:
+def _kinematics(chunk: Chunk, result: Any, runs: int) -> tuple[np.ndarray, np.ndarray]:
     """Means (R, T, 4) and covariances (R, T, 4, 4) over ``[north, vnorth, east, veast]``."""
     mean = np.asarray(result.mean, dtype=float)
     covariance = np.asarray(result.covariance, dtype=float)
     states = mean.shape[-1] if mean.ndim else 0
-    told = mean.ndim == 3 and mean.shape[1] == chunk.scenario.scans
+    told = mean.shape == (runs, chunk.scenario.scans, states)
     if not (told and states in _KINEMATICS and covariance.shape == (*mean.shape, states)):
         raise ValueError(
             f"candidate {chunk.candidate_name!r} must give mean (R, T, N) and covariance "
-            f"(R, T, N, N) with N of 4, 5 or 6 and T = {chunk.scenario.scans}, "
+            f"(R, T, N, N) with R = {runs}, T = {chunk.scenario.scans} and N of 4, 5 or 6, "
             f"got {mean.shape} and {covariance.shape}"
         )
     at = _KINEMATICS[states]
