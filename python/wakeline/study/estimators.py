@@ -16,9 +16,7 @@ def turn_filter(rate_deg_s: float, noise: Any) -> wl.Ekf:
     return wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=np.deg2rad(rate_deg_s), noise=noise))
 
 
-def turn_imm(
-    rates_deg_s: Sequence[float], noise: Any, *, stay: float = 0.9, straight: float | None = None
-) -> wl.Imm:
+def turn_imm(rates_deg_s: Sequence[float], noise: Any, *, stay: float = 0.9) -> wl.Imm:
     """An IMM of coordinated turns at known rates.
 
     Parameters
@@ -27,17 +25,14 @@ def turn_imm(
         Turn rates in degrees a second, 0 among them.
     noise : process noise
     stay : float
-        Probability to stay in a mode from scan to scan; the rest is shared alike.
-    straight : float, optional
-        Initial probability of rate 0, the rest is shared alike; default `stay`.
+        Probability to stay in a mode from scan to scan, and of rate 0 at a start; the rest is
+        shared alike.
     """
     filters = [turn_filter(rate, noise) for rate in rates_deg_s]
     return wl.Imm(
         filters=filters,
         chain=wl.ModeChain(sticky_chain(len(filters), stay)),
-        initial_mode_probability=peaked(
-            len(filters), list(rates_deg_s).index(0), stay if straight is None else straight
-        ),
+        initial_mode_probability=peaked(len(filters), list(rates_deg_s).index(0), stay),
     )
 
 

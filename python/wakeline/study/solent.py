@@ -12,7 +12,7 @@ minutes and is heard every 7 s or oftener.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -28,7 +28,7 @@ from wakeline.scenario import RadarSimulator, Scenario, TrackTruth
 
 from . import curves
 from .base import Picture, Report, Rows
-from .estimators import exists, sticky_chain, turn_filter, turn_imm
+from .estimators import exists, peaked, turn_filter
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,8 +52,9 @@ _MIN_STEP_S, _MAX_STEP_S, _MAX_GAP_S = 0.5, 7.0, 25.0
 _MIN_DURATION_S = 180.0
 _COVERAGE_M = 10e3
 _START_SPEED_STD_MPS = 10.0
-_NOISE = WhiteAcceleration(psd_m2s3=0.03)
-_OTHER_NOISES_M2S3 = (0.003, 0.01, 0.1)
+_NOISE = WhiteAcceleration(psd_m2s3=0.06)
+_STRAIGHT_S, _TURN_S = 200.0, 20.0
+_OTHER_NOISES_M2S3 = (0.003, 0.01, 0.3)
 _SHOWN = ("kalman_cv", "imm5", "mode_history")
 _SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
 
@@ -133,9 +134,9 @@ def after_turn(scenario: Scenario) -> np.ndarray:
 def estimators() -> dict[str, Any]:
     """Every estimator by name, with its one tuning.
 
-    Models of one filter have the defaults of the library; turns at known rates have a white
-    acceleration of 0.03 m²/s³ and stay with 0.95 from scan to scan; what else there is stands at
-    its default.
+    Models of one filter have the defaults of the library. Those of turns have a white acceleration
+    of 0.06 m²/s³; a straight goes on for 200 s and a turn for 20 s in the mean where a model is
+    either of them for good. What else there is stands at its default.
     """
     return {name: build() for name, (build, *needs) in _TABLE.items() if exists(*needs)}
 
@@ -147,28 +148,48 @@ def noise_variants() -> dict[str, Any]:
         f"kalman_cv_psd_{psd:g}": wl.Ekf(wl.ConstantVelocity(noise=noise))
         for psd, noise in noises.items()
     }
-    turns = {
-        f"imm3_psd_{psd:g}": turn_imm((0, 2, -2), noise, stay=0.95) for psd, noise in noises.items()
+    return straight | {
+        f"imm3_psd_{psd:g}": _imm((0, 2, -2), noise) for psd, noise in noises.items()
     }
-    return straight | turns
+
+
+def _imm(rates_deg_s: Sequence[float], noise: Any = _NOISE) -> wl.Imm:
+    """A straight, which comes first, and turns at known rates."""
+    return _straight_first([turn_filter(rate, noise) for rate in rates_deg_s])
 
 
 def _imm_rate() -> wl.Imm:
-    """Straight on, and a turn whose rate is part of the state."""
+    """A straight, and a turn whose rate is part of the state."""
+    return _straight_first(
+        [wl.Ekf(wl.ConstantVelocity(noise=_NOISE)), wl.Ekf(wl.CoordinatedTurnRate(noise=_NOISE))]
+    )
+
+
+def _straight_first(filters: list[wl.Ekf]) -> wl.Imm:
+    turns = len(filters) - 1
     return wl.Imm(
-        [wl.Ekf(wl.ConstantVelocity(noise=_NOISE)), wl.Ekf(wl.CoordinatedTurnRate(noise=_NOISE))],
-        wl.ModeChain(sticky_chain(2, 0.95)),
-        [0.95, 0.05],
+        filters,
+        wl.ModeChain.from_sojourn_s([_STRAIGHT_S, *[_TURN_S] * turns]),
+        peaked(len(filters), 0, 0.9),
     )
 
 
 def _adaptive() -> Any:
-    return wl.AdaptiveGridImm(filter=turn_filter(0.0, _NOISE), max_turn_rate_rad_s=np.deg2rad(5.0))
+    return wl.AdaptiveGridImm(turn_filter(0.0, _NOISE), max_turn_rate_rad_s=np.deg2rad(5.0))
 
 
 def _switching() -> Any:
-    grid_rad_s = np.deg2rad([-4.0, -2.0, 0.0, 2.0, 4.0])
-    return wl.SwitchingGridImm(filter=turn_filter(0.0, _NOISE), grid_rad_s=grid_rad_s)
+    return wl.SwitchingGridImm(turn_filter(0.0, _NOISE), np.deg2rad([-4.0, -2.0, 0.0, 2.0, 4.0]))
+
+
+def _likely() -> Any:
+    return wl.LikelyModelSetImm(turn_filter(0.0, _NOISE), np.deg2rad(range(-4, 5)))
+
+
+def _histories() -> Any:
+    return wl.ModeHistory(
+        turn_filter(0.0, _NOISE), straight_sojourn_s=_STRAIGHT_S, turn_sojourn_s=_TURN_S
+    )
 
 
 _TABLE: dict[str, tuple[Any, ...]] = {
@@ -178,12 +199,14 @@ _TABLE: dict[str, tuple[Any, ...]] = {
     "singer": (lambda: wl.Ekf(wl.Singer()),),
     "ekf_turn_rate": (lambda: wl.Ekf(wl.CoordinatedTurnRate()),),
     "ukf_turn_rate": (lambda: wl.Ukf(wl.CoordinatedTurnRate()),),
-    "imm3": (lambda: turn_imm((0, 2, -2), _NOISE, stay=0.95),),
-    "imm5": (lambda: turn_imm((-4, -2, 0, 2, 4), _NOISE, stay=0.95),),
+    "imm3": (lambda: _imm((0, 2, -2)),),
+    "imm5": (lambda: _imm((0, 2, -2, 4, -4)),),
     "imm_turn_rate": (_imm_rate,),
     "vessel_imm": (lambda: wl.vessel_imm(wl.Radar()),),
     "agmm": (_adaptive, "AdaptiveGridImm"),
     "sgmm": (_switching, "SwitchingGridImm"),
+    "likely_model_set": (_likely, "LikelyModelSetImm"),
+    "mode_history": (_histories, "ModeHistory"),
 }
 
 
@@ -370,8 +393,9 @@ def _draw_track(ax: Axes, radar: str, seed: int) -> Axes:
     scene = next(one for one in scenes(radar) if one.name.endswith(_SHOWN_STRETCH))
     z, built = scene.draw(1, seed), estimators()
     count = int(_SHOWN_S // scene.radar.period_s)
-    turning = after_turn(scene)[1:] & (scene.time_s[1:] > _SETTLE_S)
-    first = int(np.convolve(turning, np.ones(count), "valid").argmax())
+    settled = int(_SETTLE_S // scene.radar.period_s)
+    turning = np.convolve(after_turn(scene)[1 + settled :], np.ones(count), "valid")
+    first = settled + int(turning.argmax())
     part = slice(first, first + count)
     tracks = {name: track(scene, built[name], z)[0, part] for name in _SHOWN if name in built}
     return plot.paths_view(

@@ -14,7 +14,7 @@ from wakeline import PiecewiseAcceleration, montecarlo, plot
 from wakeline.montecarlo import Candidate
 from wakeline.scenario import Scenario
 
-from ..estimators import exists, turn_candidate, turn_filter
+from ..estimators import exists, sticky_chain, turn_candidate, turn_filter
 
 LABELS = {
     "imm5": "IMM5",
@@ -22,13 +22,16 @@ LABELS = {
     "agmm": "AGMM",
     "sgmm": "SGMM",
     "likely_model_set": "LMS",
-    "mode_history": "mode histories",
+    "mode_history": "histories",
     "clairvoyant": "clairvoyant",
     "imm5_converted": "IMM5, converted",
     "agmm_converted": "AGMM, converted",
     "sgmm_converted": "SGMM, converted",
 }
-COLORS = dict(zip(LABELS.values(), plot.PALETTE, strict=False)) | {"clairvoyant": plot.INK}
+COLORS = dict(
+    zip(("IMM5", "histories", "AGMM", "SGMM", "LMS", "IMM9"), plot.PALETTE, strict=False),
+    clairvoyant=plot.INK,
+)
 
 POLAR, CONVERTED = "polar", "converted"
 _NOISE = {
@@ -97,7 +100,24 @@ def likely_model_set(setting: Setting, form: str) -> Candidate:
 
 def mode_history(setting: Setting, form: str) -> Candidate:
     """A tree of mode histories over nine rates, at its defaults."""
-    return Candidate(wl.ModeHistory(_turning(form), np.deg2rad(_NINE_DEG_S)), form)
+    rates_rad_s = np.deg2rad(_NINE_DEG_S)
+    return Candidate(wl.ModeHistory(_turning(form), rates_rad_s), form, rates_rad_s)
+
+
+def unmixed(setting: Setting, form: str) -> dict[str, Candidate]:
+    """IMM5, and estimators of its rates and its chain that mix less and less."""
+    filter, rates_rad_s = _turning(form), np.deg2rad(setting.imm5_deg_s)
+    chain = wl.ModeChain(sticky_chain(len(rates_rad_s), _STAY))
+    apart = partial(
+        wl.ModeHistory, filter, rates_rad_s, chain=chain, min_segment_s=0.0, switch_time_spread=0.0
+    )
+    built = {f"gpb{n}": wl.ModeHistory.pseudo_bayes(n, filter, rates_rad_s) for n in (1, 2, 3)} | {
+        "histories_joined": apart(),
+        "histories_apart": apart(merge_distance=0.0),
+    }
+    return {"imm5": imm5(setting, form)} | {
+        name: Candidate(estimator, form, rates_rad_s) for name, estimator in built.items()
+    }
 
 
 def centre_rates(candidate: Candidate, example: Scenario, z: np.ndarray) -> np.ndarray:

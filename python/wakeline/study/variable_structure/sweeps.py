@@ -47,6 +47,8 @@ def swept() -> Iterator[tuple[Scenario, dict[str, Any]]]:
     for name in ("example1", "example2"):
         example = scenario.named(name)
         yield replace(example, name=f"{name}_settings"), _variants(SETTINGS[name])
+        if candidates.exists("ModeHistory"):
+            yield replace(example, name=f"{name}_mixing"), candidates.unmixed(SETTINGS[name], POLAR)
         yield replace(example, name=f"{name}_from_plots"), _from_plots(example, SETTINGS[name])
 
 
