@@ -328,7 +328,10 @@ def test_what_is_saved_is_loaded(result, tmp_path):
         o.cpu_s for o in result.outcomes.values()
     ]
     assert (loaded.runs, loaded.seed, loaded.version) == (RUNS, 0, wl.__version__)
-    assert loaded.parameters == {"chunk_runs": 25, "lost_beyond_m": 500.0}
+    assert loaded.parameters == result.parameters
+    assert (loaded.parameters["chunk_runs"], loaded.parameters["lost_beyond_m"]) == (25, 500.0)
+    seldom = {"range_std_m": 30.0, "period_s": 3.0, "detection_probability": 0.8, "scans": 30.0}
+    assert loaded.parameters["scenarios"]["seldom"].items() >= seldom.items()
     assert loaded.summary() == result.summary()
     assert (loaded.scenarios, loaded.candidates) == (["case", "seldom"], ["imm", "told"])
 

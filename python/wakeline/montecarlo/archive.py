@@ -28,7 +28,7 @@ def save(
     outcomes: Mapping[tuple[str, str], Any],
     runs: int,
     seed: int,
-    parameters: Mapping[str, float],
+    parameters: Mapping[str, Any],
     version: str,
 ) -> None:
     """Write the outcomes and what they were made with."""

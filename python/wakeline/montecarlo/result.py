@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -120,8 +121,8 @@ class Outcome:
             share of all runs' scans whose own NEES lies within its 95 % bounds.
             ``mean_nees_inside_share``: share of the scans whose mean over the runs lies within the
             95 % bounds of that mean, narrow with many runs. The three again with ``steady_`` before
-            them leave out the three scans after each switch. ``nis`` and
-            ``mean_nis_inside_share``: the same of the innovations, 2 for a consistent estimator.
+            them leave out the three scans after each switch. ``nis``, ``mean_nis_inside_share``: as
+            those of the NEES, of the innovations; 2 for a consistent estimator.
 
             ``right_mode_share``, ``detection_delay_scans``: mean over the scans and over the
             switches. ``runs``, ``failed_runs``, ``lost_runs``, ``failed_steps``: counts.
@@ -194,8 +195,9 @@ class Result:
         By names of scenario and candidate, in the order in which they were given.
     runs, seed : int
         As given to :func:`wakeline.montecarlo.run`.
-    parameters : mapping of str to number
-        What else the figures depend on.
+    parameters : mapping
+        What else the figures depend on: ``chunk_runs``, ``lost_beyond_m`` and, in ``scenarios``,
+        the ``parameters`` of each scenario by its name.
     version : str
         Of Wakeline, that made it.
     """
@@ -203,7 +205,7 @@ class Result:
     outcomes: Mapping[tuple[str, str], Outcome] = field(repr=False)
     runs: int
     seed: int
-    parameters: Mapping[str, float] = field(default_factory=dict)
+    parameters: Mapping[str, Any] = field(default_factory=dict)
     version: str = field(default_factory=archive.current_version)
 
     def __getitem__(self, names: tuple[str, str]) -> Outcome:

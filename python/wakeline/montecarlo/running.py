@@ -101,9 +101,12 @@ def run(
         for scenario, name in pairs
     }
     next(done, None)
-    return Result(
-        outcomes, runs, seed, {"chunk_runs": CHUNK_RUNS, "lost_beyond_m": float(lost_beyond_m)}
-    )
+    parameters = {
+        "chunk_runs": CHUNK_RUNS,
+        "lost_beyond_m": float(lost_beyond_m),
+        "scenarios": {scenario.name: scenario.parameters for scenario in scenarios},
+    }
+    return Result(outcomes, runs, seed, parameters)
 
 
 def _check(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -117,6 +117,13 @@ class Scenario:
         """
         switch_s = np.asarray(getattr(self.truth, "switch_times_s", ()), dtype=float)
         return switch_s[(switch_s > self.start_time_s) & (switch_s < self.time_s[-1])]
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The numbers of the radar and of the scenario by name; results are kept with them."""
+        own = ("scans", "position_std_m", "velocity_std_mps", "start_time_s")
+        numbers = asdict(self.radar) | {name: getattr(self, name) for name in own}
+        return {name: float(value) for name, value in numbers.items()}
 
     @property
     def start(self) -> core.Gaussian:
