@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <variant>
 
 #include "any_filter.hpp"
 #include "types.hpp"
@@ -36,6 +37,9 @@ inline AnyBelief to_start(const char* name, const PyGaussian& gaussian, int stat
   return to_belief(name, gaussian);
 }
 
+/// The sensors that estimators take.
+using AnySensor = std::variant<RangeBearing, ConvertedRangeBearing, Position, RangeBearingDoppler>;
+
 /// Calls `function(sensor)` with the C++ sensor behind a Python one.
 template <class Function>
 auto visit_sensor(const py::handle& sensor, Function&& function) {
@@ -52,18 +56,15 @@ auto visit_sensor(const py::handle& sensor, Function&& function) {
 }
 
 /// Throws ValueError when a Kalman filter is given a sensor that is not linear.
-template <class Sensor>
-void require_linear(const AnyFilter& filter) {
-  if (filter.linear() && !Sensor::kLinear)
-    throw py::value_error(
-        "sensor must be linear for Kalman: use ConvertedRangeBearing or Position, or Ekf or Ukf");
-}
-
 template <class Sensor, class Estimator>
 void require_linear(const Estimator& estimator) {
-  if constexpr (requires { estimator.bank(); })
+  if constexpr (requires { estimator.bank(); }) {
     for (int k = 0; k < estimator.bank().size(); ++k)
       require_linear<Sensor>(estimator.bank().filter(static_cast<std::size_t>(k)));
+  } else if (estimator.linear() && !Sensor::kLinear) {
+    throw py::value_error(
+        "sensor must be linear for Kalman: use ConvertedRangeBearing or Position, or Ekf or Ukf");
+  }
 }
 
 // What `run` and the faces ask of an estimator.

@@ -2,16 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "any_turn_grids.hpp"
 #include "face.hpp"
-#include "wakeline/multimodel/adaptive_grid_imm.hpp"
-#include "wakeline/multimodel/switching_grid_imm.hpp"
+#include "turn_grid.hpp"
 
 namespace wakeline::python {
 namespace {
-
-using Chain = ModeChain<kRuntimeModes>;
-using AnyAdaptiveGridImm = AdaptiveGridImm<AnyFilterBank>;
-using AnySwitchingGridImm = SwitchingGridImm<AnyFilterBank>;
 
 Chain make_chain(const DoubleArray& matrix, const std::optional<double>& period_s) {
   require_shape(matrix.ndim() == 2 && matrix.shape(0) == matrix.shape(1) && matrix.shape(0) > 0 &&
@@ -41,24 +37,6 @@ std::vector<AnyFilter> to_filters(const py::sequence& sequence) {
   return filters;
 }
 
-/// `count` filters like `filter`, which must have a known turn rate.
-AnyFilterBank turning_bank(const AnyFilter& filter, int count) {
-  if (!filter.turns())
-    throw py::value_error("filter must be one over CoordinatedTurn, whose turn rate can change");
-  return AnyFilterBank(std::vector<AnyFilter>(static_cast<std::size_t>(count), filter));
-}
-
-/// The chain given, or the one that stays with that probability.
-Chain chain_of(const std::optional<Chain>& chain, double stay_probability, int modes) {
-  return chain ? *chain : Chain::staying(stay_probability, modes);
-}
-
-TurnRateGrid to_grid(const DoubleArray& rates) {
-  const Eigen::VectorXd vector = to_vector("grid_rad_s", rates);
-  return TurnRateGrid(
-      std::span<const double>(vector.data(), static_cast<std::size_t>(vector.size())));
-}
-
 /// One of the words of an option.
 template <class Option>
 Option to_option(const char* name, const std::string& word,
@@ -71,20 +49,16 @@ Option to_option(const char* name, const std::string& word,
   throw py::value_error(std::string(name) + " must be " + wanted + ", got '" + word + "'");
 }
 
-template <class Estimator>
-Estimator with_initial(Estimator estimator, const std::optional<DoubleArray>& initial) {
-  if (initial)
-    estimator.set_initial_mode_probability(
-        to_vector("initial_mode_probability", *initial, estimator.mode_probability().size()));
-  return estimator;
-}
-
 void define_adaptive_grid(py::module_& m) {
   const AdaptiveGrid grid;
   py::class_<AnyAdaptiveGridImm> adaptive(m, "AdaptiveGridImm",
                                           R"(Three turn models whose rates move with the target.
 
 The turn rates move before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
+
+The printed rule is that of centre_threshold 0.3, centre_gain 1 and kept_spacing_rad_s 0. Its grid collapses to half of
+min_spacing_rad_s to each side, where the rates may differ too little to be told apart, and nothing opens it again. The
+defaults keep it open and move its centre with patience.
 
 Parameters
 ----------
@@ -96,8 +70,12 @@ initial_turn_rates_rad_s : (3,) array, optional
     Left, centre and right at a start, rising; zero and half the maximum to each side when left out. Not printed.
 min_spacing_rad_s : float
     The least spacing that a move starts from. Not printed.
+kept_spacing_rad_s : float
+    No side comes nearer to the centre, but for the maximum: what keeps the grid open. Not in the paper: 0.
 centre_threshold : float
-    A centre less probable than this moves to the probable rate.
+    A centre less probable than this moves towards the mean rate. In the paper 0.3.
+centre_gain : float
+    How far it moves towards it. Not in the paper: 1, all the way.
 unlikely_threshold : float
     A side less probable than this comes half way nearer.
 likely_threshold : float
@@ -120,11 +98,14 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
   adaptive.def(
       py::init([](const AnyFilter& filter, double max_rate,
                   const std::optional<DoubleArray>& initial_rates, double min_spacing,
-                  double centre, double unlikely, double likely, double stay,
-                  const std::optional<Chain>& chain, const std::optional<DoubleArray>& initial) {
+                  double kept_spacing, double centre, double gain, double unlikely, double likely,
+                  double stay, const std::optional<Chain>& chain,
+                  const std::optional<DoubleArray>& initial) {
         AdaptiveGrid grid{.max_turn_rate_rad_s = max_rate,
                           .min_spacing_rad_s = min_spacing,
+                          .kept_spacing_rad_s = kept_spacing,
                           .centre_threshold = centre,
+                          .centre_gain = gain,
                           .unlikely_threshold = unlikely,
                           .likely_threshold = likely};
         if (initial_rates) {
@@ -137,7 +118,9 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
       py::arg("filter"), py::kw_only(), py::arg("max_turn_rate_rad_s") = grid.max_turn_rate_rad_s,
       py::arg("initial_turn_rates_rad_s") = py::none(),
       py::arg("min_spacing_rad_s") = grid.min_spacing_rad_s,
+      py::arg("kept_spacing_rad_s") = grid.kept_spacing_rad_s,
       py::arg("centre_threshold") = grid.centre_threshold,
+      py::arg("centre_gain") = grid.centre_gain,
       py::arg("unlikely_threshold") = grid.unlikely_threshold,
       py::arg("likely_threshold") = grid.likely_threshold, py::arg("stay_probability") = 0.9,
       py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none());
@@ -155,10 +138,10 @@ Parameters
 ----------
 filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
     What all three models are like; its turn rate does not matter.
-grid_rad_s : (3 to 16,) array
-    Turn rates, rising.
+grid_rad_s : (3 to 16,) array, optional
+    Turn rates, rising; 2.5 deg/s apart up to 5 deg/s to each side when left out.
 threshold : float
-    A model more probable than this decides.
+    A model more probable than this decides. In the paper 0.7, with which the window often comes too late.
 rule : 'symmetric' or 'literal'
     Left if the left model is above the threshold, right if the right one is, else stay; or as printed: left if the left
     one is, stay if the centre is, else right.
@@ -183,12 +166,12 @@ References
 ----------
 Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.2.)");
   switching.def(
-      py::init([](const AnyFilter& filter, const DoubleArray& rates, double threshold,
-                  const std::string& rule, const std::string& carry,
+      py::init([](const AnyFilter& filter, const std::optional<DoubleArray>& rates,
+                  double threshold, const std::string& rule, const std::string& carry,
                   const std::optional<int>& centre, double stay, const std::optional<Chain>& chain,
                   const std::optional<DoubleArray>& initial) {
         const SwitchingGrid grid{
-            .grid_rad_s = to_grid(rates),
+            .grid_rad_s = rates ? to_grid(*rates) : SwitchingGrid{}.grid_rad_s,
             .threshold = threshold,
             .rule = to_option<SwitchRule>(
                 "rule", rule,
@@ -200,14 +183,66 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
         return with_initial(
             AnySwitchingGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial);
       }),
-      py::arg("filter"), py::arg("grid_rad_s"), py::kw_only(),
+      py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
       py::arg("threshold") = grid.threshold, py::arg("rule") = "symmetric",
-      py::arg("carry") = "slot", py::arg("initial_centre") = py::none(),
+      py::arg("carry") = "identity", py::arg("initial_centre") = py::none(),
       py::arg("stay_probability") = 0.9, py::arg("chain") = py::none(),
       py::arg("initial_mode_probability") = py::none());
   switching.def_property_readonly("centre", &AnySwitchingGridImm::centre,
                                   "Index of the window's middle in the grid.");
   define_face(switching);
+}
+
+void define_likely_model_set(py::module_& m) {
+  const LikelyModelSet set;
+  py::class_<AnyLikelyModelSetImm> likely(m, "LikelyModelSetImm",
+                                          R"(Turn models that join and leave by their probability.
+
+All are active at a start. Before each prediction that follows an update the unlikely ones go to rest and the neighbours
+of the likely ones join; the most probable one always has its neighbours with it. Has the face of `Imm`; a model at rest
+has probability 0 and turn rate NaN.
+
+Parameters
+----------
+filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+    What all models are like; its turn rate does not matter.
+grid_rad_s : (2 to 16,) array, optional
+    Turn rates, rising; 2 deg/s apart up to 4 deg/s to each side when left out.
+unlikely_threshold : float
+    A model less probable than this leaves.
+likely_threshold : float
+    One at least as probable as this has its neighbours join it.
+stay_probability : float
+    Of the models' chain: to stay, the rest to each other active model alike.
+chain : ModeChain, optional
+    Another chain of as many modes; what leads to a model at rest goes to the active ones.
+initial_mode_probability : (K,) array, optional
+    What a start begins with; 0.9 for the straightest when left out.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense.
+
+References
+----------
+X. R. Li, Y. Zhang, IEEE Trans. AES-36, 2000: the likely-model set.)");
+  likely.def(
+      py::init([](const AnyFilter& filter, const std::optional<DoubleArray>& rates, double unlikely,
+                  double principal, double stay, const std::optional<Chain>& chain,
+                  const std::optional<DoubleArray>& initial) {
+        LikelyModelSet set{.unlikely_threshold = unlikely, .likely_threshold = principal};
+        if (rates) set.grid_rad_s = to_grid(*rates);
+        const int models = set.grid_rad_s.size();
+        return with_initial(
+            AnyLikelyModelSetImm(set, chain_of(chain, stay, models), turning_bank(filter, models)),
+            initial);
+      }),
+      py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
+      py::arg("unlikely_threshold") = set.unlikely_threshold,
+      py::arg("likely_threshold") = set.likely_threshold, py::arg("stay_probability") = 0.9,
+      py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none());
+  define_face(likely);
 }
 
 }  // namespace
@@ -269,6 +304,7 @@ initial_mode_probability : (K,) array, optional
 
   define_adaptive_grid(m);
   define_switching_grid(m);
+  define_likely_model_set(m);
 }
 
 }  // namespace wakeline::python

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -12,6 +13,12 @@
 #include "estimators.hpp"
 
 namespace wakeline::python {
+
+/// True for a multi-model estimator over filters composed at run time.
+template <class>
+inline constexpr bool kOverAnyFilters = false;
+template <template <class> class Estimator>
+inline constexpr bool kOverAnyFilters<Estimator<AnyFilterBank>> = true;
 
 /// Arrays (..., T, ...) of one or R runs.
 struct RunResult {
@@ -48,6 +55,7 @@ Sensor seen_from(const Sensor& sensor, const double* own) noexcept {
 
 /// Memory of the results, `states` and `models` to a scan.
 struct RunOutput {
+  std::size_t states, models;
   double *mean, *covariance, *modes, *rates, *nis, *log_likelihood;
   std::uint8_t* status;
 };
@@ -56,8 +64,7 @@ template <class Estimator, class Sensor>
 void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std::size_t run,
              const RunOutput& out) noexcept {
   constexpr int kM = Sensor::kMeasurements;
-  const auto states = static_cast<std::size_t>(states_of(estimator));
-  const auto models = static_cast<std::size_t>(models_of(estimator));
+  const auto [states, models] = std::pair(out.states, out.models);
   for (std::size_t scan = 0; scan < in.scans; ++scan) {
     const std::size_t row = run * in.scans + scan;
     const Vec<double, kM> z = Eigen::Map<const Vec<double, kM>>(in.z + row * kM);
@@ -80,7 +87,7 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
         }
       }
     }
-    const AnyBelief belief = estimator.estimate();
+    const auto belief = estimator.estimate();
     for (std::size_t i = 0; i < states; ++i) {
       const auto a = static_cast<Eigen::Index>(i);
       out.mean[row * states + i] = belief.mean[a];
@@ -100,6 +107,25 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
     out.status[row] = static_cast<std::uint8_t>(status);
   }
 }
+
+/// All runs, one after the other, each begun with `belief_of(AnyBelief)`. Throws where one cannot
+/// start.
+template <class Estimator, class Sensor, class BeliefOf = std::identity>
+void run_all(Estimator estimator, const Sensor& sensor, const RunInput& in, const RunOutput& out,
+             const BeliefOf& belief_of = {}) {
+  for (std::size_t r = 0; r < in.runs; ++r) {
+    const Status started = estimator.start(belief_of(in.start[in.start.size() == 1 ? 0 : r]));
+    if (started != Status::kOk)
+      throw FilterError("start of run " + std::to_string(r) + ": " + to_string(started));
+    run_one(estimator, sensor, in, r, out);
+  }
+}
+
+/// `run_all` of an estimator whose filters are all extended Kalman filters of known turn rates,
+/// composed anew at compile time: the same bits, sooner. False, and nothing done, for any other.
+template <class Estimator>
+bool run_turns(const Estimator& prototype, const AnySensor& sensor, const RunInput& in,
+               const RunOutput& out);
 
 /// The beliefs that `start` means: one Gaussian for all runs or a sequence of R.
 std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs, int states);
@@ -157,19 +183,20 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
     if (models > 0) result.mode_probability = modes;
     py::array_t<double> rates(with({kHasTurnRates<Estimator> ? models : 0}));
     if (kHasTurnRates<Estimator>) result.turn_rate_rad_s = rates;
-    const RunOutput out{result.mean.mutable_data(),  result.covariance.mutable_data(),
-                        modes.mutable_data(),        rates.mutable_data(),
-                        result.nis.mutable_data(),   result.log_likelihood.mutable_data(),
+    const RunOutput out{static_cast<std::size_t>(states),
+                        static_cast<std::size_t>(models),
+                        result.mean.mutable_data(),
+                        result.covariance.mutable_data(),
+                        modes.mutable_data(),
+                        rates.mutable_data(),
+                        result.nis.mutable_data(),
+                        result.log_likelihood.mutable_data(),
                         result.status.mutable_data()};
     {
       const py::gil_scoped_release release;
-      Estimator estimator = prototype;
-      for (std::size_t r = 0; r < in.runs; ++r) {
-        const Status started = estimator.start(in.start[in.start.size() == 1 ? 0 : r]);
-        if (started != Status::kOk)
-          throw FilterError("start of run " + std::to_string(r) + ": " + to_string(started));
-        run_one(estimator, model, in, r, out);
-      }
+      bool done = false;
+      if constexpr (kOverAnyFilters<Estimator>) done = run_turns(prototype, model, in, out);
+      if (!done) run_all(prototype, model, in, out);
     }
     return result;
   });

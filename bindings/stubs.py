@@ -15,6 +15,7 @@ from wakeline import _engine
 
 STUBS = Path(__file__).parents[1] / "python" / "wakeline" / "_engine"
 SENSOR = "RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position"
+ESTIMATOR = "Imm | AdaptiveGridImm | SwitchingGridImm | LikelyModelSetImm"
 NOISE = "ProcessNoise | WhiteAcceleration | PiecewiseAcceleration | WhiteJerk"
 WORDS = [
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
@@ -22,6 +23,7 @@ WORDS = [
     (r"typing\.Annotated\[numpy\.typing\.ArrayLike, [\w.]+\]", "ArrayLike"),
     (r"numpy\.typing\.NDArray\[numpy\.(\w+)\]", r"NDArray[np.\1]"),
     (r"\bsensor: typing\.Any", f"sensor: {SENSOR}"),
+    (r"\bestimator: typing\.Any", f"estimator: {ESTIMATOR} | None"),
     (r"\bnoise: ProcessNoise\b", f"noise: {NOISE}"),
     (r"\bstart: typing\.Any", "start: Gaussian | Sequence[Gaussian]"),
     (r"\bdt_s: typing\.Any", "dt_s: ArrayLike"),
@@ -65,7 +67,7 @@ HOMES = {
         "Singer",
         "WanderingCourse",
     ],
-    "multimodel": ["Imm"],
+    "multimodel": ["AdaptiveGridImm", "Imm", "LikelyModelSetImm", "SwitchingGridImm"],
 }
 
 

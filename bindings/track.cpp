@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 
+#include "any_estimator.hpp"
 #include "estimators.hpp"
 #include "wakeline/track/tracker.hpp"
 #include "wakeline/track/vessel_models.hpp"
@@ -10,7 +11,7 @@
 namespace wakeline::python {
 namespace {
 
-using AnyTracker = Tracker<AnyImm>;
+using AnyTracker = Tracker<AnyEstimator>;
 
 /// A plain struct of settings as a Python class: keyword arguments, attributes, and an error that
 /// names what is unknown.
@@ -161,6 +162,20 @@ DoubleArray column(const char* name, const py::object& values, py::ssize_t plots
   return array;
 }
 
+/// The engine's estimator behind a Python one.
+AnyEstimator to_estimator(const py::object& estimator) {
+  if (py::isinstance<AnyImm>(estimator)) return estimator.cast<const AnyImm&>();
+  if (py::isinstance<AnyAdaptiveGridImm>(estimator))
+    return estimator.cast<const AnyAdaptiveGridImm&>();
+  if (py::isinstance<AnySwitchingGridImm>(estimator))
+    return estimator.cast<const AnySwitchingGridImm&>();
+  if (py::isinstance<AnyLikelyModelSetImm>(estimator))
+    return estimator.cast<const AnyLikelyModelSetImm&>();
+  throw py::type_error(
+      "estimator must be Imm, AdaptiveGridImm, SwitchingGridImm or LikelyModelSetImm, got " +
+      py::str(py::type::of(estimator).attr("__name__")).cast<std::string>());
+}
+
 PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
                  const DoubleArray& bearing_rad, const py::object& plot_time_s,
                  const py::object& own_north_m, const py::object& own_east_m,
@@ -195,12 +210,12 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
 
 PyTracks tracks(const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {
   if (time_s && !std::isfinite(*time_s)) throw py::value_error("time_s must be finite");
-  std::vector<const Track<AnyImm>*> wanted;
-  tracker.for_each([&](const Track<AnyImm>& track) {
+  std::vector<const Track<AnyEstimator>*> wanted;
+  tracker.for_each([&](const Track<AnyEstimator>& track) {
     if (tentative || track.shown()) wanted.push_back(&track);
   });
   const auto count = static_cast<py::ssize_t>(wanted.size());
-  const py::ssize_t modes = tracker.prototype().bank().size();
+  const py::ssize_t modes = tracker.prototype().mode_probability().size();
   PyTracks table{py::array_t<std::int64_t>(count),
                  {},
                  py::array_t<double>(count),
@@ -214,7 +229,7 @@ PyTracks tracks(const AnyTracker& tracker, const std::optional<double>& time_s, 
                  py::array_t<std::int64_t>(count),
                  {}};
   for (py::ssize_t k = 0; k < count; ++k) {
-    const Track<AnyImm>& track = *wanted[static_cast<std::size_t>(k)];
+    const Track<AnyEstimator>& track = *wanted[static_cast<std::size_t>(k)];
     const Gaussian<4> belief = time_s ? tracker.kinematics_at(track, *time_s) : track.kinematics;
     table.track_id.mutable_at(k) = track.id;
     table.status.emplace_back(status_name(track.status));
@@ -357,7 +372,7 @@ radar : Radar
 config : TrackerConfig, optional
 models : VesselModels, optional
     Motion models of the estimator.
-estimator : Imm, optional
+estimator : Imm, AdaptiveGridImm, SwitchingGridImm or LikelyModelSetImm, optional
     Another estimator in place of that made of `models`.
 
 Raises
@@ -365,8 +380,10 @@ Raises
 ValueError
     When a setting makes no sense.)")
       .def(py::init([](const Radar& r, const TrackerConfig& c, const VesselModels& v,
-                       const std::optional<AnyImm>& estimator) {
-             return AnyTracker(r, c, estimator ? *estimator : any_vessel_imm(r, v));
+                       const py::object& estimator) {
+             return AnyTracker(r, c,
+                               estimator.is_none() ? AnyEstimator(any_vessel_imm(r, v))
+                                                   : to_estimator(estimator));
            }),
            py::arg("radar"), py::arg_v("config", TrackerConfig{}, "TrackerConfig()"),
            py::arg_v("models", VesselModels{}, "VesselModels()"), py::arg("estimator") = py::none())

@@ -65,7 +65,13 @@ from ._engine.motion import (
     WhiteAcceleration,
     WhiteJerk,
 )
-from ._engine.multimodel import AdaptiveGridImm, Imm, ModeChain, SwitchingGridImm
+from ._engine.multimodel import (
+    AdaptiveGridImm,
+    Imm,
+    LikelyModelSetImm,
+    ModeChain,
+    SwitchingGridImm,
+)
 from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, vessel_imm
 
 # The engine's nouns, importable as modules of the package.
@@ -94,6 +100,7 @@ __all__ = [
     "Gaussian",
     "Imm",
     "Kalman",
+    "LikelyModelSetImm",
     "ModeChain",
     "OwnShip",
     "PiecewiseAcceleration",

@@ -52,6 +52,7 @@
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/filter_bank.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"

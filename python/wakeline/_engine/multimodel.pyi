@@ -11,7 +11,13 @@ from .core import Gaussian, Step
 from .filter import Filter, RunResult
 from .measurement import ConvertedRangeBearing, Position, RangeBearing, RangeBearingDoppler
 
-__all__ = ["AdaptiveGridImm", "Imm", "ModeChain", "SwitchingGridImm"]
+__all__ = [
+    "AdaptiveGridImm",
+    "Imm",
+    "LikelyModelSetImm",
+    "ModeChain",
+    "SwitchingGridImm",
+]
 
 class ModeChain:
     """
@@ -141,6 +147,10 @@ class AdaptiveGridImm:
 
     The turn rates move before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
 
+    The printed rule is that of centre_threshold 0.3, centre_gain 1 and kept_spacing_rad_s 0. Its grid collapses to half of
+    min_spacing_rad_s to each side, where the rates may differ too little to be told apart, and nothing opens it again. The
+    defaults keep it open and move its centre with patience.
+
     Parameters
     ----------
     filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
@@ -151,8 +161,12 @@ class AdaptiveGridImm:
         Left, centre and right at a start, rising; zero and half the maximum to each side when left out. Not printed.
     min_spacing_rad_s : float
         The least spacing that a move starts from. Not printed.
+    kept_spacing_rad_s : float
+        No side comes nearer to the centre, but for the maximum: what keeps the grid open. Not in the paper: 0.
     centre_threshold : float
-        A centre less probable than this moves to the probable rate.
+        A centre less probable than this moves towards the mean rate. In the paper 0.3.
+    centre_gain : float
+        How far it moves towards it. Not in the paper: 1, all the way.
     unlikely_threshold : float
         A side less probable than this comes half way nearer.
     likely_threshold : float
@@ -177,10 +191,12 @@ class AdaptiveGridImm:
         self,
         filter: Filter,
         *,
-        max_turn_rate_rad_s: float = 0.05235987755982989,
+        max_turn_rate_rad_s: float = 0.08726646259971647,
         initial_turn_rates_rad_s: ArrayLike | None = None,
         min_spacing_rad_s: float = 0.03490658503988659,
-        centre_threshold: float = 0.3,
+        kept_spacing_rad_s: float = 0.05235987755982989,
+        centre_threshold: float = 0.8,
+        centre_gain: float = 0.3,
         unlikely_threshold: float = 0.25,
         likely_threshold: float = 0.75,
         stay_probability: float = 0.9,
@@ -273,10 +289,10 @@ class SwitchingGridImm:
     ----------
     filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
         What all three models are like; its turn rate does not matter.
-    grid_rad_s : (3 to 16,) array
-        Turn rates, rising.
+    grid_rad_s : (3 to 16,) array, optional
+        Turn rates, rising; 2.5 deg/s apart up to 5 deg/s to each side when left out.
     threshold : float
-        A model more probable than this decides.
+        A model more probable than this decides. In the paper 0.7, with which the window often comes too late.
     rule : 'symmetric' or 'literal'
         Left if the left model is above the threshold, right if the right one is, else stay; or as printed: left if the left
         one is, stay if the centre is, else right.
@@ -304,11 +320,11 @@ class SwitchingGridImm:
     def __init__(
         self,
         filter: Filter,
-        grid_rad_s: ArrayLike,
+        grid_rad_s: ArrayLike | None = None,
         *,
-        threshold: float = 0.7,
+        threshold: float = 0.5,
         rule: str = "symmetric",
-        carry: str = "slot",
+        carry: str = "identity",
         initial_centre: int | None = None,
         stay_probability: float = 0.9,
         chain: ModeChain | None = None,
@@ -394,3 +410,125 @@ class SwitchingGridImm:
     def models(self) -> int: ...
     @property
     def started(self) -> bool: ...
+
+class LikelyModelSetImm:
+    """
+    Turn models that join and leave by their probability.
+
+    All are active at a start. Before each prediction that follows an update the unlikely ones go to rest and the neighbours
+    of the likely ones join; the most probable one always has its neighbours with it. Has the face of `Imm`; a model at rest
+    has probability 0 and turn rate NaN.
+
+    Parameters
+    ----------
+    filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+        What all models are like; its turn rate does not matter.
+    grid_rad_s : (2 to 16,) array, optional
+        Turn rates, rising; 2 deg/s apart up to 4 deg/s to each side when left out.
+    unlikely_threshold : float
+        A model less probable than this leaves.
+    likely_threshold : float
+        One at least as probable as this has its neighbours join it.
+    stay_probability : float
+        Of the models' chain: to stay, the rest to each other active model alike.
+    chain : ModeChain, optional
+        Another chain of as many modes; what leads to a model at rest goes to the active ones.
+    initial_mode_probability : (K,) array, optional
+        What a start begins with; 0.9 for the straightest when left out.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense.
+
+    References
+    ----------
+    X. R. Li, Y. Zhang, IEEE Trans. AES-36, 2000: the likely-model set.
+    """
+    def __init__(
+        self,
+        filter: Filter,
+        grid_rad_s: ArrayLike | None = None,
+        *,
+        unlikely_threshold: float = 0.03,
+        likely_threshold: float = 0.1,
+        stay_probability: float = 0.9,
+        chain: ModeChain | None = None,
+        initial_mode_probability: ArrayLike | None = None,
+    ) -> None: ...
+    def estimate(self) -> Gaussian:
+        """
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
+        """
+    def filter_estimate(self, index: int) -> Gaussian:
+        """
+        The belief of one of the filters, over its own state.
+        """
+    def mode_probability(self) -> NDArray[np.float64]:
+        """
+        (K,)
+        """
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
+        """
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
+        """
+    def run(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+        own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
+    ) -> RunResult:
+        """
+        Runs whole recordings.
+
+        Parameters
+        ----------
+        z : (T, M) or (R, T, M) array
+            Readings of one run or of R independent ones; a row of NaN is a missed scan.
+        dt_s : float or (T,) array
+            Time before each reading, s; the first counts from the start.
+        sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+        start : Gaussian or sequence of R of them
+            Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
+        own_position_m : (T, 2) array, optional
+            North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
+
+        Returns
+        -------
+        RunResult
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
+            and status (..., T).
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+        """
+    def start(self, belief: Gaussian) -> None:
+        """
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
+        """
+    def turn_rates_rad_s(self) -> NDArray[np.float64]:
+        """
+        (K,) turn rates of the models, positive to starboard; NaN for one at rest.
+        """
+    def update(
+        self,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        z: ArrayLike,
+    ) -> Step:
+        """
+        Corrects the belief by a reading; returns the Step.
+        """
+    @property
+    def models(self) -> int: ...
+    @property
+    def started(self) -> bool: ...
+

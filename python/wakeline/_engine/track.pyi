@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .core import Gaussian
 from .measurement import OwnShip
-from .multimodel import Imm
+from .multimodel import AdaptiveGridImm, Imm, LikelyModelSetImm, SwitchingGridImm
 
 __all__ = [
     "Event",
@@ -287,7 +287,7 @@ class Tracker:
     config : TrackerConfig, optional
     models : VesselModels, optional
         Motion models of the estimator.
-    estimator : Imm, optional
+    estimator : Imm, AdaptiveGridImm, SwitchingGridImm or LikelyModelSetImm, optional
         Another estimator in place of that made of `models`.
 
     Raises
@@ -300,7 +300,7 @@ class Tracker:
         radar: Radar,
         config: TrackerConfig = ...,
         models: VesselModels = ...,
-        estimator: Imm | None = None,
+        estimator: Imm | AdaptiveGridImm | SwitchingGridImm | LikelyModelSetImm | None = None,
     ) -> None: ...
     def designate(
         self, time_s: float, north_m: float, east_m: float, position_std_m: float = 50.0

@@ -62,7 +62,9 @@ TEST(GoldenGrids, AdaptiveGrid) {
     const AdaptiveGrid grid{.max_turn_rate_rad_s = deg(parameters.at("max_turn_rate_deg_s")),
                             .initial_turn_rates_rad_s = AdaptiveGrid::Rates{set[0], set[1], set[2]},
                             .min_spacing_rad_s = deg(parameters.at("min_spacing_deg_s")),
+                            .kept_spacing_rad_s = 0.0,
                             .centre_threshold = parameters.at("t1"),
+                            .centre_gain = 1.0,
                             .unlikely_threshold = parameters.at("t2"),
                             .likely_threshold = parameters.at("t3")};
     expect_golden(AdaptiveGridImm{grid, ModeChain<3>::staying(0.9), filter_of(item)}, item);

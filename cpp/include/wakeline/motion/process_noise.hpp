@@ -73,11 +73,11 @@ class ProcessNoise {
   Mat<Scalar, 2, 2> of_velocity_axis(Scalar dt_s) const noexcept {
     const Scalar q = Scalar(strength());
     const Scalar dt2 = dt_s * dt_s;
+    const bool piecewise = kind_ == Kind::kPiecewiseAcceleration;
     Mat<Scalar, 2, 2> noise;
-    if (kind_ == Kind::kPiecewiseAcceleration)
-      noise << dt2 * dt2 / 4, dt2 * dt_s / 2, dt2 * dt_s / 2, dt2;
-    else
-      noise << dt2 * dt_s / 3, dt2 / 2, dt2 / 2, dt_s;
+    noise(0, 0) = piecewise ? dt2 * dt2 / 4 : dt2 * dt_s / 3;
+    noise(0, 1) = noise(1, 0) = piecewise ? dt2 * dt_s / 2 : dt2 / 2;
+    noise(1, 1) = piecewise ? dt2 : dt_s;
     return q * noise;
   }
 

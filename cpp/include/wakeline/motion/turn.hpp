@@ -35,13 +35,13 @@ struct Turn {
 
   /// F of `[x, vx, y, vy]`.
   Mat<Scalar, 4, 4> matrix() const noexcept {
-    Mat<Scalar, 4, 4> f;
-    // clang-format off
-    f << 1, along_s,  0, -across_s,
-         0, cosine,   0, -sine,
-         0, across_s, 1,  along_s,
-         0, sine,     0,  cosine;
-    // clang-format on
+    Mat<Scalar, 4, 4> f = Mat<Scalar, 4, 4>::Identity();
+    f(1, 1) = f(3, 3) = cosine;
+    f(0, 1) = f(2, 3) = along_s;
+    f(2, 1) = across_s;
+    f(0, 3) = -across_s;
+    f(3, 1) = sine;
+    f(1, 3) = -sine;
     return f;
   }
 

@@ -12,15 +12,21 @@
 namespace wakeline {
 
 /// How the three turn rates of an `AdaptiveGridImm` move: left, centre and right in `[-max, max]`.
-/// Source: paper B, step 1.1.
+///
+/// The printed rule is that of centre_threshold 0.3, centre_gain 1 and kept_spacing_rad_s 0. Its
+/// grid collapses to half of min_spacing_rad_s to each side, where the rates may differ too little
+/// to be told apart, and nothing opens it again. The defaults keep it open and move its centre with
+/// patience. Source: paper B, step 1.1; centre_gain and kept_spacing_rad_s are additions.
 struct AdaptiveGrid {
   using Rates = std::array<double, 3>;
 
-  double max_turn_rate_rad_s = deg(3.0);
+  double max_turn_rate_rad_s = deg(5.0);
   /// Where they begin, in rising order; not printed. Half the maximum to each side when left out.
   std::optional<Rates> initial_turn_rates_rad_s = std::nullopt;
   double min_spacing_rad_s = deg(2.0);      ///< r; not printed
-  double centre_threshold = 0.3;            ///< t1: a centre less probable than this moves
+  double kept_spacing_rad_s = deg(3.0);     ///< no side comes nearer, but for the maximum
+  double centre_threshold = 0.8;            ///< t1: a centre less probable than this moves
+  double centre_gain = 0.3;                 ///< how far towards the mean rate: 1 is all the way
   double unlikely_threshold = 0.25;         ///< t2: a side less probable than this comes nearer
   double likely_threshold = 0.75;           ///< t3: a side more probable than this goes further
   double initial_centre_probability = 0.9;  ///< of the centre at a start; not printed
@@ -34,9 +40,9 @@ struct AdaptiveGrid {
   [[nodiscard]] Rates moved(const Rates& rates, const Rates& probability) const noexcept {
     const auto [left, centre, right] = rates;
     const auto [mu_left, mu_centre, mu_right] = probability;
-    const double next = mu_centre < centre_threshold
-                            ? mu_left * left + mu_centre * centre + mu_right * right
-                            : centre;
+    const double mean = mu_left * left + mu_centre * centre + mu_right * right;
+    const double next =
+        mu_centre < centre_threshold ? centre + centre_gain * (mean - centre) : centre;
     double to_left = std::max(centre - left, min_spacing_rad_s);
     double to_right = std::max(right - centre, min_spacing_rad_s);
     if (mu_left > mu_centre && mu_left > mu_right) {
@@ -47,6 +53,8 @@ struct AdaptiveGrid {
       if (mu_left < unlikely_threshold) to_left /= 2.0;
       if (mu_right < unlikely_threshold) to_right /= 2.0;
     }
+    to_left = std::max(to_left, kept_spacing_rad_s);
+    to_right = std::max(to_right, kept_spacing_rad_s);
     const auto clipped = [&](double rate) {
       return std::clamp(rate, -max_turn_rate_rad_s, max_turn_rate_rad_s);
     };
@@ -65,7 +73,9 @@ struct AdaptiveGrid {
       before = rate;
     }
     require_positive("min_spacing_rad_s", min_spacing_rad_s);
+    require_not_negative("kept_spacing_rad_s", kept_spacing_rad_s);
     require_probability("centre_threshold", centre_threshold);
+    require_probability("centre_gain", centre_gain);
     require_probability("unlikely_threshold", unlikely_threshold);
     require_probability("likely_threshold", likely_threshold);
     require(unlikely_threshold <= likely_threshold, "unlikely_threshold",
@@ -90,9 +100,6 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
   AdaptiveGridImm(const AdaptiveGrid& grid, const ModeChain<BankType::kModels>& chain,
                   const BankType& bank)
       : Base(chain, bank, to_rates(validated(grid).initial())), grid_(grid) {
-    if (bank.size() != 3)
-      throw std::invalid_argument("an AdaptiveGridImm needs 3 filters, got " +
-                                  std::to_string(bank.size()));
     const double side = (1.0 - grid.initial_centre_probability) / 2.0;
     this->initial_ =
         to_rates({side, grid.initial_centre_probability, side}).template cast<Scalar>();
@@ -112,6 +119,13 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
   }
 
   [[nodiscard]] const AdaptiveGrid& grid() const noexcept { return grid_; }
+
+  /// Saves or restores beliefs, mode probabilities and turn rates.
+  void archive(Archive& fields) {
+    Base::archive_if(fields, [&](const typename Base::Rates& rates) {
+      return rates.allFinite() && rates.cwiseAbs().maxCoeff() <= grid_.max_turn_rate_rad_s;
+    });
+  }
 
  private:
   static typename Base::Rates to_rates(const AdaptiveGrid::Rates& rates) noexcept {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "wakeline/core/scalar.hpp"
 #include "wakeline/filter/belief.hpp"
@@ -169,6 +170,7 @@ class Imm {
   }
 
   [[nodiscard]] const Probability& mode_probability() const noexcept { return probability_; }
+  [[nodiscard]] const Probability& initial_mode_probability() const noexcept { return initial_; }
   [[nodiscard]] const Bank& bank() const noexcept { return bank_; }
   [[nodiscard]] const ModeChain<kModels>& chain() const noexcept { return chain_; }
   [[nodiscard]] bool started() const noexcept { return started_; }
@@ -203,11 +205,34 @@ class Imm {
   Probability probability_;
   bool started_ = false;
 
+  /// To be called when models of the bank go to rest or come back.
+  void active_changed() noexcept { transition_step_s_ = Scalar(-1); }
+
  private:
+  static constexpr bool kMayRest = requires(const Bank& bank) { bank.active(0); };
+
+  /// Leaves out the modes at rest: each row stays with the same probability, and where it leaves it
+  /// goes to an active one.
+  void leave_out_resting() noexcept {
+    for (int i = 0; i < bank_.size(); ++i) {
+      Scalar resting = Scalar(0);
+      Scalar leaving = Scalar(0);
+      for (int j = 0; j < bank_.size(); ++j) {
+        if (!bank_.active(j)) resting += std::exchange(transition_(i, j), Scalar(0));
+        if (j != i) leaving += transition_(i, j);
+      }
+      if (resting == Scalar(0)) continue;
+      if (leaving == Scalar(0)) transition_(i, i) += resting;
+      for (int j = 0; j < bank_.size(); ++j)
+        if (j != i && leaving > Scalar(0)) transition_(i, j) *= (leaving + resting) / leaving;
+    }
+  }
+
   /// Fills `weight_(i, j) = P(mode i before | mode j now)` and returns P(mode j now).
   Probability weigh_transitions(Scalar dt_s) noexcept {
     if (dt_s != transition_step_s_) {
       transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
+      if constexpr (kMayRest) leave_out_resting();
       transition_step_s_ = dt_s;
     }
     Probability expected = Probability::Zero(bank_.size());

@@ -25,15 +25,17 @@ enum class SwitchCarry : std::uint8_t {
               ///< estimate and the probability of the leaving one
 };
 
-/// How the window of a `SwitchingGridImm` moves. Source: paper B, step 1.2.
+/// How the window of a `SwitchingGridImm` moves. The paper's threshold is 0.7, with which the
+/// window often comes too late; by slot it loses what the models know at each move. Source: paper
+/// B, step 1.2.
 struct SwitchingGrid {
-  TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(2.0), 2);  ///< three or more
-  double threshold = 0.7;                                       ///< t
-  SwitchRule rule = SwitchRule::kSymmetric;  ///< the printed rule drifts right while undecided
-  SwitchCarry carry = SwitchCarry::kSlot;    ///< not printed
-  std::optional<int> initial_centre = {};    ///< its index in the grid; the straightest but the
-                                             ///< ends when left out; not printed
-  double initial_centre_probability = 0.9;   ///< at a start; not printed
+  TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(5.0), 2);  ///< three or more
+  double threshold = 0.5;                                       ///< t
+  SwitchRule rule = SwitchRule::kSymmetric;    ///< the printed rule drifts right while undecided
+  SwitchCarry carry = SwitchCarry::kIdentity;  ///< not printed
+  std::optional<int> initial_centre = {};      ///< its index in the grid; the straightest but the
+                                               ///< ends when left out; not printed
+  double initial_centre_probability = 0.9;     ///< at a start; not printed
 
   [[nodiscard]] int initial() const noexcept {
     return initial_centre.value_or(
@@ -82,9 +84,6 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
       : Base(chain, bank, window(validated(grid), grid.initial())),
         grid_(grid),
         centre_(grid.initial()) {
-    if (bank.size() != 3)
-      throw std::invalid_argument("a SwitchingGridImm needs 3 filters, got " +
-                                  std::to_string(bank.size()));
     this->initial_.setConstant(Scalar((1.0 - grid.initial_centre_probability) / 2.0));
     this->initial_[1] = Scalar(grid.initial_centre_probability);
   }
@@ -120,7 +119,9 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
     fields(centre);
     if (centre < 1 || centre > grid_.grid_rad_s.size() - 2) fields.fail();
     if (fields.ok()) centre_ = centre;
-    Base::archive(fields);
+    Base::archive_if(fields, [&](const typename Base::Rates& rates) {
+      return (rates.array() == window(grid_, centre_).array()).all();
+    });
   }
 
  private:

@@ -10,7 +10,8 @@ namespace wakeline {
 
 /// An Imm whose models change their turn rates between two scans: what the estimators of paper B
 /// share. The grid moves at the beginning of `predict`, once after each update and with the mode
-/// probabilities of that; a missed scan does not move it. A step that fails moves nothing.
+/// probabilities of that; a missed scan does not move it. A step that fails moves nothing. A model
+/// whose turn rate is NaN is at rest.
 template <class BankType>
 class TurnGridImm : public Imm<BankType> {
   using Base = Imm<BankType>;
@@ -25,11 +26,13 @@ class TurnGridImm : public Imm<BankType> {
   /// As of `Imm`; the grid is the initial one.
   template <class BeliefType>
   Status start(const BeliefType& belief) noexcept {
+    const Rates before = rates_;
+    set_rates(initial_rates_);
     const Status status = Base::start(belief);
-    if (status == Status::kOk) {
-      set_rates(initial_rates_);
+    if (status == Status::kOk)
       seen_ = false;
-    }
+    else
+      set_rates(before);
     return status;
   }
 
@@ -51,22 +54,16 @@ class TurnGridImm : public Imm<BankType> {
     return total;
   }
 
-  /// Turn rates of the models, rad/s, positive to starboard.
+  /// Turn rates of the models, rad/s, positive to starboard; NaN for one at rest.
   [[nodiscard]] const Rates& turn_rates_rad_s() const noexcept { return rates_; }
 
-  /// Saves or restores beliefs, mode probabilities and turn rates.
-  void archive(Archive& fields) {
-    Rates rates = rates_;
-    fields(rates);
-    fields(seen_);
-    if (!rates.allFinite()) fields.fail();
-    if (fields.ok()) set_rates(rates);
-    Base::archive(fields);
-  }
-
  protected:
+  /// Throws `std::invalid_argument` unless there is one filter for each turn rate.
   TurnGridImm(const ModeChain<kModels>& chain, const Bank& bank, const Rates& initial)
       : Base(chain, bank), initial_rates_(initial), rates_(initial) {
+    if (initial.size() != bank.size())
+      throw std::invalid_argument("this estimator needs " + std::to_string(initial.size()) +
+                                  " filters, got " + std::to_string(bank.size()));
     this->bank_.for_each([&](int k, auto& filter, auto&) { set_turn_rate(filter, rates_[k]); });
   }
 
@@ -91,10 +88,28 @@ class TurnGridImm : public Imm<BankType> {
   }
 
   void set_rates(const Rates& rates) noexcept {
+    if constexpr (requires { this->bank_.set_active(0, true); }) {
+      for (int k = 0; k < this->bank_.size(); ++k) {
+        if (std::isnan(rates[k]) == std::isnan(rates_[k])) continue;
+        this->bank_.set_active(k, !std::isnan(rates[k]));
+        this->active_changed();
+      }
+    }
     this->bank_.for_each([&](int k, auto& filter, auto&) {
       if (rates[k] != rates_[k]) set_turn_rate(filter, rates[k]);
     });
     rates_ = rates;
+  }
+
+  /// Saves or restores beliefs, mode probabilities and such turn rates.
+  template <class Valid>
+  void archive_if(Archive& fields, const Valid& valid) {
+    Rates rates = rates_;
+    fields(rates);
+    fields(seen_);
+    if (!valid(rates)) fields.fail();
+    if (fields.ok()) set_rates(rates);
+    Base::archive(fields);
   }
 
  private:

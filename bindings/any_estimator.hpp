@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// What a tracker may keep its tracks with.
+#pragma once
+
+#include <span>
+#include <variant>
+
+#include "any_turn_grids.hpp"
+
+namespace wakeline::python {
+
+/// One of the multi-model estimators.
+class AnyEstimator {
+ public:
+  using Variant =
+      std::variant<AnyImm, AnyAdaptiveGridImm, AnySwitchingGridImm, AnyLikelyModelSetImm>;
+
+  template <class Estimator>
+  requires(std::is_constructible_v<Variant, const Estimator&>)
+      // NOLINTNEXTLINE(google-explicit-constructor): each of them is one.
+      AnyEstimator(const Estimator& estimator)
+      : estimator_(estimator) {}
+
+  Status start(const Gaussian<4>& kinematics) noexcept {
+    return std::visit([&](auto& estimator) { return estimator.start(kinematics); }, estimator_);
+  }
+
+  Status predict(double dt_s) noexcept {
+    return std::visit([&](auto& estimator) { return estimator.predict(dt_s); }, estimator_);
+  }
+
+  template <class Sensor>
+  [[nodiscard]] Evidence<double> evidence(
+      const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) const noexcept {
+    return std::visit([&](const auto& estimator) { return estimator.evidence(sensor, z); },
+                      estimator_);
+  }
+
+  template <class Sensor>
+  double update(std::span<const Alternative<Sensor>> readings, double none,
+                std::span<double> share) noexcept {
+    return std::visit([&](auto& estimator) { return estimator.update(readings, none, share); },
+                      estimator_);
+  }
+
+  [[nodiscard]] AnyBelief estimate() const noexcept {
+    return std::visit([](const auto& estimator) { return estimator.estimate(); }, estimator_);
+  }
+
+  [[nodiscard]] const AnyImm::Probability& mode_probability() const noexcept {
+    return std::visit(
+        [](const auto& estimator) -> const auto& { return estimator.mode_probability(); },
+        estimator_);
+  }
+
+  void archive(Archive& fields) {
+    std::visit([&](auto& estimator) { estimator.archive(fields); }, estimator_);
+  }
+
+ private:
+  Variant estimator_;
+};
+
+}  // namespace wakeline::python
