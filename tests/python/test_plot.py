@@ -223,6 +223,12 @@ def test_the_best_estimator_stands_on_top(ax):
     assert ax.get_xlim()[0] == 0.0
 
 
+def test_a_ranking_may_be_logarithmic(ax):
+    plot.ranking_panel(ax, ["a", "b"], {"m": [1.0, 50.0]}, xlabel="error (m)", log=True)
+    assert ax.get_xscale() == "log"
+    assert {1.0, 2.0, 5.0, 10.0, 20.0, 50.0} <= set(ax.get_xticks().round(6))
+
+
 def test_steps_are_named_and_their_ratios_are_alike_at_any_height(ax):
     plot.steps_panel(
         ax, ["low", "high"], {"a": [1.0, 2.0], "b": [10.0, 20.0]}, xlabel="noise", ylabel="error"

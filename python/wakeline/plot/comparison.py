@@ -16,11 +16,12 @@ from .time import draw_bands
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
 
 _TRUTH_DASHES = (0, (4, 2))
 _ROOM_ABOVE = 1.08
 _STRIP = (1.02, 0.06)
-_ROUND = (1.0, 2.0, 5.0)
+_ROUND = (1.0, 2.0, 3.0, 5.0)
 _MIDDLE = "#DDDDDD"
 _PORT = ("#F4A582", "#B2182B")
 _STARBOARD = ("#92C5DE", "#2166AC")
@@ -214,6 +215,7 @@ def ranking_panel(
     *,
     xlabel: str,
     best_first: str | None = None,
+    log: bool = False,
 ) -> Axes:
     """One row an estimator, one mark for each of several circumstances, best estimator on top.
 
@@ -229,6 +231,8 @@ def ranking_panel(
         What the figures are, with their unit.
     best_first : str, optional
         The circumstance to sort by; default the last.
+    log : bool
+        Whether the axis is logarithmic; else it begins at 0.
     """
     table = {key: np.asarray(row, dtype=float) for key, row in values.items()}
     by = table[best_first if best_first is not None else list(table)[-1]]
@@ -240,7 +244,11 @@ def ranking_panel(
         ax.scatter(row[order], rows, s=34, color=color, linewidths=0, label=key, zorder=3)
     ax.set_yticks(rows, [names[k] for k in order])
     ax.set_ylim(-0.6, len(order) - 0.4)
-    ax.set_xlim(left=0.0)
+    if log:
+        ax.set_xscale("log")
+        _round_ticks(ax.xaxis)
+    else:
+        ax.set_xlim(left=0.0)
     ax.set_xlabel(xlabel)
     dress(ax)
     ax.grid(visible=False, axis="y")
@@ -274,17 +282,13 @@ def steps_panel(
     legend : bool
         Whether to name the lines.
     """
-    from matplotlib.ticker import LogLocator, NullLocator
-
     at = np.arange(len(steps))
     for name, color in _colored(values, colors):
         ax.plot(at, values[name], color=color, linewidth=1.4, marker="o", markersize=5, label=name)
     ax.set_xticks(at, steps)
     ax.set_xlim(-0.3, len(steps) - 0.7)
     ax.set_yscale("log")
-    ax.yaxis.set_major_locator(LogLocator(subs=_ROUND))
-    ax.yaxis.set_major_formatter("{x:g}")
-    ax.yaxis.set_minor_locator(NullLocator())
+    _round_ticks(ax.yaxis)
     ax.set_xlabel(xlabel)
     ax.set_ylabel(ylabel)
     dress(ax)
@@ -340,6 +344,15 @@ def _over_time(ax: Axes, time_s: np.ndarray, ylabel: str, legend: bool) -> Axes:
     ax.set_ylabel(ylabel)
     dress(ax)
     return name_lines(ax) if legend else ax
+
+
+def _round_ticks(axis: Axis) -> None:
+    """Ticks of a logarithmic axis at 1, 2, 3, 5, 10 and so on."""
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    axis.set_major_locator(LogLocator(subs=_ROUND))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_locator(NullLocator())
 
 
 def _km(position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -48,11 +48,6 @@ def peaked(modes: int, at: int, probability: float) -> np.ndarray:
     return shared
 
 
-def exists(*names: str) -> bool:
-    """Whether the engine has all these estimators."""
-    return all(hasattr(wl, name) for name in names)
-
-
 def turn_candidate(
     rates_deg_s: Sequence[float], noise: Any, sensor: str, *, stay: float = 0.9
 ) -> Candidate:

@@ -12,7 +12,7 @@ minutes and is heard every 7 s or oftener.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -28,7 +28,7 @@ from wakeline.scenario import RadarSimulator, Scenario, TrackTruth
 
 from . import curves
 from .base import Picture, Report, Rows
-from .estimators import exists, peaked, turn_filter
+from .estimators import peaked, turn_filter, turn_imm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,6 +54,7 @@ _COVERAGE_M = 10e3
 _START_SPEED_STD_MPS = 10.0
 _NOISE = WhiteAcceleration(psd_m2s3=0.06)
 _STRAIGHT_S, _TURN_S = 200.0, 20.0
+_THREE_DEG_S = (0, 2, -2)
 _OTHER_NOISES_M2S3 = (0.003, 0.01, 0.3)
 _SHOWN = ("kalman_cv", "imm5", "mode_history")
 _SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
@@ -138,19 +139,23 @@ def estimators() -> dict[str, Any]:
     of 0.06 m²/s³; a straight goes on for 200 s and a turn for 20 s in the mean where a model is
     either of them for good. What else there is stands at its default.
     """
-    return {name: build() for name, (build, *needs) in _TABLE.items() if exists(*needs)}
+    return {name: build() for name, build in _TABLE.items()}
 
 
-def noise_variants() -> dict[str, Any]:
-    """A model of one kind and an IMM with other process noise than theirs."""
+def variants() -> dict[str, Any]:
+    """What tuning is worth: other process noise, and turns as often as in papers."""
     noises = {psd: WhiteAcceleration(psd_m2s3=psd) for psd in _OTHER_NOISES_M2S3}
-    straight = {
-        f"kalman_cv_psd_{psd:g}": wl.Ekf(wl.ConstantVelocity(noise=noise))
-        for psd, noise in noises.items()
-    }
-    return straight | {
-        f"imm3_psd_{psd:g}": _imm((0, 2, -2), noise) for psd, noise in noises.items()
-    }
+    return (
+        {
+            f"kalman_cv_psd_{psd:g}": wl.Ekf(wl.ConstantVelocity(noise=noise))
+            for psd, noise in noises.items()
+        }
+        | {f"imm3_psd_{psd:g}": _imm(_THREE_DEG_S, noise) for psd, noise in noises.items()}
+        | {
+            "imm3_restless": turn_imm(_THREE_DEG_S, _NOISE, stay=0.95),
+            "mode_history_restless": wl.ModeHistory(turn_filter(0.0, _NOISE)),
+        }
+    )
 
 
 def _imm(rates_deg_s: Sequence[float], noise: Any = _NOISE) -> wl.Imm:
@@ -174,39 +179,27 @@ def _straight_first(filters: list[wl.Ekf]) -> wl.Imm:
     )
 
 
-def _adaptive() -> Any:
-    return wl.AdaptiveGridImm(turn_filter(0.0, _NOISE), max_turn_rate_rad_s=np.deg2rad(5.0))
-
-
-def _switching() -> Any:
-    return wl.SwitchingGridImm(turn_filter(0.0, _NOISE), np.deg2rad([-4.0, -2.0, 0.0, 2.0, 4.0]))
-
-
-def _likely() -> Any:
-    return wl.LikelyModelSetImm(turn_filter(0.0, _NOISE), np.deg2rad(range(-4, 5)))
-
-
 def _histories() -> Any:
     return wl.ModeHistory(
         turn_filter(0.0, _NOISE), straight_sojourn_s=_STRAIGHT_S, turn_sojourn_s=_TURN_S
     )
 
 
-_TABLE: dict[str, tuple[Any, ...]] = {
-    "kalman_cv": (lambda: wl.Ekf(wl.ConstantVelocity()),),
-    "wandering_course": (lambda: wl.Ekf(wl.WanderingCourse()),),
-    "kalman_ca": (lambda: wl.Ekf(wl.ConstantAcceleration()),),
-    "singer": (lambda: wl.Ekf(wl.Singer()),),
-    "ekf_turn_rate": (lambda: wl.Ekf(wl.CoordinatedTurnRate()),),
-    "ukf_turn_rate": (lambda: wl.Ukf(wl.CoordinatedTurnRate()),),
-    "imm3": (lambda: _imm((0, 2, -2)),),
-    "imm5": (lambda: _imm((0, 2, -2, 4, -4)),),
-    "imm_turn_rate": (_imm_rate,),
-    "vessel_imm": (lambda: wl.vessel_imm(wl.Radar()),),
-    "agmm": (_adaptive, "AdaptiveGridImm"),
-    "sgmm": (_switching, "SwitchingGridImm"),
-    "likely_model_set": (_likely, "LikelyModelSetImm"),
-    "mode_history": (_histories, "ModeHistory"),
+_TABLE: dict[str, Callable[[], Any]] = {
+    "kalman_cv": lambda: wl.Ekf(wl.ConstantVelocity()),
+    "wandering_course": lambda: wl.Ekf(wl.WanderingCourse()),
+    "kalman_ca": lambda: wl.Ekf(wl.ConstantAcceleration()),
+    "singer": lambda: wl.Ekf(wl.Singer()),
+    "ekf_turn_rate": lambda: wl.Ekf(wl.CoordinatedTurnRate()),
+    "ukf_turn_rate": lambda: wl.Ukf(wl.CoordinatedTurnRate()),
+    "imm3": lambda: _imm(_THREE_DEG_S),
+    "imm5": lambda: _imm((0, 2, -2, 4, -4)),
+    "imm_turn_rate": _imm_rate,
+    "vessel_imm": lambda: wl.vessel_imm(wl.Radar()),
+    "agmm": lambda: wl.AdaptiveGridImm(turn_filter(0.0, _NOISE)),
+    "sgmm": lambda: wl.SwitchingGridImm(turn_filter(0.0, _NOISE)),
+    "likely_model_set": lambda: wl.LikelyModelSetImm(turn_filter(0.0, _NOISE)),
+    "mode_history": _histories,
 }
 
 
@@ -256,7 +249,7 @@ def run(
     runs, seed : int
         Of the Monte Carlo runs. Each stretch has as many of them as make up `runs`, rounded up.
     full : bool
-        Also how much the process noise matters.
+        Also how much the tuning matters.
     threads : int, optional
         Default as many as there are processors.
     progress : bool
@@ -272,7 +265,7 @@ def run(
     if runs < 1:
         raise ValueError(f"runs must be at least 1, got {runs}")
     each = -(-runs // len(vessels()))
-    built = estimators() | (noise_variants() if full else {})
+    built = estimators() | (variants() if full else {})
     jobs = [(radar, name, scene) for radar in RADARS for name in built for scene in scenes(radar)]
     totals: dict[tuple[str, str], _Sums] = {}
     with ThreadPoolExecutor(threads) as pool:
@@ -397,7 +390,7 @@ def _draw_track(ax: Axes, radar: str, seed: int) -> Axes:
     turning = np.convolve(after_turn(scene)[1 + settled :], np.ones(count), "valid")
     first = settled + int(turning.argmax())
     part = slice(first, first + count)
-    tracks = {name: track(scene, built[name], z)[0, part] for name in _SHOWN if name in built}
+    tracks = {name: track(scene, built[name], z)[0, part] for name in _SHOWN}
     return plot.paths_view(
         ax,
         scene.truth_states[1:][part],
@@ -411,4 +404,4 @@ def _draw_ranking(ax: Axes, rows: Rows, metric: str, xlabel: str) -> Axes:
     names = list(estimators())
     found = curves.figures(rows, metric)
     values = {radar: [found[radar, name] for name in names] for radar in RADARS}
-    return plot.ranking_panel(ax, names, values, xlabel=xlabel)
+    return plot.ranking_panel(ax, names, values, xlabel=xlabel, log=True)

@@ -14,24 +14,27 @@ from wakeline import PiecewiseAcceleration, montecarlo, plot
 from wakeline.montecarlo import Candidate
 from wakeline.scenario import Scenario
 
-from ..estimators import exists, sticky_chain, turn_candidate, turn_filter
+from ..estimators import sticky_chain, turn_candidate, turn_filter
 
-LABELS = {
+_PLAIN_LABELS = {
     "imm5": "IMM5",
-    "imm9": "IMM9",
+    "mode_history": "histories",
     "agmm": "AGMM",
     "sgmm": "SGMM",
     "likely_model_set": "LMS",
-    "mode_history": "histories",
+    "imm9": "IMM9",
     "clairvoyant": "clairvoyant",
-    "imm5_converted": "IMM5, converted",
-    "agmm_converted": "AGMM, converted",
-    "sgmm_converted": "SGMM, converted",
+    "agmm_printed": "AGMM as printed",
+    "sgmm_printed": "SGMM as printed",
 }
-COLORS = dict(
-    zip(("IMM5", "histories", "AGMM", "SGMM", "LMS", "IMM9"), plot.PALETTE, strict=False),
-    clairvoyant=plot.INK,
-)
+LABELS = _PLAIN_LABELS | {
+    f"{key}_converted": f"{label}, converted" for key, label in _PLAIN_LABELS.items()
+}
+COLORS = dict(zip(_PLAIN_LABELS.values(), plot.PALETTE, strict=False)) | {
+    "clairvoyant": plot.INK,
+    "AGMM as printed": plot.PALETTE[2],
+    "SGMM as printed": plot.PALETTE[3],
+}
 
 POLAR, CONVERTED = "polar", "converted"
 _NOISE = {
@@ -77,29 +80,44 @@ def imm9(setting: Setting, form: str) -> Candidate:
     return turn_candidate(_NINE_DEG_S, _NOISE[form], form, stay=_STAY)
 
 
-def agmm(setting: Setting, form: str, **options: Any) -> Candidate:
-    """Three models whose turn rates move; what is not printed stays at its default."""
-    fields = {
+def agmm(setting: Setting, form: str) -> Candidate:
+    """Three models whose turn rates move, at the library's defaults."""
+    return Candidate(wl.AdaptiveGridImm(_turning(form)), form)
+
+
+def agmm_printed(setting: Setting, form: str, **options: Any) -> Candidate:
+    """The same by the rules and thresholds of the paper; what is not printed has its default."""
+    printed = {
         "max_turn_rate_rad_s": np.deg2rad(setting.agmm_max_deg_s),
+        "centre_threshold": 0.3,
         "unlikely_threshold": setting.agmm_unlikely,
         "likely_threshold": setting.agmm_likely,
+        "centre_gain": 1.0,
+        "kept_spacing_rad_s": 0.0,
     }
-    return Candidate(wl.AdaptiveGridImm(_turning(form), **(fields | options)), form)
+    return Candidate(wl.AdaptiveGridImm(_turning(form), **(printed | options)), form)
 
 
-def sgmm(setting: Setting, form: str, **options: Any) -> Candidate:
-    """A window of three models on the IMM's five rates."""
-    rates_rad_s = np.deg2rad(setting.imm5_deg_s)
-    return Candidate(wl.SwitchingGridImm(_turning(form), rates_rad_s, **options), form)
+def sgmm(setting: Setting, form: str) -> Candidate:
+    """A window of three models on a fixed grid, at the library's defaults."""
+    return Candidate(wl.SwitchingGridImm(_turning(form)), form)
+
+
+def sgmm_printed(setting: Setting, form: str, **options: Any) -> Candidate:
+    """The same on the IMM's five rates with the paper's threshold; the places keep estimates."""
+    printed = {"threshold": 0.7, "carry": "slot"}
+    grid_rad_s = np.deg2rad(setting.imm5_deg_s)
+    window = wl.SwitchingGridImm(_turning(form), grid_rad_s, **(printed | options))
+    return Candidate(window, form)
 
 
 def likely_model_set(setting: Setting, form: str) -> Candidate:
-    """The likely ones of nine models."""
-    return Candidate(wl.LikelyModelSetImm(_turning(form), np.deg2rad(_NINE_DEG_S)), form)
+    """The likely ones of several models, at the library's defaults."""
+    return Candidate(wl.LikelyModelSetImm(_turning(form)), form)
 
 
 def mode_history(setting: Setting, form: str) -> Candidate:
-    """A tree of mode histories over nine rates, at its defaults."""
+    """A tree of mode histories over nine rates, at the library's defaults."""
     rates_rad_s = np.deg2rad(_NINE_DEG_S)
     return Candidate(wl.ModeHistory(_turning(form), rates_rad_s), form, rates_rad_s)
 
@@ -109,11 +127,18 @@ def unmixed(setting: Setting, form: str) -> dict[str, Candidate]:
     filter, rates_rad_s = _turning(form), np.deg2rad(setting.imm5_deg_s)
     chain = wl.ModeChain(sticky_chain(len(rates_rad_s), _STAY))
     apart = partial(
-        wl.ModeHistory, filter, rates_rad_s, chain=chain, min_segment_s=0.0, switch_time_spread=0.0
+        wl.ModeHistory,
+        filter,
+        rates_rad_s,
+        chain=chain,
+        min_segment_s=0.0,
+        switch_time_spread=0.0,
+        max_hypotheses=100,
+        max_branches=200,
     )
     built = {f"gpb{n}": wl.ModeHistory.pseudo_bayes(n, filter, rates_rad_s) for n in (1, 2, 3)} | {
         "histories_joined": apart(),
-        "histories_apart": apart(merge_distance=0.0),
+        "histories_apart": apart(merge_distance=0.0, sibling_distance=0.0),
     }
     return {"imm5": imm5(setting, form)} | {
         name: Candidate(estimator, form, rates_rad_s) for name, estimator in built.items()
@@ -131,18 +156,19 @@ def _turning(form: str) -> wl.Ekf:
 
 def estimators(setting: Setting) -> dict[str, Any]:
     """The candidates by name."""
-    found = {name: build(setting, form) for name, build, form, needs in _TABLE if exists(*needs)}
-    return found | {"clairvoyant": partial(montecarlo.clairvoyant, sensor=POLAR)}
+    found = {name: build(setting, POLAR) for name, build in _TABLE.items()}
+    converted = {f"{name}_converted": _TABLE[name](setting, CONVERTED) for name in _CONVERTED}
+    return found | converted | {"clairvoyant": partial(montecarlo.clairvoyant, sensor=POLAR)}
 
 
-_TABLE: tuple[tuple[str, Callable[[Setting, str], Candidate], str, tuple[str, ...]], ...] = (
-    ("imm5", imm5, POLAR, ()),
-    ("imm9", imm9, POLAR, ()),
-    ("agmm", agmm, POLAR, ("AdaptiveGridImm",)),
-    ("sgmm", sgmm, POLAR, ("SwitchingGridImm",)),
-    ("likely_model_set", likely_model_set, POLAR, ("LikelyModelSetImm",)),
-    ("mode_history", mode_history, POLAR, ("ModeHistory",)),
-    ("imm5_converted", imm5, CONVERTED, ()),
-    ("agmm_converted", agmm, CONVERTED, ("AdaptiveGridImm",)),
-    ("sgmm_converted", sgmm, CONVERTED, ("SwitchingGridImm",)),
-)
+_TABLE: dict[str, Callable[[Setting, str], Candidate]] = {
+    "imm5": imm5,
+    "imm9": imm9,
+    "agmm": agmm,
+    "agmm_printed": agmm_printed,
+    "sgmm": sgmm,
+    "sgmm_printed": sgmm_printed,
+    "likely_model_set": likely_model_set,
+    "mode_history": mode_history,
+}
+_CONVERTED = ("imm5", "agmm", "agmm_printed", "sgmm", "sgmm_printed")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -14,23 +15,68 @@ from wakeline.scenario import Scenario
 
 from .. import curves
 from ..base import Picture, Rows
-from .candidates import COLORS, LABELS, POLAR, SETTINGS, agmm, centre_rates, estimators, sgmm
+from .candidates import (
+    COLORS,
+    LABELS,
+    POLAR,
+    SETTINGS,
+    agmm_printed,
+    centre_rates,
+    estimators,
+    sgmm_printed,
+)
 from .sweeps import NOISES, RATES, robustness_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _DRAWN_RUNS = 100
+_SHOWN = {
+    "": ("imm5", "agmm", "sgmm", "mode_history"),
+    "-printed": ("imm5", "agmm_printed", "sgmm_printed"),
+}
+_IN_ROBUSTNESS = ("imm5", "imm9", "agmm", "sgmm", "mode_history", "clairvoyant")
 
 
-def _present(*names: str) -> tuple[str, ...]:
-    return tuple(name for name in names if name in estimators(SETTINGS["example1"]))
+@dataclass(frozen=True)
+class _Influence:
+    """What the centre model of an estimator does by the value of one of its thresholds."""
+
+    letter: str
+    field: str
+    values: tuple[float, ...]
+    label: str
+    build: Callable[..., Candidate]
+
+    def picture(self, seed: int) -> Picture:
+        return Picture(
+            f"influence-{self.letter}",
+            f"Turn rate of {self.label}'s centre model in one run, by the threshold {self.letter}",
+            tuple(partial(self.draw, name=name, seed=seed) for name in ("example1", "example2")),
+            shared=False,
+        )
+
+    def draw(self, ax: Axes, name: str, seed: int) -> Axes:
+        example, setting = scenario.named(name), SETTINGS[name]
+        rates = {
+            f"{self.letter} = {value:g}": _first_centre(
+                self.build(setting, POLAR, **{self.field: value}), example, seed
+            )
+            for value in self.values
+        }
+        return plot.turn_rate_panel(
+            ax,
+            example.time_s,
+            example.turn_rates_rad_s,
+            rates,
+            ylabel=f"example {name[-1]}, rate of\nthe centre model (°/s)",
+        )
 
 
-_IN_TRACKS = _present("imm5", "agmm", "sgmm", "mode_history")
-_IN_ERRORS = _present("imm5", "agmm", "sgmm", "mode_history", "clairvoyant")
-_IN_RATES = _present("imm5", "agmm", "sgmm", "mode_history")
-_IN_ROBUSTNESS = _present("imm5", "imm9", "agmm", "sgmm", "mode_history", "clairvoyant")
+_INFLUENCES = (
+    _Influence("t", "threshold", (0.3, 0.7, 0.9), "SGMM", sgmm_printed),
+    _Influence("t1", "centre_threshold", (0.3, 0.7), "AGMM", agmm_printed),
+)
 
 
 def pictures_of(
@@ -39,26 +85,13 @@ def pictures_of(
     """The figures of both examples, of the influence of thresholds, and of the ranking."""
     for name in ("example1", "example2"):
         yield from _example_pictures(name, results[name], seed)
-    for what, values, label, build in (
-        ("t", (0.3, 0.7, 0.9), "SGMM", lambda setting, t: sgmm(setting, POLAR, threshold=t)),
-        ("t1", (0.3, 0.7), "AGMM", lambda setting, t1: agmm(setting, POLAR, centre_threshold=t1)),
-    ):
-        yield Picture(
-            f"influence-{what}",
-            f"Turn rate of {label}'s centre model in one run, by the threshold {what}",
-            tuple(
-                partial(
-                    _draw_influence, name=name, build=build, what=what, values=values, seed=seed
-                )
-                for name in ("example1", "example2")
-            ),
-            shared=False,
-        )
+    for influence in _INFLUENCES:
+        yield influence.picture(seed)
     yield Picture(
         "variable-structure-ranking",
         "Mean position error of every estimator",
         (partial(_draw_ranking, rows=rows),),
-        size_in=(7.2, 4.6),
+        size_in=(7.2, 5.2),
     )
 
 
@@ -73,22 +106,32 @@ def robustness_picture(rows: Rows) -> Picture:
 
 
 def _example_pictures(name: str, result: montecarlo.Result, seed: int) -> Iterator[Picture]:
-    example, candidates = scenario.named(name), estimators(SETTINGS[name])
-    title = f"Example {name[-1]}"
+    """The true path, and of each group of estimators the tracks, rates, modes and errors."""
     yield Picture(
         f"{name}-truth",
-        f"{title}: the true path",
-        (partial(curves.draw_truth, scenario=example),),
+        f"Example {name[-1]}: the true path",
+        (partial(curves.draw_truth, scenario=scenario.named(name)),),
         shared=False,
     )
+    for suffix, shown in _SHOWN.items():
+        yield from _group_pictures(name, suffix, shown, result, seed)
+
+
+def _group_pictures(
+    name: str, suffix: str, shown: tuple[str, ...], result: montecarlo.Result, seed: int
+) -> Iterator[Picture]:
+    example = scenario.named(name)
+    every = estimators(SETTINGS[name])
+    candidates = {key: every[key] for key in shown}
+    title = f"Example {name[-1]}"
     yield Picture(
-        f"{name}-tracks",
+        f"{name}-tracks{suffix}",
         f"{title}: plots and filtered tracks of one run",
         (
             partial(
                 curves.draw_tracks,
                 scenario=example,
-                candidates={LABELS[key]: candidates[key] for key in _IN_TRACKS},
+                candidates={LABELS[key]: one for key, one in candidates.items()},
                 seed=seed,
                 colors=COLORS,
             ),
@@ -96,37 +139,37 @@ def _example_pictures(name: str, result: montecarlo.Result, seed: int) -> Iterat
         shared=False,
     )
     yield Picture(
-        f"{name}-turn-rate",
+        f"{name}-turn-rate{suffix}",
         f"{title}: turn rate of the centre model in one run, and of the estimate in the mean",
         (
             partial(_draw_centres, example=example, candidates=candidates, seed=seed),
-            partial(_draw_rates, example=example, result=result),
+            partial(_draw_rates, example=example, result=result, shown=shown),
         ),
         size_in=(7.2, 6.2),
     )
     z = example.draw(min(_DRAWN_RUNS, result.runs), seed)
     yield Picture(
-        f"{name}-modes",
+        f"{name}-modes{suffix}",
         f"{title}: probabilities of the turn rates, mean of {len(z)} runs",
         tuple(
             partial(
                 _draw_modes,
                 example=example,
-                candidate=candidates[key],
+                candidate=candidate,
                 label=LABELS[key],
                 z=z,
-                legend=key == _IN_TRACKS[0],
+                legend=key == shown[0],
             )
-            for key in _IN_TRACKS
+            for key, candidate in candidates.items()
         ),
-        size_in=(7.2, 1.9 * len(_IN_TRACKS) + 0.7),
+        size_in=(7.2, 1.9 * len(shown) + 0.7),
     )
     yield curves.error_picture(
-        f"{name}-errors",
+        f"{name}-errors{suffix}",
         f"{title}: RMSE of {result.runs} runs over the bound",
         result,
         example,
-        {key: LABELS[key] for key in _IN_ERRORS},
+        {key: LABELS[key] for key in (*shown, "clairvoyant")},
         COLORS,
     )
 
@@ -169,43 +212,27 @@ def _draw_centres(ax: Axes, example: Scenario, candidates: Mapping[str, Any], se
         ax,
         example.time_s,
         example.turn_rates_rad_s,
-        {LABELS[key]: _first_centre(candidates[key], example, seed) for key in ("agmm", "sgmm")},
+        {
+            LABELS[key]: _first_centre(candidate, example, seed)
+            for key, candidate in candidates.items()
+            if key.startswith(("agmm", "sgmm"))
+        },
         colors=COLORS,
         ylabel="turn rate of\nthe centre model (°/s)",
     )
 
 
-def _draw_rates(ax: Axes, example: Scenario, result: montecarlo.Result) -> Axes:
+def _draw_rates(
+    ax: Axes, example: Scenario, result: montecarlo.Result, shown: tuple[str, ...]
+) -> Axes:
     """Estimated turn rate, mean of the runs."""
     return plot.turn_rate_panel(
         ax,
         example.time_s,
         example.turn_rates_rad_s,
-        {LABELS[key]: result[example.name, key].turn_rate_rad_s for key in _IN_RATES},
+        {LABELS[key]: result[example.name, key].turn_rate_rad_s for key in shown},
         colors=COLORS,
         ylabel="estimated turn rate,\nmean of the runs (°/s)",
-    )
-
-
-def _draw_influence(
-    ax: Axes,
-    name: str,
-    build: Callable[[Any, float], Candidate],
-    what: str,
-    values: tuple[float, ...],
-    seed: int,
-) -> Axes:
-    example = scenario.named(name)
-    rates = {
-        f"{what} = {value:g}": _first_centre(build(SETTINGS[name], value), example, seed)
-        for value in values
-    }
-    return plot.turn_rate_panel(
-        ax,
-        example.time_s,
-        example.turn_rates_rad_s,
-        rates,
-        ylabel=f"example {name[-1]}, rate of\nthe centre model (°/s)",
     )
 
 

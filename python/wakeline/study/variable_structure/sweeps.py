@@ -47,8 +47,7 @@ def swept() -> Iterator[tuple[Scenario, dict[str, Any]]]:
     for name in ("example1", "example2"):
         example = scenario.named(name)
         yield replace(example, name=f"{name}_settings"), _variants(SETTINGS[name])
-        if candidates.exists("ModeHistory"):
-            yield replace(example, name=f"{name}_mixing"), candidates.unmixed(SETTINGS[name], POLAR)
+        yield replace(example, name=f"{name}_mixing"), candidates.unmixed(SETTINGS[name], POLAR)
         yield replace(example, name=f"{name}_from_plots"), _from_plots(example, SETTINGS[name])
 
 
@@ -70,30 +69,39 @@ def _finer(radar: scenario.RadarSimulator, times: float) -> scenario.RadarSimula
 
 
 def _variants(setting: Setting) -> dict[str, Candidate]:
-    """AGMM and SGMM as they are, with other thresholds, with other choices of what is not printed.
+    """The printed rules, with other thresholds, with other choices of what is not printed.
 
-    Rates of AGMM are in degrees a second.
+    Rates of AGMM are in degrees a second. `agmm_kept` and `agmm_patient` have one each of the two
+    additions that the library's defaults make to the rules.
     """
     adaptive = {
-        "agmm": {},
+        "agmm_printed": {},
         **{f"agmm_t1_{t1:g}": {"centre_threshold": t1} for t1 in (0.3, 0.7)},
         **{f"agmm_r_{r:g}": {"min_spacing_rad_s": np.deg2rad(r)} for r in (0.5, 1.0, 2.0, 3.0)},
         **{
             f"agmm_initial_{side:g}": {"initial_turn_rates_rad_s": np.deg2rad([-side, 0.0, side])}
             for side in (0.5, 1.0, 2.0)
         },
+        "agmm_kept": {"kept_spacing_rad_s": np.deg2rad(3.0)},
+        "agmm_patient": {"centre_threshold": 0.8, "centre_gain": 0.3},
     }
     switching = {
-        "sgmm": {},
-        **{f"sgmm_t_{t:g}": {"threshold": t} for t in (0.3, 0.7, 0.9)},
+        "sgmm_printed": {},
+        **{f"sgmm_t_{t:g}": {"threshold": t} for t in (0.3, 0.5, 0.7, 0.9)},
         "sgmm_identity": {"carry": "identity"},
         "sgmm_literal": {"rule": "literal"},
         "sgmm_literal_t_0.9": {"rule": "literal", "threshold": 0.9},
     }
     return {
         "imm5": candidates.imm5(setting, POLAR),
-        **{name: candidates.agmm(setting, POLAR, **given) for name, given in adaptive.items()},
-        **{name: candidates.sgmm(setting, POLAR, **given) for name, given in switching.items()},
+        **{
+            name: candidates.agmm_printed(setting, POLAR, **given)
+            for name, given in adaptive.items()
+        },
+        **{
+            name: candidates.sgmm_printed(setting, POLAR, **given)
+            for name, given in switching.items()
+        },
     }
 
 
@@ -107,10 +115,10 @@ def moves(runs: int, seed: int) -> str:
         example, setting = scenario.named(name), SETTINGS[name]
         z = example.draw(runs, seed)
         kinds = {
-            f"SGMM t = {t:g}": candidates.sgmm(setting, POLAR, threshold=t)
+            f"SGMM t = {t:g}": candidates.sgmm_printed(setting, POLAR, threshold=t)
             for t in (0.3, 0.7, 0.87, 0.9)
         } | {
-            f"AGMM t1 = {t1:g}": candidates.agmm(setting, POLAR, centre_threshold=t1)
+            f"AGMM t1 = {t1:g}": candidates.agmm_printed(setting, POLAR, centre_threshold=t1)
             for t1 in (0.3, 0.7)
         }
         counts = {
@@ -149,7 +157,7 @@ def _drawn(setting: Setting) -> dict[str, Candidate]:
     found = {}
     for k in range(_SURVEY):
         side_deg_s = rng.uniform(0.2, setting.agmm_max_deg_s)
-        found[f"agmm-{k}"] = candidates.agmm(
+        found[f"agmm-{k}"] = candidates.agmm_printed(
             setting,
             POLAR,
             min_spacing_rad_s=np.deg2rad(rng.uniform(0.2, 3.0)),
@@ -158,7 +166,7 @@ def _drawn(setting: Setting) -> dict[str, Candidate]:
             unlikely_threshold=rng.uniform(0.02, 0.4),
             likely_threshold=rng.uniform(0.5, 0.98),
         )
-        found[f"sgmm-{k}"] = candidates.sgmm(
+        found[f"sgmm-{k}"] = candidates.sgmm_printed(
             setting,
             POLAR,
             threshold=rng.uniform(0.3, 0.95),
