@@ -8,14 +8,15 @@
 #include <variant>
 
 #include "any_turn_grids.hpp"
+#include "mode_history.hpp"
 
 namespace wakeline::python {
 
 /// One of the multi-model estimators.
 class AnyEstimator {
  public:
-  using Variant =
-      std::variant<AnyImm, AnyAdaptiveGridImm, AnySwitchingGridImm, AnyLikelyModelSetImm>;
+  using Variant = std::variant<AnyImm, AnyAdaptiveGridImm, AnySwitchingGridImm,
+                               AnyLikelyModelSetImm, AnyModeHistory>;
 
   template <class Estimator>
   requires(std::is_constructible_v<Variant, const Estimator&>)

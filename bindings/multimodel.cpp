@@ -4,6 +4,7 @@
 
 #include "any_turn_grids.hpp"
 #include "face.hpp"
+#include "mode_history.hpp"
 #include "turn_grid.hpp"
 
 namespace wakeline::python {
@@ -305,6 +306,7 @@ initial_mode_probability : (K,) array, optional
   define_adaptive_grid(m);
   define_switching_grid(m);
   define_likely_model_set(m);
+  define_mode_history(m);
 }
 
 }  // namespace wakeline::python

@@ -15,7 +15,7 @@ from wakeline import _engine
 
 STUBS = Path(__file__).parents[1] / "python" / "wakeline" / "_engine"
 SENSOR = "RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position"
-ESTIMATOR = "Imm | AdaptiveGridImm | SwitchingGridImm | LikelyModelSetImm"
+ESTIMATOR = "Imm | AdaptiveGridImm | SwitchingGridImm | LikelyModelSetImm | ModeHistory"
 NOISE = "ProcessNoise | WhiteAcceleration | PiecewiseAcceleration | WhiteJerk"
 WORDS = [
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
@@ -67,7 +67,13 @@ HOMES = {
         "Singer",
         "WanderingCourse",
     ],
-    "multimodel": ["AdaptiveGridImm", "Imm", "LikelyModelSetImm", "SwitchingGridImm"],
+    "multimodel": [
+        "AdaptiveGridImm",
+        "Imm",
+        "LikelyModelSetImm",
+        "ModeHistory",
+        "SwitchingGridImm",
+    ],
 }
 
 

@@ -171,8 +171,10 @@ AnyEstimator to_estimator(const py::object& estimator) {
     return estimator.cast<const AnySwitchingGridImm&>();
   if (py::isinstance<AnyLikelyModelSetImm>(estimator))
     return estimator.cast<const AnyLikelyModelSetImm&>();
+  if (py::isinstance<AnyModeHistory>(estimator)) return estimator.cast<const AnyModeHistory&>();
   throw py::type_error(
-      "estimator must be Imm, AdaptiveGridImm, SwitchingGridImm or LikelyModelSetImm, got " +
+      "estimator must be Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm or ModeHistory, "
+      "got " +
       py::str(py::type::of(estimator).attr("__name__")).cast<std::string>());
 }
 
@@ -372,7 +374,7 @@ radar : Radar
 config : TrackerConfig, optional
 models : VesselModels, optional
     Motion models of the estimator.
-estimator : Imm, AdaptiveGridImm, SwitchingGridImm or LikelyModelSetImm, optional
+estimator : Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm or ModeHistory, optional
     Another estimator in place of that made of `models`.
 
 Raises

@@ -70,6 +70,7 @@ from ._engine.multimodel import (
     Imm,
     LikelyModelSetImm,
     ModeChain,
+    ModeHistory,
     SwitchingGridImm,
 )
 from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, vessel_imm
@@ -102,6 +103,7 @@ __all__ = [
     "Kalman",
     "LikelyModelSetImm",
     "ModeChain",
+    "ModeHistory",
     "OwnShip",
     "PiecewiseAcceleration",
     "Position",

@@ -16,6 +16,7 @@ __all__ = [
     "Imm",
     "LikelyModelSetImm",
     "ModeChain",
+    "ModeHistory",
     "SwitchingGridImm",
 ]
 
@@ -532,3 +533,173 @@ class LikelyModelSetImm:
     @property
     def started(self) -> bool: ...
 
+class ModeHistory:
+    """
+    A tree of histories of turn rates, not mixed.
+
+    Each hypothesis is one filter with its own past. A prediction lets every hypothesis keep its turn rate or take another one; an
+    update weighs the hypotheses by their likelihood, joins those that have become alike and keeps the likeliest. Has the face of
+    `Imm`; `mode_probability` has one number for each turn rate of the grid.
+
+    Parameters
+    ----------
+    filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+        What every hypothesis is like; its turn rate does not matter.
+    grid_rad_s : (2 to 16,) array, optional
+        Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
+    straight_sojourn_s, turn_sojourn_s : float
+        Mean time on a straight (the straightest rate of the grid) and in a turn, once it may end.
+    straighten_probability : float
+        That a turn ends in a straight; other turns are alike.
+    chain : ModeChain, optional
+        Another chain, instead of those three.
+    initial_mode_probability : (K,) array, optional
+        What a start begins with; 0.9 for the straightest when left out.
+    max_hypotheses : int
+        Kept after an update; K or more.
+    max_branches : int
+        Filtered in a scan, at most 256: what was kept, and the likeliest switches from it that there is room for.
+    min_segment_s : float
+        A turn rate that is younger does not change.
+    merge_distance : float
+        Hypotheses of one turn rate that are nearer join, around the heavier one: the Mahalanobis distance in its covariance.
+    sibling_distance : float
+        The same for those that came to it in one scan, and differ in what was before only; `merge_distance` or more.
+    switch_time_spread : float
+        Doubt of when in the scan a switch came: 1 for anywhere in it, 0 for at its beginning.
+    negligible_probability : float
+        Hypotheses that have less are dropped.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense.
+
+    References
+    ----------
+    G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait, Automatica 18, 1982; D. J. Salmond, Proc. SPIE
+    1305, 1990.
+    """
+    @staticmethod
+    def pseudo_bayes(
+        order: int,
+        filter: Filter,
+        grid_rad_s: ArrayLike | None = None,
+        *,
+        stay_probability: float = 0.9,
+        chain: ModeChain | None = None,
+        initial_mode_probability: ArrayLike | None = None,
+    ) -> ModeHistory:
+        """
+        The generalised pseudo-Bayes estimator of an order: GPB1, GPB2, ...
+
+        Histories with the same last ``order - 1`` turn rates join in every scan.
+
+        Parameters
+        ----------
+        order : int
+            1 or more; K to the power of it is at most 256.
+        filter, grid_rad_s, chain, initial_mode_probability
+            As of the class.
+        stay_probability : float
+            Of the turn rates' chain: to stay, the rest to each other one alike.
+
+        Raises
+        ------
+        ValueError
+            When a parameter makes no sense.
+
+        References
+        ----------
+        Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 11.6.3-11.6.5.
+        """
+    def __init__(
+        self,
+        filter: Filter,
+        grid_rad_s: ArrayLike | None = None,
+        *,
+        straight_sojourn_s: float = 55.0,
+        turn_sojourn_s: float = 85.0,
+        straighten_probability: float = 0.75,
+        chain: ModeChain | None = None,
+        initial_mode_probability: ArrayLike | None = None,
+        max_hypotheses: int = 75,
+        max_branches: int = 100,
+        min_segment_s: float = 15.0,
+        merge_distance: float = 1.9,
+        sibling_distance: float = 12.0,
+        switch_time_spread: float = 0.1,
+        negligible_probability: float = 1e-07,
+    ) -> None: ...
+    def estimate(self) -> Gaussian:
+        """
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
+        """
+    def mode_probability(self) -> NDArray[np.float64]:
+        """
+        (K,)
+        """
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
+        """
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
+        """
+    def run(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+        own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
+    ) -> RunResult:
+        """
+        Runs whole recordings.
+
+        Parameters
+        ----------
+        z : (T, M) or (R, T, M) array
+            Readings of one run or of R independent ones; a row of NaN is a missed scan.
+        dt_s : float or (T,) array
+            Time before each reading, s; the first counts from the start.
+        sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+        start : Gaussian or sequence of R of them
+            Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
+        own_position_m : (T, 2) array, optional
+            North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
+
+        Returns
+        -------
+        RunResult
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
+            and status (..., T).
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+        """
+    def start(self, belief: Gaussian) -> None:
+        """
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
+        """
+    def update(
+        self,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        z: ArrayLike,
+    ) -> Step:
+        """
+        Corrects the belief by a reading; returns the Step.
+        """
+    @property
+    def hypotheses(self) -> int:
+        """
+        How many there are at present.
+        """
+    @property
+    def models(self) -> int: ...
+    @property
+    def started(self) -> bool: ...

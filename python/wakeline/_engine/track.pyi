@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .core import Gaussian
 from .measurement import OwnShip
-from .multimodel import AdaptiveGridImm, Imm, LikelyModelSetImm, SwitchingGridImm
+from .multimodel import AdaptiveGridImm, Imm, LikelyModelSetImm, ModeHistory, SwitchingGridImm
 
 __all__ = [
     "Event",
@@ -300,7 +300,12 @@ class Tracker:
         radar: Radar,
         config: TrackerConfig = ...,
         models: VesselModels = ...,
-        estimator: Imm | AdaptiveGridImm | SwitchingGridImm | LikelyModelSetImm | None = None,
+        estimator: Imm
+        | AdaptiveGridImm
+        | SwitchingGridImm
+        | LikelyModelSetImm
+        | ModeHistory
+        | None = None,
     ) -> None: ...
     def designate(
         self, time_s: float, north_m: float, east_m: float, position_std_m: float = 50.0

@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 #include "wakeline/core/require.hpp"
 
@@ -57,11 +58,26 @@ class ModeChain {
   /// mode alike.
   static ModeChain from_sojourn_s(const ModeVector<double, K>& sojourn_s) {
     const Eigen::Index modes = sojourn_s.size();
+    Matrix next = Matrix::Constant(modes, modes, 1.0 / static_cast<double>(modes - 1));
+    next.diagonal().setZero();
+    return from_sojourn_s(sojourn_s, next);
+  }
+
+  /// The same with `next(i, j) = P(goes to mode j | leaves mode i)`: a distribution in each row,
+  /// zero on the diagonal.
+  static ModeChain from_sojourn_s(const ModeVector<double, K>& sojourn_s, const Matrix& next) {
+    const Eigen::Index modes = sojourn_s.size();
+    if (next.rows() != modes || next.cols() != modes)
+      throw std::invalid_argument(
+          "from_sojourn_s needs one row and column of `next` for each of " + std::to_string(modes) +
+          " modes, got " + std::to_string(next.rows()) + " x " + std::to_string(next.cols()));
+    if (modes > 1) require_stochastic(next);
     Matrix generator = Matrix::Zero(modes, modes);
     for (Eigen::Index i = 0; i < modes; ++i) {
       require_positive("a mean sojourn time", sojourn_s[i]);
+      require(modes == 1 || next(i, i) == 0.0, "the diagonal of `next`", "zero", next(i, i));
       for (Eigen::Index j = 0; j < modes && modes > 1; ++j)
-        generator(i, j) = (i == j ? -1.0 : 1.0 / static_cast<double>(modes - 1)) / sojourn_s[i];
+        generator(i, j) = (i == j ? -1.0 : next(i, j)) / sojourn_s[i];
     }
     return ModeChain(Generator{generator});
   }

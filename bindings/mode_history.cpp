@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "mode_history.hpp"
+
+#include "face.hpp"
+#include "turn_grid.hpp"
+#include "wakeline/multimodel/turning_chain.hpp"
+
+namespace wakeline::python {
+namespace {
+
+AnyModeHistory::Variant over_filter(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
+                                    const Chain& chain, const AnyFilter& filter) {
+  return std::visit(
+      [&]<class Filter>(const Filter& prototype) -> AnyModeHistory::Variant {
+        if constexpr (std::is_same_v<typename Filter::Motion, CoordinatedTurn>)
+          return ModeHistory<Filter>(tree, grid_rad_s, chain, prototype);
+        else
+          throw py::value_error(
+              "filter must be one over CoordinatedTurn, whose turn rate is known");
+      },
+      filter.variant());
+}
+
+TurnRateGrid grid_or_default(const std::optional<DoubleArray>& rates) {
+  return rates ? to_grid(*rates) : TurnRateGrid::evenly(deg(4.0), 4);
+}
+
+}  // namespace
+
+AnyModeHistory::AnyModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
+                               const Chain& chain, const AnyFilter& filter)
+    : history_(over_filter(tree, grid_rad_s, chain, filter)), linear_(filter.linear()) {}
+
+void define_mode_history(py::module_& m) {
+  const HistoryTree tree;
+  const TurnHabits habits;
+  py::class_<AnyModeHistory> history(m, "ModeHistory",
+                                     R"(A tree of histories of turn rates, not mixed.
+
+Each hypothesis is one filter with its own past. A prediction lets every hypothesis keep its turn rate or take another one; an
+update weighs the hypotheses by their likelihood, joins those that have become alike and keeps the likeliest. Has the face of
+`Imm`; `mode_probability` has one number for each turn rate of the grid.
+
+Parameters
+----------
+filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+    What every hypothesis is like; its turn rate does not matter.
+grid_rad_s : (2 to 16,) array, optional
+    Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
+straight_sojourn_s, turn_sojourn_s : float
+    Mean time on a straight (the straightest rate of the grid) and in a turn, once it may end.
+straighten_probability : float
+    That a turn ends in a straight; other turns are alike.
+chain : ModeChain, optional
+    Another chain, instead of those three.
+initial_mode_probability : (K,) array, optional
+    What a start begins with; 0.9 for the straightest when left out.
+max_hypotheses : int
+    Kept after an update; K or more.
+max_branches : int
+    Filtered in a scan, at most 256: what was kept, and the likeliest switches from it that there is room for.
+min_segment_s : float
+    A turn rate that is younger does not change.
+merge_distance : float
+    Hypotheses of one turn rate that are nearer join, around the heavier one: the Mahalanobis distance in its covariance.
+sibling_distance : float
+    The same for those that came to it in one scan, and differ in what was before only; `merge_distance` or more.
+switch_time_spread : float
+    Doubt of when in the scan a switch came: 1 for anywhere in it, 0 for at its beginning.
+negligible_probability : float
+    Hypotheses that have less are dropped.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense.
+
+References
+----------
+G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait, Automatica 18, 1982; D. J. Salmond, Proc. SPIE
+1305, 1990.)");
+  history.def(
+      py::init([](const AnyFilter& filter, const std::optional<DoubleArray>& rates, double straight,
+                  double turn, double straighten, const std::optional<Chain>& chain,
+                  const std::optional<DoubleArray>& initial, int max_hypotheses, int max_branches,
+                  double min_segment, double merge_distance, double sibling_distance, double spread,
+                  double negligible) {
+        const TurnRateGrid grid = grid_or_default(rates);
+        return with_initial(
+            AnyModeHistory({.max_hypotheses = max_hypotheses,
+                            .max_branches = max_branches,
+                            .min_segment_s = min_segment,
+                            .merge_distance = merge_distance,
+                            .sibling_distance = sibling_distance,
+                            .switch_time_spread = spread,
+                            .negligible_probability = negligible},
+                           grid, chain ? *chain : turning_chain(grid, {straight, turn, straighten}),
+                           filter),
+            initial);
+      }),
+      py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
+      py::arg("straight_sojourn_s") = habits.straight_sojourn_s,
+      py::arg("turn_sojourn_s") = habits.turn_sojourn_s,
+      py::arg("straighten_probability") = habits.straighten_probability,
+      py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none(),
+      py::arg("max_hypotheses") = tree.max_hypotheses, py::arg("max_branches") = tree.max_branches,
+      py::arg("min_segment_s") = tree.min_segment_s,
+      py::arg("merge_distance") = tree.merge_distance,
+      py::arg("sibling_distance") = tree.sibling_distance,
+      py::arg("switch_time_spread") = tree.switch_time_spread,
+      py::arg("negligible_probability") = tree.negligible_probability);
+  history.def_static(
+      "pseudo_bayes",
+      [](int order, const AnyFilter& filter, const std::optional<DoubleArray>& rates, double stay,
+         const std::optional<Chain>& chain, const std::optional<DoubleArray>& initial) {
+        const TurnRateGrid grid = grid_or_default(rates);
+        return with_initial(AnyModeHistory(HistoryTree::pseudo_bayes(order, grid.size()), grid,
+                                           chain_of(chain, stay, grid.size()), filter),
+                            initial);
+      },
+      py::arg("order"), py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
+      py::arg("stay_probability") = 0.9, py::arg("chain") = py::none(),
+      py::arg("initial_mode_probability") = py::none(),
+      R"(The generalised pseudo-Bayes estimator of an order: GPB1, GPB2, ...
+
+Histories with the same last ``order - 1`` turn rates join in every scan.
+
+Parameters
+----------
+order : int
+    1 or more; K to the power of it is at most 256.
+filter, grid_rad_s, chain, initial_mode_probability
+    As of the class.
+stay_probability : float
+    Of the turn rates' chain: to stay, the rest to each other one alike.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense.
+
+References
+----------
+Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 11.6.3-11.6.5.)");
+  define_face(history);
+  history.def_property_readonly("hypotheses", &AnyModeHistory::hypotheses,
+                                "How many there are at present.");
+}
+
+}  // namespace wakeline::python

@@ -1,0 +1,186 @@
+"""Trees of mode histories: what they are laws of is in the tests of C++; here what Python adds."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import wakeline as wl
+from cases import CONVERTED, DT_S, MOTIONS, RADAR, SMALL_NOISE, START, readings
+from wakeline import montecarlo, scenario
+
+RATES = np.deg2rad([-3.0, -1.5, 0.0, 1.5, 3.0])
+TURN = wl.CoordinatedTurn(noise=SMALL_NOISE)
+
+
+def tree(kind=wl.Ekf, **options):
+    return wl.ModeHistory(kind(TURN), RATES, **options)
+
+
+@pytest.mark.parametrize("kind", [wl.Kalman, wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_run_is_the_steps_one_by_one(kind):
+    sensor = CONVERTED if kind is wl.Kalman else RADAR
+    z = readings(12, seed=3)
+    z[5] = np.nan
+    dt_s = np.linspace(2.0, 4.0, len(z))
+    result = tree(kind).run(z, dt_s=dt_s, sensor=sensor, start=START)
+    one = tree(kind)
+    one.start(START)
+    for k, reading in enumerate(z):
+        one.predict(dt_s[k])
+        if not np.isnan(reading).any():
+            step = one.update(sensor, reading)
+            assert result.log_likelihood[k] == step.log_likelihood
+        np.testing.assert_array_equal(result.mean[k], one.estimate().mean)
+        np.testing.assert_array_equal(result.covariance[k], one.estimate().covariance)
+        np.testing.assert_array_equal(result.mode_probability[k], one.mode_probability())
+    assert one.models == len(RATES)
+    assert one.started
+    assert result.status[5] == int(wl.Status.missed)
+
+
+def test_runs_side_by_side_know_nothing_of_each_other():
+    z = np.stack([readings(20, seed) for seed in range(3)])
+    together = tree().run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    for run, alone in enumerate(z):
+        expected = tree().run(alone, dt_s=DT_S, sensor=RADAR, start=START)
+        np.testing.assert_array_equal(together.mean[run], expected.mean)
+        np.testing.assert_array_equal(together.mode_probability[run], expected.mode_probability)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(5, 40), st.integers(0, 60), st.floats(0.0, 30.0), st.floats(0.0, 4.0), st.data())
+def test_any_tree_is_a_belief(kept, switches, min_segment_s, merge_distance, data):
+    z = readings(25, data.draw(st.integers(0, 1000)))
+    z[data.draw(st.lists(st.integers(0, 24), max_size=8))] = np.nan
+    one = tree(
+        max_hypotheses=kept,
+        max_branches=kept + switches,
+        min_segment_s=min_segment_s,
+        merge_distance=merge_distance,
+        sibling_distance=2.0 * merge_distance,
+    )
+    result = one.run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    assert np.isfinite(result.mean).all()
+    assert np.linalg.eigvalsh(result.covariance).min() > 0.0
+    np.testing.assert_allclose(result.mode_probability.sum(axis=-1), 1.0, atol=1e-12)
+
+
+def test_it_finds_the_turn_rate():
+    truth = scenario.Truth(
+        [2000.0, 8.0, 1000.0, 0.0], [scenario.Segment(60.0), scenario.Segment(60.0, np.deg2rad(3))]
+    )
+    _, z = scenario.RadarSimulator(10.0, 0.002, DT_S).observe(truth, 40, 5, start_time_s=DT_S)
+    start = wl.Gaussian([2000.0, 8.0, 1000.0, 0.0], np.diag([100.0, 1.0, 100.0, 1.0]))
+    sharp = wl.RangeBearing(range_std_m=10.0, bearing_std_rad=0.002)
+    result = wl.ModeHistory(
+        wl.Ekf(wl.CoordinatedTurn(noise=wl.PiecewiseAcceleration(std_mps2=0.01))), RATES
+    ).run(z, dt_s=DT_S, sensor=sharp, start=start)
+    assert result.mode_probability[15, 2] > 0.7
+    assert result.mode_probability[35, 4] > 0.9
+
+
+def test_a_known_acceleration_moves_the_prediction():
+    still, pushed = tree(), tree()
+    for one in (still, pushed):
+        one.start(START)
+    u = np.array([0.2, -0.1])
+    still.predict(DT_S)
+    pushed.predict(DT_S, u)
+    shift = np.array([DT_S**2 / 2 * u[0], DT_S * u[0], DT_S**2 / 2 * u[1], DT_S * u[1]])
+    np.testing.assert_allclose(pushed.estimate().mean, still.estimate().mean + shift, atol=1e-9)
+
+
+def paired(name, estimators, runs=40):
+    """Mean position error of each estimator over the same readings."""
+    result = montecarlo.run(
+        scenario.named(name), {k: montecarlo.Candidate(v) for k, v in estimators.items()}, runs, 7
+    )
+    return {k: result[name, k].summary()["mean_position_m"] for k in estimators}
+
+
+def study_filter(rate_deg_s=0.0):
+    return wl.Ekf(
+        wl.CoordinatedTurn(
+            turn_rate_rad_s=np.deg2rad(rate_deg_s), noise=wl.PiecewiseAcceleration(std_mps2=0.003)
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "rates"), [("example1", (-2, -1, 0, 1, 2)), ("example2", (-4, -2, 0, 2, 4))]
+)
+def test_histories_kept_apart_are_nearer_than_mixed_ones(name, rates):
+    chain = wl.ModeChain(np.full((5, 5), 0.025) + 0.875 * np.eye(5))
+    errors = paired(
+        name,
+        {
+            "tree": wl.ModeHistory(study_filter()),
+            "imm": wl.Imm([study_filter(rate) for rate in rates], chain),
+        },
+    )
+    assert errors["tree"] < 0.9 * errors["imm"]
+
+
+def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is_not():
+    rates = np.deg2rad([-2.0, -1.0, 0.0, 1.0, 2.0])
+    chain = wl.ModeChain(np.full((5, 5), 0.025) + 0.875 * np.eye(5))
+    errors = paired(
+        "example1",
+        {
+            "gpb1": wl.ModeHistory.pseudo_bayes(1, study_filter(), rates, chain=chain),
+            "gpb2": wl.ModeHistory.pseudo_bayes(2, study_filter(), rates, chain=chain),
+            "imm": wl.Imm([study_filter(rate) for rate in (-2, -1, 0, 1, 2)], chain),
+        },
+    )
+    assert errors["gpb2"] == pytest.approx(errors["imm"], rel=0.05)
+    assert errors["gpb1"] > 1.1 * errors["imm"]
+
+
+@pytest.mark.parametrize(
+    ("build", "words"),
+    [
+        (lambda: wl.ModeHistory(wl.Ekf(MOTIONS["ConstantVelocity"])), "CoordinatedTurn"),
+        (lambda: wl.ModeHistory(wl.Ekf(TURN), [0.0]), "2 to 16 turn rates, got 1"),
+        (
+            lambda: wl.ModeHistory(wl.Ekf(TURN), np.linspace(-1, 1, 40)),
+            "2 to 16 turn rates, got 40",
+        ),
+        (lambda: wl.ModeHistory(wl.Ekf(TURN), [0.1, 0.0]), "greater than the one before"),
+        (lambda: wl.ModeHistory(wl.Ekf(TURN), [0.0, np.nan]), "finite"),
+        (lambda: tree(max_hypotheses=4), "max_hypotheses must be at least the number of modes"),
+        (lambda: tree(max_branches=300), "max_branches must be at most the capacity of 256"),
+        (lambda: tree(max_hypotheses=90, max_branches=80), "max_branches must be max_hypotheses"),
+        (lambda: tree(min_segment_s=-1.0), "min_segment_s"),
+        (lambda: tree(merge_distance=-1.0), "merge_distance"),
+        (lambda: tree(sibling_distance=0.1), "sibling_distance must be merge_distance or more"),
+        (lambda: tree(negligible_probability=1.0), "negligible_probability"),
+        (lambda: tree(straighten_probability=2.0), "straighten_probability"),
+        (lambda: tree(straight_sojourn_s=0.0), "sojourn"),
+        (lambda: tree(initial_mode_probability=np.ones(5)), "initial_mode_probability"),
+        (lambda: tree(chain=wl.ModeChain(np.eye(3))), "modes"),
+        (lambda: wl.ModeHistory.pseudo_bayes(0, wl.Ekf(TURN), RATES), "1 to 8"),
+        (lambda: wl.ModeHistory.pseudo_bayes(4, wl.Ekf(TURN), RATES), "capacity"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_in_words(build, words):
+    with pytest.raises(ValueError, match=words):
+        build()
+
+
+def test_a_kalman_filter_takes_linear_sensors_only():
+    one = tree(wl.Kalman)
+    one.start(START)
+    one.predict(DT_S)
+    with pytest.raises(ValueError, match="linear"):
+        one.update(RADAR, readings(1)[0])
+
+
+def test_a_reading_that_is_no_number_changes_nothing():
+    one = tree()
+    one.start(START)
+    one.predict(DT_S)
+    before = one.estimate().mean
+    with pytest.raises(wl.FilterError, match="finite"):
+        one.update(RADAR, [np.nan, 1.0])
+    np.testing.assert_array_equal(one.estimate().mean, before)
