@@ -118,7 +118,8 @@ class Report:
         raise KeyError(f"no row of {estimator} on {scenario}")
 
     def save_pictures(self, folder: str | Path) -> list[Path]:
-        """Draw every picture into `folder` as ``NAME.png``; returns the files."""
+        """Draw every picture into `folder`, made if need be, as ``NAME.png``; returns the files."""
+        Path(folder).mkdir(parents=True, exist_ok=True)
         files = []
         for picture in self.pictures:
             files.append(Path(folder) / f"{picture.name}.png")
