@@ -56,7 +56,7 @@ _NOISE = WhiteAcceleration(psd_m2s3=0.06)
 _STRAIGHT_S, _TURN_S = 200.0, 20.0
 _THREE_DEG_S = (0, 2, -2)
 _OTHER_NOISES_M2S3 = (0.003, 0.01, 0.3)
-_SHOWN = ("kalman_cv", "imm5", "mode_history")
+_SHOWN = ("kalman_ca", "kalman_cv", "mode_history")
 _SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
 
 
@@ -345,8 +345,7 @@ def _pictures(rows: Rows, seed: int) -> tuple[Picture, ...]:
             "solent-track",
             "Three minutes of a fast craft: one run under the radars of 60 m and of 15 m",
             tuple(partial(_draw_track, radar=radar, seed=seed) for radar in RADARS),
-            size_in=(10.4, 5.6),
-            columns=2,
+            size_in=(7.2, 10.4),
             shared=False,
         ),
         Picture(
