@@ -57,7 +57,7 @@ void define_adaptive_grid(py::module_& m) {
 
 The turn rates move before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
 
-The printed rule is that of centre_threshold 0.3, centre_gain 1 and kept_spacing_rad_s 0. Its grid collapses to half of
+The printed rule is that of centre_threshold 0.3, centre_gain 1, kept_spacing_rad_s 0 and least_move_rad_s 0. Its grid collapses to half of
 min_spacing_rad_s to each side, where the rates may differ too little to be told apart, and nothing opens it again. The
 defaults keep it open and move its centre with patience.
 
@@ -73,6 +73,8 @@ min_spacing_rad_s : float
     The least spacing that a move starts from. Not printed.
 kept_spacing_rad_s : float
     No side comes nearer to the centre, but for the maximum: what keeps the grid open. Not in the paper: 0.
+least_move_rad_s : float
+    A grid none of whose rates would move so far stays, which saves time. Not in the paper: 0.
 centre_threshold : float
     A centre less probable than this moves towards the mean rate. In the paper 0.3.
 centre_gain : float
@@ -99,12 +101,13 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
   adaptive.def(
       py::init([](const AnyFilter& filter, double max_rate,
                   const std::optional<DoubleArray>& initial_rates, double min_spacing,
-                  double kept_spacing, double centre, double gain, double unlikely, double likely,
-                  double stay, const std::optional<Chain>& chain,
+                  double kept_spacing, double least_move, double centre, double gain,
+                  double unlikely, double likely, double stay, const std::optional<Chain>& chain,
                   const std::optional<DoubleArray>& initial) {
         AdaptiveGrid grid{.max_turn_rate_rad_s = max_rate,
                           .min_spacing_rad_s = min_spacing,
                           .kept_spacing_rad_s = kept_spacing,
+                          .least_move_rad_s = least_move,
                           .centre_threshold = centre,
                           .centre_gain = gain,
                           .unlikely_threshold = unlikely,
@@ -120,6 +123,7 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
       py::arg("initial_turn_rates_rad_s") = py::none(),
       py::arg("min_spacing_rad_s") = grid.min_spacing_rad_s,
       py::arg("kept_spacing_rad_s") = grid.kept_spacing_rad_s,
+      py::arg("least_move_rad_s") = grid.least_move_rad_s,
       py::arg("centre_threshold") = grid.centre_threshold,
       py::arg("centre_gain") = grid.centre_gain,
       py::arg("unlikely_threshold") = grid.unlikely_threshold,

@@ -45,6 +45,7 @@ def from_case(case, kind):
             initial_turn_rates_rad_s=np.deg2rad(told["initial_set_deg_s"]),
             min_spacing_rad_s=np.deg2rad(told["min_spacing_deg_s"]),
             kept_spacing_rad_s=0.0,
+            least_move_rad_s=0.0,
             centre_threshold=told["t1"],
             centre_gain=1.0,
             unlikely_threshold=told["t2"],
@@ -174,7 +175,7 @@ def test_the_usual_adaptive_grid_is_nearly_as_good_as_five_models_and_never_lost
     chain = wl.ModeChain(np.full((5, 5), 0.1 / 4) + (0.9 - 0.1 / 4) * np.eye(5))
     adaptive = montecarlo.Candidate(wl.AdaptiveGridImm(turn(0.0)))
     printed = montecarlo.Candidate(
-        wl.AdaptiveGridImm(turn(0.0), centre_threshold=0.3, centre_gain=1.0, kept_spacing_rad_s=0.0)
+        wl.AdaptiveGridImm(turn(0.0), centre_threshold=0.3, centre_gain=1.0, kept_spacing_rad_s=0.0, least_move_rad_s=0.0)
     )
     for name, widest in (("example1", 2.0), ("example2", 4.0)):
         rates = np.linspace(-widest, widest, 5)
@@ -275,6 +276,7 @@ def test_a_tracker_names_the_estimators_it_takes():
         (wl.AdaptiveGridImm, {"initial_turn_rates_rad_s": [0.0, 0.01]}, r"shape \(3,\)"),
         (wl.AdaptiveGridImm, {"min_spacing_rad_s": -1.0}, "min_spacing_rad_s"),
         (wl.AdaptiveGridImm, {"kept_spacing_rad_s": np.nan}, "kept_spacing_rad_s"),
+        (wl.AdaptiveGridImm, {"least_move_rad_s": -1.0}, "least_move_rad_s"),
         (wl.AdaptiveGridImm, {"centre_gain": 1.5}, "centre_gain"),
         (
             wl.AdaptiveGridImm,

@@ -148,7 +148,7 @@ class AdaptiveGridImm:
 
     The turn rates move before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
 
-    The printed rule is that of centre_threshold 0.3, centre_gain 1 and kept_spacing_rad_s 0. Its grid collapses to half of
+    The printed rule is that of centre_threshold 0.3, centre_gain 1, kept_spacing_rad_s 0 and least_move_rad_s 0. Its grid collapses to half of
     min_spacing_rad_s to each side, where the rates may differ too little to be told apart, and nothing opens it again. The
     defaults keep it open and move its centre with patience.
 
@@ -164,6 +164,8 @@ class AdaptiveGridImm:
         The least spacing that a move starts from. Not printed.
     kept_spacing_rad_s : float
         No side comes nearer to the centre, but for the maximum: what keeps the grid open. Not in the paper: 0.
+    least_move_rad_s : float
+        A grid none of whose rates would move so far stays, which saves time. Not in the paper: 0.
     centre_threshold : float
         A centre less probable than this moves towards the mean rate. In the paper 0.3.
     centre_gain : float
@@ -196,6 +198,7 @@ class AdaptiveGridImm:
         initial_turn_rates_rad_s: ArrayLike | None = None,
         min_spacing_rad_s: float = 0.03490658503988659,
         kept_spacing_rad_s: float = 0.05235987755982989,
+        least_move_rad_s: float = 0.0017453292519943296,
         centre_threshold: float = 0.8,
         centre_gain: float = 0.3,
         unlikely_threshold: float = 0.25,
@@ -619,16 +622,16 @@ class ModeHistory:
         grid_rad_s: ArrayLike | None = None,
         *,
         straight_sojourn_s: float = 55.0,
-        turn_sojourn_s: float = 85.0,
+        turn_sojourn_s: float = 75.0,
         straighten_probability: float = 0.75,
         chain: ModeChain | None = None,
         initial_mode_probability: ArrayLike | None = None,
         max_hypotheses: int = 75,
         max_branches: int = 100,
-        min_segment_s: float = 15.0,
+        min_segment_s: float = 6.0,
         merge_distance: float = 1.9,
         sibling_distance: float = 12.0,
-        switch_time_spread: float = 0.1,
+        switch_time_spread: float = 0.15,
         negligible_probability: float = 1e-07,
     ) -> None: ...
     def estimate(self) -> Gaussian:

@@ -287,7 +287,7 @@ class Tracker:
     config : TrackerConfig, optional
     models : VesselModels, optional
         Motion models of the estimator.
-    estimator : Imm, AdaptiveGridImm, SwitchingGridImm or LikelyModelSetImm, optional
+    estimator : Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm or ModeHistory, optional
         Another estimator in place of that made of `models`.
 
     Raises

@@ -63,6 +63,7 @@ TEST(GoldenGrids, AdaptiveGrid) {
                             .initial_turn_rates_rad_s = AdaptiveGrid::Rates{set[0], set[1], set[2]},
                             .min_spacing_rad_s = deg(parameters.at("min_spacing_deg_s")),
                             .kept_spacing_rad_s = 0.0,
+                            .least_move_rad_s = 0.0,
                             .centre_threshold = parameters.at("t1"),
                             .centre_gain = 1.0,
                             .unlikely_threshold = parameters.at("t2"),

@@ -116,6 +116,7 @@ TEST(AdaptiveGrid, ThatDoesNotMoveIsAnImm) {
   const AdaptiveGrid grid{.max_turn_rate_rad_s = deg(2.0),
                           .initial_turn_rates_rad_s = AdaptiveGrid::Rates{-deg(2.0), 0, deg(2.0)},
                           .kept_spacing_rad_s = deg(2.0),
+                          .least_move_rad_s = 0.0,
                           .centre_threshold = 0.0};
   expect_equal(adaptive(grid), fixed({-deg(2.0), 0, deg(2.0)}, 0.9));
 }
@@ -217,7 +218,10 @@ struct Adaptive {
 };
 struct LiteralAdaptive {
   static auto build() {
-    return adaptive({.kept_spacing_rad_s = 0, .centre_threshold = 0.3, .centre_gain = 1});
+    return adaptive({.kept_spacing_rad_s = 0,
+                     .least_move_rad_s = 0,
+                     .centre_threshold = 0.3,
+                     .centre_gain = 1});
   }
 };
 struct SwitchingBySlot {

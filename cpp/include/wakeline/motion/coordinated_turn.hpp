@@ -26,6 +26,8 @@ struct CoordinatedTurn {
   /// Q(dt), 4 x 4.
   template <class Scalar>
   Mat<Scalar, 4, 4> process_noise(Scalar dt_s) const noexcept {
+    if (noise.kind() == ProcessNoise::Kind::kPiecewiseAcceleration)
+      return Turn<Scalar>::piecewise_noise(noise, dt_s);  // spares the trigonometry
     return Turn<Scalar>(Scalar(turn_rate_rad_s), dt_s).noise(noise);
   }
 

@@ -58,17 +58,22 @@ struct Turn {
     return dt_s * dt_s * Vec<Scalar, 2>(along, across);
   }
 
+  /// Q of `[x, vx, y, vy]` under the piecewise policy, whatever the turn.
+  static Mat<Scalar, 4, 4> piecewise_noise(const ProcessNoise& policy, Scalar dt_s) noexcept {
+    Mat<Scalar, 4, 4> q = Mat<Scalar, 4, 4>::Zero();
+    q.template topLeftCorner<2, 2>() = q.template bottomRightCorner<2, 2>() =
+        policy.of_velocity_axis(dt_s);
+    return q;
+  }
+
   /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn. White
   /// acceleration gives the exact integral of F(s) G q Gᵀ F(s)ᵀ; the piecewise policy is the
   /// papers' G s² Gᵀ, which knows nothing of the turn.
   Mat<Scalar, 4, 4> noise(const ProcessNoise& policy) const noexcept {
     using std::abs;
-    Mat<Scalar, 4, 4> q = Mat<Scalar, 4, 4>::Zero();
-    if (policy.kind() == ProcessNoise::Kind::kPiecewiseAcceleration) {
-      q.template topLeftCorner<2, 2>() = q.template bottomRightCorner<2, 2>() =
-          policy.of_velocity_axis(dt_s);
-      return q;
-    }
+    if (policy.kind() == ProcessNoise::Kind::kPiecewiseAcceleration)
+      return piecewise_noise(policy, dt_s);
+    Mat<Scalar, 4, 4> q;
     const Scalar a2 = angle * angle;
     const bool nearly_straight = abs(angle) < kSeries;
     const Scalar divisor = select(nearly_straight, Scalar(1), angle);

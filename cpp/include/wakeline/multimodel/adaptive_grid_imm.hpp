@@ -13,10 +13,11 @@ namespace wakeline {
 
 /// How the three turn rates of an `AdaptiveGridImm` move: left, centre and right in `[-max, max]`.
 ///
-/// The printed rule is that of centre_threshold 0.3, centre_gain 1 and kept_spacing_rad_s 0. Its
-/// grid collapses to half of min_spacing_rad_s to each side, where the rates may differ too little
-/// to be told apart, and nothing opens it again. The defaults keep it open and move its centre with
-/// patience. Source: paper B, step 1.1; centre_gain and kept_spacing_rad_s are additions.
+/// The printed rule is that of centre_threshold 0.3, centre_gain 1, kept_spacing_rad_s 0 and
+/// least_move_rad_s 0. Its grid collapses to half of min_spacing_rad_s to each side, where the
+/// rates may differ too little to be told apart, and nothing opens it again. The defaults keep it
+/// open and move its centre with patience. Source: paper B, step 1.1; centre_gain,
+/// kept_spacing_rad_s and least_move_rad_s are additions.
 struct AdaptiveGrid {
   using Rates = std::array<double, 3>;
 
@@ -25,6 +26,7 @@ struct AdaptiveGrid {
   std::optional<Rates> initial_turn_rates_rad_s = std::nullopt;
   double min_spacing_rad_s = deg(2.0);      ///< r; not printed
   double kept_spacing_rad_s = deg(3.0);     ///< no side comes nearer, but for the maximum
+  double least_move_rad_s = deg(0.1);       ///< a grid that would move less stays, which saves time
   double centre_threshold = 0.8;            ///< t1: a centre less probable than this moves
   double centre_gain = 0.3;                 ///< how far towards the mean rate: 1 is all the way
   double unlikely_threshold = 0.25;         ///< t2: a side less probable than this comes nearer
@@ -58,7 +60,11 @@ struct AdaptiveGrid {
     const auto clipped = [&](double rate) {
       return std::clamp(rate, -max_turn_rate_rad_s, max_turn_rate_rad_s);
     };
-    return {clipped(next - to_left), clipped(next), clipped(next + to_right)};
+    const Rates wanted{clipped(next - to_left), clipped(next), clipped(next + to_right)};
+    double farthest = 0.0;
+    for (std::size_t k = 0; k < 3; ++k)
+      farthest = std::max(farthest, std::abs(wanted[k] - rates[k]));
+    return farthest < least_move_rad_s ? rates : wanted;
   }
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
@@ -74,6 +80,7 @@ struct AdaptiveGrid {
     }
     require_positive("min_spacing_rad_s", min_spacing_rad_s);
     require_not_negative("kept_spacing_rad_s", kept_spacing_rad_s);
+    require_not_negative("least_move_rad_s", least_move_rad_s);
     require_probability("centre_threshold", centre_threshold);
     require_probability("centre_gain", centre_gain);
     require_probability("unlikely_threshold", unlikely_threshold);

@@ -13,13 +13,13 @@ namespace wakeline {
 struct HistoryTree {
   int max_hypotheses = 75;         ///< kept after an update; the number of modes or more
   int max_branches = 100;          ///< filtered in a scan: what was kept and the switches from it
-  double min_segment_s = 15.0;     ///< a mode that is younger does not end
+  double min_segment_s = 6.0;      ///< a mode that is younger does not end
   double merge_distance = 1.9;     ///< hypotheses of one mode that are nearer join: Mahalanobis, in
                                    ///< the covariance of the heavier one; 0 joins none
   double sibling_distance = 12.0;  ///< the same for those that came into it in one scan, and
                                    ///< differ in what was before only
-  double switch_time_spread = 0.1;  ///< doubt of when in the scan a switch came: 1 for anywhere in
-                                    ///< it, 0 for at its beginning
+  double switch_time_spread = 0.15;  ///< doubt of when in the scan a switch came: 1 for anywhere in
+                                     ///< it, 0 for at its beginning
   double negligible_probability = 1e-7;  ///< less is dropped
   int pseudo_bayes_order = 0;            ///< 0, or n of the generalised pseudo-Bayes estimator GPBn
 

@@ -94,6 +94,7 @@ def agmm_printed(setting: Setting, form: str, **options: Any) -> Candidate:
         "likely_threshold": setting.agmm_likely,
         "centre_gain": 1.0,
         "kept_spacing_rad_s": 0.0,
+        "least_move_rad_s": 0.0,
     }
     return Candidate(wl.AdaptiveGridImm(_turning(form), **(printed | options)), form)
 

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// A tracker takes any estimator with the face of Imm.
+#include "track/scene.hpp"
+#include "wakeline/multimodel/adaptive_grid_imm.hpp"
+#include "wakeline/multimodel/mode_history.hpp"
+#include "wakeline/multimodel/turning_chain.hpp"
+
+namespace wakeline {
+namespace {
+
+using Turning = Ekf<CoordinatedTurn>;
+
+const Turning kTurning{CoordinatedTurn{.noise = WhiteAcceleration{0.02}}};
+
+/// Straight on for 20 scans, then a turn of 3 degrees a second to starboard.
+Vec<double, 2> turning_boat(int scan) {
+  const double speed = 8.0, rate = deg(3.0), time_s = 2.5 * scan, straight_s = 50.0;
+  const double turned = rate * std::max(time_s - straight_s, 0.0);
+  return {1200.0 + speed / rate * (1 - std::cos(turned)),
+          -300.0 + speed * std::min(time_s, straight_s) + speed / rate * std::sin(turned)};
+}
+
+template <class Estimator>
+void expect_to_hold(const Estimator& prototype) {
+  TrackerConfig config;
+  config.max_tracks = 8;
+  Tracker<Estimator> tracker(test::kTestRadar, config, prototype);
+  test::Sea sea(41);
+  for (int scan = 0; scan < 60; ++scan) {
+    std::vector<Plot> plots{sea.plot(turning_boat(scan), 2.5 * scan)};
+    if (scan % 7 == 6) plots.clear();
+    plots.push_back(sea.clutter(2.5 * scan, 3000.0));
+    tracker.process(2.5 * scan, plots);
+  }
+  int near = 0;
+  tracker.for_each([&](const Track<Estimator>& track) {
+    near += track.confirmed() && (track.position() - turning_boat(59)).norm() < 40.0;
+  });
+  EXPECT_EQ(near, 1);
+}
+
+TEST(TrackerEstimators, TreeOfModeHistories) {
+  const auto grid = TurnRateGrid::evenly(deg(4.0), 4);
+  expect_to_hold(ModeHistory<Turning>({}, grid, turning_chain(grid), kTurning));
+}
+
+TEST(TrackerEstimators, MovingGrid) {
+  expect_to_hold(AdaptiveGridImm(AdaptiveGrid{}, ModeChain<3>::staying(0.9), kTurning));
+}
+
+}  // namespace
+}  // namespace wakeline
