@@ -232,6 +232,7 @@ class ModeHistory {
 
  private:
   static constexpr std::size_t kCapacity = static_cast<std::size_t>(Capacity);
+  static_assert(kMaxModes <= 16, "a mode has four bits of a history");
   using Hypotheses = std::array<Hypothesis, kCapacity>;
   using Indices = std::array<int, kCapacity>;
 
@@ -253,7 +254,7 @@ class ModeHistory {
     }
     std::array<Switch, kCapacity> switches;
     const int switching = pooled() ? 0 : likeliest_switches(dt_s, switches);
-    const BeliefType pool = estimate();
+    const BeliefType pool = pooled() ? estimate() : BeliefType{};
     Hypotheses& next = spare();
     const auto move = [&](Hypothesis& hypothesis) {
       Filter& filter = filter_of(hypothesis);
