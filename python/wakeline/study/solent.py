@@ -54,6 +54,7 @@ _COVERAGE_M = 10e3
 _START_SPEED_STD_MPS = 10.0
 _NOISE = WhiteAcceleration(psd_m2s3=0.06)
 _STRAIGHT_S, _TURN_S = 200.0, 20.0
+_LEAST_S = 6.0  # of a history's segments; the times beyond it are those of its chain
 _THREE_DEG_S = (0, 2, -2)
 _OTHER_NOISES_M2S3 = (0.003, 0.01, 0.3)
 _SHOWN = ("kalman_ca", "kalman_cv", "mode_history")
@@ -181,7 +182,10 @@ def _straight_first(filters: list[wl.Ekf]) -> wl.Imm:
 
 def _histories() -> Any:
     return wl.ModeHistory(
-        turn_filter(0.0, _NOISE), straight_sojourn_s=_STRAIGHT_S, turn_sojourn_s=_TURN_S
+        turn_filter(0.0, _NOISE),
+        min_segment_s=_LEAST_S,
+        straight_sojourn_s=_STRAIGHT_S - _LEAST_S,
+        turn_sojourn_s=_TURN_S - _LEAST_S,
     )
 
 
