@@ -233,6 +233,14 @@ def test_a_summary_says_what_the_curves_say(result):
     assert result.summary()["case"]["imm"] == outcome.summary()
 
 
+def test_a_delay_begins_where_another_model_becomes_the_right_one():
+    late = [Segment(32.5), Segment(57.5, np.deg2rad(1.0))]
+    outcome = run(case(truth=Truth([2000.0, 8.0, 1000.0, -3.0], late)))["case", "imm"]
+    assert outcome.right_mode_share[10] > 0.5, "at 33 s the old model still counts"
+    assert outcome.right_mode_share[11] < 0.5
+    assert outcome.summary()["detection_delay_scans"] >= 1
+
+
 def test_a_summary_is_silent_where_there_is_nothing_to_say(result):
     told = result["case", "told"].summary()
     assert told["right_mode_share"] is told["detection_delay_scans"] is None

@@ -175,7 +175,13 @@ def test_the_usual_adaptive_grid_is_nearly_as_good_as_five_models_and_never_lost
     chain = wl.ModeChain(np.full((5, 5), 0.1 / 4) + (0.9 - 0.1 / 4) * np.eye(5))
     adaptive = montecarlo.Candidate(wl.AdaptiveGridImm(turn(0.0)))
     printed = montecarlo.Candidate(
-        wl.AdaptiveGridImm(turn(0.0), centre_threshold=0.3, centre_gain=1.0, kept_spacing_rad_s=0.0, least_move_rad_s=0.0)
+        wl.AdaptiveGridImm(
+            turn(0.0),
+            centre_threshold=0.3,
+            centre_gain=1.0,
+            kept_spacing_rad_s=0.0,
+            least_move_rad_s=0.0,
+        )
     )
     for name, widest in (("example1", 2.0), ("example2", 4.0)):
         rates = np.linspace(-widest, widest, 5)

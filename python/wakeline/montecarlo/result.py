@@ -128,7 +128,11 @@ class Outcome:
             switches. ``runs``, ``failed_runs``, ``lost_runs``, ``failed_steps``: counts.
         """
         time_s, switch_s, right = self.time_s, self.switch_times_s, self.right_mode_share
-        delays = [] if right is None else metrics.detection_delays_scans(time_s, right, switch_s)
+        # The right model of a reading is that of half a scan before.
+        half_before_s = time_s - 0.5 * np.diff(time_s, prepend=0.0)
+        delays = (
+            [] if right is None else metrics.detection_delays_scans(half_before_s, right, switch_s)
+        )
         settling_s = metrics.settling_times_s(time_s, self.position_rmse_m, switch_s)
         steps = self.runs * len(time_s)
         every = np.ones(len(time_s), dtype=bool)
