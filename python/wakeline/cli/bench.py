@@ -133,6 +133,10 @@ def _step_works() -> Iterator[_Work]:
         ("imm5_step", _imm(0.0, 1.0, -1.0, 3.0, -3.0), polar),
     ):
         yield _Work(name, OURS, "ns_per_step", _whole_run(estimator, z, sensor), z[..., 0].size)
+    few = z[: max(len(z) // 10, 1)]
+    tree = wl.ModeHistory(wl.Ekf(wl.CoordinatedTurn(noise=_noise())), max_branches=100)
+    call = _whole_run(tree, few, polar)
+    yield _Work("mode_history100_scan", OURS, "ms_per_scan", call, few[..., 0].size)
 
 
 def _imm_run_works() -> Iterator[_Work]:
