@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "mode_history.hpp"
 
+#include <cmath>
+
 #include "face.hpp"
 #include "turn_grid.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
@@ -49,7 +51,8 @@ filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
 grid_rad_s : (2 to 16,) array, optional
     Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
 straight_sojourn_s, turn_sojourn_s : float
-    Mean time on a straight (the straightest rate of the grid) and in a turn, once it may end.
+    Mean time on a straight (the straightest rate of the grid) and in a turn, once it may end. The defaults suit small
+    craft that turn often; ships go straight for minutes.
 straighten_probability : float
     That a turn ends in a straight; other turns are alike.
 chain : ModeChain, optional
@@ -63,11 +66,11 @@ max_branches : int
 min_segment_s : float
     A turn rate that is younger does not change.
 merge_distance : float
-    Hypotheses of one turn rate that are nearer join, around the heavier one: the Mahalanobis distance in its covariance.
+    Hypotheses of one turn rate that are nearer join, around the heavier one: the Mahalanobis distance in its covariance; 0 joins none.
 sibling_distance : float
-    The same for those that came to it in one scan, and differ in what was before only; `merge_distance` or more.
+    The same for those that came to it in one scan and differ only in what came before; `merge_distance` or more.
 switch_time_spread : float
-    Doubt of when in the scan a switch came: 1 for anywhere in it, 0 for at its beginning.
+    Uncertainty of when in the scan a switch came: this part of the variance of a time uniform in it.
 negligible_probability : float
     Hypotheses that have less are dropped.
 
@@ -115,6 +118,10 @@ G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait,
       [](int order, const AnyFilter& filter, const std::optional<DoubleArray>& rates, double stay,
          const std::optional<Chain>& chain, const std::optional<DoubleArray>& initial) {
         const TurnRateGrid grid = grid_or_default(rates);
+        if (order > 1 && std::pow(grid.size(), order) > 256)
+          throw py::value_error("order " + std::to_string(order) + " over " +
+                                std::to_string(grid.size()) +
+                                " turn rates needs more than 256 filters in a scan");
         return with_initial(AnyModeHistory(HistoryTree::pseudo_bayes(order, grid.size()), grid,
                                            chain_of(chain, stay, grid.size()), filter),
                             initial);
@@ -144,7 +151,7 @@ References
 ----------
 Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 11.6.3-11.6.5.)");
   define_face(history);
-  history.def_property_readonly("hypotheses", &AnyModeHistory::hypotheses,
+  history.def_property_readonly("hypothesis_count", &AnyModeHistory::hypotheses,
                                 "How many there are at present.");
 }
 

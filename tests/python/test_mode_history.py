@@ -55,7 +55,7 @@ def test_any_tree_is_a_belief(kept, switches, min_segment_s, merge_distance, dat
     z[data.draw(st.lists(st.integers(0, 24), max_size=8))] = np.nan
     one = tree(
         max_hypotheses=kept,
-        max_branches=kept + switches,
+        max_branches=kept + 1 + switches,
         min_segment_s=min_segment_s,
         merge_distance=merge_distance,
         sibling_distance=2.0 * merge_distance,
@@ -150,7 +150,10 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         (lambda: wl.ModeHistory(wl.Ekf(TURN), [0.0, np.nan]), "finite"),
         (lambda: tree(max_hypotheses=4), "max_hypotheses must be at least the number of modes"),
         (lambda: tree(max_branches=300), "max_branches must be at most the capacity of 256"),
-        (lambda: tree(max_hypotheses=90, max_branches=80), "max_branches must be max_hypotheses"),
+        (
+            lambda: tree(max_hypotheses=90, max_branches=80),
+            "max_branches must be more than max_hypotheses",
+        ),
         (lambda: tree(min_segment_s=-1.0), "min_segment_s"),
         (lambda: tree(merge_distance=-1.0), "merge_distance"),
         (lambda: tree(sibling_distance=0.1), "sibling_distance must be merge_distance or more"),
@@ -160,7 +163,7 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         (lambda: tree(initial_mode_probability=np.ones(5)), "initial_mode_probability"),
         (lambda: tree(chain=wl.ModeChain(np.eye(3))), "modes"),
         (lambda: wl.ModeHistory.pseudo_bayes(0, wl.Ekf(TURN), RATES), "1 to 8"),
-        (lambda: wl.ModeHistory.pseudo_bayes(4, wl.Ekf(TURN), RATES), "capacity"),
+        (lambda: wl.ModeHistory.pseudo_bayes(4, wl.Ekf(TURN), RATES), "more than 256 filters"),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_words(build, words):

@@ -551,7 +551,8 @@ class ModeHistory:
     grid_rad_s : (2 to 16,) array, optional
         Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
     straight_sojourn_s, turn_sojourn_s : float
-        Mean time on a straight (the straightest rate of the grid) and in a turn, once it may end.
+        Mean time on a straight (the straightest rate of the grid) and in a turn, once it may end. The defaults suit small
+        craft that turn often; ships go straight for minutes.
     straighten_probability : float
         That a turn ends in a straight; other turns are alike.
     chain : ModeChain, optional
@@ -565,11 +566,11 @@ class ModeHistory:
     min_segment_s : float
         A turn rate that is younger does not change.
     merge_distance : float
-        Hypotheses of one turn rate that are nearer join, around the heavier one: the Mahalanobis distance in its covariance.
+        Hypotheses of one turn rate that are nearer join, around the heavier one: the Mahalanobis distance in its covariance; 0 joins none.
     sibling_distance : float
-        The same for those that came to it in one scan, and differ in what was before only; `merge_distance` or more.
+        The same for those that came to it in one scan and differ only in what came before; `merge_distance` or more.
     switch_time_spread : float
-        Doubt of when in the scan a switch came: 1 for anywhere in it, 0 for at its beginning.
+        Uncertainty of when in the scan a switch came: this part of the variance of a time uniform in it.
     negligible_probability : float
         Hypotheses that have less are dropped.
 
@@ -698,7 +699,7 @@ class ModeHistory:
         Corrects the belief by a reading; returns the Step.
         """
     @property
-    def hypotheses(self) -> int:
+    def hypothesis_count(self) -> int:
         """
         How many there are at present.
         """

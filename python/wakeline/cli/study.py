@@ -47,7 +47,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         help="folder of the figures, default %(default)s",
     )
     one.add_argument(
-        "--full", action="store_true", help="also what the outcome hangs on; takes minutes"
+        "--full", action="store_true", help="also how sensitive the results are; may take minutes"
     )
     one.set_defaults(run=run_study)
 
@@ -60,6 +60,8 @@ def list_studies(arguments: argparse.Namespace) -> None:
 def run_study(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
     _make_folder(arguments.out)
+    if arguments.json is not None:
+        _make_folder(arguments.json.parent)
     done = study.load(arguments.name).run(
         arguments.runs, arguments.seed, full=arguments.full, progress=True
     )

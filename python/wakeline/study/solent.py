@@ -7,7 +7,7 @@ estimator, with one tuning for all vessels and both radars, starts from the firs
 AIS is heard with delays of seconds, at random, so that a vessel seems to jump along its path. The
 time of each report is therefore told anew: from report to report passes the way made divided by the
 mean of the two reported speeds. Stretches count in which a vessel makes more than 2 m/s for three
-minutes and is heard every 7 s or oftener.
+minutes and is heard at a median interval under 7 s, without a gap over 25 s.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ Filter turning(double rate_rad_s = 0.0) {
 
 /// Nothing joins and nothing is cut.
 HistoryTree whole(int branches = 256) {
-  return {.max_hypotheses = branches,
+  return {.max_hypotheses = branches - 1,
           .max_branches = branches,
           .min_segment_s = 0.0,
           .merge_distance = 0.0,
@@ -159,7 +159,7 @@ void expect_enumeration(Tree tree, const TurnRateGrid& grid, const Chain& chain,
 }
 
 TEST(ModeHistory, ThatIsNeverCutIsTheSumOverAllHistories) {
-  expect_enumeration(Tree(whole(), kPair, asymmetric(), turning()), kPair, asymmetric(), 7);
+  expect_enumeration(Tree(whole(), kPair, asymmetric(), turning()), kPair, asymmetric(), 6);
   const Chain chain = turning_chain(kTriple);
   expect_enumeration(Tree(whole(), kTriple, chain, turning()), kTriple, chain, 4);
 }
@@ -422,6 +422,67 @@ TEST(ModeHistory, AStepThatFailsChangesNothing) {
   expect_unchanged("an impossible association");
 }
 
+TEST(ModeHistory, KeepsTheLikeliestHoweverUnlikely) {
+  const auto grid = TurnRateGrid::evenly(deg(3.5), 7);
+  HistoryTree settings = whole();
+  settings.negligible_probability = 0.0099;
+  Tree tree(settings, grid, Chain(Chain::Matrix::Constant(15, 15, 1.0 / 15)), turning());
+  tree.set_initial_mode_probability(Tree::Probability::Constant(15, 1.0 / 15));
+  ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
+  ASSERT_EQ(tree.predict(0.0), Status::kOk);
+  ASSERT_TRUE(tree.update(kRadar, test::plot_of<double>(3000, 4000)));
+  EXPECT_GE(tree.hypotheses().size(), 1u);
+  EXPECT_NEAR(tree.mode_probability().sum(), 1.0, 1e-12);
+}
+
+TEST(ModeHistory, AChainThatNeverStaysLeaves) {
+  Tree tree({.max_hypotheses = 2, .max_branches = 3, .min_segment_s = 0.0}, kPair,
+            Chain(Chain::Matrix{{0.0, 1.0}, {1.0, 0.0}}), turning());
+  ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
+  ASSERT_EQ(tree.predict(3.0), Status::kOk);
+  EXPECT_TRUE(is_finite(tree.estimate().mean));
+  EXPECT_NEAR(tree.mode_probability().sum(), 1.0, 1e-12);
+}
+
+TEST(ModeHistory, AChainPerPredictionAppliesInNoTimeToo) {
+  Tree tree(whole(), kTriple, Chain(Chain::Matrix::Constant(3, 3, 1.0 / 3)), turning());
+  ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
+  for (int k = 0; k < 3; ++k) ASSERT_EQ(tree.predict(0.0), Status::kOk);
+  EXPECT_TRUE(
+      matrices_near(tree.mode_probability(), Tree::Probability::Constant(3, 1.0 / 3).eval()));
+}
+
+TEST(ModeHistory, APredictionThatFailsAfterMissedScansChangesNothing) {
+  Tree tree({}, kTriple, turning_chain(kTriple), turning());
+  ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
+  for (int miss = 0; miss < 8; ++miss) ASSERT_EQ(tree.predict(3.0), Status::kOk);
+  const auto before = tree.estimate();
+  const auto count = tree.hypotheses().size();
+  EXPECT_EQ(tree.predict(1e300), Status::kNotFinite);
+  EXPECT_TRUE(beliefs_identical<4>(tree.estimate(), before));
+  EXPECT_EQ(tree.hypotheses().size(), count);
+}
+
+TEST(ModeHistory, ADamagedArchiveChangesNothing) {
+  Tree tree({}, kTriple, turning_chain(kTriple), turning());
+  Archive of_none;
+  tree.archive(of_none);
+  EXPECT_NEAR(tree.mode_probability().sum(), 1.0, 1e-12) << "to save changes nothing";
+  ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
+  Archive writing;
+  tree.archive(writing);
+  const auto before = tree.estimate();
+  for (const std::size_t at : {std::size_t(1), std::size_t(4), writing.bytes().size() - 1}) {
+    std::vector<std::byte> bytes = writing.bytes();
+    bytes[at] = std::byte{0xFF};
+    if (at + 1 == bytes.size()) bytes.resize(at - 40);
+    Archive damaged(bytes);
+    tree.archive(damaged);
+    EXPECT_FALSE(damaged.ok()) << at;
+    EXPECT_TRUE(beliefs_identical<4>(tree.estimate(), before)) << at;
+  }
+}
+
 TEST(ModeHistory, GoesOnFromItsArchiveWithTheSameBits) {
   Tree tree({}, kTriple, turning_chain(kTriple), turning());
   ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
@@ -483,7 +544,10 @@ TEST(ModeHistory, ParametersThatMakeNoSenseAreRefused) {
   EXPECT_THROW(with(HistoryTree::pseudo_bayes(6, 3)), std::invalid_argument);
   EXPECT_THROW(turning_chain(kTriple, {.straighten_probability = 1.5}), std::invalid_argument);
   EXPECT_THROW(turning_chain(kTriple, {.turn_sojourn_s = 0.0}), std::invalid_argument);
-  EXPECT_NO_THROW(with({.max_hypotheses = 3, .max_branches = 3}));
+  EXPECT_THROW(with({.max_hypotheses = 3, .max_branches = 3}), std::invalid_argument)
+      << "no room for a switch";
+  EXPECT_NO_THROW(with({.max_hypotheses = 3, .max_branches = 4}));
+  EXPECT_THROW(HistoryTree::pseudo_bayes(2, 0), std::invalid_argument);
 }
 
 TEST(TurningChain, LeavesAsItsHabitsSay) {

@@ -29,7 +29,7 @@ namespace wakeline {
 /// keeps the likeliest. An Imm of the same modes mixes in every scan, and pays for it with the
 /// spread of the mixture. Has the face of `Imm`, over filters of one kind; storage is in place, no
 /// heap: at most `Capacity` hypotheses, twice. In a missed scan the mode probabilities follow the
-/// chain as far as there is room, but for segments that are too short to end.
+/// chain, as far as there is room and except for segments still too short to end.
 ///
 /// Source: G. A. Ackerson, K. S. Fu, IEEE Trans. AC-15, 1970 (the tree); J. K. Tugnait, Automatica
 /// 18, 1982 (detection and estimation over it); D. J. Salmond, SPIE 1305, 1990 (joining around the
@@ -91,6 +91,7 @@ class ModeHistory {
   void set_initial_mode_probability(const Probability& probability) {
     require_distribution("initial_mode_probability", probability, bank_.size());
     initial_ = probability;
+    if (!started_) probability_ = initial_;
   }
 
   /// Begins a hypothesis in every mode with the belief, over the state or over `[x, vx, y, vy]`.
@@ -195,19 +196,29 @@ class ModeHistory {
 
   /// Saves or restores the hypotheses.
   void archive(Archive& fields) {
+    bool started = started_;
     int count = count_;
-    fields(started_);
+    fields(started);
     fields(count);
-    if (count < 0 || count > Capacity) return fields.fail();
+    if (count < int(started) || count > tree_.max_branches ||
+        (pooled() && started && count != bank_.size()))
+      return fields.fail();
+    Hypotheses& hypotheses = fields.loading() ? spare() : present();
+    bool sound = true;
     for (int i = 0; i < count; ++i) {
-      Hypothesis& hypothesis = at(present(), i);
+      Hypothesis& hypothesis = at(hypotheses, i);
       fields(hypothesis.belief.mean);
       fields(hypothesis.belief.covariance);
       fields(hypothesis.probability);
       fields(hypothesis.segment_s);
       fields(hypothesis.modes);
-      if (hypothesis.mode() >= bank_.size()) return fields.fail();
+      sound = sound && hypothesis.mode() < bank_.size() && hypothesis.probability >= Scalar(0) &&
+              hypothesis.probability <= Scalar(1) && (!pooled() || hypothesis.mode() == i);
     }
+    if (!sound) fields.fail();
+    if (!fields.loading() || !fields.ok()) return;
+    started_ = started;
+    now_ = 1 - now_;
     count_ = count;
     weigh_modes();
   }
@@ -220,12 +231,13 @@ class ModeHistory {
   }
 
   [[nodiscard]] const Probability& mode_probability() const noexcept { return probability_; }
+  [[nodiscard]] const Probability& initial_mode_probability() const noexcept { return initial_; }
   [[nodiscard]] const HistoryTree& tree() const noexcept { return tree_; }
   [[nodiscard]] const ModeChain<K>& chain() const noexcept { return chain_; }
   [[nodiscard]] const Bank& bank() const noexcept { return bank_; }
   [[nodiscard]] bool started() const noexcept { return started_; }
 
-  /// What is believed at present, the likeliest first after an update.
+  /// What is believed at present.
   [[nodiscard]] std::span<const Hypothesis> hypotheses() const noexcept {
     return {buffers_[now_].data(), size()};
   }
@@ -247,7 +259,13 @@ class ModeHistory {
   Status branch_and_move(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
     if (!started_) return Status::kNotStarted;
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
-    if (!pooled() && count_ > tree_.max_hypotheses) reduce();  // the last scan was missed
+    if (!pooled() && count_ > tree_.max_hypotheses) {  // the last scan was missed
+      for (const Hypothesis& hypothesis : hypotheses())
+        if (const Status status = filter_of(hypothesis).predict(dt_s, acceleration_mps2...);
+            status != Status::kOk)
+          return status;
+      reduce();
+    }
     if (dt_s != transition_step_s_) {
       transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
       transition_step_s_ = dt_s;
@@ -325,30 +343,31 @@ class ModeHistory {
     return sum;
   }
 
-  /// To the nearest scan.
+  /// Whether the present segment is long enough, to the nearest scan.
   [[nodiscard]] bool may_switch(const Hypothesis& hypothesis, Scalar dt_s) const noexcept {
-    return hypothesis.segment_s + dt_s / 2 > Scalar(tree_.min_segment_s);
+    return tree_.min_segment_s <= 0.0 ||
+           hypothesis.segment_s + dt_s / 2 > Scalar(tree_.min_segment_s);
   }
 
   static std::uint64_t followed_by(std::uint64_t modes, int mode) noexcept {
     return modes << 4 | static_cast<std::uint64_t>(mode);
   }
 
-  /// The switch came at some time of the scan: u d from its end, d the way from the mean it would
-  /// have had by then, u uniform, whose variance is 1/12.
+  /// The switch may have come later in the scan: adds a part of u d, d the way from the mean that
+  /// is without the switch, u uniform over one scan, whose variance is 1/12.
   void spread(BeliefType& belief, const Vec<Scalar, BeliefType::kStates>& without) const noexcept {
     const Vec<Scalar, BeliefType::kStates> d = belief.mean - without;
     const Scalar variance = Scalar(tree_.switch_time_spread / 12.0);
     for (int j = 0; j < BeliefType::kStates; ++j) belief.covariance.col(j) += variance * (d[j] * d);
   }
 
-  /// Joins what is alike, and keeps the likeliest.
+  /// Joins similar hypotheses, and keeps the likeliest.
   void reduce() noexcept {
     join();
     cut();
   }
 
-  /// Joins the hypotheses of each mode that are alike, around the heaviest of them.
+  /// Joins the similar hypotheses of each mode, around the heaviest of them.
   void join() noexcept {
     Indices order;
     const int count = ordered(order, [](const Hypothesis& a, const Hypothesis& b) {
@@ -382,13 +401,17 @@ class ModeHistory {
     take(kept);
   }
 
-  /// Fills in the hypotheses that are not negligible, in an order; returns how many.
+  /// Fills in the hypotheses that are not negligible, at least the likeliest, in an order; returns
+  /// how many.
   template <class Before>
   int ordered(Indices& order, Before&& before) const noexcept {
     int count = 0;
+    Scalar likeliest = Scalar(0);
+    for (const Hypothesis& hypothesis : hypotheses())
+      likeliest = std::max(likeliest, hypothesis.probability);
+    const Scalar negligible = std::min(Scalar(tree_.negligible_probability), likeliest / 2);
     for (int i = 0; i < count_; ++i)
-      if (at(present(), i).probability > Scalar(tree_.negligible_probability))
-        at(order, count++) = i;
+      if (at(present(), i).probability > negligible) at(order, count++) = i;
     std::sort(order.begin(), order.begin() + count, [&](int i, int j) {
       const Hypothesis& a = at(present(), i);
       const Hypothesis& b = at(present(), j);
@@ -397,7 +420,8 @@ class ModeHistory {
     return count;
   }
 
-  /// Takes `order[a]` and what is like it out of the order, into `cluster`; returns how many.
+  /// Takes `order[a]` and the hypotheses similar to it out of the order, into `cluster`; returns
+  /// how many.
   int gather(int a, int count, Indices& order, Indices& cluster) const noexcept {
     const Hypothesis& heaviest = at(present(), at(order, a));
     int members = 0;

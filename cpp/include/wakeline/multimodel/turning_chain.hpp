@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+
 #include "wakeline/multimodel/mode_chain.hpp"
 #include "wakeline/multimodel/turn_rate_grid.hpp"
 
@@ -14,11 +16,14 @@ struct TurnHabits {
   double straighten_probability = 0.75;  ///< that a turn ends in a straight, not in another turn
 };
 
-/// The chain between the turn rates of a grid, in continuous time: a straight ends in every turn
-/// alike, and turns that do not straighten end in every other one alike. The straightest rate of
-/// the grid is the straight. Throws `std::invalid_argument` when a parameter makes no sense.
+/// The chain between the turn rates of a grid, in continuous time: a straight leads to
+/// every turn with equal probability, a turn that does not straighten to every other turn. The
+/// straightest rate of the grid is the straight. Throws `std::invalid_argument` when a parameter
+/// makes no sense.
 inline ModeChain<kRuntimeModes> turning_chain(const TurnRateGrid& grid_rad_s,
                                               const TurnHabits& habits = {}) {
+  require_positive("straight_sojourn_s", habits.straight_sojourn_s);
+  require_positive("turn_sojourn_s", habits.turn_sojourn_s);
   require_probability("straighten_probability", habits.straighten_probability);
   const int modes = grid_rad_s.size();
   const int straight = grid_rad_s.straightest();

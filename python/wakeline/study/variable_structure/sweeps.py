@@ -71,8 +71,8 @@ def _finer(radar: scenario.RadarSimulator, times: float) -> scenario.RadarSimula
 def _variants(setting: Setting) -> dict[str, Candidate]:
     """The printed rules, with other thresholds, with other choices of what is not printed.
 
-    Rates of AGMM are in degrees a second. `agmm_kept` and `agmm_patient` have one each of the two
-    additions that the library's defaults make to the rules.
+    Rates of AGMM are in degrees a second. `agmm_kept` and `agmm_patient` have one each of two of
+    the additions that the library's defaults make to the rules.
     """
     adaptive = {
         "agmm_printed": {},
