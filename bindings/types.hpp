@@ -57,5 +57,6 @@ void define_gating(py::module_& m);
 void define_association(py::module_& m);
 void define_track(py::module_& m);
 void define_eval(py::module_& m);
+void define_video(py::module_& m);
 
 }  // namespace wakeline::python

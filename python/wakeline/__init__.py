@@ -22,6 +22,7 @@ from ._engine import (
     motion,
     multimodel,
     track,
+    video,
 )
 from ._engine.core import (
     FilterError,
@@ -76,7 +77,18 @@ from ._engine.multimodel import (
 from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, vessel_imm
 
 # The engine's nouns, importable as modules of the package.
-for _noun in (association, core, eval, filter, gating, measurement, motion, multimodel, track):
+for _noun in (
+    association,
+    core,
+    eval,
+    filter,
+    gating,
+    measurement,
+    motion,
+    multimodel,
+    track,
+    video,
+):
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
 from . import metrics, montecarlo, recording, scenario, study  # noqa: E402  (they use the nouns above)

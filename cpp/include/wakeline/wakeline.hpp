@@ -10,6 +10,7 @@
 #include "wakeline/association/global_nearest_neighbour.hpp"
 #include "wakeline/association/nearest_neighbour.hpp"
 #include "wakeline/association/probabilistic_data.hpp"
+#include "wakeline/core/amplitude_image.hpp"
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/archive.hpp"
 #include "wakeline/core/chi_square.hpp"
@@ -74,3 +75,4 @@
 #include "wakeline/track/track_list.hpp"
 #include "wakeline/track/tracker.hpp"
 #include "wakeline/track/vessel_models.hpp"
+#include "wakeline/video/sweep.hpp"

@@ -18,6 +18,7 @@ from .model import Episode, OwnShip, Recording, Scan
 from .plots_csv import read_plots
 from .tracks_csv import Tracks, read_tracks, write_tracks
 from .truth import TargetTruth
+from .video import RadarVideo
 
 __all__ = [
     "AisRecording",
@@ -25,6 +26,7 @@ __all__ = [
     "Episode",
     "LocalPlane",
     "OwnShip",
+    "RadarVideo",
     "Recording",
     "RecordingError",
     "Scan",

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// A polar radar picture as plain memory: row by row the sweeps, clockwise, of each the amplitudes
+/// of its range cells from the antenna outwards. Owns nothing.
+template <std::unsigned_integral Amplitude = std::uint8_t>
+struct AmplitudeImage {
+  const Amplitude* amplitudes = nullptr;  ///< (sweeps, cells), row-major
+  int sweeps = 0;
+  int cells = 0;
+  double first_azimuth_rad = 0.0;  ///< centre of sweep 0, clockwise from north
+  double azimuth_step_rad = 0.0;   ///< from the centre of a sweep to that of the next; positive
+  double start_range_m = 0.0;      ///< near edge of cell 0
+  double cell_m = 0.0;             ///< length of a cell
+
+  /// True when sweep 0 follows the last one.
+  [[nodiscard]] bool full_circle() const noexcept {
+    return (sweeps + 0.5) * azimuth_step_rad > 2 * kPi<double>;
+  }
+
+  [[nodiscard]] std::span<const Amplitude> row(int sweep) const noexcept {
+    return {amplitudes + static_cast<std::ptrdiff_t>(sweep) * cells,
+            static_cast<std::size_t>(cells)};
+  }
+
+  /// Centre of a cell.
+  [[nodiscard]] double range_m(int cell) const noexcept {
+    return start_range_m + (cell + 0.5) * cell_m;
+  }
+
+  /// Centre of a sweep.
+  [[nodiscard]] double azimuth_rad(int sweep) const noexcept {
+    return first_azimuth_rad + sweep * azimuth_step_rad;
+  }
+
+  /// North and east of a cell's centre from the antenna, m.
+  [[nodiscard]] Vec<double, 2> position(int sweep, int cell) const noexcept {
+    const double azimuth = azimuth_rad(sweep);
+    return range_m(cell) * Vec<double, 2>(std::cos(azimuth), std::sin(azimuth));
+  }
+};
+
+}  // namespace wakeline

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <span>
+
+namespace wakeline {
+
+/// What the radar received of one azimuth: amplitudes of range cells, from the antenna outwards.
+template <std::unsigned_integral Amplitude = std::uint8_t>
+struct Sweep {
+  double time_s = 0.0;             ///< when the beam stood there
+  double azimuth_rad = 0.0;        ///< centre of the sweep, clockwise from north
+  double azimuth_width_rad = 0.0;  ///< that it stands for: to the centre of the next sweep
+  double start_range_m = 0.0;      ///< near edge of the first cell
+  double cell_m = 0.0;             ///< length of a cell
+  std::span<const Amplitude> amplitude;
+
+  /// Centre of a cell.
+  [[nodiscard]] double range_m(double cell) const noexcept {
+    return start_range_m + (cell + 0.5) * cell_m;
+  }
+
+  /// True when it can be a radar's: finite, cells of a length, an azimuth width of at most half a
+  /// turn, cells there.
+  [[nodiscard]] bool valid() const noexcept {
+    return std::isfinite(time_s) && std::isfinite(azimuth_rad) && azimuth_width_rad > 0.0 &&
+           azimuth_width_rad < 3.15 && start_range_m >= 0.0 && std::isfinite(start_range_m) &&
+           cell_m > 0.0 && std::isfinite(cell_m) && !amplitude.empty();
+  }
+};
+
+}  // namespace wakeline
