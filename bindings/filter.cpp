@@ -123,6 +123,8 @@ void define_filter(py::module_& parent) {
       .def_readonly("turn_rate_rad_s", &RunResult::turn_rate_rad_s,
                     "(..., T, K), of the models in each scan, NaN for one at rest; None where they "
                     "do not change")
+      .def_readonly("innovation", &RunResult::innovation,
+                    "(..., T, M), measured minus predicted; NaN where there was no update")
       .def_readonly("nis", &RunResult::nis, "(..., T), NaN where there was no update")
       .def_readonly("log_likelihood", &RunResult::log_likelihood, "(..., T)")
       .def_readonly("status", &RunResult::status, "(..., T) values of Status");

@@ -26,6 +26,7 @@ struct RunResult {
   py::array_t<double> covariance;
   py::object mode_probability;  ///< None for a single filter
   py::object turn_rate_rad_s;   ///< None where no model changes its turn rate
+  py::array_t<double> innovation;
   py::array_t<double> nis;
   py::array_t<double> log_likelihood;
   py::array_t<std::uint8_t> status;
@@ -56,7 +57,7 @@ Sensor seen_from(const Sensor& sensor, const double* own) noexcept {
 /// Memory of the results, `states` and `models` to a scan.
 struct RunOutput {
   std::size_t states, models;
-  double *mean, *covariance, *modes, *rates, *nis, *log_likelihood;
+  double *mean, *covariance, *modes, *rates, *innovation, *nis, *log_likelihood;
   std::uint8_t* status;
 };
 
@@ -74,6 +75,7 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
     Status status = predict(estimator, in.dt_s[scan], acceleration);
     double nis = std::numeric_limits<double>::quiet_NaN();
     double log_likelihood = nis;
+    Vec<double, kM> innovation = Vec<double, kM>::Constant(nis);
     if (status == Status::kOk) {
       if (z.array().isNaN().all()) {
         status = Status::kMissed;
@@ -82,6 +84,7 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
             estimator.update(seen_from(sensor, in.own ? in.own + 2 * scan : nullptr), z);
         status = step.status;
         if (step) {
+          innovation = step.innovation;
           nis = step.nis;
           log_likelihood = step.log_likelihood;
         }
@@ -102,6 +105,7 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
       if constexpr (kHasTurnRates<Estimator>)
         out.rates[row * models + k] = estimator.turn_rates_rad_s()[mode];
     }
+    Eigen::Map<Vec<double, kM>>(out.innovation + row * kM) = innovation;
     out.nis[row] = nis;
     out.log_likelihood[row] = log_likelihood;
     out.status[row] = static_cast<std::uint8_t>(status);
@@ -176,6 +180,7 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
                      py::array_t<double>(with({states, states})),
                      py::none(),
                      py::none(),
+                     py::array_t<double>(with({kM})),
                      py::array_t<double>(shape),
                      py::array_t<double>(shape),
                      py::array_t<std::uint8_t>(shape)};
@@ -189,6 +194,7 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
                         result.covariance.mutable_data(),
                         modes.mutable_data(),
                         rates.mutable_data(),
+                        result.innovation.mutable_data(),
                         result.nis.mutable_data(),
                         result.log_likelihood.mutable_data(),
                         result.status.mutable_data()};
@@ -221,8 +227,8 @@ acceleration_mps2 : (T, 2) array, optional
 Returns
 -------
 RunResult
-    mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
-    and status (..., T).
+    mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+    innovation (..., T, M), nis, log_likelihood and status (..., T).
 
 Raises
 ------

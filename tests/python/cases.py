@@ -68,7 +68,8 @@ def readings(scans=30, seed=1, miss=()):
 
 
 def stepwise(estimator, z, dt_s=DT_S, sensor=RADAR, start=START):
-    """What `run` shall give, by single steps: mean, covariance, NIS and log-likelihood."""
+    """What `run` shall give, by single steps: mean, covariance, innovation, NIS and
+    log-likelihood."""
     estimator.start(start)
     rows = []
     for row in z:
@@ -79,6 +80,7 @@ def stepwise(estimator, z, dt_s=DT_S, sensor=RADAR, start=START):
             (
                 belief.mean,
                 belief.covariance,
+                step.innovation if step else np.full(len(row), np.nan),
                 step.nis if step else np.nan,
                 step.log_likelihood if step else np.nan,
             )

@@ -26,7 +26,7 @@ from cases import (
 )
 
 shapes = hnp.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=4)
-FIELDS = ("mean", "covariance", "nis", "log_likelihood", "status")
+FIELDS = ("mean", "covariance", "innovation", "nis", "log_likelihood", "status")
 
 
 def ekf():
@@ -166,9 +166,10 @@ def test_a_start_over_position_and_velocity_fits_every_motion(name):
 def test_run_is_the_loop_of_single_steps_bit_for_bit(name, sensor):
     z = readings(miss=(4, 5, 17))
     result = run(ESTIMATORS[name](), z, sensor=sensor)
-    mean, covariance, nis, log_likelihood = stepwise(ESTIMATORS[name](), z, sensor=sensor)
+    mean, covariance, innovation, nis, log_likelihood = stepwise(ESTIMATORS[name](), z, sensor=sensor)
     np.testing.assert_array_equal(result.mean, mean)
     np.testing.assert_array_equal(result.covariance, covariance)
+    np.testing.assert_array_equal(result.innovation, innovation)
     np.testing.assert_array_equal(result.nis, nis)
     np.testing.assert_array_equal(result.log_likelihood, log_likelihood)
 

@@ -101,9 +101,10 @@ def test_a_run_is_its_single_steps_bit_for_bit(build, kind, sensor):
     if sensor is POSITION:
         z = np.stack([z[:, 0] * np.cos(z[:, 1]), z[:, 0] * np.sin(z[:, 1])], axis=-1)
     result = build(kind).run(z, dt_s=DT_S, sensor=sensor, start=START)
-    mean, covariance, nis, log_likelihood = stepwise(build(kind), z, sensor=sensor)
+    mean, covariance, innovation, nis, log_likelihood = stepwise(build(kind), z, sensor=sensor)
     np.testing.assert_array_equal(result.mean, mean)
     np.testing.assert_array_equal(result.covariance, covariance)
+    np.testing.assert_array_equal(result.innovation, innovation)
     np.testing.assert_array_equal(result.nis, nis)
     np.testing.assert_array_equal(result.log_likelihood, log_likelihood)
 

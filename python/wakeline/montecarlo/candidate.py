@@ -84,8 +84,8 @@ def clairvoyant(
     Returns
     -------
     namespace
-        ``mean`` (R, T, 4), ``covariance`` (R, T, 4, 4), ``mode_probability`` None, ``nis``,
-        ``log_likelihood``, ``status`` and ``turn_rate_rad_s`` (R, T).
+        ``mean`` (R, T, 4), ``covariance`` (R, T, 4, 4), ``mode_probability`` None, ``innovation``
+        (R, T, 2), ``nis``, ``log_likelihood``, ``status`` and ``turn_rate_rad_s`` (R, T).
 
     Raises
     ------
@@ -96,7 +96,7 @@ def clairvoyant(
     noise = motion.PiecewiseAcceleration(std_mps2=0.0) if noise is None else noise
     starts: Any = scenario.start
     fields: dict[str, list[np.ndarray]] = {
-        name: [] for name in ("mean", "covariance", "nis", "log_likelihood", "status")
+        name: [] for name in ("mean", "covariance", "innovation", "nis", "log_likelihood", "status")
     }
     for rate_rad_s, steps in stretches(scenario):
         dt_s = np.array([step.dt_s for step in steps])
