@@ -55,6 +55,7 @@
 #include "wakeline/multimodel/history_tree.hpp"
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/multimodel/likely_model_set_imm.hpp"
+#include "wakeline/multimodel/line_bank.hpp"
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
