@@ -29,17 +29,32 @@ struct Known {
   Vec<double, 2> position;
 };
 
-/// [position, velocity] at time 0 of the line through the last `plots`, by an orthogonal
-/// factorisation.
-Mat<double, 2, 2> fitted(const std::vector<Known>& known, int plots, Mat<double, 2, 2>& factors) {
-  Eigen::MatrixXd design(plots, 2), values(plots, 2);
+/// [position, velocity, ...] at time 0 of the polynomial with so many terms through the last
+/// `plots`, by an orthogonal factorisation.
+Eigen::MatrixXd fitted(const std::vector<Known>& known, int plots, int terms,
+                       Eigen::MatrixXd& factors) {
+  Eigen::MatrixXd design(plots, terms), values(plots, 2);
   for (int k = 0; k < plots; ++k) {
     const Known& plot = known[known.size() - 1 - std::size_t(k)];
-    design.row(k) << 1.0, plot.time_s;
+    const Vec<double, 3> powers(1.0, plot.time_s, plot.time_s * plot.time_s / 2);
+    design.row(k) = powers.head(terms).transpose();
     values.row(k) = plot.position.transpose();
   }
   factors = (design.transpose() * design).inverse();
   return design.colPivHouseholderQr().solve(values);
+}
+
+/// That a line or a parabola is the polynomial with so many terms, and its factors are.
+void expect_fit(const Line<double>& line, const std::vector<Known>& known, int plots, int terms) {
+  Eigen::MatrixXd factors;
+  const Eigen::MatrixXd wanted = fitted(known, plots, terms, factors);
+  const Tolerance tolerance{.absolute = 1e-8, .relative = 1e-12};
+  EXPECT_EQ(line.plots, plots);
+  EXPECT_TRUE(matrices_near(line.position_m, wanted.row(0).transpose(), tolerance));
+  EXPECT_TRUE(matrices_near(line.velocity_mps, wanted.row(1).transpose(), tolerance));
+  EXPECT_NEAR(line.position_factor / factors(0, 0), 1.0, 1e-9);
+  EXPECT_NEAR(line.cross_factor / factors(0, 1), 1.0, 1e-9);
+  EXPECT_NEAR(line.velocity_factor / factors(1, 1), 1.0, 1e-9);
 }
 
 /// Lets time pass on both sides.
@@ -64,15 +79,8 @@ TEST(LineBank, IsThePolynomialFitForEveryLengthAndIrregularTimes) {
     bank.fit(lines);
     for (int n = 2; n <= bank.size(); ++n) {
       const auto& line = lines[std::size_t(n - 2)];
-      Mat<double, 2, 2> factors;
-      const Mat<double, 2, 2> wanted = fitted(known, n, factors);
-      const Tolerance tolerance{.absolute = 1e-9, .relative = 1e-12};
-      EXPECT_EQ(line.plots, n);
-      EXPECT_TRUE(matrices_near(line.position_m, wanted.row(0).transpose(), tolerance));
-      EXPECT_TRUE(matrices_near(line.velocity_mps, wanted.row(1).transpose(), tolerance));
-      EXPECT_NEAR(line.position_factor, factors(0, 0), 1e-9);
-      EXPECT_NEAR(line.cross_factor, factors(0, 1), 1e-9);
-      EXPECT_NEAR(line.velocity_factor, factors(1, 1), 1e-9);
+      expect_fit(line, known, n, 2);
+      if (n > 2) expect_fit(line.parabola(), known, n, 3);
     }
   }
 }

@@ -1,0 +1,136 @@
+"""A small craft that turns hard, seen by a coastal radar whose plots lie on a grid of cells.
+
+The scenario of "Multi-model tracking of moving vessels with a fuzzy criterion of maneuver
+detection" (V. M. Grinyak, M. V. Trofimov): straight on, half a circle, straight on again.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from wakeline import measurement
+from wakeline._checks import whole_number
+
+from .radar import polar
+from .truth import Segment, Truth
+
+_SQRT12 = np.sqrt(12.0)
+
+
+class HardTurnRuns(NamedTuple):
+    """Independent runs: times (T,), true states (R, T, 4) and plots (R, T, 2), range and bearing."""
+
+    time_s: np.ndarray
+    truth: np.ndarray
+    z: np.ndarray
+
+
+@dataclass(frozen=True)
+class HardTurn:
+    """A straight leg, a turn of half a circle, a straight leg; a plot is the centre of its cell.
+
+    The paper gives speed, radius, period and cell. It does not give the range nor the lengths of
+    the legs; the defaults are ours. Course, side of the turn, bearing and place within a cell are
+    random in each run.
+
+    Attributes
+    ----------
+    speed_mps, radius_m : float
+    before_s, after_s : float
+        Lengths of the straight legs.
+    range_m : float
+        From the antenna, at the start.
+    range_cell_m, azimuth_cell_rad : float
+    period_s : float
+        Time from scan to scan.
+
+    Raises
+    ------
+    ValueError
+        When one is not finite and positive.
+    """
+
+    speed_mps: float
+    radius_m: float
+    before_s: float = 120.0
+    after_s: float = 60.0
+    range_m: float = 20_000.0
+    range_cell_m: float = 6.0
+    azimuth_cell_rad: float = np.deg2rad(0.03)
+    period_s: float = 3.0
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not 0 < value < np.inf:
+                raise ValueError(f"{name} must be finite and positive, got {value}")
+
+    @property
+    def turn_rate_rad_s(self) -> float:
+        """Rate of the turn, without its side."""
+        return self.speed_mps / self.radius_m
+
+    @property
+    def turn_s(self) -> tuple[float, float]:
+        """When the turn begins and ends."""
+        return self.before_s, self.before_s + np.pi / self.turn_rate_rad_s
+
+    @property
+    def time_s(self) -> np.ndarray:
+        """Times (T,) of the scans; the first is 0."""
+        return np.arange(0.0, self.turn_s[1] + self.after_s + 1e-9, self.period_s)
+
+    @property
+    def sensor(self) -> measurement.ConvertedRangeBearing:
+        """The radar as a filter takes it: a cell is a uniform error of its length over √12."""
+        return measurement.ConvertedRangeBearing(
+            range_std_m=self.range_cell_m / _SQRT12,
+            bearing_std_rad=self.azimuth_cell_rad / _SQRT12,
+        )
+
+    def truth(self, rng: np.random.Generator) -> Truth:
+        """One vessel, its place, course and side at random."""
+        bearing, course = rng.uniform(-np.pi, np.pi, 2)
+        rate = rng.choice([-1.0, 1.0]) * self.turn_rate_rad_s
+        range_m = self.range_m + self.range_cell_m * rng.random()
+        vnorth_mps, veast_mps = self.speed_mps * np.array([np.cos(course), np.sin(course)])
+        place = range_m * np.array([np.cos(bearing), np.sin(bearing)])
+        legs = (
+            Segment(self.before_s),
+            Segment(np.pi / self.turn_rate_rad_s, rate),
+            Segment(self.after_s),
+        )
+        return Truth([place[0], vnorth_mps, place[1], veast_mps], legs)
+
+    def draw(self, runs: int, seed: int | Sequence[int] = 0) -> HardTurnRuns:
+        """Independent runs; run r is the same whatever their number.
+
+        Raises
+        ------
+        ValueError
+            When runs or a seed is negative or no whole number.
+        """
+        whole_number("runs", runs, 0)
+        time_s = self.time_s
+        name = f"hard turn {self.speed_mps} {self.radius_m}"
+        entropy = [*np.atleast_1d(seed).tolist(), zlib.crc32(name.encode())]
+        truth = np.empty((runs, len(time_s), 4))
+        for run in range(runs):
+            rng = np.random.default_rng([*entropy, run])
+            truth[run] = self.truth(rng).state_at(time_s)
+        z = polar(truth.reshape(-1, 4)).reshape(runs, len(time_s), 2)
+        cells = np.array([self.range_cell_m, self.azimuth_cell_rad])
+        return HardTurnRuns(time_s, truth, (np.floor(z / cells) + 0.5) * cells)
+
+
+def hard_turns() -> dict[str, HardTurn]:
+    """The paper's two speeds on its radius, and the higher one at the turn rate of the lower."""
+    return {
+        "10mps_r300": HardTurn(10.0, 300.0),
+        "20mps_r300": HardTurn(20.0, 300.0),
+        "20mps_r600": HardTurn(20.0, 600.0),
+    }
