@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "wakeline/core/require.hpp"
+
+namespace wakeline {
+
+/// How the degrees of several conditions make that of all of them together.
+enum class TNorm : std::uint8_t { kProduct, kMinimum };
+
+/// Which of the lines through the last 2 .. `max_plots` plots a target is tracked with: how well
+/// each foretold the newest plot, judged by a zero-order Sugeno machine.
+///
+/// Of each line there is the ratio L of its residual to the usual one of the shortest line, and
+///     bad(L) = 1 / (1 + exp(-steepness (L - threshold))),   good(L) = 1 - bad(L).
+/// Rule p says: where the first p lines are good and the rest bad, track with max(2, p + 1) plots.
+/// Source: V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuzzy
+/// criterion of maneuver detection.
+struct FuzzyCriterion {
+  static constexpr int kMaxPlots = 16;
+
+  int max_plots = 10;      ///< of the longest line
+  double steepness = 5.0;  ///< a of the membership functions
+  double threshold = 1.5;  ///< c: the ratio that is as good as it is bad
+  double clip = 3.0;       ///< greater ratios count as this
+  TNorm t_norm = TNorm::kProduct;
+  bool hold = true;  ///< the greater of the last two outputs counts, against single outliers
+  double acceleration_std_mps2 = 0.5;  ///< per axis, of a maneuver that the line chosen has not
+                                       ///< seen yet: widens the covariance, not used in the choice
+
+  /// Degrees to which the quality of tracking is good and bad.
+  struct Degrees {
+    double good;
+    double bad;
+  };
+
+  [[nodiscard]] Degrees degrees(double ratio) const noexcept {
+    const double odds = std::exp(-steepness * (ratio - threshold));
+    return {odds / (1.0 + odds), 1.0 / (1.0 + odds)};
+  }
+
+  /// Degree of all conditions together.
+  [[nodiscard]] double both(double a, double b) const noexcept {
+    return t_norm == TNorm::kProduct ? a * b : std::min(a, b);
+  }
+
+  /// Output of the machine, 2 .. n + 1, for the ratios (n >= 1) of the lines through 2, 3, ... n +
+  /// 1 plots: the mean of what the n + 1 rules say, weighted by their strengths, which are filled
+  /// in. O(n).
+  double judge(std::span<const double> ratios, std::span<double> strengths) const noexcept {
+    const std::size_t lines = ratios.size();
+    std::array<Degrees, kMaxPlots> degree;
+    double ahead = 1.0;  // how good the first p are together
+    for (std::size_t p = 0; p < lines; ++p) {
+      degree[p] = degrees(ratios[p]);
+      strengths[p] = ahead;
+      ahead = both(ahead, degree[p].good);
+    }
+    strengths[lines] = ahead;
+    double behind = 1.0;  // how bad the rest are together
+    double total = strengths[lines];
+    double sum = total * double(lines + 1);
+    for (std::size_t p = lines; p-- > 0;) {
+      behind = both(behind, degree[p].bad);
+      strengths[p] = both(strengths[p], behind);
+      total += strengths[p];
+      sum += strengths[p] * double(std::max<std::size_t>(2, p + 1));
+    }
+    return sum / total;
+  }
+
+  friend bool operator==(const FuzzyCriterion&, const FuzzyCriterion&) = default;
+
+  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  void validate() const {
+    require(max_plots >= 2 && max_plots <= kMaxPlots, "max_plots", "2 to 16", max_plots);
+    require_positive("steepness", steepness);
+    require_positive("clip", clip);
+    require(threshold > 0.0 && threshold < clip, "threshold", "positive and less than clip",
+            threshold);
+    // The product over all lines then stays far above the least number there is.
+    require(steepness * std::max(threshold, clip - threshold) <= 40.0, "steepness",
+            "such that no membership is below exp(-40) within 0 .. clip", steepness);
+    require_not_negative("acceleration_std_mps2", acceleration_std_mps2);
+  }
+};
+
+}  // namespace wakeline
