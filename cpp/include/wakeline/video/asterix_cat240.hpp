@@ -1,0 +1,295 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Radar video as ASTERIX category 240 writes it: EUROCONTROL-SPEC-0149-240, edition 1.3 (2015), and
+// part 1 (SPEC-0149) for blocks and records. What reader and writer share.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/video/sweep.hpp"
+
+namespace wakeline {
+
+/// Which radar of which area sent a record (I240/010).
+struct Cat240Source {
+  std::uint8_t area = 0;    ///< SAC
+  std::uint8_t system = 0;  ///< SIC
+
+  bool operator==(const Cat240Source&) const = default;
+};
+
+namespace cat240 {
+
+inline constexpr unsigned kCategory = 240;
+inline constexpr std::size_t kBlockHeader = 3;                 ///< CAT, LEN
+inline constexpr std::size_t kLongestBlock = 0xFFFF;           ///< octets, header included
+inline constexpr double kAzimuthTurn = 65536.0;                ///< steps of azimuth in a turn
+inline constexpr double kTicksPerSecond = 128.0;               ///< of time of day
+inline constexpr double kDay = 86400.0;                        ///< s
+inline constexpr double kLight = 299792458.0;                  ///< m/s
+inline constexpr double kFemtosecondRange = 0.5e-15 * kLight;  ///< m, there and back
+inline constexpr std::uint64_t kFemtosPerNano = 1000000;
+
+/// The data items of a record in the order of its field specification.
+enum Item : std::size_t {
+  kSource,
+  kMessageType,
+  kSequence,
+  kSummary,
+  kHeaderNano,
+  kHeaderFemto,
+  kResolution,
+  kCounters,
+  kVideoLow,
+  kVideoMedium,
+  kVideoHigh,
+  kTimeOfDay,
+  kExpansion,
+  kSpecial,
+  kItems
+};
+
+/// How long an item is.
+enum class Length : std::uint8_t {
+  kFixed,     ///< so many octets
+  kRepeated,  ///< an octet n, then n times so many octets
+  kOwn,       ///< its first octet tells, itself included
+};
+
+struct ItemForm {
+  const char* name;
+  Length length;
+  std::size_t octets;
+};
+
+inline constexpr std::array<ItemForm, kItems> kForms{{
+    {"I240/010", Length::kFixed, 2},
+    {"I240/000", Length::kFixed, 1},
+    {"I240/020", Length::kFixed, 4},
+    {"I240/030", Length::kRepeated, 1},
+    {"I240/040", Length::kFixed, 12},
+    {"I240/041", Length::kFixed, 12},
+    {"I240/048", Length::kFixed, 2},
+    {"I240/049", Length::kFixed, 5},
+    {"I240/050", Length::kRepeated, 4},
+    {"I240/051", Length::kRepeated, 64},
+    {"I240/052", Length::kRepeated, 256},
+    {"I240/140", Length::kFixed, 3},
+    {"RE", Length::kOwn, 1},
+    {"SP", Length::kOwn, 1},
+}};
+
+/// An unsigned number, most significant octet first.
+inline std::uint64_t number(std::span<const std::byte> octets) noexcept {
+  std::uint64_t value = 0;
+  for (const std::byte octet : octets) value = value << 8 | std::to_integer<std::uint64_t>(octet);
+  return value;
+}
+
+}  // namespace cat240
+
+/// What is wrong with octets that should be radar video.
+enum class Cat240Fault : std::uint8_t {
+  kNone = 0,
+  kBlockLength = 1,         ///< a block shorter than its own header
+  kTruncated = 2,           ///< the data end inside a block
+  kNoBlock = 3,             ///< what stands here does not lead to another block
+  kFieldSpecification = 4,  ///< names items that there are not
+  kItemLength = 5,          ///< an item goes beyond its block
+  kItemCount = 6,           ///< an item is missing, or two stand where one should
+  kMessageType = 7,         ///< neither video nor summary
+  kCompressed = 8,          ///< cells are packed in a way only the sender knows
+  kResolution = 9,          ///< bits of a cell that are not read
+  kCounters = 10,           ///< more cells than octets to hold them
+  kNoCells = 11,            ///< video without cells
+  kAzimuth = 12,            ///< a sweep half a turn wide
+  kCellDuration = 13,       ///< a cell of no length
+};
+
+/// The fault in words, for messages and logs.
+constexpr const char* to_string(Cat240Fault fault) noexcept {
+  switch (fault) {
+    case Cat240Fault::kNone:
+      return "no fault";
+    case Cat240Fault::kBlockLength:
+      return "a data block is shorter than its header";
+    case Cat240Fault::kTruncated:
+      return "the data end inside a data block";
+    case Cat240Fault::kNoBlock:
+      return "no data block begins here";
+    case Cat240Fault::kFieldSpecification:
+      return "a field specification is too long";
+    case Cat240Fault::kItemLength:
+      return "an item goes beyond its data block";
+    case Cat240Fault::kItemCount:
+      return "a record lacks an item or has two of a kind";
+    case Cat240Fault::kMessageType:
+      return "a message of an unknown type";
+    case Cat240Fault::kCompressed:
+      return "the video is compressed";
+    case Cat240Fault::kResolution:
+      return "the resolution of the video cannot be read";
+    case Cat240Fault::kCounters:
+      return "a sweep tells of more cells than it holds";
+    case Cat240Fault::kNoCells:
+      return "a sweep without cells";
+    case Cat240Fault::kAzimuth:
+      return "a sweep as wide as half a turn";
+    case Cat240Fault::kCellDuration:
+      return "range cells of no length";
+  }
+  return "unknown";
+}
+
+/// A fault, where it stands, what was wanted and what came.
+struct Cat240Problem {
+  Cat240Fault fault = Cat240Fault::kNone;
+  std::uint64_t offset = 0;  ///< of the block or record at fault, octets from the start of the data
+  const char* item = "";     ///< the item at fault, where it is one
+  std::uint64_t wanted = 0;
+  std::uint64_t came = 0;
+};
+
+/// What a sound file would hold there: "at least 3 octets".
+inline std::string wanted_text(const Cat240Problem& problem) {
+  const std::string number = std::to_string(problem.wanted);
+  switch (problem.fault) {
+    case Cat240Fault::kBlockLength:
+      return "a length of " + number + " octets or more";
+    case Cat240Fault::kNoBlock:
+      return "a block that another follows";
+    case Cat240Fault::kFieldSpecification:
+      return "at most " + number + " octets";
+    case Cat240Fault::kItemLength:
+      return number + " octets of " + problem.item;
+    case Cat240Fault::kItemCount:
+      return std::string("one ") + problem.item;
+    case Cat240Fault::kMessageType:
+      return "1 (summary) or 2 (video)";
+    case Cat240Fault::kCompressed:
+      return "cells as they are";
+    case Cat240Fault::kResolution:
+      return "1 to " + number + " (1, 2, 4, 8 or 16 bits a cell)";
+    case Cat240Fault::kNoCells:
+      return "at least 1 cell";
+    case Cat240Fault::kAzimuth:
+      return "fewer than " + number + " steps of azimuth";
+    case Cat240Fault::kCellDuration:
+      return "at least 1 femtosecond";
+    default:
+      return number + " octets";
+  }
+}
+
+/// What stands there instead.
+inline std::string came_text(const Cat240Problem& problem) {
+  const std::string number = std::to_string(problem.came);
+  switch (problem.fault) {
+    case Cat240Fault::kNoBlock:
+      return "category " + number;
+    case Cat240Fault::kFieldSpecification:
+      return number + " or more";
+    case Cat240Fault::kCompressed:
+      return "compressed ones";
+    default:
+      return number;
+  }
+}
+
+/// One video record: what was received of one azimuth, its cells still packed in the data read.
+struct Cat240Video {
+  std::uint64_t offset = 0;  ///< of the record, octets from the start of the data
+  Cat240Source source;
+  std::int64_t sequence = -1;  ///< counts the sender's messages, 32 bits; -1 where it does not
+  double time_s = std::numeric_limits<double>::quiet_NaN();  ///< since the midnight before the
+                                                             ///< first record; NaN where not told
+  std::uint16_t start_azimuth = 0;                           ///< in steps of 2 pi / 65536
+  std::uint16_t end_azimuth = 0;
+  std::uint32_t start_cell = 0;        ///< cells from the antenna to the first
+  std::uint64_t cell_duration_fs = 0;  ///< there and back
+  int bits = 8;                        ///< of a cell
+  std::uint32_t cells = 0;
+  std::span<const std::byte> packed;  ///< as many octets as the cells fill
+
+  /// Steps of azimuth from start to end; below zero for an antenna that turns anticlockwise.
+  [[nodiscard]] int turned() const noexcept {
+    return std::bit_cast<std::int16_t>(static_cast<std::uint16_t>(end_azimuth - start_azimuth));
+  }
+  /// Centre of the sweep, clockwise from north, in [0, 2 pi).
+  [[nodiscard]] double azimuth_rad() const noexcept {
+    const double steps = start_azimuth + 0.5 * turned();
+    return compass_angle(steps * (2 * kPi<double> / cat240::kAzimuthTurn));
+  }
+  /// 0 where a sender names one azimuth for start and end.
+  [[nodiscard]] double azimuth_width_rad() const noexcept {
+    return std::abs(turned()) * (2 * kPi<double> / cat240::kAzimuthTurn);
+  }
+  /// cell_m = c t / 2.
+  [[nodiscard]] double cell_m() const noexcept {
+    return static_cast<double>(cell_duration_fs) * cat240::kFemtosecondRange;
+  }
+  /// Near edge of the first cell.
+  [[nodiscard]] double start_range_m() const noexcept { return start_cell * cell_m(); }
+
+  /// Whether the cells can be unpacked to this kind of amplitude: 1 to 8 bits to octets, 16 to
+  /// words.
+  template <std::unsigned_integral Amplitude>
+  [[nodiscard]] bool fits() const noexcept {
+    return (bits <= 8) == (sizeof(Amplitude) == 1);
+  }
+
+  /// The sweep, its cells unpacked into `room`, which must hold `cells` of them and live as long.
+  ///
+  /// Cells of 1, 2 and 4 bits are scaled by 255, 85 and 17, so that full scale stays full scale; of
+  /// an octet the first cell is in the high bits. A sweep without amplitudes comes back when they
+  /// do not fit `room` or its kind.
+  template <std::unsigned_integral Amplitude>
+  requires(sizeof(Amplitude) <= 2) Sweep<Amplitude> unpack(std::span<Amplitude> room)
+  const noexcept {
+    Sweep<Amplitude> sweep{.time_s = time_s,
+                           .azimuth_rad = azimuth_rad(),
+                           .azimuth_width_rad = azimuth_width_rad(),
+                           .start_range_m = start_range_m(),
+                           .cell_m = cell_m(),
+                           .amplitude = {}};
+    if (!fits<Amplitude>() || room.size() < cells) return sweep;
+    room = room.first(cells);
+    if constexpr (sizeof(Amplitude) == 2) {
+      for (std::size_t k = 0; k < cells; ++k)
+        room[k] = static_cast<Amplitude>(cat240::number(packed.subspan(2 * k, 2)));
+    } else if (bits == 8) {
+      std::transform(packed.begin(), packed.end(), room.begin(),
+                     [](std::byte octet) { return std::to_integer<Amplitude>(octet); });
+    } else {
+      unpack_parts(room);
+    }
+    sweep.amplitude = room;
+    return sweep;
+  }
+
+ private:
+  template <class Amplitude>
+  void unpack_parts(std::span<Amplitude> room) const noexcept {
+    const auto width = static_cast<std::size_t>(bits);
+    const std::size_t per_octet = 8 / width;
+    const unsigned full_scale = (1u << width) - 1;
+    for (std::size_t k = 0; k < room.size(); ++k) {
+      const std::size_t shift = 8 - width * (k % per_octet + 1);
+      const unsigned value = std::to_integer<unsigned>(packed[k / per_octet]) >> shift & full_scale;
+      room[k] = static_cast<Amplitude>(value * (255 / full_scale));
+    }
+  }
+};
+
+}  // namespace wakeline

@@ -1,0 +1,438 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+
+#include "wakeline/video/asterix_cat240.hpp"
+
+namespace wakeline {
+
+/// What the reader has come to.
+enum class Cat240Event : std::uint8_t {
+  kEnd = 0,      ///< no more in these data
+  kVideo = 1,    ///< a sweep: see `video()`
+  kSummary = 2,  ///< the sender's words about its video: see `summary()`
+  kProblem = 3,  ///< something that cannot be read: see `problem()`
+};
+
+/// Time since the first midnight, of times of day that begin anew at each.
+class DayClock {
+ public:
+  /// The time of day that lies within half a day of the one before. NaN stays NaN.
+  double operator()(double time_of_day_s) noexcept {
+    if (std::isnan(time_of_day_s)) return time_of_day_s;
+    if (last_s_ - time_of_day_s > cat240::kDay / 2) midnight_s_ += cat240::kDay;
+    if (time_of_day_s - last_s_ > cat240::kDay / 2) midnight_s_ -= cat240::kDay;
+    last_s_ = time_of_day_s;
+    return midnight_s_ + time_of_day_s;
+  }
+
+ private:
+  double last_s_ = std::numeric_limits<double>::quiet_NaN();
+  double midnight_s_ = 0.0;
+};
+
+/// Reads ASTERIX category 240 from memory, record by record; never allocates, never throws.
+///
+///     Cat240Reader reader;
+///     reader.feed(octets);
+///     for (auto event = reader.next(); event != Cat240Event::kEnd; event = reader.next())
+///       if (event == Cat240Event::kVideo) see(reader.video().unpack<std::uint8_t>(room));
+///
+/// A long file is fed in pieces: after `kEnd`, `consumed()` octets are done with, and the next
+/// piece begins with the rest; it comes to the same events, for pieces of `kPiece` octets or more.
+///
+/// **Blocks of other categories** are passed over by their length.
+///
+/// **Damage.** A record that cannot be read is a problem. Reading goes on behind it, or behind its
+/// block where its own end cannot be told, if the length of the block leads to something sound: to
+/// a video block whose first record is whole, to the end of the data, or over blocks of other
+/// categories (128 KiB or 256 of them at most) to one of these. Otherwise the reader looks for a
+/// sound video block octet by octet. So nothing sound is lost behind damage, whether data or a
+/// length are damaged.
+class Cat240Reader {
+ public:
+  static constexpr std::size_t kPiece = 1 << 19;  ///< octets
+
+  /// Octets to read: the rest of those before, from `consumed()` on, and what follows them. `last`:
+  /// nothing follows these. They must live until the next `feed`.
+  void feed(std::span<const std::byte> octets, bool last = true) noexcept {
+    base_ += position_;
+    block_end_ -= std::min(block_end_, position_);
+    resume_ -= std::min(resume_, position_);
+    position_ = 0;
+    octets_ = octets;
+    last_ = last;
+  }
+
+  /// Goes to the next record or problem.
+  Cat240Event next() noexcept {
+    for (;;) {
+      const Cat240Event event = step();
+      if (event != kGoOn) return event;
+    }
+  }
+
+  /// The sweep that `next` came to; its cells lie in the data fed.
+  [[nodiscard]] const Cat240Video& video() const noexcept { return video_; }
+  /// The text that `next` came to; lies in the data fed.
+  [[nodiscard]] std::string_view summary() const noexcept { return summary_; }
+  /// The problem that `next` came to.
+  [[nodiscard]] const Cat240Problem& problem() const noexcept { return problem_; }
+
+  /// Octets of these data that are done with.
+  [[nodiscard]] std::size_t consumed() const noexcept { return position_; }
+  /// Blocks of other categories so far.
+  [[nodiscard]] std::uint64_t other_blocks() const noexcept { return other_blocks_; }
+  /// Octets passed over so far because of damage.
+  [[nodiscard]] std::uint64_t skipped_octets() const noexcept { return skipped_; }
+
+ private:
+  using Octets = std::span<const std::byte>;
+  using Items = std::array<Octets, cat240::kItems>;
+
+  enum class At : std::uint8_t { kBlock, kRecord, kDamage, kNowhere };
+  enum class Sound : std::uint8_t { kNo, kYes, kUnknown };  ///< unknown: more data are needed
+
+  struct Record {
+    Items items;
+    std::size_t end = 0;
+  };
+
+  static constexpr auto kGoOn = static_cast<Cat240Event>(255);
+  static constexpr std::size_t kLookAhead = 1 << 17;
+  static constexpr int kBlocksAhead = 256;
+
+  Cat240Event step() noexcept {
+    switch (at_) {
+      case At::kBlock:
+        return enter_block();
+      case At::kRecord:
+        return read_record();
+      case At::kDamage:
+        return leave_damage();
+      case At::kNowhere:
+        return look_for_block();
+    }
+    return Cat240Event::kEnd;
+  }
+
+  Cat240Event enter_block() noexcept {
+    using namespace cat240;
+    const std::size_t left = octets_.size() - position_;
+    if (left == 0 || (left < kBlockHeader && !last_)) return Cat240Event::kEnd;
+    if (left < kBlockHeader) return give_up(Cat240Fault::kTruncated, kBlockHeader, left);
+    const std::size_t length = block_length(position_);
+    if (length < kBlockHeader) return give_up(Cat240Fault::kBlockLength, kBlockHeader, length);
+    if (category(position_) != kCategory) return pass_block(position_ + length);
+    if (length > left && !last_) return Cat240Event::kEnd;
+    block_end_ = position_ + length;
+    const std::size_t block = position_;
+    position_ += kBlockHeader;
+    at_ = At::kRecord;
+    return length > left ? tell(Cat240Fault::kTruncated, block, length, left) : kGoOn;
+  }
+
+  Cat240Event pass_block(std::size_t end) noexcept {
+    const Sound sound = category(position_) == 0 ? Sound::kNo : leads_on(end);
+    if (sound == Sound::kUnknown) return Cat240Event::kEnd;
+    if (sound == Sound::kNo) return give_up(Cat240Fault::kNoBlock, 0, category(position_));
+    ++other_blocks_;
+    position_ = end;
+    return kGoOn;
+  }
+
+  Cat240Event read_record() noexcept {
+    const bool truncated = block_end_ > octets_.size();
+    if (position_ == block_end_ || (truncated && position_ == octets_.size())) {
+      at_ = At::kBlock;
+      return kGoOn;
+    }
+    Record record;
+    const bool whole = split(position_, std::min(block_end_, octets_.size()), record);
+    const Cat240Event event = whole ? interpret(position_, record) : Cat240Event::kProblem;
+    if (event == Cat240Event::kProblem) {
+      resume_ = whole ? record.end : block_end_;
+      at_ = At::kDamage;
+      return truncated && !whole ? kGoOn : event;  // that it is truncated has been told
+    }
+    position_ = record.end;
+    return event;
+  }
+
+  /// Trusts the length of the block, or looks for another from the record at fault on.
+  Cat240Event leave_damage() noexcept {
+    const Sound sound = leads_on(block_end_);
+    if (sound == Sound::kUnknown) return Cat240Event::kEnd;
+    if (sound == Sound::kYes) skip_to(resume_);
+    at_ = sound == Sound::kYes ? At::kRecord : At::kNowhere;
+    return kGoOn;
+  }
+
+  Cat240Event look_for_block() noexcept {
+    while (position_ < octets_.size()) {
+      const void* found = std::memchr(octets_.data() + position_, static_cast<int>(kMark),
+                                      octets_.size() - position_);
+      if (found == nullptr) {
+        skip_to(octets_.size());
+        break;
+      }
+      skip_to(static_cast<std::size_t>(static_cast<const std::byte*>(found) - octets_.data()));
+      const Sound sound = sound_video(position_);
+      if (sound == Sound::kUnknown) return Cat240Event::kEnd;
+      if (sound == Sound::kYes) {
+        at_ = At::kBlock;
+        return kGoOn;
+      }
+      skip_to(position_ + 1);
+    }
+    return Cat240Event::kEnd;
+  }
+
+  /// Whether what begins there leads to a sound video block or to the end of the data.
+  [[nodiscard]] Sound leads_on(std::size_t at) const noexcept {
+    const std::size_t limit = position_ + cat240::kLongestBlock + kLookAhead;
+    for (int block = 0; block < kBlocksAhead; ++block) {
+      if (last_ && at == octets_.size()) return Sound::kYes;
+      if (at > limit) return Sound::kNo;
+      if (at + cat240::kBlockHeader > octets_.size()) return cut();
+      if (category(at) == cat240::kCategory) return sound_video(at);
+      if (category(at) == 0 || block_length(at) < cat240::kBlockHeader) return Sound::kNo;
+      at += block_length(at);
+    }
+    return Sound::kYes;
+  }
+
+  /// Whether a video block begins there whose first record is whole and names source and type.
+  [[nodiscard]] Sound sound_video(std::size_t at) const noexcept {
+    using namespace cat240;
+    if (at + kBlockHeader > octets_.size()) return cut();
+    const std::size_t end = at + block_length(at);
+    if (category(at) != kCategory || end <= at + kBlockHeader) return Sound::kNo;
+    if (end > octets_.size()) return cut();
+    Record record;
+    Cat240Problem ignored;
+    if (!split(at + kBlockHeader, end, record, ignored)) return Sound::kNo;
+    const bool named = !record.items[kSource].empty() && is_known(record.items[kMessageType]);
+    return named ? Sound::kYes : Sound::kNo;
+  }
+
+  [[nodiscard]] Sound cut() const noexcept { return last_ ? Sound::kNo : Sound::kUnknown; }
+
+  bool split(std::size_t begin, std::size_t limit, Record& record) noexcept {
+    return split(begin, limit, record, problem_);
+  }
+
+  /// Tells the items of a record apart; false, and why, when they do not end within `limit`.
+  bool split(std::size_t begin, std::size_t limit, Record& record,
+             Cat240Problem& problem) const noexcept {
+    using namespace cat240;
+    const auto fail = [&](Cat240Fault fault, const char* item, std::size_t wanted,
+                          std::size_t came) {
+      problem = {fault, base_ + begin, item, wanted, came};
+      return false;
+    };
+    const std::size_t specification = specification_octets(begin, limit);
+    if (specification > kSpecification)
+      return fail(Cat240Fault::kFieldSpecification, "FSPEC", kSpecification, specification);
+    if (begin + specification > limit)
+      return fail(Cat240Fault::kItemLength, "FSPEC", specification, limit - begin);
+    std::size_t at = begin + specification;
+    for (std::size_t item = 0; item < 7 * specification; ++item) {
+      if (!has(octets_.subspan(begin, specification), item)) continue;
+      const std::size_t octets = item_octets(kForms[item], at, limit);
+      if (octets > limit - at)
+        return fail(Cat240Fault::kItemLength, kForms[item].name, octets, limit - at);
+      record.items[item] = octets_.subspan(at, octets);
+      at += octets;
+    }
+    record.end = at;
+    return true;
+  }
+
+  /// Octets of the field specification: as long as the lowest bit says that another follows.
+  [[nodiscard]] std::size_t specification_octets(std::size_t begin,
+                                                 std::size_t limit) const noexcept {
+    std::size_t octets = 1;
+    while (octets <= kSpecification && begin + octets <= limit &&
+           (octets_[begin + octets - 1] & std::byte{1}) != std::byte{0})
+      ++octets;
+    return octets;
+  }
+
+  [[nodiscard]] static bool has(Octets specification, std::size_t item) noexcept {
+    return (specification[item / 7] & std::byte{0x80} >> static_cast<int>(item % 7)) !=
+           std::byte{0};
+  }
+
+  /// Octets of an item that begins there, or 1 where its length itself is beyond the limit.
+  [[nodiscard]] std::size_t item_octets(const cat240::ItemForm& form, std::size_t at,
+                                        std::size_t limit) const noexcept {
+    if (form.length == cat240::Length::kFixed) return form.octets;
+    if (at >= limit) return 1;
+    const auto told = std::to_integer<std::size_t>(octets_[at]);
+    if (form.length == cat240::Length::kRepeated) return 1 + told * form.octets;
+    return std::max<std::size_t>(told, 1);
+  }
+
+  Cat240Event interpret(std::size_t begin, const Record& record) noexcept {
+    using namespace cat240;
+    const Items& items = record.items;
+    if (!known_type(begin, items)) return Cat240Event::kProblem;
+    if (!items[kSummary].empty()) return read_summary(items[kSummary].subspan(1));
+    video_ = {};
+    video_.offset = base_ + begin;
+    read_labels(items);
+    if (!read_header(begin, items) || !read_resolution(begin, items) || !read_cells(begin, items))
+      return Cat240Event::kProblem;
+    video_.time_s = clock_(time_of_day_s(items[kTimeOfDay]));
+    return Cat240Event::kVideo;
+  }
+
+  bool known_type(std::size_t begin, const Items& items) noexcept {
+    const Octets octet = items[cat240::kMessageType];
+    if (octet.empty()) return refuse_count(begin, "I240/000", 0);
+    return is_known(octet) || refuse(Cat240Fault::kMessageType, begin, 2, cat240::number(octet));
+  }
+
+  Cat240Event read_summary(Octets text) noexcept {
+    summary_ = {reinterpret_cast<const char*>(text.data()), text.size()};
+    return Cat240Event::kSummary;
+  }
+
+  void read_labels(const Items& items) noexcept {
+    using namespace cat240;
+    if (const Octets source = items[kSource]; !source.empty())
+      video_.source = {std::to_integer<std::uint8_t>(source[0]),
+                       std::to_integer<std::uint8_t>(source[1])};
+    if (const Octets sequence = items[kSequence]; !sequence.empty())
+      video_.sequence = static_cast<std::int64_t>(number(sequence));
+  }
+
+  bool read_header(std::size_t begin, const Items& items) noexcept {
+    using namespace cat240;
+    const Choice header = choose(items, kHeaderNano, kHeaderFemto);
+    if (header.count != 1) return refuse_count(begin, "I240/040 or I240/041", header.count);
+    video_.start_azimuth = static_cast<std::uint16_t>(number(header.octets.subspan(0, 2)));
+    video_.end_azimuth = static_cast<std::uint16_t>(number(header.octets.subspan(2, 2)));
+    video_.start_cell = static_cast<std::uint32_t>(number(header.octets.subspan(4, 4)));
+    const std::uint64_t unit_fs = items[kHeaderFemto].empty() ? kFemtosPerNano : 1;
+    video_.cell_duration_fs = unit_fs * number(header.octets.subspan(8, 4));
+    if (video_.turned() == -kHalfTurn)
+      return refuse(Cat240Fault::kAzimuth, begin, kHalfTurn, kHalfTurn);
+    return video_.cell_duration_fs > 0 || refuse(Cat240Fault::kCellDuration, begin, 1, 0);
+  }
+
+  bool read_resolution(std::size_t begin, const Items& items) noexcept {
+    const Octets octets = items[cat240::kResolution];
+    if (octets.empty()) return refuse_count(begin, "I240/048", 0);
+    if ((octets[0] & std::byte{0x80}) != std::byte{0})
+      return refuse(Cat240Fault::kCompressed, begin, 0, 1);
+    const auto resolution = std::to_integer<unsigned>(octets[1]);
+    video_.bits = resolution - 1 < 5 ? 1 << (resolution - 1) : 0;
+    return video_.bits > 0 || refuse(Cat240Fault::kResolution, begin, 5, resolution);
+  }
+
+  bool read_cells(std::size_t begin, const Items& items) noexcept {
+    using namespace cat240;
+    const Octets counters = items[kCounters];
+    const Choice block = choose(items, kVideoLow, kVideoHigh);
+    if (counters.empty()) return refuse_count(begin, "I240/049", 0);
+    if (block.count != 1) return refuse_count(begin, "I240/050, I240/051 or I240/052", block.count);
+    video_.cells = static_cast<std::uint32_t>(number(counters.subspan(2)));
+    if (video_.cells == 0) return refuse(Cat240Fault::kNoCells, begin, 1, 0);
+    const std::size_t needed =
+        (std::size_t{video_.cells} * static_cast<unsigned>(video_.bits) + 7) / 8;
+    const Octets room = block.octets.subspan(1);
+    const std::size_t held = std::min<std::size_t>(number(counters.first(2)), room.size());
+    if (needed > held) return refuse(Cat240Fault::kCounters, begin, needed, held);
+    video_.packed = room.first(needed);
+    return true;
+  }
+
+  struct Choice {
+    Octets octets;
+    std::size_t count = 0;
+  };
+
+  /// The item that stands for a choice of some, and how many do.
+  static Choice choose(const Items& items, std::size_t first, std::size_t last) noexcept {
+    Choice choice;
+    for (std::size_t item = first; item <= last; ++item)
+      if (!items[item].empty()) choice = {items[item], choice.count + 1};
+    return choice;
+  }
+
+  static double time_of_day_s(Octets ticks) noexcept {
+    if (ticks.empty()) return std::numeric_limits<double>::quiet_NaN();
+    return static_cast<double>(cat240::number(ticks)) / cat240::kTicksPerSecond;
+  }
+
+  static bool is_known(Octets message_type) noexcept {
+    const std::uint64_t type = cat240::number(message_type);
+    return type == 1 || type == 2;
+  }
+
+  [[nodiscard]] unsigned category(std::size_t at) const noexcept {
+    return std::to_integer<unsigned>(octets_[at]);
+  }
+  [[nodiscard]] std::size_t block_length(std::size_t at) const noexcept {
+    return static_cast<std::size_t>(cat240::number(octets_.subspan(at + 1, 2)));
+  }
+
+  void skip_to(std::size_t position) noexcept {
+    skipped_ += position - position_;
+    position_ = position;
+  }
+
+  /// A problem of the block that should begin here; a block is looked for from the next octet on.
+  Cat240Event give_up(Cat240Fault fault, std::uint64_t wanted, std::uint64_t came) noexcept {
+    const std::size_t block = position_;
+    skip_to(position_ + 1);
+    at_ = At::kNowhere;
+    return tell(fault, block, wanted, came);
+  }
+
+  Cat240Event tell(Cat240Fault fault, std::size_t where, std::uint64_t wanted,
+                   std::uint64_t came) noexcept {
+    refuse(fault, where, wanted, came);
+    return Cat240Event::kProblem;
+  }
+
+  bool refuse(Cat240Fault fault, std::size_t where, std::uint64_t wanted,
+              std::uint64_t came) noexcept {
+    problem_ = {fault, base_ + where, "", wanted, came};
+    return false;
+  }
+
+  bool refuse_count(std::size_t where, const char* item, std::uint64_t came) noexcept {
+    problem_ = {Cat240Fault::kItemCount, base_ + where, item, 1, came};
+    return false;
+  }
+
+  static constexpr std::byte kMark{cat240::kCategory};
+  static constexpr int kHalfTurn = 0x8000;
+  static constexpr std::size_t kSpecification = cat240::kItems / 7;
+
+  Octets octets_;
+  bool last_ = true;
+  At at_ = At::kBlock;
+  std::size_t position_ = 0;
+  std::size_t block_end_ = 0;  ///< of the block that `position_` is in
+  std::size_t resume_ = 0;     ///< behind damage, where the length of the block is right
+  std::uint64_t base_ = 0;     ///< octets fed and done with before these
+  std::uint64_t other_blocks_ = 0;
+  std::uint64_t skipped_ = 0;
+  Cat240Video video_;
+  std::string_view summary_;
+  Cat240Problem problem_;
+  DayClock clock_;
+};
+
+}  // namespace wakeline

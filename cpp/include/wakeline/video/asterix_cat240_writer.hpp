@@ -1,0 +1,223 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "wakeline/video/asterix_cat240.hpp"
+
+namespace wakeline {
+
+/// What became of a sweep to write.
+enum class Cat240Written : std::uint8_t {
+  kOk = 0,
+  kNoSweep = 1,       ///< not a radar's: see `Sweep::valid`; or half a turn wide and more
+  kTooManyCells = 2,  ///< beyond `Cat240Writer::max_cells`
+  kCellLength = 3,    ///< the cells are shorter than 0.1 micrometres or longer than 643000 km
+  kStartRange = 4,    ///< begins 2^32 cells from the antenna or more
+  kNoRoom = 5,        ///< `out` is too small
+  kTextTooLong = 6,   ///< a summary of more than 255 characters
+};
+
+/// The outcome in words, for messages and logs.
+constexpr const char* to_string(Cat240Written written) noexcept {
+  switch (written) {
+    case Cat240Written::kOk:
+      return "ok";
+    case Cat240Written::kNoSweep:
+      return "not a sweep of a radar";
+    case Cat240Written::kTooManyCells:
+      return "too many cells for one block";
+    case Cat240Written::kCellLength:
+      return "a length of the cells that cannot be told";
+    case Cat240Written::kStartRange:
+      return "a start range that cannot be told";
+    case Cat240Written::kNoRoom:
+      return "no room to write to";
+    case Cat240Written::kTextTooLong:
+      return "a text of more than 255 characters";
+  }
+  return "unknown";
+}
+
+/// Writes sweeps as ASTERIX category 240, a block of one record each; never allocates, never
+/// throws.
+///
+/// What is kept of a sweep: amplitudes as they are, 8 or 16 bits; azimuth to half a step of 2 pi /
+/// 65536, width to one; time of day to 1/256 s; length of the cells to 75 nm up to 643 m (cell
+/// durations in whole nanoseconds where they are such, else in femtoseconds) and to 75 mm beyond;
+/// start range to half a cell, as the format counts it in cells.
+class Cat240Writer {
+ public:
+  /// Octets that are always enough for a sweep or a summary.
+  static constexpr std::size_t kRoom = cat240::kLongestBlock;
+
+  explicit Cat240Writer(Cat240Source source = {}) noexcept : source_(source) {}
+
+  /// Cells that one record holds: 254 parts of 256 octets.
+  template <std::unsigned_integral Amplitude>
+  [[nodiscard]] static constexpr std::size_t max_cells() noexcept {
+    return std::size_t{254} * 256 / sizeof(Amplitude);
+  }
+
+  /// Writes one sweep to the start of `out` and counts it; `size()` then tells how many octets.
+  template <std::unsigned_integral Amplitude>
+  requires(sizeof(Amplitude) <= 2) Cat240Written
+      write(const Sweep<Amplitude>& sweep, std::span<std::byte> out)
+  noexcept {
+    using namespace cat240;
+    begin(out);
+    if (!sweep.valid() || sweep.azimuth_width_rad >= kWidest || std::abs(sweep.azimuth_rad) > kFar)
+      return Cat240Written::kNoSweep;
+    if (sweep.amplitude.size() > max_cells<Amplitude>()) return Cat240Written::kTooManyCells;
+    const Duration duration = Duration::of(sweep.cell_m);
+    if (duration.count == 0) return Cat240Written::kCellLength;
+    const double start_cell = std::round(sweep.start_range_m / duration.cell_m());
+    if (start_cell > 0xFFFFFFFFu) return Cat240Written::kStartRange;
+    const std::size_t octets = sizeof(Amplitude) * sweep.amplitude.size();
+    const Parts parts = Parts::of(octets);
+
+    specify({kSource, kMessageType, kSequence, duration.nano ? kHeaderNano : kHeaderFemto,
+             kResolution, kCounters, parts.item, kTimeOfDay});
+    put_labels(2);
+    put(4, sequence_);
+    put(2, steps(sweep.azimuth_rad - 0.5 * sweep.azimuth_width_rad));
+    put(2, steps(sweep.azimuth_rad + 0.5 * sweep.azimuth_width_rad));
+    put(4, static_cast<std::uint64_t>(start_cell));
+    put(4, duration.count);
+    put(2, sizeof(Amplitude) == 1 ? 4 : 5);
+    put(2, octets);
+    put(3, sweep.amplitude.size());
+    put(1, parts.count);
+    for (const Amplitude amplitude : sweep.amplitude) put(sizeof(Amplitude), amplitude);
+    for (std::size_t k = octets; k < parts.octets(); ++k) put(1, 0);
+    put(3, ticks(sweep.time_s));
+    if (!end()) return Cat240Written::kNoRoom;
+    ++sequence_;
+    return Cat240Written::kOk;
+  }
+
+  /// Writes words about the video, ASCII, of at most 255 characters.
+  Cat240Written write_summary(std::string_view text, std::span<std::byte> out) noexcept {
+    using namespace cat240;
+    begin(out);
+    if (text.size() > 0xFF) return Cat240Written::kTextTooLong;
+    specify({kSource, kMessageType, kSummary});
+    put_labels(1);
+    put(1, text.size());
+    for (const char letter : text) put(1, static_cast<unsigned char>(letter));
+    return end() ? Cat240Written::kOk : Cat240Written::kNoRoom;
+  }
+
+  /// Octets of the block written last; 0 when it was not.
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+
+ private:
+  static constexpr double kWidest = kPi<double> - 2e-4;  ///< rounded, still less than half a turn
+  static constexpr double kFar = 1e6;  ///< rad; beyond it a step is no longer told from the next
+
+  /// A cell's duration in the unit that tells it best.
+  struct Duration {
+    std::uint64_t count = 0;
+    bool nano = false;
+
+    static Duration of(double cell_m) noexcept {
+      using namespace cat240;
+      constexpr double most = 0xFFFFFFFFu;
+      const double femtos = std::round(cell_m / kFemtosecondRange);
+      const double nanos = std::round(femtos / kFemtosPerNano);
+      if (nanos > most) return {};
+      if (femtos > most || femtos == nanos * kFemtosPerNano)
+        return {static_cast<std::uint64_t>(nanos), true};
+      return {static_cast<std::uint64_t>(femtos), false};
+    }
+    [[nodiscard]] double cell_m() const noexcept {
+      const std::uint64_t femtos = count * (nano ? cat240::kFemtosPerNano : 1);
+      return static_cast<double>(femtos) * cat240::kFemtosecondRange;
+    }
+  };
+
+  /// The smallest video block that holds so many octets.
+  struct Parts {
+    cat240::Item item;
+    std::size_t count;
+
+    static Parts of(std::size_t octets) noexcept {
+      using namespace cat240;
+      const Item item = octets <= 255 * kForms[kVideoLow].octets      ? kVideoLow
+                        : octets <= 255 * kForms[kVideoMedium].octets ? kVideoMedium
+                                                                      : kVideoHigh;
+      const std::size_t part = kForms[item].octets;
+      return {item, (octets + part - 1) / part};
+    }
+    [[nodiscard]] std::size_t octets() const noexcept {
+      return count * cat240::kForms[item].octets;
+    }
+  };
+
+  static std::uint64_t steps(double azimuth_rad) noexcept {
+    const double turns = compass_angle(azimuth_rad) / (2 * kPi<double>);
+    return static_cast<std::uint64_t>(std::llround(turns * cat240::kAzimuthTurn)) & 0xFFFFu;
+  }
+
+  static std::uint64_t ticks(double time_s) noexcept {
+    using namespace cat240;
+    const double of_day = time_s - kDay * std::floor(time_s / kDay);
+    const auto count = static_cast<std::uint64_t>(std::llround(of_day * kTicksPerSecond));
+    return count % static_cast<std::uint64_t>(kDay * kTicksPerSecond);
+  }
+
+  void begin(std::span<std::byte> out) noexcept {
+    out_ = out;
+    at_ = 0;
+    size_ = 0;
+    put(1, cat240::kCategory);
+    put(2, 0);
+  }
+
+  /// The field specification of these items.
+  void specify(std::initializer_list<cat240::Item> items) noexcept {
+    unsigned first = 0, second = 0;
+    for (const cat240::Item item : items) (item < 7 ? first : second) |= 0x80u >> item % 7;
+    put(1, first | (second != 0 ? 1u : 0u));
+    if (second != 0) put(1, second);
+  }
+
+  void put_labels(unsigned message_type) noexcept {
+    put(1, source_.area);
+    put(1, source_.system);
+    put(1, message_type);
+  }
+
+  /// Appends a number of so many octets, most significant first; beyond the room it is only
+  /// counted.
+  void put(std::size_t octets, std::uint64_t value) noexcept {
+    if (at_ + octets <= out_.size())
+      for (std::size_t k = 0; k < octets; ++k)
+        out_[at_ + k] = static_cast<std::byte>(value >> 8 * (octets - 1 - k) & 0xFF);
+    at_ += octets;
+  }
+
+  /// Fills in the length of the block.
+  bool end() noexcept {
+    if (at_ > out_.size()) return false;
+    size_ = at_;
+    out_[1] = static_cast<std::byte>(size_ >> 8);
+    out_[2] = static_cast<std::byte>(size_ & 0xFF);
+    return true;
+  }
+
+  Cat240Source source_;
+  std::uint32_t sequence_ = 0;
+  std::span<std::byte> out_;
+  std::size_t at_ = 0;
+  std::size_t size_ = 0;
+};
+
+}  // namespace wakeline
