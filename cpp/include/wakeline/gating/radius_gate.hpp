@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
+
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/types.hpp"
+#include "wakeline/gating/strobe_chord.hpp"
+#include "wakeline/measurement/polar.hpp"
 
 namespace wakeline {
 
 /// A circular gate of fixed radius around a predicted position, as the trial-track stage of a
-/// console uses it.
+/// console uses it; on radar video, a strobe.
 struct RadiusGate {
   double radius_m = 100.0;
 
@@ -23,6 +27,20 @@ struct RadiusGate {
                               const Vec<Scalar, 2>& plot_m) const noexcept {
     const Scalar radius = static_cast<Scalar>(radius_m);
     return (plot_m - predicted_m).squaredNorm() <= radius * radius;
+  }
+
+  /// Half the angle in which the antenna sees it, rad; NaN when the radius is negative or NaN.
+  [[nodiscard]] double half_angle_rad(const Vec<double, 2>& predicted_m) const noexcept {
+    return half_angle_of_box(predicted_m.norm(), radius_m, radius_m);
+  }
+
+  /// What of the ray from the antenna at `bearing_rad` lies inside: |ρ u - p| <= r.
+  [[nodiscard]] StrobeChord chord(const Vec<double, 2>& predicted_m,
+                                  double bearing_rad) const noexcept {
+    const Vec<double, 2> u = towards(bearing_rad);
+    const double miss =
+        predicted_m[0] * u[1] - predicted_m[1] * u[0];  // of the ray from the centre
+    return StrobeChord::about(u.dot(predicted_m), std::sqrt(radius_m * radius_m - miss * miss));
   }
 
   /// π r², in square metres.

@@ -1,0 +1,308 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "wakeline/core/amplitude_image.hpp"
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/cholesky.hpp"
+#include "wakeline/core/require.hpp"
+#include "wakeline/core/types.hpp"
+#include "wakeline/gating/strobe.hpp"
+#include "wakeline/gating/strobe_cells.hpp"
+#include "wakeline/gating/strobe_labels.hpp"
+#include "wakeline/gating/strobe_sums.hpp"
+#include "wakeline/measurement/fix.hpp"
+#include "wakeline/measurement/polar.hpp"
+
+namespace wakeline {
+
+/// What a strobe has found. Up to `kCrowded` there is a measurement; where several of these hold,
+/// the later one is told, and `StrobeEcho` has each of them by itself.
+enum class StrobeStatus : std::uint8_t {
+  kOk = 0,             ///< one echo, wholly inside
+  kCut = 1,            ///< part of the strobe lies outside the picture
+  kTouchesEdge = 2,    ///< the echo goes on beyond the strobe: only part of it was weighed
+  kSeveralEchoes = 3,  ///< there are two or more that do not touch
+  kCrowded = 4,        ///< too many to be told apart: the centre of mass of them all
+  kEmpty = 5,          ///< no cell inside counts
+  kOutside = 6,        ///< no cell of the picture lies inside, and the strobe reaches beyond it
+  kInvalid = 7,        ///< prediction, strobe or picture is not finite or makes no sense
+};
+
+/// The status in words, for messages and logs.
+constexpr const char* to_string(StrobeStatus status) noexcept {
+  switch (status) {
+    case StrobeStatus::kOk:
+      return "ok";
+    case StrobeStatus::kCut:
+      return "cut";
+    case StrobeStatus::kTouchesEdge:
+      return "touches edge";
+    case StrobeStatus::kSeveralEchoes:
+      return "several echoes";
+    case StrobeStatus::kCrowded:
+      return "crowded";
+    case StrobeStatus::kEmpty:
+      return "empty";
+    case StrobeStatus::kOutside:
+      return "outside";
+    case StrobeStatus::kInvalid:
+      return "invalid";
+  }
+  return "unknown";
+}
+
+/// Which is measured of several echoes in one strobe.
+enum class EchoChoice : std::uint8_t {
+  kAll,        ///< the centre of mass of all, as the paper has it
+  kNearest,    ///< the one whose centre is nearest to the prediction
+  kStrongest,  ///< the one of the largest weight
+};
+
+/// Which cells count in a strobe, and how much.
+///
+/// A cell counts from `least_amplitude` on, with the weight amplitude - pedestal. On a picture with
+/// noise in every cell, a least amplitude of 1 draws the centre of mass towards that of the strobe,
+/// which is the prediction: set it above the noise.
+struct StrobeSettings {
+  int least_amplitude = 1;
+  int pedestal = 0;
+  EchoChoice several = EchoChoice::kAll;
+
+  /// Throws `std::invalid_argument` unless 0 <= pedestal < least_amplitude.
+  void validate() const {
+    require(least_amplitude >= 1, "least_amplitude", "at least 1", least_amplitude);
+    require(pedestal >= 0 && pedestal < least_amplitude, "pedestal",
+            "not negative and below least_amplitude", pedestal);
+  }
+};
+
+/// The echo in a strobe as a measurement; converts to true when there is one. Else range and
+/// bearing are NaN.
+struct StrobeEcho {
+  StrobeStatus status = StrobeStatus::kInvalid;
+  double range_m = std::numeric_limits<double>::quiet_NaN();  ///< of the centre of mass
+  double bearing_rad =
+      std::numeric_limits<double>::quiet_NaN();  ///< clockwise from north, 0 to 2 pi
+  Mat<double, 2, 2> covariance = Mat<double, 2, 2>::Identity();  ///< of range_m and bearing_rad
+  double total_amplitude = 0.0;
+  int peak_amplitude = 0;
+  int cells = 0;              ///< measured
+  int echoes = 0;             ///< in the strobe, measured or not; 0 when not told apart
+  int strobe_cells = 0;       ///< of the picture inside the strobe, whatever their amplitude
+  bool touches_edge = false;  ///< what was measured goes on beyond the strobe
+  bool cut = false;           ///< part of the strobe lies outside the picture
+
+  explicit operator bool() const noexcept { return status <= StrobeStatus::kCrowded; }
+
+  /// North and east of the antenna with covariance to first order, m and m².
+  [[nodiscard]] Gaussian<2> position() const noexcept {
+    const Vec<double, 2> u = towards(bearing_rad);
+    Mat<double, 2, 2> jacobian;
+    jacobian << u[0], -range_m * u[1], u[1], range_m * u[0];
+    Gaussian<2> position{range_m * u, jacobian * covariance * jacobian.transpose()};
+    mirror_lower<double, 2>(position.covariance);
+    return position;
+  }
+
+  /// The sensor that reads `position().mean` with its covariance.
+  [[nodiscard]] Fix fix() const noexcept { return {position().covariance}; }
+};
+
+namespace detail {
+
+/// Weighs the cells of one strobe on one picture.
+template <int kEchoes, class Amplitude, class Strobe>
+class StrobeScale {
+ public:
+  static_assert(sizeof(Amplitude) <= 2, "amplitudes are of 8 or 16 bits");
+
+  StrobeScale(const AmplitudeImage<Amplitude>& image, const Strobe& strobe,
+              const Vec<double, 2>& predicted_m, const StrobeSettings& settings) noexcept
+      : image_(image),
+        settings_(settings),
+        predicted_m_(predicted_m),
+        cells_(image, strobe, predicted_m),
+        range_m_(predicted_m.norm()),
+        bearing_rad_(std::atan2(predicted_m[1], predicted_m[0])) {}
+
+  StrobeEcho weigh() noexcept {
+    StrobeEcho echo;
+    for (int row = 0; row < cells_.rows(); ++row) add_sweep(cells_.sweep(row), echo);
+    if (cells_.closes()) labels_.close_circle();
+    echo.cut = echo.cut || cells_.cut_sideways();
+    if (all_.cells > 0)
+      tell(echo);
+    else
+      tell_nothing(echo);
+    return echo;
+  }
+
+ private:
+  [[nodiscard]] bool counts(Amplitude amplitude) const noexcept {
+    return amplitude >= settings_.least_amplitude && amplitude > settings_.pedestal;
+  }
+
+  void add_sweep(int sweep, StrobeEcho& echo) noexcept {
+    labels_.start_row();
+    const CellSpan span = cells_.span(sweep);
+    echo.cut = echo.cut || span.cut;
+    echo.strobe_cells += span.size();
+    const Amplitude* row = image_.row(sweep).data();
+    for (int cell = span.first; cell <= span.last; ++cell) {
+      if (!counts(row[cell])) continue;
+      const int first = cell;
+      while (cell < span.last && counts(row[cell + 1])) ++cell;
+      const StrobeSums sums = weigh_run(sweep, first, cell, span);
+      all_ += sums;
+      labels_.add(first, cell, sums);
+    }
+  }
+
+  [[nodiscard]] StrobeSums weigh_run(int sweep, int first, int last,
+                                     const CellSpan& span) const noexcept {
+    const Amplitude* row = image_.row(sweep).data();
+    const Vec<double, 2> u = towards(image_.azimuth_rad(sweep) - bearing_rad_);
+    StrobeSums sums{};
+    for (int cell = first; cell <= last; ++cell) {
+      const double weight = row[cell] - settings_.pedestal;
+      const double range = image_.range_m(cell) - range_m_;
+      sums.weight += weight;
+      sums.squares += weight * weight;
+      sums.range += weight * range;
+      sums.range2 += weight * range * range;
+      sums.amplitude += row[cell];
+      sums.peak = std::max<int>(sums.peak, row[cell]);
+    }
+    sums.along = sums.weight * u[0];
+    sums.across = sums.weight * u[1];
+    sums.range_along = sums.range * u[0];
+    sums.range_across = sums.range * u[1];
+    sums.cells = last - first + 1;
+    sums.reaches_out = goes_on(sweep, first, last, span) ||
+                       goes_on_beside(cells_.beside(sweep, -1), first, last) ||
+                       goes_on_beside(cells_.beside(sweep, 1), first, last);
+    return sums;
+  }
+
+  /// Whether a cell next to first .. last in their own sweep counts but is not inside.
+  [[nodiscard]] bool goes_on(int sweep, int first, int last,
+                             const CellSpan& inside) const noexcept {
+    const std::span<const Amplitude> row = image_.row(sweep);
+    for (int cell = std::max(first - 1, 0); cell <= std::min(last + 1, image_.cells - 1); ++cell)
+      if (!inside.holds(cell) && counts(row[static_cast<std::size_t>(cell)])) return true;
+    return false;
+  }
+
+  [[nodiscard]] bool goes_on_beside(int sweep, int first, int last) const noexcept {
+    return sweep >= 0 && goes_on(sweep, first, last, cells_.span(sweep));
+  }
+
+  /// The echo that is to be measured; there is one.
+  [[nodiscard]] int chosen() const noexcept {
+    int best = 0;
+    for (int echo = 1; echo < labels_.size(); ++echo)
+      if (labels_.is_whole(echo) && preferred(labels_.sums(echo), labels_.sums(best))) best = echo;
+    return best;
+  }
+
+  [[nodiscard]] bool preferred(const StrobeSums& a, const StrobeSums& b) const noexcept {
+    if (settings_.several == EchoChoice::kStrongest) return a.weight > b.weight;
+    return distance2(a) < distance2(b);
+  }
+
+  [[nodiscard]] double distance2(const StrobeSums& sums) const noexcept {
+    const Vec<double, 2> u = towards(bearing_rad_ + sums.mean_bearing());
+    return ((range_m_ + sums.mean_range()) * u - predicted_m_).squaredNorm();
+  }
+
+  void tell(StrobeEcho& echo) const noexcept {
+    if (!labels_.full())
+      for (int k = 0; k < labels_.size(); ++k) echo.echoes += labels_.is_whole(k);
+    const bool one_of_several = echo.echoes > 1 && settings_.several != EchoChoice::kAll;
+    const StrobeSums& sums = one_of_several ? labels_.sums(chosen()) : all_;
+    measure(sums, echo);
+    echo.status = labels_.full()      ? StrobeStatus::kCrowded
+                  : echo.echoes > 1   ? StrobeStatus::kSeveralEchoes
+                  : echo.touches_edge ? StrobeStatus::kTouchesEdge
+                  : echo.cut          ? StrobeStatus::kCut
+                                      : StrobeStatus::kOk;
+  }
+
+  void measure(const StrobeSums& sums, StrobeEcho& echo) const noexcept {
+    echo.range_m = range_m_ + sums.mean_range();
+    echo.bearing_rad = compass_angle(bearing_rad_ + sums.mean_bearing());
+    echo.covariance = sums.spread() / sums.effective_cells();
+    echo.covariance(0, 0) += image_.cell_m * image_.cell_m / 12.0;
+    echo.covariance(1, 1) += image_.azimuth_step_rad * image_.azimuth_step_rad / 12.0;
+    echo.total_amplitude = sums.amplitude;
+    echo.peak_amplitude = sums.peak;
+    echo.cells = sums.cells;
+    echo.touches_edge = sums.reaches_out;
+  }
+
+  void tell_nothing(StrobeEcho& echo) const noexcept {
+    const bool outside = echo.strobe_cells == 0 && (echo.cut || !cells_.prediction_in_picture());
+    echo.cut = echo.cut || outside;
+    echo.status = outside ? StrobeStatus::kOutside : StrobeStatus::kEmpty;
+  }
+
+  const AmplitudeImage<Amplitude>& image_;
+  const StrobeSettings& settings_;
+  const Vec<double, 2>& predicted_m_;
+  StrobeCells<Amplitude, Strobe> cells_;
+  double range_m_;
+  double bearing_rad_;
+  StrobeSums all_{};
+  StrobeLabels<kEchoes> labels_;
+};
+
+/// True when a picture has cells of a size and a place.
+template <class Amplitude>
+bool makes_sense(const AmplitudeImage<Amplitude>& image) noexcept {
+  return image.azimuth_step_rad > 0.0 && std::isfinite(image.azimuth_step_rad) &&
+         image.cell_m > 0.0 && std::isfinite(image.cell_m) &&
+         std::isfinite(image.first_azimuth_rad) && std::isfinite(image.start_range_m);
+}
+
+}  // namespace detail
+
+/// The echo inside a strobe about a predicted position [north, east] (m, from the antenna): the
+/// centre of mass of the amplitudes of those cells whose centres lie inside.
+///
+/// The centre is that of range and of bearing (of their unit vectors), not of north and east: the
+/// beam smears a small target along an arc, whose centre of mass in the plane falls short of it by
+/// r sb²/2, metres at long range. A target that is itself L across is put L²/(24 r) too far
+/// instead, which is the lesser harm from r = L / (3.5 sb) on.
+///
+/// With the weighted covariance S of range and bearing over the cells and n = (Σw)² / Σw² of them
+/// in effect, the covariance is that of a video plot,
+///
+///     R = S / n + diag(cell², step²) / 12.
+///
+/// Echoes are told apart by cells that touch, at a corner too, up to `kEchoes` of them; it bounds
+/// the memory, 132 bytes each on the stack. A strobe smaller than the distance of two cells may
+/// hold the centre of none and is then empty.
+///
+/// Source: Grinyak, Trofimov, "Multi-model tracking of moving vessels with a fuzzy criterion of
+/// maneuver detection".
+template <int kEchoes = 256, std::unsigned_integral Amplitude, StrobeShape Strobe>
+[[nodiscard]] StrobeEcho strobe_echo(const AmplitudeImage<Amplitude>& image, const Strobe& strobe,
+                                     const Vec<double, 2>& predicted_m,
+                                     const StrobeSettings& settings = {}) noexcept {
+  if (!is_finite(predicted_m) || !detail::makes_sense(image) ||
+      !(strobe.half_angle_rad(predicted_m) >= 0.0))
+    return {};
+  if (image.sweeps <= 0 || image.cells <= 0) return {.status = StrobeStatus::kOutside, .cut = true};
+  return detail::StrobeScale<kEchoes, Amplitude, Strobe>(image, strobe, predicted_m, settings)
+      .weigh();
+}
+
+}  // namespace wakeline
