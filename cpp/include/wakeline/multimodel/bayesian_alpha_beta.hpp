@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "wakeline/core/require.hpp"
+#include "wakeline/multimodel/line_estimator.hpp"
+
+namespace wakeline {
+
+/// Which polynomials `BayesianAlphaBeta` weighs, and how long one stays the right one.
+struct LineWeighing {
+  static constexpr int kMaxPlots = 16;
+  static constexpr int kLeastOfParabola = 4;  ///< through three plots it would follow their noise
+
+  int min_plots = 2;        ///< of the shortest line
+  int max_plots = 10;       ///< of the longest one, and of the longest parabola
+  bool parabolas = true;    ///< whether there are parabolas too, through four plots and more
+  double sojourn_s = 30.0;  ///< mean time until another one is the right one
+  double longest_line_probability = 0.4;  ///< that it is the longest line; the others are alike
+  double acceleration_std_mps2 = 0.5;  ///< per axis, of a maneuver that began at the last plot but
+                                       ///< one: widens the covariance, not used in weighing
+
+  [[nodiscard]] int lines() const noexcept { return max_plots - min_plots + 1; }
+  /// Plots of the shortest parabola.
+  [[nodiscard]] int first_parabola() const noexcept {
+    return std::max(min_plots, kLeastOfParabola);
+  }
+  /// Lines and parabolas.
+  [[nodiscard]] int members() const noexcept {
+    return lines() + (parabolas ? std::max(max_plots - first_parabola() + 1, 0) : 0);
+  }
+  /// Plots of a member: lines come first, shorter before longer.
+  [[nodiscard]] int plots_of(int member) const noexcept {
+    return member < lines() ? min_plots + member : first_parabola() + member - lines();
+  }
+
+  friend bool operator==(const LineWeighing&, const LineWeighing&) = default;
+
+  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  void validate() const {
+    require(min_plots >= 2, "min_plots", "at least 2", min_plots);
+    require(max_plots >= min_plots && max_plots <= kMaxPlots, "max_plots", "min_plots to 16",
+            max_plots);
+    require(members() <= kMaxModes, "max_plots", "so few that there are at most 16 members",
+            max_plots);
+    require_positive("sojourn_s", sojourn_s);
+    require(longest_line_probability > 0.0 && longest_line_probability < 1.0,
+            "longest_line_probability", "between 0 and 1", longest_line_probability);
+    require_not_negative("acceleration_std_mps2", acceleration_std_mps2);
+  }
+};
+
+/// Lines and parabolas through the last plots, 2, 3, ... of them, weighed by Bayes' rule.
+///
+/// Does what `FuzzyAlphaBeta` does, many plots on a straight and few in a turn, without its
+/// estimate of the usual residual, which a turn inflates, without a scan's hold, and without a hard
+/// choice. Each member foretells the next plot with a known error: the noise of the plot times
+/// `1 + position_factor`. The likelihood of the plot under each is the evidence for it; from scan
+/// to scan a member stays the right one with probability exp(-dt / sojourn), else any may be, as
+/// its prior says. The estimate is their mixture. A parabola holds a turn that a line cuts.
+///
+/// One mode for each member: lines first, shorter before longer, then parabolas; one that lacks
+/// plots has no probability. O(max_plots) a scan, no heap; the weighing takes one factor of the
+/// plot's covariance and no other matrix.
+template <class ScalarType = double>
+class BayesianAlphaBeta
+    : public LineEstimator<BayesianAlphaBeta<ScalarType>, LineWeighing::kMaxPlots, ScalarType> {
+  using Base = LineEstimator<BayesianAlphaBeta, LineWeighing::kMaxPlots, ScalarType>;
+  friend Base;
+
+ public:
+  using typename Base::Probability;
+  using typename Base::Scalar;
+
+  /// Throws `std::invalid_argument` when a parameter makes no sense.
+  explicit BayesianAlphaBeta(const LineWeighing& weighing = {})
+      : Base(validated(weighing).max_plots, weighing.min_plots, weighing.acceleration_std_mps2),
+        weighing_(weighing) {
+    const int members = weighing_.members();
+    const double longest = members > 1 ? weighing_.longest_line_probability : 1.0;
+    prior_ = Probability::Constant(members, Scalar((1.0 - longest) / std::max(members - 1, 1)));
+    prior_[weighing_.lines() - 1] = Scalar(longest);
+    begin();
+  }
+
+  /// Saves or restores what is remembered; that of another weighing fails.
+  void archive(Archive& fields) {
+    BayesianAlphaBeta loaded = *this;
+    LineWeighing saved = weighing_;
+    fields(saved.min_plots);
+    fields(saved.max_plots);
+    fields(saved.parabolas);
+    fields(saved.sojourn_s);
+    fields(saved.longest_line_probability);
+    fields(saved.acceleration_std_mps2);
+    if (!(saved == weighing_)) return fields.fail();
+    loaded.archive_plots(fields);
+    fields(loaded.weight_);
+    if (!fields.loading() || !fields.ok()) return;
+    *this = loaded;
+    this->refresh();
+  }
+
+  /// One number for each member.
+  [[nodiscard]] const Probability& mode_probability() const noexcept { return probability_; }
+  [[nodiscard]] const LineWeighing& weighing() const noexcept { return weighing_; }
+
+ private:
+  void begin() noexcept { weight_ = probability_ = prior_; }
+
+  void pass(Scalar dt_s) noexcept {
+    using std::exp;
+    const Scalar stay = exp(-dt_s / Scalar(weighing_.sojourn_s));
+    weight_ = stay * weight_ + (Scalar(1) - stay) * prior_;
+  }
+
+  /// Bayes' rule over the members that foretold the plot, by ln N(v; 0, (1 + f) R) but for what all
+  /// share; of the others nothing is known.
+  void judge(const Gaussian<2, Scalar>& plot) noexcept {
+    using std::log;
+    const Cholesky<2, Scalar> factor(plot.covariance);
+    if (!factor.ok()) return;
+    Probability log_likelihood = Probability::Constant(weighing_.members(), kImpossible<Scalar>);
+    const Probability before = weight_;
+    Scalar foretold = Scalar(0);
+    for_each_member([&](int member, const Line<Scalar>& line) {
+      foretold += before[member];
+      const Scalar spread = Scalar(1) + line.position_factor;
+      const Vec<Scalar, 2> innovation = plot.mean - line.position_m;
+      log_likelihood[member] = -factor.squared_norm(innovation) / (2 * spread) - log(spread);
+    });
+    const auto count = static_cast<std::size_t>(weighing_.members());
+    if (reweigh<Scalar>({weight_.data(), count}, {log_likelihood.data(), count}) ==
+        kImpossible<Scalar>)
+      return;
+    weight_ *= foretold;
+    for (int member = 0; member < weighing_.members(); ++member)
+      if (weighing_.plots_of(member) > this->bank_.size()) weight_[member] = before[member];
+  }
+
+  /// The mixture of the members that have their plots.
+  void settle() noexcept {
+    probability_.setZero();
+    Scalar total = Scalar(0);
+    for_each_member([&](int member, const Line<Scalar>&) { total += weight_[member]; });
+    std::array<Gaussian<4, Scalar>, kMaxModes> belief;
+    auto& mixture = this->belief_;
+    mixture = zero_like(mixture);
+    for_each_member([&](int member, const Line<Scalar>& line) {
+      probability_[member] = weight_[member] / total;
+      belief[static_cast<std::size_t>(member)] =
+          line.belief(Scalar(weighing_.acceleration_std_mps2));
+      mixture.mean += probability_[member] * belief[static_cast<std::size_t>(member)].mean;
+    });
+    for_each_member([&](int member, const Line<Scalar>&) {
+      const auto& part = belief[static_cast<std::size_t>(member)];
+      const Vec<Scalar, 4> d = part.mean - mixture.mean;
+      mixture.covariance += probability_[member] * (part.covariance + d * d.transpose());
+    });
+  }
+
+  /// Calls `f(member, line)` for every member that has its plots, and parabolas as lines.
+  template <class Function>
+  void for_each_member(Function&& function) const noexcept {
+    for (int member = 0; member < weighing_.members(); ++member) {
+      const int plots = weighing_.plots_of(member);
+      if (plots > this->bank_.size()) continue;
+      const Line<Scalar>& line = this->lines_[static_cast<std::size_t>(plots - 2)];
+      if (member < weighing_.lines())
+        function(member, line);
+      else
+        function(member, line.parabola());
+    }
+  }
+
+  LineWeighing weighing_;
+  Probability prior_;
+  Probability weight_;       ///< of all members, those without plots too
+  Probability probability_;  ///< of those with plots
+};
+
+}  // namespace wakeline

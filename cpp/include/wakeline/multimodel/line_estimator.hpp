@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <span>
+
+#include "wakeline/core/archive.hpp"
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/measurement/fix.hpp"
+#include "wakeline/motion/constant_velocity.hpp"
+#include "wakeline/multimodel/line_bank.hpp"
+#include "wakeline/multimodel/mixture.hpp"
+#include "wakeline/multimodel/mode_chain.hpp"
+
+namespace wakeline {
+
+/// What estimators that track with lines through the last plots share: a start, the plots and their
+/// lines, the face of `Imm`.
+///
+/// Until there are as many plots as the shortest line needs, the belief that it was started with is
+/// the estimate, as a Kalman filter keeps it: a start needs no plots, and from then on the plots
+/// alone count. Takes the position out of any sensor that fixes one, and measures innovations in
+/// north and east. Steps may be irregular. No heap.
+///
+/// `Derived` has `begin()` for a start, `pass(dt_s)` for the time that passes, `judge(plot)` for a
+/// plot that the lines have foretold, before it is remembered, and `settle()`, which makes of the
+/// lines the belief.
+template <class Derived, int Capacity, class ScalarType>
+class LineEstimator {
+ public:
+  using Scalar = ScalarType;
+  static constexpr int kModels = kRuntimeModes;
+  static constexpr auto kComponents = kKinematics;
+  using Probability = ModeVector<Scalar, kModels>;
+  using BeliefType = StateBelief<kComponents, Scalar>;
+  using Bank = LineBank<Capacity, Scalar>;
+
+  /// Begins with a belief over `[x, vx, y, vy]`. Where it is none nothing changes.
+  Status start(const Gaussian<4, Scalar>& belief) noexcept {
+    if (const Status status = first_.start(belief); status != Status::kOk) return status;
+    bank_.clear();
+    derived().begin();
+    belief_ = first_.estimate();
+    return Status::kOk;
+  }
+
+  /// Moves on along the lines.
+  Status predict(Scalar dt_s) noexcept { return move(dt_s); }
+
+  /// The same under a known acceleration, [north, east]; see `Control`.
+  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+    return move(dt_s, acceleration_mps2);
+  }
+
+  /// Judges the lines by a plot and remembers it.
+  template <class Sensor>
+  Step<2, Scalar> update(const Sensor& sensor,
+                         const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    const Step<2, Scalar> step = innovation(sensor, z);
+    if (step) take(sensor.position(z));
+    return step;
+  }
+
+  /// The innovation of a plot, north and east, and its likelihood, without taking it.
+  template <class Sensor>
+  Step<2, Scalar> innovation(const Sensor& sensor,
+                             const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
+    static_assert(PositionSensor<Sensor>,
+                  "wakeline: lines through plots need a sensor that fixes a position: position(z) "
+                  "-> Gaussian<2>; see cpp/docs/concepts.md");
+    Step<2, Scalar> step;
+    if (!started()) return step;
+    const Gaussian<2, Scalar> plot = sensor.position(z);
+    const Gaussian<2, Scalar> ahead = position();
+    step.innovation = plot.mean - ahead.mean;
+    step.innovation_covariance = ahead.covariance + plot.covariance;
+    const Cholesky<2, Scalar> factor(step.innovation_covariance);
+    if (factor.ok())
+      score(step, factor.template whiten<1>(step.innovation), factor);
+    else
+      step.status = refusal<Scalar, 2>(step.innovation_covariance);
+    return step;
+  }
+
+  /// What the estimate thinks of a reading, without taking it.
+  template <class Sensor>
+  [[nodiscard]] Evidence<Scalar> evidence(
+      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
+    Evidence<Scalar> evidence;
+    evidence.add(Scalar(1), innovation(sensor, z));
+    return evidence;
+  }
+
+  /// Probabilistic data association, as of `Imm`. The plot that is remembered has the mean and the
+  /// covariance of where the target is by all hypotheses: at one of the readings, or where it was
+  /// predicted. Where it is rather none of the readings, the scan counts as missed, so that no
+  /// line is drawn through predictions.
+  template <class Sensor>
+  Scalar update(std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
+                std::span<Scalar> share) noexcept {
+    for (Scalar& part : share) part = Scalar(0);
+    if (!started()) return Scalar(0);
+    Scalar owned = Scalar(0);
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      const auto step = innovation(readings[k].sensor, readings[k].z);
+      if (step) share[k] = readings[k].weight * std::exp(step.log_likelihood);
+      owned += share[k];
+    }
+    const Scalar total = none + owned;
+    const bool possible = total > Scalar(0) && std::isfinite(total);
+    for (Scalar& part : share) part = possible ? part / total : Scalar(0);
+    if (!possible) return Scalar(0);
+    if (owned > none) take(joined(readings, none / total, share));
+    return total;
+  }
+
+  [[nodiscard]] const BeliefType& estimate() const noexcept { return belief_; }
+  [[nodiscard]] bool started() const noexcept { return first_.started(); }
+  /// True once there are the plots that it tracks with.
+  [[nodiscard]] bool ready() const noexcept { return bank_.size() >= least_plots_; }
+  /// The lines through the last 2, 3, ... plots, at present.
+  [[nodiscard]] std::span<const Line<Scalar>> lines() const noexcept {
+    return {lines_.data(), static_cast<std::size_t>(bank_.lines())};
+  }
+
+ protected:
+  /// The start, which reckons with `acceleration_std_mps2` per axis, counts until there are
+  /// `least_plots`.
+  LineEstimator(int max_plots, int least_plots, double acceleration_std_mps2)
+      : first_(ConstantVelocity{PiecewiseAcceleration{acceleration_std_mps2}}),
+        bank_(max_plots),
+        least_plots_(least_plots) {}
+
+  /// Saves or restores start and plots; to be followed by `refresh`.
+  void archive_plots(Archive& fields) {
+    first_.archive(fields);
+    bank_.archive(fields);
+  }
+
+  /// The lines, and the belief that follows from them, at present.
+  void refresh() noexcept {
+    bank_.fit(lines_);
+    if (ready())
+      derived().settle();
+    else
+      belief_ = first_.estimate();
+  }
+
+  Ekf<ConstantVelocity, Scalar> first_;  ///< the belief before there is a line
+  Bank bank_;
+  typename Bank::Lines lines_;  ///< at present
+  BeliefType belief_;
+
+ private:
+  int least_plots_;
+
+  Derived& derived() noexcept { return static_cast<Derived&>(*this); }
+
+  template <class... Known>
+  Status move(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+    if (!started()) return Status::kNotStarted;
+    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
+    const Derived before = derived();
+    bank_.advance(dt_s, acceleration_mps2...);
+    derived().pass(dt_s);
+    Status status = Status::kOk;
+    if (!ready()) status = first_.predict(dt_s, acceleration_mps2...);
+    if (status == Status::kOk) refresh();
+    if (status == Status::kOk && !(is_finite(belief_.mean) && is_finite(belief_.covariance)))
+      status = Status::kNotFinite;
+    if (status != Status::kOk) derived() = before;
+    return status;
+  }
+
+  void take(const Gaussian<2, Scalar>& plot) noexcept {
+    if (ready())
+      derived().judge(plot);
+    else
+      (void)first_.update(Fix{plot.covariance.template cast<double>()}, plot.mean);
+    bank_.add(plot);
+    refresh();
+  }
+
+  /// The position part of the belief.
+  [[nodiscard]] Gaussian<2, Scalar> position() const noexcept {
+    Gaussian<2, Scalar> position;
+    position.mean = {belief_.mean[0], belief_.mean[2]};
+    position.covariance << belief_.covariance(0, 0), belief_.covariance(0, 2),
+        belief_.covariance(2, 0), belief_.covariance(2, 2);
+    return position;
+  }
+
+  /// The readings and, with probability `none`, the prediction as one plot.
+  template <class Sensor>
+  [[nodiscard]] Gaussian<2, Scalar> joined(std::span<const Alternative<Sensor, Scalar>> readings,
+                                           Scalar none,
+                                           std::span<const Scalar> share) const noexcept {
+    const Gaussian<2, Scalar> ahead = position();
+    Gaussian<2, Scalar> plot{none * ahead.mean, Mat<Scalar, 2, 2>::Zero()};
+    const auto each = [&](auto&& add) {
+      for (std::size_t k = 0; k < readings.size(); ++k)
+        if (share[k] > Scalar(0)) add(share[k], readings[k].sensor.position(readings[k].z));
+    };
+    const auto spread = [&](Scalar weight, const Gaussian<2, Scalar>& part) {
+      const Vec<Scalar, 2> d = part.mean - plot.mean;
+      plot.covariance += weight * (part.covariance + d * d.transpose());
+    };
+    each([&](Scalar weight, const Gaussian<2, Scalar>& part) { plot.mean += weight * part.mean; });
+    spread(none, ahead);
+    each(spread);
+    return plot;
+  }
+};
+
+}  // namespace wakeline
