@@ -51,7 +51,7 @@ void define_face(py::class_<Estimator, Options...>& face) {
       .def_property_readonly("started", &Estimator::started)
       .def("run", &run<Estimator>, py::arg("z"), py::arg("dt_s"), py::arg("sensor"),
            py::arg("start"), py::arg("own_position_m") = py::none(),
-           py::arg("acceleration_mps2") = py::none(), kRunDoc);
+           py::arg("acceleration_mps2") = py::none(), py::arg("gate") = py::none(), kRunDoc);
   if constexpr (requires(const Estimator& estimator) { estimator.mode_probability(); })
     face.def(
             "mode_probability",

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "estimators.hpp"
+#include "wakeline/gating/radius_gate.hpp"
 
 namespace wakeline::python {
 
@@ -40,6 +41,7 @@ struct RunInput {
   const double* own = nullptr;           ///< (T, 2) or null
   const double* acceleration = nullptr;  ///< (T, 2) or null
   std::vector<AnyBelief> start;          ///< 1 or R
+  std::optional<RadiusGate> gate;        ///< a reading outside is missed
 };
 
 template <class Sensor>
@@ -52,6 +54,20 @@ Sensor seen_from(const Sensor& sensor, const double* own) noexcept {
     }
   }
   return moved;
+}
+
+/// North and east of an estimate in any layout.
+template <class Belief>
+Vec<double, 2> position_of(const Belief& belief) noexcept {
+  return {belief.mean[0], belief.mean[belief.mean.size() == 6 ? 3 : 2]};
+}
+
+/// True when the estimate expects the reading within the gate, or there is none.
+template <class Estimator, class Sensor>
+bool within(const std::optional<RadiusGate>& gate, const Estimator& estimator, const Sensor& sensor,
+            const Vec<double, Sensor::kMeasurements>& z) noexcept {
+  return !gate ||
+         gate->contains<double>(position_of(estimator.estimate()), sensor.position(z).mean);
 }
 
 /// Memory of the results, `states` and `models` to a scan.
@@ -77,11 +93,11 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
     double log_likelihood = nis;
     Vec<double, kM> innovation = Vec<double, kM>::Constant(nis);
     if (status == Status::kOk) {
-      if (z.array().isNaN().all()) {
+      const Sensor seen = seen_from(sensor, in.own ? in.own + 2 * scan : nullptr);
+      if (z.array().isNaN().all() || !within(in.gate, estimator, seen, z)) {
         status = Status::kMissed;
       } else {
-        const auto step =
-            estimator.update(seen_from(sensor, in.own ? in.own + 2 * scan : nullptr), z);
+        const auto step = estimator.update(seen, z);
         status = step.status;
         if (step) {
           innovation = step.innovation;
@@ -144,7 +160,8 @@ template <class Estimator>
 RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object& dt_s,
               const py::object& sensor, const py::object& start,
               const std::optional<DoubleArray>& own_position_m,
-              const std::optional<DoubleArray>& acceleration_mps2) {
+              const std::optional<DoubleArray>& acceleration_mps2,
+              const std::optional<RadiusGate>& gate) {
   return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
     constexpr int kM = Sensor::kMeasurements;
     require_linear<Sensor>(prototype);
@@ -158,6 +175,7 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
     in.z = z.data();
     in.dt_s = parse_steps(dt_s, in.scans);
     in.start = parse_starts(start, in.runs, states_of(prototype));
+    in.gate = gate;
     if (own_position_m) {
       if constexpr (!requires { model.own; })
         throw py::value_error("own_position_m must be None for a sensor without own ship");
@@ -223,6 +241,8 @@ own_position_m : (T, 2) array, optional
     North and east of own ship at each reading.
 acceleration_mps2 : (T, 2) array, optional
     Known acceleration, north and east, in the step before each reading.
+gate : RadiusGate, optional
+    A reading farther from the predicted position is missed.
 
 Returns
 -------

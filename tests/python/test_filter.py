@@ -166,7 +166,9 @@ def test_a_start_over_position_and_velocity_fits_every_motion(name):
 def test_run_is_the_loop_of_single_steps_bit_for_bit(name, sensor):
     z = readings(miss=(4, 5, 17))
     result = run(ESTIMATORS[name](), z, sensor=sensor)
-    mean, covariance, innovation, nis, log_likelihood = stepwise(ESTIMATORS[name](), z, sensor=sensor)
+    mean, covariance, innovation, nis, log_likelihood = stepwise(
+        ESTIMATORS[name](), z, sensor=sensor
+    )
     np.testing.assert_array_equal(result.mean, mean)
     np.testing.assert_array_equal(result.covariance, covariance)
     np.testing.assert_array_equal(result.innovation, innovation)
@@ -220,6 +222,17 @@ def test_a_moving_own_ship_sees_the_same_vessel():
         own_each.update(sensor, row)
         np.testing.assert_array_equal(moving.mean[k], own_each.estimate().mean)
     assert np.abs(moving.mean - run(ekf(), z).mean)[:, [0, 2]].max() < 100.0
+
+
+@pytest.mark.parametrize("name", ESTIMATORS)
+def test_a_reading_outside_the_gate_is_a_missed_one(name):
+    z = readings()
+    z[7, 0] += 900.0
+    told = run(ESTIMATORS[name](), np.where(np.arange(len(z))[:, None] == 7, np.nan, z))
+    gated = run(ESTIMATORS[name](), z, gate=wl.RadiusGate(radius_m=700.0))
+    assert (gated.status == np.where(np.arange(len(z)) == 7, wl.Status.missed, 0)).all()
+    for field in FIELDS:
+        np.testing.assert_array_equal(getattr(gated, field), getattr(told, field))
 
 
 def test_a_row_of_nan_is_a_missed_scan():
