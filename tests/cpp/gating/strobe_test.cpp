@@ -94,7 +94,9 @@ void for_many_strobes(std::uint64_t seed, double density, const Test& test) {
   for (int k = 0; k < 60; ++k) {
     const bool round = k % 2 == 0;
     const int sweeps = static_cast<int>(draw.uniform(3, 120));
-    const double span = round ? kTurn : draw.uniform(0.1, 6.0);
+    // A turn need not be a whole number of steps.
+    const double turn = kTurn * sweeps / (sweeps + draw.uniform(-0.4, 0.4));
+    const double span = round ? (k % 4 == 0 ? kTurn : turn) : draw.uniform(0.1, 6.0);
     Picture<> picture(sweeps, static_cast<int>(draw.uniform(1, 60)), draw.uniform(-7, 7),
                       span / sweeps, k % 3 == 0 ? 0.0 : draw.uniform(0, 300), draw.uniform(1, 20));
     picture.sprinkle(draw, density);
@@ -473,6 +475,28 @@ TEST(StrobeEcho, BordersOfASector) {
   EXPECT_FALSE(at(deg(45)).cut);
   for (const double bearing_deg : {-3.0, 93.0, 180.0, -90.0})
     EXPECT_EQ(at(deg(bearing_deg)).status, StrobeStatus::kOutside) << bearing_deg;
+}
+
+TEST(StrobeEcho, CutSaysThatCellsAreMissing) {
+  test::Draw draw(8);
+  Picture<> picture(20, 10, 1.0, 0.05, 200.0, 20.0);
+  picture.fill(1);
+  int cut = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Point predicted = polar(draw.uniform(50, 600), draw.uniform(0.5, 2.5));
+    const CovarianceStrobe strobe{draw.uniform(10, 1000) * draw.definite<2>(), 5.0};
+    // The cells of the picture and all around it, as if it went on.
+    bool missing = false, some = false;
+    for (int s = -1; s <= 20; ++s)
+      for (int c = -10; c < 100; ++c)
+        if (strobe.contains(predicted, picture.image.position(s, c)))
+          (s >= 0 && s < 20 && c >= 0 && c < 10 ? some : missing) = true;
+    const StrobeEcho echo = strobe_echo(picture.image, strobe, predicted);
+    EXPECT_EQ(static_cast<bool>(echo), some);
+    EXPECT_TRUE(!some || echo.cut == missing);
+    cut += some && missing;
+  }
+  EXPECT_GT(cut, 30);
 }
 
 TEST(StrobeEcho, AntennaInside) {
