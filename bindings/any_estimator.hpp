@@ -7,6 +7,7 @@
 #include <span>
 #include <variant>
 
+#include "any_lines.hpp"
 #include "any_turn_grids.hpp"
 #include "mode_history.hpp"
 
@@ -15,8 +16,9 @@ namespace wakeline::python {
 /// One of the multi-model estimators.
 class AnyEstimator {
  public:
-  using Variant = std::variant<AnyImm, AnyAdaptiveGridImm, AnySwitchingGridImm,
-                               AnyLikelyModelSetImm, AnyModeHistory>;
+  using Variant =
+      std::variant<AnyImm, AnyAdaptiveGridImm, AnySwitchingGridImm, AnyLikelyModelSetImm,
+                   AnyModeHistory, AnyFuzzyAlphaBeta, AnyBayesianAlphaBeta>;
 
   template <class Estimator>
   requires(std::is_constructible_v<Variant, const Estimator&>)

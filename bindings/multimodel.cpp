@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "any_lines.hpp"
 #include "any_turn_grids.hpp"
 #include "face.hpp"
 #include "mode_history.hpp"
@@ -311,6 +312,7 @@ initial_mode_probability : (K,) array, optional
   define_switching_grid(m);
   define_likely_model_set(m);
   define_mode_history(m);
+  define_bayesian_alpha_beta(m);
 }
 
 }  // namespace wakeline::python

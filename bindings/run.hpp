@@ -100,7 +100,9 @@ void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std
         const auto step = estimator.update(seen, z);
         status = step.status;
         if (step) {
-          innovation = step.innovation;
+          // Some take no more than the position out of a reading.
+          innovation.template head<decltype(step.innovation)::RowsAtCompileTime>() =
+              step.innovation;
           nis = step.nis;
           log_likelihood = step.log_likelihood;
         }

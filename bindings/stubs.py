@@ -15,7 +15,10 @@ from wakeline import _engine
 
 STUBS = Path(__file__).parents[1] / "python" / "wakeline" / "_engine"
 SENSOR = "RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position"
-ESTIMATOR = "Imm | AdaptiveGridImm | SwitchingGridImm | LikelyModelSetImm | ModeHistory"
+ESTIMATOR = (
+    "Imm | AdaptiveGridImm | SwitchingGridImm | LikelyModelSetImm | ModeHistory"
+    " | FuzzyAlphaBeta | BayesianAlphaBeta"
+)
 NOISE = "ProcessNoise | WhiteAcceleration | PiecewiseAcceleration | WhiteJerk"
 WORDS = [
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
@@ -69,6 +72,8 @@ HOMES = {
     ],
     "multimodel": [
         "AdaptiveGridImm",
+        "BayesianAlphaBeta",
+        "FuzzyAlphaBeta",
         "Imm",
         "LikelyModelSetImm",
         "ModeHistory",

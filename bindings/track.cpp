@@ -172,9 +172,13 @@ AnyEstimator to_estimator(const py::object& estimator) {
   if (py::isinstance<AnyLikelyModelSetImm>(estimator))
     return estimator.cast<const AnyLikelyModelSetImm&>();
   if (py::isinstance<AnyModeHistory>(estimator)) return estimator.cast<const AnyModeHistory&>();
+  if (py::isinstance<AnyFuzzyAlphaBeta>(estimator))
+    return estimator.cast<const AnyFuzzyAlphaBeta&>();
+  if (py::isinstance<AnyBayesianAlphaBeta>(estimator))
+    return estimator.cast<const AnyBayesianAlphaBeta&>();
   throw py::type_error(
-      "estimator must be Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm or ModeHistory, "
-      "got " +
+      "estimator must be Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm, ModeHistory, "
+      "FuzzyAlphaBeta or BayesianAlphaBeta, got " +
       py::str(py::type::of(estimator).attr("__name__")).cast<std::string>());
 }
 

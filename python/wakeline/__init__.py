@@ -68,6 +68,7 @@ from ._engine.motion import (
 )
 from ._engine.multimodel import (
     AdaptiveGridImm,
+    BayesianAlphaBeta,
     Imm,
     LikelyModelSetImm,
     ModeChain,
@@ -100,6 +101,7 @@ except _PackageNotFoundError:  # run from a checkout that is not installed
 
 __all__ = [
     "AdaptiveGridImm",
+    "BayesianAlphaBeta",
     "ChiSquareGate",
     "ConstantAcceleration",
     "ConstantVelocity",

@@ -23,7 +23,7 @@ _SQRT12 = np.sqrt(12.0)
 
 
 class HardTurnRuns(NamedTuple):
-    """Independent runs: times (T,), true states (R, T, 4) and plots (R, T, 2), range and bearing."""
+    """Independent runs: times (T,), true states (R, T, 4), plots in range and bearing (R, T, 2)."""
 
     time_s: np.ndarray
     truth: np.ndarray

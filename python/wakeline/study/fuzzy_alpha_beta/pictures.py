@@ -1,0 +1,219 @@
+"""The figures of the study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+import wakeline as wl
+from wakeline import plot, scenario
+from wakeline.scenario import HardTurn, HardTurnRuns
+from wakeline.study import curves
+from wakeline.study.base import Picture
+
+from .estimators import LABELS, estimators
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from . import Outcome
+
+Of = tuple[str, str]  # scenario and estimator
+
+TITLES = {
+    "10mps_r300": "10 m/s, 300 m",
+    "20mps_r300": "20 m/s, 300 m",
+    "20mps_r600": "20 m/s, 600 m",
+}
+_ECHO_AT_S = 60.0
+_COLORS = dict(zip(LABELS, plot.PALETTE, strict=False))
+
+
+def pictures(
+    scenarios: Mapping[str, HardTurn],
+    drawn: Mapping[str, HardTurnRuns],
+    outcomes: Mapping[Of, Outcome],
+    gates_m: np.ndarray,
+    losses: Mapping[Of, np.ndarray],
+) -> tuple[Picture, ...]:
+    """Those of the paper, then how wide a gate must be, and how often a track is lost in one."""
+    traced = {case: _trace(scenarios[case], runs) for case, runs in drawn.items()}
+    return (
+        Picture(
+            "fuzzy-memberships",
+            "Quality of tracking: residual over the usual one",
+            (_draw_memberships,),
+            size_in=(6.0, 3.4),
+        ),
+        Picture(
+            "fuzzy-echo",
+            "The echo of a craft of 15 m among sea clutter, 20 km off",
+            (_draw_echo,),
+            size_in=(6.4, 4.6),
+        ),
+        Picture(
+            "fuzzy-path",
+            "One run at 10 m/s: plots, the fuzzy estimate and the Bayesian bank",
+            (partial(_draw_path, situation=scenarios["10mps_r300"], runs=drawn["10mps_r300"]),),
+            size_in=(6.4, 5.6),
+            shared=False,
+        ),
+        *(
+            Picture(
+                f"fuzzy-run-{case}",
+                f"One run at {TITLES[case]}: distance to the plot, lines chosen, usual residual",
+                tuple(
+                    partial(panel, trace=traced[case], situation=scenarios[case])
+                    for panel in (_draw_innovation, _draw_chosen, _draw_sigma)
+                ),
+                size_in=(7.2, 5.8),
+            )
+            for case in scenarios
+        ),
+        Picture(
+            "fuzzy-gates",
+            "Gate radius that would have held every plot: half of the runs, and 95 %",
+            tuple(partial(_draw_gates, case=case, outcomes=outcomes) for case in scenarios),
+            size_in=(11.0, 3.2),
+            columns=3,
+            shared=False,
+        ),
+        Picture(
+            "fuzzy-losses",
+            "Closed loop: share of runs lost by the radius of the gate",
+            tuple(
+                partial(_draw_losses, case=case, gates_m=gates_m, losses=losses)
+                for case in scenarios
+            ),
+            size_in=(7.2, 7.4),
+        ),
+    )
+
+
+class _Trace(NamedTuple):
+    """One run: scans from the first on that was foretold."""
+
+    time_s: np.ndarray
+    innovation_m: dict[str, np.ndarray]
+    window: dict[str, np.ndarray]
+    sigma_hat_m: np.ndarray
+
+
+def _trace(situation: HardTurn, runs: HardTurnRuns) -> _Trace:
+    """The first of the runs, step by step."""
+    sensor, period_s = situation.sensor, situation.period_s
+    z = runs.z[0]
+    tried = {name: estimators()[name] for name in ("fuzzy", "fuzzy_improved")}
+    innovation_m: dict[str, list] = {name: [] for name in tried}
+    window: dict[str, list] = {name: [] for name in tried}
+    sigma_hat_m = []
+    for estimator in tried.values():
+        estimator.start(wl.two_point(sensor, *z[:2], period_s))
+    for reading in z[2:]:
+        for name, estimator in tried.items():
+            estimator.predict(period_s)
+            step = estimator.update(sensor, reading)
+            innovation_m[name].append(np.linalg.norm(step.innovation))
+            window[name].append(estimator.mode_probability() @ estimator.plots_of_mode)
+        sigma_hat_m.append(tried["fuzzy"].sigma_hat_m)
+    return _Trace(
+        runs.time_s[2:],
+        {name: np.array(values) for name, values in innovation_m.items()},
+        {name: np.array(values) for name, values in window.items()},
+        np.array(sigma_hat_m),
+    )
+
+
+def _draw_memberships(ax: Axes) -> Axes:
+    ratio = np.linspace(0.0, 3.0, 301)
+    bad = 1.0 / (1.0 + np.exp(-5.0 * (ratio - 1.5)))
+    ax.plot(ratio, 1.0 - bad, color=plot.PALETTE[2], linewidth=1.8, label="good")
+    ax.plot(ratio, bad, color=plot.PALETTE[1], linewidth=1.8, label="bad")
+    ax.set(xlabel="residual over its mean", ylabel="membership", xlim=(0.0, 3.0))
+    return plot.name_lines(plot.dress(ax))
+
+
+def _draw_echo(ax: Axes) -> Axes:
+    scene = scenario.small_craft_scene(seed=1)
+    craft = scene.targets["craft"]
+    turns = list(scene.turns(round(_ECHO_AT_S / scene.radar.period_s), seed=1))
+    north_m, _, east_m, _ = craft.truth.state_at(turns[-1].time_s.mean())[0]
+    return plot.echo(
+        turns[-1],
+        ax,
+        around_m=(north_m, east_m),
+        half_range_m=150.0,
+        strobes=[plot.circle_outline((north_m, east_m), 22.0)],
+    )
+
+
+def _draw_path(ax: Axes, situation: HardTurn, runs: HardTurnRuns) -> Axes:
+    truth, z = runs.truth[0], runs.z[0]
+    period_s, sensor = situation.period_s, situation.sensor
+    begin_s, end_s = situation.turn_s
+    part = slice(int((begin_s - 45.0) / period_s), int((end_s + 45.0) / period_s))
+    tracks = {}
+    for name in ("fuzzy", "fuzzy_improved"):
+        start = wl.two_point(sensor, *z[:2], period_s)
+        done = estimators()[name].run(z[2:], dt_s=period_s, sensor=sensor, start=start)
+        tracks[LABELS[name]] = done.mean[part.start - 2 : part.stop - 2]
+    middle = np.append(truth[part][:, ::2].mean(axis=0), 0.0)
+    shift = np.array([middle[0], 0.0, middle[1], 0.0])
+    return plot.paths_view(
+        ax,
+        truth[part] - shift,
+        {name: states - shift for name, states in tracks.items()},
+        plots_m=curves.place_m(z[part]) - middle[:2],
+        radar=False,
+    )
+
+
+def _mark_turn(ax: Axes, situation: HardTurn) -> Axes:
+    ax.axvspan(*situation.turn_s, color=plot.MUTED, alpha=0.15, linewidth=0)
+    ax.set_xlabel("time (s)")
+    return plot.dress(ax)
+
+
+def _draw_innovation(ax: Axes, trace: _Trace, situation: HardTurn) -> Axes:
+    for name, distance_m in trace.innovation_m.items():
+        ax.plot(trace.time_s, distance_m, color=_COLORS[name], label=LABELS[name])
+    ax.set_ylabel("plot to prediction (m)")
+    ax.set_ylim(bottom=0.0)
+    return plot.name_lines(_mark_turn(ax, situation))
+
+
+def _draw_chosen(ax: Axes, trace: _Trace, situation: HardTurn) -> Axes:
+    for name, plots in trace.window.items():
+        ax.plot(trace.time_s, plots, color=_COLORS[name], drawstyle="steps-post")
+    ax.set_ylabel("plots m")
+    ax.set_ylim(1.5, 10.5)
+    return _mark_turn(ax, situation)
+
+
+def _draw_sigma(ax: Axes, trace: _Trace, situation: HardTurn) -> Axes:
+    ax.plot(trace.time_s, trace.sigma_hat_m, color=_COLORS["fuzzy"])
+    ax.set_ylabel("usual residual (m)")
+    ax.set_ylim(bottom=0.0)
+    return _mark_turn(ax, situation)
+
+
+def _draw_gates(ax: Axes, case: str, outcomes: Mapping[Of, Outcome]) -> Axes:
+    gates = [outcomes[case, name].gate_m() for name in LABELS]
+    values = {
+        "half": [float(np.median(gate)) for gate in gates],
+        "95 %": [float(np.percentile(gate, 95)) for gate in gates],
+    }
+    return plot.ranking_panel(
+        ax, list(LABELS.values()), values, xlabel=f"gate radius (m), {TITLES[case]}"
+    )
+
+
+def _draw_losses(ax: Axes, case: str, gates_m: np.ndarray, losses: Mapping[Of, np.ndarray]) -> Axes:
+    for name, label in LABELS.items():
+        ax.plot(gates_m, losses[case, name], color=_COLORS[name], linewidth=1.6, label=label)
+    ax.set(xlabel="gate radius (m)", ylabel=f"lost\n{TITLES[case]}", ylim=(-0.03, 1.03))
+    plot.dress(ax)
+    return plot.name_lines(ax) if case == next(iter(TITLES)) else ax
