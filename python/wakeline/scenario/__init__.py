@@ -10,26 +10,48 @@ from __future__ import annotations
 
 from . import papers
 from .disturbance import disturbed
+from .hard_turn import HardTurn, HardTurnRuns, hard_turns
 from .maneuvers import random_maneuvers
 from .radar import RadarSimulator
 from .scenario import AnyTruth, Scenario
 from .track_truth import TrackTruth, smoothed
 from .truth import Segment, Truth, segments_from_table
+from .video import (
+    Land,
+    RadarVideoSimulator,
+    SeaClutter,
+    VideoScene,
+    VideoTarget,
+    radar_screen,
+    small_craft_scene,
+    strait_scene,
+)
 
 __all__ = [
     "AnyTruth",
+    "HardTurn",
+    "HardTurnRuns",
+    "Land",
     "RadarSimulator",
+    "RadarVideoSimulator",
     "Scenario",
+    "SeaClutter",
     "Segment",
     "TrackTruth",
     "Truth",
+    "VideoScene",
+    "VideoTarget",
     "disturbed",
+    "hard_turns",
     "named",
     "names",
     "papers",
+    "radar_screen",
     "random_maneuvers",
     "segments_from_table",
+    "small_craft_scene",
     "smoothed",
+    "strait_scene",
 ]
 
 

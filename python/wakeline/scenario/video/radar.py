@@ -1,0 +1,530 @@
+"""A simulated radar that gives video: vessels, sea, land and noise in every cell of every sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from wakeline._checks import whole_number
+from wakeline.recording import RadarVideo
+
+from .checks import finite, not_negative, positive
+from .clutter import Land, SeaClutter, amplitude_of_db
+from .fields import GammaTexture, PatchyField, PolarGrid, Speckle, complex_normal
+from .target import VideoTarget
+
+_TURN_RAD = 2.0 * np.pi
+_RESPONSE_STDS = 4.5
+_PIECES_IN_HILL = 4.0
+_PASSES = np.array([-1, 0, 1, 2])
+_PASS_STEPS = 20
+_PASS_TOLERANCE_S = 1e-9
+RECEIVERS = ("linear", "logarithmic")
+
+Targets = Sequence[VideoTarget] | Mapping[str, VideoTarget]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RadarVideoSimulator:
+    """A radar at north 0, east 0 whose antenna turns clockwise and points north when a turn begins.
+
+    All powers are told over that of the receiver's noise, in a complex field of which the amplitude
+    is taken: noise, clutter and echoes add up as waves. A point target of one square metre has the
+    mean power
+
+        ``snr_db - 40 log10(range / reference_range_m)``  in dB
+
+    in the middle of beam and pulse. Both are Gaussian: an angle ``t`` off the beam's middle the
+    power that went out and came back is ``exp(-8 ln 2 (t / beam_width_rad)^2)``, a distance ``d``
+    off the pulse's middle ``exp(-4 ln 2 (d / pulse_length_m)^2)``. Noise is independent from cell
+    to cell and from sweep to sweep.
+
+    The amplitude ``a`` over the noise's root mean square becomes ``noise_rms a`` (linear) or
+    ``noise_rms + (full scale - noise_rms) 20 log10(a) / dynamic_range_db`` (logarithmic), rounded
+    and cut off at 0 and at full scale, ``2^bits - 1``.
+
+    Attributes
+    ----------
+    sweeps_per_turn, cells : int
+        Sweep k of a turn has its centre at ``(k + 1/2)`` of a turn over `sweeps_per_turn`.
+    cell_m, start_range_m : float
+        Length of a range cell, and near edge of the first one.
+    period_s : float
+        Time of a turn.
+    beam_width_rad : float
+        Of the antenna, between half-power points, one way; at least a sweep wide.
+    pulse_length_m : float
+        Of an echo in range, between half-power points (half the speed of light times the duration);
+        at least a cell long.
+    snr_db, reference_range_m : float
+        Power of one square metre at that range; clutter is told at the same range.
+    noise_rms : float
+        Root mean square of the noise's amplitude, in counts; 0 for a receiver without noise is not
+        possible: choose a small one.
+    bits : int
+        8 or 16.
+    receiver : str
+        "linear" or "logarithmic".
+    dynamic_range_db : float
+        From the noise to full scale, of the logarithmic receiver.
+    sea : SeaClutter, optional
+    land : Land, optional
+        Sea and land take each other's place; both are smoothed across the beam where they meet.
+    sector_rad : (float, float), optional
+        Only sweeps with their centre from the first azimuth up to the second one, clockwise; they
+        have the times that they have in the whole turn. A sector across north, such as
+        ``(-0.1, 0.1)`` or ``(6.2, 0.1)``, is one piece: of ``(-0.1, 0.1)`` the first sweeps come
+        before the turn begins, of ``(6.2, 0.1)`` the last ones after it has ended.
+
+    Raises
+    ------
+    ValueError
+        When a value makes no sense.
+
+    Examples
+    --------
+    >>> from wakeline.scenario import RadarVideoSimulator, Truth, VideoTarget
+    >>> radar = RadarVideoSimulator(sweeps_per_turn=1024, cells=256)
+    >>> boat = VideoTarget(truth=Truth([500.0, 5.0, 800.0, 0.0]), length_m=12.0, beam_m=4.0)
+    >>> radar.turn([boat], rng=1).amplitude.shape
+    (1024, 256)
+    """
+
+    sweeps_per_turn: int = 4096
+    cells: int = 2048
+    cell_m: float = 6.0
+    start_range_m: float = 0.0
+    period_s: float = 3.0
+    beam_width_rad: float = 0.0125
+    pulse_length_m: float = 12.0
+    snr_db: float = 15.0
+    reference_range_m: float = 10_000.0
+    noise_rms: float = 8.0
+    bits: int = 8
+    receiver: str = "linear"
+    dynamic_range_db: float = 60.0
+    sea: SeaClutter | None = None
+    land: Land | None = None
+    sector_rad: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        whole_number("sweeps_per_turn", self.sweeps_per_turn, 8)
+        whole_number("cells", self.cells, 1)
+        positive(self, "cell_m", "period_s", "beam_width_rad", "pulse_length_m", "noise_rms")
+        positive(self, "reference_range_m", "dynamic_range_db")
+        not_negative(self, "start_range_m")
+        finite(self, "snr_db")
+        if self.beam_width_rad < _TURN_RAD / self.sweeps_per_turn:
+            raise ValueError(
+                f"beam_width_rad must be at least the {_TURN_RAD / self.sweeps_per_turn:.6g} rad "
+                f"from sweep to sweep, got {self.beam_width_rad}"
+            )
+        if self.pulse_length_m < self.cell_m:
+            raise ValueError(
+                f"pulse_length_m must be at least a cell of {self.cell_m} m, "
+                f"got {self.pulse_length_m}"
+            )
+        if self.bits not in (8, 16):
+            raise ValueError(f"bits must be 8 or 16, got {self.bits!r}")
+        if self.receiver not in RECEIVERS:
+            raise ValueError(f"receiver must be one of {RECEIVERS}, got {self.receiver!r}")
+        if self.noise_rms >= self.full_scale:
+            raise ValueError(
+                f"noise_rms must be below full scale, {self.full_scale}, got {self.noise_rms}"
+            )
+        for name, kind in (("sea", SeaClutter), ("land", Land)):
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, kind):
+                raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}")
+        if self.sector_rad is not None:
+            object.__setattr__(self, "sector_rad", _sector(self.sector_rad))
+            if len(self.grid.azimuth_rad) == 0:
+                raise ValueError(f"sector_rad holds no sweep, got {self.sector_rad}")
+
+    @property
+    def full_scale(self) -> int:
+        """Largest amplitude."""
+        return 2**self.bits - 1
+
+    @property
+    def azimuth_step_rad(self) -> float:
+        """From the centre of a sweep to that of the next one."""
+        return _TURN_RAD / self.sweeps_per_turn
+
+    @cached_property
+    def grid(self) -> PolarGrid:
+        """Its sweeps and cells."""
+        first, last = 0, self.sweeps_per_turn
+        if self.sector_rad is not None:
+            edges = np.array(self.sector_rad) / self.azimuth_step_rad - 0.5
+            first, last = np.ceil(edges - 1e-9).astype(int)
+        number = np.arange(first, min(last, first + self.sweeps_per_turn))
+        range_m = self.start_range_m + (np.arange(self.cells) + 0.5) * self.cell_m
+        return PolarGrid(
+            (number + 0.5) * self.azimuth_step_rad, range_m, self.sweeps_per_turn, self.cell_m
+        )
+
+    def around(self, places_m: ArrayLike, margin_m: float) -> RadarVideoSimulator:
+        """The same radar, of which only the surroundings of some places are simulated.
+
+        Parameters
+        ----------
+        places_m : array_like (n, 2)
+            North and east, such as the way of a target; not around the antenna.
+        margin_m : float
+            Sector and cells reach so far beyond all of them.
+
+        Returns
+        -------
+        RadarVideoSimulator
+            Its cells lie where those of the whole picture do.
+
+        Raises
+        ------
+        ValueError
+            When the places have another shape, the margin is negative or the antenna is among them.
+        """
+        places = np.asarray(places_m, dtype=float)
+        if places.ndim != 2 or places.shape[1] != 2 or not len(places):
+            raise ValueError(f"places_m must have shape (n, 2), got {places.shape}")
+        if not (np.isfinite(places).all() and 0 <= margin_m < np.inf):
+            raise ValueError(
+                f"places_m and margin_m must be finite, margin not below 0: {margin_m}"
+            )
+        place = places @ [1.0, 1j]
+        near_m, far_m = np.abs(place).min() - margin_m, np.abs(place).max() + margin_m
+        middle = np.mean(place)
+        if near_m <= 0 or abs(middle) == 0:
+            raise ValueError("places_m and their margin must not reach the antenna")
+        off_rad = np.angle(place / middle)
+        reach_rad = margin_m / np.abs(place)
+        low_rad, high_rad = np.min(off_rad - reach_rad), np.max(off_rad + reach_rad)
+        first = max(0, int((near_m - self.start_range_m) // self.cell_m))
+        last = int(np.ceil((far_m - self.start_range_m) / self.cell_m))
+        return replace(
+            self,
+            sector_rad=(float(np.angle(middle) + low_rad), float(np.angle(middle) + high_rad)),
+            start_range_m=self.start_range_m + first * self.cell_m,
+            cells=max(1, last - first),
+        )
+
+    def turn(
+        self,
+        targets: Targets = (),
+        start_time_s: float = 0.0,
+        rng: np.random.Generator | int = 0,
+    ) -> RadarVideo:
+        """One turn of the antenna, or the sector of it.
+
+        Parameters
+        ----------
+        targets : sequence of VideoTarget, or mapping of names to them
+        start_time_s : float
+            Time at which the antenna points north.
+        rng : numpy.random.Generator or int
+            Source of chance, or its seed.
+
+        Returns
+        -------
+        RadarVideo
+            Of the same seed the same; targets do not change the noise and the clutter.
+
+        Raises
+        ------
+        ValueError
+            When the time is not finite.
+        TypeError
+            When a target is no VideoTarget.
+        """
+        targets = _listed(targets)
+        if not np.isfinite(start_time_s):
+            raise ValueError(f"start_time_s must be finite, got {start_time_s}")
+        return _Antenna(self, np.random.default_rng(rng)).turn(targets, start_time_s)
+
+    def turns(
+        self,
+        targets: Targets = (),
+        scans: int = 1,
+        seed: np.random.Generator | int = 0,
+        *,
+        start_time_s: float = 0.0,
+    ) -> Iterator[RadarVideo]:
+        """Turn after turn; the patches of the sea live on, and the land stays as it is.
+
+        Parameters
+        ----------
+        targets : sequence of VideoTarget, or mapping of names to them
+        scans : int
+            How many turns.
+        seed : int or numpy.random.Generator
+            Seed of chance, or its source.
+        start_time_s : float
+            Time at which the first turn begins.
+
+        Returns
+        -------
+        iterator of RadarVideo
+            The first is that of :meth:`turn`.
+
+        Raises
+        ------
+        ValueError
+            When the number of scans is below 0 or the time is not finite.
+        TypeError
+            When a target is no VideoTarget.
+        """
+        targets = _listed(targets)
+        whole_number("scans", scans, 0)
+        if not np.isfinite(start_time_s):
+            raise ValueError(f"start_time_s must be finite, got {start_time_s}")
+        antenna = _Antenna(self, np.random.default_rng(seed))
+        return (antenna.turn(targets, start_time_s + k * self.period_s) for k in range(scans))
+
+    def received(self, amplitude: NDArray[np.float32]) -> NDArray[np.uint8] | NDArray[np.uint16]:
+        """What the receiver gives for amplitudes over the noise's root mean square."""
+        if self.receiver == "linear":
+            counts = amplitude * np.float32(self.noise_rms)
+        else:
+            per_decade = 20.0 * (self.full_scale - self.noise_rms) / self.dynamic_range_db
+            counts = np.log10(np.maximum(amplitude, np.float32(1e-20)))
+            counts *= np.float32(per_decade)
+            counts += np.float32(self.noise_rms)
+        np.clip(counts, 0, self.full_scale, out=counts)
+        return np.rint(counts, out=counts).astype(np.uint8 if self.bits == 8 else np.uint16)
+
+    @property
+    def beam_std_rad(self) -> float:
+        """Standard deviation of the Gaussian that the two-way response of the amplitude is."""
+        return self.beam_width_rad / np.sqrt(8.0 * np.log(2.0))
+
+    @property
+    def pulse_std_m(self) -> float:
+        """Standard deviation of the Gaussian that the response of the amplitude in range is."""
+        return self.pulse_length_m / np.sqrt(4.0 * np.log(2.0))
+
+    @cached_property
+    def _speckle(self) -> Speckle:
+        return Speckle(self.grid, self.beam_std_rad, self.pulse_std_m)
+
+    @cached_property
+    def _cover(self) -> NDArray[np.float32] | None:
+        """Part of land in each cell; none where there is no land at all."""
+        if self.land is None:
+            return None
+        return self.land.cover(self.grid, self.beam_std_rad / np.sqrt(2.0))
+
+    @cached_property
+    def _shade(self) -> NDArray[np.float32] | None:
+        if self._cover is None or np.isinf(self.land.penetration_m):
+            return None
+        return self.land.shade(self._cover, self.cell_m)
+
+    @cached_property
+    def _sea_patches(self) -> tuple[GammaTexture, PatchyField]:
+        return _patches(self.sea.shape, self.sea.correlation_m, self.grid)
+
+    @cached_property
+    def _sea_amplitude(self) -> NDArray[np.float32]:
+        """Root of the mean power of the sea in each cell."""
+        mean = self.sea.mean_amplitude(self.grid, self.reference_range_m)
+        if self._cover is not None:
+            mean *= np.sqrt(1.0 - np.minimum(self._cover, 1.0))
+        return mean if self._shade is None else mean * self._shade
+
+
+class _Antenna:
+    """One antenna on its turns: what of the clutter lives from one to the next."""
+
+    def __init__(self, radar: RadarVideoSimulator, rng: np.random.Generator) -> None:
+        self._radar, self._rng = radar, rng
+        self._turn = 0
+        self._passes_seed = int(rng.integers(2**63))
+        self._sea_field: NDArray[np.float32] | None = None
+        if radar.land is not None:
+            self._raise_land()
+
+    def turn(self, targets: Sequence[VideoTarget], start_time_s: float) -> RadarVideo:
+        radar, grid = self._radar, self._radar.grid
+        field = complex_normal(self._rng, grid.shape)
+        if radar.sea is not None or radar.land is not None:
+            self._add_clutter(field)
+        for number, target in enumerate(targets):
+            self._add_target(field, number, target, start_time_s)
+        self._turn += 1
+        return RadarVideo(
+            radar.received(np.abs(field)),
+            np.mod(grid.azimuth_rad, _TURN_RAD),
+            start_time_s + radar.period_s * grid.azimuth_rad / _TURN_RAD,
+            grid.step_rad,
+            radar.start_range_m,
+            radar.cell_m,
+        )
+
+    def _add_clutter(self, field: NDArray[np.complex64]) -> None:
+        """The speckle of this turn under the textures of sea and land, and what of land stays."""
+        speckle = self._radar._speckle.draw(self._rng)
+        strength = self._sea_strength() if self._radar.sea is not None else None
+        if self._radar.land is not None:
+            field += self._steady_land
+            moving = self._moving_land
+            strength = moving if strength is None else np.hypot(strength, moving)
+        speckle *= strength
+        field += speckle
+
+    def _sea_strength(self) -> NDArray[np.float32]:
+        """Root of the sea's power in each cell, its patches a period older than the last time.
+
+        The Gaussian field below the texture is a first-order autoregression from turn to turn, so
+        that the texture has lost all but 1 / e after the correlation time.
+        """
+        sea, radar = self._radar.sea, self._radar
+        texture, patches = radar._sea_patches
+        fresh = patches.draw(self._rng)
+        if self._sea_field is None:
+            self._sea_field = fresh
+        else:
+            keep = texture.gaussian_correlation ** (radar.period_s / sea.correlation_s)
+            self._sea_field *= np.float32(keep)
+            fresh *= np.float32(np.sqrt(1.0 - keep**2))
+            self._sea_field += fresh
+        return texture.amplitude(self._sea_field) * radar._sea_amplitude
+
+    def _raise_land(self) -> None:
+        """Draw the land: what of its echo stays, and how strong the rest is."""
+        radar, land, grid = self._radar, self._radar.land, self._radar.grid
+        texture, patches = _patches(land.shape, land.correlation_m, grid)
+        hills = np.float32(np.sqrt(0.5)) * patches.draw(self._rng)
+        _, pieces = _patches(land.shape, land.correlation_m / _PIECES_IN_HILL, grid)
+        hills += np.float32(np.sqrt(0.5)) * pieces.draw(self._rng)
+        strength = texture.amplitude(hills) * np.sqrt(radar._cover)
+        strength *= land.mean_amplitude(grid, radar.reference_range_m)
+        if radar._shade is not None:
+            strength *= radar._shade
+        self._steady_land = radar._speckle.draw(self._rng) * strength
+        self._steady_land *= np.float32(np.sqrt(1.0 - land.fluctuation))
+        self._moving_land = strength * np.float32(np.sqrt(land.fluctuation))
+
+    def _add_target(
+        self,
+        field: NDArray[np.complex64],
+        number: int,
+        target: VideoTarget,
+        start_time_s: float,
+    ) -> None:
+        """The echo of every pass of the beam over the target that sweeps of this turn saw.
+
+        A pass has its number on from the first turn, and its phases come from that number: of an
+        echo across north one turn sees the one part and the next turn the other.
+        """
+        state, azimuth_rad = _at_passes(
+            target, start_time_s + self._radar.period_s * _PASSES, self._radar.period_s
+        )
+        for k in np.flatnonzero(np.isfinite(state).all(axis=1)):
+            self._add_echo(field, number, target, state[k], float(azimuth_rad[k]), int(_PASSES[k]))
+
+    def _add_echo(
+        self,
+        field: NDArray[np.complex64],
+        number: int,
+        target: VideoTarget,
+        state: NDArray[np.float64],
+        azimuth_rad: float,
+        offset: int,
+    ) -> None:
+        """Scatterers through beam and pulse: the product (sweeps, S) (S, cells)."""
+        radar, grid = self._radar, self._radar.grid
+        place = target.scatterers_at(state)
+        range_m = np.abs(place)
+        off_rad = np.angle(place * np.exp(-1j * azimuth_rad))
+        centre_rad = azimuth_rad + offset * _TURN_RAD + off_rad
+        sweeps = _within(grid.azimuth_rad, centre_rad, _RESPONSE_STDS * radar.beam_std_rad)
+        cells = _within(grid.range_m, range_m, _RESPONSE_STDS * radar.pulse_std_m)
+        if sweeps.start == sweeps.stop or cells.start == cells.stop:
+            return
+        turn_key = self._turn if target.swerling in (2, 4) else 0
+        rng = np.random.default_rng([self._passes_seed, number, self._turn + offset + 1, turn_key])
+        amplitude = target.fluctuations(rng, sweeps.stop - sweeps.start)
+        amplitude = amplitude * np.sqrt(self._power(target, state) / len(place))
+        beam = _gaussian(grid.azimuth_rad[sweeps, None] - centre_rad, radar.beam_std_rad)
+        pulse = _gaussian(grid.range_m[cells] - range_m[:, None], radar.pulse_std_m)
+        echo = (amplitude * beam) @ pulse
+        if radar._shade is not None:
+            echo *= radar._shade[sweeps, cells]
+        field[sweeps, cells] += echo.astype(np.complex64)
+
+    def _power(self, target: VideoTarget, state: NDArray[np.float64]) -> float:
+        """Mean power over that of the noise; nearer than a cell as at a cell's distance."""
+        radar = self._radar
+        range_m = max(float(np.hypot(state[0], state[2])), radar.cell_m)
+        gain = amplitude_of_db(radar.snr_db) ** 2
+        fall = (radar.reference_range_m / range_m) ** 4
+        return float(gain * fall) * target.cross_section_at(state)
+
+
+def _at_passes(
+    target: VideoTarget, begin_s: NDArray[np.float64], period_s: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """States (n, 4) and azimuths when the beam of turns that begin then passes the target.
+
+    Solves ``time = begin + period * azimuth(time) / turn`` by fixed point, from an azimuth between
+    0 and a turn; it contracts where the target's azimuth changes slower than the antenna turns.
+    """
+    state = target.truth.state_at(begin_s)
+    azimuth_rad = np.arctan2(state[:, 2], state[:, 0]) % _TURN_RAD
+    time_s = begin_s
+    for _ in range(_PASS_STEPS):
+        before_s, time_s = time_s, begin_s + period_s * azimuth_rad / _TURN_RAD
+        if not (abs(time_s - before_s) > _PASS_TOLERANCE_S).any():
+            break
+        state = target.truth.state_at(time_s)
+        fresh_rad = np.arctan2(state[:, 2], state[:, 0])
+        azimuth_rad = azimuth_rad + (fresh_rad - azimuth_rad + np.pi) % _TURN_RAD - np.pi
+    return state, azimuth_rad
+
+
+def _within(centres: NDArray, places: NDArray, reach: float) -> slice:
+    """Those of the ascending centres that are within reach of any of the places."""
+    first = np.searchsorted(centres, np.min(places) - reach)
+    return slice(int(first), int(np.searchsorted(centres, np.max(places) + reach)))
+
+
+def _gaussian(distance: NDArray, std: float) -> NDArray[np.float64]:
+    return np.exp(-0.5 * (distance / std) ** 2)
+
+
+def _patches(
+    shape: float, correlation_m: float, grid: PolarGrid
+) -> tuple[GammaTexture, PatchyField]:
+    """A texture, and the field below it whose correlation makes that of the texture as asked."""
+    texture = GammaTexture(shape)
+    gaussian_m = correlation_m / np.sqrt(-np.log(texture.gaussian_correlation))
+    return texture, PatchyField(grid, float(gaussian_m))
+
+
+def _listed(targets: Targets) -> list[VideoTarget]:
+    if isinstance(targets, VideoTarget):
+        raise TypeError("targets must be a sequence of VideoTarget, got a single one")
+    listed = list(targets.values() if isinstance(targets, Mapping) else targets)
+    for k, target in enumerate(listed):
+        if not isinstance(target, VideoTarget):
+            raise TypeError(f"target {k} must be a VideoTarget, got {target!r}")
+    return listed
+
+
+def _sector(sector_rad: ArrayLike) -> tuple[float, float]:
+    """Begin as it was given, end after it by at most a turn."""
+    edges = np.asarray(sector_rad, dtype=float)
+    if edges.shape != (2,) or not np.isfinite(edges).all():
+        raise ValueError(f"sector_rad must be two finite azimuths, got {sector_rad}")
+    begin, end = (float(edge) for edge in edges)
+    if end <= begin:
+        end += _TURN_RAD
+    if not (-_TURN_RAD <= begin <= _TURN_RAD and begin < end <= begin + _TURN_RAD + 1e-9):
+        raise ValueError(
+            f"sector_rad must begin from -2 pi to 2 pi and be at most a turn, got {sector_rad}"
+        )
+    return begin, end
