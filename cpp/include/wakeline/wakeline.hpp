@@ -24,6 +24,8 @@
 #include "wakeline/eval/cramer_rao_bound.hpp"
 #include "wakeline/eval/gospa.hpp"
 #include "wakeline/eval/rmse.hpp"
+#include "wakeline/filter/alpha_beta.hpp"
+#include "wakeline/filter/alpha_beta_gains.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/filter/concept.hpp"
 #include "wakeline/filter/control.hpp"

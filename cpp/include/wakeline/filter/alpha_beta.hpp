@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+#include <variant>
+
+#include "wakeline/filter/alpha_beta_gains.hpp"
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/measurement/fix.hpp"
+#include "wakeline/motion/constant_acceleration.hpp"
+#include "wakeline/motion/constant_velocity.hpp"
+
+namespace wakeline {
+
+/// A filter whose gains follow a schedule, not its covariance: alpha-beta over `[x, vx, y, vy]`
+/// (`Order` 2), alpha-beta-gamma over `[x, vx, ax, y, vy, ay]` (3).
+///
+///     x += alpha e,   vx += beta e / T,   ax += gamma e / (2 T²)
+///
+/// per axis, e the innovation in north and east and T the time since the reading before, missed
+/// scans included. Where the plot is better along the bearing than across, a schedule that depends
+/// on its error has other gains along than across. Readings of one time have one T between them;
+/// one of the time of the start corrects the position alone.
+///
+/// The covariance is the true one of such gains when plots and motion are as the models say:
+/// (I - K H) P (I - K H)ᵀ + K R Kᵀ after an update, F P Fᵀ + Q ahead. NIS and likelihood follow
+/// from it, so that the filter may be compared with a Kalman filter or be a model of an `Imm`.
+/// Takes the position out of any sensor that fixes one.
+template <int Order, class ScalarType = double>
+class AlphaBetaFilter
+    : public Ekf<std::conditional_t<Order == 2, ConstantVelocity, ConstantAcceleration>,
+                 ScalarType> {
+  static_assert(Order == 2 || Order == 3,
+                "wakeline: an alpha-beta filter has 2 or 3 states an axis");
+  using Base =
+      Ekf<std::conditional_t<Order == 2, ConstantVelocity, ConstantAcceleration>, ScalarType>;
+
+ public:
+  using Base::kStates;
+  using typename Base::Motion;
+  using typename Base::Scalar;
+  using Schedule = GainSchedule<Order>;
+
+  /// Throws `std::invalid_argument` when a parameter makes no sense.
+  AlphaBetaFilter(const Schedule& schedule, const Motion& motion)
+      : Base(motion), schedule_(schedule) {
+    std::visit([](const auto& gains) { gains.template validate<Order>(); }, schedule);
+  }
+
+  /// With the process noise that a tracking index stands for, else that of a motion by default.
+  explicit AlphaBetaFilter(const Schedule& schedule)
+      : AlphaBetaFilter(schedule, motion_of(schedule)) {}
+
+  /// Begins with a belief over the state or over `[x, vx, y, vy]`, and the schedule anew.
+  template <class BeliefType>
+  Status start(const BeliefType& belief) noexcept {
+    const Status status = Base::start(belief);
+    if (status == Status::kOk) occasion_ = {};
+    return status;
+  }
+
+  Status predict(Scalar dt_s) noexcept { return count(Base::predict(dt_s), dt_s); }
+
+  /// The same under a known acceleration, [north, east]; see `Control`.
+  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+    return count(Base::predict(dt_s, acceleration_mps2), dt_s);
+  }
+
+  /// The innovation of a plot, north and east, and its likelihood, without taking it.
+  template <class Sensor>
+  Step<2, Scalar> innovation(const Sensor& sensor,
+                             const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
+    static_assert(
+        PositionSensor<Sensor>,
+        "wakeline: an alpha-beta filter needs a sensor that fixes a position: position(z) "
+        "-> Gaussian<2>; see cpp/docs/concepts.md");
+    const Gaussian<2, Scalar> plot = sensor.position(z);
+    return Base::innovation(Fix{plot.covariance.template cast<double>()}, plot.mean);
+  }
+
+  /// Corrects the belief by a plot.
+  template <class Sensor>
+  Step<2, Scalar> update(const Sensor& sensor,
+                         const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    const Step<2, Scalar> step = innovation(sensor, z);
+    if (!step) return step;
+    const Gaussian<2, Scalar> plot = sensor.position(z);
+    const Gain k = gain(plot.covariance, range(sensor, plot.mean));
+    this->belief_.mean += k * step.innovation;
+    Mat<Scalar, kStates, kStates> rest = Mat<Scalar, kStates, kStates>::Identity();
+    for (int axis = 0; axis < 2; ++axis) rest.col(Order * axis) -= k.col(axis);
+    this->belief_.covariance =
+        (rest * this->belief_.covariance * rest.transpose() + k * plot.covariance * k.transpose())
+            .eval();
+    mirror_lower<Scalar, kStates>(this->belief_.covariance);
+    occasion_.taken = true;
+    return step;
+  }
+
+  /// Saves or restores the belief and where the schedule is.
+  void archive(Archive& fields) {
+    Base::archive(fields);
+    fields(occasion_.reading);
+    fields(occasion_.elapsed_s);
+    fields(occasion_.taken);
+    if (occasion_.reading < 1 || !(occasion_.elapsed_s >= Scalar(0))) fields.fail();
+  }
+
+  [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }
+
+ private:
+  using Gain = Mat<Scalar, kStates, 2>;
+  using AxisGain = Vec<Scalar, Order>;
+
+  struct Occasion {
+    std::int64_t reading = 1;
+    Scalar elapsed_s = Scalar(0);
+    bool taken = false;  ///< the reading has come; the next time step begins another one
+  };
+
+  static Motion motion_of(const Schedule& schedule) noexcept {
+    Motion motion;
+    if (const auto* index = std::get_if<TrackingIndex>(&schedule))
+      motion.noise = PiecewiseAcceleration{index->accel_std_mps2};
+    return motion;
+  }
+
+  Status count(Status status, Scalar dt_s) noexcept {
+    if (status != Status::kOk || dt_s == Scalar(0)) return status;
+    if (occasion_.taken) occasion_ = {occasion_.reading + 1, Scalar(0), false};
+    occasion_.elapsed_s += dt_s;
+    return status;
+  }
+
+  template <class Sensor>
+  static Scalar range(const Sensor& sensor, const Vec<Scalar, 2>& plot) noexcept {
+    using std::sqrt;
+    if constexpr (requires { sensor.own; })
+      return sqrt((plot - sensor.own.template position<Scalar>()).squaredNorm());
+    else
+      return sqrt(plot.squaredNorm());
+  }
+
+  /// [alpha, beta / T, gamma / (2 T²)] for an error of the plot of `std_m`.
+  [[nodiscard]] AxisGain axis_gain(Scalar std_m, Scalar range_m) const noexcept {
+    const GainOccasion<Scalar> occasion{occasion_.reading, occasion_.elapsed_s, std_m, range_m};
+    AxisGain gain = std::visit(
+        [&](const auto& schedule) -> AxisGain { return schedule.template gains<Order>(occasion); },
+        schedule_);
+    const Scalar per_s =
+        occasion.elapsed_s > Scalar(0) ? Scalar(1) / occasion.elapsed_s : Scalar(0);
+    gain[1] *= per_s;
+    if constexpr (Order == 3) gain[2] *= per_s * per_s / 2;
+    return gain;
+  }
+
+  /// K: the gains along the short axis of R, and what those along the long one differ by.
+  [[nodiscard]] Gain gain(const Mat<Scalar, 2, 2>& r, Scalar range_m) const noexcept {
+    using std::sqrt;
+    const Scalar half_sum = (r(0, 0) + r(1, 1)) / 2;
+    const Scalar half_difference = (r(0, 0) - r(1, 1)) / 2;
+    const Scalar spread = sqrt(half_difference * half_difference + r(1, 0) * r(1, 0));
+    const Scalar longest = half_sum + spread;  // variances along the axes of R
+    const Scalar shortest = (r(0, 0) * r(1, 1) - r(1, 0) * r(1, 0)) / longest;
+    const AxisGain along = axis_gain(sqrt(shortest), range_m);
+    Mat<Scalar, 2, 2> onto_long = Mat<Scalar, 2, 2>::Zero();  // projection on the long axis
+    AxisGain more = AxisGain::Zero();
+    if (spread > Scalar(0)) {
+      onto_long << half_sum + spread - r(1, 1), r(1, 0), r(1, 0), half_sum + spread - r(0, 0);
+      onto_long /= 2 * spread;
+      more = axis_gain(sqrt(longest), range_m) - along;
+    }
+    Gain k;
+    for (int axis = 0; axis < 2; ++axis) {
+      k.col(axis).template head<Order>() = onto_long(0, axis) * more;
+      k.col(axis).template tail<Order>() = onto_long(1, axis) * more;
+      k.col(axis).template segment<Order>(Order * axis) += along;
+    }
+    return k;
+  }
+
+  Schedule schedule_;
+  Occasion occasion_;
+};
+
+/// Over `[x, vx, y, vy]`.
+template <class Scalar = double>
+using AlphaBeta = AlphaBetaFilter<2, Scalar>;
+
+/// Over `[x, vx, ax, y, vy, ay]`.
+template <class Scalar = double>
+using AlphaBetaGamma = AlphaBetaFilter<3, Scalar>;
+
+}  // namespace wakeline

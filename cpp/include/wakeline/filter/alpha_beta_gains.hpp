@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// The gains of alpha-beta and alpha-beta-gamma filters, and how they are chosen.
+//
+// A filter over `Order` states an axis (2: position and velocity, 3: and acceleration) corrects
+// them by alpha e, beta e / T and gamma e / (2 T²), e the innovation and T the time since the
+// reading before. The gains are a vector [alpha, beta] or [alpha, beta, gamma], without unit.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include "wakeline/core/require.hpp"
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// True where an alpha-beta filter forgets its errors: alpha > 0, beta > 0 and 2 alpha + beta < 4.
+constexpr bool stable_gains(double alpha, double beta) noexcept {
+  return alpha > 0.0 && beta > 0.0 && 2.0 * alpha + beta < 4.0;
+}
+
+/// The same of an alpha-beta-gamma filter: besides, 0 < gamma < 4 alpha beta / (2 - alpha).
+constexpr bool stable_gains(double alpha, double beta, double gamma) noexcept {
+  return stable_gains(alpha, beta) && gamma > 0.0 && gamma * (2.0 - alpha) < 4.0 * alpha * beta;
+}
+
+/// What a schedule may choose gains by.
+template <class Scalar = double>
+struct GainOccasion {
+  std::int64_t reading = 1;      ///< 1 for the first one after the start
+  Scalar elapsed_s = Scalar(1);  ///< since the reading before, or the start
+  Scalar std_m = Scalar(1);      ///< error of the reading along the axis
+  Scalar range_m = Scalar(0);    ///< from the sensor
+};
+
+/// Gains that stay the same.
+struct ConstantGains {
+  double alpha = 0.5;
+  double beta = 0.2;
+  double gamma = 0.0;  ///< for an alpha-beta-gamma filter only
+
+  template <int Order, class Scalar>
+  Vec<Scalar, Order> gains(const GainOccasion<Scalar>&) const noexcept {
+    if constexpr (Order == 2)
+      return {Scalar(alpha), Scalar(beta)};
+    else
+      return {Scalar(alpha), Scalar(beta), Scalar(gamma)};
+  }
+
+  /// Throws `std::invalid_argument` on gains that are not stable.
+  template <int Order>
+  void validate() const {
+    require(stable_gains(alpha, beta), "alpha and beta",
+            "positive with 2 alpha + beta below 4, which a stable filter needs", 2 * alpha + beta);
+    if constexpr (Order == 2)
+      require(gamma == 0.0, "gamma", "left out: this filter holds no acceleration", gamma);
+    else
+      require(stable_gains(alpha, beta, gamma), "gamma",
+              "between 0 and 4 alpha beta / (2 - alpha), which a stable filter needs", gamma);
+  }
+};
+
+/// Gains that draw the least-squares line (or parabola) through all n readings so far: growing
+/// memory. With regular steps the filter equals that line exactly, whatever the start.
+///     alpha = 2(2n-1) / (n(n+1)),  beta = 6 / (n(n+1));
+///     alpha = 3(3n²-3n+2) / N,  beta = 18(2n-1) / N,  gamma = 120 / N,  N = n(n+1)(n+2).
+/// A missed scan does not count; the step after it takes the time that has gone by. Source: E.
+/// Brookner, Tracking and Kalman Filtering Made Easy, 1998, 5.7.
+struct GrowingMemory {
+  int plots_before = 0;  ///< that the start was made of
+  int max_plots = 0;     ///< the gains stay those of so many; 0 for all
+
+  template <int Order, class Scalar>
+  Vec<Scalar, Order> gains(const GainOccasion<Scalar>& at) const noexcept {
+    const std::int64_t plots = at.reading + plots_before;
+    const Scalar n = Scalar(max_plots > 0 ? std::min<std::int64_t>(plots, max_plots) : plots);
+    Vec<Scalar, Order> gains = Vec<Scalar, Order>::Zero();
+    if constexpr (Order == 2) {
+      gains = {2 * (2 * n - 1) / (n * (n + 1)), 6 / (n * (n + 1))};
+    } else {
+      const Scalar product = n * (n + 1) * (n + 2);
+      gains = {3 * (3 * n * n - 3 * n + 2) / product, 18 * (2 * n - 1) / product, 120 / product};
+    }
+    // Fewer plots than a line or parabola needs give it through them, and what it starts with.
+    if (n < Scalar(Order)) gains.tail(Order - int(n)).setZero();
+    if (Order == 3 && n == Scalar(2)) gains[1] = Scalar(1);
+    return gains;
+  }
+
+  template <int Order>
+  void validate() const {
+    require(plots_before >= 0, "plots_before", "0 or more", plots_before);
+    require(max_plots == 0 || max_plots >= Order, "max_plots",
+            Order == 2 ? "0 or 2 or more" : "0 or 3 or more", max_plots);
+  }
+};
+
+/// beta = alpha² / (2 - alpha): the least error of the velocity after it has changed at once, for
+/// the noise that an alpha lets through. Source: T. R. Benedict, G. W. Bordner, IRE Trans. AC-7,
+/// 1962.
+struct BenedictBordner {
+  double alpha = 0.5;
+
+  template <int Order, class Scalar>
+  Vec<Scalar, 2> gains(const GainOccasion<Scalar>&) const noexcept {
+    return {Scalar(alpha), Scalar(alpha * alpha / (2.0 - alpha))};
+  }
+
+  template <int Order>
+  void validate() const {
+    require(alpha > 0.0 && alpha <= 1.0, "alpha", "above 0 and at most 1", alpha);
+  }
+};
+
+/// Critically damped: all poles at theta, which is the least-squares line or parabola with weights
+/// theta² per reading back (fading memory); 0 takes the newest readings only.
+///     alpha = 1 - theta²,  beta = (1 - theta)²;
+///     alpha = 1 - theta³,  beta = 3/2 (1 - theta)² (1 + theta),  gamma = 2 (1 - theta)³.
+/// One theta a reading, however long the step. Source: Brookner 1998, 1.2.6 and 7.2.
+struct CriticallyDamped {
+  double theta = 0.5;
+
+  template <int Order, class Scalar>
+  Vec<Scalar, Order> gains(const GainOccasion<Scalar>&) const noexcept {
+    const Scalar t = Scalar(theta);
+    const Scalar u = Scalar(1) - t;
+    if constexpr (Order == 2)
+      return {u * (1 + t), u * u};
+    else
+      return {u * (1 + t + t * t), Scalar(1.5) * u * u * (1 + t), 2 * u * u * u};
+  }
+
+  template <int Order>
+  void validate() const {
+    require(theta >= 0.0 && theta < 1.0, "theta", "0 or more and below 1", theta);
+  }
+};
+
+/// Gains of the steady Kalman filter, by the tracking index: accel_std T² / error of the reading.
+///
+/// The motion they are right for has an acceleration (with three states: a change of acceleration)
+/// of that standard deviation, drawn anew for each step: `PiecewiseAcceleration`. The error is that
+/// of each reading along and across the bearing, so that the gains follow the range by themselves,
+/// and the index follows the step. Source: P. R. Kalata, IEEE Trans. AES-20, 1984; Bar-Shalom, Li,
+/// Kirubarajan, 6.5.2 and 6.5.3.
+struct TrackingIndex {
+  double accel_std_mps2 = 0.1;
+
+  template <int Order, class Scalar>
+  Vec<Scalar, Order> gains(const GainOccasion<Scalar>& at) const noexcept {
+    return of_index<Order>(Scalar(accel_std_mps2) * at.elapsed_s * at.elapsed_s / at.std_m);
+  }
+
+  /// Gains for a tracking index, which is not negative.
+  ///
+  /// With r = sqrt(1 - alpha), of two states: r = 4 / (index + 4 + sqrt(index² + 8 index)) and beta
+  /// = index r. Of three: index = 2 (1 - r)³ / (r (1 + r)), beta = 2 (1 - r)², gamma = 2 index r.
+  template <int Order, class Scalar>
+  static Vec<Scalar, Order> of_index(Scalar index) noexcept {
+    const auto [r, w] = root<Order>(index);
+    if constexpr (Order == 2)
+      return {w * (1 + r), index * r};
+    else
+      return {w * (1 + r), 2 * w * w, 2 * index * r};
+  }
+
+  /// Covariance of the states of one axis after an update, in the steady state of period T and an
+  /// error of the readings of `std_m`.
+  template <int Order, class Scalar>
+  [[nodiscard]] Mat<Scalar, Order, Order> steady_covariance(Scalar period_s,
+                                                            Scalar std_m) const noexcept {
+    const Scalar index = Scalar(accel_std_mps2) * period_s * period_s / std_m;
+    const Vec<Scalar, Order> k = of_index<Order>(index);
+    const Scalar r = root<Order>(index).r;
+    const Scalar p = std_m * std_m, t = period_s;
+    Mat<Scalar, Order, Order> covariance;
+    if constexpr (Order == 2) {
+      covariance(0, 0) = k[0] * p;
+      covariance(1, 0) = k[1] / t * p;
+      covariance(1, 1) = k[1] * (k[0] - k[1] / 2) / (r * r * t * t) * p;
+    } else {
+      const Scalar t2 = t * t;
+      covariance(0, 0) = k[0] * p;
+      covariance(1, 0) = k[1] / t * p;
+      covariance(2, 0) = k[2] / (2 * t2) * p;
+      covariance(1, 1) = (8 * k[0] * k[1] + k[2] * (k[1] - 2 * k[0] - 4)) / (8 * t2 * r * r) * p;
+      covariance(2, 1) = k[1] * (2 * k[1] - k[2]) / (4 * t2 * t * r * r) * p;
+      covariance(2, 2) = k[2] * (2 * k[1] - k[2]) / (4 * t2 * t2 * r * r) * p;
+    }
+    mirror_lower<Scalar, Order>(covariance);
+    return covariance;
+  }
+
+  template <int Order>
+  void validate() const {
+    require_positive("accel_std_mps2", accel_std_mps2);
+  }
+
+ private:
+  template <class Scalar>
+  struct Root {
+    Scalar r;  ///< sqrt(1 - alpha)
+    Scalar w;  ///< 1 - r
+  };
+
+  template <int Order, class Scalar>
+  static Root<Scalar> root(Scalar index) noexcept {
+    using std::cbrt, std::sqrt;
+    if (!(index > Scalar(0))) return {Scalar(1), Scalar(0)};
+    if constexpr (Order == 2) {
+      const Scalar s = sqrt(index * (index + 8));
+      return {4 / (index + 4 + s), (index + s) / (index + 4 + s)};
+    } else {
+      // Newton's iteration on 2 w³ = index (1 - w)(2 - w), which has one solution in 0 .. 1.
+      const Scalar start = cbrt(index);
+      Scalar w = start / (1 + start);
+      for (int k = 0; k < 8; ++k)
+        w -= (2 * w * w * w - index * (1 - w) * (2 - w)) / (6 * w * w + index * (3 - 2 * w));
+      return {2 * w * w * w / (index * (2 - w)), w};
+    }
+  }
+};
+
+/// Gains by the range alone, as a radar plotting aid has them: those of `near` up to
+/// `near_range_m`, beyond it in inverse proportion to the range, down to those of `far`. Source: I.
+/// M. Hannoshyna, T. V. Kalinichenko, P. V. Nikitin, Research of methods of forecasting the
+/// movement, search and tracking of sea objects, equation (30), joined at 20 km, where the printed
+/// alpha jumps.
+struct RangeDependent {
+  double near_range_m = 20e3;
+  double near_alpha = 0.5;
+  double near_beta = 0.2;
+  double far_alpha = 0.2;
+  double far_beta = 0.01;
+
+  template <int Order, class Scalar>
+  Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
+    const Scalar nearness = Scalar(near_range_m) / std::max(at.range_m, Scalar(near_range_m));
+    return {std::max(Scalar(near_alpha) * nearness, Scalar(far_alpha)),
+            std::max(Scalar(near_beta) * nearness, Scalar(far_beta))};
+  }
+
+  template <int Order>
+  void validate() const {
+    require_positive("near_range_m", near_range_m);
+    require(stable_gains(near_alpha, near_beta), "near_alpha and near_beta",
+            "positive with 2 alpha + beta below 4, which a stable filter needs",
+            2 * near_alpha + near_beta);
+    require(far_alpha > 0.0 && far_alpha <= near_alpha, "far_alpha",
+            "positive and at most near_alpha", far_alpha);
+    require(far_beta > 0.0 && far_beta <= near_beta, "far_beta", "positive and at most near_beta",
+            far_beta);
+  }
+};
+
+/// One of the schedules that there are for so many states an axis.
+template <int Order>
+using GainSchedule =
+    std::conditional_t<Order == 2,
+                       std::variant<ConstantGains, GrowingMemory, BenedictBordner, CriticallyDamped,
+                                    TrackingIndex, RangeDependent>,
+                       std::variant<ConstantGains, GrowingMemory, CriticallyDamped, TrackingIndex>>;
+
+}  // namespace wakeline
