@@ -1,0 +1,314 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Detection at a constant false alarm rate along the range of a sweep. A cell is compared with the
+// cells about it: `train_cells` on each side, beyond the `guard_cells` next to it, which are left
+// out for a target spreads over them.
+//
+//     cell averaging       a > f * (mean of the training cells)
+//     ordered statistic    a > f * (k-th smallest of the training cells),  k = ceil(rank * N)
+//
+// Where the sweep begins or ends the training cells are those that exist; the factor stays. The
+// arithmetic is of integers: the factor, over the number of cells where a mean is taken, is rounded
+// up to 16 binary places, and the rest is exact.
+//
+// Source: H. Finn, R. Johnson, "Adaptive detection mode with threshold control as a function of
+// spatially sampled clutter-level estimates", RCA Review 29 (1968), 414-464; H. Rohling, "Radar
+// CFAR thresholding in clutter and multiple target situations", IEEE Trans. AES 19 (1983), 608-621.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/require.hpp"
+#include "wakeline/video/kernels.hpp"
+
+namespace wakeline {
+
+/// With what of its surroundings a cell is compared.
+enum class CfarKind : std::uint8_t { kCellAveraging, kOrderedStatistic };
+
+/// How the amplitudes of noise are distributed: exponential behind a square-law detector, Rayleigh
+/// behind a linear one.
+enum class Noise : std::uint8_t { kExponential, kRayleigh };
+
+struct CfarSettings {
+  CfarKind kind = CfarKind::kCellAveraging;
+  int train_cells = 16;           ///< on each side, 1 to 128
+  int guard_cells = 4;            ///< on each side, next to the cell
+  double threshold_factor = 3.0;  ///< times the mean or the k-th; up to 1000
+  double rank = 0.75;             ///< k by the number of training cells; ordered statistic only
+  int least_amplitude = 1;        ///< less is never detected
+
+  void validate() const {
+    require(train_cells >= 1 && train_cells <= 128, "train_cells", "1 to 128", train_cells);
+    require(guard_cells >= 0 && guard_cells <= 4096, "guard_cells", "0 to 4096", guard_cells);
+    require(threshold_factor > 0.0 && threshold_factor <= 1000.0, "threshold_factor",
+            "positive and at most 1000", threshold_factor);
+    require(rank > 0.0 && rank <= 1.0, "rank", "above 0 and at most 1", rank);
+    require(least_amplitude >= 1 && least_amplitude <= 65535, "least_amplitude", "1 to 65535",
+            least_amplitude);
+  }
+
+  /// Rank k of the training cell that is compared, of `count` that exist.
+  [[nodiscard]] int rank_of(int count) const noexcept {
+    return std::clamp(static_cast<int>(std::ceil(rank * count - 1e-9)), 1, std::max(count, 1));
+  }
+};
+
+/// Probability that a cell of nothing but independent noise is detected, with all N training cells.
+///
+///     cell averaging     exponential   (1 + f / N)^-N
+///                        Rayleigh      (1 + f² b / N)^-N,   b = pi/4 + (1 - pi/4) / N
+///     ordered statistic  exponential   prod_{i<k} (N - i) / (N - i + f)
+///                        Rayleigh      the same with f²
+///
+/// The second takes the square of a mean of Rayleigh amplitudes for gamma distributed; it is right
+/// to some per cent, and exact for N = 1 and in the limit of large N. The others are exact.
+[[nodiscard]] inline double false_alarm_probability(const CfarSettings& cfar, Noise noise) {
+  cfar.validate();
+  const double n = 2.0 * cfar.train_cells;
+  const double f = cfar.threshold_factor;
+  const double power = noise == Noise::kExponential ? f : f * f;
+  if (cfar.kind == CfarKind::kCellAveraging) {
+    const double b =
+        noise == Noise::kExponential ? 1.0 : kPi<double> / 4 + (1.0 - kPi<double> / 4) / n;
+    return std::pow(1.0 + power * b / n, -n);
+  }
+  double probability = 1.0;
+  for (int i = 0; i < cfar.rank_of(2 * cfar.train_cells); ++i)
+    probability *= (n - i) / (n - i + power);
+  return probability;
+}
+
+/// The threshold factor f of a wanted probability: the other way round.
+///
+///     cell averaging     exponential   f  = N (p^(-1/N) - 1)
+///                        Rayleigh      f² = N (p^(-1/N) - 1) / b
+///     ordered statistic  by bisection
+///
+/// Throws `std::invalid_argument` when the probability is not within (0, 1) or needs a factor
+/// above 1000.
+[[nodiscard]] inline double threshold_factor(CfarSettings cfar, Noise noise, double probability) {
+  require(probability > 0.0 && probability < 1.0, "probability", "between 0 and 1", probability);
+  double low = 0.0;
+  double high = cfar.threshold_factor = 1000.0;
+  require(false_alarm_probability(cfar, noise) <= probability, "probability",
+          "one that a threshold factor of 1000 reaches", probability);
+  if (cfar.kind == CfarKind::kCellAveraging) {
+    const double n = 2.0 * cfar.train_cells;
+    const double power = n * (std::pow(probability, -1.0 / n) - 1.0);
+    const double b = kPi<double> / 4 + (1.0 - kPi<double> / 4) / n;
+    return noise == Noise::kExponential ? power : std::sqrt(power / b);
+  }
+  while (high - low > 1e-12 * high) {
+    const double middle = cfar.threshold_factor = 0.5 * (low + high);
+    (false_alarm_probability(cfar, noise) > probability ? low : high) = middle;
+  }
+  return high;
+}
+
+namespace detail {
+
+/// The cells of a sliding window in order, counted by amplitude: the k-th is a few steps from where
+/// it was.
+class SlidingHistogram {
+ public:
+  explicit SlidingHistogram(int /*most_cells*/) {}
+
+  void clear() noexcept {
+    cells_.fill(0);
+    level_ = below_ = 0;
+  }
+  void insert(std::uint8_t amplitude) noexcept {
+    ++cells_[amplitude];
+    below_ += amplitude < level_;
+  }
+  void erase(std::uint8_t amplitude) noexcept {
+    --cells_[amplitude];
+    below_ -= amplitude < level_;
+  }
+  /// The k-th smallest, k from 1 to the number of cells.
+  [[nodiscard]] std::uint8_t kth(int k) noexcept {
+    while (below_ >= k) below_ -= cells_[static_cast<std::size_t>(--level_)];
+    while (below_ + cells_[static_cast<std::size_t>(level_)] < k)
+      below_ += cells_[static_cast<std::size_t>(level_++)];
+    return static_cast<std::uint8_t>(level_);
+  }
+
+ private:
+  std::array<std::uint16_t, 256> cells_{};
+  int level_ = 0;
+  int below_ = 0;  ///< cells of less than the level
+};
+
+/// The cells of a sliding window in order, sorted: for amplitudes too many to be counted.
+class SortedWindow {
+ public:
+  explicit SortedWindow(int most_cells) { cells_.reserve(static_cast<std::size_t>(most_cells)); }
+
+  // A copy of a vector has not the room that was reserved.
+  SortedWindow(SortedWindow&&) = default;
+  SortedWindow& operator=(SortedWindow&&) = default;
+
+  void clear() noexcept { cells_.clear(); }
+  void insert(std::uint16_t amplitude) noexcept {
+    cells_.insert(std::upper_bound(cells_.begin(), cells_.end(), amplitude), amplitude);
+  }
+  void erase(std::uint16_t amplitude) noexcept {
+    cells_.erase(std::lower_bound(cells_.begin(), cells_.end(), amplitude));
+  }
+  [[nodiscard]] std::uint16_t kth(int k) const noexcept {
+    return cells_[static_cast<std::size_t>(k - 1)];
+  }
+
+ private:
+  std::vector<std::uint16_t> cells_;
+};
+
+}  // namespace detail
+
+/// Finds the thresholds of a sweep's cells. Amplitudes of 8 or 16 bits.
+template <class Amplitude = std::uint8_t>
+class Cfar {
+  static_assert(std::is_same_v<Amplitude, std::uint8_t> || std::is_same_v<Amplitude, std::uint16_t>,
+                "a radar's amplitudes have 8 or 16 bits: std::uint8_t or std::uint16_t");
+
+ public:
+  static constexpr Amplitude kMost = std::numeric_limits<Amplitude>::max();
+
+  /// Takes all memory that is ever needed. Throws `std::invalid_argument` for settings that make no
+  /// sense.
+  Cfar(const CfarSettings& settings, int max_cells)
+      : settings_(settings), window_(2 * settings.train_cells) {
+    settings.validate();
+    require(max_cells >= 1 && max_cells <= kMaxCells, "max_cells", "1 to 65536", max_cells);
+    require(settings.least_amplitude <= kMost, "least_amplitude",
+            "an amplitude of as many bits as the sweep's", settings.least_amplitude);
+    sums_.resize(static_cast<std::size_t>(max_cells) + 1);
+    const bool averaging = settings.kind == CfarKind::kCellAveraging;
+    for (int count = 0; count <= 2 * settings.train_cells; ++count) {
+      const double weight = settings.threshold_factor / (averaging ? std::max(count, 1) : 1);
+      weight_.push_back(static_cast<std::uint32_t>(std::ceil(kOne * weight - 1e-9)));
+      rank_.push_back(settings.rank_of(count));
+    }
+  }
+
+  [[nodiscard]] const CfarSettings& settings() const noexcept { return settings_; }
+  [[nodiscard]] int max_cells() const noexcept { return static_cast<int>(sums_.size()) - 1; }
+
+  /// For each cell the amplitude that it has to exceed; the greatest amplitude, which none exceeds,
+  /// where it has no training cell. Not more than `max_cells` of both.
+  void thresholds(std::span<const Amplitude> amplitude, std::span<Amplitude> threshold) noexcept {
+    if (settings_.kind == CfarKind::kCellAveraging)
+      average(amplitude, threshold.data());
+    else
+      order(amplitude, threshold.data());
+  }
+
+  static constexpr int kMaxCells = 65536;
+
+ private:
+  // Sums are modulo the range of Sum: that of a window, a difference, is right as it fits.
+  static constexpr bool kNarrow = sizeof(Amplitude) == 1;
+  using Sum = std::conditional_t<kNarrow, std::uint16_t, std::uint32_t>;
+  using Product = std::conditional_t<kNarrow, std::uint32_t, std::uint64_t>;
+  using Window = std::conditional_t<kNarrow, detail::SlidingHistogram, detail::SortedWindow>;
+  static constexpr int kPlaces = 16;
+  static constexpr double kOne = 1 << kPlaces;
+
+  [[nodiscard]] Amplitude limited(std::uint64_t level) const noexcept {
+    const auto floor = static_cast<std::uint64_t>(settings_.least_amplitude - 1);
+    return static_cast<Amplitude>(std::min<std::uint64_t>(std::max(level, floor), kMost));
+  }
+
+  void average(std::span<const Amplitude> amplitude, Amplitude* threshold) noexcept {
+    const int cells = static_cast<int>(amplitude.size());
+    const int near = settings_.guard_cells;
+    const int far = near + settings_.train_cells;
+    detail::running_sums(amplitude, sums_.data());
+    const int inner_first = std::min(far, cells);
+    const int inner_last = std::max(inner_first, cells - far);
+    for (int i = 0; i < inner_first; ++i) threshold[i] = average_at_edge(i, cells);
+    average_inside(inner_first, inner_last, threshold);
+    for (int i = inner_last; i < cells; ++i) threshold[i] = average_at_edge(i, cells);
+  }
+
+  [[nodiscard]] Amplitude average_at_edge(int i, int cells) const noexcept {
+    const int near = settings_.guard_cells;
+    const int far = near + settings_.train_cells;
+    const int left_first = std::max(i - far, 0), left_last = std::max(i - near, 0);
+    const int right_first = std::min(i + near + 1, cells);
+    const int right_last = std::min(i + far + 1, cells);
+    const int count = left_last - left_first + right_last - right_first;
+    if (count == 0) return kMost;
+    const Sum* sums = sums_.data();
+    const auto sum =
+        static_cast<Sum>(sums[left_last] - sums[left_first] + sums[right_last] - sums[right_first]);
+    return limited(std::uint64_t{sum} * weight_[static_cast<std::size_t>(count)] >> kPlaces);
+  }
+
+  /// Where all training cells exist: from cell `far` on.
+  void average_inside(int first, int last, Amplitude* threshold) const noexcept {
+    if (first >= last) return;
+    const int near = settings_.guard_cells;
+    const int far = near + settings_.train_cells;
+    const std::uint32_t weight = weight_.back();
+    if (weight > std::numeric_limits<std::uint16_t>::max()) {
+      for (int i = first; i < last; ++i) threshold[i] = average_at_edge(i, last + far);
+      return;
+    }
+    detail::mean_thresholds<Amplitude, Sum, Product>(
+        sums_.data(), settings_.train_cells, far + near + 1, static_cast<std::uint16_t>(weight),
+        static_cast<Amplitude>(settings_.least_amplitude - 1), last - first, threshold + first);
+  }
+
+  void order(std::span<const Amplitude> amplitude, Amplitude* threshold) noexcept {
+    const int cells = static_cast<int>(amplitude.size());
+    const int near = settings_.guard_cells;
+    const int far = near + settings_.train_cells;
+    const Amplitude* a = amplitude.data();
+    window_.clear();
+    int count = 0;
+    const auto enter = [&](int i) noexcept {
+      if (i < 0 || i >= cells) return;
+      window_.insert(a[i]);
+      ++count;
+    };
+    const auto leave = [&](int i) noexcept {
+      if (i < 0 || i >= cells) return;
+      window_.erase(a[i]);
+      --count;
+    };
+    for (int i = near + 1; i < far; ++i) enter(i);  // all of cell 0 but the last
+    for (int i = 0; i < cells; ++i) {
+      enter(i + far);
+      enter(i - near - 1);
+      if (count == 0) {
+        threshold[i] = kMost;
+      } else {
+        const int k = rank_[static_cast<std::size_t>(count)];
+        threshold[i] = limited(std::uint64_t{window_.kth(k)} * weight_.front() >> kPlaces);
+      }
+      leave(i + near + 1);
+      leave(i - far);
+    }
+  }
+
+  CfarSettings settings_;
+  Window window_;
+  std::vector<Sum> sums_;
+  std::vector<std::uint32_t> weight_;  ///< by the number of training cells: factor / count * 2^16
+  std::vector<int> rank_;              ///< by the number of training cells
+};
+
+}  // namespace wakeline
