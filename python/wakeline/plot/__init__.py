@@ -15,6 +15,7 @@ from .comparison import (
     turn_rate_panel,
 )
 from .map import ellipse_outline, map_figure, map_view
+from .ppi import circle_outline, echo, ppi, screen_raster, window_outline
 from .style import (
     INK,
     MUTED,
@@ -43,10 +44,12 @@ __all__ = [
     "MUTED",
     "PALETTE",
     "TEXT_PT",
+    "circle_outline",
     "course_panel",
     "draw_bands",
     "dress",
     "dress_map",
+    "echo",
     "ellipse_outline",
     "error_panel",
     "figure",
@@ -58,9 +61,11 @@ __all__ = [
     "name_lines",
     "nis_panel",
     "paths_view",
+    "ppi",
     "probability_panel",
     "ranking_panel",
     "save",
+    "screen_raster",
     "speed_panel",
     "steps_panel",
     "time_figure",
@@ -68,4 +73,5 @@ __all__ = [
     "track_colors",
     "turn_colors",
     "turn_rate_panel",
+    "window_outline",
 ]

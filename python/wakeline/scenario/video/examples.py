@@ -149,9 +149,9 @@ def _strait(rng: np.random.Generator, along_rad: float) -> list[NDArray[np.float
     islands = [
         _island(rng, place, radius_m)
         for place, radius_m in (
-            (-5200.0 + 1500.0j, 420.0),
-            (3900.0 + 6100.0j, 650.0),
-            (1500.0 + 5200.0j, 170.0),
+            (-7600.0 + 900.0j, 300.0),
+            (3900.0 + 6400.0j, 600.0),
+            (1500.0 + 5900.0j, 170.0),
             (-1600.0 + 6900.0j, 330.0),
         )
     ]
@@ -224,7 +224,7 @@ def _traffic(rng: np.random.Generator, along_rad: float) -> dict[str, VideoTarge
                 broadside_db=10.0,
             )
     for k in range(6):
-        place = rng.uniform(-6500.0, 6500.0) + 1j * rng.uniform(900.0, 5200.0)
+        place = rng.uniform(-6500.0, 6500.0) + 1j * rng.uniform(900.0, 5000.0)
         course = np.exp(1j * rng.uniform(0.0, _FULL_CIRCLE))
         add(
             f"craft {k + 1}",

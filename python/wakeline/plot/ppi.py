@@ -1,0 +1,497 @@
+"""Radar video as a picture: the screen of a radar, north up, and a close-up of cells and sweeps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from wakeline._checks import whole_number
+from wakeline.recording import RadarVideo, Tracks
+
+from .map import ellipse_outline
+from .style import INK, MUTED, TEXT_PT, figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Colormap
+    from matplotlib.image import AxesImage
+
+_TURN_RAD = 2.0 * np.pi
+SCREEN = "#04070C"
+SCREEN_INK = "#C9D6DF"
+SCREEN_GRID = "#5B7C8C"
+PLOT_COLOR = "#FFFFFF"
+STROBE_COLOR = "#59D5FF"
+TRACK_COLORS = ("#FF8FB1", "#7CE0FF", "#C6A6FF", "#7DF0B4", "#FFB870", "#F4F4F4")
+_ECHO_COLORS = (
+    *((0.0, "#071019"), (0.15, "#0A2431"), (0.35, "#115058"), (0.56, "#3E8F5A")),
+    *((0.76, "#C9BE4A"), (0.9, "#FFE58A"), (1.0, "#FFFBE6")),
+)
+_KM_FROM_M = 2000.0
+_RINGS = 6
+_SWEEPS_AT_ONCE = 512
+_DARKEST_QUANTILE, _BRIGHTEST_QUANTILE = 0.15, 0.9995
+_SIDE_AROUND = 0.02
+
+
+def ppi(
+    video: RadarVideo,
+    ax: Axes | None = None,
+    *,
+    plots: ArrayLike | None = None,
+    strobes: Sequence[ArrayLike] = (),
+    tracks: Tracks | None = None,
+    extent_m: tuple[float, float, float, float] | None = None,
+    amplitude_range: tuple[float, float] | None = None,
+    rings: bool = True,
+    pixels: int = 1200,
+) -> Axes:
+    """Draw radar video as a radar screen does: on a map, antenna at the origin, north up.
+
+    A pixel shows the largest amplitude of the cells in it, so that no echo falls between pixels.
+    Of sweeps of the same azimuth the last one is shown: give a turn, or the latest of several.
+
+    Parameters
+    ----------
+    video : RadarVideo
+        A turn, a sector of it, or as much as there is.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into; default those of a new figure.
+    plots : array_like (n, 2), optional
+        Marked by crosses; metres north and east.
+    strobes : sequence of (k, 2) arrays
+        Outlines in metres north and east: :func:`circle_outline`, :func:`window_outline`,
+        :func:`ellipse_outline`.
+    tracks : Tracks, optional
+        Drawn as lines with their ids at the ends.
+    extent_m : (west, east, south, north), optional
+        What to show, in metres; default all of the video.
+    amplitude_range : (float, float), optional
+        Amplitudes shown darkest and brightest; default from the darker part of the noise to what
+        one cell in 2000 exceeds.
+    rings : bool
+        Whether to draw range rings with their ranges, and the four quarters of the compass.
+    pixels : int
+        Of the longer side.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Data coordinates are metres east and north, however the ticks are labelled.
+
+    Raises
+    ------
+    ValueError
+        When the video has no sweep, the extent is empty, or a layer has another shape.
+    """
+    whole_number("pixels", pixels, 16)
+    ax = figure(7.2, 7.2).add_subplot() if ax is None else ax
+    extent = _checked_extent(extent_m, video)
+    raster = screen_raster(video, extent, pixels)
+    _show(ax, raster, extent, _brightness(video, amplitude_range))
+    ax.set_aspect("equal", adjustable="box")
+    if rings:
+        _draw_rings(ax, extent, float(video.range_m[-1] + 0.5 * video.cell_m))
+    _draw_layers(ax, plots, strobes, tracks)
+    return _dress_screen(ax, extent)
+
+
+def echo(
+    video: RadarVideo,
+    ax: Axes | None = None,
+    *,
+    around_m: tuple[float, float] | None = None,
+    half_range_m: float = 150.0,
+    half_azimuth_rad: float = 0.008,
+    plots: ArrayLike | None = None,
+    strobes: Sequence[ArrayLike] = (),
+    amplitude_range: tuple[float, float] | None = None,
+    colorbar: bool = True,
+) -> Axes:
+    """Draw the cells around a place as they are: azimuth to the right, range upwards (B-scope).
+
+    Parameters
+    ----------
+    video : RadarVideo
+        Of sweeps of the same azimuth the last one is shown.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into; default those of a new figure.
+    around_m : (north, east), optional
+        Middle of the picture; default the strongest cell.
+    half_range_m, half_azimuth_rad : float
+        How far it reaches from there.
+    plots, strobes
+        As for :func:`ppi`, in metres north and east.
+    amplitude_range : (float, float), optional
+        Amplitudes shown darkest and brightest; default 0 and the largest in the picture.
+    colorbar : bool
+        Whether to explain the amplitudes beside the picture.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Azimuth in degrees, range in metres.
+
+    Raises
+    ------
+    ValueError
+        When nothing of the video lies there, or a layer has another shape.
+    """
+    ax = figure(6.4, 4.8).add_subplot() if ax is None else ax
+    azimuth_rad, range_m = _middle(video, around_m)
+    sweep, azimuth_edges_rad = _sweeps_about(video, azimuth_rad, half_azimuth_rad)
+    cells = np.flatnonzero(np.abs(video.range_m - range_m) <= half_range_m)
+    if len(cells) == 0 or not (sweep >= 0).any():
+        raise ValueError(
+            f"no cell of the video lies around azimuth {np.rad2deg(azimuth_rad):.2f} degrees, "
+            f"range {range_m:.0f} m"
+        )
+    picture = video.amplitude[sweep][:, cells].astype(float)
+    picture[sweep < 0] = np.nan
+    low, high = _checked_range(amplitude_range) or (0.0, max(float(np.nanmax(picture)), 1.0))
+    near_m = video.start_range_m + cells[0] * video.cell_m
+    extent = (*np.rad2deg(azimuth_edges_rad), near_m, near_m + len(cells) * video.cell_m)
+    image = _show(ax, picture.T, extent, (low, high))
+    ax.set_aspect("auto")
+
+    def scope(places: ArrayLike, name: str) -> tuple[NDArray, NDArray]:
+        return _scope_coordinates(_places(name, places), azimuth_rad)
+
+    for outline in strobes:
+        ax.plot(*scope(outline, "strobe"), color=STROBE_COLOR, linewidth=1.4, zorder=4)
+    if plots is not None:
+        ax.plot(*scope(plots, "plots"), **_CROSS)
+    ax.set(xlabel="azimuth (°)", ylabel="range (m)")
+    ax.ticklabel_format(useOffset=False, style="plain")
+    if colorbar:
+        _explain_amplitudes(ax, image)
+    return _dress_dark(ax)
+
+
+def circle_outline(centre_m: ArrayLike, radius_m: float, points: int = 61) -> NDArray[np.float64]:
+    """Outline (points, 2) of a circle around a place north and east."""
+    return ellipse_outline(np.asarray(centre_m), np.eye(2) * radius_m**2, 1.0, points)
+
+
+def window_outline(
+    range_m: float,
+    azimuth_rad: float,
+    half_range_m: float,
+    half_azimuth_rad: float,
+    points: int = 15,
+) -> NDArray[np.float64]:
+    """Outline (2 points + 1, 2), north and east, of a window in range and azimuth."""
+    swing = azimuth_rad + np.linspace(-half_azimuth_rad, half_azimuth_rad, points)
+    far, near = (
+        (range_m + way) * np.exp(1j * turned)
+        for way, turned in ((half_range_m, swing), (-half_range_m, swing[::-1]))
+    )
+    outline = np.concatenate([far, near, far[:1]])
+    return np.column_stack([outline.real, outline.imag])
+
+
+def screen_raster(
+    video: RadarVideo, extent_m: tuple[float, float, float, float], pixels: int
+) -> NDArray[np.float32]:
+    """Video on a square grid north up: row 0 in the south, NaN where there is no video.
+
+    A pixel holds the largest amplitude of the cell below its centre and of all cells that have
+    their centre in it: no cell is lost in a small picture, no hole is left in a large one.
+
+    Parameters
+    ----------
+    video : RadarVideo
+    extent_m : (west, east, south, north)
+    pixels : int
+        Of the longer side.
+
+    Returns
+    -------
+    ndarray (rows, columns) of float32
+    """
+    west, east, south, north = extent_m
+    pixel_m = max(east - west, north - south) / pixels
+    columns, rows = (max(1, round(side / pixel_m)) for side in (east - west, north - south))
+    east_m = west + (np.arange(columns) + 0.5) * (east - west) / columns
+    north_m = south + (np.arange(rows) + 0.5) * (north - south) / rows
+    slot = _slots(video)
+    raster = _cells_below(video, slot, north_m[:, None], east_m)
+    for sweeps in np.array_split(slot[slot >= 0], max(1, len(slot) // _SWEEPS_AT_ONCE)):
+        place = np.exp(1j * video.azimuth_rad[sweeps, None])
+        row = np.floor((place.real * video.range_m - south) * (rows / (north - south)))
+        column = np.floor((place.imag * video.range_m - west) * (columns / (east - west)))
+        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+        pixel = (row[inside] * columns + column[inside]).astype(np.intp)
+        np.fmax.at(raster.ravel(), pixel, video.amplitude[sweeps][inside].astype(np.float32))
+    return raster
+
+
+def _cells_below(
+    video: RadarVideo, slot: NDArray[np.intp], north_m: NDArray, east_m: NDArray
+) -> NDArray[np.float32]:
+    """Amplitude of the cell at each place, NaN where there is none."""
+    turned = (np.arctan2(east_m, north_m) / _TURN_RAD) % 1.0
+    sweep = slot[np.minimum((turned * len(slot)).astype(int), len(slot) - 1)]
+    cell = np.floor((np.hypot(north_m, east_m) - video.start_range_m) / video.cell_m).astype(int)
+    seen = (sweep >= 0) & (cell >= 0) & (cell < video.amplitude.shape[1])
+    picture = np.full(seen.shape, np.nan, np.float32)
+    picture[seen] = video.amplitude[sweep[seen], cell[seen]]
+    return picture
+
+
+def _slots(video: RadarVideo) -> NDArray[np.intp]:
+    """Number of the last sweep in each of the even steps of a turn, -1 where there is none.
+
+    A single empty step between two sweeps takes the one before it: real antennas jitter.
+    """
+    if len(video) == 0:
+        raise ValueError("video must have a sweep, got none")
+    count = max(8, round(_TURN_RAD / video.azimuth_width_rad))
+    slot = np.full(count, -1)
+    turned = (video.azimuth_rad % _TURN_RAD) / _TURN_RAD
+    slot[np.minimum((turned * count).astype(int), count - 1)] = np.arange(len(video))
+    lone = (slot < 0) & (np.roll(slot, 1) >= 0) & (np.roll(slot, -1) >= 0)
+    slot[lone] = np.roll(slot, 1)[lone]
+    return slot
+
+
+def _sweeps_about(
+    video: RadarVideo, azimuth_rad: float, half_rad: float
+) -> tuple[NDArray[np.intp], tuple[float, float]]:
+    """Sweeps of the steps about an azimuth in order, and where the first begins and the last ends.
+
+    Azimuths run on across north.
+    """
+    slot = _slots(video)
+    step_rad = _TURN_RAD / len(slot)
+    first, last = (int(np.floor((azimuth_rad + side) / step_rad)) for side in (-half_rad, half_rad))
+    last = min(last, first + len(slot) - 1)
+    steps = np.arange(first, last + 1)
+    return slot[steps % len(slot)], (first * step_rad, (last + 1) * step_rad)
+
+
+def _middle(video: RadarVideo, around_m: tuple[float, float] | None) -> tuple[float, float]:
+    """Azimuth from 0 to a turn, and range."""
+    if around_m is not None:
+        if np.shape(around_m) != (2,):
+            raise ValueError(f"around_m must be north and east, got {around_m}")
+        north_m, east_m = np.asarray(around_m, dtype=float)
+        return float(np.arctan2(east_m, north_m) % _TURN_RAD), float(np.hypot(north_m, east_m))
+    if len(video) == 0:
+        raise ValueError("video must have a sweep, got none")
+    sweep, cell = np.unravel_index(np.argmax(video.amplitude), video.amplitude.shape)
+    return float(video.azimuth_rad[sweep] % _TURN_RAD), float(video.range_m[cell])
+
+
+def _scope_coordinates(places_m: NDArray[np.float64], middle_rad: float) -> tuple[NDArray, NDArray]:
+    """Azimuth in degrees, run on across north about the middle, and range in metres."""
+    north_m, east_m = places_m.T
+    off_rad = (np.arctan2(east_m, north_m) - middle_rad + np.pi) % _TURN_RAD - np.pi
+    return np.rad2deg(middle_rad + off_rad), np.hypot(north_m, east_m)
+
+
+def _checked_extent(
+    extent_m: tuple[float, float, float, float] | None, video: RadarVideo
+) -> tuple[float, float, float, float]:
+    if extent_m is None:
+        return _whole_extent(video)
+    extent = tuple(float(edge) for edge in extent_m)
+    if len(extent) != 4 or not (extent[0] < extent[1] and extent[2] < extent[3]):
+        raise ValueError(f"extent_m must be west < east, south < north, got {extent_m}")
+    return extent
+
+
+def _whole_extent(video: RadarVideo) -> tuple[float, float, float, float]:
+    """A square around all cells of the video, with a margin."""
+    if len(video) == 0:
+        raise ValueError("video must have a sweep, got none")
+    edge_m = video.range_m[[0, -1]] + 0.5 * video.cell_m * np.array([-1.0, 1.0])
+    place = np.exp(1j * video.azimuth_rad)[:, None] * edge_m
+    low = np.array([place.imag.min(), place.real.min()])
+    high = np.array([place.imag.max(), place.real.max()])
+    half_m = (0.5 + _SIDE_AROUND) * np.max(high - low)
+    (west, south), (east, north) = (low + high) / 2 - half_m, (low + high) / 2 + half_m
+    return float(west), float(east), float(south), float(north)
+
+
+def _brightness(
+    video: RadarVideo, amplitude_range: tuple[float, float] | None
+) -> tuple[float, float]:
+    asked = _checked_range(amplitude_range)
+    if asked is not None:
+        return asked
+    every = max(1, video.amplitude.size // 1_000_000)
+    sample = video.amplitude.ravel()[::every]
+    low, high = np.quantile(sample, [_DARKEST_QUANTILE, _BRIGHTEST_QUANTILE])
+    return float(low), float(max(high, low + 1.0))
+
+
+def _checked_range(amplitude_range: tuple[float, float] | None) -> tuple[float, float] | None:
+    if amplitude_range is None:
+        return None
+    low, high = amplitude_range
+    if not low < high:
+        raise ValueError(f"amplitude_range must be low < high, got {amplitude_range}")
+    return float(low), float(high)
+
+
+def _echo_map() -> Colormap:
+    """From the dark screen through sea green to amber: brighter with every step."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("radar", list(_ECHO_COLORS))
+
+
+def _dark_halo(width: float = 2.0) -> list:
+    from matplotlib import patheffects
+
+    return [patheffects.withStroke(linewidth=width, foreground=SCREEN)]
+
+
+_CROSS = {
+    "linestyle": "none",
+    "marker": "+",
+    "markersize": 7.0,
+    "markeredgewidth": 1.1,
+    "color": PLOT_COLOR,
+    "zorder": 5,
+}
+
+
+def _draw_rings(ax: Axes, extent: tuple[float, float, float, float], far_m: float) -> None:
+    """Rings at round ranges; each has its range where it crosses the line to the upper right."""
+    from matplotlib.patches import Circle
+    from matplotlib.ticker import MaxNLocator
+
+    west, east, south, north = extent
+    corner_m = np.hypot([west, west, east, east], [south, north, south, north])
+    antenna_inside = west < 0 < east and south < 0 < north
+    near_m = 0.0 if antenna_inside else _nearest_m(extent)
+    last_m = min(far_m, float(corner_m.max()))
+    ticks_m = MaxNLocator(_RINGS, steps=[1, 2, 2.5, 5, 10]).tick_values(near_m, last_m)
+    middle = complex(south + north, 0.65 * west + 1.35 * east) / 2.0
+    label_rad = np.deg2rad(40.0) if antenna_inside else np.angle(middle)
+    unit, per_unit = _unit(extent)
+    for ring_m in ticks_m[(ticks_m > near_m) & (ticks_m <= last_m * (1 + 1e-9))]:
+        ax.add_patch(
+            Circle((0, 0), ring_m, fill=False, edgecolor=SCREEN_GRID, linewidth=0.6, alpha=0.7)
+        )
+        place = (ring_m * np.sin(label_rad), ring_m * np.cos(label_rad))
+        if west < place[0] < east and south < place[1] < north:
+            ax.annotate(
+                f"{ring_m / per_unit:g} {unit}",
+                place,
+                ha="center",
+                va="center",
+                color=SCREEN_INK,
+                fontsize=TEXT_PT - 2,
+                path_effects=_dark_halo(),
+                zorder=3,
+            )
+    if antenna_inside:
+        for quarter in range(4):
+            tip = far_m * np.exp(0.5j * np.pi * quarter)
+            ax.plot([0, tip.imag], [0, tip.real], color=SCREEN_GRID, linewidth=0.5, alpha=0.45)
+
+
+def _nearest_m(extent: tuple[float, float, float, float]) -> float:
+    west, east, south, north = extent
+    return float(np.hypot(np.clip(0.0, west, east), np.clip(0.0, south, north)))
+
+
+def _draw_layers(
+    ax: Axes, plots: ArrayLike | None, strobes: Sequence[ArrayLike], tracks: Tracks | None
+) -> None:
+    for outline in strobes:
+        north_m, east_m = _places("strobe", outline).T
+        ax.plot(east_m, north_m, color=STROBE_COLOR, linewidth=1.1, zorder=4)
+    if plots is not None:
+        north_m, east_m = _places("plots", plots).T
+        ax.plot(east_m, north_m, **_CROSS)
+    ids = [] if tracks is None else tracks.ids()
+    for k, track_id in enumerate(ids):
+        color = TRACK_COLORS[k % len(TRACK_COLORS)]
+        track = tracks.where(tracks.track_id == track_id)
+        ax.plot(track.east_m, track.north_m, color=color, linewidth=1.4, zorder=6)
+        end = (track.east_m[-1], track.north_m[-1])
+        ax.annotate(
+            track_id,
+            end,
+            xytext=(6, 5),
+            textcoords="offset points",
+            color=color,
+            fontsize=TEXT_PT - 1,
+            fontweight="bold",
+            path_effects=_dark_halo(),
+            annotation_clip=True,
+            zorder=7,
+        )
+
+
+def _places(name: str, places: ArrayLike) -> NDArray[np.float64]:
+    array = np.asarray(places, dtype=float)
+    if array.size == 0:
+        return np.zeros((0, 2))
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError(f"{name} must have shape (n, 2), north and east, got {array.shape}")
+    return array
+
+
+def _dress_screen(ax: Axes, extent: tuple[float, float, float, float]) -> Axes:
+    """Ticks in kilometres or metres, no grid over the picture."""
+    from matplotlib.ticker import FuncFormatter
+
+    unit, per_unit = _unit(extent)
+    for axis, name in ((ax.xaxis, "east"), (ax.yaxis, "north")):
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / per_unit:g}"))
+        axis.set_label_text(f"{name} ({unit})")
+    return _dress_dark(ax)
+
+
+def _unit(extent: tuple[float, float, float, float]) -> tuple[str, float]:
+    """Unit of lengths on the screen, and how many metres it has."""
+    return ("km", 1000.0) if np.abs(extent).max() > _KM_FROM_M else ("m", 1.0)
+
+
+def _dress_dark(ax: Axes) -> Axes:
+    ax.grid(False)
+    ax.tick_params(labelsize=TEXT_PT, color=MUTED, labelcolor=INK, length=3)
+    for spine in ax.spines.values():
+        spine.set_color(MUTED)
+    for label in (ax.xaxis.label, ax.yaxis.label):
+        label.set_size(TEXT_PT)
+        label.set_color(INK)
+    return ax
+
+
+def _show(
+    ax: Axes,
+    picture: NDArray,
+    extent: tuple[float, float, float, float],
+    amplitude_range: tuple[float, float],
+) -> AxesImage:
+    """The picture as the only thing within the axes, on the dark of the screen."""
+    low, high = amplitude_range
+    ax.set_facecolor(SCREEN)
+    image = ax.imshow(
+        picture,
+        extent=extent,
+        origin="lower",
+        cmap=_echo_map(),
+        vmin=low,
+        vmax=high,
+        interpolation="nearest",
+        zorder=0,
+    )
+    ax.set(xlim=extent[:2], ylim=extent[2:])
+    return image
+
+
+def _explain_amplitudes(ax: Axes, image: AxesImage) -> None:
+    bar = ax.figure.colorbar(image, ax=ax, pad=0.02, fraction=0.05)
+    bar.set_label("amplitude", size=TEXT_PT, color=INK)
+    bar.ax.tick_params(labelsize=TEXT_PT - 1, color=MUTED, labelcolor=INK, length=3)
+    bar.outline.set_edgecolor(MUTED)
