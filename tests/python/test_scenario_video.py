@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wakeline.scenario import (
+    HardTurn,
     Land,
     RadarVideoSimulator,
     SeaClutter,
@@ -18,6 +19,7 @@ from wakeline.scenario import (
     small_craft_scene,
     strait_scene,
 )
+from wakeline.scenario.video.fields import GammaTexture
 
 TURN = 2 * np.pi
 SWEEPS = 2048
@@ -225,6 +227,14 @@ def test_clutter_has_the_moments_of_the_k_distribution(shape):
     assert clutter.mean() == pytest.approx(1e4, rel=0.03)
     ratio = np.mean(clutter**2) / clutter.mean() ** 2
     assert ratio == pytest.approx(2 * (1 + 1 / shape), rel=0.06)
+
+
+@pytest.mark.parametrize("shape", [0.05, 0.3, 1.0, 30.0, 1e5])
+def test_a_texture_has_mean_1_and_the_variance_that_was_set(shape):
+    rng = np.random.default_rng(1)
+    texture = GammaTexture(shape).amplitude(rng.standard_normal(400_000, np.float32)) ** 2
+    assert texture.mean() == pytest.approx(1.0, abs=5 / np.sqrt(shape * 400_000) + 1e-3)
+    assert texture.var() == pytest.approx(1.0 / shape, rel=0.05 + 0.02 / shape)
 
 
 @pytest.mark.parametrize("shape", [0.5, 2.0])
@@ -597,6 +607,15 @@ def test_the_small_craft_stands_out_of_the_sea_near_its_truth():
     assert found >= 16
     assert video.azimuth_width_rad == pytest.approx(np.deg2rad(0.03))
     assert (video.cell_m, np.diff(video.time_s)[0]) == (6.0, pytest.approx(3.0 / 12_000))
+
+
+def test_the_small_craft_may_have_another_beam_and_another_situation():
+    situation = HardTurn(20.0, 600.0, range_m=8000.0)
+    scene = small_craft_scene(1, situation=situation, beam_cells=10.0)
+    assert scene.radar.beam_width_rad == pytest.approx(np.deg2rad(0.3))
+    north, vnorth, east, veast = scene.targets["craft"].truth.state_at(0.0)[0]
+    assert np.hypot(vnorth, veast) == pytest.approx(20.0)
+    assert 8000.0 <= np.hypot(north, east) <= 8006.0
 
 
 def test_the_strait_has_ships_and_a_coast():
