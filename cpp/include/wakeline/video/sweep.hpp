@@ -24,12 +24,12 @@ struct Sweep {
     return start_range_m + (cell + 0.5) * cell_m;
   }
 
-  /// True when it can be a radar's: finite, cells of a length, an azimuth width of at most half a
-  /// turn, cells there.
+  /// True when it can be a radar's: finite and of a size that has a meaning, cells of a length, an
+  /// azimuth width of at most half a turn, cells there.
   [[nodiscard]] bool valid() const noexcept {
-    return std::isfinite(time_s) && std::isfinite(azimuth_rad) && azimuth_width_rad > 0.0 &&
-           azimuth_width_rad < 3.15 && start_range_m >= 0.0 && std::isfinite(start_range_m) &&
-           cell_m > 0.0 && std::isfinite(cell_m) && !amplitude.empty();
+    return std::fabs(time_s) < 1e15 && std::fabs(azimuth_rad) < 1e6 && azimuth_width_rad > 0.0 &&
+           azimuth_width_rad < 3.15 && start_range_m >= 0.0 && start_range_m < 1e9 &&
+           cell_m > 0.0 && cell_m < 1e6 && !amplitude.empty();
   }
 };
 

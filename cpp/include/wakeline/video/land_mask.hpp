@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/require.hpp"
+#include "wakeline/core/types.hpp"
+#include "wakeline/video/sweep.hpp"
+
+namespace wakeline {
+
+/// Areas about the antenna in which nothing is detected: land, the own wake, a blind sector. Of
+/// each of `azimuths` directions it knows the ranges that are excluded, exactly, whatever the
+/// length of the sweeps' cells; a cell that lies in an area by a part is excluded.
+///
+/// One built by default excludes nothing. On a ship under way it is built anew as she moves.
+class LandMask {
+ public:
+  LandMask() = default;
+
+  /// `azimuths` directions in a turn. Throws `std::invalid_argument` unless 1 to 65536.
+  explicit LandMask(int azimuths) {
+    require(azimuths >= 1 && azimuths <= 65536, "azimuths", "1 to 65536", azimuths);
+    excluded_.resize(static_cast<std::size_t>(azimuths));
+  }
+
+  [[nodiscard]] int azimuths() const noexcept { return static_cast<int>(excluded_.size()); }
+
+  /// Excludes the ranges from `near_m` to `far_m` in the directions clockwise from
+  /// `from_azimuth_rad` to `to_azimuth_rad`; a whole turn where these are a turn apart. Throws
+  /// `std::invalid_argument` for ranges that are negative or not in order, for azimuths that are
+  /// not finite, and when the mask has no directions.
+  void exclude_sector(double from_azimuth_rad, double to_azimuth_rad, double near_m, double far_m) {
+    require_directions();
+    require_finite("from_azimuth_rad", from_azimuth_rad);
+    require_finite("to_azimuth_rad", to_azimuth_rad);
+    require_not_negative("near_m", near_m);
+    require(far_m > near_m, "far_m", "above near_m", far_m);
+    const double turn = 2 * kPi<double>;
+    const bool whole = std::fabs(to_azimuth_rad - from_azimuth_rad) >= turn - 1e-9;
+    const double width = whole ? turn : compass_angle(to_azimuth_rad - from_azimuth_rad);
+    const double from = compass_angle(from_azimuth_rad);
+    const int first = static_cast<int>(from / step());
+    const int last = static_cast<int>((from + width) / step() - 1e-9);
+    for (int row = first; row <= std::min(last, first + azimuths() - 1); ++row)
+      exclude(row % azimuths(), {near_m, far_m});
+  }
+
+  /// Excludes the inside of a polygon with corners [north, east] in m from the antenna, which may
+  /// lie inside. Directions are tried at their middles. Throws `std::invalid_argument` for fewer
+  /// than 3 corners, corners that are not finite, and when the mask has no directions.
+  void exclude_polygon(std::span<const Vec<double, 2>> corners_m) {
+    require_directions();
+    require(corners_m.size() >= 3, "corners_m", "3 or more corners",
+            static_cast<double>(corners_m.size()));
+    for (const auto& corner : corners_m) {
+      require_finite("corners_m", corner[0]);
+      require_finite("corners_m", corner[1]);
+    }
+    std::vector<double> shore_m;
+    for (int row = 0; row < azimuths(); ++row) {
+      crossings(corners_m, (row + 0.5) * step(), shore_m);
+      for (std::size_t k = 0; k + 1 < shore_m.size(); k += 2)
+        exclude(row, {shore_m[k], shore_m[k + 1]});
+    }
+  }
+
+  /// Whether a place is excluded.
+  [[nodiscard]] bool excludes(double azimuth_rad, double range_m) const noexcept {
+    if (excluded_.empty() || !std::isfinite(azimuth_rad)) return false;
+    return std::ranges::any_of(excluded_[row_of(azimuth_rad)], [&](const Ranges& ranges) {
+      return ranges.near_m <= range_m && range_m < ranges.far_m;
+    });
+  }
+
+  /// Lifts the thresholds of excluded cells to where no amplitude exceeds them.
+  template <class Amplitude>
+  void lift(const Sweep<Amplitude>& sweep, std::span<Amplitude> threshold) const noexcept {
+    if (excluded_.empty()) return;
+    const double cells = static_cast<double>(threshold.size());
+    const auto cell = [&](double range_m) noexcept {
+      return std::clamp((range_m - sweep.start_range_m) / sweep.cell_m, 0.0, cells);
+    };
+    for (const Ranges& ranges : excluded_[row_of(sweep.azimuth_rad)]) {
+      const auto first = static_cast<std::size_t>(cell(ranges.near_m));
+      const auto last = static_cast<std::size_t>(std::ceil(cell(ranges.far_m)));
+      for (std::size_t i = first; i < last; ++i)
+        threshold[i] = std::numeric_limits<Amplitude>::max();
+    }
+  }
+
+ private:
+  struct Ranges {
+    double near_m;
+    double far_m;
+  };
+
+  void require_directions() const {
+    require(!excluded_.empty(), "azimuths", "1 to 65536 to exclude an area", 0);
+  }
+
+  [[nodiscard]] double step() const noexcept { return 2 * kPi<double> / azimuths(); }
+
+  [[nodiscard]] std::size_t row_of(double azimuth_rad) const noexcept {
+    return std::min(static_cast<std::size_t>(compass_angle(azimuth_rad) / step()),
+                    excluded_.size() - 1);
+  }
+
+  /// Takes ranges in, joined with those that they meet.
+  void exclude(int row, Ranges added) {
+    auto& list = excluded_[static_cast<std::size_t>(row)];
+    std::erase_if(list, [&](const Ranges& known) {
+      if (known.far_m < added.near_m || added.far_m < known.near_m) return false;
+      added = {std::min(known.near_m, added.near_m), std::max(known.far_m, added.far_m)};
+      return true;
+    });
+    list.push_back(added);
+  }
+
+  /// The ranges at which a ray from the antenna crosses the polygon, in order; from 0 when the
+  /// antenna is inside.
+  static void crossings(std::span<const Vec<double, 2>> corners_m, double azimuth_rad,
+                        std::vector<double>& ranges_m) {
+    const Vec<double, 2> ray(std::cos(azimuth_rad), std::sin(azimuth_rad));
+    const auto right_of_ray = [&](const Vec<double, 2>& p) {
+      return ray[0] * p[1] - ray[1] * p[0];
+    };
+    ranges_m.clear();
+    for (std::size_t k = 0; k < corners_m.size(); ++k) {
+      const Vec<double, 2>& from = corners_m[k];
+      const Vec<double, 2>& to = corners_m[(k + 1) % corners_m.size()];
+      const double a = right_of_ray(from);
+      const double b = right_of_ray(to);
+      if ((a >= 0) == (b >= 0)) continue;
+      const double range_m = ray.dot(from + a / (a - b) * (to - from));
+      if (range_m > 0) ranges_m.push_back(range_m);
+    }
+    if (ranges_m.size() % 2 == 1) ranges_m.push_back(0.0);
+    std::ranges::sort(ranges_m);
+  }
+
+  std::vector<std::vector<Ranges>> excluded_;
+};
+
+}  // namespace wakeline

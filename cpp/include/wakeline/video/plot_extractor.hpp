@@ -1,0 +1,335 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "wakeline/core/amplitude_image.hpp"
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/require.hpp"
+#include "wakeline/video/cfar.hpp"
+#include "wakeline/video/land_mask.hpp"
+#include "wakeline/video/open_echoes.hpp"
+#include "wakeline/video/runs.hpp"
+#include "wakeline/video/static_clutter_map.hpp"
+#include "wakeline/video/sweep.hpp"
+#include "wakeline/video/video_plot.hpp"
+
+namespace wakeline {
+
+struct PlotExtractorSettings {
+  CfarSettings cfar = {};
+  int max_sweep_cells = 4096;       ///< longer sweeps are refused
+  int gap_cells = 0;                ///< that may be missing within an echo, along range
+  int gap_sweeps = 0;               ///< that may be missing within an echo
+  int min_cells = 2;                ///< smaller echoes give no plot
+  int max_cells = 100'000'000;      ///< larger echoes give no plot
+  double max_range_extent_m = 1e6;  ///< longer echoes give no plot
+  double max_bearing_extent_rad = 2 * kPi<double>;  ///< wider echoes give no plot
+  int max_sweeps = 1024;  ///< an echo is closed after so many, and what follows is another one
+  /// Each turn is a picture of its own: echoes of its first sweeps wait for the last ones and are
+  /// joined with them. Without, turns follow each other without a seam. `max_sweeps` does not
+  /// apply.
+  bool closed_circle = false;
+
+  void validate() const {
+    cfar.validate();
+    require(max_sweep_cells >= 1 && max_sweep_cells <= 65536, "max_sweep_cells", "1 to 65536",
+            max_sweep_cells);
+    require(gap_cells >= 0 && gap_cells <= 64, "gap_cells", "0 to 64", gap_cells);
+    require(gap_sweeps >= 0 && gap_sweeps <= 8, "gap_sweeps", "0 to 8", gap_sweeps);
+    require(min_cells >= 1, "min_cells", "1 or more", min_cells);
+    require(max_cells >= min_cells, "max_cells", "not less than min_cells", max_cells);
+    require_positive("max_range_extent_m", max_range_extent_m);
+    require_positive("max_bearing_extent_rad", max_bearing_extent_rad);
+    require(max_sweeps >= 1, "max_sweeps", "1 or more", max_sweeps);
+  }
+};
+
+/// What became of a sweep.
+enum class SweepStatus : std::uint8_t {
+  kOk = 0,
+  kGap = 1,              ///< used; sweeps before it are missing: open echoes were closed
+  kReversed = 2,         ///< used; the antenna went back: open echoes were closed
+  kGeometryChanged = 3,  ///< used; other start range or cell length: open echoes were closed
+  kRepeated = 4,         ///< refused: it stands where the last one stood
+  kTooLong = 5,          ///< refused: more cells than `max_sweep_cells`
+  kInvalid = 6,          ///< refused: see `Sweep::valid`
+};
+
+[[nodiscard]] constexpr bool refused(SweepStatus status) noexcept {
+  return status >= SweepStatus::kRepeated;
+}
+
+/// The status in words, for messages and logs.
+constexpr const char* to_string(SweepStatus status) noexcept {
+  switch (status) {
+    case SweepStatus::kOk:
+      return "ok";
+    case SweepStatus::kGap:
+      return "sweeps are missing before it";
+    case SweepStatus::kReversed:
+      return "the antenna went back";
+    case SweepStatus::kGeometryChanged:
+      return "start range or cell length changed";
+    case SweepStatus::kRepeated:
+      return "refused: the same azimuth again";
+    case SweepStatus::kTooLong:
+      return "refused: too many cells";
+    case SweepStatus::kInvalid:
+      return "refused: not a radar's sweep";
+  }
+  return "unknown";
+}
+
+/// What has happened since the extractor was built.
+struct ExtractionCounts {
+  std::int64_t sweeps = 0;  ///< used
+  std::int64_t gaps = 0;
+  std::int64_t reversals = 0;
+  std::int64_t geometry_changes = 0;
+  std::int64_t repeated = 0;
+  std::int64_t too_long = 0;
+  std::int64_t invalid = 0;
+  std::int64_t plots = 0;
+  std::int64_t too_small = 0;  ///< echoes, as are the next
+  std::int64_t too_large = 0;
+  std::int64_t cut = 0;  ///< plots that may be parts of echoes
+};
+
+/// Sweeps in, plots out as soon as their echo is over.
+///
+///     threshold (Cfar, StaticClutterMap, LandMask) -> runs of cells above -> echoes -> VideoPlot
+///
+/// Sweeps come one after the other clockwise, `azimuth_width_rad` apart, turn after turn; north is
+/// a direction as any other. Two cells are of one echo when they are next to each other, also
+/// across a corner, or no more than `gap_cells` and `gap_sweeps` lie between. An echo is over when
+/// `gap_sweeps` + 1 sweeps have not touched it.
+///
+/// Sweeps are missing where an azimuth is more than 1.5 widths from the last: so many widths as
+/// `gap_sweeps` pass as empty sweeps, more close the open echoes, as does a step back of the
+/// antenna and a change of start range or cell length. A sweep at the azimuth of the last one (by
+/// a thousandth of its width) is refused, and so is one that makes no sense; it is as if it had
+/// not come. A sweep of zeros has no detections, and neither has one that is saturated all along,
+/// for none of its cells exceeds the others.
+///
+/// All memory is taken at construction. A picture of any content needs no more, whatever the
+/// number and size of its echoes.
+template <class Amplitude = std::uint8_t>
+class PlotExtractor {
+ public:
+  /// Throws `std::invalid_argument` for settings that make no sense.
+  explicit PlotExtractor(const PlotExtractorSettings& settings, LandMask land = {},
+                         StaticClutterMap clutter = {})
+      : settings_((settings.validate(), settings)),
+        cfar_(settings.cfar, settings.max_sweep_cells),
+        land_(std::move(land)),
+        clutter_(std::move(clutter)),
+        echoes_({.max_cells = settings.max_sweep_cells,
+                 .gap_cells = settings.gap_cells,
+                 .gap_sweeps = settings.gap_sweeps,
+                 .max_sweeps = settings.max_sweeps,
+                 .closed_circle = settings.closed_circle}) {
+    threshold_.resize(static_cast<std::size_t>(settings.max_sweep_cells));
+    plots_.reserve(2 * echoes_.capacity());
+  }
+
+  [[nodiscard]] const PlotExtractorSettings& settings() const noexcept { return settings_; }
+  [[nodiscard]] const ExtractionCounts& counts() const noexcept { return counts_; }
+  [[nodiscard]] const StaticClutterMap& clutter() const noexcept { return clutter_; }
+  [[nodiscard]] const LandMask& land() const noexcept { return land_; }
+
+  /// Other areas from the next sweep on. Frees and takes memory.
+  void set_land(LandMask land) noexcept { land_ = std::move(land); }
+
+  /// What became of the last sweep.
+  [[nodiscard]] SweepStatus status() const noexcept { return status_; }
+
+  /// Echoes that are not over yet.
+  [[nodiscard]] std::size_t open_echoes() const noexcept { return echoes_.open(); }
+
+  /// Takes a sweep; gives the plots of the echoes that are over with it, until the next call.
+  std::span<const VideoPlot> process(const Sweep<Amplitude>& sweep) noexcept {
+    plots_.clear();
+    status_ = admit(sweep);
+    if (refused(status_)) return plots_;
+    ++counts_.sweeps;
+    const bool first = !running_ || status_ == SweepStatus::kGap;
+    remember(sweep);
+    find_thresholds(sweep);
+    echoes_.begin_sweep({compass_angle(sweep.azimuth_rad), sweep.azimuth_width_rad, sweep.time_s},
+                        first);
+    connect(sweep.amplitude);
+    echoes_.end_sweep(report());
+    return plots_;
+  }
+
+  /// No sweep will follow: gives the plots of all open echoes. Then the extractor is ready for
+  /// other sweeps, with the counts and the clutter map that it has.
+  std::span<const VideoPlot> finish() noexcept {
+    plots_.clear();
+    close_all();
+    return plots_;
+  }
+
+ private:
+  static constexpr double kTurn = 2 * kPi<double>;
+  static constexpr double kSameAzimuth = 1e-3;  // widths
+
+  [[nodiscard]] auto report() noexcept {
+    return [this](const detail::Echo& echo) noexcept { report_echo(echo); };
+  }
+
+  void report_echo(const detail::Echo& echo) noexcept {
+    if (echo.cells < settings_.min_cells) {
+      ++counts_.too_small;
+      return;
+    }
+    const VideoPlot plot = echo.plot(start_range_m_, cell_m_);
+    if (plot.cells > settings_.max_cells || plot.range_extent_m > settings_.max_range_extent_m ||
+        plot.bearing_extent_rad > settings_.max_bearing_extent_rad) {
+      ++counts_.too_large;
+      return;
+    }
+    ++counts_.plots;
+    counts_.cut += plot.cut;
+    plots_.push_back(plot);
+  }
+
+  // Where the beam goes ---------------------------------------------------------------------------
+
+  [[nodiscard]] SweepStatus admit(const Sweep<Amplitude>& sweep) noexcept {
+    if (!sweep.valid()) return ++counts_.invalid, SweepStatus::kInvalid;
+    if (sweep.amplitude.size() > threshold_.size())
+      return ++counts_.too_long, SweepStatus::kTooLong;
+    if (!running_) return SweepStatus::kOk;
+    const double step = wrap_angle(sweep.azimuth_rad - azimuth_rad_) / sweep.azimuth_width_rad;
+    if (std::fabs(step) <= kSameAzimuth) return ++counts_.repeated, SweepStatus::kRepeated;
+    if (sweep.start_range_m != start_range_m_ || sweep.cell_m != cell_m_) {
+      close_all();
+      return ++counts_.geometry_changes, SweepStatus::kGeometryChanged;
+    }
+    if (step < 0.0) {
+      close_all();
+      return ++counts_.reversals, SweepStatus::kReversed;
+    }
+    if (settings_.closed_circle && turned_rad_ + (step + 0.5) * sweep.azimuth_width_rad > kTurn)
+      close_all();
+    return move_on(sweep, step);
+  }
+
+  /// Lets missing sweeps pass.
+  [[nodiscard]] SweepStatus move_on(const Sweep<Amplitude>& sweep, double step) noexcept {
+    if (!running_) return SweepStatus::kOk;
+    if (compass_angle(sweep.azimuth_rad) < compass_angle(azimuth_rad_)) echoes_.pass_north();
+    const double missing = missing_in(step);
+    if (missing > settings_.gap_sweeps) {
+      echoes_.interrupt(report());
+      return ++counts_.gaps, SweepStatus::kGap;
+    }
+    for (int k = 0; k < static_cast<int>(missing); ++k) echoes_.skip_sweep(report());
+    return SweepStatus::kOk;
+  }
+
+  /// Sweeps that are missing within a step of so many widths.
+  [[nodiscard]] static double missing_in(double step) noexcept {
+    return std::max(std::ceil(step - 0.5) - 1.0, 0.0);
+  }
+
+  void remember(const Sweep<Amplitude>& sweep) noexcept {
+    turned_rad_ = running_ ? turned_rad_ + compass_angle(sweep.azimuth_rad - azimuth_rad_) : 0.0;
+    azimuth_rad_ = sweep.azimuth_rad;
+    width_rad_ = sweep.azimuth_width_rad;
+    start_range_m_ = sweep.start_range_m;
+    cell_m_ = sweep.cell_m;
+    running_ = true;
+  }
+
+  void close_all() noexcept {
+    const double missing = missing_in((kTurn - turned_rad_) / width_rad_);
+    echoes_.finish(missing <= settings_.gap_sweeps ? static_cast<int>(missing) : -1, report());
+    running_ = false;
+  }
+
+  // What it sees ----------------------------------------------------------------------------------
+
+  void find_thresholds(const Sweep<Amplitude>& sweep) noexcept {
+    const std::span<Amplitude> threshold(threshold_.data(), sweep.amplitude.size());
+    cfar_.thresholds(sweep.amplitude, threshold);
+    clutter_.lift_and_learn(sweep, threshold);
+    land_.lift(sweep, threshold);
+  }
+
+  void connect(std::span<const Amplitude> amplitude) noexcept {
+    const Amplitude* threshold = threshold_.data();
+    const int last_cell = static_cast<int>(amplitude.size()) - 1;
+    if (settings_.gap_cells == 0) {
+      detail::for_each_run(amplitude, threshold, [&](int first, int last) noexcept {
+        echoes_.add(detail::add_up<Amplitude>(amplitude.data(), nullptr, first, last),
+                    last == last_cell);
+      });
+      return;
+    }
+    int from = -1;
+    int to = -1;
+    const auto add = [&]() noexcept {
+      if (from >= 0)
+        echoes_.add(detail::add_up(amplitude.data(), threshold, from, to), to == last_cell);
+    };
+    detail::for_each_run(amplitude, threshold, [&](int first, int last) noexcept {
+      if (from < 0 || first - to - 1 > settings_.gap_cells) {
+        add();
+        from = first;
+      }
+      to = last;
+    });
+    add();
+  }
+
+  PlotExtractorSettings settings_;
+  Cfar<Amplitude> cfar_;
+  LandMask land_;
+  StaticClutterMap clutter_;
+  detail::OpenEchoes echoes_;
+  std::vector<Amplitude> threshold_;
+  std::vector<VideoPlot> plots_;
+  ExtractionCounts counts_;
+  SweepStatus status_ = SweepStatus::kOk;
+  bool running_ = false;     ///< a sweep came before
+  double turned_rad_ = 0.0;  ///< since the first one
+  double azimuth_rad_ = 0.0;
+  double width_rad_ = 1.0;
+  double start_range_m_ = 0.0;
+  double cell_m_ = 1.0;
+};
+
+/// The plots of a picture, all taken at one time. A full circle is closed: an echo across its seam
+/// gives one plot. Allocates; throws `std::invalid_argument` for settings that make no sense.
+template <class Amplitude>
+[[nodiscard]] std::vector<VideoPlot> extract_plots(const AmplitudeImage<Amplitude>& image,
+                                                   PlotExtractorSettings settings,
+                                                   double time_s = 0.0, LandMask land = {}) {
+  settings.max_sweep_cells = image.cells;
+  settings.closed_circle = image.full_circle();
+  PlotExtractor<Amplitude> extractor(settings, std::move(land));
+  std::vector<VideoPlot> plots;
+  const auto keep = [&](std::span<const VideoPlot> closed) {
+    plots.insert(plots.end(), closed.begin(), closed.end());
+  };
+  for (int k = 0; k < image.sweeps; ++k)
+    keep(extractor.process({.time_s = time_s,
+                            .azimuth_rad = image.azimuth_rad(k),
+                            .azimuth_width_rad = image.azimuth_step_rad,
+                            .start_range_m = image.start_range_m,
+                            .cell_m = image.cell_m,
+                            .amplitude = image.row(k)}));
+  keep(extractor.finish());
+  return plots;
+}
+
+}  // namespace wakeline

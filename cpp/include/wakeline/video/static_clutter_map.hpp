@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/require.hpp"
+#include "wakeline/video/sweep.hpp"
+
+namespace wakeline {
+
+/// What always stands there: the mean amplitude m of each cell of azimuth and range, with a memory
+/// that fades with the time constant T,
+///
+///     m += (1 - exp(-dt / T)) (a - m),    dt since this azimuth was last seen, m = 0 at first;
+///
+/// a cell must exceed `factor` * m. So land and buoys vanish after T ln(factor / (factor - 1)), and
+/// so does a ship that stays as long: choose T well above the time in which the slowest ship of
+/// interest moves by her own echo (200 m at 1 m/s: 200 s), and well below the hours in which the
+/// tide changes the picture.
+///
+/// One built by default is empty and does nothing. When start range or cell length change, what
+/// has been learned is forgotten.
+class StaticClutterMap {
+ public:
+  StaticClutterMap() = default;
+
+  /// `azimuths` rows in a turn and `cells` of range; cells of sweeps beyond are left alone. Takes
+  /// all memory that is ever needed, 4 bytes a cell. Throws `std::invalid_argument` for sizes,
+  /// times and factors that make no sense.
+  StaticClutterMap(int azimuths, int cells, double time_constant_s, double factor = 1.5)
+      : cells_(static_cast<std::size_t>(cells)),
+        time_constant_s_(time_constant_s),
+        factor_(static_cast<float>(factor)) {
+    require(azimuths >= 1 && azimuths <= 65536, "azimuths", "1 to 65536", azimuths);
+    require(cells >= 1 && cells <= 65536, "cells", "1 to 65536", cells);
+    require_positive("time_constant_s", time_constant_s);
+    require(factor >= 1.0 && factor <= 1000.0, "factor", "1 to 1000", factor);
+    seen_s_.resize(static_cast<std::size_t>(azimuths), kNever);
+    mean_.resize(seen_s_.size() * cells_, 0.0f);
+  }
+
+  [[nodiscard]] bool enabled() const noexcept { return !mean_.empty(); }
+  [[nodiscard]] int azimuths() const noexcept { return static_cast<int>(seen_s_.size()); }
+  [[nodiscard]] int cells() const noexcept { return static_cast<int>(cells_); }
+
+  /// Mean amplitudes (azimuths, cells), row-major.
+  [[nodiscard]] std::span<const float> mean() const noexcept { return mean_; }
+
+  void clear() noexcept {
+    std::ranges::fill(mean_, 0.0f);
+    std::ranges::fill(seen_s_, kNever);
+  }
+
+  /// Lifts thresholds to what always stands there, and then learns the sweep.
+  template <class Amplitude>
+  void lift_and_learn(const Sweep<Amplitude>& sweep, std::span<Amplitude> threshold) noexcept {
+    if (!enabled()) return;
+    if (sweep.start_range_m != start_range_m_ || sweep.cell_m != cell_m_) {
+      clear();
+      start_range_m_ = sweep.start_range_m;
+      cell_m_ = sweep.cell_m;
+    }
+    const std::size_t row = row_of(sweep.azimuth_rad);
+    constexpr auto kMost = static_cast<float>(std::numeric_limits<Amplitude>::max());
+    const float gain = gain_at(row, sweep.time_s);
+    const float factor = factor_;
+    const std::size_t cells = std::min(cells_, sweep.amplitude.size());
+    const Amplitude* __restrict a = sweep.amplitude.data();
+    Amplitude* __restrict t = threshold.data();
+    float* __restrict m = mean_.data() + row * cells_;
+    for (std::size_t i = 0; i < cells; ++i) {
+      const auto level = static_cast<Amplitude>(static_cast<int>(std::min(factor * m[i], kMost)));
+      t[i] = std::max(t[i], level);
+      m[i] += gain * (static_cast<float>(a[i]) - m[i]);
+    }
+  }
+
+ private:
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] std::size_t row_of(double azimuth_rad) const noexcept {
+    const double row = compass_angle(azimuth_rad) / (2 * kPi<double>)*azimuths();
+    return std::min(static_cast<std::size_t>(row), seen_s_.size() - 1);
+  }
+
+  /// Share of the new amplitude in the mean of a row; none at first, or when time
+  /// stands still or runs back.
+  [[nodiscard]] float gain_at(std::size_t row, double time_s) noexcept {
+    const double since_s = seen_s_[row] == kNever ? 0.0 : time_s - seen_s_[row];
+    seen_s_[row] = time_s;
+    return static_cast<float>(1.0 - std::exp(-std::max(since_s, 0.0) / time_constant_s_));
+  }
+
+  std::size_t cells_ = 0;
+  double time_constant_s_ = 0.0;
+  float factor_ = 1.0f;
+  double start_range_m_ = -1.0;
+  double cell_m_ = 0.0;
+  std::vector<double> seen_s_;  ///< by azimuth
+  std::vector<float> mean_;
+};
+
+}  // namespace wakeline
