@@ -63,8 +63,7 @@ class RadarVideoSimulator:
     snr_db, reference_range_m : float
         Power of one square metre at that range; clutter is told at the same range.
     noise_rms : float
-        Root mean square of the noise's amplitude, in counts; 0 for a receiver without noise is not
-        possible: choose a small one.
+        Root mean square of the noise's amplitude, in counts; above 0 and below full scale.
     bits : int
         8 or 16.
     receiver : str
