@@ -52,11 +52,13 @@ void define_core(py::module_& m);
 void define_motion(py::module_& m);
 void define_measurement(py::module_& m);
 void define_filter(py::module_& m);
+void define_alpha_beta(py::module_& filter);
 void define_multimodel(py::module_& m);
 void define_gating(py::module_& m);
 void define_association(py::module_& m);
 void define_track(py::module_& m);
 void define_eval(py::module_& m);
 void define_video(py::module_& m);
+void define_video_asterix(py::module_& video);
 
 }  // namespace wakeline::python

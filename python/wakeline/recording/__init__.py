@@ -11,6 +11,7 @@ from __future__ import annotations
 from importlib import resources
 
 from .ais_csv import AisRecording, AisTrack, read_ais
+from .asterix_video import VideoReport, is_video, read_video, write_video
 from .errors import RecordingError
 from .files import replacing
 from .local_plane import LocalPlane
@@ -32,14 +33,18 @@ __all__ = [
     "Scan",
     "TargetTruth",
     "Tracks",
+    "VideoReport",
+    "is_video",
     "load",
     "load_ais",
     "names",
     "read_ais",
     "read_plots",
     "read_tracks",
+    "read_video",
     "replacing",
     "write_tracks",
+    "write_video",
 ]
 
 

@@ -1,4 +1,4 @@
-"""The one error a reader raises: file, line, column, what was wanted, what came."""
+"""The one error a reader raises: file, line and column or octet, what was wanted, what came."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ class RecordingError(ValueError):
         Line of the file, 1 for the header.
     column : str, optional
         Name of the column as it stands in the file.
+    offset : int, optional
+        Octets before the place at fault, in a file that is not text.
     wanted, got : str, optional
         What a correct file holds there and what this file holds.
 
@@ -31,6 +33,7 @@ class RecordingError(ValueError):
         *,
         line: int | None = None,
         column: str | None = None,
+        offset: int | None = None,
         wanted: str | None = None,
         got: str | None = None,
     ) -> None:
@@ -38,13 +41,14 @@ class RecordingError(ValueError):
         self.problem = problem
         self.line = line
         self.column = column
+        self.offset = offset
         self.wanted = wanted
         self.got = got
         super().__init__(self._sentence())
 
     def __reduce__(self):
-        places = {"line": self.line, "column": self.column, "wanted": self.wanted, "got": self.got}
-        return _rebuild, (self.path, self.problem, places)
+        names = ("line", "column", "offset", "wanted", "got")
+        return _rebuild, (self.path, self.problem, {name: getattr(self, name) for name in names})
 
     def _sentence(self) -> str:
         place = [str(self.path)]
@@ -52,6 +56,8 @@ class RecordingError(ValueError):
             place.append(f"line {self.line}")
         if self.column is not None:
             place.append(f"column {self.column}")
+        if self.offset is not None:
+            place.append(f"octet {self.offset}")
         sentence = f"{', '.join(place)}: {self.problem}"
         if self.wanted is not None:
             sentence += f"; wanted {self.wanted}"

@@ -51,9 +51,7 @@ class RadarVideo:
         for name in ("azimuth_rad", "time_s"):
             values = np.ascontiguousarray(getattr(self, name), dtype=float)
             if values.shape != (len(amplitude),):
-                raise ValueError(
-                    f"{name} must have shape ({len(amplitude)},), got {values.shape}"
-                )
+                raise ValueError(f"{name} must have shape ({len(amplitude)},), got {values.shape}")
             object.__setattr__(self, name, values)
         if not 0 < self.azimuth_width_rad < np.pi:
             raise ValueError(

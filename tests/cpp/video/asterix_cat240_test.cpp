@@ -394,8 +394,11 @@ TEST(Cat240, Says_why_a_sweep_cannot_be_written) {
   EXPECT_EQ(outcome([&](S& s) { s.azimuth_rad = 1e9; }), Cat240Written::kNoSweep);
   EXPECT_EQ(outcome([&](S& s) { s.azimuth_width_rad = kPi<double>; }), Cat240Written::kNoSweep);
   EXPECT_EQ(outcome([&](S& s) { s.cell_m = 1e-8; }), Cat240Written::kCellLength);
-  EXPECT_EQ(outcome([&](S& s) { s.cell_m = 1e9; }), Cat240Written::kCellLength);
-  EXPECT_EQ(outcome([&](S& s) { s.start_range_m = 1e12; }), Cat240Written::kStartRange);
+  const auto far = [](S& s) {
+    s.cell_m = 0.1;
+    s.start_range_m = 9e8;
+  };
+  EXPECT_EQ(outcome(far), Cat240Written::kStartRange);
   const Sweep<std::uint8_t> sweep = sweep_of(amplitude);
   const auto small =
       Sweep<std::uint8_t>{sweep.time_s,        sweep.azimuth_rad, sweep.azimuth_width_rad,

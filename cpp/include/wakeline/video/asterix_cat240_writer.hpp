@@ -19,7 +19,7 @@ enum class Cat240Written : std::uint8_t {
   kOk = 0,
   kNoSweep = 1,       ///< not a radar's: see `Sweep::valid`; or half a turn wide and more
   kTooManyCells = 2,  ///< beyond `Cat240Writer::max_cells`
-  kCellLength = 3,    ///< the cells are shorter than 0.1 micrometres or longer than 643000 km
+  kCellLength = 3,    ///< the cells are shorter than 75 nm
   kStartRange = 4,    ///< begins 2^32 cells from the antenna or more
   kNoRoom = 5,        ///< `out` is too small
   kTextTooLong = 6,   ///< a summary of more than 255 characters
@@ -73,8 +73,7 @@ class Cat240Writer {
   noexcept {
     using namespace cat240;
     begin(out);
-    if (!sweep.valid() || sweep.azimuth_width_rad >= kWidest || std::abs(sweep.azimuth_rad) > kFar)
-      return Cat240Written::kNoSweep;
+    if (!sweep.valid() || sweep.azimuth_width_rad >= kWidest) return Cat240Written::kNoSweep;
     if (sweep.amplitude.size() > max_cells<Amplitude>()) return Cat240Written::kTooManyCells;
     const Duration duration = Duration::of(sweep.cell_m);
     if (duration.count == 0) return Cat240Written::kCellLength;
@@ -120,7 +119,6 @@ class Cat240Writer {
 
  private:
   static constexpr double kWidest = kPi<double> - 2e-4;  ///< rounded, still less than half a turn
-  static constexpr double kFar = 1e6;  ///< rad; beyond it a step is no longer told from the next
 
   /// A cell's duration in the unit that tells it best.
   struct Duration {
@@ -132,7 +130,6 @@ class Cat240Writer {
       constexpr double most = 0xFFFFFFFFu;
       const double femtos = std::round(cell_m / kFemtosecondRange);
       const double nanos = std::round(femtos / kFemtosPerNano);
-      if (nanos > most) return {};
       if (femtos > most || femtos == nanos * kFemtosPerNano)
         return {static_cast<std::uint64_t>(nanos), true};
       return {static_cast<std::uint64_t>(femtos), false};

@@ -1,0 +1,465 @@
+"""Recorded radar video: files of ASTERIX category 240, read turn by turn and written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wakeline._engine.video import Cat240Decoder, Cat240Encoder, Cat240Sweeps
+
+from .errors import RecordingError
+from .files import replacing
+from .video import RadarVideo
+
+_PIECE = 1 << 22  # octets read at once
+_HEAD = 1 << 19  # octets that tell what a file is
+_MOST = 1 << 27  # octets of amplitudes in a block
+_TURN = 2 * math.pi
+_STEP = _TURN / 65536  # of azimuth, as the format counts it
+_LATE = 64  # messages; a sender that goes back further has begun anew
+_SEQUENCES = 1 << 32
+_HELD_S = 1.0
+_PAUSE_S = 60.0
+
+
+@dataclass
+class VideoReport:
+    """What a reader met beside the sweeps it gave; filled while it reads.
+
+    Attributes
+    ----------
+    sweeps : int
+        Given.
+    source : (int, int) or None
+        Area and system code (SAC, SIC) of the radar that the sweeps are of.
+    summaries : list of str
+        What the sender says about its video, each text once.
+    problems : int
+        Blocks and records that cannot be read.
+    first_problem : RecordingError or None
+        The first of them.
+    skipped_octets : int
+        Passed over because of damage.
+    other_blocks : int
+        Blocks of other categories.
+    other_source : int
+        Sweeps of other radars.
+    missing : int
+        Sweeps that the sender's count says are not there.
+    repeated, late : int
+        Sweeps left out: again the one before, or after one that was sent later.
+    untimed : int
+        Sweeps left out, without a time of day.
+    held : int
+        Sweeps whose time goes back by less than a second; they get the time of the one before.
+    time_jumps : int
+        Times that go back further, or on by more than a minute.
+    reversals : int
+        Changes of the way the antenna turns.
+    """
+
+    sweeps: int = 0
+    source: tuple[int, int] | None = None
+    summaries: list[str] = field(default_factory=list)
+    problems: int = 0
+    first_problem: RecordingError | None = None
+    skipped_octets: int = 0
+    other_blocks: int = 0
+    other_source: int = 0
+    missing: int = 0
+    repeated: int = 0
+    late: int = 0
+    untimed: int = 0
+    held: int = 0
+    time_jumps: int = 0
+    reversals: int = 0
+
+    @property
+    def notes(self) -> list[str]:
+        """What a user should know, a sentence each."""
+        words = [
+            (self.problems, f"records cannot be read (first: {self.first_problem})"),
+            (self.skipped_octets, "octets passed over because of damage"),
+            (self.other_source, "sweeps of other radars left out"),
+            (self.missing, "sweeps missing"),
+            (self.repeated, "sweeps that repeat the one before left out"),
+            (self.late, "sweeps that come late left out"),
+            (self.untimed, "sweeps without a time of day left out"),
+            (self.held, "sweeps whose time goes back, put to the time before"),
+            (self.time_jumps, "jumps of time"),
+            (self.reversals, "reversals of the antenna"),
+        ]
+        return [f"{count} {what}" for count, what in words if count]
+
+
+def is_video(path: str | Path) -> bool:
+    """Whether a file begins as ASTERIX radar video or has some in its first 512 KiB.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be opened.
+    """
+    with Path(path).open("rb") as file:
+        head = file.read(_HEAD)
+    begins = len(head) > 3 and head[0] == 240 and head[1:3] > b"\x00\x04" and head[3] >= 0xC0
+    found = Cat240Decoder().decode(head, last=len(head) < _HEAD)
+    return bool(begins or len(found.offset) or found.summaries)
+
+
+def read_video(
+    path: str | Path,
+    *,
+    strict: bool = False,
+    source: tuple[int, int] | None = None,
+    midnight_s: float = 0.0,
+    period_s: float | None = None,
+    report: VideoReport | None = None,
+) -> Iterator[RadarVideo]:
+    """Read recorded radar video, a block of at most a turn at a time, in bounded memory.
+
+    The file is ASTERIX category 240, data block after data block; what is read of it and what is
+    done with damage stands in ``cpp/docs/video_files.md``. A new block begins where the antenna
+    passes north, where start range, length or number of cells or the bits of a cell change, where
+    the width of sweeps changes by more than half, and where time jumps. A turn of more than 128 MiB
+    is cut. The azimuth is taken as the true bearing.
+
+    Cells of 8 bits and fewer come as ``uint8`` (fewer are scaled to full scale 255), of 16 bits as
+    ``uint16``. The width of a sweep is the mean of its block; a sender that tells none is given the
+    median step from sweep to sweep.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    strict : bool
+        Raise at the first block or record that cannot be read; else it is counted and left out.
+    source : (int, int), optional
+        Area and system code (SAC, SIC) of the radar to read; default the first in the file.
+    midnight_s : float
+        UTC seconds of the midnight before the first sweep, as a record has the time of day only.
+        Later midnights are counted.
+    period_s : float, optional
+        Time of a turn, for files without a time of day: the first sweep then has time 0.
+    report : VideoReport, optional
+        Is filled while reading.
+
+    Yields
+    ------
+    RadarVideo
+
+    Raises
+    ------
+    RecordingError
+        When the file cannot be opened or has not one sweep to give; with `strict`, at the first
+        fault. It names the file, the octet, what was wanted and what came.
+    ValueError
+        When `period_s` is not positive or `midnight_s` is not finite.
+    """
+    if period_s is not None and not (period_s > 0 and math.isfinite(period_s)):
+        raise ValueError(f"period_s must be positive, got {period_s}")
+    if not math.isfinite(midnight_s):
+        raise ValueError(f"midnight_s must be finite, got {midnight_s}")
+    report = VideoReport() if report is None else report
+    report.source = source
+    order = _Order(report, midnight_s, period_s)
+    return _blocks(Path(path), order, strict)
+
+
+def write_video(
+    path: str | Path,
+    videos: RadarVideo | Iterable[RadarVideo],
+    *,
+    source: tuple[int, int] = (0, 0),
+    summary: str = "",
+) -> None:
+    """Write radar video as ASTERIX category 240; `path` is replaced only when all is written.
+
+    Amplitudes come back as they are, azimuths to half of 360/65536 degrees, times of day to 1/256
+    s (the date is lost), cells to 75 nm (75 mm where longer than 643 m), the start range to half a
+    cell.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file to write. Its folder must exist.
+    videos : RadarVideo or iterable of RadarVideo
+        In the order of time; written as they come, one at a time.
+    source : (int, int)
+        Area and system code (SAC, SIC) of the radar.
+    summary : str
+        A text about the video, at most 255 characters of ASCII; none is written when empty.
+
+    Raises
+    ------
+    ValueError
+        When a sweep has more than 65024 cells of 8 or 32512 of 16 bits, a time or azimuth that is
+        not finite, or a length that cannot be told.
+    """
+    if not summary.isascii():
+        raise ValueError(f"summary must be ASCII, got {summary!r}")
+    if not all(0 <= code <= 255 for code in source):
+        raise ValueError(f"source must be two numbers from 0 to 255, got {source}")
+    encoder = Cat240Encoder(*source)
+    with replacing(path) as fresh, fresh.open("wb") as file:
+        if summary:
+            file.write(encoder.encode_summary(summary))
+        for video in [videos] if isinstance(videos, RadarVideo) else videos:
+            for first in range(0, len(video), 256):
+                part = video[first : first + 256]
+                file.write(
+                    encoder.encode(
+                        part.amplitude,
+                        part.azimuth_rad,
+                        part.time_s,
+                        azimuth_width_rad=part.azimuth_width_rad,
+                        start_range_m=part.start_range_m,
+                        cell_m=part.cell_m,
+                    )
+                )
+
+
+def _blocks(path: Path, order: _Order, strict: bool) -> Iterator[RadarVideo]:
+    report = order.report
+    block = _Block()
+    for sweeps in _decoded(path, report, strict):
+        for sweep, jump in order.kept(_rows(sweeps)):
+            if jump or block.ends_before(sweep):
+                yield from block.videos()
+                block = _Block()
+            block.add(sweep)
+    yield from block.videos()
+    if report.sweeps == 0:
+        raise _nothing(path, report)
+
+
+def _nothing(path: Path, report: VideoReport) -> RecordingError:
+    if report.untimed:
+        wanted, got = "I240/140, or period_s told", f"{report.untimed} sweeps without"
+        return RecordingError(path, "no sweep has a time of day", wanted=wanted, got=got)
+    got = "nothing" if report.first_problem is None else f"this: {report.first_problem}"
+    return RecordingError(path, "no radar video", wanted="sweeps of ASTERIX category 240", got=got)
+
+
+def _decoded(path: Path, report: VideoReport, strict: bool) -> Iterator[Cat240Sweeps]:
+    """The sweeps of the file, piece by piece."""
+    decoder = Cat240Decoder()
+    rest = b""
+    try:
+        with path.open("rb") as file:
+            for piece, last in _pieces(file):
+                data = rest + piece
+                sweeps = decoder.decode(data, last)
+                rest = data[sweeps.consumed :]
+                _take_note(path, sweeps, report, strict)
+                report.skipped_octets = decoder.skipped_octets
+                report.other_blocks = decoder.other_blocks
+                yield sweeps
+    except OSError as error:
+        raise RecordingError(path, f"the file cannot be read ({error.strerror})") from error
+
+
+def _pieces(file: BinaryIO) -> Iterator[tuple[bytes, bool]]:
+    """What the file holds, and with each piece whether it is the last."""
+    piece = file.read(_PIECE)
+    while True:
+        following = file.read(_PIECE)
+        yield piece, not following
+        if not following:
+            return
+        piece = following
+
+
+def _take_note(path: Path, sweeps: Cat240Sweeps, report: VideoReport, strict: bool) -> None:
+    for text in (octets.decode("ascii", "replace") for octets in sweeps.summaries):
+        if text not in report.summaries and len(report.summaries) < 100:
+            report.summaries.append(text)
+    report.problems += sweeps.problem_count
+    if sweeps.problems and report.first_problem is None:
+        offset, problem, wanted, got = sweeps.problems[0]
+        report.first_problem = RecordingError(path, problem, offset=offset, wanted=wanted, got=got)
+        if strict:
+            raise report.first_problem
+
+
+class _Sweep(NamedTuple):
+    """One sweep as it stands in the file."""
+
+    source: int
+    sequence: int
+    time_s: float
+    azimuth_rad: float
+    width_rad: float
+    geometry: tuple[float, float]
+    amplitude: NDArray
+
+    def follows(self, before: _Sweep) -> bool:
+        """Whether the two can stand in one array."""
+        now, then = self.amplitude, before.amplitude
+        return self.geometry == before.geometry and (now.shape, now.dtype) == (
+            then.shape,
+            then.dtype,
+        )
+
+
+def _rows(sweeps: Cat240Sweeps) -> Iterator[_Sweep]:
+    columns = (
+        sweeps.source,
+        sweeps.sequence,
+        sweeps.time_s,
+        sweeps.azimuth_rad,
+        sweeps.azimuth_width_rad,
+        sweeps.start_range_m,
+        sweeps.cell_m,
+        sweeps.first,
+        sweeps.cells,
+        sweeps.bits > 8,
+    )
+    octets, words = sweeps.octets, sweeps.words
+    for *told, start, cell, first, cells, wide in zip(*(c.tolist() for c in columns), strict=True):
+        amplitude = (words if wide else octets)[first : first + cells]
+        yield _Sweep(*told, (start, cell), amplitude.copy())  # lets the piece go
+
+
+class _Order:
+    """Which sweeps are kept, and when they were received."""
+
+    def __init__(self, report: VideoReport, midnight_s: float, period_s: float | None) -> None:
+        self.report = report
+        self._midnight_s = midnight_s
+        self._period_s = period_s
+        self._before: _Sweep | None = None
+        self._time_s: float | None = None
+        self._turned_rad = 0.0
+        self._sense = 0.0
+
+    def kept(self, sweeps: Iterable[_Sweep]) -> Iterator[tuple[_Sweep, bool]]:
+        """The sweeps to keep, with their absolute time, and whether time jumps before each."""
+        for sweep in sweeps:
+            if not self._is_ours(sweep) or not self._is_next(sweep):
+                continue
+            self._turn(sweep)
+            self._before = sweep
+            time_s = self._time_of(sweep)
+            if math.isnan(time_s):
+                self.report.untimed += 1
+                continue
+            time_s, jump = self._in_order(time_s)
+            self.report.sweeps += 1
+            yield sweep._replace(time_s=time_s), jump
+
+    def _is_ours(self, sweep: _Sweep) -> bool:
+        source = divmod(sweep.source, 256)
+        if self.report.source is None:
+            self.report.source = source
+        ours = self.report.source == source
+        self.report.other_source += not ours
+        return ours
+
+    def _is_next(self, sweep: _Sweep) -> bool:
+        """Whether the sender's count, where there is one, goes on."""
+        before = self._before
+        if before is None or sweep.sequence < 0 or before.sequence < 0:
+            return True
+        half = _SEQUENCES // 2
+        step = (sweep.sequence - before.sequence + half) % _SEQUENCES - half
+        if step == 0 and sweep.azimuth_rad == before.azimuth_rad and _same(sweep, before):
+            self.report.repeated += 1
+            return False
+        if -_LATE < step < 0:
+            self.report.late += 1
+            return False
+        self.report.missing += max(step - 1, 0)
+        return True
+
+    def _turn(self, sweep: _Sweep) -> None:
+        if self._before is None:
+            return
+        step = (sweep.azimuth_rad - self._before.azimuth_rad + math.pi) % _TURN - math.pi
+        self._turned_rad += step
+        self.report.reversals += step * self._sense < 0
+        self._sense = step or self._sense
+
+    def _time_of(self, sweep: _Sweep) -> float:
+        if self._period_s is not None and math.isnan(sweep.time_s):
+            return self._midnight_s + abs(self._turned_rad) / _TURN * self._period_s
+        return self._midnight_s + sweep.time_s
+
+    def _in_order(self, time_s: float) -> tuple[float, bool]:
+        before, self._time_s = self._time_s, time_s
+        if before is None:
+            return time_s, False
+        step = time_s - before
+        if -_HELD_S < step < 0:
+            self.report.held += 1
+            self._time_s = before
+            return before, False
+        jump = step < 0 or step > _PAUSE_S
+        self.report.time_jumps += jump
+        return time_s, jump
+
+
+def _same(sweep: _Sweep, before: _Sweep) -> bool:
+    """Whether both were received at the same time, as far as is told."""
+    return sweep.time_s == before.time_s or math.isnan(sweep.time_s)
+
+
+class _Block:
+    """Sweeps of one geometry, at most a turn of them."""
+
+    def __init__(self) -> None:
+        self._sweeps: list[_Sweep] = []
+        self._turned_rad = 0.0
+        self._octets = 0
+
+    def ends_before(self, sweep: _Sweep) -> bool:
+        """Whether a sweep belongs to the next block."""
+        if not self._sweeps:
+            return False
+        step_rad = abs(sweep.azimuth_rad - self._sweeps[-1].azimuth_rad)
+        return (
+            step_rad > math.pi  # passes north
+            or self._turned_rad + step_rad >= _TURN
+            or self._octets > _MOST
+            or not sweep.follows(self._sweeps[0])
+            or not self._as_wide(sweep)
+        )
+
+    def _as_wide(self, sweep: _Sweep) -> bool:
+        width_rad, first_rad = sweep.width_rad, self._sweeps[0].width_rad
+        told = width_rad > 0 and first_rad > 0
+        return not told or abs(width_rad - first_rad) <= 0.5 * first_rad + 1.5 * _STEP
+
+    def add(self, sweep: _Sweep) -> None:
+        if self._sweeps:
+            self._turned_rad += abs(sweep.azimuth_rad - self._sweeps[-1].azimuth_rad)
+        self._octets += sweep.amplitude.nbytes
+        self._sweeps.append(sweep)
+
+    def videos(self) -> Iterator[RadarVideo]:
+        """The sweeps as radar video; nothing where there are none."""
+        if not self._sweeps:
+            return
+        start_range_m, cell_m = self._sweeps[0].geometry
+        yield RadarVideo(
+            amplitude=np.stack([sweep.amplitude for sweep in self._sweeps]),
+            azimuth_rad=np.array([sweep.azimuth_rad for sweep in self._sweeps]),
+            time_s=np.array([sweep.time_s for sweep in self._sweeps]),
+            azimuth_width_rad=self._mean_width_rad(),
+            start_range_m=start_range_m,
+            cell_m=cell_m,
+        )
+
+    def _mean_width_rad(self) -> float:
+        told = np.array([sweep.width_rad for sweep in self._sweeps])
+        if told.any():
+            return float(told[told > 0].mean())
+        steps = np.abs(np.diff([sweep.azimuth_rad for sweep in self._sweeps]))
+        steps = steps[(steps > 0) & (steps < math.pi)]
+        return float(np.median(steps)) if len(steps) else _STEP

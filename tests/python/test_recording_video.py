@@ -1,0 +1,469 @@
+"""Recorded radar video: what is written comes back, and what is said about each bad file."""
+
+import pickle
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from wakeline import recording
+from wakeline.recording import RadarVideo, RecordingError, VideoReport
+
+STEP = 2 * np.pi / 65536
+CORPUS = sorted((Path(__file__).parents[1] / "fuzz" / "cat240_corpus").iterdir())
+
+
+def video(
+    sweeps=8, cells=20, *, dtype=np.uint8, start_s=100.0, azimuth_rad=None, cell_m=6.0, first=0
+):
+    """A few sweeps of a radar of 512 sweeps a turn, all amplitudes different."""
+    azimuth = np.arange(first, first + sweeps) * 2 * np.pi / 512 if azimuth_rad is None else None
+    amplitude = (np.arange(sweeps * cells).reshape(sweeps, cells) * 7 + first).astype(dtype)
+    return RadarVideo(
+        amplitude,
+        np.asarray(azimuth_rad, dtype=float) if azimuth is None else azimuth,
+        start_s + np.arange(first, first + sweeps) / 128,
+        2 * np.pi / 512,
+        0.0,
+        cell_m,
+    )
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "radar.cat240"
+
+
+def octets_of(path, videos, **settings):
+    recording.write_video(path, videos, **settings)
+    return path.read_bytes()
+
+
+def blocks_of(octets):
+    """The data blocks of a sound file."""
+    blocks = []
+    while octets:
+        (length,) = struct.unpack(">H", octets[1:3])
+        blocks.append(octets[:length])
+        octets = octets[length:]
+    return blocks
+
+
+def read(path, octets=None, **settings):
+    if octets is not None:
+        path.write_bytes(octets)
+    report = VideoReport()
+    videos = list(recording.read_video(path, report=report, **settings))
+    assert report.sweeps == sum(len(v) for v in videos)
+    return videos, report
+
+
+def amplitudes(videos):
+    return np.concatenate([v.amplitude for v in videos])
+
+
+# ------------------------------------------------------------------ what is written comes back
+
+
+@st.composite
+def videos_of_any_radar(draw):
+    sweeps, cells = draw(st.integers(1, 12)), draw(st.integers(1, 1500))
+    dtype = draw(st.sampled_from([np.uint8, np.uint16]))
+    random = np.random.default_rng(draw(st.integers(0, 1000)))
+    width = draw(st.floats(1e-3, 0.3))
+    first = draw(st.floats(0, 6))
+    return RadarVideo(
+        random.integers(0, np.iinfo(dtype).max, (sweeps, cells), dtype, endpoint=True),
+        np.mod(first + width * np.arange(sweeps), 2 * np.pi),
+        draw(st.floats(0, 86399)) + 0.01 * np.arange(sweeps),
+        width,
+        draw(st.floats(0, 20000)),
+        draw(st.floats(0.1, 2000)),
+    )
+
+
+@given(written=videos_of_any_radar())
+def test_what_is_written_comes_back(tmp_path_factory, written):
+    path = tmp_path_factory.mktemp("video") / "radar.cat240"
+    recording.write_video(path, written)
+    videos, report = read(path)
+    assert report.notes == []
+    assert np.array_equal(amplitudes(videos), written.amplitude)
+    assert amplitudes(videos).dtype == written.amplitude.dtype
+    azimuth = np.concatenate([v.azimuth_rad for v in videos])
+    off = np.mod(azimuth - written.azimuth_rad + np.pi, 2 * np.pi) - np.pi
+    assert np.abs(off).max() <= STEP / 2 + 1e-12
+    time_s = np.concatenate([v.time_s for v in videos])
+    assert np.abs(time_s - written.time_s).max() <= 1 / 256 + 1e-9
+    for block in videos:
+        assert abs(block.azimuth_width_rad - written.azimuth_width_rad) <= STEP + 1e-12
+        error_m = 7.5e-8 if written.cell_m < 643 else 0.075
+        assert abs(block.cell_m - written.cell_m) <= error_m
+        assert abs(block.start_range_m - written.start_range_m) <= 0.501 * block.cell_m
+
+
+def test_turns_are_cut_at_north_and_times_go_on_over_midnight(path):
+    written = [video(512, dtype=np.uint16, start_s=86398.0, first=k) for k in (0, 513)]
+    recording.write_video(path, iter(written), source=(25, 7), summary="harbour radar")
+    videos, report = read(path, midnight_s=1e9)
+    assert [len(v) for v in videos] == [512, 511, 1]
+    assert np.array_equal(amplitudes(videos), amplitudes(written))
+    expected = 1e9 + np.concatenate([w.time_s for w in written])
+    assert np.concatenate([v.time_s for v in videos]) == pytest.approx(expected, abs=1 / 128)
+    assert (report.source, report.summaries, report.notes) == ((25, 7), ["harbour radar"], [])
+
+
+def test_a_change_of_the_radar_begins_a_block(path):
+    parts = [
+        video(3),
+        video(3, cell_m=12.0, first=3),  # cells grow in mid-scan
+        video(3, cell_m=12.0, cells=30, first=6),
+        video(3, cell_m=12.0, cells=30, first=9, dtype=np.uint16),
+        video(3, start_s=500.0, cells=30, cell_m=12.0, first=12, dtype=np.uint16),
+    ]
+    recording.write_video(path, parts)
+    videos, report = read(path)
+    assert [v.amplitude.shape for v in videos] == [p.amplitude.shape for p in parts]
+    assert [v.cell_m for v in videos] == pytest.approx([p.cell_m for p in parts], abs=1e-7)
+    assert report.notes == ["1 jumps of time"]
+
+
+def test_a_file_of_many_pieces_is_the_same(path, monkeypatch):
+    whole = [video(512, 300, first=512 * k, start_s=100.0) for k in range(12)]
+    octets = octets_of(path, whole)
+    monkeypatch.setattr("wakeline.recording.asterix_video._PIECE", 1 << 19)
+    videos, _ = read(path)
+    assert len(octets) > 3 * (1 << 19)
+    assert [len(v) for v in videos] == [512] * 12
+    assert np.array_equal(amplitudes(videos), amplitudes(whole))
+
+
+def test_a_turn_beyond_all_measure_is_cut(path, monkeypatch):
+    monkeypatch.setattr("wakeline.recording.asterix_video._MOST", 100)
+    recording.write_video(path, video(20, 20))
+    videos, _ = read(path)
+    assert [len(v) for v in videos] == [6, 6, 6, 2]
+
+
+def test_an_antenna_that_scans_a_sector_gives_a_turn_at_most(path):
+    there = np.deg2rad(np.linspace(10, 100, 91))
+    azimuth = np.concatenate([there, there[::-1]] * 6)
+    videos, report = read(path, octets_of(path, video(len(azimuth), azimuth_rad=azimuth)))
+    assert len(videos) > 1
+    assert all(np.abs(np.diff(v.azimuth_rad)).sum() < 2 * np.pi for v in videos)
+    assert report.reversals == 11
+    assert report.notes == ["11 reversals of the antenna"]
+
+
+# ------------------------------------------------------------------ what other senders write
+
+
+def record(
+    *,
+    cells=b"\1\2\3\4",
+    resolution=4,
+    count=None,
+    azimuth=(0, 128),
+    duration_ns=100,
+    sequence=0,
+    ticks=None,
+    sac_sic=(0, 0),
+    compressed=0,
+):
+    """One data block, put together by hand."""
+    parts = -(-len(cells) // 4)
+    body = bytes([0xEB, 0xC0 if ticks is None else 0xC8, *sac_sic, 2])
+    body += struct.pack(">IHHII", sequence, *(a % 65536 for a in azimuth), 0, duration_ns)
+    body += bytes([compressed, resolution])
+    body += struct.pack(">H", len(cells))
+    body += (len(cells) if count is None else count).to_bytes(3, "big")
+    body += bytes([parts]) + cells.ljust(4 * parts, b"\0")
+    body += b"" if ticks is None else ticks.to_bytes(3, "big")
+    return b"\xf0" + struct.pack(">H", len(body) + 3) + body
+
+
+def test_small_cells_are_scaled_to_full_scale(path):
+    octets = b"".join(
+        record(cells=b"\xb1", resolution=r, count=8 >> (r - 1), ticks=0, sequence=r)
+        for r in (1, 2, 3)
+    )
+    videos, _ = read(path, octets)
+    assert [v.amplitude.tolist() for v in videos] == [
+        [[255, 0, 255, 255, 0, 0, 0, 255]],
+        [[170, 255, 0, 85]],
+        [[187, 17]],
+    ]
+
+
+def test_a_sender_that_tells_no_width_is_given_the_step(path):
+    octets = b"".join(
+        record(azimuth=(64 * k, 64 * k), sequence=k, ticks=k) for k in range(10) if k != 4
+    )
+    (block,), report = read(path, octets)
+    assert block.azimuth_width_rad == pytest.approx(64 * STEP)
+    assert report.missing == 1
+
+
+def test_a_sender_that_does_not_count_or_tell_the_time_is_read(path):
+    octets = b"".join(record(azimuth=(16 * k, 16 * k + 16)) for k in range(4096 + 1024))
+    with pytest.raises(RecordingError, match=r"no sweep has a time of day; wanted .* got 5120"):
+        read(path, octets)
+    videos, report = read(path, period_s=2.5)
+    assert [len(v) for v in videos] == [4096, 1024]
+    assert videos[1].time_s[[0, -1]] == pytest.approx([2.5, 2.5 * 5119 / 4096])
+    assert report.notes == []
+
+
+def test_an_antenna_that_turns_anticlockwise_is_read(path):
+    octets = b"".join(
+        record(azimuth=(-k * 128, -k * 128 - 128), sequence=k, ticks=k) for k in range(1024)
+    )
+    videos, report = read(path, octets)
+    assert [len(v) for v in videos] == [512, 512]
+    assert report.notes == []
+    assert all((np.diff(v.azimuth_rad) < 0).all() for v in videos)
+
+
+def test_one_radar_is_read_of_several(path):
+    octets = b"".join(
+        record(azimuth=(128 * k, 128 * k + 128), sequence=k // 2, ticks=k, sac_sic=(1, k % 2))
+        for k in range(10)
+    )
+    (first,), report = read(path, octets)
+    assert (len(first), report.source, report.other_source) == (5, (1, 0), 5)
+    (second,), report = read(path, source=(1, 1))
+    assert (len(second), report.source, report.other_source) == (5, (1, 1), 5)
+    assert second.azimuth_rad[0] > first.azimuth_rad[0]
+
+
+def test_other_categories_are_passed_over(path):
+    blocks = blocks_of(octets_of(path, video(6)))
+    octets = b"".join(b"\x30\x00\x07\xf0\x00\x01\x02" + block for block in blocks)
+    (block,), report = read(path, octets)
+    assert (len(block), report.other_blocks, report.notes) == (6, 6, [])
+
+
+# ------------------------------------------------------------------ bad files
+
+
+def test_missing_repeated_and_late_sweeps(path):
+    blocks = blocks_of(octets_of(path, video(12)))
+    order = [0, 1, 1, 2, 5, 4, 6, 6, 6, 9, 10, 11]
+    (block,), report = read(path, b"".join(blocks[k] for k in order))
+    assert np.array_equal(block.amplitude, video(12).amplitude[[0, 1, 2, 5, 6, 9, 10, 11]])
+    assert (report.missing, report.repeated, report.late) == (4, 3, 1)
+    assert report.notes == [
+        "4 sweeps missing",
+        "3 sweeps that repeat the one before left out",
+        "1 sweeps that come late left out",
+    ]
+
+
+def test_a_sender_that_begins_anew_is_followed(path):
+    octets = octets_of(path, video(200))
+    videos, report = read(path, octets + octets)
+    assert [len(v) for v in videos] == [200, 200]
+    assert (report.late, report.missing, report.time_jumps) == (0, 0, 1)
+
+
+def test_times_that_step_back_a_little_are_held(path):
+    octets = b"".join(
+        record(azimuth=(128 * k, 128 * k + 128), sequence=k, ticks=ticks)
+        for k, ticks in enumerate([100, 101, 99, 102])
+    )
+    (block,), report = read(path, octets)
+    assert (block.time_s * 128).tolist() == [100, 101, 101, 102]
+    assert report.notes == ["1 sweeps whose time goes back, put to the time before"]
+
+
+@pytest.mark.parametrize(
+    ("bad", "words"),
+    [
+        ({"compressed": 128}, "compressed; wanted cells as they are, got compressed ones"),
+        ({"resolution": 6}, "cannot be read; wanted 1 to 5 .*, got 6"),
+        ({"count": 0}, "without cells; wanted at least 1 cell, got 0"),
+        ({"count": 5}, "more cells than it holds; wanted 5 octets, got 4"),
+        ({"duration_ns": 0}, "no length; wanted at least 1 femtosecond, got 0"),
+        ({"azimuth": (0, 32768)}, "half a turn; wanted fewer than 32768 steps .*, got 32768"),
+    ],
+)
+def test_what_cannot_be_read_is_named_and_the_rest_is_read(path, bad, words):
+    good = [record(sequence=k, ticks=k, azimuth=(128 * k, 128 * k + 128)) for k in range(3)]
+    octets = good[0] + record(**{"sequence": 1, "ticks": 1} | bad) + good[2]
+    (block,), report = read(path, octets)
+    assert (len(block), report.problems) == (2, 1)
+    assert report.notes[0].startswith("1 records cannot be read (first: ")
+    with pytest.raises(RecordingError, match=words) as caught:
+        read(path, strict=True)
+    assert caught.value.offset == len(good[0]) + 3
+    assert f"radar.cat240, octet {len(good[0]) + 3}: " in str(caught.value)
+    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+
+
+def test_a_file_cut_anywhere_gives_the_whole_sweeps(path):
+    octets = octets_of(path, video(3))
+    length = len(octets) // 3
+    for size in range(length, len(octets)):
+        videos, report = read(path, octets[:size])
+        assert report.sweeps == size // length
+        assert np.array_equal(amplitudes(videos), video(3).amplitude[: size // length])
+        assert report.problems == (size % length > 0)
+    with pytest.raises(RecordingError, match=r"octet 110: .* inside .*; wanted 55 .*, got 54"):
+        read(path, octets[:-1], strict=True)
+
+
+def test_damage_costs_the_sweeps_it_hits_only(path):
+    random = np.random.default_rng(3)
+    blocks = blocks_of(octets_of(path, video(40)))
+    for _ in range(30):
+        garbage = random.integers(0, 256, random.integers(1, 400), np.uint8).tobytes()
+        _, report = read(path, b"".join(blocks[:15]) + garbage + b"".join(blocks[15:]))
+        assert report.sweeps == 40
+        assert report.problems >= 1
+        assert 0 < report.skipped_octets <= len(garbage)
+        assert any(note.endswith("octets passed over because of damage") for note in report.notes)
+
+
+@given(data=st.data(), file=st.sampled_from(CORPUS))
+def test_no_octets_upset_the_reader(tmp_path_factory, data, file):
+    octets = bytearray(file.read_bytes())
+    for _ in range(data.draw(st.integers(0, 6))):
+        at = data.draw(st.integers(0, max(len(octets) - 1, 0)))
+        octets[at : at + data.draw(st.integers(0, 3))] = data.draw(st.binary(max_size=4))
+    path = tmp_path_factory.mktemp("video") / "radar.cat240"
+    path.write_bytes(octets)
+    report = VideoReport()
+    videos = recording.read_video(path, period_s=2.5, report=report)
+    try:
+        assert sum(len(v) for v in videos) == report.sweeps > 0
+    except RecordingError:  # for want of a sweep, and for nothing else
+        assert report.sweeps == 0
+
+
+@pytest.mark.parametrize(
+    ("octets", "got"),
+    [(b"", "got nothing"), (b"time_s,north_m\n1,2\n", "got this"), (bytes(1000), "got this")],
+)
+def test_a_file_without_video_is_an_error(path, octets, got):
+    with pytest.raises(RecordingError, match="no radar video; wanted sweeps of ASTERIX") as caught:
+        read(path, octets)
+    assert got in str(caught.value)
+
+
+def test_a_file_that_is_not_there_is_an_error(path):
+    with pytest.raises(RecordingError, match="cannot be read"):
+        read(path)
+    with pytest.raises(FileNotFoundError):
+        recording.is_video(path)
+
+
+def test_what_a_reader_and_a_writer_are_told_must_make_sense(path):
+    with pytest.raises(ValueError, match="period_s must be positive, got 0"):
+        recording.read_video(path, period_s=0)
+    with pytest.raises(ValueError, match="midnight_s must be finite, got nan"):
+        recording.read_video(path, midnight_s=float("nan"))
+    with pytest.raises(ValueError, match="summary must be ASCII"):
+        recording.write_video(path, [], summary="Ærø")
+    with pytest.raises(ValueError, match="source must be two numbers from 0 to 255"):
+        recording.write_video(path, [], source=(0, 256))
+    with pytest.raises(ValueError, match="too many cells"):
+        recording.write_video(path, video(1, 65025))
+    with pytest.raises(ValueError, match="sweep 1 cannot be written: not a sweep"):
+        recording.write_video(path, video(2, azimuth_rad=[0, np.nan]))
+    assert not path.exists()  # what could not be written leaves no file
+    assert list(path.parent.iterdir()) == []
+
+
+# ------------------------------------------------------------------ telling video from tables
+
+
+def test_video_is_told_from_tables(path):
+    octets = octets_of(path, video(3))
+    told = [octets, octets[:30], b"\x30\x00\x03" + octets, bytes(99) + octets]
+    other = [b"", b"\xf0", b"time_s,north_m\n1,2\n", "🚢 time_s\n".encode(), bytes(5000)]
+    for wanted, files in ((True, told), (False, other)):
+        for content in files:
+            path.write_bytes(content)
+            assert recording.is_video(path) is wanted
+
+
+# ------------------------------------------------------------------ beside another implementation
+
+
+@pytest.fixture(scope="module")
+def oracle():
+    """Category 240 of libasterix, made from a specification written down by others."""
+    generated = pytest.importorskip("asterix.generated")
+    return pytest.importorskip("asterix.base"), generated.Cat_240_1_3
+
+
+def uint(record, item, part=None):
+    value = record.get_item(item)
+    return value.as_uint() if part is None else value.variation.get_item(part).as_uint()
+
+
+@pytest.mark.parametrize(
+    ("cells", "dtype", "item", "octets"),
+    [(20, np.uint8, "050", 4), (600, np.uint16, "051", 64), (20000, np.uint8, "052", 256)],
+)
+def test_another_implementation_reads_what_we_write(path, oracle, cells, dtype, item, octets):
+    base, spec = oracle
+    written = video(3, cells, dtype=dtype, start_s=50.0, first=100)
+    octets_of(path, written, source=(25, 7))
+    blocks = base.RawDatablock.parse(base.Bits.from_bytes(path.read_bytes()))
+    assert [block.get_category() for block in blocks] == [240] * 3
+    for k, block in enumerate(blocks):
+        (record,) = spec.cv_uap.parse(block.get_raw_records())
+        assert (uint(record, "010", "SAC"), uint(record, "010", "SIC")) == (25, 7)
+        assert (uint(record, "000"), uint(record, "020")) == (2, k)
+        assert uint(record, "041", "STARTAZ") == (100 + k) * 128 - 64
+        assert uint(record, "041", "ENDAZ") == (100 + k) * 128 + 64
+        assert uint(record, "041", "CELLDUR") == round(2 * 6.0 / 299792458 * 1e15)
+        assert uint(record, "048", "RES") == (4 if dtype == np.uint8 else 5)
+        assert uint(record, "049", "NBCELLS") == cells
+        assert uint(record, "140") == 50 * 128 + 100 + k
+        parts = record.get_item(item).variation.get_list()
+        video_octets = b"".join(part.as_uint().to_bytes(octets, "big") for part in parts)
+        assert video_octets.startswith(
+            written.amplitude[k].astype(f">u{dtype().itemsize}").tobytes()
+        )
+
+
+def test_we_read_what_another_implementation_writes(path, oracle):
+    _, spec = oracle
+    said = spec.cv_record.create(
+        {"010": (("SAC", 25), ("SIC", 7)), "000": 1, "030": list(b"harbour radar")}
+    )
+    sweeps = [
+        spec.cv_record.create(
+            {
+                "010": (("SAC", 25), ("SIC", 7)),
+                "000": 2,
+                "020": k,
+                "040": (
+                    ("STARTAZ", 65536 - 64 + 128 * k & 0xFFFF),
+                    ("ENDAZ", 64 + 128 * k),
+                    ("STARTRG", 10),
+                    ("CELLDUR", 100),
+                ),
+                "048": (("C", 0), 0, ("RES", 5)),
+                "049": (("NBVB", 6), ("NBCELLS", 3)),
+                "050": [0x00010203 + k, 0x04050000],
+                "140": 128 + k,
+            }
+        )
+        for k in range(4)
+    ]
+    octets = b"".join(
+        spec.create(records).unparse().to_bytes() for records in ([said], sweeps[:1], sweeps[1:])
+    )
+    (block,), report = read(path, octets)
+    assert (report.notes, report.summaries) == ([], ["harbour radar"])
+    assert block.amplitude.tolist() == [[1, 0x203 + k, 0x405] for k in range(4)]
+    assert block.azimuth_rad == pytest.approx(128 * STEP * np.arange(4), abs=1e-12)
+    assert block.time_s.tolist() == [1 + k / 128 for k in range(4)]
+    assert block.cell_m == pytest.approx(14.9896229, abs=1e-9)
+    assert block.start_range_m == pytest.approx(149.896229, abs=1e-8)
