@@ -2,11 +2,10 @@
 Where to look for a target's plot.
 """
 
-import typing
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..recording.video import RadarVideo
 from .core import Gaussian
 
 __all__ = [
@@ -151,7 +150,7 @@ class StrobeEcho:
         """
 
 def strobe_echo(
-    video: typing.Any,
+    video: RadarVideo,
     strobe: RadiusGate | CovarianceStrobe | RangeBearingWindow,
     predicted_m: ArrayLike,
     *,
