@@ -34,5 +34,7 @@ using AnyFuzzyAlphaBeta = AnyLines<FuzzyAlphaBeta<>>;
 
 /// Adds `BayesianAlphaBeta`.
 void define_bayesian_alpha_beta(py::module_& m);
+/// Adds `FuzzyAlphaBeta`.
+void define_fuzzy_alpha_beta(py::module_& m);
 
 }  // namespace wakeline::python

@@ -190,6 +190,8 @@ Returns
       },
       py::arg("sensor"), py::arg("first"), py::arg("second"), py::arg("dt_s"),
       "Start over [x, vx, y, vy] from two plots dt_s apart.");
+
+  define_alpha_beta(m);
 }
 
 }  // namespace wakeline::python

@@ -313,6 +313,7 @@ initial_mode_probability : (K,) array, optional
   define_likely_model_set(m);
   define_mode_history(m);
   define_bayesian_alpha_beta(m);
+  define_fuzzy_alpha_beta(m);
 }
 
 }  // namespace wakeline::python

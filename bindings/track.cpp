@@ -378,7 +378,7 @@ radar : Radar
 config : TrackerConfig, optional
 models : VesselModels, optional
     Motion models of the estimator.
-estimator : Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm or ModeHistory, optional
+estimator : Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm, ModeHistory, FuzzyAlphaBeta or BayesianAlphaBeta, optional
     Another estimator in place of that made of `models`.
 
 Raises

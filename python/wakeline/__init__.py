@@ -92,6 +92,7 @@ from ._engine.multimodel import (
     SwitchingGridImm,
 )
 from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, vessel_imm
+from ._engine.video import LandMask, PlotExtractor, ScanImage, StaticClutterMap
 
 # The engine's nouns, importable as modules of the package.
 for _noun in (
@@ -139,11 +140,13 @@ __all__ = [
     "GrowingMemory",
     "Imm",
     "Kalman",
+    "LandMask",
     "LikelyModelSetImm",
     "ModeChain",
     "ModeHistory",
     "OwnShip",
     "PiecewiseAcceleration",
+    "PlotExtractor",
     "Position",
     "ProcessNoise",
     "Radar",
@@ -153,8 +156,10 @@ __all__ = [
     "RangeBearingWindow",
     "RangeDependent",
     "RunResult",
+    "ScanImage",
     "Singer",
     "SquareRootUkf",
+    "StaticClutterMap",
     "Status",
     "Step",
     "SwitchingGridImm",

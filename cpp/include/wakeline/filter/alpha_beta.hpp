@@ -45,13 +45,11 @@ class AlphaBetaFilter
 
   /// Throws `std::invalid_argument` when a parameter makes no sense.
   AlphaBetaFilter(const Schedule& schedule, const Motion& motion)
-      : Base(motion), schedule_(schedule) {
-    std::visit([](const auto& gains) { gains.template validate<Order>(); }, schedule);
-  }
+      : Base(motion), schedule_(checked(schedule)) {}
 
   /// With the process noise that a tracking index stands for, else that of a motion by default.
   explicit AlphaBetaFilter(const Schedule& schedule)
-      : AlphaBetaFilter(schedule, motion_of(schedule)) {}
+      : AlphaBetaFilter(schedule, motion_of(checked(schedule))) {}
 
   /// Begins with a belief over the state or over `[x, vx, y, vy]`, and the schedule anew.
   template <class BeliefType>
@@ -119,6 +117,11 @@ class AlphaBetaFilter
     Scalar elapsed_s = Scalar(0);
     bool taken = false;  ///< the reading has come; the next time step begins another one
   };
+
+  static const Schedule& checked(const Schedule& schedule) {
+    std::visit([](const auto& gains) { gains.template validate<Order>(); }, schedule);
+    return schedule;
+  }
 
   static Motion motion_of(const Schedule& schedule) noexcept {
     Motion motion;

@@ -1,0 +1,163 @@
+"""Alpha-beta filters: their laws are tested in C++; here what Python adds."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import wakeline as wl
+from cases import CONVERTED, DT_S, POSITION, RADAR, START, readings
+
+LINES = {
+    "constant": wl.ConstantGains(0.5, 0.2),
+    "growing": wl.GrowingMemory(),
+    "bordner": wl.BenedictBordner(0.6),
+    "damped": wl.CriticallyDamped(0.5),
+    "index": wl.TrackingIndex(0.3),
+    "range": wl.RangeDependent(),
+}
+PARABOLAS = {
+    "constant": wl.ConstantGains(0.6, 0.3, 0.05),
+    "growing": wl.GrowingMemory(plots_before=2),
+    "damped": wl.CriticallyDamped(0.5),
+    "index": wl.TrackingIndex(0.1),
+}
+FILTERS = {f"line-{k}": wl.AlphaBeta(v) for k, v in LINES.items()} | {
+    f"parabola-{k}": wl.AlphaBetaGamma(v) for k, v in PARABOLAS.items()
+}
+
+
+@pytest.mark.parametrize("name", FILTERS)
+@pytest.mark.parametrize("sensor", [RADAR, CONVERTED])
+def test_run_is_the_steps_one_by_one(name, sensor):
+    z = readings(15, seed=4)
+    z[6:8] = np.nan
+    dt_s = np.linspace(2.0, 4.0, len(z))
+    one = FILTERS[name]
+    result = one.run(z, dt_s=dt_s, sensor=sensor, start=START)
+    one.start(START)
+    for k, reading in enumerate(z):
+        one.predict(dt_s[k])
+        if not np.isnan(reading).any():
+            step = one.update(sensor, reading)
+            assert result.nis[k] == step.nis
+            assert result.log_likelihood[k] == step.log_likelihood
+            np.testing.assert_array_equal(result.innovation[k], step.innovation)
+        np.testing.assert_array_equal(result.mean[k], one.estimate().mean)
+        np.testing.assert_array_equal(result.covariance[k], one.estimate().covariance)
+    assert result.mode_probability is None
+    assert result.status[6] == int(wl.Status.missed)
+    assert one.started
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 1000), st.integers(3, 40), st.floats(0.1, 10.0))
+def test_growing_memory_is_the_polynomial_fit(seed, scans, dt_s):
+    z = np.random.default_rng(seed).normal(0.0, 10.0, (scans, 2))
+    age = dt_s * np.arange(1 - scans, 1)
+    for one, degree in ((wl.AlphaBeta, 1), (wl.AlphaBetaGamma, 2)):
+        mean = one(wl.GrowingMemory()).run(z, dt_s=dt_s, sensor=POSITION, start=START).mean[-1]
+        fit = np.polynomial.polynomial.polyfit(age, z, degree) * [[1.0], [1.0], [2.0]][: degree + 1]
+        scale = 10.0 / dt_s ** np.arange(degree + 1)
+        np.testing.assert_allclose(mean.reshape(2, -1) / scale, fit.T / scale, atol=1e-8)
+
+
+def test_a_tracking_index_is_the_kalman_filter_in_its_steady_state():
+    z = readings(300, seed=5)
+    accel = wl.PiecewiseAcceleration(std_mps2=0.2)
+    kalman = wl.Kalman(wl.ConstantVelocity(noise=accel))
+    index = wl.TrackingIndex(0.2)
+    xy = np.column_stack([z[:, 0] * np.cos(z[:, 1]), z[:, 0] * np.sin(z[:, 1])])
+    truth = kalman.run(xy, dt_s=DT_S, sensor=POSITION, start=START)
+    ours = wl.AlphaBeta(index).run(xy, dt_s=DT_S, sensor=POSITION, start=START)
+    np.testing.assert_allclose(ours.mean[-1], truth.mean[-1], rtol=1e-9)
+    np.testing.assert_allclose(ours.covariance[-1], truth.covariance[-1], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(
+        index.steady_covariance(DT_S, 25.0), truth.covariance[-1, :2, :2], rtol=1e-9
+    )
+    assert (ours.covariance[5].diagonal() >= truth.covariance[5].diagonal() - 1e-9).all()
+
+
+def test_the_noise_is_that_of_the_covariance_alone():
+    z = readings(10, seed=6)
+    calm, wild = (
+        wl.AlphaBeta(wl.BenedictBordner(0.5), noise=wl.WhiteAcceleration(psd_m2s3=psd)).run(
+            z, dt_s=DT_S, sensor=RADAR, start=START
+        )
+        for psd in (0.01, 1.0)
+    )
+    np.testing.assert_array_equal(calm.mean, wild.mean)
+    assert (calm.covariance[-1].diagonal() < wild.covariance[-1].diagonal()).all()
+
+
+def test_a_known_acceleration_moves_the_prediction():
+    still, pushed = (wl.AlphaBeta(wl.BenedictBordner(0.5)) for _ in range(2))
+    for one in (still, pushed):
+        one.start(START)
+    still.predict(2.0)
+    pushed.predict(2.0, [0.5, -1.0])
+    np.testing.assert_allclose(
+        pushed.estimate().mean - still.estimate().mean, [1.0, 1.0, -2.0, -2.0], atol=1e-9
+    )
+
+
+def test_doppler_readings_give_their_position():
+    sensor = wl.RangeBearingDoppler(range_std_m=30.0, bearing_std_rad=np.deg2rad(0.5))
+    z = readings(10, seed=7)
+    with_rate = np.column_stack([z, np.zeros(len(z))])
+    index = wl.TrackingIndex(0.3)
+    ours = wl.AlphaBeta(index).run(with_rate, dt_s=DT_S, sensor=sensor, start=START)
+    plain = wl.AlphaBeta(index).run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    np.testing.assert_array_equal(ours.mean, plain.mean)
+
+
+def test_gains_can_be_asked_for():
+    np.testing.assert_allclose(wl.GrowingMemory().gains(reading=2), [1.0, 1.0])
+    np.testing.assert_allclose(wl.BenedictBordner(0.5).gains(), [0.5, 0.25 / 1.5])
+    np.testing.assert_allclose(wl.RangeDependent().gains(range_m=40e3), [0.25, 0.1])
+    assert wl.TrackingIndex(0.1).gains(3, elapsed_s=3.0, std_m=10.0).shape == (3,)
+    assert wl.stable_gains(0.5, 0.2)
+    assert not wl.stable_gains(1.5, 1.0)
+    assert not wl.stable_gains(0.5, 0.2, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("build", "error", "words"),
+    [
+        (lambda: wl.AlphaBeta(wl.ConstantGains(1.5, 1.0)), ValueError, "2 alpha"),
+        (lambda: wl.AlphaBeta(wl.ConstantGains(0.5, 0.2, 0.1)), ValueError, "gamma"),
+        (lambda: wl.AlphaBetaGamma(wl.ConstantGains(0.5, 0.2)), ValueError, "gamma"),
+        (lambda: wl.AlphaBetaGamma(wl.BenedictBordner(0.5)), TypeError, "incompatible"),
+        (lambda: wl.AlphaBeta(0.5), TypeError, "incompatible"),
+        (lambda: wl.AlphaBeta(wl.BenedictBordner(np.nan)), ValueError, "alpha"),
+        (lambda: wl.AlphaBeta(wl.CriticallyDamped(1.0)), ValueError, "theta"),
+        (lambda: wl.AlphaBeta(wl.TrackingIndex(-0.1)), ValueError, "accel_std_mps2"),
+        (lambda: wl.AlphaBeta(wl.GrowingMemory(max_plots=1)), ValueError, "max_plots"),
+        (lambda: wl.AlphaBeta(wl.RangeDependent(far_beta=1.0)), ValueError, "far_beta"),
+        (
+            lambda: wl.AlphaBeta(wl.TrackingIndex(0.1), noise=wl.WhiteJerk(psd_m2s5=0.1)),
+            ValueError,
+            "acceleration",
+        ),
+        (lambda: wl.BenedictBordner(0.5).gains(3), ValueError, "order"),
+        (lambda: wl.TrackingIndex(0.5).gains(4), ValueError, "order"),
+        (lambda: wl.TrackingIndex(0.5).steady_covariance(0.0, 1.0), ValueError, "period_s"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_in_words(build, error, words):
+    with pytest.raises(error, match=words):
+        build()
+
+
+def test_a_step_that_fails_says_so_and_changes_nothing():
+    one = wl.AlphaBeta(wl.GrowingMemory())
+    with pytest.raises(wl.FilterError, match="not started"):
+        one.predict(1.0)
+    one.start(START)
+    with pytest.raises(wl.FilterError, match="negative"):
+        one.predict(-1.0)
+    with pytest.raises(wl.FilterError, match="finite"):
+        one.update(POSITION, [np.nan, 0.0])
+    np.testing.assert_array_equal(one.estimate().mean, START.mean)
+    with pytest.raises(ValueError, match="4 states"):
+        one.start(wl.Gaussian(np.zeros(6), np.eye(6)))
