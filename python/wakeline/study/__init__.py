@@ -13,13 +13,14 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from . import imm, solent, variable_structure
+from . import fuzzy_alpha_beta, imm, solent, variable_structure
 from .base import Picture, Published, Report
 
 __all__ = [
     "Picture",
     "Published",
     "Report",
+    "fuzzy_alpha_beta",
     "imm",
     "load",
     "names",
@@ -27,7 +28,12 @@ __all__ = [
     "variable_structure",
 ]
 
-_STUDIES = {"imm": imm, "variable-structure": variable_structure, "solent": solent}
+_STUDIES = {
+    "imm": imm,
+    "variable-structure": variable_structure,
+    "fuzzy-alpha-beta": fuzzy_alpha_beta,
+    "solent": solent,
+}
 
 
 def names() -> list[str]:

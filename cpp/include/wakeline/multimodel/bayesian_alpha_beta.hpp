@@ -23,7 +23,7 @@ struct LineWeighing {
   bool parabolas = true;    ///< whether there are parabolas too, through four plots and more
   double sojourn_s = 30.0;  ///< mean time until another one is the right one
   double longest_line_probability = 0.4;  ///< that it is the longest line; the others are alike
-  double acceleration_std_mps2 = 0.5;  ///< per axis, of a maneuver that began at the last plot but
+  double acceleration_std_mps2 = 0.15;  ///< per axis, of a maneuver that began at the last plot but
                                        ///< one: widens the covariance, not used in weighing
 
   [[nodiscard]] int lines() const noexcept { return max_plots - min_plots + 1; }

@@ -21,7 +21,7 @@ from wakeline.scenario import HardTurn, HardTurnRuns, hard_turns
 from wakeline.study import curves
 from wakeline.study.base import Published, Report, Rows, finite
 
-from . import pictures
+from . import on_video, pictures
 from .estimators import LABELS, estimators, window_lengths
 
 __all__ = ["GATES_M", "LABELS", "SUMMARY", "estimators", "evaluate", "loss_probability", "run"]
@@ -134,6 +134,7 @@ def run(
     full: bool = False,
     threads: int | None = None,
     progress: bool = False,
+    video_runs: int | None = None,
 ) -> Report:
     """Run the study.
 
@@ -147,14 +148,19 @@ def run(
         Default as many as there are processors.
     progress : bool
         Whether to draw a bar where stderr is a terminal.
+    video_runs : int, optional
+        Runs of each scenario on simulated radar video, from strobe to track; default one for every
+        50 of `runs`, 10 at most.
 
     Returns
     -------
     Report
-        ``result`` holds, by scenario and estimator, an :class:`Outcome`.
+        Scenarios by name, and with ``_video`` after it; ``result`` holds, by scenario and
+        estimator, an :class:`Outcome`.
     """
     scenarios = hard_turns()
     drawn = {name: scenario.draw(runs, seed) for name, scenario in scenarios.items()}
+    seen = min(-(-runs // 50), 10) if video_runs is None else video_runs
     jobs: dict[tuple, Callable[[], Any]] = {}
     for case, scenario in scenarios.items():
         few = drawn[case]._replace(
@@ -166,16 +172,21 @@ def run(
             jobs["closed", case, name] = partial(closed, drawn[case], GATES_M[case])
             for gate_m in _CURVE_GATES_M:
                 jobs[gate_m, case, name] = partial(closed, few, gate_m)
+        for number in range(seen):
+            jobs[number, case, "video"] = partial(
+                on_video.follow, scenario, GATES_M[case], seed * _CURVE_RUNS + number
+            )
     done = _worked(jobs, threads, progress)
     outcomes = {(case, name): done["free", case, name] for case in scenarios for name in LABELS}
-    curves = {of: np.array([done[(gate_m, *of)] for gate_m in _CURVE_GATES_M]) for of in outcomes}
+    losses = {of: np.array([done[(gate_m, *of)] for gate_m in _CURVE_GATES_M]) for of in outcomes}
+    films = {case: [done[number, case, "video"] for number in range(seen)] for case in scenarios}
     return Report(
         name="fuzzy-alpha-beta",
         seed=seed,
         runs=runs,
-        rows=_rows(scenarios, drawn, outcomes, done),
+        rows=_rows(scenarios, drawn, outcomes, done) + _video_rows(scenarios, films),
         result=outcomes,
-        pictures=pictures.pictures(scenarios, drawn, outcomes, _CURVE_GATES_M, curves),
+        pictures=pictures.pictures(scenarios, drawn, outcomes, _CURVE_GATES_M, losses, films),
         published={"paper": PAPER, "reference": REFERENCE},
         notes=(NOTE,),
     )
@@ -200,7 +211,7 @@ def _rows(
         begin_s, end_s = scenarios[case].turn_s
         time_s = drawn[case].time_s
         straight = (np.arange(len(time_s)) >= SETTLED) & (time_s <= begin_s)
-        turning = (time_s > begin_s) & (time_s <= end_s)
+        turned = (time_s > 0.5 * (begin_s + end_s)) & (time_s <= end_s)
         gate_m = outcome.gate_m()
         row = {
             "gate_median_m": np.median(gate_m),
@@ -210,10 +221,31 @@ def _rows(
             "straight_rms_m": np.sqrt(np.mean(outcome.estimate_error_m[:, straight] ** 2)),
             "turn_members_mean": None
             if outcome.window is None
-            else outcome.window[:, turning].mean(),
+            else outcome.window[:, turned].mean(),
             "loss_probability": done["closed", case, name],
         }
         rows.append({"scenario": case, "estimator": name} | {k: finite(v) for k, v in row.items()})
+    return rows
+
+
+def _video_rows(scenarios: dict[str, HardTurn], films: dict[str, list[on_video.VideoRun]]) -> Rows:
+    rows = []
+    for case, runs in films.items():
+        for name in LABELS if runs else ():
+            straight_m2 = [
+                np.nanmean(run.error_m(name)[run.time_s <= scenarios[case].turn_s[0]] ** 2)
+                for run in runs
+            ]
+            worst_m = [np.nanmax(run.error_m(name)) for run in runs]
+            row = {
+                "estimate_error_median_m": np.median(worst_m),
+                "straight_rms_m": np.sqrt(np.mean(straight_m2)),
+                "loss_probability": np.mean([run.loops[name].lost for run in runs]),
+            }
+            rows.append(
+                {"scenario": f"{case}_video", "estimator": name}
+                | {key: finite(value) for key, value in row.items()}
+            )
     return rows
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from . import Outcome
+    from .on_video import VideoRun
 
 Of = tuple[str, str]  # scenario and estimator
 
@@ -28,7 +29,8 @@ TITLES = {
     "20mps_r300": "20 m/s, 300 m",
     "20mps_r600": "20 m/s, 600 m",
 }
-_ECHO_AT_S = 60.0
+_ECHO_SCANS, _ECHO_STROBE_M = 12, 22.0
+_FILM_REACH_M = 300.0
 _COLORS = dict(zip(LABELS, plot.PALETTE, strict=False))
 
 
@@ -38,6 +40,7 @@ def pictures(
     outcomes: Mapping[Of, Outcome],
     gates_m: np.ndarray,
     losses: Mapping[Of, np.ndarray],
+    films: Mapping[str, Sequence[VideoRun]],
 ) -> tuple[Picture, ...]:
     """Those of the paper, then how wide a gate must be, and how often a track is lost in one."""
     traced = {case: _trace(scenarios[case], runs) for case, runs in drawn.items()}
@@ -90,6 +93,16 @@ def pictures(
             ),
             size_in=(7.2, 7.4),
         ),
+        *(
+            Picture(
+                f"fuzzy-video-{case}",
+                f"From video: strobes on the echo, {TITLES[case]}",
+                (partial(_draw_film, film=runs[0]),),
+                size_in=(7.2, 7.2),
+            )
+            for case, runs in films.items()
+            if runs
+        ),
     )
 
 
@@ -137,16 +150,21 @@ def _draw_memberships(ax: Axes) -> Axes:
 
 
 def _draw_echo(ax: Axes) -> Axes:
+    """The strongest of a few echoes, as it fluctuates from scan to scan."""
     scene = scenario.small_craft_scene(seed=1)
-    craft = scene.targets["craft"]
-    turns = list(scene.turns(round(_ECHO_AT_S / scene.radar.period_s), seed=1))
-    north_m, _, east_m, _ = craft.truth.state_at(turns[-1].time_s.mean())[0]
+    truth = scene.targets["craft"].truth
+    looks = []
+    for turn in scene.turns(_ECHO_SCANS, seed=1):
+        place_m = truth.state_at(turn.time_s.mean())[0, ::2]
+        echo = wl.strobe_echo(turn, wl.RadiusGate(radius_m=_ECHO_STROBE_M), place_m)
+        looks.append((echo.peak_amplitude, turn, place_m))
+    _, turn, place_m = max(looks, key=lambda look: look[0])
     return plot.echo(
-        turns[-1],
+        turn,
         ax,
-        around_m=(north_m, east_m),
+        around_m=tuple(place_m),
         half_range_m=150.0,
-        strobes=[plot.circle_outline((north_m, east_m), 22.0)],
+        strobes=[plot.circle_outline(place_m, _ECHO_STROBE_M)],
     )
 
 
@@ -217,3 +235,24 @@ def _draw_losses(ax: Axes, case: str, gates_m: np.ndarray, losses: Mapping[Of, n
     ax.set(xlabel="gate radius (m)", ylabel=f"lost\n{TITLES[case]}", ylim=(-0.03, 1.03))
     plot.dress(ax)
     return plot.name_lines(ax) if case == next(iter(TITLES)) else ax
+
+
+def _draw_film(ax: Axes, film: VideoRun) -> Axes:
+    """The last turn around the craft, and over it the strobes of the last scans."""
+    loop = film.loops["fuzzy_improved"]
+    north_m, east_m = film.truth[-1, ::2]
+    measured_m = np.array(loop.measured_m)
+    known = [place_m for place_m in loop.predicted_m if np.isfinite(place_m).all()]
+    return plot.ppi(
+        film.last,
+        ax,
+        plots=measured_m[np.isfinite(measured_m[:, 0])],
+        strobes=[plot.circle_outline(place_m, loop.gate_m) for place_m in known],
+        extent_m=(
+            east_m - _FILM_REACH_M,
+            east_m + _FILM_REACH_M,
+            north_m - _FILM_REACH_M,
+            north_m + _FILM_REACH_M,
+        ),
+        rings=False,
+    )

@@ -1,0 +1,160 @@
+"""The same turn once more, from radar video: the strobe is laid on the picture, scan by scan.
+
+At 20 km the beam of a coastal radar is wider than the strobe, and the centre of mass in the strobe
+is little more than its middle. Here the craft is 10 km off and the beam as narrow as three cells,
+so that its echo fits into the strobe.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+import wakeline as wl
+from wakeline.recording import RadarVideo
+from wakeline.scenario import HardTurn, VideoScene, small_craft_scene
+
+from .estimators import estimators
+
+LOST_AFTER = 3
+RANGE_M = 10_000.0
+LEAST_AMPLITUDE = 40  # above all but one in a hundred cells of the sea
+# How far the centre of mass lies from the craft, found with strobes around the truth.
+SENSOR = wl.ConvertedRangeBearing(range_std_m=2.2, bearing_std_rad=2.5 / RANGE_M)
+_SNR_DB, _CLUTTER_TO_NOISE_DB = 12.0, 4.0
+_BEAM_CELLS = 3.0
+_ACQUIRED_WITH_M = 45.0
+_MARGIN_M = 120.0
+
+
+@dataclass
+class Loop:
+    """One estimator that follows one craft on video; arrays over scans, NaN after a loss.
+
+    Attributes
+    ----------
+    estimator : object
+    gate_m : float
+        Radius of the strobe.
+    predicted_m, measured_m, estimate_m : list of (2,) arrays
+        North and east: middle of the strobe, centre of mass in it (NaN where there was none), and
+        the estimate after it.
+    misses : int
+        In a row, at present.
+    """
+
+    estimator: Any
+    gate_m: float
+    predicted_m: list[np.ndarray] = field(default_factory=list)
+    measured_m: list[np.ndarray] = field(default_factory=list)
+    estimate_m: list[np.ndarray] = field(default_factory=list)
+    misses: int = 0
+
+    @property
+    def lost(self) -> bool:
+        return self.misses >= LOST_AFTER
+
+    def take(self, turn: RadarVideo, period_s: float) -> None:
+        """Predict, lay the strobe on a turn, and take what is in it."""
+        unknown = np.full(2, np.nan)
+        if self.lost:
+            self.predicted_m.append(unknown)
+            self.measured_m.append(unknown)
+            self.estimate_m.append(unknown)
+            return
+        self.estimator.predict(period_s)
+        ahead_m = place_of(self.estimator)
+        echo = strobe(turn, ahead_m, self.gate_m)
+        if echo is not None:
+            self.estimator.update(SENSOR, echo)
+        self.misses = 0 if echo is not None else self.misses + 1
+        self.predicted_m.append(ahead_m)
+        self.measured_m.append(unknown if echo is None else from_polar(echo))
+        self.estimate_m.append(place_of(self.estimator))
+
+
+@dataclass(frozen=True)
+class VideoRun:
+    """All estimators on one simulated recording.
+
+    Attributes
+    ----------
+    time_s : ndarray (T,)
+        When the beam passed the craft.
+    truth : ndarray (T, 4)
+    loops : mapping of str to Loop
+    last : RadarVideo
+        The last turn.
+    """
+
+    time_s: np.ndarray
+    truth: np.ndarray
+    loops: Mapping[str, Loop]
+    last: RadarVideo
+
+    def error_m(self, name: str) -> np.ndarray:
+        """(T,) distance from the estimate to the truth; NaN after a loss."""
+        return np.linalg.norm(np.array(self.loops[name].estimate_m) - self.truth[:, ::2], axis=-1)
+
+
+def follow(situation: HardTurn, gate_m: float, seed: int) -> VideoRun:
+    """Simulate a recording and let every estimator follow the craft through it.
+
+    The first two plots come from wide strobes around the truth, as of an operator who points at the
+    craft.
+    """
+    scene = video_scene(situation, seed)
+    truth = scene.targets["craft"].truth
+    period_s = situation.period_s
+    loops: dict[str, Loop] = {}
+    time_s: list[float] = []
+    plots: list[np.ndarray] = []
+    for turn in scene.turns(len(situation.time_s), seed):
+        now_s = float(turn.time_s.mean())
+        if len(plots) < 2:
+            plots.append(strobe(turn, truth.state_at(now_s)[0, ::2], _ACQUIRED_WITH_M))
+            if plots[-1] is None:
+                plots.clear()
+            elif len(plots) == 2:
+                start = wl.two_point(SENSOR, *plots, period_s)
+                for name, estimator in estimators().items():
+                    estimator.start(start)
+                    loops[name] = Loop(estimator, gate_m)
+            continue
+        time_s.append(now_s)
+        for loop in loops.values():
+            loop.take(turn, period_s)
+    return VideoRun(np.array(time_s), truth.state_at(np.array(time_s)), loops, turn)
+
+
+def video_scene(situation: HardTurn, seed: int) -> VideoScene:
+    """The small craft among sea clutter, so near that its echo fits into the strobe."""
+    near = replace(situation, range_m=RANGE_M)
+    scene = small_craft_scene(seed, situation=near, margin_m=_MARGIN_M, beam_cells=_BEAM_CELLS)
+    sea = replace(scene.radar.sea, clutter_to_noise_db=_CLUTTER_TO_NOISE_DB)
+    return replace(scene, radar=replace(scene.radar, snr_db=_SNR_DB, sea=sea))
+
+
+def strobe(turn: RadarVideo, around_m: np.ndarray, radius_m: float) -> np.ndarray | None:
+    """Range and bearing of the centre of mass in a round strobe; None where there is nothing."""
+    echo = wl.gating.strobe_echo(
+        turn,
+        wl.RadiusGate(radius_m=radius_m),
+        around_m,
+        least_amplitude=LEAST_AMPLITUDE,
+        several="strongest",
+    )
+    return np.array([echo.range_m, echo.bearing_rad]) if echo else None
+
+
+def place_of(estimator: Any) -> np.ndarray:
+    """North and east of an estimate."""
+    return estimator.estimate().mean[[0, 2]]
+
+
+def from_polar(z: np.ndarray) -> np.ndarray:
+    """North and east of a range and a bearing."""
+    return z[0] * np.array([np.cos(z[1]), np.sin(z[1])])

@@ -1,0 +1,122 @@
+"""The study of the narrow strobe: what it finds, and what it says of it."""
+
+import json
+
+import numpy as np
+import pytest
+
+from wakeline import study
+from wakeline.scenario import HardTurn, hard_turns
+from wakeline.study import fuzzy_alpha_beta
+
+RUNS = 200
+
+
+@pytest.fixture(scope="module")
+def report():
+    return fuzzy_alpha_beta.run(RUNS, seed=1, video_runs=1)
+
+
+def test_it_is_listed():
+    assert study.load("fuzzy-alpha-beta") is fuzzy_alpha_beta
+
+
+@pytest.mark.parametrize(
+    ("case", "gate_m", "slack_m", "plots"),
+    [
+        ("10mps_r300", 21.7, 2.0, 4.9),
+        ("20mps_r300", 41.2, 3.5, 2.1),
+        ("20mps_r600", 27.7, 2.5, 3.2),
+    ],
+)
+def test_the_fuzzy_gate_is_that_of_an_independent_implementation(
+    report, case, gate_m, slack_m, plots
+):
+    row = report.row(case, "fuzzy")
+    assert row["gate_median_m"] == pytest.approx(gate_m, abs=slack_m)
+    assert row["straight_rms_m"] == pytest.approx(2.0, abs=0.25)
+    assert row["turn_members_mean"] == pytest.approx(plots, abs=0.5)
+
+
+@pytest.mark.parametrize(
+    ("name", "most"),
+    [
+        (
+            "fuzzy_improved",
+            {"10mps_r300": (18, 22), "20mps_r300": (23, 28), "20mps_r600": (21, 25)},
+        ),
+        ("imm", {"10mps_r300": (13, 16), "20mps_r300": (18, 24), "20mps_r600": (15, 19)}),
+        ("fixed3", {"10mps_r300": (17, 20), "20mps_r300": (29, 33), "20mps_r600": (21, 24.5)}),
+    ],
+)
+def test_what_does_better_needs_a_narrower_gate(report, name, most):
+    for case, (median_m, p95_m) in most.items():
+        row = report.row(case, name)
+        # 200 runs: a median is sure to about 3 %, a 95th percentile to 5 %.
+        assert row["gate_median_m"] < 1.04 * median_m
+        assert row["gate_p95_m"] < 1.06 * p95_m
+
+
+def test_a_closed_loop_loses_what_the_gate_does_not_hold(report):
+    lost = {case: report.row(case, "fuzzy")["loss_probability"] for case in hard_turns()}
+    assert lost["10mps_r300"] > 0.4
+    assert all(report.row(case, "imm")["loss_probability"] <= 0.02 for case in lost)
+
+
+def test_a_wider_gate_never_loses_more_by_much():
+    situation = hard_turns()["20mps_r300"]
+    drawn = situation.draw(60, seed=2)
+    fuzzy = fuzzy_alpha_beta.estimators()["fuzzy"]
+    lost = [
+        fuzzy_alpha_beta.loss_probability(fuzzy, situation, drawn, gate_m)
+        for gate_m in (10.0, 25.0, 40.0, 200.0)
+    ]
+    assert lost[0] > 0.9
+    assert lost[-1] == 0.0
+    assert (np.diff(lost) < 0.05).all()
+
+
+def test_the_same_seed_gives_the_same_figures(report):
+    again = fuzzy_alpha_beta.run(20, seed=1, threads=1, video_runs=0)
+    more = fuzzy_alpha_beta.run(20, seed=1, threads=3, video_runs=0)
+    assert json.dumps(again.rows) == json.dumps(more.rows)
+
+
+def test_every_picture_can_be_drawn(report, tmp_path):
+    files = report.save_pictures(tmp_path)
+    assert len(files) == len(report.pictures) >= 8
+    assert all(file.stat().st_size > 5000 for file in files)
+
+
+def test_video_rows_follow_the_craft(report):
+    for case in hard_turns():
+        row = report.row(f"{case}_video", "imm")
+        assert row["loss_probability"] in (0.0, 1.0)
+
+
+def test_a_hard_turn_is_what_it_says():
+    situation = HardTurn(20.0, 300.0)
+    runs = situation.draw(5, seed=0)
+    np.testing.assert_array_equal(runs.z[:3], situation.draw(3, seed=0).z)
+    speed = np.hypot(runs.truth[..., 1], runs.truth[..., 3])
+    np.testing.assert_allclose(speed, 20.0)
+    _, end_s = situation.turn_s
+    course = np.unwrap(np.arctan2(runs.truth[..., 3], runs.truth[..., 1]), axis=1)
+    turned = course[:, runs.time_s >= end_s] - course[:, :1]
+    np.testing.assert_allclose(np.abs(turned), np.pi, atol=1e-9)
+    error = runs.z - np.stack(
+        [
+            np.hypot(runs.truth[..., 0], runs.truth[..., 2]),
+            np.arctan2(runs.truth[..., 2], runs.truth[..., 0]),
+        ],
+        axis=-1,
+    )
+    assert np.abs(error[..., 0]).max() <= situation.range_cell_m / 2 + 1e-6
+    assert np.abs(error[..., 1]).max() <= situation.azimuth_cell_rad / 2 + 1e-9
+
+
+@pytest.mark.parametrize("field", ["speed_mps", "radius_m", "range_m", "period_s"])
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
+def test_a_hard_turn_that_makes_no_sense_is_refused(field, value):
+    with pytest.raises(ValueError, match=field):
+        HardTurn(**({"speed_mps": 10.0, "radius_m": 300.0} | {field: value}))
