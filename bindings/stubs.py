@@ -32,6 +32,12 @@ WORDS = [
     (r"\bdt_s: typing\.Any", "dt_s: ArrayLike"),
     (r"\b(own_\w+|bearing_rad): (typing\.Any|ArrayLike) = 0\.0", r"\1: ArrayLike = 0.0"),
     (r"\bplot_time_s: typing\.Any", "plot_time_s: ArrayLike | None"),
+    (r"\bvideo: typing\.Any", "video: RadarVideo"),
+    (r"\bamplitude: typing\.Any", "amplitude: NDArray[np.uint8] | NDArray[np.uint16]"),
+    (
+        r"(def (?:amplitude\(self|cfar_threshold\(.*)\)) -> numpy\.ndarray",
+        r"\1 -> NDArray[np.uint8] | NDArray[np.uint16]",
+    ),
     (r"filters: collections\.abc\.Sequence", "filters: Sequence[Filter]"),
     (r"(def mode_probability\(self\)) -> typing\.Any", r"\1 -> NDArray[np.float64] | None"),
     (r"-> typing\.Any:", "-> NDArray[np.float64]:"),
@@ -62,13 +68,18 @@ HOMES = {
         "RangeBearingDoppler",
     ],
     "filter": ["Filter", "RunResult"],
+    "gating": ["RadiusGate"],
     "motion": [
         "ConstantAcceleration",
         "ConstantVelocity",
         "CoordinatedTurn",
         "CoordinatedTurnRate",
+        "PiecewiseAcceleration",
+        "ProcessNoise",
         "Singer",
         "WanderingCourse",
+        "WhiteAcceleration",
+        "WhiteJerk",
     ],
     "multimodel": [
         "AdaptiveGridImm",
@@ -114,6 +125,8 @@ def imports(noun: str, text: str) -> str:
     if arrays:
         lines.append(f"from numpy.typing import {', '.join(arrays)}")
     code = re.sub(r'""".*?"""', "", text, flags=re.DOTALL)
+    if re.search(r"\bRadarVideo\b", code):
+        lines.append("from ..recording.video import RadarVideo")
     for home, names in HOMES.items():
         used = [name for name in names if re.search(rf"\b{name}\b", code)]
         if home != noun and used:

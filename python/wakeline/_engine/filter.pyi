@@ -9,17 +9,37 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .core import Gaussian, Step
+from .gating import RadiusGate
 from .measurement import ConvertedRangeBearing, Position, RangeBearing, RangeBearingDoppler
 from .motion import (
     ConstantAcceleration,
     ConstantVelocity,
     CoordinatedTurn,
     CoordinatedTurnRate,
+    ProcessNoise,
     Singer,
     WanderingCourse,
 )
 
-__all__ = ["Ekf", "Filter", "Kalman", "RunResult", "SquareRootUkf", "Ukf", "one_point", "two_point"]
+__all__ = [
+    "AlphaBeta",
+    "AlphaBetaGamma",
+    "BenedictBordner",
+    "ConstantGains",
+    "CriticallyDamped",
+    "Ekf",
+    "Filter",
+    "GrowingMemory",
+    "Kalman",
+    "RangeDependent",
+    "RunResult",
+    "SquareRootUkf",
+    "TrackingIndex",
+    "Ukf",
+    "one_point",
+    "stable_gains",
+    "two_point",
+]
 
 class RunResult:
     """
@@ -29,6 +49,11 @@ class RunResult:
     def covariance(self) -> NDArray[np.float64]:
         """
         (..., T, N, N)
+        """
+    @property
+    def innovation(self) -> NDArray[np.float64]:
+        """
+        (..., T, M), measured minus predicted; NaN where there was no update
         """
     @property
     def log_likelihood(self) -> NDArray[np.float64]:
@@ -81,6 +106,7 @@ class Filter:
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
     ) -> RunResult:
         """
         Runs whole recordings.
@@ -98,12 +124,14 @@ class Filter:
             North and east of own ship at each reading.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
 
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
-            and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
 
         Raises
         ------
@@ -253,6 +281,362 @@ class SquareRootUkf(Filter):
         self, motion: WanderingCourse, *, alpha: float = 1.0, beta: float = 2.0, kappa: float = 0.0
     ) -> None: ...
 
+class ConstantGains:
+    """
+    Gains that stay the same; gamma for an alpha-beta-gamma filter only. A filter refuses those that are not stable.
+    """
+    def __init__(self, alpha: float, beta: float, gamma: float = 0.0) -> None: ...
+    def gains(
+        self,
+        order: int = 2,
+        *,
+        reading: int = 1,
+        elapsed_s: float = 1.0,
+        std_m: float = 1.0,
+        range_m: float = 0.0,
+    ) -> NDArray[np.float64]:
+        """
+        [alpha, beta] or, of order 3, [alpha, beta, gamma] for the reading-th reading since the start, `elapsed_s` after the one before, of error `std_m` along the axis, at a range.
+        """
+    @property
+    def alpha(self) -> float: ...
+    @property
+    def beta(self) -> float: ...
+    @property
+    def gamma(self) -> float: ...
+
+class GrowingMemory:
+    """
+    Gains that draw the least-squares line (or parabola) through all readings so far.
+
+    With regular steps the filter equals that line exactly, whatever the start. A missed scan does not count.
+
+    Parameters
+    ----------
+    plots_before : int
+        That the start was made of.
+    max_plots : int
+        The gains stay those of so many; 0 for all.
+    """
+    def __init__(self, *, plots_before: int = 0, max_plots: int = 0) -> None: ...
+    def gains(
+        self,
+        order: int = 2,
+        *,
+        reading: int = 1,
+        elapsed_s: float = 1.0,
+        std_m: float = 1.0,
+        range_m: float = 0.0,
+    ) -> NDArray[np.float64]:
+        """
+        [alpha, beta] or, of order 3, [alpha, beta, gamma] for the reading-th reading since the start, `elapsed_s` after the one before, of error `std_m` along the axis, at a range.
+        """
+    @property
+    def max_plots(self) -> int: ...
+    @property
+    def plots_before(self) -> int: ...
+
+class BenedictBordner:
+    """
+    beta = alpha² / (2 - alpha): the least error after a change of velocity for the noise that an alpha lets through.
+    """
+    def __init__(self, alpha: float) -> None: ...
+    def gains(
+        self,
+        order: int = 2,
+        *,
+        reading: int = 1,
+        elapsed_s: float = 1.0,
+        std_m: float = 1.0,
+        range_m: float = 0.0,
+    ) -> NDArray[np.float64]:
+        """
+        [alpha, beta] or, of order 3, [alpha, beta, gamma] for the reading-th reading since the start, `elapsed_s` after the one before, of error `std_m` along the axis, at a range.
+        """
+    @property
+    def alpha(self) -> float: ...
+
+class CriticallyDamped:
+    """
+    All poles at theta: the least-squares line or parabola with weights theta² a reading back (fading memory).
+    """
+    def __init__(self, theta: float) -> None: ...
+    def gains(
+        self,
+        order: int = 2,
+        *,
+        reading: int = 1,
+        elapsed_s: float = 1.0,
+        std_m: float = 1.0,
+        range_m: float = 0.0,
+    ) -> NDArray[np.float64]:
+        """
+        [alpha, beta] or, of order 3, [alpha, beta, gamma] for the reading-th reading since the start, `elapsed_s` after the one before, of error `std_m` along the axis, at a range.
+        """
+    @property
+    def theta(self) -> float: ...
+
+class TrackingIndex:
+    """
+    Gains of the steady Kalman filter, by the tracking index: accel_std T² / error of the reading.
+
+    The error is that of each reading along and across the bearing, so that the gains follow the range by themselves; the index follows
+    the step.
+
+    Parameters
+    ----------
+    accel_std_mps2 : float
+        Of the acceleration (with three states: its change) drawn anew for each step.
+
+    References
+    ----------
+    P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alpha-beta-gamma target trackers, IEEE Trans. AES-20,
+    1984.
+    """
+    def __init__(self, accel_std_mps2: float) -> None: ...
+    def gains(
+        self,
+        order: int = 2,
+        *,
+        reading: int = 1,
+        elapsed_s: float = 1.0,
+        std_m: float = 1.0,
+        range_m: float = 0.0,
+    ) -> NDArray[np.float64]:
+        """
+        [alpha, beta] or, of order 3, [alpha, beta, gamma] for the reading-th reading since the start, `elapsed_s` after the one before, of error `std_m` along the axis, at a range.
+        """
+    def steady_covariance(
+        self, period_s: float, std_m: float, order: int = 2
+    ) -> NDArray[np.float64]:
+        """
+        (order, order) covariance of the states of one axis after an update, in the steady state.
+        """
+    @property
+    def accel_std_mps2(self) -> float: ...
+
+class RangeDependent:
+    """
+    Gains by the range alone, as a radar plotting aid has them: beyond `near_range_m` in inverse proportion to the range, down to those of `far`.
+    """
+    def __init__(
+        self,
+        *,
+        near_range_m: float = 20000.0,
+        near_alpha: float = 0.5,
+        near_beta: float = 0.2,
+        far_alpha: float = 0.2,
+        far_beta: float = 0.01,
+    ) -> None: ...
+    def gains(
+        self,
+        order: int = 2,
+        *,
+        reading: int = 1,
+        elapsed_s: float = 1.0,
+        std_m: float = 1.0,
+        range_m: float = 0.0,
+    ) -> NDArray[np.float64]:
+        """
+        [alpha, beta] or, of order 3, [alpha, beta, gamma] for the reading-th reading since the start, `elapsed_s` after the one before, of error `std_m` along the axis, at a range.
+        """
+    @property
+    def far_alpha(self) -> float: ...
+    @property
+    def far_beta(self) -> float: ...
+    @property
+    def near_alpha(self) -> float: ...
+    @property
+    def near_beta(self) -> float: ...
+    @property
+    def near_range_m(self) -> float: ...
+
+class AlphaBeta:
+    """
+    The alpha-beta filter over [x, vx, y, vy], its gains by a schedule.
+
+    ``x += alpha e`` and ``vx += beta e / T`` per axis, e the innovation in north and east and T the time since the reading before,
+    missed scans included. Covariance, NIS and likelihood are those of such gains where plots and motion are as the models say, so that
+    it may be compared with a Kalman filter. Takes the position out of any sensor.
+
+    Parameters
+    ----------
+    gains : ConstantGains, GrowingMemory, BenedictBordner, CriticallyDamped, TrackingIndex or RangeDependent
+    noise : ProcessNoise, optional
+        Of a constant velocity, for the covariance; when left out that which a tracking index stands for, else `WhiteAcceleration()`.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense or gains are not stable.
+    """
+    def __init__(
+        self,
+        gains: ConstantGains
+        | GrowingMemory
+        | BenedictBordner
+        | CriticallyDamped
+        | TrackingIndex
+        | RangeDependent,
+        *,
+        noise: ProcessNoise | None = None,
+    ) -> None: ...
+    def estimate(self) -> Gaussian:
+        """
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
+        """
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
+        """
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
+        """
+    def run(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+        own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
+    ) -> RunResult:
+        """
+        Runs whole recordings.
+
+        Parameters
+        ----------
+        z : (T, M) or (R, T, M) array
+            Readings of one run or of R independent ones; a row of NaN is a missed scan.
+        dt_s : float or (T,) array
+            Time before each reading, s; the first counts from the start.
+        sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+        start : Gaussian or sequence of R of them
+            Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
+        own_position_m : (T, 2) array, optional
+            North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
+
+        Returns
+        -------
+        RunResult
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+        """
+    def start(self, belief: Gaussian) -> None:
+        """
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
+        """
+    def update(
+        self,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        z: ArrayLike,
+    ) -> Step:
+        """
+        Corrects the belief by a reading; returns the Step.
+        """
+    @property
+    def started(self) -> bool: ...
+
+class AlphaBetaGamma:
+    """
+    The alpha-beta-gamma filter over [x, vx, ax, y, vy, ay], its gains by a schedule.
+
+    As `AlphaBeta`, and ``ax += gamma e / (2 T²)``.
+
+    Parameters
+    ----------
+    gains : ConstantGains, GrowingMemory, CriticallyDamped or TrackingIndex
+    noise : ProcessNoise, optional
+        Of a constant acceleration, for the covariance; when left out that which a tracking index stands for, else `WhiteJerk()`.
+    prior_accel_std_mps2 : float
+        What a start without acceleration assumes of it.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense or gains are not stable.
+    """
+    def __init__(
+        self,
+        gains: ConstantGains | GrowingMemory | CriticallyDamped | TrackingIndex,
+        *,
+        noise: ProcessNoise | None = None,
+        prior_accel_std_mps2: float = 1.0,
+    ) -> None: ...
+    def estimate(self) -> Gaussian:
+        """
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
+        """
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
+        """
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
+        """
+    def run(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+        own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
+    ) -> RunResult:
+        """
+        Runs whole recordings.
+
+        Parameters
+        ----------
+        z : (T, M) or (R, T, M) array
+            Readings of one run or of R independent ones; a row of NaN is a missed scan.
+        dt_s : float or (T,) array
+            Time before each reading, s; the first counts from the start.
+        sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+        start : Gaussian or sequence of R of them
+            Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
+        own_position_m : (T, 2) array, optional
+            North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
+
+        Returns
+        -------
+        RunResult
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+        """
+    def start(self, belief: Gaussian) -> None:
+        """
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
+        """
+    def update(
+        self,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        z: ArrayLike,
+    ) -> Step:
+        """
+        Corrects the belief by a reading; returns the Step.
+        """
+    @property
+    def started(self) -> bool: ...
+
 def one_point(
     sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
     z: ArrayLike,
@@ -260,6 +644,11 @@ def one_point(
 ) -> Gaussian:
     """
     Start over [x, vx, y, vy] from one plot and a velocity of zero with that standard deviation per axis.
+    """
+
+def stable_gains(alpha: float, beta: float, gamma: float | None = None) -> bool:
+    """
+    Whether a filter of these gains forgets its errors: alpha > 0, beta > 0, 2 alpha + beta < 4 and, with gamma, 0 < gamma < 4 alpha beta / (2 - alpha).
     """
 
 def two_point(

@@ -9,10 +9,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from .core import Gaussian, Step
 from .filter import Filter, RunResult
+from .gating import RadiusGate
 from .measurement import ConvertedRangeBearing, Position, RangeBearing, RangeBearingDoppler
 
 __all__ = [
     "AdaptiveGridImm",
+    "BayesianAlphaBeta",
+    "FuzzyAlphaBeta",
+    "FuzzyTrace",
     "Imm",
     "LikelyModelSetImm",
     "ModeChain",
@@ -94,6 +98,7 @@ class Imm:
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
     ) -> RunResult:
         """
         Runs whole recordings.
@@ -111,12 +116,14 @@ class Imm:
             North and east of own ship at each reading.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
 
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
-            and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
 
         Raises
         ------
@@ -231,6 +238,7 @@ class AdaptiveGridImm:
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
     ) -> RunResult:
         """
         Runs whole recordings.
@@ -248,12 +256,14 @@ class AdaptiveGridImm:
             North and east of own ship at each reading.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
 
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
-            and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
 
         Raises
         ------
@@ -358,6 +368,7 @@ class SwitchingGridImm:
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
     ) -> RunResult:
         """
         Runs whole recordings.
@@ -375,12 +386,14 @@ class SwitchingGridImm:
             North and east of own ship at each reading.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
 
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
-            and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
 
         Raises
         ------
@@ -484,6 +497,7 @@ class LikelyModelSetImm:
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
     ) -> RunResult:
         """
         Runs whole recordings.
@@ -501,12 +515,14 @@ class LikelyModelSetImm:
             North and east of own ship at each reading.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
 
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
-            and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
 
         Raises
         ------
@@ -655,6 +671,7 @@ class ModeHistory:
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
     ) -> RunResult:
         """
         Runs whole recordings.
@@ -672,12 +689,14 @@ class ModeHistory:
             North and east of own ship at each reading.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
 
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K), nis, log_likelihood
-            and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
 
         Raises
         ------
@@ -705,5 +724,340 @@ class ModeHistory:
         """
     @property
     def models(self) -> int: ...
+    @property
+    def started(self) -> bool: ...
+
+class BayesianAlphaBeta:
+    """
+    Lines and parabolas through the last plots, weighed by Bayes' rule.
+
+    Each member foretells the next plot with a known error: the plot's own, times one plus the member's noise factor. The plot's
+    likelihood is the evidence for it, and from scan to scan a member stays the right one for a while. The estimate is the mixture.
+    Does what `FuzzyAlphaBeta` does, many plots on a straight and few in a turn, without its usual residual, which a turn inflates,
+    its hold and its hard choice; a parabola holds a turn that lines cut. Has the face of `Imm`, with a mode for each member: lines
+    first, shorter before longer, then parabolas.
+
+    Takes the position out of any sensor, and measures innovations in north and east.
+
+    Parameters
+    ----------
+    min_plots, max_plots : int
+        Of the shortest and the longest line, 2 to 16; at most 16 members in all.
+    parabolas : bool
+        Whether there are parabolas too, through four plots and more.
+    sojourn_s : float
+        Mean time until another member is the right one.
+    longest_line_probability : float
+        Prior of the longest line; the other members are alike.
+    acceleration_std_mps2 : float
+        Per axis, of a maneuver that began at the last plot but one: widens the covariance, not used in weighing.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense.
+    """
+    def __init__(
+        self,
+        *,
+        min_plots: int = 2,
+        max_plots: int = 10,
+        parabolas: bool = True,
+        sojourn_s: float = 30.0,
+        longest_line_probability: float = 0.4,
+        acceleration_std_mps2: float = 0.15,
+    ) -> None: ...
+    def estimate(self) -> Gaussian:
+        """
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
+        """
+    def mode_probability(self) -> NDArray[np.float64]:
+        """
+        (K,)
+        """
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
+        """
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
+        """
+    def run(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+        own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
+    ) -> RunResult:
+        """
+        Runs whole recordings.
+
+        Parameters
+        ----------
+        z : (T, M) or (R, T, M) array
+            Readings of one run or of R independent ones; a row of NaN is a missed scan.
+        dt_s : float or (T,) array
+            Time before each reading, s; the first counts from the start.
+        sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+        start : Gaussian or sequence of R of them
+            Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
+        own_position_m : (T, 2) array, optional
+            North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
+
+        Returns
+        -------
+        RunResult
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+        """
+    def start(self, belief: Gaussian) -> None:
+        """
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
+        """
+    def update(
+        self,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        z: ArrayLike,
+    ) -> Step:
+        """
+        Corrects the belief by a reading; returns the Step.
+        """
+    @property
+    def models(self) -> int: ...
+    @property
+    def plots_of_mode(self) -> NDArray[np.int32]:
+        """
+        (K,) number of plots that each member goes through.
+        """
+    @property
+    def started(self) -> bool: ...
+
+class FuzzyTrace:
+    """
+    What `FuzzyAlphaBeta.trace` returns: arrays over scans, and over runs where there are several; NaN where nothing was judged.
+    """
+    @property
+    def chosen(self) -> NDArray[np.int32]:
+        """
+        (..., T) plots of the line chosen
+        """
+    @property
+    def innovation_m(self) -> NDArray[np.float64]:
+        """
+        (..., T, 2) north and east
+        """
+    @property
+    def prediction_m(self) -> NDArray[np.float64]:
+        """
+        (..., T, 2) north and east
+        """
+    @property
+    def quality(self) -> NDArray[np.float64]:
+        """
+        (..., T) output of the machine
+        """
+    @property
+    def residual_ratios(self) -> NDArray[np.float64]:
+        """
+        (..., T, J - 1) of the lines through 2 .. J plots
+        """
+    @property
+    def rule_strengths(self) -> NDArray[np.float64]:
+        """
+        (..., T, J)
+        """
+    @property
+    def sigma_hat_m(self) -> NDArray[np.float64]:
+        """
+        (..., T)
+        """
+
+class FuzzyAlphaBeta:
+    """
+    The line through the last plots, as many as a fuzzy criterion finds good: many on a straight, few in a turn.
+
+    In each scan the plot is compared with what the lines through the last 2, 3, ... plots foretold. Of each line there is the ratio of
+    its residual to `sigma_hat_m`, the mean residual of the shortest line since the start; ``bad(ratio) = 1 / (1 + exp(-steepness
+    (ratio - threshold)))`` and ``good = 1 - bad``. Rule p of a zero-order Sugeno machine says: where the first p lines are good and
+    the rest bad, track with ``max(2, p + 1)`` plots. The estimate is the line through as many plots as the rules say on average.
+    Until there are two plots it is the belief at the start, as a Kalman filter keeps it.
+
+    Has the face of `Imm`, with one mode for each line. Takes the position out of any sensor, and measures innovations in north and
+    east.
+
+    Parameters
+    ----------
+    max_plots : int
+        Of the longest line, 2 to 16.
+    steepness, threshold : float
+        Of the membership functions.
+    clip : float
+        Greater ratios count as this.
+    t_norm : {'product', 'minimum'}
+        How degrees are combined.
+    hold : bool
+        Whether the greater of the last two outputs counts, against single outliers.
+    acceleration_std_mps2 : float
+        Per axis, of a maneuver that began at the last plot but one: widens the covariance, not used in the choice.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense.
+
+    References
+    ----------
+    V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuzzy criterion of maneuver detection.
+    """
+    def __init__(
+        self,
+        *,
+        max_plots: int = 10,
+        steepness: float = 5.0,
+        threshold: float = 1.5,
+        clip: float = 3.0,
+        t_norm: str = "product",
+        hold: bool = True,
+        acceleration_std_mps2: float = 0.5,
+    ) -> None: ...
+    def estimate(self) -> Gaussian:
+        """
+        The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
+        """
+    def judge(self, ratios: ArrayLike) -> tuple[float, NDArray[np.float64]]:
+        """
+        The machine alone: its output and the strengths (n + 1,) of its rules for the ratios (n,) of the lines through 2, 3, ... plots.
+        """
+    def mode_probability(self) -> NDArray[np.float64]:
+        """
+        (K,)
+        """
+    def predict(self, dt_s: float, acceleration_mps2: ArrayLike | None = None) -> None:
+        """
+        Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
+        """
+    def run(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+        own_position_m: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
+    ) -> RunResult:
+        """
+        Runs whole recordings.
+
+        Parameters
+        ----------
+        z : (T, M) or (R, T, M) array
+            Readings of one run or of R independent ones; a row of NaN is a missed scan.
+        dt_s : float or (T,) array
+            Time before each reading, s; the first counts from the start.
+        sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+        start : Gaussian or sequence of R of them
+            Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
+        own_position_m : (T, 2) array, optional
+            North and east of own ship at each reading.
+        acceleration_mps2 : (T, 2) array, optional
+            Known acceleration, north and east, in the step before each reading.
+        gate : RadiusGate, optional
+            A reading farther from the predicted position is missed.
+
+        Returns
+        -------
+        RunResult
+            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
+            innovation (..., T, M), nis, log_likelihood and status (..., T).
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+        """
+    def start(self, belief: Gaussian) -> None:
+        """
+        Begins with a belief over the state of the estimate or over [x, vx, y, vy].
+        """
+    def trace(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+    ) -> FuzzyTrace:
+        """
+        What the criterion sees and does in every scan of whole recordings.
+
+        Parameters
+        ----------
+        z, dt_s, sensor, start
+            As of `run`.
+
+        Returns
+        -------
+        FuzzyTrace
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When it cannot start.
+        """
+    def update(
+        self,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        z: ArrayLike,
+    ) -> Step:
+        """
+        Corrects the belief by a reading; returns the Step.
+        """
+    @property
+    def chosen(self) -> int:
+        """
+        Plots of the line chosen.
+        """
+    @property
+    def models(self) -> int: ...
+    @property
+    def plots_of_mode(self) -> NDArray[np.int32]:
+        """
+        (K,) number of plots that each line goes through.
+        """
+    @property
+    def quality(self) -> float:
+        """
+        Output of the machine at the last plot, before it is held and rounded; NaN without one.
+        """
+    @property
+    def residual_ratios(self) -> NDArray[np.float64]:
+        """
+        Of each line that was judged at the last plot: its residual over `sigma_hat_m`, clipped.
+        """
+    @property
+    def rule_strengths(self) -> NDArray[np.float64]:
+        """
+        Of each rule of that judgement.
+        """
+    @property
+    def sigma_hat_m(self) -> float:
+        """
+        Mean residual of the shortest line since the start; NaN before the first one.
+        """
     @property
     def started(self) -> bool: ...

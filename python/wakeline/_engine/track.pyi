@@ -9,7 +9,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from .core import Gaussian
 from .measurement import OwnShip
-from .multimodel import AdaptiveGridImm, Imm, LikelyModelSetImm, ModeHistory, SwitchingGridImm
+from .multimodel import (
+    AdaptiveGridImm,
+    BayesianAlphaBeta,
+    FuzzyAlphaBeta,
+    Imm,
+    LikelyModelSetImm,
+    ModeHistory,
+    SwitchingGridImm,
+)
 
 __all__ = [
     "Event",
@@ -287,7 +295,7 @@ class Tracker:
     config : TrackerConfig, optional
     models : VesselModels, optional
         Motion models of the estimator.
-    estimator : Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm or ModeHistory, optional
+    estimator : Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm, ModeHistory, FuzzyAlphaBeta or BayesianAlphaBeta, optional
         Another estimator in place of that made of `models`.
 
     Raises
@@ -305,6 +313,8 @@ class Tracker:
         | SwitchingGridImm
         | LikelyModelSetImm
         | ModeHistory
+        | FuzzyAlphaBeta
+        | BayesianAlphaBeta
         | None = None,
     ) -> None: ...
     def designate(
