@@ -186,7 +186,8 @@ void expect_back(double azimuth_rad, double width_rad, double start_range_m, dou
 TEST(Cat240, Gives_back_what_was_written) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform;
-  for (const std::size_t cells : {1, 2, 4, 255, 1020, 1021, 2048, 16320, 16321, 32512, 65024}) {
+  for (const std::size_t cells :
+       {1u, 2u, 4u, 255u, 1020u, 1021u, 2048u, 16320u, 16321u, 32512u, 65024u}) {
     const double cell_m = std::pow(10.0, 5 * uniform(random) - 1.5);
     const double width = std::pow(10.0, -4 * uniform(random)) * 3.0;
     const double azimuth = 20 * (uniform(random) - 0.5);
@@ -479,7 +480,7 @@ TEST(Cat240Corpus, Comes_through_whole_cut_and_damaged_and_in_pieces) {
   ASSERT_GE(files.size(), 5u);
   for (const Bytes& file : files) {
     const Story whole = read(file);
-    for (const std::size_t piece : {1, 2, 7, 100}) expect_same(whole, read(file, piece));
+    for (const std::size_t piece : {1u, 2u, 7u, 100u}) expect_same(whole, read(file, piece));
     for (std::size_t size = 0; size < file.size(); size += 1 + random() % 5)
       (void)read({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)});
     for (int trial = 0; trial < 300; ++trial) {
