@@ -76,6 +76,7 @@
 #include "wakeline/multimodel/turn_rate_grid.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 #include "wakeline/multimodel/uniform_bank.hpp"
+#include "wakeline/navigation/dead_reckoning.hpp"
 #include "wakeline/navigation/geodesy.hpp"
 #include "wakeline/track/claims.hpp"
 #include "wakeline/track/clutter_map.hpp"
