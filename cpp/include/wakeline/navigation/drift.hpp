@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// The drift of a vessel, observed: her motion over ground less that through the water, [north,
+// east] m/s. Source: Hannoshyna, Kalinichenko, Nikitin, equations (16)-(20); see
+// cpp/docs/theory/dead_reckoning.md.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/cholesky.hpp"
+#include "wakeline/core/require.hpp"
+#include "wakeline/core/status.hpp"
+#include "wakeline/core/types.hpp"
+#include "wakeline/filter/belief.hpp"
+#include "wakeline/navigation/dead_reckoning.hpp"
+
+namespace wakeline {
+
+// At once -----------------------------------------------------------------------------------------
+
+/// Velocity through the water by log and compass, with the covariance of their errors: along the
+/// heading and across it, speed times that of the heading.
+inline Gaussian<2> water_velocity(double speed_mps, double heading_rad, double log_std_mps,
+                                  double heading_std_rad) noexcept {
+  const Vec<double, 2> ahead(std::cos(heading_rad), std::sin(heading_rad));
+  const Vec<double, 2> abeam(-ahead[1], ahead[0]);
+  const double across_std = speed_mps * heading_std_rad;
+  return {speed_mps * ahead, log_std_mps * log_std_mps * ahead * ahead.transpose() +
+                                 across_std * across_std * abeam * abeam.transpose()};
+}
+
+/// From rates: (V_N - V cos K, V_E - V sin K).
+inline Vec<double, 2> drift_from_rates_mps(const Vec<double, 2>& ground_velocity_mps,
+                                           const SpeedCourse& through_water) noexcept {
+  return ground_velocity_mps - through_water.velocity_mps();
+}
+
+/// The same of uncertain velocities that err independently.
+inline Gaussian<2> drift_between(const Gaussian<2>& over_ground,
+                                 const Gaussian<2>& through_water) noexcept {
+  return {over_ground.mean - through_water.mean, over_ground.covariance + through_water.covariance};
+}
+
+/// Own velocity over ground by a mark that lies still, tracked by radar: minus its motion relative
+/// to the ship (axes to true north).
+inline Gaussian<2> ground_velocity_from_mark(const Gaussian<2>& relative_velocity) noexcept {
+  return {-relative_velocity.mean, relative_velocity.covariance};
+}
+
+/// The same by several marks, each weighed by its information. Not a number without a mark or where
+/// a covariance is not positive definite.
+inline Gaussian<2> ground_velocity_from_marks(
+    std::span<const Gaussian<2>> relative_velocities) noexcept {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const Gaussian<2> unknown{Vec<double, 2>::Constant(nan), Mat<double, 2, 2>::Constant(nan)};
+  const Mat<double, 2, 2> identity = Mat<double, 2, 2>::Identity();
+  Mat<double, 2, 2> information = Mat<double, 2, 2>::Zero();
+  Vec<double, 2> weighted = Vec<double, 2>::Zero();
+  for (const Gaussian<2>& mark : relative_velocities) {
+    const Cholesky<2> factor(mark.covariance);
+    if (!factor.ok()) return unknown;
+    information += factor.solve<2>(identity);
+    weighted -= factor.solve<1>(mark.mean);
+  }
+  const Cholesky<2> factor(information);
+  if (!factor.ok()) return unknown;
+  return {factor.solve<1>(weighted), factor.solve<2>(identity)};
+}
+
+// Stabilisation of a radar's picture --------------------------------------------------------------
+
+/// True velocity of a target through the water (sea stabilised): its motion relative to the ship
+/// plus hers by log and compass. This is the one that its lights and its aspect tell.
+inline Vec<double, 2> sea_stabilised_mps(const Vec<double, 2>& relative_mps,
+                                         const SpeedCourse& own_through_water) noexcept {
+  return relative_mps + own_through_water.velocity_mps();
+}
+
+/// True velocity of a target over ground (ground stabilised): a mark that lies still has none.
+inline Vec<double, 2> ground_stabilised_mps(const Vec<double, 2>& relative_mps,
+                                            const SpeedCourse& own_through_water,
+                                            const Vec<double, 2>& drift_mps) noexcept {
+  return sea_stabilised_mps(relative_mps, own_through_water) + drift_mps;
+}
+
+// Over a window -----------------------------------------------------------------------------------
+
+/// How a drift is found over a window.
+struct DriftWindowSettings {
+  int max_fixes = 20;            ///< that are remembered
+  double log_std_mps = 0.0;      ///< error of one reading of the log
+  double heading_std_rad = 0.0;  ///< error of one reading of the compass
+};
+
+/// The drift of a vessel by the differences of observed and reckoned positions over a sliding
+/// window: the slope of the line through them by least squares, with its covariance.
+///
+/// The differences err by the fixes and by what log and compass sum up to in between; each reading
+/// (each `advance`) errs independently of the one before. Steps from fix to fix therefore have a
+/// covariance of two bands, R_k + R_k+1 + Q beside -R_k, and the slope is the best one for it. With
+/// no error of log and compass it is the plain line. A lasting error of the log or the compass
+/// counts as drift. Storage is in place, no heap.
+template <int Capacity = 32>
+class DriftWindow {
+ public:
+  static_assert(Capacity >= 2, "wakeline: a drift needs two fixes");
+  static constexpr int kCapacity = Capacity;
+  using Settings = DriftWindowSettings;
+
+  /// Throws `std::invalid_argument` when a setting makes no sense.
+  explicit DriftWindow(const Settings& settings = {}) : settings_(settings) {
+    require(settings.max_fixes >= 2 && settings.max_fixes <= Capacity, "max_fixes",
+            ("2 to " + std::to_string(Capacity)).c_str(), settings.max_fixes);
+    require_not_negative("log_std_mps", settings.log_std_mps);
+    require_not_negative("heading_std_rad", settings.heading_std_rad);
+  }
+
+  /// Forgets all fixes: after an alteration, where drift is wanted on the new course alone.
+  void clear() noexcept {
+    size_ = 0;
+    step_ = {};
+  }
+
+  /// Lets time pass at a speed through the water and a heading.
+  Status advance(double dt_s, double speed_mps, double heading_rad) noexcept {
+    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
+    if (!std::isfinite(speed_mps) || !std::isfinite(heading_rad)) return Status::kNotFinite;
+    const Gaussian<2> water =
+        water_velocity(speed_mps, heading_rad, settings_.log_std_mps, settings_.heading_std_rad);
+    step_.gap_s += dt_s;
+    step_.reckoned_m += dt_s * water.mean;
+    step_.reckoned_covariance_m2 += dt_s * dt_s * water.covariance;
+    return Status::kOk;
+  }
+
+  /// Takes a fix of the present time, [north, east] m on a plane.
+  Status add(const Gaussian<2>& fix) noexcept {
+    if (const Status status = check(fix); status != Status::kOk) return status;
+    newest_ = (newest_ + 1) % settings_.max_fixes;
+    size_ = std::min(size_ + 1, settings_.max_fixes);
+    step_.fix = fix;
+    latest(0) = step_;
+    step_ = {};
+    return Status::kOk;
+  }
+
+  /// Fixes that are remembered.
+  [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
+
+  /// True when there are two fixes of different times.
+  [[nodiscard]] bool ready() const noexcept {
+    double span_s = 0.0;
+    for (int k = 0; k + 1 < size_; ++k) span_s += latest(k).gap_s;
+    return span_s > 0.0;
+  }
+
+  /// The drift, [north, east] m/s; zero with an infinite covariance until `ready()`.
+  [[nodiscard]] Gaussian<2> drift() const noexcept {
+    const Mat<double, 2, 2> identity = Mat<double, 2, 2>::Identity();
+    if (!ready()) return unknown();
+    // Block elimination of the banded covariance of the steps: each less what the step before tells
+    // of the fix that both share.
+    Mat<double, 2, 2> information = Mat<double, 2, 2>::Zero();
+    Vec<double, 2> weighted = Vec<double, 2>::Zero();
+    Mat<double, 2, 2> time = Mat<double, 2, 2>::Zero();
+    Vec<double, 2> off = Vec<double, 2>::Zero();
+    Cholesky<2> before;
+    for (int k = size_ - 2; k >= 0; --k) {
+      const Fixed &from = latest(k + 1), &to = latest(k);
+      Mat<double, 2, 2> covariance =
+          from.fix.covariance + to.fix.covariance + to.reckoned_covariance_m2;
+      Mat<double, 2, 2> t = to.gap_s * identity;
+      Vec<double, 2> d = to.fix.mean - from.fix.mean - to.reckoned_m;
+      if (k < size_ - 2) {
+        const Mat<double, 2, 2> told = before.template solve<2>(from.fix.covariance).transpose();
+        covariance -= told * from.fix.covariance;
+        mirror_lower<double, 2>(covariance);
+        t += told * time;
+        d += told * off;
+      }
+      time = t;
+      off = d;
+      before.compute(covariance);
+      information += time.transpose() * before.template solve<2>(time);
+      weighted += time.transpose() * before.template solve<1>(off);
+    }
+    mirror_lower<double, 2>(information);
+    const Cholesky<2> factor(information);
+    Gaussian<2> drift{factor.template solve<1>(weighted), factor.template solve<2>(identity)};
+    mirror_lower<double, 2>(drift.covariance);
+    return drift;
+  }
+
+ private:
+  /// A fix and how the ship has come there, reckoned from the fix before.
+  struct Fixed {
+    Gaussian<2> fix;
+    double gap_s = 0.0;
+    Vec<double, 2> reckoned_m = Vec<double, 2>::Zero();
+    Mat<double, 2, 2> reckoned_covariance_m2 = Mat<double, 2, 2>::Zero();
+  };
+
+  static Gaussian<2> unknown() noexcept {
+    Gaussian<2> drift{Vec<double, 2>::Zero(), Mat<double, 2, 2>::Zero()};
+    drift.covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
+    return drift;
+  }
+
+  /// The k-th fix, counted back from the newest.
+  [[nodiscard]] const Fixed& latest(int k) const noexcept {
+    const int slot = newest_ - k;
+    return fixes_[static_cast<std::size_t>(slot < 0 ? slot + settings_.max_fixes : slot)];
+  }
+  Fixed& latest(int k) noexcept {
+    return const_cast<Fixed&>(static_cast<const DriftWindow&>(*this).latest(k));
+  }
+
+  Settings settings_;
+  std::array<Fixed, static_cast<std::size_t>(Capacity)> fixes_{};
+  Fixed step_;  ///< since the newest fix
+  int size_ = 0;
+  int newest_ = 0;
+};
+
+}  // namespace wakeline

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// What wind and waves do to a drifting object and to the water it lies in. Source: Hannoshyna,
+// Kalinichenko, Nikitin, equations (12)-(15); see cpp/docs/theory/dead_reckoning.md.
+//
+// A wind here is the velocity of the air, [north, east] m/s: where it blows to.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/require.hpp"
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// What floats.
+enum class FloatingObject : unsigned char { kBuoy, kDinghy, kLaunch, kShip };
+
+/// How much of the wind's speed an object takes on, as a range.
+struct LeewayFactor {
+  double least = 0.0;
+  double greatest = 0.0;
+
+  [[nodiscard]] constexpr double middle() const noexcept { return (least + greatest) / 2; }
+
+  /// Standard deviation of a factor that may lie anywhere in the range alike.
+  [[nodiscard]] double std() const noexcept { return (greatest - least) / std::sqrt(12.0); }
+};
+
+/// The table of (12).
+constexpr LeewayFactor leeway_factor(FloatingObject object) noexcept {
+  constexpr std::array<LeewayFactor, 4> table{
+      {{0.012, 0.015}, {0.032, 0.045}, {0.065, 0.065}, {0.056, 0.062}}};
+  return table[static_cast<std::size_t>(object)];
+}
+
+/// (12), (13): V = k U, downwind. (In knots of a wind in m/s: 1.944 k U.)
+inline Vec<double, 2> wind_drift_mps(const Vec<double, 2>& wind_mps, double factor) noexcept {
+  return factor * wind_mps;
+}
+
+/// (14): the current at the surface that a lasting wind makes, V = k U / sqrt(sin |latitude|), 45
+/// degrees to the right of where the wind blows in the northern hemisphere, to the left in the
+/// southern.
+///
+/// The factor is 0.0127 after Ekman; observed ones lie from 0.04 (wind of 2 m/s) to 0.012 (20 m/s).
+class WindCurrent {
+ public:
+  static constexpr double kLeastLatitude_rad = deg(20.0);
+  static constexpr double kDefaultFactor = 0.0127;
+
+  /// Throws `std::invalid_argument` less than 20 degrees from the equator, where the law fails.
+  explicit WindCurrent(double latitude_rad, double factor = kDefaultFactor) {
+    require(
+        std::abs(latitude_rad) >= kLeastLatitude_rad && std::abs(latitude_rad) <= kPi<double> / 2,
+        "latitude_rad",
+        "20 degrees (0.349066) or more from the equator, where (14) holds, and at most pi/2",
+        latitude_rad);
+    require_not_negative("factor", factor);
+    const double gain = factor / std::sqrt(std::sin(std::abs(latitude_rad)));
+    const double to_starboard = latitude_rad > 0 ? kPi<double> / 4 : -kPi<double> / 4;
+    const double c = gain * std::cos(to_starboard), s = gain * std::sin(to_starboard);
+    of_wind_ << c, -s, s, c;
+  }
+
+  /// [north, east] m/s of the water.
+  [[nodiscard]] Vec<double, 2> velocity_mps(const Vec<double, 2>& wind_mps) const noexcept {
+    return of_wind_ * wind_mps;
+  }
+
+ private:
+  Mat<double, 2, 2> of_wind_;
+};
+
+/// (15): speed of the surface drift with waves in deep water (Stokes), in their direction:
+/// (h/2)² (2 pi / L) sqrt(2 pi g / L), h from trough to crest, L from crest to crest.
+inline double stokes_drift_mps(double wave_height_m, double wave_length_m) noexcept {
+  constexpr double gravity_mps2 = 9.80665;
+  const double amplitude = wave_height_m / 2;
+  const double wave_number = 2 * kPi<double> / wave_length_m;
+  return amplitude * amplitude * wave_number * std::sqrt(gravity_mps2 * wave_number);
+}
+
+}  // namespace wakeline
