@@ -32,6 +32,7 @@ WORDS = [
     (r"\bdt_s: typing\.Any", "dt_s: ArrayLike"),
     (r"\b(own_\w+|bearing_rad): (typing\.Any|ArrayLike) = 0\.0", r"\1: ArrayLike = 0.0"),
     (r"\bplot_time_s: typing\.Any", "plot_time_s: ArrayLike | None"),
+    (r"NDArray\[np\.bool\]", "NDArray[np.bool_]"),
     (r"\bvideo: typing\.Any", "video: RadarVideo"),
     (r"\bamplitude: typing\.Any", "amplitude: NDArray[np.uint8] | NDArray[np.uint16]"),
     (

@@ -96,6 +96,7 @@
 #include "wakeline/video/asterix_cat240.hpp"
 #include "wakeline/video/asterix_cat240_reader.hpp"
 #include "wakeline/video/asterix_cat240_writer.hpp"
+#include "wakeline/video/azimuth_rows.hpp"
 #include "wakeline/video/cfar.hpp"
 #include "wakeline/video/echo.hpp"
 #include "wakeline/video/kernels.hpp"

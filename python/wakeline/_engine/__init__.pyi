@@ -1,6 +1,6 @@
 """The C++ engine of Wakeline."""
 
-from . import association, core, eval, filter, gating, measurement, motion, multimodel, track
+from . import association, core, eval, filter, gating, measurement, motion, multimodel, track, video
 
 __all__ = [
     "association",
@@ -12,4 +12,5 @@ __all__ = [
     "motion",
     "multimodel",
     "track",
+    "video",
 ]

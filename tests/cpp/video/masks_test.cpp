@@ -151,6 +151,22 @@ TEST(StaticClutterMap, WhatStaysVanishesAfterItsTime) {
   }
 }
 
+TEST(StaticClutterMap, KnowsASweepAgainHoweverItsAzimuthIsRounded) {
+  for (const double place : {100.0, 100.5}) {
+    StaticClutterMap map(360, 1, 30.0);
+    const std::vector<std::uint8_t> amplitude{200};
+    std::vector<std::uint8_t> threshold{1};
+    for (int turn = 0; turn < 50; ++turn)
+      map.lift_and_learn<std::uint8_t>({.time_s = 2.5 * turn,
+                                        .azimuth_rad = deg(place + 1e-9 * (turn % 3 - 1)),
+                                        .azimuth_width_rad = deg(1),
+                                        .cell_m = 10.0,
+                                        .amplitude = amplitude},
+                                       threshold);
+    EXPECT_EQ(std::ranges::count_if(map.mean(), [](float m) { return m > 0; }), 1) << place;
+  }
+}
+
 TEST(StaticClutterMap, WhatMovesStays) {
   const auto ship = [](Picture<>& picture, int turn) {
     test::add_ship(picture, 100 + 0.3 * turn, 20 + 1.5 * turn);

@@ -12,6 +12,7 @@
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/types.hpp"
+#include "wakeline/video/azimuth_rows.hpp"
 #include "wakeline/video/sweep.hpp"
 
 namespace wakeline {
@@ -47,8 +48,8 @@ class LandMask {
     const bool whole = std::fabs(to_azimuth_rad - from_azimuth_rad) >= turn - 1e-9;
     const double width = whole ? turn : compass_angle(to_azimuth_rad - from_azimuth_rad);
     const double from = compass_angle(from_azimuth_rad);
-    const int first = static_cast<int>(from / step());
-    const int last = static_cast<int>((from + width) / step() - 1e-9);
+    const int first = rows().count_to(from);
+    const int last = rows().count_to(from + width - 1e-9);
     for (int row = first; row <= std::min(last, first + azimuths() - 1); ++row)
       exclude(row % azimuths(), {near_m, far_m});
   }
@@ -66,7 +67,7 @@ class LandMask {
     }
     std::vector<double> shore_m;
     for (int row = 0; row < azimuths(); ++row) {
-      crossings(corners_m, (row + 0.5) * step(), shore_m);
+      crossings(corners_m, rows().middle(row), shore_m);
       for (std::size_t k = 0; k + 1 < shore_m.size(); k += 2)
         exclude(row, {shore_m[k], shore_m[k + 1]});
     }
@@ -75,7 +76,7 @@ class LandMask {
   /// Whether a place is excluded.
   [[nodiscard]] bool excludes(double azimuth_rad, double range_m) const noexcept {
     if (excluded_.empty() || !std::isfinite(azimuth_rad)) return false;
-    return std::ranges::any_of(excluded_[row_of(azimuth_rad)], [&](const Ranges& ranges) {
+    return std::ranges::any_of(excluded_[rows().of(azimuth_rad)], [&](const Ranges& ranges) {
       return ranges.near_m <= range_m && range_m < ranges.far_m;
     });
   }
@@ -88,7 +89,7 @@ class LandMask {
     const auto cell = [&](double range_m) noexcept {
       return std::clamp((range_m - sweep.start_range_m) / sweep.cell_m, 0.0, cells);
     };
-    for (const Ranges& ranges : excluded_[row_of(sweep.azimuth_rad)]) {
+    for (const Ranges& ranges : excluded_[rows().of(sweep.azimuth_rad)]) {
       const auto first = static_cast<std::size_t>(cell(ranges.near_m));
       const auto last = static_cast<std::size_t>(std::ceil(cell(ranges.far_m)));
       for (std::size_t i = first; i < last; ++i)
@@ -106,11 +107,8 @@ class LandMask {
     require(!excluded_.empty(), "azimuths", "1 to 65536 to exclude an area", 0);
   }
 
-  [[nodiscard]] double step() const noexcept { return 2 * kPi<double> / azimuths(); }
-
-  [[nodiscard]] std::size_t row_of(double azimuth_rad) const noexcept {
-    return std::min(static_cast<std::size_t>(compass_angle(azimuth_rad) / step()),
-                    excluded_.size() - 1);
+  [[nodiscard]] detail::AzimuthRows rows() const noexcept {
+    return detail::AzimuthRows(azimuths());
   }
 
   /// Takes ranges in, joined with those that they meet.

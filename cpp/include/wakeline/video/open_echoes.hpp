@@ -58,7 +58,10 @@ class OpenEchoes {
   void begin_sweep(const BeamPlace& beam, bool first) noexcept {
     beam_ = beam;
     first_ = first;
-    for (std::size_t k = 0; k < cursor_.size(); ++k) cursor_[k] = sweep(k + 1).data();
+    for (std::size_t k = 0; k < cursor_.size(); ++k) {
+      const Runs& before = sweep(k + 1);
+      cursor_[k] = {before.data(), before.data() + before.size()};
+    }
   }
 
   /// The beam has passed north: azimuths begin anew.
@@ -140,6 +143,12 @@ class OpenEchoes {
   };
   using Runs = std::vector<Run>;
 
+  /// How far the runs of an earlier sweep have been looked at.
+  struct Cursor {
+    const Run* at;
+    const Run* end;
+  };
+
   [[nodiscard]] Echo& slot(int echo) noexcept { return echoes_[static_cast<std::size_t>(echo)]; }
 
   /// Runs of the sweep `back` sweeps ago.
@@ -192,12 +201,10 @@ class OpenEchoes {
   [[nodiscard]] int touched_by(const EchoRun& run) noexcept {
     const int reach = settings_.gap_cells + 1;
     int echo = kNone;
-    for (std::size_t k = 0; k < cursor_.size(); ++k) {
-      const Runs& before = sweep(k + 1);
-      const Run* const end = before.data() + before.size();
-      const Run*& at = cursor_[k];
-      while (at != end && at->last + reach < run.first) ++at;
-      for (const Run* near = at; near != end && near->first - reach <= run.last; ++near)
+    for (Cursor& before : cursor_) {
+      const Run*& at = before.at;
+      while (at != before.end && at->last + reach < run.first) ++at;
+      for (const Run* near = at; near != before.end && near->first - reach <= run.last; ++near)
         echo = united(echo, root(near->echo));
     }
     return echo;
@@ -285,7 +292,7 @@ class OpenEchoes {
   Settings settings_;
   std::vector<Runs> recent_;  ///< a ring: the runs of this sweep and of those that it may touch
   std::vector<Runs> heads_;   ///< those of the first sweeps of a circle
-  std::vector<const Run*> cursor_;
+  std::vector<Cursor> cursor_;
   std::vector<Echo> echoes_;
   std::vector<int> set_;
   std::vector<int> free_;

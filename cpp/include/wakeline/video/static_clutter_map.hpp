@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "wakeline/core/angle.hpp"
 #include "wakeline/core/require.hpp"
+#include "wakeline/video/azimuth_rows.hpp"
 #include "wakeline/video/sweep.hpp"
 
 namespace wakeline {
@@ -67,7 +67,7 @@ class StaticClutterMap {
       start_range_m_ = sweep.start_range_m;
       cell_m_ = sweep.cell_m;
     }
-    const std::size_t row = row_of(sweep.azimuth_rad);
+    const std::size_t row = detail::AzimuthRows(azimuths()).of(sweep.azimuth_rad);
     constexpr auto kMost = static_cast<float>(std::numeric_limits<Amplitude>::max());
     const float gain = gain_at(row, sweep.time_s);
     const float factor = factor_;
@@ -84,11 +84,6 @@ class StaticClutterMap {
 
  private:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
-
-  [[nodiscard]] std::size_t row_of(double azimuth_rad) const noexcept {
-    const double row = compass_angle(azimuth_rad) / (2 * kPi<double>)*azimuths();
-    return std::min(static_cast<std::size_t>(row), seen_s_.size() - 1);
-  }
 
   /// Share of the new amplitude in the mean of a row; none at first, or when time
   /// stands still or runs back.
