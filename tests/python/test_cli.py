@@ -462,7 +462,8 @@ def test_bench_measures_every_work(tmp_path, monkeypatch, capsys):
 
     for name, value in (("_REPEATS", 1), ("_RUNS", 10), ("_SCANS", 20), ("_LOOP_STEPS", 20)):
         monkeypatch.setattr(bench, name, value)
-    monkeypatch.setattr(bench, "_TRACKER_SCANS", 2)
+    for name, value in (("_TRACKER_SCANS", 2), ("_SWEEPS", 64), ("_CELLS", 128)):
+        monkeypatch.setattr(bench, name, value)
     assert main(["bench", "--json", str(tmp_path / "bench.json")]) == 0
     result = json.loads((tmp_path / "bench.json").read_text())
     assert result["name"] == "bench"
@@ -473,6 +474,7 @@ def test_bench_measures_every_work(tmp_path, monkeypatch, capsys):
     assert rows["imm3_run_python", "python_loop"]["times_scalar_double"] > 0
     assert rows["tracker_scan", "scalar_double"]["ms_per_scan"] > 0
     assert rows["gnn_200", "scalar_double"]["ms_per_scan"] > 0
+    assert rows["cfar_scan", "scalar_double"]["ms_per_scan"] > 0
     assert "ns a step" in capsys.readouterr().out
 
 

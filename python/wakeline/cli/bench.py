@@ -24,6 +24,7 @@ _RUNS, _SCANS = 500, 250
 _DT_S = 3.0
 _LOOP_STEPS = 500
 _TRACKS, _PLOTS, _TRACKER_SCANS = 100, 200, 40
+_SWEEPS, _CELLS, _TRAIN, _GUARD = 4096, 2048, 16, 4
 _RANGE_STD_M, _BEARING_STD_RAD = 20.0, np.deg2rad(0.5)
 
 
@@ -56,8 +57,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "bench",
         help="throughput on this machine",
         description="Measures throughput per estimator on this machine, from Python: the best of "
-        f"{_REPEATS} times, with ratios within the run. filterpy and scipy are measured beside "
-        "where they are installed.",
+        f"{_REPEATS} times, with ratios within the run. filterpy, scipy and opencv are measured "
+        "beside where they are installed.",
     )
     parser.add_argument("--json", type=Path, metavar="F", help="write the figures as JSON")
     parser.set_defaults(run=run)
@@ -74,7 +75,13 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _works() -> list[_Work]:
-    return [*_step_works(), *_imm_run_works(), *_tracker_works(), *_assignment_works()]
+    return [
+        *_step_works(),
+        *_imm_run_works(),
+        *_tracker_works(),
+        *_assignment_works(),
+        *_video_works(),
+    ]
 
 
 def _measured(work: _Work) -> dict[str, Any]:
@@ -261,3 +268,95 @@ def _assignment_works() -> Iterator[_Work]:
     except ImportError:
         return
     yield _Work("gnn_200", "scipy", "ms_per_scan", lambda: linear_sum_assignment(cost), 1)
+
+
+# Radar video --------------------------------------------------------------------------------------
+
+
+def _video_works() -> Iterator[_Work]:
+    """A turn of 4096 sweeps of 2048 cells of 8 bits, from amplitudes to centroids of echoes."""
+    name, metric = "cfar_scan", "ms_per_scan"
+    amplitude, factor = _video(), wl.video.threshold_factor(1e-9, train_cells=_TRAIN)
+    step_rad = 2 * np.pi / _SWEEPS
+    video = wl.recording.RadarVideo(
+        amplitude=amplitude,
+        azimuth_rad=step_rad * np.arange(_SWEEPS),
+        time_s=2.5 / _SWEEPS * np.arange(_SWEEPS),
+        azimuth_width_rad=step_rad,
+        start_range_m=0.0,
+        cell_m=7.5,
+    )
+    extractor = wl.PlotExtractor(
+        train_cells=_TRAIN,
+        guard_cells=_GUARD,
+        threshold_factor=factor,
+        max_sweep_cells=_CELLS,
+        closed_circle=True,
+    )
+
+    def ours() -> None:
+        extractor.process(video)
+        extractor.finish()
+
+    yield _Work(name, OURS, metric, ours, 1)
+    for peer, scan in (("scipy", _scipy_scan()), ("opencv", _opencv_scan())):
+        if scan is not None:
+            yield _Work(name, peer, metric, lambda scan=scan: scan(amplitude, factor), 1)
+
+
+def _video() -> np.ndarray:
+    """Rayleigh noise and 200 ships."""
+    rng = np.random.default_rng(_SEED)
+    amplitude = rng.rayleigh(14.0, (_SWEEPS, _CELLS)).clip(0, 255).astype(np.uint8)
+    echo = 255 - 5 * np.abs(np.arange(20) - 10)[:, None] - 10 * np.abs(np.arange(5) - 2)
+    for sweep, cell in rng.integers(0, (_SWEEPS - 20, _CELLS - 5), (200, 2)):
+        amplitude[sweep : sweep + 20, cell : cell + 5] = echo
+    return amplitude
+
+
+def _scipy_scan() -> Callable[[np.ndarray, float], Any] | None:
+    """The same with scipy's filter and labels; sums over the few cells that are left by numpy."""
+    try:
+        from scipy import ndimage
+    except ImportError:
+        return None
+
+    def scan(amplitude: np.ndarray, factor: float) -> Any:
+        window = ndimage.uniform_filter1d(amplitude, _TRAIN, axis=1, output=np.float32)
+        labels, count = ndimage.label(_above(amplitude, window, factor), np.ones((3, 3)))
+        sweep, cell = np.nonzero(labels)
+        label, weight = labels[sweep, cell], amplitude[sweep, cell].astype(float)
+        total, by_cell, by_sweep = (
+            np.bincount(label, weights, count + 1)[1:]
+            for weights in (weight, weight * cell, weight * sweep)
+        )
+        return by_cell / total, by_sweep / total
+
+    return scan
+
+
+def _opencv_scan() -> Callable[[np.ndarray, float], Any] | None:
+    """The same with opencv, but for the weights: its components have centroids without."""
+    try:
+        import cv2
+    except ImportError:
+        return None
+
+    def scan(amplitude: np.ndarray, factor: float) -> Any:
+        window = cv2.boxFilter(amplitude, cv2.CV_32F, (_TRAIN, 1))
+        above = _above(amplitude, window, factor).astype(np.uint8)
+        return cv2.connectedComponentsWithStats(above, connectivity=8)
+
+    return scan
+
+
+def _above(amplitude: np.ndarray, window: np.ndarray, factor: float) -> np.ndarray:
+    """Cells above the mean of the windows on both sides; none at the ends of sweeps."""
+    apart = _TRAIN + 2 * _GUARD + 1
+    first = _GUARD + (_TRAIN + 1) // 2
+    threshold = window[:, :-apart] + window[:, apart:]
+    threshold *= np.float32(factor / 2)
+    above = np.zeros(amplitude.shape, bool)
+    inside = slice(first, first + threshold.shape[1])
+    np.greater(amplitude[:, inside], threshold, out=above[:, inside])
+    return above
