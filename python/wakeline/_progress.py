@@ -38,6 +38,19 @@ def progress(items: Iterable[T], total: int, label: str) -> Iterator[T]:
         _draw("")
 
 
+def counted(items: Iterable[T], label: str) -> Iterator[T]:
+    """Hand on `items` of which nobody knows how many there are, with a count where that is seen."""
+    if not sys.stderr.isatty():
+        yield from items
+        return
+    try:
+        for done, item in enumerate(items, start=1):
+            _draw(f"{done} {label}")
+            yield item
+    finally:
+        _draw("")
+
+
 def _bar(done: int, total: int) -> str:
     full = _WIDTH * done // max(total, 1)
     return "█" * full + "░" * (_WIDTH - full)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from collections import Counter
 from collections.abc import Sequence
@@ -10,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from wakeline import FilterError, metrics
-from wakeline.recording import Recording, Tracks, read_plots
+from wakeline.recording import Recording, Tracks, is_video, read_plots
 
-from . import outputs, report
+from . import outputs, report, video
 from .config import Settings, radar_names, read_settings
 from .tracking import TrackedEpisode, has_names, median_step_s, track_episode
 
@@ -29,7 +30,13 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "start. When one of several scenarios fails, the files of those before it are written with "
         "-partial in their names, and files of an earlier run stay as they were.",
     )
-    parser.add_argument("plots", nargs="?", type=Path, metavar="PLOTS.csv", help="radar plots")
+    parser.add_argument(
+        "plots",
+        nargs="?",
+        type=Path,
+        metavar="RECORDING",
+        help="radar plots as CSV, or radar video: ASTERIX category 240",
+    )
     parser.add_argument(
         "--own", type=Path, metavar="SCANS.csv", help="own ship; with a scan column, every scan too"
     )
@@ -59,7 +66,10 @@ def run(arguments: argparse.Namespace) -> None:
         print(settings.toml(), end="")
         return
     if arguments.plots is None:
-        raise ValueError("track needs a file of plots (see wakeline track --help)")
+        raise ValueError("track needs a recording (see wakeline track --help)")
+    if is_video(arguments.plots):
+        track_video(arguments, settings)
+        return
     recording = read_plots(
         arguments.plots, arguments.own, arguments.truth, period_s=settings.period_s
     )
@@ -73,6 +83,29 @@ def run(arguments: argparse.Namespace) -> None:
         rows = [scored | row for scored, row in zip(scores, rows, strict=True)]
     if arguments.json is not None:
         outputs.write_json(arguments.json, "track", rows)
+
+
+def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
+    """Track radar video: as plots, and a picture of the screen besides."""
+    for option in ("own", "truth"):
+        if getattr(arguments, option) is not None:
+            raise ValueError(f"--{option} goes with a file of plots, {arguments.plots} is video")
+    film = video.read_plots_of_video(arguments.plots)
+    radar = f"radar {arguments.radar}"
+    if arguments.radar is None and arguments.config is None:
+        settings = film.told_to(settings)
+        radar = f"radar as its echoes are: {_std_text(film)}"
+    parts = track_into(arguments.out, film.recording, settings, radar)
+    if outputs.can_draw():
+        file = video.draw_ppi(arguments.out, film, parts[0])
+        print(f"and {file.name}")
+    if arguments.json is not None:
+        outputs.write_json(arguments.json, "track", _rows(parts, arguments.plots.name))
+
+
+def _std_text(film: video.VideoRecording) -> str:
+    range_std_m, bearing_std_rad = film.plot_std
+    return f"{range_std_m:.1f} m, {math.degrees(bearing_std_rad):.2f}°"
 
 
 def track_into(

@@ -22,7 +22,7 @@ def estimators() -> dict[str, Any]:
     straight = wl.ConstantVelocity(noise=wl.WhiteAcceleration(psd_m2s3=5e-4))
     turning = wl.CoordinatedTurnRate(
         noise=wl.WhiteAcceleration(psd_m2s3=0.014),
-        turn_rate_psd_rad2s3=1.2e-4,
+        turn_rate_psd_rad2s3=1.4e-4,
         prior_turn_rate_std_rad_s=0.09,
     )
     wild = wl.ConstantVelocity(noise=wl.PiecewiseAcceleration(std_mps2=0.7))
@@ -33,7 +33,7 @@ def estimators() -> dict[str, Any]:
         "kalman": wl.Kalman(wild),
         "imm": wl.Imm(
             filters=[wl.Ekf(straight), wl.Ekf(turning)],
-            chain=wl.ModeChain.from_sojourn_s([15.0, 120.0]),
+            chain=wl.ModeChain.from_sojourn_s([14.5, 120.0]),
             initial_mode_probability=[0.9, 0.1],
         ),
     }

@@ -1,0 +1,113 @@
+"""`wakeline track` on radar video: sweeps in, tracks and a picture of the screen out."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wakeline import scenario
+from wakeline.cli import main, outputs
+from wakeline.recording import read_tracks, write_video
+
+SCANS = 14
+PERIOD_S = 2.5
+
+
+def ship(north_m, east_m, vnorth_mps, veast_mps):
+    truth = scenario.Truth([north_m, vnorth_mps, east_m, veast_mps])
+    return scenario.VideoTarget(truth=truth, length_m=40.0, beam_m=10.0, rcs_m2=10.0, swerling=0)
+
+
+SHIPS = {
+    "off north": ship(2500.0, -60.0, 0.0, 8.0),  # crosses north
+    "far": ship(-1500.0, 2200.0, 6.0, 5.0),
+}
+
+
+def simulator(**changes):
+    radar = scenario.RadarVideoSimulator(
+        sweeps_per_turn=720,
+        cells=400,
+        cell_m=10.0,
+        period_s=PERIOD_S,
+        beam_width_rad=np.deg2rad(1.5),
+        pulse_length_m=20.0,
+        snr_db=12.0,
+    )
+    return replace(radar, **changes)
+
+
+@pytest.fixture(scope="module")
+def video(tmp_path_factory):
+    path = tmp_path_factory.mktemp("video") / "harbour.cat240"
+    write_video(path, simulator().turns(SHIPS, SCANS, seed=1))
+    return path
+
+
+@pytest.fixture(autouse=True)
+def no_pictures(request, monkeypatch):
+    if "pictures" not in request.fixturenames:
+        monkeypatch.setattr(outputs, "can_draw", lambda: False)
+
+
+@pytest.fixture
+def pictures():
+    pytest.importorskip("matplotlib")
+
+
+def track_of(tracks, name):
+    """Rows of the track that is nearest to a ship at the end, and its distances to the truth."""
+    truth = SHIPS[name].truth
+    last = tracks.time_s == tracks.time_s.max()
+    place_m = truth.state_at(tracks.time_s.max())[0, ::2]
+    distance_m = np.hypot(*(tracks.state[last][:, ::2] - place_m).T)
+    rows = tracks.track_id == tracks.track_id[last][distance_m.argmin()]
+    error = tracks.state[rows] - truth.state_at(tracks.time_s[rows])
+    return rows, np.hypot(error[:, 0], error[:, 2]), np.hypot(error[:, 1], error[:, 3])
+
+
+def test_every_ship_has_a_track_from_strobe_to_velocity(video, tmp_path, capsys):
+    assert main(["track", str(video), "--out", str(tmp_path), "--json", str(tmp_path / "f")]) == 0
+    tracks = read_tracks(tmp_path / "tracks.csv")
+    for name in SHIPS:
+        rows, position_m, velocity_mps = track_of(tracks, name)
+        assert rows.sum() >= SCANS - 5
+        assert position_m[-5:].max() < 25.0
+        assert velocity_mps[-1] < 2.5
+    assert len(tracks.ids()) == len(SHIPS)
+    row = json.loads((tmp_path / "f").read_text())["rows"][-1]
+    assert row["scans"] in (SCANS, SCANS + 1)
+    assert row["tracks"] == len(SHIPS)
+    told = capsys.readouterr().out
+    assert "harbour" in told
+    assert "as its echoes are" in told
+
+
+def test_the_screen_is_drawn(video, tmp_path, pictures):
+    assert main(["track", str(video), "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "ppi.png").read_bytes()[:4] == b"\x89PNG"
+    assert (tmp_path / "map.png").stat().st_size > 5000
+
+
+def test_damage_is_told_and_what_is_sound_is_tracked(video, tmp_path, capsys):
+    octets = bytearray(video.read_bytes())
+    octets[len(octets) // 2 : len(octets) // 2 + 50] = bytes(50)
+    damaged = tmp_path / "damaged.cat240"
+    damaged.write_bytes(octets[:-100])
+    assert main(["track", str(damaged), "--out", str(tmp_path)]) == 0
+    assert "note:" in capsys.readouterr().out
+    assert len(read_tracks(tmp_path / "tracks.csv").ids()) == len(SHIPS)
+
+
+@pytest.mark.parametrize("option", ["--own", "--truth"])
+def test_what_goes_with_plots_is_refused(video, tmp_path, option, capsys):
+    assert main(["track", str(video), option, "scans.csv", "--out", str(tmp_path)]) == 2
+    assert option in capsys.readouterr().err
+
+
+def test_noise_alone_gives_no_track(tmp_path):
+    path = tmp_path / "noise.cat240"
+    write_video(path, simulator().turns({}, 8, seed=2))
+    assert main(["track", str(path), "--out", str(tmp_path)]) == 0
+    assert len(read_tracks(tmp_path / "tracks.csv")) == 0
