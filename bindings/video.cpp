@@ -32,11 +32,13 @@ Meaning meaning(const char* name, const std::map<std::string, Meaning>& words,
 }
 
 CfarSettings cfar_settings(const std::string& kind, int train_cells, int guard_cells,
-                           double threshold_factor, double rank, int least_amplitude) {
+                           double threshold_factor, int threshold_offset, double rank,
+                           int least_amplitude) {
   const CfarSettings settings{.kind = meaning("kind", kKinds, kind),
                               .train_cells = train_cells,
                               .guard_cells = guard_cells,
                               .threshold_factor = threshold_factor,
+                              .threshold_offset = threshold_offset,
                               .rank = rank,
                               .least_amplitude = least_amplitude};
   settings.validate();
@@ -133,9 +135,10 @@ void for_each_sweep(const Array& amplitude, const CfarSettings& settings, Use&& 
 }
 
 py::array_t<bool> cfar(const py::object& amplitude, const std::string& kind, int train_cells,
-                       int guard_cells, double factor, double rank, int least_amplitude) {
+                       int guard_cells, double factor, int offset, double rank,
+                       int least_amplitude) {
   const CfarSettings settings =
-      cfar_settings(kind, train_cells, guard_cells, factor, rank, least_amplitude);
+      cfar_settings(kind, train_cells, guard_cells, factor, offset, rank, least_amplitude);
   return with_amplitude(amplitude, [&]<class Array>(const Array& array) {
     py::array_t<bool> above({array.shape(0), array.shape(1)});
     bool* to = above.mutable_data();
@@ -147,9 +150,10 @@ py::array_t<bool> cfar(const py::object& amplitude, const std::string& kind, int
 }
 
 py::array cfar_threshold(const py::object& amplitude, const std::string& kind, int train_cells,
-                         int guard_cells, double factor, double rank, int least_amplitude) {
+                         int guard_cells, double factor, int offset, double rank,
+                         int least_amplitude) {
   const CfarSettings settings =
-      cfar_settings(kind, train_cells, guard_cells, factor, rank, least_amplitude);
+      cfar_settings(kind, train_cells, guard_cells, factor, offset, rank, least_amplitude);
   return with_amplitude(amplitude, [&]<class Array>(const Array& array) -> py::array {
     using Amplitude = typename Array::value_type;
     py::array_t<Amplitude> thresholds({array.shape(0), array.shape(1)});
@@ -355,7 +359,8 @@ void define_cfar(py::module_& m) {
   const CfarSettings d;
   m.def("cfar", &cfar, py::arg("amplitude"), py::kw_only(), py::arg("kind") = "cell_averaging",
         py::arg("train_cells") = d.train_cells, py::arg("guard_cells") = d.guard_cells,
-        py::arg("threshold_factor") = d.threshold_factor, py::arg("rank") = d.rank,
+        py::arg("threshold_factor") = d.threshold_factor,
+        py::arg("threshold_offset") = d.threshold_offset, py::arg("rank") = d.rank,
         py::arg("least_amplitude") = d.least_amplitude,
         R"(Which cells stand out from those before and behind them: CFAR along range.
 
@@ -372,6 +377,9 @@ guard_cells : int
     On each side, next to the cell, that are left out.
 threshold_factor : float
     Times the mean or the k-th; see `threshold_factor`.
+threshold_offset : int
+    On top of that. Video of a logarithmic receiver wants a factor of 1 and an offset; see
+    `threshold_offset_db`.
 rank : float
     k by the number of training cells; ordered_statistic only.
 least_amplitude : int
@@ -383,7 +391,8 @@ Returns
   m.def("cfar_threshold", &cfar_threshold, py::arg("amplitude"), py::kw_only(),
         py::arg("kind") = "cell_averaging", py::arg("train_cells") = d.train_cells,
         py::arg("guard_cells") = d.guard_cells, py::arg("threshold_factor") = d.threshold_factor,
-        py::arg("rank") = d.rank, py::arg("least_amplitude") = d.least_amplitude,
+        py::arg("threshold_offset") = d.threshold_offset, py::arg("rank") = d.rank,
+        py::arg("least_amplitude") = d.least_amplitude,
         R"(The amplitudes that cells have to exceed: (N, C) of the amplitudes' type.
 
 Parameters as of `cfar`.)");
@@ -391,7 +400,7 @@ Parameters as of `cfar`.)");
       "threshold_factor",
       [](double probability, const std::string& noise, const std::string& kind, int train_cells,
          double rank) {
-        const CfarSettings settings = cfar_settings(kind, train_cells, 0, 1.0, rank, 1);
+        const CfarSettings settings = cfar_settings(kind, train_cells, 0, 1.0, 0, rank, 1);
         return threshold_factor(settings, meaning("noise", kNoises, noise), probability);
       },
       py::arg("probability"), py::kw_only(), py::arg("noise") = "rayleigh",
@@ -421,13 +430,18 @@ kind, train_cells, rank
       "false_alarm_probability",
       [](double factor, const std::string& noise, const std::string& kind, int train_cells,
          double rank) {
-        return false_alarm_probability(cfar_settings(kind, train_cells, 0, factor, rank, 1),
+        return false_alarm_probability(cfar_settings(kind, train_cells, 0, factor, 0, rank, 1),
                                        meaning("noise", kNoises, noise));
       },
       py::arg("threshold_factor"), py::kw_only(), py::arg("noise") = "rayleigh",
       py::arg("kind") = "cell_averaging", py::arg("train_cells") = d.train_cells,
       py::arg("rank") = d.rank,
       "The other way round: the probability at which noise is detected; see `threshold_factor`.");
+  m.def("threshold_offset_db", &threshold_offset_db, py::arg("probability"),
+        R"(How far noise behind a logarithmic receiver exceeds its mean level with a probability.
+
+``10 lg(-ln p) + 2.507``, in decibels; times the receiver's steps a decibel it is the
+`threshold_offset`, with a `threshold_factor` of 1. Exact for many training cells.)");
 }
 
 void define_masks(py::module_& m) {
@@ -543,7 +557,7 @@ see `counts`. Memory is taken once, whatever the picture.
 
 Parameters
 ----------
-kind, train_cells, guard_cells, threshold_factor, rank, least_amplitude
+kind, train_cells, guard_cells, threshold_factor, threshold_offset, rank, least_amplitude
     As of `cfar`.
 max_sweep_cells : int
     Longer sweeps are refused.
@@ -563,28 +577,29 @@ land : LandMask, optional
 clutter : StaticClutterMap, optional
     What always stands there; the extractor learns with a copy.)")
       .def(py::init([](const std::string& kind, int train_cells, int guard_cells, double factor,
-                       double rank, int least_amplitude, int max_sweep_cells, int gap_cells,
-                       int gap_sweeps, int min_cells, int max_cells, double max_range_extent_m,
-                       double max_bearing_extent_rad, int max_sweeps, bool closed_circle,
-                       const std::optional<LandMask>& land,
+                       int offset, double rank, int least_amplitude, int max_sweep_cells,
+                       int gap_cells, int gap_sweeps, int min_cells, int max_cells,
+                       double max_range_extent_m, double max_bearing_extent_rad, int max_sweeps,
+                       bool closed_circle, const std::optional<LandMask>& land,
                        const std::optional<StaticClutterMap>& clutter) {
-             return AnyPlotExtractor(
-                 {.cfar =
-                      cfar_settings(kind, train_cells, guard_cells, factor, rank, least_amplitude),
-                  .max_sweep_cells = max_sweep_cells,
-                  .gap_cells = gap_cells,
-                  .gap_sweeps = gap_sweeps,
-                  .min_cells = min_cells,
-                  .max_cells = max_cells,
-                  .max_range_extent_m = max_range_extent_m,
-                  .max_bearing_extent_rad = max_bearing_extent_rad,
-                  .max_sweeps = max_sweeps,
-                  .closed_circle = closed_circle},
-                 land.value_or(LandMask()), clutter.value_or(StaticClutterMap()));
+             return AnyPlotExtractor({.cfar = cfar_settings(kind, train_cells, guard_cells, factor,
+                                                            offset, rank, least_amplitude),
+                                      .max_sweep_cells = max_sweep_cells,
+                                      .gap_cells = gap_cells,
+                                      .gap_sweeps = gap_sweeps,
+                                      .min_cells = min_cells,
+                                      .max_cells = max_cells,
+                                      .max_range_extent_m = max_range_extent_m,
+                                      .max_bearing_extent_rad = max_bearing_extent_rad,
+                                      .max_sweeps = max_sweeps,
+                                      .closed_circle = closed_circle},
+                                     land.value_or(LandMask()),
+                                     clutter.value_or(StaticClutterMap()));
            }),
            py::kw_only(), py::arg("kind") = "cell_averaging",
            py::arg("train_cells") = d.cfar.train_cells, py::arg("guard_cells") = d.cfar.guard_cells,
-           py::arg("threshold_factor") = d.cfar.threshold_factor, py::arg("rank") = d.cfar.rank,
+           py::arg("threshold_factor") = d.cfar.threshold_factor,
+           py::arg("threshold_offset") = d.cfar.threshold_offset, py::arg("rank") = d.cfar.rank,
            py::arg("least_amplitude") = d.cfar.least_amplitude,
            py::arg("max_sweep_cells") = d.max_sweep_cells, py::arg("gap_cells") = d.gap_cells,
            py::arg("gap_sweeps") = d.gap_sweeps, py::arg("min_cells") = d.min_cells,

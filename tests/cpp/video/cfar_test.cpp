@@ -53,6 +53,7 @@ Amplitude threshold_by_definition(const CfarSettings& cfar, const std::vector<Am
                 static_cast<std::uint64_t>(std::ceil(65536 * cfar.threshold_factor - 1e-9)) >>
             16;
   }
+  level += static_cast<std::uint64_t>(cfar.threshold_offset);
   level = std::max(level, static_cast<std::uint64_t>(cfar.least_amplitude - 1));
   return static_cast<Amplitude>(std::min<std::uint64_t>(level, Cfar<Amplitude>::kMost));
 }
@@ -67,12 +68,14 @@ TYPED_TEST(CfarOf, IsItsDefinition) {
   for (const auto kind : {CfarKind::kCellAveraging, CfarKind::kOrderedStatistic})
     for (const int train : {1, 5, 16, 128})
       for (const int guard : {0, 3})
-        for (const double factor : {0.7, 3.3, 60.0, 1000.0})
+        for (const auto [factor, offset] :
+             {std::pair{0.7, 0}, {3.3, 0}, {60.0, 0}, {1000.0, 0}, {1.0, 5}, {1.0, 60}, {3.3, 999}})
           for (const std::size_t cells : {1, 2, 7, 40, 300}) {
             const CfarSettings settings{.kind = kind,
                                         .train_cells = train,
                                         .guard_cells = guard,
                                         .threshold_factor = factor,
+                                        .threshold_offset = offset,
                                         .rank = 0.6,
                                         .least_amplitude = 9};
             Cfar<TypeParam> cfar(settings, 300);
@@ -138,6 +141,30 @@ double false_alarms(const CfarSettings& settings, Noise noise, std::mt19937_64& 
       alarms += sweep[static_cast<std::size_t>(i)] > threshold[static_cast<std::size_t>(i)];
   }
   return static_cast<double>(alarms) / (static_cast<double>(kSweeps) * (kCells - 2 * edge));
+}
+
+TEST(FalseAlarmProbability, OfALogarithmicReceiverIsAsDesigned) {
+  constexpr double kDesigned = 1e-3, kStepsPerDb = 3.0;
+  std::mt19937_64 random(6);
+  std::exponential_distribution<double> power(1.0);
+  const CfarSettings settings{.train_cells = 128,
+                              .guard_cells = 0,
+                              .threshold_factor = 1.0,
+                              .threshold_offset = static_cast<int>(
+                                  std::ceil(kStepsPerDb * threshold_offset_db(kDesigned)))};
+  Cfar<std::uint8_t> cfar(settings, 2048);
+  int alarms = 0;
+  constexpr int kSweeps = 400;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    std::vector<std::uint8_t> noise(2048), threshold(2048);
+    for (auto& a : noise)
+      a = static_cast<std::uint8_t>(
+          std::clamp(100.0 + kStepsPerDb * 10.0 * std::log10(power(random)), 0.0, 255.0));
+    cfar.thresholds(noise, threshold);
+    for (std::size_t i = 128; i < 1920; ++i) alarms += noise[i] > threshold[i];
+  }
+  // The offset is rounded to a step, the cells to whole amplitudes: some 15 % either way.
+  EXPECT_NEAR(alarms / (kSweeps * 1792.0), kDesigned, 0.35 * kDesigned);
 }
 
 TEST(FalseAlarmProbability, IsAsDesigned) {

@@ -5,8 +5,11 @@
 // cells about it: `train_cells` on each side, beyond the `guard_cells` next to it, which are left
 // out for a target spreads over them.
 //
-//     cell averaging       a > f * (mean of the training cells)
-//     ordered statistic    a > f * (k-th smallest of the training cells),  k = ceil(rank * N)
+//     cell averaging       a > f * (mean of the training cells) + d
+//     ordered statistic    a > f * (k-th smallest of the training cells) + d,  k = ceil(rank * N)
+//
+// Behind a linear or square-law detector noise is told by a factor f, behind a logarithmic one by
+// an offset d, with f = 1.
 //
 // Where the sweep begins or ends the training cells are those that exist; the factor stays. The
 // arithmetic is of integers: the factor, over the number of cells where a mean is taken, is rounded
@@ -46,6 +49,7 @@ struct CfarSettings {
   int train_cells = 16;           ///< on each side, 1 to 128
   int guard_cells = 4;            ///< on each side, next to the cell
   double threshold_factor = 3.0;  ///< times the mean or the k-th; up to 1000
+  int threshold_offset = 0;       ///< on top of that; what a logarithmic receiver needs
   double rank = 0.75;             ///< k by the number of training cells; ordered statistic only
   int least_amplitude = 1;        ///< less is never detected
 
@@ -54,6 +58,8 @@ struct CfarSettings {
     require(guard_cells >= 0 && guard_cells <= 4096, "guard_cells", "0 to 4096", guard_cells);
     require(threshold_factor > 0.0 && threshold_factor <= 1000.0, "threshold_factor",
             "positive and at most 1000", threshold_factor);
+    require(threshold_offset >= 0 && threshold_offset <= 65535, "threshold_offset", "0 to 65535",
+            threshold_offset);
     require(rank > 0.0 && rank <= 1.0, "rank", "above 0 and at most 1", rank);
     require(least_amplitude >= 1 && least_amplitude <= 65535, "least_amplitude", "1 to 65535",
             least_amplitude);
@@ -117,14 +123,21 @@ struct CfarSettings {
   return high;
 }
 
+/// Offset in decibels over the mean level of noise, behind a logarithmic receiver, that noise
+/// exceeds with a probability: 10 lg(-ln p) + 10 γ / ln 10, γ = 0.5772. Exact where the mean is
+/// known, so for many training cells. Throws `std::invalid_argument` unless 0 < p < 1.
+[[nodiscard]] inline double threshold_offset_db(double probability) {
+  require(probability > 0.0 && probability < 1.0, "probability", "between 0 and 1", probability);
+  constexpr double kMeanOfNoise_dB = 2.506815718;
+  return 10.0 * std::log10(-std::log(probability)) + kMeanOfNoise_dB;
+}
+
 namespace detail {
 
 /// The cells of a sliding window in order, counted by amplitude: the k-th is a few steps from where
 /// it was.
 class SlidingHistogram {
  public:
-  explicit SlidingHistogram(int /*most_cells*/) {}
-
   void clear() noexcept {
     cells_.fill(0);
     level_ = below_ = 0;
@@ -151,28 +164,45 @@ class SlidingHistogram {
   int below_ = 0;  ///< cells of less than the level
 };
 
-/// The cells of a sliding window in order, sorted: for amplitudes too many to be counted.
+/// The cells of a sliding window in order, sorted: for amplitudes too many to be counted. A place
+/// is found by counting all that is less, which has no branches to guess.
 class SortedWindow {
  public:
-  explicit SortedWindow(int most_cells) { cells_.reserve(static_cast<std::size_t>(most_cells)); }
-
-  // A copy of a vector has not the room that was reserved.
-  SortedWindow(SortedWindow&&) = default;
-  SortedWindow& operator=(SortedWindow&&) = default;
-
-  void clear() noexcept { cells_.clear(); }
+  void clear() noexcept {
+    cells_.fill(kPad);
+    count_ = 0;
+  }
   void insert(std::uint16_t amplitude) noexcept {
-    cells_.insert(std::upper_bound(cells_.begin(), cells_.end(), amplitude), amplitude);
+    std::uint16_t* const place = cells_.data() + less_than(amplitude);
+    std::copy_backward(place, cells_.data() + count_, cells_.data() + count_ + 1);
+    *place = amplitude;
+    ++count_;
   }
   void erase(std::uint16_t amplitude) noexcept {
-    cells_.erase(std::lower_bound(cells_.begin(), cells_.end(), amplitude));
+    std::uint16_t* const place = cells_.data() + less_than(amplitude);
+    std::copy(place + 1, cells_.data() + count_, place);
+    cells_[--count_] = kPad;
   }
+  /// The k-th smallest, k from 1 to the number of cells.
   [[nodiscard]] std::uint16_t kth(int k) const noexcept {
     return cells_[static_cast<std::size_t>(k - 1)];
   }
 
  private:
-  std::vector<std::uint16_t> cells_;
+  static constexpr std::size_t kMostCells = 256;
+  static constexpr std::uint16_t kPad = 65535;  // never less than an amplitude
+  static constexpr std::size_t kLanes = 16;
+
+  [[nodiscard]] std::size_t less_than(std::uint16_t amplitude) const noexcept {
+    std::uint16_t less = 0;
+    for (std::size_t first = 0; first < count_; first += kLanes)
+      for (std::size_t i = first; i < first + kLanes; ++i)
+        less = static_cast<std::uint16_t>(less + (cells_[i] < amplitude));
+    return less;
+  }
+
+  std::array<std::uint16_t, kMostCells + kLanes> cells_{};
+  std::size_t count_ = 0;
 };
 
 }  // namespace detail
@@ -188,8 +218,7 @@ class Cfar {
 
   /// Takes all memory that is ever needed. Throws `std::invalid_argument` for settings that make no
   /// sense.
-  Cfar(const CfarSettings& settings, int max_cells)
-      : settings_(settings), window_(2 * settings.train_cells) {
+  Cfar(const CfarSettings& settings, int max_cells) : settings_(settings) {
     settings.validate();
     require(max_cells >= 1 && max_cells <= kMaxCells, "max_cells", "1 to 65536", max_cells);
     require(settings.least_amplitude <= kMost, "least_amplitude",
@@ -213,6 +242,7 @@ class Cfar {
       average(amplitude, threshold.data());
     else
       order(amplitude, threshold.data());
+    if (settings_.threshold_offset > 0) raise(threshold.first(amplitude.size()));
   }
 
   static constexpr int kMaxCells = 65536;
@@ -226,9 +256,22 @@ class Cfar {
   static constexpr int kPlaces = 16;
   static constexpr double kOne = 1 << kPlaces;
 
+  /// Below which no threshold lies before the offset.
+  [[nodiscard]] Amplitude floor() const noexcept {
+    const int all_in_all = settings_.least_amplitude - 1;
+    return static_cast<Amplitude>(std::max(all_in_all - settings_.threshold_offset, 0));
+  }
+
   [[nodiscard]] Amplitude limited(std::uint64_t level) const noexcept {
-    const auto floor = static_cast<std::uint64_t>(settings_.least_amplitude - 1);
-    return static_cast<Amplitude>(std::min<std::uint64_t>(std::max(level, floor), kMost));
+    return static_cast<Amplitude>(
+        std::min<std::uint64_t>(std::max<std::uint64_t>(level, floor()), kMost));
+  }
+
+  /// Adds the offset, no further than to the greatest amplitude.
+  void raise(std::span<Amplitude> threshold) const noexcept {
+    const auto offset = static_cast<Amplitude>(std::min<int>(settings_.threshold_offset, kMost));
+    for (Amplitude& level : threshold)
+      level = static_cast<Amplitude>(level + std::min<Amplitude>(offset, kMost - level));
   }
 
   void average(std::span<const Amplitude> amplitude, Amplitude* threshold) noexcept {
@@ -269,7 +312,7 @@ class Cfar {
     }
     detail::mean_thresholds<Amplitude, Sum, Product>(
         sums_.data(), settings_.train_cells, far + near + 1, static_cast<std::uint16_t>(weight),
-        static_cast<Amplitude>(settings_.least_amplitude - 1), last - first, threshold + first);
+        floor(), last - first, threshold + first);
   }
 
   void order(std::span<const Amplitude> amplitude, Amplitude* threshold) noexcept {
