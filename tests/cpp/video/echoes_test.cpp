@@ -343,6 +343,19 @@ TEST(Streaming, GivesWhatTheWholePictureGives) {
   }
 }
 
+TEST(Streaming, AnEchoAcrossTheSeamIsOfTheEndOfTheTurn) {
+  Picture<> picture{360, 100};
+  test::add_ship(picture, 0.0, 60.0);
+  PlotExtractorSettings settings;
+  settings.closed_circle = true;
+  PlotExtractor<> extractor(settings);
+  EXPECT_TRUE(feed(extractor, picture, 0, 360).empty());
+  const auto plots = finish(extractor);
+  ASSERT_EQ(plots.size(), 1u);
+  EXPECT_NEAR(wrap_angle(plots[0].bearing_rad), 0.0, 1e-9);
+  EXPECT_NEAR(plots[0].time_s, 0.355, 0.02);
+}
+
 TEST(Streaming, ClosesTheCircleOfEachTurn) {
   std::mt19937 random(8);
   const auto picture = test::speckle(60, 100, 0.2, random);

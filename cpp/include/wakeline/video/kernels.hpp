@@ -127,7 +127,9 @@ template <class Amplitude>
     bits |= std::uint64_t{static_cast<std::uint16_t>(_mm_movemask_epi8(below(i)))} << i;
   return ~bits;
 #else
-  return exceeding(amplitude, threshold, kBlock);
+  bool any = false;  // most blocks are empty, and this loop is one that compilers know
+  for (int i = 0; i < kBlock; ++i) any |= amplitude[i] > threshold[i];
+  return any ? exceeding(amplitude, threshold, kBlock) : 0;
 #endif
 }
 

@@ -21,6 +21,9 @@ namespace wakeline {
 /// each of `azimuths` directions it knows the ranges that are excluded, exactly, whatever the
 /// length of the sweeps' cells; a cell that lies in an area by a part is excluded.
 ///
+/// What is excluded still counts among the training cells of what is not: of boats close to a shore
+/// the ordered statistic sees more than cell averaging.
+///
 /// One built by default excludes nothing. On a ship under way it is built anew as she moves.
 class LandMask {
  public:

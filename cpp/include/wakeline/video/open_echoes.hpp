@@ -281,10 +281,13 @@ class OpenEchoes {
     }
   }
 
-  /// Joins an echo at the end of the circle with one at the beginning, a turn later.
+  /// Joins an echo at the end of the circle with one at the beginning, as if seen a turn later.
   void join(int tail, int head) noexcept {
     if (tail == head) return;
-    if (!slot(head).turned) slot(head).began.azimuth_rad += 2 * kPi<double>;
+    if (!slot(head).turned) {
+      slot(head).began.azimuth_rad += 2 * kPi<double>;
+      slot(head).began.time_s = slot(tail).began.time_s;
+    }
     (void)united(tail, head);
     slot(tail).turned = true;
   }
