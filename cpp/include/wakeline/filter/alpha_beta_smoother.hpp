@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "wakeline/core/require.hpp"
+#include "wakeline/filter/alpha_beta_gains.hpp"
+#include "wakeline/filter/smoother.hpp"
+
+namespace wakeline {
+
+/// (29): gains that draw the least-squares line through all n readings with weights 1, 2, ..., n:
+///     alpha = 6n / ((n+1)(n+2)),  beta = 12 / ((n+1)(n+2))
+/// (printed with i = n - 1).
+struct RecentMemory {
+  int max_plots = 0;  ///< the gains stay those of so many; 0 for all
+
+  template <int Order, class Scalar>
+  Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
+    const std::int64_t plots =
+        max_plots > 0 ? std::min<std::int64_t>(at.reading, max_plots) : at.reading;
+    const Scalar n = Scalar(plots);
+    if (plots < 2) return {Scalar(1), Scalar(0)};
+    return {6 * n / ((n + 1) * (n + 2)), 12 / ((n + 1) * (n + 2))};
+  }
+
+  template <int Order>
+  void validate() const {
+    require(max_plots == 0 || max_plots >= Order, "max_plots", "0 or 2 or more", max_plots);
+  }
+};
+
+/// One quantity by an alpha-beta filter (26) whose gains follow a schedule: (27) `GrowingMemory{}`,
+/// (28) `GrowingMemory{.plots_before = 1}`, (29) `RecentMemory{}`, (30) `RangeDependent{}`, or any
+/// other of alpha_beta_gains.hpp. The first reading is the first plot.
+template <class Schedule = GrowingMemory, class Residual = Linear, class ScalarType = double>
+class AlphaBetaSmoother {
+ public:
+  using Scalar = ScalarType;
+
+  /// `reading_std` is the error of a reading in its own unit: for `TrackingIndex`, whose
+  /// acceleration is that of the quantity. Throws `std::invalid_argument` when a parameter makes no
+  /// sense.
+  explicit AlphaBetaSmoother(const Schedule& schedule = {}, double reading_std = 1.0)
+      : schedule_(schedule), reading_std_(reading_std) {
+    schedule.template validate<2>();
+    require_positive("reading_std", reading_std);
+  }
+
+  /// Takes a reading, of an object at a range from the radar where the schedule asks for it.
+  Status update(Scalar dt_s, Scalar reading, Scalar range_m = Scalar(0)) noexcept {
+    if (const Status status = check_reading(readings_ == 0, dt_s, reading); status != Status::kOk)
+      return status;
+    if (++readings_ == 1) {
+      line_.value = Residual::normal(reading);
+      return Status::kOk;
+    }
+    const GainOccasion<Scalar> occasion{readings_, dt_s, Scalar(reading_std_), range_m};
+    const Vec<Scalar, 2> gains = schedule_.template gains<2>(occasion);
+    line_.template step<Residual>(dt_s, reading, gains[0], gains[1]);
+    line_.value = Residual::normal(line_.value);
+    return Status::kOk;
+  }
+
+  [[nodiscard]] Scalar value() const noexcept { return line_.value; }
+  [[nodiscard]] Scalar rate() const noexcept { return line_.rate; }
+  [[nodiscard]] Scalar forecast(Scalar ahead_s) const noexcept {
+    return Residual::normal(line_.value + line_.rate * ahead_s);
+  }
+
+ private:
+  Schedule schedule_;
+  double reading_std_;
+  AlphaBetaLine<Scalar> line_;
+  std::int64_t readings_ = 0;
+};
+
+}  // namespace wakeline

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// What smoothers of one quantity (a speed, a course, a latitude) share.
+//
+// A smoother takes readings one at a time, `update(dt_s, reading)`, and has a `value()`, a `rate()`
+// and a `forecast(ahead_s)`. The time step of the first reading means nothing. A reading that
+// cannot be taken (not finite, time running backwards) gives a status and changes nothing. Source
+// of the smoothers, if not said otherwise: I. M. Hannoshyna, T. V. Kalinichenko, P. V. Nikitin,
+// Research of methods of forecasting the movement, search and tracking of sea objects, equations
+// (21)-(33) in their corrected form; see cpp/docs/theory/dead_reckoning.md.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/status.hpp"
+#include "wakeline/filter/belief.hpp"
+
+namespace wakeline {
+
+/// A quantity on a line.
+struct Linear {
+  template <class Scalar>
+  static Scalar difference(Scalar a, Scalar b) noexcept {
+    return a - b;
+  }
+  template <class Scalar>
+  static Scalar normal(Scalar a) noexcept {
+    return a;
+  }
+};
+
+/// An angle, radians: 359 degrees to 1 degree is 2 degrees. Values are in -pi .. pi.
+struct Wrapped {
+  template <class Scalar>
+  static Scalar difference(Scalar a, Scalar b) noexcept {
+    return wrap_angle(a - b);
+  }
+  template <class Scalar>
+  static Scalar normal(Scalar a) noexcept {
+    return wrap_angle(a);
+  }
+};
+
+/// What a smoother offers.
+template <class T>
+concept Smoother = requires(T smoother, const T& view, typename T::Scalar x) {
+  { smoother.update(x, x) }
+  noexcept->std::same_as<Status>;
+  { view.value() }
+  noexcept->std::same_as<typename T::Scalar>;
+  { view.rate() }
+  noexcept->std::same_as<typename T::Scalar>;
+  { view.forecast(x) }
+  noexcept->std::same_as<typename T::Scalar>;
+};
+
+/// `kOk` when a reading can be taken `dt_s` after the one before; the first one at any time.
+template <class Scalar>
+Status check_reading(bool first, Scalar dt_s, Scalar reading) noexcept {
+  using std::isfinite;
+  if (!isfinite(reading)) return Status::kNotFinite;
+  return first ? Status::kOk : check_time_step(dt_s);
+}
+
+/// The last readings, oldest first, each as an offset from the newest, so that an angle among them
+/// goes on through north.
+template <class Residual, int Capacity, class ScalarType>
+class ReadingWindow {
+ public:
+  using Scalar = ScalarType;
+
+  Status add(Scalar dt_s, Scalar reading) noexcept {
+    if (const Status status = check_reading(size_ == 0, dt_s, reading); status != Status::kOk)
+      return status;
+    if (size_ == Capacity) {
+      std::move(offset_.begin() + 1, offset_.end(), offset_.begin());
+      std::move(gap_s_.begin() + 1, gap_s_.end(), gap_s_.begin());
+      --size_;
+    }
+    const Scalar rise = size_ > 0 ? Residual::difference(reading, newest_) : Scalar(0);
+    for (int k = 0; k < size_; ++k) offset_[std::size_t(k)] -= rise;
+    offset_[std::size_t(size_)] = Scalar(0);
+    gap_s_[std::size_t(size_)] = size_ > 0 ? dt_s : Scalar(0);
+    ++size_;
+    newest_ = reading;
+    return Status::kOk;
+  }
+
+  [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] Scalar newest() const noexcept { return newest_; }
+  /// Reading k, oldest first, less the newest.
+  [[nodiscard]] Scalar offset(int k) const noexcept { return offset_[std::size_t(k)]; }
+  /// Time from reading k - 1 to reading k.
+  [[nodiscard]] Scalar gap_s(int k) const noexcept { return gap_s_[std::size_t(k)]; }
+
+ private:
+  std::array<Scalar, std::size_t(Capacity)> offset_{};
+  std::array<Scalar, std::size_t(Capacity)> gap_s_{};
+  Scalar newest_ = Scalar(0);
+  int size_ = 0;
+};
+
+/// One correction of (26) and what it was made of.
+template <class Scalar>
+struct AlphaBetaStep {
+  Scalar innovation = Scalar(0);   ///< e
+  Scalar correction = Scalar(0);   ///< of the value, alpha e
+  Scalar rate_change = Scalar(0);  ///< beta e / t
+  Scalar dt_s = Scalar(0);
+};
+
+/// A value and its rate, predicted and corrected by (26): x += v t; x += alpha e, v += beta e / t.
+template <class Scalar>
+struct AlphaBetaLine {
+  Scalar value = Scalar(0);
+  Scalar rate = Scalar(0);
+
+  template <class Residual>
+  AlphaBetaStep<Scalar> step(Scalar dt_s, Scalar reading, Scalar alpha, Scalar beta) noexcept {
+    const Scalar predicted = value + rate * dt_s;
+    const Scalar innovation = Residual::difference(reading, predicted);
+    const Scalar change = dt_s > Scalar(0) ? beta * innovation / dt_s : Scalar(0);
+    value = predicted + alpha * innovation;
+    rate += change;
+    return {innovation, alpha * innovation, change, dt_s};
+  }
+};
+
+/// The sums of (33) over steps and the gains that they give.
+template <class Scalar>
+struct AdaptiveGains {
+  Scalar correction_innovation = Scalar(0);
+  Scalar innovation_squared = Scalar(0);
+  Scalar change_slope = Scalar(0);
+  Scalar slope_squared = Scalar(0);
+
+  void add(const AlphaBetaStep<Scalar>& step) noexcept {
+    correction_innovation += step.correction * step.innovation;
+    innovation_squared += step.innovation * step.innovation;
+    if (!(step.dt_s > Scalar(0))) return;
+    const Scalar slope = step.innovation / step.dt_s;
+    change_slope += step.rate_change * slope;
+    slope_squared += slope * slope;
+  }
+
+  /// alpha = sum(dx e) / sum(e²); `otherwise` where nothing has erred.
+  [[nodiscard]] Scalar alpha(Scalar otherwise) const noexcept {
+    return innovation_squared > Scalar(0) ? correction_innovation / innovation_squared : otherwise;
+  }
+  /// beta = sum(dv e/t) / sum((e/t)²).
+  [[nodiscard]] Scalar beta(Scalar otherwise) const noexcept {
+    return slope_squared > Scalar(0) ? change_slope / slope_squared : otherwise;
+  }
+};
+
+}  // namespace wakeline

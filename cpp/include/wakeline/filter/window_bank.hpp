@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include "wakeline/core/require.hpp"
+#include "wakeline/filter/smoother.hpp"
+
+namespace wakeline {
+
+/// What a bank of windows remembers.
+struct WindowBankSettings {
+  int max_readings = 32;  ///< of the longest window
+  double memory = 0.9;    ///< what an energy keeps of itself at each reading
+};
+
+/// The least-squares lines through the last 2, 3, ... readings, of which that one speaks that has
+/// foretold the readings best: the one with the least energy of its innovations,
+///     E_n = memory E_n + (x - x~_n)².
+/// Short windows follow a maneuver, long ones rest in between; nothing has to be tuned to the noise
+/// or to the maneuvers. A window that is not full yet holds what there is. Cost is one pass over
+/// the longest window, storage in place, no heap.
+template <class Residual = Linear, int Capacity = 32, class ScalarType = double>
+class WindowBank {
+ public:
+  static_assert(Capacity >= 2, "wakeline: a line needs two readings");
+  using Scalar = ScalarType;
+
+  /// Throws `std::invalid_argument` when a setting makes no sense.
+  explicit WindowBank(const WindowBankSettings& settings = {}) : settings_(settings) {
+    require(settings.max_readings >= 2 && settings.max_readings <= Capacity, "max_readings",
+            ("2 to " + std::to_string(Capacity)).c_str(), settings.max_readings);
+    require(settings.memory >= 0.0 && settings.memory <= 1.0, "memory", "from 0 to 1",
+            settings.memory);
+  }
+
+  Status update(Scalar dt_s, Scalar reading) noexcept {
+    const bool first = readings_.size() == 0;
+    const Scalar before = readings_.newest();
+    const Status status = readings_.add(dt_s, reading);
+    if (status != Status::kOk) return status;
+    if (!first) weigh(dt_s, Residual::difference(reading, before));
+    fit();
+    return status;
+  }
+
+  [[nodiscard]] Scalar value() const noexcept { return forecast(Scalar(0)); }
+  [[nodiscard]] Scalar rate() const noexcept { return line(chosen_).rate; }
+  [[nodiscard]] Scalar forecast(Scalar ahead_s) const noexcept {
+    return Residual::normal(readings_.newest() + line(chosen_).value + rate() * ahead_s);
+  }
+  /// Readings of the window that speaks.
+  [[nodiscard]] int window() const noexcept { return std::min(chosen_, readings_.size()); }
+
+ private:
+  using Line = AlphaBetaLine<Scalar>;  // less the newest reading, at its time
+
+  Line& line(int n) noexcept { return lines_[std::size_t(n - 2)]; }
+  [[nodiscard]] const Line& line(int n) const noexcept { return lines_[std::size_t(n - 2)]; }
+
+  /// Adds how the lines have foretold a reading that lies `rise` above the one before, and chooses.
+  void weigh(Scalar dt_s, Scalar rise) noexcept {
+    chosen_ = 2;
+    for (int n = 2; n <= settings_.max_readings; ++n) {
+      Scalar& energy = energy_[std::size_t(n - 2)];
+      const Scalar innovation = Residual::difference(rise, line(n).value + line(n).rate * dt_s);
+      energy = Scalar(settings_.memory) * energy + innovation * innovation;
+      if (energy < energy_[std::size_t(chosen_ - 2)]) chosen_ = n;
+    }
+  }
+
+  /// The lines through the last 2, 3, ... readings, by sums that grow backwards in time.
+  void fit() noexcept {
+    const int size = readings_.size();
+    Scalar age = Scalar(0), mean_age = Scalar(0), mean = Scalar(0);
+    Scalar age_age = Scalar(0), age_value = Scalar(0);
+    Line last{};
+    for (int n = 1; n <= std::min(size, settings_.max_readings); ++n) {
+      const int k = size - n;
+      if (n > 1) age += readings_.gap_s(k + 1);
+      const Scalar away = age - mean_age;
+      mean_age += away / Scalar(n);
+      age_age += away * (age - mean_age);
+      age_value += (age - mean_age) * (readings_.offset(k) - mean);
+      mean += (readings_.offset(k) - mean) / Scalar(n);
+      last.rate = age_age > Scalar(0) ? -age_value / age_age : Scalar(0);
+      last.value = mean + mean_age * last.rate;
+      if (n > 1) line(n) = last;
+    }
+    for (int n = std::max(size + 1, 2); n <= settings_.max_readings; ++n) line(n) = last;
+  }
+
+  WindowBankSettings settings_;
+  ReadingWindow<Residual, Capacity, Scalar> readings_;
+  std::array<Line, std::size_t(Capacity - 1)> lines_{};
+  std::array<Scalar, std::size_t(Capacity - 1)> energy_{};
+  int chosen_ = 2;
+};
+
+}  // namespace wakeline

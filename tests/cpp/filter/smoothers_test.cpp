@@ -1,0 +1,396 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+#include "support/draw.hpp"
+#include "support/malloc_fence.hpp"
+#include "wakeline/filter/adaptive_alpha_beta.hpp"
+#include "wakeline/filter/alpha_beta_smoother.hpp"
+#include "wakeline/filter/exponential_smoother.hpp"
+#include "wakeline/filter/three_point_smoother.hpp"
+#include "wakeline/filter/window_bank.hpp"
+
+namespace wakeline {
+namespace {
+
+using test::Draw;
+
+// Laws of every smoother
+// ---------------------------------------------------------------------------
+
+struct Adaptive3 {
+  template <class Residual, class Scalar>
+  struct Of : ThreePointSmoother<Residual, Scalar> {
+    Of() : ThreePointSmoother<Residual, Scalar>({.adaptive = true, .parabola = false}) {}
+  };
+};
+
+/// A kind of smoother, over lines and over angles.
+template <template <class, class> class Kind, class S>
+struct Both {
+  using Scalar = S;
+  using OnLine = Kind<Linear, S>;
+  using OnAngles = Kind<Wrapped, S>;
+};
+template <class R, class S>
+using Exponential = ExponentialSmoother<R, S>;
+template <class R, class S>
+using AdaptiveExponential = AdaptiveExponentialSmoother<R, 5, S>;
+template <class R, class S>
+using PrintedExponential = PrintedAdaptiveExponential<R, 5, S>;
+template <class R, class S>
+using ThreePoint = ThreePointSmoother<R, S>;
+template <class R, class S>
+using AdaptiveThreePoint = Adaptive3::Of<R, S>;
+template <class R, class S>
+using Growing = AlphaBetaSmoother<GrowingMemory, R, S>;
+template <class R, class S>
+using Recent = AlphaBetaSmoother<RecentMemory, R, S>;
+template <class R, class S>
+using ByRange = AlphaBetaSmoother<RangeDependent, R, S>;
+template <class R, class S>
+using TwoPasses = AdaptiveAlphaBeta<R, 5, S>;
+template <class R, class S>
+using OnePass = PrintedAdaptiveAlphaBeta<R, 5, S>;
+template <class R, class S>
+using Bank = WindowBank<R, 32, S>;
+
+template <class Case>
+class EverySmoother : public ::testing::Test {};
+using Cases =
+    ::testing::Types<Both<Exponential, double>, Both<AdaptiveExponential, double>,
+                     Both<PrintedExponential, double>, Both<ThreePoint, double>,
+                     Both<AdaptiveThreePoint, double>, Both<Growing, double>, Both<Recent, double>,
+                     Both<ByRange, double>, Both<TwoPasses, double>, Both<OnePass, double>,
+                     Both<Bank, double>, Both<TwoPasses, float>, Both<Bank, float>,
+                     Both<ThreePoint, float>, Both<Exponential, float>>;
+TYPED_TEST_SUITE(EverySmoother, Cases, );
+
+TYPED_TEST(EverySmoother, IsASmoother) {
+  static_assert(Smoother<typename TypeParam::OnLine>);
+  static_assert(Smoother<typename TypeParam::OnAngles>);
+}
+
+TYPED_TEST(EverySmoother, KeepsWhatDoesNotChange) {
+  using Scalar = typename TypeParam::Scalar;
+  typename TypeParam::OnLine smoother;
+  for (int k = 0; k < 50; ++k) {
+    ASSERT_EQ(smoother.update(Scalar(1 + k % 3), Scalar(7)), Status::kOk);
+    EXPECT_NEAR(smoother.value(), 7, 1e-5);
+    EXPECT_NEAR(smoother.rate(), 0, 1e-5);
+    EXPECT_NEAR(smoother.forecast(Scalar(10)), 7, 1e-4);
+  }
+}
+
+TYPED_TEST(EverySmoother, OfAnglesIsThatOfTheUnwrappedOnes) {
+  using Scalar = typename TypeParam::Scalar;
+  const double tolerance = std::is_same_v<Scalar, double> ? 1e-9 : 2e-3;
+  typename TypeParam::OnLine on_line;
+  typename TypeParam::OnAngles on_angles;
+  Draw draw(1);
+  double course = deg(350);
+  for (int k = 0; k < 200; ++k) {
+    course += deg(k < 100 ? 3 : -4) + 0.01 * draw.normal();
+    const Scalar dt = Scalar(0.5 + k % 4);
+    ASSERT_EQ(on_line.update(dt, Scalar(course)), Status::kOk);
+    ASSERT_EQ(on_angles.update(dt, wrap_angle(Scalar(course))), Status::kOk);
+    EXPECT_LE(std::abs(on_angles.value()), kPi<Scalar> + Scalar(1e-6));
+    EXPECT_NEAR(wrap_angle(double(on_angles.value() - on_line.value())), 0, tolerance);
+    EXPECT_NEAR(on_angles.rate(), on_line.rate(), tolerance);
+    EXPECT_NEAR(wrap_angle(double(on_angles.forecast(dt) - on_line.forecast(dt))), 0,
+                10 * tolerance);
+  }
+}
+
+TYPED_TEST(EverySmoother, RefusesWhatIsNoReadingAndStaysAsItWas) {
+  using Scalar = typename TypeParam::Scalar;
+  constexpr Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
+  constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+  typename TypeParam::OnLine smoother, same;
+  EXPECT_EQ(smoother.update(nan, nan), Status::kNotFinite);
+  EXPECT_EQ(smoother.update(nan, Scalar(3)), Status::kOk);  // the first step means nothing
+  EXPECT_EQ(same.update(Scalar(0), Scalar(3)), Status::kOk);
+  for (int k = 0; k < 12; ++k) {
+    const Scalar reading = Scalar(k * k % 7);
+    EXPECT_EQ(smoother.update(Scalar(1), nan), Status::kNotFinite);
+    EXPECT_EQ(smoother.update(Scalar(1), infinity), Status::kNotFinite);
+    EXPECT_EQ(smoother.update(nan, reading), Status::kNotFinite);
+    EXPECT_EQ(smoother.update(Scalar(-1), reading), Status::kNegativeTimeStep);
+    EXPECT_EQ(smoother.update(Scalar(2), reading), Status::kOk);
+    EXPECT_EQ(same.update(Scalar(2), reading), Status::kOk);
+    EXPECT_EQ(smoother.value(), same.value());
+    EXPECT_EQ(smoother.rate(), same.rate());
+  }
+}
+
+TYPED_TEST(EverySmoother, NeedsNoHeapAndStaysFiniteWhenTimeStands) {
+  using Scalar = typename TypeParam::Scalar;
+  typename TypeParam::OnAngles smoother;
+  const test::NoHeap fence;
+  for (int k = 0; k < 100; ++k) {
+    (void)smoother.update(Scalar(k % 5 == 0 ? 0 : 1), Scalar(k % 11));
+    EXPECT_TRUE(std::isfinite(smoother.forecast(Scalar(3)) + smoother.rate()));
+  }
+  EXPECT_EQ(fence.allocations(), 0);
+}
+
+template <class Case>
+class SmootherOfLines : public ::testing::Test {};
+using OfLines =
+    ::testing::Types<Both<AdaptiveThreePoint, double>, Both<TwoPasses, double>, Both<Bank, double>>;
+TYPED_TEST_SUITE(SmootherOfLines, OfLines, );
+
+TYPED_TEST(SmootherOfLines, FollowsALineAtUnevenSteps) {
+  typename TypeParam::OnLine smoother;
+  double now = 0;
+  for (int k = 0; k < 40; ++k) {
+    const double dt = 1 + (k * k) % 5;
+    now += dt;
+    ASSERT_EQ(smoother.update(dt, 3 - 0.5 * now), Status::kOk);
+    if (k < 5) continue;
+    EXPECT_NEAR(smoother.rate(), -0.5, 1e-9);
+    EXPECT_NEAR(smoother.forecast(10), 3 - 0.5 * (now + 10), 1e-8);
+  }
+}
+
+// Each of them
+// -------------------------------------------------------------------------------------
+
+TEST(ExponentialSmoother, ForgetsGeometrically) {
+  ExponentialSmoother<> smoother(0.3);
+  ASSERT_EQ(smoother.update(1, 1), Status::kOk);
+  for (int k = 1; k < 20; ++k) {
+    ASSERT_EQ(smoother.update(1, 0), Status::kOk);
+    EXPECT_NEAR(smoother.value(), std::pow(0.7, k), 1e-12);
+  }
+  for (const double alpha : {0.0, -1.0, 1.5, double(NAN)})
+    EXPECT_THROW((ExponentialSmoother<>(alpha)), std::invalid_argument);
+}
+
+TEST(AdaptiveExponentialSmoother, FollowsAJumpAndRestsInNoise) {
+  AdaptiveExponentialSmoother<> smoother;
+  Draw draw(2);
+  double at_rest = 0;
+  for (int k = 0; k < 500; ++k) {
+    ASSERT_EQ(smoother.update(1, draw.normal()), Status::kOk);
+    if (k > 10) at_rest += smoother.alpha() / 489;
+  }
+  double in_motion = 0;
+  for (int k = 0; k < 500; ++k) {
+    ASSERT_EQ(smoother.update(1, 20.0 * k + draw.normal()), Status::kOk);
+    if (k > 10) in_motion += smoother.alpha() / 489;
+  }
+  EXPECT_LT(at_rest, 0.8);
+  EXPECT_GT(in_motion, at_rest + 0.15);
+}
+
+TEST(AdaptiveExponentialSmoother, AsPrintedNeverAdapts) {
+  Draw draw(3);
+  for (const double first : {0.1, 0.5, 0.9}) {
+    PrintedAdaptiveExponential<> printed(first);
+    for (int k = 0; k < 300; ++k) {  // rest, a jump, a ramp: alpha is what it was told at the start
+      ASSERT_EQ(printed.update(1, draw.normal() + (k > 100 ? 50 : 0) + (k > 200 ? 10.0 * k : 0)),
+                Status::kOk);
+      EXPECT_NEAR(printed.alpha(), first, 1e-9);
+    }
+  }
+}
+
+TEST(ThreePoints, DifferentiateParabolas) {
+  const double a = 0.3, b = -2, c = 5;  // a t² + b t + c about t = 0
+  const auto about_zero = [&](double before_s, double after_s) {
+    const auto x = [&](double t) { return a * t * t + b * t + c; };
+    return ThreePoints<double>{x(-before_s) - c, x(after_s) - c, before_s, after_s};
+  };
+  EXPECT_NEAR(about_zero(1, 4).parabola_rate(), b, 1e-12);
+  EXPECT_NEAR(about_zero(2, 2).parabola_rate(), b, 1e-12);
+  EXPECT_NEAR(about_zero(2, 2).simpson_rate(), b, 1e-12);
+  // 2/3 c + (b + f)/6: of a parabola its bend times (t_+ - t_-) (2/3 + 1/6).
+  EXPECT_NEAR(about_zero(1, 4).simpson_rate(), b + a * 3 * 5 / 6, 1e-12);
+}
+
+TEST(ThreePoints, TheSimpsonFormPassesLessNoiseAtUnevenSteps) {
+  Draw draw(4);
+  double simpson = 0, parabola = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const double middle = draw.normal();
+    const ThreePoints<double> points{draw.normal() - middle, draw.normal() - middle, 1, 4};
+    simpson += points.simpson_rate() * points.simpson_rate();
+    parabola += points.parabola_rate() * points.parabola_rate();
+  }
+  EXPECT_LT(simpson, 0.5 * parabola);
+}
+
+TEST(ThreePointSmoother, IsTheWeightedMeanOfNeighbours) {
+  ThreePointSmoother<> smoother({.weight_before_s = 2, .weight_after_s = 3});
+  ASSERT_EQ(smoother.update(0, 10), Status::kOk);
+  ASSERT_EQ(smoother.update(4, 20), Status::kOk);
+  EXPECT_DOUBLE_EQ(smoother.value(), 10 + 0.0);
+  ASSERT_EQ(smoother.update(6, 35), Status::kOk);
+  EXPECT_DOUBLE_EQ(smoother.delay_s(), 6.0);
+  EXPECT_NEAR(smoother.value(), (0.5 * 10 + 20 + 0.5 * 35) / 2, 1e-12);
+  EXPECT_THROW((ThreePointSmoother<>({.weight_before_s = -1})), std::invalid_argument);
+}
+
+TEST(ThreePointSmoother, SmoothsNoiseAndItsAdaptiveWeightsComeNearTheLine) {
+  Draw draw(5);
+  ThreePointSmoother<> fixed, adaptive({.adaptive = true});
+  double fixed_error = 0, adaptive_error = 0;
+  constexpr int n = 4000;
+  for (int k = 0; k < n; ++k) {
+    const double reading = 0.2 * k + draw.normal();
+    ASSERT_EQ(fixed.update(1, reading), Status::kOk);
+    ASSERT_EQ(adaptive.update(1, reading), Status::kOk);
+    if (k < 5) continue;
+    fixed_error += std::pow(fixed.value() - 0.2 * (k - 1), 2) / n;
+    adaptive_error += std::pow(adaptive.value() - 0.2 * (k - 1), 2) / n;
+  }
+  EXPECT_NEAR(fixed_error, 1.0 / 3, 0.03);  // three readings alike
+  EXPECT_LT(adaptive_error, 0.65);  // a line through five would have 0.3, the reading itself 1
+}
+
+TEST(AlphaBetaSmoother, OfGrowingMemoryIsTheLineThroughAll) {
+  AlphaBetaSmoother<> smoother;
+  Draw draw(6);
+  double t_sum = 0, x_sum = 0, tt = 0, tx = 0;
+  for (int k = 0; k < 100; ++k) {
+    const double t = 2.0 * k, x = 5 + 0.3 * t + draw.normal();
+    ASSERT_EQ(smoother.update(2, x), Status::kOk);
+    t_sum += t;
+    x_sum += x;
+    tt += t * t;
+    tx += t * x;
+    const double n = k + 1;
+    if (k == 0) continue;
+    const double slope = (n * tx - t_sum * x_sum) / (n * tt - t_sum * t_sum);
+    EXPECT_NEAR(smoother.rate(), slope, 1e-9);
+    EXPECT_NEAR(smoother.value(), (x_sum - slope * t_sum) / n + slope * t, 1e-9);
+  }
+}
+
+TEST(AlphaBetaSmoother, OfRecentMemoryIsTheLineWithWeightsThatGrow) {
+  AlphaBetaSmoother<RecentMemory> smoother;
+  Draw draw(7);
+  double w_sum = 0, t_sum = 0, x_sum = 0, tt = 0, tx = 0;
+  for (int k = 0; k < 100; ++k) {
+    const double w = k + 1, t = k, x = 5 - 0.3 * t + draw.normal();
+    ASSERT_EQ(smoother.update(1, x), Status::kOk);
+    w_sum += w;
+    t_sum += w * t;
+    x_sum += w * x;
+    tt += w * t * t;
+    tx += w * t * x;
+    if (k == 0) continue;
+    const double slope = (w_sum * tx - t_sum * x_sum) / (w_sum * tt - t_sum * t_sum);
+    EXPECT_NEAR(smoother.rate(), slope, 1e-9);
+    EXPECT_NEAR(smoother.forecast(0), (x_sum - slope * t_sum) / w_sum + slope * t, 1e-9);
+  }
+}
+
+TEST(AlphaBetaSmoother, HasTheSchedulesOfThePaper) {
+  const auto gains = [](const auto& schedule, std::int64_t reading, double range_m = 0) {
+    return schedule.template gains<2, double>({.reading = reading, .range_m = range_m});
+  };
+  for (std::int64_t i = 2; i < 50; ++i) {
+    const double n = double(i);
+    EXPECT_NEAR(gains(GrowingMemory{}, i)[0], 2 * (2 * n - 1) / (n * (n + 1)), 1e-12);
+    EXPECT_EQ(gains(GrowingMemory{.plots_before = 1}, i), gains(GrowingMemory{}, i + 1));
+    EXPECT_NEAR(gains(RecentMemory{}, i)[1], 12 / ((n + 1) * (n + 2)), 1e-12);
+  }
+  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 19e3)[0], 0.5);
+  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 40e3)[0], 0.25);  // 10/D
+  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 80e3)[0], 0.2);
+  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 40e3)[1], 0.1);  // 4/D
+  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 500e3)[1], 0.01);
+  EXPECT_EQ(gains(RecentMemory{.max_plots = 4}, 100), gains(RecentMemory{}, 4));
+  EXPECT_THROW((AlphaBetaSmoother<RecentMemory>({.max_plots = 1})), std::invalid_argument);
+  EXPECT_THROW((AlphaBetaSmoother<ConstantGains>({.alpha = 2})), std::invalid_argument);
+  EXPECT_THROW((AlphaBetaSmoother<>({}, 0.0)), std::invalid_argument);
+}
+
+TEST(AdaptiveAlphaBeta, GoesThroughAManeuverFasterThanAtRest) {
+  AdaptiveAlphaBeta<> smoother;
+  Draw draw(8);
+  double rest = 0, turn = 0;
+  for (int k = 0; k < 400; ++k) {
+    ASSERT_EQ(smoother.update(1, draw.normal()), Status::kOk);
+    if (k >= 5) rest += smoother.beta() / 395;
+    EXPECT_GT(smoother.alpha(), 0.5);
+    EXPECT_LE(smoother.alpha(), 1.0);
+  }
+  for (int k = 0; k < 400; ++k) {
+    ASSERT_EQ(smoother.update(1, 5.0 * k * k + draw.normal()), Status::kOk);
+    if (k >= 5) turn += smoother.alpha() / 395;
+  }
+  EXPECT_LT(rest, 0.65);
+  EXPECT_GT(turn, 0.7);
+}
+
+TEST(AdaptiveAlphaBeta, AsPrintedNeverAdapts) {
+  // The gains are means of the last five: they may only close in on each other, and what the
+  // readings do, a jump of 1000 among them, does not matter.
+  Draw draw(9);
+  PrintedAdaptiveAlphaBeta<> calm, wild;
+  std::vector<double> alphas;
+  for (int k = 0; k < 400; ++k) {
+    const double noise = draw.normal();
+    ASSERT_EQ(calm.update(1, noise), Status::kOk);
+    ASSERT_EQ(wild.update(1, noise + (k > 200 ? 1000.0 + 30.0 * (k - 200) : 0)), Status::kOk);
+    alphas.push_back(wild.alpha());
+    if (k < 6) continue;
+    double least = 1e9, most = -1e9;
+    for (std::size_t j = alphas.size() - 6; j + 1 < alphas.size(); ++j) {
+      least = std::min(least, alphas[j]);
+      most = std::max(most, alphas[j]);
+    }
+    EXPECT_GE(wild.alpha(), least - 1e-12);
+    EXPECT_LE(wild.alpha(), most + 1e-12);
+    if (k > 150) {
+      EXPECT_NEAR(wild.alpha(), alphas[150], 1e-6);
+      EXPECT_NEAR(calm.alpha(), alphas[150], 1e-6);
+    }
+  }
+}
+
+TEST(WindowBank, RestsOnLongWindowsAndManeuversOnShortOnes) {
+  WindowBank<> bank;
+  Draw draw(10);
+  double rest = 0, maneuver = 0;
+  for (int k = 0; k < 300; ++k) {
+    ASSERT_EQ(bank.update(1, 0.5 * k + draw.normal()), Status::kOk);
+    if (k >= 100) rest += bank.window() / 200.0;
+  }
+  for (int k = 0; k < 300; ++k) {
+    ASSERT_EQ(bank.update(1, 150 + 60 * std::sin(0.1 * k) + draw.normal()), Status::kOk);
+    if (k >= 100) maneuver += bank.window() / 200.0;
+  }
+  EXPECT_GT(rest, 20.0);
+  EXPECT_LT(maneuver, 10.0);
+}
+
+TEST(WindowBank, OfOneWindowIsItsLine) {
+  WindowBank<> bank({.max_readings = 2});
+  Draw draw(11);
+  double last = 0;
+  for (int k = 0; k < 50; ++k) {
+    const double reading = draw.normal(), dt = draw.uniform(1, 3);
+    ASSERT_EQ(bank.update(dt, reading), Status::kOk);
+    EXPECT_NEAR(bank.value(), reading, 1e-12);
+    if (k > 0) {
+      EXPECT_NEAR(bank.rate(), (reading - last) / dt, 1e-9);
+    }
+    last = reading;
+  }
+  EXPECT_THROW((WindowBank<>({.max_readings = 1})), std::invalid_argument);
+  EXPECT_THROW((WindowBank<>({.max_readings = 33})), std::invalid_argument);
+  EXPECT_THROW((WindowBank<>({.memory = 1.1})), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace wakeline
