@@ -138,10 +138,6 @@ namespace detail {
 /// it was.
 class SlidingHistogram {
  public:
-  void clear() noexcept {
-    cells_.fill(0);
-    level_ = below_ = 0;
-  }
   void insert(std::uint8_t amplitude) noexcept {
     ++cells_[amplitude];
     below_ += amplitude < level_;
@@ -164,14 +160,12 @@ class SlidingHistogram {
   int below_ = 0;  ///< cells of less than the level
 };
 
-/// The cells of a sliding window in order, sorted: for amplitudes too many to be counted. A place
-/// is found by counting all that is less, which has no branches to guess.
+/// The cells of a sliding window in order, at most 256, sorted: for amplitudes too many to be
+/// counted. A place is found by counting all that is less, which has no branches to guess.
 class SortedWindow {
  public:
-  void clear() noexcept {
-    cells_.fill(kPad);
-    count_ = 0;
-  }
+  SortedWindow() { cells_.fill(kPad); }
+
   void insert(std::uint16_t amplitude) noexcept {
     std::uint16_t* const place = cells_.data() + less_than(amplitude);
     std::copy_backward(place, cells_.data() + count_, cells_.data() + count_ + 1);
@@ -189,7 +183,6 @@ class SortedWindow {
   }
 
  private:
-  static constexpr std::size_t kMostCells = 256;
   static constexpr std::uint16_t kPad = 65535;  // never less than an amplitude
   static constexpr std::size_t kLanes = 16;
 
@@ -201,7 +194,7 @@ class SortedWindow {
     return less;
   }
 
-  std::array<std::uint16_t, kMostCells + kLanes> cells_{};
+  std::array<std::uint16_t, 256 + kLanes> cells_;
   std::size_t count_ = 0;
 };
 
@@ -252,7 +245,6 @@ class Cfar {
   static constexpr bool kNarrow = sizeof(Amplitude) == 1;
   using Sum = std::conditional_t<kNarrow, std::uint16_t, std::uint32_t>;
   using Product = std::conditional_t<kNarrow, std::uint32_t, std::uint64_t>;
-  using Window = std::conditional_t<kNarrow, detail::SlidingHistogram, detail::SortedWindow>;
   static constexpr int kPlaces = 16;
   static constexpr double kOne = 1 << kPlaces;
 
@@ -320,16 +312,16 @@ class Cfar {
     const int near = settings_.guard_cells;
     const int far = near + settings_.train_cells;
     const Amplitude* a = amplitude.data();
-    window_.clear();
+    std::conditional_t<kNarrow, detail::SlidingHistogram, detail::SortedWindow> window;
     int count = 0;
     const auto enter = [&](int i) noexcept {
       if (i < 0 || i >= cells) return;
-      window_.insert(a[i]);
+      window.insert(a[i]);
       ++count;
     };
     const auto leave = [&](int i) noexcept {
       if (i < 0 || i >= cells) return;
-      window_.erase(a[i]);
+      window.erase(a[i]);
       --count;
     };
     for (int i = near + 1; i < far; ++i) enter(i);  // all of cell 0 but the last
@@ -340,7 +332,7 @@ class Cfar {
         threshold[i] = kMost;
       } else {
         const int k = rank_[static_cast<std::size_t>(count)];
-        threshold[i] = limited(std::uint64_t{window_.kth(k)} * weight_.front() >> kPlaces);
+        threshold[i] = limited(std::uint64_t{window.kth(k)} * weight_.front() >> kPlaces);
       }
       leave(i + near + 1);
       leave(i - far);
@@ -348,7 +340,6 @@ class Cfar {
   }
 
   CfarSettings settings_;
-  Window window_;
   std::vector<Sum> sums_;
   std::vector<std::uint32_t> weight_;  ///< by the number of training cells: factor / count * 2^16
   std::vector<int> rank_;              ///< by the number of training cells

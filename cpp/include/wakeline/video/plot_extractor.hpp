@@ -33,8 +33,8 @@ struct PlotExtractorSettings {
   double max_bearing_extent_rad = 2 * kPi<double>;  ///< wider echoes give no plot
   int max_sweeps = 1024;  ///< an echo is closed after so many, and what follows is another one
   /// Each turn is a picture of its own: echoes of its first sweeps wait for the last ones and are
-  /// joined with them. Without, turns follow each other without a seam. `max_sweeps` does not
-  /// apply.
+  /// joined with them, at the time of these. Without, turns follow each other without a seam.
+  /// `max_sweeps` does not apply.
   bool closed_circle = false;
 
   void validate() const {
@@ -119,7 +119,7 @@ struct ExtractionCounts {
 /// for none of its cells exceeds the others.
 ///
 /// All memory is taken at construction. A picture of any content needs no more, whatever the
-/// number and size of its echoes.
+/// number and size of its echoes. An extractor can be moved, not copied.
 template <class Amplitude = std::uint8_t>
 class PlotExtractor {
  public:
