@@ -1,4 +1,4 @@
-"""Radar plots, own ship, truth, tracks and AIS in files, and recordings that ship with Wakeline.
+"""Radar plots, own ship, truth, tracks, AIS and NMEA 0183 in files; recordings that ship along.
 
 >>> from wakeline import recording
 >>> joyride = recording.load("joyride")
@@ -16,6 +16,7 @@ from .errors import RecordingError
 from .files import replacing
 from .local_plane import LocalPlane
 from .model import Episode, OwnShip, Recording, Scan
+from .nmea import NavigationLog, NmeaProblem, NmeaReport, read_nmea
 from .plots_csv import read_plots
 from .tracks_csv import Tracks, read_tracks, write_tracks
 from .truth import TargetTruth
@@ -26,6 +27,9 @@ __all__ = [
     "AisTrack",
     "Episode",
     "LocalPlane",
+    "NavigationLog",
+    "NmeaProblem",
+    "NmeaReport",
     "OwnShip",
     "RadarVideo",
     "Recording",
@@ -37,8 +41,10 @@ __all__ = [
     "is_video",
     "load",
     "load_ais",
+    "load_navigation",
     "names",
     "read_ais",
+    "read_nmea",
     "read_plots",
     "read_tracks",
     "read_video",
@@ -87,6 +93,21 @@ def load_ais() -> AisRecording:
     """
     with resources.as_file(_data() / "solent") as folder:
         return read_ais(folder / "ais.csv")
+
+
+def load_navigation(*, variation_deg: float | None = None) -> NavigationLog:
+    """A log of own ship's instruments that ships with the package: a yacht in a race, 77 minutes.
+
+    Position, speed and course over ground, magnetic heading and speed through the water. Source and
+    licence lie beside the data.
+
+    Parameters
+    ----------
+    variation_deg : float, optional
+        Magnetic variation, positive east, which the log does not tell.
+    """
+    with resources.as_file(_data() / "irene") as folder:
+        return read_nmea(folder / "irene.nmea", variation_deg=variation_deg)
 
 
 def _data():

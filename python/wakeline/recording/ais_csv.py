@@ -12,6 +12,7 @@ from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
 from .local_plane import LocalPlane
+from .reach import unreachable
 from .table import Table
 
 COLUMNS = {
@@ -25,8 +26,6 @@ COLUMNS = {
 
 _NO_LATITUDE_DEG, _NO_LONGITUDE_DEG = 91.0, 181.0
 _NO_COURSE_DEG, _NO_SPEED_KN = 360.0, 102.25
-_JUMP_SLACK_M, _JUMP_SLACK_S = 50.0, 2.0
-_TRUSTED_REPORTS = 3
 
 
 @dataclass(frozen=True)
@@ -180,7 +179,7 @@ def read_ais(
         soon = np.append(np.diff(time_s[row]) < min_step_s, False)
         late[row[soon]] = True
         row = row[~soon]
-        far = _unreachable(time_s[row], north_m[row], east_m[row], max_speed_mps)
+        far = unreachable(time_s[row], np.column_stack([north_m, east_m])[row], max_speed_mps)
         jumped[row[far]] = True
         row = row[~far]
         tracks[number] = AisTrack(
@@ -209,32 +208,3 @@ def _note(notes: list[str], table: Table, rows: np.ndarray, what: str) -> None:
             f"{table.path.name}: {np.count_nonzero(rows)} reports {what} left out "
             f"(first in line {table.line(int(np.argmax(rows)))})"
         )
-
-
-def _unreachable(
-    time_s: np.ndarray, north_m: np.ndarray, east_m: np.ndarray, max_speed_mps: float
-) -> np.ndarray:
-    """Mask (n,) of the positions that do not follow from those before them.
-
-    Where `_TRUSTED_REPORTS` in a row follow from each other but not from the track so far, they are
-    believed; the track so far is not when it is no longer than they are.
-    """
-
-    def reachable(a: int, b: int) -> bool:
-        way_m = np.hypot(north_m[b] - north_m[a], east_m[b] - east_m[a])
-        return way_m <= _JUMP_SLACK_M + max_speed_mps * (time_s[b] - time_s[a] + _JUMP_SLACK_S)
-
-    kept: list[int] = []
-    doubted: list[int] = []
-    for k in range(len(time_s)):
-        if not kept or reachable(kept[-1], k):
-            kept.append(k)
-            doubted = []
-            continue
-        doubted = [*doubted, k] if doubted and reachable(doubted[-1], k) else [k]
-        if len(doubted) >= _TRUSTED_REPORTS:
-            kept = doubted if len(kept) <= len(doubted) else kept + doubted
-            doubted = []
-    mask = np.ones(len(time_s), dtype=bool)
-    mask[kept] = False
-    return mask

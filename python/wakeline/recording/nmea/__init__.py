@@ -1,0 +1,29 @@
+"""NMEA 0183 logs of a vessel's own instruments."""
+
+from .log import (
+    BottomTrack,
+    Fixes,
+    GroundSpeed,
+    MagneticHeading,
+    NavigationLog,
+    NmeaProblem,
+    NmeaReport,
+    RateOfTurn,
+    TrueHeading,
+    WaterSpeed,
+)
+from .reader import read_nmea
+
+__all__ = [
+    "BottomTrack",
+    "Fixes",
+    "GroundSpeed",
+    "MagneticHeading",
+    "NavigationLog",
+    "NmeaProblem",
+    "NmeaReport",
+    "RateOfTurn",
+    "TrueHeading",
+    "WaterSpeed",
+    "read_nmea",
+]

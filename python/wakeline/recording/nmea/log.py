@@ -1,0 +1,333 @@
+"""What a log of a vessel's own instruments holds: one series a kind of reading, each at its times.
+
+Times are UTC seconds since 1970, angles radians clockwise from north, speeds m/s.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+@dataclass(frozen=True)
+class Series:
+    """Readings of one kind.
+
+    Rows are in the order of time; where the clock was set back, what came before it stands first.
+
+    Attributes
+    ----------
+    time_s : ndarray (n,)
+        UTC seconds.
+    valid : ndarray of bool (n,)
+        Whether the instrument itself stands by the reading.
+    sentence : ndarray of str (n,)
+        The sentence it came in, such as ``RMC``.
+    line : ndarray of int (n,)
+        Its line of the file.
+    """
+
+    time_s: np.ndarray
+    valid: np.ndarray
+    sentence: np.ndarray
+    line: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    @property
+    def usable(self) -> np.ndarray:
+        """Mask (n,) of the readings to work with."""
+        return self.valid
+
+    def rows(self, which: slice | np.ndarray) -> Self:
+        """Some of the readings, by slice, index or mask."""
+        values = {f.name: getattr(self, f.name)[which] for f in dataclasses.fields(self)}
+        return dataclasses.replace(self, **values)
+
+    def sound(self) -> Self:
+        """The readings that are `usable`."""
+        return self.rows(self.usable)
+
+
+@dataclass(frozen=True)
+class Fixes(Series):
+    """Positions by satellite, one a time (RMC, GGA, GLL).
+
+    Attributes
+    ----------
+    latitude_deg, longitude_deg : ndarray (n,)
+        WGS84, positive north and east.
+    quality : ndarray of int (n,)
+        As GGA counts: 0 none, 1 autonomous, 2 differential, 3 precise, 4 RTK, 5 RTK float,
+        6 estimated, 7 put in by hand, 8 simulated; -1 not said. `valid` is false for 0, 6 and 7 and
+        where the status is V.
+    hdop : ndarray (n,)
+        Horizontal dilution of precision, NaN where not said.
+    frozen : ndarray of bool (n,)
+        The position is that of the fix before, again and again, though the vessel moves.
+    suspect : ndarray of bool (n,)
+        At latitude 0, longitude 0, or where the vessel cannot have come.
+    """
+
+    latitude_deg: np.ndarray
+    longitude_deg: np.ndarray
+    quality: np.ndarray
+    hdop: np.ndarray
+    frozen: np.ndarray
+    suspect: np.ndarray
+
+    @property
+    def usable(self) -> np.ndarray:
+        """Mask (n,) of fixes that are valid, not frozen and not suspect."""
+        return self.valid & ~self.frozen & ~self.suspect
+
+
+@dataclass(frozen=True)
+class GroundSpeed(Series):
+    """Speed and course over ground, one a time (RMC, VTG).
+
+    Attributes
+    ----------
+    speed_mps, course_rad : ndarray (n,)
+        NaN where only the other is given. Course from true north in [0, 2 pi).
+    """
+
+    speed_mps: np.ndarray
+    course_rad: np.ndarray
+
+
+@dataclass(frozen=True)
+class TrueHeading(Series):
+    """Heading from true north (HDT, THS, VHW; from a magnetic compass where there is none).
+
+    Attributes
+    ----------
+    heading_rad : ndarray (n,)
+        In [0, 2 pi).
+    """
+
+    heading_rad: np.ndarray
+
+
+@dataclass(frozen=True)
+class MagneticHeading(Series):
+    """Heading from magnetic north (HDG, HDM, VHW), deviation removed where the sentence gives it.
+
+    Attributes
+    ----------
+    heading_magnetic_rad : ndarray (n,)
+        In [0, 2 pi).
+    variation_rad : ndarray (n,)
+        Positive east; NaN where neither the log nor the caller knows it.
+    """
+
+    heading_magnetic_rad: np.ndarray
+    variation_rad: np.ndarray
+
+    @property
+    def heading_rad(self) -> np.ndarray:
+        """Heading (n,) from true north in [0, 2 pi); NaN where the variation is not known."""
+        return np.mod(self.heading_magnetic_rad + self.variation_rad, 2 * np.pi)
+
+
+@dataclass(frozen=True)
+class WaterSpeed(Series):
+    """Speed through the water (VHW, VBW).
+
+    Attributes
+    ----------
+    ahead_mps, starboard_mps : ndarray (n,)
+        Along and across the hull; NaN where not given.
+    """
+
+    ahead_mps: np.ndarray
+    starboard_mps: np.ndarray
+
+
+@dataclass(frozen=True)
+class BottomTrack(Series):
+    """Speed over ground as a log sees it (VBW).
+
+    Attributes
+    ----------
+    ahead_mps, starboard_mps : ndarray (n,)
+        Along and across the hull; NaN where not given.
+    """
+
+    ahead_mps: np.ndarray
+    starboard_mps: np.ndarray
+
+
+@dataclass(frozen=True)
+class RateOfTurn(Series):
+    """Rate of turn (ROT).
+
+    Attributes
+    ----------
+    turn_rate_rad_s : ndarray (n,)
+        Positive to starboard.
+    """
+
+    turn_rate_rad_s: np.ndarray
+
+
+@dataclass(frozen=True)
+class NmeaProblem:
+    """Something in a log that could not be used.
+
+    Attributes
+    ----------
+    line : int
+        Line of the file, from 1.
+    kind : str
+        A key of `NmeaReport.problems`.
+    reason : str
+        What was wanted and what came.
+    """
+
+    line: int
+    kind: str
+    reason: str
+
+    def __str__(self) -> str:
+        return f"line {self.line}: {self.kind}: {self.reason}"
+
+
+@dataclass
+class NmeaReport:
+    """What was in a log and what could not be used of it.
+
+    Attributes
+    ----------
+    lines : int
+        Lines of the file.
+    sentences : Counter of str
+        Sound sentences by kind, such as ``RMC``, those of no interest among them.
+    problems : Counter of str
+        How often each kind of problem came. A sentence is left out for ``no sentence`` (text
+        without ``$``), ``cut`` (its end is missing), ``checksum``, ``character`` (an octet that
+        cannot be printed), ``address`` (none of talker and kind) and ``time`` (a time that leaps
+        and comes back); of one with a ``field`` that cannot be read or out of ``range`` only that
+        value is, unless it is the time or the place.
+    examples : list of NmeaProblem
+        Problems in the order of lines, at most `max_examples`.
+    repeated : int
+        Fixes and ground speeds of a time that another sentence had given already.
+    max_examples : int
+    """
+
+    lines: int = 0
+    sentences: Counter[str] = field(default_factory=Counter)
+    problems: Counter[str] = field(default_factory=Counter)
+    examples: list[NmeaProblem] = field(default_factory=list)
+    repeated: int = 0
+    max_examples: int = 1000
+
+    def add(self, line: int, kind: str, reason: str) -> None:
+        """Count a problem and keep it while there is room."""
+        self.problems[kind] += 1
+        if len(self.examples) < self.max_examples:
+            self.examples.append(NmeaProblem(line, kind, reason))
+
+
+@dataclass(frozen=True)
+class NavigationLog:
+    """The readings of a vessel's own instruments.
+
+    Attributes
+    ----------
+    name : str
+        Stem of the file.
+    fixes : Fixes
+    ground : GroundSpeed
+    heading : TrueHeading
+    compass : MagneticHeading
+    water : WaterSpeed
+    bottom : BottomTrack
+    turn : RateOfTurn
+    dated : bool
+        Whether the log, or the caller, says the day; if not, times count from the midnight before
+        the first.
+    set_back_lines : ndarray of int (k,)
+        Lines where the clock was set back.
+    report : NmeaReport
+    notes : list of str
+        What there is to know before using the log; empty for a clean one.
+    """
+
+    name: str
+    fixes: Fixes
+    ground: GroundSpeed
+    heading: TrueHeading
+    compass: MagneticHeading
+    water: WaterSpeed
+    bottom: BottomTrack
+    turn: RateOfTurn
+    dated: bool
+    set_back_lines: np.ndarray
+    report: NmeaReport
+    notes: list[str]
+
+    @property
+    def series(self) -> dict[str, Series]:
+        """All series by name."""
+        return {name: getattr(self, name) for name in SERIES}
+
+    def gaps_s(self, longer_than_s: float = 10.0) -> np.ndarray:
+        """Times (k, 2) of usable fixes before and after each gap longer than `longer_than_s`."""
+        fixes = self.fixes.sound()
+        wide = np.flatnonzero(np.diff(fixes.time_s) > longer_than_s)
+        return np.column_stack([fixes.time_s[wide], fixes.time_s[wide + 1]])
+
+    def parts(self, max_gap_s: float = 60.0) -> list[NavigationLog]:
+        """The log cut where no instrument was heard for longer than `max_gap_s`.
+
+        It is cut, too, where the clock was set back, so that in each part times only grow. All
+        parts share the report and the notes.
+
+        Parameters
+        ----------
+        max_gap_s : float
+        """
+        all_series = self.series.values()
+        time_s = np.concatenate([s.time_s for s in all_series])
+        section = self._section(np.concatenate([s.line for s in all_series]))
+        parts = []
+        for number in np.unique(section):
+            heard_s = np.unique(time_s[section == number])
+            cuts = np.flatnonzero(np.diff(heard_s) > max_gap_s)
+            starts, ends = heard_s[[0, *(cuts + 1)]], heard_s[[*cuts, -1]]
+            parts += [self._part(number, a, b) for a, b in zip(starts, ends, strict=True)]
+        return parts
+
+    def _part(self, section: int, start_s: float, end_s: float) -> NavigationLog:
+        inside = {
+            name: s.rows(
+                (self._section(s.line) == section) & (s.time_s >= start_s) & (s.time_s <= end_s)
+            )
+            for name, s in self.series.items()
+        }
+        return dataclasses.replace(self, **inside, set_back_lines=np.zeros(0, dtype=np.int64))
+
+    def _section(self, line: np.ndarray) -> np.ndarray:
+        """How often (n,) the clock had been set back by each line (n,)."""
+        return np.searchsorted(self.set_back_lines, line, side="right")
+
+
+SERIES = {
+    "fixes": Fixes,
+    "ground": GroundSpeed,
+    "heading": TrueHeading,
+    "compass": MagneticHeading,
+    "water": WaterSpeed,
+    "bottom": BottomTrack,
+    "turn": RateOfTurn,
+}

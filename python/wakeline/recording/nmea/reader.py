@@ -1,0 +1,509 @@
+"""A log of NMEA 0183 sentences as the readings of a vessel's own instruments."""
+
+from __future__ import annotations
+
+import dataclasses
+import datetime
+import math
+from pathlib import Path
+
+import numpy as np
+
+from wakeline._units import KNOT_MPS
+
+from ..errors import RecordingError
+from ..reach import unreachable
+from .clock import Clock
+from .log import (
+    SERIES,
+    Fixes,
+    GroundSpeed,
+    MagneticHeading,
+    NavigationLog,
+    NmeaProblem,
+    NmeaReport,
+    Series,
+    TrueHeading,
+)
+from .sentence import FIELDS, Sentence, sentences
+
+# Which sentence is kept of those that tell the same time.
+_BEST_FIRST = ("GGA", "RMC", "GLL", "VTG")
+# Quality of GGA for the mode of RMC, GLL and VTG, and those that are no measurement.
+_QUALITY = {"A": 1, "D": 2, "P": 3, "R": 4, "F": 5, "E": 6, "M": 7, "S": 8, "N": 0}
+_NOT_MEASURED = (0, 6, 7)
+_NOT_SAID = -1
+
+_MAX_SPEED_KN = 200.0
+_MAX_RATE_DEG_MIN = 10_000.0
+_STILL_MPS = 1.0 * KNOT_MPS  # below, a vessel at rest and one that moves look the same
+_FROZEN_M = 50.0
+_AT_ZERO_DEG = 1e-4
+_EARTH_RADIUS_M = 6371e3
+
+
+def read_nmea(
+    path: str | Path,
+    *,
+    variation_deg: float | None = None,
+    date: datetime.date | None = None,
+    reorder_s: float = 2.0,
+    max_speed_mps: float = 40.0,
+) -> NavigationLog:
+    """Read what a vessel's instruments said of her own motion.
+
+    **Sentences**: RMC, GGA, GLL, VTG, HDT, HDG, HDM, THS, VHW, VBW, ROT and ZDA of any talker,
+    upper or lower case; the others are counted. A checksum need not be there but must be right.
+    What stands before the ``$`` of a line, a time stamp or a TAG block, is passed over. An empty
+    field is NaN. No line is fatal: what cannot be used is counted by kind in the report and kept
+    there with its line.
+
+    **Times** are those of the sentences (RMC, GGA, GLL, ZDA), with dates from RMC and ZDA, and go
+    on over midnight:
+
+    - Without a date, a step is less than half a day.
+    - A time before the last or a leap after it (10 s, or five usual steps where these are longer)
+      is wrong when one of the next three timed sentences goes on from where the clock was; its
+      sentence is left out, unless it was only late by up to `reorder_s`. Otherwise there is a gap,
+      or the clock was set back. So it is with dates, of which only the date is left aside.
+    - A reading without a time lies between the timed sentences around it, equally spaced by lines;
+      where the log itself had stopped between them, as many lines after the first as usual. A VTG
+      has the time of the timed sentence before it, whose fix it belongs to.
+
+    **Fixes** of one time are one fix: the valid one, of these GGA before RMC before GLL. Fixes are
+    marked, never dropped: not `valid` (status V, quality 0); `frozen`, where the position stays the
+    same while the vessel, by her speed over ground or else through the water, moves over 50 m;
+    `suspect` at 0/0 and where she cannot have come at `max_speed_mps`. Positions in sentences with
+    empty fields are no fixes.
+
+    **Headings**: magnetic ones (HDG with its deviation, HDM) are kept apart, with the variation of
+    the sentence, else of the RMC before it (or else the first), else `variation_deg`. They are the
+    true headings too, where the variation is known and the log has neither HDT nor THS. Headings in
+    VHW count where the log has no others of their kind.
+
+    Parameters
+    ----------
+    path : str or Path
+        The log.
+    variation_deg : float, optional
+        Magnetic variation where the log does not tell it, positive east.
+    date : datetime.date, optional
+        Day of the first timed sentence, where no sentence has a date.
+    reorder_s : float
+        Sentences that are late by as much are put in order; a clock that goes back farther was set.
+    max_speed_mps : float
+        The vessel is not faster.
+
+    Returns
+    -------
+    NavigationLog
+
+    Raises
+    ------
+    RecordingError
+        When the file cannot be read, or holds no sentence with a time, or none of a reading.
+    ValueError
+        When a parameter makes no sense.
+    """
+    if not (reorder_s >= 0 and max_speed_mps > 0):
+        raise ValueError(
+            "reorder_s must not be negative and max_speed_mps must be positive, "
+            f"got {reorder_s} and {max_speed_mps}"
+        )
+    if variation_deg is not None and not abs(variation_deg) <= 180:
+        raise ValueError(f"variation_deg must be from -180 to 180, got {variation_deg}")
+    path, report = Path(path), NmeaReport()
+    rows = _Rows()
+    for sentence in sentences(_octets(path), report):
+        _READERS[sentence.kind](sentence, rows)
+        for kind, reason in sentence.faults:
+            report.add(sentence.line, kind, reason)
+    if not rows.timed:
+        raise _nothing_read(path, report)
+    first_day = 0.0 if date is None else float((date - datetime.date(1970, 1, 1)).days)
+    clock = Clock(*zip(*rows.timed, strict=True), first_day, reorder_s, report)
+    report.examples.sort(key=_line)
+    series = {name: _series(kind, rows.of[name], clock, report) for name, kind in SERIES.items()}
+    series["compass"] = _with_variation(series["compass"], rows.variation, variation_deg)
+    series["heading"] = _true_headings(series["heading"], series["compass"])
+    series["fixes"] = _marked(series, clock, max_speed_mps)
+    if not any(map(len, series.values())):
+        raise _nothing_read(path, report)
+    dated = date is not None or any(math.isfinite(day) for _, _, day in rows.timed)
+    notes: list[str] = []
+    log = NavigationLog(
+        path.stem,
+        **series,
+        dated=dated,
+        set_back_lines=clock.set_back_lines,
+        report=report,
+        notes=notes,
+    )
+    notes += [f"{path.name}: {note}" for note in _notes(log)]
+    return log
+
+
+def _octets(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise RecordingError(
+            path,
+            f"the file cannot be read ({error.strerror})",
+            wanted="a log of NMEA 0183 sentences",
+        ) from error
+
+
+def _line(problem: NmeaProblem) -> int:
+    return problem.line
+
+
+def _nothing_read(path: Path, report: NmeaReport) -> RecordingError:
+    found = [f"{count} {kind}" for kind, count in report.sentences.most_common(8)]
+    found += [f"{count} of {kind!r}" for kind, count in report.problems.most_common()]
+    first = min(report.examples, key=_line, default=None)
+    return RecordingError(
+        path,
+        "no reading with a time in the log" + (f" (first problem in {first})" if first else ""),
+        wanted="NMEA 0183 sentences, RMC, GGA, GLL or ZDA among them",
+        got=f"{report.lines} lines: {', '.join(found) or 'no sentence'}",
+    )
+
+
+# ------------------------------------------------------------------ sentences
+
+
+class _Rows:
+    """What was read so far.
+
+    Attributes
+    ----------
+    timed : list of (line, time of day, days since 1970)
+    variation : list of (line, radians)
+    of : dict of str to list of tuple
+        For each series rows of line, sentence, index in `timed` or None, valid, and its values.
+    """
+
+    def __init__(self) -> None:
+        self.timed: list[tuple[int, float, float]] = []
+        self.variation: list[tuple[int, float]] = []
+        self.of: dict[str, list[tuple]] = {name: [] for name in SERIES}
+
+    def stamp(self, s: Sentence, time_of_day_s: float, day: float = math.nan) -> int | None:
+        """Note a time; its index in `timed`, or None for an empty field."""
+        if math.isnan(time_of_day_s):
+            return None
+        self.timed.append((s.line, time_of_day_s, day))
+        return len(self.timed) - 1
+
+    def add_where_known(
+        self, name: str, s: Sentence, valid: bool, *values: float, stamp: int | None = None
+    ) -> None:
+        """A row, if any of its values is known."""
+        if not all(map(math.isnan, values)):
+            self.of[name].append((s.line, s.kind, stamp, valid, *values))
+
+
+def _rmc(s: Sentence, rows: _Rows) -> None:
+    time_s, day, place, status = s.time_of_day_s(0), s.day(8), s.place_deg(2), s.letter(1, "AV")
+    if s.faults:
+        return
+    quality = _quality(s, 11)
+    valid = status == "A" and quality not in _NOT_MEASURED
+    stamp = rows.stamp(s, time_s, day)
+    _add_fix(rows, s, stamp, valid, place, quality)
+    rows.add_where_known("ground", s, valid, _knots(s, 6), s.angle_rad(7), stamp=stamp)
+    variation_rad = s.signed_rad(9)
+    if not math.isnan(variation_rad):
+        rows.variation.append((s.line, variation_rad))
+
+
+def _gga(s: Sentence, rows: _Rows) -> None:
+    time_s, place, quality = s.time_of_day_s(0), s.place_deg(1), s.number(5, 0, 8)
+    if s.faults:
+        return
+    quality = _NOT_SAID if math.isnan(quality) else int(quality)
+    valid = quality not in (*_NOT_MEASURED, _NOT_SAID)
+    _add_fix(rows, s, rows.stamp(s, time_s), valid, place, quality, s.number(7, 0.0, 1000.0))
+
+
+def _gll(s: Sentence, rows: _Rows) -> None:
+    place, time_s, status = s.place_deg(0), s.time_of_day_s(4), s.letter(5, "AV")
+    if s.faults:
+        return
+    quality = _quality(s, 6)
+    valid = status != "V" and quality not in _NOT_MEASURED
+    _add_fix(rows, s, rows.stamp(s, time_s), valid, place, quality)
+
+
+def _add_fix(
+    rows: _Rows,
+    s: Sentence,
+    stamp: int | None,
+    valid: bool,
+    place_deg: tuple[float, float],
+    quality: int,
+    hdop: float = math.nan,
+) -> None:
+    if not math.isnan(sum(place_deg)):
+        values = (*place_deg, quality, hdop, False, False)
+        rows.add_where_known("fixes", s, valid, *values, stamp=stamp)
+
+
+def _vtg(s: Sentence, rows: _Rows) -> None:
+    s.letter(1, "T"), s.letter(5, "N")
+    if s.faults:
+        return
+    valid = _quality(s, 8) not in _NOT_MEASURED
+    rows.add_where_known("ground", s, valid, _speed_mps(s, 4), s.angle_rad(0))
+
+
+def _hdt(s: Sentence, rows: _Rows) -> None:
+    rows.add_where_known("heading", s, True, s.angle_rad(0))
+
+
+def _ths(s: Sentence, rows: _Rows) -> None:
+    rows.add_where_known("heading", s, s.letter(1, "AEMSV") in ("A", "S"), s.angle_rad(0))
+
+
+def _hdg(s: Sentence, rows: _Rows) -> None:
+    deviation_rad = s.signed_rad(1)
+    heading_rad = s.angle_rad(0) + (0.0 if math.isnan(deviation_rad) else deviation_rad)
+    variation_rad = s.signed_rad(3)
+    if not math.isnan(heading_rad):
+        rows.add_where_known("compass", s, True, heading_rad % math.tau, variation_rad)
+
+
+def _hdm(s: Sentence, rows: _Rows) -> None:
+    rows.add_where_known("compass", s, True, s.angle_rad(0), math.nan)
+
+
+def _vhw(s: Sentence, rows: _Rows) -> None:
+    rows.add_where_known("heading", s, True, s.angle_rad(0))
+    rows.add_where_known("compass", s, True, s.angle_rad(2), math.nan)
+    rows.add_where_known("water", s, True, _speed_mps(s, 4), math.nan)
+
+
+def _vbw(s: Sentence, rows: _Rows) -> None:
+    for name, k in (("water", 0), ("bottom", 3)):
+        valid = s.letter(k + 2, "AV") == "A"
+        rows.add_where_known(name, s, valid, _knots(s, k), _knots(s, k + 1))
+
+
+def _rot(s: Sentence, rows: _Rows) -> None:
+    rate_deg_min = s.number(0, -_MAX_RATE_DEG_MIN, _MAX_RATE_DEG_MIN)
+    rows.add_where_known("turn", s, s.letter(1, "AV") == "A", math.radians(rate_deg_min) / 60.0)
+
+
+def _zda(s: Sentence, rows: _Rows) -> None:
+    time_s, day = s.time_of_day_s(0), s.day_in_fields(1)
+    if not s.faults:
+        rows.stamp(s, time_s, day)
+
+
+_READERS = {
+    "RMC": _rmc,
+    "GGA": _gga,
+    "GLL": _gll,
+    "VTG": _vtg,
+    "HDT": _hdt,
+    "THS": _ths,
+    "HDG": _hdg,
+    "HDM": _hdm,
+    "VHW": _vhw,
+    "VBW": _vbw,
+    "ROT": _rot,
+    "ZDA": _zda,
+}
+assert _READERS.keys() == FIELDS.keys()
+
+
+def _quality(s: Sentence, k: int) -> int:
+    return _QUALITY.get(s.letter(k, "".join(_QUALITY)), _NOT_SAID)
+
+
+def _knots(s: Sentence, k: int) -> float:
+    return s.number(k, -_MAX_SPEED_KN, _MAX_SPEED_KN) * KNOT_MPS
+
+
+def _speed_mps(s: Sentence, k: int) -> float:
+    """A speed given in knots, or else, two fields on, in km/h."""
+    speed_mps = _knots(s, k)
+    if math.isnan(speed_mps):
+        return s.number(k + 2, -2 * _MAX_SPEED_KN, 2 * _MAX_SPEED_KN) / 3.6
+    return speed_mps
+
+
+# ------------------------------------------------------------------ series
+
+_BASE = ("time_s", "valid", "sentence", "line")
+_DTYPE = {"quality": np.int64, "frozen": bool, "suspect": bool}
+
+
+def _series(kind: type[Series], rows: list[tuple], clock: Clock, report: NmeaReport) -> Series:
+    """Rows with their times, in order; of fixes and ground speeds one a time."""
+    names = [f.name for f in dataclasses.fields(kind) if f.name not in _BASE]
+    line, sentence, stamp, valid, *values = (
+        zip(*rows, strict=True) if rows else [()] * (4 + len(names))
+    )
+    line, sentence = np.array(line, dtype=np.int64), np.array(sentence, dtype="<U3")
+    series = kind(
+        time_s=_times(line, sentence, stamp, clock),
+        valid=np.array(valid, dtype=bool),
+        sentence=sentence,
+        line=line,
+        **{
+            name: np.array(column, dtype=_DTYPE.get(name, float))
+            for name, column in zip(names, values, strict=True)
+        },
+    )
+    series = series.rows(np.isfinite(series.time_s))
+    series = series.rows(np.lexsort((series.line, series.time_s, clock.section(series.line))))
+    return _one_a_time(series, clock, report) if kind in (Fixes, GroundSpeed) else series
+
+
+def _times(line: np.ndarray, sentence: np.ndarray, stamp: tuple, clock: Clock) -> np.ndarray:
+    """Times (n,) of rows; NaN where that of the sentence is wrong."""
+    own = np.array([-1 if k is None else k for k in stamp], dtype=np.int64)
+    of_fix_s = np.where(sentence == "VTG", clock.last_timed(line), np.nan)
+    without_s = np.where(np.isnan(of_fix_s), clock.at_line(line), of_fix_s)
+    return np.where(own >= 0, clock.time_s[own], without_s)
+
+
+def _one_a_time(series: Series, clock: Clock, report: NmeaReport) -> Series:
+    millisecond = np.rint(series.time_s * 1e3)
+    section = clock.section(series.line)
+    rank = np.array([_BEST_FIRST.index(kind) for kind in series.sentence.tolist()], dtype=int)
+    order = np.lexsort((series.line, rank, ~series.valid, millisecond, section))
+    series, millisecond, section = series.rows(order), millisecond[order], section[order]
+    again = (np.diff(millisecond) == 0) & (np.diff(section) == 0)
+    report.repeated += int(np.count_nonzero(again))
+    return series.rows(np.append(True, ~again)[: len(series)])
+
+
+# ------------------------------------------------------------------ headings
+
+
+def _with_variation(
+    compass: MagneticHeading, told: list[tuple[int, float]], given_deg: float | None
+) -> MagneticHeading:
+    """Magnetic headings with the variation of other sentences, or the one given, where unknown."""
+    compass = _others_than_vhw(compass)
+    if told:
+        line, told_rad = map(np.array, zip(*told, strict=True))
+        known_rad = told_rad[np.maximum(np.searchsorted(line, compass.line, side="right") - 1, 0)]
+    else:
+        known_rad = np.nan if given_deg is None else math.radians(given_deg)
+    unknown = np.isnan(compass.variation_rad)
+    return dataclasses.replace(
+        compass, variation_rad=np.where(unknown, known_rad, compass.variation_rad)
+    )
+
+
+def _true_headings(heading: TrueHeading, compass: MagneticHeading) -> TrueHeading:
+    known = compass.rows(np.isfinite(compass.variation_rad))
+    if heading.valid.any() or not len(known):
+        return _others_than_vhw(heading)
+    return TrueHeading(known.time_s, known.valid, known.sentence, known.line, known.heading_rad)
+
+
+def _others_than_vhw(series: Series) -> Series:
+    """The readings that do not come from a VHW, if any of them is valid."""
+    other = series.sentence != "VHW"
+    return series.rows(other) if series.valid[other].any() else series
+
+
+# ------------------------------------------------------------------ fixes to doubt
+
+
+def _marked(series: dict[str, Series], clock: Clock, max_speed_mps: float) -> Fixes:
+    """The fixes with what is frozen and suspect marked."""
+    fixes = series["fixes"]
+    section = clock.section(fixes.line)
+    frozen, suspect = np.zeros(len(fixes), dtype=bool), _at_zero(fixes)
+    for number in np.unique(section):
+        here = np.flatnonzero(section == number)
+        speed_mps = _speed_at(fixes.time_s[here], _of_section(series, clock, number))
+        frozen[here] = _frozen(fixes.rows(here), speed_mps)
+        placed = here[fixes.valid[here] & ~suspect[here]]
+        position_m = _earth_centred_m(fixes.rows(placed))
+        suspect[placed] = unreachable(fixes.time_s[placed], position_m, max_speed_mps)
+    return dataclasses.replace(fixes, frozen=frozen, suspect=suspect)
+
+
+def _of_section(series: dict[str, Series], clock: Clock, number: int) -> dict[str, Series]:
+    return {
+        name: series[name].rows(clock.section(series[name].line) == number)
+        for name in ("ground", "water")
+    }
+
+
+def _at_zero(fixes: Fixes) -> np.ndarray:
+    return (np.abs(fixes.latitude_deg) < _AT_ZERO_DEG) & (
+        np.abs(fixes.longitude_deg) < _AT_ZERO_DEG
+    )
+
+
+def _speed_at(time_s: np.ndarray, series: dict[str, Series]) -> np.ndarray:
+    """Speeds (n,) over ground, or else through the water, or else zero."""
+    for name, values in (("ground", "speed_mps"), ("water", "ahead_mps")):
+        readings = series[name]
+        known = readings.valid & np.isfinite(getattr(readings, values))
+        if known.any():
+            speed_mps = np.abs(getattr(readings, values)[known])
+            return np.interp(time_s, readings.time_s[known], speed_mps)
+    return np.zeros(len(time_s))
+
+
+def _frozen(fixes: Fixes, speed_mps: np.ndarray) -> np.ndarray:
+    """Mask (n,) of fixes that repeat the one before while the vessel goes too far for that."""
+    same = (np.diff(fixes.latitude_deg) == 0) & (np.diff(fixes.longitude_deg) == 0)
+    speed_mps = np.where(speed_mps < _STILL_MPS, 0.0, speed_mps)
+    step_m = 0.5 * (speed_mps[1:] + speed_mps[:-1]) * np.diff(fixes.time_s)
+    run = np.append(0, np.cumsum(~same))[: len(fixes)]
+    way_m = np.bincount(run[1:], np.where(same, step_m, 0.0), minlength=1)
+    return np.append(False, same)[: len(fixes)] & (way_m[run] > _FROZEN_M)
+
+
+def _earth_centred_m(fixes: Fixes) -> np.ndarray:
+    """Positions (n, 3) on a sphere."""
+    latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
+    across = np.cos(latitude)
+    directions = [across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude)]
+    return _EARTH_RADIUS_M * np.column_stack(directions)
+
+
+# ------------------------------------------------------------------ notes
+
+
+def _notes(log: NavigationLog) -> list[str]:
+    report, fixes = log.report, log.fixes
+    notes = [_problem_note(report, kind, n) for kind, n in report.problems.most_common()]
+    if not log.dated:
+        notes.append("no sentence has a date, so times count from the midnight before the first")
+    if len(log.set_back_lines):
+        where = ", ".join(map(str, log.set_back_lines[:5].tolist()))
+        notes.append(f"the clock was set back {len(log.set_back_lines)} times (line {where})")
+    for mask, what in (
+        (~fixes.valid, "that the receiver calls not valid"),
+        (fixes.frozen, "frozen while the vessel moves"),
+        (fixes.suspect, "at 0/0 or where the vessel cannot have come"),
+    ):
+        if mask.any():
+            first = int(fixes.line[mask][0])
+            notes.append(f"{np.count_nonzero(mask)} fixes {what} (first in line {first})")
+    gaps_s = np.diff(log.gaps_s()).ravel()
+    if len(gaps_s):
+        notes.append(
+            f"{len(gaps_s)} gaps of more than 10 s between fixes, the longest {gaps_s.max():g} s"
+        )
+    unknown = np.count_nonzero(np.isnan(log.compass.variation_rad))
+    if not log.heading.valid.any():
+        also = f"; {unknown} magnetic ones want a variation_deg" if unknown else ""
+        notes.append(f"no true heading{also}")
+    return notes
+
+
+def _problem_note(report: NmeaReport, kind: str, count: int) -> str:
+    first = next((str(p) for p in report.examples if p.kind == kind), None)
+    return f"{count} problems of kind {kind!r}" + (f" (first in {first})" if first else "")

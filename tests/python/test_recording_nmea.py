@@ -1,0 +1,801 @@
+"""Logs of own ship's instruments: what is read, what is said about what is not, and times."""
+
+import datetime
+import math
+from functools import reduce
+from operator import xor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from wakeline import recording
+from wakeline.recording import RecordingError, read_nmea
+
+KNOT_MPS = 1852.0 / 3600.0
+DAY_S = 86400.0
+MAY_21 = datetime.datetime(2008, 5, 21, tzinfo=datetime.timezone.utc).timestamp()
+
+
+def sentence(body, talker="II"):
+    text = talker + body
+    return f"${text}*{reduce(xor, text.encode('latin-1'), 0):02X}"
+
+
+def hhmmss(time_s):
+    time_s = time_s % DAY_S
+    return f"{int(time_s // 3600):02}{int(time_s // 60 % 60):02}{time_s % 60:06.3f}"
+
+
+def place(latitude_deg=46.5, longitude_deg=6.7):
+    def minutes(value, width):
+        total = round(abs(value) * 60, 6)
+        return f"{int(total // 60):0{width}}{total % 60:09.6f}"
+
+    sides = ("N" if latitude_deg >= 0 else "S"), ("E" if longitude_deg >= 0 else "W")
+    return f"{minutes(latitude_deg, 2)},{sides[0]},{minutes(longitude_deg, 3)},{sides[1]}"
+
+
+def rmc(time_s, latitude_deg=46.5, longitude_deg=6.7, *, kn="5.0", course="90", **more):
+    """An RMC of 21 May 2008, `time_s` after midnight."""
+    date = more.get("date", f"{21 + int(time_s // DAY_S):02}0508")
+    where = more.get("where", place(latitude_deg, longitude_deg))
+    status, variation, mode = (
+        more.get(k, v) for k, v in (("status", "A"), ("var", ","), ("mode", "A"))
+    )
+    return sentence(
+        f"RMC,{hhmmss(time_s)},{status},{where},{kn},{course},{date},{variation},{mode}"
+    )
+
+
+def gll(time_s, latitude_deg=46.5, longitude_deg=6.7, status="A"):
+    return sentence(f"GLL,{place(latitude_deg, longitude_deg)},{hhmmss(time_s)},{status},A")
+
+
+def gga(time_s, latitude_deg=46.5, longitude_deg=6.7, quality="1", hdop="0.9"):
+    where = place(latitude_deg, longitude_deg)
+    return sentence(f"GGA,{hhmmss(time_s)},{where},{quality},08,{hdop},372.0,M,48.0,M,,")
+
+
+def under_way(times_s, **more):
+    """RMC of a vessel that goes east at 5 kn."""
+    return [rmc(t, longitude_deg=6.7 + 3.35e-5 * (t - times_s[0]), **more) for t in times_s]
+
+
+@pytest.fixture
+def log(tmp_path):
+    """Reads a log of some lines."""
+
+    def read(*lines, end="\n", **settings):
+        path = tmp_path / "own.nmea"
+        octets = end.join([*lines, ""]).encode("latin-1")
+        path.write_bytes(octets)
+        return read_nmea(path, **settings)
+
+    return read
+
+
+def clock_s(series):
+    """Times since midnight of 21 May."""
+    return pytest.approx(series.time_s - MAY_21, abs=1e-6)
+
+
+# ------------------------------------------------------------------ readings
+
+
+def test_rmc_is_a_fix_and_a_speed_over_ground(log):
+    read = log(rmc(60300, -33.25, -179.5, kn="12.5", course="275.5"))
+    fixes, ground = read.fixes, read.ground
+    assert clock_s(fixes) == [60300]
+    assert fixes.latitude_deg == pytest.approx([-33.25])
+    assert fixes.longitude_deg == pytest.approx([-179.5])
+    assert (fixes.quality[0], fixes.valid[0], fixes.sentence[0], fixes.line[0]) == (
+        1,
+        True,
+        "RMC",
+        1,
+    )
+    assert np.isnan(fixes.hdop).all()
+    assert ground.speed_mps == pytest.approx([12.5 * KNOT_MPS])
+    assert ground.course_rad == pytest.approx(np.radians([275.5]))
+    assert clock_s(ground) == [60300]
+    assert read.report.problems == {}
+    assert read.report.lines == 1
+
+
+def test_gga_gives_quality_and_hdop(log):
+    read = log(rmc(10), gga(12, 1.5, 2.5, "4", "1.25"), gga(14, quality="0", hdop=""))
+    assert read.fixes.quality.tolist() == [1, 4, 0]
+    assert read.fixes.valid.tolist() == [True, True, False]
+    np.testing.assert_array_equal(read.fixes.hdop, [np.nan, 1.25, np.nan])
+    assert read.fixes.latitude_deg[1] == pytest.approx(1.5)
+
+
+def test_gll_of_old_has_neither_time_nor_status(log):
+    read = log(rmc(10), sentence(f"GLL,{place(10, 20)}"), rmc(12))
+    assert read.fixes.sentence.tolist() == ["RMC", "GLL", "RMC"]
+    assert clock_s(read.fixes) == [10, 11, 12]
+    assert read.fixes.valid.all()
+
+
+@pytest.mark.parametrize(
+    ("body", "series", "name", "wanted"),
+    [
+        ("HDT,123.5,T", "heading", "heading_rad", math.radians(123.5)),
+        ("HDT,360,T", "heading", "heading_rad", 0.0),
+        ("THS,123.5,A", "heading", "heading_rad", math.radians(123.5)),
+        ("VHW,10,T,,M,,N,,K", "heading", "heading_rad", math.radians(10)),
+        ("HDG,123.5,,,,", "compass", "heading_magnetic_rad", math.radians(123.5)),
+        ("HDG,1,2.0,W,,", "compass", "heading_magnetic_rad", math.radians(359)),
+        ("HDG,1,2.0,W,3.5,W", "compass", "variation_rad", math.radians(-3.5)),
+        ("HDG,1,2.0,W,3.5,W", "heading", "heading_rad", math.radians(355.5)),
+        ("HDG,1,,,3.5,E", "heading", "heading_rad", math.radians(4.5)),
+        ("HDM,123.5,M", "compass", "heading_magnetic_rad", math.radians(123.5)),
+        ("VHW,,T,11,M,,N,,K", "compass", "heading_magnetic_rad", math.radians(11)),
+        ("VHW,,T,11,M,6.5,N,12,K", "water", "ahead_mps", 6.5 * KNOT_MPS),
+        ("VHW,,T,11,M,,N,18,K", "water", "ahead_mps", 5.0),
+        ("VBW,6.5,-0.5,A,7.5,1.5,A", "water", "ahead_mps", 6.5 * KNOT_MPS),
+        ("VBW,6.5,-0.5,A,7.5,1.5,A,,V,,V", "water", "starboard_mps", -0.5 * KNOT_MPS),
+        ("VBW,6.5,-0.5,A,7.5,1.5,A", "bottom", "ahead_mps", 7.5 * KNOT_MPS),
+        ("VBW,6.5,-0.5,A,7.5,1.5,A", "bottom", "starboard_mps", 1.5 * KNOT_MPS),
+        ("ROT,-30.0,A", "turn", "turn_rate_rad_s", math.radians(-0.5)),
+        ("VTG,45,T,,M,6.5,N,,K", "ground", "speed_mps", 6.5 * KNOT_MPS),
+        ("VTG,45,T,,M,,N,18,K,A", "ground", "speed_mps", 5.0),
+        ("VTG,45,T,,M,,N,,K", "ground", "course_rad", math.pi / 4),
+    ],
+)
+@pytest.mark.parametrize("talker", ["II", "gp", ""])
+def test_what_each_sentence_tells(log, body, series, name, wanted, talker):
+    read = log(
+        sentence("ZDA,120000.5,21,05,2008,00,00"),
+        sentence(body.lower() if talker == "gp" else body, talker),
+    )
+    readings = read.series[series]
+    assert getattr(readings, name) == pytest.approx([wanted], abs=1e-12)
+    assert clock_s(readings) == [43200.5]
+    assert readings.valid.all()
+    assert read.report.problems == {}
+
+
+@pytest.mark.parametrize(
+    ("body", "series"),
+    [
+        ("THS,123.5,V", "heading"),
+        ("THS,123.5,M", "heading"),
+        ("ROT,1.0,V", "turn"),
+        ("VBW,6.5,,V,,,V", "water"),
+        ("VBW,,,V,6.5,,V", "bottom"),
+        ("VTG,45,T,,M,6.5,N,,K,N", "ground"),
+    ],
+)
+def test_what_an_instrument_does_not_stand_by_is_not_valid(log, body, series):
+    read = log(sentence("ZDA,120000,21,05,2008,00,00"), sentence(body))
+    assert read.series[series].valid.tolist() == [False]
+    assert len(read.series[series].sound()) == 0
+
+
+def test_empty_fields_are_no_readings(log):
+    empty = (
+        "HDT,,T",
+        "THS,,V",
+        "HDG,,,,,",
+        "HDM,,M",
+        "VHW,,T,,M,,N,,K",
+        "ROT,,A",
+        "VTG,,T,,M,,N,,K",
+    )
+    read = log(
+        rmc(10, kn="", course=""),
+        rmc(12, where=",,,", kn="", status="V"),
+        *map(sentence, (*empty, "VBW,,,V,,,V", "ZDA,,,,,,", "GGA,,,,,,0,,,,,,,,", "GLL,,,,,,V,N")),
+    )
+    assert read.report.problems == {}
+    assert {name: len(s) for name, s in read.series.items() if len(s)} == {"fixes": 1, "ground": 1}
+    assert clock_s(read.ground) == [12]
+    assert np.isnan(read.ground.speed_mps[0])
+    assert read.ground.valid.tolist() == [False]
+
+
+@pytest.mark.parametrize(("status", "mode"), [("V", "A"), ("A", "N"), ("A", "E"), ("V", "")])
+def test_a_fix_that_the_receiver_does_not_call_valid_is_kept_and_marked(log, status, mode):
+    read = log(rmc(10), rmc(12, status=status, mode=mode), rmc(14))
+    assert read.fixes.valid.tolist() == read.fixes.usable.tolist() == [True, False, True]
+    assert read.ground.valid.tolist() == [True, False, True]
+    assert "1 fixes that the receiver calls not valid (first in line 2)" in read.notes[0]
+
+
+# ------------------------------------------------------------------ one fix a time
+
+
+def test_sentences_of_one_fix_are_one_fix(log):
+    burst = [gll(10, 46.5), rmc(10, 46.5), gga(10, 46.5, quality="2"), rmc(10, 46.5), gll(12, 46.5)]
+    read = log(*burst)
+    assert read.fixes.sentence.tolist() == ["GGA", "GLL"]
+    assert read.fixes.quality.tolist() == [2, 1]
+    assert read.report.repeated == 3 + 1  # and a speed over ground
+    assert len(read.ground) == 1
+
+
+def test_the_valid_one_of_a_time_is_kept(log):
+    read = log(gga(10, quality="0"), rmc(10), gll(12), rmc(12, status="V"))
+    assert read.fixes.sentence.tolist() == ["RMC", "GLL"]
+    assert read.fixes.valid.all()
+
+
+def test_a_vtg_belongs_to_the_fix_before_it(log):
+    vtg = sentence("VTG,91.5,T,,M,5.25,N,,K")
+    read = log(rmc(10), vtg, gga(12), vtg, gga(14))
+    assert read.ground.sentence.tolist() == ["RMC", "VTG"]
+    assert clock_s(read.ground) == [10, 12]
+
+
+# ------------------------------------------------------------------ times
+
+
+def test_times_go_on_over_midnight(log):
+    times_s = [DAY_S - 4, DAY_S - 2, DAY_S, DAY_S + 2]
+    read = log(*under_way(times_s))
+    assert clock_s(read.fixes) == times_s
+    late_date = [rmc(t, date="210508") for t in times_s[:3]] + [rmc(t) for t in times_s[3:]]
+    for lines in ([gll(t) for t in times_s], [rmc(times_s[0]), *map(gll, times_s[1:])], late_date):
+        read = log(*lines, date=datetime.date(2008, 5, 21))
+        assert clock_s(read.fixes) == times_s
+        assert read.dated
+        assert len(read.set_back_lines) == 0
+
+
+def test_the_date_reaches_back_to_sentences_before_it(log):
+    read = log(gll(DAY_S - 2), gll(DAY_S), rmc(DAY_S + 2))
+    assert clock_s(read.fixes) == [DAY_S - 2, DAY_S, DAY_S + 2]
+
+
+def test_without_a_date_times_count_from_midnight(log):
+    read = log(gll(5), gll(7))
+    assert read.fixes.time_s.tolist() == [5, 7]
+    assert not read.dated
+    assert "no sentence has a date" in read.notes[0]
+
+
+def test_the_century_of_two_digits(log):
+    for text, year in (("010199", 1999), ("010180", 1980), ("010179", 2079)):
+        read = log(rmc(0, date=text))
+        day = datetime.datetime(year, 1, 1, tzinfo=datetime.timezone.utc)
+        assert read.fixes.time_s[0] == day.timestamp()
+
+
+def test_a_leap_second_is_the_midnight_after_it(log):
+    end = rmc(0, date="210508").replace("000000.000", "235960.000")
+    read = log(*under_way([DAY_S - 1]), sentence(end[3:-3]), rmc(DAY_S))
+    assert clock_s(read.fixes) == [DAY_S - 1, DAY_S]
+    assert read.report.problems == {}
+
+
+def test_sentences_a_little_late_are_put_in_order(log):
+    read = log(rmc(10), rmc(12), gll(11), rmc(13))
+    assert clock_s(read.fixes) == [10, 11, 12, 13]
+    assert len(read.set_back_lines) == 0
+
+
+@pytest.mark.parametrize("wrong", [[90], [90, 90], [90, 91, 92], [4], [43000], [86399], [3, 4]])
+def test_a_time_that_leaps_and_comes_back_is_left_out(log, wrong):
+    lines = [*under_way(range(10, 20)), *(gll(t) for t in wrong), *under_way(range(20, 30))]
+    read = log(*lines)
+    assert clock_s(read.fixes) == list(range(10, 30))
+    assert read.report.problems == {"time": len(wrong)}
+    assert [p.line for p in read.report.examples] == [11 + k for k in range(len(wrong))]
+
+
+def test_a_date_that_leaps_and_comes_back_is_left_aside(log):
+    read = log(rmc(10), rmc(12, date="220508"), rmc(14), rmc(16, date="060180"), rmc(18))
+    assert clock_s(read.fixes) == [10, 12, 14, 16, 18]
+    assert read.report.problems == {"date": 2}
+
+
+@pytest.mark.parametrize("back_s", [4, 5, 7, 60, 3600, 40000, 86400, 10 * 86400])
+def test_a_clock_that_was_set_back_begins_a_part(log, back_s):
+    first, second = np.arange(20) + 50000.0, np.arange(20) + 50020.0 - back_s
+    read = log(*[rmc(t) for t in first], *[rmc(t) for t in second])
+    assert read.report.problems == {}
+    assert read.set_back_lines.tolist() == [21]
+    assert clock_s(read.fixes) == [*first, *second]
+    assert "the clock was set back 1 times (line 21)" in "".join(read.notes)
+    parts = read.parts()
+    assert [clock_s(part.fixes) for part in parts] == [list(first), list(second)]
+
+
+@pytest.mark.parametrize("gap_s", [61, 3600, 43000, 50000, 80000, 86400, 10 * 86400 + 7])
+def test_a_gap_is_a_gap(log, gap_s):
+    times_s = [*range(1000, 1010), *range(1010 + gap_s, 1020 + gap_s)]
+    read = log(*[line for t in times_s for line in (gll(t), rmc(t, kn="0.0"))])
+    assert read.report.problems == {}
+    assert clock_s(read.fixes) == times_s
+    np.testing.assert_allclose(read.gaps_s() - MAY_21, [[1009, 1010 + gap_s]])
+    assert [len(part.fixes) for part in read.parts()] == [10, 10]
+    assert [len(part.fixes) for part in read.parts(max_gap_s=gap_s + 1)] == [20]
+    assert "the longest" in "".join(read.notes)
+
+
+def test_slow_logs_have_longer_steps(log):
+    times_s = [60 * k for k in range(9)]
+    read = log(*under_way(times_s))
+    assert clock_s(read.fixes) == times_s
+    wrong = [*under_way(times_s), rmc(7000), *under_way([t + 540 for t in times_s])]
+    assert log(*wrong).report.problems == {"time": 1}
+
+
+def headings(count):
+    return [sentence(f"HDT,{k % 360},T") for k in range(count)]
+
+
+def test_readings_without_a_time_lie_equally_between_those_with_one(log):
+    lines = [line for t in (10, 12, 12, 14) for line in (*headings(1), gll(t), *headings(2))]
+    read = log(*lines, date=datetime.date(2008, 5, 21))
+    line = read.heading.line
+    expected = np.interp(line, [2, 6, 14], [10, 12, 14])
+    expected[line < 2], expected[line > 14] = 10 - 0.375, 14 + 0.375 * (line[line > 14] - 14)
+    assert clock_s(read.heading) == expected
+    assert (np.diff(read.heading.time_s) >= 0).all()
+
+
+def test_while_fixes_are_missing_headings_go_on(log):
+    usual = [line for t in range(10) for line in (gll(t), *headings(4))]
+    after = [line for t in range(70, 80) for line in (gll(t), *headings(4))]
+    read = log(*usual, *headings(300), *after)
+    assert np.diff(read.heading.time_s).max() < 0.5
+    assert len(read.parts(max_gap_s=10)) == 1
+    assert len(read.gaps_s()) == 1
+
+
+def test_where_the_log_stopped_nothing_is_put_into_the_gap(log):
+    lines = [line for t in [*range(10), *range(600, 610)] for line in (rmc(t), *headings(4))]
+    read = log(*lines)
+    heading_s = read.heading.time_s - MAY_21
+    assert not ((heading_s > 11) & (heading_s < 599)).any()
+    assert [len(part.heading) for part in read.parts()] == [40, 40]
+
+
+# ------------------------------------------------------------------ headings
+
+
+def test_the_variation_is_that_of_the_sentence_of_rmc_or_the_one_given(log):
+    compass = sentence("HDG,100,,,,")
+    read = log(
+        compass, rmc(10), compass, sentence("HDG,100,,,1.0,W"), rmc(12, var="2.0,E"), compass
+    )
+    assert np.degrees(read.compass.variation_rad) == pytest.approx([2, 2, -1, 2])
+    assert np.degrees(read.heading.heading_rad) == pytest.approx([102, 102, 99, 102])
+    read = log(rmc(10), compass, sentence("HDG,359.5,,,1.0,W"), variation_deg=-3.0)
+    assert np.degrees(read.heading.heading_rad) == pytest.approx([97, 358.5])
+    read = log(rmc(10), compass, compass)
+    assert np.isnan(read.compass.variation_rad).all()
+    assert np.isnan(read.compass.heading_rad).all()
+    assert len(read.heading) == 0
+    assert read.notes == ["own.nmea: no true heading; 2 magnetic ones want a variation_deg"]
+    assert log(rmc(10)).notes == ["own.nmea: no true heading"]
+
+
+def test_headings_come_from_the_best_sentence_there_is(log):
+    vhw, hdg, hdt = map(sentence, ("VHW,10,T,11,M,6,N,,K", "HDG,12,,,1,E", "HDT,13,T"))
+
+    def degrees(*lines):
+        return np.degrees(log(rmc(10), *lines).heading.heading_rad).tolist()
+
+    assert degrees(vhw, hdg, hdt) == pytest.approx([13])
+    assert degrees(hdg, sentence("THS,1,V")) == pytest.approx([13])
+    assert degrees(vhw, hdg) == pytest.approx([10])
+    assert degrees(hdg) == pytest.approx([13])
+    read = log(rmc(10), vhw, hdg, hdt)
+    assert read.compass.sentence.tolist() == ["HDG"]
+    assert log(rmc(10), vhw).compass.sentence.tolist() == ["VHW"]
+
+
+# ------------------------------------------------------------------ fixes to doubt
+
+
+def test_fixes_at_zero_are_suspect(log):
+    lines = under_way(range(10, 20))
+    lines[4] = rmc(14, 0.0, 0.0)
+    read = log(*lines)
+    assert np.flatnonzero(read.fixes.suspect).tolist() == [4]
+    assert len(read.fixes.sound()) == 9
+    assert log(*(rmc(t, 0.0, 0.0) for t in range(5))).fixes.suspect.all()
+
+
+def test_a_fix_where_the_vessel_cannot_have_come_is_suspect(log):
+    lines = under_way(range(10, 20))
+    lines[4] = rmc(14, 46.6)
+    assert np.flatnonzero(log(*lines).fixes.suspect).tolist() == [4]
+    assert not log(*lines, max_speed_mps=20000.0).fixes.suspect.any()
+    across = [rmc(t, 0.5, (179.9999 + 2e-5 * t + 180) % 360 - 180) for t in range(20)]
+    assert not log(*across).fixes.suspect.any()
+
+
+@pytest.mark.parametrize("source", ["rmc", "vhw"])
+def test_fixes_that_stay_while_the_vessel_moves_are_frozen(log, source):
+    lines = []
+    for t in range(60):
+        kept = 20 if 20 < t < 50 else t
+        fix = rmc if source == "rmc" else gll
+        lines += [fix(t, longitude_deg=6.7 + 3.35e-5 * kept), sentence("VHW,,T,,M,5.0,N,,K")]
+    fixes = log(*lines).fixes
+    assert np.flatnonzero(fixes.frozen).tolist() == list(range(21, 50))
+    assert not fixes.usable[fixes.frozen].any()
+
+
+def test_a_vessel_at_rest_is_not_frozen(log):
+    assert not log(*(rmc(t, kn="0.3") for t in range(0, 3600, 10))).fixes.frozen.any()
+    assert not log(*(gll(t) for t in range(0, 3600, 10))).fixes.frozen.any()
+    slow = [rmc(t, longitude_deg=6.7 + round(3.35e-5 * t, 4)) for t in range(100)]
+    assert not log(*slow).fixes.frozen.any()
+
+
+# ------------------------------------------------------------------ bad lines
+
+
+def test_lines_that_cannot_be_used_are_counted_and_kept_by_kind(log):
+    bad = {
+        "checksum": rmc(12)[:-2] + "00",
+        "no sentence": "switched on",
+        "cut": rmc(12)[:30],
+        "character": sentence("HDG,1\xb52,,,,"),
+        "address": "$II%5Q%5]I5*70",
+        "field": sentence("HDT,1e2,T"),
+        "range": sentence("HDT,400,T"),
+    }
+    read = log(rmc(10), *bad.values(), rmc(14))
+    assert read.report.problems == dict.fromkeys(bad, 1)
+    assert [p.kind for p in read.report.examples] == list(bad)
+    assert [p.line for p in read.report.examples] == list(range(2, 9))
+    assert all(p.reason for p in read.report.examples)
+    assert clock_s(read.fixes) == [10, 14]
+    assert read.report.lines == 9
+    for kind in bad:
+        assert any(kind in note and "first in line" in note for note in read.notes)
+
+
+@pytest.mark.parametrize(
+    ("body", "kind", "words"),
+    [
+        ("RMC,126000,A,4630.0,N,00640.0,E,,,210508,,,A", "range", "field 1"),
+        ("RMC,12000,A,4630.0,N,00640.0,E,,,210508,,,A", "field", "hhmmss"),
+        ("RMC,120000,X,4630.0,N,00640.0,E,,,210508,,,A", "field", "A V"),
+        ("RMC,120000,A,9030.0,N,00640.0,E,,,210508,,,A", "range", "0 to 90"),
+        ("RMC,120000,A,4660.0,N,00640.0,E,,,210508,,,A", "range", "minutes"),
+        ("RMC,120000,A,463.0,N,00640.0,E,,,210508,,,A", "field", "ddmm.mm"),
+        ("RMC,120000,A,4630.0,,00640.0,E,,,210508,,,A", "field", "N or S"),
+        ("RMC,120000,A,4630.0,N,18000.1,E,,,210508,,,A", "range", "0 to 180"),
+        ("RMC,120000,A,4630.0,N,00640.0,E,,,310208,,,A", "range", "a date"),
+        ("RMC,120000,A,4630.0,N,00640.0,E,,,21052008,,,A", "field", "ddmmyy"),
+        ("GGA,120000,4630.0,N,00640.0,E,9,,,,,,,,", "range", "field 6"),
+        ("GLL,4630.0,N,nan,E,120000,A", "field", "dddmm.mm"),
+        ("ZDA,120000,32,05,2008,00,00", "range", "a date"),
+    ],
+)
+def test_without_time_or_place_a_sentence_is_left_out(log, body, kind, words):
+    read = log(rmc(10), sentence(body), rmc(12))
+    assert clock_s(read.fixes) == [10, 12]
+    (problem,) = read.report.examples
+    assert (problem.line, problem.kind) == (2, kind)
+    assert words in problem.reason
+
+
+@pytest.mark.parametrize(
+    "text", ["nan", "NaN", "-", "---.-", "inf", "1e1", "1_0", "9" * 400, "0x1"]
+)
+def test_of_another_bad_field_only_the_value_is_lost(log, text):
+    read = log(rmc(10), rmc(12, kn=text), rmc(14, var=f"{text},E"))
+    assert len(read.fixes) == 3
+    kind = "range" if text.isdigit() else "field"
+    assert read.report.problems == {kind: 2}
+    assert np.isnan(read.ground.speed_mps).tolist() == [False, True, False]
+    assert np.isfinite(read.ground.course_rad).all()
+
+
+def test_a_sentence_cut_anywhere_is_never_taken_for_another(log):
+    """With checksums around it, and without them for all that the sentence must hold."""
+    for whole in (rmc(12, 47.0), gga(12, 47.0), gll(12, 47.0), sentence("HDG,123.5,1.0,E,2.0,E")):
+        for cut in range(1, len(whole)):
+            read = log(rmc(10), whole, whole[:cut], rmc(14))
+            assert read.report.problems.total() == 1
+            assert np.unique(read.fixes.latitude_deg).size <= 2
+            joined = log(rmc(10), whole[:cut] + rmc(14), whole)
+            assert joined.report.problems.total() == 1
+            assert len(joined.fixes) >= 2
+
+
+def test_without_checksums_what_is_cut_is_found_or_does_no_harm(log):
+    first = rmc(10).partition("*")[0]
+    for line in (rmc(12, 46.5001), gga(12, 46.5001), gll(12, 46.5001)):
+        bare = line.partition("*")[0]
+        for cut in range(1, len(bare)):
+            read = log(first, bare[:cut])
+            if read.report.problems.total() == 0:
+                assert read.fixes.latitude_deg[1] == pytest.approx(46.5001)
+                assert read.fixes.longitude_deg[1] == pytest.approx(6.7)
+                assert np.isclose(read.fixes.time_s[1] - MAY_21, 12)
+                assert read.ground.speed_mps == pytest.approx(5.0 * KNOT_MPS)
+            else:
+                assert len(read.fixes) == 1
+
+
+def test_examples_are_bounded_and_counts_are_not(log):
+    read = log(rmc(10), *["junk"] * 1500)
+    assert read.report.problems["no sentence"] == 1500
+    assert len(read.report.examples) == 1000
+
+
+# ------------------------------------------------------------------ forms of lines
+
+
+@pytest.mark.parametrize(
+    "dress",
+    [
+        lambda body: f"2008-05-21T12:00:00.250Z {sentence(body)}",
+        lambda body: f"1211371200,{sentence(body)}",
+        lambda body: f"\\s:GP0001,n:23,c:1211371200*2A\\{sentence(body)}",
+        lambda body: f"UdPbC\0\\s:GP0001*00\\{sentence(body)}",
+        lambda body: f"\xe9\xb5 {sentence(body)}",
+        lambda body: f"  {sentence(body)}  ",
+        lambda body: f"{sentence(body)},1211371200",
+        lambda body: f"\n{sentence(body)}\n",
+        lambda body: f"${body}",
+        lambda body: f"$GP{body}",
+        lambda body: sentence(body.lower(), "gp"),
+        lambda body: sentence(body)[:-2] + sentence(body)[-2:].lower(),
+        lambda body: sentence(body.replace(",", " , ")),
+    ],
+)
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r", "\r\r\n", ""])
+def test_lines_in_many_dresses(log, dress, end):
+    bodies = (line[3:-3] for line in (rmc(10, 1.5), sentence("HDT,90,T"), rmc(12, 1.5)))
+    read = log(*map(dress, bodies), end=end)
+    assert read.report.problems == {}
+    assert clock_s(read.fixes) == [10, 12]
+    assert read.fixes.latitude_deg == pytest.approx([1.5, 1.5])
+    assert np.degrees(read.heading.heading_rad) == pytest.approx([90])
+
+
+def test_other_sentences_are_counted(log):
+    ais = "!AIVDM,1,1,,A,13aG?P0P00PD;88MD5MTDww@2<0L,0*23"
+    ais = ais[:-2] + f"{reduce(xor, ais[1:-3].encode(), 0):02X}"
+    read = log(rmc(10), sentence("GSV,1,1,00"), sentence("GRME,1", "P"), ais)
+    assert read.report.sentences == {"RMC": 1, "GSV": 1, "PGRME": 1, "VDM": 1}
+    assert read.report.problems == {}
+
+
+# ------------------------------------------------------------------ files that cannot be read
+
+
+@pytest.mark.parametrize(
+    ("octets", "words"),
+    [
+        (b"", ["0 lines", "no sentence"]),
+        (b"time,lat,lon\n1,2,3\n", ["2 lines", "line 1"]),
+        (b"$GPGSV,1,1,00\n", ["1 GSV"]),
+        (b"$HEHDT,1.0,T\n", ["1 HDT"]),
+        (b"$GPZDA,120000,21,05,2008,00,00\n", ["1 ZDA"]),
+        (b"$HEHDT,1.0,T*00\n", ["1 of 'checksum'", "line 1"]),
+        (bytes(range(256)), ["lines"]),
+    ],
+)
+def test_a_file_without_readings_is_an_error(tmp_path, octets, words):
+    path = tmp_path / "own.nmea"
+    path.write_bytes(octets)
+    with pytest.raises(RecordingError) as caught:
+        read_nmea(path)
+    for word in ("own.nmea", "wanted NMEA 0183 sentences", *words):
+        assert word in str(caught.value)
+
+
+def test_what_is_no_file_is_an_error(tmp_path):
+    for path in (tmp_path, tmp_path / "none.nmea"):
+        with pytest.raises(RecordingError, match=r"cannot be read \(.*wanted a log of NMEA 0183"):
+            read_nmea(path)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"variation_deg": 181.0},
+        {"variation_deg": math.nan},
+        {"reorder_s": -1.0},
+        {"max_speed_mps": 0.0},
+    ],
+)
+def test_parameters_that_make_no_sense(log, wrong):
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        log(rmc(10), **wrong)
+
+
+# ------------------------------------------------------------------ laws
+
+
+SOME = [*under_way(range(10, 16)), sentence("HDT,90,T"), gga(15), sentence("ROT,3.0,A")]
+ALPHABET = "$!*,.\\ \r\nARMCGLHDT0123456789NESW-nai\xb5\0"
+
+
+def written(tmp_path_factory, octets):
+    path = tmp_path_factory.getbasetemp() / "law.nmea"
+    path.write_bytes(octets)
+    return path
+
+
+@given(
+    junk=st.lists(
+        st.binary(max_size=80) | st.text(ALPHABET, max_size=80).map(lambda t: t.encode("latin-1"))
+    )
+)
+def test_no_line_is_fatal_and_the_others_stay(tmp_path_factory, junk):
+    text = "\r\n".join([*SOME, ""]).encode()
+    alone = read_nmea(written(tmp_path_factory, text))
+    mixed = read_nmea(written(tmp_path_factory, text + b"\n".join([*junk, b""])))
+    assert len(mixed.fixes) >= len(alone.fixes)
+    assert set(alone.fixes.time_s) <= set(mixed.fixes.time_s)
+    kept = len(alone.heading)
+    np.testing.assert_array_equal(mixed.heading.heading_rad[:kept], alone.heading.heading_rad)
+
+
+@given(
+    which=st.integers(0, len(SOME) - 1),
+    place=st.integers(0, 200),
+    octet=st.integers(0, 255),
+)
+def test_a_changed_octet_is_always_counted(tmp_path_factory, which, place, octet):
+    text = [line.encode() for line in SOME]
+    at = place % len(text[which])
+    before = text[which][at]
+    same_digit = at >= len(text[which]) - 2 and chr(before).upper() == chr(octet).upper()
+    text[which] = text[which][:at] + bytes([octet]) + text[which][at + 1 :]
+    report = read_nmea(
+        written(
+            tmp_path_factory,
+            b"\r\n".join(
+                [
+                    *text,
+                    *text[:0],
+                    rmc(16).encode(),
+                    sentence("HDT,1,T").encode(),
+                    gga(16).encode(),
+                    sentence("ROT,1,A").encode(),
+                    b"",
+                ]
+            ),
+        )
+    ).report
+    assert (report.problems.total() == 0) == (octet == before or same_digit)
+
+
+@given(
+    start_s=st.integers(0, 86399),
+    rows=st.lists(
+        st.tuples(
+            st.floats(-89.9, 89.9),
+            st.floats(-179.9, 179.9),
+            st.floats(0, 99),
+            st.floats(0, 359.9),
+            st.floats(-700, 700),
+        ),
+        min_size=1,
+        max_size=20,
+    ),
+)
+@example(start_s=86395, rows=[(0.0, -0.001, 0.0, 0.0, 0.0)] * 12)
+def test_what_is_written_is_read(tmp_path_factory, start_s, rows):
+    lines = []
+    for k, (latitude, longitude, kn, course, rate) in enumerate(rows):
+        lines += [
+            rmc(start_s + k, latitude, longitude, kn=f"{kn:.2f}", course=f"{course:.1f}"),
+            sentence(f"HDT,{course:.1f},T"),
+            sentence(f"ROT,{rate:.1f},A"),
+        ]
+    read = read_nmea(written(tmp_path_factory, "\n".join(lines).encode()))
+    latitude, longitude, kn, course, rate = np.array(rows).T
+    assert clock_s(read.fixes) == start_s + np.arange(len(rows))
+    np.testing.assert_allclose(read.fixes.latitude_deg, latitude, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(read.fixes.longitude_deg, longitude, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(read.ground.speed_mps, kn * KNOT_MPS, rtol=0, atol=0.0051 * KNOT_MPS)
+    for angle in (read.ground.course_rad, read.heading.heading_rad):
+        off = np.mod(angle - np.radians(course) + np.pi, 2 * np.pi) - np.pi
+        assert np.abs(off).max() <= np.radians(0.0501)
+    np.testing.assert_allclose(
+        read.turn.turn_rate_rad_s, np.radians(rate) / 60, rtol=0, atol=np.radians(0.0501) / 60
+    )
+
+
+@given(
+    steps_s=st.lists(st.integers(1, 9), min_size=2, max_size=40),
+    cut=st.integers(1, 39),
+    gap_s=st.integers(1, 40000),
+)
+def test_two_logs_one_after_the_other_are_one_log(tmp_path_factory, steps_s, cut, gap_s):
+    times_s = np.cumsum(steps_s)
+    times_s[cut:] += gap_s
+    lines = [line for t in times_s.tolist() for line in (rmc(t, kn="0.0"), gll(t), *headings(1))]
+    cut = min(cut, len(times_s) - 1)
+    a, b = lines[: 3 * cut], lines[3 * cut :]
+    one, two, both = (
+        read_nmea(written(tmp_path_factory, "\n".join([*part, ""]).encode()))
+        for part in (a, b, a + b)
+    )
+    for name in ("time_s", "latitude_deg", "longitude_deg", "valid", "sentence"):
+        parts = [getattr(one.fixes, name), getattr(two.fixes, name)]
+        np.testing.assert_array_equal(np.concatenate(parts), getattr(both.fixes, name))
+    assert one.report.sentences + two.report.sentences == both.report.sentences
+    assert len(one.heading) + len(two.heading) == len(both.heading)
+    assert (np.diff(both.heading.time_s) >= 0).all()
+
+
+# ------------------------------------------------------------------ a real log
+
+
+@pytest.fixture(scope="module")
+def irene():
+    return recording.load_navigation()
+
+
+def test_irene_holds_what_its_source_says(irene):
+    report, fixes = irene.report, irene.fixes
+    assert (report.lines, report.sentences["RMC"], report.sentences["GLL"]) == (14164, 3530, 3529)
+    assert report.problems == {"character": 3, "address": 1}
+    assert [p.line for p in report.examples] == [862, 882, 1241, 1589]
+    assert (len(fixes), np.count_nonzero(fixes.sentence == "GLL")) == (2196, 37)
+    assert fixes.usable.all()
+    assert len(irene.set_back_lines) == 0
+    start_s = MAY_21 + 3600 * np.array([16 + 43 / 60, 18.0])
+    assert fixes.time_s[0] == start_s[0]
+    assert start_s[1] - 10 < fixes.time_s[-1] < start_s[1]
+    stops = np.diff(irene.ground.time_s)
+    assert stops[stops > 10].tolist() == [140, 30]
+    assert np.median(irene.ground.speed_mps) / KNOT_MPS == pytest.approx(5.7, abs=0.01)
+    assert [len(part.fixes) for part in irene.parts()] == [256, 1940]
+    assert "3540 magnetic ones want a variation_deg" in irene.notes[-1]
+
+
+def test_speeds_and_courses_of_irene_are_those_of_her_positions(irene):
+    """Which they would not be with a wrong time, unit or angle."""
+    plane = recording.LocalPlane(46.5, 6.6)
+    north_m, east_m = plane.position_m(irene.fixes.latitude_deg, irene.fixes.longitude_deg)
+    way_m, told_m = [], []
+    for start in range(0, len(irene.fixes) - 15, 15):
+        rows = slice(start, start + 16)
+        time_s = irene.fixes.time_s[rows]
+        if np.diff(time_s).max() > 10:
+            continue
+        ground = irene.ground.rows(
+            (irene.ground.time_s >= time_s[0]) & (irene.ground.time_s <= time_s[-1])
+        )
+        velocity = ground.speed_mps * np.exp(1j * ground.course_rad)
+        between = 0.5 * (velocity[1:] + velocity[:-1]) * np.diff(ground.time_s)
+        told_m.append(between.sum())
+        way_m.append(
+            complex(north_m[rows][-1] - north_m[rows][0], east_m[rows][-1] - east_m[rows][0])
+        )
+    ratio = np.vdot(told_m, way_m) / np.vdot(told_m, told_m).real
+    assert abs(ratio) == pytest.approx(1.0, abs=0.03)
+    assert np.angle(ratio) == pytest.approx(0.0, abs=0.03)
+
+
+def test_headings_of_irene_are_spread_over_the_times_of_her_fixes():
+    irene = recording.load_navigation(variation_deg=1.0)
+    step_s = np.diff(irene.heading.time_s)
+    assert (step_s > 0).all()
+    assert np.median(step_s) == pytest.approx(1.25, abs=0.1)
+    np.testing.assert_allclose(
+        np.mod(irene.heading.heading_rad - irene.compass.heading_magnetic_rad, 2 * np.pi),
+        np.radians(1),
+    )
+    assert irene.notes[-1].endswith("the longest 140 s")
+
+
+def test_irene_is_read_as_by_another_reader(irene):
+    pynmea2 = pytest.importorskip("pynmea2")
+    path = Path(recording.__file__).parent / "data" / "irene" / "irene.nmea"
+    lines = path.read_text(encoding="latin-1").splitlines()
+    for k in range(0, len(irene.fixes), 7):
+        other = pynmea2.parse(lines[irene.fixes.line[k] - 1])
+        assert irene.fixes.latitude_deg[k] == pytest.approx(other.latitude, abs=1e-9)
+        assert irene.fixes.longitude_deg[k] == pytest.approx(other.longitude, abs=1e-9)
+        clock = datetime.datetime.combine(datetime.date(2008, 5, 21), other.timestamp)
+        assert irene.fixes.time_s[k] == clock.replace(tzinfo=datetime.timezone.utc).timestamp()
