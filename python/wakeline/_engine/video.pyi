@@ -23,6 +23,7 @@ __all__ = [
     "cfar_threshold",
     "false_alarm_probability",
     "threshold_factor",
+    "threshold_offset_db",
 ]
 
 class LandMask:
@@ -205,7 +206,7 @@ class PlotExtractor:
 
     Parameters
     ----------
-    kind, train_cells, guard_cells, threshold_factor, rank, least_amplitude
+    kind, train_cells, guard_cells, threshold_factor, threshold_offset, rank, least_amplitude
         As of `cfar`.
     max_sweep_cells : int
         Longer sweeps are refused.
@@ -232,6 +233,7 @@ class PlotExtractor:
         train_cells: int = 16,
         guard_cells: int = 4,
         threshold_factor: float = 3.0,
+        threshold_offset: int = 0,
         rank: float = 0.75,
         least_amplitude: int = 1,
         max_sweep_cells: int = 4096,
@@ -459,6 +461,7 @@ def cfar(
     train_cells: int = 16,
     guard_cells: int = 4,
     threshold_factor: float = 3.0,
+    threshold_offset: int = 0,
     rank: float = 0.75,
     least_amplitude: int = 1,
 ) -> NDArray[np.bool_]:
@@ -478,6 +481,9 @@ def cfar(
         On each side, next to the cell, that are left out.
     threshold_factor : float
         Times the mean or the k-th; see `threshold_factor`.
+    threshold_offset : int
+        On top of that. Video of a logarithmic receiver wants a factor of 1 and an offset; see
+        `threshold_offset_db`.
     rank : float
         k by the number of training cells; ordered_statistic only.
     least_amplitude : int
@@ -495,6 +501,7 @@ def cfar_threshold(
     train_cells: int = 16,
     guard_cells: int = 4,
     threshold_factor: float = 3.0,
+    threshold_offset: int = 0,
     rank: float = 0.75,
     least_amplitude: int = 1,
 ) -> NDArray[np.uint8] | NDArray[np.uint16]:
@@ -545,4 +552,12 @@ def threshold_factor(
         a linear one.
     kind, train_cells, rank
         As of `cfar`.
+    """
+
+def threshold_offset_db(probability: float) -> float:
+    """
+    How far noise behind a logarithmic receiver exceeds its mean level with a probability.
+
+    ``10 lg(-ln p) + 2.507``, in decibels; times the receiver's steps a decibel it is the
+    `threshold_offset`, with a `threshold_factor` of 1. Exact for many training cells.
     """

@@ -341,6 +341,7 @@ def _opencv_scan() -> Callable[[np.ndarray, float], Any] | None:
         import cv2
     except ImportError:
         return None
+    cv2.setNumThreads(1)  # as ours
 
     def scan(amplitude: np.ndarray, factor: float) -> Any:
         window = cv2.boxFilter(amplitude, cv2.CV_32F, (_TRAIN, 1))

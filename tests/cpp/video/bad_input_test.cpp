@@ -4,6 +4,7 @@
 // Sweeps that do not come as they should, pictures that are no pictures, and memory.
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -300,6 +301,59 @@ TEST(Memory, IsThatOfConstructionWhateverThePicture) {
           EXPECT_EQ(cells, there);
         }
       }
+}
+
+TEST(AnySweeps, LoseNoCellAndGiveSensiblePlots) {
+  std::mt19937 random(11);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (int trial = 0; trial < 60; ++trial) {
+    auto settings = every_cell(64);
+    settings.gap_cells = trial % 3;
+    settings.gap_sweeps = trial % 4;
+    settings.closed_circle = trial % 2 == 0;
+    settings.max_sweeps = 1 + trial % 20;
+    PlotExtractor<> extractor(settings);
+    long there = 0, found = 0;
+    const auto check = [&](std::span<const VideoPlot> plots) {
+      for (const VideoPlot& plot : plots) {
+        found += plot.cells;
+        ASSERT_GE(plot.bearing_rad, 0.0);
+        ASSERT_LT(plot.bearing_rad, 2 * kPi<double>);
+        ASSERT_GT(plot.range_m, 0.0);
+        ASSERT_GT(plot.covariance(0, 0), 0.0);
+        ASSERT_GT(plot.covariance.determinant(), 0.0);
+        ASSERT_GT(plot.bearing_extent_rad, 0.0);
+        ASSERT_TRUE(std::isfinite(plot.time_s));
+      }
+    };
+    double azimuth = uniform(-10, 10), width = 0.1;
+    double start = 0.0, cell = 5.0;
+    for (int k = 0; k < 500; ++k) {
+      const int event = static_cast<int>(uniform(0, 60));
+      azimuth += event == 0 ? uniform(-7, 7) : event == 1 ? 0.0 : width * uniform(0.6, 1.4);
+      if (event == 2) width = uniform(0.001, 1.0);
+      if (event == 3) cell = uniform(1, 20);
+      if (event == 4) start = uniform(0, 100);
+      if (event == 5) azimuth -= 2 * kPi<double> * std::round(uniform(-3, 3));
+      const auto cells = static_cast<std::size_t>(event == 6 ? uniform(0, 80) : 64);
+      std::vector<std::uint8_t> amplitude(cells);
+      for (auto& a : amplitude) a = uniform(0, 1) < 0.3 ? 100 : 0;
+      check(extractor.process({.time_s = event == 7 ? kNan : 0.1 * k,
+                               .azimuth_rad = azimuth,
+                               .azimuth_width_rad = width,
+                               .start_range_m = start,
+                               .cell_m = cell,
+                               .amplitude = amplitude}));
+      // A cell alone in its sweep has nothing to be compared with.
+      if (!refused(extractor.status()) && cells > 1)
+        there += std::ranges::count_if(amplitude, [](int a) { return a > 0; });
+    }
+    check(extractor.finish());
+    EXPECT_EQ(found, there);
+    EXPECT_EQ(extractor.open_echoes(), 0u);
+  }
 }
 
 TEST(Memory, IsEnoughForLongSweepsOfNothingButEchoes) {
