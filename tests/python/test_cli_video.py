@@ -8,6 +8,7 @@ import pytest
 
 from wakeline import scenario
 from wakeline.cli import main, outputs
+from wakeline.cli.video import noise_of
 from wakeline.recording import read_tracks, write_video
 
 SCANS = 14
@@ -109,5 +110,28 @@ def test_what_goes_with_plots_is_refused(video, tmp_path, option, capsys):
 def test_noise_alone_gives_no_track(tmp_path):
     path = tmp_path / "noise.cat240"
     write_video(path, simulator().turns({}, 8, seed=2))
+    assert main(["track", str(path), "--out", str(tmp_path)]) == 0
+    assert len(read_tracks(tmp_path / "tracks.csv")) == 0
+
+
+@pytest.mark.parametrize("receiver", ["linear", "logarithmic"])
+def test_the_kind_of_receiver_is_seen_in_the_noise(tmp_path, receiver):
+    radar = simulator(receiver=receiver, noise_rms=12.0 if receiver == "linear" else 40.0)
+    turns = list(radar.turns(SHIPS, SCANS, seed=3))
+    assert (noise_of(turns[0].amplitude).skewness < 0.2) == (receiver == "logarithmic")
+    path = tmp_path / "some.cat240"
+    write_video(path, turns)
+    assert main(["track", str(path), "--out", str(tmp_path)]) == 0
+    assert len(read_tracks(tmp_path / "tracks.csv").ids()) == len(SHIPS)
+
+
+@pytest.mark.parametrize("level", [0, 255])
+def test_dark_and_saturated_pictures_give_nothing(tmp_path, level):
+    turns = [
+        replace(turn, amplitude=np.full_like(turn.amplitude, level))
+        for turn in simulator().turns({}, 3, seed=0)
+    ]
+    path = tmp_path / "flat.cat240"
+    write_video(path, turns)
     assert main(["track", str(path), "--out", str(tmp_path)]) == 0
     assert len(read_tracks(tmp_path / "tracks.csv")) == 0

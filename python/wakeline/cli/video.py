@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 import wakeline as wl
 from wakeline import plot
-from wakeline._progress import counted as told
+from wakeline._progress import counted
 from wakeline.recording import (
     Episode,
     RadarVideo,
@@ -23,6 +24,14 @@ from wakeline.recording import (
 from .config import Settings
 from .tracking import TrackedEpisode
 
+_FALSE_ALARMS = 1e-5
+_TRAIN_M, _GUARD_M = 400.0, 150.0  # either side of a cell; ships are up to 300 m long
+_MOST_TRAIN_CELLS = 128
+_LOGARITHMIC_BELOW = 0.2  # skewness of noise: 0.63 behind a linear receiver, -1.1 in decibels
+_RAYLEIGH_SPREAD_DB = 5.57  # standard deviation of noise in decibels
+_WINDOW_CELLS = 32
+_ABOVE_NOISE_DB = range(0, 40, 2)
+_MOST_PLOTS = 150  # of a turn
 _STROBE = 0.99  # probability that the target's plot lies in the strobe that is drawn
 _WIDE_ECHO_RAD = np.deg2rad(20.0)
 _LONG_ECHO_M = 800.0  # a land mass, as consoles have it
@@ -63,16 +72,17 @@ def read_plots_of_video(path: Path) -> VideoRecording:
     RecordingError
         When the file holds no radar video.
     """
-    report = VideoReport()
+    report, notes = VideoReport(), []
     scans: list[Scan] = []
     variances: list[np.ndarray] = []
-    for turn, plots in told(_extracted(path, report), "turns"):
+    for turn, plots in counted(_extracted(path, report, notes), "turns"):
         scans.append(_scan(len(scans), turn, plots))
         variances += [np.diagonal(part.covariance, axis1=1, axis2=2) for part in plots]
     least = np.array([turn.cell_m, turn.azimuth_width_rad]) ** 2 / 12.0
     variance = np.concatenate(variances)
     std = np.sqrt(np.maximum(np.median(variance, axis=0) if len(variance) else least, least))
-    recording = Recording(path.stem, [Episode("", scans)], notes=tuple(report.notes))
+    told = [f"the sender says: {text}" for text in report.summaries]
+    recording = Recording(path.stem, [Episode("", scans)], notes=[*told, *report.notes, *notes])
     return VideoRecording(recording, turn, (float(std[0]), float(std[1])))
 
 
@@ -110,19 +120,78 @@ def _strobe(video: VideoRecording, place_m: np.ndarray, covariance_m2: np.ndarra
 
 
 def _extracted(
-    path: Path, report: VideoReport
+    path: Path, report: VideoReport, notes: list[str]
 ) -> Iterator[tuple[RadarVideo, list[wl.video.VideoPlots]]]:
     """Each turn of the file with the plots of the echoes that end in it."""
-    extractor = wl.video.PlotExtractor(
-        max_range_extent_m=_LONG_ECHO_M, max_bearing_extent_rad=_WIDE_ECHO_RAD
-    )
-    turn: RadarVideo | None = None
-    for following in read_video(path, report=report):
-        if turn is not None:
-            yield turn, [extractor.process(turn)]
+    turns = read_video(path, report=report)
+    turn = next(turns)
+    extractor, above_db = _extractor_for(turn)
+    if above_db:
+        notes.append(f"so much clutter that echoes count from {above_db} dB above noise on")
+    for following in turns:
+        yield turn, [extractor.process(turn)]
         turn = following
-    if turn is not None:
-        yield turn, [extractor.process(turn), extractor.finish()]
+    yield turn, [extractor.process(turn), extractor.finish()]
+
+
+def _extractor_for(turn: RadarVideo) -> tuple[wl.PlotExtractor, float]:
+    """An extractor for this picture, and how far its threshold lies above that of noise, in dB.
+
+    It is raised until the turn gives no more plots than an operator would bear: land and sea
+    clutter fluctuate more than noise.
+    """
+    noise = noise_of(turn.amplitude)
+    for above_db in _ABOVE_NOISE_DB:
+        settings = _settings(turn, noise, above_db)
+        trial = wl.PlotExtractor(**settings)
+        if len(trial.process(turn)) + len(trial.finish()) <= _MOST_PLOTS:
+            break
+    return wl.PlotExtractor(**settings), above_db
+
+
+def _settings(turn: RadarVideo, noise: Noise | None, above_db: float) -> dict[str, float]:
+    """Settings for cells of this length and a receiver of this kind."""
+    train = int(np.clip(_TRAIN_M / turn.cell_m, 8, _MOST_TRAIN_CELLS))
+    if noise is not None and noise.skewness < _LOGARITHMIC_BELOW:
+        steps_per_db = noise.std / _RAYLEIGH_SPREAD_DB
+        offset_db = wl.video.threshold_offset_db(_FALSE_ALARMS) + above_db
+        threshold = {"threshold_factor": 1.0, "threshold_offset": int(steps_per_db * offset_db) + 1}
+    else:
+        factor = wl.video.threshold_factor(_FALSE_ALARMS, train_cells=train)
+        threshold = {"threshold_factor": min(factor * 10 ** (above_db / 20), 1000.0)}
+    return {
+        "train_cells": train,
+        "guard_cells": int(_GUARD_M / turn.cell_m),
+        "max_range_extent_m": _LONG_ECHO_M,
+        "max_bearing_extent_rad": _WIDE_ECHO_RAD,
+        **threshold,
+    }
+
+
+class Noise(NamedTuple):
+    """Standard deviation in amplitudes, and skewness, of the noise of a picture."""
+
+    std: float
+    skewness: float
+
+
+def noise_of(amplitude: np.ndarray) -> Noise | None:
+    """The noise of a picture (N, C); None where there is none to see.
+
+    Of pieces of sweeps of 32 cells a fifth is taken for noise: those of the least mean that are not
+    dark.
+    """
+    whole = amplitude.shape[1] // _WINDOW_CELLS * _WINDOW_CELLS
+    pieces = amplitude[:, :whole].reshape(-1, _WINDOW_CELLS).astype(np.float32)
+    mean = pieces.mean(axis=1) if len(pieces) else np.zeros(0)
+    lit = np.flatnonzero(mean > 1.0)
+    if len(lit) == 0:
+        return None
+    low, high = np.quantile(mean[lit], [0.05, 0.25])
+    quiet = lit[(mean[lit] >= low) & (mean[lit] <= high)]
+    away = pieces[quiet] - mean[quiet, None]
+    std = float(np.sqrt(np.mean(away**2)))
+    return Noise(std, float(np.mean(away**3)) / std**3) if std > 0 else None
 
 
 def _scan(number: int, turn: RadarVideo, plots: list[wl.video.VideoPlots]) -> Scan:
