@@ -356,6 +356,15 @@ def test_where_the_log_stopped_nothing_is_put_into_the_gap(log):
     assert [len(part.heading) for part in read.parts()] == [40, 40]
 
 
+def test_a_log_on_one_line(log):
+    lines = [*headings(2), *(gll(t) for t in (*range(50, 56), *range(20, 26))), *headings(3)]
+    for read in (log(*lines, end=""), log(*headings(1), "".join(lines))):
+        assert read.report.problems == {}
+        assert sorted(read.fixes.time_s) == [*range(20, 26), *range(50, 56)]
+        assert len(read.heading) >= 5
+        assert sum(len(part.fixes) for part in read.parts()) == 12
+
+
 # ------------------------------------------------------------------ headings
 
 
@@ -642,29 +651,45 @@ def test_no_line_is_fatal_and_the_others_stay(tmp_path_factory, junk):
     place=st.integers(0, 200),
     octet=st.integers(0, 255),
 )
+@example(which=0, place=0, octet=ord("!"))
+@example(which=0, place=0, octet=ord("*"))
+@example(which=0, place=40, octet=ord("$"))
+@example(which=0, place=40, octet=ord("\\"))
 def test_a_changed_octet_is_always_counted(tmp_path_factory, which, place, octet):
-    text = [line.encode() for line in SOME]
+    text = [line.encode() for line in (*SOME, *SOME)]
     at = place % len(text[which])
     before = text[which][at]
-    same_digit = at >= len(text[which]) - 2 and chr(before).upper() == chr(octet).upper()
     text[which] = text[which][:at] + bytes([octet]) + text[which][at + 1 :]
-    report = read_nmea(
-        written(
-            tmp_path_factory,
-            b"\r\n".join(
-                [
-                    *text,
-                    *text[:0],
-                    rmc(16).encode(),
-                    sentence("HDT,1,T").encode(),
-                    gga(16).encode(),
-                    sentence("ROT,1,A").encode(),
-                    b"",
-                ]
-            ),
-        )
-    ).report
-    assert (report.problems.total() == 0) == (octet == before or same_digit)
+    report = read_nmea(written(tmp_path_factory, b"\r\n".join([*text, b""]))).report
+    same = octet == before
+    same |= at >= len(text[which]) - 2 and chr(before).upper() == chr(octet).upper()
+    assert (report.problems.total() == 0) == same
+
+
+@given(
+    times_s=st.lists(
+        st.integers(0, 86399) | st.integers(1000, 1040) | st.sampled_from([86399, 0, 43200]),
+        min_size=1,
+        max_size=40,
+    ),
+    dates=st.lists(st.sampled_from([None, "210508", "220508", "010180"]), min_size=40, max_size=40),
+    end=st.sampled_from(["\n", ""]),
+)
+def test_whatever_the_clock_does_no_fix_is_lost(tmp_path_factory, times_s, dates, end):
+    lines = []
+    for t, date in zip(times_s, dates, strict=False):
+        lines += [gll(t) if date is None else rmc(t, date=date, kn="", course=""), *headings(1)]
+    read = read_nmea(written(tmp_path_factory, end.join([*lines, ""]).encode()))
+    wrong = read.report.problems["time"]
+    assert len(read.fixes) + read.report.repeated + wrong == len(times_s)
+    assert len(read.heading) == len(times_s)
+    parts = read.parts()
+    for name, series in read.series.items():
+        assert np.isfinite(series.time_s).all()
+        assert sum(len(part.series[name]) for part in parts) == len(series)
+    for part in parts:
+        assert (np.diff(part.fixes.time_s) > 0).all()
+        assert (np.diff(part.heading.time_s) >= 0).all()
 
 
 @given(

@@ -113,13 +113,21 @@ class Clock:
         usual = np.concatenate([dt for _, dt in steps]) <= self._leap_s
         pace_s = float(np.median(pace_s[usual])) if usual.any() else 0.0
         return [
-            _extended(line, time_s, start, end - 1, pace_s)
+            _extended(line, time_s, start, end - 1, pace_s) if len(line) else self._next(start)
             for (line, time_s), start, end in zip(news, starts, ends, strict=True)
         ]
+
+    def _next(self, line: int) -> tuple[np.ndarray, np.ndarray]:
+        """The time told next after a line as the only anchor of a section that tells none."""
+        believed = np.isfinite(self.time_s)
+        after = np.searchsorted(self._line[believed], line)
+        return np.array([float(line)]), self.time_s[believed][[after]]
 
     def _new_times(self, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lines and times of the sentences that were the first to tell a later time."""
         chosen = chosen & np.isfinite(self.time_s)
+        if not chosen.any():
+            return np.zeros(0), np.zeros(0)
         line, time_s = self._line[chosen], self.time_s[chosen]
         latest_s = np.maximum.accumulate(time_s)
         new = np.append(True, np.diff(latest_s) > 0)

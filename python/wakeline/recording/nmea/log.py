@@ -215,8 +215,9 @@ class NmeaReport:
         How often each kind of problem came. A sentence is left out for ``no sentence`` (text
         without ``$``), ``cut`` (its end is missing), ``checksum``, ``character`` (an octet that
         cannot be printed), ``address`` (none of talker and kind) and ``time`` (a time that leaps
-        and comes back); of one with a ``field`` that cannot be read or out of ``range`` only that
-        value is, unless it is the time or the place.
+        and comes back). Of one with a ``field`` that cannot be read or out of ``range`` only that
+        value is left out, unless it is the time or the place; of one with a ``date`` that leaps and
+        comes back, only the date.
     examples : list of NmeaProblem
         Problems in the order of lines, at most `max_examples`.
     repeated : int

@@ -25,7 +25,7 @@ from .log import (
     Series,
     TrueHeading,
 )
-from .sentence import FIELDS, Sentence, sentences
+from .sentence import Sentence, sentences
 
 # Which sentence is kept of those that tell the same time.
 _BEST_FIRST = ("GGA", "RMC", "GLL", "VTG")
@@ -315,7 +315,6 @@ _READERS = {
     "ROT": _rot,
     "ZDA": _zda,
 }
-assert _READERS.keys() == FIELDS.keys()
 
 
 def _quality(s: Sentence, k: int) -> int:

@@ -170,10 +170,10 @@ class Sentence:
 def sentences(octets: bytes, report: NmeaReport) -> list[Sentence]:
     """The sound sentences of the kinds in `FIELDS`, in order; what is not sound goes to `report`.
 
-    A sentence begins at ``$`` and ends where its line does or the next one begins; what stands
-    before it in the line, a time stamp or a TAG block, is passed over. The octets between ``$`` and
-    the last ``*`` must give the checksum that follows, where there is one; a sentence without is
-    cut if others of its kind have one.
+    A sentence begins at ``$`` (one of another kind also at ``!``) and ends where its line does or
+    the next one begins; what stands before it in the line, a time stamp or a TAG block, is passed
+    over. The octets between ``$`` and the last ``*`` must give the checksum that follows, where
+    there is one; a sentence without is cut if others of its kind have one.
 
     Parameters
     ----------
@@ -240,6 +240,8 @@ def _unsound(piece: bytes) -> tuple[str, str] | None:
     address = body.partition(b",")[0].strip()
     if not (address.isalnum() and len(address) >= 3):
         return "address", f"wanted talker and kind, {_got(piece)}"
+    if piece[:1] == b"!" and _parted(body)[0] in FIELDS:
+        return "address", f"wanted $ at the start, {_got(piece)}"
     return None
 
 
