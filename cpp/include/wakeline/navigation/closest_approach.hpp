@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Where and when two ships that hold course and speed are closest, how well that is known, and how
+// likely they come closer than a limit.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+namespace detail {
+
+/// P(x < limit) of a scalar Gaussian; of one without error 0 or 1, at the limit itself 0.
+inline double probability_below(double limit, double mean, double std) noexcept {
+  if (std == 0.0) return mean < limit ? 1.0 : 0.0;
+  return std::erfc((mean - limit) / (std::sqrt(2.0) * std)) / 2;
+}
+
+/// P(|x| < limit) of a scalar Gaussian.
+inline double probability_within(double limit, double mean, double std) noexcept {
+  return probability_below(limit, mean, std) - probability_below(-limit, mean, std);
+}
+
+}  // namespace detail
+
+/// The closest point of approach of a target that moves straight relative to own ship, from
+/// position p + v t.
+///
+///     tcpa = -p·v / |v|²,    d = p·n,    cpa = |d|,
+///
+/// n the unit vector to starboard of v. The signed distance d is positive where the ships pass port
+/// to port along their relative motion, and it is the same seen from either ship. Errors are of
+/// first order, with J the derivatives by [px, vx, py, vy]:
+///
+///     ∂d/∂p = n,            ∂d/∂v = tcpa n,
+///     ∂tcpa/∂p = -v / |v|²,   ∂tcpa/∂v = -(d n + tcpa v) / |v|²,
+///
+/// good while the error of v is small beside |v|: of a fifth of it, the standard deviations are
+/// some per cent off. A relative speed of 1 µm/s or less is rest: cpa is then the range, along the
+/// line of sight, and tcpa zero without an error, as nothing gets closer than it is.
+class ClosestApproach {
+ public:
+  /// `relative` is target less own ship over [x, vx, y, vy] in the plane of north and east; its
+  /// covariance may be semidefinite, zero for states that are known. What is not a number gives
+  /// results that are none.
+  explicit ClosestApproach(const Gaussian<4>& relative) noexcept
+      : position_m_(relative.mean[0], relative.mean[2]),
+        velocity_mps_(relative.mean[1], relative.mean[3]),
+        state_covariance_(relative.covariance) {
+    const double speed2 = velocity_mps_.squaredNorm();
+    at_rest_ = speed2 <= kRest_mps * kRest_mps;
+    if (at_rest_) {
+      signed_cpa_m_ = position_m_.norm();
+      covariance_(0, 0) = variance_along(sight(position_m_), 0.0);
+      return;
+    }
+    const Vec2 n = Vec2(-velocity_mps_[1], velocity_mps_[0]) / std::sqrt(speed2);
+    tcpa_s_ = -position_m_.dot(velocity_mps_) / speed2;
+    signed_cpa_m_ = position_m_.dot(n);
+    const Vec2 tcpa_by_position = -velocity_mps_ / speed2;
+    const Vec2 tcpa_by_velocity = -(signed_cpa_m_ * n + tcpa_s_ * velocity_mps_) / speed2;
+    Mat<double, 2, 4> jacobian;
+    jacobian << n[0], tcpa_s_ * n[0], n[1], tcpa_s_ * n[1],  //
+        tcpa_by_position[0], tcpa_by_velocity[0], tcpa_by_position[1], tcpa_by_velocity[1];
+    covariance_ = jacobian * state_covariance_ * jacobian.transpose();
+    mirror_lower(covariance_);
+  }
+
+  /// Distance at the closest point, m, not negative.
+  [[nodiscard]] double cpa_m() const noexcept { return std::abs(signed_cpa_m_); }
+
+  /// The same, positive where the ships pass port to port along their relative motion.
+  [[nodiscard]] double signed_cpa_m() const noexcept { return signed_cpa_m_; }
+
+  /// Time until then, s; negative when it is past.
+  [[nodiscard]] double tcpa_s() const noexcept { return tcpa_s_; }
+
+  /// Standard deviation of the signed distance, m.
+  [[nodiscard]] double cpa_std_m() const noexcept { return std::sqrt(covariance_(0, 0)); }
+
+  /// Standard deviation of the time, s.
+  [[nodiscard]] double tcpa_std_s() const noexcept { return std::sqrt(covariance_(1, 1)); }
+
+  /// Of [signed_cpa_m, tcpa_s].
+  [[nodiscard]] const Mat<double, 2, 2>& covariance() const noexcept { return covariance_; }
+
+  /// Whether the ships do not move relative to each other.
+  [[nodiscard]] bool at_rest() const noexcept { return at_rest_; }
+
+  /// Probability that the ships come closer than `limit_m` between now and `horizon_s`, both not
+  /// negative, the horizon possibly infinite. The target is within the limit L from tcpa - h / |v|
+  /// until tcpa + h / |v|, with h² = L² - d² half the chord, so that
+  ///
+  ///     P = ∫ P(-h / |v| < tcpa < H + h / |v|, given d) p(d) dd,    -L < d < L,
+  ///
+  /// of the joint Gaussian of d and tcpa, summed over 32 slices of d; at least P(|p| < L), of now,
+  /// along the line of sight.
+  ///
+  /// As good as errors of first order are. Beside many draws it is within 0.03 while v errs per
+  /// axis by a tenth of |v|, within 0.1 at a fifth, and up to 0.2 off when v errs by all of itself:
+  /// most so for a target abeam just at the limit.
+  [[nodiscard]] double probability(double limit_m, double horizon_s = kForever_s) const noexcept {
+    const double sight_std = std::sqrt(variance_along(sight(position_m_), 0.0));
+    const double now = detail::probability_within(limit_m, position_m_.norm(), sight_std);
+    if (at_rest_) return now;
+    const double sooner_or_later = probability_of_passing(limit_m, horizon_s);
+    return sooner_or_later < now ? now : sooner_or_later;
+  }
+
+  static constexpr double kForever_s = std::numeric_limits<double>::infinity();
+  static constexpr double kRest_mps = 1e-6;
+  static constexpr int kSlices = 32;
+  static constexpr double kSigmas = 6.0;  ///< what lies beyond of d is left out
+
+ private:
+  using Vec2 = Vec<double, 2>;
+
+  /// Unit vector towards a position, north at the origin.
+  static Vec2 sight(const Vec2& position_m) noexcept {
+    const double range = position_m.norm();
+    return range == 0.0 ? Vec2(1.0, 0.0) : Vec2(position_m / range);
+  }
+
+  /// Variance of the position after a time, in a direction.
+  [[nodiscard]] double variance_along(const Vec2& u, double after_s) const noexcept {
+    const Vec<double, 4> row(u[0], u[0] * after_s, u[1], u[1] * after_s);
+    return row.dot(state_covariance_ * row);
+  }
+
+  /// The integral of `probability`; NaN where anything is.
+  [[nodiscard]] double probability_of_passing(double limit_m, double horizon_s) const noexcept {
+    const double d = signed_cpa_m_, std = cpa_std_m();
+    if (std == 0.0) return std::abs(d) < limit_m ? within_by_time(d, limit_m, horizon_s) : 0.0;
+    const double low = std::fmax(-limit_m, d - kSigmas * std);
+    const double high = std::fmin(limit_m, d + kSigmas * std);
+    if (high <= low) return 0.0;
+    const double slice = (high - low) / kSlices;
+    double sum = 0.0, below = detail::probability_below(low, d, std);
+    for (int k = 0; k < kSlices; ++k) {
+      const double upto = detail::probability_below(low + (k + 1) * slice, d, std);
+      sum += (upto - below) * within_by_time(low + (k + 0.5) * slice, limit_m, horizon_s);
+      below = upto;
+    }
+    return sum;
+  }
+
+  /// P(-h / |v| < tcpa < H + h / |v|) of a signed distance d.
+  [[nodiscard]] double within_by_time(double d, double limit_m, double horizon_s) const noexcept {
+    const double slope = covariance_(0, 0) > 0.0 ? covariance_(1, 0) / covariance_(0, 0) : 0.0;
+    const double mean = tcpa_s_ + slope * (d - signed_cpa_m_);
+    const double std = std::sqrt(std::max(covariance_(1, 1) - slope * covariance_(1, 0), 0.0));
+    const double half_chord_s =
+        std::sqrt(std::max(limit_m * limit_m - d * d, 0.0)) / velocity_mps_.norm();
+    return detail::probability_below(horizon_s + half_chord_s, mean, std) -
+           detail::probability_below(-half_chord_s, mean, std);
+  }
+
+  Vec2 position_m_, velocity_mps_;
+  Mat<double, 4, 4> state_covariance_;
+  double signed_cpa_m_ = 0.0, tcpa_s_ = 0.0;
+  Mat<double, 2, 2> covariance_ = Mat<double, 2, 2>::Zero();
+  bool at_rest_ = false;
+};
+
+/// The closest approach of two ships, each over [x, vx, y, vy], their errors independent.
+inline ClosestApproach closest_approach(const Gaussian<4>& own,
+                                        const Gaussian<4>& target) noexcept {
+  return ClosestApproach({target.mean - own.mean, own.covariance + target.covariance});
+}
+
+/// The same of ships whose states are known.
+inline ClosestApproach closest_approach(const Vec<double, 4>& own,
+                                        const Vec<double, 4>& target) noexcept {
+  return ClosestApproach({target - own, Mat<double, 4, 4>::Zero()});
+}
+
+}  // namespace wakeline

@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/navigation/closest_approach.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/draw.hpp"
+#include "support/malloc_fence.hpp"
+#include "wakeline/core/angle.hpp"
+
+namespace wakeline {
+namespace {
+
+using Vec2 = Vec<double, 2>;
+using Vec4 = Vec<double, 4>;
+using Mat4 = Mat<double, 4, 4>;
+
+constexpr double kMile_m = 1852.0;
+
+Vec4 state(const Vec2& position, const Vec2& velocity) {
+  return {position[0], velocity[0], position[1], velocity[1]};
+}
+
+Vec2 polar(double length, double angle_rad) {
+  return length * Vec2(std::cos(angle_rad), std::sin(angle_rad));
+}
+
+/// Independent errors of position and velocity per axis.
+Mat4 errors(double position_std, double velocity_std) {
+  const double p = position_std * position_std, v = velocity_std * velocity_std;
+  return Vec4(p, v, p, v).asDiagonal();
+}
+
+/// Least distance between now and a horizon.
+double least_distance(const Vec4& relative, double horizon_s) {
+  const Vec2 p(relative[0], relative[2]), v(relative[1], relative[3]);
+  const double t = std::clamp(-p.dot(v) / v.squaredNorm(), 0.0, horizon_s);
+  return (p + v * t).norm();
+}
+
+Gaussian<4> random_ship(test::Draw& draw) {
+  const Vec4 scale(2000, 8, 2000, 8);
+  Mat4 covariance = draw.definite<4>();
+  covariance =
+      Vec4(30, 0.3, 30, 0.3).asDiagonal() * covariance * Vec4(30, 0.3, 30, 0.3).asDiagonal();
+  return {scale.cwiseProduct(draw.normals<4>()), covariance};
+}
+
+void expect_same(const ClosestApproach& a, const ClosestApproach& b) {
+  EXPECT_NEAR(a.signed_cpa_m(), b.signed_cpa_m(), 1e-7);
+  EXPECT_NEAR(a.tcpa_s(), b.tcpa_s(), 1e-7 * (1 + std::abs(a.tcpa_s())));
+  EXPECT_LT(test::covariance_difference(a.covariance(), b.covariance()), 1e-9);
+  EXPECT_NEAR(a.probability(500, 1200), b.probability(500, 1200), 1e-9);
+}
+
+// The four scenarios of IMO A.823(19): course and speed of own ship, range and bearing of the
+// target, its relative course and speed, and what follows from them.
+struct Scenario {
+  double own_speed_kn, range_nm, bearing_deg, relative_course_deg, relative_speed_kn, cpa_nm,
+      tcpa_min;
+};
+constexpr Scenario kA823[] = {{10, 8, 0, 180, 20, 0, 24},
+                              {10, 1, 0, 90, 10, 1, 0},
+                              {5, 8, 45, 225, 20, 0, 24},
+                              {25, 8, 45, 225, 20, 0, 24}};
+
+TEST(ClosestApproach, OfTheScenariosOfA823) {
+  for (const Scenario& s : kA823) {
+    const Vec2 own_velocity(knots(s.own_speed_kn), 0);
+    const Vec2 relative = polar(knots(s.relative_speed_kn), deg(s.relative_course_deg));
+    const Vec2 place = polar(s.range_nm * kMile_m, deg(s.bearing_deg));
+    const auto approach =
+        closest_approach(state(Vec2::Zero(), own_velocity), state(place, own_velocity + relative));
+    EXPECT_NEAR(approach.cpa_m() / kMile_m, s.cpa_nm, 1e-9);
+    EXPECT_NEAR(approach.tcpa_s() / 60, s.tcpa_min, 1e-9);
+    EXPECT_EQ(approach.cpa_std_m(), 0.0);
+    EXPECT_EQ(approach.probability(1.01 * kMile_m), 1.0);
+  }
+}
+
+TEST(ClosestApproach, IsTheLeastDistanceOfAll) {
+  test::Draw draw(1);
+  for (int k = 0; k < 200; ++k) {
+    const Vec4 own = random_ship(draw).mean, target = random_ship(draw).mean;
+    const auto approach = closest_approach(own, target);
+    const auto distance = [&](double t) {
+      const Vec4 r = target - own;
+      return std::hypot(r[0] + r[1] * t, r[2] + r[3] * t);
+    };
+    const double t = approach.tcpa_s();
+    EXPECT_NEAR(distance(t), approach.cpa_m(), 1e-6);
+    EXPECT_GE(distance(t + 1), approach.cpa_m());
+    EXPECT_GE(distance(t - 1), approach.cpa_m());
+  }
+}
+
+TEST(ClosestApproach, ComesNearerByTheClockAndIsThenPast) {
+  const Vec4 own = state({0, 0}, {5, 0}), target = state({6000, 300}, {-5, 0});
+  for (double t = 0; t <= 1200; t += 100) {
+    const Vec4 later = state({6000 - 5 * t, 300}, {-5, 0});
+    const Vec4 own_later = state({5 * t, 0}, {5, 0});
+    const auto approach = closest_approach(own_later, later);
+    EXPECT_NEAR(approach.tcpa_s(), closest_approach(own, target).tcpa_s() - t, 1e-9);
+    EXPECT_NEAR(approach.cpa_m(), 300, 1e-9);
+    EXPECT_EQ(approach.probability(400), approach.tcpa_s() >= 0 ? 1.0 : 0.0) << t;
+  }
+}
+
+TEST(ClosestApproach, HasASignForTheSideOfThePassing) {
+  const Vec4 own = state({0, 0}, {5, 0});
+  const auto to_port = closest_approach(own, state({6000, -300}, {-5, 0}));
+  const auto to_starboard = closest_approach(own, state({6000, 300}, {-5, 0}));
+  EXPECT_NEAR(to_port.signed_cpa_m(), 300, 1e-9);
+  EXPECT_NEAR(to_starboard.signed_cpa_m(), -300, 1e-9);
+}
+
+TEST(ClosestApproach, IsTheSameFromBothShips) {
+  test::Draw draw(2);
+  for (int k = 0; k < 100; ++k) {
+    const Gaussian<4> a = random_ship(draw), b = random_ship(draw);
+    expect_same(closest_approach(a, b), closest_approach(b, a));
+  }
+}
+
+TEST(ClosestApproach, DoesNotDependOnTheFrame) {
+  test::Draw draw(3);
+  for (int k = 0; k < 100; ++k) {
+    const Gaussian<4> own = random_ship(draw), target = random_ship(draw);
+    const double c = std::cos(0.1 * k), s = std::sin(0.1 * k);
+    Mat4 turn;
+    turn << c, 0, -s, 0, 0, c, 0, -s, s, 0, c, 0, 0, s, 0, c;
+    const Vec4 shift = state({-5e4, 2e4}, {3, -7});  // a place and a current
+    const auto moved = [&](const Gaussian<4>& ship) {
+      return Gaussian<4>{turn * ship.mean + shift, turn * ship.covariance * turn.transpose()};
+    };
+    expect_same(closest_approach(own, target), closest_approach(moved(own), moved(target)));
+  }
+}
+
+TEST(ClosestApproach, HasTheErrorsOfItsDerivatives) {
+  test::Draw draw(4);
+  for (int k = 0; k < 50; ++k) {
+    const Gaussian<4> relative = random_ship(draw);
+    Mat<double, 2, 4> jacobian;
+    for (int i = 0; i < 4; ++i) {
+      const double h = i % 2 ? 1e-5 : 1e-2;
+      Gaussian<4> up = relative, down = relative;
+      up.mean[i] += h;
+      down.mean[i] -= h;
+      const ClosestApproach a(up), b(down);
+      jacobian.col(i) =
+          Vec2(a.signed_cpa_m() - b.signed_cpa_m(), a.tcpa_s() - b.tcpa_s()) / (2 * h);
+    }
+    const Mat<double, 2, 2> expected = jacobian * relative.covariance * jacobian.transpose();
+    const ClosestApproach approach(relative);
+    EXPECT_LT(test::covariance_difference(approach.covariance(), expected), 1e-4);
+    EXPECT_NEAR(approach.cpa_std_m(), std::sqrt(approach.covariance()(0, 0)), 1e-12);
+    EXPECT_NEAR(approach.tcpa_std_s(), std::sqrt(approach.covariance()(1, 1)), 1e-12);
+  }
+}
+
+TEST(ClosestApproach, OfShipsAtRelativeRestIsTheRangeNow) {
+  const Vec4 own = state({0, 0}, {4, 3}), target = state({300, -400}, {4, 3});
+  const auto known = closest_approach(own, target);
+  EXPECT_TRUE(known.at_rest());
+  EXPECT_EQ(known.cpa_m(), 500.0);
+  EXPECT_EQ(known.tcpa_s(), 0.0);
+  EXPECT_EQ(known.probability(501), 1.0);
+  EXPECT_EQ(known.probability(499), 0.0);
+  const auto unsure =
+      closest_approach(Gaussian<4>{own, errors(0, 0)}, Gaussian<4>{target, errors(30, 0.1)});
+  EXPECT_NEAR(unsure.cpa_std_m(), 30, 1e-9);
+  EXPECT_NEAR(unsure.probability(500), 0.5, 1e-9);
+  const auto together = closest_approach(own, own);
+  EXPECT_EQ(together.cpa_m(), 0.0);
+  EXPECT_EQ(together.probability(1), 1.0);
+}
+
+// Probability -------------------------------------------------------------------------------------
+
+/// How far the closed form is from the share of many draws that come closer than the limit.
+double probability_error(const Gaussian<4>& relative, double limit_m, double horizon_s) {
+  test::Draw draw(5);
+  constexpr int kDraws = 40000;  // the share has a standard deviation of at most 0.0025
+  int near = 0;
+  for (int k = 0; k < kDraws; ++k) near += least_distance(draw.of(relative), horizon_s) < limit_m;
+  return std::abs(ClosestApproach(relative).probability(limit_m, horizon_s) -
+                  near / double(kDraws));
+}
+
+Gaussian<4> passing(double miss_m, double after_s, double position_std, double velocity_std) {
+  const Vec2 v = polar(10.0, deg(200));
+  const Vec2 n = polar(1.0, deg(290));
+  return {state(miss_m * n - after_s * v, v), errors(position_std, velocity_std)};
+}
+
+/// The worst error over misses and times, the closest point now, past and beyond the horizon too.
+double worst_error(double velocity_std) {
+  double worst = 0.0;
+  for (const double miss : {0.0, 500.0, 926.0, 1500.0, 3000.0})
+    for (const double after : {-300.0, 0.0, 200.0, 600.0, 1200.0, 1500.0})
+      worst =
+          std::fmax(worst, probability_error(passing(miss, after, 30, velocity_std), 926, 1200));
+  return worst;
+}
+
+TEST(ProbabilityOfPassing, IsThatOfManyDrawsWhileTheVelocityIsKnown) {  // to a part of 10 m/s
+  EXPECT_LT(worst_error(0.1), 0.01);
+  EXPECT_LT(worst_error(0.5), 0.015);
+  EXPECT_LT(worst_error(1.0), 0.03);
+  EXPECT_LT(worst_error(2.0), 0.1);
+}
+
+TEST(ProbabilityOfPassing, IsRoughWhereTheVelocityErrsByAllOfItself) {
+  const double error = worst_error(10.0);
+  EXPECT_GT(error, 0.1);
+  EXPECT_LT(error, 0.25);
+}
+
+TEST(ProbabilityOfPassing, GrowsWithTheLimitAndTheHorizon) {
+  test::Draw draw(6);
+  for (int k = 0; k < 100; ++k) {
+    const auto approach = closest_approach(random_ship(draw), random_ship(draw));
+    double before = 0.0;
+    for (double limit = 0; limit < 2e4; limit += 500) {
+      const double p = approach.probability(limit, 900);
+      EXPECT_GE(p, before - 1e-3);  // of the slices
+      EXPECT_LE(p, 1.0 + 1e-12);
+      before = p;
+    }
+    EXPECT_EQ(approach.probability(0), 0.0);
+  }
+  const ClosestApproach coming(passing(0, 600, 30, 0.1));
+  EXPECT_LT(coming.probability(926, 300), 0.01);
+  EXPECT_GT(coming.probability(926, 900), 0.99);
+  EXPECT_NEAR(coming.probability(926), coming.probability(926, 1e6), 1e-9);
+}
+
+TEST(ClosestApproach, OfWhatIsNoNumberIsNone) {
+  const Vec4 own = state({0, 0}, {5, 0});
+  for (int k = 0; k < 4; ++k) {
+    Vec4 target = state({1000, 200}, {-5, 1});
+    target[k] = NAN;
+    const auto approach = closest_approach(own, target);
+    EXPECT_TRUE(std::isnan(approach.cpa_m()));
+    EXPECT_TRUE(std::isnan(approach.tcpa_s()));
+    EXPECT_TRUE(std::isnan(approach.probability(500, 1200)));
+  }
+}
+
+TEST(ClosestApproach, IsFoundWithoutTheHeap) {
+  test::Draw draw(7);
+  const Gaussian<4> own = random_ship(draw), target = random_ship(draw);
+  static_assert(noexcept(closest_approach(own, target)));
+  const test::NoHeap fence;
+  const auto approach = closest_approach(own, target);
+  const double p = approach.probability(926, 1200);
+  EXPECT_EQ(fence.allocations(), 0);
+  EXPECT_GE(p, 0.0);
+}
+
+}  // namespace
+}  // namespace wakeline
