@@ -13,13 +13,14 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from . import fuzzy_alpha_beta, imm, solent, variable_structure
+from . import a823, fuzzy_alpha_beta, imm, solent, variable_structure
 from .base import Picture, Published, Report
 
 __all__ = [
     "Picture",
     "Published",
     "Report",
+    "a823",
     "fuzzy_alpha_beta",
     "imm",
     "load",
@@ -33,6 +34,7 @@ _STUDIES = {
     "variable-structure": variable_structure,
     "fuzzy-alpha-beta": fuzzy_alpha_beta,
     "solent": solent,
+    "a823": a823,
 }
 
 

@@ -1,0 +1,499 @@
+"""Accuracy of tracking aids: the four scenarios of IMO resolution A.823(19) with its error budget.
+
+A ship rolls in a seaway, and tracks a ship of 200 m by a radar whose errors the resolution lists
+one by one (its appendix 3). After one and after three minutes of steady tracking the 95 % errors of
+what the operator is told are compared with the resolution's table; and the same once more after
+either ship has turned by 45 degrees within a minute, counted from the end of the turn.
+
+This is a test on the scenarios of the resolution with its error budget. It is no type approval.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+import wakeline as wl
+from wakeline import WhiteAcceleration, plot
+from wakeline._progress import progress as told
+from wakeline._units import KNOT_MPS, NAUTICAL_MILE_M
+from wakeline.scenario import Segment, Truth
+
+from .base import Picture, Published, Report, Rows
+from .estimators import peaked, turn_imm
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SUMMARY = "the four scenarios of IMO A.823(19) with its error budget: what an operator is told"
+
+PERIOD_S = 2.5  # 24 turns a minute
+ROLL_PERIOD_S = 10.0
+GLINT_STD_M = 30.0  # along the hull; 1 m across
+TURN_RAD, TURN_S = np.deg2rad(45.0), 60.0
+TOLD_AFTER_S = (60.0, 180.0)
+METRICS = (
+    "relative_course_p95_deg",
+    "relative_speed_p95_kn",
+    "cpa_p95_nm",
+    "tcpa_p95_min",
+    "true_course_p95_deg",
+    "true_speed_p95_kn",
+)
+MANEUVERS = ("steady", "own_turn", "target_turn")
+DEFAULT = "mode_history"
+
+_NAN = float("nan")
+_ONE_MINUTE = {
+    1: (11, 2.8, 1.6, _NAN, _NAN, _NAN),
+    2: (7, 0.6, _NAN, _NAN, _NAN, _NAN),
+    3: (14, 2.2, 1.8, _NAN, _NAN, _NAN),
+    4: (15, 1.5, 2.0, _NAN, _NAN, _NAN),
+}
+_THREE_MINUTES = {  # of uncertain tradition: reported beside ours, not claimed
+    1: (3.0, 0.8, 0.5, 1.0, 7.4, 1.2),
+    2: (2.3, 0.3, _NAN, _NAN, 2.8, 0.8),
+    3: (4.4, 0.9, 0.7, 1.0, 3.3, 1.0),
+    4: (4.6, 0.8, 0.7, 1.0, 2.6, 1.2),
+}
+
+
+class Encounter(NamedTuple):
+    """Own ship sails north; the target is seen at a range and bearing, with a relative motion."""
+
+    own_speed_kn: float
+    range_nm: float
+    bearing_deg: float
+    relative_course_deg: float
+    relative_speed_kn: float
+
+
+ENCOUNTERS = {
+    1: Encounter(10.0, 8.0, 0.0, 180.0, 20.0),
+    2: Encounter(10.0, 1.0, 0.0, 90.0, 10.0),
+    3: Encounter(5.0, 8.0, 45.0, 225.0, 20.0),
+    4: Encounter(25.0, 8.0, 45.0, 225.0, 20.0),
+}
+
+
+# The encounters -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Passage:
+    """Both ships' truth at the scans (T, 4), the geometry of the table at the last of them."""
+
+    time_s: np.ndarray
+    own: np.ndarray
+    target: np.ndarray
+
+
+def passage(number: int, maneuver: str, after_s: float) -> Passage:
+    """An encounter that is told `after_s` after steady tracking began.
+
+    Parameters
+    ----------
+    number : int
+        Of the scenario, 1 to 4.
+    maneuver : {"steady", "own_turn", "target_turn"}
+        What goes before: nothing, or a minute straight on and a minute of turning by 45 degrees.
+    after_s : float
+    """
+    end_s = after_s if maneuver == "steady" else 60.0 + TURN_S + after_s
+    encounter = ENCOUNTERS[number]
+    own_mps = encounter.own_speed_kn * KNOT_MPS * _towards(0.0)
+    relative_mps = encounter.relative_speed_kn * KNOT_MPS * _towards(encounter.relative_course_deg)
+    apart_m = encounter.range_nm * NAUTICAL_MILE_M * _towards(encounter.bearing_deg)
+    own = _ending(np.zeros(2), own_mps, end_s, maneuver == "own_turn", after_s)
+    target = _ending(apart_m, own_mps + relative_mps, end_s, maneuver == "target_turn", after_s)
+    time_s = np.arange(end_s % PERIOD_S, end_s + 1e-9, PERIOD_S)
+    return Passage(time_s, own.state_at(time_s), target.state_at(time_s))
+
+
+def _ending(
+    place_m: np.ndarray, velocity_mps: np.ndarray, end_s: float, turns: bool, after_s: float
+) -> Truth:
+    """A ship that is there, and so under way, at the end; one that turns did so before."""
+    if not turns:
+        start = place_m - end_s * velocity_mps
+        return Truth([start[0], velocity_mps[0], start[1], velocity_mps[1]], [Segment(end_s)])
+    legs = [Segment(60.0), Segment(TURN_S, TURN_RAD / TURN_S), Segment(after_s)]
+    speed_mps = float(np.hypot(*velocity_mps))
+    course_rad = np.arctan2(velocity_mps[1], velocity_mps[0]) - TURN_RAD
+    first = speed_mps * np.array([np.cos(course_rad), np.sin(course_rad)])
+    there = Truth([0.0, first[0], 0.0, first[1]], legs).state_at(end_s)[0, ::2]
+    start = place_m - there
+    return Truth([start[0], first[0], start[1], first[1]], legs)
+
+
+def _towards(course_deg: float) -> np.ndarray:
+    return np.array([np.cos(np.deg2rad(course_deg)), np.sin(np.deg2rad(course_deg))])
+
+
+# The radar, the gyro and the log ------------------------------------------------------------------
+
+
+class Seen(NamedTuple):
+    """What the sensors say in one run: readings (T, 2), own course (T,) and speed (T,)."""
+
+    z: np.ndarray
+    gyro_rad: np.ndarray
+    log_mps: np.ndarray
+
+
+def see(ships: Passage, rng: np.random.Generator) -> Seen:
+    """One run of the error budget of the resolution's appendix 3.
+
+    The ship rolls by 10 degrees; the roll disturbs bearings most at 45 degrees off the bow. Biases
+    have either sign. The gyro's error turns every bearing.
+    """
+    time_s, own, target = ships.time_s, ships.own, ships.target
+    count = len(time_s)
+    course = np.arctan2(own[:, 3], own[:, 1])
+    heading = np.arctan2(target[:, 3], target[:, 1])
+    along, across = GLINT_STD_M * rng.standard_normal(count), rng.standard_normal(count)
+    north = target[:, 0] - own[:, 0] + along * np.cos(heading) - across * np.sin(heading)
+    east = target[:, 2] - own[:, 2] + along * np.sin(heading) + across * np.cos(heading)
+    range_m, bearing = np.hypot(north, east), np.arctan2(east, north)
+
+    roll = np.sin(4 * np.pi * time_s / ROLL_PERIOD_S + rng.uniform(0, 2 * np.pi))
+    rolled = np.deg2rad(0.22) * (1.0 + roll) * np.sin(2 * (bearing - course))
+    gyro_error = np.deg2rad(rng.choice([-0.5, 0.5]) + 0.12 * rng.standard_normal(count))
+    bearing_error_deg = (
+        0.05 * rng.standard_normal(count)
+        + rng.uniform(-0.05, 0.05, count)
+        + rng.uniform(-0.1, 0.1, count)
+        + 0.03 * rng.standard_normal(count)
+    )
+    range_error_m = 20.0 * rng.standard_normal(count) + NAUTICAL_MILE_M * rng.uniform(
+        -0.01, 0.01, count
+    )
+    speed = np.hypot(own[:, 1], own[:, 3])
+    log_error_kn = rng.choice([-0.5, 0.5]) + 0.2 / 3 * rng.standard_normal(count)
+    return Seen(
+        np.column_stack(
+            [
+                range_m + range_error_m,
+                wl.wrap_angle(bearing + rolled + gyro_error + np.deg2rad(bearing_error_deg)),
+            ]
+        ),
+        course + gyro_error,
+        speed + KNOT_MPS * log_error_kn,
+    )
+
+
+_START_SPEED_STD_MPS = 10.0
+_OWN_SCANS = 4
+_TWO_SIGMA = 1.96  # 95 % of a normal error
+# What the radar's data sheet says: the budget's random errors, put together.
+SENSOR = wl.RangeBearing(
+    range_std_m=23.0, bearing_std_rad=np.deg2rad(0.19), extent_std_m=GLINT_STD_M / np.sqrt(2.0)
+)
+
+
+def reckoned_m(seen: Seen) -> np.ndarray:
+    """(T, 2) own ship's way by gyro and log, from north 0, east 0."""
+    velocity = seen.log_mps[:, None] * np.column_stack(
+        [np.cos(seen.gyro_rad), np.sin(seen.gyro_rad)]
+    )
+    steps = 0.5 * PERIOD_S * (velocity[1:] + velocity[:-1])
+    return np.vstack([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
+
+
+# The estimators -----------------------------------------------------------------------------------
+
+
+def estimators() -> dict[str, Any]:
+    """One tuning each; ships go straight for many minutes and turn for one."""
+    noise = WhiteAcceleration(psd_m2s3=2e-5)
+    straight = wl.Ekf(wl.ConstantVelocity(noise=noise))
+    turning = wl.Ekf(wl.CoordinatedTurnRate(noise=noise, turn_rate_psd_rad2s3=1e-7))
+    radar = wl.Radar(
+        range_std_m=23.0,
+        bearing_std_rad=np.deg2rad(0.19),
+        extent_std_m=GLINT_STD_M / np.sqrt(2.0),
+        period_s=PERIOD_S,
+    )
+    return {
+        "imm3": turn_imm((0, 0.75, -0.75), noise, stay=0.99),
+        "imm_turn_rate": wl.Imm(
+            filters=[straight, turning],
+            chain=wl.ModeChain.from_sojourn_s([600.0, 60.0]),
+            initial_mode_probability=[0.9, 0.1],
+        ),
+        "mode_history": wl.ModeHistory(
+            wl.Ekf(wl.CoordinatedTurn(noise=noise)),
+            np.deg2rad([-1.5, -0.75, 0.0, 0.75, 1.5]),
+            straight_sojourn_s=1200.0,
+            turn_sojourn_s=60.0,
+            initial_mode_probability=peaked(5, 2, 0.98),
+        ),
+        "kalman_cv": wl.Ekf(wl.ConstantVelocity(noise=noise)),
+        "vessel_imm": wl.vessel_imm(radar),
+        "alpha_beta": wl.AlphaBeta(wl.TrackingIndex(accel_std_mps2=0.02)),
+        "bayesian_alpha_beta": wl.BayesianAlphaBeta(max_plots=16, parabolas=False),
+    }
+
+
+# What the operator is told ------------------------------------------------------------------------
+
+
+def errors(estimator: Any, ships: Passage, seen: list[Seen]) -> dict[str, np.ndarray]:
+    """Errors (R,) of what is told at the last scan, by metric without its quantile."""
+    told_states = np.array([_told(estimator, one) for one in seen])
+    truth = np.concatenate([ships.target[-1] - ships.own[-1], ships.target[-1]])
+    is_told, is_true = _operators_view(told_states), _operators_view(truth)
+    return {name: np.abs(off) for name, off in _off(is_told, is_true).items()}
+
+
+def _off(figures: Mapping[str, Any], wanted: Mapping[str, Any]) -> dict[str, Any]:
+    """How far figures are off, angles the short way."""
+    off = {name: figures[name] - wanted[name] for name in wanted}
+    return {
+        name: np.degrees(wl.wrap_angle(np.deg2rad(value))) if name.endswith("_deg") else value
+        for name, value in off.items()
+    }
+
+
+def _told(estimator: Any, seen: Seen) -> np.ndarray:
+    """(8,) the state relative to own ship, and over the sea, at the last scan."""
+    own_m = reckoned_m(seen)
+    start = wl.one_point(SENSOR, seen.z[0], _START_SPEED_STD_MPS)
+    done = estimator.run(
+        seen.z[1:], dt_s=PERIOD_S, sensor=SENSOR, start=start, own_position_m=own_m[1:]
+    )
+    rows = [0, 1, 2, 3] if done.mean.shape[-1] < 6 else [0, 1, 3, 4]
+    state = done.mean[-1][rows]
+    speed_mps, course = seen.log_mps[-_OWN_SCANS:].mean(), seen.gyro_rad[-_OWN_SCANS:].mean()
+    own = [own_m[-1, 0], speed_mps * np.cos(course), own_m[-1, 1], speed_mps * np.sin(course)]
+    return np.concatenate([state - own, state])
+
+
+def _operators_view(states: np.ndarray) -> dict[str, np.ndarray]:
+    """Figures of states (..., 8) relative to own ship and over the sea; the CPA has a side."""
+    pn, vn, pe, ve, _, un, _, ue = np.moveaxis(states, -1, 0)
+    speed2 = vn**2 + ve**2
+    tcpa_s = -(pn * vn + pe * ve) / speed2
+    return {
+        "relative_course_deg": np.degrees(np.arctan2(ve, vn)),
+        "relative_speed_kn": np.sqrt(speed2) / KNOT_MPS,
+        "cpa_nm": (pn * ve - pe * vn) / np.sqrt(speed2) / NAUTICAL_MILE_M,
+        "tcpa_min": tcpa_s / 60.0,
+        "true_course_deg": np.degrees(np.arctan2(ue, un)),
+        "true_speed_kn": np.hypot(un, ue) / KNOT_MPS,
+    }
+
+
+def bound(ships: Passage) -> dict[str, float]:
+    """95 % errors of relative motion of an efficient estimator that knows the ships go straight.
+
+    First order, from the random errors of the budget alone, the roll's among them; biases and own
+    ship's motion come on top.
+    """
+    apart = ships.target - ships.own
+    range_m, bearing = np.hypot(apart[:, 0], apart[:, 2]), np.arctan2(apart[:, 2], apart[:, 0])
+    course = np.arctan2(ships.own[:, 3], ships.own[:, 1])
+    rolled_deg = 0.22 / np.sqrt(2.0) * np.sin(2 * (bearing - course))
+    bearing_std = np.deg2rad(
+        np.sqrt(0.05**2 + (0.05**2 + 0.1**2) / 3 + 0.03**2 + 0.12**2 + rolled_deg**2)
+    )
+    range_std_m = np.hypot(20.0, 0.01 * NAUTICAL_MILE_M / np.sqrt(3.0))
+    information = np.diag([0.0, _START_SPEED_STD_MPS**-2, 0.0, _START_SPEED_STD_MPS**-2])
+    for k, ago_s in enumerate(ships.time_s - ships.time_s[-1]):
+        heading = np.arctan2(ships.target[k, 3], ships.target[k, 1])
+        noise = _spread(bearing[k], range_std_m, range_m[k] * bearing_std[k])
+        noise += _spread(heading, GLINT_STD_M, 1.0)
+        sees = np.array([[1.0, ago_s, 0.0, 0.0], [0.0, 0.0, 1.0, ago_s]])
+        information += sees.T @ np.linalg.solve(noise, sees)
+    covariance = np.linalg.inv(information)
+    state = np.concatenate([apart[-1], ships.target[-1]])
+    steps = 1e-3 * np.eye(4, 8)
+    up, down = _operators_view(state + steps), _operators_view(state - steps)
+    slopes = {name: off / 2e-3 for name, off in _off(up, down).items()}
+    return {
+        name: float(_TWO_SIGMA * np.sqrt(slope @ covariance @ slope))
+        for name, slope in slopes.items()
+        if not name.startswith("true")
+    }
+
+
+def _spread(direction_rad: float, along_m: float, across_m: float) -> np.ndarray:
+    """(2, 2) covariance of errors along a direction and across it."""
+    u = np.array([np.cos(direction_rad), np.sin(direction_rad)])
+    w = np.array([-u[1], u[0]])
+    return along_m**2 * np.outer(u, u) + across_m**2 * np.outer(w, w)
+
+
+def run(
+    runs: int = 500,
+    seed: int = 0,
+    *,
+    full: bool = False,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Report:
+    """Run the study.
+
+    Parameters
+    ----------
+    runs, seed : int
+        Of the Monte Carlo runs.
+    full : bool
+        Nothing more to do here.
+    threads : int, optional
+        Default as many as there are processors.
+    progress : bool
+        Whether to draw a bar where stderr is a terminal.
+
+    Returns
+    -------
+    Report
+        Scenarios ``scenario1_1min`` to ``scenario4_3min``, and with ``_own_turn`` or
+        ``_target_turn`` before the minutes where a ship has turned before.
+    """
+    jobs: dict[tuple[str, str], Callable[[], dict[str, np.ndarray]]] = {}
+    for maneuver in MANEUVERS:
+        for number in ENCOUNTERS:
+            for after_s in TOLD_AFTER_S:
+                ships = passage(number, maneuver, after_s)
+                key = [seed, number, MANEUVERS.index(maneuver), int(after_s)]
+                seen = [see(ships, np.random.default_rng([*key, r])) for r in range(runs)]
+                for name, estimator in estimators().items():
+                    case = case_name(number, maneuver, after_s)
+                    jobs[case, name] = partial(errors, estimator, ships, seen)
+    with ThreadPoolExecutor(threads) as pool:
+        found = pool.map(lambda job: job(), jobs.values())
+        results = told(found, len(jobs), "estimators") if progress else found
+        done = dict(zip(jobs, results, strict=True))
+    rows = [
+        {"scenario": case, "estimator": name}
+        | {
+            metric: float(np.percentile(values, 95))
+            for metric, values in zip(METRICS, found.values(), strict=True)
+        }
+        for (case, name), found in done.items()
+    ]
+    for number in ENCOUNTERS:
+        for after_s in TOLD_AFTER_S:
+            least = bound(passage(number, "steady", after_s))
+            figures = [least.get(metric.replace("_p95", "")) for metric in METRICS]
+            case = case_name(number, "steady", after_s)
+            rows.append(
+                {"scenario": case, "estimator": "bound"} | dict(zip(METRICS, figures, strict=True))
+            )
+    return Report(
+        name="a823",
+        seed=seed,
+        runs=runs,
+        rows=rows,
+        result=done,
+        pictures=_pictures(rows),
+        published={"standard": STANDARD},
+        notes=(_share_note(rows),),
+    )
+
+
+def case_name(number: int, maneuver: str, after_s: float) -> str:
+    """Such as ``scenario1_1min`` or ``scenario1_own_turn_3min``."""
+    middle = "" if maneuver == "steady" else f"{maneuver}_"
+    return f"scenario{number}_{middle}{after_s / 60:.0f}min"
+
+
+STANDARD = Published(
+    METRICS,
+    {
+        (case_name(number, "steady", after_s), DEFAULT): figures
+        for after_s, table in zip(TOLD_AFTER_S, (_ONE_MINUTE, _THREE_MINUTES), strict=True)
+        for number, figures in table.items()
+    },
+)
+
+
+def shares(rows: Rows, name: str, after_s: float) -> dict[str, float]:
+    """Largest share of the standard's figures that an estimator uses up, by scenario."""
+    found = {}
+    for number in ENCOUNTERS:
+        case = case_name(number, "steady", after_s)
+        row = next(r for r in rows if (r["scenario"], r["estimator"]) == (case, name))
+        limits = {metric: STANDARD.get(case, DEFAULT, metric) for metric in METRICS}
+        found[case] = max(row[metric] / limit for metric, limit in limits.items() if limit)
+    return found
+
+
+def _share_note(rows: Rows) -> str:
+    lines = [
+        "Largest error over the standard's figure for it, steady tracking; the figures after three",
+        "minutes are of uncertain tradition:",
+    ]
+    for name in estimators():
+        parts = [
+            f"{minutes} "
+            + ", ".join(f"{share:.0%}" for share in shares(rows, name, after_s).values())
+            for minutes, after_s in zip(("one minute", "three minutes"), TOLD_AFTER_S, strict=True)
+        ]
+        lines.append(f"  {name}: {'; '.join(parts)}")
+    return "\n".join(lines)
+
+
+def _pictures(rows: Rows) -> tuple[Picture, ...]:
+    return (
+        Picture(
+            "a823-geometry",
+            "The four encounters as they are judged: three minutes before, and where it leads",
+            tuple(partial(_draw_encounter, number=number) for number in ENCOUNTERS),
+            size_in=(9.0, 8.4),
+            columns=2,
+            shared=False,
+        ),
+        Picture(
+            "a823-shares",
+            "95 % errors over the standard's figures, the largest of each scenario",
+            tuple(partial(_draw_shares, rows=rows, after_s=after_s) for after_s in TOLD_AFTER_S),
+            size_in=(11.0, 4.2),
+            columns=2,
+            shared=False,
+        ),
+    )
+
+
+def _draw_encounter(ax: Axes, number: int) -> Axes:
+    ships = passage(number, "steady", max(TOLD_AFTER_S))
+    encounter = ENCOUNTERS[number]
+    for states, color, name in (
+        (ships.own, plot.PALETTE[0], "own ship"),
+        (ships.target, plot.PALETTE[1], "target"),
+    ):
+        north_nm, east_nm = states[:, 0] / NAUTICAL_MILE_M, states[:, 2] / NAUTICAL_MILE_M
+        ax.plot(east_nm, north_nm, color=color, linewidth=1.8, label=name)
+        ax.plot(east_nm[-1], north_nm[-1], color=color, marker="o", markersize=5)
+    apart = ships.target[-1] - ships.own[-1]
+    ahead_s = np.array([0.0, 24.0 * 60.0])
+    relative = (apart[[2, 0]] + ahead_s[:, None] * apart[[3, 1]]) / NAUTICAL_MILE_M
+    ax.plot(*relative.T, color=plot.MUTED, linewidth=1.0, linestyle="--", label="relative")
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set(xlabel="east (NM)", ylabel="north (NM)")
+    words = f"scenario {number}, own ship {encounter.own_speed_kn:.0f} kn"
+    ax.text(0.98, 0.03, words, transform=ax.transAxes, ha="right", fontsize=plot.TEXT_PT)
+    plot.dress(ax)
+    return plot.name_lines(ax) if number == 1 else ax
+
+
+def _draw_shares(ax: Axes, rows: Rows, after_s: float) -> Axes:
+    names = list(estimators())
+    values: Mapping[str, list[float]] = {
+        f"scenario {number}": [
+            shares(rows, name, after_s)[case_name(number, "steady", after_s)] for name in names
+        ]
+        for number in ENCOUNTERS
+    }
+    minutes = f"{after_s / 60:.0f} min"
+    ax = plot.ranking_panel(
+        ax, names, values, xlabel=f"share of the figure after {minutes}", log=True
+    )
+    ax.axvline(1.0, color=plot.INK, linewidth=0.8)
+    return ax
