@@ -192,6 +192,7 @@ Returns
       "Start over [x, vx, y, vy] from two plots dt_s apart.");
 
   define_alpha_beta(m);
+  define_smoothers(m);
 }
 
 }  // namespace wakeline::python

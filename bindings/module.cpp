@@ -12,6 +12,7 @@ PYBIND11_MODULE(_engine, m) {
   wakeline::python::define_multimodel(m);
   wakeline::python::define_association(m);
   wakeline::python::define_track(m);
+  wakeline::python::define_navigation(m);
   wakeline::python::define_eval(m);
   wakeline::python::define_video(m);
 }

@@ -1,6 +1,18 @@
 """The C++ engine of Wakeline."""
 
-from . import association, core, eval, filter, gating, measurement, motion, multimodel, track, video
+from . import (
+    association,
+    core,
+    eval,
+    filter,
+    gating,
+    measurement,
+    motion,
+    multimodel,
+    navigation,
+    track,
+    video,
+)
 
 __all__ = [
     "association",
@@ -11,6 +23,7 @@ __all__ = [
     "measurement",
     "motion",
     "multimodel",
+    "navigation",
     "track",
     "video",
 ]

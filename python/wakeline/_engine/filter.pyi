@@ -22,22 +22,32 @@ from .motion import (
 )
 
 __all__ = [
+    "AdaptiveAlphaBeta",
+    "AdaptiveExponentialSmoother",
     "AlphaBeta",
     "AlphaBetaGamma",
+    "AlphaBetaSmoother",
     "BenedictBordner",
     "ConstantGains",
     "CriticallyDamped",
     "Ekf",
+    "ExponentialSmoother",
     "Filter",
     "GrowingMemory",
     "Kalman",
+    "PrintedAdaptiveAlphaBeta",
+    "PrintedAdaptiveExponential",
     "RangeDependent",
+    "RecentMemory",
     "RunResult",
     "SquareRootUkf",
+    "ThreePointSmoother",
     "TrackingIndex",
     "Ukf",
+    "WindowBank",
     "one_point",
     "stable_gains",
+    "three_point_rate",
     "two_point",
 ]
 
@@ -637,6 +647,500 @@ class AlphaBetaGamma:
     @property
     def started(self) -> bool: ...
 
+class ExponentialSmoother:
+    """
+    Exponential smoothing: x^ += alpha (x - x^), whatever the time step; (21).
+
+    Its forecast is its value.
+
+    Parameters
+    ----------
+    alpha : float
+        Above 0 and at most 1.
+    wrapped : bool
+        Readings are angles, radians: values are in -pi .. pi.
+    """
+    def __init__(self, alpha: float = 0.5, *, wrapped: bool = False) -> None: ...
+    def forecast(self, ahead_s: float) -> float:
+        """
+        The value `ahead_s` after the newest reading.
+        """
+    def run(
+        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Smooths series of readings, each from a fresh start.
+
+        Parameters
+        ----------
+        dt_s : float or (T,) array
+            Steps to the readings; the first one means nothing.
+        reading : (..., T) array
+            NaN where one is missing: time goes on.
+        ahead_s : float
+            How far to foretell.
+
+        Returns
+        -------
+        (value, rate, forecast)
+            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def update(self, dt_s: float, reading: float) -> None:
+        """
+        Takes a reading, `dt_s` after the one before; the step of the first means nothing.
+        """
+    @property
+    def alpha(self) -> float:
+        """
+        the gain last used
+        """
+    @property
+    def rate(self) -> float:
+        """
+        of the value, per second
+        """
+    @property
+    def value(self) -> float: ...
+
+class AdaptiveExponentialSmoother:
+    """
+    Exponential smoothing whose alpha is the part of a jump that the line through the last five readings follows; (23).
+
+    Parameters
+    ----------
+    wrapped : bool
+        Readings are angles, radians: values are in -pi .. pi.
+    """
+    def __init__(self, *, wrapped: bool = False) -> None: ...
+    def forecast(self, ahead_s: float) -> float:
+        """
+        The value `ahead_s` after the newest reading.
+        """
+    def run(
+        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Smooths series of readings, each from a fresh start.
+
+        Parameters
+        ----------
+        dt_s : float or (T,) array
+            Steps to the readings; the first one means nothing.
+        reading : (..., T) array
+            NaN where one is missing: time goes on.
+        ahead_s : float
+            How far to foretell.
+
+        Returns
+        -------
+        (value, rate, forecast)
+            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def update(self, dt_s: float, reading: float) -> None:
+        """
+        Takes a reading, `dt_s` after the one before; the step of the first means nothing.
+        """
+    @property
+    def alpha(self) -> float:
+        """
+        the gain last used
+        """
+    @property
+    def rate(self) -> float:
+        """
+        of the value, per second
+        """
+    @property
+    def value(self) -> float: ...
+
+class PrintedAdaptiveExponential:
+    """
+    (23) by the letter: alpha over the smoother's own last steps, which never adapts. Kept for comparison.
+
+    Parameters
+    ----------
+    first_alpha : float
+        Above 0 and at most 1; it stays.
+    wrapped : bool
+        Readings are angles, radians: values are in -pi .. pi.
+    """
+    def __init__(self, first_alpha: float = 0.5, *, wrapped: bool = False) -> None: ...
+    def forecast(self, ahead_s: float) -> float:
+        """
+        The value `ahead_s` after the newest reading.
+        """
+    def run(
+        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Smooths series of readings, each from a fresh start.
+
+        Parameters
+        ----------
+        dt_s : float or (T,) array
+            Steps to the readings; the first one means nothing.
+        reading : (..., T) array
+            NaN where one is missing: time goes on.
+        ahead_s : float
+            How far to foretell.
+
+        Returns
+        -------
+        (value, rate, forecast)
+            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def update(self, dt_s: float, reading: float) -> None:
+        """
+        Takes a reading, `dt_s` after the one before; the step of the first means nothing.
+        """
+    @property
+    def alpha(self) -> float:
+        """
+        the gain last used
+        """
+    @property
+    def rate(self) -> float:
+        """
+        of the value, per second
+        """
+    @property
+    def value(self) -> float: ...
+
+class ThreePointSmoother:
+    """
+    Each reading smoothed by its neighbours, at uneven steps; (22), (24), (25).
+
+    The value and the rate are those at the reading before the newest.
+
+    Parameters
+    ----------
+    weight_before_s, weight_after_s : float
+        p: at this step a neighbour counts as much as the reading itself.
+    adaptive : bool
+        Weights by least squares over five readings instead; (24).
+    parabola : bool
+        The rate is exact for a parabola at any steps, else by Simpson's weights; (25).
+    wrapped : bool
+        Readings are angles, radians: values are in -pi .. pi.
+
+    Raises
+    ------
+    ValueError
+        When a weight is negative.
+    """
+    def __init__(
+        self,
+        *,
+        weight_before_s: float = 1.0,
+        weight_after_s: float = 1.0,
+        adaptive: bool = False,
+        parabola: bool = True,
+        wrapped: bool = False,
+    ) -> None: ...
+    def forecast(self, ahead_s: float) -> float:
+        """
+        The value `ahead_s` after the newest reading.
+        """
+    def run(
+        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Smooths series of readings, each from a fresh start.
+
+        Parameters
+        ----------
+        dt_s : float or (T,) array
+            Steps to the readings; the first one means nothing.
+        reading : (..., T) array
+            NaN where one is missing: time goes on.
+        ahead_s : float
+            How far to foretell.
+
+        Returns
+        -------
+        (value, rate, forecast)
+            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def update(self, dt_s: float, reading: float) -> None:
+        """
+        Takes a reading, `dt_s` after the one before; the step of the first means nothing.
+        """
+    @property
+    def delay_s(self) -> float:
+        """
+        from the time of the value to the newest reading
+        """
+    @property
+    def rate(self) -> float:
+        """
+        of the value, per second
+        """
+    @property
+    def value(self) -> float: ...
+
+class RecentMemory:
+    """
+    Gains that draw the least-squares line through all readings with weights 1, 2, 3, ...; (29).
+
+    Parameters
+    ----------
+    max_plots : int
+        The gains stay those of so many; 0 for all.
+    """
+    def __init__(self, *, max_plots: int = 0) -> None: ...
+    def gains(self, *, reading: int = 1) -> NDArray[np.float64]:
+        """
+        [alpha, beta] for the reading-th reading.
+        """
+    @property
+    def max_plots(self) -> int: ...
+
+class AlphaBetaSmoother:
+    """
+    One quantity by an alpha-beta filter whose gains follow a schedule; (26)-(30).
+
+    Parameters
+    ----------
+    gains : GrowingMemory, RecentMemory, RangeDependent, ConstantGains, BenedictBordner, CriticallyDamped or TrackingIndex
+        (27) is `GrowingMemory()`, (28) `GrowingMemory(plots_before=1)`, (29) `RecentMemory()`, (30) `RangeDependent()`.
+    wrapped : bool
+        Readings are angles, radians: values are in -pi .. pi.
+    reading_std : float
+        Error of a reading in its own unit, for a `TrackingIndex`.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense or gains are not stable.
+    """
+    def __init__(
+        self,
+        gains: ConstantGains
+        | GrowingMemory
+        | BenedictBordner
+        | CriticallyDamped
+        | TrackingIndex
+        | RangeDependent
+        | RecentMemory = ...,
+        *,
+        wrapped: bool = False,
+        reading_std: float = 1.0,
+    ) -> None: ...
+    def forecast(self, ahead_s: float) -> float:
+        """
+        The value `ahead_s` after the newest reading.
+        """
+    def run(
+        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0, range_m: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Smooths series of readings, each from a fresh start.
+
+        Parameters
+        ----------
+        dt_s : float or (T,) array
+            Steps to the readings; the first one means nothing.
+        reading : (..., T) array
+            NaN where one is missing: time goes on.
+        ahead_s : float
+            How far to foretell.
+
+        Returns
+        -------
+        (value, rate, forecast)
+            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def update(self, dt_s: float, reading: float, *, range_m: float = 0.0) -> None:
+        """
+        Takes a reading, `dt_s` after the one before, of an object at a range.
+        """
+    @property
+    def rate(self) -> float:
+        """
+        of the value, per second
+        """
+    @property
+    def value(self) -> float: ...
+
+class AdaptiveAlphaBeta:
+    """
+    The adaptive alpha-beta filter, in two passes over the last five readings; (33).
+
+    The first pass has the gains of a growing memory, the second those that ``alpha = sum((x^ - x~) e) / sum(e²)`` and
+    ``beta = sum(dv e/t) / sum((e/t)²)`` make of it.
+
+    Parameters
+    ----------
+    wrapped : bool
+        Readings are angles, radians: values are in -pi .. pi.
+    """
+    def __init__(self, *, wrapped: bool = False) -> None: ...
+    def forecast(self, ahead_s: float) -> float:
+        """
+        The value `ahead_s` after the newest reading.
+        """
+    def run(
+        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Smooths series of readings, each from a fresh start.
+
+        Parameters
+        ----------
+        dt_s : float or (T,) array
+            Steps to the readings; the first one means nothing.
+        reading : (..., T) array
+            NaN where one is missing: time goes on.
+        ahead_s : float
+            How far to foretell.
+
+        Returns
+        -------
+        (value, rate, forecast)
+            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def update(self, dt_s: float, reading: float) -> None:
+        """
+        Takes a reading, `dt_s` after the one before; the step of the first means nothing.
+        """
+    @property
+    def alpha(self) -> float:
+        """
+        the gain last used
+        """
+    @property
+    def beta(self) -> float:
+        """
+        the gain of the rate last used
+        """
+    @property
+    def rate(self) -> float:
+        """
+        of the value, per second
+        """
+    @property
+    def value(self) -> float: ...
+
+class PrintedAdaptiveAlphaBeta:
+    """
+    (33) by the letter: its gains are means of those it has just used, and never adapt. Kept for comparison.
+
+    Parameters
+    ----------
+    wrapped : bool
+        Readings are angles, radians: values are in -pi .. pi.
+    """
+    def __init__(self, *, wrapped: bool = False) -> None: ...
+    def forecast(self, ahead_s: float) -> float:
+        """
+        The value `ahead_s` after the newest reading.
+        """
+    def run(
+        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Smooths series of readings, each from a fresh start.
+
+        Parameters
+        ----------
+        dt_s : float or (T,) array
+            Steps to the readings; the first one means nothing.
+        reading : (..., T) array
+            NaN where one is missing: time goes on.
+        ahead_s : float
+            How far to foretell.
+
+        Returns
+        -------
+        (value, rate, forecast)
+            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def update(self, dt_s: float, reading: float) -> None:
+        """
+        Takes a reading, `dt_s` after the one before; the step of the first means nothing.
+        """
+    @property
+    def alpha(self) -> float:
+        """
+        the gain last used
+        """
+    @property
+    def beta(self) -> float:
+        """
+        the gain of the rate last used
+        """
+    @property
+    def rate(self) -> float:
+        """
+        of the value, per second
+        """
+    @property
+    def value(self) -> float: ...
+
+class WindowBank:
+    """
+    The least-squares lines through the last 2, 3, ... readings, of which that one speaks that has foretold the readings best.
+
+    Short windows follow a maneuver, long ones rest in between; nothing has to be tuned to the noise or to the maneuvers.
+
+    Parameters
+    ----------
+    max_readings : int
+        Of the longest window, 2 to 32.
+    memory : float
+        What the energy of a window's innovations keeps of itself at each reading.
+    wrapped : bool
+        Readings are angles, radians: values are in -pi .. pi.
+
+    Raises
+    ------
+    ValueError
+        When a setting makes no sense.
+    """
+    def __init__(
+        self, *, max_readings: int = 32, memory: float = 0.92, wrapped: bool = False
+    ) -> None: ...
+    def forecast(self, ahead_s: float) -> float:
+        """
+        The value `ahead_s` after the newest reading.
+        """
+    def run(
+        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Smooths series of readings, each from a fresh start.
+
+        Parameters
+        ----------
+        dt_s : float or (T,) array
+            Steps to the readings; the first one means nothing.
+        reading : (..., T) array
+            NaN where one is missing: time goes on.
+        ahead_s : float
+            How far to foretell.
+
+        Returns
+        -------
+        (value, rate, forecast)
+            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def update(self, dt_s: float, reading: float) -> None:
+        """
+        Takes a reading, `dt_s` after the one before; the step of the first means nothing.
+        """
+    @property
+    def rate(self) -> float:
+        """
+        of the value, per second
+        """
+    @property
+    def value(self) -> float: ...
+    @property
+    def window(self) -> int:
+        """
+        readings of the window that speaks
+        """
+
 def one_point(
     sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
     z: ArrayLike,
@@ -649,6 +1153,28 @@ def one_point(
 def stable_gains(alpha: float, beta: float, gamma: float | None = None) -> bool:
     """
     Whether a filter of these gains forgets its errors: alpha > 0, beta > 0, 2 alpha + beta < 4 and, with gamma, 0 < gamma < 4 alpha beta / (2 - alpha).
+    """
+
+def three_point_rate(
+    before: ArrayLike,
+    at: ArrayLike,
+    after: ArrayLike,
+    before_s: ArrayLike,
+    after_s: ArrayLike,
+    *,
+    parabola: bool = True,
+) -> NDArray[np.float64]:
+    """
+    Derivative at the middle of three readings at uneven steps; (25).
+
+    Parameters
+    ----------
+    before, at, after : array_like
+        The readings.
+    before_s, after_s : array_like
+        The steps between them, positive.
+    parabola : bool
+        b + f - c, exact for a parabola, else 2/3 c + (b + f) / 6, of less noise; b, f and c the slopes before, after and over all.
     """
 
 def two_point(

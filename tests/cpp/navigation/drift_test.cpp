@@ -126,12 +126,12 @@ TEST(DriftWindow, FindsACurrentAndKnowsHowWell) {
   EXPECT_NEAR(twenty.nees, 2.0, 0.13);
 }
 
-TEST(DriftWindow, OfErrorsOf4MetresAnAxis) {
-  const Outcome six = many_windows(6, 4, 4000), twenty = many_windows(20, 4, 4000);
-  RecordProperty("rms_kn_6", std::to_string(six.rms_kn));
-  RecordProperty("rms_kn_20", std::to_string(twenty.rms_kn));
-  EXPECT_LT(six.rms_kn, 0.11);
-  EXPECT_LT(twenty.rms_kn, 0.031);
+TEST(DriftWindow, OfErrorsOf4MetresAnAxisNeedsOneFixMore) {
+  const Outcome five = many_windows(5 + 1, 4, 8000), twenty = many_windows(20 + 1, 4, 8000);
+  RecordProperty("rms_kn_6", std::to_string(five.rms_kn));
+  RecordProperty("rms_kn_21", std::to_string(twenty.rms_kn));
+  EXPECT_LT(five.rms_kn, 0.11);
+  EXPECT_LT(twenty.rms_kn, 0.030);
 }
 
 TEST(DriftWindow, KnowsNothingBeforeTwoTimes) {

@@ -14,7 +14,7 @@ namespace wakeline {
 /// What a bank of windows remembers.
 struct WindowBankSettings {
   int max_readings = 32;  ///< of the longest window
-  double memory = 0.9;    ///< what an energy keeps of itself at each reading
+  double memory = 0.92;   ///< what an energy keeps of itself at each reading
 };
 
 /// The least-squares lines through the last 2, 3, ... readings, of which that one speaks that has

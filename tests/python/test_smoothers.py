@@ -1,0 +1,189 @@
+"""Smoothers of one quantity."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import wakeline as wl
+from wakeline import filter as wf
+
+KINDS = {
+    "exponential": lambda **k: wf.ExponentialSmoother(0.4, **k),
+    "adaptive exponential": wf.AdaptiveExponentialSmoother,
+    "printed exponential": wf.PrintedAdaptiveExponential,
+    "three points": wf.ThreePointSmoother,
+    "adaptive three points": lambda **k: wf.ThreePointSmoother(adaptive=True, parabola=False, **k),
+    "(27)": lambda **k: wf.AlphaBetaSmoother(wf.GrowingMemory(max_plots=5), **k),
+    "(28)": lambda **k: wf.AlphaBetaSmoother(wf.GrowingMemory(plots_before=1, max_plots=5), **k),
+    "(29)": lambda **k: wf.AlphaBetaSmoother(wf.RecentMemory(max_plots=5), **k),
+    "(30)": lambda **k: wf.AlphaBetaSmoother(wf.RangeDependent(), **k),
+    "constant": lambda **k: wf.AlphaBetaSmoother(wf.ConstantGains(0.5, 0.2), **k),
+    "tracking index": lambda **k: wf.AlphaBetaSmoother(
+        wf.TrackingIndex(0.05), reading_std=0.1, **k
+    ),
+    "(33)": wf.AdaptiveAlphaBeta,
+    "(33) as printed": wf.PrintedAdaptiveAlphaBeta,
+    "bank": wf.WindowBank,
+}
+every = pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS.keys())
+
+
+def wrapped(angle_rad):
+    return (np.asarray(angle_rad) + np.pi) % (2 * np.pi) - np.pi
+
+
+@every
+@given(st.floats(-10, 10), st.floats(-0.1, 0.1), st.integers(0, 1000))
+def test_angles_go_through_north(kind, start, rate, seed):
+    """Of angles a smoother says what it says of the same angles unwrapped."""
+    rng = np.random.default_rng(seed)
+    dt_s = rng.uniform(0.5, 3.0, 60)
+    course = start + rate * np.cumsum(dt_s) + 0.02 * rng.standard_normal(60)
+    on_line = kind().run(dt_s, course, ahead_s=4.0)
+    on_angles = kind(wrapped=True).run(dt_s, wrapped(course), ahead_s=4.0)
+    assert np.abs(on_angles[0]).max() <= np.pi
+    assert np.abs(wrapped(on_angles[0] - on_line[0])).max() < 1e-7
+    assert np.abs(on_angles[1] - on_line[1]).max() < 1e-7
+    assert np.abs(wrapped(on_angles[2] - on_line[2])).max() < 1e-6
+
+
+@every
+def test_359_to_1_is_2_degrees(kind):
+    smoother = kind(wrapped=True)
+    for course_deg in (357.0, 359.0, 1.0, 3.0, 5.0):
+        smoother.update(1.0, np.radians(course_deg))
+        assert abs(wrapped(smoother.value - np.radians(course_deg))) < np.radians(7)
+
+
+@every
+def test_step_by_step_is_the_run_and_arrays_are_runs(kind):
+    rng = np.random.default_rng(1)
+    readings = rng.standard_normal((2, 3, 40))
+    value, rate, forecast = kind().run(2.0, readings, ahead_s=6.0)
+    assert value.shape == rate.shape == forecast.shape == (2, 3, 40)
+    smoother = kind()
+    for k in range(40):
+        smoother.update(2.0, readings[1, 2, k])
+        assert smoother.value == value[1, 2, k]
+        assert smoother.rate == rate[1, 2, k]
+        assert smoother.forecast(6.0) == forecast[1, 2, k]
+
+
+@every
+def test_missing_readings_let_time_go_on(kind):
+    readings = np.array([np.nan, np.nan, 3.0, 3.0, np.nan, 3.0, 3.0, np.nan, np.nan])
+    value, rate, forecast = kind().run(1.0, readings)
+    assert np.isnan(value[:2]).all()
+    assert value[2:] == pytest.approx(3.0)
+    assert rate[2:] == pytest.approx(0.0, abs=1e-12)
+    assert forecast[2:] == pytest.approx(3.0)
+
+
+@every
+def test_bad_readings_are_refused(kind):
+    with pytest.raises(wl.FilterError, match="not finite"):
+        kind().run(1.0, [1.0, np.inf])
+    with pytest.raises(ValueError, match="dt_s must be finite and not negative, got -1"):
+        kind().run([0.0, -1.0], [1.0, 2.0])
+    with pytest.raises(ValueError, match=r"dt_s must have shape \(\) or \(2,\), got \(3,\)"):
+        kind().run([0.0, 1.0, 1.0], [1.0, 2.0])
+    smoother = kind()
+    smoother.update(0.0, 1.0)
+    with pytest.raises(wl.FilterError, match="negative time step"):
+        smoother.update(-1.0, 2.0)
+    assert smoother.value == 1.0
+
+
+@given(st.floats(-5, 5), st.floats(-5, 5), st.floats(-5, 5), st.floats(0.1, 10), st.floats(0.1, 10))
+def test_the_derivative_is_exact_for_a_parabola(a, b, c, before_s, after_s):
+    def at(t):
+        return a * t * t + b * t + c
+
+    rate = wf.three_point_rate(at(-before_s), at(0.0), at(after_s), before_s, after_s)
+    assert rate == pytest.approx(b, abs=1e-8 * (1 + abs(b) + abs(a) * 10) + 1e-8)
+    even = wf.three_point_rate(at(-2.0), at(0.0), at(2.0), 2.0, 2.0, parabola=False)
+    assert even == pytest.approx(b, abs=1e-9)
+
+
+def test_as_printed_the_gains_never_adapt():
+    """(33) on its own output gives back means of its gains, in a maneuver as at rest."""
+    rng = np.random.default_rng(2)
+    printed, two_passes = wf.PrintedAdaptiveAlphaBeta(), wf.AdaptiveAlphaBeta()
+    alphas, adaptive = [], []
+    for k in range(300):
+        reading = rng.standard_normal() + (5.0 * (k - 200) ** 2 if k > 200 else 0.0)
+        printed.update(1.0, reading)
+        two_passes.update(1.0, reading)
+        alphas.append(printed.alpha)
+        adaptive.append(two_passes.alpha)
+    assert np.ptp(alphas[100:]) < 1e-6
+    assert np.ptp(adaptive[100:]) > 0.2
+    exponential = wf.PrintedAdaptiveExponential(0.3)
+    exponential.run(1.0, rng.standard_normal(50))
+    for reading in (1.0, 2.0, 100.0):
+        exponential.update(1.0, reading)
+        assert exponential.alpha == pytest.approx(0.3)
+
+
+def test_the_schedules_are_those_of_the_paper():
+    assert wf.RecentMemory().gains(reading=2) == pytest.approx([1.0, 1.0])
+    assert wf.RecentMemory().gains(reading=9) == pytest.approx([54 / 110, 12 / 110])
+    with pytest.raises(ValueError, match="max_plots"):
+        wf.AlphaBetaSmoother(wf.RecentMemory(max_plots=1))
+    with pytest.raises(ValueError, match="reading_std"):
+        wf.AlphaBetaSmoother(reading_std=0.0)
+    far = wf.AlphaBetaSmoother(wf.RangeDependent()).run(1.0, [0.0, 1.0], range_m=40e3)
+    assert far[0][1] == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize("settings", [{"max_readings": 1}, {"max_readings": 33}, {"memory": -0.1}])
+def test_a_bank_that_makes_no_sense_is_refused(settings):
+    with pytest.raises(ValueError, match=next(iter(settings))):
+        wf.WindowBank(**settings)
+
+
+# A voyage of 40 minutes: speeds and courses are ordered, the ship follows.
+
+DEG = np.pi / 180
+
+
+def voyage(dt_s, seed):
+    """True and read speed (kn) and course (rad) each dt_s."""
+    fine_s = 0.1
+    time_s = np.arange(0.0, 2400.0 + fine_s / 2, fine_s)
+    speed_order = np.select([time_s < 400, time_s < 900, time_s < 1300], [12, 6, 0.5], 10.0)
+    course_order = np.select(
+        [time_s < 200, time_s < 700, time_s < 1500, time_s < 2000], [330, 420, 300, 380], 250.0
+    )
+    speed, course, rate = np.empty(time_s.size), np.empty(time_s.size), 0.0
+    speed[0], course[0] = 12.0, 330.0
+    for k in range(1, time_s.size):
+        speed[k] = speed[k - 1] + fine_s / 60 * (speed_order[k] - speed[k - 1])
+        wanted = np.clip((course_order[k] - course[k - 1]) / 20, -0.4, 0.4)
+        rate += fine_s / 10 * (wanted - rate)
+        course[k] = course[k - 1] + fine_s * rate
+    each = round(dt_s / fine_s)
+    speed, course = speed[::each], course[::each] * DEG
+    rng = np.random.default_rng(seed)
+    return (
+        speed,
+        course,
+        speed + 0.1 * rng.standard_normal(speed.size),
+        course + 0.3 * DEG * rng.standard_normal(speed.size),
+    )
+
+
+@pytest.mark.parametrize(
+    ("dt_s", "speed_kn", "course_deg"), [(1.0, 0.10, 0.30), (3.0, 0.22, 0.85), (10.0, 0.80, 4.2)]
+)
+def test_a_bank_foretells_a_voyage_four_steps_ahead(dt_s, speed_kn, course_deg):
+    speed_error, course_error = [], []
+    for seed in range(6):
+        speed, course, log, gyro = voyage(dt_s, seed)
+        forecast = wf.WindowBank().run(dt_s, log, ahead_s=4 * dt_s)[2]
+        speed_error.append((forecast[:-4] - speed[4:]) ** 2)
+        forecast = wf.WindowBank(wrapped=True).run(dt_s, wrapped(gyro), ahead_s=4 * dt_s)[2]
+        course_error.append(wrapped(forecast[:-4] - course[4:]) ** 2)
+    assert np.sqrt(np.mean(speed_error)) < speed_kn
+    assert np.sqrt(np.mean(course_error)) < course_deg * DEG
