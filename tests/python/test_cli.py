@@ -426,7 +426,7 @@ def test_an_output_folder_that_is_a_file(plots_csv, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "wanted"),
     [
-        (["track"], "needs a file of plots"),
+        (["track"], "needs a recording"),
         (["sail"], "invalid choice: 'sail'"),
         ([], "COMMAND"),
         (["score", "a.csv", "b.csv"], "--scans"),

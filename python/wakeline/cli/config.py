@@ -17,6 +17,8 @@ from typing import Any
 
 import wakeline as wl
 
+from .danger import DangerLimits
+
 if sys.version_info >= (3, 11):
     import tomllib
 else:
@@ -86,13 +88,27 @@ _MODELS = {
     "turning_sojourn_s": "s, mean time for which it turns",
 }
 
-KEYS = {"radar": _RADAR, "tracker": _TRACKER, "models": _MODELS}
+_DANGER = {
+    "cpa_limit_m": "m, closer than this a track is dangerous; half a nautical mile",
+    "tcpa_limit_s": "s, when it comes so close within this time",
+    "alarm_probability": "0..1, with this probability or more, an alarm begins,",
+    "clear_probability": "0..1, and it ends below this one",
+    "own_velocity_std_mps": "m/s per axis, error of own ship's velocity",
+}
 
-_CLASSES = {"radar": wl.Radar, "tracker": wl.TrackerConfig, "models": wl.VesselModels}
+KEYS = {"radar": _RADAR, "tracker": _TRACKER, "models": _MODELS, "danger": _DANGER}
+
+_CLASSES = {
+    "radar": wl.Radar,
+    "tracker": wl.TrackerConfig,
+    "models": wl.VesselModels,
+    "danger": DangerLimits,
+}
 _ABOUT = {
     "radar": "What a console knows of its radar, as its plots come.",
     "tracker": "How tracks live; one set of defaults for all radars.",
     "models": "How vessels move; the noise of the course matters more the faster they are.",
+    "danger": "When a track is dangerous to own ship, whose motion --own tells.",
 }
 _MANY = 2**31
 _WHAT = {float: "a number", int: "a whole number", str: "a text"}
@@ -104,13 +120,14 @@ class Settings:
 
     Attributes
     ----------
-    radar, tracker, models : dict of str to float, int or str
+    radar, tracker, models, danger : dict of str to float, int or str
         Complete; the keys are those of `KEYS`.
     """
 
     radar: dict[str, Value]
     tracker: dict[str, Value]
     models: dict[str, Value]
+    danger: dict[str, Value]
 
     @classmethod
     def default(cls) -> Settings:
@@ -131,6 +148,11 @@ class Settings:
             _engine("tracker", self.tracker),
             _engine("models", self.models),
         )
+
+    @property
+    def danger_limits(self) -> DangerLimits:
+        """When a track is dangerous."""
+        return _engine("danger", self.danger)
 
     def toml(self) -> str:
         """Every setting with a line that explains it; reading it gives the same settings."""

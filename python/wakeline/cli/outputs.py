@@ -6,8 +6,11 @@ import csv
 import json
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from wakeline import __version__, plot
 from wakeline.recording import Tracks, replacing, write_tracks
@@ -18,7 +21,7 @@ HOW_TO_GET_PICTURES = "no pictures without matplotlib: pip install 'wakeline[plo
 
 
 def write_results(folder: Path, parts: Sequence[TrackedEpisode], suffix: str = "") -> list[Path]:
-    """Write ``tracks.csv``, ``events.csv`` and ``plots_tracks.csv``.
+    """Write ``tracks.csv``, ``events.csv`` and ``plots_tracks.csv``, and ``alarms.csv`` of danger.
 
     Parameters
     ----------
@@ -42,7 +45,12 @@ def write_results(folder: Path, parts: Sequence[TrackedEpisode], suffix: str = "
     _write_csv(events, head, (row for part in parts for row in _event_rows(part)))
     head = ["scan", "time_s", "north_m", "east_m", "track_id", *scenario]
     _write_csv(plots, head, (row for part in parts for row in _plot_rows(part)))
-    return [tracks, events, plots]
+    if all(part.danger is None for part in parts):
+        return [tracks, events, plots]
+    alarms = folder / f"alarms{suffix}.csv"
+    head = ["track_id", "begin_s", "end_s", "cpa_m", "tcpa_s", "cpa_probability", *scenario]
+    _write_csv(alarms, head, (row for part in parts for row in _alarm_rows(part)))
+    return [tracks, events, plots, alarms]
 
 
 def write_pictures(folder: Path, parts: Sequence[TrackedEpisode]) -> list[Path]:
@@ -55,7 +63,7 @@ def write_pictures(folder: Path, parts: Sequence[TrackedEpisode]) -> list[Path]:
         modes = part.tracks.mode_probability.shape[1]
         names = MODE_NAMES if modes == len(MODE_NAMES) else None
         for stem, figure in (
-            ("map", plot.map_figure(part.episode, part.tracks)),
+            ("map", plot.map_figure(part.episode, part.tracks, alarmed=_alarmed(part))),
             ("time", plot.time_figure(part.episode, part.tracks, mode_names=names)),
         ):
             files.append(folder / f"{stem}{end}.png")
@@ -93,6 +101,16 @@ def _plot_rows(part: TrackedEpisode) -> Iterable[list]:
         columns = (scan.plot_time_s, scan.north_m, scan.east_m, ids)
         for row in zip(*(column.tolist() for column in columns), strict=True):
             yield [scan.number, *row, *scenario]
+
+
+def _alarm_rows(part: TrackedEpisode) -> Iterable[list]:
+    scenario = _scenario(part)
+    for alarm in part.danger.alarms if part.danger else ():
+        yield [*astuple(alarm), *scenario]
+
+
+def _alarmed(part: TrackedEpisode) -> np.ndarray | None:
+    return part.danger.alarmed if part.danger else None
 
 
 def _scenario(part: TrackedEpisode) -> list[str]:

@@ -18,6 +18,7 @@ from .config import Settings, radar_names, read_settings
 from .tracking import TrackedEpisode, has_names, median_step_s, track_episode
 
 _PARTIAL = "-partial"
+_MOST_ALARMS = 20
 
 
 def add_to(commands: argparse._SubParsersAction) -> None:
@@ -26,9 +27,11 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "track",
         help="track a recording",
         description="Tracks the plots of a recording and writes tracks.csv, events.csv, "
-        "plots_tracks.csv and pictures. Each value of a scenario column is tracked from a fresh "
-        "start. When one of several scenarios fails, the files of those before it are written with "
-        "-partial in their names, and files of an earlier run stay as they were.",
+        "plots_tracks.csv and pictures; with --own also how close each track will come to own "
+        "ship, and alarms.csv of those that come too close. Each value of a scenario column is "
+        "tracked from a fresh start. When one of several scenarios fails, the files of those "
+        "before it are written with -partial in their names, and files of an earlier run stay as "
+        "they were.",
     )
     parser.add_argument(
         "plots",
@@ -67,14 +70,15 @@ def run(arguments: argparse.Namespace) -> None:
         return
     if arguments.plots is None:
         raise ValueError("track needs a recording (see wakeline track --help)")
-    if is_video(arguments.plots):
+    if arguments.plots.is_file() and is_video(arguments.plots):
         track_video(arguments, settings)
         return
     recording = read_plots(
         arguments.plots, arguments.own, arguments.truth, period_s=settings.period_s
     )
     radar = f"radar {arguments.radar}" if arguments.radar else "radar by default"
-    parts = track_into(arguments.out, recording, settings, radar)
+    danger = arguments.own is not None
+    parts = track_into(arguments.out, recording, settings, radar, danger=danger)
     rows = _rows(parts, arguments.plots.name)
     if arguments.truth is not None:
         score = score_of(recording, parts)
@@ -91,10 +95,11 @@ def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
         if getattr(arguments, option) is not None:
             raise ValueError(f"--{option} goes with a file of plots, {arguments.plots} is video")
     film = video.read_plots_of_video(arguments.plots)
-    radar = f"radar {arguments.radar}"
-    if arguments.radar is None and arguments.config is None:
-        settings = film.told_to(settings)
-        radar = f"radar as its echoes are: {_std_text(film)}"
+    measured = film.told_to(settings)
+    if measured is None:
+        radar = f"radar {arguments.radar}" if arguments.radar else "radar of the configuration"
+    else:
+        settings, radar = measured, f"radar as its echoes are: {_std_text(film)}"
     parts = track_into(arguments.out, film.recording, settings, radar)
     if outputs.can_draw():
         file = video.draw_ppi(arguments.out, film, parts[0])
@@ -109,15 +114,19 @@ def _std_text(film: video.VideoRecording) -> str:
 
 
 def track_into(
-    folder: Path, recording: Recording, settings: Settings, radar: str
+    folder: Path, recording: Recording, settings: Settings, radar: str, *, danger: bool = False
 ) -> list[TrackedEpisode]:
-    """Track every episode, write files and pictures into `folder`, and say so on the screen."""
+    """Track every episode, write files and pictures into `folder`, and say so on the screen.
+
+    With `danger`, the tracks are watched for those that come too close to own ship.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     print(_input_lines(recording, settings, radar), flush=True)
     parts: list[TrackedEpisode] = []
     try:
         for episode in recording:
-            parts.append(track_episode(episode, settings, named=has_names(recording)))
+            named = has_names(recording)
+            parts.append(track_episode(episode, settings, named=named, danger=danger))
     except (ValueError, FilterError, KeyboardInterrupt):
         if parts:
             files = outputs.write_results(folder, parts, _PARTIAL)
@@ -125,6 +134,8 @@ def track_into(
         raise
     files = outputs.write_results(folder, parts)
     print(_track_lines(parts))
+    if danger:
+        print(_alarm_lines(parts, settings))
     files += outputs.write_pictures(folder, parts)
     print(f"written to {folder}: {_listed(files)}")
     if not outputs.can_draw():
@@ -166,6 +177,22 @@ def _track_lines(parts: Sequence[TrackedEpisode]) -> str:
     refused = sum(part.refused_plots for part in parts)
     if refused:
         lines.append(f"note: {refused} plots that the tracker could not take")
+    return "\n".join(lines)
+
+
+def _alarm_lines(parts: Sequence[TrackedEpisode], settings: Settings) -> str:
+    known = [part for part in parts if part.danger is not None]
+    if not known:
+        return "note: own ship's velocity is not known, so closest approaches are not either"
+    limits = settings.danger_limits
+    alarms = [(part.episode.name, alarm) for part in known for alarm in part.danger.alarms]
+    within = f"{limits.cpa_limit_m:.0f} m within {limits.tcpa_limit_s / 60.0:g} min"
+    plural = "" if len(alarms) == 1 else "s"
+    lines = [f"{len(alarms) or 'no'} alarm{plural} of tracks closer than {within}"]
+    for name, alarm in alarms[:_MOST_ALARMS]:
+        lines.append(f"  {f'{name}, ' if name else ''}{alarm}")
+    if len(alarms) > _MOST_ALARMS:
+        lines.append(f"  and {len(alarms) - _MOST_ALARMS} more in alarms.csv")
     return "\n".join(lines)
 
 

@@ -13,6 +13,7 @@ from wakeline._progress import progress
 from wakeline.recording import Episode, Recording, Scan, Tracks
 
 from .config import Settings
+from .danger import Danger, danger_of, with_closest_approach
 
 MODE_NAMES = ("steady", "restless", "turning")
 
@@ -33,6 +34,8 @@ class TrackedEpisode:
         Plots that the tracker could not take.
     elapsed_s : float
         Time the tracker needed.
+    danger : Danger or None
+        Where own ship's motion is known and danger was asked for.
     """
 
     episode: Episode
@@ -41,9 +44,12 @@ class TrackedEpisode:
     plot_track_id: list[np.ndarray]
     refused_plots: int
     elapsed_s: float
+    danger: Danger | None = None
 
 
-def track_episode(episode: Episode, settings: Settings, *, named: bool = False) -> TrackedEpisode:
+def track_episode(
+    episode: Episode, settings: Settings, *, named: bool = False, danger: bool = False
+) -> TrackedEpisode:
     """Track one episode with a fresh tracker.
 
     Parameters
@@ -52,6 +58,8 @@ def track_episode(episode: Episode, settings: Settings, *, named: bool = False) 
     settings : Settings
     named : bool
         Whether the tracks carry the name of the episode as their scenario.
+    danger : bool
+        Whether to look, where own ship's velocity is known, for tracks that come too close.
     """
     tracker = settings.tracker_of(median_step_s(episode))
     tables, events, plot_track_id, refused = [(None, tracker.tracks())], [], [], 0
@@ -65,7 +73,11 @@ def track_episode(episode: Episode, settings: Settings, *, named: bool = False) 
         refused += report.refused_plots
     elapsed_s = time.perf_counter() - began_s
     tracks = _joined(tables, episode.name if named else None)
-    return TrackedEpisode(episode, tracks, events, plot_track_id, refused, elapsed_s)
+    found = None
+    if danger and episode.own.knows_velocity:
+        tracks = with_closest_approach(tracks, episode.own, settings.danger_limits)
+        found = danger_of(tracks, settings.danger_limits)
+    return TrackedEpisode(episode, tracks, events, plot_track_id, refused, elapsed_s, found)
 
 
 def median_step_s(episode: Episode) -> float | None:

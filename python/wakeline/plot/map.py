@@ -8,7 +8,18 @@ import numpy as np
 
 from wakeline.recording import Episode, OwnShip, TargetTruth, Tracks
 
-from .style import INK, MUTED, TEXT_PT, dress, figure, halo, name_lines, track_colors, with_gaps
+from .style import (
+    DANGER,
+    INK,
+    MUTED,
+    TEXT_PT,
+    dress,
+    figure,
+    halo,
+    name_lines,
+    track_colors,
+    with_gaps,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,6 +40,7 @@ def map_view(
     ellipse_every: int = 5,
     whole: bool = False,
     legend: bool = True,
+    alarmed: np.ndarray | None = None,
 ) -> Axes:
     """Draw an episode and its tracks: east to the right, north up, equal axes in metres.
 
@@ -48,6 +60,8 @@ def map_view(
         them, and say how many plots lie outside; without tracks and truth every plot is shown.
     legend : bool
         Whether to explain the marks.
+    alarmed : ndarray of bool (n,), optional
+        Rows of `tracks` that are dangerous, drawn in red with a ring where danger begins.
 
     Returns
     -------
@@ -64,6 +78,8 @@ def map_view(
         if ellipse_every > 0 and track.covariance is not None:
             _draw_ellipses(ax, track.where(slice(None, None, ellipse_every)), color, k == 0)
         _draw_track(ax, track, track_id, color, "track" if k == 0 else None)
+    if tracks is not None and alarmed is not None:
+        _draw_danger(ax, tracks, alarmed)
     ax.set_aspect("equal", adjustable="box")
     ax.ticklabel_format(useOffset=False, style="plain")
     _set_window(ax, episode, tracks, whole)
@@ -81,10 +97,12 @@ def map_figure(
     *,
     ellipse_every: int = 5,
     whole: bool = False,
+    alarmed: np.ndarray | None = None,
 ) -> Figure:
     """A figure of one :func:`map_view`."""
     fig = figure(7.2, 6.4)
-    map_view(fig.add_subplot(), episode, tracks, ellipse_every=ellipse_every, whole=whole)
+    ax = fig.add_subplot()
+    map_view(ax, episode, tracks, ellipse_every=ellipse_every, whole=whole, alarmed=alarmed)
     return fig
 
 
@@ -171,6 +189,39 @@ def _draw_track(ax: Axes, track: Tracks, track_id: str, color: str, label: str |
         path_effects=halo(),
         zorder=7,
     )
+
+
+def _draw_danger(ax: Axes, tracks: Tracks, alarmed: np.ndarray) -> None:
+    """The dangerous part of each track, a ring where it begins, and what threatened then."""
+    label = "danger"
+    for track_id in tracks.where(alarmed).ids():
+        mine = tracks.track_id == track_id
+        north_m, east_m = (
+            np.where(alarmed, place, np.nan)[mine] for place in (tracks.north_m, tracks.east_m)
+        )
+        ax.plot(east_m, north_m, color=DANGER, linewidth=3.2, label=label, zorder=5)
+        first = tracks.where(np.flatnonzero(mine & alarmed)[:1])
+        place = (first.east_m[0], first.north_m[0])
+        ring = {"marker": "o", "markersize": 11, "markerfacecolor": "none", "markeredgewidth": 1.8}
+        ax.plot(*place, color=DANGER, **ring, zorder=6)
+        ax.annotate(
+            _threat(first),
+            place,
+            xytext=(9, -9),
+            textcoords="offset points",
+            va="top",
+            color=DANGER,
+            fontsize=TEXT_PT - 1,
+            path_effects=halo(),
+            zorder=7,
+        )
+        label = None
+
+
+def _threat(row: Tracks) -> str:
+    if row.cpa_m is None or row.tcpa_s is None:
+        return f"{row.track_id[0]}"
+    return f"{row.track_id[0]}: CPA {row.cpa_m[0]:.0f} m in {row.tcpa_s[0] / 60.0:.1f} min"
 
 
 def _draw_ellipses(ax: Axes, track: Tracks, color: str, labelled: bool) -> None:

@@ -13,6 +13,8 @@ import numpy as np
 
 from .truth import TargetTruth
 
+_VELOCITY_SPAN_S = 20.0
+
 
 @dataclass(frozen=True)
 class Scan:
@@ -97,6 +99,35 @@ class OwnShip:
         step_s = self.time_s[after] - self.time_s[after - 1]
         weight = ((time_s - self.time_s[after - 1]) / step_s)[:, np.newaxis]
         return (1 - weight) * position_m[after - 1] + weight * position_m[after]
+
+    @property
+    def knows_velocity(self) -> bool:
+        """Whether a velocity was recorded or can be had from more than one position."""
+        return len(self) > 1 or self._recorded_velocity() is not None
+
+    def velocity_at(self, time_s: np.ndarray) -> np.ndarray:
+        """Velocities over ground (T, 2), north and east.
+
+        As recorded, by linear interpolation and constant beyond the ends; where none was recorded
+        the mean over the last 20 s of `position_at`, which errs by the error of a position over
+        14 s and lags by 10 s in a turn.
+        """
+        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        recorded = self._recorded_velocity()
+        if recorded is not None:
+            known_s, *velocities_mps = recorded
+            return np.column_stack([np.interp(time_s, known_s, v) for v in velocities_mps])
+        moved_m = self.position_at(time_s) - self.position_at(time_s - _VELOCITY_SPAN_S)
+        return moved_m / _VELOCITY_SPAN_S
+
+    def _recorded_velocity(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Times and velocities where they are finite, None where none is."""
+        if self.vnorth_mps is None or self.veast_mps is None:
+            return None
+        known = np.isfinite(self.vnorth_mps) & np.isfinite(self.veast_mps)
+        if not known.any():
+            return None
+        return self.time_s[known], self.vnorth_mps[known], self.veast_mps[known]
 
 
 @dataclass(frozen=True)

@@ -29,12 +29,14 @@ COVARIANCE_COLUMNS = (
 )
 _UPPER = np.triu_indices(4)
 _MAX_MODES = 64
+APPROACH_COLUMNS = ("cpa_m", "tcpa_s", "cpa_probability")
 _NAMES = (
     "track_id",
     *_FIRST,
     *COVARIANCE_COLUMNS,
     "status",
     "nis",
+    *APPROACH_COLUMNS,
     "scenario",
     *(f"mode_{k}" for k in range(1, _MAX_MODES + 1)),
 )
@@ -61,6 +63,9 @@ class Tracks:
         Normalised innovation squared of the plot used, NaN where none was.
     scenario : ndarray of str (n,) or None
         Episode of the recording that a row belongs to.
+    cpa_m, tcpa_s, cpa_probability : ndarray (n,) or None
+        Closest approach to own ship: its distance, the time until then (negative when past), and
+        the probability of coming closer than a limit.
 
     Raises
     ------
@@ -76,11 +81,15 @@ class Tracks:
     status: np.ndarray | None = None
     nis: np.ndarray | None = None
     scenario: np.ndarray | None = None
+    cpa_m: np.ndarray | None = None
+    tcpa_s: np.ndarray | None = None
+    cpa_probability: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         n = len(self.time_s)
         wanted = {"track_id": (n,), "time_s": (n,), "state": (n, 4)}
         optional = {"covariance": (n, 4, 4), "status": (n,), "nis": (n,), "scenario": (n,)}
+        optional |= dict.fromkeys(APPROACH_COLUMNS, (n,))
         wanted |= {k: shape for k, shape in optional.items() if getattr(self, k) is not None}
         for name, shape in wanted.items():
             kind = str if name in ("track_id", "status", "scenario") else float
@@ -143,8 +152,9 @@ def read_tracks(path: str | Path) -> Tracks:
     """Read a tracks file.
 
     Columns: ``track_id, time_s, north_m, east_m, vnorth_mps, veast_mps``; where the file has all of
-    them the covariance terms, ``mode_1`` onwards, ``status``, ``nis``, ``scenario``. Other columns
-    are left alone. Numbers may be NaN, times may not. A file with a header only has no rows.
+    them the covariance terms, ``mode_1`` onwards, ``status``, ``nis``, ``cpa_m``, ``tcpa_s``,
+    ``cpa_probability``, ``scenario``. Other columns are left alone. Numbers may be NaN, times may
+    not. A file with a header only has no rows.
 
     Raises
     ------
@@ -163,6 +173,7 @@ def read_tracks(path: str | Path) -> Tracks:
         status=np.array(table.text("status"), dtype=str) if "status" in table else None,
         nis=number("nis") if "nis" in table else None,
         scenario=np.array(table.text("scenario"), dtype=str) if "scenario" in table else None,
+        **{name: number(name) for name in APPROACH_COLUMNS if name in table},
     )
 
 
@@ -172,7 +183,8 @@ def write_tracks(path: str | Path, tracks: Tracks) -> None:
     The columns are ``track_id, time_s, north_m, east_m, vnorth_mps, veast_mps, course_deg,
     speed_mps``, then, as far as `tracks` has them, the ten upper covariance terms of
     ``[north, vnorth, east, veast]`` row by row, ``mode_1`` onwards, ``status``, ``nis``,
-    ``scenario``. Numbers are written so that reading gives the same bits.
+    ``cpa_m``, ``tcpa_s``, ``cpa_probability``, ``scenario``. Numbers are written so that
+    reading gives the same bits.
 
     Parameters
     ----------
@@ -206,7 +218,7 @@ def _columns(tracks: Tracks) -> dict[str, list]:
         columns |= dict(zip(COVARIANCE_COLUMNS, terms, strict=True))
     if tracks.mode_probability is not None:
         columns |= {f"mode_{k}": p for k, p in enumerate(tracks.mode_probability.T, start=1)}
-    for name in ("status", "nis", "scenario"):
+    for name in ("status", "nis", *APPROACH_COLUMNS, "scenario"):
         if getattr(tracks, name) is not None:
             columns[name] = getattr(tracks, name)
     return {name: values.tolist() for name, values in columns.items()}

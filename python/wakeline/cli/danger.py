@@ -1,0 +1,168 @@
+"""Which tracks come dangerously close to own ship, and since when."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+
+import wakeline as wl
+from wakeline.recording import OwnShip, Tracks
+
+NAUTICAL_MILE_M = 1852.0
+
+
+@dataclass(frozen=True)
+class DangerLimits:
+    """When a track is dangerous.
+
+    An alarm begins when a track comes closer than `cpa_limit_m` within `tcpa_limit_s` with a
+    probability of `alarm_probability` or more, its closest point still ahead. It goes on until the
+    probability is below `clear_probability`, so that it does not flicker, or until the track ends.
+
+    Attributes
+    ----------
+    cpa_limit_m, tcpa_limit_s : float
+        Not negative.
+    alarm_probability, clear_probability : float
+        Between 0 and 1, the second not above the first.
+    own_velocity_std_mps : float
+        Error of own ship's velocity per axis, which no file tells.
+
+    Raises
+    ------
+    ValueError
+        When one is out of its range.
+    """
+
+    cpa_limit_m: float = NAUTICAL_MILE_M / 2.0
+    tcpa_limit_s: float = 1200.0
+    alarm_probability: float = 0.5
+    clear_probability: float = 0.3
+    own_velocity_std_mps: float = 0.2
+
+    def __post_init__(self) -> None:
+        for name, value in asdict(self).items():
+            if not (math.isfinite(value) and value >= 0.0):
+                raise ValueError(f"{name} must be finite and not negative, got {value}")
+        for name in ("alarm_probability", "clear_probability"):
+            if not getattr(self, name) <= 1.0:
+                raise ValueError(f"{name} must be at most 1, got {getattr(self, name)}")
+        if self.clear_probability > self.alarm_probability:
+            raise ValueError(
+                f"clear_probability must not be above alarm_probability = "
+                f"{self.alarm_probability}, got {self.clear_probability}"
+            )
+
+    def as_dict(self) -> dict[str, float]:
+        """The limits by name."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class Alarm:
+    """A stretch of a track that is dangerous.
+
+    Attributes
+    ----------
+    track_id : str
+    begin_s, end_s : float
+        Times of its first and last scan.
+    cpa_m, tcpa_s, cpa_probability : float
+        As they stood when it began.
+    """
+
+    track_id: str
+    begin_s: float
+    end_s: float
+    cpa_m: float
+    tcpa_s: float
+    cpa_probability: float
+
+    def __str__(self) -> str:
+        return (
+            f"track {self.track_id} at {self.begin_s:.1f} s: CPA {self.cpa_m:.0f} m "
+            f"({self.cpa_m / NAUTICAL_MILE_M:.2f} NM), TCPA {self.tcpa_s / 60.0:.1f} min, "
+            f"{100.0 * self.cpa_probability:.0f} %, until {self.end_s:.1f} s"
+        )
+
+
+@dataclass(frozen=True)
+class Danger:
+    """What is dangerous of the tracks of an episode.
+
+    Attributes
+    ----------
+    alarmed : ndarray of bool (n,)
+        Rows of the tracks under an alarm.
+    alarms : list of Alarm
+        In the order in which they began.
+    """
+
+    alarmed: np.ndarray
+    alarms: list[Alarm]
+
+
+def with_closest_approach(tracks: Tracks, own: OwnShip, limits: DangerLimits) -> Tracks:
+    """The tracks with CPA, TCPA and the probability of passing closer than the limit.
+
+    Parameters
+    ----------
+    tracks : Tracks
+        With their covariance.
+    own : OwnShip
+        Its velocity must be known.
+    limits : DangerLimits
+    """
+    north_m, east_m = own.position_at(tracks.time_s).T
+    vnorth_mps, veast_mps = own.velocity_at(tracks.time_s).T
+    variance = limits.own_velocity_std_mps**2
+    approach = wl.navigation.closest_approach(
+        np.column_stack([north_m, vnorth_mps, east_m, veast_mps]),
+        tracks.state,
+        np.diag([0.0, variance, 0.0, variance]),
+        tracks.covariance,
+    )
+    return replace(
+        tracks,
+        cpa_m=approach.cpa_m,
+        tcpa_s=approach.tcpa_s,
+        cpa_probability=approach.probability(limits.cpa_limit_m, limits.tcpa_limit_s),
+    )
+
+
+def danger_of(tracks: Tracks, limits: DangerLimits) -> Danger:
+    """The alarms of tracks whose rows are in order of time and have a probability."""
+    alarmed = np.zeros(len(tracks), dtype=bool)
+    alarms: list[Alarm] = []
+    for track_id in tracks.ids():
+        rows = np.flatnonzero(tracks.track_id == track_id)
+        for run in _runs(tracks.cpa_probability[rows], tracks.tcpa_s[rows] >= 0.0, limits):
+            alarmed[rows[run]] = True
+            first, last = rows[run][[0, -1]]
+            alarms.append(
+                Alarm(
+                    track_id,
+                    begin_s=float(tracks.time_s[first]),
+                    end_s=float(tracks.time_s[last]),
+                    cpa_m=float(tracks.cpa_m[first]),
+                    tcpa_s=float(tracks.tcpa_s[first]),
+                    cpa_probability=float(tracks.cpa_probability[first]),
+                )
+            )
+    return Danger(alarmed, sorted(alarms, key=lambda alarm: alarm.begin_s))
+
+
+def _runs(probability: np.ndarray, ahead: np.ndarray, limits: DangerLimits) -> Iterator[slice]:
+    """Stretches under an alarm, which begins at one probability and ends below a lower one."""
+    begin = None
+    for k, p in enumerate(probability):
+        if begin is None and p >= limits.alarm_probability and ahead[k]:
+            begin = k
+        elif begin is not None and not p >= limits.clear_probability:
+            yield slice(begin, k)
+            begin = None
+    if begin is not None:
+        yield slice(begin, len(probability))
