@@ -460,7 +460,7 @@ def geodesic(
     -------
     (distance_m, course_rad, arrival_course_rad)
         Courses clockwise from true north at departure and at the destination. NaN where the places are
-        nearly opposite each other on the earth (within about 0.6 degrees) and the series does not
+        nearly opposite each other on the earth (within about 0.7 degrees) and the series does not
         converge.
 
     Raises

@@ -199,7 +199,7 @@ inline constexpr double kVincentyTolerance_rad = 1e-14;
 /// Distance and courses of the shortest line between two places, within 0.1 mm.
 ///
 /// Vincenty's iteration. It does not converge, and says so by `found`, where the places are nearly
-/// opposite each other on the earth (within about 0.6 degrees of it).
+/// opposite each other on the earth (within about 0.7 degrees of it).
 inline GeoLine geodesic(const GeoPoint& from, const GeoPoint& to) noexcept {
   const detail::ReducedLatitude u1(from.latitude_rad), u2(to.latitude_rad);
   const double longitude = wrap_angle(to.longitude_rad - from.longitude_rad);
