@@ -135,3 +135,84 @@ def test_dark_and_saturated_pictures_give_nothing(tmp_path, level):
     write_video(path, turns)
     assert main(["track", str(path), "--out", str(tmp_path)]) == 0
     assert len(read_tracks(tmp_path / "tracks.csv")) == 0
+
+
+def begun_late(turns):
+    return [turns[0][500:], *turns[1:]]
+
+
+def ended_early(turns):
+    return [*turns[:-1], turns[-1][:150]]
+
+
+def begun_and_ended_in_between(turns):
+    return [turns[0][700:], *turns[1:-1], turns[-1][:30]]
+
+
+def in_quarters(turns):
+    """As of a radar whose turns are too large to be kept as one block."""
+    return [turn[k : k + 180] for turn in turns for k in range(0, 720, 180)]
+
+
+def mirrored(turns):
+    """As of an antenna that turns anticlockwise; the ships are where they were."""
+    return [
+        replace(turn, amplitude=turn.amplitude[::-1], azimuth_rad=turn.azimuth_rad[::-1])
+        for turn in turns
+    ]
+
+
+def coarsely_counted(turns):
+    """Azimuths in 1/800 of a turn, 720 sweeps: steps of one and of two."""
+    step_rad = 2 * np.pi / 800
+    return [
+        replace(turn, azimuth_rad=np.floor(turn.azimuth_rad / step_rad) * step_rad)
+        for turn in turns
+    ]
+
+
+def in_16_bits_from_the_sixth_turn(turns):
+    return [
+        turn if k < 5 else replace(turn, amplitude=turn.amplitude.astype(np.uint16) * 257)
+        for k, turn in enumerate(turns)
+    ]
+
+
+def with_many_cells(turns):
+    more = np.random.default_rng(1).rayleigh(5.7, (len(turns[0]), 4700)).astype(np.uint8)
+    return [replace(turn, amplitude=np.hstack([turn.amplitude, more])) for turn in turns]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        begun_late,
+        ended_early,
+        begun_and_ended_in_between,
+        in_quarters,
+        mirrored,
+        coarsely_counted,
+        in_16_bits_from_the_sixth_turn,
+        with_many_cells,
+    ],
+)
+def test_recordings_as_they_are(tmp_path, change):
+    path = tmp_path / "some.cat240"
+    write_video(path, change(list(simulator().turns(SHIPS, SCANS, seed=4))))
+    assert main(["track", str(path), "--out", str(tmp_path)]) == 0
+    tracks = read_tracks(tmp_path / "tracks.csv")
+    assert len(tracks.ids()) == len(SHIPS)
+    assert (tracks.status == "confirmed").all()
+    for name in SHIPS:
+        assert track_of(tracks, name)[1][-3:].max() < 25.0
+
+
+def test_settings_without_a_radar_leave_its_errors_to_the_video(video, tmp_path, capsys):
+    config = tmp_path / "some.toml"
+    config.write_text("[tracker]\nconfirm_hits = 4\n")
+    command = ["track", str(video), "--out", str(tmp_path)]
+    assert main([*command, "--config", str(config)]) == 0
+    assert "as its echoes are" in capsys.readouterr().out
+    config.write_text("[radar]\nrange_std_m = 11.0\n")
+    assert main([*command, "--config", str(config)]) == 0
+    assert "radar of the configuration" in capsys.readouterr().out

@@ -28,8 +28,10 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         help="track a recording",
         description="Tracks the plots of a recording and writes tracks.csv, events.csv, "
         "plots_tracks.csv and pictures; with --own also how close each track will come to own "
-        "ship, and alarms.csv of those that come too close. Each value of a scenario column is "
-        "tracked from a fresh start. When one of several scenarios fails, the files of those "
+        "ship, and alarms.csv of those that come too close. Radar video is made plots of first, "
+        "with thresholds and plot errors found in it, and its last turn is drawn as ppi.png. Each "
+        "value of a scenario column is tracked from a fresh start. When one of several scenarios "
+        "fails, the files of those "
         "before it are written with -partial in their names, and files of an earlier run stay as "
         "they were.",
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -32,6 +32,10 @@ _RAYLEIGH_SPREAD_DB = 5.57  # standard deviation of noise in decibels
 _WINDOW_CELLS = 32
 _ABOVE_NOISE_DB = range(0, 40, 2)
 _MOST_PLOTS = 150  # of a turn
+_MOST_CELLS = 65536
+_NEARLY = 0.7  # of its neighbour, and a turn counts as a whole one
+_PAUSE_S = 10.0
+_UNSEEN = 2.0  # an echo errs more than its cells say: it wanders over the hull, and is cut in two
 _STROBE = 0.99  # probability that the target's plot lies in the strobe that is drawn
 _WIDE_ECHO_RAD = np.deg2rad(20.0)
 _LONG_ECHO_M = 800.0  # a land mass, as consoles have it
@@ -54,8 +58,11 @@ class VideoRecording:
     last: RadarVideo
     plot_std: tuple[float, float]
 
-    def told_to(self, settings: Settings) -> Settings:
-        """The settings, with the errors of these plots as those of the radar."""
+    def told_to(self, settings: Settings) -> Settings | None:
+        """The settings with the errors of these plots as those of the radar; None where told."""
+        default = Settings.default().radar
+        if any(settings.radar[key] != default[key] for key in ("range_std_m", "bearing_std_deg")):
+            return None
         range_std_m, bearing_std_rad = self.plot_std
         radar = settings.radar | {
             "range_std_m": range_std_m,
@@ -67,23 +74,36 @@ class VideoRecording:
 def read_plots_of_video(path: Path) -> VideoRecording:
     """Read radar video and take its echoes as plots, a turn of the antenna after the other.
 
+    A turn that is only begun, at either end of the recording, is left out: the beam has not been
+    everywhere.
+
     Raises
     ------
     RecordingError
         When the file holds no radar video.
     """
-    report, notes = VideoReport(), []
-    scans: list[Scan] = []
-    variances: list[np.ndarray] = []
-    for turn, plots in counted(_extracted(path, report, notes), "turns"):
-        scans.append(_scan(len(scans), turn, plots))
-        variances += [np.diagonal(part.covariance, axis1=1, axis2=2) for part in plots]
-    least = np.array([turn.cell_m, turn.azimuth_width_rad]) ** 2 / 12.0
-    variance = np.concatenate(variances)
+    report = VideoReport()
+    extraction = _Extraction()
+    turns: list[tuple[float, _Plots]] = []
+    begun = 0
+    for turn in counted(_judged(_turns(read_video(path, report=report))), "turns"):
+        if turn.whole:
+            turns.append((float(turn.blocks[-1].time_s[-1]), extraction.plots_of(turn)))
+            last = turn.longest
+        else:
+            begun += 1
+    end_s, plots = turns.pop()
+    turns.append((end_s, _joined([plots, extraction.finished()])))
+    variance = np.concatenate([plots.variance for _, plots in turns])
+    least = np.array([last.cell_m, last.azimuth_width_rad]) ** 2 / 12.0
     std = np.sqrt(np.maximum(np.median(variance, axis=0) if len(variance) else least, least))
-    told = [f"the sender says: {text}" for text in report.summaries]
-    recording = Recording(path.stem, [Episode("", scans)], notes=[*told, *report.notes, *notes])
-    return VideoRecording(recording, turn, (float(std[0]), float(std[1])))
+    notes = [f"the sender says: {text}" for text in report.summaries]
+    notes += [*report.notes, *extraction.notes()]
+    if begun:
+        notes.append(f"{begun} turn{'s' * (begun > 1)} only begun left out")
+    scans = [_scan(number, *turn) for number, turn in enumerate(turns)]
+    recording = Recording(path.stem, [Episode("", scans)], notes=notes)
+    return VideoRecording(recording, last, (_UNSEEN * float(std[0]), _UNSEEN * float(std[1])))
 
 
 def draw_ppi(folder: Path, video: VideoRecording, part: TrackedEpisode) -> Path:
@@ -119,32 +139,149 @@ def _strobe(video: VideoRecording, place_m: np.ndarray, covariance_m2: np.ndarra
     return plot.ellipse_outline(place_m, covariance_m2 + plot_m2, threshold)
 
 
-def _extracted(
-    path: Path, report: VideoReport, notes: list[str]
-) -> Iterator[tuple[RadarVideo, list[wl.video.VideoPlots]]]:
-    """Each turn of the file with the plots of the echoes that end in it."""
-    turns = read_video(path, report=report)
-    turn = next(turns)
-    extractor, above_db = _extractor_for(turn)
-    if above_db:
-        notes.append(f"so much clutter that echoes count from {above_db} dB above noise on")
-    for following in turns:
-        yield turn, [extractor.process(turn)]
-        turn = following
-    yield turn, [extractor.process(turn), extractor.finish()]
+# Turns of the antenna -----------------------------------------------------------------------------
 
 
-def _extractor_for(turn: RadarVideo) -> tuple[wl.PlotExtractor, float]:
+@dataclass
+class _Turn:
+    """Blocks of video from one passage of the beam through north to the next."""
+
+    blocks: list[RadarVideo]
+    whole: bool = True
+
+    @property
+    def longest(self) -> RadarVideo:
+        """The block of the most sweeps."""
+        return max(self.blocks, key=len)
+
+    @property
+    def covered_rad(self) -> float:
+        """How far the beam has turned."""
+        return sum(len(block) * block.azimuth_width_rad for block in self.blocks)
+
+
+def _turns(blocks: Iterable[RadarVideo]) -> Iterator[_Turn]:
+    turn: _Turn | None = None
+    for block in blocks:
+        if turn is not None and _begins_anew(turn.blocks[-1], block):
+            yield turn
+            turn = None
+        turn = turn or _Turn([])
+        turn.blocks.append(block)
+    if turn is not None:
+        yield turn
+
+
+def _begins_anew(before: RadarVideo, block: RadarVideo) -> bool:
+    """Whether the beam has passed north between two blocks, or stood still."""
+    step_rad = block.azimuth_rad[0] - before.azimuth_rad[-1]
+    return abs(step_rad) > np.pi or abs(block.time_s[0] - before.time_s[-1]) > _PAUSE_S
+
+
+def _judged(turns: Iterable[_Turn]) -> Iterator[_Turn]:
+    """The turns, the first and the last marked where they are much less than their neighbour."""
+    before: _Turn | None = None
+    seen = 0
+    for turn in turns:
+        seen += 1
+        if seen == 2:
+            before.whole = before.covered_rad > _NEARLY * turn.covered_rad
+        if before is not None:
+            neighbour = before
+            yield before
+        before = turn
+    if seen > 1:
+        before.whole = before.covered_rad > _NEARLY * neighbour.covered_rad or not neighbour.whole
+    if before is not None:
+        yield before
+
+
+# Plots --------------------------------------------------------------------------------------------
+
+
+class _Plots(NamedTuple):
+    """Columns of plots; variances (n, 2) of range and bearing."""
+
+    time_s: np.ndarray
+    range_m: np.ndarray
+    bearing_rad: np.ndarray
+    variance: np.ndarray
+
+
+def _joined(parts: Sequence[_Plots]) -> _Plots:
+    return _Plots(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+class _Extraction:
+    """Plots of turn after turn, with settings found in the first of them."""
+
+    def __init__(self) -> None:
+        self._extractor: wl.PlotExtractor | None = None
+        self._dtype: np.dtype | None = None
+        self._above_db = 0
+        self._mirrored = False
+        self._refused = 0
+
+    def plots_of(self, turn: _Turn) -> _Plots:
+        """Plots of the echoes that end in a turn."""
+        plots = []
+        for block in turn.blocks:
+            if self._dtype != block.amplitude.dtype:
+                plots.append(self.finished())
+                self._begin(block if self._dtype is not None else turn.longest)
+            plots.append(self._as_seen(self._extractor.process(self._clockwise(block))))
+        return _joined(plots)
+
+    def finished(self) -> _Plots:
+        """Plots of the echoes that are open."""
+        if self._extractor is None:
+            return _Plots(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros((0, 2)))
+        plots = self._as_seen(self._extractor.finish())
+        counts = self._extractor.counts
+        self._refused += counts.too_long + counts.repeated + counts.invalid
+        return plots
+
+    def notes(self) -> list[str]:
+        """What a user should know."""
+        notes = []
+        if self._above_db:
+            notes.append(
+                f"so much clutter that echoes count from {self._above_db} dB above noise on"
+            )
+        if self._mirrored:
+            notes.append("the antenna turns anticlockwise")
+        if self._refused:
+            notes.append(f"{self._refused} sweeps that make no sense left out")
+        return notes
+
+    def _begin(self, sample: RadarVideo) -> None:
+        steps_rad = np.diff(np.unwrap(sample.azimuth_rad))
+        self._mirrored = len(steps_rad) > 0 and float(np.median(steps_rad)) < 0.0
+        self._extractor, self._above_db = _extractor_for(self._clockwise(sample))
+        self._dtype = sample.amplitude.dtype
+
+    def _clockwise(self, video: RadarVideo) -> RadarVideo:
+        """The video as it is, or in a mirror where the antenna turns the other way."""
+        return replace(video, azimuth_rad=-video.azimuth_rad) if self._mirrored else video
+
+    def _as_seen(self, plots: wl.video.VideoPlots) -> _Plots:
+        bearing_rad = -plots.bearing_rad if self._mirrored else plots.bearing_rad
+        variance = np.diagonal(plots.covariance, axis1=1, axis2=2)
+        return _Plots(plots.time_s, plots.range_m, np.mod(bearing_rad, 2 * np.pi), variance)
+
+
+def _extractor_for(turn: RadarVideo) -> tuple[wl.PlotExtractor, int]:
     """An extractor for this picture, and how far its threshold lies above that of noise, in dB.
 
     It is raised until the turn gives no more plots than an operator would bear: land and sea
     clutter fluctuate more than noise.
     """
     noise = noise_of(turn.amplitude)
+    most = _MOST_PLOTS * min(len(turn) * turn.azimuth_width_rad / (2 * np.pi), 1.0)
     for above_db in _ABOVE_NOISE_DB:
         settings = _settings(turn, noise, above_db)
         trial = wl.PlotExtractor(**settings)
-        if len(trial.process(turn)) + len(trial.finish()) <= _MOST_PLOTS:
+        if len(trial.process(turn)) + len(trial.finish()) <= most:
             break
     return wl.PlotExtractor(**settings), above_db
 
@@ -160,6 +297,8 @@ def _settings(turn: RadarVideo, noise: Noise | None, above_db: float) -> dict[st
         factor = wl.video.threshold_factor(_FALSE_ALARMS, train_cells=train)
         threshold = {"threshold_factor": min(factor * 10 ** (above_db / 20), 1000.0)}
     return {
+        "max_sweep_cells": _MOST_CELLS,
+        "gap_sweeps": 1,  # azimuth is often counted as coarsely as sweeps come
         "train_cells": train,
         "guard_cells": int(_GUARD_M / turn.cell_m),
         "max_range_extent_m": _LONG_ECHO_M,
@@ -194,19 +333,15 @@ def noise_of(amplitude: np.ndarray) -> Noise | None:
     return Noise(std, float(np.mean(away**3)) / std**3) if std > 0 else None
 
 
-def _scan(number: int, turn: RadarVideo, plots: list[wl.video.VideoPlots]) -> Scan:
+def _scan(number: int, end_s: float, plots: _Plots) -> Scan:
     """The plots of a turn, in order of time."""
-    time_s, range_m, bearing_rad = (
-        np.concatenate([getattr(part, name) for part in plots])
-        for name in ("time_s", "range_m", "bearing_rad")
-    )
-    order = np.argsort(time_s, kind="stable")
-    range_m, bearing_rad = range_m[order], bearing_rad[order]
+    order = np.argsort(plots.time_s, kind="stable")
+    range_m, bearing_rad = plots.range_m[order], plots.bearing_rad[order]
     at_origin = np.zeros(len(order))
     return Scan(
-        time_s=float(turn.time_s[-1]),
+        time_s=end_s,
         number=number,
-        plot_time_s=time_s[order],
+        plot_time_s=plots.time_s[order],
         north_m=range_m * np.cos(bearing_rad),
         east_m=range_m * np.sin(bearing_rad),
         range_m=range_m,
