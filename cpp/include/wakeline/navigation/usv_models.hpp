@@ -1,0 +1,304 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// How own ship moves between two readings of her IMU. Headings clockwise from north, axes of the
+// body forward and starboard. Source: Evsyukov, Andreeva, Khanychev, "Sensor system information
+// processing in unmanned navigation applications", equations (1)-(6).
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "wakeline/core/angle.hpp"
+#include "wakeline/core/component.hpp"
+#include "wakeline/core/require.hpp"
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// Components of own ship's state beside position and velocity.
+inline constexpr Component kHeading{static_cast<Component>(50)};            ///< rad
+inline constexpr Component kForwardBias{static_cast<Component>(51)};        ///< m/s²
+inline constexpr Component kStarboardBias{static_cast<Component>(52)};      ///< m/s²
+inline constexpr Component kGyroBias{static_cast<Component>(53)};           ///< rad/s
+inline constexpr Component kSpeedThroughWater{static_cast<Component>(54)};  ///< m/s
+inline constexpr Component kCurrentNorth{static_cast<Component>(55)};       ///< m/s
+inline constexpr Component kCurrentEast{static_cast<Component>(56)};        ///< m/s
+
+/// One reading of an inertial unit, gravity removed; held until the next one.
+struct Imu {
+  double forward_mps2 = 0.0;    ///< acceleration along the body
+  double starboard_mps2 = 0.0;  ///< acceleration across it
+  double yaw_rate_rad_s = 0.0;  ///< positive to starboard
+
+  [[nodiscard]] bool finite() const noexcept {
+    return std::isfinite(forward_mps2) && std::isfinite(starboard_mps2) &&
+           std::isfinite(yaw_rate_rad_s);
+  }
+};
+
+/// Standard deviations of one reading; its error is the same during a whole step.
+struct ImuNoise {
+  double acceleration_std_mps2 = 0.004;
+  double yaw_rate_std_rad_s = deg(0.033);
+
+  void validate() const {
+    require_not_negative("acceleration_std_mps2", acceleration_std_mps2);
+    require_not_negative("yaw_rate_std_rad_s", yaw_rate_std_rad_s);
+  }
+};
+
+/// What drives a step: a reading with its noise and its biases, or, where there is none, a guess of
+/// no acceleration and no turn, which has noise alone (`bias_share` 0).
+struct UsvInput {
+  Imu imu;
+  ImuNoise noise;
+  double bias_share = 1.0;
+};
+
+/// Where own ship begins, with standard deviations.
+struct UsvStart {
+  Vec<double, 2> position_m = Vec<double, 2>::Zero();    ///< [north, east]
+  Vec<double, 2> velocity_mps = Vec<double, 2>::Zero();  ///< [north, east], over ground
+  double heading_rad = 0.0;
+  Vec<double, 2> position_std_m = Vec<double, 2>(8.0, 7.0);  ///< [north, east]
+  double velocity_std_mps = 0.5;                             ///< per axis
+  double heading_std_rad = deg(1.0);
+};
+
+/// The turn by `heading_rad` from body axes to north and east (6).
+template <class Scalar>
+Mat<Scalar, 2, 2> body_to_north_east(Scalar heading_rad) noexcept {
+  using std::cos;
+  using std::sin;
+  const Scalar c = cos(heading_rad), s = sin(heading_rad);
+  Mat<Scalar, 2, 2> turn;
+  turn << c, -s, s, c;
+  return turn;
+}
+
+/// Own ship driven by acceleration and rate of turn: state `[px, py, vx, vy, heading]`, and with
+/// biases `[..., forward bias, starboard bias, gyro bias]` behind.
+///
+///     a = R(heading) (a_imu - b),   p += T v + T²/2 a,   v += T a,   heading += T (w_imu - b_w).
+///
+/// The acceleration is held over a step and turned by the heading at its start (1)-(3).
+template <bool Biases>
+struct UsvInertialMotion {
+  static constexpr int kN = Biases ? 8 : 5;
+  static constexpr auto kComponents = [] {
+    if constexpr (Biases)
+      return std::array{Component::kNorth, Component::kEast, Component::kVnorth, Component::kVeast,
+                        kHeading,          kForwardBias,     kStarboardBias,     kGyroBias};
+    else
+      return std::array{Component::kNorth, Component::kEast, Component::kVnorth, Component::kVeast,
+                        kHeading};
+  }();
+
+  double acceleration_bias_std_mps2 = 0.05;   ///< of the biases at the start
+  double gyro_bias_std_rad_s = deg(0.5);      ///< of the bias at the start
+  double acceleration_bias_walk_mps2 = 1e-6;  ///< std of what a bias gains in 1 s
+  double gyro_bias_walk_rad_s = 1e-6;         ///< std of what the bias gains in 1 s
+  UsvInput input{};                           ///< of the present step
+
+  /// f(x, dt).
+  template <class Scalar>
+  Vec<Scalar, kN> transition(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
+    const Vec<Scalar, 2> a = body_to_north_east(x[4]) * body_acceleration(x);
+    Vec<Scalar, kN> moved = x;
+    moved.template segment<2>(0) += dt_s * x.template segment<2>(2) + dt_s * dt_s / 2 * a;
+    moved.template segment<2>(2) += dt_s * a;
+    moved[4] += dt_s * (Scalar(input.imu.yaw_rate_rad_s) - gyro_bias(x));
+    return moved;
+  }
+
+  /// df/dx.
+  template <class Scalar>
+  Mat<Scalar, kN, kN> jacobian(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
+    const Mat<Scalar, 2, 2> turn = body_to_north_east(x[4]);
+    const Vec<Scalar, 2> a = turn * body_acceleration(x);
+    const Vec<Scalar, 2> a_by_heading(-a[1], a[0]);
+    Mat<Scalar, kN, kN> f = Mat<Scalar, kN, kN>::Identity();
+    f(0, 2) = f(1, 3) = dt_s;
+    f.template block<2, 1>(0, 4) = dt_s * dt_s / 2 * a_by_heading;
+    f.template block<2, 1>(2, 4) = dt_s * a_by_heading;
+    if constexpr (Biases) {
+      const Scalar share = Scalar(input.bias_share);
+      f.template block<2, 2>(0, 5) = -share * dt_s * dt_s / 2 * turn;
+      f.template block<2, 2>(2, 5) = -share * dt_s * turn;
+      f(4, 7) = -share * dt_s;
+    }
+    return f;
+  }
+
+  /// Q: the error of the IMU held over the step, and the walk of the biases.
+  template <class Scalar>
+  Mat<Scalar, kN, kN> process_noise(const Vec<Scalar, kN>&, Scalar dt_s) const noexcept {
+    const Scalar a_std = Scalar(input.noise.acceleration_std_mps2);
+    const Scalar w_std = Scalar(input.noise.yaw_rate_std_rad_s);
+    const Vec<Scalar, 2> g = a_std * Vec<Scalar, 2>(dt_s * dt_s / 2, dt_s);
+    Mat<Scalar, kN, kN> q = Mat<Scalar, kN, kN>::Zero();
+    for (const int axis : {0, 1}) {
+      q(axis, axis) = g[0] * g[0];
+      q(axis, axis + 2) = q(axis + 2, axis) = g[0] * g[1];
+      q(axis + 2, axis + 2) = g[1] * g[1];
+    }
+    q(4, 4) = dt_s * w_std * (dt_s * w_std);
+    if constexpr (Biases) {
+      const Scalar a_walk = Scalar(acceleration_bias_walk_mps2);
+      const Scalar w_walk = Scalar(gyro_bias_walk_rad_s);
+      q(5, 5) = q(6, 6) = dt_s * a_walk * a_walk;
+      q(7, 7) = dt_s * w_walk * w_walk;
+    }
+    return q;
+  }
+
+  template <class Scalar>
+  [[nodiscard]] Gaussian<kN, Scalar> start_belief(const UsvStart& start) const noexcept {
+    Gaussian<kN> belief;
+    Vec<double, kN> std;
+    belief.mean.template head<5>() << start.position_m, start.velocity_mps, start.heading_rad;
+    std.template head<5>() << start.position_std_m, start.velocity_std_mps, start.velocity_std_mps,
+        start.heading_std_rad;
+    if constexpr (Biases)
+      std.template tail<3>() << acceleration_bias_std_mps2, acceleration_bias_std_mps2,
+          gyro_bias_std_rad_s;
+    belief.covariance = std.cwiseAbs2().asDiagonal();
+    return belief.template cast<Scalar>();
+  }
+
+  void validate() const {
+    require_positive("acceleration_bias_std_mps2", acceleration_bias_std_mps2);
+    require_positive("gyro_bias_std_rad_s", gyro_bias_std_rad_s);
+    require_not_negative("acceleration_bias_walk_mps2", acceleration_bias_walk_mps2);
+    require_not_negative("gyro_bias_walk_rad_s", gyro_bias_walk_rad_s);
+    input.noise.validate();
+  }
+
+ private:
+  template <class Scalar>
+  [[nodiscard]] Vec<Scalar, 2> body_acceleration(const Vec<Scalar, kN>& x) const noexcept {
+    Vec<Scalar, 2> a(Scalar(input.imu.forward_mps2), Scalar(input.imu.starboard_mps2));
+    if constexpr (Biases) a -= Scalar(input.bias_share) * x.template segment<2>(5);
+    return a;
+  }
+
+  template <class Scalar>
+  [[nodiscard]] Scalar gyro_bias(const Vec<Scalar, kN>& x) const noexcept {
+    if constexpr (Biases)
+      return Scalar(input.bias_share) * x[7];
+    else
+      return Scalar(0);
+  }
+};
+
+/// The paper's five states, for an IMU whose biases are known and removed.
+using UsvMotion = UsvInertialMotion<false>;
+
+/// Eight states: the IMU's three biases are estimated.
+using UsvBiasMotion = UsvInertialMotion<true>;
+
+/// Own ship by her speed through water in a current, turned by the gyro: state `[px, py, heading,
+/// speed, gyro bias, current north, current east]`. The accelerometer is not used.
+///
+///     p += T (s [cos, sin](heading + T w / 2) + c),   heading += T w,   w = w_imu - b_w.
+///
+/// Speed, current and bias walk. It knows more than the inertial model as long as the speed hardly
+/// changes, and less while it does.
+struct UsvCurrentMotion {
+  static constexpr int kN = 7;
+  static constexpr std::array kComponents{Component::kNorth,  Component::kEast, kHeading,
+                                          kSpeedThroughWater, kGyroBias,        kCurrentNorth,
+                                          kCurrentEast};
+
+  double gyro_bias_std_rad_s = deg(0.5);  ///< of the bias at the start
+  double current_std_mps = 0.5;           ///< of the current at the start, per axis
+  double speed_walk_mps = 0.03;           ///< std of what the speed gains in 1 s
+  double current_walk_mps = 0.002;        ///< std of what the current gains in 1 s, per axis
+  double gyro_bias_walk_rad_s = 1e-6;     ///< std of what the bias gains in 1 s
+  UsvInput input{};                       ///< of the present step
+
+  /// f(x, dt).
+  template <class Scalar>
+  Vec<Scalar, kN> transition(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
+    Vec<Scalar, kN> moved = x;
+    moved.template head<2>() += dt_s * (x[3] * ahead(x, dt_s) + x.template tail<2>());
+    moved[2] += dt_s * turn_rate(x);
+    return moved;
+  }
+
+  /// df/dx.
+  template <class Scalar>
+  Mat<Scalar, kN, kN> jacobian(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
+    const Vec<Scalar, 2> u = ahead(x, dt_s);
+    const Vec<Scalar, 2> p_by_heading = dt_s * x[3] * Vec<Scalar, 2>(-u[1], u[0]);
+    const Scalar share = Scalar(input.bias_share);
+    Mat<Scalar, kN, kN> f = Mat<Scalar, kN, kN>::Identity();
+    f.template block<2, 1>(0, 2) = p_by_heading;
+    f.template block<2, 1>(0, 3) = dt_s * u;
+    f.template block<2, 1>(0, 4) = -share * dt_s / 2 * p_by_heading;
+    f(0, 5) = f(1, 6) = dt_s;
+    f(2, 4) = -share * dt_s;
+    return f;
+  }
+
+  /// Q: the error of the gyro held over the step, and the walks, which carry the position along.
+  template <class Scalar>
+  Mat<Scalar, kN, kN> process_noise(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
+    const Scalar w_std = Scalar(input.noise.yaw_rate_std_rad_s);
+    const Scalar s = Scalar(speed_walk_mps * speed_walk_mps);
+    const Scalar c = Scalar(current_walk_mps * current_walk_mps);
+    const Scalar b = Scalar(gyro_bias_walk_rad_s * gyro_bias_walk_rad_s);
+    const Scalar squared = dt_s * dt_s / 2, cubed = dt_s * dt_s * dt_s / 3;
+    const Vec<Scalar, 2> u = ahead(x, dt_s);
+    Mat<Scalar, kN, kN> q = Mat<Scalar, kN, kN>::Zero();
+    q.template topLeftCorner<2, 2>() =
+        cubed * (s * u * u.transpose() + c * Mat<Scalar, 2, 2>::Identity());
+    q.template block<2, 1>(0, 3) = squared * s * u;
+    q.template block<1, 2>(3, 0) = squared * s * u.transpose();
+    for (const int axis : {0, 1}) {
+      q(axis, axis + 5) = q(axis + 5, axis) = squared * c;
+      q(axis + 5, axis + 5) = dt_s * c;
+    }
+    q(2, 2) = dt_s * w_std * (dt_s * w_std);
+    q(3, 3) = dt_s * s;
+    q(4, 4) = dt_s * b;
+    return q;
+  }
+
+  /// The speed is the start's velocity along its heading; the current begins at zero.
+  template <class Scalar>
+  [[nodiscard]] Gaussian<kN, Scalar> start_belief(const UsvStart& start) const noexcept {
+    const double speed_mps = body_to_north_east(start.heading_rad).col(0).dot(start.velocity_mps);
+    Gaussian<kN> belief;
+    Vec<double, kN> std;
+    belief.mean.template head<4>() << start.position_m, start.heading_rad, speed_mps;
+    std << start.position_std_m, start.heading_std_rad, start.velocity_std_mps, gyro_bias_std_rad_s,
+        current_std_mps, current_std_mps;
+    belief.covariance = std.cwiseAbs2().asDiagonal();
+    return belief.template cast<Scalar>();
+  }
+
+  void validate() const {
+    require_positive("gyro_bias_std_rad_s", gyro_bias_std_rad_s);
+    require_positive("current_std_mps", current_std_mps);
+    require_not_negative("speed_walk_mps", speed_walk_mps);
+    require_not_negative("current_walk_mps", current_walk_mps);
+    require_not_negative("gyro_bias_walk_rad_s", gyro_bias_walk_rad_s);
+    input.noise.validate();
+  }
+
+ private:
+  template <class Scalar>
+  [[nodiscard]] Scalar turn_rate(const Vec<Scalar, kN>& x) const noexcept {
+    return Scalar(input.imu.yaw_rate_rad_s) - Scalar(input.bias_share) * x[4];
+  }
+
+  /// Unit vector of the heading in the middle of the step.
+  template <class Scalar>
+  [[nodiscard]] Vec<Scalar, 2> ahead(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
+    return body_to_north_east(Scalar(x[2] + dt_s / 2 * turn_rate(x))).col(0);
+  }
+};
+
+}  // namespace wakeline

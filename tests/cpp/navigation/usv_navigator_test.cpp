@@ -1,0 +1,555 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/navigation/usv_navigator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iostream>
+#include <limits>
+#include <vector>
+
+#include "support/draw.hpp"
+#include "support/malloc_fence.hpp"
+#include "support/matrix_assert.hpp"
+#include "support/numeric_jacobian.hpp"
+#include "wakeline/filter/ukf.hpp"
+#include "wakeline/measurement/fix.hpp"
+
+namespace wakeline {
+namespace {
+
+using test::Draw;
+using test::is_covariance;
+using test::matrices_near;
+using Vec2 = Vec<double, 2>;
+using Vec3 = Vec<double, 3>;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+const Vec2 kFixStd(8.0, 7.0);
+const Vec3 kBias(0.03, 0.02, deg(0.28));  // forward, starboard, gyro
+const Vec3 kNoBias = Vec3::Zero();
+
+Fix gnss() { return {.covariance_m2 = kFixStd.cwiseAbs2().asDiagonal()}; }
+Vec<double, 1> of(double z) { return Vec<double, 1>(z); }
+
+// The mission -------------------------------------------------------------------------------------
+
+struct Instant {
+  Vec2 position = Vec2::Zero(), velocity = Vec2::Zero();
+  double heading = deg(150);
+  Imu imu;  ///< of the step that led here
+  Vec2 fix = Vec2::Zero();
+  double compass = 0.0;
+};
+
+/// 800 m x 800 m at 1 m/s through waypoints, turning at up to 5 deg/s, in a current towards 090.
+/// The accelerometers feel what changes the velocity over ground.
+std::vector<Instant> mission(std::uint64_t seed, const Vec3& bias, double current_mps = 0.5) {
+  const std::array waypoints{Vec2(200, 300), Vec2(450, 420), Vec2(620, 700), Vec2(800, 800)};
+  const double most = deg(5);
+  const ImuNoise noise;
+  Draw draw(seed);
+  Instant now;
+  const auto over_ground = [&] {
+    return Vec2(body_to_north_east(now.heading).col(0) + Vec2(0, current_mps));
+  };
+  now.velocity = over_ground();
+  const auto sense = [&] {
+    now.fix = now.position + kFixStd.cwiseProduct(draw.normals<2>());
+    now.compass = wrap_angle(now.heading + deg(1) * draw.normal());
+  };
+  sense();
+  std::vector<Instant> log{now};
+  for (std::size_t leg = 0; leg < waypoints.size() && log.size() < 5000;) {
+    const Vec2 way = waypoints[leg] - now.position;
+    if (way.norm() < 10) {
+      ++leg;
+      continue;
+    }
+    const double turn =
+        std::clamp(wrap_angle(std::atan2(way[1], way[0]) - now.heading), -most, most);
+    const double before = now.heading;
+    const Vec2 slow = now.velocity;
+    now.heading = wrap_angle(before + turn);
+    now.velocity = over_ground();
+    now.position += (slow + now.velocity) / 2;
+    const Vec2 body = body_to_north_east(before).transpose() * (now.velocity - slow);
+    now.imu = {body[0] + bias[0] + noise.acceleration_std_mps2 * draw.normal(),
+               body[1] + bias[1] + noise.acceleration_std_mps2 * draw.normal(),
+               turn + bias[2] + noise.yaw_rate_std_rad_s * draw.normal()};
+    sense();
+    log.push_back(now);
+  }
+  return log;
+}
+
+/// Her true place and heading, and a velocity that knows nothing of the current.
+UsvStart start_of(const Instant& first) {
+  return {.position_m = first.position,
+          .velocity_mps = body_to_north_east(first.heading).col(0),
+          .heading_rad = first.heading};
+}
+
+template <class Model>
+Vec3 pose(const Vec<double, kStatesOf<Model>>& x) {
+  constexpr auto kRows =
+      rows_of(Model::kComponents, std::array{Component::kNorth, Component::kEast, kHeading});
+  return {x[kRows[0]], x[kRows[1]], x[kRows[2]]};
+}
+
+/// Squared errors north, east (m²) and of heading (deg²).
+template <class Model>
+Vec3 squared_error(const Vec<double, kStatesOf<Model>>& x, const Instant& truth) {
+  Vec3 error = pose<Model>(x) - Vec3(truth.position[0], truth.position[1], truth.heading);
+  error[2] = wrap_angle(error[2]) / deg(1);
+  return error.cwiseAbs2();
+}
+
+template <class Navigator>
+std::vector<typename Navigator::State> navigate(Navigator& navigator,
+                                                const std::vector<Instant>& log) {
+  std::vector<typename Navigator::State> beliefs;
+  EXPECT_EQ(navigator.start(start_of(log.front())), Status::kOk);
+  beliefs.push_back(navigator.estimate());
+  for (std::size_t k = 1; k < log.size(); ++k) {
+    EXPECT_EQ(navigator.predict(1.0, log[k].imu), Status::kOk);
+    (void)navigator.update(gnss(), log[k].fix);
+    (void)navigator.update(Compass(), of(log[k].compass));
+    beliefs.push_back(navigator.estimate());
+  }
+  return beliefs;
+}
+
+template <class Navigator>
+std::vector<typename Navigator::Leg> legs_of(const Navigator& navigator,
+                                             const std::vector<Instant>& log) {
+  std::vector<typename Navigator::Leg> legs;
+  for (std::size_t k = 1; k < log.size(); ++k) legs.push_back(navigator.leg(1.0, log[k].imu));
+  return legs;
+}
+
+struct Score {
+  Vec3 filter = Vec3::Zero(), second_half = Vec3::Zero(), smoother = Vec3::Zero();
+  double nees = 0.0;  ///< of the paper's five states
+};
+
+template <class Model>
+Score score(const Model& model, const Vec3& bias, int runs) {
+  Score mean;
+  for (int run = 0; run < runs; ++run) {
+    UsvNavigator<Model> navigator(model);
+    const std::vector<Instant> log = mission(std::uint64_t(1000 + run), bias);
+    auto beliefs = navigate(navigator, log);
+    const double steps = double(log.size() - 1) * runs;
+    for (std::size_t k = 1; k < log.size(); ++k) {
+      const Vec3 error = squared_error<Model>(beliefs[k].mean, log[k]);
+      mean.filter += error / steps;
+      if (2 * k >= log.size()) mean.second_half += 2 * error / steps;
+      if constexpr (kStatesOf<Model> != 7) {
+        Vec<double, 5> x = beliefs[k].mean.template head<5>();
+        x.template head<2>() -= log[k].position;
+        x.template segment<2>(2) -= log[k].velocity;
+        x[4] = wrap_angle(x[4] - log[k].heading);
+        const Mat<double, 5, 5> p = beliefs[k].covariance.template topLeftCorner<5, 5>();
+        mean.nees += Cholesky<5>(p).squared_norm(x) / steps;
+      }
+    }
+    EXPECT_EQ(navigator.smooth(beliefs, legs_of(navigator, log)), Status::kOk);
+    for (std::size_t k = 1; k < log.size(); ++k)
+      mean.smoother += squared_error<Model>(beliefs[k].mean, log[k]) / steps;
+  }
+  return mean;
+}
+
+void report(const char* name, const Score& score) {
+  const auto text = [](const Vec3& v) {
+    return std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]);
+  };
+  ::testing::Test::RecordProperty(name, text(score.filter));
+  std::cout << name << ": filter " << text(score.filter) << ", second half "
+            << text(score.second_half) << ", smoother " << text(score.smoother) << ", NEES "
+            << score.nees << '\n';
+}
+
+// What a mission costs; the numbers beside are of an independent implementation, 100 runs.
+TEST(UsvNavigator, ReachesTheKnownErrorsWithUnknownBiases) {
+  const Score eight = score(UsvBiasMotion{}, kBias, 100);
+  report("eight", eight);
+  EXPECT_TRUE(matrices_near(eight.filter, Vec3(2.91, 2.40, 0.044), {0, 0.15}));
+  EXPECT_TRUE(matrices_near(eight.second_half, Vec3(2.07, 1.70, 0.034), {0, 0.15}));
+  EXPECT_GT(eight.nees, 4.5);
+  EXPECT_LT(eight.nees, 5.5);
+  EXPECT_LT(eight.smoother[0], 0.65);
+  EXPECT_LT(eight.smoother[1], 0.55);
+  EXPECT_LT(eight.smoother[2], 0.02);
+}
+
+TEST(UsvNavigator, ReachesTheKnownErrorsWithKnownBiases) {
+  const Score five = score(UsvMotion{}, kNoBias, 100);
+  report("five", five);
+  EXPECT_TRUE(matrices_near(five.filter, Vec3(2.27, 1.89, 0.034), {0, 0.15}));
+  EXPECT_GT(five.nees, 4.5);
+  EXPECT_LT(five.nees, 5.5);
+}
+
+TEST(UsvNavigator, ReachesTheKnownErrorsAtAConstantSpeedInACurrent) {
+  const Score seven =
+      score(UsvCurrentMotion{.speed_walk_mps = 1e-4, .current_walk_mps = 1e-4}, kBias, 100);
+  report("seven", seven);
+  EXPECT_TRUE(matrices_near(seven.filter, Vec3(1.37, 1.13, 0.044), {0, 0.2}));
+}
+
+TEST(UsvNavigator, FindsTheBiasesAndTheCurrent) {
+  const std::vector<Instant> log = mission(7, kBias);
+  UsvNavigator<UsvBiasMotion> eight;
+  navigate(eight, log);
+  const Vec3 error = eight.estimate().mean.tail<3>() - kBias;
+  const Vec3 std = eight.estimate().covariance.diagonal().tail<3>().cwiseSqrt();
+  EXPECT_LT(std[0], 0.005) << "known to a tenth of the prior";
+  EXPECT_LT((error.cwiseQuotient(std)).cwiseAbs().maxCoeff(), 3.5);
+
+  UsvNavigator<UsvCurrentMotion> seven;
+  navigate(seven, log);
+  EXPECT_TRUE(matrices_near(seven.estimate().mean.tail<2>(), Vec2(0, 0.5), {0.1, 0}));
+  EXPECT_NEAR(seven.estimate().mean[4], kBias[2], deg(0.02));
+}
+
+TEST(UsvNavigator, IgnoredBiasesAreFarWorse) {
+  UsvNavigator<UsvMotion> five(UsvMotion{}, UsvOutliers{.gate = {1 - 1e-9}, .rejections = 0});
+  const std::vector<Instant> log = mission(8, kBias);
+  const auto beliefs = navigate(five, log);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 1; k < log.size(); ++k)
+    sum += squared_error<UsvMotion>(beliefs[k].mean, log[k]) / double(log.size());
+  EXPECT_GT(sum[0] + sum[1], 12.0);
+}
+
+template <class Model, template <class, class> class Filter>
+void expect_single_precision_will_do(const Vec3& bias) {
+  const std::vector<Instant> log = mission(15, bias);
+  UsvNavigator<Model, Filter> exact;
+  navigate(exact, log);
+  UsvNavigator<Model, Filter, float> navigator;
+  ASSERT_EQ(navigator.start(start_of(log.front())), Status::kOk);
+  for (std::size_t k = 1; k < log.size(); ++k) {
+    ASSERT_EQ(navigator.predict(1.0f, log[k].imu), Status::kOk) << k;
+    (void)navigator.update(gnss(), Vec<float, 2>(log[k].fix.cast<float>()));
+    (void)navigator.update(Compass(), Vec<float, 1>(float(log[k].compass)));
+  }
+  EXPECT_TRUE(is_covariance(navigator.estimate().covariance));
+  const Vec3 apart = pose<Model>(navigator.estimate().mean.template cast<double>()) -
+                     pose<Model>(exact.estimate().mean);
+  EXPECT_LT(apart.head<2>().norm(), 0.5);
+  EXPECT_LT(std::abs(wrap_angle(apart[2])), deg(0.1));
+}
+
+TEST(UsvNavigator, WorksInSinglePrecision) {
+  expect_single_precision_will_do<UsvBiasMotion, Ekf>(kBias);
+  expect_single_precision_will_do<UsvMotion, Ukf>(kNoBias);
+}
+
+template <class Model>
+class EveryUsvModel : public ::testing::Test {};
+using Models = ::testing::Types<UsvMotion, UsvBiasMotion, UsvCurrentMotion>;
+TYPED_TEST_SUITE(EveryUsvModel, Models, );
+
+/// A model in the middle of a turn.
+template <class Model>
+Model turning() {
+  Model model;
+  model.input.imu = {0.3, -0.2, 0.08};
+  return model;
+}
+
+template <class Model>
+StateOf<Model> some_state(Draw& draw) {
+  StateOf<Model> x = draw.normals<kStatesOf<Model>>();
+  x.template head<2>() *= 100;
+  return x;
+}
+
+TYPED_TEST(EveryUsvModel, HasTheJacobianOfItsTransition) {
+  Draw draw(3);
+  for (const double share : {1.0, 0.0}) {
+    TypeParam model = turning<TypeParam>();
+    model.input.bias_share = share;
+    for (const double dt : {0.1, 1.0, 5.0}) {
+      const StateOf<TypeParam> x = some_state<TypeParam>(draw);
+      const auto numeric = test::numeric_jacobian(
+          [&](const StateOf<TypeParam>& at) { return model.transition(at, dt); }, x);
+      EXPECT_TRUE(matrices_near(model.jacobian(x, dt), numeric, {1e-7, 1e-7}));
+    }
+  }
+}
+
+TYPED_TEST(EveryUsvModel, HasAProcessNoiseThatIsACovariance) {
+  Draw draw(4);
+  const TypeParam model = turning<TypeParam>();
+  const StateOf<TypeParam> x = some_state<TypeParam>(draw);
+  StateMatrixOf<TypeParam> q = model.process_noise(x, 2.0);
+  EXPECT_EQ(q, q.transpose());
+  q.diagonal() *= 1 + 1e-9;
+  q.diagonal().array() += 1e-15;
+  EXPECT_TRUE(Cholesky<kStatesOf<TypeParam>>(q).ok());
+  EXPECT_EQ(model.process_noise(x, 0.0).norm(), 0.0);
+}
+
+// A whole turn of the state turns the motion with it: there is no preferred direction.
+TYPED_TEST(EveryUsvModel, HasNoPreferredDirection) {
+  constexpr int kRow = index_of(TypeParam::kComponents, kHeading);
+  Draw draw(5);
+  const TypeParam model = turning<TypeParam>();
+  const StateOf<TypeParam> x = some_state<TypeParam>(draw);
+  StateMatrixOf<TypeParam> turn = StateMatrixOf<TypeParam>::Identity();
+  const Mat<double, 2, 2> r = body_to_north_east(1.2);
+  turn.template topLeftCorner<2, 2>() = r;
+  if (kRow == 4)
+    turn.template block<2, 2>(2, 2) = r;
+  else
+    turn.template bottomRightCorner<2, 2>() = r;
+  StateOf<TypeParam> turned = turn * x, expected = turn * model.transition(x, 1.0);
+  turned[kRow] += 1.2;
+  expected[kRow] += 1.2;
+  EXPECT_TRUE(matrices_near(model.transition(turned, 1.0), expected, {1e-12, 1e-12}));
+}
+
+TYPED_TEST(EveryUsvModel, IsTheSameToEkfAndUkf) {
+  const std::vector<Instant> log = mission(11, kStatesOf<TypeParam> == 5 ? kNoBias : kBias);
+  UsvNavigator<TypeParam, Ekf> ekf;
+  UsvNavigator<TypeParam, Ukf> ukf;
+  const auto by_ekf = navigate(ekf, log);
+  const auto by_ukf = navigate(ukf, log);
+  for (std::size_t k = 0; k < log.size(); ++k) {
+    Vec3 difference = pose<TypeParam>(by_ekf[k].mean) - pose<TypeParam>(by_ukf[k].mean);
+    difference[2] = wrap_angle(difference[2]);
+    EXPECT_LT(difference.template head<2>().norm(), 0.1) << k;
+    EXPECT_LT(std::abs(difference[2]), deg(0.01)) << k;
+    EXPECT_TRUE(is_covariance(by_ekf[k].covariance));
+    EXPECT_TRUE(is_covariance(by_ukf[k].covariance));
+  }
+}
+
+TYPED_TEST(EveryUsvModel, CoastsThroughAnOutageAndComesBack) {
+  constexpr bool kBiased = kStatesOf<TypeParam> != 5;
+  const std::vector<Instant> log = mission(12, kBiased ? kBias : kNoBias);
+  for (const bool imu : {true, false}) {
+    UsvNavigator<TypeParam> navigator;
+    ASSERT_EQ(navigator.start(start_of(log.front())), Status::kOk);
+    double north_std = 0;
+    int rejected = 0;
+    for (std::size_t k = 1; k < 500; ++k) {
+      const bool out = k > 400 && k <= 460;
+      EXPECT_EQ(out && !imu ? navigator.predict(1.0) : navigator.predict(1.0, log[k].imu),
+                Status::kOk);
+      const double std = std::sqrt(navigator.estimate().covariance(0, 0));
+      if (out) {
+        EXPECT_GT(std, north_std) << "uncertainty grows: " << k;
+        north_std = std;
+        continue;
+      }
+      if (k == 400) north_std = 0;
+      const auto fixed = navigator.update(gnss(), log[k].fix);
+      const auto turned = navigator.update(Compass(), of(log[k].compass));
+      rejected += fixed.rejected + turned.rejected;
+      const Vec3 error = squared_error<TypeParam>(navigator.estimate().mean, log[k]);
+      const Vec2 position = error.template head<2>();
+      if (k > 460) {
+        EXPECT_LT(position.norm(), 16 * navigator.estimate().covariance.topLeftCorner(2, 2).trace())
+            << "no jump that was not owned up to: " << k;
+      }
+    }
+    EXPECT_LE(rejected, 3) << "nothing of it is an outlier";
+  }
+}
+
+TYPED_TEST(EveryUsvModel, RejectsAnOutlierAndSaysSo) {
+  const std::vector<Instant> log = mission(13, kBias);
+  UsvNavigator<TypeParam> navigator;
+  navigate(navigator, log);
+  const auto before = navigator.estimate();
+  const auto wild = navigator.update(gnss(), Vec2(log.back().fix + Vec2(500, 0)));
+  EXPECT_TRUE(wild.rejected);
+  EXPECT_FALSE(wild);
+  EXPECT_EQ(wild.status, Status::kMissed);
+  EXPECT_GT(wild.nis, 100);
+  EXPECT_TRUE(test::matrices_identical(navigator.estimate().mean, before.mean));
+  EXPECT_TRUE(test::matrices_identical(navigator.estimate().covariance, before.covariance));
+}
+
+TYPED_TEST(EveryUsvModel, BelievesReadingsThatInsist) {
+  const UsvOutliers outliers{.rejections = 4};
+  const std::vector<Instant> log = mission(14, kStatesOf<TypeParam> == 5 ? kNoBias : kBias);
+  UsvNavigator<TypeParam> navigator(TypeParam{}, outliers);
+  navigate(navigator, log);
+  const Vec2 elsewhere = log.back().position + Vec2(300, -200);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_TRUE(navigator.update(gnss(), elsewhere).rejected);
+    EXPECT_FALSE(navigator.update(Compass(), of(log.back().heading)).rejected)
+        << "each kind is counted by itself";
+  }
+  const auto taken = navigator.update(gnss(), elsewhere);
+  EXPECT_TRUE(taken);
+  EXPECT_TRUE(taken.widened);
+  EXPECT_LT((navigator.estimate().mean.template head<2>() - elsewhere).norm(), 10);
+  EXPECT_TRUE(is_covariance(navigator.estimate().covariance));
+  EXPECT_FALSE(navigator.update(gnss(), elsewhere).rejected);
+}
+
+TYPED_TEST(EveryUsvModel, CrossesNorthAndSouthAlike) {
+  constexpr int kRow = index_of(TypeParam::kComponents, kHeading);
+  for (const double middle : {0.0, kPi<double>}) {
+    UsvNavigator<TypeParam> navigator;
+    ASSERT_EQ(navigator.start({.velocity_mps = {1, 0}, .heading_rad = middle - deg(20)}),
+              Status::kOk);
+    for (int k = 1; k <= 40; ++k) {
+      ASSERT_EQ(navigator.predict(1.0, {.yaw_rate_rad_s = deg(1)}), Status::kOk);
+      const double truth = middle + deg(k - 20);
+      // The compass counts from 0 to 360 degrees, and once a turn further.
+      const double z = k % 2 ? compass_angle(truth) : truth + 2 * kPi<double>;
+      const auto step = navigator.update(Compass(), of(z));
+      ASSERT_TRUE(step);
+      EXPECT_NEAR(step.innovation[0], 0, deg(0.01));
+      const double heading = navigator.estimate().mean[kRow];
+      EXPECT_LE(std::abs(heading), kPi<double>);
+      EXPECT_NEAR(wrap_angle(heading - truth), 0, deg(0.01));
+    }
+  }
+}
+
+// Circles with biases and without one reading: the smoother does not mind where the heading wraps.
+TYPED_TEST(EveryUsvModel, SmoothsAcrossTheSeam) {
+  constexpr int kRow = index_of(TypeParam::kComponents, kHeading);
+  UsvNavigator<TypeParam> navigator;
+  ASSERT_EQ(navigator.start({.velocity_mps = {1, 0}}), Status::kOk);
+  std::vector beliefs{navigator.estimate()};
+  std::vector<UsvLeg<>> legs;
+  for (int k = 1; k <= 150; ++k) {
+    legs.push_back(navigator.leg(1.0, {0, deg(5), deg(5)}));
+    ASSERT_EQ(navigator.predict(legs.back()), Status::kOk);
+    ASSERT_TRUE(navigator.update(Compass(), of(deg(5) * k)));
+    beliefs.push_back(navigator.estimate());
+  }
+  const auto filtered = beliefs;
+  ASSERT_EQ(navigator.smooth(beliefs, legs), Status::kOk);
+  for (std::size_t k = 0; k < beliefs.size(); ++k) {
+    EXPECT_NEAR(wrap_angle(beliefs[k].mean[kRow] - deg(5) * double(k)), 0, deg(0.05)) << k;
+    EXPECT_LE(std::abs(beliefs[k].mean[kRow]), kPi<double>);
+    EXPECT_LE(beliefs[k].covariance(kRow, kRow), filtered[k].covariance(kRow, kRow) * (1 + 1e-9));
+    EXPECT_TRUE(is_covariance(beliefs[k].covariance));
+  }
+}
+
+TYPED_TEST(EveryUsvModel, TouchesNoHeap) {
+  UsvNavigator<TypeParam, Ekf> ekf;
+  UsvNavigator<TypeParam, Ukf> ukf;
+  std::array<typename UsvNavigator<TypeParam>::State, 3> beliefs;
+  const std::array legs{ekf.leg(1.0, {}), ekf.leg(2.0)};
+  const auto drive = [](auto& navigator) {
+    bool fine = navigator.start({.heading_rad = 3.1}) == Status::kOk;
+    for (int k = 0; k < 12; ++k) {
+      fine &= navigator.predict(1.0, {0, 0, 0.1}) == Status::kOk;
+      fine &= navigator.predict(1.0) == Status::kOk;
+      (void)navigator.update(gnss(), Vec2(k < 11 ? 1e4 : 0, 0));
+      (void)navigator.update(Compass(), of(-3.1));
+    }
+    return fine;
+  };
+  const test::NoHeap fence;
+  const bool fine = drive(ekf) && drive(ukf) && ekf.smooth(beliefs, legs) == Status::kOk;
+  EXPECT_EQ(fence.allocations(), 0);
+  EXPECT_TRUE(fine);
+}
+
+TYPED_TEST(EveryUsvModel, RefusesBadInputAndStaysAsItWas) {
+  UsvNavigator<TypeParam> navigator;
+  EXPECT_EQ(navigator.predict(1.0, {}), Status::kNotStarted);
+  EXPECT_EQ(navigator.update(Compass(), of(0)).status, Status::kNotStarted);
+  EXPECT_EQ(navigator.start({.heading_rad = kNan}), Status::kNotFinite);
+  ASSERT_EQ(navigator.start({.velocity_mps = {1, 0}}), Status::kOk);
+  const auto before = navigator.estimate();
+  EXPECT_EQ(navigator.predict(-1.0, {}), Status::kNegativeTimeStep);
+  EXPECT_EQ(navigator.predict(kNan, {}), Status::kNotFinite);
+  EXPECT_EQ(navigator.predict(1.0, {kNan, kNan, kNan}), Status::kNotFinite);
+  EXPECT_EQ(navigator.update(gnss(), Vec2(kNan, 0)).status, Status::kNotFinite);
+  EXPECT_EQ(navigator.update(Compass(), of(kNan)).status, Status::kNotFinite);
+  EXPECT_TRUE(test::matrices_identical(navigator.estimate().mean, before.mean));
+  EXPECT_TRUE(test::matrices_identical(navigator.estimate().covariance, before.covariance));
+  EXPECT_THROW(UsvNavigator<TypeParam>(TypeParam{}, UsvOutliers{.gate = {1.0}}),
+               std::invalid_argument);
+  EXPECT_THROW(UsvNavigator<TypeParam>(TypeParam{}, UsvOutliers{.rejections = -1}),
+               std::invalid_argument);
+  EXPECT_THROW(UsvNavigator<TypeParam>(TypeParam{}, {}, ImuNoise{-1, 0}), std::invalid_argument);
+}
+
+TYPED_TEST(EveryUsvModel, GoesOnFromAnArchive) {
+  const std::vector<Instant> log = mission(16, kNoBias);
+  UsvNavigator<TypeParam> one, two;
+  navigate(one, log);
+  (void)one.update(gnss(), Vec2(1e4, 1e4));
+  Archive saved;
+  one.archive(saved);
+  Archive loaded{saved.bytes()};
+  two.archive(loaded);
+  ASSERT_TRUE(loaded.ok() && loaded.at_end());
+  for (int k = 0; k < 12; ++k) {
+    const auto a = one.update(gnss(), Vec2(1e4, 1e4)), b = two.update(gnss(), Vec2(1e4, 1e4));
+    EXPECT_EQ(a.widened, b.widened);
+  }
+  EXPECT_TRUE(test::matrices_identical(one.estimate().mean, two.estimate().mean));
+}
+
+// Sensors -----------------------------------------------------------------------------------------
+
+TEST(UsvSensors, VelocityInACurrentHasTheJacobianOfItsMeasurement) {
+  const GroundVelocityInCurrent sensor;
+  const Vec<double, 4> x(0.3, -0.2, 4, 2);
+  const auto numeric =
+      test::numeric_jacobian([&](const Vec<double, 4>& at) { return sensor.measure(at); }, x);
+  EXPECT_TRUE(matrices_near(sensor.jacobian(x), numeric, {1e-8, 1e-8}));
+}
+
+TEST(UsvSensors, LogAndVelocityTellTheCurrent) {
+  UsvNavigator<UsvCurrentMotion> navigator;
+  ASSERT_EQ(navigator.start({.velocity_mps = {3, 0}}), Status::kOk);
+  for (int k = 0; k < 60; ++k) {
+    ASSERT_EQ(navigator.predict(1.0, {}), Status::kOk);
+    EXPECT_TRUE(navigator.update(SpeedLog(0.05), of(3.2)));
+    EXPECT_TRUE(navigator.update(GroundVelocityInCurrent(0.05), Vec2(3.0, 0.4)));
+    EXPECT_TRUE(navigator.update(Compass(), of(0)));
+  }
+  EXPECT_TRUE(matrices_near(navigator.estimate().mean.tail<2>(), Vec2(-0.2, 0.4), {0.02, 0}));
+}
+
+TEST(UsvSensors, RateOfTurnTellsTheBiasOfTheGyro) {
+  UsvNavigator<UsvBiasMotion> navigator;
+  ASSERT_EQ(navigator.start(UsvStart{}), Status::kOk);
+  for (int k = 0; k < 30; ++k) {
+    const double turn = deg(k % 4), gyro = turn + deg(0.3);
+    ASSERT_EQ(navigator.predict(1.0, {.yaw_rate_rad_s = gyro}), Status::kOk);
+    EXPECT_TRUE(navigator.update(RateOfTurn{.gyro_rad_s = gyro}, of(turn)));
+  }
+  EXPECT_NEAR(navigator.estimate().mean[7], deg(0.3), deg(0.01));
+}
+
+TEST(UsvSensors, GroundVelocityTightensTheVelocity) {
+  UsvNavigator<UsvBiasMotion> navigator;
+  ASSERT_EQ(navigator.start(UsvStart{}), Status::kOk);
+  ASSERT_TRUE(navigator.update(GroundVelocity(0.1), Vec2(0.5, -0.5)));
+  EXPECT_LT(std::sqrt(navigator.estimate().covariance(2, 2)), 0.1);
+  EXPECT_NEAR(navigator.estimate().mean[3], -0.5, 0.05);
+}
+
+TEST(UsvSensors, RefuseStandardDeviationsThatAreNone) {
+  EXPECT_THROW(Compass(0).validate(), std::invalid_argument);
+  EXPECT_THROW(SpeedLog(-1).validate(), std::invalid_argument);
+  EXPECT_THROW(GroundVelocity(kNan).validate(), std::invalid_argument);
+  EXPECT_THROW(GroundVelocityInCurrent(0).validate(), std::invalid_argument);
+  EXPECT_THROW((RateOfTurn{.rate_std_rad_s = 0}.validate()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace wakeline
