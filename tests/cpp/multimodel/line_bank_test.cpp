@@ -124,6 +124,10 @@ TEST(LineBank, LagOfAnAccelerationThatHasJustBegun) {
     const auto& line = lines[std::size_t(n - 2)];
     EXPECT_NEAR(line.position_m[0] - 4.5 * 4.5 / 2, line.onset_lag[0], 1e-12) << n;
     EXPECT_NEAR(line.velocity_mps[0] - 4.5, line.onset_lag[1], 1e-12) << n;
+    if (n < 3) continue;
+    const auto curved = line.parabola();
+    EXPECT_NEAR(curved.position_m[0] - 4.5 * 4.5 / 2, curved.onset_lag[0], 1e-10) << n;
+    EXPECT_NEAR(curved.velocity_mps[0] - 4.5, curved.onset_lag[1], 1e-10) << n;
   }
   EXPECT_NEAR(lines[0].onset_lag[0], lines[0].steady_lag[0], 1e-12);  // two plots: the same
 }

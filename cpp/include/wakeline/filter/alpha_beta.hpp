@@ -99,11 +99,14 @@ class AlphaBetaFilter
 
   /// Saves or restores the belief and where the schedule is.
   void archive(Archive& fields) {
-    Base::archive(fields);
-    fields(occasion_.reading);
-    fields(occasion_.elapsed_s);
-    fields(occasion_.taken);
-    if (occasion_.reading < 1 || !(occasion_.elapsed_s >= Scalar(0))) fields.fail();
+    AlphaBetaFilter loaded = *this;
+    Occasion& occasion = loaded.occasion_;
+    static_cast<Base&>(loaded).archive(fields);
+    fields(occasion.reading);
+    fields(occasion.elapsed_s);
+    fields(occasion.taken);
+    if (occasion.reading < 1 || !(occasion.elapsed_s >= Scalar(0))) fields.fail();
+    if (fields.loading() && fields.ok()) *this = loaded;
   }
 
   [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }

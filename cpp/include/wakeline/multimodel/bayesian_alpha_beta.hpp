@@ -24,7 +24,7 @@ struct LineWeighing {
   double sojourn_s = 30.0;  ///< mean time until another one is the right one
   double longest_line_probability = 0.4;  ///< that it is the longest line; the others are alike
   double acceleration_std_mps2 = 0.15;  ///< per axis, of a maneuver that began at the last plot but
-                                       ///< one: widens the covariance, not used in weighing
+                                        ///< one: widens the covariance, not used in weighing
 
   [[nodiscard]] int lines() const noexcept { return max_plots - min_plots + 1; }
   /// Plots of the shortest parabola.
@@ -66,8 +66,8 @@ struct LineWeighing {
 /// its prior says. The estimate is their mixture. A parabola holds a turn that a line cuts.
 ///
 /// One mode for each member: lines first, shorter before longer, then parabolas; one that lacks
-/// plots has no probability. O(max_plots) a scan, no heap; the weighing takes one factor of the
-/// plot's covariance and no other matrix.
+/// plots has no probability, and before there are any the shortest line has all of it. O(max_plots)
+/// a scan, no heap; the weighing takes one factor of the plot's covariance and no other matrix.
 template <class ScalarType = double>
 class BayesianAlphaBeta
     : public LineEstimator<BayesianAlphaBeta<ScalarType>, LineWeighing::kMaxPlots, ScalarType> {
@@ -102,6 +102,8 @@ class BayesianAlphaBeta
     if (!(saved == weighing_)) return fields.fail();
     loaded.archive_plots(fields);
     fields(loaded.weight_);
+    const bool weighs = loaded.weight_.minCoeff() >= Scalar(0) && loaded.weight_.sum() > Scalar(0);
+    if (!(weighs && is_finite(loaded.weight_))) fields.fail();
     if (!fields.loading() || !fields.ok()) return;
     *this = loaded;
     this->refresh();
@@ -112,7 +114,10 @@ class BayesianAlphaBeta
   [[nodiscard]] const LineWeighing& weighing() const noexcept { return weighing_; }
 
  private:
-  void begin() noexcept { weight_ = probability_ = prior_; }
+  void begin() noexcept {
+    weight_ = prior_;
+    probability_ = Probability::Unit(weighing_.members(), 0);
+  }
 
   void pass(Scalar dt_s) noexcept {
     using std::exp;

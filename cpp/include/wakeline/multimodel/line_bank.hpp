@@ -36,10 +36,11 @@ struct Line {
   /// The same under 1 m/s² that began at the last plot but one: what no earlier plot can tell.
   Vec<Scalar, 2> onset_lag = Vec<Scalar, 2>::Zero();
 
-  /// Of the parabola through the same plots, three or more: its acceleration, m/s², and the variance
-  /// of that over a plot's, 1/s⁴.
+  /// Of the parabola through the same plots, three or more: its acceleration, m/s², and the
+  /// variance of that over a plot's, 1/s⁴.
   Vec<Scalar, 2> acceleration_mps2 = Vec<Scalar, 2>::Zero();
   Scalar acceleration_factor = Scalar(0);
+  Scalar onset_acceleration = Scalar(0);  ///< that it sees of the onset's 1 m/s²
 
   /// The parabola through the same plots, as it stands at present, in place of the line: the line
   /// less what it lags behind, which is independent of it.
@@ -50,6 +51,7 @@ struct Line {
     curved.position_factor += steady_lag[0] * steady_lag[0] * acceleration_factor;
     curved.cross_factor += steady_lag[0] * steady_lag[1] * acceleration_factor;
     curved.velocity_factor += steady_lag[1] * steady_lag[1] * acceleration_factor;
+    curved.onset_lag -= onset_acceleration * steady_lag;
     curved.steady_lag.setZero();
     return curved;
   }
@@ -228,16 +230,18 @@ class LineBank {
       line.plot_covariance_m2 = covariance;
       const Scalar slope = -inverse * age_bow;
       line.steady_lag = {bow + age * slope, slope};
-      if (plots > 2) {
-        line.acceleration_factor = Scalar(1) / (bow_bow + slope * age_bow);
-        line.acceleration_mps2 = line.acceleration_factor * (bow_place + slope * age_place);
-      }
       // Of an acceleration since the second plot, the newest one alone has felt anything.
       const Scalar gap = second - newest;
       const Scalar pull = (age - newest) * inverse;  // of the newest plot on the slope
       const Scalar felt = gap * gap / 2;
       line.onset_lag = {(Scalar(1) / Scalar(plots) + age * pull) * felt - second * second / 2,
                         pull * felt - second};
+      if (plots > 2) {
+        line.acceleration_factor = Scalar(1) / (bow_bow + slope * age_bow);
+        line.acceleration_mps2 = line.acceleration_factor * (bow_place + slope * age_place);
+        const Scalar bend = newest * newest / 2 - bow + slope * (newest - age);
+        line.onset_acceleration = line.acceleration_factor * bend * felt;
+      }
       return line;
     }
   };

@@ -115,8 +115,8 @@ struct ExtractionCounts {
 /// `gap_sweeps` pass as empty sweeps, more close the open echoes, as does a step back of the
 /// antenna and a change of start range or cell length. A sweep at the azimuth of the last one (by
 /// a thousandth of its width) is refused, and so is one that makes no sense; it is as if it had
-/// not come. A sweep of zeros has no detections, and neither has one that is saturated all along,
-/// for none of its cells exceeds the others.
+/// not come. A sweep of zeros has no detections, and with a factor of 1 or more neither has one
+/// that is saturated all along, for none of its cells exceeds the others.
 ///
 /// All memory is taken at construction. A picture of any content needs no more, whatever the
 /// number and size of its echoes. An extractor can be moved, not copied.
