@@ -26,8 +26,8 @@ def test_innovations_are_positions_minus_predicted_ones(sensor):
     for z in readings(12):
         bank.predict(DT_S)
         ahead = bank.estimate().mean[[0, 2]]
-        place = z[0] * np.array([np.cos(z[1]), np.sin(z[1])])
-        np.testing.assert_allclose(bank.update(sensor, z).innovation, place - ahead, atol=2.0)
+        place = wl.one_point(sensor, z, 1.0).mean[[0, 2]]
+        np.testing.assert_allclose(bank.update(sensor, z).innovation, place - ahead, atol=1e-9)
 
 
 def test_every_mode_tells_its_plots():

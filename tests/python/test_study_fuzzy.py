@@ -55,12 +55,16 @@ def test_what_does_better_needs_a_narrower_gate(report, name, most):
         # 200 runs: a median is sure to about 3 %, a 95th percentile to 5 %.
         assert row["gate_median_m"] < 1.04 * median_m
         assert row["gate_p95_m"] < 1.06 * p95_m
+        if name != "fixed3":
+            assert row["straight_rms_m"] < 2.2
 
 
 def test_a_closed_loop_loses_what_the_gate_does_not_hold(report):
     lost = {case: report.row(case, "fuzzy")["loss_probability"] for case in hard_turns()}
-    assert lost["10mps_r300"] > 0.4
-    assert all(report.row(case, "imm")["loss_probability"] <= 0.02 for case in lost)
+    assert min(lost.values()) > 0.7
+    # 0.01 is the goal; of 200 runs 3 are within its sampling.
+    assert all(report.row(case, "imm")["loss_probability"] <= 0.015 for case in lost)
+    assert all(report.row(case, "fuzzy_improved")["loss_probability"] < 0.12 for case in lost)
 
 
 def test_a_wider_gate_never_loses_more_by_much():
@@ -91,7 +95,9 @@ def test_every_picture_can_be_drawn(report, tmp_path):
 def test_video_rows_follow_the_craft(report):
     for case in hard_turns():
         row = report.row(f"{case}_video", "imm")
-        assert row["loss_probability"] in (0.0, 1.0)
+        assert row["loss_probability"] == 0.0
+        assert row["estimate_error_median_m"] < 15.0
+        assert row["straight_rms_m"] < 6.0
 
 
 def test_a_hard_turn_is_what_it_says():

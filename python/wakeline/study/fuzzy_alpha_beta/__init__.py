@@ -188,7 +188,7 @@ def run(
         result=outcomes,
         pictures=pictures.pictures(scenarios, drawn, outcomes, _CURVE_GATES_M, losses, films),
         published={"paper": PAPER, "reference": REFERENCE},
-        notes=(NOTE,),
+        notes=(NOTE, _video_note(seen)),
     )
 
 
@@ -229,24 +229,32 @@ def _rows(
 
 
 def _video_rows(scenarios: dict[str, HardTurn], films: dict[str, list[on_video.VideoRun]]) -> Rows:
+    """Errors of the runs in which the craft is not lost, and the share of those in which it is."""
     rows = []
     for case, runs in films.items():
+        begin_s, _ = scenarios[case].turn_s
         for name in LABELS if runs else ():
+            held = [run for run in runs if not run.loops[name].lost]
+            worst_m = [run.error_m(name)[SETTLED:].max() for run in held]
             straight_m2 = [
-                np.nanmean(run.error_m(name)[run.time_s <= scenarios[case].turn_s[0]] ** 2)
-                for run in runs
+                np.mean(run.error_m(name)[SETTLED:][run.time_s[SETTLED:] <= begin_s] ** 2)
+                for run in held
             ]
-            worst_m = [np.nanmax(run.error_m(name)) for run in runs]
             row = {
-                "estimate_error_median_m": np.median(worst_m),
-                "straight_rms_m": np.sqrt(np.mean(straight_m2)),
-                "loss_probability": np.mean([run.loops[name].lost for run in runs]),
+                "estimate_error_median_m": np.median(worst_m) if held else None,
+                "straight_rms_m": np.sqrt(np.mean(straight_m2)) if held else None,
+                "loss_probability": 1.0 - len(held) / len(runs),
             }
             rows.append(
                 {"scenario": f"{case}_video", "estimator": name}
                 | {key: finite(value) for key, value in row.items()}
             )
     return rows
+
+
+def _video_note(runs: int) -> str:
+    return f"""On video there are {runs} runs of each scenario; errors there are those of the runs
+in which the craft is not lost."""
 
 
 def _median_worst(error_m: np.ndarray) -> float:
