@@ -15,6 +15,7 @@
 namespace wakeline::python {
 
 void define_closest_approach(py::module_& navigation);
+void define_usv_navigator(py::module_& navigation);
 
 namespace {
 
@@ -812,6 +813,7 @@ void define_navigation(py::module_& parent) {
   define_drift(m);
   define_drift_forecast(m);
   define_closest_approach(m);
+  define_usv_navigator(m);
 }
 
 }  // namespace wakeline::python

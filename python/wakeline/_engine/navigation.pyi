@@ -7,7 +7,7 @@ import typing
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .core import Gaussian
+from .core import Gaussian, Step
 
 __all__ = [
     "ClosestApproach",
@@ -16,6 +16,9 @@ __all__ = [
     "FloatingObject",
     "LocalPlane",
     "UncertaintyEllipse",
+    "UsvNavigator",
+    "UsvReading",
+    "UsvRun",
     "closest_approach",
     "dead_reckon",
     "drift_between",
@@ -324,6 +327,199 @@ class ClosestApproach:
     def tcpa_std_s(self) -> NDArray[np.float64]:
         """
         Standard deviation of tcpa_s, of first order.
+        """
+
+class UsvReading(Step):
+    """
+    What a reading has done to the navigator.
+    """
+    @property
+    def rejected(self) -> bool:
+        """
+        outside the gate: the belief is as it was
+        """
+    @property
+    def widened(self) -> bool:
+        """
+        outside the gate, but believed after too many rejections in a row
+        """
+
+class UsvRun:
+    """
+    What `UsvNavigator.run` returns.
+    """
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """
+        (T, N, N)
+        """
+    @property
+    def mean(self) -> NDArray[np.float64]:
+        """
+        (T, N)
+        """
+    @property
+    def nis(self) -> dict[str, NDArray[np.float64]]:
+        """
+        by sensor: (T,) normalised innovations squared, NaN without a reading
+        """
+    @property
+    def rejected(self) -> dict[str, NDArray[np.bool_]]:
+        """
+        by sensor: (T,) True for a rejected outlier
+        """
+
+class UsvNavigator:
+    """
+    Own ship's position, motion and heading by IMU, GNSS, compass and log.
+
+    States are [north, east, v_north, v_east, heading] for 5, the same with the biases [forward,
+    starboard, gyro] behind for 8, and [north, east, heading, speed through water, gyro bias, current
+    north, current east] for 7, which does not use the accelerometer. Metres, seconds, radians; headings
+    in [-pi, pi].
+
+    A reading whose NIS is outside the gate is rejected. When more than `rejections` of one sensor in a
+    row were, it is the belief that is widened, and the reading is taken.
+
+    Parameters
+    ----------
+    states : {5, 7, 8}
+    filter : {'ekf', 'ukf'}
+    acceleration_std_mps2, yaw_rate_std_rad_s : float
+        Noise of a reading of the IMU, held over a step.
+    unmeasured_acceleration_std_mps2, unmeasured_yaw_rate_std_rad_s : float
+        What the ship may do in a step without a reading of the IMU.
+    acceleration_bias_std_mps2, gyro_bias_std_rad_s, current_std_mps : float
+        Of biases and current (per axis) at the start, which are zero with these deviations.
+    speed_walk_mps, current_walk_mps : float
+        What speed through water and current gain in 1 s, of 7 states.
+    gate_probability : float
+        That a good reading is inside the gate.
+    rejections : int
+        In a row, before a reading is believed nevertheless.
+    alpha, beta, kappa : float
+        Of the unscented transform.
+
+    Raises
+    ------
+    ValueError
+        When a parameter makes no sense.
+    """
+    def __init__(
+        self,
+        states: int = 8,
+        filter: str = "ekf",
+        *,
+        acceleration_std_mps2: float = 0.004,
+        yaw_rate_std_rad_s: float = 0.0005759586531581288,
+        unmeasured_acceleration_std_mps2: float = 0.1,
+        unmeasured_yaw_rate_std_rad_s: float = 0.03490658503988659,
+        acceleration_bias_std_mps2: float = 0.05,
+        gyro_bias_std_rad_s: float = 0.008726646259971648,
+        current_std_mps: float = 0.5,
+        speed_walk_mps: float = 0.03,
+        current_walk_mps: float = 0.002,
+        gate_probability: float = 0.999,
+        rejections: int = 10,
+        alpha: float = 1.0,
+        beta: float = 2.0,
+        kappa: float = 0.0,
+    ) -> None: ...
+    def predict(self, dt_s: float, imu: ArrayLike | None = None) -> None:
+        """
+        A step under a reading of the IMU [forward m/s², starboard m/s², yaw rate rad/s], or without one.
+        """
+    def run(
+        self,
+        time_s: ArrayLike,
+        imu: ArrayLike | None = None,
+        gnss: ArrayLike | None = None,
+        compass: ArrayLike | None = None,
+        *,
+        velocity: ArrayLike | None = None,
+        log: ArrayLike | None = None,
+        rate_of_turn: ArrayLike | None = None,
+        gnss_std_m: ArrayLike = [8.0, 7.0],
+        compass_std_rad: float = 0.017453292519943295,
+        velocity_std_mps: float = 0.1,
+        log_std_mps: float = 0.1,
+        rate_of_turn_std_rad_s: float = 0.0017453292519943296,
+        smooth: bool = False,
+    ) -> UsvRun:
+        """
+        Navigates along a log, from the belief as it is, which is that of `time_s[0]`.
+
+        Parameters
+        ----------
+        time_s : (T,) array
+            Not decreasing.
+        imu : (T, 3) array, optional
+            Row k is the mean from time k - 1 to time k of [forward m/s², starboard m/s², yaw rate rad/s].
+        gnss, velocity : (T, 2) array, optional
+            Position m and velocity over ground m/s, [north, east].
+        compass, log, rate_of_turn : (T,) array, optional
+            Heading rad, speed through water m/s (7 states), rate of turn rad/s (7 or 8 states).
+        gnss_std_m, compass_std_rad, velocity_std_mps, log_std_mps, rate_of_turn_std_rad_s : float
+            Standard deviations; that of gnss is [north, east].
+        smooth : bool
+            Whether the beliefs returned know the readings after them, too.
+
+        In every array a row that is not finite is no reading; without one of the IMU, the ship coasts.
+
+        Returns
+        -------
+        UsvRun
+
+        Raises
+        ------
+        ValueError
+            When shapes do not fit, times decrease, or a sensor needs a state that is not there.
+        FilterError
+            When the navigator was not started.
+        """
+    def start(
+        self,
+        position_m: ArrayLike,
+        velocity_mps: ArrayLike,
+        heading_rad: float,
+        *,
+        position_std_m: ArrayLike = [8.0, 7.0],
+        velocity_std_mps: float = 0.5,
+        heading_std_rad: float = 0.017453292519943295,
+    ) -> None:
+        """
+        Begins at [north, east] m with a velocity over ground [north, east] m/s and a heading.
+        """
+    def update_heading(
+        self, heading_rad: float, heading_std_rad: float = 0.017453292519943295
+    ) -> UsvReading:
+        """
+        A compass heading.
+        """
+    def update_position(
+        self, position_m: ArrayLike, gnss_std_m: ArrayLike = [8.0, 7.0]
+    ) -> UsvReading:
+        """
+        A GNSS position [north, east].
+        """
+    def update_rate_of_turn(
+        self, rate_rad_s: float, gyro_rad_s: float, rate_std_rad_s: float = 0.0017453292519943296
+    ) -> UsvReading:
+        """
+        A rate of turn beside that of the IMU's gyro at the time; 7 or 8 states.
+        """
+    def update_speed(self, speed_mps: float, speed_std_mps: float = 0.1) -> UsvReading:
+        """
+        A speed through water by the log; 7 states.
+        """
+    def update_velocity(self, velocity_mps: ArrayLike, velocity_std_mps: float = 0.1) -> UsvReading:
+        """
+        A velocity over ground [north, east].
+        """
+    @property
+    def estimate(self) -> Gaussian:
+        """
+        The belief, a Gaussian.
         """
 
 def closest_approach(

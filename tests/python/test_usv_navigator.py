@@ -1,0 +1,158 @@
+"""Own ship's navigator on logs of IMU, GNSS, compass and log."""
+
+import numpy as np
+import pytest
+
+import wakeline as wl
+from wakeline.navigation import UsvNavigator
+
+DEG = np.pi / 180
+BIAS = np.array([0.03, 0.02, 0.28 * DEG])
+
+
+def voyage(seed=1, steps=600, bias=BIAS, current=(0.0, 0.5)):
+    """1 m/s through water, a turn of 5 deg/s every 100 s; sensors as the navigator expects them."""
+    rng = np.random.default_rng(seed)
+    rate = np.where(np.arange(steps) % 100 < 12, 5 * DEG, 0.0)
+    rate[0] = 0.0
+    heading = 2.0 + np.cumsum(rate)
+    velocity = np.stack([np.cos(heading), np.sin(heading)], 1) + current
+    middle = (velocity[1:] + velocity[:-1]) / 2
+    position = np.vstack([[0.0, 0.0], np.cumsum(middle, 0)])
+    change = np.diff(velocity, axis=0)
+    c, s = np.cos(heading[:-1]), np.sin(heading[:-1])
+    body = np.stack([c * change[:, 0] + s * change[:, 1], -s * change[:, 0] + c * change[:, 1]], 1)
+    imu = np.column_stack([np.vstack([[0, 0], body]), rate]) + bias
+    imu += rng.normal(size=(steps, 3)) * [0.004, 0.004, 0.033 * DEG]
+    return {
+        "time_s": np.arange(steps, dtype=float),
+        "position": position,
+        "velocity": velocity,
+        "heading": heading,
+        "imu": imu,
+        "gnss": position + rng.normal(size=(steps, 2)) * [8, 7],
+        "compass": (heading + rng.normal(size=steps) * DEG) % (2 * np.pi),
+    }
+
+
+def started(log, states=8, filter="ekf", **options):
+    navigator = UsvNavigator(states, filter, **options)
+    heading = log["heading"][0]
+    navigator.start([0.0, 0.0], [np.cos(heading), np.sin(heading)], heading)
+    return navigator
+
+
+def sensors(log):
+    return {name: log[name] for name in ("time_s", "imu", "gnss", "compass")}
+
+
+def wrapped(angle_rad):
+    return (np.asarray(angle_rad) + np.pi) % (2 * np.pi) - np.pi
+
+
+@pytest.mark.parametrize("filter", ["ekf", "ukf"])
+@pytest.mark.parametrize("states", [5, 7, 8])
+def test_a_run_is_its_steps(states, filter):
+    log = voyage(steps=50, bias=0 * BIAS)
+    run = started(log, states, filter).run(**sensors(log))
+    navigator = started(log, states, filter)
+    for k in range(50):
+        if k > 0:
+            navigator.predict(1.0, log["imu"][k])
+        fixed = navigator.update_position(log["gnss"][k])
+        turned = navigator.update_heading(log["compass"][k])
+        assert fixed.nis == run.nis["gnss"][k]
+        assert turned.rejected == run.rejected["compass"][k]
+        np.testing.assert_array_equal(navigator.estimate.mean, run.mean[k])
+        np.testing.assert_array_equal(navigator.estimate.covariance, run.covariance[k])
+    assert run.mean.shape == (50, states)
+
+
+def test_biases_are_found_and_smoothing_helps():
+    log = voyage()
+    run = started(log).run(**sensors(log))
+    np.testing.assert_allclose(run.mean[-1, 5:], BIAS, atol=0.006)
+    smooth = started(log).run(**sensors(log), smooth=True)
+
+    def error(result):
+        return np.mean((result.mean[:, :2] - log["position"]) ** 2)
+
+    assert error(run) < 0.15 * np.mean((log["gnss"] - log["position"]) ** 2)
+    assert error(smooth) < 0.5 * error(run)
+    np.testing.assert_array_equal(run.mean[-1], smooth.mean[-1])
+    assert np.all(np.abs(wrapped(smooth.mean[:, 4] - log["heading"])) < 1 * DEG)
+
+
+def test_ekf_and_ukf_agree():
+    log = voyage()
+    ekf, ukf = (started(log, 8, name).run(**sensors(log)) for name in ("ekf", "ukf"))
+    assert np.max(np.abs(ekf.mean[:, :2] - ukf.mean[:, :2])) < 0.05
+
+
+def test_an_outage_grows_the_covariance_and_nothing_is_rejected_after_it():
+    log = voyage(steps=400)
+    out = slice(200, 260)
+    log["gnss"][out] = np.nan
+    run = started(log).run(**sensors(log))
+    assert np.all(np.diff(run.covariance[out, 0, 0]) > 0)
+    assert np.isnan(run.nis["gnss"][out]).all()
+    assert np.isfinite(run.nis["compass"]).all()
+    assert run.rejected["gnss"].sum() <= 2
+    assert run.covariance[320, 0, 0] < 1.2 * run.covariance[199, 0, 0]
+
+
+def test_an_outlier_is_rejected():
+    log = voyage(steps=200)
+    log["gnss"][150] += [300, 0]
+    run = started(log).run(**sensors(log))
+    assert run.rejected["gnss"][150]
+    assert run.nis["gnss"][150] > 100
+    assert np.abs(run.mean[150, 0] - log["position"][150, 0]) < 15
+
+
+def test_steps_without_the_imu_coast():
+    log = voyage(steps=300)
+    log["imu"][100:130] = np.nan
+    run = started(log).run(**sensors(log))
+    assert np.isfinite(run.mean).all()
+    assert run.covariance[125, 2, 2] > 2 * run.covariance[99, 2, 2]
+
+
+def test_log_velocity_and_rate_of_turn():
+    log = voyage(steps=200)
+    rate = log["imu"][:, 2] - BIAS[2]
+    run = started(log, 7).run(
+        **sensors(log), velocity=log["velocity"], log=np.ones(200), rate_of_turn=rate
+    )
+    assert set(run.nis) == {"gnss", "compass", "velocity", "log", "rate_of_turn"}
+    np.testing.assert_allclose(run.mean[-1, 5:], [0, 0.5], atol=0.05)
+    np.testing.assert_allclose(run.mean[-1, 4], BIAS[2], atol=0.03 * DEG)
+
+
+def test_errors_name_what_is_wrong():
+    log = voyage(steps=20)
+    with pytest.raises(ValueError, match="states must be 5, 7 or 8, got 6"):
+        UsvNavigator(6)
+    with pytest.raises(ValueError, match="filter must be 'ekf' or 'ukf', got 'kf'"):
+        UsvNavigator(8, "kf")
+    with pytest.raises(ValueError, match="gate probability must be between 0 and 1, got 2"):
+        UsvNavigator(gate_probability=2)
+    with pytest.raises(wl.FilterError, match="not started"):
+        UsvNavigator().run(**sensors(log))
+    navigator = started(log)
+    with pytest.raises(ValueError, match=r"imu must have shape \(20, 3\), got \(19, 3\)"):
+        navigator.run(log["time_s"], log["imu"][1:])
+    with pytest.raises(ValueError, match=r"time_s must be finite and not decrease.*row 1"):
+        navigator.run(log["time_s"][::-1], log["imu"])
+    with pytest.raises(ValueError, match="log needs a navigator with a speed through water"):
+        navigator.run(log["time_s"], log=np.ones(20))
+    with pytest.raises(ValueError, match="a rate of turn needs a navigator with a gyro bias"):
+        started(log, 5).update_rate_of_turn(0.0, 0.0)
+    with pytest.raises(ValueError, match="compass_std_rad must be finite and positive, got 0"):
+        navigator.run(log["time_s"], compass_std_rad=0)
+    with pytest.raises(wl.FilterError, match="predict: negative time step"):
+        navigator.predict(-1.0)
+    with pytest.raises(wl.FilterError, match="predict: not finite"):
+        navigator.predict(1.0, [np.nan, 0, 0])
+    with pytest.raises(ValueError, match="heading_std_rad must be finite and positive"):
+        navigator.update_heading(0.0, 0.0)
