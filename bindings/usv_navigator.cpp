@@ -87,11 +87,10 @@ class PyNavigator {
   }
 
   void predict(double dt_s, const std::optional<DoubleArray>& imu) {
-    const std::optional<Eigen::VectorXd> values =
-        imu ? std::optional(to_vector("imu", *imu, 3)) : std::nullopt;
+    std::optional<Imu> reading;
+    if (imu) reading = to_imu(to_vector("imu", *imu, 3).data());
     visit([&](auto& navigator) {
-      require_ok(values ? navigator.predict(dt_s, to_imu(values->data())) : navigator.predict(dt_s),
-                 "predict");
+      require_ok(reading ? navigator.predict(dt_s, *reading) : navigator.predict(dt_s), "predict");
     });
   }
 
