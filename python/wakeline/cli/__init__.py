@@ -13,7 +13,7 @@ from typing import NoReturn
 
 from wakeline import FilterError, __version__
 
-from . import bench, demo, score, study, track
+from . import bench, demo, navigate, score, study, track
 
 _BAD_INPUT = 2
 _INTERRUPTED = 130
@@ -69,7 +69,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         title="commands", required=True, metavar="COMMAND", parser_class=_Parser
     )
-    for command in (demo, track, score, study, bench):
+    for command in (demo, track, navigate, score, study, bench):
         command.add_to(commands)
     return parser
 

@@ -15,6 +15,7 @@ from .comparison import (
     turn_rate_panel,
 )
 from .map import ellipse_outline, map_figure, map_view
+from .own_ship import course_over_time, drift_over_time, own_map, speed_over_time
 from .ppi import circle_outline, echo, ppi, screen_raster, window_outline
 from .style import (
     INK,
@@ -45,10 +46,12 @@ __all__ = [
     "PALETTE",
     "TEXT_PT",
     "circle_outline",
+    "course_over_time",
     "course_panel",
     "draw_bands",
     "dress",
     "dress_map",
+    "drift_over_time",
     "echo",
     "ellipse_outline",
     "error_panel",
@@ -60,12 +63,14 @@ __all__ = [
     "mode_panel",
     "name_lines",
     "nis_panel",
+    "own_map",
     "paths_view",
     "ppi",
     "probability_panel",
     "ranking_panel",
     "save",
     "screen_raster",
+    "speed_over_time",
     "speed_panel",
     "steps_panel",
     "time_figure",

@@ -1,0 +1,225 @@
+"""``wakeline navigate``: the log of a vessel's own instruments in, her solution out."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from wakeline import plot
+from wakeline.recording import NavigationLog, RecordingError, read_nmea, replacing
+
+from . import navigating, outputs, report
+
+_COLUMNS = (
+    *("time_s", "lat_deg", "lon_deg", "north_m", "east_m", "vnorth_mps", "veast_mps"),
+    *("heading_deg", "set_deg", "drift_mps"),
+    *("north_var_m2", "north_east_cov_m2", "east_var_m2"),
+    *("vnorth_var_m2s2", "vnorth_veast_cov_m2s2", "veast_var_m2s2", "heading_std_deg", "status"),
+)
+_SHOWN_PROBLEMS = 5
+_METHODS = {
+    "navigator": "navigator",
+    "dead_reckoning": "heading and log alone",
+    "constant_velocity": "last velocity over ground",
+}
+
+
+def add_to(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the program."""
+    parser = commands.add_parser(
+        "navigate",
+        help="own ship's solution from a log of her instruments",
+        description="Reads NMEA 0183, fuses fixes, speeds and headings, and writes own.csv and "
+        "pictures. Then satellites are hidden for a minute at a time, and the errors of what is "
+        "foretold are told. What cannot be read of the log is counted, and never fatal.",
+    )
+    parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one a line")
+    parser.add_argument(
+        "--variation",
+        type=float,
+        metavar="DEG",
+        help="magnetic variation, positive east, where the log has none; default what courses over "
+        "ground say of the compass",
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help="errors without satellites")
+    parser.set_defaults(run=run)
+
+
+class _Leg(NamedTuple):
+    """A part of the log without a gap of a minute."""
+
+    readings: navigating.Readings
+    track: navigating.OwnTrack
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do what the command line asks for."""
+    log = read_nmea(arguments.log, variation_deg=arguments.variation)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    print(_input_lines(log), flush=True)
+    legs = list(_legs(log))
+    if not legs:
+        raise RecordingError(
+            arguments.log,
+            "there is no part to navigate by",
+            wanted=f"{navigating.LEAST_FIXES} sound fixes without a gap of a minute",
+            got=f"{len(log.fixes.sound())} in all",
+        )
+    files = [arguments.out / "own.csv"]
+    _write_csv(files[0], legs)
+    if outputs.can_draw():
+        files += _write_pictures(arguments.out, legs)
+    errors = _hold_out(legs)
+    print(_error_table(errors))
+    print(f"written to {arguments.out}: {', '.join(file.name for file in files)}")
+    if not outputs.can_draw():
+        print(outputs.HOW_TO_GET_PICTURES)
+    if arguments.json is not None:
+        outputs.write_json(arguments.json, "navigate", _rows(errors, arguments.log.name))
+
+
+def _legs(log: NavigationLog) -> Iterator[_Leg]:
+    offset_rad = 0.0
+    magnetic = len(log.heading.sound()) == 0 and len(log.compass.sound()) > 0
+    if magnetic:
+        found_rad = navigating.magnetic_offset_rad(log)
+        offset_rad = found_rad or 0.0
+        how = "as courses over ground say" if found_rad is not None else "for nothing is known"
+        print(f"note: {np.degrees(offset_rad):+.1f}° are added to magnetic headings, {how}")
+    for part in log.parts():
+        if len(part.fixes.sound()) >= navigating.LEAST_FIXES:
+            readings = navigating.readings_of(part, offset_rad)
+            yield _Leg(readings, navigating.navigate(readings))
+
+
+def _input_lines(log: NavigationLog) -> str:
+    fixes = log.fixes.sound()
+    hours = np.ptp(fixes.time_s) / 3600.0 if len(fixes) else 0.0
+    problems = sum(log.report.problems.values())
+    lines = [f"{log.name}: {log.report.lines} lines, {len(fixes)} fixes in {hours:.2f} h"]
+    lines += [f"note: {note}" for note in log.notes]
+    lines += [f"  {problem}" for problem in log.report.examples[:_SHOWN_PROBLEMS]]
+    if problems > _SHOWN_PROBLEMS:
+        lines.append(f"  and {problems - _SHOWN_PROBLEMS} more")
+    return "\n".join(lines)
+
+
+def _hold_out(legs: Sequence[_Leg]) -> dict[str, dict[float, np.ndarray]]:
+    """Errors without satellites over all legs."""
+    joined: dict[str, dict[float, list[np.ndarray]]] = {}
+    for leg in legs:
+        for name, errors in navigating.hold_out(leg.readings).items():
+            for horizon_s, values in errors.items():
+                joined.setdefault(name, {}).setdefault(horizon_s, []).append(values)
+    return {
+        name: {horizon_s: np.concatenate(parts) for horizon_s, parts in errors.items()}
+        for name, errors in joined.items()
+    }
+
+
+def _error_table(errors: dict[str, dict[float, np.ndarray]]) -> str:
+    count = max(len(values) for by_horizon in errors.values() for values in by_horizon.values())
+    if count == 0:
+        return "too short to hide satellites from it and compare"
+    head = ["", *(f"{horizon_s:.0f} s" for horizon_s in navigating.HORIZONS_S)]
+    body = [
+        [_METHODS[name], *(f"{value:.1f}" for value in navigating.medians(errors[name]).values())]
+        for name in _METHODS
+        if name in errors
+    ]
+    title = f"error in metres without satellites, median of {count} times:"
+    return f"\n{title}\n{report.aligned([head, *body])}\n"
+
+
+def _rows(errors: dict[str, dict[float, np.ndarray]], file: str) -> list[dict[str, Any]]:
+    rows = []
+    for name, by_horizon in errors.items():
+        row: dict[str, Any] = {"scenario": file, "estimator": name}
+        for horizon_s, values in by_horizon.items():
+            known = len(values) > 0
+            row[f"coast_{horizon_s:.0f}s_median_m"] = float(np.median(values)) if known else None
+            row[f"coast_{horizon_s:.0f}s_p95_m"] = (
+                float(np.percentile(values, 95)) if known else None
+            )
+        rows.append(row)
+    return rows
+
+
+def _write_csv(path: Path, legs: Sequence[_Leg]) -> None:
+    with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(_COLUMNS)
+        for leg in legs:
+            writer.writerows(_csv_rows(leg.track))
+
+
+def _csv_rows(track: navigating.OwnTrack) -> Iterator[list[Any]]:
+    north, east = track.current_mps.T
+    place, speed = track.position_m2, track.velocity_m2s2
+    numbers = np.column_stack(
+        [
+            track.position_m,
+            track.velocity_mps,
+            np.degrees(track.heading_rad) % 360.0,
+            np.degrees(np.arctan2(east, north)) % 360.0,
+            np.hypot(north, east),
+            *(place[:, 0, 0], place[:, 0, 1], place[:, 1, 1]),
+            *(speed[:, 0, 0], speed[:, 0, 1], speed[:, 1, 1]),
+            np.degrees(track.heading_std_rad),
+        ]
+    )
+    where = zip(track.time_s, track.latitude_deg, track.longitude_deg, strict=True)
+    for place_and_time, row, status in zip(where, numbers, track.status, strict=True):
+        time_s, latitude_deg, longitude_deg = place_and_time
+        texts = ("" if np.isnan(value) else f"{value:.6g}" for value in row)
+        yield [f"{time_s:.3f}", f"{latitude_deg:.8f}", f"{longitude_deg:.8f}", *texts, status]
+
+
+def _write_pictures(folder: Path, legs: Sequence[_Leg]) -> list[Path]:
+    """Write the map and the panels over time, one pair a leg."""
+    files = []
+    for number, (readings, track) in enumerate(legs, start=1):
+        end = f"-{number}" if len(legs) > 1 else ""
+        files += [folder / f"own_map{end}.png", folder / f"own_time{end}.png"]
+        has_fix = np.isfinite(readings.fix_m[:, 0])
+        figure = plot.figure(7.2, 6.4)
+        plot.own_map(
+            figure.add_subplot(),
+            track.position_m,
+            readings.fix_m[has_fix],
+            track.current_mps,
+            coasting=track.status == "coasting",
+        )
+        plot.save(figure, files[-2])
+        plot.save(_time_figure(readings, track, readings.time_s[has_fix]), files[-1])
+    return files
+
+
+def _time_figure(
+    readings: navigating.Readings, track: navigating.OwnTrack, fix_time_s: np.ndarray
+) -> Any:
+    figure = plot.figure(7.2, 6.8)
+    speed, course, drift = figure.subplots(3, 1, sharex=True)
+    over_ground = track.velocity_mps
+    plot.speed_over_time(
+        speed, track.time_s, np.hypot(over_ground[:, 0], over_ground[:, 1]), readings.log_mps
+    )
+    plot.course_over_time(
+        course,
+        track.time_s,
+        np.arctan2(over_ground[:, 1], over_ground[:, 0]),
+        track.heading_rad,
+    )
+    plot.drift_over_time(drift, track.time_s, track.current_mps, fix_time_s)
+    for ax in (speed, course):
+        ax.set_xlabel("")
+    figure.align_ylabels([speed, course, drift])
+    return figure

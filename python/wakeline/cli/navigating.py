@@ -1,0 +1,292 @@
+"""Own ship's log through the navigator: where the ship was, and how well it is known.
+
+Without an IMU the ship coasts from reading to reading. With heading and speed through water the
+state has seven components, current among them; without either it has five.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+import wakeline as wl
+from wakeline.recording import NavigationLog
+
+FIX_STD_M = 3.0
+VELOCITY_STD_MPS = 0.3  # over ground, by satellite: filtered by the receiver
+COMPASS_STD_RAD = np.deg2rad(4.0)  # of a small craft in waves
+LOG_STD_MPS = 0.15
+YAW_RATE_STD_RAD_S = np.deg2rad(6.0)
+SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.1, 0.02  # in one second
+
+LEAST_FIXES = 10
+COASTING_S = 5.0
+HIDDEN_S, HIDDEN_EVERY_S = 60.0, 150.0
+HORIZONS_S = (10.0, 30.0, 60.0)
+_UNDER_WAY_MPS = 1.5
+_SETTLED_S = 120.0
+_NEAR_S = 3.0
+
+
+class Readings(NamedTuple):
+    """Readings at all times (T,) at which there is one, NaN where there is none; a plane for them.
+
+    ``fix_m`` and ``velocity_mps`` (T, 2) north and east, ``heading_rad`` (T,) true, ``log_mps``
+    (T,) through the water ahead.
+    """
+
+    plane: wl.navigation.LocalPlane
+    time_s: np.ndarray
+    fix_m: np.ndarray
+    velocity_mps: np.ndarray
+    heading_rad: np.ndarray
+    log_mps: np.ndarray
+
+    @property
+    def knows_water(self) -> bool:
+        """Whether there are heading and speed through water."""
+        return bool(np.isfinite(self.heading_rad).any() and np.isfinite(self.log_mps).any())
+
+
+@dataclass(frozen=True)
+class OwnTrack:
+    """Own ship's solution at times (T,).
+
+    Attributes
+    ----------
+    time_s : ndarray (T,)
+    latitude_deg, longitude_deg : ndarray (T,)
+    position_m, velocity_mps : ndarray (T, 2)
+        North and east, over ground.
+    heading_rad : ndarray (T,)
+        NaN where the log has no heading.
+    current_mps : ndarray (T, 2)
+        Set and drift as north and east; NaN where there is no heading or no speed through water.
+    position_m2, velocity_m2s2 : ndarray (T, 2, 2)
+        Covariances.
+    heading_std_rad : ndarray (T,)
+    status : ndarray of str (T,)
+        ``ok``; ``coasting`` without a fix for more than five seconds; ``rejected`` where a fix was
+        not believed.
+    """
+
+    time_s: np.ndarray
+    latitude_deg: np.ndarray
+    longitude_deg: np.ndarray
+    position_m: np.ndarray
+    velocity_mps: np.ndarray
+    heading_rad: np.ndarray
+    current_mps: np.ndarray
+    position_m2: np.ndarray
+    velocity_m2s2: np.ndarray
+    heading_std_rad: np.ndarray
+    status: np.ndarray
+
+
+def readings_of(part: NavigationLog, offset_rad: float) -> Readings:
+    """The readings of a log that has a fix, `offset_rad` added to magnetic headings."""
+    fixes, ground, water = part.fixes.sound(), part.ground.sound(), part.water.sound()
+    headings = _headings(part, offset_rad)
+    latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
+    plane = wl.navigation.LocalPlane(latitude_rad=latitude[0], longitude_rad=longitude[0])
+    course = np.column_stack([np.cos(ground.course_rad), np.sin(ground.course_rad)])
+    series = (
+        (fixes.time_s, plane.position_m(latitude, longitude)),
+        (ground.time_s, ground.speed_mps[:, None] * course),
+        headings,
+        (water.time_s, water.ahead_mps),
+    )
+    time_s = np.unique(np.concatenate([times for times, _ in series]))
+    time_s = time_s[time_s >= fixes.time_s[0]]
+    return Readings(plane, time_s, *(_at(time_s, *one) for one in series))
+
+
+def magnetic_offset_rad(log: NavigationLog) -> float | None:
+    """What to add to magnetic headings that have no variation, found from courses over ground.
+
+    The mean difference of course and heading under way, in which currents and leeway of all
+    directions cancel. None where there is nothing to find it from.
+    """
+    ground, compass = log.ground.sound(), log.compass.sound()
+    fast = ground.speed_mps > _UNDER_WAY_MPS
+    if not fast.any() or len(compass) == 0:
+        return None
+    at = np.clip(np.searchsorted(compass.time_s, ground.time_s[fast]), 0, len(compass) - 1)
+    off = ground.course_rad[fast] - compass.heading_magnetic_rad[at]
+    off = off[np.isfinite(off)]
+    return float(np.angle(np.exp(1j * off).mean())) if len(off) else None
+
+
+def navigate(readings: Readings) -> OwnTrack:
+    """The solution at every reading from the first fix on."""
+    states = 7 if readings.knows_water else 5
+    done = _navigator(states, readings).run(
+        readings.time_s,
+        gnss=readings.fix_m,
+        compass=readings.heading_rad,
+        velocity=readings.velocity_mps,
+        log=readings.log_mps if states == 7 else None,
+        gnss_std_m=[FIX_STD_M, FIX_STD_M],
+        compass_std_rad=COMPASS_STD_RAD,
+        velocity_std_mps=VELOCITY_STD_MPS,
+        log_std_mps=LOG_STD_MPS,
+    )
+    mean, covariance = done.mean, done.covariance
+    heading = mean[:, 2 if states == 7 else 4]
+    velocity, slope = _velocity(mean, states)
+    latitude, longitude = readings.plane.place(mean[:, :2])
+    known = np.isfinite(readings.heading_rad).any()
+    at = 2 if states == 7 else 4
+    return OwnTrack(
+        time_s=readings.time_s,
+        latitude_deg=np.degrees(latitude),
+        longitude_deg=np.degrees(longitude),
+        position_m=mean[:, :2],
+        velocity_mps=velocity,
+        heading_rad=heading if known else np.full(len(mean), np.nan),
+        current_mps=mean[:, 5:7] if states == 7 else np.full((len(mean), 2), np.nan),
+        position_m2=covariance[:, :2, :2],
+        velocity_m2s2=slope @ covariance @ np.swapaxes(slope, 1, 2),
+        heading_std_rad=np.sqrt(covariance[:, at, at]) if known else np.full(len(mean), np.nan),
+        status=_status(readings, done.rejected["gnss"]),
+    )
+
+
+def hold_out(readings: Readings) -> dict[str, dict[float, np.ndarray]]:
+    """Errors (n,) in metres after seconds without satellites, by method and horizon.
+
+    Fixes and speeds over ground are hidden for a minute at a time, and what is foretold is compared
+    with the hidden fixes: by the navigator, by the last velocity over ground, and by heading and
+    speed through water alone.
+    """
+    time_s = readings.time_s
+    starts_s = np.arange(
+        time_s[0] + _SETTLED_S, time_s[-1] - HIDDEN_S - HIDDEN_EVERY_S / 2, HIDDEN_EVERY_S
+    )
+    hidden = np.zeros(len(time_s), dtype=bool)
+    for start_s in starts_s:
+        hidden |= (time_s > start_s) & (time_s <= start_s + HIDDEN_S)
+    seen = readings._replace(
+        fix_m=np.where(hidden[:, None], np.nan, readings.fix_m),
+        velocity_mps=np.where(hidden[:, None], np.nan, readings.velocity_mps),
+    )
+    foretold = {"navigator": navigate(seen).position_m, "constant_velocity": _straight_on(seen)}
+    if readings.knows_water:
+        foretold["dead_reckoning"] = _reckoned(seen)
+    return {name: _errors(readings, place_m, starts_s) for name, place_m in foretold.items()}
+
+
+def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
+    navigator = wl.UsvNavigator(
+        states,
+        unmeasured_yaw_rate_std_rad_s=YAW_RATE_STD_RAD_S,
+        speed_walk_mps=SPEED_WALK_MPS,
+        current_walk_mps=CURRENT_WALK_MPS,
+    )
+    velocity = _first(readings.velocity_mps, np.zeros(2))
+    heading = _first(readings.heading_rad, np.arctan2(velocity[1], velocity[0]))
+    navigator.start(
+        _first(readings.fix_m, np.zeros(2)),
+        velocity,
+        float(heading),
+        position_std_m=[FIX_STD_M, FIX_STD_M],
+        velocity_std_mps=1.0,
+        heading_std_rad=np.deg2rad(10.0),
+    )
+    return navigator
+
+
+def _headings(part: NavigationLog, offset_rad: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times and true headings: those that are told as true, else of the compass."""
+    true = part.heading.sound()
+    if len(true):
+        return true.time_s, true.heading_rad
+    compass = part.compass.sound()
+    return compass.time_s, wl.wrap_angle(compass.heading_magnetic_rad + offset_rad)
+
+
+def _at(time_s: np.ndarray, times: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values at those of the times at which there are some, NaN at the others."""
+    spread = np.full((len(time_s), *values.shape[1:]), np.nan)
+    later = times >= time_s[0]
+    spread[np.searchsorted(time_s, times[later])] = values[later]
+    return spread
+
+
+def _first(values: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
+    """The first row that is finite."""
+    sound = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+    return values[sound.argmax()] if sound.any() else otherwise
+
+
+def _velocity(mean: np.ndarray, states: int) -> tuple[np.ndarray, np.ndarray]:
+    """Velocity over ground (T, 2) and its slope in the state (T, 2, N)."""
+    slope = np.zeros((len(mean), 2, states))
+    if states == 5:
+        slope[:, [0, 1], [2, 3]] = 1.0
+        return mean[:, 2:4], slope
+    ahead = np.column_stack([np.cos(mean[:, 2]), np.sin(mean[:, 2])])
+    slope[:, 0, 2], slope[:, 1, 2] = -mean[:, 3] * ahead[:, 1], mean[:, 3] * ahead[:, 0]
+    slope[:, :, 3] = ahead
+    slope[:, [0, 1], [5, 6]] = 1.0
+    return mean[:, 3:4] * ahead + mean[:, 5:7], slope
+
+
+def _status(readings: Readings, rejected: np.ndarray) -> np.ndarray:
+    has_fix = np.isfinite(readings.fix_m[:, 0])
+    last_s = np.maximum.accumulate(np.where(has_fix, readings.time_s, -np.inf))
+    status = np.where(readings.time_s - last_s > COASTING_S, "coasting", "ok")
+    return np.where(rejected, "rejected", status)
+
+
+def _straight_on(seen: Readings) -> np.ndarray:
+    """Places (T, 2) on from the last fix with the last velocity over ground."""
+    fix, fixed_s = _held(seen.time_s, seen.fix_m)
+    velocity, _ = _held(seen.time_s, seen.velocity_mps)
+    return fix + velocity * (seen.time_s - fixed_s)[:, None]
+
+
+def _reckoned(seen: Readings) -> np.ndarray:
+    """Places (T, 2) on from the last fix by heading and speed through water."""
+    heading, _ = _held(seen.time_s, seen.heading_rad)
+    speed, _ = _held(seen.time_s, seen.log_mps)
+    water = np.nan_to_num(speed[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]))
+    way = np.vstack(
+        [np.zeros((1, 2)), np.cumsum(np.diff(seen.time_s)[:, None] * water[:-1], axis=0)]
+    )
+    fix, _ = _held(seen.time_s, seen.fix_m)
+    way_at_fix, _ = _held(seen.time_s, np.where(np.isfinite(seen.fix_m), way, np.nan))
+    return fix + way - way_at_fix
+
+
+def _held(time_s: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The last finite row at each time, and when it was."""
+    sound = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+    last = np.maximum.accumulate(np.where(sound, np.arange(len(values)), 0))
+    return values[last], time_s[last]
+
+
+def _errors(
+    readings: Readings, place_m: np.ndarray, starts_s: np.ndarray
+) -> dict[float, np.ndarray]:
+    fixed = np.flatnonzero(np.isfinite(readings.fix_m[:, 0]))
+    times = readings.time_s[fixed]
+    errors: dict[float, list[float]] = {horizon_s: [] for horizon_s in HORIZONS_S}
+    for start_s in starts_s:
+        before = np.searchsorted(times, start_s, side="right") - 1
+        if start_s - times[before] > _NEAR_S:
+            continue
+        for horizon_s in HORIZONS_S:
+            nearest = np.abs(times - start_s - horizon_s).argmin()
+            if abs(times[nearest] - start_s - horizon_s) <= _NEAR_S:
+                k = fixed[nearest]
+                errors[horizon_s].append(float(np.hypot(*(place_m[k] - readings.fix_m[k]))))
+    return {horizon_s: np.array(values) for horizon_s, values in errors.items()}
+
+
+def medians(errors: Mapping[float, np.ndarray]) -> dict[float, float]:
+    """Median error by horizon; NaN where nothing could be compared."""
+    return {h: float(np.median(e)) if len(e) else float("nan") for h, e in errors.items()}

@@ -1,0 +1,114 @@
+"""Own ship's solution: where she went, and speed, course and drift over time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wakeline._units import KNOT_MPS
+
+from .style import INK, MUTED, PALETTE, dress, dress_map, name_lines, with_gaps
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_ARROWS = 24
+
+
+def own_map(
+    ax: Axes,
+    position_m: np.ndarray,
+    fix_m: np.ndarray,
+    current_mps: np.ndarray | None = None,
+    *,
+    coasting: np.ndarray | None = None,
+) -> Axes:
+    """Map of own ship's way and fixes, north up, with the current along it; returns `ax`.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Axes to draw into.
+    position_m, fix_m : ndarray (T, 2), (n, 2)
+        North and east, of the solution and of fixes.
+    current_mps : ndarray (T, 2), optional
+        North and east; drawn as arrows where finite.
+    coasting : ndarray of bool (T,), optional
+        Where there were no fixes.
+    """
+    ax.plot(fix_m[:, 1] / 1e3, fix_m[:, 0] / 1e3, ".", color=MUTED, markersize=3, label="fixes")
+    way = position_m / 1e3
+    ax.plot(way[:, 1], way[:, 0], color=PALETTE[0], linewidth=1.5, label="own ship")
+    if coasting is not None and coasting.any():
+        gone = np.where(coasting[:, None], way, np.nan)
+        ax.plot(gone[:, 1], gone[:, 0], color=PALETTE[1], linewidth=2.0, label="without fixes")
+    if current_mps is not None and np.isfinite(current_mps).any():
+        known = np.flatnonzero(np.isfinite(current_mps[:, 0]))
+        at = known[np.linspace(0, len(known) - 1, min(_ARROWS, len(known))).astype(int)]
+        ax.quiver(
+            way[at, 1],
+            way[at, 0],
+            current_mps[at, 1],
+            current_mps[at, 0],
+            color=PALETTE[2],
+            width=0.003,
+            label="current",
+            zorder=4,
+        )
+    return name_lines(dress_map(ax))
+
+
+def speed_over_time(
+    ax: Axes, time_s: np.ndarray, over_ground_mps: np.ndarray, through_water_mps: np.ndarray
+) -> Axes:
+    """Speeds in knots over time in minutes; returns `ax`."""
+    for values, color, name in (
+        (over_ground_mps, PALETTE[0], "over ground"),
+        (through_water_mps, PALETTE[2], "through water"),
+    ):
+        ax.plot(*_by_minute(time_s, values / KNOT_MPS), color=color, linewidth=1.2, label=name)
+    return name_lines(_over_time(ax, "speed (kn)", at_least_0=True))
+
+
+def course_over_time(
+    ax: Axes, time_s: np.ndarray, course_rad: np.ndarray, heading_rad: np.ndarray
+) -> Axes:
+    """Course over ground and heading in degrees over time; returns `ax`."""
+    for values, color, name in (
+        (course_rad, PALETTE[0], "course over ground"),
+        (heading_rad, PALETTE[1], "heading"),
+    ):
+        degrees = np.degrees(values) % 360.0
+        jump = np.abs(np.diff(degrees, prepend=degrees[:1])) > 180.0
+        cut = np.where(jump, np.nan, degrees)
+        ax.plot((time_s - time_s[0]) / 60.0, cut, color=color, linewidth=1.2, label=name)
+    ax.set_ylim(0.0, 360.0)
+    ax.set_yticks([0, 90, 180, 270, 360])
+    return name_lines(_over_time(ax, "course (°)"))
+
+
+def drift_over_time(
+    ax: Axes, time_s: np.ndarray, current_mps: np.ndarray, fix_time_s: np.ndarray
+) -> Axes:
+    """Drift in knots over time, with gaps of the fixes marked below; returns `ax`."""
+    drift_kn = np.hypot(current_mps[:, 0], current_mps[:, 1]) / KNOT_MPS
+    ax.plot(*_by_minute(time_s, drift_kn), color=PALETTE[2], linewidth=1.2)
+    minutes = (fix_time_s - time_s[0]) / 60.0
+    ax.plot(minutes, np.zeros(len(minutes)), "|", color=INK, markersize=4)
+    return _over_time(ax, "drift (kn)", at_least_0=True)
+
+
+def _by_minute(time_s: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    known = np.isfinite(values)
+    if not known.any():
+        return np.zeros(0), np.zeros(0)
+    times, drawn = with_gaps(time_s[known], values[known])
+    return (times - time_s[0]) / 60.0, drawn
+
+
+def _over_time(ax: Axes, ylabel: str, *, at_least_0: bool = False) -> Axes:
+    ax.set(xlabel="time (min)", ylabel=ylabel)
+    if at_least_0:
+        ax.set_ylim(bottom=0.0)
+    return dress(ax)

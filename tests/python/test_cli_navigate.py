@@ -1,0 +1,179 @@
+"""`wakeline navigate`: a log of own ship's instruments in, her solution out."""
+
+import csv
+import json
+from importlib import resources
+
+import numpy as np
+import pytest
+
+from wakeline.cli import main, outputs
+
+BUNDLED = resources.files("wakeline.recording") / "data" / "irene"
+KN = 1852.0 / 3600.0
+
+
+@pytest.fixture(autouse=True)
+def no_pictures(request, monkeypatch):
+    if "pictures" not in request.fixturenames:
+        monkeypatch.setattr(outputs, "can_draw", lambda: False)
+
+
+@pytest.fixture
+def pictures():
+    pytest.importorskip("matplotlib")
+
+
+def sentence(body):
+    check = 0
+    for octet in body.encode():
+        check ^= octet
+    return f"${body}*{check:02X}\n"
+
+
+def heading_deg(second):
+    """40 degrees, and 90 more after every five minutes, at 3 degrees a second."""
+    return (
+        40.0
+        + 90.0 * (second // 300)
+        - (90.0 - np.minimum(3.0 * (second % 300), 90.0)) * (second >= 300)
+    )
+
+
+def voyage(minutes=20, current_kn=(0.8, -0.5), *, compass="HDT", water=True, seed=1):
+    """Sentences of a ship of 6 kn that turns every five minutes, in a current (north, east)."""
+    rng = np.random.default_rng(seed)
+    lines, north, east = [], 0.0, 0.0
+    for second in range(60 * minutes):
+        heading = np.deg2rad(heading_deg(second))
+        vn = 6.0 * KN * np.cos(heading) + current_kn[0] * KN
+        ve = 6.0 * KN * np.sin(heading) + current_kn[1] * KN
+        north, east = north + vn, east + ve
+        clock = f"{10 + second // 3600:02d}{second // 60 % 60:02d}{second % 60:02d}"
+        latitude_min = 30.0 + 60 * (north + 2 * rng.standard_normal()) / 111_229.0
+        longitude_min = 30.0 + 60 * (east + 2 * rng.standard_normal()) / 71_696.0
+        course = np.degrees(np.arctan2(ve, vn)) % 360
+        told = (np.degrees(heading) + rng.standard_normal()) % 360
+        lines.append(
+            sentence(
+                f"GPRMC,{clock},A,50{latitude_min:08.5f},N,002{longitude_min:08.5f},E,"
+                f"{np.hypot(vn, ve) / KN:.1f},{course:.1f},010620,,"
+            )
+        )
+        if compass == "HDT":
+            lines.append(sentence(f"HEHDT,{told:.1f},T"))
+        elif compass == "HDG":
+            lines.append(sentence(f"HCHDG,{(told - 3.0) % 360:.1f},,,,"))
+        if water:
+            lines.append(sentence(f"VWVHW,,T,,M,{6 + 0.1 * rng.standard_normal():.1f},N,,K"))
+    return lines
+
+
+def navigated(folder, lines, *options):
+    log = folder / "some.nmea"
+    log.write_text("".join(lines))
+    assert main(["navigate", str(log), "--out", str(folder), *options]) == 0
+    with (folder / "own.csv").open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_bundled_log_coasts_better_than_on_a_straight(tmp_path, capsys):
+    (log,) = [f for f in BUNDLED.iterdir() if f.name.endswith(".nmea")]
+    answer = tmp_path / "errors.json"
+    command = ["navigate", str(log), "--out", str(tmp_path), "--json", str(answer)]
+    assert main(command) == 0
+    rows = {row["estimator"]: row for row in json.loads(answer.read_text())["rows"]}
+    ours, straight = rows["navigator"], rows["constant_velocity"]
+    assert ours["coast_60s_median_m"] < 0.75 * straight["coast_60s_median_m"]
+    assert ours["coast_10s_median_m"] < 1.05 * straight["coast_10s_median_m"]
+    assert ours["coast_60s_median_m"] < rows["dead_reckoning"]["coast_60s_median_m"]
+    assert "median of" in capsys.readouterr().out
+
+
+def test_set_and_drift_come_out(tmp_path):
+    rows = navigated(tmp_path, voyage())
+    late = rows[len(rows) // 2 :]
+    drift = np.array([float(row["drift_mps"]) for row in late])
+    toward = np.deg2rad([float(row["set_deg"]) for row in late])
+    current = np.median(np.column_stack([drift * np.cos(toward), drift * np.sin(toward)]), axis=0)
+    np.testing.assert_allclose(current / KN, [0.8, -0.5], atol=0.1)
+    assert np.mean([row["status"] == "ok" for row in late]) > 0.99
+    assert np.all([float(row["north_var_m2"]) > 0 for row in rows])
+    heading = np.array([float(row["heading_deg"]) for row in late])
+    assert np.isfinite(heading).all()
+
+
+def test_a_compass_without_variation_is_set_by_courses_over_ground(tmp_path, capsys):
+    rows = navigated(tmp_path, voyage(current_kn=(0.0, 0.0), compass="HDG"))
+    assert "+3.0° are added" in capsys.readouterr().out.replace("+2.9°", "+3.0°").replace(
+        "+3.1°", "+3.0°"
+    )
+    second = np.array([float(row["time_s"]) for row in rows]) - float(rows[0]["time_s"])
+    told = np.array([float(row["heading_deg"]) for row in rows])
+    off = (told - heading_deg(second) + 180.0) % 360.0 - 180.0
+    assert abs(np.median(off)) < 0.5
+
+
+def test_satellites_that_fail_are_coasted_over_and_come_back_without_a_jump(tmp_path):
+    lines = voyage()
+    silent = [
+        line
+        for k, line in enumerate(lines)
+        if not (3 * 700 <= k < 3 * 790 and line.startswith("$GPRMC"))
+    ]
+    rows = navigated(tmp_path, silent)
+    coasting = [row for row in rows if row["status"] == "coasting"]
+    assert coasting
+    spread = [float(row["north_var_m2"]) for row in coasting]
+    assert spread[-1] > 4.0 * spread[0]
+    place = np.array([[float(row["north_m"]), float(row["east_m"])] for row in rows])
+    assert np.hypot(*np.diff(place, axis=0).T).max() < 15.0
+
+
+@pytest.mark.parametrize(("compass", "water"), [("none", True), ("HDT", False), ("none", False)])
+def test_without_heading_or_log_there_is_a_solution_without_drift(tmp_path, compass, water):
+    rows = navigated(tmp_path, voyage(5, compass=compass, water=water))
+    assert all(row["drift_mps"] == "" for row in rows)
+    assert all(np.isfinite(float(row["vnorth_mps"])) for row in rows)
+    assert (rows[-1]["heading_deg"] == "") == (compass == "none")
+
+
+def test_bad_lines_are_told_and_nothing_else_is_lost(tmp_path, capsys):
+    lines = voyage(5)
+    lines[99] = lines[99][:20] + "\n"
+    lines[201] = lines[201].replace("*", "7*")
+    lines[300] = "\x00\x01 nonsense\n"
+    rows = navigated(tmp_path, lines)
+    told = capsys.readouterr().out
+    assert "line 100" in told
+    assert "line 202" in told
+    assert len(rows) >= 298
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("", "wanted"),
+        ("north, east\n1, 2\n", "wanted"),
+        ("".join(voyage(1))[:200], "10 sound fixes"),
+    ],
+)
+def test_what_is_no_log_is_one_clear_line(tmp_path, text, word, capsys):
+    log = tmp_path / "some.nmea"
+    log.write_text(text)
+    assert main(["navigate", str(log), "--out", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert "some.nmea" in error
+    assert word in error
+    assert error.count("\n") == 1
+
+
+def test_a_missing_log_is_one_clear_line(tmp_path, capsys):
+    assert main(["navigate", str(tmp_path / "none.nmea"), "--out", str(tmp_path)]) == 2
+    assert "none.nmea" in capsys.readouterr().err
+
+
+def test_pictures_are_drawn(tmp_path, pictures):
+    navigated(tmp_path, voyage(6))
+    for name in ("own_map.png", "own_time.png"):
+        assert (tmp_path / name).read_bytes()[:4] == b"\x89PNG"
