@@ -16,6 +16,7 @@ from .radar import RadarSimulator
 from .scenario import AnyTruth, Scenario
 from .track_truth import TrackTruth, smoothed
 from .truth import Segment, Truth, segments_from_table
+from .usv_mission import Obstacle, UsvLogs, UsvMission, UsvVoyage
 from .video import (
     Land,
     RadarVideoSimulator,
@@ -32,6 +33,7 @@ __all__ = [
     "HardTurn",
     "HardTurnRuns",
     "Land",
+    "Obstacle",
     "RadarSimulator",
     "RadarVideoSimulator",
     "Scenario",
@@ -39,6 +41,9 @@ __all__ = [
     "Segment",
     "TrackTruth",
     "Truth",
+    "UsvLogs",
+    "UsvMission",
+    "UsvVoyage",
     "VideoScene",
     "VideoTarget",
     "disturbed",

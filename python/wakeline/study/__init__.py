@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from . import a823, fuzzy_alpha_beta, imm, solent, variable_structure
+from . import a823, fuzzy_alpha_beta, imm, solent, usv_navigation, variable_structure
 from .base import Picture, Published, Report
 
 __all__ = [
@@ -26,6 +26,7 @@ __all__ = [
     "load",
     "names",
     "solent",
+    "usv_navigation",
     "variable_structure",
 ]
 
@@ -35,6 +36,7 @@ _STUDIES = {
     "fuzzy-alpha-beta": fuzzy_alpha_beta,
     "solent": solent,
     "a823": a823,
+    "usv-navigation": usv_navigation,
 }
 
 

@@ -29,11 +29,17 @@ _HEADS = {
     "after_turn_position_rmse_m": "after turn m",
     "after_turn_speed_rmse_mps": "after turn m/s",
     "after_turn_course_rms_deg": "after turn °",
+    "north_mse_m2": "north m²",
+    "east_mse_m2": "east m²",
+    "heading_mse_deg2": "heading °²",
+    "second_half_north_mse_m2": "2nd half north m²",
+    "second_half_east_mse_m2": "2nd half east m²",
+    "second_half_heading_mse_deg2": "2nd half heading °²",
     "nees": "NEES",
     "ns_per_step": "ns a step",
 }
 _UNITS = {"mps": "m/s", "deg": "°"}
-_DIGITS = {"m": 1, "s": 0, "deg": 1, "step": 0}
+_DIGITS = {"m": 1, "s": 0, "deg": 1, "deg2": 3, "step": 0}
 
 
 @dataclass(frozen=True)
