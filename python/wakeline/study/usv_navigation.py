@@ -66,7 +66,7 @@ hardly bends. NEES is that of position, velocity and heading, 5 where a filter k
 Every filter begins at the true place, the bound averages over a start that errs: over the whole
 mission a filter may lie below it, and the second half is the fair comparison. ukf5_known_bias, the
 paper's filter, is given the biases, which no vessel knows; ukf8 is not. ukf7_current knows that
-speed through water and current never change, which the bound does not. Errors do not depend on the
+speed through water and current never change, which the bound does not. Errors hardly depend on the
 current: that the paper's fall with it is chance."""
 
 
