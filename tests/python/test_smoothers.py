@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 import wakeline as wl
 from wakeline import filter as wf
+from wakeline import scenario
 
 KINDS = {
     "exponential": lambda **k: wf.ExponentialSmoother(0.4, **k),
@@ -27,6 +28,8 @@ KINDS = {
     "bank": wf.WindowBank,
 }
 every = pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS.keys())
+
+KNOT = 1852.0 / 3600.0
 
 
 def wrapped(angle_rad):
@@ -143,47 +146,15 @@ def test_a_bank_that_makes_no_sense_is_refused(settings):
         wf.WindowBank(**settings)
 
 
-# A voyage of 40 minutes: speeds and courses are ordered, the ship follows.
-
-DEG = np.pi / 180
-
-
-def voyage(dt_s, seed):
-    """True and read speed (kn) and course (rad) each dt_s."""
-    fine_s = 0.1
-    time_s = np.arange(0.0, 2400.0 + fine_s / 2, fine_s)
-    speed_order = np.select([time_s < 400, time_s < 900, time_s < 1300], [12, 6, 0.5], 10.0)
-    course_order = np.select(
-        [time_s < 200, time_s < 700, time_s < 1500, time_s < 2000], [330, 420, 300, 380], 250.0
-    )
-    speed, course, rate = np.empty(time_s.size), np.empty(time_s.size), 0.0
-    speed[0], course[0] = 12.0, 330.0
-    for k in range(1, time_s.size):
-        speed[k] = speed[k - 1] + fine_s / 60 * (speed_order[k] - speed[k - 1])
-        wanted = np.clip((course_order[k] - course[k - 1]) / 20, -0.4, 0.4)
-        rate += fine_s / 10 * (wanted - rate)
-        course[k] = course[k - 1] + fine_s * rate
-    each = round(dt_s / fine_s)
-    speed, course = speed[::each], course[::each] * DEG
-    rng = np.random.default_rng(seed)
-    return (
-        speed,
-        course,
-        speed + 0.1 * rng.standard_normal(speed.size),
-        course + 0.3 * DEG * rng.standard_normal(speed.size),
-    )
-
-
 @pytest.mark.parametrize(
     ("dt_s", "speed_kn", "course_deg"), [(1.0, 0.10, 0.30), (3.0, 0.22, 0.85), (10.0, 0.80, 4.2)]
 )
 def test_a_bank_foretells_a_voyage_four_steps_ahead(dt_s, speed_kn, course_deg):
-    speed_error, course_error = [], []
-    for seed in range(6):
-        speed, course, log, gyro = voyage(dt_s, seed)
-        forecast = wf.WindowBank().run(dt_s, log, ahead_s=4 * dt_s)[2]
-        speed_error.append((forecast[:-4] - speed[4:]) ** 2)
-        forecast = wf.WindowBank(wrapped=True).run(dt_s, wrapped(gyro), ahead_s=4 * dt_s)[2]
-        course_error.append(wrapped(forecast[:-4] - course[4:]) ** 2)
-    assert np.sqrt(np.mean(speed_error)) < speed_kn
-    assert np.sqrt(np.mean(course_error)) < course_deg * DEG
+    truth = scenario.reckoning_voyage(dt_s)
+    log, gyro, *_ = truth.read(runs=6, seed=0)
+    forecast = wf.WindowBank().run(dt_s, log, ahead_s=4 * dt_s)[2]
+    speed_error = (forecast[:, :-4] - truth.speed_mps[4:]) / KNOT
+    forecast = wf.WindowBank(wrapped=True).run(dt_s, gyro, ahead_s=4 * dt_s)[2]
+    course_error = np.degrees(wrapped(forecast[:, :-4] - truth.course_rad[4:]))
+    assert np.sqrt(np.mean(speed_error**2)) < speed_kn
+    assert np.sqrt(np.mean(course_error**2)) < course_deg

@@ -27,6 +27,7 @@ from .video import (
     small_craft_scene,
     strait_scene,
 )
+from .voyage import Voyage, VoyageReadings, reckoning_voyage
 
 __all__ = [
     "AnyTruth",
@@ -46,6 +47,8 @@ __all__ = [
     "UsvVoyage",
     "VideoScene",
     "VideoTarget",
+    "Voyage",
+    "VoyageReadings",
     "disturbed",
     "hard_turns",
     "named",
@@ -53,6 +56,7 @@ __all__ = [
     "papers",
     "radar_screen",
     "random_maneuvers",
+    "reckoning_voyage",
     "segments_from_table",
     "small_craft_scene",
     "smoothed",

@@ -13,7 +13,15 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from . import a823, fuzzy_alpha_beta, imm, solent, usv_navigation, variable_structure
+from . import (
+    a823,
+    dead_reckoning,
+    fuzzy_alpha_beta,
+    imm,
+    solent,
+    usv_navigation,
+    variable_structure,
+)
 from .base import Picture, Published, Report
 
 __all__ = [
@@ -21,6 +29,7 @@ __all__ = [
     "Published",
     "Report",
     "a823",
+    "dead_reckoning",
     "fuzzy_alpha_beta",
     "imm",
     "load",
@@ -36,6 +45,7 @@ _STUDIES = {
     "fuzzy-alpha-beta": fuzzy_alpha_beta,
     "solent": solent,
     "a823": a823,
+    "dead-reckoning": dead_reckoning,
     "usv-navigation": usv_navigation,
 }
 

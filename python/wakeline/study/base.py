@@ -38,8 +38,8 @@ _HEADS = {
     "nees": "NEES",
     "ns_per_step": "ns a step",
 }
-_UNITS = {"mps": "m/s", "deg": "°"}
-_DIGITS = {"m": 1, "s": 0, "deg": 1, "deg2": 3, "step": 0}
+_UNITS = {"mps": "m/s", "deg": "°", "arcmin": "′"}
+_DIGITS = {"m": 1, "s": 0, "deg": 1, "deg2": 3, "step": 0, "arcmin": 4}
 
 
 @dataclass(frozen=True)
