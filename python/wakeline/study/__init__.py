@@ -15,6 +15,7 @@ from types import ModuleType
 
 from . import (
     a823,
+    ais_forecast,
     dead_reckoning,
     fuzzy_alpha_beta,
     imm,
@@ -29,6 +30,7 @@ __all__ = [
     "Published",
     "Report",
     "a823",
+    "ais_forecast",
     "dead_reckoning",
     "fuzzy_alpha_beta",
     "imm",
@@ -45,6 +47,7 @@ _STUDIES = {
     "fuzzy-alpha-beta": fuzzy_alpha_beta,
     "solent": solent,
     "a823": a823,
+    "ais-forecast": ais_forecast,
     "dead-reckoning": dead_reckoning,
     "usv-navigation": usv_navigation,
 }
