@@ -68,7 +68,7 @@ TYPED_TEST(CfarOf, IsItsDefinition) {
   for (const auto kind : {CfarKind::kCellAveraging, CfarKind::kOrderedStatistic})
     for (const int train : {1, 5, 16, 128})
       for (const int guard : {0, 3})
-        for (const auto [factor, offset] :
+        for (const auto& [factor, offset] :
              {std::pair{0.7, 0}, {3.3, 0}, {60.0, 0}, {1000.0, 0}, {1.0, 5}, {1.0, 60}, {3.3, 999}})
           for (const std::size_t cells : {1, 2, 7, 40, 300}) {
             const CfarSettings settings{.kind = kind,
