@@ -16,6 +16,8 @@
 #include "wakeline/core/chi_square.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/component.hpp"
+#include "wakeline/core/pack.hpp"
+#include "wakeline/core/pack_math.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/scalar.hpp"
 #include "wakeline/core/status.hpp"

@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Several numbers in one register, as a Scalar for everything else in the library.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <type_traits>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#include "wakeline/core/scalar.hpp"
+
+// What is compiled for one instruction set never meets what is compiled for another, because the
+// names differ.
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define WAKELINE_INSTRUCTION_SET avx512
+#define WAKELINE_REGISTER_BYTES 64
+#elif defined(__AVX2__) && defined(__FMA__)
+#define WAKELINE_INSTRUCTION_SET avx2
+#define WAKELINE_REGISTER_BYTES 32
+#elif defined(__SSE2__)
+#define WAKELINE_INSTRUCTION_SET sse2
+#define WAKELINE_REGISTER_BYTES 16
+#elif defined(__ARM_NEON)
+#define WAKELINE_INSTRUCTION_SET neon
+#define WAKELINE_REGISTER_BYTES 16
+#else
+#define WAKELINE_INSTRUCTION_SET portable
+#define WAKELINE_REGISTER_BYTES 16
+#endif
+
+namespace wakeline {
+inline namespace WAKELINE_INSTRUCTION_SET {
+
+/// Lanes of the widest register of the instruction set that is compiled for. A pack wider than that
+/// works, and is slower.
+template <class Real>
+inline constexpr int kNativeLanes = WAKELINE_REGISTER_BYTES / int(sizeof(Real));
+
+/// A truth value for each lane of a `Pack`: all bits of a lane are set or none.
+template <class Real, int Lanes>
+class PackMask {
+  using Integer = std::conditional_t<sizeof(Real) == 8, std::int64_t, std::int32_t>;
+
+ public:
+  using Raw [[gnu::vector_size(sizeof(Real) * Lanes)]] = Integer;
+  Raw raw;
+
+  PackMask() = default;
+  explicit PackMask(Raw bits) noexcept : raw(bits) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): a truth about all lanes.
+  PackMask(bool everywhere) noexcept : raw(Integer(everywhere ? -1 : 0) - Raw{}) {}
+
+  [[nodiscard]] bool operator[](int lane) const noexcept { return raw[lane] != 0; }
+  void set(int lane, bool truth) noexcept { raw[lane] = truth ? -1 : 0; }
+
+  friend PackMask operator&&(PackMask a, PackMask b) noexcept { return PackMask(a.raw & b.raw); }
+  friend PackMask operator||(PackMask a, PackMask b) noexcept { return PackMask(a.raw | b.raw); }
+  friend PackMask operator!(PackMask a) noexcept { return PackMask(~a.raw); }
+
+  friend bool any(PackMask mask) noexcept {
+    constexpr int kBytes = int(sizeof(Raw));
+#if defined(__AVX512DQ__)
+    if constexpr (kBytes == 64) {
+      if constexpr (sizeof(Real) == 8)
+        return _mm512_movepi64_mask((__m512i)mask.raw) != 0;
+      else
+        return _mm512_movepi32_mask((__m512i)mask.raw) != 0;
+    }
+#endif
+#if defined(__AVX__)
+    if constexpr (kBytes == 32) return _mm256_movemask_ps((__m256)mask.raw) != 0;
+#endif
+#if defined(__SSE2__)
+    if constexpr (kBytes == 16) return _mm_movemask_ps((__m128)mask.raw) != 0;
+#endif
+    Integer bits = 0;
+    for (int k = 0; k < Lanes; ++k) bits |= mask.raw[k];
+    return bits != 0;
+  }
+  friend bool none(PackMask mask) noexcept { return !any(mask); }
+  friend bool all(PackMask mask) noexcept { return !any(!mask); }
+};
+
+/// `Lanes` numbers, on which every operation works lane by lane: a `Scalar` of the filters. Its
+/// comparisons give a `PackMask`, and `select` stands where a number would have an `if`.
+template <class Real, int Lanes>
+class Pack {
+  static_assert(std::floating_point<Real> && Lanes > 1 && (Lanes & (Lanes - 1)) == 0);
+
+ public:
+  using Raw [[gnu::vector_size(sizeof(Real) * Lanes)]] = Real;
+  using Mask = PackMask<Real, Lanes>;
+  Raw raw;
+
+  Pack() = default;
+  explicit Pack(Raw numbers) noexcept : raw(numbers) {}
+  /// The same number in each lane.
+  template <class Number>
+  requires(std::is_arithmetic_v<Number>)
+      // NOLINTNEXTLINE(google-explicit-constructor): what a constant in a formula means.
+      Pack(Number number)
+  noexcept : raw(Real(number) - Raw{}) {}
+
+  /// Lane k is `number(k)`.
+  template <class Function>
+  static Pack of(const Function& number) noexcept {
+    Pack pack;
+    for (int k = 0; k < Lanes; ++k) pack.raw[k] = Real(number(k));
+    return pack;
+  }
+
+  [[nodiscard]] Real operator[](int lane) const noexcept { return raw[lane]; }
+  void set(int lane, Real number) noexcept { raw[lane] = number; }
+
+  friend Pack operator+(Pack a, Pack b) noexcept { return Pack(a.raw + b.raw); }
+  friend Pack operator-(Pack a, Pack b) noexcept { return Pack(a.raw - b.raw); }
+  friend Pack operator*(Pack a, Pack b) noexcept { return Pack(a.raw * b.raw); }
+  friend Pack operator/(Pack a, Pack b) noexcept { return Pack(a.raw / b.raw); }
+  friend Pack operator-(Pack a) noexcept { return Pack(-a.raw); }
+  friend Pack operator+(Pack a) noexcept { return a; }
+  Pack& operator+=(Pack b) noexcept { return *this = *this + b; }
+  Pack& operator-=(Pack b) noexcept { return *this = *this - b; }
+  Pack& operator*=(Pack b) noexcept { return *this = *this * b; }
+  Pack& operator/=(Pack b) noexcept { return *this = *this / b; }
+
+  friend Mask operator<(Pack a, Pack b) noexcept { return compared(a.raw < b.raw); }
+  friend Mask operator<=(Pack a, Pack b) noexcept { return compared(a.raw <= b.raw); }
+  friend Mask operator>(Pack a, Pack b) noexcept { return compared(a.raw > b.raw); }
+  friend Mask operator>=(Pack a, Pack b) noexcept { return compared(a.raw >= b.raw); }
+  friend Mask operator==(Pack a, Pack b) noexcept { return compared(a.raw == b.raw); }
+  friend Mask operator!=(Pack a, Pack b) noexcept { return compared(a.raw != b.raw); }
+
+  friend Pack select(Mask condition, Pack a, Pack b) noexcept {
+    return Pack(condition.raw ? a.raw : b.raw);
+  }
+  friend Pack min(Pack a, Pack b) noexcept { return select(b < a, b, a); }
+  friend Pack max(Pack a, Pack b) noexcept { return select(a < b, b, a); }
+  friend Pack abs(Pack a) noexcept { return from_bits(a.bits() & ~sign_bit()); }
+  /// The magnitude of a with the sign of b.
+  friend Pack copysign(Pack a, Pack b) noexcept {
+    return from_bits((a.bits() & ~sign_bit()) | (b.bits() & sign_bit()));
+  }
+  friend Mask isnan(Pack a) noexcept { return a != a; }
+  friend Mask isfinite(Pack a) noexcept { return a - a == Pack(0); }
+  friend Pack sqrt(Pack a) noexcept { return Pack(square_root(a.raw)); }
+
+  /// The nearest integer, halves to even.
+  friend Pack round_to_even(Pack a) noexcept {
+    // Adding a number whose last bit is worth one rounds; beyond it there are no fractions.
+    const Pack shift = copysign(Pack(kFirstInteger), a);
+    return select(abs(a) < Pack(kFirstInteger), copysign((a + shift) - shift, a), a);
+  }
+  friend Pack floor(Pack a) noexcept {
+    const Pack rounded = round_to_even(a);
+    return rounded - select(rounded > a, Pack(1), Pack(0));
+  }
+
+  friend Real lane(Pack a, int k) noexcept { return a.raw[k]; }
+
+  /// The numbers as integers, bit by bit.
+  [[nodiscard]] typename Mask::Raw bits() const noexcept { return (typename Mask::Raw)raw; }
+  static Pack from_bits(typename Mask::Raw bits) noexcept { return Pack((Raw)bits); }
+
+ private:
+  static constexpr Real kFirstInteger = sizeof(Real) == 8 ? Real(0x1p52) : Real(0x1p23);
+
+  static typename Mask::Raw sign_bit() noexcept { return Pack(Real(-0.0)).bits(); }
+
+  template <class Bits>
+  static Mask compared(Bits bits) noexcept {
+    return Mask((typename Mask::Raw)bits);
+  }
+
+  static Raw square_root(Raw a) noexcept {
+    constexpr bool kDouble = std::same_as<Real, double>;
+    constexpr int kBytes = int(sizeof(Raw));
+#if defined(__AVX512F__)
+    if constexpr (kBytes == 64) {
+      if constexpr (kDouble)
+        return (Raw)_mm512_maskz_sqrt_pd(__mmask8(-1), (__m512d)a);
+      else
+        return (Raw)_mm512_maskz_sqrt_ps(__mmask16(-1), (__m512)a);
+    }
+#endif
+#if defined(__AVX__)
+    if constexpr (kBytes == 32) {
+      if constexpr (kDouble)
+        return (Raw)_mm256_sqrt_pd((__m256d)a);
+      else
+        return (Raw)_mm256_sqrt_ps((__m256)a);
+    }
+#endif
+#if defined(__SSE2__)
+    if constexpr (kBytes == 16) {
+      if constexpr (kDouble)
+        return (Raw)_mm_sqrt_pd((__m128d)a);
+      else
+        return (Raw)_mm_sqrt_ps((__m128)a);
+    }
+#endif
+    Raw root;
+    for (int k = 0; k < Lanes; ++k) root[k] = std::sqrt(a[k]);
+    return root;
+  }
+};
+
+}  // namespace WAKELINE_INSTRUCTION_SET
+
+template <class Number, int Lanes>
+struct ScalarTraits<Pack<Number, Lanes>> {
+  using Real = Number;
+  using Mask = PackMask<Number, Lanes>;
+  static constexpr int kLanes = Lanes;
+};
+
+}  // namespace wakeline
+
+/// So that Eigen takes a pack for a number.
+template <class Real, int Lanes>
+struct Eigen::NumTraits<wakeline::Pack<Real, Lanes>>
+    : Eigen::GenericNumTraits<wakeline::Pack<Real, Lanes>> {
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 0,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1
+  };
+};
