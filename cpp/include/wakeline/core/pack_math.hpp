@@ -91,11 +91,11 @@ struct Coefficients;
 
 template <>
 struct Coefficients<double> {
-  /// (e^r - 1 - r) / r^2 on |r| <= ln(2)/2: 2^-55.6 of e^r - 1.
+  /// (e^r - 1 - r - r^2/2) / r^3, |r| <= ln(2)/2: 2^-55.2 of e^r - 1.
   static constexpr std::array kExponential{
-      0x1.0000000000005p-1,  0x1.555555555555cp-3,  0x1.55555555520f4p-5,  0x1.111111110e6d9p-7,
-      0x1.6c16c17f376bcp-10, 0x1.a01a01b5d6760p-13, 0x1.a019a685dc615p-16, 0x1.71ddea09b0433p-19,
-      0x1.28a2ab81e32aap-22, 0x1.af76a45fe0f71p-26};
+      0x1.555555555553ep-3,  0x1.5555555553b10p-5,  0x1.1111111118cf5p-7,
+      0x1.6c16c179fddbdp-10, 0x1.a01a0171b73b8p-13, 0x1.a019b3a0017cfp-16,
+      0x1.71de975b1286fp-19, 0x1.2897625b425c6p-22, 0x1.ae4931ba5c2f4p-26};
   /// (2 atanh(s) - 2 s) / s^3 of s^2, s <= tan(pi/8)^2: 2^-59.5 of 2 atanh(s).
   static constexpr std::array kLogarithm{
       0x1.5555555555592p-1, 0x1.999999997fd37p-2, 0x1.24924941f8dd2p-2, 0x1.c71c5202a6fb6p-3,
@@ -130,9 +130,9 @@ struct Coefficients<double> {
 
 template <>
 struct Coefficients<float> {
-  /// 2^-26.2
-  static constexpr std::array kExponential{0x1.000000p-1F, 0x1.5554b0p-3F, 0x1.555486p-5F,
-                                           0x1.1227fep-7F, 0x1.6d990cp-10F};
+  /// 2^-26.1
+  static constexpr std::array kExponential{0x1.5554b8p-3F, 0x1.5555bap-5F, 0x1.122370p-7F,
+                                           0x1.6c5572p-10F};
   /// 2^-30.2
   static constexpr std::array kLogarithm{0x1.55557ap-1F, 0x1.995eb4p-2F, 0x1.31e3b2p-2F};
   /// 2^-28.0
@@ -260,8 +260,8 @@ Pack<Real, Lanes> exp(Pack<Real, Lanes> x) noexcept {
   const auto [n, high, low] = detail::reduced_power(
       max(min(x, Number(Constant::kHighestPower)), Number(Constant::kLowestPower)));
   const Number r = high - low;
-  const Number power = 1 + (r + r * r * detail::polynomial(r, Constant::kExponential));
-  return detail::scaled(power, n);
+  const Number q = detail::polynomial(r, Constant::kExponential);
+  return detail::scaled(1 + (r + r * r * (Real(0.5) + r * q)), n);
 }
 
 /// e^x - 1, accurate near zero too: 2^n (e^r - 1) + (2^n - 1), in which the large terms are summed
@@ -274,7 +274,9 @@ Pack<Real, Lanes> expm1(Pack<Real, Lanes> x) noexcept {
   const auto [n, high, low] =
       detail::reduced_power(max(min(x, Number(Constant::kHighestPower)), Number(kMinusOneBelow)));
   const Number r = high - low;
-  const Number rest = r * r * detail::polynomial(r, Constant::kExponential) + ((high - r) - low);
+  const Number z = r * r;
+  const Number q = detail::polynomial(r, Constant::kExponential);
+  const Number rest = Real(0.5) * z + (z * r * q + ((high - r) - low));
   // Half of everything, as 2^n may be just beyond the largest number.
   const Number scale = detail::power_of_two(n - 1);
   const Number offset = scale - Real(0.5);
@@ -354,7 +356,7 @@ Pack<Real, Lanes> atan2(Pack<Real, Lanes> y, Pack<Real, Lanes> x) noexcept {
   const auto steep = height > width;
   const auto backward = copysign(Number(1), x) < Number(0);
   const Number a = select(steep, width, height), b = select(steep, height, width);
-  const auto diagonal = a > Number(Real(9) / 16) * b;
+  const auto diagonal = 16 * a > 9 * b;
   const Number numerator = select(diagonal, a - b, a);
   const Number denominator = select(diagonal, a + b, select(b == Number(0), Number(1), b));
 
@@ -371,7 +373,7 @@ Pack<Real, Lanes> atan2(Pack<Real, Lanes> y, Pack<Real, Lanes> x) noexcept {
       eighths * Constant::kQuarterPi[1] + t * z * detail::polynomial(z, Constant::kArctangent);
   Number angle = copysign(eighths * Constant::kQuarterPi[0] + (t + rest), y);
 
-  const auto large = b > Number(std::numeric_limits<Real>::max() / 4);
+  const auto large = b > Number(std::numeric_limits<Real>::max() / 16);
   if (any(large)) [[unlikely]]
     angle = detail::replaced(
         large, angle, [](Real v, Real u) { return std::atan2(v, u); }, y, x);

@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/core/pack.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+namespace {
+
+/// The same number: zeros of one sign, or no number both.
+template <class Real>
+bool is_same(Real a, Real b) {
+  return (std::isnan(a) && std::isnan(b)) || (a == b && std::signbit(a) == std::signbit(b));
+}
+
+/// Numbers of every kind: fractions about integers, where fractions end, extremes, no numbers.
+template <class Real>
+std::vector<Real> numbers_of_every_kind() {
+  using Limits = std::numeric_limits<Real>;
+  const Real last_fraction = std::ldexp(Real(1), Limits::digits - 2);
+  std::vector<Real> numbers;
+  for (const Real number :
+       {Real(0), Real(0.25), Real(0.5), Real(1), Real(1.5), Real(2.5), Real(3.75), Real(1e6) / 3,
+        last_fraction - Real(0.5), last_fraction + Real(0.5), 2 * last_fraction - Real(0.5),
+        2 * last_fraction, 2 * last_fraction + 1, 4 * last_fraction + 2, Real(1e30), Limits::min(),
+        Limits::denorm_min(), Limits::max(), Limits::infinity()})
+    for (const Real near :
+         {number, std::nextafter(number, Real(0)), std::nextafter(number, Limits::infinity())}) {
+      numbers.push_back(near);
+      numbers.push_back(-near);
+    }
+  numbers.push_back(Limits::quiet_NaN());
+  return numbers;
+}
+
+template <class PackType>
+class PackOf : public ::testing::Test {
+ protected:
+  using Real = RealOf<PackType>;
+  static constexpr int kLanes = kLanesOf<PackType>;
+
+  /// Calls `law(a, b)` with packs in which every number has met every other.
+  template <class Law>
+  static void for_each_pair(const Law& law) {
+    const std::vector<Real> numbers = numbers_of_every_kind<Real>();
+    const int count = int(numbers.size());
+    for (int first = 0; first < count; ++first)
+      for (int shift = 0; shift < count; shift += kLanes)
+        law(PackType(numbers[std::size_t(first)]),
+            PackType::of([&](int k) { return numbers[std::size_t((shift + k) % count)]; }));
+  }
+};
+
+using Packs = ::testing::Types<Pack<double, kNativeLanes<double>>, Pack<float, kNativeLanes<float>>,
+                               Pack<double, 2>, Pack<float, 2>>;
+TYPED_TEST_SUITE(PackOf, Packs, );
+
+TYPED_TEST(PackOf, ArithmeticIsThatOfEachLane) {
+  using Real = RealOf<TypeParam>;
+  this->for_each_pair([](TypeParam a, TypeParam b) {
+    TypeParam sum = a, difference = a, product = a, quotient = a;
+    sum += b, difference -= b, product *= b, quotient /= b;
+    for (int k = 0; k < kLanesOf<TypeParam>; ++k) {
+      const Real u = a[k], v = b[k];
+      EXPECT_TRUE(is_same((a + b)[k], u + v)) << u << " " << v;
+      EXPECT_TRUE(is_same((a - b)[k], u - v)) << u << " " << v;
+      EXPECT_TRUE(is_same((a * b)[k], u * v)) << u << " " << v;
+      EXPECT_TRUE(is_same((a / b)[k], u / v)) << u << " " << v;
+      EXPECT_TRUE(is_same((-b)[k], -v)) << v;
+      EXPECT_TRUE(is_same((+b)[k], v)) << v;
+      EXPECT_TRUE(is_same(sum[k], u + v) && is_same(difference[k], u - v));
+      EXPECT_TRUE(is_same(product[k], u * v) && is_same(quotient[k], u / v));
+    }
+  });
+}
+
+TYPED_TEST(PackOf, ANumberStandsInEveryLane) {
+  using Real = RealOf<TypeParam>;
+  const TypeParam a = TypeParam::of([](int k) { return Real(k) + Real(0.5); });
+  for (int k = 0; k < kLanesOf<TypeParam>; ++k) {
+    EXPECT_EQ((2 * a + 1)[k], 2 * a[k] + 1);
+    EXPECT_EQ((a / Real(3) - 1)[k], a[k] / 3 - 1);
+    EXPECT_TRUE(is_same(TypeParam(Real(-0.0))[k], Real(-0.0)));
+    EXPECT_EQ(lane(a, k), Real(k) + Real(0.5));
+  }
+}
+
+TYPED_TEST(PackOf, SettingALaneLeavesTheOthers) {
+  using Real = RealOf<TypeParam>;
+  const TypeParam before = TypeParam::of([](int k) { return k; });
+  for (int changed = 0; changed < kLanesOf<TypeParam>; ++changed) {
+    TypeParam after = before;
+    after.set(changed, Real(-7));
+    for (int k = 0; k < kLanesOf<TypeParam>; ++k)
+      EXPECT_EQ(after[k], k == changed ? Real(-7) : before[k]);
+  }
+}
+
+TYPED_TEST(PackOf, ComparisonsAreThoseOfEachLane) {
+  using Real = RealOf<TypeParam>;
+  this->for_each_pair([](TypeParam a, TypeParam b) {
+    for (int k = 0; k < kLanesOf<TypeParam>; ++k) {
+      const Real u = a[k], v = b[k];
+      EXPECT_EQ((a < b)[k], u < v) << u << " " << v;
+      EXPECT_EQ((a <= b)[k], u <= v) << u << " " << v;
+      EXPECT_EQ((a > b)[k], u > v) << u << " " << v;
+      EXPECT_EQ((a >= b)[k], u >= v) << u << " " << v;
+      EXPECT_EQ((a == b)[k], u == v) << u << " " << v;
+      EXPECT_EQ((a != b)[k], u != v) << u << " " << v;
+      EXPECT_EQ(isnan(b)[k], std::isnan(v)) << v;
+      EXPECT_EQ(isfinite(b)[k], std::isfinite(v)) << v;
+    }
+  });
+}
+
+TYPED_TEST(PackOf, ChoicesAreThoseOfEachLane) {
+  using Real = RealOf<TypeParam>;
+  this->for_each_pair([](TypeParam a, TypeParam b) {
+    for (int k = 0; k < kLanesOf<TypeParam>; ++k) {
+      const Real u = a[k], v = b[k];
+      EXPECT_TRUE(is_same(select(a < b, a, b)[k], u < v ? u : v)) << u << " " << v;
+      EXPECT_TRUE(is_same(min(a, b)[k], std::min(u, v))) << u << " " << v;
+      EXPECT_TRUE(is_same(max(a, b)[k], std::max(u, v))) << u << " " << v;
+      EXPECT_TRUE(is_same(abs(b)[k], std::abs(v))) << v;
+      EXPECT_TRUE(is_same(copysign(a, b)[k], std::copysign(u, v))) << u << " " << v;
+    }
+  });
+}
+
+TYPED_TEST(PackOf, RootsAndIntegersAreThoseOfEachLane) {
+  using Real = RealOf<TypeParam>;
+  this->for_each_pair([](TypeParam, TypeParam b) {
+    for (int k = 0; k < kLanesOf<TypeParam>; ++k) {
+      const Real v = b[k];
+      EXPECT_TRUE(is_same(sqrt(b)[k], std::sqrt(v))) << v;
+      EXPECT_TRUE(is_same(floor(b)[k], std::floor(v))) << v << " " << floor(b)[k];
+      EXPECT_TRUE(is_same(round_to_even(b)[k], std::nearbyint(v))) << v << round_to_even(b)[k];
+    }
+  });
+}
+
+TYPED_TEST(PackOf, MaskIsALogicOfEachLane) {
+  using Mask = MaskOf<TypeParam>;
+  constexpr int kLanes = kLanesOf<TypeParam>;
+  const int patterns = 1 << std::min(kLanes, 8);
+  const auto mask_of = [](int pattern) {
+    Mask mask(false);
+    for (int k = 0; k < kLanes; ++k) mask.set(k, (pattern >> (k % 8) & 1) != 0);
+    return mask;
+  };
+  for (int p = 0; p < patterns; ++p) {
+    const Mask a = mask_of(p);
+    EXPECT_EQ(any(a), p != 0);
+    EXPECT_EQ(none(a), p == 0);
+    EXPECT_EQ(all(a), p == patterns - 1);
+    for (int q = 0; q < patterns; q += 1 + patterns / 16) {
+      const Mask b = mask_of(q);
+      for (int k = 0; k < kLanes; ++k) {
+        EXPECT_EQ((a && b)[k], a[k] && b[k]);
+        EXPECT_EQ((a || b)[k], a[k] || b[k]);
+        EXPECT_EQ((!a)[k], !a[k]);
+      }
+    }
+  }
+  EXPECT_TRUE(all(Mask(true)));
+  EXPECT_TRUE(none(Mask(false)));
+  for (int only = 0; only < kLanes; ++only) {
+    Mask one(false);
+    one.set(only, true);
+    EXPECT_TRUE(any(one));
+    EXPECT_FALSE(all(one));
+    EXPECT_FALSE(all(!one));
+  }
+}
+
+TYPED_TEST(PackOf, BitsAreTheNumbers) {
+  using Real = RealOf<TypeParam>;
+  this->for_each_pair([](TypeParam, TypeParam b) {
+    const TypeParam same = TypeParam::from_bits(b.bits());
+    for (int k = 0; k < kLanesOf<TypeParam>; ++k) {
+      using Integer = std::decay_t<decltype(b.bits()[k])>;
+      EXPECT_EQ(b.bits()[k], std::bit_cast<Integer>(Real(b[k])));
+      EXPECT_TRUE(is_same(same[k], b[k]));
+    }
+  });
+}
+
+// Of small integers, so that sums are exact in whatever order and with whatever instructions.
+TYPED_TEST(PackOf, MatricesAreThoseOfEachLane) {
+  using Real = RealOf<TypeParam>;
+  std::mt19937 generator(1);
+  std::uniform_int_distribution<int> integer(-20, 20);
+  const auto draw = [&] {
+    return Mat<TypeParam, 4, 4>(Mat<TypeParam, 4, 4>::NullaryExpr(
+        [&] { return TypeParam::of([&](int) { return integer(generator); }); }));
+  };
+  const auto of_lane = [](const Mat<TypeParam, 4, 4>& m, int k) {
+    return Mat<Real, 4, 4>(m.unaryExpr([k](const TypeParam& entry) { return entry[k]; }));
+  };
+  const Mat<TypeParam, 4, 4> a = draw(), b = draw();
+  const Mat<TypeParam, 4, 4> product = a * b.transpose() + 2 * a - b;
+  const Vec<TypeParam, 4> image = a * b.col(1);
+  const TypeParam trace = a.trace(), square = a.col(2).squaredNorm();
+  for (int k = 0; k < kLanesOf<TypeParam>; ++k) {
+    const Mat<Real, 4, 4> u = of_lane(a, k), v = of_lane(b, k);
+    EXPECT_EQ(of_lane(product, k), u * v.transpose() + 2 * u - v);
+    EXPECT_EQ(trace[k], u.trace());
+    EXPECT_EQ(square[k], u.col(2).squaredNorm());
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(image(i)[k], (u * v.col(1))(i));
+  }
+}
+
+TEST(Pack, TemplatesSeeItAsANumber) {
+  using Number = Pack<double, kNativeLanes<double>>;
+  static_assert(std::same_as<RealOf<Number>, double>);
+  static_assert(std::same_as<MaskOf<Number>, Number::Mask>);
+  static_assert(kLanesOf<Number> == kNativeLanes<double> && kLanesOf<float> == 1);
+  static_assert(sizeof(Number) == WAKELINE_REGISTER_BYTES && alignof(Number) == sizeof(Number));
+  static_assert(std::is_trivially_copyable_v<Number>);
+}
+
+}  // namespace
+}  // namespace wakeline
