@@ -254,7 +254,7 @@ template <class Real, int Lanes>
 
 /// e^x. Reduced by ln(2); 2^n enters through the exponent.
 template <class Real, int Lanes>
-Pack<Real, Lanes> exp(Pack<Real, Lanes> x) noexcept {
+[[gnu::always_inline]] inline Pack<Real, Lanes> exp(Pack<Real, Lanes> x) noexcept {
   using Number = Pack<Real, Lanes>;
   using Constant = detail::Coefficients<Real>;
   const auto [n, high, low] = detail::reduced_power(
@@ -267,7 +267,7 @@ Pack<Real, Lanes> exp(Pack<Real, Lanes> x) noexcept {
 /// e^x - 1, accurate near zero too: 2^n (e^r - 1) + (2^n - 1), in which the large terms are summed
 /// without error.
 template <class Real, int Lanes>
-Pack<Real, Lanes> expm1(Pack<Real, Lanes> x) noexcept {
+[[gnu::always_inline]] inline Pack<Real, Lanes> expm1(Pack<Real, Lanes> x) noexcept {
   using Number = Pack<Real, Lanes>;
   using Constant = detail::Coefficients<Real>;
   constexpr Real kMinusOneBelow = -2 * std::numeric_limits<Real>::digits;
@@ -289,7 +289,7 @@ Pack<Real, Lanes> expm1(Pack<Real, Lanes> x) noexcept {
 /// Natural logarithm: with x = 2^e (1 + f) and s = f / (2 + f), log(1 + f) = 2 atanh(s), written as
 /// f - f^2/2 + ... (the arrangement of FDLIBM, Sun Microsystems, 1993).
 template <class Real, int Lanes>
-Pack<Real, Lanes> log(Pack<Real, Lanes> x) noexcept {
+[[gnu::always_inline]] inline Pack<Real, Lanes> log(Pack<Real, Lanes> x) noexcept {
   using Number = Pack<Real, Lanes>;
   using F = detail::Format<Real>;
   using Bits = detail::Bits<Real, Lanes>;
@@ -322,7 +322,7 @@ Pack<Real, Lanes> log(Pack<Real, Lanes> x) noexcept {
 /// Sine and cosine, of an angle in radians. Reduced by pi/2; beyond |x| = 100000 (`float`: 400)
 /// lanes are computed one by one.
 template <class Real, int Lanes>
-SinCos<Pack<Real, Lanes>> sin_cos(Pack<Real, Lanes> x) noexcept {
+[[gnu::always_inline]] inline SinCos<Pack<Real, Lanes>> sin_cos(Pack<Real, Lanes> x) noexcept {
   auto result = detail::sin_cos_within(detail::reduced_angle(x));
   const auto large = abs(x) > Pack<Real, Lanes>(detail::Coefficients<Real>::kLargestAngle);
   if (any(large)) [[unlikely]] {
@@ -335,12 +335,12 @@ SinCos<Pack<Real, Lanes>> sin_cos(Pack<Real, Lanes> x) noexcept {
 }
 
 template <class Real, int Lanes>
-Pack<Real, Lanes> sin(Pack<Real, Lanes> x) noexcept {
+[[gnu::always_inline]] inline Pack<Real, Lanes> sin(Pack<Real, Lanes> x) noexcept {
   return sin_cos(x).sin;
 }
 
 template <class Real, int Lanes>
-Pack<Real, Lanes> cos(Pack<Real, Lanes> x) noexcept {
+[[gnu::always_inline]] inline Pack<Real, Lanes> cos(Pack<Real, Lanes> x) noexcept {
   return sin_cos(x).cos;
 }
 
@@ -348,7 +348,8 @@ Pack<Real, Lanes> cos(Pack<Real, Lanes> x) noexcept {
 /// atan(a/b), or above 9/16 pi/4 + atan((a - b) / (a + b)), by one division; eighths of a turn and
 /// signs make the rest.
 template <class Real, int Lanes>
-Pack<Real, Lanes> atan2(Pack<Real, Lanes> y, Pack<Real, Lanes> x) noexcept {
+[[gnu::always_inline]] inline Pack<Real, Lanes> atan2(Pack<Real, Lanes> y,
+                                                      Pack<Real, Lanes> x) noexcept {
   using Number = Pack<Real, Lanes>;
   using F = detail::Format<Real>;
   using Constant = detail::Coefficients<Real>;
@@ -381,13 +382,14 @@ Pack<Real, Lanes> atan2(Pack<Real, Lanes> y, Pack<Real, Lanes> x) noexcept {
 }
 
 template <class Real, int Lanes>
-Pack<Real, Lanes> atan(Pack<Real, Lanes> x) noexcept {
+[[gnu::always_inline]] inline Pack<Real, Lanes> atan(Pack<Real, Lanes> x) noexcept {
   return atan2(x, Pack<Real, Lanes>(1));
 }
 
 /// sqrt(x^2 + y^2), where that is a number even if the squares are not.
 template <class Real, int Lanes>
-Pack<Real, Lanes> hypot(Pack<Real, Lanes> x, Pack<Real, Lanes> y) noexcept {
+[[gnu::always_inline]] inline Pack<Real, Lanes> hypot(Pack<Real, Lanes> x,
+                                                      Pack<Real, Lanes> y) noexcept {
   using Number = Pack<Real, Lanes>;
   using Limits = std::numeric_limits<Real>;
   const Number square = x * x + y * y;
