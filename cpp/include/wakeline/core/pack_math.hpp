@@ -4,10 +4,12 @@
 // Elementary functions of packs. A template that says `using std::exp;` and then `exp(x)` finds
 // them for a pack and the standard ones for a number.
 //
-// Each is its standard namesake lane by lane: within 2 units in the last place over the whole
-// range, subnormal results included, and with the same results at infinities, zeros of either sign
-// and NaN. No lane depends on another. Without fused multiply-add and with it the accuracy is the
-// same, the last bit may differ.
+// Each is its standard namesake lane by lane, over the whole range, subnormal numbers included,
+// with the same results at infinities, zeros of either sign and NaN. No lane depends on another.
+// With fused multiply-add the accuracy is the same, though the last bit may differ. The error stays
+// below, in units in the last place, `float` and `double` alike:
+//
+//   log 0.9   exp 1.1   sin, cos 1.2   expm1, hypot 1.3   atan, atan2 1.6
 //
 // Method: the argument is reduced to a short interval around zero by subtracting a multiple of a
 // constant that is held in several parts, whose products are exact (Cody and Waite, Software Manual
@@ -21,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <type_traits>
 
 #include "wakeline/core/pack.hpp"
@@ -34,7 +37,7 @@ struct SinCos {
   Scalar sin, cos;
 };
 
-namespace detail {
+namespace pack_detail {
 
 template <class Real>
 struct Format {
@@ -250,18 +253,18 @@ template <class Real, int Lanes>
           negated_if_second_bit(select(swap, sine, cosine), a.quarter_turns + 1)};
 }
 
-}  // namespace detail
+}  // namespace pack_detail
 
 /// e^x. Reduced by ln(2); 2^n enters through the exponent.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> exp(Pack<Real, Lanes> x) noexcept {
   using Number = Pack<Real, Lanes>;
-  using Constant = detail::Coefficients<Real>;
-  const auto [n, high, low] = detail::reduced_power(
+  using Constant = pack_detail::Coefficients<Real>;
+  const auto [n, high, low] = pack_detail::reduced_power(
       max(min(x, Number(Constant::kHighestPower)), Number(Constant::kLowestPower)));
   const Number r = high - low;
-  const Number q = detail::polynomial(r, Constant::kExponential);
-  return detail::scaled(1 + (r + r * r * (Real(0.5) + r * q)), n);
+  const Number q = pack_detail::polynomial(r, Constant::kExponential);
+  return pack_detail::scaled(1 + (r + r * r * (Real(0.5) + r * q)), n);
 }
 
 /// e^x - 1, accurate near zero too: 2^n (e^r - 1) + (2^n - 1), in which the large terms are summed
@@ -269,16 +272,16 @@ template <class Real, int Lanes>
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> expm1(Pack<Real, Lanes> x) noexcept {
   using Number = Pack<Real, Lanes>;
-  using Constant = detail::Coefficients<Real>;
+  using Constant = pack_detail::Coefficients<Real>;
   constexpr Real kMinusOneBelow = -2 * std::numeric_limits<Real>::digits;
-  const auto [n, high, low] =
-      detail::reduced_power(max(min(x, Number(Constant::kHighestPower)), Number(kMinusOneBelow)));
+  const auto [n, high, low] = pack_detail::reduced_power(
+      max(min(x, Number(Constant::kHighestPower)), Number(kMinusOneBelow)));
   const Number r = high - low;
   const Number z = r * r;
-  const Number q = detail::polynomial(r, Constant::kExponential);
+  const Number q = pack_detail::polynomial(r, Constant::kExponential);
   const Number rest = Real(0.5) * z + (z * r * q + ((high - r) - low));
   // Half of everything, as 2^n may be just beyond the largest number.
-  const Number scale = detail::power_of_two(n - 1);
+  const Number scale = pack_detail::power_of_two(n - 1);
   const Number offset = scale - Real(0.5);
   const Number sum = offset + scale * r;
   const Number error = (offset - sum) + scale * r;
@@ -291,26 +294,27 @@ template <class Real, int Lanes>
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> log(Pack<Real, Lanes> x) noexcept {
   using Number = Pack<Real, Lanes>;
-  using F = detail::Format<Real>;
-  using Bits = detail::Bits<Real, Lanes>;
-  using Constant = detail::Coefficients<Real>;
+  using F = pack_detail::Format<Real>;
+  using Bits = pack_detail::Bits<Real, Lanes>;
+  using Constant = pack_detail::Coefficients<Real>;
   using Limits = std::numeric_limits<Real>;
   const auto subnormal = x < Number(Limits::min());
   const Number normal = select(subnormal, x * F::kCounting, x);
   // Counted from sqrt(1/2), a mantissa begins at the exponent's next step there.
-  const Bits start = detail::to_bits(Number(Real(M_SQRT1_2)));
+  const Bits start = pack_detail::to_bits(Number(std::numbers::sqrt2_v<Real> / 2));
   const Bits from_start =
-      detail::to_bits(normal) - start + (typename F::Integer(F::kBias) << F::kMantissaBits);
-  const Number f = detail::of_bits<Real, Lanes>((from_start & F::kMantissa) + start) - Number(1);
-  const Number e = detail::of_bits<Real, Lanes>((from_start >> F::kMantissaBits) |
-                                                detail::to_bits(Number(F::kCounting))) -
+      pack_detail::to_bits(normal) - start + (typename F::Integer(F::kBias) << F::kMantissaBits);
+  const Number f =
+      pack_detail::of_bits<Real, Lanes>((from_start & F::kMantissa) + start) - Number(1);
+  const Number e = pack_detail::of_bits<Real, Lanes>((from_start >> F::kMantissaBits) |
+                                                     pack_detail::to_bits(Number(F::kCounting))) -
                    select(subnormal, Number(F::kCounting + F::kBias + F::kMantissaBits),
                           Number(F::kCounting + F::kBias));
 
   const Number s = f / (2 + f);
   const Number z = s * s;
   const Number half_square = Number(Real(0.5)) * f * f;
-  const Number rest = s * (half_square + z * detail::polynomial(z, Constant::kLogarithm));
+  const Number rest = s * (half_square + z * pack_detail::polynomial(z, Constant::kLogarithm));
   const Number finite =
       e * Constant::kLn2[0] - ((half_square - (rest + e * Constant::kLn2[1])) - f);
 
@@ -323,12 +327,12 @@ template <class Real, int Lanes>
 /// lanes are computed one by one.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline SinCos<Pack<Real, Lanes>> sin_cos(Pack<Real, Lanes> x) noexcept {
-  auto result = detail::sin_cos_within(detail::reduced_angle(x));
-  const auto large = abs(x) > Pack<Real, Lanes>(detail::Coefficients<Real>::kLargestAngle);
+  auto result = pack_detail::sin_cos_within(pack_detail::reduced_angle(x));
+  const auto large = abs(x) > Pack<Real, Lanes>(pack_detail::Coefficients<Real>::kLargestAngle);
   if (any(large)) [[unlikely]] {
-    result.sin = detail::replaced(
+    result.sin = pack_detail::replaced(
         large, result.sin, [](Real a) { return std::sin(a); }, x);
-    result.cos = detail::replaced(
+    result.cos = pack_detail::replaced(
         large, result.cos, [](Real a) { return std::cos(a); }, x);
   }
   return result;
@@ -351,8 +355,8 @@ template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> atan2(Pack<Real, Lanes> y,
                                                       Pack<Real, Lanes> x) noexcept {
   using Number = Pack<Real, Lanes>;
-  using F = detail::Format<Real>;
-  using Constant = detail::Coefficients<Real>;
+  using F = pack_detail::Format<Real>;
+  using Constant = pack_detail::Coefficients<Real>;
   const Number width = abs(x), height = abs(y);
   const auto steep = height > width;
   const auto backward = copysign(Number(1), x) < Number(0);
@@ -365,18 +369,18 @@ template <class Real, int Lanes>
   eighths = select(steep, 2 - eighths, eighths);
   eighths = select(backward, 4 - eighths, eighths);
   // Each of these mirrors the angle.
-  const detail::Bits<Real, Lanes> mirrored =
-      ((detail::Bits<Real, Lanes>)steep.raw ^ detail::to_bits(x)) & F::kSign;
+  const pack_detail::Bits<Real, Lanes> mirrored =
+      ((pack_detail::Bits<Real, Lanes>)steep.raw ^ pack_detail::to_bits(x)) & F::kSign;
   const Number t =
-      detail::of_bits<Real, Lanes>(detail::to_bits(numerator) ^ mirrored) / denominator;
+      pack_detail::of_bits<Real, Lanes>(pack_detail::to_bits(numerator) ^ mirrored) / denominator;
   const Number z = t * t;
   const Number rest =
-      eighths * Constant::kQuarterPi[1] + t * z * detail::polynomial(z, Constant::kArctangent);
+      eighths * Constant::kQuarterPi[1] + t * z * pack_detail::polynomial(z, Constant::kArctangent);
   Number angle = copysign(eighths * Constant::kQuarterPi[0] + (t + rest), y);
 
   const auto large = b > Number(std::numeric_limits<Real>::max() / 16);
   if (any(large)) [[unlikely]]
-    angle = detail::replaced(
+    angle = pack_detail::replaced(
         large, angle, [](Real v, Real u) { return std::atan2(v, u); }, y, x);
   return angle;
 }
@@ -386,7 +390,7 @@ template <class Real, int Lanes>
   return atan2(x, Pack<Real, Lanes>(1));
 }
 
-/// sqrt(x^2 + y^2), where that is a number even if the squares are not.
+/// sqrt(x^2 + y^2). Lanes whose squares would overflow or lose bits are computed one by one.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> hypot(Pack<Real, Lanes> x,
                                                       Pack<Real, Lanes> y) noexcept {
@@ -394,12 +398,12 @@ template <class Real, int Lanes>
   using Limits = std::numeric_limits<Real>;
   const Number square = x * x + y * y;
   const Number root = sqrt(square);
-  // Squares below this have lost bits, or the larger one is lost.
+  // Below this a square may have lost bits, beyond the largest number it is lost.
   constexpr Real kSmall = Limits::min() / (Limits::epsilon() * Limits::epsilon());
   const auto safe = square >= Number(kSmall) && square <= Number(Limits::max());
   if (!all(safe)) [[unlikely]] {
     const auto replace = !safe && (x != Number(0) || y != Number(0));
-    return detail::replaced(
+    return pack_detail::replaced(
         replace, root, [](Real u, Real v) { return std::hypot(u, v); }, x, y);
   }
   return root;
