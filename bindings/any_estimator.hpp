@@ -5,6 +5,7 @@
 #pragma once
 
 #include <span>
+#include <type_traits>
 #include <variant>
 
 #include "any_lines.hpp"
@@ -48,6 +49,12 @@ class AnyEstimator {
                       estimator_);
   }
 
+  /// Calls `f(mode, belief)` for each mode in use, where the estimator has modes with beliefs.
+  template <class Function>
+  void for_each_mode(Function&& function) const noexcept {
+    std::visit([&](const auto& estimator) { visit_modes(estimator, function); }, estimator_);
+  }
+
   [[nodiscard]] AnyBelief estimate() const noexcept {
     return std::visit([](const auto& estimator) { return estimator.estimate(); }, estimator_);
   }
@@ -63,6 +70,11 @@ class AnyEstimator {
   }
 
  private:
+  template <class Estimator, class Function>
+  static void visit_modes(const Estimator& estimator, Function& function) noexcept {
+    if constexpr (std::is_base_of_v<AnyImm, Estimator>) estimator.bank().for_each_belief(function);
+  }
+
   Variant estimator_;
 };
 

@@ -99,6 +99,8 @@
 #include "wakeline/track/duplicates.hpp"
 #include "wakeline/track/echoes.hpp"
 #include "wakeline/track/free_plots.hpp"
+#include "wakeline/track/mode_places.hpp"
+#include "wakeline/track/plane_index.hpp"
 #include "wakeline/track/radar.hpp"
 #include "wakeline/track/start.hpp"
 #include "wakeline/track/track.hpp"

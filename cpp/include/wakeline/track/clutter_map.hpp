@@ -3,14 +3,42 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "wakeline/core/archive.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
+
+namespace detail {
+
+/// exp(-dt / memory), remembered for the few steps between scans that come up again and again.
+class Fading {
+ public:
+  explicit Fading(double memory_s) : memory_s_(memory_s) {}
+
+  double after(double dt_s) noexcept {
+    Step& step = steps_[std::bit_cast<std::uint64_t>(dt_s) * 0x9E3779B97F4A7C15u >> 56];
+    if (step.dt_s != dt_s) step = {dt_s, std::exp(-dt_s / memory_s_)};
+    return step.factor;
+  }
+
+ private:
+  struct Step {
+    double dt_s = std::numeric_limits<double>::quiet_NaN();
+    double factor = 0.0;
+  };
+
+  double memory_s_;
+  std::array<Step, 256> steps_;
+};
+
+}  // namespace detail
 
 /// Where plots come from that belong to no target: the density of false plots over the plane,
 /// learned with a fading memory. Fixed echoes and shore grow dense and so stop to look like
@@ -21,7 +49,7 @@ namespace wakeline {
 class ClutterMap {
  public:
   /// `cell_m` 0 switches the map off.
-  ClutterMap(double cell_m, double memory_s) : cell_m_(cell_m), memory_s_(memory_s) {
+  ClutterMap(double cell_m, double memory_s) : cell_m_(cell_m), fading_(memory_s) {
     if (enabled()) cells_.resize(kCells);
   }
 
@@ -37,7 +65,7 @@ class ClutterMap {
       if (cell.north == corner.north && cell.east == corner.east)
         plots += corner.share * faded(cell, time_s);
     }
-    const double per_scan = 1.0 - std::exp(-period_s / memory_s_);
+    const double per_scan = 1.0 - fading_.after(period_s);
     return plots * per_scan / (cell_m_ * cell_m_);
   }
 
@@ -79,7 +107,7 @@ class ClutterMap {
   };
 
   [[nodiscard]] double faded(const Cell& cell, double time_s) const noexcept {
-    return cell.plots * std::exp(-std::fabs(time_s - cell.time_s) / memory_s_);
+    return cell.plots > 0.0 ? cell.plots * fading_.after(std::fabs(time_s - cell.time_s)) : 0.0;
   }
 
   /// The four cells whose centres surround a position, with their bilinear shares.
@@ -105,7 +133,7 @@ class ClutterMap {
   }
 
   double cell_m_;
-  double memory_s_;
+  mutable detail::Fading fading_;  // what it remembers it would find again
   std::vector<Cell> cells_;
 };
 

@@ -36,10 +36,12 @@ class FreePlots {
     const double reach = max_speed_mps * std::clamp(echo.time_s - earliest_s_, 0.0, longest_s) +
                          sigmas * std::sqrt(largest_variance_ + echo.position.covariance.trace());
     const double north = echo.position.mean[0];
+    const double east = echo.position.mean[1];
     auto place = std::lower_bound(
         plots_.begin(), plots_.end(), north - reach,
         [](const FreePlot& plot, double limit) { return plot.position.mean[0] < limit; });
     for (; place != plots_.end() && place->position.mean[0] <= north + reach; ++place) {
+      if (!(std::fabs(place->position.mean[1] - east) <= reach)) continue;
       const double dt_s = echo.time_s - place->time_s;
       if (dt_s > 0.0 && dt_s <= longest_s &&
           within_speed_limit(place->position, echo.position, dt_s, max_speed_mps, sigmas))

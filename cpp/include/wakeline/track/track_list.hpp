@@ -39,10 +39,10 @@ class TrackList {
     for (const int slot : order_) call(function, at(slot), slot);
   }
 
-  /// True when the predicate holds for a track.
-  template <class Predicate>
-  [[nodiscard]] bool any_of(Predicate&& predicate) const {
-    return std::any_of(order_.begin(), order_.end(), [&](int slot) { return predicate(at(slot)); });
+  /// The track of that slot, be it in use or not.
+  [[nodiscard]] TrackType& at(int slot) noexcept { return pool_[static_cast<std::size_t>(slot)]; }
+  [[nodiscard]] const TrackType& at(int slot) const noexcept {
+    return pool_[static_cast<std::size_t>(slot)];
   }
 
   [[nodiscard]] const TrackType* find(std::int64_t id) const noexcept {
@@ -66,6 +66,7 @@ class TrackList {
   bool remove(std::int64_t id) noexcept {
     const auto place = locate(id);
     if (place == order_.end()) return false;
+    at(*place).existence = kEnded;
     vacant_.push_back(*place);
     order_.erase(place);
     return true;
@@ -117,11 +118,6 @@ class TrackList {
       function(track, slot);
     else
       function(track);
-  }
-
-  [[nodiscard]] TrackType& at(int slot) noexcept { return pool_[static_cast<std::size_t>(slot)]; }
-  [[nodiscard]] const TrackType& at(int slot) const noexcept {
-    return pool_[static_cast<std::size_t>(slot)];
   }
 
   [[nodiscard]] auto locate(std::int64_t id) const noexcept {

@@ -26,6 +26,8 @@
 #include "wakeline/track/duplicates.hpp"
 #include "wakeline/track/echoes.hpp"
 #include "wakeline/track/free_plots.hpp"
+#include "wakeline/track/mode_places.hpp"
+#include "wakeline/track/plane_index.hpp"
 #include "wakeline/track/radar.hpp"
 #include "wakeline/track/start.hpp"
 #include "wakeline/track/track_list.hpp"
@@ -66,6 +68,7 @@ class Tracker {
         tracks_(config.max_tracks, prototype),
         claims_(static_cast<std::size_t>(config.max_tracks)),
         echoes_(config.max_plots),
+        places_(config.max_tracks),
         free_(config.max_plots),
         candidates_(config.max_tracks, config.max_tracks * Claims::kMost),
         global_(config.max_tracks, config.max_plots),
@@ -91,16 +94,19 @@ class Tracker {
     time_s_ = time_s;
     started_ = true;
     const int refused = take(plots, dt_s);
-    tracks_.for_each([&](TrackType& track) { advance(track, dt_s); });
-    tracks_.for_each([&](TrackType& track, int slot) { gate(track, claims_of(slot)); });
-    tracks_.for_each([&](TrackType& track, int slot) { stake(track, claims_of(slot)); });
+    tracks_.for_each([&](TrackType& track, int slot) {  // one by one, while it is in the cache
+      advance(track, dt_s);
+      gate(track, claims_of(slot));
+      stake(track, claims_of(slot));
+    });
     if (config_.association != Association::kProbabilistic) assign_plots();
-    tracks_.for_each([&](TrackType& track, int slot) { update(track, claims_of(slot)); });
+    tracks_.for_each([&](TrackType& track, int slot) { update(track, slot, claims_of(slot)); });
     judge();
     remove_duplicates();
     promote();
     learn_clutter();
     start_tracks();
+    name_plots();
     return {Status::kOk, plot_track_id_, events_, refused};
   }
 
@@ -253,13 +259,15 @@ class Tracker {
     const double reach =
         3.0 * std::sqrt(threshold * (p(0, 0) + p(2, 2))) +
         std::sqrt(threshold * config_.wild_variance() * echoes_.largest_variance_m2());
+    modes_.take(track.estimator);
     echoes_.for_each_near(track.position(), reach, [&](int index) {
       const Gaussian<2>& position = echoes_[index].position;
       // The plot moves along with the track from its own time to the track's.
       const double dt_s = track.time_s - echoes_[index].time_s;
       Claim claim{.echo = index, .z = position.mean + dt_s * track.velocity()};
-      const Evidence<double> wild =
-          track.estimator.evidence(Fix{config_.wild_variance() * position.covariance}, claim.z);
+      const Mat<double, 2, 2> wild_covariance = config_.wild_variance() * position.covariance;
+      if (!modes_.may_own(claim.z, wild_covariance, threshold)) return;
+      const Evidence<double> wild = track.estimator.evidence(Fix{wild_covariance}, claim.z);
       if (!gate_.contains(wild.least_nis)) return;
       const Evidence<double> nominal = track.estimator.evidence(Fix{position.covariance}, claim.z);
       claim.likelihood = (1.0 - config_.wild_probability) * nominal.likelihood +
@@ -325,7 +333,7 @@ class Tracker {
   }
 
   /// Takes the plots in: state, existence and visibility.
-  void update(TrackType& track, const Claims& claims) noexcept {
+  void update(TrackType& track, int slot, const Claims& claims) noexcept {
     const double none = claims.certain() ? 0.0 : 1.0 - config_.detection() * track.visibility;
     std::array<Alternative<Fix>, 2 * Claims::kMost> readings;
     std::array<double, 2 * Claims::kMost> share{};
@@ -351,7 +359,7 @@ class Tracker {
         best = owns;
         track.nis = claim.nis;
       }
-      settle(track, echoes_[claim.echo], std::min(owns, 1.0));
+      settle(track, slot, echoes_[claim.echo], std::min(owns, 1.0));
     }
     track.kinematics = kinematics_of(track.estimator.estimate());
     track.count(owned > 0.5);
@@ -376,13 +384,14 @@ class Tracker {
   }
 
   /// A plot is a track's with that probability, if there is a target.
-  void settle(const TrackType& track, Echo& echo, double owns) noexcept {
+  void settle(const TrackType& track, int slot, Echo& echo, double owns) noexcept {
     const double probability = owns * track.existence;
     echo.stray *= 1.0 - owns;
     echo.free *= 1.0 - probability;
     if (probability > echo.best_claim) {
       echo.best_claim = probability;
-      plot_track_id_[static_cast<std::size_t>(echo.plot)] = track.id;
+      echo.best_slot = slot;
+      echo.best_track_id = track.id;
     }
   }
 
@@ -402,11 +411,9 @@ class Tracker {
 
   /// Of two tracks on one target the senior one stays.
   void remove_duplicates() noexcept {
+    index_tracks();
     const auto settled_duplicate = [&](TrackType& track) {
-      const bool duplicate = tracks_.any_of([&](const TrackType& other) {
-        return &other != &track && !tracks_.ended(other) && senior(other, track) &&
-               same_target(other.kinematics, track.kinematics, config_.duplicate_distance);
-      });
+      const bool duplicate = has_senior(track);
       track.duplicate_scans = duplicate ? track.duplicate_scans + 1 : 0;
       const bool numbered = track.confirmed() && track.id > 0;
       return track.duplicate_scans >= (numbered ? config_.duplicate_scans : 1);
@@ -414,15 +421,55 @@ class Tracker {
     tracks_.remove_if(settled_duplicate, [&](const TrackType& track) { lose(track); });
   }
 
+  void index_tracks() noexcept {
+    places_.clear();
+    widest_m2_ = 0.0;
+    tracks_.for_each([&](const TrackType& track, int slot) {
+      if (!is_finite(track.position())) return;  // near nothing
+      places_.add(track.position(), slot);
+      widest_m2_ = std::max(widest_m2_, widest_m2(track));
+    });
+    places_.sort();
+  }
+
+  /// Variance of the position along the axis where it is larger.
+  static double widest_m2(const TrackType& track) noexcept {
+    return std::max(track.kinematics.covariance(0, 0), track.kinematics.covariance(2, 2));
+  }
+
+  /// Whether a senior track is on the same target.
+  [[nodiscard]] bool has_senior(const TrackType& track) const noexcept {
+    // No farther apart can two tracks be that `same_target` calls one; a little more for rounding.
+    const double reach =
+        1.001 * std::sqrt(config_.duplicate_distance * (widest_m2(track) + widest_m2_));
+    bool found = false;
+    places_.for_each_near(track.position(), reach, [&](int slot) {
+      const TrackType& other = tracks_.at(slot);
+      found =
+          found || (&other != &track && !tracks_.ended(other) && senior(other, track) &&
+                    same_target(other.kinematics, track.kinematics, config_.duplicate_distance));
+    });
+    return found;
+  }
+
   /// Numbers the tracks that were confirmed in this scan.
   void promote() noexcept {
     tracks_.for_each([&](TrackType& track) {
       if (!track.confirmed() || track.id > 0) return;
-      const std::int64_t before = track.id;
       track.id = next_id_++;
-      std::replace(plot_track_id_.begin(), plot_track_id_.end(), before, track.id);
       announce(TrackEvent::kConfirmed, track);
     });
+  }
+
+  /// Tells whose the plots are, by the numbers that the tracks have now.
+  void name_plots() noexcept {
+    for (const Echo& echo : echoes_) {
+      if (echo.best_slot < 0) continue;
+      const TrackType& track = tracks_.at(echo.best_slot);
+      const bool same = track.id == echo.best_track_id || track.tentative_id == echo.best_track_id;
+      if (same && !tracks_.ended(track))
+        plot_track_id_[static_cast<std::size_t>(echo.plot)] = track.id;
+    }
   }
 
   /// What not even a tentative track takes for its own is clutter.
@@ -489,11 +536,7 @@ class Tracker {
     return tracks_.remove(weakest->id);
   }
 
-  /// The end of a track: its plots are nobody's.
-  void lose(const TrackType& track) noexcept {
-    announce(TrackEvent::kLost, track);
-    std::replace(plot_track_id_.begin(), plot_track_id_.end(), track.id, std::int64_t{0});
-  }
+  void lose(const TrackType& track) noexcept { announce(TrackEvent::kLost, track); }
 
   void announce(TrackEvent kind, const TrackType& track) noexcept {
     if (events_.size() < events_.capacity())
@@ -544,6 +587,9 @@ class Tracker {
   TrackList<Estimator> tracks_;
   std::vector<Claims> claims_;  ///< by slot of the list
   Echoes echoes_;
+  ModePlaces modes_;   ///< of the track at hand
+  PlaneIndex places_;  ///< of the tracks, by slot
+  double widest_m2_ = 0.0;
   FreePlots free_;  ///< of the scan before
   std::vector<std::int64_t> plot_track_id_;
   std::vector<Event> events_;

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// Points of the plane, found by where they are.
+///
+/// Of n points each √n, from south to north, make a strip, and each strip is sorted from west to
+/// east: to find the few points near a place takes about log n steps however they lie, be it all in
+/// a harbour but one at the end of the world. Sorting takes n log n. Memory is taken by the
+/// constructor.
+class PlaneIndex {
+ public:
+  explicit PlaneIndex(int capacity) {
+    const auto size = static_cast<std::size_t>(capacity);
+    points_.reserve(size);
+    by_north_.reserve(size);
+    south_m_.reserve(static_cast<std::size_t>(std::sqrt(double(capacity))) + 2);
+  }
+
+  void clear() noexcept {
+    points_.clear();
+    by_north_.clear();
+    south_m_.clear();
+  }
+
+  /// Adds a point, [north, east] m, which must be finite; `name` is what it is found as.
+  void add(const Vec<double, 2>& position, int name) noexcept {
+    points_.push_back({position[0], position[1], name});
+  }
+
+  /// Sorts the points; to be called when all are there.
+  void sort() noexcept {
+    std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) {
+      return a.north < b.north || (a.north == b.north && a.name < b.name);
+    });
+    for (const Point& point : points_) by_north_.push_back(point.name);
+    const auto size = static_cast<std::ptrdiff_t>(points_.size());
+    per_strip_ = std::max<std::ptrdiff_t>(
+        1, static_cast<std::ptrdiff_t>(std::ceil(std::sqrt(double(size)))));
+    for (std::ptrdiff_t first = 0; first < size; first += per_strip_) {
+      south_m_.push_back(points_[static_cast<std::size_t>(first)].north);
+      const auto begin = points_.begin() + first;
+      std::sort(begin, points_.begin() + std::min(first + per_strip_, size),
+                [](const Point& a, const Point& b) {
+                  return a.east < b.east || (a.east == b.east && a.name < b.name);
+                });
+    }
+  }
+
+  /// Calls `f(name)` for every point in the square of half side `reach_m` about a position; points
+  /// of one place in the order of their names.
+  template <class Function>
+  void for_each_near(const Vec<double, 2>& position, double reach_m, Function&& function) const {
+    const double south = position[0] - reach_m;
+    const double north = position[0] + reach_m;
+    const double west = position[1] - reach_m;
+    const double east = position[1] + reach_m;
+    auto strip = std::lower_bound(south_m_.begin(), south_m_.end(), south) - south_m_.begin();
+    if (strip > 0) --strip;  // it may reach beyond its southernmost point
+    for (; strip < std::ssize(south_m_) && south_m_[static_cast<std::size_t>(strip)] <= north;
+         ++strip) {
+      const auto end = points_.begin() + std::min((strip + 1) * per_strip_, std::ssize(points_));
+      auto point =
+          std::lower_bound(points_.begin() + strip * per_strip_, end, west,
+                           [](const Point& candidate, double m) { return candidate.east < m; });
+      for (; point != end && point->east <= east; ++point)
+        if (point->north >= south && point->north <= north) function(point->name);
+    }
+  }
+
+  /// Names from south to north.
+  [[nodiscard]] std::span<const int> by_north() const noexcept { return by_north_; }
+
+ private:
+  struct Point {
+    double north;
+    double east;
+    int name;
+  };
+
+  std::vector<Point> points_;  ///< strip by strip, each from west to east
+  std::vector<int> by_north_;
+  std::vector<double> south_m_;  ///< southernmost point of each strip
+  std::ptrdiff_t per_strip_ = 1;
+};
+
+}  // namespace wakeline

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/track/plane_index.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace wakeline {
+namespace {
+
+using Place = Vec<double, 2>;
+
+std::vector<int> found_near(const PlaneIndex& index, const Place& place, double reach_m) {
+  std::vector<int> names;
+  index.for_each_near(place, reach_m, [&](int name) { names.push_back(name); });
+  return names;
+}
+
+/// Looks at every point.
+std::vector<int> near(const std::vector<Place>& points, const Place& place, double reach_m) {
+  std::vector<int> names;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const bool inside = points[k][0] >= place[0] - reach_m && points[k][0] <= place[0] + reach_m &&
+                        points[k][1] >= place[1] - reach_m && points[k][1] <= place[1] + reach_m;
+    if (inside) names.push_back(static_cast<int>(k));
+  }
+  return names;
+}
+
+PlaneIndex index_of_points(const std::vector<Place>& points) {
+  PlaneIndex index(static_cast<int>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k) index.add(points[k], static_cast<int>(k));
+  index.sort();
+  return index;
+}
+
+TEST(PlaneIndex, FindsWhatLookingAtEveryPointFinds) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  for (const std::size_t size : {0u, 1u, 2u, 3u, 17u, 100u, 1000u}) {
+    std::vector<Place> points;
+    for (std::size_t k = 0; k < size; ++k) {
+      points.emplace_back(100.0 * normal(random), 300.0 * normal(random));
+      if (k % 7 == 3) points.back() = points[k - 1];                   // of one place
+      if (k % 11 == 5) points.back()[0] = points[k - 1][0];            // of one latitude
+      if (k % 50 == 20) points.back() *= 1e9;                          // at the end of the world
+      if (k % 13 == 0) points.back() = points.back().array().round();  // on a grid
+    }
+    const PlaneIndex index = index_of_points(points);
+    for (int k = 0; k < 200; ++k) {
+      const Place place = k % 3 == 0 && size > 0
+                              ? points[static_cast<std::size_t>(k) % size]
+                              : Place(100 * normal(random), 300 * normal(random));
+      const double reach_m = std::fabs(50.0 * normal(random)) * (k % 5 == 0 ? 0.0 : 1.0);
+      std::vector<int> names = found_near(index, place, reach_m);
+      std::sort(names.begin(), names.end());
+      EXPECT_EQ(names, near(points, place, reach_m));
+    }
+    EXPECT_EQ(found_near(index, {0.0, 0.0}, std::numeric_limits<double>::infinity()).size(), size);
+  }
+}
+
+TEST(PlaneIndex, PointsOfOnePlaceComeInTheOrderOfTheirNames) {
+  std::vector<Place> points(50, Place(3.0, 4.0));
+  points[10] = {3.0, 5.0};
+  std::vector<int> names = found_near(index_of_points(points), {3.0, 4.0}, 0.5);
+  EXPECT_EQ(names.size(), 49u);
+  EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
+}
+
+TEST(PlaneIndex, TellsWhatLiesFromSouthToNorth) {
+  const PlaneIndex index = index_of_points({{5.0, 0.0}, {-1.0, 7.0}, {2.0, -3.0}, {-1.0, 2.0}});
+  EXPECT_EQ(std::vector<int>(index.by_north().begin(), index.by_north().end()),
+            (std::vector<int>{1, 3, 2, 0}));
+}
+
+TEST(PlaneIndex, NothingIsNearWhatIsNoPlace) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const PlaneIndex index = index_of_points({{0.0, 0.0}, {1.0, 1.0}});
+  EXPECT_TRUE(found_near(index, {kNan, 0.0}, 10.0).empty());
+  EXPECT_TRUE(found_near(index, {0.0, kNan}, 10.0).empty());
+  EXPECT_TRUE(found_near(index, {0.0, 0.0}, kNan).empty());
+}
+
+TEST(PlaneIndex, ForgetsWhenCleared) {
+  PlaneIndex index(2);
+  index.add({0.0, 0.0}, 0);
+  index.sort();
+  index.clear();
+  index.sort();
+  EXPECT_TRUE(found_near(index, {0.0, 0.0}, 1.0).empty());
+  EXPECT_TRUE(index.by_north().empty());
+}
+
+}  // namespace
+}  // namespace wakeline
