@@ -2,10 +2,28 @@
 // SPDX-License-Identifier: MIT
 #include "wakeline/association/assign_dense.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
 #include "types.hpp"
 
 namespace wakeline::python {
 namespace {
+
+using IntArray = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+/// The pairs (row, column) of the rows that have a column.
+py::array_t<std::int64_t> pairs_of(std::span<const int> column_of_row, int count) {
+  py::array_t<std::int64_t> result({py::ssize_t{count}, py::ssize_t{2}});
+  std::int64_t* pair = result.mutable_data();
+  for (std::size_t row = 0; row < column_of_row.size(); ++row) {
+    if (column_of_row[row] == kUnassigned) continue;
+    *pair++ = static_cast<std::int64_t>(row);
+    *pair++ = column_of_row[row];
+  }
+  return result;
+}
 
 /// The pairs (row, column) of an assignment, by row.
 py::array_t<std::int64_t> assign(const DoubleArray& cost) {
@@ -15,17 +33,54 @@ py::array_t<std::int64_t> assign(const DoubleArray& cost) {
     if (std::isnan(element))
       throw py::value_error("cost must not hold NaN; forbid a pair with inf");
   const std::vector<int> columns = matrix.size() > 0 ? assign_dense(matrix) : std::vector<int>{};
-  py::ssize_t pairs = 0;
-  for (const int column : columns) pairs += column != kUnassigned;
-  py::array_t<std::int64_t> result({pairs, py::ssize_t{2}});
-  auto view = result.mutable_unchecked<2>();
-  py::ssize_t pair = 0;
-  for (std::size_t row = 0; row < columns.size(); ++row) {
-    if (columns[row] == kUnassigned) continue;
-    view(pair, 0) = static_cast<std::int64_t>(row);
-    view(pair++, 1) = columns[row];
+  const auto pairs = static_cast<int>(columns.size()) -
+                     static_cast<int>(std::count(columns.begin(), columns.end(), kUnassigned));
+  return pairs_of(columns, pairs);
+}
+
+/// Fills candidates from compressed rows; throws where these are none.
+Candidates<double> to_candidates(const IntArray& indptr, const IntArray& indices,
+                                 const DoubleArray& data, const DoubleArray& unassigned_cost,
+                                 int columns) {
+  const py::ssize_t rows = indptr.shape(0) - 1;
+  Candidates<double> candidates(static_cast<int>(rows), static_cast<int>(data.shape(0)));
+  candidates.clear(columns);
+  const std::int64_t* start = indptr.data();
+  for (py::ssize_t row = 0; row < rows; ++row) {
+    if (start[row] < 0 || start[row + 1] < start[row] || start[row + 1] > data.shape(0))
+      throw py::value_error("indptr must rise from 0 to the number of costs");
+    const double out = unassigned_cost.data()[unassigned_cost.ndim() == 0 ? 0 : row];
+    if (!candidates.start_row(out)) throw py::value_error("unassigned_cost must be finite");
+    for (std::int64_t k = start[row]; k < start[row + 1]; ++k) {
+      const double cost = data.data()[k];
+      if (std::isnan(cost))
+        throw py::value_error("data must not hold NaN; forbid a pair with inf or leave it out");
+      const std::int64_t column = indices.data()[k];
+      if (column < 0 || column >= columns)
+        throw py::value_error("indices must be 0 to columns - 1, got " + std::to_string(column));
+      if (std::isfinite(cost)) candidates.add(static_cast<int>(column), cost);
+    }
   }
-  return result;
+  return candidates;
+}
+
+py::array_t<std::int64_t> assign_sparse(const IntArray& indptr, const IntArray& indices,
+                                        const DoubleArray& data, const DoubleArray& unassigned_cost,
+                                        int columns) {
+  require_shape(indptr.ndim() == 1 && indptr.shape(0) > 0, "indptr", "(rows + 1,)", indptr);
+  require_shape(data.ndim() == 1, "data", "(candidates,)", data);
+  require_shape(indices.ndim() == 1 && indices.shape(0) == data.shape(0), "indices",
+                shape_text({data.shape(0)}), indices);
+  require_shape(unassigned_cost.ndim() == 0 || (unassigned_cost.ndim() == 1 &&
+                                                unassigned_cost.shape(0) == indptr.shape(0) - 1),
+                "unassigned_cost", "() or (rows,)", unassigned_cost);
+  if (columns < 0)
+    throw py::value_error("columns must not be negative, got " + std::to_string(columns));
+  const Candidates<double> candidates =
+      to_candidates(indptr, indices, data, unassigned_cost, columns);
+  GlobalNearestNeighbour<double> solver(candidates.rows(), columns);
+  (void)solver.solve(candidates);
+  return pairs_of(solver.assignment().column_of_row(), solver.assignment().pairs());
 }
 
 }  // namespace
@@ -43,6 +98,30 @@ Returns
 -------
 (pairs, 2) int array
     Row and column of each pair, by row: as many pairs as can be, then the least total cost.)");
+  m.def("assign_sparse", &assign_sparse, py::arg("indptr"), py::arg("indices"), py::arg("data"),
+        py::kw_only(), py::arg("unassigned_cost"), py::arg("columns"),
+        R"(Optimal one-to-one assignment of gated pairs, each row at most one.
+
+Minimises the costs of the pairs plus `unassigned_cost` of the rows left out. Pairs are given as
+the compressed rows of a sparse matrix, as `scipy.sparse.csr_array` holds them; what is not there
+is forbidden.
+
+Parameters
+----------
+indptr : (rows + 1,) int array
+    Row r has the candidates `indptr[r]` to `indptr[r + 1] - 1`.
+indices : (candidates,) int array
+    Column of each candidate, at most once a row.
+data : (candidates,) array
+    Cost of each, of any sign; inf forbids it.
+unassigned_cost : float or (rows,) array
+    What it costs to leave a row out.
+columns : int
+
+Returns
+-------
+(pairs, 2) int array
+    Row and column of each pair, by row.)");
 }
 
 }  // namespace wakeline::python

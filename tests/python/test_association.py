@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from wakeline.association import assign
+from wakeline.association import assign, assign_sparse
 
 sizes = st.tuples(st.integers(0, 5), st.integers(0, 5))
 costs = hnp.arrays(float, sizes, elements=st.floats(-100.0, 100.0))
@@ -80,3 +80,49 @@ def test_a_cost_must_be_a_matrix(shape):
 def test_strides_and_integers_are_taken():
     cost = np.arange(64).reshape(8, 8) * -1
     np.testing.assert_array_equal(assign(cost[::2, ::3]), assign(cost[::2, ::3].copy()))
+
+
+@given(costs | gated, st.floats(-100.0, 100.0))
+def test_a_sparse_assignment_costs_the_least(cost, unassigned_cost):
+    rows, columns = cost.shape
+    row, column = np.nonzero(np.isfinite(cost))
+    start = np.concatenate([[0], np.cumsum(np.isfinite(cost).sum(axis=1))])
+    pairs = assign_sparse(
+        start, column, cost[row, column], unassigned_cost=unassigned_cost, columns=columns
+    )
+    assert len(set(pairs[:, 0])) == len(set(pairs[:, 1])) == len(pairs)
+    total = cost[pairs[:, 0], pairs[:, 1]].sum() + unassigned_cost * (rows - len(pairs))
+    ways_out = np.full((rows, rows), unassigned_cost)
+    assert total == pytest.approx(best(np.hstack([cost, ways_out]))[1], abs=1e-9)
+
+
+def test_each_row_has_its_own_way_out():
+    pairs = assign_sparse([0, 1, 2], [0, 0], [1.0, 2.0], unassigned_cost=[1.5, 9.0], columns=1)
+    assert pairs.tolist() == [[1, 0]]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"indptr": [0, 2, 1]}, "indptr"),
+        ({"indptr": [0, 1, 3]}, "indptr"),
+        ({"indices": [0, 2]}, "indices .* got 2"),
+        ({"indices": [0, -1]}, "indices .* got -1"),
+        ({"indices": [0]}, "indices"),
+        ({"data": [0.0, np.nan]}, "NaN"),
+        ({"unassigned_cost": np.inf}, "unassigned_cost"),
+        ({"unassigned_cost": [1.0]}, "unassigned_cost"),
+        ({"columns": -1}, "columns"),
+    ],
+)
+def test_what_is_no_sparse_matrix_is_refused(change, words):
+    good = {
+        "indptr": [0, 1, 2],
+        "indices": [0, 1],
+        "data": [1.0, 2.0],
+        "unassigned_cost": 3.0,
+        "columns": 2,
+    }
+    assert assign_sparse(**good).tolist() == [[0, 0], [1, 1]]
+    with pytest.raises(ValueError, match=words):
+        assign_sparse(**good | change)

@@ -23,7 +23,8 @@ _REPEATS = 5
 _RUNS, _SCANS = 500, 250
 _DT_S = 3.0
 _LOOP_STEPS = 500
-_TRACKS, _PLOTS, _TRACKER_SCANS = 100, 200, 40
+_TRACKER_SETTLING, _TRACKER_SCANS = 20, 10
+_GNN_SCANS, _GNN_GATE = 10, 9.21
 _SWEEPS, _CELLS, _TRAIN, _GUARD = 4096, 2048, 16, 4
 _RANGE_STD_M, _BEARING_STD_RAD = 20.0, np.deg2rad(0.5)
 
@@ -235,15 +236,25 @@ def _filterpy_imm(estimator_class: type, filter_class: type) -> Any:
 
 
 def _tracker_works() -> Iterator[_Work]:
-    """100 tracks that have settled, and 200 plots a scan: one of each target and false ones."""
+    """Targets that the tracker has settled on, each seen in every scan, among false plots."""
+    for name, targets, false_plots in (("tracker_200", 200, 200), ("tracker_1000", 1000, 500)):
+        track = _tracking(targets, false_plots)
+        track(_TRACKER_SETTLING)
+        call = lambda track=track: track(_TRACKER_SCANS)  # noqa: E731
+        yield _Work(name, OURS, "ms_per_scan", call, _TRACKER_SCANS)
+
+
+def _tracking(targets: int, false_plots: int) -> Callable[[int], None]:
+    """What takes so many scans through a tracker: boats on straight courses, 600 m apart."""
     rng = np.random.default_rng(_SEED)
-    radar = wl.Radar(range_std_m=10.0, bearing_std_rad=np.deg2rad(0.3), period_s=_DT_S)
-    tracker = wl.Tracker(radar)
-    place_m = rng.uniform(-15e3, 15e3, (_TRACKS, 2))
-    velocity_mps = rng.uniform(-6.0, 6.0, (_TRACKS, 2))
+    radar = wl.Radar(range_std_m=10.0, bearing_std_rad=np.deg2rad(0.1), period_s=_DT_S)
+    tracker = wl.Tracker(radar, wl.TrackerConfig(max_tracks=2 * targets + 100))
+    side = int(np.ceil(np.sqrt(targets)))
+    place_m = 2000.0 + 600.0 * np.column_stack(np.divmod(np.arange(targets), side))
+    velocity_mps = rng.uniform(-6.0, 6.0, (targets, 2))
     scans = []
-    for k in range(20 + _REPEATS * _TRACKER_SCANS):
-        false_m = rng.uniform(-20e3, 20e3, (_PLOTS - _TRACKS, 2))
+    for k in range(_TRACKER_SETTLING + _REPEATS * _TRACKER_SCANS):
+        false_m = rng.uniform(1700.0, 1700.0 + 600.0 * side, (false_plots, 2))
         seen_m = place_m + k * _DT_S * velocity_mps + rng.normal(scale=5.0, size=place_m.shape)
         north_m, east_m = np.concatenate([seen_m, false_m]).T
         scans.append((k * _DT_S, np.hypot(north_m, east_m), np.arctan2(east_m, north_m)))
@@ -254,20 +265,71 @@ def _tracker_works() -> Iterator[_Work]:
             time_s, range_m, bearing_rad = next(waiting)
             tracker.process(time_s, range_m=range_m, bearing_rad=bearing_rad)
 
-    track(20)
-    call = lambda: track(_TRACKER_SCANS)  # noqa: E731
-    yield _Work("tracker_scan", OURS, "ms_per_scan", call, _TRACKER_SCANS)
+    return track
 
 
 def _assignment_works() -> Iterator[_Work]:
-    """Optimal assignment of a dense 200 x 200 matrix."""
-    cost = np.random.default_rng(_SEED).uniform(size=(200, 200))
-    yield _Work("gnn_200", OURS, "ms_per_scan", lambda: wl.association.assign(cost), 1)
-    try:
-        from scipy.optimize import linear_sum_assignment
-    except ImportError:
-        return
-    yield _Work("gnn_200", "scipy", "ms_per_scan", lambda: linear_sum_assignment(cost), 1)
+    """Optimal assignment of n tracks to n plots, about five candidates a track."""
+    rng = np.random.default_rng(_SEED)
+    for size in (200, 1000):
+        name, scans = f"gnn_{size}", [_gated_costs(rng, size, 5.0) for _ in range(_GNN_SCANS)]
+        yield _Work(name, OURS, "ms_per_scan", _each(_ours_assigned, scans), _GNN_SCANS)
+        try:
+            from scipy.sparse.csgraph import min_weight_full_bipartite_matching as match
+        except ImportError:
+            continue
+        matrices = [_with_ways_out(cost) for cost in scans]
+        for cost, matrix in zip(scans, matrices, strict=True):
+            rows, columns = match(matrix)
+            best, ours = matrix[rows, columns].sum(), _total_cost(cost, _ours_assigned(cost))
+            if not np.isclose(best, ours, rtol=1e-9):
+                raise RuntimeError(f"{name}: a total of {ours}, where scipy finds {best}")
+        yield _Work(name, "scipy", "ms_per_scan", _each(match, matrices), _GNN_SCANS)
+
+
+def _each(function: Callable[[Any], Any], problems: list[Any]) -> Callable[[], None]:
+    def call() -> None:
+        for problem in problems:
+            function(problem)
+
+    return call
+
+
+def _gated_costs(
+    rng: np.random.Generator, size: int, candidates: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Compressed rows of gated distances: of each track its own plot, and others by chance."""
+    start, columns, costs = [0], [], []
+    for row in range(size):
+        others = rng.choice(size, rng.poisson(candidates - 1.0), replace=False)
+        plots = np.unique(np.append(others, row))
+        columns.append(plots)
+        costs.append(np.where(plots == row, 0.3, 1.0) * rng.uniform(0.1, _GNN_GATE, len(plots)))
+        start.append(start[-1] + len(plots))
+    return np.array(start), np.concatenate(columns), np.concatenate(costs)
+
+
+def _ours_assigned(cost: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+    return wl.association.assign_sparse(*cost, unassigned_cost=_GNN_GATE, columns=len(cost[0]) - 1)
+
+
+def _total_cost(cost: tuple[np.ndarray, np.ndarray, np.ndarray], pairs: np.ndarray) -> float:
+    start, columns, costs = cost
+    total = _GNN_GATE * (len(start) - 1 - len(pairs))
+    for row, column in pairs:
+        mine = slice(start[row], start[row + 1])
+        total += costs[mine][columns[mine] == column].item()
+    return total
+
+
+def _with_ways_out(cost: tuple[np.ndarray, np.ndarray, np.ndarray]) -> Any:
+    """The same as a matrix with a column more for each row, at the cost of leaving it out."""
+    from scipy.sparse import csr_array, diags_array, hstack
+
+    start, columns, costs = cost
+    size = len(start) - 1
+    pairs = csr_array((costs, columns, start), shape=(size, size))
+    return hstack([pairs, diags_array(np.full(size, _GNN_GATE))], format="csr")
 
 
 # Radar video --------------------------------------------------------------------------------------
