@@ -44,6 +44,7 @@ class Echoes {
     echoes_.clear();
     index_.clear();
     largest_variance_ = 0.0;
+    earliest_s_ = latest_s_ = time_s;
     const std::size_t count = std::min(plots.size(), echoes_.capacity());
     for (std::size_t k = 0; k < count; ++k) {
       const Plot& plot = plots[k];
@@ -54,6 +55,8 @@ class Echoes {
       index_.add(position.mean, size());
       echoes_.push_back({.position = position, .time_s = plot.time_s, .plot = static_cast<int>(k)});
       largest_variance_ = std::max(largest_variance_, position.covariance.trace());
+      earliest_s_ = std::min(earliest_s_, plot.time_s);
+      latest_s_ = std::max(latest_s_, plot.time_s);
     }
     index_.sort();
   }
@@ -80,10 +83,17 @@ class Echoes {
   /// Largest trace of a covariance, m².
   [[nodiscard]] double largest_variance_m2() const noexcept { return largest_variance_; }
 
+  /// No plot is farther from that time.
+  [[nodiscard]] double apart_s(double time_s) const noexcept {
+    return std::max(latest_s_ - time_s, time_s - earliest_s_);
+  }
+
  private:
   std::vector<Echo> echoes_;
   PlaneIndex index_;
   double largest_variance_ = 0.0;
+  double earliest_s_ = 0.0;
+  double latest_s_ = 0.0;
 };
 
 }  // namespace wakeline

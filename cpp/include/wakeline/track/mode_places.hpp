@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "wakeline/multimodel/filter_bank.hpp"
 #include "wakeline/multimodel/imm.hpp"
@@ -48,6 +51,22 @@ class ModePlaces {
     else if constexpr (requires { beliefs_of(estimator, add); })
       beliefs_of(estimator, add);
     known_ = count_ > 0 && count_ <= places_.size();
+  }
+
+  /// How far from a position, north or east, a plot with at most that variance may be and yet in a
+  /// gate of that threshold about one of the modes; infinite where nothing is known.
+  [[nodiscard]] double reach_m(const Vec<double, 2>& position, double variance_m2,
+                               double threshold) const noexcept {
+    constexpr double kRounding = 1.0 + 1e-6;
+    if (!known_) return std::numeric_limits<double>::infinity();
+    double reach_m = 0.0;
+    for (std::size_t k = 0; k < count_; ++k) {
+      const Gaussian<2>& place = places_[k];
+      const double widest_m2 = std::max(place.covariance(0, 0), place.covariance(1, 1));
+      const double off_m = (place.mean - position).cwiseAbs().maxCoeff();
+      reach_m = std::max(reach_m, off_m + std::sqrt(threshold * (widest_m2 + variance_m2)));
+    }
+    return kRounding * reach_m;
   }
 
   /// Whether a plot with covariance `r` may be in a gate of that threshold about one of the modes;

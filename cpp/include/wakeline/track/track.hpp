@@ -35,6 +35,22 @@ struct Event {
   double time_s;
 };
 
+/// What the time between two scans does to existence and visibility, for all tracks the same.
+struct Ageing {
+  double survival;       ///< probability that a target stays
+  double settled = 0.0;  ///< probability of being visible in the long run
+  double memory = 1.0;   ///< what is left of the difference to it
+
+  Ageing(const TrackerConfig& config, double dt_s) noexcept
+      : survival(std::exp(-dt_s / config.survival_time_s)) {
+    if (!(config.visible_time_s > 0.0)) return;
+    const double hide = 1.0 / config.visible_time_s;
+    const double show = 1.0 / config.hidden_time_s;
+    settled = show / (hide + show);
+    memory = std::exp(-(hide + show) * dt_s);
+  }
+};
+
 /// A track: an estimator, and what is known of the target's being there.
 template <class Estimator>
 struct Track {
@@ -74,13 +90,9 @@ struct Track {
   [[nodiscard]] std::string_view label() const noexcept { return name.data(); }
 
   /// Time passes: the target may leave, be hidden from the radar, or be seen again.
-  void age(const TrackerConfig& config, double dt_s) noexcept {
-    existence *= std::exp(-dt_s / config.survival_time_s);
-    if (!(config.visible_time_s > 0.0)) return;
-    const double hide = 1.0 / config.visible_time_s;
-    const double show = 1.0 / config.hidden_time_s;
-    const double settled = show / (hide + show);
-    visibility = settled + (visibility - settled) * std::exp(-(hide + show) * dt_s);
+  void age(const Ageing& ageing) noexcept {
+    existence *= ageing.survival;
+    visibility = ageing.settled + (visibility - ageing.settled) * ageing.memory;
   }
 
   /// Bayes' rule for "the target exists" and "it is visible", given how well the scan fits the

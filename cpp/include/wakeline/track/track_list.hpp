@@ -54,22 +54,27 @@ class TrackList {
     return place == order_.end() ? nullptr : &at(*place);
   }
 
-  /// Room for a track, at the end of the list; there must be some.
-  TrackType& open() noexcept {
+  /// Room for a track, at the end of the list; there must be some. Returns its slot.
+  int open() noexcept {
     const int slot = vacant_.back();
     vacant_.pop_back();
     order_.push_back(slot);
-    return at(slot);
+    return slot;
   }
 
   /// Ends a track; false when there is none of that number.
   bool remove(std::int64_t id) noexcept {
     const auto place = locate(id);
     if (place == order_.end()) return false;
-    at(*place).existence = kEnded;
-    vacant_.push_back(*place);
-    order_.erase(place);
+    remove_slot(*place);
     return true;
+  }
+
+  /// Ends the track of a slot in use.
+  void remove_slot(int slot) noexcept {
+    at(slot).existence = kEnded;
+    vacant_.push_back(slot);
+    order_.erase(std::find(order_.begin(), order_.end(), slot));
   }
 
   /// Ends the tracks for which the predicate holds, asked in order, after a farewell;

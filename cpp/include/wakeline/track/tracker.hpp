@@ -76,6 +76,7 @@ class Tracker {
     const auto tracks = static_cast<std::size_t>(config.max_tracks);
     const auto plots = static_cast<std::size_t>(config.max_plots);
     row_slot_.reserve(tracks);
+    weak_.reserve(tracks);
     plot_track_id_.reserve(plots);
     events_.reserve(4 * tracks + plots);
   }
@@ -94,8 +95,10 @@ class Tracker {
     time_s_ = time_s;
     started_ = true;
     const int refused = take(plots, dt_s);
+    const Ageing ageing(config_, dt_s);
     tracks_.for_each([&](TrackType& track, int slot) {  // one by one, while it is in the cache
-      advance(track, dt_s);
+      track.age(ageing);
+      advance(track);
       gate(track, claims_of(slot));
       stake(track, claims_of(slot));
     });
@@ -138,6 +141,7 @@ class Tracker {
                             position_std_m * position_std_m * Mat<double, 2, 2>::Identity()};
     const Gaussian<4> belief =
         kinematics_from<double>(place, resting_velocity(), Mat<double, 2, 2>::Zero());
+    weak_listed_ = false;
     TrackType* track = open_track(time_s, belief, kDesignatedExistence);
     if (track == nullptr) return 0;
     track->tentative_id = 0;
@@ -227,8 +231,7 @@ class Tracker {
 
   /// Time passes for a track: to the time of the plot nearest to where it should be, else to the
   /// scan's.
-  void advance(TrackType& track, double dt_s) noexcept {
-    track.age(config_, dt_s);
+  void advance(TrackType& track) noexcept {
     const double ahead_s = std::max(time_s_ - track.time_s, 0.0);
     const Vec<double, 2> expected = track.position() + ahead_s * track.velocity();
     const double reach = 3.0 * track.position_std_m() +
@@ -255,11 +258,14 @@ class Tracker {
     claims.clear();
     const double threshold = gate_.threshold();
     const auto& p = track.kinematics.covariance;
-    // Generous: the widest mode of an estimator may be some times wider than the mixture.
-    const double reach =
-        3.0 * std::sqrt(threshold * (p(0, 0) + p(2, 2))) +
-        std::sqrt(threshold * config_.wild_variance() * echoes_.largest_variance_m2());
+    const double plot_m2 = config_.wild_variance() * echoes_.largest_variance_m2();
     modes_.take(track.estimator);
+    // Generous: the widest mode of an estimator may be some times wider than the mixture.
+    const double generous =
+        3.0 * std::sqrt(threshold * (p(0, 0) + p(2, 2))) + std::sqrt(threshold * plot_m2);
+    const double moved = echoes_.apart_s(track.time_s) * track.velocity().cwiseAbs().maxCoeff();
+    const double reach =
+        std::min(generous, modes_.reach_m(track.position(), plot_m2, threshold) + moved);
     echoes_.for_each_near(track.position(), reach, [&](int index) {
       const Gaussian<2>& position = echoes_[index].position;
       // The plot moves along with the track from its own time to the track's.
@@ -335,13 +341,12 @@ class Tracker {
   /// Takes the plots in: state, existence and visibility.
   void update(TrackType& track, int slot, const Claims& claims) noexcept {
     const double none = claims.certain() ? 0.0 : 1.0 - config_.detection() * track.visibility;
-    std::array<Alternative<Fix>, 2 * Claims::kMost> readings;
     std::array<double, 2 * Claims::kMost> share{};
-    const std::size_t count = list_readings(track, claims, readings);
+    const std::size_t count = list_readings(track, claims);
     double total = none;
     if (count > 0) {
       const double sum =
-          track.estimator.update(std::span<const Alternative<Fix>>(readings.data(), count), none,
+          track.estimator.update(std::span<const Alternative<Fix>>(readings_.data(), count), none,
                                  std::span<double>(share.data(), count));
       if (sum > 0.0) total = sum;
     }
@@ -366,19 +371,17 @@ class Tracker {
   }
 
   /// Each plot as two readings, of the nominal and of the wild error.
-  std::size_t list_readings(
-      const TrackType& track, const Claims& claims,
-      std::array<Alternative<Fix>, 2 * Claims::kMost>& readings) const noexcept {
+  std::size_t list_readings(const TrackType& track, const Claims& claims) noexcept {
     std::size_t count = 0;
     for (const Claim& claim : claims) {
       const Echo& echo = echoes_[claim.echo];
       const double claimed_by_others = std::max(echo.odds - claim.odds, 0.0);
       const double weight =
           config_.detection_probability * track.visibility / (echo.density + claimed_by_others);
-      readings[count++] = {Fix{echo.position.covariance}, claim.z,
-                           (1.0 - config_.wild_probability) * weight};
-      readings[count++] = {Fix{config_.wild_variance() * echo.position.covariance}, claim.z,
-                           config_.wild_probability * weight};
+      readings_[count++] = {Fix{echo.position.covariance}, claim.z,
+                            (1.0 - config_.wild_probability) * weight};
+      readings_[count++] = {Fix{config_.wild_variance() * echo.position.covariance}, claim.z,
+                            config_.wild_probability * weight};
     }
     return count;
   }
@@ -481,6 +484,7 @@ class Tracker {
   /// track.
   void start_tracks() noexcept {
     const double longest_s = config_.coast_scans_max * radar_.period_s;
+    weak_listed_ = false;
     for (const Echo& echo : echoes_) {
       if (!(echo.free > config_.free_plot)) continue;
       free_.for_each_before(echo, radar_.max_speed_mps, config_.start_gate_sigma, longest_s,
@@ -507,7 +511,8 @@ class Tracker {
     Estimator estimator = prototype_;
     if (estimator.start(belief) != Status::kOk) return nullptr;
     if (tracks_.full() && !make_room(existence)) return nullptr;
-    TrackType& track = tracks_.open();
+    const int slot = tracks_.open();
+    TrackType& track = tracks_.at(slot);
     track.estimator = estimator;
     track.id = track.tentative_id = next_tentative_id_--;
     track.name.fill('\0');
@@ -520,20 +525,45 @@ class Tracker {
     track.scans = track.hits = 2;
     track.misses = track.duplicate_scans = 0;
     track.history = 0;
+    if (weak_listed_) {
+      weak_.push_back({existence, track.id, slot});
+      std::push_heap(weak_.begin(), weak_.end(), stronger);
+    }
     return &track;
   }
 
-  /// Gives up the weakest tentative track if it is weaker than a new one would be.
+  /// Gives up the weakest tentative track, of equals the oldest, if it is weaker than a new one
+  /// would be.
   bool make_room(double existence) noexcept {
-    const TrackType* weakest = nullptr;
-    tracks_.for_each([&](const TrackType& track) {
-      if (!track.confirmed() && track.existence < existence &&
-          (weakest == nullptr || track.existence < weakest->existence))
-        weakest = &track;
+    if (!weak_listed_) list_weak();
+    if (weak_.empty() || !(weak_.front().existence < existence)) return false;
+    const int slot = weak_.front().slot;
+    std::pop_heap(weak_.begin(), weak_.end(), stronger);
+    weak_.pop_back();
+    lose(tracks_.at(slot));
+    tracks_.remove_slot(slot);
+    return true;
+  }
+
+  /// A tentative track that may have to make room.
+  struct Weak {
+    double existence;
+    std::int64_t id;
+    int slot;
+  };
+
+  static bool stronger(const Weak& a, const Weak& b) noexcept {
+    return a.existence > b.existence || (a.existence == b.existence && a.id < b.id);
+  }
+
+  /// Heaps up the tentative tracks, the weakest on top, once for all starts of a scan.
+  void list_weak() noexcept {
+    weak_.clear();
+    tracks_.for_each([&](const TrackType& track, int slot) {
+      if (!track.confirmed()) weak_.push_back({track.existence, track.id, slot});
     });
-    if (weakest == nullptr) return false;
-    lose(*weakest);
-    return tracks_.remove(weakest->id);
+    std::make_heap(weak_.begin(), weak_.end(), stronger);
+    weak_listed_ = true;
   }
 
   void lose(const TrackType& track) noexcept { announce(TrackEvent::kLost, track); }
@@ -587,13 +617,16 @@ class Tracker {
   TrackList<Estimator> tracks_;
   std::vector<Claims> claims_;  ///< by slot of the list
   Echoes echoes_;
-  ModePlaces modes_;   ///< of the track at hand
-  PlaneIndex places_;  ///< of the tracks, by slot
+  ModePlaces modes_;                                          ///< of the track at hand
+  std::array<Alternative<Fix>, 2 * Claims::kMost> readings_;  ///< of the track at hand
+  PlaneIndex places_;                                         ///< of the tracks, by slot
   double widest_m2_ = 0.0;
   FreePlots free_;  ///< of the scan before
   std::vector<std::int64_t> plot_track_id_;
   std::vector<Event> events_;
   std::vector<int> row_slot_;  ///< of the rows of `candidates_`
+  std::vector<Weak> weak_;     ///< a heap of the tentative tracks, if `weak_listed_`
+  bool weak_listed_ = false;
   Candidates<double> candidates_;
   GlobalNearestNeighbour<double> global_;
   NearestNeighbour<double> nearest_;
