@@ -1,0 +1,218 @@
+"""The same work as others would do it from Python: an IMM over many recordings by numba and by JAX.
+
+Both are textbook code, as one writes it down from the book; `numba` goes through the recordings one
+after the other, `JAX` through all at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class LinearImm:
+    """An IMM of K linear models of 4 states, ``[x, vx, y, vy]``, that is given positions.
+
+    Attributes
+    ----------
+    f, q : (K, 4, 4) arrays
+        Transition and process noise of each model, over one scan.
+    chain : (K, K) array
+        Mode transition probabilities.
+    mean, covariance : (4,) and (4, 4) arrays
+        Where every recording starts.
+    position_std_m : float
+        Error of a plot, per axis.
+    """
+
+    f: np.ndarray
+    q: np.ndarray
+    chain: np.ndarray
+    mean: np.ndarray
+    covariance: np.ndarray
+    position_std_m: float
+
+
+class ImmHistory(NamedTuple):
+    """What an IMM says of R recordings of T scans.
+
+    ``mean`` (R, T, 4), ``covariance`` (R, T, 4, 4), ``mode_probability`` (R, T, K) and
+    ``log_likelihood`` (R, T).
+    """
+
+    mean: np.ndarray
+    covariance: np.ndarray
+    mode_probability: np.ndarray
+    log_likelihood: np.ndarray
+
+
+Run = Callable[[np.ndarray], ImmHistory]
+
+
+def numba_imm(imm: LinearImm) -> Run | None:
+    """What takes plots (R, T, 2) through the IMM, compiled by numba; None where it is missing."""
+    try:
+        import numba
+    except ImportError:
+        return None
+    run = numba.njit(error_model="numpy")(_run_in_loops)
+    r = imm.position_std_m**2
+
+    def call(z: np.ndarray) -> ImmHistory:
+        return ImmHistory(*run(z, imm.f, imm.q, imm.chain, imm.mean, imm.covariance, r))
+
+    return call
+
+
+def jax_imm(imm: LinearImm) -> Run | None:
+    """The same by JAX, `vmap` over recordings of a `scan` over time; None where it is missing.
+
+    Switches JAX to double precision. It takes as many threads as the process may have.
+    """
+    try:
+        import jax
+    except ImportError:
+        return None
+    jax.config.update("jax_enable_x64", True)
+    run = jax.jit(jax.vmap(_recording_in_jax(imm)))
+
+    def call(z: np.ndarray) -> ImmHistory:
+        return ImmHistory(*(np.asarray(part) for part in run(z)))
+
+    return call
+
+
+def _run_in_loops(
+    z: np.ndarray,
+    f: np.ndarray,
+    q: np.ndarray,
+    chain: np.ndarray,
+    start: np.ndarray,
+    start_covariance: np.ndarray,
+    r: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    runs, scans, modes, n = z.shape[0], z.shape[1], f.shape[0], 4
+    means = np.zeros((runs, scans, n))
+    covariances = np.zeros((runs, scans, n, n))
+    probabilities = np.zeros((runs, scans, modes))
+    log_likelihoods = np.zeros((runs, scans))
+    x, p = np.empty((modes, n)), np.empty((modes, n, n))
+    mu, expected = np.empty(modes), np.empty(modes)
+    x0, p0 = np.empty((modes, n)), np.empty((modes, n, n))
+    d, fp, gain = np.empty(n), np.empty((n, n)), np.empty((n, 2))
+    for run in range(runs):
+        mu[:] = 1.0 / modes
+        for j in range(modes):
+            x[j], p[j] = start, start_covariance
+        for scan in range(scans):
+            # Mixing
+            for j in range(modes):
+                expected[j] = 0.0
+                for i in range(modes):
+                    expected[j] += chain[i, j] * mu[i]
+                x0[j], p0[j] = 0.0, 0.0
+                for i in range(modes):
+                    weight = chain[i, j] * mu[i] / expected[j]
+                    for a in range(n):
+                        x0[j, a] += weight * x[i, a]
+                for i in range(modes):
+                    weight = chain[i, j] * mu[i] / expected[j]
+                    for a in range(n):
+                        d[a] = x[i, a] - x0[j, a]
+                    for a in range(n):
+                        for b in range(n):
+                            p0[j, a, b] += weight * (p[i, a, b] + d[a] * d[b])
+            total = 0.0
+            for j in range(modes):
+                # Prediction
+                for a in range(n):
+                    x[j, a] = 0.0
+                    for b in range(n):
+                        x[j, a] += f[j, a, b] * x0[j, b]
+                for a in range(n):
+                    for b in range(n):
+                        fp[a, b] = 0.0
+                        for c in range(n):
+                            fp[a, b] += f[j, a, c] * p0[j, c, b]
+                for a in range(n):
+                    for b in range(n):
+                        element = q[j, a, b]
+                        for c in range(n):
+                            element += fp[a, c] * f[j, b, c]
+                        p[j, a, b] = element
+                # Correction
+                v0, v1 = z[run, scan, 0] - x[j, 0], z[run, scan, 1] - x[j, 2]
+                s00, s01, s11 = p[j, 0, 0] + r, p[j, 0, 2], p[j, 2, 2] + r
+                det = s00 * s11 - s01 * s01
+                i00, i01, i11 = s11 / det, -s01 / det, s00 / det
+                for a in range(n):
+                    gain[a, 0] = p[j, a, 0] * i00 + p[j, a, 2] * i01
+                    gain[a, 1] = p[j, a, 0] * i01 + p[j, a, 2] * i11
+                    x[j, a] += gain[a, 0] * v0 + gain[a, 1] * v1
+                for a in range(n):
+                    gain_s0 = gain[a, 0] * s00 + gain[a, 1] * s01
+                    gain_s1 = gain[a, 0] * s01 + gain[a, 1] * s11
+                    for b in range(n):
+                        p[j, a, b] -= gain_s0 * gain[b, 0] + gain_s1 * gain[b, 1]
+                nis = v0 * (i00 * v0 + i01 * v1) + v1 * (i01 * v0 + i11 * v1)
+                mu[j] = expected[j] * np.exp(-0.5 * nis) / (2.0 * np.pi * np.sqrt(det))
+                total += mu[j]
+            # Mode probabilities and combined estimate
+            for j in range(modes):
+                mu[j] /= total
+                probabilities[run, scan, j] = mu[j]
+                for a in range(n):
+                    means[run, scan, a] += mu[j] * x[j, a]
+            for j in range(modes):
+                for a in range(n):
+                    d[a] = x[j, a] - means[run, scan, a]
+                for a in range(n):
+                    for b in range(n):
+                        covariances[run, scan, a, b] += mu[j] * (p[j, a, b] + d[a] * d[b])
+            log_likelihoods[run, scan] = np.log(total)
+    return means, covariances, probabilities, log_likelihoods
+
+
+def _recording_in_jax(imm: LinearImm) -> Callable[[Any], Any]:
+    import jax
+    import jax.numpy as jnp
+
+    f, q, chain = jnp.asarray(imm.f), jnp.asarray(imm.q), jnp.asarray(imm.chain)
+    modes, r = len(f), imm.position_std_m**2
+
+    def moments(weight: Any, x: Any, p: Any) -> tuple[Any, Any]:
+        mean = weight @ x
+        d = x - mean
+        return mean, jnp.einsum("i,iab->ab", weight, p + d[:, :, None] * d[:, None, :])
+
+    def predict_and_correct(f: Any, q: Any, x: Any, p: Any, z: Any) -> tuple[Any, Any, Any]:
+        x, p = f @ x, f @ p @ f.T + q
+        pht = p[:, ::2]
+        v, s = z - x[::2], pht[::2] + r * jnp.eye(2)
+        det = s[0, 0] * s[1, 1] - s[0, 1] * s[1, 0]
+        inverse = jnp.array([[s[1, 1], -s[0, 1]], [-s[1, 0], s[0, 0]]]) / det
+        gain = pht @ inverse
+        likelihood = jnp.exp(-0.5 * v @ inverse @ v) / (2 * jnp.pi * jnp.sqrt(det))
+        return x + gain @ v, p - gain @ s @ gain.T, likelihood
+
+    def step(belief: Any, z: Any) -> tuple[Any, Any]:
+        x, p, mu = belief
+        expected = mu @ chain
+        weight = chain * mu[:, None] / expected
+        x, p = jax.vmap(moments, (1, None, None))(weight, x, p)
+        x, p, likelihood = jax.vmap(predict_and_correct, (0, 0, 0, 0, None))(f, q, x, p, z)
+        mu = expected * likelihood
+        total = mu.sum()
+        mu = mu / total
+        return (x, p, mu), (*moments(mu, x, p), mu, jnp.log(total))
+
+    start = (
+        jnp.broadcast_to(jnp.asarray(imm.mean), (modes, 4)),
+        jnp.broadcast_to(jnp.asarray(imm.covariance), (modes, 4, 4)),
+        jnp.full(modes, 1.0 / modes),
+    )
+    return lambda z: jax.lax.scan(step, start, z)[1]
