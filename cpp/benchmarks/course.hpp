@@ -24,9 +24,9 @@ struct Course {
   std::vector<Vec<Scalar, 2>> position;  ///< north m, east m
   Gaussian<4, Scalar> start;
 
-  Course() {
+  explicit Course(unsigned seed = 1) {
     constexpr int kLeg = 56, kTurn = 72;
-    std::mt19937_64 random(1);
+    std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     double north = 3000.0, east = 2000.0;
     for (int k = 0; k < 2 * (kLeg + kTurn); ++k) {
