@@ -82,12 +82,36 @@ class AnyFilter {
 
   template <class Sensor>
   Step<Sensor::kMeasurements> update(const Sensor& sensor,
-                                     const Vec<double, Sensor::kMeasurements>& z) noexcept;
+                                     const Vec<double, Sensor::kMeasurements>& z) noexcept {
+    return correct(sensor, sensor.observe(z)).scored();
+  }
 
   /// The innovation of a reading, without taking it.
   template <class Sensor>
   Step<Sensor::kMeasurements> innovation(
-      const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) const noexcept;
+      const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) const noexcept {
+    return compare(sensor, sensor.observe(z)).scored();
+  }
+
+  /// Corrects the belief by a reading that the sensor has observed. Of a direct sensor only the
+  /// reading matters, so that one instantiation serves all.
+  template <class Sensor>
+  Correction<Sensor::kMeasurements> correct(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept {
+    if constexpr (kIsDirect<Sensor>)
+      return correct_by(Fix{}, reading);
+    else
+      return correct_by(sensor, reading);
+  }
+
+  template <class Sensor>
+  Correction<Sensor::kMeasurements> compare(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) const noexcept {
+    if constexpr (kIsDirect<Sensor>)
+      return compare_by(Fix{}, reading);
+    else
+      return compare_by(sensor, reading);
+  }
 
   void archive(Archive& fields);
 
@@ -103,6 +127,13 @@ class AnyFilter {
   [[nodiscard]] Variant& variant() noexcept { return filter_; }
 
  private:
+  template <class Sensor>
+  Correction<Sensor::kMeasurements> correct_by(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept;
+  template <class Sensor>
+  Correction<Sensor::kMeasurements> compare_by(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) const noexcept;
+
   Variant filter_;
   bool linear_;  ///< a Kalman filter
 };
@@ -111,14 +142,12 @@ inline void set_turn_rate(AnyFilter& filter, double turn_rate_rad_s) noexcept {
   filter.set_turn_rate(turn_rate_rad_s);
 }
 
-extern template Step<2> AnyFilter::update(const RangeBearing&, const Vec<double, 2>&) noexcept;
-extern template Step<2> AnyFilter::update(const ConvertedRangeBearing&,
-                                          const Vec<double, 2>&) noexcept;
-extern template Step<2> AnyFilter::update(const Position&, const Vec<double, 2>&) noexcept;
-extern template Step<2> AnyFilter::update(const Fix&, const Vec<double, 2>&) noexcept;
-extern template Step<2> AnyFilter::innovation(const Fix&, const Vec<double, 2>&) const noexcept;
-extern template Step<3> AnyFilter::update(const RangeBearingDoppler&,
-                                          const Vec<double, 3>&) noexcept;
+extern template Correction<2> AnyFilter::correct_by(const RangeBearing&,
+                                                    const Gaussian<2>&) noexcept;
+extern template Correction<2> AnyFilter::correct_by(const Fix&, const Gaussian<2>&) noexcept;
+extern template Correction<2> AnyFilter::compare_by(const Fix&, const Gaussian<2>&) const noexcept;
+extern template Correction<3> AnyFilter::correct_by(const RangeBearingDoppler&,
+                                                    const Gaussian<3>&) noexcept;
 
 /// The filters of a multi-model estimator, composed at run time: the face of
 /// `wakeline::FilterBank` and of `wakeline::UniformBank`.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "any_filter_update.hpp"
 
-template wakeline::Step<2> wakeline::python::AnyFilter::update(const Fix&,
-                                                               const Vec<double, 2>&) noexcept;
-template wakeline::Step<2> wakeline::python::AnyFilter::innovation(
-    const Fix&, const Vec<double, 2>&) const noexcept;
+template wakeline::Correction<2> wakeline::python::AnyFilter::correct_by(
+    const Fix&, const Gaussian<2>&) noexcept;
+template wakeline::Correction<2> wakeline::python::AnyFilter::compare_by(
+    const Fix&, const Gaussian<2>&) const noexcept;

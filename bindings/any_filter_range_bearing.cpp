@@ -2,5 +2,5 @@
 // SPDX-License-Identifier: MIT
 #include "any_filter_update.hpp"
 
-template wakeline::Step<2> wakeline::python::AnyFilter::update(const RangeBearing&,
-                                                               const Vec<double, 2>&) noexcept;
+template wakeline::Correction<2> wakeline::python::AnyFilter::correct_by(
+    const RangeBearing&, const Gaussian<2>&) noexcept;

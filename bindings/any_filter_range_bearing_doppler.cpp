@@ -2,5 +2,5 @@
 // SPDX-License-Identifier: MIT
 #include "any_filter_update.hpp"
 
-template wakeline::Step<3> wakeline::python::AnyFilter::update(const RangeBearingDoppler&,
-                                                               const Vec<double, 3>&) noexcept;
+template wakeline::Correction<3> wakeline::python::AnyFilter::correct_by(
+    const RangeBearingDoppler&, const Gaussian<3>&) noexcept;

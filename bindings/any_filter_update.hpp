@@ -10,15 +10,15 @@
 namespace wakeline::python {
 
 template <class Sensor>
-Step<Sensor::kMeasurements> AnyFilter::update(
-    const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) noexcept {
-  return std::visit([&](auto& filter) { return filter.update(sensor, z); }, filter_);
+Correction<Sensor::kMeasurements> AnyFilter::correct_by(
+    const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept {
+  return std::visit([&](auto& filter) { return filter.correct(sensor, reading); }, filter_);
 }
 
 template <class Sensor>
-Step<Sensor::kMeasurements> AnyFilter::innovation(
-    const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) const noexcept {
-  return std::visit([&](const auto& filter) { return filter.innovation(sensor, z); }, filter_);
+Correction<Sensor::kMeasurements> AnyFilter::compare_by(
+    const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) const noexcept {
+  return std::visit([&](const auto& filter) { return filter.compare(sensor, reading); }, filter_);
 }
 
 }  // namespace wakeline::python

@@ -84,12 +84,6 @@ int models_of(const Estimator& estimator) noexcept {
   return 0;
 }
 
-/// True for an estimator whose models change their turn rates.
-template <class Estimator>
-inline constexpr bool kHasTurnRates = requires(const Estimator& estimator) {
-  estimator.turn_rates_rad_s();
-};
-
 /// A known acceleration, (2,) array or None.
 inline std::optional<Vec<double, 2>> to_acceleration(const std::optional<DoubleArray>& array) {
   if (!array) return std::nullopt;

@@ -15,4 +15,5 @@ PYBIND11_MODULE(_engine, m) {
   wakeline::python::define_navigation(m);
   wakeline::python::define_eval(m);
   wakeline::python::define_video(m);
+  wakeline::python::define_batch(m);
 }

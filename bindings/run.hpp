@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "estimators.hpp"
-#include "wakeline/gating/radius_gate.hpp"
+#include "thread_share.hpp"
+#include "wakeline/batch/run.hpp"
 
 namespace wakeline::python {
 
@@ -33,121 +34,46 @@ struct RunResult {
   py::array_t<std::uint8_t> status;
 };
 
-/// The measurements, steps and own positions of all runs, as plain memory.
-struct RunInput {
-  std::size_t runs, scans, measurements;
-  const double* z;
-  std::vector<double> dt_s;              ///< (T)
-  const double* own = nullptr;           ///< (T, 2) or null
-  const double* acceleration = nullptr;  ///< (T, 2) or null
-  std::vector<AnyBelief> start;          ///< 1 or R
-  std::optional<RadiusGate> gate;        ///< a reading outside is missed
-};
-
-template <class Sensor>
-Sensor seen_from(const Sensor& sensor, const double* own) noexcept {
-  Sensor moved = sensor;
-  if constexpr (requires { moved.own; }) {
-    if (own != nullptr) {
-      moved.own.north_m = own[0];
-      moved.own.east_m = own[1];
-    }
-  }
-  return moved;
-}
-
-/// North and east of an estimate in any layout.
-template <class Belief>
-Vec<double, 2> position_of(const Belief& belief) noexcept {
-  return {belief.mean[0], belief.mean[belief.mean.size() == 6 ? 3 : 2]};
-}
-
-/// True when the estimate expects the reading within the gate, or there is none.
-template <class Estimator, class Sensor>
-bool within(const std::optional<RadiusGate>& gate, const Estimator& estimator, const Sensor& sensor,
-            const Vec<double, Sensor::kMeasurements>& z) noexcept {
-  return !gate ||
-         gate->contains<double>(position_of(estimator.estimate()), sensor.position(z).mean);
-}
-
-/// Memory of the results, `states` and `models` to a scan.
-struct RunOutput {
-  std::size_t states, models;
-  double *mean, *covariance, *modes, *rates, *innovation, *nis, *log_likelihood;
-  std::uint8_t* status;
-};
-
-template <class Estimator, class Sensor>
-void run_one(Estimator& estimator, const Sensor& sensor, const RunInput& in, std::size_t run,
-             const RunOutput& out) noexcept {
-  constexpr int kM = Sensor::kMeasurements;
-  const auto [states, models] = std::pair(out.states, out.models);
-  for (std::size_t scan = 0; scan < in.scans; ++scan) {
-    const std::size_t row = run * in.scans + scan;
-    const Vec<double, kM> z = Eigen::Map<const Vec<double, kM>>(in.z + row * kM);
-    std::optional<Vec<double, 2>> acceleration;
-    if (in.acceleration != nullptr)
-      acceleration = Vec<double, 2>(in.acceleration[2 * scan], in.acceleration[2 * scan + 1]);
-    Status status = predict(estimator, in.dt_s[scan], acceleration);
-    double nis = std::numeric_limits<double>::quiet_NaN();
-    double log_likelihood = nis;
-    Vec<double, kM> innovation = Vec<double, kM>::Constant(nis);
-    if (status == Status::kOk) {
-      const Sensor seen = seen_from(sensor, in.own ? in.own + 2 * scan : nullptr);
-      if (z.array().isNaN().all() || !within(in.gate, estimator, seen, z)) {
-        status = Status::kMissed;
-      } else {
-        const auto step = estimator.update(seen, z);
-        status = step.status;
-        if (step) {
-          // Some take no more than the position out of a reading.
-          innovation.template head<decltype(step.innovation)::RowsAtCompileTime>() =
-              step.innovation;
-          nis = step.nis;
-          log_likelihood = step.log_likelihood;
-        }
-      }
-    }
-    const auto belief = estimator.estimate();
-    for (std::size_t i = 0; i < states; ++i) {
-      const auto a = static_cast<Eigen::Index>(i);
-      out.mean[row * states + i] = belief.mean[a];
-      for (std::size_t j = 0; j < states; ++j)
-        out.covariance[(row * states + i) * states + j] =
-            belief.covariance(a, static_cast<Eigen::Index>(j));
-    }
-    for (std::size_t k = 0; k < models; ++k) {
-      const auto mode = static_cast<Eigen::Index>(k);
-      if constexpr (requires { estimator.mode_probability(); })
-        out.modes[row * models + k] = estimator.mode_probability()[mode];
-      if constexpr (kHasTurnRates<Estimator>)
-        out.rates[row * models + k] = estimator.turn_rates_rad_s()[mode];
-    }
-    Eigen::Map<Vec<double, kM>>(out.innovation + row * kM) = innovation;
-    out.nis[row] = nis;
-    out.log_likelihood[row] = log_likelihood;
-    out.status[row] = static_cast<std::uint8_t>(status);
-  }
-}
-
-/// All runs, one after the other, each begun with `belief_of(AnyBelief)`. Throws where one cannot
-/// start.
+/// All runs, each begun with `belief_of(AnyBelief)`. Throws where one cannot start.
 template <class Estimator, class Sensor, class BeliefOf = std::identity>
-void run_all(Estimator estimator, const Sensor& sensor, const RunInput& in, const RunOutput& out,
+void run_all(const Estimator& prototype, const Sensor& sensor, const RunInput& in,
+             const std::vector<AnyBelief>& starts, const RunOutput& out,
              const BeliefOf& belief_of = {}) {
-  for (std::size_t r = 0; r < in.runs; ++r) {
-    const Status started = estimator.start(belief_of(in.start[in.start.size() == 1 ? 0 : r]));
-    if (started != Status::kOk)
-      throw FilterError("start of run " + std::to_string(r) + ": " + to_string(started));
-    run_one(estimator, sensor, in, r, out);
-  }
+  const ThreadShare threads(in.runs * in.scans);
+  run_batch(
+      [&](std::size_t run) {
+        Estimator estimator = prototype;
+        (void)estimator.start(belief_of(starts[starts.size() == 1 ? 0 : run]));
+        return estimator;
+      },
+      sensor, in, out, Threads{threads.count()});
+}
+
+/// Throws FilterError where a run cannot start.
+template <class Estimator>
+void require_starts(Estimator estimator, const std::vector<AnyBelief>& starts) {
+  for (std::size_t run = 0; run < starts.size(); ++run)
+    if (const Status started = estimator.start(starts[run]); started != Status::kOk)
+      throw FilterError("start of run " + std::to_string(run) + ": " + to_string(started));
+}
+
+/// The runs in lanes of the widest instruction set of the processor. False, and nothing done, where
+/// there is but one run or the estimator is not one that lanes are compiled for.
+bool run_lanes(const AnyFilter& filter, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyImm& imm, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
+template <class Estimator>
+bool run_lanes(const Estimator&, const AnySensor&, const RunInput&, const std::vector<AnyBelief>&,
+               const RunOutput&) {
+  return false;
 }
 
 /// `run_all` of an estimator whose filters are all extended Kalman filters of known turn rates,
 /// composed anew at compile time: the same bits, sooner. False, and nothing done, for any other.
 template <class Estimator>
 bool run_turns(const Estimator& prototype, const AnySensor& sensor, const RunInput& in,
-               const RunOutput& out);
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
 
 /// The beliefs that `start` means: one Gaussian for all runs or a sequence of R.
 std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs, int states);
@@ -170,21 +96,21 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
     const bool many = z.ndim() == 3;
     require_shape((z.ndim() == 2 || many) && z.shape(z.ndim() - 1) == kM, "z",
                   "(T, " + std::to_string(kM) + ") or (R, T, " + std::to_string(kM) + ")", z);
-    RunInput in{};
+    RunInput in;
     in.runs = many ? static_cast<std::size_t>(z.shape(0)) : 1;
     in.scans = static_cast<std::size_t>(z.shape(many ? 1 : 0));
-    in.measurements = kM;
     in.z = z.data();
-    in.dt_s = parse_steps(dt_s, in.scans);
-    in.start = parse_starts(start, in.runs, states_of(prototype));
-    in.gate = gate;
+    const std::vector<double> steps_s = parse_steps(dt_s, in.scans);
+    in.dt_s = steps_s.data();
+    const std::vector<AnyBelief> starts = parse_starts(start, in.runs, states_of(prototype));
+    in.gate = gate ? &*gate : nullptr;
     if (own_position_m) {
       if constexpr (!requires { model.own; })
         throw py::value_error("own_position_m must be None for a sensor without own ship");
-      in.own = per_scan("own_position_m", *own_position_m, in.scans);
+      in.own_m = per_scan("own_position_m", *own_position_m, in.scans);
     }
     if (acceleration_mps2)
-      in.acceleration = per_scan("acceleration_mps2", *acceleration_mps2, in.scans);
+      in.acceleration_mps2 = per_scan("acceleration_mps2", *acceleration_mps2, in.scans);
 
     const py::ssize_t states = states_of(prototype);
     const py::ssize_t models = models_of(prototype);
@@ -220,9 +146,11 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
                         result.status.mutable_data()};
     {
       const py::gil_scoped_release release;
-      bool done = false;
-      if constexpr (kOverAnyFilters<Estimator>) done = run_turns(prototype, model, in, out);
-      if (!done) run_all(prototype, model, in, out);
+      require_starts(prototype, starts);
+      bool done = run_lanes(prototype, model, in, starts, out);
+      if constexpr (kOverAnyFilters<Estimator>)
+        done = done || run_turns(prototype, model, in, starts, out);
+      if (!done) run_all(prototype, model, in, starts, out);
     }
     return result;
   });

@@ -38,23 +38,25 @@ Estimator<TurnBank> over(const TurnBank& bank, const Estimator<AnyFilterBank>& a
 
 template <class Estimator>
 bool run_turns(const Estimator& prototype, const AnySensor& sensor, const RunInput& in,
-               const RunOutput& out) {
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
   const std::vector<TurnFilter> filters = turn_filters(prototype.bank());
   if (filters.empty()) return false;
   const auto estimator = over(TurnBank(std::span<const TurnFilter>(filters)), prototype);
   const auto to_fixed = [](const AnyBelief& belief) {
     return Gaussian<4>{belief.mean, belief.covariance};
   };
-  std::visit([&](const auto& model) { run_all(estimator, model, in, out, to_fixed); }, sensor);
+  std::visit([&](const auto& model) { run_all(estimator, model, in, starts, out, to_fixed); },
+             sensor);
   return true;
 }
 
-template bool run_turns(const AnyImm&, const AnySensor&, const RunInput&, const RunOutput&);
+template bool run_turns(const AnyImm&, const AnySensor&, const RunInput&,
+                        const std::vector<AnyBelief>&, const RunOutput&);
 template bool run_turns(const AnyAdaptiveGridImm&, const AnySensor&, const RunInput&,
-                        const RunOutput&);
+                        const std::vector<AnyBelief>&, const RunOutput&);
 template bool run_turns(const AnySwitchingGridImm&, const AnySensor&, const RunInput&,
-                        const RunOutput&);
+                        const std::vector<AnyBelief>&, const RunOutput&);
 template bool run_turns(const AnyLikelyModelSetImm&, const AnySensor&, const RunInput&,
-                        const RunOutput&);
+                        const std::vector<AnyBelief>&, const RunOutput&);
 
 }  // namespace wakeline::python

@@ -48,6 +48,7 @@ PyStep to_step(const Step<M>& step) {
   return {step.status, step.innovation, step.innovation_covariance, step.nis, step.log_likelihood};
 }
 
+void define_batch(py::module_& m);
 void define_core(py::module_& m);
 void define_motion(py::module_& m);
 void define_measurement(py::module_& m);

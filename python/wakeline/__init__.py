@@ -14,6 +14,7 @@ from importlib.metadata import version as _version
 
 from ._engine import (
     association,
+    batch,
     core,
     eval,
     filter,
@@ -25,6 +26,7 @@ from ._engine import (
     track,
     video,
 )
+from ._engine.batch import lanes, set_threads, threads
 from ._engine.core import (
     FilterError,
     Gaussian,
@@ -119,6 +121,7 @@ from ._engine.video import LandMask, PlotExtractor, ScanImage, StaticClutterMap
 # The engine's nouns, importable as modules of the package.
 for _noun in (
     association,
+    batch,
     core,
     eval,
     filter,
@@ -217,15 +220,18 @@ __all__ = [
     "drift_forecast",
     "drift_particles",
     "geodesic",
+    "lanes",
     "metrics",
     "montecarlo",
     "one_point",
     "recording",
     "rhumb_line",
     "scenario",
+    "set_threads",
     "stable_gains",
     "strobe_echo",
     "study",
+    "threads",
     "two_point",
     "vessel_imm",
     "wrap_angle",

@@ -2,6 +2,7 @@
 
 from . import (
     association,
+    batch,
     core,
     eval,
     filter,
@@ -16,6 +17,7 @@ from . import (
 
 __all__ = [
     "association",
+    "batch",
     "core",
     "eval",
     "filter",

@@ -6,6 +6,7 @@ import argparse
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +16,16 @@ import wakeline as wl
 from wakeline._progress import progress
 
 from . import outputs, report
+from ._peers import LinearImm, jax_imm, numba_imm
 
-OURS = "scalar_double"
+OURS, LANES = "scalar_double", "batch_double"
 
 _SEED = 0
 _REPEATS = 5
 _RUNS, _SCANS = 500, 250
 _DT_S = 3.0
 _LOOP_STEPS = 500
+_TURN_RATES_DEG_S = (0.0, 1.0, -1.0)
 _TRACKER_SETTLING, _TRACKER_SCANS = 20, 10
 _GNN_SCANS, _GNN_GATE = 10, 9.21
 _SWEEPS, _CELLS, _TRAIN, _GUARD = 4096, 2048, 16, 4
@@ -58,8 +61,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "bench",
         help="throughput on this machine",
         description="Measures throughput per estimator on this machine, from Python: the best of "
-        f"{_REPEATS} times, with ratios within the run. filterpy, scipy and opencv are measured "
-        "beside where they are installed.",
+        f"{_REPEATS} times, with ratios within the run. numba, jax, filterpy, scipy and opencv are "
+        "measured beside where they are installed.",
     )
     parser.add_argument("--json", type=Path, metavar="F", help="write the figures as JSON")
     parser.set_defaults(run=run)
@@ -137,48 +140,80 @@ def _step_works() -> Iterator[_Work]:
         ("kf_step", wl.Kalman(_constant_velocity()), converted),
         ("ekf_polar_step", wl.Ekf(_constant_velocity()), polar),
         ("ukf5_step", wl.Ukf(wl.CoordinatedTurnRate(noise=_noise())), polar),
-        ("imm3_step", _imm(0.0, 1.0, -1.0), polar),
+        ("imm3_step", _imm(*_TURN_RATES_DEG_S), polar),
         ("imm5_step", _imm(0.0, 1.0, -1.0, 3.0, -3.0), polar),
     ):
-        yield _Work(name, OURS, "ns_per_step", _whole_run(estimator, z, sensor), z[..., 0].size)
+        steps = z[..., 0].size
+        yield _Work(name, OURS, "ns_per_step", _run_by_run(estimator, z, sensor), steps)
+        yield _Work(name, LANES, "ns_per_step", _all_runs(estimator, z, sensor), steps)
     few = z[: max(len(z) // 10, 1)]
     tree = wl.ModeHistory(wl.Ekf(wl.CoordinatedTurn(noise=_noise())), max_branches=100)
-    call = _whole_run(tree, few, polar)
+    call = _run_by_run(tree, few, polar)
     yield _Work("mode_history100_scan", OURS, "ms_per_scan", call, few[..., 0].size)
 
 
 def _imm_run_works() -> Iterator[_Work]:
-    """500 runs of 250 scans through an IMM of three models; others do a part of it."""
+    """500 runs of 250 positions through an IMM of three models."""
     name, metric = "imm3_run_python", "ns_per_step"
-    sensor = wl.RangeBearing(range_std_m=_RANGE_STD_M, bearing_std_rad=_BEARING_STD_RAD)
-    imm, z = _imm(0.0, 1.0, -1.0), _recordings(_RUNS)
-    yield _Work(name, OURS, metric, _whole_run(imm, z, sensor), z[..., 0].size)
+    sensor = wl.Position(position_std_m=_RANGE_STD_M)
+    polar, imm = _recordings(_RUNS), _imm(*_TURN_RATES_DEG_S)
+    z = polar[..., :1] * np.stack([np.cos(polar[..., 1]), np.sin(polar[..., 1])], -1)
+    steps = z[..., 0].size
+    yield _Work(name, OURS, metric, _run_by_run(imm, z, sensor), steps)
+    yield _Work(name, LANES, metric, _all_runs(imm, z, sensor), steps)
+    if wl.threads() > 1:
+        threads = f"{LANES}_{wl.threads()}_threads"
+        yield _Work(name, threads, metric, _whole_run(imm, z, sensor), steps)
     one = np.concatenate(list(z))[:_LOOP_STEPS]
 
     def loop() -> None:
         imm.start(_start())
-        for plot in one:
+        for place in one:
             imm.predict(_DT_S)
-            imm.update(sensor, plot)
+            imm.update(sensor, place)
 
     yield _Work(name, "python_loop", metric, loop, len(one))
+    problem = _peer_problem()
+    for peer, run in (("numba", numba_imm(problem)), ("jax", jax_imm(problem))):
+        if run is not None:
+            yield _Work(name, peer, metric, partial(run, z), steps)
     try:
         from filterpy.kalman import IMMEstimator, KalmanFilter
     except ImportError:
         return
-    peer = _filterpy_imm(IMMEstimator, KalmanFilter)
-    position_m = np.column_stack([one[:, 0] * np.cos(one[:, 1]), one[:, 0] * np.sin(one[:, 1])])
+    filterpy = _filterpy_imm(problem, IMMEstimator, KalmanFilter)
 
     def filterpy_loop() -> None:
-        for place in position_m:
-            peer.predict()
-            peer.update(place)
+        for place in one:
+            filterpy.predict()
+            filterpy.update(place)
 
     yield _Work(name, "filterpy", metric, filterpy_loop, len(one))
 
 
 def _whole_run(estimator: Any, z: np.ndarray, sensor: Any) -> Callable[[], Any]:
     return lambda: estimator.run(z, dt_s=_DT_S, sensor=sensor, start=_start())
+
+
+def _run_by_run(estimator: Any, z: np.ndarray, sensor: Any) -> Callable[[], Any]:
+    """One run after the other, each on its own."""
+    calls = [_whole_run(estimator, one, sensor) for one in z]
+    return lambda: [call() for call in calls]
+
+
+def _all_runs(estimator: Any, z: np.ndarray, sensor: Any) -> Callable[[], Any]:
+    """All runs in one call, in lanes, on one thread."""
+    call = _whole_run(estimator, z, sensor)
+
+    def on_one_thread() -> Any:
+        before = wl.threads()
+        wl.set_threads(1)
+        try:
+            return call()
+        finally:
+            wl.set_threads(before)
+
+    return on_one_thread
 
 
 def _noise() -> Any:
@@ -217,19 +252,31 @@ def _recordings(runs: int) -> np.ndarray:
     return truth + rng.normal(size=(runs, _SCANS, 2)) * [_RANGE_STD_M, _BEARING_STD_RAD]
 
 
-def _filterpy_imm(estimator_class: type, filter_class: type) -> Any:
-    """The same three models over converted positions, as filterpy has no polar IMM."""
-    cross_m = (5000.0 * _BEARING_STD_RAD) ** 2
+def _peer_problem() -> LinearImm:
+    """The three models as other programs take them."""
+    motions = [
+        wl.CoordinatedTurn(turn_rate_rad_s=rate, noise=_noise())
+        for rate in np.deg2rad(_TURN_RATES_DEG_S)
+    ]
+    return LinearImm(
+        f=np.array([motion.matrix(_DT_S) for motion in motions]),
+        q=np.array([motion.process_noise(_DT_S) for motion in motions]),
+        chain=_chain(len(motions)),
+        mean=np.asarray(_start().mean),
+        covariance=np.asarray(_start().covariance),
+        position_std_m=_RANGE_STD_M,
+    )
+
+
+def _filterpy_imm(problem: LinearImm, estimator_class: type, filter_class: type) -> Any:
     filters = []
-    for rate in np.deg2rad([0.0, 1.0, -1.0]):
-        motion = wl.CoordinatedTurn(turn_rate_rad_s=rate, noise=_noise())
+    for f, q in zip(problem.f, problem.q, strict=True):
         one = filter_class(dim_x=4, dim_z=2)
-        one.x, one.P = np.asarray(_start().mean), np.asarray(_start().covariance)
-        one.F, one.Q = motion.matrix(_DT_S), motion.process_noise(_DT_S)
+        one.x, one.P, one.F, one.Q = problem.mean, problem.covariance, f, q
         one.H = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0]])
-        one.R = np.diag([_RANGE_STD_M**2, cross_m])
+        one.R = problem.position_std_m**2 * np.eye(2)
         filters.append(one)
-    return estimator_class(filters, np.full(3, 1 / 3), _chain(3))
+    return estimator_class(filters, np.full(len(filters), 1 / len(filters)), problem.chain)
 
 
 # Whole scans --------------------------------------------------------------------------------------

@@ -36,11 +36,11 @@ struct Moody : Ekf<ConstantVelocity> {
     return refuses_time ? Status::kNotPositiveDefinite : Ekf::predict(dt_s);
   }
   template <class Sensor>
-  Step<Sensor::kMeasurements> update(const Sensor& sensor,
-                                     const Vec<double, Sensor::kMeasurements>& z) noexcept {
+  Correction<Sensor::kMeasurements> correct(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept {
     if (refuses_plots)
-      return failed_step<Sensor::kMeasurements, double>(Status::kNotPositiveDefinite);
-    return Ekf::update(sensor, z);
+      return failed_correction<Sensor::kMeasurements, double>(Status::kNotPositiveDefinite);
+    return Ekf::correct(sensor, reading);
   }
 };
 

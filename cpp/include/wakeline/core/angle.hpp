@@ -22,18 +22,19 @@ constexpr double knots(double speed_kn) noexcept { return speed_kn * (1852.0 / 3
 template <class Scalar>
 Scalar wrap_angle(Scalar angle_rad) noexcept {
   using std::floor;
-  constexpr Scalar turn = Scalar(2) * kPi<Scalar>;
-  constexpr Scalar turns_per_rad = Scalar(1) / turn;
-  return angle_rad - turn * floor(angle_rad * turns_per_rad + Scalar(0.5));
+  using Real = RealOf<Scalar>;
+  constexpr Real turn = Real(2) * kPi<Real>;
+  constexpr Real turns_per_rad = Real(1) / turn;
+  return angle_rad - turn * floor(angle_rad * turns_per_rad + Real(0.5));
 }
 
 /// The same angle in [0, 2 pi): how bearings and courses are shown.
 template <class Scalar>
 Scalar compass_angle(Scalar angle_rad) noexcept {
   using std::floor;
-  constexpr Scalar turn = Scalar(2) * kPi<Scalar>;
+  const Scalar turn = RealOf<Scalar>(2) * kPi<RealOf<Scalar>>;
   const Scalar wrapped = angle_rad - turn * floor(angle_rad / turn);
-  return wrapped < turn ? wrapped : Scalar(0);
+  return select(wrapped < turn, wrapped, Scalar(0));
 }
 
 /// Weighted circular mean of N angles: the direction of the sum of weighted unit vectors.

@@ -13,7 +13,8 @@ namespace wakeline {
 /// The checked Cholesky factorisation A = L Lᵀ of a symmetric matrix (its lower triangle is read).
 ///
 /// The one place where Wakeline factorises a covariance. `ok()` is false when A is not positive
-/// definite or not finite; the other members may then not be used. No heap, no exception.
+/// definite or not finite; the other members may then not be used. Of packs, each lane for itself.
+/// No heap, no exception.
 template <int N, class Scalar = double>
 class Cholesky {
  public:
@@ -23,7 +24,7 @@ class Cholesky {
   /// Factorises another matrix.
   void compute(const Mat<Scalar, N, N>& matrix) noexcept {
     using std::sqrt;
-    ok_ = false;
+    ok_ = true;
     if constexpr (N == 2) {
       compute_2x2(matrix(0, 0), matrix(1, 0), matrix(1, 1));
       return;
@@ -31,7 +32,8 @@ class Cholesky {
     for (int column = 0; column < N; ++column) {
       Scalar pivot = matrix(column, column);
       for (int k = 0; k < column; ++k) pivot -= lower_(column, k) * lower_(column, k);
-      if (!is_variance(pivot)) return;
+      ok_ = ok_ && is_variance(pivot);
+      if (none(ok_)) return;
       const Scalar diagonal = sqrt(pivot);
       lower_(column, column) = diagonal;
       inverse_diagonal_[column] = Scalar(1) / diagonal;
@@ -41,10 +43,9 @@ class Cholesky {
         lower_(row, column) = sum * inverse_diagonal_[column];
       }
     }
-    ok_ = true;
   }
 
-  [[nodiscard]] bool ok() const noexcept { return ok_; }
+  [[nodiscard]] MaskOf<Scalar> ok() const noexcept { return ok_; }
 
   /// L, with zeros above its diagonal.
   const Mat<Scalar, N, N>& lower() const noexcept { return lower_; }
@@ -77,20 +78,26 @@ class Cholesky {
   /// B L⁻ᵀ: whitens the rows of B.
   template <int Rows>
   Mat<Scalar, Rows, N> whiten_rows(Mat<Scalar, Rows, N> left) const noexcept {
-    for (int column = 0; column < N; ++column) {
-      for (int k = 0; k < column; ++k) left.col(column) -= lower_(column, k) * left.col(k);
-      left.col(column) *= inverse_diagonal_[column];
-    }
+    unroll<N>([&](auto column) {
+      constexpr int kColumn = column.value;
+      unroll<Rows>([&](int row) {
+        Scalar sum = left(row, kColumn);
+        unroll<kColumn>([&](int k) { sum -= lower_(kColumn, k) * left(row, k); });
+        left(row, kColumn) = sum * inverse_diagonal_[kColumn];
+      });
+    });
     return left;
   }
 
   /// W L⁻¹: what turns whitened rows W = B L⁻ᵀ into B A⁻¹.
   template <int Rows>
   Mat<Scalar, Rows, N> unwhiten_rows(Mat<Scalar, Rows, N> left) const noexcept {
-    for (int column = N - 1; column >= 0; --column) {
-      for (int k = column + 1; k < N; ++k) left.col(column) -= lower_(k, column) * left.col(k);
-      left.col(column) *= inverse_diagonal_[column];
-    }
+    for (int column = N - 1; column >= 0; --column)
+      for (int row = 0; row < Rows; ++row) {
+        Scalar sum = left(row, column);
+        for (int k = column + 1; k < N; ++k) sum -= lower_(k, column) * left(row, k);
+        left(row, column) = sum * inverse_diagonal_[column];
+      }
     return left;
   }
 
@@ -107,37 +114,41 @@ class Cholesky {
     return x;
   }
 
+  /// 1 / sqrt(det A).
+  Scalar inverse_root_determinant() const noexcept {
+    Scalar product = inverse_diagonal_[0];
+    for (int k = 1; k < N; ++k) product *= inverse_diagonal_[k];
+    return product;
+  }
+
   /// ln det A.
   Scalar log_determinant() const noexcept {
     using std::log;
-    Scalar product = Scalar(1);
-    for (int k = 0; k < N; ++k) product *= inverse_diagonal_[k];
-    return Scalar(-2) * log(product);
+    return Scalar(-2) * log(inverse_root_determinant());
   }
 
  private:
-  static bool is_variance(Scalar pivot) noexcept {
-    return pivot > Scalar(0) && pivot <= std::numeric_limits<Scalar>::max();
+  static MaskOf<Scalar> is_variance(Scalar pivot) noexcept {
+    return pivot > Scalar(0) && pivot <= Scalar(std::numeric_limits<RealOf<Scalar>>::max());
   }
 
   /// In closed form: both roots at once instead of one after the other, which is most of the time
   /// an update takes.
   void compute_2x2(Scalar a, Scalar b, Scalar c) noexcept {
-    using std::sqrt;
     const Scalar determinant = a * c - b * b;
-    if (!is_variance(a) || !is_variance(determinant)) return;
-    inverse_diagonal_[0] = sqrt(Scalar(1) / a);
-    inverse_diagonal_[1] = sqrt(a / determinant);
+    ok_ = is_variance(a) && is_variance(determinant);
+    if (none(ok_)) return;
+    const Scalar inverse_root = inverse_sqrt(determinant);
+    inverse_diagonal_[0] = inverse_sqrt(a);
     lower_(0, 0) = a * inverse_diagonal_[0];
+    inverse_diagonal_[1] = lower_(0, 0) * inverse_root;
     lower_(1, 0) = b * inverse_diagonal_[0];
-    lower_(1, 1) =
-        determinant * (inverse_diagonal_[0] * inverse_diagonal_[0]) * inverse_diagonal_[1];
-    ok_ = true;
+    lower_(1, 1) = determinant * inverse_root * inverse_diagonal_[0];
   }
 
   Mat<Scalar, N, N> lower_ = Mat<Scalar, N, N>::Zero();
   Vec<Scalar, N> inverse_diagonal_ = Vec<Scalar, N>::Zero();
-  bool ok_ = false;
+  MaskOf<Scalar> ok_ = false;
 };
 
 /// A root G with G Gᵀ = A of a matrix that is only positive semidefinite, as process noise may be:
@@ -167,24 +178,33 @@ Mat<Scalar, N, N> semidefinite_root(const Mat<Scalar, N, N>& matrix) noexcept {
 
 /// True when every element is finite.
 template <class Derived>
-bool is_finite(const Eigen::MatrixBase<Derived>& matrix) noexcept {
+MaskOf<typename Derived::Scalar> is_finite(const Eigen::MatrixBase<Derived>& matrix) noexcept {
   using Scalar = typename Derived::Scalar;
-  // 0 x is NaN for an infinite or NaN x, and a sum with a NaN is NaN.
-  const Scalar sum = (matrix.array() * Scalar(0)).sum();
-  return sum == Scalar(0);
+  // Infinity less infinity is not a number, nor is anything that a NaN was added to.
+  const Scalar sum = matrix.sum();
+  return sum - sum == Scalar(0);
 }
 
 /// Says what is wrong with a belief, or `kOk`.
 template <int N, class Scalar>
-Status check(const Gaussian<N, Scalar>& belief) noexcept {
+StatusOf<Scalar> check(const Gaussian<N, Scalar>& belief) noexcept {
   using std::abs;
-  if (!is_finite(belief.mean) || !is_finite(belief.covariance)) return Status::kNotFinite;
-  const Scalar tolerance = Scalar(64) * std::numeric_limits<Scalar>::epsilon() *
-                           belief.covariance.diagonal().cwiseAbs().maxCoeff();
-  const bool symmetric =
-      (belief.covariance - belief.covariance.transpose()).cwiseAbs().maxCoeff() <= tolerance;
-  return symmetric && Cholesky<N, Scalar>(belief.covariance).ok() ? Status::kOk
-                                                                  : Status::kNotPositiveDefinite;
+  Scalar largest = abs(belief.covariance(0, 0));
+  for (int k = 1; k < N; ++k) {
+    const Scalar next = abs(belief.covariance(k, k));
+    largest = select(next > largest, next, largest);
+  }
+  const Scalar tolerance =
+      RealOf<Scalar>(64) * std::numeric_limits<RealOf<Scalar>>::epsilon() * largest;
+  MaskOf<Scalar> valid = true;
+  for (int column = 1; column < N; ++column)
+    for (int row = 0; row < column; ++row)
+      valid = valid &&
+              abs(belief.covariance(row, column) - belief.covariance(column, row)) <= tolerance;
+  valid = valid && Cholesky<N, Scalar>(belief.covariance).ok();
+  const auto finite = is_finite(belief.mean) && is_finite(belief.covariance);
+  return first_failure(ok_or(finite, Status::kNotFinite),
+                       ok_or(valid, Status::kNotPositiveDefinite));
 }
 
 }  // namespace wakeline

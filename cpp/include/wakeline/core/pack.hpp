@@ -8,6 +8,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 
 #if defined(__SSE2__)
@@ -116,6 +117,9 @@ class Pack {
     return pack;
   }
 
+  /// Writes the numbers in a row.
+  friend void store(Pack a, Real* to) noexcept { std::memcpy(to, &a.raw, sizeof a.raw); }
+
   [[nodiscard]] Real operator[](int lane) const noexcept { return raw[lane]; }
   void set(int lane, Real number) noexcept { raw[lane] = number; }
 
@@ -151,6 +155,39 @@ class Pack {
   friend Mask isnan(Pack a) noexcept { return a != a; }
   friend Mask isfinite(Pack a) noexcept { return a - a == Pack(0); }
   friend Pack sqrt(Pack a) noexcept { return Pack(square_root(a.raw)); }
+
+  // By Newton's method where the processor has a first approximation: a division holds it up.
+  friend Pack reciprocal(Pack a) noexcept {
+#if defined(__AVX512F__)
+    if constexpr (sizeof(Raw) == 64) {
+      Pack y;
+      if constexpr (sizeof(Real) == 8) {
+        y = Pack((Raw)_mm512_maskz_rcp14_pd(__mmask8(-1), (__m512d)a.raw));
+        y = y + y * (Real(1) - a * y);
+      } else {
+        y = Pack((Raw)_mm512_maskz_rcp14_ps(__mmask16(-1), (__m512)a.raw));
+      }
+      return y + y * (Real(1) - a * y);
+    }
+#endif
+    return Real(1) / a;
+  }
+  friend Pack inverse_sqrt(Pack a) noexcept {
+#if defined(__AVX512F__)
+    if constexpr (sizeof(Raw) == 64) {
+      const Pack half = a * Real(0.5);
+      Pack y;
+      if constexpr (sizeof(Real) == 8) {
+        y = Pack((Raw)_mm512_maskz_rsqrt14_pd(__mmask8(-1), (__m512d)a.raw));
+        y = y + y * (Real(0.5) - half * y * y);
+      } else {
+        y = Pack((Raw)_mm512_maskz_rsqrt14_ps(__mmask16(-1), (__m512)a.raw));
+      }
+      return y + y * (Real(0.5) - half * y * y);
+    }
+#endif
+    return Real(1) / sqrt(a);
+  }
 
   /// The nearest integer, halves to even.
   friend Pack round_to_even(Pack a) noexcept {

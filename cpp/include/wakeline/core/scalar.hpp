@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
+
 namespace wakeline {
 
 /// What the rest of the library asks of a type of numbers: `float`, `double`, or a pack of them,
@@ -32,10 +34,27 @@ constexpr Scalar at_least(Scalar value, Scalar bound) noexcept {
   return select(value > bound, value, bound);
 }
 
+/// 1 / x and 1 / sqrt(x) of a positive number, to the last bit or two.
+template <class Scalar>
+Scalar reciprocal(Scalar x) noexcept {
+  return Scalar(1) / x;
+}
+template <class Scalar>
+Scalar inverse_sqrt(Scalar x) noexcept {
+  using std::sqrt;
+  return Scalar(1) / sqrt(x);
+}
+
 /// Over the lanes of a mask, of which a `bool` has one.
 constexpr bool all(bool mask) noexcept { return mask; }
 constexpr bool any(bool mask) noexcept { return mask; }
 constexpr bool none(bool mask) noexcept { return !mask; }
+
+/// Writes a number, or as many as there are lanes in a row.
+template <class Scalar>
+void store(Scalar value, Scalar* to) noexcept {
+  *to = value;
+}
 
 /// One number of many, or the number itself.
 template <class Scalar>

@@ -4,7 +4,10 @@
 
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
+#include "wakeline/core/pack.hpp"
+#include "wakeline/core/scalar.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
@@ -38,22 +41,146 @@ constexpr const char* to_string(Status status) noexcept {
   return "unknown";
 }
 
+constexpr bool ok(Status status) noexcept { return status == Status::kOk; }
+
+/// The worse of two: the first that is not `kOk`.
+constexpr Status first_failure(Status a, Status b) noexcept { return ok(a) ? b : a; }
+
+/// `kOk` where the condition holds, else `otherwise`.
+constexpr Status ok_or(bool condition, Status otherwise) noexcept {
+  return condition ? Status::kOk : otherwise;
+}
+
+constexpr Status lane(Status status, int) noexcept { return status; }
+
+/// A `Status` for each lane of a pack.
+template <class Scalar>
+class LaneStatus {
+ public:
+  LaneStatus() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): the same in every lane.
+  LaneStatus(Status status) noexcept : code_(double(status)) {}
+
+  friend MaskOf<Scalar> operator==(const LaneStatus& status, Status code) noexcept {
+    return status.code_ == Scalar(double(code));
+  }
+  friend MaskOf<Scalar> ok(const LaneStatus& status) noexcept { return status.code_ == Scalar(0); }
+  friend LaneStatus first_failure(const LaneStatus& a, const LaneStatus& b) noexcept {
+    return LaneStatus(select(ok(a), b.code_, a.code_));
+  }
+  friend Status lane(const LaneStatus& status, int k) noexcept {
+    return static_cast<Status>(lane(status.code_, k));
+  }
+  static LaneStatus where(const MaskOf<Scalar>& mask, const LaneStatus& a,
+                          const LaneStatus& b) noexcept {
+    return LaneStatus(select(mask, a.code_, b.code_));
+  }
+
+ private:
+  explicit LaneStatus(const Scalar& code) noexcept : code_(code) {}
+  Scalar code_ = Scalar(0);
+};
+
+/// `kOk` in the lanes where the condition holds, else `otherwise`.
+template <class Real, int Lanes>
+LaneStatus<Pack<Real, Lanes>> ok_or(const PackMask<Real, Lanes>& condition,
+                                    Status otherwise) noexcept {
+  using Result = LaneStatus<Pack<Real, Lanes>>;
+  return Result::where(condition, Status::kOk, otherwise);
+}
+
+/// `Status`, or one for each lane.
+template <class Scalar>
+using StatusOf = std::conditional_t<kLanesOf<Scalar> == 1, Status, LaneStatus<Scalar>>;
+
+/// `a` where the condition holds, else `b`.
+constexpr Status status_where(bool condition, Status a, Status b) noexcept {
+  return condition ? a : b;
+}
+template <class Real, int Lanes>
+LaneStatus<Pack<Real, Lanes>> status_where(const PackMask<Real, Lanes>& condition,
+                                           const LaneStatus<Pack<Real, Lanes>>& a,
+                                           const LaneStatus<Pack<Real, Lanes>>& b) noexcept {
+  return LaneStatus<Pack<Real, Lanes>>::where(condition, a, b);
+}
+
 /// What one measurement update has found; converts to true when it succeeded.
 template <int M, class Scalar = double>
 struct [[nodiscard]] Step {
-  Status status = Status::kNotStarted;
+  StatusOf<Scalar> status = Status::kNotStarted;
   Vec<Scalar, M> innovation = Vec<Scalar, M>::Zero();  ///< measured minus predicted, angles wrapped
   Mat<Scalar, M, M> innovation_covariance = Mat<Scalar, M, M>::Identity();
-  Scalar nis = std::numeric_limits<Scalar>::quiet_NaN();  ///< normalised innovation squared,
-                                                          ///< chi-square with M dof
-  Scalar log_likelihood = -std::numeric_limits<Scalar>::infinity();
+  Scalar nis = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();  ///< normalised innovation
+                                                                  ///< squared, chi-square, M dof
+  Scalar log_likelihood = -std::numeric_limits<RealOf<Scalar>>::infinity();
 
-  explicit operator bool() const noexcept { return status == Status::kOk; }
+  explicit operator bool() const noexcept requires(kLanesOf<Scalar> == 1) {
+    return status == Status::kOk;
+  }
 };
+
+/// A likelihood, peak exp(-nis / 2); of what is impossible the peak is 0.
+template <class Scalar = double>
+struct Likelihood {
+  Scalar peak = Scalar(0);
+  Scalar nis = std::numeric_limits<RealOf<Scalar>>::infinity();
+
+  [[nodiscard]] Scalar value() const noexcept {
+    using std::exp;
+    return peak * exp(-nis / 2);
+  }
+};
+
+/// A step whose likelihood N(v; 0, S) is still in its two parts, so that a mixture takes one
+/// logarithm of all.
+template <int M, class Scalar = double>
+struct [[nodiscard]] Correction {
+  StatusOf<Scalar> status = Status::kNotStarted;
+  Vec<Scalar, M> innovation = Vec<Scalar, M>::Zero();
+  Mat<Scalar, M, M> innovation_covariance = Mat<Scalar, M, M>::Identity();
+  Scalar nis = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
+  Scalar peak = Scalar(0);  ///< (2 pi)^(-M/2) / sqrt(det S)
+
+  explicit operator bool() const noexcept requires(kLanesOf<Scalar> == 1) {
+    return status == Status::kOk;
+  }
+
+  [[nodiscard]] Likelihood<Scalar> likelihood() const noexcept {
+    const auto done = ok(status);
+    return {select(done, peak, Scalar(0)), select(done, nis, Likelihood<Scalar>{}.nis)};
+  }
+
+  /// The same with its likelihood in one.
+  [[nodiscard]] Step<M, Scalar> scored() const noexcept {
+    using std::log;
+    Step<M, Scalar> step{status, innovation, innovation_covariance, nis};
+    step.log_likelihood = select(ok(status), log(peak) - nis / 2, step.log_likelihood);
+    return step;
+  }
+};
+
+/// A step that has failed, and why, in the lanes told.
+template <int M, class Scalar>
+Step<M, Scalar> failed_where(const MaskOf<Scalar>& lanes, const StatusOf<Scalar>& why,
+                             const Step<M, Scalar>& step) noexcept {
+  Step<M, Scalar> result;
+  if constexpr (kLanesOf<Scalar> == 1) {
+    result.status = why;
+    return lanes ? result : step;
+  } else {
+    result.status = StatusOf<Scalar>::where(lanes, why, step.status);
+    const MaskOf<Scalar> kept = !lanes;
+    assign_where(kept, result.innovation, step.innovation);
+    assign_where(kept, result.innovation_covariance, step.innovation_covariance);
+    result.nis = select(kept, step.nis, result.nis);
+    result.log_likelihood = select(kept, step.log_likelihood, result.log_likelihood);
+    return result;
+  }
+}
 
 /// A step that could not be done, and why.
 template <int M, class Scalar>
-Step<M, Scalar> failed_step(Status status) noexcept {
+Step<M, Scalar> failed_step(const StatusOf<Scalar>& status) noexcept {
   Step<M, Scalar> step;
   step.status = status;
   return step;

@@ -24,10 +24,10 @@ const Model& validated(const Model& model) {
 
 /// `kOk` when time goes forward by a finite step.
 template <class Scalar>
-Status check_time_step(Scalar dt_s) noexcept {
+StatusOf<Scalar> check_time_step(Scalar dt_s) noexcept {
   using std::isfinite;
-  if (!isfinite(dt_s)) return Status::kNotFinite;
-  return dt_s < Scalar(0) ? Status::kNegativeTimeStep : Status::kOk;
+  return first_failure(ok_or(isfinite(dt_s), Status::kNotFinite),
+                       ok_or(!(dt_s < Scalar(0)), Status::kNegativeTimeStep));
 }
 
 /// What every filter over one motion model shares: the model, the belief and its start.
@@ -50,25 +50,31 @@ class Belief {
   explicit Belief(const Motion& motion) : motion_(validated(motion)) {}
 
   /// Begins with `belief`; refuses one whose covariance is not symmetric positive definite.
-  Status start(const Gaussian<kStates, Scalar>& belief) noexcept {
-    if (const Status status = check(belief); status != Status::kOk) return status;
-    belief_ = belief;
+  StatusOf<Scalar> start(const Gaussian<kStates, Scalar>& belief) noexcept {
+    const StatusOf<Scalar> status = check(belief);
+    if (none(ok(status))) return status;
+    assign_where(ok(status), belief_, belief);
     mirror_lower<Scalar, kStates>(belief_.covariance);
     started_ = true;
-    return Status::kOk;
+    return status;
   }
 
   /// Begins with a belief over `[x, vx, y, vy]`; the other components get the model's prior.
-  Status start(const Gaussian<4, Scalar>& kinematics) noexcept
+  StatusOf<Scalar> start(const Gaussian<4, Scalar>& kinematics) noexcept
       requires(kStates != 4 && holds(kComponents, kKinematics)) {
     return start(lift(motion_, kinematics));
   }
 
   /// Replaces the belief, unchecked.
-  [[gnu::flatten]] Status assign(const Gaussian<kStates, Scalar>& belief) noexcept {
-    belief_ = belief;
+  [[gnu::always_inline]] StatusOf<Scalar> assign(const Gaussian<kStates, Scalar>& belief) noexcept {
+    copy(belief, belief_);
     started_ = true;
     return Status::kOk;
+  }
+
+  /// Replaces the belief in some lanes, unchecked.
+  void assign_in(const MaskOf<Scalar>& lanes, const Gaussian<kStates, Scalar>& belief) noexcept {
+    assign_where(lanes, belief_, belief);
   }
 
   /// Replaces the motion model, unchecked; the belief stays.
@@ -112,37 +118,95 @@ constexpr void check_sensor() noexcept {
       "wakeline: this sensor reads a component that the state of the motion model does not hold");
 }
 
+/// P Hᵀ of a sensor that reads `kRows` of the state, and S = H P Hᵀ + R in place of R.
+template <class Sensor, auto kRows, class Scalar, int N, int M, int Reads>
+[[gnu::always_inline]] inline void project(const Mat<Scalar, N, N>& p,
+                                           const Mat<Scalar, M, Reads>& h, Mat<Scalar, N, M>& ph,
+                                           Mat<Scalar, M, M>& s) noexcept {
+  unroll<M>([&](int m) {
+    unroll<N>([&](int i) {
+      if constexpr (kIsDirect<Sensor>) {
+        ph(i, m) = p(i, kRows[m]);
+      } else {
+        Scalar sum = h(m, 0) * p(i, kRows[0]);
+        unroll<Reads - 1>([&](int k) { sum += h(m, k + 1) * p(i, kRows[k + 1]); });
+        ph(i, m) = sum;
+      }
+    });
+  });
+  unroll_lower<M>([&](int m, int n) {
+    Scalar sum = s(m, n);
+    if constexpr (kIsDirect<Sensor>)
+      sum += ph(kRows[m], n);
+    else
+      unroll<Reads>([&](int k) { sum += h(m, k) * ph(kRows[k], n); });
+    s(m, n) = s(n, m) = sum;
+  });
+}
+
+/// x += W v.
+template <class Scalar, int N, int M>
+[[gnu::always_inline]] inline void shift(Vec<Scalar, N>& x, const Mat<Scalar, N, M>& w,
+                                         const Vec<Scalar, M>& v) noexcept {
+  unroll<N>([&](int i) {
+    Scalar element = x[i];
+    unroll<M>([&](int m) { element += w(i, m) * v[m]; });
+    x[i] = element;
+  });
+}
+
+/// P -= W Wᵀ, symmetric to the last bit.
+template <class Scalar, int N, int M>
+[[gnu::always_inline]] inline void subtract_gram(Mat<Scalar, N, N>& p,
+                                                 const Mat<Scalar, N, M>& w) noexcept {
+  unroll_lower<N>([&](int i, int j) {
+    Scalar element = p(i, j);
+    unroll<M>([&](int m) { element -= w(i, m) * w(j, m); });
+    p(i, j) = p(j, i) = element;
+  });
+}
+
 /// True when a posterior variance is lost in the rounding of the prior one, and P - K S Kᵀ will not
 /// do.
 template <class Scalar, int N>
-bool cancels(const Mat<Scalar, N, N>& prior, const Mat<Scalar, N, N>& posterior) noexcept {
-  constexpr Scalar kSafe = sizeof(Scalar) > 4 ? Scalar(1e-8) : Scalar(1e-3);
-  bool safe = true;
-  for (int i = 0; i < N; ++i) safe = safe && posterior(i, i) > kSafe * prior(i, i);
+[[gnu::always_inline]] inline MaskOf<Scalar> cancels(const Mat<Scalar, N, N>& prior,
+                                                     const Mat<Scalar, N, N>& posterior) noexcept {
+  constexpr auto kSafe = sizeof(RealOf<Scalar>) > 4 ? RealOf<Scalar>(1e-8) : RealOf<Scalar>(1e-3);
+  MaskOf<Scalar> safe = true;
+  unroll<N>([&](int i) { safe = safe && posterior(i, i) > kSafe * prior(i, i); });
   return !safe;
 }
 
 /// Why an innovation covariance has no Cholesky factor.
 template <class Scalar, int M>
-Status refusal(const Mat<Scalar, M, M>& innovation_covariance) noexcept {
-  return is_finite(innovation_covariance) ? Status::kNotPositiveDefinite : Status::kNotFinite;
+StatusOf<Scalar> refusal(const Mat<Scalar, M, M>& innovation_covariance) noexcept {
+  return first_failure(ok_or(is_finite(innovation_covariance), Status::kNotFinite),
+                       Status::kNotPositiveDefinite);
 }
 
-/// NIS = |L⁻¹ v|², and the status of a step that got so far.
+/// NIS = |L⁻¹ v|², the peak of the likelihood, and the status of a correction that got so far.
 template <int M, class Scalar>
-void rate(Step<M, Scalar>& step, const Vec<Scalar, M>& whitened) noexcept {
+void rate(Correction<M, Scalar>& correction, const Vec<Scalar, M>& whitened,
+          const Cholesky<M, Scalar>& factor) noexcept {
   using std::isfinite;
-  step.nis = whitened.squaredNorm();
-  step.status = isfinite(step.nis) ? Status::kOk : Status::kNotFinite;
+  constexpr double kRootOf2Pi = 2.506628274631000502415765284811045253007;
+  constexpr double kScale = [] {
+    double scale = 1.0;
+    for (int m = 0; m < M; ++m) scale /= kRootOf2Pi;
+    return scale;
+  }();
+  correction.nis = whitened[0] * whitened[0];
+  unroll<M - 1>([&](int m) { correction.nis += whitened[m + 1] * whitened[m + 1]; });
+  correction.peak = RealOf<Scalar>(kScale) * factor.inverse_root_determinant();
+  correction.status = ok_or(factor.ok() && isfinite(correction.nis), Status::kNotFinite);
 }
 
-/// The likelihood part of a step, NIS and ln N(v; 0, S), and its status.
+/// A correction that could not be done, and why.
 template <int M, class Scalar>
-void score(Step<M, Scalar>& step, const Vec<Scalar, M>& whitened,
-           const Cholesky<M, Scalar>& factor) noexcept {
-  constexpr Scalar kLog2Pi = Scalar(1.837877066409345483560659472811235279723);
-  rate(step, whitened);
-  step.log_likelihood = -(step.nis + factor.log_determinant() + Scalar(M) * kLog2Pi) / 2;
+Correction<M, Scalar> failed_correction(const StatusOf<Scalar>& status) noexcept {
+  Correction<M, Scalar> correction;
+  correction.status = status;
+  return correction;
 }
 
 }  // namespace wakeline

@@ -19,9 +19,9 @@ concept BeliefFilter = requires(Filter filter, const Filter& constant,
                                 const Gaussian<Filter::kStates, typename Filter::Scalar>& belief,
                                 typename Filter::Scalar dt_s) {
   Filter::kComponents.size();
-  { filter.start(belief) } -> std::same_as<Status>;
-  { filter.assign(belief) } -> std::same_as<Status>;
-  { filter.predict(dt_s) } -> std::same_as<Status>;
+  { filter.start(belief) } -> std::same_as<StatusOf<typename Filter::Scalar>>;
+  { filter.assign(belief) } -> std::same_as<StatusOf<typename Filter::Scalar>>;
+  { filter.predict(dt_s) } -> std::same_as<StatusOf<typename Filter::Scalar>>;
   {
     constant.estimate()
     } -> std::convertible_to<Gaussian<Filter::kStates, typename Filter::Scalar>>;

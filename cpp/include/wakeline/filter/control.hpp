@@ -9,6 +9,17 @@
 
 namespace wakeline {
 
+/// Gives a filter back what it was, in the lanes told.
+template <class Filter>
+void restore(Filter& filter, const Filter& before,
+             const MaskOf<typename Filter::Scalar>& lanes) noexcept {
+  if constexpr (kLanesOf<typename Filter::Scalar> == 1) {
+    if (lanes) filter = before;
+  } else {
+    filter.assign_in(lanes, before.estimate());
+  }
+}
+
 /// A known acceleration: of own ship, or commanded. It acts on a state that has moved already, x +=
 /// G u, u = [north, east] (m/s²), and is constant during the step: G = [dt²/2; dt] per axis, and
 /// [dt²/2; dt; 1] where the acceleration is a state. What a state does not hold is left out.
@@ -32,15 +43,18 @@ struct Control {
 
   /// `filter.predict(dt_s)` under the acceleration; where that is not finite nothing changes.
   template <class Filter>
-  static Status predict(Filter& filter, typename Filter::Scalar dt_s,
-                        const Vec<typename Filter::Scalar, 2>& acceleration_mps2) noexcept {
+  static auto predict(Filter& filter, typename Filter::Scalar dt_s,
+                      const Vec<typename Filter::Scalar, 2>& acceleration_mps2) noexcept {
+    using Scalar = typename Filter::Scalar;
     const auto pushed = shift(Filter::kComponents, dt_s, acceleration_mps2);
     const Filter before = filter;
-    if (const Status status = filter.predict(dt_s); status != Status::kOk) return status;
-    filter.mean() += pushed;
-    if (is_finite(filter.mean())) return Status::kOk;
-    filter = before;
-    return Status::kNotFinite;
+    StatusOf<Scalar> status = filter.predict(dt_s);
+    if (none(ok(status))) return status;
+    const decltype(pushed) moved = filter.mean() + pushed;
+    assign_where(ok(status), filter.mean(), moved);
+    status = first_failure(status, ok_or(is_finite(moved), Status::kNotFinite));
+    if (!all(ok(status))) restore(filter, before, !ok(status));
+    return status;
   }
 };
 

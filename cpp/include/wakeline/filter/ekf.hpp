@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "wakeline/filter/belief.hpp"
+#include "wakeline/motion/pattern.hpp"
 
 namespace wakeline {
 
@@ -27,22 +28,26 @@ class Ekf : public Belief<MotionType, ScalarType> {
   explicit Ekf(const MotionType& motion) : Base(motion) {}
 
   /// x = f(x), P = F P Fᵀ + Q.
-  Status predict(Scalar dt_s) noexcept {
+  [[gnu::flatten]] StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     if (!this->started_) return Status::kNotStarted;
-    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
+    const StatusOf<Scalar> forward = check_time_step(dt_s);
+    if (none(ok(forward))) return forward;
     const Vec<Scalar, kStates>& x = this->belief_.mean;
     if constexpr (LinearMotionModel<Motion>) {
-      if (dt_s != kept_.step_s)
-        kept_ = {dt_s, this->motion_.matrix(dt_s), this->motion_.process_noise(dt_s)};
-      return move(kept_.f * x, kept_.f, kept_.q);
+      if (any(dt_s != kept_.step_s)) [[unlikely]]
+        keep(dt_s);
+      const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.f};
+      return move(forward, f * x, f, kept_.q);
     } else {
-      return move(this->motion_.transition(x, dt_s), this->motion_.jacobian(x, dt_s),
+      const Mat<Scalar, kStates, kStates> jacobian = this->motion_.jacobian(x, dt_s);
+      return move(forward, this->motion_.transition(x, dt_s),
+                  Patterned<kPatternOf<Motion>, Scalar, kStates>{jacobian},
                   this->motion_.process_noise(x, dt_s));
     }
   }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
-  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return Control::predict(*this, dt_s, acceleration_mps2);
   }
 
@@ -56,30 +61,47 @@ class Ekf : public Belief<MotionType, ScalarType> {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> innovation(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
-    Step<Sensor::kMeasurements, Scalar> step;
-    const Innovation<Sensor> innovation(*this, sensor, z, step);
-    if (step) score(step, innovation.whitened, innovation.factor);
-    return step;
+    return compare(sensor, sensor.observe(z)).scored();
+  }
+
+  /// The same of a reading that the sensor has observed, its likelihood in two parts.
+  template <class Sensor>
+  [[gnu::flatten]] Correction<Sensor::kMeasurements, Scalar> compare(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
+    Correction<Sensor::kMeasurements, Scalar> correction;
+    (void)Innovation<Sensor>(*this, sensor, reading, correction);
+    return correction;
   }
 
   /// Corrects the belief by the reading z of a sensor.
   template <class Sensor>
-  [[gnu::flatten]] Step<Sensor::kMeasurements, Scalar> update(
-      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+  Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
+                                             const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    return correct(sensor, sensor.observe(z)).scored();
+  }
+
+  /// The same by a reading that the sensor has observed, the likelihood in two parts.
+  template <class Sensor>
+  [[gnu::flatten]] Correction<Sensor::kMeasurements, Scalar> correct(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
     constexpr int kM = Sensor::kMeasurements;
-    Step<kM, Scalar> step;
-    const Innovation<Sensor> innovation(*this, sensor, z, step);
-    if (!step) return step;
+    Correction<kM, Scalar> correction;
+    const Innovation<Sensor> innovation(*this, sensor, reading, correction);
+    const auto taken = ok(correction.status);
+    if (none(taken)) return correction;
     Gaussian<kStates, Scalar>& belief = this->belief_;
     const Mat<Scalar, kStates, kM> gain = innovation.factor.whiten_rows(innovation.ph);  // P Hᵀ L⁻ᵀ
-    const Mat<Scalar, kStates, kStates> posterior = belief.covariance - gain * gain.transpose();
-    belief.mean.noalias() += gain * innovation.whitened;
-    if (cancels<Scalar, kStates>(belief.covariance, posterior)) [[unlikely]]
-      belief.covariance = joseph(sensor, innovation.h, innovation.factor.unwhiten_rows(gain), z);
-    else
-      belief.covariance = posterior;
-    score(step, innovation.whitened, innovation.factor);  // last: nothing waits for the logarithm
-    return step;
+    Gaussian<kStates, Scalar> next = belief;
+    shift(next.mean, gain, innovation.whitened);
+    subtract_gram(next.covariance, gain);
+    if (all(taken) && none(cancels<Scalar, kStates>(belief.covariance, next.covariance)))
+        [[likely]] {
+      copy(next, belief);
+    } else {
+      Gaussian<kStates, Scalar> posterior = next;  // so that the other one stays in registers
+      take_with_care(posterior, innovation, reading.covariance, gain, taken);
+    }
+    return correction;
   }
 
  private:
@@ -95,67 +117,85 @@ class Ekf : public Belief<MotionType, ScalarType> {
     Cholesky<kM, Scalar> factor;  ///< of S
     Vec<Scalar, kM> whitened;     ///< L⁻¹ v
 
-    /// Fills all of `step` but the likelihood, too.
-    Innovation(const Ekf& filter, const Sensor& sensor, const Vec<Scalar, kM>& z,
-               Step<kM, Scalar>& step) noexcept {
+    /// Fills `correction`, too.
+    Innovation(const Ekf& filter, const Sensor& sensor, const Gaussian<kM, Scalar>& reading,
+               Correction<kM, Scalar>& correction) noexcept {
       check_sensor<Sensor, Ekf>();
       if (!filter.started_) return;
       const Gaussian<kStates, Scalar>& belief = filter.belief_;
       Vec<Scalar, kReads> read;
-      for (int k = 0; k < kReads; ++k) read[k] = belief.mean[kRows[k]];
-      const Gaussian<kM, Scalar> reading = sensor.observe(z);
+      unroll<kReads>([&](int k) { read[k] = belief.mean[kRows[k]]; });
       // First, because an arc tangent takes as long as all that follows, which the processor does
       // meanwhile.
-      step.innovation = sensor.residual(reading.mean, sensor.measure(read));
+      correction.innovation = sensor.residual(reading.mean, sensor.measure(read));
       h = sensor.jacobian(read);
-      for (int m = 0; m < kM; ++m) {
-        ph.col(m) = h(m, 0) * belief.covariance.col(kRows[0]);
-        for (int k = 1; k < kReads; ++k) ph.col(m) += h(m, k) * belief.covariance.col(kRows[k]);
-      }
-      for (int n = 0; n < kM; ++n)
-        for (int m = n; m < kM; ++m) {
-          Scalar s = reading.covariance(m, n);
-          for (int k = 0; k < kReads; ++k) s += h(m, k) * ph(kRows[k], n);
-          step.innovation_covariance(m, n) = step.innovation_covariance(n, m) = s;
-        }
-      factor.compute(step.innovation_covariance);
-      if (!factor.ok()) {
-        step.status = refusal<Scalar, kM>(step.innovation_covariance);
+      correction.innovation_covariance = reading.covariance;
+      project<Sensor, kRows>(belief.covariance, h, ph, correction.innovation_covariance);
+      factor.compute(correction.innovation_covariance);
+      if (none(factor.ok())) {
+        correction.status = refusal<Scalar, kM>(correction.innovation_covariance);
         return;
       }
-      whitened = factor.template whiten<1>(step.innovation);
-      rate(step, whitened);
+      whitened = factor.template whiten<1>(correction.innovation);
+      rate(correction, whitened, factor);
     }
   };
 
-  /// Takes x and F P Fᵀ + Q as the belief, when they are finite.
-  [[gnu::flatten]] Status move(const Vec<Scalar, kStates>& x,
-                               const Mat<Scalar, kStates, kStates>& f,
-                               const Mat<Scalar, kStates, kStates>& q) noexcept {
+  /// Takes x and F P Fᵀ + Q as the belief, where they are finite.
+  [[gnu::always_inline]] StatusOf<Scalar> move(
+      const StatusOf<Scalar>& forward, const Vec<Scalar, kStates>& x,
+      const Patterned<kPatternOf<Motion>, Scalar, kStates>& f,
+      const Mat<Scalar, kStates, kStates>& q) noexcept {
     Gaussian<kStates, Scalar>& belief = this->belief_;
-    const Mat<Scalar, kStates, kStates> fp = f * belief.covariance;
-    Mat<Scalar, kStates, kStates> p = q;
-    p.noalias() += fp * f.transpose();
-    if (!is_finite(x) || !is_finite(p.diagonal())) return Status::kNotFinite;
-    belief.mean = x;
-    belief.covariance = p;
-    mirror_lower<Scalar, kStates>(belief.covariance);
-    return Status::kOk;
+    const Mat<Scalar, kStates, kStates> fp = f.transposed_product(belief.covariance);
+    Gaussian<kStates, Scalar> next;
+    unroll_lower<kStates>([&](auto row, auto column) {
+      constexpr int i = row.value, j = column.value;
+      next.covariance(i, j) = next.covariance(j, i) = q(i, j) + f.template congruence<i, j>(fp);
+    });
+    unroll<kStates>([&](int i) { next.mean[i] = x[i]; });
+    Scalar sum = Scalar(0);
+    unroll<kStates>([&](int i) { sum += next.mean[i] + next.covariance(i, i); });
+    const StatusOf<Scalar> status =
+        first_failure(forward, ok_or(sum - sum == Scalar(0), Status::kNotFinite));
+    if (all(ok(status))) [[likely]]
+      copy(next, belief);
+    else
+      assign_where(ok(status), belief, next);
+    return status;
+  }
+
+  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which that cancels.
+  template <class Sensor>
+  [[gnu::cold, gnu::noinline]] void take_with_care(
+      Gaussian<kStates, Scalar>& posterior, const Innovation<Sensor>& innovation,
+      const Mat<Scalar, Sensor::kMeasurements, Sensor::kMeasurements>& r,
+      const Mat<Scalar, kStates, Sensor::kMeasurements>& gain,
+      const MaskOf<Scalar>& taken) noexcept {
+    Gaussian<kStates, Scalar>& belief = this->belief_;
+    const auto lost = cancels<Scalar, kStates>(belief.covariance, posterior.covariance);
+    if (any(lost))
+      assign_where(lost, posterior.covariance,
+                   joseph<Sensor>(innovation.h, innovation.factor.unwhiten_rows(gain), r));
+    assign_where(taken, belief, posterior);
   }
 
   /// (I - K H) P (I - K H)ᵀ + K R Kᵀ.
   template <class Sensor, int M, int Reads>
-  [[gnu::cold, gnu::noinline]] Mat<Scalar, kStates, kStates> joseph(
-      const Sensor& sensor, const Mat<Scalar, M, Reads>& h, const Mat<Scalar, kStates, M>& gain,
-      const Vec<Scalar, M>& z) const noexcept {
+  Mat<Scalar, kStates, kStates> joseph(const Mat<Scalar, M, Reads>& h,
+                                       const Mat<Scalar, kStates, M>& gain,
+                                       const Mat<Scalar, M, M>& r) const noexcept {
     constexpr auto kRows = rows_read<Sensor>(kComponents);
-    const Mat<Scalar, M, M> r = sensor.observe(z).covariance;
     Mat<Scalar, kStates, kStates> rest = Mat<Scalar, kStates, kStates>::Identity();
     for (int k = 0; k < Reads; ++k) rest.col(kRows[k]) -= gain * h.col(k);
     Mat<Scalar, kStates, kStates> p =
         rest * this->belief_.covariance * rest.transpose() + gain * r * gain.transpose();
     mirror_lower<Scalar, kStates>(p);
     return p;
+  }
+
+  [[gnu::cold, gnu::noinline]] void keep(Scalar dt_s) noexcept {
+    kept_ = {dt_s, this->motion_.matrix(dt_s), this->motion_.process_noise(dt_s)};
   }
 
   /// F and Q of the last step.

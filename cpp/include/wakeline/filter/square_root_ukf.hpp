@@ -129,7 +129,14 @@ class SquareRootUkf {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> innovation(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
-    return SquareRootUkf(*this).update(sensor, z);
+    return compare(sensor, sensor.observe(z)).scored();
+  }
+
+  /// The same of a reading that the sensor has observed, its likelihood in two parts.
+  template <class Sensor>
+  Correction<Sensor::kMeasurements, Scalar> compare(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
+    return SquareRootUkf(*this).correct(sensor, reading);
   }
 
   /// Corrects the belief by the reading z of a sensor: the root of [sqrt(w) e_z, sqrt(beta -
@@ -137,11 +144,17 @@ class SquareRootUkf {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    return correct(sensor, sensor.observe(z)).scored();
+  }
+
+  /// The same by a reading that the sensor has observed, the likelihood in two parts.
+  template <class Sensor>
+  Correction<Sensor::kMeasurements, Scalar> correct(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
     using std::sqrt;
     check_sensor<Sensor, SquareRootUkf>();
     constexpr int kM = Sensor::kMeasurements;
-    if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
-    const Gaussian<kM, Scalar> reading = sensor.observe(z);
+    if (!started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
     const Mat<Scalar, kStates, kPoints> sigma = points();
     const MeasuredPoints<Scalar, kM, kPoints> images(sensor, kComponents, mean_, sigma);
     const Vec<Scalar, kM> shift = weight() * images.differences.rowwise().sum();
@@ -156,24 +169,24 @@ class SquareRootUkf {
     const Vec<Scalar, kM> innovation =
         sensor.residual(reading.mean, Vec<Scalar, kM>(images.centre + shift));
     if (!is_finite(array) || !is_finite(innovation))
-      return failed_step<kM, Scalar>(Status::kNotFinite);
+      return failed_correction<kM, Scalar>(Status::kNotFinite);
     if ((reading.covariance.diagonal().array() < Scalar(0)).any())
-      return failed_step<kM, Scalar>(Status::kNotPositiveDefinite);
+      return failed_correction<kM, Scalar>(Status::kNotPositiveDefinite);
 
     const Mat<Scalar, kM + kStates, kM + kStates> root = lower_root(array);
     const Mat<Scalar, kM, kM> s_root = root.template topLeftCorner<kM, kM>();
-    Step<kM, Scalar> step;
-    step.innovation = innovation;
-    step.innovation_covariance = s_root * s_root.transpose();
-    const Cholesky<kM, Scalar> factor(step.innovation_covariance);
+    Correction<kM, Scalar> correction;
+    correction.innovation = innovation;
+    correction.innovation_covariance = s_root * s_root.transpose();
+    const Cholesky<kM, Scalar> factor(correction.innovation_covariance);
     if (!factor.ok())
-      return failed_step<kM, Scalar>(refusal<Scalar, kM>(step.innovation_covariance));
+      return failed_correction<kM, Scalar>(refusal<Scalar, kM>(correction.innovation_covariance));
     const Vec<Scalar, kM> whitened = factor.template whiten<1>(innovation);
-    score(step, whitened, factor);
-    if (!step) return step;
+    rate(correction, whitened, factor);
+    if (!correction) return correction;
     mean_.noalias() += root.template bottomLeftCorner<kStates, kM>() * whitened;
     root_ = root.template bottomRightCorner<kStates, kStates>();
-    return step;
+    return correction;
   }
 
  private:

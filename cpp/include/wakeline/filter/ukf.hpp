@@ -29,24 +29,25 @@ class Ukf : public Belief<MotionType, ScalarType> {
   [[nodiscard]] const Unscented& unscented() const noexcept { return unscented_; }
 
   /// The moments of the moved sigma points, and Q.
-  Status predict(Scalar dt_s) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     if (!this->started_) return Status::kNotStarted;
-    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
+    const StatusOf<Scalar> forward = check_time_step(dt_s);
+    if (none(ok(forward))) return forward;
     const Cholesky<kStates, Scalar> root(this->belief_.covariance);
-    if (!root.ok()) return Status::kNotPositiveDefinite;
     const Vec<Scalar, kStates>& x = this->belief_.mean;
     const MovedPoints<Scalar, kStates> moved(this->motion_, dt_s, x, points(root));
     Gaussian<kStates, Scalar> next =
         unscented_moments(unscented_, kStates, moved.centre, moved.differences);
     next.covariance += process_noise(this->motion_, x, dt_s);
     mirror_lower<Scalar, kStates>(next.covariance);
-    if (const Status status = check(next); status != Status::kOk) return status;
-    this->belief_ = next;
-    return Status::kOk;
+    const StatusOf<Scalar> status = first_failure(
+        first_failure(forward, ok_or(root.ok(), Status::kNotPositiveDefinite)), check(next));
+    assign_where(ok(status), this->belief_, next);
+    return status;
   }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
-  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return Control::predict(*this, dt_s, acceleration_mps2);
   }
 
@@ -54,68 +55,97 @@ class Ukf : public Belief<MotionType, ScalarType> {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> innovation(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
-    return Ukf(*this).update(sensor, z);
+    return compare(sensor, sensor.observe(z)).scored();
+  }
+
+  /// The same of a reading that the sensor has observed, its likelihood in two parts.
+  template <class Sensor>
+  Correction<Sensor::kMeasurements, Scalar> compare(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
+    return Ukf(*this).correct(sensor, reading);
   }
 
   /// Corrects the belief by the reading z of a sensor.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    return correct(sensor, sensor.observe(z)).scored();
+  }
+
+  /// The same by a reading that the sensor has observed, the likelihood in two parts.
+  template <class Sensor>
+  Correction<Sensor::kMeasurements, Scalar> correct(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
     check_sensor<Sensor, Ukf>();
     constexpr int kM = Sensor::kMeasurements;
-    if (!this->started_) return failed_step<kM, Scalar>(Status::kNotStarted);
+    if (!this->started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
     const Cholesky<kStates, Scalar> root(this->belief_.covariance);
-    if (!root.ok()) return failed_step<kM, Scalar>(Status::kNotPositiveDefinite);
+    if (none(root.ok())) return failed_correction<kM, Scalar>(Status::kNotPositiveDefinite);
 
-    const Gaussian<kM, Scalar> reading = sensor.observe(z);
     const Mat<Scalar, kStates, kPoints> sigma = points(root);
     const MeasuredPoints<Scalar, kM, kPoints> images(sensor, kComponents, this->belief_.mean,
                                                      sigma);
-    Gaussian<kM, Scalar> predicted =
+    const Gaussian<kM, Scalar> predicted =
         unscented_moments(unscented_, kStates, images.centre, images.differences);
 
-    Step<kM, Scalar> step;
-    step.innovation = sensor.residual(reading.mean, predicted.mean);
-    step.innovation_covariance = predicted.covariance + reading.covariance;
-    const Cholesky<kM, Scalar> factor(step.innovation_covariance);
-    if (!factor.ok())
-      return failed_step<kM, Scalar>(refusal<Scalar, kM>(step.innovation_covariance));
-    const Vec<Scalar, kM> whitened = factor.template whiten<1>(step.innovation);
-    score(step, whitened, factor);
-    if (!step) return step;
+    Correction<kM, Scalar> correction;
+    correction.innovation = sensor.residual(reading.mean, predicted.mean);
+    correction.innovation_covariance = predicted.covariance + reading.covariance;
+    const Cholesky<kM, Scalar> factor(correction.innovation_covariance);
+    if (none(factor.ok()))
+      return failed_correction<kM, Scalar>(refusal<Scalar, kM>(correction.innovation_covariance));
+    const Vec<Scalar, kM> whitened = factor.template whiten<1>(correction.innovation);
+    rate(correction, whitened, factor);
 
-    const Mat<Scalar, kStates, kPoints> spread = sigma.colwise() - this->belief_.mean;
-    const Mat<Scalar, kM, kStates> cross =
-        unscented_.template weight<Scalar>(kStates) * images.differences * spread.transpose();
-    const Mat<Scalar, kM, kStates> gain = factor.template whiten<kStates>(cross);
+    Mat<Scalar, kStates, kPoints> spread;
+    for (int k = 0; k < kPoints; ++k)
+      unroll<kStates>([&](int i) { spread(i, k) = sigma(i, k) - this->belief_.mean[i]; });
+    const Scalar w = unscented_.template weight<Scalar>(kStates);
+    Mat<Scalar, kStates, kM> cross;
+    unroll<kStates * kM>([&](int index) {
+      const int i = index % kStates, m = index / kStates;
+      Scalar sum = spread(i, 0) * images.differences(m, 0);
+      for (int k = 1; k < kPoints; ++k) sum += spread(i, k) * images.differences(m, k);
+      cross(i, m) = w * sum;
+    });
+    const Mat<Scalar, kStates, kM> gain = factor.whiten_rows(cross);
     Gaussian<kStates, Scalar> next = this->belief_;
-    next.mean.noalias() += gain.transpose() * whitened;
-    next.covariance.noalias() -= gain.transpose() * gain;
-    if (cancels<Scalar, kStates>(this->belief_.covariance, next.covariance))
-      next.covariance = joseph(spread, images.differences, factor.template solve<kStates>(cross),
-                               reading.covariance);
-    if (!Cholesky<kStates, Scalar>(next.covariance).ok())
-      return failed_step<kM, Scalar>(Status::kNotPositiveDefinite);
-    this->belief_ = next;
-    return step;
+    shift(next.mean, gain, whitened);
+    subtract_gram(next.covariance, gain);
+    const auto lost = cancels<Scalar, kStates>(this->belief_.covariance, next.covariance);
+    if (any(lost)) [[unlikely]]
+      assign_where(
+          lost, next.covariance,
+          joseph(spread, images.differences, factor.unwhiten_rows(gain), reading.covariance));
+    const auto definite = root.ok() && Cholesky<kStates, Scalar>(next.covariance).ok();
+    correction.status =
+        first_failure(correction.status, ok_or(definite, Status::kNotPositiveDefinite));
+    assign_where(ok(correction.status), this->belief_, next);
+    return correction;
   }
 
  private:
   /// P - K S Kᵀ as what the points keep of their spread, Σ w (e_x - K e_z)(e_x - K e_z)ᵀ, with K of
   /// the rest of S.
   template <int M>
-  Mat<Scalar, kStates, kStates> joseph(const Mat<Scalar, kStates, kPoints>& spread,
-                                       const Mat<Scalar, M, kPoints>& differences,
-                                       const Mat<Scalar, M, kStates>& gain_transposed,
-                                       const Mat<Scalar, M, M>& r) const noexcept {
+  [[gnu::cold, gnu::noinline]] Mat<Scalar, kStates, kStates> joseph(
+      const Mat<Scalar, kStates, kPoints>& spread, const Mat<Scalar, M, kPoints>& differences,
+      const Mat<Scalar, kStates, M>& gain, const Mat<Scalar, M, M>& r) const noexcept {
     const Scalar w = unscented_.template weight<Scalar>(kStates);
-    const Vec<Scalar, M> shift = w * differences.rowwise().sum();
-    const Mat<Scalar, kStates, kPoints> kept = spread - gain_transposed.transpose() * differences;
+    Vec<Scalar, M> shift;
+    for (int m = 0; m < M; ++m) shift[m] = w * differences.row(m).sum();
+    const Mat<Scalar, kStates, kPoints> kept = spread - gain * differences;
     const Mat<Scalar, M, M> rest =
         r + unscented_.template centre_correction<Scalar>() * shift * shift.transpose();
-    Mat<Scalar, kStates, kStates> p =
-        w * kept * kept.transpose() + gain_transposed.transpose() * rest * gain_transposed;
-    mirror_lower<Scalar, kStates>(p);
+    const Mat<Scalar, kStates, M> pushed = gain * rest;
+    Mat<Scalar, kStates, kStates> p;
+    unroll_lower<kStates>([&](int i, int j) {
+      Scalar sum = Scalar(0);
+      for (int k = 0; k < kPoints; ++k) sum += kept(i, k) * kept(j, k);
+      sum *= w;
+      for (int m = 0; m < M; ++m) sum += pushed(i, m) * gain(j, m);
+      p(i, j) = p(j, i) = sum;
+    });
     return p;
   }
 

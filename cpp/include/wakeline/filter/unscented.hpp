@@ -112,13 +112,20 @@ Gaussian<M, Scalar> unscented_moments(const Unscented& unscented, int states,
                                       const Vec<Scalar, M>& centre,
                                       const Mat<Scalar, M, Points>& differences) noexcept {
   const Scalar w = unscented.template weight<Scalar>(states);
-  const Vec<Scalar, M> shift = w * differences.rowwise().sum();
+  const Scalar beta = unscented.template centre_correction<Scalar>();
+  Vec<Scalar, M> shift;
+  unroll<M>([&](int i) {
+    Scalar sum = differences(i, 0);
+    for (int k = 1; k < Points; ++k) sum += differences(i, k);
+    shift[i] = w * sum;
+  });
   Gaussian<M, Scalar> moments;
-  moments.mean = centre + shift;
-  moments.covariance.noalias() = w * differences * differences.transpose();
-  moments.covariance.noalias() +=
-      unscented.template centre_correction<Scalar>() * shift * shift.transpose();
-  mirror_lower<Scalar, M>(moments.covariance);
+  unroll<M>([&](int i) { moments.mean[i] = centre[i] + shift[i]; });
+  unroll_lower<M>([&](int i, int j) {
+    Scalar sum = differences(i, 0) * differences(j, 0);
+    for (int k = 1; k < Points; ++k) sum += differences(i, k) * differences(j, k);
+    moments.covariance(i, j) = moments.covariance(j, i) = w * sum + beta * shift[i] * shift[j];
+  });
   return moments;
 }
 

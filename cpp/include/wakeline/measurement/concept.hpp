@@ -38,6 +38,14 @@ concept MeasurementModel = requires(const Sensor& sensor,
 template <class Sensor>
 concept LinearMeasurementModel = MeasurementModel<Sensor> && Sensor::kLinear;
 
+/// True of a sensor whose `measure` gives what it reads, as it says with `static constexpr bool
+/// kDirect = true`: its `jacobian` is the identity.
+template <class Sensor>
+inline constexpr bool kIsDirect = false;
+template <class Sensor>
+requires requires { requires Sensor::kDirect; }
+inline constexpr bool kIsDirect<Sensor> = true;
+
 /// A sensor that fixes a position: `position(z) -> Gaussian<2>`, north and east in metres.
 template <class Sensor>
 concept PositionSensor = MeasurementModel<Sensor> &&

@@ -12,6 +12,7 @@ struct Fix {
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;
   static constexpr bool kLinear = true;
+  static constexpr bool kDirect = true;
 
   Mat<double, 2, 2> covariance_m2 = Mat<double, 2, 2>::Identity();
 

@@ -12,6 +12,7 @@ struct Position {
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;
   static constexpr bool kLinear = true;
+  static constexpr bool kDirect = true;
 
   double position_std_m = 10.0;  ///< per axis
 

@@ -28,7 +28,7 @@ struct RangeBearing {
   Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
     const PolarErrors e = errors();
     const Scalar isotropic = Scalar(e.isotropic_variance_m2());
-    const Scalar range2 = select(z[0] * z[0] > kMinRange2<Scalar>, z[0] * z[0], kMinRange2<Scalar>);
+    const Scalar range2 = at_least(z[0] * z[0], Scalar(kMinRange_m * kMinRange_m));
     Gaussian<2, Scalar> reading{z, Mat<Scalar, 2, 2>::Zero()};
     reading.covariance(0, 0) = Scalar(e.range_variance_m2()) + isotropic;
     reading.covariance(1, 1) = Scalar(e.bearing_variance_rad2()) + isotropic / range2;
@@ -39,18 +39,21 @@ struct RangeBearing {
   Vec<Scalar, 2> measure(const Vec<Scalar, 2>& position) const noexcept {
     using std::atan2, std::sqrt;
     const Vec<Scalar, 2> d = position - own.position<Scalar>();
-    return {sqrt(d.squaredNorm()), atan2(d[1], d[0]) + Scalar(bearing_offset_rad)};
+    return {sqrt(d[0] * d[0] + d[1] * d[1]), atan2(d[1], d[0]) + Scalar(bearing_offset_rad)};
   }
 
   template <class Scalar>
   Mat<Scalar, 2, 2> jacobian(const Vec<Scalar, 2>& position) const noexcept {
-    using std::sqrt;
     const Vec<Scalar, 2> d = position - own.position<Scalar>();
-    const Scalar true_range2 = d.squaredNorm();
-    const Scalar range2 = select(true_range2 > kMinRange2<Scalar>, true_range2, kMinRange2<Scalar>);
-    const Scalar range = sqrt(range2);
+    const Scalar range2 = d[0] * d[0] + d[1] * d[1];
+    const Scalar nearness = inverse_sqrt(at_least(range2, Scalar(kMinRange_m * kMinRange_m)));
+    const Scalar cosine = d[0] * nearness;
+    const Scalar sine = d[1] * nearness;
     Mat<Scalar, 2, 2> h;
-    h << d[0] / range, d[1] / range, -d[1] / range2, d[0] / range2;
+    h(0, 0) = cosine;
+    h(0, 1) = sine;
+    h(1, 0) = -sine * nearness;
+    h(1, 1) = cosine * nearness;
     return h;
   }
 
@@ -70,10 +73,6 @@ struct RangeBearing {
   [[nodiscard]] PolarErrors errors() const noexcept {
     return {range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own};
   }
-
- private:
-  template <class Scalar>
-  static constexpr Scalar kMinRange2 = Scalar(kMinRange_m* kMinRange_m);
 };
 
 /// A plot `[range m, bearing rad]` turned into north/east with its own covariance, which makes it
@@ -83,6 +82,7 @@ struct ConvertedRangeBearing {
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;
   static constexpr bool kLinear = true;
+  static constexpr bool kDirect = true;
 
   double range_std_m = 10.0;
   double bearing_std_rad = deg(1.0);

@@ -4,6 +4,7 @@
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/motion/concept.hpp"
+#include "wakeline/motion/pattern.hpp"
 #include "wakeline/motion/turn.hpp"
 #include "wakeline/motion/wandering_course.hpp"
 
@@ -13,6 +14,7 @@ namespace wakeline {
 /// ConstantVelocity. Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
 struct CoordinatedTurn {
   static constexpr auto kComponents = kKinematics;
+  static constexpr Pattern<4> kPattern{"1x0x 0x0x 0x1x 0x0x"};
 
   double turn_rate_rad_s = 0.0;  ///< positive to starboard
   ProcessNoise noise = WhiteAcceleration{};
@@ -42,6 +44,7 @@ struct CoordinatedTurn {
 struct CoordinatedTurnRate {
   static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
                                           Component::kVeast, Component::kTurnRate};
+  static constexpr Pattern<5> kPattern{"1x0xx 0x0xx 0x1xx 0x0xx 00001"};
 
   ProcessNoise noise = WhiteAcceleration{};
   double turn_rate_psd_rad2s3 = 1e-4;           ///< density of the white noise that drives omega

@@ -16,11 +16,11 @@ Scalar exponential_remainder(Scalar u) noexcept {
   if constexpr (K == 0) {
     return exp(-u);
   } else {
-    if (u > Scalar(1)) return (Scalar(1) - exponential_remainder<K - 1>(u)) / u;  // 1/(K-1)! = 1
     constexpr int kTerms = 18;
     Scalar sum = Scalar(1);
     for (int n = kTerms; n > 0; --n) sum = Scalar(1) - u / Scalar(n + K) * sum;
-    return K == 1 ? sum : sum / 2;
+    return select(u > Scalar(1), (Scalar(1) - exponential_remainder<K - 1>(u)) / u,  // 1/(K-1)! = 1
+                  K == 1 ? sum : sum / 2);
   }
 }
 
@@ -29,6 +29,7 @@ Scalar exponential_remainder(Scalar u) noexcept {
 /// m/s²). Source: R. A. Singer, IEEE Trans. AES-6, 1970; Bar-Shalom, Li, Kirubarajan, 8.2.
 struct Singer {
   static constexpr auto kComponents = kAccelerationKinematics;
+  static constexpr Pattern<6> kPattern{"1xx000 01x000 00x000 0001xx 00001x 00000x"};
 
   double maneuver_time_s = 20.0;  ///< tau, correlation time of the acceleration
   double accel_std_mps2 = 0.5;    ///< stationary standard deviation of the acceleration
@@ -47,8 +48,8 @@ struct Singer {
   template <class Scalar>
   Mat<Scalar, 6, 6> process_noise(Scalar dt_s) const noexcept {
     const Scalar variance = Scalar(accel_std_mps2 * accel_std_mps2);
-    const Mat<Scalar, 3, 3> axis =
-        dt_s > Scalar(maneuver_time_s) ? long_step_noise(dt_s) : short_step_noise(dt_s);
+    Mat<Scalar, 3, 3> axis = short_step_noise(dt_s);
+    assign_where(dt_s > Scalar(maneuver_time_s), axis, long_step_noise(dt_s));
     return both_axes<Scalar>(variance * axis);
   }
 

@@ -27,7 +27,7 @@ struct Turn {
     const Scalar half_cosine = cos(angle / 2);
     sine = 2 * half_sine * half_cosine;
     cosine = 1 - 2 * half_sine * half_sine;
-    const bool straight = abs(angle) < kTiny;
+    const auto straight = abs(angle) < Scalar(kTiny);
     const Scalar divisor = select(straight, Scalar(1), angle);
     along_s = dt * select(straight, Scalar(1), sine / divisor);
     across_s = dt * select(straight, angle / 2, 2 * half_sine * half_sine / divisor);
@@ -49,7 +49,7 @@ struct Turn {
   Vec<Scalar, 2> rate_derivatives() const noexcept {
     using std::abs;
     const Scalar a2 = angle * angle;
-    const bool nearly_straight = abs(angle) < kSeries;
+    const auto nearly_straight = abs(angle) < Scalar(kSeries);
     const Scalar divisor = select(nearly_straight, Scalar(1), angle);
     const Scalar along = select(nearly_straight, -angle * (1 - a2 / 10 * (1 - a2 / 28)) / 3,
                                 (cosine - along_s / dt_s) / divisor);
@@ -75,13 +75,14 @@ struct Turn {
       return piecewise_noise(policy, dt_s);
     Mat<Scalar, 4, 4> q;
     const Scalar a2 = angle * angle;
-    const bool nearly_straight = abs(angle) < kSeries;
+    const auto nearly_straight = abs(angle) < Scalar(kSeries);
     const Scalar divisor = select(nearly_straight, Scalar(1), angle);
     // 2 (theta - sin theta) / theta³ and (1 - cos theta) / theta²
     const Scalar spread = select(nearly_straight, (1 - a2 / 20 * (1 - a2 / 42)) / 3,
                                  2 * (angle - sine) / (divisor * divisor * divisor));
-    const Scalar coupling = select(abs(angle) < kTiny, Scalar(0.5),
-                                   across_s / select(abs(angle) < kTiny, Scalar(1), angle * dt_s));
+    const auto straight = abs(angle) < Scalar(kTiny);
+    const Scalar coupling =
+        select(straight, Scalar(0.5), across_s / select(straight, Scalar(1), angle * dt_s));
     const Scalar density = Scalar(policy.strength());
     const Scalar dt2 = dt_s * dt_s;
     const Scalar position = density * dt2 * dt_s * spread;
@@ -98,8 +99,8 @@ struct Turn {
   }
 
  private:
-  static constexpr Scalar kTiny = Scalar(1e-12);
-  static constexpr Scalar kSeries = sizeof(Scalar) > 4 ? Scalar(0.02) : Scalar(0.3);
+  static constexpr double kTiny = 1e-12;
+  static constexpr double kSeries = sizeof(RealOf<Scalar>) > 4 ? 0.02 : 0.3;
 };
 
 }  // namespace wakeline

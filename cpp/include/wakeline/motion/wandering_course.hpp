@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-
 #include "wakeline/motion/concept.hpp"
+#include "wakeline/motion/pattern.hpp"
 #include "wakeline/motion/process_noise.hpp"
 
 namespace wakeline {
@@ -15,9 +14,9 @@ namespace wakeline {
 template <class Scalar>
 Scalar course_wander_psd(double course_psd_rad2s, double max_speed_mps, Scalar vx,
                          Scalar vy) noexcept {
-  using std::min;
   const Scalar limit = Scalar(max_speed_mps * max_speed_mps);
-  return Scalar(course_psd_rad2s) * min(vx * vx + vy * vy, limit);
+  const Scalar speed2 = vx * vx + vy * vy;
+  return Scalar(course_psd_rad2s) * select(speed2 < limit, speed2, limit);
 }
 
 /// Straight and nearly steady, with an acceleration that grows with the speed: state `[x, vx, y,
@@ -25,6 +24,7 @@ Scalar course_wander_psd(double course_psd_rad2s, double max_speed_mps, Scalar v
 /// course_psd_rad2s v²` in every direction, so that one tuning serves both.
 struct WanderingCourse {
   static constexpr auto kComponents = kKinematics;
+  static constexpr Pattern<4> kPattern{"1x00 0100 001x 0001"};
 
   double psd_m2s3 = 0.01;          ///< acceleration at rest
   double course_psd_rad2s = 0.01;  ///< wander of the course

@@ -125,24 +125,25 @@ class BayesianAlphaBeta
     weight_ = stay * weight_ + (Scalar(1) - stay) * prior_;
   }
 
-  /// Bayes' rule over the members that foretold the plot, by ln N(v; 0, (1 + f) R) but for what all
+  /// Bayes' rule over the members that foretold the plot, by N(v; 0, (1 + f) R) but for what all
   /// share; of the others nothing is known.
   void judge(const Gaussian<2, Scalar>& plot) noexcept {
-    using std::log;
     const Cholesky<2, Scalar> factor(plot.covariance);
     if (!factor.ok()) return;
-    Probability log_likelihood = Probability::Constant(weighing_.members(), kImpossible<Scalar>);
+    std::array<Likelihood<Scalar>, kMaxModes> likelihood;
     const Probability before = weight_;
     Scalar foretold = Scalar(0);
     for_each_member([&](int member, const Line<Scalar>& line) {
       foretold += before[member];
       const Scalar spread = Scalar(1) + line.position_factor;
       const Vec<Scalar, 2> innovation = plot.mean - line.position_m;
-      log_likelihood[member] = -factor.squared_norm(innovation) / (2 * spread) - log(spread);
+      likelihood[static_cast<std::size_t>(member)] = {Scalar(1) / spread,
+                                                      factor.squared_norm(innovation) / spread};
     });
     const auto count = static_cast<std::size_t>(weighing_.members());
-    if (reweigh<Scalar>({weight_.data(), count}, {log_likelihood.data(), count}) ==
-        kImpossible<Scalar>)
+    if (reweigh<kMaxModes, Scalar>({weight_.data(), count}, [&](std::size_t member) {
+          return likelihood[member];
+        }) == kImpossible<Scalar>)
       return;
     weight_ *= foretold;
     for (int member = 0; member < weighing_.members(); ++member)

@@ -18,8 +18,8 @@ struct StateBelief : Gaussian<static_cast<int>(Components.size()), Scalar> {
   static constexpr auto kComponents = Components;
   static constexpr int kStates = static_cast<int>(Components.size());
 
-  [[gnu::flatten]] StateBelief& operator=(const Gaussian<kStates, Scalar>& belief) noexcept {
-    Gaussian<kStates, Scalar>::operator=(belief);
+  [[gnu::always_inline]] StateBelief& operator=(const Gaussian<kStates, Scalar>& belief) noexcept {
+    copy<kStates, Scalar>(belief, *this);
     return *this;
   }
 };
@@ -67,19 +67,27 @@ decltype(auto) in_terms_of(const StateBelief<To, Scalar>& own, const Part& part)
 
 /// sum.mean += weight m.
 template <auto To, class Scalar, class Part>
-void add_mean(StateBelief<To, Scalar>& sum, Scalar weight, const Part& part,
-              const StateBelief<To, Scalar>& own) noexcept {
-  sum.mean += weight * in_terms_of(own, part).mean;
+[[gnu::always_inline]] inline void add_mean(StateBelief<To, Scalar>& sum, Scalar weight,
+                                            const Part& part,
+                                            const StateBelief<To, Scalar>& own) noexcept {
+  const auto& said = in_terms_of(own, part);
+  unroll<StateBelief<To, Scalar>::kStates>(
+      [&](int i) { sum.mean.data()[i] += weight * said.mean.data()[i]; });
 }
 
 /// sum.covariance += weight (P + d dᵀ), d = m - sum.mean.
 template <auto To, class Scalar, class Part>
-void add_spread(StateBelief<To, Scalar>& sum, Scalar weight, const Part& part,
-                const StateBelief<To, Scalar>& own) noexcept {
+[[gnu::always_inline]] inline void add_spread(StateBelief<To, Scalar>& sum, Scalar weight,
+                                              const Part& part,
+                                              const StateBelief<To, Scalar>& own) noexcept {
   const auto& said = in_terms_of(own, part);
-  const Vec<Scalar, StateBelief<To, Scalar>::kStates> d = said.mean - sum.mean;
-  for (int j = 0; j < own.kStates; ++j)
-    sum.covariance.col(j) += weight * (said.covariance.col(j) + d[j] * d);
+  constexpr int kStates = StateBelief<To, Scalar>::kStates;
+  Vec<Scalar, kStates> d;
+  unroll<kStates>([&](int i) { d[i] = said.mean.data()[i] - sum.mean.data()[i]; });
+  unroll_lower<kStates>([&](int i, int j) {
+    sum.covariance(i, j) += weight * (said.covariance(i, j) + d[i] * d[j]);
+  });
+  mirror_lower<Scalar, kStates>(sum.covariance);
 }
 
 /// The part of a belief that is about position and velocity, `[x, vx, y, vy]`.

@@ -62,51 +62,50 @@ class Imm {
   /// Begins every filter with the belief, over their own state or over `[x, vx, y, vy]`. Where one
   /// refuses it nothing changes.
   template <class BeliefType>
-  Status start(const BeliefType& belief) noexcept {
-    Status status = Status::kOk;
+  StatusOf<Scalar> start(const BeliefType& belief) noexcept {
+    StatusOf<Scalar> status = Status::kOk;
     bank_.for_each([&](int, auto& filter, auto& before) {
       before = filter.estimate();
-      if (status == Status::kOk) status = filter.start(belief);
+      status = first_failure(status, filter.start(belief));
     });
-    if (status == Status::kOk) {
-      started_ = true;
-      probability_ = initial_;
-    } else if (started_) {
-      bank_.for_each([](int, auto& filter, auto& before) { (void)filter.assign(before); });
-    }
+    if (started_ && !all(ok(status))) restore(!ok(status));
+    if (none(ok(status))) return status;
+    started_ = true;
+    for (int mode = 0; mode < bank_.size(); ++mode)
+      probability_[mode] = select(ok(status), initial_[mode], probability_[mode]);
     return status;
   }
 
   /// Mixing and prediction: equations (7)-(11) of paper A.
-  Status predict(Scalar dt_s) noexcept { return mix_and_move(dt_s); }
+  StatusOf<Scalar> predict(Scalar dt_s) noexcept { return mix_and_move(dt_s); }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
-  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return mix_and_move(dt_s, acceleration_mps2);
   }
 
   /// Filtering and mode probabilities: equations (12)-(14) of paper A. The innovation of the step
   /// is that of the moment-matched prediction, its log-likelihood that of the mixture.
   template <class Sensor>
-  Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
-                                             const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+  [[gnu::flatten]] Step<Sensor::kMeasurements, Scalar> update(
+      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
-    std::array<Step<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> steps;
-    Probability log_likelihood = Probability::Constant(bank_.size(), kImpossible<Scalar>);
+    const Gaussian<kM, Scalar> reading = sensor.observe(z);
+    std::array<Correction<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> each;
     bank_.for_each([&](int mode, auto& filter, auto&) {
-      auto& step = steps[static_cast<std::size_t>(mode)];
-      step = filter.update(sensor, z);
-      if (step) log_likelihood[mode] = step.log_likelihood;
+      each[static_cast<std::size_t>(mode)] = filter.correct(sensor, reading);
     });
 
     const auto count = static_cast<std::size_t>(bank_.size());
-    const std::span<const Step<kM, Scalar>> taken(steps.data(), count);
-    Step<kM, Scalar> step = mixed_step<kM, Scalar>(taken, {probability_.data(), count});
-    step.log_likelihood =
-        reweigh<Scalar>({probability_.data(), count}, {log_likelihood.data(), count});
-    if (step.log_likelihood == kImpossible<Scalar>)
-      return failed_step<kM, Scalar>(failure_of(taken));
+    const std::span<const Correction<kM, Scalar>> parts(each.data(), count);
+    const std::span<Scalar> weights(probability_.data(), count);
+    Step<kM, Scalar> step = mixed_step<kM, Scalar>(parts, weights);
+    step.log_likelihood = reweigh<kModeCapacity<kModels>, Scalar>(
+        weights, [&](std::size_t mode) { return parts[mode].likelihood(); });
+    const auto impossible = step.log_likelihood == Scalar(kImpossible<Scalar>);
+    if (any(impossible)) [[unlikely]]
+      step = failed_where(impossible, failure_of(parts), step);
     return step;
   }
 
@@ -115,8 +114,9 @@ class Imm {
   [[nodiscard]] Evidence<Scalar> evidence(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     Evidence<Scalar> evidence;
+    const Gaussian<Sensor::kMeasurements, Scalar> reading = sensor.observe(z);
     bank_.for_each([&](int mode, const auto& filter) {
-      evidence.add(probability_[mode], filter.innovation(sensor, z));
+      evidence.add(probability_[mode], filter.compare(sensor, reading));
     });
     return evidence;
   }
@@ -183,21 +183,33 @@ class Imm {
 
  protected:
   template <class... Known>
-  Status mix_and_move(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+  [[gnu::flatten]] StatusOf<Scalar> mix_and_move(Scalar dt_s,
+                                                 const Known&... acceleration_mps2) noexcept {
     if (!started_) return Status::kNotStarted;
-    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
+    StatusOf<Scalar> status = check_time_step(dt_s);
+    if (none(ok(status))) return status;
     const Probability expected = weigh_transitions(dt_s);
     bank_.for_each([](int, auto& filter, auto& before) { before = filter.estimate(); });
-    Status status = Status::kOk;
     bank_.for_each([&](int mode, auto& filter, auto& before) {
-      if (status == Status::kOk) status = filter.assign(mixed(mode, before));
-      if (status == Status::kOk) status = filter.predict(dt_s, acceleration_mps2...);
+      status = first_failure(status, filter.assign(mixed(mode, before)));
+      status = first_failure(status, filter.predict(dt_s, acceleration_mps2...));
     });
-    if (status == Status::kOk)
-      probability_ = expected;
-    else
-      bank_.for_each([](int, auto& filter, auto& before) { (void)filter.assign(before); });
+    for (int mode = 0; mode < bank_.size(); ++mode)
+      probability_[mode] = select(ok(status), expected[mode], probability_[mode]);
+    if (!all(ok(status))) [[unlikely]]
+      restore(!ok(status));
     return status;
+  }
+
+  /// Gives every filter back what it was before the step, in the lanes told.
+  [[gnu::cold, gnu::noinline]] void restore(const MaskOf<Scalar>& lanes) noexcept {
+    bank_.for_each([&](int, auto& filter, auto& before) {
+      if constexpr (kLanesOf<Scalar> == 1) {
+        if (lanes) (void)filter.assign(before);
+      } else {
+        filter.assign_in(lanes, before);
+      }
+    });
   }
 
   Bank bank_;
@@ -221,17 +233,38 @@ class Imm {
         if (!bank_.active(j)) resting += std::exchange(transition_(i, j), Scalar(0));
         if (j != i) leaving += transition_(i, j);
       }
-      if (resting == Scalar(0)) continue;
-      if (leaving == Scalar(0)) transition_(i, i) += resting;
+      if (none(resting > Scalar(0))) continue;
+      const auto leaves = leaving > Scalar(0);
+      transition_(i, i) += select(leaves, Scalar(0), resting);
+      const Scalar scale = (leaving + resting) / select(leaves, leaving, Scalar(1));
       for (int j = 0; j < bank_.size(); ++j)
-        if (j != i && leaving > Scalar(0)) transition_(i, j) *= (leaving + resting) / leaving;
+        if (j != i)
+          transition_(i, j) = select(leaves, transition_(i, j) * scale, transition_(i, j));
+    }
+  }
+
+  /// The chain's transition over a step, or over the step of each lane.
+  [[gnu::cold, gnu::noinline]] void read_transition(Scalar dt_s) noexcept {
+    if constexpr (kLanesOf<Scalar> == 1) {
+      transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
+    } else {
+      for (int k = 0; k < kLanesOf<Scalar>; ++k) {
+        if (k > 0 && dt_s[k] == dt_s[0]) continue;
+        const auto of_lane = chain_.transition(double(dt_s[k]));
+        for (int j = 0; j < bank_.size(); ++j)
+          for (int i = 0; i < bank_.size(); ++i)
+            if (k == 0)
+              transition_(i, j) = of_lane(i, j);
+            else
+              transition_(i, j).set(k, of_lane(i, j));
+      }
     }
   }
 
   /// Fills `weight_(i, j) = P(mode i before | mode j now)` and returns P(mode j now).
   Probability weigh_transitions(Scalar dt_s) noexcept {
-    if (dt_s != transition_step_s_) {
-      transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
+    if (any(dt_s != transition_step_s_)) [[unlikely]] {
+      read_transition(dt_s);
       if constexpr (kMayRest) leave_out_resting();
       transition_step_s_ = dt_s;
     }
@@ -241,10 +274,10 @@ class Imm {
         weight_(i, j) = transition_(i, j) * probability_[i];
         expected[j] += weight_(i, j);
       }
-      const bool reachable = expected[j] > Scalar(0);
-      const Scalar scale = Scalar(1) / (reachable ? expected[j] : Scalar(1));
+      const auto reachable = expected[j] > Scalar(0);
+      const Scalar scale = reciprocal(select(reachable, expected[j], Scalar(1)));
       for (int i = 0; i < bank_.size(); ++i)
-        weight_(i, j) = reachable ? weight_(i, j) * scale : Scalar(i == j);
+        weight_(i, j) = select(reachable, weight_(i, j) * scale, Scalar(i == j));
     }
     return expected;
   }

@@ -66,21 +66,28 @@ class LineEstimator {
   template <class Sensor>
   Step<2, Scalar> innovation(const Sensor& sensor,
                              const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
+    return compare(sensor, z).scored();
+  }
+
+  /// The same with its likelihood in two parts.
+  template <class Sensor>
+  Correction<2, Scalar> compare(const Sensor& sensor,
+                                const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     static_assert(PositionSensor<Sensor>,
                   "wakeline: lines through plots need a sensor that fixes a position: position(z) "
                   "-> Gaussian<2>; see cpp/docs/concepts.md");
-    Step<2, Scalar> step;
-    if (!started()) return step;
+    Correction<2, Scalar> correction;
+    if (!started()) return correction;
     const Gaussian<2, Scalar> plot = sensor.position(z);
     const Gaussian<2, Scalar> ahead = position();
-    step.innovation = plot.mean - ahead.mean;
-    step.innovation_covariance = ahead.covariance + plot.covariance;
-    const Cholesky<2, Scalar> factor(step.innovation_covariance);
+    correction.innovation = plot.mean - ahead.mean;
+    correction.innovation_covariance = ahead.covariance + plot.covariance;
+    const Cholesky<2, Scalar> factor(correction.innovation_covariance);
     if (factor.ok())
-      score(step, factor.template whiten<1>(step.innovation), factor);
+      rate(correction, factor.template whiten<1>(correction.innovation), factor);
     else
-      step.status = refusal<Scalar, 2>(step.innovation_covariance);
-    return step;
+      correction.status = refusal<Scalar, 2>(correction.innovation_covariance);
+    return correction;
   }
 
   /// What the estimate thinks of a reading, without taking it.
@@ -88,7 +95,7 @@ class LineEstimator {
   [[nodiscard]] Evidence<Scalar> evidence(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     Evidence<Scalar> evidence;
-    evidence.add(Scalar(1), innovation(sensor, z));
+    evidence.add(Scalar(1), compare(sensor, z));
     return evidence;
   }
 
@@ -103,8 +110,8 @@ class LineEstimator {
     if (!started()) return Scalar(0);
     Scalar owned = Scalar(0);
     for (std::size_t k = 0; k < readings.size(); ++k) {
-      const auto step = innovation(readings[k].sensor, readings[k].z);
-      if (step) share[k] = readings[k].weight * std::exp(step.log_likelihood);
+      const auto step = compare(readings[k].sensor, readings[k].z);
+      if (step) share[k] = readings[k].weight * step.likelihood().value();
       owned += share[k];
     }
     const Scalar total = none + owned;

@@ -30,14 +30,14 @@ struct Alternative {
 template <class Scalar = double>
 struct Evidence {
   Scalar likelihood = Scalar(0);
-  Scalar least_nis = std::numeric_limits<Scalar>::infinity();
+  Scalar least_nis = std::numeric_limits<RealOf<Scalar>>::infinity();
 
   /// Adds a part of the mixture, by its innovation.
   template <int M>
-  void add(Scalar weight, const Step<M, Scalar>& step) noexcept {
-    if (!step) return;
-    likelihood += weight * std::exp(step.log_likelihood);
-    least_nis = std::min(least_nis, step.nis);
+  void add(Scalar weight, const Correction<M, Scalar>& correction) noexcept {
+    const Likelihood<Scalar> of_part = correction.likelihood();
+    likelihood += weight * of_part.value();
+    least_nis = select(of_part.nis < least_nis, of_part.nis, least_nis);
   }
 };
 
@@ -46,70 +46,99 @@ inline constexpr std::size_t kMaxAlternatives = 16;
 
 /// The logarithm of zero.
 template <class Scalar>
-inline constexpr Scalar kImpossible = -std::numeric_limits<Scalar>::infinity();
+inline constexpr RealOf<Scalar> kImpossible = -std::numeric_limits<RealOf<Scalar>>::infinity();
 
-/// Throws `std::invalid_argument` unless these are `modes` probabilities that sum to 1.
+/// Throws `std::invalid_argument` unless these are `modes` probabilities that sum to 1, in every
+/// lane.
 template <class Probability>
 void require_distribution(const char* name, const Probability& probability, Eigen::Index modes) {
-  for (Eigen::Index k = 0; k < probability.size(); ++k)
-    require_probability(name, double(probability[k]));
-  require(probability.size() == modes && std::abs(double(probability.sum()) - 1.0) <= 1e-6, name,
-          "one number per mode that sum to 1", double(probability.sum()));
+  for (int of_lane = 0; of_lane < kLanesOf<typename Probability::Scalar>; ++of_lane) {
+    double sum = 0.0;
+    for (Eigen::Index k = 0; k < probability.size(); ++k) {
+      const double part = double(lane(probability[k], of_lane));
+      require_probability(name, part);
+      sum += part;
+    }
+    require(probability.size() == modes && std::abs(sum - 1.0) <= 1e-6, name,
+            "one number per mode that sum to 1", sum);
+  }
+}
+
+/// Its part of a total, times 1 / total; what is all of it is 1 to the last bit.
+template <class Scalar>
+Scalar part_of(Scalar part, Scalar total, Scalar scale) noexcept {
+  return select(part == total, Scalar(1), part * scale);
 }
 
 /// Bayes' rule for the parts of a mixture: weights become weight times likelihood over their sum.
 /// Returns the logarithm of that sum; `kImpossible`, and nothing changed, where no part is
-/// possible.
-template <class Scalar>
-Scalar reweigh(std::span<Scalar> weights, std::span<const Scalar> log_likelihood) noexcept {
-  Scalar best = kImpossible<Scalar>;
-  for (std::size_t k = 0; k < weights.size(); ++k)
-    if (weights[k] > Scalar(0) && log_likelihood[k] > best) best = log_likelihood[k];
-  if (best == kImpossible<Scalar>) return best;
+/// possible. `likelihood_of(k)` gives that of a part, of which there are at most `Capacity`.
+template <std::size_t Capacity, class Scalar, class LikelihoodOf>
+Scalar reweigh(std::span<Scalar> weights, const LikelihoodOf& likelihood_of) noexcept {
+  using std::exp, std::log;
+  std::array<Scalar, Capacity> likely;
+  Scalar nearest = std::numeric_limits<RealOf<Scalar>>::infinity();
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const Likelihood<Scalar> likelihood = likelihood_of(k);
+    likely[k] = weights[k] * likelihood.peak;
+    nearest = select(likely[k] > Scalar(0) && likelihood.nis < nearest, likelihood.nis, nearest);
+  }
   Scalar total = Scalar(0);
   for (std::size_t k = 0; k < weights.size(); ++k) {
     // Where the prior is zero the likelihood may be beyond exp: 0 times infinity is 0 here.
-    weights[k] =
-        select(weights[k] > Scalar(0), weights[k] * std::exp(log_likelihood[k] - best), Scalar(0));
-    total += weights[k];
+    const Scalar nearness = exp((nearest - likelihood_of(k).nis) / 2);
+    likely[k] = select(likely[k] > Scalar(0), likely[k] * nearness, Scalar(0));
+    total += likely[k];
   }
-  for (Scalar& weight : weights) weight /= total;
-  return best + std::log(total);
+  const auto possible = total > Scalar(0);
+  const Scalar scale = reciprocal(select(possible, total, Scalar(1)));
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    weights[k] = select(possible, part_of(likely[k], total, scale), weights[k]);
+  return select(possible, log(total) - nearest / 2, Scalar(kImpossible<Scalar>));
 }
 
 /// The step of a mixture: the innovation of the moment-matched prediction, over the parts that
 /// could be updated. Has no likelihood yet.
 template <int M, class Scalar>
-Step<M, Scalar> mixed_step(std::span<const Step<M, Scalar>> steps,
+Step<M, Scalar> mixed_step(std::span<const Correction<M, Scalar>> parts,
                            std::span<const Scalar> weights) noexcept {
+  const auto weight_of = [&](std::size_t k) {
+    return select(ok(parts[k].status), weights[k], Scalar(0));
+  };
   Scalar total = Scalar(0);
-  for (std::size_t k = 0; k < steps.size(); ++k)
-    if (steps[k]) total += weights[k];
+  for (std::size_t k = 0; k < parts.size(); ++k) total += weight_of(k);
+  const Scalar scale = reciprocal(total);
+  const auto add = [](Scalar& sum, Scalar weight, Scalar part) {
+    sum += select(weight > Scalar(0), weight * part, Scalar(0));
+  };
   Step<M, Scalar> mixed;
   mixed.status = Status::kOk;
   mixed.innovation_covariance.setZero();
-  const auto counts = [&](std::size_t k) { return steps[k] && weights[k] > Scalar(0); };
-  for (std::size_t k = 0; k < steps.size(); ++k)
-    if (counts(k)) mixed.innovation += weights[k] / total * steps[k].innovation;
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    if (!counts(k)) continue;
-    const Scalar weight = weights[k] / total;
-    const Vec<Scalar, M> d = steps[k].innovation - mixed.innovation;
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    for (int i = 0; i < M; ++i)
+      add(mixed.innovation[i], part_of(weight_of(k), total, scale), parts[k].innovation[i]);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const Scalar weight = part_of(weight_of(k), total, scale);
+    const Vec<Scalar, M> d = parts[k].innovation - mixed.innovation;
     for (int j = 0; j < M; ++j)
-      for (int i = 0; i < M; ++i)
-        mixed.innovation_covariance(i, j) +=
-            weight * (steps[k].innovation_covariance(i, j) + d[i] * d[j]);
+      for (int i = j; i < M; ++i)
+        add(mixed.innovation_covariance(i, j), weight,
+            parts[k].innovation_covariance(i, j) + d[i] * d[j]);
   }
+  for (int j = 1; j < M; ++j)
+    for (int i = 0; i < j; ++i)
+      mixed.innovation_covariance(i, j) = mixed.innovation_covariance(j, i);
   mixed.nis = Cholesky<M, Scalar>(mixed.innovation_covariance).squared_norm(mixed.innovation);
   return mixed;
 }
 
 /// Why no part of a mixture could be updated; one not started is at rest.
 template <int M, class Scalar>
-Status failure_of(std::span<const Step<M, Scalar>> steps) noexcept {
-  for (const auto& step : steps)
-    if (step.status != Status::kOk && step.status != Status::kNotStarted) return step.status;
-  return Status::kNotFinite;
+StatusOf<Scalar> failure_of(std::span<const Correction<M, Scalar>> parts) noexcept {
+  StatusOf<Scalar> failure = Status::kOk;
+  for (const auto& part : parts)
+    if (!(all(part.status == Status::kNotStarted))) failure = first_failure(failure, part.status);
+  return first_failure(failure, Status::kNotFinite);
 }
 
 /// Replaces the belief of a filter, `before`, by the mixture of what each reading makes of it, and
@@ -124,9 +153,9 @@ Scalar absorb(Filter& filter, const BeliefType& before,
   const std::size_t count = std::min(readings.size(), kMaxAlternatives);
   Scalar total = none;
   for (std::size_t k = 0; k < count; ++k) {
-    const auto step = filter.update(readings[k].sensor, readings[k].z);
-    if (step) {
-      weight[k] = readings[k].weight * std::exp(step.log_likelihood);
+    const auto& [sensor, z, before_likelihood] = readings[k];
+    if (const auto correction = filter.correct(sensor, sensor.observe(z))) {
+      weight[k] = before_likelihood * correction.likelihood().value();
       after[k] = filter.estimate();
       (void)filter.assign(before);
     }

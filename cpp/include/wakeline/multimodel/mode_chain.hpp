@@ -45,6 +45,15 @@ class ModeChain {
     require_stochastic(matrix_);
   }
 
+  /// The same chain, its number of modes known otherwise. Throws unless there are K of them.
+  template <int Other>
+  requires(Other != K) explicit ModeChain(const ModeChain<Other>& chain)
+      : matrix_(chain.matrix_), continuous_(chain.continuous_) {
+    if (K != kRuntimeModes && chain.modes() != K)
+      throw std::invalid_argument("a chain of " + std::to_string(K) + " modes was given one of " +
+                                  std::to_string(chain.modes()));
+  }
+
   /// The chain whose transition over `period_s` is the matrix. Throws also when no continuous-time
   /// chain has it.
   ModeChain(const Matrix& over_period, double period_s) : ModeChain(over_period) {
@@ -113,6 +122,9 @@ class ModeChain {
   }
 
  private:
+  template <int>
+  friend class ModeChain;
+
   struct Generator {
     Matrix matrix;
   };

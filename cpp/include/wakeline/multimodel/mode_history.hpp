@@ -129,23 +129,22 @@ class ModeHistory {
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
-    std::array<Step<kM, Scalar>, kCapacity> steps;
+    const Gaussian<kM, Scalar> reading = sensor.observe(z);
+    std::array<Correction<kM, Scalar>, kCapacity> corrections;
     std::array<Scalar, kCapacity> weights{};
-    std::array<Scalar, kCapacity> log_likelihood{};
     Hypotheses& next = spare();
     for (std::size_t i = 0; i < size(); ++i) {
       next[i] = present()[i];
       Filter& filter = filter_of(next[i]);
-      steps[i] = filter.update(sensor, z);
-      if (steps[i]) next[i].belief = filter.estimate();
+      corrections[i] = filter.correct(sensor, reading);
+      if (corrections[i]) next[i].belief = filter.estimate();
       weights[i] = next[i].probability;
-      log_likelihood[i] = steps[i] ? steps[i].log_likelihood : kImpossible<Scalar>;
     }
-    const std::span<const Step<kM, Scalar>> taken(steps.data(), size());
+    const std::span<const Correction<kM, Scalar>> taken(corrections.data(), size());
     Step<kM, Scalar> step =
         mixed_step<kM, Scalar>(taken, std::span<const Scalar>(weights.data(), size()));
-    step.log_likelihood =
-        reweigh<Scalar>({weights.data(), size()}, {log_likelihood.data(), size()});
+    step.log_likelihood = reweigh<kCapacity, Scalar>(
+        {weights.data(), size()}, [&](std::size_t i) { return taken[i].likelihood(); });
     if (step.log_likelihood == kImpossible<Scalar>)
       return failed_step<kM, Scalar>(failure_of(taken));
     for (std::size_t i = 0; i < size(); ++i) next[i].probability = weights[i];
@@ -159,12 +158,13 @@ class ModeHistory {
   [[nodiscard]] Evidence<Scalar> evidence(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     Evidence<Scalar> evidence;
+    const Gaussian<Sensor::kMeasurements, Scalar> reading = sensor.observe(z);
     for (int k = 0; k < bank_.size(); ++k) {
       Filter filter = bank_.filter(k);
       for (const Hypothesis& hypothesis : hypotheses()) {
         if (hypothesis.mode() != k) continue;
         (void)filter.assign(hypothesis.belief);
-        evidence.add(hypothesis.probability, filter.innovation(sensor, z));
+        evidence.add(hypothesis.probability, filter.compare(sensor, reading));
       }
     }
     return evidence;

@@ -1,6 +1,0 @@
-// SPDX-FileCopyrightText: 2026 Wakeline developers
-// SPDX-License-Identifier: MIT
-#include "any_filter_update.hpp"
-
-template wakeline::Step<2> wakeline::python::AnyFilter::update(const ConvertedRangeBearing&,
-                                                               const Vec<double, 2>&) noexcept;

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include <optional>
+
+#include "lanes/lanes.hpp"
+#include "run.hpp"
+
+namespace wakeline::python {
+namespace {
+
+/// Names of the modules of lanes, the widest first, that this processor can run.
+std::vector<const char*> module_names() {
+  std::vector<const char*> names;
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    names.push_back("_lanes_avx512");
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    names.push_back("_lanes_avx2");
+#endif
+  names.push_back("_lanes");
+  return names;
+}
+
+const LaneKernels* load() {
+  for (const char* name : module_names()) {
+    try {
+      const py::object module = py::module_::import((std::string("wakeline.") + name).c_str());
+      return module.attr("kernels").cast<py::capsule>().get_pointer<const LaneKernels>();
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_ImportError)) throw;
+    }
+  }
+  return nullptr;
+}
+
+const LaneKernels* kernels = nullptr;
+
+std::optional<LaneModel> lane_model(const AnyFilter& filter) {
+  return std::visit(
+      []<class Filter>(const Filter& one) -> std::optional<LaneModel> {
+        LaneModel model;
+        if constexpr (std::same_as<typename Filter::Motion, ConstantVelocity>)
+          model.motion = CoordinatedTurn{.turn_rate_rad_s = 0.0, .noise = one.motion().noise};
+        else
+          model.motion = one.motion();
+        if constexpr (requires { one.root(); }) return std::nullopt;  // square roots have branches
+        if constexpr (requires { one.unscented(); }) {
+          model.unscented = true;
+          model.transform = one.unscented();
+        }
+        return model;
+      },
+      filter.variant());
+}
+
+/// False where a filter, the sensor or the runs are none for lanes.
+bool describe(const std::vector<AnyFilter>& filters, const AnySensor& sensor, const RunInput& in,
+              const std::vector<AnyBelief>& starts, LaneJob& job) {
+  if (kernels == nullptr || in.runs < 2) return false;
+  for (const AnyFilter& filter : filters) {
+    const std::optional<LaneModel> model = lane_model(filter);
+    if (!model) return false;
+    job.models.push_back(*model);
+  }
+  const bool known = std::visit(
+      [&]<class Sensor>(const Sensor& one) {
+        if constexpr (std::is_constructible_v<decltype(job.sensor), Sensor>) {
+          job.sensor = one;
+          return true;
+        }
+        return false;
+      },
+      sensor);
+  for (const AnyBelief& start : starts) {
+    LaneStart& lane = job.starts.emplace_back();
+    lane.states = start.states();
+    for (int i = 0; i < lane.states; ++i) {
+      lane.mean[i] = start.mean[i];
+      for (int j = 0; j < lane.states; ++j)
+        lane.covariance[j * lane.states + i] = start.covariance(i, j);
+    }
+  }
+  return known;
+}
+
+bool run(const LaneJob& job, const ModeChain<kRuntimeModes>* chain, const RunInput& in,
+         const RunOutput& out) {
+  const ThreadShare threads(in.runs * in.scans / static_cast<std::size_t>(kernels->lanes));
+  return kernels->run(job, chain, in, out, threads.count());
+}
+
+}  // namespace
+
+void define_batch(py::module_& parent) {
+  kernels = load();
+  auto m = parent.def_submodule("batch", "Many runs at once: lanes and threads.");
+  m.def(
+      "lanes", [] { return kernels == nullptr ? 1 : kernels->lanes; },
+      "Runs that go side by side in one register of this processor.");
+  m.def("threads", &thread_limit,
+        "Threads that all calls at one time use together: the environment's WAKELINE_THREADS or "
+        "OMP_NUM_THREADS, else the processors that the process may run on, unless set.");
+  m.def(
+      "set_threads",
+      [](int threads) {
+        if (threads < 1)
+          throw py::value_error("threads must be at least 1, got " + std::to_string(threads));
+        set_thread_limit(threads);
+      },
+      py::arg("threads"),
+      "Sets how many threads all calls at one time use together. Results do not depend on it.");
+}
+
+bool run_lanes(const AnyFilter& filter, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  LaneJob job;
+  return describe({filter}, sensor, in, starts, job) && run(job, nullptr, in, out);
+}
+
+bool run_lanes(const AnyImm& imm, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  LaneJob job;
+  job.mixture = true;
+  std::vector<AnyFilter> filters;
+  for (int k = 0; k < imm.bank().size(); ++k) {
+    filters.push_back(imm.bank().filter(static_cast<std::size_t>(k)));
+    job.initial_mode_probability.push_back(imm.initial_mode_probability()[k]);
+  }
+  return describe(filters, sensor, in, starts, job) && run(job, &imm.chain(), in, out);
+}
+
+}  // namespace wakeline::python

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "lanes.hpp"
+
+#include <pybind11/pybind11.h>
+
+#include "wakeline/core/pack_math.hpp"
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/filter/ukf.hpp"
+#include "wakeline/multimodel/imm.hpp"
+#include "wakeline/multimodel/uniform_bank.hpp"
+
+namespace wakeline::python {
+namespace {
+
+using Lanes = Pack<double, kNativeLanes<double>>;
+
+/// A sensor that fixes a position, of whatever kind.
+struct AnyDirect {
+  static constexpr int kMeasurements = 2;
+  static constexpr auto kReads = kPosition;
+  static constexpr bool kLinear = true;
+  static constexpr bool kDirect = true;
+
+  std::variant<ConvertedRangeBearing, Position> sensor;
+  OwnShip own = {};
+
+  explicit AnyDirect(const Position& position) : sensor(position) {}
+  explicit AnyDirect(const ConvertedRangeBearing& converted)
+      : sensor(converted), own(converted.own) {}
+
+  template <class Scalar>
+  Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
+    if (const auto* converted = std::get_if<ConvertedRangeBearing>(&sensor)) {
+      ConvertedRangeBearing carried = *converted;
+      carried.own = own;
+      return carried.observe(z);
+    }
+    return std::get_if<Position>(&sensor)->observe(z);
+  }
+  template <class Scalar>
+  Gaussian<2, Scalar> position(const Vec<Scalar, 2>& z) const noexcept {
+    return observe(z);
+  }
+  template <class Scalar>
+  Vec<Scalar, 2> measure(const Vec<Scalar, 2>& position) const noexcept {
+    return position;
+  }
+  template <class Scalar>
+  Mat<Scalar, 2, 2> jacobian(const Vec<Scalar, 2>&) const noexcept {
+    return Mat<Scalar, 2, 2>::Identity();
+  }
+  template <class Scalar>
+  Vec<Scalar, 2> residual(const Vec<Scalar, 2>& a, const Vec<Scalar, 2>& b) const noexcept {
+    return a - b;
+  }
+};
+
+/// The starts of the runs `first`, `first + 1`, ...
+template <int N>
+Gaussian<N, Lanes> gather(const std::vector<LaneStart>& starts, std::size_t first) noexcept {
+  const auto of_lane = [&](int lane) -> const LaneStart& {
+    return starts[std::min(first + static_cast<std::size_t>(lane), starts.size() - 1)];
+  };
+  Gaussian<N, Lanes> belief;
+  for (int k = 0; k < N; ++k)
+    belief.mean[k] = Lanes::of([&](int lane) { return of_lane(lane).mean[k]; });
+  for (int k = 0; k < N * N; ++k)
+    belief.covariance.data()[k] = Lanes::of([&](int lane) { return of_lane(lane).covariance[k]; });
+  return belief;
+}
+
+template <int N, class Estimator>
+bool run_from(const Estimator& prototype, const LaneJob& job, const RunInput& in,
+              const RunOutput& out, int threads) {
+  for (const LaneStart& start : job.starts)
+    if (start.states != job.starts.front().states) return false;
+  const auto begin = [&]<int States>(Index<States>) {
+    return [&](std::size_t first) {
+      Estimator estimator = prototype;
+      (void)estimator.start(gather<States>(job.starts, first));
+      return estimator;
+    };
+  };
+  const auto run = [&](const auto& begin_at) {
+    if (const auto* polar = std::get_if<RangeBearing>(&job.sensor))
+      run_batch(begin_at, *polar, in, out, Threads{threads});
+    else if (const auto* converted = std::get_if<ConvertedRangeBearing>(&job.sensor))
+      run_batch(begin_at, AnyDirect(*converted), in, out, Threads{threads});
+    else
+      run_batch(begin_at, AnyDirect(std::get<Position>(job.sensor)), in, out, Threads{threads});
+  };
+  if (job.starts.front().states == N)
+    run(begin(Index<N>{}));
+  else if (job.starts.front().states == 4)
+    run(begin(Index<4>{}));
+  else
+    return false;
+  return true;
+}
+
+using Turn4 = Ekf<CoordinatedTurn, Lanes>;
+
+Turn4 turn_filter(const LaneJob& job, std::size_t k) {
+  return Turn4(std::get<CoordinatedTurn>(job.models[k].motion));
+}
+
+template <int K, class Bank>
+bool run_imm(const Bank& bank, const LaneJob& job, const ModeChain<kRuntimeModes>& chain,
+             const RunInput& in, const RunOutput& out, int threads) {
+  Imm imm{ModeChain<K>(chain), bank};
+  typename decltype(imm)::Probability initial = imm.initial_mode_probability();
+  for (std::size_t k = 0; k < job.models.size(); ++k)
+    initial[static_cast<Eigen::Index>(k)] = job.initial_mode_probability[k];
+  imm.set_initial_mode_probability(initial);
+  return run_from<4>(imm, job, in, out, threads);
+}
+
+/// A number of models that is known, each step without a loop over them.
+template <std::size_t... Models>
+bool run_few(std::index_sequence<Models...>, const LaneJob& job,
+             const ModeChain<kRuntimeModes>& chain, const RunInput& in, const RunOutput& out,
+             int threads) {
+  const FilterBank bank(turn_filter(job, Models)...);
+  return run_imm<sizeof...(Models)>(bank, job, chain, in, out, threads);
+}
+
+bool run_many(const LaneJob& job, const ModeChain<kRuntimeModes>& chain, const RunInput& in,
+              const RunOutput& out, int threads) {
+  std::vector<Turn4> filters;
+  for (std::size_t k = 0; k < job.models.size(); ++k) filters.push_back(turn_filter(job, k));
+  const UniformBank<Turn4> bank{std::span<const Turn4>(filters)};
+  return run_imm<kRuntimeModes>(bank, job, chain, in, out, threads);
+}
+
+bool run_mixture(const LaneJob& job, const ModeChain<kRuntimeModes>& chain, const RunInput& in,
+                 const RunOutput& out, int threads) {
+  for (const LaneModel& model : job.models)
+    if (model.unscented || !std::holds_alternative<CoordinatedTurn>(model.motion)) return false;
+  switch (job.models.size()) {
+    case 2:
+      return run_few(std::make_index_sequence<2>{}, job, chain, in, out, threads);
+    case 3:
+      return run_few(std::make_index_sequence<3>{}, job, chain, in, out, threads);
+    default:
+      return run_many(job, chain, in, out, threads);
+  }
+}
+
+bool run(const LaneJob& job, const ModeChain<kRuntimeModes>* chain, const RunInput& in,
+         const RunOutput& out, int threads) {
+  if (job.mixture) return run_mixture(job, *chain, in, out, threads);
+  const LaneModel& model = job.models.front();
+  return std::visit(
+      [&]<class Motion>(const Motion& motion) {
+        constexpr int kStates = kStatesOf<Motion>;
+        if (model.unscented)
+          return run_from<kStates>(Ukf<Motion, Lanes>(motion, model.transform), job, in, out,
+                                   threads);
+        return run_from<kStates>(Ekf<Motion, Lanes>(motion), job, in, out, threads);
+      },
+      model.motion);
+}
+
+}  // namespace
+}  // namespace wakeline::python
+
+PYBIND11_MODULE(WAKELINE_LANES_MODULE, m) {
+  static constexpr wakeline::python::LaneKernels kKernels{&wakeline::python::run,
+                                                          wakeline::kNativeLanes<double>};
+  m.doc() = "Runs as lanes, for one instruction set.";
+  m.attr("kernels") = pybind11::capsule(static_cast<const void*>(&kKernels), "wakeline.lanes");
+}

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Runs as lanes: what the engine hands to a module that is compiled for one instruction set. Such a
+// module shares no inline function with the engine, so that nothing meant for one processor runs on
+// another.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "wakeline/batch/run.hpp"
+#include "wakeline/filter/unscented.hpp"
+#include "wakeline/measurement/position.hpp"
+#include "wakeline/measurement/range_bearing.hpp"
+#include "wakeline/motion/constant_acceleration.hpp"
+#include "wakeline/motion/coordinated_turn.hpp"
+#include "wakeline/motion/singer.hpp"
+#include "wakeline/motion/wandering_course.hpp"
+#include "wakeline/multimodel/mode_chain.hpp"
+
+namespace wakeline::python {
+
+/// One filter. Constant velocity is a turn at rate zero.
+struct LaneModel {
+  std::variant<CoordinatedTurn, CoordinatedTurnRate, ConstantAcceleration, Singer, WanderingCourse>
+      motion;
+  bool unscented = false;
+  Unscented transform = {};
+};
+
+/// A belief of up to six states, column by column.
+struct LaneStart {
+  int states = 4;
+  double mean[6] = {};
+  double covariance[36] = {};
+};
+
+/// An estimator, its sensor and where it starts.
+struct LaneJob {
+  std::vector<LaneModel> models;
+  bool mixture = false;  ///< an Imm over the models, else the one filter
+  std::vector<double> initial_mode_probability;
+  std::variant<RangeBearing, ConvertedRangeBearing, Position> sensor;
+  std::vector<LaneStart> starts;  ///< one for all runs, or one each
+};
+
+/// Runs the job in lanes over some threads. False, and nothing done, when there is no kernel for
+/// it.
+struct LaneKernels {
+  bool (*run)(const LaneJob& job, const ModeChain<kRuntimeModes>* chain, const RunInput& in,
+              const RunOutput& out, int threads);
+  int lanes;
+};
+
+}  // namespace wakeline::python

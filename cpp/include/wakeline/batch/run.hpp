@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "wakeline/batch/threads.hpp"
+#include "wakeline/core/pack_math.hpp"
+#include "wakeline/core/status.hpp"
+#include "wakeline/gating/radius_gate.hpp"
+
+namespace wakeline {
+
+/// R recordings of T scans with M numbers each, as plain memory in row-major order.
+struct RunInput {
+  std::size_t runs = 0;
+  std::size_t scans = 0;
+  const double* z = nullptr;                  ///< (R, T, M); not a number: a missed scan
+  const double* dt_s = nullptr;               ///< (T), before each scan
+  const double* own_m = nullptr;              ///< (T, 2) north and east of own ship, or null
+  const double* acceleration_mps2 = nullptr;  ///< (T, 2) known acceleration, or null
+  const RadiusGate* gate = nullptr;           ///< a reading outside is missed; or null
+};
+
+/// Where the results of N states and K models go.
+struct RunOutput {
+  std::size_t states = 0;
+  std::size_t models = 0;              ///< 0 of a single filter
+  double* mean = nullptr;              ///< (R, T, N)
+  double* covariance = nullptr;        ///< (R, T, N, N)
+  double* mode_probability = nullptr;  ///< (R, T, K)
+  double* turn_rate_rad_s = nullptr;   ///< (R, T, K), where models change theirs
+  double* innovation = nullptr;        ///< (R, T, M)
+  double* nis = nullptr;               ///< (R, T)
+  double* log_likelihood = nullptr;    ///< (R, T)
+  std::uint8_t* status = nullptr;      ///< (R, T)
+};
+
+/// True for an estimator whose models change their turn rates.
+template <class Estimator>
+inline constexpr bool kHasTurnRates = requires(const Estimator& estimator) {
+  estimator.turn_rates_rad_s();
+};
+
+/// The sensor as own ship carries it at a scan.
+template <class Sensor>
+Sensor seen_from(const Sensor& sensor, const double* own_m) noexcept {
+  Sensor moved = sensor;
+  if constexpr (requires { moved.own; }) {
+    if (own_m != nullptr) {
+      moved.own.north_m = own_m[0];
+      moved.own.east_m = own_m[1];
+    }
+  }
+  return moved;
+}
+
+/// Some runs, side by side in the lanes of a `Scalar`: run `first`, `first + 1`, ... Where there
+/// are fewer runs than lanes, the last one is run more than once.
+template <class Scalar>
+class RunLanes {
+ public:
+  static constexpr int kLanes = kLanesOf<Scalar>;
+
+  RunLanes(const RunInput& in, std::size_t first) noexcept
+      : first_(first), scans_(in.scans), used_(std::min<std::size_t>(kLanes, in.runs - first)) {}
+
+  /// Number k of `size` that each run has at a scan.
+  [[nodiscard]] Scalar load(const double* from, std::size_t size, std::size_t scan,
+                            std::size_t k) const noexcept {
+    const auto of_lane = [&](int lane) {
+      const std::size_t run =
+          first_ + std::min<std::size_t>(static_cast<std::size_t>(lane), used_ - 1);
+      return RealOf<Scalar>(from[(run * scans_ + scan) * size + k]);
+    };
+    if constexpr (kLanes == 1)
+      return of_lane(0);
+    else
+      return Scalar::of(of_lane);
+  }
+
+  void store(std::uint8_t* to, std::size_t scan, const StatusOf<Scalar>& status) const noexcept {
+    for (std::size_t lane_of = 0; lane_of < used_; ++lane_of)
+      to[(first_ + lane_of) * scans_ + scan] =
+          static_cast<std::uint8_t>(lane(status, static_cast<int>(lane_of)));
+  }
+
+  /// `size` numbers of each of some scans in a row, which lie `stride` apart in `from`: for each
+  /// run one block of memory, which is what memory is fast at.
+  void store(double* to, std::size_t size, std::size_t first_scan, std::size_t count,
+             const RealOf<Scalar>* from, std::size_t stride) const noexcept {
+    for (std::size_t lane_of = 0; lane_of < used_; ++lane_of) {
+      double* place = to + ((first_ + lane_of) * scans_ + first_scan) * size;
+      for (std::size_t scan = 0; scan < count; ++scan)
+        for (std::size_t k = 0; k < size; ++k)
+          *place++ = double(from[(scan * stride + k) * kLanes + lane_of]);
+    }
+  }
+
+ private:
+  std::size_t first_;
+  std::size_t scans_;
+  std::size_t used_;
+};
+
+/// Collects what some runs side by side give, a few scans at a time.
+template <class Scalar>
+class RunWriter {
+ public:
+  RunWriter(const RunLanes<Scalar>& lanes, const RunOutput& out, std::size_t measurements,
+            bool turn_rates) noexcept
+      : lanes_(lanes) {
+    add(out.mean, out.states);
+    add(out.covariance, out.states * out.states);
+    add(out.mode_probability, out.models);
+    add(out.turn_rate_rad_s, turn_rates ? out.models : 0);
+    add(out.innovation, measurements);
+    add(out.nis, 1);
+    add(out.log_likelihood, 1);
+  }
+
+  /// The next number of the scan, in the order of `RunOutput`.
+  void operator<<(const Scalar& number) noexcept {
+    store(number, numbers_ + kLanesOf<Scalar> * at_++);
+  }
+
+  /// To be called after each scan.
+  void next() noexcept {
+    if (++scans_ == kScans) flush();
+  }
+
+  void flush() noexcept {
+    std::size_t offset = 0;
+    for (std::size_t c = 0; c < columns_; ++c) {
+      lanes_.store(column_[c].to, column_[c].size, first_, scans_,
+                   numbers_ + kLanesOf<Scalar> * offset, row_);
+      offset += column_[c].size;
+    }
+    first_ += scans_;
+    scans_ = at_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kScans = kLanesOf<Scalar> == 1 ? 1 : 8;
+  static constexpr std::size_t kMostNumbers = 6 + 36 + 2 * 16 + 3 + 2;
+
+  void add(double* to, std::size_t size) noexcept {
+    if (size > 0) column_[columns_++] = {to, size};
+    row_ += size;
+  }
+
+  struct Column {
+    double* to;
+    std::size_t size;
+  };
+  RunLanes<Scalar> lanes_;
+  Column column_[7];
+  std::size_t columns_ = 0;
+  std::size_t row_ = 0;    ///< numbers of a scan
+  std::size_t first_ = 0;  ///< scan of the first that is held
+  std::size_t scans_ = 0;  ///< that are held
+  std::size_t at_ = 0;
+  alignas(64) RealOf<Scalar> numbers_[kScans * kMostNumbers * kLanesOf<Scalar>];
+};
+
+/// North and east of an estimate in any layout of 4, 5 or 6 states.
+template <class Belief>
+auto position_of(const Belief& belief) noexcept {
+  using Scalar = typename std::decay_t<decltype(belief.mean)>::Scalar;
+  return Vec<Scalar, 2>(belief.mean[0], belief.mean[belief.mean.size() == 6 ? 3 : 2]);
+}
+
+/// Runs the recordings `first`, `first + 1`, ... through an estimator that has been started, one in
+/// each lane of its scalar. A step that fails is told in its status and changes nothing; no lane
+/// influences another.
+template <class Estimator, class Sensor>
+void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput& in,
+                      std::size_t first, const RunOutput& out) noexcept {
+  using Scalar = typename Estimator::Scalar;
+  using Mask = MaskOf<Scalar>;
+  constexpr int kM = Sensor::kMeasurements;
+  const Scalar kNaN = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
+  const RunLanes<Scalar> lanes(in, first);
+  RunWriter<Scalar> writer(lanes, out, kM, kHasTurnRates<Estimator>);
+  for (std::size_t scan = 0; scan < in.scans; ++scan) {
+    const Scalar dt_s = in.dt_s[scan];
+    StatusOf<Scalar> status = Status::kOk;
+    if (in.acceleration_mps2 != nullptr) {
+      const double* push = in.acceleration_mps2 + 2 * scan;
+      status = estimator.predict(dt_s, Vec<Scalar, 2>(push[0], push[1]));
+    } else {
+      status = estimator.predict(dt_s);
+    }
+
+    Vec<Scalar, kM> z;
+    Mask missed = true;
+    for (int m = 0; m < kM; ++m) {
+      z[m] = lanes.load(in.z, kM, scan, static_cast<std::size_t>(m));
+      missed = missed && z[m] != z[m];
+    }
+    const Sensor seen = seen_from(sensor, in.own_m == nullptr ? nullptr : in.own_m + 2 * scan);
+    if (in.gate != nullptr)
+      missed = missed || !in.gate->template contains<Scalar>(position_of(estimator.estimate()),
+                                                             seen.position(z).mean);
+    const Mask predicted = ok(status);
+    Step<kM, Scalar> step = failed_step<kM, Scalar>(Status::kMissed);
+    step.innovation.setConstant(kNaN);
+    step.log_likelihood = kNaN;
+    if (any(predicted && !missed)) {
+      // A reading that is not a number changes nothing in its lane.
+      for (int m = 0; m < kM; ++m) z[m] = select(predicted && !missed, z[m], kNaN);
+      const auto taken = estimator.update(seen, z);
+      const Mask done = ok(taken.status) && predicted && !missed;
+      // Some estimators take no more than the position out of a reading.
+      for (int m = 0; m < taken.innovation.size(); ++m)
+        step.innovation[m] = select(done, taken.innovation[m], kNaN);
+      step.nis = select(done, taken.nis, kNaN);
+      step.log_likelihood = select(done, taken.log_likelihood, kNaN);
+      step.status = status_where(missed, StatusOf<Scalar>(Status::kMissed), taken.status);
+    }
+    status = first_failure(status, step.status);
+
+    const auto belief = estimator.estimate();
+    const auto states = static_cast<Eigen::Index>(out.states);
+    for (Eigen::Index i = 0; i < states; ++i) writer << belief.mean[i];
+    for (Eigen::Index i = 0; i < states; ++i)
+      for (Eigen::Index j = 0; j < states; ++j) writer << belief.covariance(i, j);
+    const auto models = static_cast<Eigen::Index>(out.models);
+    if constexpr (requires { estimator.mode_probability(); })
+      for (Eigen::Index k = 0; k < models; ++k) writer << estimator.mode_probability()[k];
+    if constexpr (kHasTurnRates<Estimator>)
+      for (Eigen::Index k = 0; k < models; ++k) writer << estimator.turn_rates_rad_s()[k];
+    for (int m = 0; m < kM; ++m) writer << step.innovation[m];
+    writer << step.nis;
+    writer << step.log_likelihood;
+    writer.next();
+    lanes.store(out.status, scan, status);
+  }
+  writer.flush();
+}
+
+/// The same with every call inside compiled into one function, which is what lanes are fast in.
+template <class Estimator, class Sensor>
+[[gnu::flatten, gnu::noinline]] void run_lanes_side_by_side(Estimator& estimator,
+                                                            const Sensor& sensor,
+                                                            const RunInput& in, std::size_t first,
+                                                            const RunOutput& out) noexcept {
+  run_side_by_side(estimator, sensor, in, first, out);
+}
+
+/// All runs: `begin(first)` gives an estimator that has been started with the beliefs of the runs
+/// `first`, `first + 1`, ..., as many as its scalar has lanes. Results do not depend on the number
+/// of threads.
+template <class Begin, class Sensor, class Pool = Threads>
+void run_batch(const Begin& begin, const Sensor& sensor, const RunInput& in, const RunOutput& out,
+               const Pool& pool = {}) {
+  using Estimator = decltype(begin(std::size_t(0)));
+  constexpr std::size_t kLanes = kLanesOf<typename Estimator::Scalar>;
+  pool((in.runs + kLanes - 1) / kLanes, [&](std::size_t group) noexcept {
+    Estimator estimator = begin(group * kLanes);
+    if constexpr (kLanes > 1)
+      run_lanes_side_by_side(estimator, sensor, in, group * kLanes, out);
+    else
+      run_side_by_side(estimator, sensor, in, group * kLanes, out);
+  });
+}
+
+}  // namespace wakeline

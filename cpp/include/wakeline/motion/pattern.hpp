@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "wakeline/motion/concept.hpp"
+
+namespace wakeline {
+
+/// What the elements of an N x N transition matrix are whatever the step: '0', '1', or 'x' for any
+/// number. Written row by row, as in `Pattern<2>{"1x 01"}`.
+template <int N>
+struct Pattern {
+  char element[N][N] = {};
+
+  constexpr Pattern(const char (&rows)[N * (N + 1)]) {
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) element[i][j] = rows[i * (N + 1) + j];
+  }
+
+  /// Nothing is known.
+  constexpr Pattern() {
+    for (auto& row : element)
+      for (char& any : row) any = 'x';
+  }
+};
+
+/// The pattern that a motion model tells of its matrix or Jacobian, `kPattern`.
+template <class Motion>
+inline constexpr Pattern<kStatesOf<Motion>> kPatternOf = {};
+template <class Motion>
+requires requires { Motion::kPattern; }
+inline constexpr Pattern<kStatesOf<Motion>> kPatternOf<Motion> = Motion::kPattern;
+
+/// Products with a transition matrix, without the terms that its pattern says are zero.
+template <auto kPattern, class Scalar, int N>
+struct Patterned {
+  const Mat<Scalar, N, N>& f;
+
+  /// F v.
+  [[gnu::always_inline]] Vec<Scalar, N> operator*(const Vec<Scalar, N>& v) const noexcept {
+    Vec<Scalar, N> product;
+    unroll<N>([&](auto i) { product[i.value] = row_times<i.value>(v); });
+    return product;
+  }
+
+  /// (F P)ᵀ of a symmetric P: what `congruence` takes.
+  [[gnu::always_inline]] Mat<Scalar, N, N> transposed_product(
+      const Mat<Scalar, N, N>& p) const noexcept {
+    Mat<Scalar, N, N> transposed;
+    unroll<N * N>([&](auto k) {
+      transposed.data()[k.value] = row_times<k.value / N>(&p.data()[N * (k.value % N)]);
+    });
+    return transposed;
+  }
+
+  /// Element (I, J) of F P Fᵀ, given (F P)ᵀ.
+  template <int I, int J>
+  [[gnu::always_inline]] Scalar congruence(const Mat<Scalar, N, N>& transposed) const noexcept {
+    return row_times<J>(&transposed.data()[N * I]);
+  }
+
+ private:
+  static constexpr int first_in_row(int row) noexcept {
+    for (int k = 0; k < N; ++k)
+      if (kPattern.element[row][k] != '0') return k;
+    return 0;
+  }
+
+  template <int I, int K, class Vector>
+  [[gnu::always_inline]] Scalar term(const Vector& v) const noexcept {
+    if constexpr (kPattern.element[I][K] == '1')
+      return v[K];
+    else
+      return f(I, K) * v[K];
+  }
+
+  /// Row I of F times v.
+  template <int I, class Vector>
+  [[gnu::always_inline]] Scalar row_times(const Vector& v) const noexcept {
+    constexpr int kFirst = first_in_row(I);
+    Scalar sum = term<I, kFirst>(v);
+    unroll<N>([&](auto k) {
+      if constexpr (k.value > kFirst && kPattern.element[I][k.value] != '0')
+        sum += term<I, k.value>(v);
+    });
+    return sum;
+  }
+};
+
+}  // namespace wakeline

@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Runs in lanes are the runs one by one.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "wakeline/batch/run.hpp"
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/filter/ukf.hpp"
+#include "wakeline/measurement/range_bearing.hpp"
+#include "wakeline/motion/coordinated_turn.hpp"
+#include "wakeline/motion/singer.hpp"
+#include "wakeline/multimodel/imm.hpp"
+
+namespace wakeline {
+namespace {
+
+using Lanes = Pack<double, kNativeLanes<double>>;
+
+constexpr std::size_t kRuns = 2 * std::size_t(kNativeLanes<double>) + 1;
+constexpr std::size_t kScans = 120;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr RangeBearing kRadar{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)};
+
+/// What a batch gives, and the memory of it.
+struct Results {
+  std::vector<double> mean, covariance, modes, rates, innovation, nis, log_likelihood;
+  std::vector<std::uint8_t> status;
+  RunOutput out;
+
+  Results(std::size_t runs, std::size_t states, std::size_t models)
+      : mean(runs * kScans * states),
+        covariance(runs * kScans * states * states),
+        modes(runs * kScans * models),
+        innovation(runs * kScans * 2),
+        nis(runs * kScans),
+        log_likelihood(runs * kScans),
+        status(runs * kScans) {
+    out = {states,
+           models,
+           mean.data(),
+           covariance.data(),
+           modes.data(),
+           nullptr,
+           innovation.data(),
+           nis.data(),
+           log_likelihood.data(),
+           status.data()};
+  }
+
+  [[nodiscard]] std::array<const std::vector<double>*, 6> numbers() const {
+    return {&mean, &covariance, &modes, &innovation, &nis, &log_likelihood};
+  }
+};
+
+/// Vessels that steer here and there, some of their scans missed.
+std::vector<double> recordings(std::size_t runs) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  std::vector<double> z;
+  for (std::size_t run = 0; run < runs; ++run) {
+    double north = 3000.0, east = 2000.0 - 300.0 * double(run), course = double(run);
+    for (std::size_t scan = 0; scan < kScans; ++scan) {
+      course += scan > 40 ? deg(2.5) : 0.0;
+      north += 25.0 * std::cos(course);
+      east += 25.0 * std::sin(course);
+      const bool missed = (scan + 3 * run) % 17 == 5;
+      z.push_back(missed ? kNaN : std::hypot(north, east) + 20.0 * normal(random));
+      z.push_back(missed ? kNaN : std::atan2(east, north) + deg(0.5) * normal(random));
+    }
+  }
+  return z;
+}
+
+template <class Scalar>
+Gaussian<4, Scalar> start() {
+  Gaussian<4, Scalar> belief;
+  belief.mean << Scalar(3000.0), Scalar(0.0), Scalar(0.0), Scalar(0.0);
+  belief.covariance.setZero();
+  belief.covariance(0, 0) = belief.covariance(2, 2) = Scalar(4e6);
+  belief.covariance(1, 1) = belief.covariance(3, 3) = Scalar(100.0);
+  return belief;
+}
+
+struct Dense {
+  std::vector<double> z;
+  std::vector<double> dt_s = std::vector<double>(kScans, 2.5);
+  RunInput in;
+  explicit Dense(std::size_t runs) : z(recordings(runs)) {
+    in.runs = runs;
+    in.scans = kScans;
+    dt_s[50] = 4.0;
+    link();
+  }
+  void link() {
+    in.z = z.data();
+    in.dt_s = dt_s.data();
+  }
+};
+
+template <class Scalar>
+struct Imm3 {
+  static constexpr std::size_t kModels = 3;
+  static auto make() {
+    const auto turning = [](double rate_deg_s) {
+      return Ekf<CoordinatedTurn, Scalar>(
+          CoordinatedTurn{.turn_rate_rad_s = deg(rate_deg_s), .noise = WhiteAcceleration{0.01}});
+    };
+    return Imm{ModeChain<3>::from_sojourn_s({60.0, 30.0, 30.0}), turning(0.0), turning(1.0),
+               turning(-1.0)};
+  }
+};
+
+template <class Scalar>
+struct EkfTurnRate {
+  static constexpr std::size_t kModels = 0;
+  static auto make() { return Ekf<CoordinatedTurnRate, Scalar>(CoordinatedTurnRate{}); }
+};
+
+template <class Scalar>
+struct EkfSinger {
+  static constexpr std::size_t kModels = 0;
+  static auto make() { return Ekf<Singer, Scalar>(Singer{}); }
+};
+
+template <class Scalar>
+struct UkfTurnRate {
+  static constexpr std::size_t kModels = 0;
+  static auto make() { return Ukf<CoordinatedTurnRate, Scalar>(CoordinatedTurnRate{}); }
+};
+
+template <template <class> class Kind, class Scalar, class Sensor>
+Results run(const Sensor& sensor, const RunInput& in, int threads = 1) {
+  const auto prototype = Kind<Scalar>::make();
+  Results results(in.runs, std::size_t(prototype.estimate().mean.size()), Kind<Scalar>::kModels);
+  run_batch(
+      [&](std::size_t) {
+        auto estimator = prototype;
+        EXPECT_TRUE(all(ok(estimator.start(start<Scalar>()))));
+        return estimator;
+      },
+      sensor, in, results.out, Threads{threads});
+  return results;
+}
+
+/// Equal to 1e-12 of the largest number; later, when a filter has had time to amplify its rounding,
+/// to ten times that.
+void expect_near(const Results& a, const Results& b) {
+  constexpr double kRelative = 1e-12;
+  constexpr std::size_t kEarly_scans = 20;
+  EXPECT_EQ(a.status, b.status);
+  for (std::size_t k = 0; k < a.numbers().size(); ++k) {
+    const auto& x = *a.numbers()[k];
+    const auto& y = *b.numbers()[k];
+    ASSERT_EQ(x.size(), y.size());
+    double scale = 0.0;
+    for (const double value : y)
+      if (std::isfinite(value)) scale = std::max(scale, std::abs(value));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      ASSERT_EQ(std::isnan(x[i]), std::isnan(y[i])) << k << ' ' << i;
+      if (std::isnan(y[i])) continue;
+      const std::size_t scan = i / (x.size() / a.status.size()) % kScans;
+      const double tolerance = scale * (scan < kEarly_scans ? kRelative : 10 * kRelative);
+      ASSERT_NEAR(x[i], y[i], tolerance) << k << " at scan " << scan;
+    }
+  }
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+template <class Case>
+struct Batch : ::testing::Test {};
+
+template <template <class> class KindType>
+struct Of {
+  template <class Scalar>
+  using Kind = KindType<Scalar>;
+};
+using Cases = ::testing::Types<Of<Imm3>, Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>>;
+TYPED_TEST_SUITE(Batch, Cases);
+
+TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
+  const Dense data(kRuns);
+  const Results lanes = run<TypeParam::template Kind, Lanes>(kRadar, data.in);
+  const Results one_by_one = run<TypeParam::template Kind, double>(kRadar, data.in);
+  EXPECT_GT(
+      std::count(lanes.status.begin(), lanes.status.end(), static_cast<std::uint8_t>(Status::kOk)),
+      0);
+  expect_near(lanes, one_by_one);
+}
+
+TYPED_TEST(Batch, NeighboursDoNotMatter) {
+  Dense data(kRuns);
+  const Results before = run<TypeParam::template Kind, Lanes>(kRadar, data.in);
+  // All runs but the second have other readings, some of them impossible.
+  for (std::size_t run = 0; run < kRuns; ++run)
+    for (std::size_t scan = 0; scan < kScans && run != 1; ++scan) {
+      double* z = &data.z[2 * (run * kScans + scan)];
+      z[0] = scan % 5 == 0 ? kInfinity : scan % 7 == 0 ? 1e200 : z[0] + 3000.0;
+      z[1] = scan % 3 == 0 ? kNaN : -z[1];
+    }
+  const Results after = run<TypeParam::template Kind, Lanes>(kRadar, data.in);
+  for (std::size_t k = 0; k < before.numbers().size(); ++k) {
+    const auto& x = *before.numbers()[k];
+    const auto& y = *after.numbers()[k];
+    const auto size = static_cast<std::ptrdiff_t>(x.size() / kRuns);
+    EXPECT_TRUE(same_bits({x.begin() + size, x.begin() + 2 * size},
+                          {y.begin() + size, y.begin() + 2 * size}))
+        << k;
+  }
+}
+
+TYPED_TEST(Batch, ThreadsDoNotMatter) {
+  const Dense data(kRuns);
+  const Results one = run<TypeParam::template Kind, Lanes>(kRadar, data.in, 1);
+  const Results three = run<TypeParam::template Kind, Lanes>(kRadar, data.in, 3);
+  for (std::size_t k = 0; k < one.numbers().size(); ++k)
+    EXPECT_TRUE(same_bits(*one.numbers()[k], *three.numbers()[k])) << k;
+}
+
+TEST(BatchStatus, AReadingThatIsNotFiniteFailsInItsLaneOnly) {
+  Dense data(kRuns);
+  data.z[2 * (1 * kScans + 10)] = kInfinity;  // run 1, scan 10
+  const Results results = run<Imm3, Lanes>(kRadar, data.in);
+  const Results sound = run<Imm3, Lanes>(kRadar, Dense(kRuns).in);
+  for (std::size_t run = 0; run < kRuns; ++run)
+    EXPECT_EQ(Status(results.status[run * kScans + 10]),
+              run == 1 ? Status::kNotFinite : Status(sound.status[run * kScans + 10]))
+        << run;
+  EXPECT_TRUE(std::isnan(results.nis[kScans + 10]));
+  EXPECT_TRUE(std::isfinite(results.mean[4 * (kScans + 10)]));
+}
+
+TEST(BatchStatus, AStartThatIsNotDefiniteFailsInItsLaneOnly) {
+  auto imm = Imm3<Lanes>::make();
+  Gaussian<4, Lanes> belief = start<Lanes>();
+  belief.covariance(0, 0).set(1, -1.0);
+  const auto status = imm.start(belief);
+  for (int k = 0; k < kNativeLanes<double>; ++k)
+    EXPECT_EQ(lane(status, k), k == 1 ? Status::kNotPositiveDefinite : Status::kOk);
+}
+
+TEST(BatchGate, OutsideIsMissed) {
+  Dense data(kRuns);
+  const RadiusGate gate{150.0};
+  data.in.gate = &gate;
+  const Results lanes = run<Imm3, Lanes>(kRadar, data.in);
+  const Results one_by_one = run<Imm3, double>(kRadar, data.in);
+  expect_near(lanes, one_by_one);
+  EXPECT_NE(std::count(lanes.status.begin(), lanes.status.end(),
+                       static_cast<std::uint8_t>(Status::kMissed)),
+            0);
+}
+
+TEST(BatchLinear, AWidePriorIsJosephsInItsLaneOnly) {
+  // One lane begins with a prior in which P - W Wᵀ would cancel.
+  using Filter = Ekf<CoordinatedTurn, Lanes>;
+  Filter lanes(CoordinatedTurn{});
+  Gaussian<4, Lanes> belief = start<Lanes>();
+  for (int k = 0; k < 4; ++k) belief.covariance(k, k).set(1, 1e12);
+  ASSERT_TRUE(all(ok(lanes.start(belief))));
+  const ConvertedRangeBearing radar{.range_std_m = 5.0, .bearing_std_rad = deg(0.1)};
+  ASSERT_TRUE(all(ok(lanes.update(radar, Vec<Lanes, 2>(Lanes(3000.0), Lanes(0.1))).status)));
+  for (int k = 0; k < kNativeLanes<double>; ++k) {
+    Ekf<CoordinatedTurn> one(CoordinatedTurn{});
+    Gaussian<4> prior = start<double>();
+    if (k == 1) prior.covariance.diagonal().setConstant(1e12);
+    ASSERT_EQ(one.start(prior), Status::kOk);
+    ASSERT_TRUE(one.update(radar, Vec<double, 2>(3000.0, 0.1)));
+    for (int i = 0; i < 16; ++i)
+      EXPECT_NEAR(lane(lanes.estimate().covariance.data()[i], k),
+                  one.estimate().covariance.data()[i],
+                  1e-12 * one.estimate().covariance.cwiseAbs().maxCoeff());
+  }
+}
+
+}  // namespace
+}  // namespace wakeline

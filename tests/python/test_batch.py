@@ -1,0 +1,190 @@
+# SPDX-FileCopyrightText: 2026 Wakeline developers
+# SPDX-License-Identifier: MIT
+"""Many runs at once, in lanes and over threads, are the runs one by one."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+import wakeline as wl
+
+RUNS, SCANS, DT_S = 19, 60, 2.5
+POLAR = wl.RangeBearing(range_std_m=20.0, bearing_std_rad=np.deg2rad(0.5))
+CONVERTED = wl.ConvertedRangeBearing(range_std_m=20.0, bearing_std_rad=np.deg2rad(0.5))
+NOISE = wl.WhiteAcceleration(psd_m2s3=0.05)
+ARRAYS = ("mean", "covariance", "innovation", "nis", "log_likelihood")
+
+
+def turning(rate_deg_s: float) -> wl.CoordinatedTurn:
+    return wl.CoordinatedTurn(turn_rate_rad_s=np.deg2rad(rate_deg_s), noise=NOISE)
+
+
+def imm(*filters) -> wl.Imm:
+    k = len(filters)
+    stay = np.full((k, k), 0.1 / (k - 1)) + (0.9 - 0.1 / (k - 1)) * np.eye(k)
+    return wl.Imm(filters=list(filters), chain=wl.ModeChain(stay))
+
+
+ESTIMATORS = {
+    "ekf_cv": wl.Ekf(wl.ConstantVelocity(noise=NOISE)),
+    "ekf_ct": wl.Ekf(turning(1.5)),
+    "ekf_ctr": wl.Ekf(wl.CoordinatedTurnRate(noise=NOISE)),
+    "ekf_ca": wl.Ekf(wl.ConstantAcceleration()),
+    "ekf_singer": wl.Ekf(wl.Singer()),
+    "ekf_wandering": wl.Ekf(wl.WanderingCourse()),
+    "ukf_ctr": wl.Ukf(wl.CoordinatedTurnRate(noise=NOISE)),
+    "ukf_singer": wl.Ukf(wl.Singer()),
+    "square_root": wl.SquareRootUkf(wl.CoordinatedTurnRate(noise=NOISE)),
+    "imm2": imm(wl.Ekf(wl.ConstantVelocity(noise=NOISE)), wl.Ekf(turning(2.0))),
+    "imm3": imm(*(wl.Ekf(turning(w)) for w in (0.0, 1.0, -1.0))),
+    "imm4": imm(*(wl.Ekf(turning(w)) for w in (0.0, 1.0, -1.0, 3.0))),
+    "imm5": imm(*(wl.Ekf(turning(w)) for w in (0.0, 1.0, -1.0, 2.0, -2.0))),
+    "imm_mixed": imm(
+        wl.Ekf(wl.ConstantVelocity(noise=NOISE)), wl.Ukf(wl.CoordinatedTurnRate(noise=NOISE))
+    ),
+    "mode_history": wl.ModeHistory(wl.Ekf(turning(0.0)), max_branches=100),
+}
+
+
+def recordings(seed: int = 3) -> np.ndarray:
+    """Plots of vessels that turn here and there; some scans are missed."""
+    rng = np.random.default_rng(seed)
+    course = rng.uniform(-np.pi, np.pi, RUNS)[:, None] + np.cumsum(
+        np.where(np.arange(SCANS) > 25, np.deg2rad(2.0), 0.0)
+    )
+    place = 4000.0 + np.cumsum(25.0 * np.stack([np.cos(course), np.sin(course)], -1), axis=1)
+    polar = np.stack([np.hypot(*place.T).T, np.arctan2(place[..., 1], place[..., 0])], -1)
+    polar += rng.normal(size=polar.shape) * [20.0, np.deg2rad(0.5)]
+    polar[rng.random((RUNS, SCANS)) < 0.08] = np.nan
+    return polar
+
+
+def start() -> wl.Gaussian:
+    return wl.Gaussian([4000.0, 0.0, 4000.0, 0.0], np.diag([1e6, 100.0, 1e6, 100.0]))
+
+
+def run(estimator, z, sensor=POLAR, begin=None, **more):
+    return estimator.run(z, dt_s=DT_S, sensor=sensor, start=begin or start(), **more)
+
+
+def assert_near(many, one, k: int) -> None:
+    """Run k of `many` is `one`, to rounding."""
+    np.testing.assert_array_equal(many.status[k], one.status)
+    for name in ARRAYS:
+        a, b = getattr(many, name)[k], getattr(one, name)
+        np.testing.assert_array_equal(np.isnan(a), np.isnan(b))
+        scale = np.nanmax(np.abs(b))
+        np.testing.assert_allclose(a, b, rtol=0, atol=1e-11 * scale, err_msg=name)
+    if one.mode_probability is not None:
+        np.testing.assert_allclose(
+            many.mode_probability[k], one.mode_probability, rtol=0, atol=1e-11
+        )
+
+
+@pytest.fixture
+def restored_threads():
+    before = wl.threads()
+    yield
+    wl.set_threads(before)
+
+
+@pytest.mark.parametrize("name", ESTIMATORS)
+@pytest.mark.parametrize("sensor", [POLAR, CONVERTED], ids=["polar", "converted"])
+def test_runs_at_once_are_the_runs_one_by_one(name, sensor):
+    z = recordings()
+    many = run(ESTIMATORS[name], z, sensor)
+    for k in range(RUNS):
+        assert_near(many, run(ESTIMATORS[name], z[k], sensor), k)
+
+
+def test_each_run_has_its_own_start():
+    z = recordings()
+    starts = [
+        wl.Gaussian([4000.0 + 10.0 * k, k, 4000.0, -k], (1.0 + k) * np.diag([1e4, 9.0, 1e4, 9.0]))
+        for k in range(RUNS)
+    ]
+    many = run(ESTIMATORS["imm3"], z, begin=starts)
+    for k in range(RUNS):
+        assert_near(many, run(ESTIMATORS["imm3"], z[k], begin=starts[k]), k)
+
+
+def test_a_start_that_is_none_is_named():
+    starts = [start()] * RUNS
+    starts[7] = wl.Gaussian([0.0] * 4, -np.eye(4))
+    with pytest.raises(wl.FilterError, match="run 7"):
+        run(ESTIMATORS["imm3"], recordings(), begin=starts)
+
+
+@pytest.mark.parametrize("name", ["ekf_ct", "ukf_ctr", "imm3", "imm_mixed", "mode_history"])
+def test_results_do_not_depend_on_threads(name, restored_threads):
+    z = np.tile(recordings(), (8, 1, 1))
+    wl.set_threads(1)
+    one = run(ESTIMATORS[name], z)
+    wl.set_threads(3)
+    three = run(ESTIMATORS[name], z)
+    for array in ARRAYS:
+        np.testing.assert_array_equal(getattr(one, array), getattr(three, array))
+
+
+@pytest.mark.parametrize("name", ["ekf_ctr", "ukf_ctr", "imm3", "imm4"])
+def test_runs_do_not_depend_on_their_neighbours(name):
+    z = recordings()
+    order = np.random.default_rng(0).permutation(RUNS)
+    shuffled = run(ESTIMATORS[name], z[order])
+    plain = run(ESTIMATORS[name], z)
+    for array in ARRAYS:
+        np.testing.assert_array_equal(getattr(shuffled, array), getattr(plain, array)[order])
+
+
+def test_own_ship_and_gate_and_control_hold_in_lanes():
+    z = recordings()
+    more = {
+        "own_position_m": np.cumsum(np.full((SCANS, 2), 5.0), axis=0) - 100.0,
+        "acceleration_mps2": np.full((SCANS, 2), 0.01),
+        "gate": wl.RadiusGate(radius_m=400.0),
+    }
+    many = run(ESTIMATORS["imm3"], z, **more)
+    for k in range(RUNS):
+        assert_near(many, run(ESTIMATORS["imm3"], z[k], **more), k)
+
+
+def test_calls_from_many_threads_share_the_threads(restored_threads):
+    z = np.tile(recordings(), (4, 1, 1))
+    expected = run(ESTIMATORS["imm3"], z)
+    results = []
+    callers = [
+        threading.Thread(target=lambda: results.append(run(ESTIMATORS["imm3"], z)))
+        for _ in range(6)
+    ]
+    for caller in callers:
+        caller.start()
+    for caller in callers:
+        caller.join()
+    assert len(results) == 6
+    for result in results:
+        np.testing.assert_array_equal(result.mean, expected.mean)
+
+
+def test_the_number_of_threads_is_told_and_set(restored_threads):
+    wl.set_threads(2)
+    assert wl.threads() == 2
+    with pytest.raises(ValueError, match="threads must be at least 1, got 0"):
+        wl.set_threads(0)
+    assert wl.lanes() in (1, 2, 4, 8)
+
+
+def test_the_environment_limits_the_threads():
+    told = subprocess.run(
+        [sys.executable, "-c", "import wakeline; print(wakeline.threads())"],
+        env=os.environ | {"WAKELINE_THREADS": "5", "OMP_NUM_THREADS": "7"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert told.stdout.strip() == "5"
