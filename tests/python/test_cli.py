@@ -470,10 +470,12 @@ def test_bench_measures_every_work(tmp_path, monkeypatch, capsys):
     rows = {(row["scenario"], row["estimator"]): row for row in result["rows"]}
     for work in ("kf_step", "ekf_polar_step", "ukf5_step", "imm3_step", "imm5_step"):
         assert rows[work, "scalar_double"]["ns_per_step"] > 0
+        assert rows[work, "batch_double"]["times_scalar_double"] > 0
     assert rows["imm3_run_python", "scalar_double"]["ns_per_step"] > 0
+    assert rows["imm3_run_python", "batch_double"]["times_scalar_double"] > 0
     assert rows["imm3_run_python", "python_loop"]["times_scalar_double"] > 0
-    assert rows["tracker_scan", "scalar_double"]["ms_per_scan"] > 0
-    assert rows["gnn_200", "scalar_double"]["ms_per_scan"] > 0
+    for work in ("mode_history100_scan", "tracker_200", "tracker_1000", "gnn_200", "gnn_1000"):
+        assert rows[work, "scalar_double"]["ms_per_scan"] > 0
     assert rows["cfar_scan", "scalar_double"]["ms_per_scan"] > 0
     assert "ns a step" in capsys.readouterr().out
 
