@@ -23,7 +23,6 @@ class Cholesky {
 
   /// Factorises another matrix.
   void compute(const Mat<Scalar, N, N>& matrix) noexcept {
-    using std::sqrt;
     ok_ = true;
     if constexpr (N == 2) {
       compute_2x2(matrix(0, 0), matrix(1, 0), matrix(1, 1));
@@ -34,9 +33,8 @@ class Cholesky {
       for (int k = 0; k < column; ++k) pivot -= lower_(column, k) * lower_(column, k);
       ok_ = ok_ && is_variance(pivot);
       if (none(ok_)) return;
-      const Scalar diagonal = sqrt(pivot);
-      lower_(column, column) = diagonal;
-      inverse_diagonal_[column] = Scalar(1) / diagonal;
+      inverse_diagonal_[column] = inverse_sqrt(pivot);
+      lower_(column, column) = pivot * inverse_diagonal_[column];
       for (int row = column + 1; row < N; ++row) {
         Scalar sum = matrix(row, column);
         for (int k = 0; k < column; ++k) sum -= lower_(row, k) * lower_(column, k);

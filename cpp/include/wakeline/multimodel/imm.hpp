@@ -252,11 +252,13 @@ class Imm {
         if (k > 0 && dt_s[k] == dt_s[0]) continue;
         const auto of_lane = chain_.transition(double(dt_s[k]));
         for (int j = 0; j < bank_.size(); ++j)
-          for (int i = 0; i < bank_.size(); ++i)
+          for (int i = 0; i < bank_.size(); ++i) {
+            const auto probability = RealOf<Scalar>(of_lane(i, j));
             if (k == 0)
-              transition_(i, j) = of_lane(i, j);
+              transition_(i, j) = probability;
             else
-              transition_(i, j).set(k, of_lane(i, j));
+              transition_(i, j).set(k, probability);
+          }
       }
     }
   }
