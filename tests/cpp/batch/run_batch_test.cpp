@@ -68,7 +68,7 @@ std::vector<double> recordings(std::size_t runs) {
   std::normal_distribution<double> normal;
   std::vector<double> z;
   for (std::size_t run = 0; run < runs; ++run) {
-    double north = 3000.0, east = 2000.0 - 300.0 * double(run), course = double(run);
+    double north = 3000.0, east = 2000.0, course = double(run);
     for (std::size_t scan = 0; scan < kScans; ++scan) {
       course += scan > 40 ? deg(2.5) : 0.0;
       north += 25.0 * std::cos(course);
@@ -84,9 +84,9 @@ std::vector<double> recordings(std::size_t runs) {
 template <class Scalar>
 Gaussian<4, Scalar> start() {
   Gaussian<4, Scalar> belief;
-  belief.mean << Scalar(3000.0), Scalar(0.0), Scalar(0.0), Scalar(0.0);
+  belief.mean << Scalar(3000.0), Scalar(0.0), Scalar(2000.0), Scalar(0.0);
   belief.covariance.setZero();
-  belief.covariance(0, 0) = belief.covariance(2, 2) = Scalar(4e6);
+  belief.covariance(0, 0) = belief.covariance(2, 2) = Scalar(400.0);
   belief.covariance(1, 1) = belief.covariance(3, 3) = Scalar(100.0);
   return belief;
 }
