@@ -178,9 +178,9 @@ Mat<Scalar, N, N> semidefinite_root(const Mat<Scalar, N, N>& matrix) noexcept {
 template <class Derived>
 MaskOf<typename Derived::Scalar> is_finite(const Eigen::MatrixBase<Derived>& matrix) noexcept {
   using Scalar = typename Derived::Scalar;
-  // Infinity less infinity is not a number, nor is anything that a NaN was added to.
-  const Scalar sum = matrix.sum();
-  return sum - sum == Scalar(0);
+  // 0 x is NaN for an infinite or NaN x, and a sum with a NaN is NaN.
+  const Scalar sum = (matrix.array() * Scalar(0)).sum();
+  return sum == Scalar(0);
 }
 
 /// Says what is wrong with a belief, or `kOk`.
