@@ -176,7 +176,8 @@ void expect_near(const Results& a, const Results& b) {
 }
 
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 
 template <class Case>
@@ -227,6 +228,47 @@ TYPED_TEST(Batch, ThreadsDoNotMatter) {
   const Results three = run<TypeParam::template Kind, Lanes>(kRadar, data.in, 3);
   for (std::size_t k = 0; k < one.numbers().size(); ++k)
     EXPECT_TRUE(same_bits(*one.numbers()[k], *three.numbers()[k])) << k;
+}
+
+TEST(BatchWriter, PutsEveryNumberInItsPlaceWhateverTheSize) {
+  for (const std::size_t states : {1, 4, 6, 12, 20}) {
+    const std::size_t scans = 19, runs = std::size_t(kNativeLanes<double>) - 1;
+    std::vector<double> mean(runs * scans * states, -1.0), covariance(mean.size() * states, -1.0),
+        innovation(runs * scans * 2, -1.0), nis(runs * scans, -1.0), log_likelihood(nis);
+    RunInput in;
+    in.runs = runs;
+    in.scans = scans;
+    RunOutput out;
+    out.states = states;
+    out.mean = mean.data();
+    out.covariance = covariance.data();
+    out.innovation = innovation.data();
+    out.nis = nis.data();
+    out.log_likelihood = log_likelihood.data();
+    const RunLanes<Lanes> lanes(in, 0);
+    RunWriter<Lanes> writer(lanes, out, 2, false);
+    const std::size_t row = states + states * states + 4;
+    const auto number = [&](std::size_t run, std::size_t scan, std::size_t k) {
+      return double((run * scans + scan) * row + k);
+    };
+    for (std::size_t scan = 0; scan < scans; ++scan) {
+      for (std::size_t k = 0; k < row; ++k)
+        writer << Lanes::of([&](int lane) { return number(std::size_t(lane), scan, k); });
+      writer.next();
+    }
+    writer.flush();
+    for (std::size_t run = 0; run < runs; ++run)
+      for (std::size_t scan = 0; scan < scans; ++scan) {
+        const std::size_t at = run * scans + scan;
+        for (std::size_t k = 0; k < states; ++k)
+          ASSERT_EQ(mean[at * states + k], number(run, scan, k));
+        for (std::size_t k = 0; k < states * states; ++k)
+          ASSERT_EQ(covariance[at * states * states + k], number(run, scan, states + k));
+        ASSERT_EQ(innovation[2 * at + 1], number(run, scan, row - 3));
+        ASSERT_EQ(nis[at], number(run, scan, row - 2));
+        ASSERT_EQ(log_likelihood[at], number(run, scan, row - 1));
+      }
+  }
 }
 
 TEST(BatchStatus, AReadingThatIsNotFiniteFailsInItsLaneOnly) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -106,7 +107,8 @@ class RunLanes {
   std::size_t used_;
 };
 
-/// Collects what some runs side by side give, a few scans at a time.
+/// Collects what some runs side by side give, a few scans at a time. There is room for estimators
+/// of up to 20 states.
 template <class Scalar>
 class RunWriter {
  public:
@@ -120,6 +122,8 @@ class RunWriter {
     add(out.innovation, measurements);
     add(out.nis, 1);
     add(out.log_likelihood, 1);
+    held_ = std::clamp<std::size_t>(kCapacity / row_, 1, kScans);
+    assert(row_ <= kCapacity);
   }
 
   /// The next number of the scan, in the order of `RunOutput`.
@@ -129,7 +133,7 @@ class RunWriter {
 
   /// To be called after each scan.
   void next() noexcept {
-    if (++scans_ == kScans) flush();
+    if (++scans_ == held_) flush();
   }
 
   void flush() noexcept {
@@ -144,8 +148,8 @@ class RunWriter {
   }
 
  private:
-  static constexpr std::size_t kScans = kLanesOf<Scalar> == 1 ? 1 : 8;
-  static constexpr std::size_t kMostNumbers = 6 + 36 + 2 * 16 + 3 + 2;
+  static constexpr std::size_t kScans = 8;  ///< of one with 6 states and 16 models
+  static constexpr std::size_t kCapacity = kScans * (6 + 36 + 2 * 16 + 3 + 2);
 
   void add(double* to, std::size_t size) noexcept {
     if (size > 0) column_[columns_++] = {to, size};
@@ -160,10 +164,11 @@ class RunWriter {
   Column column_[7];
   std::size_t columns_ = 0;
   std::size_t row_ = 0;    ///< numbers of a scan
+  std::size_t held_ = 1;   ///< scans that there is room for
   std::size_t first_ = 0;  ///< scan of the first that is held
   std::size_t scans_ = 0;  ///< that are held
   std::size_t at_ = 0;
-  alignas(64) RealOf<Scalar> numbers_[kScans * kMostNumbers * kLanesOf<Scalar>];
+  alignas(64) RealOf<Scalar> numbers_[kCapacity * kLanesOf<Scalar>];
 };
 
 /// North and east of an estimate in any layout of 4, 5 or 6 states.
