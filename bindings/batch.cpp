@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "lanes/lanes.hpp"
+#include "mode_history.hpp"
 #include "run.hpp"
 
 namespace wakeline::python {
@@ -55,15 +56,18 @@ std::optional<LaneModel> lane_model(const AnyFilter& filter) {
       filter.variant());
 }
 
-/// False where a filter, the sensor or the runs are none for lanes.
-bool describe(const std::vector<AnyFilter>& filters, const AnySensor& sensor, const RunInput& in,
-              const std::vector<AnyBelief>& starts, LaneJob& job) {
+/// False where a filter is none for lanes.
+bool add_model(const AnyFilter& filter, LaneJob& job) {
+  const std::optional<LaneModel> model = lane_model(filter);
+  if (model) job.models.push_back(*model);
+  return model.has_value();
+}
+
+/// Runs the job of some models. False, and nothing done, where the sensor or the runs are none for
+/// lanes.
+bool run(LaneJob& job, const AnySensor& sensor, const RunInput& in,
+         const std::vector<AnyBelief>& starts, const RunOutput& out) {
   if (kernels == nullptr || in.runs < 2) return false;
-  for (const AnyFilter& filter : filters) {
-    const std::optional<LaneModel> model = lane_model(filter);
-    if (!model) return false;
-    job.models.push_back(*model);
-  }
   const bool known = std::visit(
       [&]<class Sensor>(const Sensor& one) {
         if constexpr (std::is_constructible_v<decltype(job.sensor), Sensor>) {
@@ -82,13 +86,9 @@ bool describe(const std::vector<AnyFilter>& filters, const AnySensor& sensor, co
         lane.covariance[j * lane.states + i] = start.covariance(i, j);
     }
   }
-  return known;
-}
-
-bool run(const LaneJob& job, const ModeChain<kRuntimeModes>* chain, const RunInput& in,
-         const RunOutput& out) {
+  if (!known) return false;
   const ThreadShare threads(in.runs * in.scans / static_cast<std::size_t>(kernels->lanes));
-  return kernels->run(job, chain, in, out, threads.count());
+  return kernels->run(job, in, out, threads.count());
 }
 
 }  // namespace
@@ -116,19 +116,32 @@ void define_batch(py::module_& parent) {
 bool run_lanes(const AnyFilter& filter, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
   LaneJob job;
-  return describe({filter}, sensor, in, starts, job) && run(job, nullptr, in, out);
+  return add_model(filter, job) && run(job, sensor, in, starts, out);
 }
 
 bool run_lanes(const AnyImm& imm, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
   LaneJob job;
-  job.mixture = true;
-  std::vector<AnyFilter> filters;
+  job.chain = &imm.chain();
   for (int k = 0; k < imm.bank().size(); ++k) {
-    filters.push_back(imm.bank().filter(static_cast<std::size_t>(k)));
+    if (!add_model(imm.bank().filter(static_cast<std::size_t>(k)), job)) return false;
     job.initial_mode_probability.push_back(imm.initial_mode_probability()[k]);
   }
-  return describe(filters, sensor, in, starts, job) && run(job, &imm.chain(), in, out);
+  return run(job, sensor, in, starts, out);
+}
+
+bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  const auto* history = std::get_if<ModeHistory<Ekf<CoordinatedTurn>>>(&any.variant());
+  if (history == nullptr) return false;
+  LaneJob job;
+  job.chain = &history->chain();
+  job.tree = history->tree();
+  for (int k = 0; k < history->bank().size(); ++k) {
+    job.models.push_back({history->bank().filter(k).motion()});
+    job.initial_mode_probability.push_back(history->initial_mode_probability()[k]);
+  }
+  return run(job, sensor, in, starts, out);
 }
 
 }  // namespace wakeline::python

@@ -40,15 +40,22 @@ inline AnyBelief to_start(const char* name, const PyGaussian& gaussian, int stat
 /// The sensors that estimators take.
 using AnySensor = std::variant<RangeBearing, ConvertedRangeBearing, Position, RangeBearingDoppler>;
 
+/// Whether a Python object is a `Class`. (`py::isinstance` looks the type up by its name each
+/// time.)
+template <class Class>
+bool is_a(const py::handle& object) {
+  static PyTypeObject* const type = reinterpret_cast<PyTypeObject*>(py::type::of<Class>().ptr());
+  return PyObject_TypeCheck(object.ptr(), type) != 0;
+}
+
 /// Calls `function(sensor)` with the C++ sensor behind a Python one.
 template <class Function>
 auto visit_sensor(const py::handle& sensor, Function&& function) {
-  if (py::isinstance<RangeBearing>(sensor)) return function(sensor.cast<const RangeBearing&>());
-  if (py::isinstance<ConvertedRangeBearing>(sensor))
+  if (is_a<RangeBearing>(sensor)) return function(sensor.cast<const RangeBearing&>());
+  if (is_a<ConvertedRangeBearing>(sensor))
     return function(sensor.cast<const ConvertedRangeBearing&>());
-  if (py::isinstance<Position>(sensor)) return function(sensor.cast<const Position&>());
-  if (py::isinstance<RangeBearingDoppler>(sensor))
-    return function(sensor.cast<const RangeBearingDoppler&>());
+  if (is_a<Position>(sensor)) return function(sensor.cast<const Position&>());
+  if (is_a<RangeBearingDoppler>(sensor)) return function(sensor.cast<const RangeBearingDoppler&>());
   throw py::type_error(
       "sensor must be RangeBearing, ConvertedRangeBearing, Position or "
       "RangeBearingDoppler, got " +
@@ -87,7 +94,7 @@ int models_of(const Estimator& estimator) noexcept {
 /// A known acceleration, (2,) array or None.
 inline std::optional<Vec<double, 2>> to_acceleration(const std::optional<DoubleArray>& array) {
   if (!array) return std::nullopt;
-  return Vec<double, 2>(to_vector("acceleration_mps2", *array, 2));
+  return to_vector<2>("acceleration_mps2", *array);
 }
 
 /// `predict` with or without a known acceleration.

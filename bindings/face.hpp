@@ -38,7 +38,7 @@ void define_face(py::class_<Estimator, Options...>& face) {
             return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
               require_linear<Sensor>(estimator);
               constexpr int kM = Sensor::kMeasurements;
-              const auto step = estimator.update(model, Vec<double, kM>(to_vector("z", z, kM)));
+              const auto step = estimator.update(model, to_vector<kM>("z", z));
               require_ok(step.status, "update");
               return to_step(step);
             });

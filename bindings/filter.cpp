@@ -168,8 +168,7 @@ Returns
       [](const py::object& sensor, const DoubleArray& z, double speed_std_mps) {
         return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
           constexpr int kM = Sensor::kMeasurements;
-          return PyGaussian::from(
-              one_point(model, Vec<double, kM>(to_vector("z", z, kM)), speed_std_mps));
+          return PyGaussian::from(one_point(model, to_vector<kM>("z", z), speed_std_mps));
         });
       },
       py::arg("sensor"), py::arg("z"), py::arg("speed_std_mps"),
@@ -183,9 +182,8 @@ Returns
           throw py::value_error("dt_s must be positive, got " + std::to_string(dt_s));
         return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
           constexpr int kM = Sensor::kMeasurements;
-          return PyGaussian::from(
-              two_point<Sensor, double>(model, Vec<double, kM>(to_vector("first", first, kM)),
-                                        Vec<double, kM>(to_vector("second", second, kM)), dt_s));
+          return PyGaussian::from(two_point<Sensor, double>(model, to_vector<kM>("first", first),
+                                                            to_vector<kM>("second", second), dt_s));
         });
       },
       py::arg("sensor"), py::arg("first"), py::arg("second"), py::arg("dt_s"),

@@ -18,32 +18,30 @@ Sensor checked(const Sensor& sensor) {
 template <class Sensor>
 void define_sensor(py::class_<Sensor>& sensor) {
   constexpr int kM = Sensor::kMeasurements;
-  using Reading = Vec<double, kM>;
-  using Read = Vec<double, kReadsOf<Sensor>>;
   sensor.def_property_readonly_static(
       "measurements", [](const py::object&) { return kM; }, "numbers per reading, M");
   sensor.def(
       "observe",
       [](const Sensor& s, const DoubleArray& z) {
-        return PyGaussian::from(s.observe(Reading(to_vector("z", z, kM))));
+        return PyGaussian::from(s.observe(to_vector<kM>("z", z)));
       },
       py::arg("z"), "The reading as value and covariance R, converted where the sensor is.");
   sensor.def(
       "position",
       [](const Sensor& s, const DoubleArray& z) {
-        return PyGaussian::from(s.position(Reading(to_vector("z", z, kM))));
+        return PyGaussian::from(s.position(to_vector<kM>("z", z)));
       },
       py::arg("z"), "The reading in north/east, m: mean (2,), covariance (2, 2).");
   sensor.def(
       "measure",
       [](const Sensor& s, const DoubleArray& x) {
-        return to_array(s.measure(Read(to_vector("x", x, kReadsOf<Sensor>))));
+        return to_array(s.measure(to_vector<kReadsOf<Sensor>>("x", x)));
       },
       py::arg("x"), "h of the components the sensor reads ([x, y], or [x, vx, y, vy]), (M,).");
   sensor.def(
       "jacobian",
       [](const Sensor& s, const DoubleArray& x) {
-        return to_array(s.jacobian(Read(to_vector("x", x, kReadsOf<Sensor>))));
+        return to_array(s.jacobian(to_vector<kReadsOf<Sensor>>("x", x)));
       },
       py::arg("x"), "dh/dx of those components.");
 }

@@ -101,6 +101,8 @@ class AnyModeHistory {
         [](const auto& history) -> const auto& { return history.mode_probability(); }, *history_);
   }
 
+  [[nodiscard]] const Variant& variant() const noexcept { return *history_; }
+
   [[nodiscard]] std::size_t hypotheses() const noexcept {
     return std::visit([](const auto& history) { return history.hypotheses().size(); }, *history_);
   }

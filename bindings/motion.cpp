@@ -14,7 +14,6 @@ namespace {
 template <class Motion>
 void define_model(py::class_<Motion>& model) {
   constexpr int kStates = kStatesOf<Motion>;
-  using State = Vec<double, kStates>;
   model.def_property_readonly_static(
       "states", [](const py::object&) { return kStates; }, "number of states N");
   if constexpr (LinearMotionModel<Motion>) {
@@ -29,19 +28,19 @@ void define_model(py::class_<Motion>& model) {
     model.def(
         "transition",
         [](const Motion& motion, const DoubleArray& x, double dt_s) {
-          return to_array(motion.transition(State(to_vector("x", x, kStates)), dt_s));
+          return to_array(motion.transition(to_vector<kStates>("x", x), dt_s));
         },
         py::arg("x"), py::arg("dt_s"), "f(x, dt), (N,).");
     model.def(
         "jacobian",
         [](const Motion& motion, const DoubleArray& x, double dt_s) {
-          return to_array(motion.jacobian(State(to_vector("x", x, kStates)), dt_s));
+          return to_array(motion.jacobian(to_vector<kStates>("x", x), dt_s));
         },
         py::arg("x"), py::arg("dt_s"), "df/dx, (N, N).");
     model.def(
         "process_noise",
         [](const Motion& motion, const DoubleArray& x, double dt_s) {
-          return to_array(motion.process_noise(State(to_vector("x", x, kStates)), dt_s));
+          return to_array(motion.process_noise(to_vector<kStates>("x", x), dt_s));
         },
         py::arg("x"), py::arg("dt_s"), "Q(x, dt), (N, N).");
   }

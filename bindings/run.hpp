@@ -16,6 +16,8 @@
 
 namespace wakeline::python {
 
+class AnyModeHistory;
+
 /// True for a multi-model estimator over filters composed at run time.
 template <class>
 inline constexpr bool kOverAnyFilters = false;
@@ -62,6 +64,8 @@ void require_starts(Estimator estimator, const std::vector<AnyBelief>& starts) {
 bool run_lanes(const AnyFilter& filter, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 bool run_lanes(const AnyImm& imm, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyModeHistory& history, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 template <class Estimator>
 bool run_lanes(const Estimator&, const AnySensor&, const RunInput&, const std::vector<AnyBelief>&,

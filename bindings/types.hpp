@@ -36,15 +36,17 @@ struct PyGaussian {
 };
 
 struct PyStep {
+  static constexpr int kMost = 6;  ///< measurements that there is room for
   Status status;
-  Eigen::VectorXd innovation;
-  Eigen::MatrixXd innovation_covariance;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1> innovation;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost> innovation_covariance;
   double nis;
   double log_likelihood;
 };
 
 template <int M>
 PyStep to_step(const Step<M>& step) {
+  static_assert(M <= PyStep::kMost);
   return {step.status, step.innovation, step.innovation_covariance, step.nis, step.log_likelihood};
 }
 

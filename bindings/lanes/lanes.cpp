@@ -7,7 +7,9 @@
 #include "wakeline/core/pack_math.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
+#include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/multimodel/mode_history.hpp"
 #include "wakeline/multimodel/uniform_bank.hpp"
 
 namespace wakeline::python {
@@ -15,13 +17,8 @@ namespace {
 
 using Lanes = Pack<double, kNativeLanes<double>>;
 
-/// A sensor that fixes a position, of whatever kind.
-struct AnyDirect {
-  static constexpr int kMeasurements = 2;
-  static constexpr auto kReads = kPosition;
-  static constexpr bool kLinear = true;
-  static constexpr bool kDirect = true;
-
+/// A position fixed by whatever sensor.
+struct AnyDirect : Fix {
   std::variant<ConvertedRangeBearing, Position> sensor;
   OwnShip own = {};
 
@@ -42,31 +39,17 @@ struct AnyDirect {
   Gaussian<2, Scalar> position(const Vec<Scalar, 2>& z) const noexcept {
     return observe(z);
   }
-  template <class Scalar>
-  Vec<Scalar, 2> measure(const Vec<Scalar, 2>& position) const noexcept {
-    return position;
-  }
-  template <class Scalar>
-  Mat<Scalar, 2, 2> jacobian(const Vec<Scalar, 2>&) const noexcept {
-    return Mat<Scalar, 2, 2>::Identity();
-  }
-  template <class Scalar>
-  Vec<Scalar, 2> residual(const Vec<Scalar, 2>& a, const Vec<Scalar, 2>& b) const noexcept {
-    return a - b;
-  }
 };
 
 /// The starts of the runs `first`, `first + 1`, ...
-template <int N>
-Gaussian<N, Lanes> gather(const std::vector<LaneStart>& starts, std::size_t first) noexcept {
+template <int N, class Scalar>
+Gaussian<N, Scalar> gather(const std::vector<LaneStart>& starts, std::size_t first) noexcept {
   const auto of_lane = [&](int lane) -> const LaneStart& {
     return starts[std::min(first + static_cast<std::size_t>(lane), starts.size() - 1)];
   };
-  Gaussian<N, Lanes> belief;
-  for (int k = 0; k < N; ++k)
-    belief.mean[k] = Lanes::of([&](int lane) { return of_lane(lane).mean[k]; });
-  for (int k = 0; k < N * N; ++k)
-    belief.covariance.data()[k] = Lanes::of([&](int lane) { return of_lane(lane).covariance[k]; });
+  Gaussian<N, Scalar> belief;
+  gather_lanes<N>([&](int lane) { return of_lane(lane).mean; }, belief.mean.data());
+  gather_lanes<N * N>([&](int lane) { return of_lane(lane).covariance; }, belief.covariance.data());
   return belief;
 }
 
@@ -78,7 +61,7 @@ bool run_from(const Estimator& prototype, const LaneJob& job, const RunInput& in
   const auto begin = [&]<int States>(Index<States>) {
     return [&](std::size_t first) {
       Estimator estimator = prototype;
-      (void)estimator.start(gather<States>(job.starts, first));
+      (void)estimator.start(gather<States, typename Estimator::Scalar>(job.starts, first));
       return estimator;
     };
   };
@@ -105,51 +88,48 @@ Turn4 turn_filter(const LaneJob& job, std::size_t k) {
   return Turn4(std::get<CoordinatedTurn>(job.models[k].motion));
 }
 
-template <int K, class Bank>
-bool run_imm(const Bank& bank, const LaneJob& job, const ModeChain<kRuntimeModes>& chain,
-             const RunInput& in, const RunOutput& out, int threads) {
-  Imm imm{ModeChain<K>(chain), bank};
-  typename decltype(imm)::Probability initial = imm.initial_mode_probability();
+template <class Estimator>
+bool run_begun(Estimator estimator, const LaneJob& job, const RunInput& in, const RunOutput& out,
+               int threads) {
+  typename Estimator::Probability initial = estimator.initial_mode_probability();
   for (std::size_t k = 0; k < job.models.size(); ++k)
     initial[static_cast<Eigen::Index>(k)] = job.initial_mode_probability[k];
-  imm.set_initial_mode_probability(initial);
-  return run_from<4>(imm, job, in, out, threads);
+  estimator.set_initial_mode_probability(initial);
+  return run_from<4>(estimator, job, in, out, threads);
 }
 
 /// A number of models that is known, each step without a loop over them.
 template <std::size_t... Models>
-bool run_few(std::index_sequence<Models...>, const LaneJob& job,
-             const ModeChain<kRuntimeModes>& chain, const RunInput& in, const RunOutput& out,
-             int threads) {
+bool run_few(std::index_sequence<Models...>, const LaneJob& job, const RunInput& in,
+             const RunOutput& out, int threads) {
   const FilterBank bank(turn_filter(job, Models)...);
-  return run_imm<sizeof...(Models)>(bank, job, chain, in, out, threads);
+  return run_begun(Imm{ModeChain<int(sizeof...(Models))>(*job.chain), bank}, job, in, out, threads);
 }
 
-bool run_many(const LaneJob& job, const ModeChain<kRuntimeModes>& chain, const RunInput& in,
-              const RunOutput& out, int threads) {
+bool run_many(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
   std::vector<Turn4> filters;
   for (std::size_t k = 0; k < job.models.size(); ++k) filters.push_back(turn_filter(job, k));
   const UniformBank<Turn4> bank{std::span<const Turn4>(filters)};
-  return run_imm<kRuntimeModes>(bank, job, chain, in, out, threads);
+  if (job.tree) return run_begun(ModeHistory(*job.tree, *job.chain, bank), job, in, out, threads);
+  return run_begun(Imm{*job.chain, bank}, job, in, out, threads);
 }
 
-bool run_mixture(const LaneJob& job, const ModeChain<kRuntimeModes>& chain, const RunInput& in,
-                 const RunOutput& out, int threads) {
+bool run_mixture(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
   for (const LaneModel& model : job.models)
     if (model.unscented || !std::holds_alternative<CoordinatedTurn>(model.motion)) return false;
+  if (job.tree) return run_many(job, in, out, threads);
   switch (job.models.size()) {
     case 2:
-      return run_few(std::make_index_sequence<2>{}, job, chain, in, out, threads);
+      return run_few(std::make_index_sequence<2>{}, job, in, out, threads);
     case 3:
-      return run_few(std::make_index_sequence<3>{}, job, chain, in, out, threads);
+      return run_few(std::make_index_sequence<3>{}, job, in, out, threads);
     default:
-      return run_many(job, chain, in, out, threads);
+      return run_many(job, in, out, threads);
   }
 }
 
-bool run(const LaneJob& job, const ModeChain<kRuntimeModes>* chain, const RunInput& in,
-         const RunOutput& out, int threads) {
-  if (job.mixture) return run_mixture(job, *chain, in, out, threads);
+bool run(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
+  if (job.chain != nullptr) return run_mixture(job, in, out, threads);
   const LaneModel& model = job.models.front();
   return std::visit(
       [&]<class Motion>(const Motion& motion) {

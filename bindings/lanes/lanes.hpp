@@ -6,6 +6,7 @@
 // another.
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/singer.hpp"
 #include "wakeline/motion/wandering_course.hpp"
+#include "wakeline/multimodel/history_tree.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
 
 namespace wakeline::python {
@@ -39,7 +41,8 @@ struct LaneStart {
 /// An estimator, its sensor and where it starts.
 struct LaneJob {
   std::vector<LaneModel> models;
-  bool mixture = false;  ///< an Imm over the models, else the one filter
+  const ModeChain<kRuntimeModes>* chain = nullptr;  ///< between the models; none of one filter
+  std::optional<HistoryTree> tree;                  ///< of a ModeHistory; else an Imm
   std::vector<double> initial_mode_probability;
   std::variant<RangeBearing, ConvertedRangeBearing, Position> sensor;
   std::vector<LaneStart> starts;  ///< one for all runs, or one each
@@ -48,8 +51,7 @@ struct LaneJob {
 /// Runs the job in lanes over some threads. False, and nothing done, when there is no kernel for
 /// it.
 struct LaneKernels {
-  bool (*run)(const LaneJob& job, const ModeChain<kRuntimeModes>* chain, const RunInput& in,
-              const RunOutput& out, int threads);
+  bool (*run)(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads);
   int lanes;
 };
 

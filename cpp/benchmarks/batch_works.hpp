@@ -6,43 +6,21 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
-#include "course.hpp"
 #include "flop_count.hpp"
+#include "models.hpp"
 #include "wakeline/core/pack_math.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
-#include "wakeline/measurement/position.hpp"
-#include "wakeline/measurement/range_bearing.hpp"
-#include "wakeline/motion/constant_velocity.hpp"
-#include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
 namespace wakeline::bench {
 
 template <class Real>
 using Lanes = Pack<Real, kNativeLanes<Real>>;
-
-inline constexpr std::array kTurnRates_deg_s{0.0, 1.0, -1.0, 2.0, -2.0};
-inline constexpr Position kFix{.position_std_m = 20.0};
-inline constexpr RangeBearing kRadar{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)};
-
-/// Mode k of an IMM.
-inline CoordinatedTurn turning(int mode) {
-  return {.turn_rate_rad_s = deg(kTurnRates_deg_s[static_cast<std::size_t>(mode)]),
-          .noise = WhiteAcceleration{0.01}};
-}
-
-template <int K>
-Mat<double, K, K> transition() {
-  Mat<double, K, K> chain = Mat<double, K, K>::Constant(0.06 / (K - 1));
-  chain.diagonal().setConstant(0.94);
-  return chain;
-}
 
 /// An IMM of K turns.
 template <int K, class Scalar>
@@ -55,18 +33,18 @@ auto imm() {
 
 template <class Scalar>
 auto kalman() {
-  return Kalman<ConstantVelocity, Scalar>(ConstantVelocity{.noise = WhiteAcceleration{0.05}});
+  return Kalman<ConstantVelocity, Scalar>(kSteady);
 }
 
 template <class Scalar>
 auto polar_ekf() {
-  return Ekf<ConstantVelocity, Scalar>(ConstantVelocity{.noise = WhiteAcceleration{0.05}});
+  return Ekf<ConstantVelocity, Scalar>(kSteady);
 }
 
 /// Five states, as the turn rate is one.
 template <class Scalar>
 auto ukf() {
-  return Ukf<CoordinatedTurnRate, Scalar>(CoordinatedTurnRate{.noise = WhiteAcceleration{0.01}});
+  return Ukf<CoordinatedTurnRate, Scalar>(kTurning);
 }
 
 /// The same course in each lane, with its own noise.
@@ -80,10 +58,8 @@ struct LaneCourse {
     std::vector<Course<double>> courses;
     for (unsigned k = 0; k < kLanesOf<Scalar>; ++k) courses.emplace_back(k + 1);
     const auto gather = [&](const auto& number) {
-      if constexpr (kLanesOf<Scalar> == 1)
-        return Scalar(number(courses[0]));
-      else
-        return Scalar::of([&](int k) { return number(courses[static_cast<std::size_t>(k)]); });
+      return lanes_of<Scalar>(
+          [&](int k) { return RealOf<Scalar>(number(courses[static_cast<std::size_t>(k)])); });
     };
     const auto gather_plots = [&](std::vector<Vec<double, 2>> Course<double>::*plots) {
       std::vector<Vec<Scalar, 2>> gathered((courses[0].*plots).size());

@@ -16,23 +16,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "course.hpp"
+#include "models.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
-#include "wakeline/measurement/position.hpp"
-#include "wakeline/measurement/range_bearing.hpp"
-#include "wakeline/motion/constant_velocity.hpp"
-#include "wakeline/motion/coordinated_turn.hpp"
 
 namespace {
 
 using namespace wakeline;
 using namespace wakeline::bench;
-
-constexpr Position kFix{.position_std_m = 20.0};
-constexpr RangeBearing kRadar{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)};
-constexpr ConstantVelocity kSteady{.noise = WhiteAcceleration{0.05}};
-constexpr CoordinatedTurnRate kTurning{.noise = WhiteAcceleration{0.01}};
 
 /// ln N(v; 0, S).
 template <class Scalar>

@@ -14,31 +14,14 @@
 #include <cmath>
 #include <utility>
 
-#include "course.hpp"
+#include "models.hpp"
 #include "wakeline/filter/ekf.hpp"
-#include "wakeline/measurement/range_bearing.hpp"
-#include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
 namespace {
 
 using namespace wakeline;
 using namespace wakeline::bench;
-
-constexpr std::array kTurnRates_deg_s{0.0, 1.0, -1.0, 2.0, -2.0};
-constexpr RangeBearing kRadar{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)};
-
-CoordinatedTurn turning(int mode) {
-  return {.turn_rate_rad_s = deg(kTurnRates_deg_s[static_cast<std::size_t>(mode)]),
-          .noise = WhiteAcceleration{0.01}};
-}
-
-template <int K>
-Mat<double, K, K> transition() {
-  Mat<double, K, K> chain = Mat<double, K, K>::Constant(0.06 / (K - 1));
-  chain.diagonal().setConstant(0.94);
-  return chain;
-}
 
 /// The IMM as one writes it down from the book for one problem.
 template <int K, class Scalar>

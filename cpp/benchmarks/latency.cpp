@@ -20,43 +20,12 @@
 #include <vector>
 
 #include "anchorage.hpp"
+#include "support/malloc_fence.hpp"
 
 namespace {
 
 using namespace wakeline;
 using bench::Anchorage;
-
-long allocations = 0;
-
-}  // namespace
-
-// The program's own malloc counts and hands on to that of the C library; operator new ends here,
-// too.
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* block, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* block, std::size_t size) {
-  ++allocations;
-  return __libc_realloc(block, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-}
-
-namespace {
 
 double now_ms(clockid_t clock) {
   timespec time{};
@@ -93,7 +62,7 @@ void measure(Association association, int targets, int false_plots, int scans) {
     (void)tracker.process(anchorage.time_s(), plots);
   }
 
-  const long allocations_before = allocations;
+  const test::NoHeap fence;
   const long memory_before_kib = peak_memory_kib();
   std::size_t most_plots = 0;
   for (int k = 0; k < scans; ++k) {
@@ -105,7 +74,7 @@ void measure(Association association, int targets, int false_plots, int scans) {
     thread_ms.push_back(now_ms(CLOCK_THREAD_CPUTIME_ID) - thread_began_ms);
     wall_ms.push_back(now_ms(CLOCK_MONOTONIC) - wall_began_ms);
   }
-  const long allocated = allocations - allocations_before;
+  const long allocated = fence.allocations();
   const long grown_kib = peak_memory_kib() - memory_before_kib;
   std::printf(
       "%d targets, up to %zu plots, %d scans, %d tracks shown: %ld allocations, "

@@ -150,6 +150,8 @@ def _step_works() -> Iterator[_Work]:
     tree = wl.ModeHistory(wl.Ekf(wl.CoordinatedTurn(noise=_noise())), max_branches=100)
     call = _run_by_run(tree, few, polar)
     yield _Work("mode_history100_scan", OURS, "ms_per_scan", call, few[..., 0].size)
+    call = _all_runs(tree, few, polar)
+    yield _Work("mode_history100_scan", LANES, "ms_per_scan", call, few[..., 0].size)
 
 
 def _imm_run_works() -> Iterator[_Work]:

@@ -11,6 +11,7 @@
 
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
+#include "wakeline/core/pack.hpp"
 
 namespace wakeline {
 namespace {
@@ -73,6 +74,31 @@ TEST(Cholesky, ReadsTheLowerTriangleAndLeavesNothingAboveIt) {
   spoilt(0, 1) = spoilt(0, 2) = spoilt(1, 2) = kNan;
   EXPECT_TRUE(matrices_identical(Cholesky<3>(spoilt).lower(), Cholesky<3>(a).lower()));
   EXPECT_EQ(Cholesky<3>(a).lower()(0, 2), 0.0);
+}
+
+TEST(Cholesky, OfALaneIsThatOfItsMatrix) {
+  using Lanes = Pack<double, kNativeLanes<double>>;
+  Draw draw(2);
+  Mat<double, 4, 4> each[kNativeLanes<double>];
+  for (auto& matrix : each) matrix = draw.definite<4>();
+  each[1](3, 3) = -1.0;
+  Mat<Lanes, 4, 4> all;
+  for (int k = 0; k < 16; ++k)
+    all.data()[k] = Lanes::of([&](int of_lane) { return each[of_lane].data()[k]; });
+  const Cholesky<4, Lanes> factors(all);
+  for (int of_lane = 0; of_lane < kNativeLanes<double>; ++of_lane) {
+    const Cholesky<4> one = factors.of_lane(of_lane), expected(each[of_lane]);
+    ASSERT_EQ(one.ok(), expected.ok()) << of_lane;
+    if (!one.ok()) continue;
+    EXPECT_TRUE(matrices_near(one.lower(), expected.lower()));
+    Vec<Lanes, 4> v;  // several vectors, of one matrix
+    for (int k = 0; k < 4; ++k) v[k] = Lanes::of([&](int i) { return k - 2.0 * i; });
+    for (int i = 0; i < kNativeLanes<double>; ++i) {
+      const Vec<double, 4> alone(v[0][i], v[1][i], v[2][i], v[3][i]);
+      const double norm = expected.squared_norm(alone);
+      EXPECT_NEAR(one.squared_norms(v)[i], norm, 1e-12 * norm);
+    }
+  }
 }
 
 TEST(Cholesky, RefusesWhatIsNotPositiveDefinite) {

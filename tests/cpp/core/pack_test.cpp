@@ -196,6 +196,80 @@ TYPED_TEST(PackOf, BitsAreTheNumbers) {
 }
 
 // Of small integers, so that sums are exact in whatever order and with whatever instructions.
+TYPED_TEST(PackOf, NumbersInARowAreReadAndWritten) {
+  using Real = RealOf<TypeParam>;
+  constexpr int kLanes = kLanesOf<TypeParam>;
+  Real row[kLanes + 1], copy[kLanes + 1] = {};
+  for (int k = 0; k <= kLanes; ++k) row[k] = Real(k * k - 3);
+  const TypeParam pack = load<TypeParam>(row + 1);  // wherever they lie
+  store(pack, copy + 1);
+  for (int k = 0; k < kLanes; ++k) {
+    EXPECT_EQ(lane(pack, k), row[k + 1]);
+    EXPECT_EQ(copy[k + 1], row[k + 1]);
+    EXPECT_EQ(lanes_of<TypeParam>([&](int of_lane) { return row[of_lane + 1]; })[k], row[k + 1]);
+  }
+  EXPECT_EQ(copy[0], Real(0));
+}
+
+TYPED_TEST(PackOf, SumAndExtremesAreOfAllLanes) {
+  using Real = RealOf<TypeParam>;
+  constexpr int kLanes = kLanesOf<TypeParam>;
+  for (int greatest = 0; greatest < kLanes; ++greatest) {
+    const auto pack = TypeParam::of([&](int k) { return Real(k == greatest ? 100 : -k); });
+    Real sum = Real(0), least = Real(100);
+    for (int k = 0; k < kLanes; ++k) {
+      sum += pack[k];
+      least = std::min(least, pack[k]);
+    }
+    EXPECT_EQ(sum_of_lanes(pack), sum);
+    EXPECT_EQ(least_of_lanes(pack), least);
+    EXPECT_EQ(greatest_of_lanes(pack), Real(100));
+    EXPECT_EQ(sum_to<Real>(pack), sum);
+    EXPECT_EQ(sum_to<TypeParam>(pack)[0], pack[0]) << "each lane for itself";
+    EXPECT_EQ(bits_of(pack == TypeParam(100)), 1u << greatest);
+    EXPECT_EQ(bits_of(!(pack == TypeParam(100))), ((1u << kLanes) - 1) & ~(1u << greatest));
+  }
+}
+
+TYPED_TEST(PackOf, RowsBecomeColumns) {
+  using Real = RealOf<TypeParam>;
+  constexpr int kLanes = kLanesOf<TypeParam>;
+  TypeParam rows[kLanes];
+  for (int row = 0; row < kLanes; ++row)
+    rows[row] = TypeParam::of([&](int column) { return Real(100 * row + column); });
+  transpose(rows);
+  for (int row = 0; row < kLanes; ++row)
+    for (int column = 0; column < kLanes; ++column)
+      EXPECT_EQ(rows[row][column], Real(100 * column + row));
+}
+
+template <int Size, class PackType>
+void expect_gathered_and_scattered() {
+  using Real = RealOf<PackType>;
+  constexpr int kLanes = kLanesOf<PackType>;
+  Real from[kLanes][Size], to[kLanes][Size] = {};
+  for (int of_lane = 0; of_lane < kLanes; ++of_lane)
+    for (int k = 0; k < Size; ++k) from[of_lane][k] = Real(100 * of_lane + k + 1);
+  PackType packs[Size];
+  gather_lanes<Size>([&](int of_lane) { return from[of_lane]; }, packs);
+  for (int of_lane = 0; of_lane < kLanes; ++of_lane)
+    for (int k = 0; k < Size; ++k) EXPECT_EQ(packs[k][of_lane], from[of_lane][k]);
+  for (int count = 1; count <= kLanes; ++count) {
+    std::fill_n(&to[0][0], kLanes * Size, Real(0));
+    scatter_lanes<Size>(packs, count, [&](int of_lane) { return to[of_lane]; });
+    for (int of_lane = 0; of_lane < kLanes; ++of_lane)
+      for (int k = 0; k < Size; ++k)
+        EXPECT_EQ(to[of_lane][k], of_lane < count ? from[of_lane][k] : Real(0));
+  }
+}
+
+TYPED_TEST(PackOf, ArraysAreGatheredIntoLanesAndScatteredBack) {
+  expect_gathered_and_scattered<1, TypeParam>();
+  expect_gathered_and_scattered<4, TypeParam>();
+  expect_gathered_and_scattered<16, TypeParam>();
+  expect_gathered_and_scattered<25, TypeParam>();
+}
+
 TYPED_TEST(PackOf, MatricesAreThoseOfEachLane) {
   using Real = RealOf<TypeParam>;
   std::mt19937 generator(1);

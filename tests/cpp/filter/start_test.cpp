@@ -8,6 +8,7 @@
 #include "support/matrix_assert.hpp"
 #include "wakeline/core/chi_square.hpp"
 #include "wakeline/filter/ekf.hpp"
+#include "wakeline/filter/ukf.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
@@ -16,6 +17,7 @@ namespace wakeline {
 namespace {
 
 using test::Draw;
+using test::matrices_identical;
 using test::matrices_near;
 
 TEST(TwoPoint, ErrorsAreThoseItClaims) {
@@ -75,6 +77,38 @@ TEST(TwoPoint, OfTwoPlotsAtOneTimeIsRefusedByTheStart) {
                                   Vec<double, 2>(1000 + separation, 1), 0.0)),
               Status::kNotFinite);
   EXPECT_FALSE(ekf.started());
+}
+
+// An unscented filter keeps the factor of its covariance for the next step.
+TEST(Assign, OfItsOwnBeliefChangesNoBit) {
+  const RangeBearing radar{.range_std_m = 20, .bearing_std_rad = deg(0.5)};
+  const auto expect_same = [&](auto filter) {
+    Gaussian<4> begin;
+    begin.mean << 3000, -8, 4000, 6;
+    begin.covariance.diagonal() << 400, 9, 400, 9;
+    ASSERT_EQ(filter.start(begin), Status::kOk);
+    auto assigned = filter;
+    Draw draw(24);
+    for (int scan = 0; scan < 20; ++scan) {
+      ASSERT_EQ(filter.predict(2.5), Status::kOk);
+      (void)assigned.assign(Gaussian(assigned.estimate()));
+      ASSERT_EQ(assigned.predict(2.5), Status::kOk);
+      const Vec<double, 2> z(5000 + 20 * draw.normal(), 0.93 + 0.01 * draw.normal());
+      ASSERT_TRUE(filter.update(radar, z));
+      (void)assigned.assign(Gaussian(assigned.estimate()));
+      ASSERT_TRUE(assigned.update(radar, z));
+      EXPECT_TRUE(matrices_identical(assigned.estimate().mean, filter.estimate().mean));
+      EXPECT_TRUE(matrices_identical(assigned.estimate().covariance, filter.estimate().covariance));
+    }
+    // What replaces the belief replaces the factor, too.
+    ASSERT_EQ(filter.start(begin), Status::kOk);
+    ASSERT_EQ(assigned.start(begin), Status::kOk);
+    EXPECT_EQ(filter.update(radar, Vec<double, 2>(5000, 0.93)).nis,
+              assigned.compare(radar, radar.observe(Vec<double, 2>(5000, 0.93))).nis);
+    EXPECT_FALSE(matrices_identical(assigned.estimate().covariance, filter.estimate().covariance));
+  };
+  expect_same(Ukf<CoordinatedTurnRate>(CoordinatedTurnRate{}));
+  expect_same(Ekf<CoordinatedTurnRate>(CoordinatedTurnRate{}));
 }
 
 TEST(OnePoint, IsThePlotAtRest) {

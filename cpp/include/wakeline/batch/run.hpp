@@ -72,15 +72,11 @@ class RunLanes {
   /// Number k of `size` that each run has at a scan.
   [[nodiscard]] Scalar load(const double* from, std::size_t size, std::size_t scan,
                             std::size_t k) const noexcept {
-    const auto of_lane = [&](int lane) {
+    return lanes_of<Scalar>([&](int lane) {
       const std::size_t run =
           first_ + std::min<std::size_t>(static_cast<std::size_t>(lane), used_ - 1);
       return RealOf<Scalar>(from[(run * scans_ + scan) * size + k]);
-    };
-    if constexpr (kLanes == 1)
-      return of_lane(0);
-    else
-      return Scalar::of(of_lane);
+    });
   }
 
   void store(std::uint8_t* to, std::size_t scan, const StatusOf<Scalar>& status) const noexcept {
@@ -224,7 +220,7 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
         step.innovation[m] = select(done, taken.innovation[m], kNaN);
       step.nis = select(done, taken.nis, kNaN);
       step.log_likelihood = select(done, taken.log_likelihood, kNaN);
-      step.status = status_where(missed, StatusOf<Scalar>(Status::kMissed), taken.status);
+      step.status = select(missed, step.status, taken.status);
     }
     status = first_failure(status, step.status);
 

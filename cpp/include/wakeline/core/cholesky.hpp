@@ -24,6 +24,9 @@ class Cholesky {
   /// Factorises another matrix.
   void compute(const Mat<Scalar, N, N>& matrix) noexcept {
     ok_ = true;
+    unroll_lower<N>([&](int row, int column) {
+      if (row > column) lower_(column, row) = Scalar(0);
+    });
     if constexpr (N == 2) {
       compute_2x2(matrix(0, 0), matrix(1, 0), matrix(1, 1));
       return;
@@ -60,17 +63,28 @@ class Cholesky {
     return right;
   }
 
-  /// vᵀ A⁻¹ v.
-  Scalar squared_norm(const Vec<Scalar, N>& v) const noexcept {
-    Scalar whitened[N];
-    Scalar norm = Scalar(0);
+  /// vᵀ A⁻¹ v; `squared_norms` of a v in each lane.
+  Scalar squared_norm(const Vec<Scalar, N>& v) const noexcept { return squared_norms(v); }
+  template <class Lanes>
+  Lanes squared_norms(const Vec<Lanes, N>& v) const noexcept {
+    Lanes whitened[N];
+    Lanes norm = Lanes(0);
     for (int row = 0; row < N; ++row) {
-      Scalar sum = v[row];
-      for (int k = 0; k < row; ++k) sum -= lower_(row, k) * whitened[k];
-      whitened[row] = sum * inverse_diagonal_[row];
+      Lanes sum = v[row];
+      for (int k = 0; k < row; ++k) sum -= Lanes(lower_(row, k)) * whitened[k];
+      whitened[row] = sum * Lanes(inverse_diagonal_[row]);
       norm += whitened[row] * whitened[row];
     }
     return norm;
+  }
+
+  /// That of one lane.
+  [[nodiscard]] Cholesky<N, RealOf<Scalar>> of_lane(int k) const noexcept {
+    Cholesky<N, RealOf<Scalar>> one;
+    one.ok_ = (bits_of(ok_) >> k & 1u) != 0;
+    unroll<N>([&](int i) { one.inverse_diagonal_[i] = lane(inverse_diagonal_[i], k); });
+    unroll<N * N>([&](int i) { one.lower_.data()[i] = lane(lower_.data()[i], k); });
+    return one;
   }
 
   /// B L⁻ᵀ: whitens the rows of B.
@@ -126,6 +140,9 @@ class Cholesky {
   }
 
  private:
+  template <int, class>
+  friend class Cholesky;
+
   static MaskOf<Scalar> is_variance(Scalar pivot) noexcept {
     return pivot > Scalar(0) && pivot <= Scalar(std::numeric_limits<RealOf<Scalar>>::max());
   }
@@ -144,8 +161,8 @@ class Cholesky {
     lower_(1, 1) = determinant * inverse_root * inverse_diagonal_[0];
   }
 
-  Mat<Scalar, N, N> lower_ = Mat<Scalar, N, N>::Zero();
-  Vec<Scalar, N> inverse_diagonal_ = Vec<Scalar, N>::Zero();
+  Mat<Scalar, N, N> lower_;
+  Vec<Scalar, N> inverse_diagonal_;
   MaskOf<Scalar> ok_ = false;
 };
 
@@ -188,10 +205,7 @@ template <int N, class Scalar>
 StatusOf<Scalar> check(const Gaussian<N, Scalar>& belief) noexcept {
   using std::abs;
   Scalar largest = abs(belief.covariance(0, 0));
-  for (int k = 1; k < N; ++k) {
-    const Scalar next = abs(belief.covariance(k, k));
-    largest = select(next > largest, next, largest);
-  }
+  for (int k = 1; k < N; ++k) largest = at_least(Scalar(abs(belief.covariance(k, k))), largest);
   const Scalar tolerance =
       RealOf<Scalar>(64) * std::numeric_limits<RealOf<Scalar>>::epsilon() * largest;
   MaskOf<Scalar> valid = true;

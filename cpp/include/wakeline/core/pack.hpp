@@ -10,12 +10,14 @@
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
 
 #include "wakeline/core/scalar.hpp"
+#include "wakeline/core/unroll.hpp"
 
 // What is compiled for one instruction set never meets what is compiled for another, because the
 // names differ.
@@ -65,26 +67,27 @@ class PackMask {
   friend PackMask operator||(PackMask a, PackMask b) noexcept { return PackMask(a.raw | b.raw); }
   friend PackMask operator!(PackMask a) noexcept { return PackMask(~a.raw); }
 
-  friend bool any(PackMask mask) noexcept {
+  /// Bit k is lane k.
+  friend unsigned bits_of(PackMask mask) noexcept {
     constexpr int kBytes = int(sizeof(Raw));
+    constexpr bool kDouble = sizeof(Real) == 8;
 #if defined(__AVX512DQ__)
-    if constexpr (kBytes == 64) {
-      if constexpr (sizeof(Real) == 8)
-        return _mm512_movepi64_mask((__m512i)mask.raw) != 0;
-      else
-        return _mm512_movepi32_mask((__m512i)mask.raw) != 0;
-    }
+    if constexpr (kBytes == 64 && kDouble) return _mm512_movepi64_mask((__m512i)mask.raw);
+    if constexpr (kBytes == 64 && !kDouble) return _mm512_movepi32_mask((__m512i)mask.raw);
 #endif
 #if defined(__AVX__)
-    if constexpr (kBytes == 32) return _mm256_movemask_ps((__m256)mask.raw) != 0;
+    if constexpr (kBytes == 32 && kDouble) return unsigned(_mm256_movemask_pd((__m256d)mask.raw));
+    if constexpr (kBytes == 32 && !kDouble) return unsigned(_mm256_movemask_ps((__m256)mask.raw));
 #endif
 #if defined(__SSE2__)
-    if constexpr (kBytes == 16) return _mm_movemask_ps((__m128)mask.raw) != 0;
+    if constexpr (kBytes == 16 && kDouble) return unsigned(_mm_movemask_pd((__m128d)mask.raw));
+    if constexpr (kBytes == 16 && !kDouble) return unsigned(_mm_movemask_ps((__m128)mask.raw));
 #endif
-    Integer bits = 0;
-    for (int k = 0; k < Lanes; ++k) bits |= mask.raw[k];
-    return bits != 0;
+    unsigned bits = 0;
+    for (int k = 0; k < Lanes; ++k) bits |= unsigned(mask.raw[k] & 1) << k;
+    return bits;
   }
+  friend bool any(PackMask mask) noexcept { return bits_of(mask) != 0; }
   friend bool none(PackMask mask) noexcept { return !any(mask); }
   friend bool all(PackMask mask) noexcept { return !any(!mask); }
 };
@@ -117,7 +120,12 @@ class Pack {
     return pack;
   }
 
-  /// Writes the numbers in a row.
+  /// Reads numbers in a row, and writes them.
+  static Pack load(const Real* from) noexcept {
+    Pack pack;
+    std::memcpy(&pack.raw, from, sizeof pack.raw);
+    return pack;
+  }
   friend void store(Pack a, Real* to) noexcept { std::memcpy(to, &a.raw, sizeof a.raw); }
 
   [[nodiscard]] Real operator[](int lane) const noexcept { return raw[lane]; }
@@ -201,6 +209,18 @@ class Pack {
   }
 
   friend Real lane(Pack a, int k) noexcept { return a.raw[k]; }
+  // In the order of the lanes, so that the result is the same on every machine.
+  friend Real sum_of_lanes(Pack a) noexcept {
+    Real sum = a.raw[0];
+    for (int k = 1; k < Lanes; ++k) sum += a.raw[k];
+    return sum;
+  }
+  friend Real least_of_lanes(Pack a) noexcept {
+    Real least = a.raw[0];
+    for (int k = 1; k < Lanes; ++k) least = a.raw[k] < least ? a.raw[k] : least;
+    return least;
+  }
+  friend Real greatest_of_lanes(Pack a) noexcept { return -least_of_lanes(-a); }
 
   /// The numbers as integers, bit by bit.
   [[nodiscard]] typename Mask::Raw bits() const noexcept { return (typename Mask::Raw)raw; }
@@ -249,6 +269,74 @@ class Pack {
   }
 };
 
+template <int... From, class Raw, class Integers>
+[[gnu::always_inline]] inline Raw shuffled(Raw a, Raw b, Integers) noexcept {
+#if defined(__clang__)
+  return __builtin_shufflevector(a, b, From...);
+#else
+  return __builtin_shuffle(a, b, Integers{From...});
+#endif
+}
+
+/// Swaps the blocks of `Size` x `Size` numbers off the diagonal of each block twice as large.
+template <int Size, class Real, int Lanes, int... Lane>
+[[gnu::always_inline]] inline void swap_blocks(Pack<Real, Lanes>* rows,
+                                               std::integer_sequence<int, Lane...>) noexcept {
+  using Integers = typename PackMask<Real, Lanes>::Raw;
+  unroll<Lanes>([&](auto row) {
+    if constexpr ((row.value & Size) == 0) {
+      auto& upper = rows[row.value].raw;
+      auto& lower = rows[row.value + Size].raw;
+      const auto a = upper, b = lower;
+      upper = shuffled<((Lane & Size) ? Lanes + Lane - Size : Lane)...>(a, b, Integers{});
+      lower = shuffled<((Lane & Size) ? Lanes + Lane : Lane + Size)...>(a, b, Integers{});
+    }
+  });
+}
+
+/// As many rows as there are lanes become columns.
+template <class Real, int Lanes>
+[[gnu::always_inline]] inline void transpose(Pack<Real, Lanes> (&rows)[Lanes]) noexcept {
+  constexpr std::make_integer_sequence<int, Lanes> kLanes{};
+  swap_blocks<1>(rows, kLanes);
+  if constexpr (Lanes > 2) swap_blocks<2>(rows, kLanes);
+  if constexpr (Lanes > 4) swap_blocks<4>(rows, kLanes);
+  if constexpr (Lanes > 8) swap_blocks<8>(rows, kLanes);
+  static_assert(Lanes <= 16);
+}
+
+/// Pack k is number k of the arrays that `array(lane)` gives.
+template <int Size, class Real, int Lanes, class Array>
+[[gnu::always_inline]] inline void gather_lanes(const Array& array,
+                                                Pack<Real, Lanes>* packs) noexcept {
+  constexpr int kWhole = Size / Lanes * Lanes;
+  unroll<Size / Lanes>([&](auto block) {
+    Pack<Real, Lanes> rows[Lanes];
+    unroll<Lanes>(
+        [&](int k) { rows[k] = Pack<Real, Lanes>::load(array(k) + block.value * Lanes); });
+    transpose(rows);
+    unroll<Lanes>([&](int k) { packs[block.value * Lanes + k] = rows[k]; });
+  });
+  unroll<Size - kWhole>([&](int k) {
+    packs[kWhole + k] = Pack<Real, Lanes>::of([&](int lane) { return array(lane)[kWhole + k]; });
+  });
+}
+
+/// The reverse, for the first `count` lanes.
+template <int Size, class Real, int Lanes, class Array>
+[[gnu::always_inline]] inline void scatter_lanes(const Pack<Real, Lanes>* packs, int count,
+                                                 const Array& array) noexcept {
+  constexpr int kWhole = Size / Lanes * Lanes;
+  unroll<Size / Lanes>([&](auto block) {
+    Pack<Real, Lanes> rows[Lanes];
+    unroll<Lanes>([&](int k) { rows[k] = packs[block.value * Lanes + k]; });
+    transpose(rows);
+    for (int k = 0; k < count; ++k) store(rows[k], array(k) + block.value * Lanes);
+  });
+  for (int k = 0; k < count; ++k)
+    unroll<Size - kWhole>([&](int i) { array(k)[kWhole + i] = lane(packs[kWhole + i], k); });
+}
+
 }  // namespace WAKELINE_INSTRUCTION_SET
 
 template <class Number, int Lanes>
@@ -256,6 +344,14 @@ struct ScalarTraits<Pack<Number, Lanes>> {
   using Real = Number;
   using Mask = PackMask<Number, Lanes>;
   static constexpr int kLanes = Lanes;
+
+  template <class Function>
+  static Pack<Number, Lanes> of(const Function& number) noexcept {
+    return Pack<Number, Lanes>::of(number);
+  }
+  static Pack<Number, Lanes> load(const Number* from) noexcept {
+    return Pack<Number, Lanes>::load(from);
+  }
 };
 
 }  // namespace wakeline

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "wakeline/core/unroll.hpp"
+
 namespace wakeline {
 
 /// What the rest of the library asks of a type of numbers: `float`, `double`, or a pack of them,
@@ -13,6 +15,12 @@ struct ScalarTraits {
   using Real = Scalar;              ///< one number of it
   using Mask = bool;                ///< what a comparison gives
   static constexpr int kLanes = 1;  ///< numbers in it
+
+  template <class Function>
+  static Scalar of(const Function& number) noexcept {
+    return number(0);
+  }
+  static Scalar load(const Real* from) noexcept { return *from; }
 };
 
 template <class Scalar>
@@ -45,10 +53,59 @@ Scalar inverse_sqrt(Scalar x) noexcept {
   return Scalar(1) / sqrt(x);
 }
 
+/// Lane k is `number(k)`.
+template <class Scalar, class Function>
+Scalar lanes_of(const Function& number) noexcept {
+  return ScalarTraits<Scalar>::of(number);
+}
+
+/// Reads a number, or as many as there are lanes in a row.
+template <class Scalar>
+Scalar load(const RealOf<Scalar>* from) noexcept {
+  return ScalarTraits<Scalar>::load(from);
+}
+
+/// Scalar k is number k of the arrays that `array(lane)` gives; and the reverse, for the first
+/// `count` lanes.
+template <int Size, class Scalar, class Array>
+[[gnu::always_inline]] inline void gather_lanes(const Array& array, Scalar* to) noexcept {
+  unroll<Size>([&](int k) { to[k] = array(0)[k]; });
+}
+template <int Size, class Scalar, class Array>
+[[gnu::always_inline]] inline void scatter_lanes(const Scalar* from, int,
+                                                 const Array& array) noexcept {
+  unroll<Size>([&](int k) { array(0)[k] = from[k]; });
+}
+
+/// Over all lanes.
+template <class Scalar>
+requires(kLanesOf<Scalar> == 1) constexpr Scalar sum_of_lanes(Scalar x) noexcept { return x; }
+template <class Scalar>
+requires(kLanesOf<Scalar> == 1) constexpr Scalar least_of_lanes(Scalar x) noexcept { return x; }
+template <class Scalar>
+requires(kLanesOf<Scalar> == 1) constexpr Scalar greatest_of_lanes(Scalar x) noexcept { return x; }
+
+/// The same where `Result` is one number; else each lane for itself.
+template <class Result, class Scalar>
+Result sum_to(Scalar x) noexcept {
+  if constexpr (kLanesOf<Result> == kLanesOf<Scalar>)
+    return x;
+  else
+    return sum_of_lanes(x);
+}
+template <class Result, class Scalar>
+Result least_to(Scalar x) noexcept {
+  if constexpr (kLanesOf<Result> == kLanesOf<Scalar>)
+    return x;
+  else
+    return least_of_lanes(x);
+}
+
 /// Over the lanes of a mask, of which a `bool` has one.
 constexpr bool all(bool mask) noexcept { return mask; }
 constexpr bool any(bool mask) noexcept { return mask; }
 constexpr bool none(bool mask) noexcept { return !mask; }
+constexpr unsigned bits_of(bool mask) noexcept { return mask; }  ///< bit k is lane k
 
 /// Writes a number, or as many as there are lanes in a row.
 template <class Scalar>

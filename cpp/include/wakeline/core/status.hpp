@@ -65,15 +65,15 @@ class LaneStatus {
     return status.code_ == Scalar(double(code));
   }
   friend MaskOf<Scalar> ok(const LaneStatus& status) noexcept { return status.code_ == Scalar(0); }
+  friend LaneStatus select(const MaskOf<Scalar>& condition, const LaneStatus& a,
+                           const LaneStatus& b) noexcept {
+    return LaneStatus(select(condition, a.code_, b.code_));
+  }
   friend LaneStatus first_failure(const LaneStatus& a, const LaneStatus& b) noexcept {
-    return LaneStatus(select(ok(a), b.code_, a.code_));
+    return select(ok(a), b, a);
   }
   friend Status lane(const LaneStatus& status, int k) noexcept {
     return static_cast<Status>(lane(status.code_, k));
-  }
-  static LaneStatus where(const MaskOf<Scalar>& mask, const LaneStatus& a,
-                          const LaneStatus& b) noexcept {
-    return LaneStatus(select(mask, a.code_, b.code_));
   }
 
  private:
@@ -86,23 +86,12 @@ template <class Real, int Lanes>
 LaneStatus<Pack<Real, Lanes>> ok_or(const PackMask<Real, Lanes>& condition,
                                     Status otherwise) noexcept {
   using Result = LaneStatus<Pack<Real, Lanes>>;
-  return Result::where(condition, Status::kOk, otherwise);
+  return select(condition, Result(Status::kOk), Result(otherwise));
 }
 
 /// `Status`, or one for each lane.
 template <class Scalar>
 using StatusOf = std::conditional_t<kLanesOf<Scalar> == 1, Status, LaneStatus<Scalar>>;
-
-/// `a` where the condition holds, else `b`.
-constexpr Status status_where(bool condition, Status a, Status b) noexcept {
-  return condition ? a : b;
-}
-template <class Real, int Lanes>
-LaneStatus<Pack<Real, Lanes>> status_where(const PackMask<Real, Lanes>& condition,
-                                           const LaneStatus<Pack<Real, Lanes>>& a,
-                                           const LaneStatus<Pack<Real, Lanes>>& b) noexcept {
-  return LaneStatus<Pack<Real, Lanes>>::where(condition, a, b);
-}
 
 /// What one measurement update has found; converts to true when it succeeded.
 template <int M, class Scalar = double>
@@ -159,31 +148,25 @@ struct [[nodiscard]] Correction {
   }
 };
 
-/// A step that has failed, and why, in the lanes told.
-template <int M, class Scalar>
-Step<M, Scalar> failed_where(const MaskOf<Scalar>& lanes, const StatusOf<Scalar>& why,
-                             const Step<M, Scalar>& step) noexcept {
-  Step<M, Scalar> result;
-  if constexpr (kLanesOf<Scalar> == 1) {
-    result.status = why;
-    return lanes ? result : step;
-  } else {
-    result.status = StatusOf<Scalar>::where(lanes, why, step.status);
-    const MaskOf<Scalar> kept = !lanes;
-    assign_where(kept, result.innovation, step.innovation);
-    assign_where(kept, result.innovation_covariance, step.innovation_covariance);
-    result.nis = select(kept, step.nis, result.nis);
-    result.log_likelihood = select(kept, step.log_likelihood, result.log_likelihood);
-    return result;
-  }
-}
-
 /// A step that could not be done, and why.
 template <int M, class Scalar>
 Step<M, Scalar> failed_step(const StatusOf<Scalar>& status) noexcept {
   Step<M, Scalar> step;
   step.status = status;
   return step;
+}
+
+/// A step that has failed, and why, in the lanes told.
+template <int M, class Scalar>
+Step<M, Scalar> failed_where(const MaskOf<Scalar>& lanes, const StatusOf<Scalar>& why,
+                             const Step<M, Scalar>& step) noexcept {
+  Step<M, Scalar> result = failed_step<M, Scalar>(select(lanes, why, step.status));
+  const MaskOf<Scalar> kept = !lanes;
+  assign_where(kept, result.innovation, step.innovation);
+  assign_where(kept, result.innovation_covariance, step.innovation_covariance);
+  result.nis = select(kept, step.nis, result.nis);
+  result.log_likelihood = select(kept, step.log_likelihood, result.log_likelihood);
+  return result;
 }
 
 }  // namespace wakeline

@@ -94,12 +94,12 @@ class Ekf : public Belief<MotionType, ScalarType> {
     Gaussian<kStates, Scalar> next = belief;
     shift(next.mean, gain, innovation.whitened);
     subtract_gram(next.covariance, gain);
-    if (all(taken) && none(cancels<Scalar, kStates>(belief.covariance, next.covariance)))
-        [[likely]] {
+    const auto lost = cancels<Scalar, kStates>(belief.covariance, next.covariance);
+    if (all(taken) && none(lost)) [[likely]] {
       copy(next, belief);
     } else {
       Gaussian<kStates, Scalar> posterior = next;  // so that the other one stays in registers
-      take_with_care(posterior, innovation, reading.covariance, gain, taken);
+      take_with_care(posterior, innovation, reading.covariance, gain, taken, lost);
     }
     return correction;
   }
@@ -165,19 +165,17 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return status;
   }
 
-  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which that cancels.
+  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which it is lost.
   template <class Sensor>
   [[gnu::cold, gnu::noinline]] void take_with_care(
       Gaussian<kStates, Scalar>& posterior, const Innovation<Sensor>& innovation,
       const Mat<Scalar, Sensor::kMeasurements, Sensor::kMeasurements>& r,
       const Mat<Scalar, kStates, Sensor::kMeasurements>& gain,
-      const MaskOf<Scalar>& taken) noexcept {
-    Gaussian<kStates, Scalar>& belief = this->belief_;
-    const auto lost = cancels<Scalar, kStates>(belief.covariance, posterior.covariance);
+      const MaskOf<Scalar>& taken, const MaskOf<Scalar>& lost) noexcept {
     if (any(lost))
       assign_where(lost, posterior.covariance,
                    joseph<Sensor>(innovation.h, innovation.factor.unwhiten_rows(gain), r));
-    assign_where(taken, belief, posterior);
+    assign_where(taken, this->belief_, posterior);
   }
 
   /// (I - K H) P (I - K H)ᵀ + K R Kᵀ.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <utility>
+
 #include "wakeline/filter/unscented.hpp"
 
 namespace wakeline {
@@ -28,22 +30,43 @@ class Ukf : public Belief<MotionType, ScalarType> {
 
   [[nodiscard]] const Unscented& unscented() const noexcept { return unscented_; }
 
+  /// As of `Belief`: what replaces the belief.
+  template <class StartType>
+  requires requires(Base& base, const StartType& belief) { base.start(belief); }
+  StatusOf<Scalar> start(const StartType& belief) noexcept {
+    rooted_ = false;
+    return Base::start(belief);
+  }
+  StatusOf<Scalar> assign(const Gaussian<kStates, Scalar>& belief) noexcept {
+    rooted_ = false;
+    return Base::assign(belief);
+  }
+  void assign_in(const MaskOf<Scalar>& lanes, const Gaussian<kStates, Scalar>& belief) noexcept {
+    rooted_ = false;
+    Base::assign_in(lanes, belief);
+  }
+  void archive(Archive& fields) {
+    rooted_ = false;
+    Base::archive(fields);
+  }
+
   /// The moments of the moved sigma points, and Q.
   StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     if (!this->started_) return Status::kNotStarted;
     const StatusOf<Scalar> forward = check_time_step(dt_s);
     if (none(ok(forward))) return forward;
-    const Cholesky<kStates, Scalar> root(this->belief_.covariance);
+    const Cholesky<kStates, Scalar>& root = this->root();
     const Vec<Scalar, kStates>& x = this->belief_.mean;
     const MovedPoints<Scalar, kStates> moved(this->motion_, dt_s, x, points(root));
     Gaussian<kStates, Scalar> next =
         unscented_moments(unscented_, kStates, moved.centre, moved.differences);
     next.covariance += process_noise(this->motion_, x, dt_s);
     mirror_lower<Scalar, kStates>(next.covariance);
-    const StatusOf<Scalar> status = first_failure(
-        first_failure(forward, ok_or(root.ok(), Status::kNotPositiveDefinite)), check(next));
-    assign_where(ok(status), this->belief_, next);
-    return status;
+    const auto finite = is_finite(next.mean) && is_finite(next.covariance);
+    const StatusOf<Scalar> status =
+        first_failure(first_failure(forward, ok_or(root.ok(), Status::kNotPositiveDefinite)),
+                      ok_or(finite, Status::kNotFinite));
+    return take(next, status);
   }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
@@ -79,7 +102,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
     check_sensor<Sensor, Ukf>();
     constexpr int kM = Sensor::kMeasurements;
     if (!this->started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
-    const Cholesky<kStates, Scalar> root(this->belief_.covariance);
+    const Cholesky<kStates, Scalar>& root = this->root();
     if (none(root.ok())) return failed_correction<kM, Scalar>(Status::kNotPositiveDefinite);
 
     const Mat<Scalar, kStates, kPoints> sigma = points(root);
@@ -117,14 +140,31 @@ class Ukf : public Belief<MotionType, ScalarType> {
       assign_where(
           lost, next.covariance,
           joseph(spread, images.differences, factor.unwhiten_rows(gain), reading.covariance));
-    const auto definite = root.ok() && Cholesky<kStates, Scalar>(next.covariance).ok();
-    correction.status =
-        first_failure(correction.status, ok_or(definite, Status::kNotPositiveDefinite));
-    assign_where(ok(correction.status), this->belief_, next);
+    correction.status = take(
+        next, first_failure(correction.status, ok_or(root.ok(), Status::kNotPositiveDefinite)));
     return correction;
   }
 
  private:
+  /// The factor of the covariance, which the last step may have left.
+  const Cholesky<kStates, Scalar>& root() noexcept {
+    if (!std::exchange(rooted_, true)) root_.compute(this->belief_.covariance);
+    return root_;
+  }
+
+  /// Takes a belief where nothing has failed and its covariance has a factor, which is kept.
+  StatusOf<Scalar> take(const Gaussian<kStates, Scalar>& next,
+                        const StatusOf<Scalar>& so_far) noexcept {
+    const Cholesky<kStates, Scalar> root(next.covariance);
+    const StatusOf<Scalar> status =
+        first_failure(so_far, ok_or(root.ok(), Status::kNotPositiveDefinite));
+    assign_where(ok(status), this->belief_, next);
+    rooted_ = all(ok(status));
+    if (rooted_) [[likely]]
+      root_ = root;
+    return status;
+  }
+
   /// P - K S Kᵀ as what the points keep of their spread, Σ w (e_x - K e_z)(e_x - K e_z)ᵀ, with K of
   /// the rest of S.
   template <int M>
@@ -155,6 +195,8 @@ class Ukf : public Belief<MotionType, ScalarType> {
   }
 
   Unscented unscented_;
+  Cholesky<kStates, Scalar> root_;
+  bool rooted_ = false;  ///< whether that is of the belief
 };
 
 }  // namespace wakeline

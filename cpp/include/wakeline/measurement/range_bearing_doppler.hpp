@@ -93,7 +93,7 @@ struct RangeBearingDoppler {
       using std::sqrt;
       const Vec<Scalar, 2> d = position - own.position<Scalar>();
       const Scalar distance = sqrt(d.squaredNorm());
-      range = select(distance > Scalar(kMinRange_m), distance, Scalar(kMinRange_m));
+      range = at_least(distance, Scalar(kMinRange_m));
       line_of_sight = d / range;
     }
   };

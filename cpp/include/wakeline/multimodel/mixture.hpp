@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/require.hpp"
@@ -72,62 +73,71 @@ Scalar part_of(Scalar part, Scalar total, Scalar scale) noexcept {
 
 /// Bayes' rule for the parts of a mixture: weights become weight times likelihood over their sum.
 /// Returns the logarithm of that sum; `kImpossible`, and nothing changed, where no part is
-/// possible. `likelihood_of(k)` gives that of a part, of which there are at most `Capacity`.
-template <std::size_t Capacity, class Scalar, class LikelihoodOf>
-Scalar reweigh(std::span<Scalar> weights, const LikelihoodOf& likelihood_of) noexcept {
+/// possible. `likelihood_of(k)` gives that of a part, of which there are at most `Capacity`. Where
+/// the parts are packs and `Scalar` is one number, so are all lanes of all parts.
+template <std::size_t Capacity, class Scalar, class Part = Scalar, class LikelihoodOf>
+Scalar reweigh(std::span<Part> weights, const LikelihoodOf& likelihood_of) noexcept {
   using std::exp, std::log;
-  std::array<Scalar, Capacity> likely;
-  Scalar nearest = std::numeric_limits<RealOf<Scalar>>::infinity();
+  std::array<Part, Capacity> likely;
+  Part nearest_part = std::numeric_limits<RealOf<Part>>::infinity();
   for (std::size_t k = 0; k < weights.size(); ++k) {
-    const Likelihood<Scalar> likelihood = likelihood_of(k);
+    const Likelihood<Part> likelihood = likelihood_of(k);
     likely[k] = weights[k] * likelihood.peak;
-    nearest = select(likely[k] > Scalar(0) && likelihood.nis < nearest, likelihood.nis, nearest);
+    nearest_part =
+        select(likely[k] > Part(0) && likelihood.nis < nearest_part, likelihood.nis, nearest_part);
   }
-  Scalar total = Scalar(0);
+  const Scalar nearest = least_to<Scalar>(nearest_part);
+  Part sum = Part(0);
   for (std::size_t k = 0; k < weights.size(); ++k) {
     // Where the prior is zero the likelihood may be beyond exp: 0 times infinity is 0 here.
-    const Scalar nearness = exp((nearest - likelihood_of(k).nis) / 2);
-    likely[k] = select(likely[k] > Scalar(0), likely[k] * nearness, Scalar(0));
-    total += likely[k];
+    const Part nearness = exp((Part(nearest) - likelihood_of(k).nis) / 2);
+    likely[k] = select(likely[k] > Part(0), likely[k] * nearness, Part(0));
+    sum += likely[k];
   }
+  const Scalar total = sum_to<Scalar>(sum);
   const auto possible = total > Scalar(0);
   const Scalar scale = reciprocal(select(possible, total, Scalar(1)));
   for (std::size_t k = 0; k < weights.size(); ++k)
-    weights[k] = select(possible, part_of(likely[k], total, scale), weights[k]);
+    weights[k] = select(possible, part_of(likely[k], Part(total), Part(scale)), weights[k]);
   return select(possible, log(total) - nearest / 2, Scalar(kImpossible<Scalar>));
 }
 
 /// The step of a mixture: the innovation of the moment-matched prediction, over the parts that
-/// could be updated. Has no likelihood yet.
-template <int M, class Scalar>
-Step<M, Scalar> mixed_step(std::span<const Correction<M, Scalar>> parts,
-                           std::span<const Scalar> weights) noexcept {
+/// could be updated. Has no likelihood yet. Of packs as `reweigh`.
+template <int M, class Scalar, class Part>
+Step<M, Scalar> mixed_step(std::span<const Correction<M, Part>> parts,
+                           std::span<const std::type_identity_t<Part>> weights) noexcept {
   const auto weight_of = [&](std::size_t k) {
-    return select(ok(parts[k].status), weights[k], Scalar(0));
+    return select(ok(parts[k].status), weights[k], Part(0));
   };
-  Scalar total = Scalar(0);
-  for (std::size_t k = 0; k < parts.size(); ++k) total += weight_of(k);
+  Part sum = Part(0);
+  for (std::size_t k = 0; k < parts.size(); ++k) sum += weight_of(k);
+  const Scalar total = sum_to<Scalar>(sum);
   const Scalar scale = reciprocal(total);
-  const auto add = [](Scalar& sum, Scalar weight, Scalar part) {
-    sum += select(weight > Scalar(0), weight * part, Scalar(0));
+  const auto share_of = [&](std::size_t k) {
+    return part_of(weight_of(k), Part(total), Part(scale));
   };
+  const auto add = [](Part& to, Part weight, Part part) {
+    to += select(weight > Part(0), weight * part, Part(0));
+  };
+  Vec<Part, M> innovation = Vec<Part, M>::Zero();
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    for (int i = 0; i < M; ++i) add(innovation[i], share_of(k), parts[k].innovation[i]);
   Step<M, Scalar> mixed;
   mixed.status = Status::kOk;
-  mixed.innovation_covariance.setZero();
-  for (std::size_t k = 0; k < parts.size(); ++k)
-    for (int i = 0; i < M; ++i)
-      add(mixed.innovation[i], part_of(weight_of(k), total, scale), parts[k].innovation[i]);
+  for (int i = 0; i < M; ++i) mixed.innovation[i] = sum_to<Scalar>(innovation[i]);
+  Mat<Part, M, M> covariance = Mat<Part, M, M>::Zero();
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    const Scalar weight = part_of(weight_of(k), total, scale);
-    const Vec<Scalar, M> d = parts[k].innovation - mixed.innovation;
+    Vec<Part, M> d;
+    for (int i = 0; i < M; ++i) d[i] = parts[k].innovation[i] - Part(mixed.innovation[i]);
     for (int j = 0; j < M; ++j)
       for (int i = j; i < M; ++i)
-        add(mixed.innovation_covariance(i, j), weight,
-            parts[k].innovation_covariance(i, j) + d[i] * d[j]);
+        add(covariance(i, j), share_of(k), parts[k].innovation_covariance(i, j) + d[i] * d[j]);
   }
-  for (int j = 1; j < M; ++j)
-    for (int i = 0; i < j; ++i)
-      mixed.innovation_covariance(i, j) = mixed.innovation_covariance(j, i);
+  unroll_lower<M>([&](int i, int j) {
+    mixed.innovation_covariance(i, j) = mixed.innovation_covariance(j, i) =
+        sum_to<Scalar>(covariance(i, j));
+  });
   mixed.nis = Cholesky<M, Scalar>(mixed.innovation_covariance).squared_norm(mixed.innovation);
   return mixed;
 }
@@ -143,35 +153,47 @@ StatusOf<Scalar> failure_of(std::span<const Correction<M, Scalar>> parts) noexce
 
 /// Replaces the belief of a filter, `before`, by the mixture of what each reading makes of it, and
 /// returns the total weight of that. Adds to `share` what each reading has of it, times
-/// `weight_of_filter`.
-template <class Filter, class BeliefType, class Sensor, class Scalar>
-Scalar absorb(Filter& filter, const BeliefType& before,
-              std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
-              Scalar weight_of_filter, std::span<Scalar> share) noexcept {
-  std::array<BeliefType, kMaxAlternatives> after;
-  std::array<Scalar, kMaxAlternatives> weight{};
+/// `weight_of_filter`. Of packs as `reweigh`.
+template <class Filter, class BeliefType, class Sensor, class Scalar, class Part>
+Part absorb(Filter& filter, const BeliefType& before,
+            std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
+            Part weight_of_filter, std::span<Scalar> share) noexcept {
   const std::size_t count = std::min(readings.size(), kMaxAlternatives);
-  Scalar total = none;
+  if (count == 0) return Part(none);
+  // In one pass, as sums about the mean before.
+  BeliefType origin = before;
+  origin.covariance.setZero();
+  BeliefType mixture = zero_like(before), spread = origin;
+  const auto add = [&](Part weight, const auto& belief) {
+    add_mean(mixture, weight, belief, before);
+    add_spread(spread, weight, belief, before);
+  };
+  Part total = Part(none);
+  add(total, before);
   for (std::size_t k = 0; k < count; ++k) {
     const auto& [sensor, z, before_likelihood] = readings[k];
-    if (const auto correction = filter.correct(sensor, sensor.observe(z))) {
-      weight[k] = before_likelihood * correction.likelihood().value();
-      after[k] = filter.estimate();
-      (void)filter.assign(before);
+    const auto correction = filter.correct(sensor, sensor.observe(z).template cast<Part>());
+    const Part weight = select(ok(correction.status),
+                               Part(before_likelihood) * correction.likelihood().value(), Part(0));
+    if (any(weight > Part(0))) {
+      BeliefType after;
+      after = filter.estimate();
+      add(weight, after);
     }
-    total += weight[k];
-    share[k] += weight_of_filter * weight[k];
+    (void)filter.assign(before);
+    total += weight;
+    share[k] += sum_to<Scalar>(weight_of_filter * weight);
   }
-  if (!(total > Scalar(0))) return Scalar(0);
-  BeliefType mixture = zero_like(before);
-  add_mean(mixture, none / total, before, before);
-  for (std::size_t k = 0; k < count; ++k)
-    if (weight[k] > Scalar(0)) add_mean(mixture, weight[k] / total, after[k], before);
-  add_spread(mixture, none / total, before, before);
-  for (std::size_t k = 0; k < count; ++k)
-    if (weight[k] > Scalar(0)) add_spread(mixture, weight[k] / total, after[k], before);
+  const auto possible = total > Part(0);
+  if (!any(possible)) return Part(0);
+  const Part scale = reciprocal(select(possible, total, Part(1)));
+  mixture.mean *= scale;
+  mixture.covariance = scale * spread.covariance;
+  add_spread(mixture, Part(-1), origin, before);
+  if constexpr (kLanesOf < Part >> 1)
+    assign_where<MaskOf<Part>, BeliefType::kStates, Part>(!possible, mixture, before);
   (void)filter.assign(mixture);
-  return total;
+  return select(possible, total, Part(0));
 }
 
 }  // namespace wakeline

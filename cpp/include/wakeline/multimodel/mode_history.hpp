@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "wakeline/core/archive.hpp"
 #include "wakeline/filter/belief.hpp"
@@ -31,6 +33,10 @@ namespace wakeline {
 /// heap: at most `Capacity` hypotheses, twice. In a missed scan the mode probabilities follow the
 /// chain, as far as there is room and except for segments still too short to end.
 ///
+/// Over filters of packs (`Ekf<CoordinatedTurn, Pack<double, kNativeLanes<double>>>`) the
+/// hypotheses of a mode are filtered side by side, in the lanes of one filter; the face is that
+/// over filters of numbers, and so are the results, to rounding.
+///
 /// Source: G. A. Ackerson, K. S. Fu, IEEE Trans. AC-15, 1970 (the tree); J. K. Tugnait, Automatica
 /// 18, 1982 (detection and estimation over it); D. J. Salmond, SPIE 1305, 1990 (joining around the
 /// heaviest).
@@ -38,7 +44,8 @@ template <class FilterType, int K = kRuntimeModes, int Capacity = 256>
 class ModeHistory {
  public:
   using Filter = FilterType;
-  using Scalar = typename Filter::Scalar;
+  using Lanes = typename Filter::Scalar;  ///< of hypotheses side by side, or a number of one
+  using Scalar = RealOf<Lanes>;
   static constexpr int kModels = K;
   static constexpr auto kComponents = Filter::kComponents;
   using Bank = UniformBank<Filter, K>;
@@ -63,7 +70,8 @@ class ModeHistory {
         bank_(bank),
         initial_(Probability::Constant(bank.size(), Scalar(1) / Scalar(bank.size()))),
         probability_(initial_),
-        transition_(ModeMatrix<Scalar, K>::Zero(bank.size(), bank.size())) {
+        transition_(ModeMatrix<Scalar, K>::Zero(bank.size(), bank.size())),
+        ways_out_(ModeMatrix<int, K>::Zero(bank.size(), bank.size())) {
     if (chain.modes() != bank.size())
       throw std::invalid_argument(
           "a ModeHistory needs one mode of its chain for each filter, got " +
@@ -101,9 +109,11 @@ class ModeHistory {
     Hypotheses& next = spare();
     for (int k = 0; k < bank_.size(); ++k) {
       Filter& filter = bank_.filter(k);
-      if (const Status status = filter.start(belief); status != Status::kOk) return status;
+      if (const Status status = lane(filter.start(belief.template cast<Lanes>()), 0);
+          status != Status::kOk)
+        return status;
       Hypothesis& hypothesis = at(next, k);
-      hypothesis.belief = filter.estimate();
+      put({&k, 1, k}, filter.estimate(), next);
       hypothesis.probability = initial_[k];
       hypothesis.segment_s = std::numeric_limits<Scalar>::infinity();
       hypothesis.modes = static_cast<std::uint64_t>(k);
@@ -129,25 +139,26 @@ class ModeHistory {
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
-    const Gaussian<kM, Scalar> reading = sensor.observe(z);
-    std::array<Correction<kM, Scalar>, kCapacity> corrections;
-    std::array<Scalar, kCapacity> weights{};
+    const Gaussian<kM, Lanes> reading = sensor.observe(z).template cast<Lanes>();
+    std::array<Correction<kM, Lanes>, kMostRows> corrections;
+    std::array<Lanes, kMostRows> weights;
+    const Rows rows(hypotheses());
     Hypotheses& next = spare();
-    for (std::size_t i = 0; i < size(); ++i) {
-      next[i] = present()[i];
-      Filter& filter = filter_of(next[i]);
-      corrections[i] = filter.correct(sensor, reading);
-      if (corrections[i]) next[i].belief = filter.estimate();
-      weights[i] = next[i].probability;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const Row& row = rows[r];
+      Filter& filter = filter_of(row, present_beliefs());
+      corrections[r] = filter.correct(sensor, reading);
+      weights[r] = probability_of(row, present());
+      go_on(row, filter.estimate(), next);
     }
-    const std::span<const Correction<kM, Scalar>> taken(corrections.data(), size());
-    Step<kM, Scalar> step =
-        mixed_step<kM, Scalar>(taken, std::span<const Scalar>(weights.data(), size()));
-    step.log_likelihood = reweigh<kCapacity, Scalar>(
-        {weights.data(), size()}, [&](std::size_t i) { return taken[i].likelihood(); });
+    const std::span<const Correction<kM, Lanes>> taken(corrections.data(), rows.size());
+    const std::span<Lanes> weighed(weights.data(), rows.size());
+    Step<kM, Scalar> step = mixed_step<kM, Scalar>(taken, weighed);
+    step.log_likelihood =
+        reweigh<kMostRows, Scalar>(weighed, [&](std::size_t r) { return taken[r].likelihood(); });
     if (step.log_likelihood == kImpossible<Scalar>)
-      return failed_step<kM, Scalar>(failure_of(taken));
-    for (std::size_t i = 0; i < size(); ++i) next[i].probability = weights[i];
+      return failed_step<kM, Scalar>(first_in_lanes(failure_of(taken)));
+    for (std::size_t r = 0; r < rows.size(); ++r) set_probability(rows[r], weights[r], next);
     take(count_);
     if (!pooled()) reduce();
     return step;
@@ -157,17 +168,15 @@ class ModeHistory {
   template <class Sensor>
   [[nodiscard]] Evidence<Scalar> evidence(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
-    Evidence<Scalar> evidence;
-    const Gaussian<Sensor::kMeasurements, Scalar> reading = sensor.observe(z);
-    for (int k = 0; k < bank_.size(); ++k) {
-      Filter filter = bank_.filter(k);
-      for (const Hypothesis& hypothesis : hypotheses()) {
-        if (hypothesis.mode() != k) continue;
-        (void)filter.assign(hypothesis.belief);
-        evidence.add(hypothesis.probability, filter.compare(sensor, reading));
-      }
+    Evidence<Lanes> evidence;
+    const auto reading = sensor.observe(z).template cast<Lanes>();
+    const Rows rows(hypotheses());
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      Filter filter = bank_.filter(rows[r].mode);
+      (void)filter.assign(side_by_side(rows[r], present_beliefs()));
+      evidence.add(probability_of(rows[r], present()), filter.compare(sensor, reading));
     }
-    return evidence;
+    return {sum_to<Scalar>(evidence.likelihood), least_to<Scalar>(evidence.least_nis)};
   }
 
   /// Probabilistic data association, as of `Imm`: every hypothesis takes in all readings that may
@@ -179,13 +188,16 @@ class ModeHistory {
     if (!started_) return Scalar(0);
     Hypotheses& next = spare();
     Scalar total = Scalar(0);
-    for (std::size_t i = 0; i < size(); ++i) {
-      next[i] = present()[i];
-      Filter& filter = filter_of(next[i]);
-      next[i].probability *=
-          absorb(filter, present()[i].belief, readings, none, next[i].probability, share);
-      next[i].belief = filter.estimate();
-      total += next[i].probability;
+    const Rows rows(hypotheses());
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const LaneBelief before = side_by_side(rows[r], present_beliefs());
+      Filter& filter = bank_.filter(rows[r].mode);
+      (void)filter.assign(before);
+      const Lanes weight = probability_of(rows[r], present());
+      const Lanes posterior = weight * absorb(filter, before, readings, none, weight, share);
+      total += sum_to<Scalar>(posterior);
+      go_on(rows[r], filter.estimate(), next);
+      set_probability(rows[r], posterior, next);
     }
     if (!(total > Scalar(0)) || !std::isfinite(total)) return Scalar(0);
     for (Scalar& part : share) part /= total;
@@ -248,6 +260,130 @@ class ModeHistory {
   using Hypotheses = std::array<Hypothesis, kCapacity>;
   using Indices = std::array<int, kCapacity>;
 
+  using LaneBelief = StateBelief<kComponents, Lanes>;
+  static constexpr int kLanes = kLanesOf<Lanes>;
+  static constexpr int kStates = BeliefType::kStates;
+  static constexpr std::size_t kMostRows =
+      kCapacity / kLanes + (kLanes > 1 ? static_cast<std::size_t>(kModeCapacity<K>) : 0);
+
+  /// Hypotheses of one mode, by their numbers, as many as there are lanes or fewer: the last one
+  /// stands in all lanes that are left over.
+  struct Row {
+    const int* first;
+    int count;
+    int mode;
+
+    int operator[](int of_lane) const noexcept { return first[std::min(of_lane, count - 1)]; }
+  };
+
+  /// All hypotheses in rows.
+  class Rows {
+   public:
+    explicit Rows(std::span<const Hypothesis> hypotheses) noexcept {
+      std::array<int, kModeCapacity<K> + 1> begin{};
+      for (const Hypothesis& hypothesis : hypotheses) ++at(begin, hypothesis.mode() + 1);
+      for (int mode = 0; mode < kModeCapacity<K>; ++mode) at(begin, mode + 1) += at(begin, mode);
+      std::array<int, kModeCapacity<K> + 1> end = begin;
+      for (std::size_t i = 0; i < hypotheses.size(); ++i)
+        at(order_, at(end, hypotheses[i].mode())++) = static_cast<int>(i);
+      for (int mode = 0; mode < kModeCapacity<K>; ++mode)
+        for (int i = at(begin, mode); i < at(end, mode); i += kLanes)
+          rows_[size_++] = {&at(order_, i), std::min(kLanes, at(end, mode) - i), mode};
+    }
+    Rows(const Rows&) = delete;
+    Rows& operator=(const Rows&) = delete;
+
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    const Row& operator[](std::size_t k) const noexcept { return rows_[k]; }
+
+   private:
+    Indices order_;
+    std::array<Row, kMostRows> rows_;
+    std::size_t size_ = 0;
+  };
+
+  [[nodiscard]] auto present_beliefs() const noexcept {
+    return [this](int i) -> const BeliefType& { return at(present(), i).belief; };
+  }
+
+  /// Each lane of a row takes `belief_of(i)` of its hypothesis.
+  template <class BeliefOf>
+  [[gnu::flatten]] static LaneBelief side_by_side(const Row& row,
+                                                  const BeliefOf& belief_of) noexcept {
+    const BeliefType* of_lane[kLanes];
+    for (int k = 0; k < kLanes; ++k) of_lane[k] = &belief_of(row[k]);
+    LaneBelief belief;
+    gather_lanes<kStates>([&](int k) { return of_lane[k]->mean.data(); }, belief.mean.data());
+    gather_lanes<kStates * kStates>([&](int k) { return of_lane[k]->covariance.data(); },
+                                    belief.covariance.data());
+    return belief;
+  }
+
+  /// Takes the beliefs of a row out of their lanes.
+  [[gnu::flatten]] static void put(const Row& row, const Gaussian<kStates, Lanes>& lanes,
+                                   Hypotheses& hypotheses) noexcept {
+    BeliefType* of_lane[kLanes];
+    for (int k = 0; k < kLanes; ++k) of_lane[k] = &at(hypotheses, row[k]).belief;
+    scatter_lanes<kStates>(lanes.mean.data(), row.count,
+                           [&](int k) { return of_lane[k]->mean.data(); });
+    scatter_lanes<kStates * kStates>(lanes.covariance.data(), row.count,
+                                     [&](int k) { return of_lane[k]->covariance.data(); });
+  }
+
+  /// The hypotheses of a row go on in their modes with other beliefs.
+  void go_on(const Row& row, const Gaussian<kStates, Lanes>& lanes,
+             Hypotheses& next) const noexcept {
+    put(row, lanes, next);
+    for (int of_lane = 0; of_lane < row.count; ++of_lane) {
+      const int i = row[of_lane];
+      at(next, i).segment_s = at(present(), i).segment_s;
+      at(next, i).modes = at(present(), i).modes;
+    }
+  }
+
+  static void set_probability(const Row& row, const Lanes& probability,
+                              Hypotheses& hypotheses) noexcept {
+    for (int of_lane = 0; of_lane < row.count; ++of_lane)
+      at(hypotheses, row[of_lane]).probability = lane(probability, of_lane);
+  }
+
+  /// Zero in lanes that are left over.
+  static Lanes probability_of(const Row& row, const Hypotheses& of) noexcept {
+    return lanes_of<Lanes>([&](int of_lane) {
+      return of_lane < row.count ? at(of, row[of_lane]).probability : Scalar(0);
+    });
+  }
+
+  static Status first_in_lanes(const StatusOf<Lanes>& status) noexcept {
+    Status first = lane(status, 0);
+    for (int k = 1; k < kLanes; ++k) first = first_failure(first, lane(status, k));
+    return first;
+  }
+
+  /// The filter of its mode, with the beliefs of a row.
+  template <class BeliefOf>
+  Filter& filter_of(const Row& row, const BeliefOf& belief_of) noexcept {
+    Filter& filter = bank_.filter(row.mode);
+    (void)filter.assign(side_by_side(row, belief_of));
+    return filter;
+  }
+
+  /// Predicts the first `count` of some hypotheses, each from `before(i)`. Where one fails none is
+  /// to be used.
+  template <class Before, class... Known>
+  Status move(Hypotheses& hypotheses, int count, const Before& before, Scalar dt_s,
+              const Known&... acceleration_mps2) noexcept {
+    const Rows rows({hypotheses.data(), static_cast<std::size_t>(count)});
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      Filter& filter = filter_of(rows[r], before);
+      const Status status =
+          first_in_lanes(filter.predict(Lanes(dt_s), acceleration_mps2.template cast<Lanes>()...));
+      if (status != Status::kOk) return status;
+      put(rows[r], filter.estimate(), hypotheses);
+    }
+    return Status::kOk;
+  }
+
   /// A switch of a hypothesis to another mode.
   struct Switch {
     Scalar probability;
@@ -260,48 +396,46 @@ class ModeHistory {
     if (!started_) return Status::kNotStarted;
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
     if (!pooled() && count_ > tree_.max_hypotheses) {  // the last scan was missed
-      for (const Hypothesis& hypothesis : hypotheses())
-        if (const Status status = filter_of(hypothesis).predict(dt_s, acceleration_mps2...);
-            status != Status::kOk)
-          return status;
+      spare() = present();
+      if (const Status status =
+              move(spare(), count_, present_beliefs(), dt_s, acceleration_mps2...);
+          status != Status::kOk)
+        return status;
       reduce();
     }
-    if (dt_s != transition_step_s_) {
-      transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
-      transition_step_s_ = dt_s;
-    }
+    if (dt_s != transition_step_s_) prepare(dt_s);
     std::array<Switch, kCapacity> switches;
     const int switching = pooled() ? 0 : likeliest_switches(dt_s, switches);
     const BeliefType pool = pooled() ? estimate() : BeliefType{};
     Hypotheses& next = spare();
-    const auto move = [&](Hypothesis& hypothesis) {
-      Filter& filter = filter_of(hypothesis);
-      const Status status = filter.predict(dt_s, acceleration_mps2...);
-      hypothesis.belief = filter.estimate();
-      return status;
-    };
     for (int i = 0; i < count_; ++i) {
-      Hypothesis& stays = at(next, i) = at(present(), i);
-      const int mode = stays.mode();
-      if (pooled()) {
-        stays.belief = pool;
+      const Hypothesis& before = at(present(), i);
+      Hypothesis& stays = at(next, i);
+      const int mode = before.mode();
+      stays.probability = before.probability;
+      if (pooled())
         stays.probability = arriving(mode);
-      } else if (may_switch(stays, dt_s)) {
+      else if (may_switch(before, dt_s))
         stays.probability *= transition_(mode, mode);
-      }
-      stays.segment_s += dt_s;
-      stays.modes = followed_by(stays.modes, mode);
-      if (const Status status = move(stays); status != Status::kOk) return status;
+      stays.segment_s = before.segment_s + dt_s;
+      stays.modes = followed_by(before.modes, mode);
     }
     for (int s = 0; s < switching; ++s) {
       const Switch& change = at(switches, s);
-      const Hypothesis& before = at(present(), change.from);
-      Hypothesis& switches_now = at(next, count_ + s);
-      switches_now = {before.belief, change.probability, dt_s,
-                      followed_by(before.modes, change.mode)};
-      if (const Status status = move(switches_now); status != Status::kOk) return status;
-      spread(switches_now.belief, at(next, change.from).belief.mean);
+      Hypothesis& switched = at(next, count_ + s);
+      switched.probability = change.probability;
+      switched.segment_s = dt_s;
+      switched.modes = followed_by(at(present(), change.from).modes, change.mode);
     }
+    const auto before = [&](int i) -> const BeliefType& {
+      if (pooled()) return pool;
+      return at(present(), i < count_ ? i : at(switches, i - count_).from).belief;
+    };
+    if (const Status status = move(next, count_ + switching, before, dt_s, acceleration_mps2...);
+        status != Status::kOk)
+      return status;
+    for (int s = 0; s < switching; ++s)
+      spread(at(next, count_ + s).belief, at(next, at(switches, s).from).belief.mean);
     take(count_ + switching);
     return Status::kOk;
   }
@@ -314,22 +448,48 @@ class ModeHistory {
     };
     const int room = tree_.max_branches - count_;
     int count = 0;
+    bool full = false;
     for (int from = 0; from < count_ && room > 0; ++from) {
       const Hypothesis& hypothesis = at(present(), from);
       if (!may_switch(hypothesis, dt_s)) continue;
-      for (int mode = 0; mode < bank_.size(); ++mode) {
+      for (int way = 0; way < bank_.size() - 1; ++way) {
+        const int mode = ways_out_(hypothesis.mode(), way);
         const Scalar probability = hypothesis.probability * transition_(hypothesis.mode(), mode);
         const Switch change{probability, from, mode};
-        if (mode == hypothesis.mode() || !(probability > Scalar(0))) continue;
+        if (!(probability > Scalar(0))) break;
         if (count == room) {
-          if (!better(change, chosen.front())) continue;
+          if (!better(change, chosen.front())) break;
           std::pop_heap(chosen.begin(), chosen.begin() + count--, better);
         }
         at(chosen, count++) = change;
-        std::push_heap(chosen.begin(), chosen.begin() + count, better);
+        if (count < room) continue;
+        // A heap from here on, whose front is the first to go.
+        if (!full)
+          std::make_heap(chosen.begin(), chosen.begin() + count, better);
+        else
+          std::push_heap(chosen.begin(), chosen.begin() + count, better);
+        full = true;
       }
     }
     return count;
+  }
+
+  /// Keeps the chain's transition over one step, and the ways out of each mode, likeliest first.
+  void prepare(Scalar dt_s) noexcept {
+    transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
+    transition_step_s_ = dt_s;
+    for (int mode = 0; mode < bank_.size(); ++mode) {
+      auto ways = ways_out_.row(mode);
+      int count = 0;
+      for (int to = 0; to < bank_.size(); ++to)
+        if (to != mode) {
+          int at_way = count++;
+          for (; at_way > 0 && transition_(mode, ways[at_way - 1]) < transition_(mode, to);
+               --at_way)
+            ways[at_way] = ways[at_way - 1];
+          ways[at_way] = to;
+        }
+    }
   }
 
   /// The first-order pseudo-Bayes estimator has one belief, from which every mode sets out.
@@ -355,107 +515,160 @@ class ModeHistory {
 
   /// The switch may have come later in the scan: adds a part of u d, d the way from the mean that
   /// is without the switch, u uniform over one scan, whose variance is 1/12.
-  void spread(BeliefType& belief, const Vec<Scalar, BeliefType::kStates>& without) const noexcept {
-    const Vec<Scalar, BeliefType::kStates> d = belief.mean - without;
+  void spread(BeliefType& belief, const Vec<Scalar, kStates>& without) const noexcept {
+    const Vec<Scalar, kStates> d = belief.mean - without;
     const Scalar variance = Scalar(tree_.switch_time_spread / 12.0);
-    for (int j = 0; j < BeliefType::kStates; ++j) belief.covariance.col(j) += variance * (d[j] * d);
+    for (int j = 0; j < kStates; ++j) belief.covariance.col(j) += variance * (d[j] * d);
   }
 
-  /// Joins similar hypotheses, and keeps the likeliest.
+  /// Joins the similar hypotheses of each mode, around the heaviest of them, and keeps the
+  /// likeliest, in that order.
   void reduce() noexcept {
-    join();
-    cut();
-  }
-
-  /// Joins the similar hypotheses of each mode, around the heaviest of them.
-  void join() noexcept {
-    Indices order;
-    const int count = ordered(order, [](const Hypothesis& a, const Hypothesis& b) {
-      return a.mode() != b.mode() ? a.mode() < b.mode() : a.probability > b.probability;
-    });
-    Indices cluster;
+    const Clusters clusters(*this);
     Hypotheses& next = spare();
-    int joints = 0;
-    for (int a = 0; a < count; ++a) {
-      if (at(order, a) < 0) continue;
-      const int members = gather(a, count, order, cluster);
-      const auto member = [&](std::size_t i) -> auto& { return at(present(), cluster[i]); };
-      Hypothesis& joint = at(next, joints++);
-      joint = member(0);
-      if (members == 1) continue;
-      const auto [belief, probability] = joined(static_cast<std::size_t>(members), member);
-      joint.belief = belief;
-      joint.probability = probability;
+    const int kept = std::min(clusters.count, tree_.max_hypotheses);
+    for (int i = 0; i < kept; ++i) {
+      const Cluster& cluster = at(clusters.cluster, i);
+      const auto member = [&](std::size_t k) -> auto& {
+        return at(present(), clusters.member[static_cast<std::size_t>(cluster.first) + k]);
+      };
+      Hypothesis& joint = at(next, i) = member(0);
+      if (cluster.members == 1) continue;
+      joint.belief = joined(static_cast<std::size_t>(cluster.members), member).belief;
+      joint.probability = cluster.probability;
     }
-    take(joints);
-  }
-
-  /// Keeps the likeliest, in that order.
-  void cut() noexcept {
-    Indices order;
-    const int count = ordered(order, [](const Hypothesis& a, const Hypothesis& b) {
-      return a.probability > b.probability;
-    });
-    const int kept = std::min(count, tree_.max_hypotheses);
-    for (int i = 0; i < kept; ++i) at(spare(), i) = at(present(), at(order, i));
     take(kept);
   }
 
-  /// Fills in the hypotheses that are not negligible, at least the likeliest, in an order; returns
-  /// how many.
-  template <class Before>
-  int ordered(Indices& order, Before&& before) const noexcept {
-    int count = 0;
-    Scalar likeliest = Scalar(0);
-    for (const Hypothesis& hypothesis : hypotheses())
-      likeliest = std::max(likeliest, hypothesis.probability);
-    const Scalar negligible = std::min(Scalar(tree_.negligible_probability), likeliest / 2);
-    for (int i = 0; i < count_; ++i)
-      if (at(present(), i).probability > negligible) at(order, count++) = i;
-    std::sort(order.begin(), order.begin() + count, [&](int i, int j) {
-      const Hypothesis& a = at(present(), i);
-      const Hypothesis& b = at(present(), j);
-      return before(a, b) || (!before(b, a) && i < j);
-    });
-    return count;
-  }
+  /// Hypotheses that join, from `first` on in a list of them. The likelier cluster comes first.
+  struct Cluster {
+    Scalar probability;
+    int first;
+    int members;
 
-  /// Takes `order[a]` and the hypotheses similar to it out of the order, into `cluster`; returns
-  /// how many.
-  int gather(int a, int count, Indices& order, Indices& cluster) const noexcept {
-    const Hypothesis& heaviest = at(present(), at(order, a));
-    int members = 0;
-    at(cluster, members++) = at(order, a);
-    Cholesky<BeliefType::kStates, Scalar> factor;
-    for (int b = a + 1; b < count; ++b) {
-      int& index = at(order, b);
-      if (index < 0) continue;
-      const Hypothesis& other = at(present(), index);
-      if (other.mode() != heaviest.mode()) break;
-      if (tree_.pseudo_bayes_order > 0 ? !same_past(heaviest, other)
-                                       : !near(heaviest, other, factor))
-        continue;
-      at(cluster, members++) = index;
-      index = -1;
+    bool operator<(const Cluster& other) const noexcept {
+      return probability != other.probability ? probability > other.probability
+                                              : first < other.first;
     }
-    return members;
-  }
+  };
 
-  /// Whether the last modes of a pseudo-Bayes tree are the same.
-  [[nodiscard]] bool same_past(const Hypothesis& a, const Hypothesis& b) const noexcept {
-    return (a.modes ^ b.modes) << (64 - 4 * (tree_.pseudo_bayes_order - 1)) == 0;
-  }
+  /// All clusters that are not negligible, the likeliest first, at least that one.
+  class Clusters {
+   public:
+    explicit Clusters(const ModeHistory& tree) noexcept
+        : tree_(tree), limits_(tree.tree_), rows_(tree.hypotheses()) {
+      Scalar likeliest = Scalar(0);
+      for (const Hypothesis& one : tree_.hypotheses())
+        likeliest = std::max(likeliest, one.probability);
+      const Lanes dropped = std::min(Scalar(limits_.negligible_probability), likeliest / 2);
+      for (std::size_t r = 0; r < rows_.size(); ++r) {
+        const Lanes probability = tree_.probability_of(rows_[r], tree_.present());
+        free_[r] = select(probability > dropped, probability, Lanes(0));
+        segment_s_[r] = lanes_of<Lanes>([&](int of_lane) { return one(r, of_lane).segment_s; });
+        gather_lanes<kStates>([&](int of_lane) { return one(r, of_lane).belief.mean.data(); },
+                              mean_[r].data());
+      }
+      for (std::size_t r = 0; r < rows_.size(); r = end_) {
+        end_ = r + 1;
+        while (end_ < rows_.size() && rows_[end_].mode == rows_[r].mode) ++end_;
+        while (take_heaviest(r)) {
+        }
+      }
+      std::sort(cluster.begin(), cluster.begin() + count);
+    }
 
-  /// Whether two hypotheses of one mode may join; `factor` is of the first one's covariance, once
-  /// it is needed.
-  bool near(const Hypothesis& a, const Hypothesis& b,
-            Cholesky<BeliefType::kStates, Scalar>& factor) const noexcept {
-    const bool siblings = a.segment_s == b.segment_s;
-    const Scalar distance = Scalar(siblings ? tree_.sibling_distance : tree_.merge_distance);
-    if (!(distance > Scalar(0))) return false;
-    if (!factor.ok()) factor.compute(a.belief.covariance);
-    return factor.ok() && factor.squared_norm(b.belief.mean - a.belief.mean) < distance * distance;
-  }
+    std::array<Cluster, kCapacity> cluster;
+    Indices member;
+    int count = 0;
+
+   private:
+    const Hypothesis& one(std::size_t row, int of_lane) const noexcept {
+      return at(tree_.present(), rows_[row][of_lane]);
+    }
+
+    /// Makes a cluster of the heaviest free hypothesis of the mode of rows `begin` to `end_`; false
+    /// when none is free.
+    bool take_heaviest(std::size_t begin) noexcept {
+      Lanes greatest = free_[begin];
+      for (std::size_t r = begin + 1; r < end_; ++r) greatest = at_least(free_[r], greatest);
+      const Scalar heaviest = greatest_of_lanes(greatest);
+      if (!(heaviest > Scalar(0))) return false;
+      std::size_t row = begin;
+      while (none(free_[row] == Lanes(heaviest))) ++row;
+      const int of_lane = std::countr_zero(bits_of(free_[row] == Lanes(heaviest)));
+      const Hypothesis& center = one(row, of_lane);
+      const int first = taken_;
+      at(member, taken_++) = rows_[row][of_lane];
+      Scalar probability = heaviest;
+      const bool by_past = limits_.pseudo_bayes_order > 0;
+      const bool by_distance = !by_past && limits_.sibling_distance > 0.0;
+      Cholesky<kStates, Scalar> center_factor;
+      if (by_distance) center_factor = factor_of(row, of_lane);
+      for (std::size_t r = begin; r < end_; ++r) {
+        const MaskOf<Lanes> left = free_[r] > Lanes(0);
+        if (none(left)) continue;
+        const MaskOf<Lanes> own = lane_number_ == Lanes(r == row ? of_lane : kLanes);
+        MaskOf<Lanes> alike = own;
+        if (by_past)
+          alike = own || same_past(center, r);
+        else if (center_factor.ok())
+          alike = own || near(center, center_factor, r);
+        const MaskOf<Lanes> joins = left && alike;
+        unsigned others = bits_of(joins);
+        if (r == row) others &= ~(1u << of_lane);
+        for (; others != 0; others &= others - 1) {
+          const int k = std::countr_zero(others);
+          at(member, taken_++) = rows_[r][k];
+          probability += lane(free_[r], k);
+        }
+        free_[r] = select(joins, Lanes(0), free_[r]);
+      }
+      at(cluster, count++) = {probability, first, taken_ - first};
+      return true;
+    }
+
+    /// Which of a row have the same last modes, as a pseudo-Bayes tree wants it.
+    MaskOf<Lanes> same_past(const Hypothesis& center, std::size_t r) const noexcept {
+      const int forgotten = 64 - 4 * (limits_.pseudo_bayes_order - 1);
+      return lanes_of<Lanes>([&](int of_lane) {
+               return Scalar((center.modes ^ one(r, of_lane).modes) << forgotten == 0);
+             }) > Lanes(0);
+    }
+
+    /// Which of a row are near one of the same mode, by the Cholesky factor of its covariance.
+    MaskOf<Lanes> near(const Hypothesis& center, const Cholesky<kStates, Scalar>& factor,
+                       std::size_t r) const noexcept {
+      const auto siblings = segment_s_[r] == Lanes(center.segment_s);
+      const Lanes distance = select(siblings, Lanes(Scalar(limits_.sibling_distance)),
+                                    Lanes(Scalar(limits_.merge_distance)));
+      const Vec<Lanes, kStates> d = mean_[r] - center.belief.mean.template cast<Lanes>();
+      return factor.squared_norms(d) < distance * distance;
+    }
+
+    /// Cholesky factor of the covariance of a hypothesis; of its row all at once, when the first is
+    /// needed.
+    Cholesky<kStates, Scalar> factor_of(std::size_t row, int of_lane) noexcept {
+      if (!std::exchange(factored_[row], true)) {
+        Mat<Lanes, kStates, kStates> covariance;
+        gather_lanes<kStates * kStates>([&](int k) { return one(row, k).belief.covariance.data(); },
+                                        covariance.data());
+        factor_[row].compute(covariance);
+      }
+      return factor_[row].of_lane(of_lane);
+    }
+
+    const ModeHistory& tree_;
+    const HistoryTree& limits_;
+    const Rows rows_;
+    const Lanes lane_number_ = lanes_of<Lanes>([](int of_lane) { return Scalar(of_lane); });
+    std::array<Lanes, kMostRows> free_;  ///< probability of what is in no cluster yet, else 0
+    std::array<Lanes, kMostRows> segment_s_;
+    std::array<Vec<Lanes, kStates>, kMostRows> mean_;
+    std::array<Cholesky<kStates, Lanes>, kMostRows> factor_;
+    std::array<bool, kMostRows> factored_{};
+    std::size_t end_ = 0;
+    int taken_ = 0;
+  };
 
   struct Joint {
     BeliefType belief;
@@ -469,9 +682,12 @@ class ModeHistory {
     for (std::size_t i = 0; i < count; ++i) total += part(i).probability;
     BeliefType sum = zero_like(BeliefType{});
     for (std::size_t i = 0; i < count; ++i)
-      add_mean(sum, part(i).probability / total, part(i).belief, sum);
-    for (std::size_t i = 0; i < count; ++i)
-      add_spread(sum, part(i).probability / total, part(i).belief, sum);
+      sum.mean += part(i).probability / total * part(i).belief.mean;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec<Scalar, kStates> d = part(i).belief.mean - sum.mean;
+      sum.covariance +=
+          part(i).probability / total * (part(i).belief.covariance + d * d.transpose());
+    }
     return {sum, total};
   }
 
@@ -492,13 +708,6 @@ class ModeHistory {
       probability_[hypothesis.mode()] += hypothesis.probability;
   }
 
-  /// The filter of its mode, with its belief.
-  Filter& filter_of(const Hypothesis& hypothesis) noexcept {
-    Filter& filter = bank_.filter(hypothesis.mode());
-    (void)filter.assign(hypothesis.belief);
-    return filter;
-  }
-
   template <class Array>
   static auto& at(Array& array, int i) noexcept {
     return array[static_cast<std::size_t>(i)];
@@ -514,6 +723,7 @@ class ModeHistory {
   Probability initial_;
   Probability probability_;
   ModeMatrix<Scalar, K> transition_;
+  ModeMatrix<int, K> ways_out_;
   Scalar transition_step_s_ = Scalar(-1);
   std::array<Hypotheses, 2> buffers_;
   std::size_t now_ = 0;
