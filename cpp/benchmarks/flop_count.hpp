@@ -82,6 +82,11 @@ struct ScalarTraits<bench::Counted> {
   using Real = double;
   using Mask = bool;
   static constexpr int kLanes = 1;
+
+  template <class Function>
+  static bench::Counted of(const Function& number) noexcept {
+    return bench::Counted(number(0));
+  }
 };
 
 }  // namespace wakeline

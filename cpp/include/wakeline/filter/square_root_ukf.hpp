@@ -156,12 +156,13 @@ class SquareRootUkf {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
     const Mat<Scalar, kStates, kPoints> sigma = points();
-    const MeasuredPoints<Scalar, kM, kPoints> images(sensor, kComponents, mean_, sigma);
+    const MeasuredPoints<kComponents, Sensor, Scalar> images(sensor, mean_, sigma);
     const Vec<Scalar, kM> shift = weight() * images.differences.rowwise().sum();
 
     Mat<Scalar, kM + kStates, kPoints + 1 + kM> array =
         Mat<Scalar, kM + kStates, kPoints + 1 + kM>::Zero();
-    array.template topLeftCorner<kM, kPoints>() = sqrt(weight()) * images.differences;
+    array.template topLeftCorner<kM, decltype(images.differences)::ColsAtCompileTime>() =
+        sqrt(weight()) * images.differences;
     array.template block<kM, 1>(0, kPoints) = centre_root() * shift;
     array.template topRightCorner<kM, kM>() = semidefinite_root<kM, Scalar>(reading.covariance);
     array.template bottomLeftCorner<kStates, kPoints>() =

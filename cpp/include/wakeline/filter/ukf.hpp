@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <utility>
 
 #include "wakeline/filter/unscented.hpp"
@@ -106,8 +107,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
     if (none(root.ok())) return failed_correction<kM, Scalar>(Status::kNotPositiveDefinite);
 
     const Mat<Scalar, kStates, kPoints> sigma = points(root);
-    const MeasuredPoints<Scalar, kM, kPoints> images(sensor, kComponents, this->belief_.mean,
-                                                     sigma);
+    const MeasuredPoints<kComponents, Sensor, Scalar> images(sensor, this->belief_.mean, sigma);
     const Gaussian<kM, Scalar> predicted =
         unscented_moments(unscented_, kStates, images.centre, images.differences);
 
@@ -120,16 +120,23 @@ class Ukf : public Belief<MotionType, ScalarType> {
     const Vec<Scalar, kM> whitened = factor.template whiten<1>(correction.innovation);
     rate(correction, whitened, factor);
 
-    Mat<Scalar, kStates, kPoints> spread;
-    for (int k = 0; k < kPoints; ++k)
-      unroll<kStates>([&](int i) { spread(i, k) = sigma(i, k) - this->belief_.mean[i]; });
-    const Scalar w = unscented_.template weight<Scalar>(kStates);
+    // The points of a pair are as far from the mean on one side as on the other.
+    constexpr int kPairs = decltype(images)::kPairs;
+    Mat<Scalar, kM, kPairs> apart;
+    unroll<kPairs>([&](int k) {
+      apart.col(k) = images.differences.col(2 * k) - images.differences.col(2 * k + 1);
+    });
+    const Scalar w =
+        unscented_.template weight<Scalar>(kStates) * unscented_.template spread<Scalar>(kStates);
     Mat<Scalar, kStates, kM> cross;
-    unroll<kStates * kM>([&](int index) {
-      const int i = index % kStates, m = index / kStates;
-      Scalar sum = spread(i, 0) * images.differences(m, 0);
-      for (int k = 1; k < kPoints; ++k) sum += spread(i, k) * images.differences(m, k);
-      cross(i, m) = w * sum;
+    unroll<kStates>([&](auto row) {
+      constexpr int i = row.value;
+      unroll<kM>([&](int m) {
+        Scalar sum = root.lower()(i, 0) * apart(m, 0);
+        unroll<std::min(i + 1, kPairs) - 1>(
+            [&](int k) { sum += root.lower()(i, k + 1) * apart(m, k + 1); });
+        cross(i, m) = w * sum;
+      });
     });
     const Mat<Scalar, kStates, kM> gain = factor.whiten_rows(cross);
     Gaussian<kStates, Scalar> next = this->belief_;
@@ -139,7 +146,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
     if (any(lost)) [[unlikely]]
       assign_where(
           lost, next.covariance,
-          joseph(spread, images.differences, factor.unwhiten_rows(gain), reading.covariance));
+          joseph(sigma, images.differences, factor.unwhiten_rows(gain), reading.covariance));
     correction.status = take(
         next, first_failure(correction.status, ok_or(root.ok(), Status::kNotPositiveDefinite)));
     return correction;
@@ -155,26 +162,28 @@ class Ukf : public Belief<MotionType, ScalarType> {
   /// Takes a belief where nothing has failed and its covariance has a factor, which is kept.
   StatusOf<Scalar> take(const Gaussian<kStates, Scalar>& next,
                         const StatusOf<Scalar>& so_far) noexcept {
-    const Cholesky<kStates, Scalar> root(next.covariance);
+    root_.compute(next.covariance);
     const StatusOf<Scalar> status =
-        first_failure(so_far, ok_or(root.ok(), Status::kNotPositiveDefinite));
-    assign_where(ok(status), this->belief_, next);
+        first_failure(so_far, ok_or(root_.ok(), Status::kNotPositiveDefinite));
     rooted_ = all(ok(status));
     if (rooted_) [[likely]]
-      root_ = root;
+      copy(next, this->belief_);
+    else
+      assign_where(ok(status), this->belief_, next);
     return status;
   }
 
   /// P - K S Kᵀ as what the points keep of their spread, Σ w (e_x - K e_z)(e_x - K e_z)ᵀ, with K of
   /// the rest of S.
-  template <int M>
+  template <int M, int Seen>
   [[gnu::cold, gnu::noinline]] Mat<Scalar, kStates, kStates> joseph(
-      const Mat<Scalar, kStates, kPoints>& spread, const Mat<Scalar, M, kPoints>& differences,
+      const Mat<Scalar, kStates, kPoints>& sigma, const Mat<Scalar, M, Seen>& differences,
       const Mat<Scalar, kStates, M>& gain, const Mat<Scalar, M, M>& r) const noexcept {
     const Scalar w = unscented_.template weight<Scalar>(kStates);
     Vec<Scalar, M> shift;
     for (int m = 0; m < M; ++m) shift[m] = w * differences.row(m).sum();
-    const Mat<Scalar, kStates, kPoints> kept = spread - gain * differences;
+    Mat<Scalar, kStates, kPoints> kept = sigma.colwise() - this->belief_.mean;
+    kept.template leftCols<Seen>() -= gain * differences;
     const Mat<Scalar, M, M> rest =
         r + unscented_.template centre_correction<Scalar>() * shift * shift.transpose();
     const Mat<Scalar, kStates, M> pushed = gain * rest;

@@ -50,15 +50,19 @@ struct Unscented {
   }
 };
 
-/// The 2 N sigma points about a mean, without the mean itself.
+/// The 2 N sigma points about a mean, without the mean itself: pairs, of which pair k differs from
+/// the mean in the rows from k on, as the root is lower triangular.
 template <class Scalar, int N>
 Mat<Scalar, N, 2 * N> sigma_points(const Vec<Scalar, N>& mean, const Mat<Scalar, N, N>& lower,
                                    Scalar spread) noexcept {
   Mat<Scalar, N, 2 * N> points;
-  for (int k = 0; k < N; ++k) {
-    points.col(2 * k) = mean + spread * lower.col(k);
-    points.col(2 * k + 1) = mean - spread * lower.col(k);
-  }
+  unroll<N>([&](int k) {
+    unroll<N>([&](int i) {
+      const Scalar offset = i < k ? Scalar(0) : spread * lower(i, k);
+      points(i, 2 * k) = mean[i] + offset;
+      points(i, 2 * k + 1) = mean[i] - offset;
+    });
+  });
   return points;
 }
 
@@ -84,23 +88,30 @@ struct MovedPoints {
 };
 
 /// Sigma points as a sensor sees them: the centre, and the wrapped differences of the others from
-/// it.
-template <class Scalar, int M, int Points>
+/// it, up to the last pair that differs from the mean in a row which the sensor reads.
+template <auto Components, class Sensor, class Scalar>
 struct MeasuredPoints {
-  Vec<Scalar, M> centre;
-  Mat<Scalar, M, Points> differences;
+  static constexpr int kStates = static_cast<int>(Components.size());
+  static constexpr int kM = Sensor::kMeasurements;
+  static constexpr auto kRows = rows_read<Sensor>(Components);
+  static constexpr int kPairs = [] {
+    int last = 0;
+    for (int k = 0; k < kReadsOf<Sensor>; ++k) last = kRows[k] > last ? kRows[k] : last;
+    return last + 1;
+  }();
 
-  template <class Sensor, std::size_t Components, int N>
-  MeasuredPoints(const Sensor& sensor, const std::array<Component, Components>& components,
-                 const Vec<Scalar, N>& mean, const Mat<Scalar, N, Points>& points) noexcept {
-    const auto rows = rows_read<Sensor>(components);
+  Vec<Scalar, kM> centre;
+  Mat<Scalar, kM, 2 * kPairs> differences;
+
+  MeasuredPoints(const Sensor& sensor, const Vec<Scalar, kStates>& mean,
+                 const Mat<Scalar, kStates, 2 * kStates>& points) noexcept {
     const auto see = [&](const auto& state) {
       Vec<Scalar, kReadsOf<Sensor>> read;
-      for (int k = 0; k < read.size(); ++k) read[k] = state[rows[k]];
-      return Vec<Scalar, M>(sensor.measure(read));
+      for (int k = 0; k < read.size(); ++k) read[k] = state[kRows[k]];
+      return Vec<Scalar, kM>(sensor.measure(read));
     };
     centre = see(mean);
-    for (int k = 0; k < Points; ++k)
+    for (int k = 0; k < differences.cols(); ++k)
       differences.col(k) = sensor.residual(see(points.col(k)), centre);
   }
 };

@@ -55,8 +55,13 @@ struct CoordinatedTurnRate {
   /// f(x, dt).
   template <class Scalar>
   Vec<Scalar, 5> transition(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
-    Vec<Scalar, 5> next = x;
-    next.template head<4>() = Turn<Scalar>(x[4], dt_s).matrix() * x.template head<4>();
+    const Turn<Scalar> turn(x[4], dt_s);
+    Vec<Scalar, 5> next;
+    next[0] = x[0] + turn.along_s * x[1] - turn.across_s * x[3];
+    next[1] = turn.cosine * x[1] - turn.sine * x[3];
+    next[2] = x[2] + turn.across_s * x[1] + turn.along_s * x[3];
+    next[3] = turn.sine * x[1] + turn.cosine * x[3];
+    next[4] = x[4];
     return next;
   }
 

@@ -28,9 +28,9 @@ struct Turn {
     sine = 2 * half_sine * half_cosine;
     cosine = 1 - 2 * half_sine * half_sine;
     const auto straight = abs(angle) < Scalar(kTiny);
-    const Scalar divisor = select(straight, Scalar(1), angle);
-    along_s = dt * select(straight, Scalar(1), sine / divisor);
-    across_s = dt * select(straight, angle / 2, 2 * half_sine * half_sine / divisor);
+    const Scalar inverse_rate_s = dt * reciprocal(select(straight, Scalar(1), angle));
+    along_s = select(straight, dt, sine * inverse_rate_s);
+    across_s = select(straight, dt * angle / 2, 2 * half_sine * half_sine * inverse_rate_s);
   }
 
   /// F of `[x, vx, y, vy]`.
