@@ -170,8 +170,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
   [[gnu::cold, gnu::noinline]] void take_with_care(
       Gaussian<kStates, Scalar>& posterior, const Innovation<Sensor>& innovation,
       const Mat<Scalar, Sensor::kMeasurements, Sensor::kMeasurements>& r,
-      const Mat<Scalar, kStates, Sensor::kMeasurements>& gain,
-      const MaskOf<Scalar>& taken, const MaskOf<Scalar>& lost) noexcept {
+      const Mat<Scalar, kStates, Sensor::kMeasurements>& gain, const MaskOf<Scalar>& taken,
+      const MaskOf<Scalar>& lost) noexcept {
     if (any(lost))
       assign_where(lost, posterior.covariance,
                    joseph<Sensor>(innovation.h, innovation.factor.unwhiten_rows(gain), r));
