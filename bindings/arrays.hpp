@@ -54,14 +54,14 @@ py::array_t<double> to_array(const Eigen::MatrixBase<Derived>& matrix) {
   }
 }
 
-/// A numpy vector; `size` of -1 takes any.
-/// Of a size that is known, without the heap.
+/// A numpy vector of a size that is known, without the heap.
 template <int N>
 Eigen::Matrix<double, N, 1> to_vector(const char* name, const DoubleArray& array) {
   if (array.ndim() != 1 || array.shape(0) != N) require_shape(false, name, shape_text({N}), array);
   return Eigen::Map<const Eigen::Matrix<double, N, 1>>(array.data());
 }
 
+/// A numpy vector; `size` of -1 takes any.
 inline Eigen::VectorXd to_vector(const std::string& name, const DoubleArray& array,
                                  py::ssize_t size = -1) {
   require_shape(array.ndim() == 1 && (size < 0 || array.shape(0) == size), name,

@@ -77,6 +77,7 @@ bool run(LaneJob& job, const AnySensor& sensor, const RunInput& in,
         return false;
       },
       sensor);
+  if (!known) return false;
   for (const AnyBelief& start : starts) {
     LaneStart& lane = job.starts.emplace_back();
     lane.states = start.states();
@@ -86,7 +87,6 @@ bool run(LaneJob& job, const AnySensor& sensor, const RunInput& in,
         lane.covariance[j * lane.states + i] = start.covariance(i, j);
     }
   }
-  if (!known) return false;
   const ThreadShare threads(in.runs * in.scans / static_cast<std::size_t>(kernels->lanes));
   return kernels->run(job, in, out, threads.count());
 }
