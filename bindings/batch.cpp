@@ -93,6 +93,8 @@ bool run(LaneJob& job, const AnySensor& sensor, const RunInput& in,
 
 }  // namespace
 
+const LaneKernels* lane_kernels() noexcept { return kernels; }
+
 void define_batch(py::module_& parent) {
   kernels = load();
   auto m = parent.def_submodule("batch", "Many runs at once: lanes and threads.");

@@ -5,13 +5,58 @@
 
 #include "any_estimator.hpp"
 #include "estimators.hpp"
+#include "lanes/lanes.hpp"
 #include "wakeline/track/tracker.hpp"
 #include "wakeline/track/vessel_models.hpp"
+
+namespace wakeline {
+
+/// The usual estimator takes its steps in the lanes of the processor that this runs on.
+template <>
+class SideBySide<VesselImm> {
+ public:
+  explicit SideBySide(const VesselImm& prototype) : one_by_one_(prototype) {
+    if (const python::LaneKernels* kernels = python::lane_kernels())
+      lanes_ = kernels->vessels(prototype);
+  }
+
+  void predict(std::span<PredictionStep<VesselImm>> steps) noexcept {
+    lanes_ ? lanes_->predict(steps) : one_by_one_.predict(steps);
+  }
+  void update(std::span<UpdateStep<VesselImm>> steps) noexcept {
+    lanes_ ? lanes_->update(steps) : one_by_one_.update(steps);
+  }
+
+ private:
+  OneByOne<VesselImm> one_by_one_;
+  std::unique_ptr<python::VesselLanes> lanes_;
+};
+
+}  // namespace wakeline
 
 namespace wakeline::python {
 namespace {
 
-using AnyTracker = Tracker<AnyEstimator>;
+/// A tracker with whatever estimator.
+class AnyTracker {
+ public:
+  AnyTracker(const Radar& radar, const TrackerConfig& config, const AnyEstimator& estimator)
+      : tracker_(Tracker<AnyEstimator>(radar, config, estimator)) {}
+  AnyTracker(const Radar& radar, const TrackerConfig& config, const VesselImm& imm)
+      : tracker_(Tracker<VesselImm>(radar, config, imm)) {}
+
+  template <class Function>
+  decltype(auto) visit(const Function& function) {
+    return std::visit(function, tracker_);
+  }
+  template <class Function>
+  decltype(auto) visit(const Function& function) const {
+    return std::visit(function, tracker_);
+  }
+
+ private:
+  std::variant<Tracker<VesselImm>, Tracker<AnyEstimator>> tracker_;
+};
 
 /// A plain struct of settings as a Python class: keyword arguments, attributes, and an error that
 /// names what is unknown.
@@ -123,15 +168,31 @@ const char* event_name(TrackEvent event) {
   return "";
 }
 
-/// `vessel_imm` over filters composed at run time; the same bits.
+using Course = Ekf<WanderingCourse>;
+using Turn = Ekf<CoordinatedTurnRate>;
+
+/// `vessel_imm` over filters composed at run time.
 AnyImm any_vessel_imm(const Radar& radar, const VesselModels& models) {
-  const Eigen::Vector3d sojourn_s{models.steady_sojourn_s, models.restless_sojourn_s,
-                                  models.turning_sojourn_s};
-  AnyImm imm(ModeChain<kRuntimeModes>::from_sojourn_s(ModeVector<double, kRuntimeModes>(sojourn_s)),
-             AnyFilterBank({AnyFilter(Ekf(models.steady(radar.max_speed_mps))),
-                            AnyFilter(Ekf(models.restless(radar.max_speed_mps))),
-                            AnyFilter(Ekf(models.turning(radar.max_speed_mps)))}));
-  imm.set_initial_mode_probability(ModeVector<double, kRuntimeModes>(sojourn_s / sojourn_s.sum()));
+  const VesselImm imm = vessel_imm(radar, models);
+  AnyImm any(ModeChain<kRuntimeModes>(imm.chain()),
+             AnyFilterBank({AnyFilter(imm.filter<0>()), AnyFilter(imm.filter<1>()),
+                            AnyFilter(imm.filter<2>())}));
+  any.set_initial_mode_probability(
+      ModeVector<double, kRuntimeModes>(imm.initial_mode_probability()));
+  return any;
+}
+
+/// The reverse, of an estimator that is made like it.
+std::optional<VesselImm> as_vessel_imm(const AnyImm& any) {
+  if (any.bank().size() != 3) return std::nullopt;
+  const auto filter = [&](std::size_t k) -> const auto& { return any.bank().filter(k).variant(); };
+  const auto* steady = std::get_if<Course>(&filter(0));
+  const auto* restless = std::get_if<Course>(&filter(1));
+  const auto* turning = std::get_if<Turn>(&filter(2));
+  if (steady == nullptr || restless == nullptr || turning == nullptr) return std::nullopt;
+  VesselImm imm(ModeChain<3>(any.chain()), Course(steady->motion()), Course(restless->motion()),
+                Turn(turning->motion()));
+  imm.set_initial_mode_probability(any.initial_mode_probability());
   return imm;
 }
 
@@ -182,6 +243,15 @@ AnyEstimator to_estimator(const py::object& estimator) {
       py::str(py::type::of(estimator).attr("__name__")).cast<std::string>());
 }
 
+/// A tracker with an estimator given by hand.
+AnyTracker tracker_with(const Radar& radar, const TrackerConfig& config,
+                        const py::object& estimator) {
+  if (py::isinstance<AnyImm>(estimator))
+    if (const auto imm = as_vessel_imm(estimator.cast<const AnyImm&>()))
+      return AnyTracker(radar, config, *imm);
+  return AnyTracker(radar, config, to_estimator(estimator));
+}
+
 PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
                  const DoubleArray& bearing_rad, const py::object& plot_time_s,
                  const py::object& own_north_m, const py::object& own_east_m,
@@ -202,7 +272,7 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
   ScanReport report;
   {
     const py::gil_scoped_release release;
-    report = tracker.process(time_s, plots);
+    report = tracker.visit([&](auto& one) { return one.process(time_s, plots); });
   }
   require_ok(report.status, "process");
   PyReport result{py::array_t<std::int64_t>(count),
@@ -214,10 +284,12 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
   return result;
 }
 
-PyTracks tracks(const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {
+template <class Estimator>
+PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& time_s,
+                bool tentative) {
   if (time_s && !std::isfinite(*time_s)) throw py::value_error("time_s must be finite");
-  std::vector<const Track<AnyEstimator>*> wanted;
-  tracker.for_each([&](const Track<AnyEstimator>& track) {
+  std::vector<const Track<Estimator>*> wanted;
+  tracker.for_each([&](const Track<Estimator>& track) {
     if (tentative || track.shown()) wanted.push_back(&track);
   });
   const auto count = static_cast<py::ssize_t>(wanted.size());
@@ -235,7 +307,7 @@ PyTracks tracks(const AnyTracker& tracker, const std::optional<double>& time_s, 
                  py::array_t<std::int64_t>(count),
                  {}};
   for (py::ssize_t k = 0; k < count; ++k) {
-    const Track<AnyEstimator>& track = *wanted[static_cast<std::size_t>(k)];
+    const Track<Estimator>& track = *wanted[static_cast<std::size_t>(k)];
     const Gaussian<4> belief = time_s ? tracker.kinematics_at(track, *time_s) : track.kinematics;
     table.track_id.mutable_at(k) = track.id;
     table.status.emplace_back(status_name(track.status));
@@ -387,9 +459,8 @@ ValueError
     When a setting makes no sense.)")
       .def(py::init([](const Radar& r, const TrackerConfig& c, const VesselModels& v,
                        const py::object& estimator) {
-             return AnyTracker(r, c,
-                               estimator.is_none() ? AnyEstimator(any_vessel_imm(r, v))
-                                                   : to_estimator(estimator));
+             return estimator.is_none() ? AnyTracker(r, c, vessel_imm(r, v))
+                                        : tracker_with(r, c, estimator);
            }),
            py::arg("radar"), py::arg_v("config", TrackerConfig{}, "TrackerConfig()"),
            py::arg_v("models", VesselModels{}, "VesselModels()"), py::arg("estimator") = py::none())
@@ -417,21 +488,43 @@ Raises
 ------
 FilterError
     When time runs backwards or is not finite; nothing changed.)")
-      .def("tracks", &tracks, py::arg("time_s") = py::none(), py::arg("tentative") = false,
-           "The confirmed and coasting tracks (with `tentative` all), predicted to `time_s` when "
-           "given; a TrackTable.")
-      .def("designate", &AnyTracker::designate, py::arg("time_s"), py::arg("north_m"),
-           py::arg("east_m"), py::arg("position_std_m") = 50.0,
-           "The operator says that there is a target; returns the track's number, or 0 when there "
-           "is no room.")
-      .def("drop", &AnyTracker::drop, py::arg("track_id"),
-           "Ends a track; False when there is none of that number.")
-      .def("rename", &AnyTracker::rename, py::arg("track_id"), py::arg("name"),
-           "Names a track (31 bytes at most are kept); False when there is none of that number.")
+      .def(
+          "tracks",
+          [](const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {
+            return tracker.visit([&](const auto& one) { return tracks(one, time_s, tentative); });
+          },
+          py::arg("time_s") = py::none(), py::arg("tentative") = false,
+          "The confirmed and coasting tracks (with `tentative` all), predicted to `time_s` when "
+          "given; a TrackTable.")
+      .def(
+          "designate",
+          [](AnyTracker& tracker, double time_s, double north_m, double east_m,
+             double position_std_m) {
+            return tracker.visit(
+                [&](auto& one) { return one.designate(time_s, north_m, east_m, position_std_m); });
+          },
+          py::arg("time_s"), py::arg("north_m"), py::arg("east_m"),
+          py::arg("position_std_m") = 50.0,
+          "The operator says that there is a target; returns the track's number, or 0 when there "
+          "is no room.")
+      .def(
+          "drop",
+          [](AnyTracker& tracker, std::int64_t id) {
+            return tracker.visit([&](auto& one) { return one.drop(id); });
+          },
+          py::arg("track_id"), "Ends a track; False when there is none of that number.")
+      .def(
+          "rename",
+          [](AnyTracker& tracker, std::int64_t id, std::string_view name) {
+            return tracker.visit([&](auto& one) { return one.rename(id, name); });
+          },
+          py::arg("track_id"), py::arg("name"),
+          "Names a track (31 bytes at most are kept); False when there is none of that number.")
       .def(
           "save",
           [](const AnyTracker& tracker) {
-            const std::vector<std::byte> state = tracker.save();
+            const std::vector<std::byte> state =
+                tracker.visit([](const auto& one) { return one.save(); });
             return py::bytes(reinterpret_cast<const char*>(state.data()), state.size());
           },
           "The whole state as bytes, for a tracker with the same settings on the same kind of "
@@ -440,14 +533,19 @@ FilterError
           "restore",
           [](AnyTracker& tracker, const py::bytes& state) {
             const std::string_view text = state;
-            if (!tracker.restore({reinterpret_cast<const std::byte*>(text.data()), text.size()}))
+            const std::span bytes(reinterpret_cast<const std::byte*>(text.data()), text.size());
+            if (!tracker.visit([&](auto& one) { return one.restore(bytes); }))
               throw py::value_error("state is not that of a tracker with the same settings");
           },
           py::arg("state"), "Goes on bit for bit where the saved tracker was.")
-      .def_property_readonly("radar",
-                             [](const AnyTracker& tracker) { return Radar(tracker.radar()); })
       .def_property_readonly(
-          "config", [](const AnyTracker& tracker) { return TrackerConfig(tracker.config()); });
+          "radar",
+          [](const AnyTracker& tracker) {
+            return tracker.visit([](const auto& one) { return Radar(one.radar()); });
+          })
+      .def_property_readonly("config", [](const AnyTracker& tracker) {
+        return tracker.visit([](const auto& one) { return TrackerConfig(one.config()); });
+      });
 }
 
 }  // namespace wakeline::python

@@ -142,12 +142,30 @@ bool run(const LaneJob& job, const RunInput& in, const RunOutput& out, int threa
       model.motion);
 }
 
+class Vessels : public VesselLanes {
+ public:
+  explicit Vessels(const VesselImm& prototype) : side_by_side_(prototype) {}
+  void predict(std::span<PredictionStep<VesselImm>> steps) noexcept override {
+    side_by_side_.predict(steps);
+  }
+  void update(std::span<UpdateStep<VesselImm>> steps) noexcept override {
+    side_by_side_.update(steps);
+  }
+
+ private:
+  SideBySide<VesselImm> side_by_side_;
+};
+
+std::unique_ptr<VesselLanes> vessels(const VesselImm& prototype) {
+  return std::make_unique<Vessels>(prototype);
+}
+
 }  // namespace
 }  // namespace wakeline::python
 
 PYBIND11_MODULE(WAKELINE_LANES_MODULE, m) {
-  static constexpr wakeline::python::LaneKernels kKernels{&wakeline::python::run,
-                                                          wakeline::kNativeLanes<double>};
+  static constexpr wakeline::python::LaneKernels kKernels{
+      &wakeline::python::run, &wakeline::python::vessels, wakeline::kNativeLanes<double>};
   m.doc() = "Runs as lanes, for one instruction set.";
   m.attr("kernels") = pybind11::capsule(static_cast<const void*>(&kKernels), "wakeline.lanes");
 }

@@ -6,11 +6,14 @@
 // another.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
 #include "wakeline/batch/run.hpp"
+#include "wakeline/batch/side_by_side.hpp"
 #include "wakeline/filter/unscented.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
@@ -20,6 +23,7 @@
 #include "wakeline/motion/wandering_course.hpp"
 #include "wakeline/multimodel/history_tree.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
+#include "wakeline/track/vessel_models.hpp"
 
 namespace wakeline::python {
 
@@ -48,11 +52,23 @@ struct LaneJob {
   std::vector<LaneStart> starts;  ///< one for all runs, or one each
 };
 
-/// Runs the job in lanes over some threads. False, and nothing done, when there is no kernel for
-/// it.
+/// Steps of many estimators of a tracker.
+class VesselLanes {
+ public:
+  virtual ~VesselLanes() = default;
+  virtual void predict(std::span<PredictionStep<VesselImm>> steps) noexcept = 0;
+  virtual void update(std::span<UpdateStep<VesselImm>> steps) noexcept = 0;
+};
+
 struct LaneKernels {
+  /// Runs the job in lanes over some threads. False, and nothing done, when there is no kernel for
+  /// it.
   bool (*run)(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads);
+  std::unique_ptr<VesselLanes> (*vessels)(const VesselImm& prototype);
   int lanes;
 };
+
+/// Those for this processor; null where no module could be loaded.
+const LaneKernels* lane_kernels() noexcept;
 
 }  // namespace wakeline::python

@@ -11,6 +11,7 @@
 #include "wakeline/association/nearest_neighbour.hpp"
 #include "wakeline/association/probabilistic_data.hpp"
 #include "wakeline/batch/run.hpp"
+#include "wakeline/batch/side_by_side.hpp"
 #include "wakeline/batch/threads.hpp"
 #include "wakeline/core/amplitude_image.hpp"
 #include "wakeline/core/angle.hpp"

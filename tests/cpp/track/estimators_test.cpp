@@ -50,5 +50,45 @@ TEST(TrackerEstimators, MovingGrid) {
   expect_to_hold(AdaptiveGridImm(AdaptiveGrid{}, ModeChain<3>::staying(0.9), kTurning));
 }
 
+/// The usual estimator, as one that the tracker knows nothing of.
+struct OneByOne : VesselImm {
+  // NOLINTNEXTLINE(google-explicit-constructor): each of them is one.
+  OneByOne(const VesselImm& imm) : VesselImm(imm) {}
+};
+
+TEST(TrackerEstimators, TracksInLanesAreThoseOfOneAfterTheOther) {
+  TrackerConfig config;
+  config.max_tracks = 80;
+  const VesselImm prototype = vessel_imm(test::kTestRadar);
+  test::VesselTracker in_lanes(test::kTestRadar, config, prototype);
+  Tracker<OneByOne> one_by_one(test::kTestRadar, config, prototype);
+  test::Sea sea(42);
+  std::vector<test::Boat> boats;
+  for (int k = 0; k < 45; ++k)
+    boats.push_back({{400.0 * (k % 7) - 1200.0, 350.0 * int(k / 7) + 500.0},
+                     {sea.draw.uniform(-8.0, 8.0), sea.draw.uniform(-8.0, 8.0)}});
+  for (int scan = 0; scan < 40; ++scan) {
+    const double start_s = 2.5 * scan;
+    std::vector<Plot> plots;
+    for (const test::Boat& boat : boats)
+      if (sea.draw.uniform(0.0, 1.0) < 0.9) plots.push_back(sea.swept(boat, start_s));
+    for (int k = 0; k < 10; ++k) plots.push_back(sea.clutter(start_s, 3000.0));
+    (void)in_lanes.process(start_s + 2.5, plots);
+    (void)one_by_one.process(start_s + 2.5, plots);
+  }
+  ASSERT_GT(in_lanes.size(), 40);
+  ASSERT_EQ(in_lanes.size(), one_by_one.size());
+  in_lanes.for_each([&](const test::VesselTrack& track) {
+    const Track<OneByOne>* other = one_by_one.find(track.id);
+    ASSERT_NE(other, nullptr) << track.id;
+    EXPECT_EQ(track.status, other->status);
+    EXPECT_EQ(track.time_s, other->time_s);
+    EXPECT_EQ(track.hits, other->hits);
+    EXPECT_NEAR(track.existence, other->existence, 1e-9);
+    EXPECT_LT((track.kinematics.mean - other->kinematics.mean).norm(), 1e-6);
+    EXPECT_TRUE(track.kinematics.covariance.isApprox(other->kinematics.covariance, 1e-8));
+  });
+}
+
 }  // namespace
 }  // namespace wakeline

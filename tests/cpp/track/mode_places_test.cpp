@@ -32,8 +32,17 @@ TEST(ModePlaces, AgreeWithTheEstimator) {
                              belief.mean[2] + 100.0 * normal(random));
       Fix fix;
       fix.covariance_m2 << 400.0, 120.0, 120.0, 90.0;
-      const bool gated = imm.evidence(fix, z).least_nis <= threshold;
+      const Evidence<double> evidence = places.evidence(z, fix.covariance_m2);
+      const Evidence<double> wanted = imm.evidence(fix, z);
+      EXPECT_NEAR(evidence.least_nis, wanted.least_nis, 1e-12 * (1.0 + wanted.least_nis));
+      EXPECT_NEAR(evidence.likelihood, wanted.likelihood, 1e-11 * wanted.likelihood + 1e-300);
+      const bool gated = wanted.least_nis <= threshold;
       EXPECT_EQ(places.may_own(z, fix.covariance_m2, threshold), gated);
+      const double off_m =
+          (z - Vec<double, 2>(belief.mean[0], belief.mean[2])).cwiseAbs().maxCoeff();
+      if (gated) {
+        EXPECT_LE(off_m, places.reach_m({belief.mean[0], belief.mean[2]}, 400.0, threshold));
+      }
       inside += gated;
     }
   }
@@ -46,7 +55,9 @@ TEST(ModePlaces, OfAnEstimatorWithoutModesAnythingMayBe) {
   } estimator;
   ModePlaces places;
   places.take(estimator);
+  EXPECT_FALSE(places.known());
   EXPECT_TRUE(places.may_own({1e9, 1e9}, Mat<double, 2, 2>::Identity(), 6.0));
+  EXPECT_EQ(places.reach_m({0.0, 0.0}, 1.0, 6.0), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

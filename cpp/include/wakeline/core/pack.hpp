@@ -305,36 +305,47 @@ template <class Real, int Lanes>
   static_assert(Lanes <= 16);
 }
 
-/// Pack k is number k of the arrays that `array(lane)` gives.
-template <int Size, class Real, int Lanes, class Array>
-[[gnu::always_inline]] inline void gather_lanes(const Array& array,
-                                                Pack<Real, Lanes>* packs) noexcept {
-  constexpr int kWhole = Size / Lanes * Lanes;
-  unroll<Size / Lanes>([&](auto block) {
-    Pack<Real, Lanes> rows[Lanes];
-    unroll<Lanes>(
-        [&](int k) { rows[k] = Pack<Real, Lanes>::load(array(k) + block.value * Lanes); });
+/// Where blocks of as many numbers as there are lanes begin, so that they cover `Size` numbers:
+/// side by side, but for the last.
+template <int Size, int Lanes, class Function>
+[[gnu::always_inline]] inline void unroll_blocks(const Function& function) noexcept {
+  unroll<Size / Lanes>([&](auto block) { function(Index<block.value * Lanes>{}); });
+  if constexpr (Size > Lanes && Size % Lanes != 0) function(Index<Size - Lanes>{});
+}
+
+/// `packs[k]` is number k of the arrays that `array(lane)` gives.
+template <int Size, class Array, class Packs>
+requires(kLanesIn<Packs> > 1)
+    [[gnu::always_inline]] inline void gather_lanes(const Array& array, Packs packs) noexcept {
+  using PackType = std::decay_t<decltype(packs[0])>;
+  constexpr int kLanes = kLanesOf<PackType>;
+  unroll_blocks<Size, kLanes>([&](auto first) {
+    PackType rows[kLanes];
+    unroll<kLanes>([&](int k) { rows[k] = PackType::load(array(k) + first.value); });
     transpose(rows);
-    unroll<Lanes>([&](int k) { packs[block.value * Lanes + k] = rows[k]; });
+    unroll<kLanes>([&](int k) { packs[first.value + k] = rows[k]; });
   });
-  unroll<Size - kWhole>([&](int k) {
-    packs[kWhole + k] = Pack<Real, Lanes>::of([&](int lane) { return array(lane)[kWhole + k]; });
-  });
+  if constexpr (Size < kLanes)
+    unroll<Size>([&](int k) { packs[k] = PackType::of([&](int lane) { return array(lane)[k]; }); });
 }
 
 /// The reverse, for the first `count` lanes.
-template <int Size, class Real, int Lanes, class Array>
-[[gnu::always_inline]] inline void scatter_lanes(const Pack<Real, Lanes>* packs, int count,
-                                                 const Array& array) noexcept {
-  constexpr int kWhole = Size / Lanes * Lanes;
-  unroll<Size / Lanes>([&](auto block) {
-    Pack<Real, Lanes> rows[Lanes];
-    unroll<Lanes>([&](int k) { rows[k] = packs[block.value * Lanes + k]; });
+template <int Size, class Array, class Packs>
+requires(kLanesIn<Packs> > 1)
+    [[gnu::always_inline]] inline void scatter_lanes(Packs packs, int count,
+                                                     const Array& array) noexcept {
+  using PackType = std::decay_t<decltype(packs[0])>;
+  constexpr int kLanes = kLanesOf<PackType>;
+  unroll_blocks<Size, kLanes>([&](auto first) {
+    PackType rows[kLanes];
+    unroll<kLanes>([&](int k) { rows[k] = packs[first.value + k]; });
     transpose(rows);
-    for (int k = 0; k < count; ++k) store(rows[k], array(k) + block.value * Lanes);
+    unroll<kLanes>([&](int k) {
+      if (k < count) store(rows[k], array(k) + first.value);
+    });
   });
-  for (int k = 0; k < count; ++k)
-    unroll<Size - kWhole>([&](int i) { array(k)[kWhole + i] = lane(packs[kWhole + i], k); });
+  if constexpr (Size < kLanes)
+    for (int k = 0; k < count; ++k) unroll<Size>([&](int i) { array(k)[i] = lane(packs[i], k); });
 }
 
 }  // namespace WAKELINE_INSTRUCTION_SET

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 #include "wakeline/core/unroll.hpp"
 
@@ -65,16 +67,22 @@ Scalar load(const RealOf<Scalar>* from) noexcept {
   return ScalarTraits<Scalar>::load(from);
 }
 
-/// Scalar k is number k of the arrays that `array(lane)` gives; and the reverse, for the first
+/// Lanes of each scalar in a row of them.
+template <class Scalars>
+inline constexpr int kLanesIn = kLanesOf<std::decay_t<decltype(std::declval<Scalars&>()[0])>>;
+
+/// `scalars[k]` is number k of the arrays that `array(lane)` gives; and the reverse, for the first
 /// `count` lanes.
-template <int Size, class Scalar, class Array>
-[[gnu::always_inline]] inline void gather_lanes(const Array& array, Scalar* to) noexcept {
-  unroll<Size>([&](int k) { to[k] = array(0)[k]; });
+template <int Size, class Array, class Scalars>
+requires(kLanesIn<Scalars> == 1)
+    [[gnu::always_inline]] inline void gather_lanes(const Array& array, Scalars scalars) noexcept {
+  unroll<Size>([&](int k) { scalars[k] = array(0)[k]; });
 }
-template <int Size, class Scalar, class Array>
-[[gnu::always_inline]] inline void scatter_lanes(const Scalar* from, int,
-                                                 const Array& array) noexcept {
-  unroll<Size>([&](int k) { array(0)[k] = from[k]; });
+template <int Size, class Array, class Scalars>
+requires(kLanesIn<Scalars> == 1)
+    [[gnu::always_inline]] inline void scatter_lanes(Scalars scalars, int,
+                                                     const Array& array) noexcept {
+  unroll<Size>([&](int k) { array(0)[k] = scalars[k]; });
 }
 
 /// Over all lanes.
@@ -85,20 +93,21 @@ requires(kLanesOf<Scalar> == 1) constexpr Scalar least_of_lanes(Scalar x) noexce
 template <class Scalar>
 requires(kLanesOf<Scalar> == 1) constexpr Scalar greatest_of_lanes(Scalar x) noexcept { return x; }
 
-/// The same where `Result` is one number; else each lane for itself.
-template <class Result, class Scalar>
-Result sum_to(Scalar x) noexcept {
+/// `fold(x)` where `Result` is one number and x are many; else each lane for itself.
+template <class Result, class Scalar, class Fold>
+Result fold_to(Scalar x, const Fold& fold) noexcept {
   if constexpr (kLanesOf<Result> == kLanesOf<Scalar>)
     return x;
   else
-    return sum_of_lanes(x);
+    return fold(x);
+}
+template <class Result, class Scalar>
+Result sum_to(Scalar x) noexcept {
+  return fold_to<Result>(x, [](const auto& lanes) { return sum_of_lanes(lanes); });
 }
 template <class Result, class Scalar>
 Result least_to(Scalar x) noexcept {
-  if constexpr (kLanesOf<Result> == kLanesOf<Scalar>)
-    return x;
-  else
-    return least_of_lanes(x);
+  return fold_to<Result>(x, [](const auto& lanes) { return least_of_lanes(lanes); });
 }
 
 /// Over the lanes of a mask, of which a `bool` has one.

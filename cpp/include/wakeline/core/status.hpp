@@ -52,6 +52,7 @@ constexpr Status ok_or(bool condition, Status otherwise) noexcept {
 }
 
 constexpr Status lane(Status status, int) noexcept { return status; }
+constexpr Status first_failure_of_lanes(Status status) noexcept { return status; }
 
 /// A `Status` for each lane of a pack.
 template <class Scalar>
@@ -74,6 +75,11 @@ class LaneStatus {
   }
   friend Status lane(const LaneStatus& status, int k) noexcept {
     return static_cast<Status>(lane(status.code_, k));
+  }
+  friend Status first_failure_of_lanes(const LaneStatus& status) noexcept {
+    Status first = Status::kOk;
+    for (int k = 0; k < kLanesOf<Scalar>; ++k) first = first_failure(first, lane(status, k));
+    return first;
   }
 
  private:

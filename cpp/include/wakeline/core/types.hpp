@@ -54,6 +54,44 @@ template <int N, class Scalar>
   unroll<N * N>([&](int k) { to.covariance.data()[k] = from.covariance.data()[k]; });
 }
 
+/// True where mean and covariance lie in a row in memory, as they do but for odd alignments.
+template <int N, class Real = double>
+inline constexpr bool kInARow = sizeof(Gaussian<N, Real>) == N*(N + 1) * sizeof(Real);
+
+/// The numbers of a belief: mean, then covariance.
+template <int N, class Belief>
+struct NumbersOf {
+  Belief& belief;
+  auto& operator[](int k) const noexcept {
+    return k < N ? belief.mean.data()[k] : belief.covariance.data()[k - N];
+  }
+};
+
+/// Lane k is the belief that `of_lane(k)` gives; and the reverse, for the first `count` lanes.
+template <int N, class Scalar, class OfLane>
+[[gnu::always_inline]] inline void gather_lanes(const OfLane& of_lane,
+                                                Gaussian<N, Scalar>& to) noexcept {
+  if constexpr (kInARow<N, RealOf<Scalar>>) {
+    gather_lanes<N*(N + 1)>([&](int k) { return of_lane(k).mean.data(); },
+                            NumbersOf<N, Gaussian<N, Scalar>>{to});
+  } else {
+    gather_lanes<N>([&](int k) { return of_lane(k).mean.data(); }, to.mean.data());
+    gather_lanes<N * N>([&](int k) { return of_lane(k).covariance.data(); }, to.covariance.data());
+  }
+}
+template <int N, class Scalar, class OfLane>
+[[gnu::always_inline]] inline void scatter_lanes(const Gaussian<N, Scalar>& from, int count,
+                                                 const OfLane& of_lane) noexcept {
+  if constexpr (kInARow<N, RealOf<Scalar>>) {
+    scatter_lanes<N*(N + 1)>(NumbersOf<N, const Gaussian<N, Scalar>>{from}, count,
+                             [&](int k) { return of_lane(k).mean.data(); });
+  } else {
+    scatter_lanes<N>(from.mean.data(), count, [&](int k) { return of_lane(k).mean.data(); });
+    scatter_lanes<N * N>(from.covariance.data(), count,
+                         [&](int k) { return of_lane(k).covariance.data(); });
+  }
+}
+
 /// Copies the lower triangle onto the upper one, so that the matrix is symmetric to the last bit.
 template <class Scalar, int N>
 [[gnu::always_inline]] inline void mirror_lower(Mat<Scalar, N, N>& matrix) noexcept {

@@ -72,6 +72,12 @@ class Belief {
     return Status::kOk;
   }
 
+  /// The belief, to be replaced by what is written there, unchecked.
+  [[nodiscard, gnu::always_inline]] Gaussian<kStates, Scalar>& to_assign() noexcept {
+    started_ = true;
+    return belief_;
+  }
+
   /// Replaces the belief in some lanes, unchecked.
   void assign_in(const MaskOf<Scalar>& lanes, const Gaussian<kStates, Scalar>& belief) noexcept {
     assign_where(lanes, belief_, belief);

@@ -42,6 +42,10 @@ class Ukf : public Belief<MotionType, ScalarType> {
     rooted_ = false;
     return Base::assign(belief);
   }
+  [[nodiscard]] Gaussian<kStates, Scalar>& to_assign() noexcept {
+    rooted_ = false;
+    return Base::to_assign();
+  }
   void assign_in(const MaskOf<Scalar>& lanes, const Gaussian<kStates, Scalar>& belief) noexcept {
     rooted_ = false;
     Base::assign_in(lanes, belief);

@@ -172,6 +172,10 @@ class FilterBank {
   const auto& get() const noexcept {
     return std::get<Index>(slots_).filter;
   }
+  template <int Index>
+  auto& get() noexcept {
+    return std::get<Index>(slots_).filter;
+  }
 
  private:
   template <class Filter>

@@ -142,13 +142,49 @@ class Imm {
     });
     Scalar total = Scalar(0);
     for (int mode = 0; mode < bank_.size(); ++mode) total += posterior[mode];
-    if (!(total > Scalar(0)) || !std::isfinite(total)) {
-      bank_.for_each([](int, auto& filter, auto& before) { (void)filter.assign(before); });
-      return Scalar(0);
-    }
-    for (int mode = 0; mode < bank_.size(); ++mode) probability_[mode] = posterior[mode] / total;
-    for (Scalar& part : share) part /= total;
-    return total;
+    using std::isfinite;
+    const auto possible = total > Scalar(0) && isfinite(total);
+    if (!all(possible)) [[unlikely]]
+      restore(!possible);
+    const auto of_total = [&](Scalar part, Scalar otherwise) {
+      return select(possible, part / total, otherwise);
+    };
+    for (int mode = 0; mode < bank_.size(); ++mode)
+      probability_[mode] = of_total(posterior[mode], probability_[mode]);
+    for (Scalar& part : share) part = of_total(part, Scalar(0));
+    return select(possible, total, Scalar(0));
+  }
+
+  /// Takes over what estimators of numbers over the same models believe, all of them started: lane
+  /// k that of `of_lane(k)`.
+  template <class OfLane>
+  [[gnu::always_inline]] void gather(const OfLane& of_lane) noexcept {
+    gather_lanes<kModels>([&](int k) { return of_lane(k).probability_.data(); },
+                          probability_.data());
+    unroll<kModels>([&](auto mode) {
+      gather_lanes(
+          [&](int k) -> const auto& {
+            return of_lane(k).bank_.template get<mode.value>().estimate();
+          },
+          bank_.template get<mode.value>().to_assign());
+    });
+    started_ = true;
+  }
+
+  /// The reverse, for the first `count` lanes.
+  template <class OfLane>
+  [[gnu::always_inline]] void scatter(int count, const OfLane& of_lane) const noexcept {
+    scatter_lanes<kModels>(probability_.data(), count,
+                           [&](int k) { return of_lane(k).probability_.data(); });
+    unroll<kModels>([&](auto mode) {
+      const auto& belief = bank_.template get<mode.value>().estimate();
+      using Lane = decltype(of_lane(0).bank_.template get<mode.value>().to_assign());
+      std::array<std::remove_reference_t<Lane>*, kLanesOf<Scalar>> each;
+      for (int k = 0; k < count; ++k)
+        each[std::size_t(k)] = &of_lane(k).bank_.template get<mode.value>().to_assign();
+      scatter_lanes(
+          belief, count, [&](int k) -> auto& { return *each[std::size_t(k)]; });
+    });
   }
 
   /// Saves or restores beliefs and mode probabilities.
@@ -182,6 +218,9 @@ class Imm {
   }
 
  protected:
+  template <class>
+  friend class Imm;
+
   template <class... Known>
   [[gnu::flatten]] StatusOf<Scalar> mix_and_move(Scalar dt_s,
                                                  const Known&... acceleration_mps2) noexcept {

@@ -157,7 +157,7 @@ class ModeHistory {
     step.log_likelihood =
         reweigh<kMostRows, Scalar>(weighed, [&](std::size_t r) { return taken[r].likelihood(); });
     if (step.log_likelihood == kImpossible<Scalar>)
-      return failed_step<kM, Scalar>(first_in_lanes(failure_of(taken)));
+      return failed_step<kM, Scalar>(first_failure_of_lanes(failure_of(taken)));
     for (std::size_t r = 0; r < rows.size(); ++r) set_probability(rows[r], weights[r], next);
     take(count_);
     if (!pooled()) reduce();
@@ -313,9 +313,7 @@ class ModeHistory {
     const BeliefType* of_lane[kLanes];
     for (int k = 0; k < kLanes; ++k) of_lane[k] = &belief_of(row[k]);
     LaneBelief belief;
-    gather_lanes<kStates>([&](int k) { return of_lane[k]->mean.data(); }, belief.mean.data());
-    gather_lanes<kStates * kStates>([&](int k) { return of_lane[k]->covariance.data(); },
-                                    belief.covariance.data());
+    gather_lanes<kStates, Lanes>([&](int k) -> const BeliefType& { return *of_lane[k]; }, belief);
     return belief;
   }
 
@@ -324,10 +322,7 @@ class ModeHistory {
                                    Hypotheses& hypotheses) noexcept {
     BeliefType* of_lane[kLanes];
     for (int k = 0; k < kLanes; ++k) of_lane[k] = &at(hypotheses, row[k]).belief;
-    scatter_lanes<kStates>(lanes.mean.data(), row.count,
-                           [&](int k) { return of_lane[k]->mean.data(); });
-    scatter_lanes<kStates * kStates>(lanes.covariance.data(), row.count,
-                                     [&](int k) { return of_lane[k]->covariance.data(); });
+    scatter_lanes(lanes, row.count, [&](int k) -> BeliefType& { return *of_lane[k]; });
   }
 
   /// The hypotheses of a row go on in their modes with other beliefs.
@@ -354,12 +349,6 @@ class ModeHistory {
     });
   }
 
-  static Status first_in_lanes(const StatusOf<Lanes>& status) noexcept {
-    Status first = lane(status, 0);
-    for (int k = 1; k < kLanes; ++k) first = first_failure(first, lane(status, k));
-    return first;
-  }
-
   /// The filter of its mode, with the beliefs of a row.
   template <class BeliefOf>
   Filter& filter_of(const Row& row, const BeliefOf& belief_of) noexcept {
@@ -376,8 +365,8 @@ class ModeHistory {
     const Rows rows({hypotheses.data(), static_cast<std::size_t>(count)});
     for (std::size_t r = 0; r < rows.size(); ++r) {
       Filter& filter = filter_of(rows[r], before);
-      const Status status =
-          first_in_lanes(filter.predict(Lanes(dt_s), acceleration_mps2.template cast<Lanes>()...));
+      const Status status = first_failure_of_lanes(
+          filter.predict(Lanes(dt_s), acceleration_mps2.template cast<Lanes>()...));
       if (status != Status::kOk) return status;
       put(rows[r], filter.estimate(), hypotheses);
     }

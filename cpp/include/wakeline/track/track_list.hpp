@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -37,6 +38,14 @@ class TrackList {
   template <class Function>
   void for_each(Function&& function) const {
     for (const int slot : order_) call(function, at(slot), slot);
+  }
+
+  /// Calls `f(slots)` for every `Size` tracks or, at the end, fewer.
+  template <std::size_t Size, class Function>
+  void for_each_group(Function&& function) {
+    const std::span<const int> slots(order_);
+    for (std::size_t first = 0; first < slots.size(); first += Size)
+      function(slots.subspan(first, std::min(Size, slots.size() - first)));
   }
 
   /// The track of that slot, be it in use or not.

@@ -17,6 +17,7 @@
 
 #include "wakeline/association/global_nearest_neighbour.hpp"
 #include "wakeline/association/nearest_neighbour.hpp"
+#include "wakeline/batch/side_by_side.hpp"
 #include "wakeline/gating/chi_square_gate.hpp"
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/imm.hpp"
@@ -68,6 +69,7 @@ class Tracker {
         tracks_(config.max_tracks, prototype),
         claims_(static_cast<std::size_t>(config.max_tracks)),
         echoes_(config.max_plots),
+        side_by_side_(prototype),
         places_(config.max_tracks),
         free_(config.max_plots),
         candidates_(config.max_tracks, config.max_tracks * Claims::kMost),
@@ -96,14 +98,17 @@ class Tracker {
     started_ = true;
     const int refused = take(plots, dt_s);
     const Ageing ageing(config_, dt_s);
-    tracks_.for_each([&](TrackType& track, int slot) {  // one by one, while it is in the cache
-      track.age(ageing);
-      advance(track);
-      gate(track, claims_of(slot));
-      stake(track, claims_of(slot));
+    // A few at a time, while they are in the cache.
+    tracks_.template for_each_group<kGroup>([&](std::span<const int> slots) {
+      for (const int slot : slots) tracks_.at(slot).age(ageing);
+      advance(slots);
+      for (const int slot : slots) {
+        gate(tracks_.at(slot), claims_of(slot));
+        stake(tracks_.at(slot), claims_of(slot));
+      }
     });
     if (config_.association != Association::kProbabilistic) assign_plots();
-    tracks_.for_each([&](TrackType& track, int slot) { update(track, slot, claims_of(slot)); });
+    tracks_.template for_each_group<kGroup>([&](std::span<const int> slots) { update(slots); });
     judge();
     remove_duplicates();
     promote();
@@ -205,6 +210,13 @@ class Tracker {
   /// A plot that many periods from its scan has a wrong clock.
   static constexpr double kClockPeriods = 10.0;
   static constexpr std::uint32_t kArchiveVersion = 2;
+  static constexpr std::size_t kGroup = 32;  ///< tracks that take their steps together
+
+  /// The plots of a track, each as two readings, and what share of it they have.
+  struct Readings {
+    std::array<Alternative<Fix>, 2 * Claims::kMost> fixes;
+    std::array<double, 2 * Claims::kMost> share;
+  };
 
   [[nodiscard]] Claims& claims_of(int slot) noexcept {
     return claims_[static_cast<std::size_t>(slot)];
@@ -229,9 +241,32 @@ class Tracker {
     return static_cast<int>(plots.size()) - echoes_.size();
   }
 
-  /// Time passes for a track: to the time of the plot nearest to where it should be, else to the
-  /// scan's.
-  void advance(TrackType& track) noexcept {
+  /// Time passes for some tracks: to the time of the plot nearest to where each should be, else to
+  /// the scan's.
+  void advance(std::span<const int> slots) noexcept {
+    std::array<PredictionStep<Estimator>, kGroup> steps;
+    std::array<TrackType*, kGroup> track_of;
+    std::array<double, kGroup> time_of;
+    std::size_t count = 0;
+    for (const int slot : slots) {
+      TrackType& track = tracks_.at(slot);
+      const double time_s = expected_time_s(track);
+      if (!(time_s > track.time_s)) continue;
+      steps[count] = {&track.estimator, time_s - track.time_s};
+      track_of[count] = &track;
+      time_of[count++] = time_s;
+    }
+    side_by_side_.predict({steps.data(), count});
+    for (std::size_t k = 0; k < count; ++k) {
+      if (steps[k].status != Status::kOk) continue;
+      track_of[k]->time_s = time_of[k];
+      track_of[k]->kinematics = steps[k].kinematics;
+    }
+  }
+
+  /// Time of the plot nearest to where a track should be, else of the scan.
+  [[nodiscard]] double expected_time_s(const TrackType& track) const noexcept {
+    if (echoes_.apart_s(time_s_) == 0.0) return time_s_;
     const double ahead_s = std::max(time_s_ - track.time_s, 0.0);
     const Vec<double, 2> expected = track.position() + ahead_s * track.velocity();
     const double reach = 3.0 * track.position_std_m() +
@@ -247,10 +282,7 @@ class Tracker {
         time_s = echo.time_s;
       }
     });
-    if (time_s > track.time_s && track.estimator.predict(time_s - track.time_s) == Status::kOk) {
-      track.time_s = time_s;
-      track.kinematics = kinematics_of(track.estimator.estimate());
-    }
+    return time_s;
   }
 
   /// Finds the plots that a track may own.
@@ -273,14 +305,20 @@ class Tracker {
       Claim claim{.echo = index, .z = position.mean + dt_s * track.velocity()};
       const Mat<double, 2, 2> wild_covariance = config_.wild_variance() * position.covariance;
       if (!modes_.may_own(claim.z, wild_covariance, threshold)) return;
-      const Evidence<double> wild = track.estimator.evidence(Fix{wild_covariance}, claim.z);
+      const Evidence<double> wild = evidence(track, claim.z, wild_covariance);
       if (!gate_.contains(wild.least_nis)) return;
-      const Evidence<double> nominal = track.estimator.evidence(Fix{position.covariance}, claim.z);
+      const Evidence<double> nominal = evidence(track, claim.z, position.covariance);
       claim.likelihood = (1.0 - config_.wild_probability) * nominal.likelihood +
                          config_.wild_probability * wild.likelihood;
       claim.nis = squared_distance(track.kinematics, claim.z, position.covariance);
       claims.add(claim);
     });
+  }
+
+  /// What the track at hand thinks of a plot.
+  [[nodiscard]] Evidence<double> evidence(const TrackType& track, const Vec<double, 2>& z,
+                                          const Mat<double, 2, 2>& r) const noexcept {
+    return modes_.known() ? modes_.evidence(z, r) : track.estimator.evidence(Fix{r}, z);
   }
 
   /// The odds with which a track claims each of its plots, and their sum for each plot. To the
@@ -338,27 +376,51 @@ class Tracker {
     return nearest_.assignment();
   }
 
-  /// Takes the plots in: state, existence and visibility.
-  void update(TrackType& track, int slot, const Claims& claims) noexcept {
-    const double none = claims.certain() ? 0.0 : 1.0 - config_.detection() * track.visibility;
-    std::array<double, 2 * Claims::kMost> share{};
-    const std::size_t count = list_readings(track, claims);
-    double total = none;
-    if (count > 0) {
-      const double sum =
-          track.estimator.update(std::span<const Alternative<Fix>>(readings_.data(), count), none,
-                                 std::span<double>(share.data(), count));
-      if (sum > 0.0) total = sum;
+  /// Takes the plots in: state, existence and visibility of some tracks.
+  void update(std::span<const int> slots) noexcept {
+    std::array<UpdateStep<Estimator>, kGroup> steps;
+    std::array<UpdateStep<Estimator>*, kGroup> step_of{};  ///< null of a track without plots
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+      TrackType& track = tracks_.at(slots[k]);
+      const Claims& claims = claims_of(slots[k]);
+      if (claims.empty()) continue;
+      Readings& readings = readings_[k];
+      const std::size_t fixes = list_readings(track, claims, readings);
+      step_of[k] = &steps[count++];
+      *step_of[k] = {&track.estimator,
+                     {readings.fixes.data(), fixes},
+                     none_of(track, claims),
+                     {readings.share.data(), fixes}};
     }
-    if (total > 0.0) track.weigh(config_, total, none, claims.certain());
+    side_by_side_.update({steps.data(), count});
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+      TrackType& track = tracks_.at(slots[k]);
+      const Claims& claims = claims_of(slots[k]);
+      const double none = none_of(track, claims);
+      double total = none;
+      if (step_of[k] != nullptr) {
+        track.kinematics = step_of[k]->kinematics;
+        if (step_of[k]->total > 0.0) total = step_of[k]->total;
+      }
+      if (total > 0.0) track.weigh(config_, total, none, claims.certain());
+      settle(track, slots[k], claims, readings_[k].share.data());
+    }
+  }
 
+  /// What it weighs that none of its plots is the track's.
+  [[nodiscard]] double none_of(const TrackType& track, const Claims& claims) const noexcept {
+    return claims.certain() ? 0.0 : 1.0 - config_.detection() * track.visibility;
+  }
+
+  /// Tells the plots, and counts, how far they are a track's, by the shares of their readings.
+  void settle(TrackType& track, int slot, const Claims& claims, const double* share) noexcept {
     double owned = 0.0;
     double best = 0.0;
     track.nis = std::numeric_limits<double>::quiet_NaN();
-    const double* part = share.data();
     for (const Claim& claim : claims) {
-      const double owns = part[0] + part[1];
-      part += 2;
+      const double owns = share[0] + share[1];
+      share += 2;
       owned += owns;
       if (owns > best) {
         best = owns;
@@ -366,22 +428,22 @@ class Tracker {
       }
       settle(track, slot, echoes_[claim.echo], std::min(owns, 1.0));
     }
-    track.kinematics = kinematics_of(track.estimator.estimate());
     track.count(owned > 0.5);
   }
 
   /// Each plot as two readings, of the nominal and of the wild error.
-  std::size_t list_readings(const TrackType& track, const Claims& claims) noexcept {
+  [[nodiscard]] std::size_t list_readings(const TrackType& track, const Claims& claims,
+                                          Readings& readings) const noexcept {
     std::size_t count = 0;
     for (const Claim& claim : claims) {
       const Echo& echo = echoes_[claim.echo];
       const double claimed_by_others = std::max(echo.odds - claim.odds, 0.0);
       const double weight =
           config_.detection_probability * track.visibility / (echo.density + claimed_by_others);
-      readings_[count++] = {Fix{echo.position.covariance}, claim.z,
-                            (1.0 - config_.wild_probability) * weight};
-      readings_[count++] = {Fix{config_.wild_variance() * echo.position.covariance}, claim.z,
-                            config_.wild_probability * weight};
+      readings.fixes[count++] = {Fix{echo.position.covariance}, claim.z,
+                                 (1.0 - config_.wild_probability) * weight};
+      readings.fixes[count++] = {Fix{config_.wild_variance() * echo.position.covariance}, claim.z,
+                                 config_.wild_probability * weight};
     }
     return count;
   }
@@ -617,9 +679,10 @@ class Tracker {
   TrackList<Estimator> tracks_;
   std::vector<Claims> claims_;  ///< by slot of the list
   Echoes echoes_;
-  ModePlaces modes_;                                          ///< of the track at hand
-  std::array<Alternative<Fix>, 2 * Claims::kMost> readings_;  ///< of the track at hand
-  PlaneIndex places_;                                         ///< of the tracks, by slot
+  ModePlaces modes_;  ///< of the track at hand
+  SideBySide<Estimator> side_by_side_;
+  std::array<Readings, kGroup> readings_;  ///< of the tracks at hand
+  PlaneIndex places_;                      ///< of the tracks, by slot
   double widest_m2_ = 0.0;
   FreePlots free_;  ///< of the scan before
   std::vector<std::int64_t> plot_track_id_;
