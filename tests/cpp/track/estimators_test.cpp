@@ -41,6 +41,25 @@ void expect_to_hold(const Estimator& prototype) {
   EXPECT_EQ(near, 1);
 }
 
+/// A model of one's own, which knows nothing of packs.
+struct Drifting {
+  static constexpr auto kComponents = kKinematics;
+
+  [[nodiscard]] Mat<double, 4, 4> matrix(double dt_s) const noexcept {
+    Mat<double, 4, 4> f = Mat<double, 4, 4>::Identity();
+    if (dt_s > 0.0) f(0, 1) = f(2, 3) = dt_s;
+    return f;
+  }
+  [[nodiscard]] Mat<double, 4, 4> process_noise(double dt_s) const noexcept {
+    return 0.2 * dt_s * Mat<double, 4, 4>::Identity();
+  }
+};
+
+TEST(TrackerEstimators, OneOverModelsThatKnowNoPacks) {
+  expect_to_hold(
+      Imm(ModeChain<2>::from_sojourn_s({60.0, 60.0}), kTurning, Ekf<Drifting>(Drifting{})));
+}
+
 TEST(TrackerEstimators, TreeOfModeHistories) {
   const auto grid = TurnRateGrid::evenly(deg(4.0), 4);
   expect_to_hold(ModeHistory<Turning>({}, grid, turning_chain(grid), kTurning));

@@ -46,12 +46,12 @@ template <class Estimator, class Scalar>
 struct InLanes;
 
 template <class Motion, class Scalar>
-struct InLanes<Ekf<Motion>, Scalar> {
+requires(kForPacks<Motion>) struct InLanes<Ekf<Motion>, Scalar> {
   static auto of(const Ekf<Motion>& filter) { return Ekf<Motion, Scalar>(filter.motion()); }
 };
 
 template <class Motion, class Scalar>
-struct InLanes<Ukf<Motion>, Scalar> {
+requires(kForPacks<Motion>) struct InLanes<Ukf<Motion>, Scalar> {
   static auto of(const Ukf<Motion>& filter) {
     return Ukf<Motion, Scalar>(filter.motion(), filter.unscented());
   }
@@ -189,7 +189,8 @@ class SideBySide<Estimator> {
         lanes_of<Scalar>([&](int k) { return row[k].none; }), std::span(share.data(), count));
     for (int k = 0; k < row.count; ++k) {
       row[k].total = lane(total, k);
-      for (std::size_t i = 0; i < row[k].share.size(); ++i) row[k].share[i] = lane(share[i], k);
+      for (std::size_t i = 0; i < row[k].share.size(); ++i)
+        row[k].share[i] = i < count ? lane(share[i], k) : 0.0;
     }
     scatter(row);
   }

@@ -44,6 +44,12 @@ concept NonlinearMotionModel = requires(const Motion& motion, const StateOf<Moti
 template <class Motion>
 concept MotionModel = LinearMotionModel<Motion> || NonlinearMotionModel<Motion>;
 
+/// True of a model whose formulas hold for packs of numbers, too, which it says by `kForPacks`.
+template <class Motion>
+inline constexpr bool kForPacks = requires {
+  requires Motion::kForPacks;
+};
+
 /// f(x, dt).
 template <MotionModel Motion, class Scalar>
 StateOf<Motion, Scalar> transition(const Motion& motion, const StateOf<Motion, Scalar>& x,

@@ -25,6 +25,7 @@ Mat<Scalar, 6, 6> both_axes(const Mat<Scalar, 3, 3>& axis) noexcept {
 /// ax dt. Source: Bar-Shalom, Li, Kirubarajan, 6.2.3; paper A, equation (2).
 struct ConstantAcceleration {
   static constexpr auto kComponents = kAccelerationKinematics;
+  static constexpr bool kForPacks = true;
   static constexpr Pattern<6> kPattern{"1xx000 01x000 001000 0001xx 00001x 000001"};
 
   ProcessNoise noise = WhiteJerk{};

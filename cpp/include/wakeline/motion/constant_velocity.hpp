@@ -12,6 +12,7 @@ namespace wakeline {
 /// Source: Bar-Shalom, Li, Kirubarajan, 6.2.2; paper A, equation (1).
 struct ConstantVelocity {
   static constexpr auto kComponents = kKinematics;
+  static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x00 0100 001x 0001"};
 
   ProcessNoise noise = WhiteAcceleration{};

@@ -14,6 +14,7 @@ namespace wakeline {
 /// ConstantVelocity. Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
 struct CoordinatedTurn {
   static constexpr auto kComponents = kKinematics;
+  static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x0x 0x0x 0x1x 0x0x"};
 
   double turn_rate_rad_s = 0.0;  ///< positive to starboard
@@ -44,6 +45,7 @@ struct CoordinatedTurn {
 struct CoordinatedTurnRate {
   static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
                                           Component::kVeast, Component::kTurnRate};
+  static constexpr bool kForPacks = true;
   static constexpr Pattern<5> kPattern{"1x0xx 0x0xx 0x1xx 0x0xx 00001"};
 
   ProcessNoise noise = WhiteAcceleration{};

@@ -29,6 +29,7 @@ Scalar exponential_remainder(Scalar u) noexcept {
 /// m/s²). Source: R. A. Singer, IEEE Trans. AES-6, 1970; Bar-Shalom, Li, Kirubarajan, 8.2.
 struct Singer {
   static constexpr auto kComponents = kAccelerationKinematics;
+  static constexpr bool kForPacks = true;
   static constexpr Pattern<6> kPattern{"1xx000 01x000 00x000 0001xx 00001x 00000x"};
 
   double maneuver_time_s = 20.0;  ///< tau, correlation time of the acceleration

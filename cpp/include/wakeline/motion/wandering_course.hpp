@@ -24,6 +24,7 @@ Scalar course_wander_psd(double course_psd_rad2s, double max_speed_mps, Scalar v
 /// course_psd_rad2s v²` in every direction, so that one tuning serves both.
 struct WanderingCourse {
   static constexpr auto kComponents = kKinematics;
+  static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x00 0100 001x 0001"};
 
   double psd_m2s3 = 0.01;          ///< acceleration at rest

@@ -313,7 +313,8 @@ class ModeHistory {
     const BeliefType* of_lane[kLanes];
     for (int k = 0; k < kLanes; ++k) of_lane[k] = &belief_of(row[k]);
     LaneBelief belief;
-    gather_lanes<kStates, Lanes>([&](int k) -> const BeliefType& { return *of_lane[k]; }, belief);
+    Gaussian<kStates, Lanes>& lanes = belief;
+    gather_lanes([&](int k) -> const BeliefType& { return *of_lane[k]; }, lanes);
     return belief;
   }
 
