@@ -113,17 +113,20 @@ class SideBySide<Estimator> {
 
   void predict(std::span<PredictionStep<Estimator>> steps) noexcept {
     in_rows(
-        steps, [](const auto&) { return 0; }, [&](const auto& row) { predict_row(row); });
+        steps, [](const auto&) {}, [&](const auto& row) { predict_row(row); });
   }
 
   void update(std::span<UpdateStep<Estimator>> steps) noexcept {
-    in_rows(
-        steps, [](const auto& step) { return step.fixes.size(); },
-        [&](const auto& row) { update_row(row); });
+    // By their number of fixes, so that those of a row have the same or nearly.
+    const auto arrange = [](std::span<UpdateStep<Estimator>*> order) {
+      std::sort(order.begin(), order.end(),
+                [](const auto* a, const auto* b) { return a->fixes.size() < b->fixes.size(); });
+    };
+    in_rows(steps, arrange, [&](const auto& row) { update_row(row); });
   }
 
  private:
-  static constexpr std::size_t kSorted = 64;  ///< steps that are put in order together
+  static constexpr std::size_t kArranged = 64;  ///< steps that are arranged together
 
   /// A fix in each lane.
   struct LaneFix : Fix {
@@ -152,15 +155,14 @@ class SideBySide<Estimator> {
     }
   };
 
-  /// Takes the steps in rows of the same size, or nearly.
-  template <class Step, class SizeOf, class TakeRow>
-  static void in_rows(std::span<Step> steps, const SizeOf& size_of, const TakeRow& take) noexcept {
+  /// Takes the steps in rows, in the order to which `arrange` brings pointers to them.
+  template <class Step, class Arrange, class TakeRow>
+  static void in_rows(std::span<Step> steps, const Arrange& arrange, const TakeRow& take) noexcept {
     while (!steps.empty()) {
-      const std::size_t count = std::min(kSorted, steps.size());
-      std::array<Step*, kSorted> order;
+      const std::size_t count = std::min(kArranged, steps.size());
+      std::array<Step*, kArranged> order;
       for (std::size_t k = 0; k < count; ++k) order[k] = &steps[k];
-      std::sort(order.begin(), order.begin() + count,
-                [&](const Step* a, const Step* b) { return size_of(*a) < size_of(*b); });
+      arrange(std::span<Step*>(order.data(), count));
       for (std::size_t first = 0; first < count; first += kLanes) {
         Row<Step> row{.step = {}, .count = int(std::min(kLanes, count - first))};
         for (std::size_t k = 0; k < kLanes; ++k)
