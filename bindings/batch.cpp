@@ -91,6 +91,19 @@ bool run(LaneJob& job, const AnySensor& sensor, const RunInput& in,
   return kernels->run(job, in, out, threads.count());
 }
 
+/// The same of an Imm and what it has beside its chain.
+bool run_mixture(const AnyImm& imm, const Structure& structure, const AnySensor& sensor,
+                 const RunInput& in, const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  LaneJob job;
+  job.chain = &imm.chain();
+  job.structure = structure;
+  for (int k = 0; k < imm.bank().size(); ++k) {
+    if (!add_model(imm.bank().filter(static_cast<std::size_t>(k)), job)) return false;
+    job.initial_mode_probability.push_back(imm.initial_mode_probability()[k]);
+  }
+  return run(job, sensor, in, starts, out);
+}
+
 }  // namespace
 
 const LaneKernels* lane_kernels() noexcept { return kernels; }
@@ -123,13 +136,17 @@ bool run_lanes(const AnyFilter& filter, const AnySensor& sensor, const RunInput&
 
 bool run_lanes(const AnyImm& imm, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  LaneJob job;
-  job.chain = &imm.chain();
-  for (int k = 0; k < imm.bank().size(); ++k) {
-    if (!add_model(imm.bank().filter(static_cast<std::size_t>(k)), job)) return false;
-    job.initial_mode_probability.push_back(imm.initial_mode_probability()[k]);
-  }
-  return run(job, sensor, in, starts, out);
+  return run_mixture(imm, {}, sensor, in, starts, out);
+}
+
+bool run_lanes(const AnyAdaptiveGridImm& imm, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  return run_mixture(imm, imm.grid(), sensor, in, starts, out);
+}
+
+bool run_lanes(const AnySwitchingGridImm& imm, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  return run_mixture(imm, imm.grid(), sensor, in, starts, out);
 }
 
 bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInput& in,
@@ -138,7 +155,7 @@ bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInpu
   if (history == nullptr) return false;
   LaneJob job;
   job.chain = &history->chain();
-  job.tree = history->tree();
+  job.structure = history->tree();
   for (int k = 0; k < history->bank().size(); ++k) {
     job.models.push_back({history->bank().filter(k).motion()});
     job.initial_mode_probability.push_back(history->initial_mode_probability()[k]);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "any_turn_grids.hpp"
 #include "estimators.hpp"
 #include "thread_share.hpp"
 #include "wakeline/batch/run.hpp"
@@ -64,6 +65,10 @@ void require_starts(Estimator estimator, const std::vector<AnyBelief>& starts) {
 bool run_lanes(const AnyFilter& filter, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 bool run_lanes(const AnyImm& imm, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyAdaptiveGridImm& imm, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnySwitchingGridImm& imm, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 bool run_lanes(const AnyModeHistory& history, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);

@@ -8,8 +8,10 @@
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
+#include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
+#include "wakeline/multimodel/switching_grid_imm.hpp"
 #include "wakeline/multimodel/uniform_bank.hpp"
 
 namespace wakeline::python {
@@ -106,26 +108,58 @@ bool run_few(std::index_sequence<Models...>, const LaneJob& job, const RunInput&
   return run_begun(Imm{ModeChain<int(sizeof...(Models))>(*job.chain), bank}, job, in, out, threads);
 }
 
-bool run_many(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
+UniformBank<Turn4> turn_bank(const LaneJob& job) {
   std::vector<Turn4> filters;
   for (std::size_t k = 0; k < job.models.size(); ++k) filters.push_back(turn_filter(job, k));
-  const UniformBank<Turn4> bank{std::span<const Turn4>(filters)};
-  if (job.tree) return run_begun(ModeHistory(*job.tree, *job.chain, bank), job, in, out, threads);
-  return run_begun(Imm{*job.chain, bank}, job, in, out, threads);
+  return UniformBank<Turn4>{std::span<const Turn4>(filters)};
 }
 
-bool run_mixture(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
-  for (const LaneModel& model : job.models)
-    if (model.unscented || !std::holds_alternative<CoordinatedTurn>(model.motion)) return false;
-  if (job.tree) return run_many(job, in, out, threads);
+bool run_structured(std::monostate, const LaneJob& job, const RunInput& in, const RunOutput& out,
+                    int threads) {
   switch (job.models.size()) {
     case 2:
       return run_few(std::make_index_sequence<2>{}, job, in, out, threads);
     case 3:
       return run_few(std::make_index_sequence<3>{}, job, in, out, threads);
     default:
-      return run_many(job, in, out, threads);
+      return run_begun(Imm{*job.chain, turn_bank(job)}, job, in, out, threads);
   }
+}
+
+bool run_structured(const HistoryTree& tree, const LaneJob& job, const RunInput& in,
+                    const RunOutput& out, int threads) {
+  return run_begun(ModeHistory(tree, *job.chain, turn_bank(job)), job, in, out, threads);
+}
+
+/// Three filters whose turn rates differ from run to run.
+auto grid_bank(const LaneJob& job) {
+  const auto filter = [&](std::size_t k) {
+    const auto& motion = std::get<CoordinatedTurn>(job.models[k].motion);
+    return Ekf<KnownTurn<Lanes>, Lanes>({motion.turn_rate_rad_s, motion.noise});
+  };
+  return FilterBank(filter(0), filter(1), filter(2));
+}
+
+bool run_structured(const AdaptiveGrid& grid, const LaneJob& job, const RunInput& in,
+                    const RunOutput& out, int threads) {
+  using Estimator = AdaptiveGridImm<decltype(grid_bank(job))>;
+  return run_begun(Estimator(grid, ModeChain<3>(*job.chain), grid_bank(job)), job, in, out,
+                   threads);
+}
+
+bool run_structured(const SwitchingGrid& grid, const LaneJob& job, const RunInput& in,
+                    const RunOutput& out, int threads) {
+  using Estimator = SwitchingGridImm<decltype(grid_bank(job))>;
+  return run_begun(Estimator(grid, ModeChain<3>(*job.chain), grid_bank(job)), job, in, out,
+                   threads);
+}
+
+bool run_mixture(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
+  for (const LaneModel& model : job.models)
+    if (model.unscented || !std::holds_alternative<CoordinatedTurn>(model.motion)) return false;
+  return std::visit(
+      [&](const auto& structure) { return run_structured(structure, job, in, out, threads); },
+      job.structure);
 }
 
 bool run(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -21,8 +20,10 @@
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/singer.hpp"
 #include "wakeline/motion/wandering_course.hpp"
+#include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/history_tree.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
+#include "wakeline/multimodel/switching_grid_imm.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
 namespace wakeline::python {
@@ -42,11 +43,14 @@ struct LaneStart {
   double covariance[36] = {};
 };
 
+/// What a ModeHistory, AdaptiveGridImm or SwitchingGridImm has beside its chain; nothing of an Imm.
+using Structure = std::variant<std::monostate, HistoryTree, AdaptiveGrid, SwitchingGrid>;
+
 /// An estimator, its sensor and where it starts.
 struct LaneJob {
   std::vector<LaneModel> models;
   const ModeChain<kRuntimeModes>* chain = nullptr;  ///< between the models; none of one filter
-  std::optional<HistoryTree> tree;                  ///< of a ModeHistory; else an Imm
+  Structure structure = {};
   std::vector<double> initial_mode_probability;
   std::variant<RangeBearing, ConvertedRangeBearing, Position> sensor;
   std::vector<LaneStart> starts;  ///< one for all runs, or one each

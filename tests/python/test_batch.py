@@ -48,6 +48,16 @@ ESTIMATORS = {
     "imm_mixed": imm(
         wl.Ekf(wl.ConstantVelocity(noise=NOISE)), wl.Ukf(wl.CoordinatedTurnRate(noise=NOISE))
     ),
+    "adaptive": wl.AdaptiveGridImm(wl.Ekf(turning(0.0))),
+    "adaptive_printed": wl.AdaptiveGridImm(
+        wl.Ekf(turning(0.0)),
+        centre_threshold=0.3,
+        centre_gain=1.0,
+        kept_spacing_rad_s=0.0,
+        least_move_rad_s=0.0,
+    ),
+    "switching": wl.SwitchingGridImm(wl.Ekf(turning(0.0))),
+    "likely": wl.LikelyModelSetImm(wl.Ekf(turning(0.0))),
     "mode_history": wl.ModeHistory(wl.Ekf(turning(0.0)), max_branches=100),
 }
 
@@ -85,6 +95,10 @@ def assert_near(many, one, k: int) -> None:
         np.testing.assert_allclose(
             many.mode_probability[k], one.mode_probability, rtol=0, atol=1e-11
         )
+    if one.turn_rate_rad_s is not None:
+        np.testing.assert_allclose(
+            many.turn_rate_rad_s[k], one.turn_rate_rad_s, rtol=0, atol=1e-11, equal_nan=True
+        )
 
 
 @pytest.fixture
@@ -121,7 +135,7 @@ def test_a_start_that_is_none_is_named():
         run(ESTIMATORS["imm3"], recordings(), begin=starts)
 
 
-@pytest.mark.parametrize("name", ["ekf_ct", "ukf_ctr", "imm3", "imm_mixed", "mode_history"])
+@pytest.mark.parametrize("name", ["ekf_ct", "ukf_ctr", "imm3", "imm_mixed", "switching", "mode_history"])
 def test_results_do_not_depend_on_threads(name, restored_threads):
     z = np.tile(recordings(), (8, 1, 1))
     wl.set_threads(1)
@@ -132,7 +146,7 @@ def test_results_do_not_depend_on_threads(name, restored_threads):
         np.testing.assert_array_equal(getattr(one, array), getattr(three, array))
 
 
-@pytest.mark.parametrize("name", ["ekf_ctr", "ukf_ctr", "imm3", "imm4"])
+@pytest.mark.parametrize("name", ["ekf_ctr", "ukf_ctr", "imm3", "imm4", "adaptive", "switching"])
 def test_runs_do_not_depend_on_their_neighbours(name):
     z = recordings()
     order = np.random.default_rng(0).permutation(RUNS)

@@ -18,7 +18,9 @@
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/singer.hpp"
+#include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/multimodel/switching_grid_imm.hpp"
 
 namespace wakeline {
 namespace {
@@ -37,10 +39,11 @@ struct Results {
   std::vector<std::uint8_t> status;
   RunOutput out;
 
-  Results(std::size_t runs, std::size_t states, std::size_t models)
+  Results(std::size_t runs, std::size_t states, std::size_t models, bool turn_rates)
       : mean(runs * kScans * states),
         covariance(runs * kScans * states * states),
         modes(runs * kScans * models),
+        rates(turn_rates ? runs * kScans * models : 0),
         innovation(runs * kScans * 2),
         nis(runs * kScans),
         log_likelihood(runs * kScans),
@@ -50,15 +53,15 @@ struct Results {
            mean.data(),
            covariance.data(),
            modes.data(),
-           nullptr,
+           rates.data(),
            innovation.data(),
            nis.data(),
            log_likelihood.data(),
            status.data()};
   }
 
-  [[nodiscard]] std::array<const std::vector<double>*, 6> numbers() const {
-    return {&mean, &covariance, &modes, &innovation, &nis, &log_likelihood};
+  [[nodiscard]] std::array<const std::vector<double>*, 7> numbers() const {
+    return {&mean, &covariance, &modes, &rates, &innovation, &nis, &log_likelihood};
   }
 };
 
@@ -120,6 +123,43 @@ struct Imm3 {
   }
 };
 
+/// Three turn models whose rates move.
+template <template <class> class Estimator, class Scalar, class Grid>
+auto turning(const Grid& grid) {
+  const Ekf<KnownTurn<TurnRate<Scalar>>, Scalar> filter({.noise = WhiteAcceleration{0.01}});
+  const FilterBank bank(filter, filter, filter);
+  return Estimator<std::decay_t<decltype(bank)>>(grid, ModeChain<3>::staying(0.9), bank);
+}
+
+template <class Scalar>
+struct Adaptive {
+  static constexpr std::size_t kModels = 3;
+  static auto make() {
+    return turning<AdaptiveGridImm, Scalar>(AdaptiveGrid{
+        .min_spacing_rad_s = deg(1.0), .kept_spacing_rad_s = deg(1.0), .centre_threshold = 0.99});
+  }
+};
+
+template <class Scalar>
+struct Switching {
+  static constexpr std::size_t kModels = 3;
+  static auto make() {
+    return turning<SwitchingGridImm, Scalar>(
+        SwitchingGrid{.grid_rad_s = TurnRateGrid::evenly(deg(2.0), 4)});
+  }
+};
+
+template <class Scalar>
+struct LiteralSwitching {
+  static constexpr std::size_t kModels = 3;
+  static auto make() {
+    return turning<SwitchingGridImm, Scalar>(
+        SwitchingGrid{.grid_rad_s = TurnRateGrid::evenly(deg(2.0), 4),
+                      .rule = SwitchRule::kLiteral,
+                      .carry = SwitchCarry::kSlot});
+  }
+};
+
 template <class Scalar>
 struct EkfTurnRate {
   static constexpr std::size_t kModels = 0;
@@ -141,7 +181,8 @@ struct UkfTurnRate {
 template <template <class> class Kind, class Scalar, class Sensor>
 Results run(const Sensor& sensor, const RunInput& in, int threads = 1) {
   const auto prototype = Kind<Scalar>::make();
-  Results results(in.runs, std::size_t(prototype.estimate().mean.size()), Kind<Scalar>::kModels);
+  Results results(in.runs, std::size_t(prototype.estimate().mean.size()), Kind<Scalar>::kModels,
+                  kHasTurnRates<decltype(prototype)>);
   run_batch(
       [&](std::size_t) {
         auto estimator = prototype;
@@ -188,7 +229,8 @@ struct Of {
   template <class Scalar>
   using Kind = KindType<Scalar>;
 };
-using Cases = ::testing::Types<Of<Imm3>, Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>>;
+using Cases = ::testing::Types<Of<Imm3>, Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>,
+                               Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>>;
 TYPED_TEST_SUITE(Batch, Cases);
 
 TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
@@ -199,6 +241,16 @@ TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
       std::count(lanes.status.begin(), lanes.status.end(), static_cast<std::uint8_t>(Status::kOk)),
       0);
   expect_near(lanes, one_by_one);
+}
+
+TYPED_TEST(Batch, TurnRatesFollowTheVessel) {
+  const Results lanes = run<TypeParam::template Kind, Lanes>(kRadar, Dense(kRuns).in);
+  for (std::size_t run = 0; run < kRuns && !lanes.rates.empty(); ++run) {
+    const double* first = &lanes.rates[run * kScans * 3];
+    const double* last = first + (kScans - 1) * 3;
+    EXPECT_EQ(first[1], 0.0);
+    EXPECT_NEAR(last[1], deg(1.0), deg(0.6)) << run;
+  }
 }
 
 TYPED_TEST(Batch, NeighboursDoNotMatter) {
@@ -230,9 +282,10 @@ TYPED_TEST(Batch, ThreadsDoNotMatter) {
     EXPECT_TRUE(same_bits(*one.numbers()[k], *three.numbers()[k])) << k;
 }
 
-TEST(BatchWriter, PutsEveryNumberInItsPlaceWhateverTheSize) {
+template <class Scalar>
+void expect_numbers_in_place() {
   for (const std::size_t states : {1, 4, 6, 12, 20}) {
-    const std::size_t scans = 19, runs = std::size_t(kNativeLanes<double>) - 1;
+    const std::size_t scans = 19, runs = std::size_t(kLanesOf<Scalar>) - 1;
     std::vector<double> mean(runs * scans * states, -1.0), covariance(mean.size() * states, -1.0),
         innovation(runs * scans * 2, -1.0), nis(runs * scans, -1.0), log_likelihood(nis);
     RunInput in;
@@ -245,15 +298,15 @@ TEST(BatchWriter, PutsEveryNumberInItsPlaceWhateverTheSize) {
     out.innovation = innovation.data();
     out.nis = nis.data();
     out.log_likelihood = log_likelihood.data();
-    const RunLanes<Lanes> lanes(in, 0);
-    RunWriter<Lanes> writer(lanes, out, 2, false);
+    const RunLanes<Scalar> lanes(in, 0);
+    RunWriter<Scalar> writer(lanes, out, 2, false);
     const std::size_t row = states + states * states + 4;
     const auto number = [&](std::size_t run, std::size_t scan, std::size_t k) {
       return double((run * scans + scan) * row + k);
     };
     for (std::size_t scan = 0; scan < scans; ++scan) {
       for (std::size_t k = 0; k < row; ++k)
-        writer << Lanes::of([&](int lane) { return number(std::size_t(lane), scan, k); });
+        writer << Scalar::of([&](int lane) { return number(std::size_t(lane), scan, k); });
       writer.next();
     }
     writer.flush();
@@ -269,6 +322,11 @@ TEST(BatchWriter, PutsEveryNumberInItsPlaceWhateverTheSize) {
         ASSERT_EQ(log_likelihood[at], number(run, scan, row - 1));
       }
   }
+}
+
+TEST(BatchWriter, PutsEveryNumberInItsPlaceWhateverTheSize) {
+  expect_numbers_in_place<Lanes>();
+  expect_numbers_in_place<Pack<float, kNativeLanes<float>>>();
 }
 
 TEST(BatchStatus, AReadingThatIsNotFiniteFailsInItsLaneOnly) {

@@ -23,9 +23,21 @@ TYPED_TEST(Angle, WrappedIsTheSameAngleWithinHalfATurn) {
     const Scalar angle = Scalar(k) * Scalar(0.0773);
     const Scalar wrapped = wrap_angle(angle);
     const Scalar rounding = 64 * this->kEpsilon;
-    EXPECT_LE(std::abs(wrapped), kPi<Scalar> + rounding) << angle;
+    EXPECT_LE(std::abs(wrapped), kPi<Scalar>) << angle;
     EXPECT_NEAR(std::sin(wrapped), std::sin(angle), rounding) << angle;
     EXPECT_NEAR(std::cos(wrapped), std::cos(angle), rounding) << angle;
+  }
+}
+
+// From an angle just within half a turn a whole turn was taken, and more than half was left.
+TYPED_TEST(Angle, NextToHalfATurnIsWithinIt) {
+  using Scalar = TypeParam;
+  for (const Scalar half : {kPi<Scalar>, 3 * kPi<Scalar>}) {
+    for (const Scalar angle :
+         {std::nextafter(half, Scalar(0)), half, std::nextafter(half, 9 * half)}) {
+      EXPECT_LE(std::abs(wrap_angle(angle)), kPi<Scalar>);
+      EXPECT_LE(std::abs(wrap_angle(-angle)), kPi<Scalar>);
+    }
   }
 }
 

@@ -79,21 +79,51 @@ class RunLanes {
     });
   }
 
-  void store(std::uint8_t* to, std::size_t scan, const StatusOf<Scalar>& status) const noexcept {
+  void write(std::uint8_t* to, std::size_t scan, const StatusOf<Scalar>& status) const noexcept {
     for (std::size_t lane_of = 0; lane_of < used_; ++lane_of)
       to[(first_ + lane_of) * scans_ + scan] =
           static_cast<std::uint8_t>(lane(status, static_cast<int>(lane_of)));
   }
 
+  /// Begins to fetch the memory that `size` numbers of a scan will be written to.
+  void fetch(const double* to, std::size_t size, std::size_t scan) const noexcept {
+    constexpr std::size_t kLine = 64 / sizeof(double);
+    for (std::size_t lane_of = 0; lane_of < used_; ++lane_of) {
+      const double* place = to + ((first_ + lane_of) * scans_ + scan) * size;
+      for (std::size_t k = 0; k < size; k += kLine) __builtin_prefetch(place + k, 1);
+    }
+  }
+
   /// `size` numbers of each of some scans in a row, which lie `stride` apart in `from`: for each
   /// run one block of memory, which is what memory is fast at.
-  void store(double* to, std::size_t size, std::size_t first_scan, std::size_t count,
+  void write(double* to, std::size_t size, std::size_t first_scan, std::size_t count,
              const RealOf<Scalar>* from, std::size_t stride) const noexcept {
-    for (std::size_t lane_of = 0; lane_of < used_; ++lane_of) {
-      double* place = to + ((first_ + lane_of) * scans_ + first_scan) * size;
-      for (std::size_t scan = 0; scan < count; ++scan)
-        for (std::size_t k = 0; k < size; ++k)
-          *place++ = double(from[(scan * stride + k) * kLanes + lane_of]);
+    const auto place = [&](std::size_t lane_of) {
+      return to + ((first_ + lane_of) * scans_ + first_scan) * size;
+    };
+    std::size_t k = 0;
+    const auto next = [&] {
+      const RealOf<Scalar>* numbers = from + k * kLanes;
+      if (++k == size) {
+        k = 0;
+        from += stride * kLanes;
+      }
+      return numbers;
+    };
+    std::size_t at = 0;
+    if constexpr (kLanes > 1) {
+      for (; at + kLanes <= count * size; at += kLanes) {
+        Scalar block[kLanes];
+        unroll<kLanes>([&](int i) { block[i] = Scalar::load(next()); });
+        transpose(block);
+        for (std::size_t lane_of = 0; lane_of < used_; ++lane_of)
+          store(block[lane_of], place(lane_of) + at);
+      }
+    }
+    for (; at < count * size; ++at) {
+      const RealOf<Scalar>* numbers = next();
+      for (std::size_t lane_of = 0; lane_of < used_; ++lane_of)
+        place(lane_of)[at] = double(numbers[lane_of]);
     }
   }
 
@@ -122,25 +152,34 @@ class RunWriter {
     assert(row_ <= kCapacity);
   }
 
-  /// The next number of the scan, in the order of `RunOutput`.
+  /// The next number, or numbers, of the scan, in the order of `RunOutput`.
   void operator<<(const Scalar& number) noexcept {
-    store(number, numbers_ + kLanesOf<Scalar> * at_++);
+    store(number, next_);
+    next_ += kLanesOf<Scalar>;
+  }
+  template <class Matrix>
+  void operator<<(const Eigen::MatrixBase<Matrix>& numbers) noexcept {
+    for (Eigen::Index i = 0; i < numbers.rows(); ++i)
+      for (Eigen::Index j = 0; j < numbers.cols(); ++j) *this << numbers(i, j);
   }
 
   /// To be called after each scan.
   void next() noexcept {
+    for (std::size_t c = 0; c < columns_; ++c)
+      lanes_.fetch(column_[c].to, column_[c].size, first_ + scans_ + 1);
     if (++scans_ == held_) flush();
   }
 
   void flush() noexcept {
     std::size_t offset = 0;
     for (std::size_t c = 0; c < columns_; ++c) {
-      lanes_.store(column_[c].to, column_[c].size, first_, scans_,
+      lanes_.write(column_[c].to, column_[c].size, first_, scans_,
                    numbers_ + kLanesOf<Scalar> * offset, row_);
       offset += column_[c].size;
     }
     first_ += scans_;
-    scans_ = at_ = 0;
+    scans_ = 0;
+    next_ = numbers_;
   }
 
  private:
@@ -163,8 +202,8 @@ class RunWriter {
   std::size_t held_ = 1;   ///< scans that there is room for
   std::size_t first_ = 0;  ///< scan of the first that is held
   std::size_t scans_ = 0;  ///< that are held
-  std::size_t at_ = 0;
   alignas(64) RealOf<Scalar> numbers_[kCapacity * kLanesOf<Scalar>];
+  RealOf<Scalar>* next_ = numbers_;
 };
 
 /// North and east of an estimate in any layout of 4, 5 or 6 states.
@@ -225,20 +264,17 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
     status = first_failure(status, step.status);
 
     const auto belief = estimator.estimate();
-    const auto states = static_cast<Eigen::Index>(out.states);
-    for (Eigen::Index i = 0; i < states; ++i) writer << belief.mean[i];
-    for (Eigen::Index i = 0; i < states; ++i)
-      for (Eigen::Index j = 0; j < states; ++j) writer << belief.covariance(i, j);
-    const auto models = static_cast<Eigen::Index>(out.models);
+    assert(static_cast<std::size_t>(belief.mean.size()) == out.states);
+    writer << belief.mean;
+    writer << belief.covariance;
     if constexpr (requires { estimator.mode_probability(); })
-      for (Eigen::Index k = 0; k < models; ++k) writer << estimator.mode_probability()[k];
-    if constexpr (kHasTurnRates<Estimator>)
-      for (Eigen::Index k = 0; k < models; ++k) writer << estimator.turn_rates_rad_s()[k];
-    for (int m = 0; m < kM; ++m) writer << step.innovation[m];
+      writer << estimator.mode_probability();
+    if constexpr (kHasTurnRates<Estimator>) writer << estimator.turn_rates_rad_s();
+    writer << step.innovation;
     writer << step.nis;
     writer << step.log_likelihood;
     writer.next();
-    lanes.store(out.status, scan, status);
+    lanes.write(out.status, scan, status);
   }
   writer.flush();
 }

@@ -25,7 +25,10 @@ Scalar wrap_angle(Scalar angle_rad) noexcept {
   using Real = RealOf<Scalar>;
   constexpr Real turn = Real(2) * kPi<Real>;
   constexpr Real turns_per_rad = Real(1) / turn;
-  return angle_rad - turn * floor(angle_rad * turns_per_rad + Real(0.5));
+  const Scalar wrapped = angle_rad - turn * floor(angle_rad * turns_per_rad + Real(0.5));
+  // Next to half a turn the sum above may round to a whole one.
+  const Scalar half = kPi<Real>;
+  return select(wrapped > half, half, select(wrapped < -half, -half, wrapped));
 }
 
 /// The same angle in [0, 2 pi): how bearings and courses are shown.

@@ -127,6 +127,11 @@ class Pack {
     return pack;
   }
   friend void store(Pack a, Real* to) noexcept { std::memcpy(to, &a.raw, sizeof a.raw); }
+  friend void store(Pack a, double* to) noexcept requires(std::same_as<Real, float>) {
+    using Doubles [[gnu::vector_size(sizeof(double) * Lanes)]] = double;
+    const Doubles numbers = __builtin_convertvector(a.raw, Doubles);
+    std::memcpy(to, &numbers, sizeof numbers);
+  }
 
   [[nodiscard]] Real operator[](int lane) const noexcept { return raw[lane]; }
   void set(int lane, Real number) noexcept { raw[lane] = number; }

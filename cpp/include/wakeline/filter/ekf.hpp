@@ -54,7 +54,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
   /// Replaces the motion model, unchecked; the belief stays.
   void set_motion(const Motion& motion) noexcept {
     Base::set_motion(motion);
-    kept_ = {};
+    if constexpr (LinearMotionModel<Motion>) kept_.step_s = Scalar(-1);
   }
 
   /// The innovation of a reading and its likelihood, without taking it.

@@ -11,13 +11,15 @@
 namespace wakeline {
 
 /// A steady turn at a known rate: state `[x, vx, y, vy]` (m, m/s); at zero rate exactly
-/// ConstantVelocity. Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
-struct CoordinatedTurn {
+/// ConstantVelocity. `Rate` is `double`, or a pack: another turn rate in each lane. Source:
+/// Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
+template <class Rate>
+struct KnownTurn {
   static constexpr auto kComponents = kKinematics;
   static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x0x 0x0x 0x1x 0x0x"};
 
-  double turn_rate_rad_s = 0.0;  ///< positive to starboard
+  Rate turn_rate_rad_s = 0.0;  ///< positive to starboard
   ProcessNoise noise = WhiteAcceleration{};
 
   /// F(dt), 4 x 4.
@@ -35,10 +37,13 @@ struct CoordinatedTurn {
   }
 
   void validate() const {
-    require_finite("turn_rate_rad_s", turn_rate_rad_s);
+    for (int k = 0; k < kLanesOf<Rate>; ++k)
+      require_finite("turn_rate_rad_s", lane(turn_rate_rad_s, k));
     noise.validate(false);
   }
 };
+
+using CoordinatedTurn = KnownTurn<double>;
 
 /// A turn whose rate is part of the state and wanders: `[x, vx, y, vy, omega]` (m, m/s, rad/s).
 /// Source: Bar-Shalom, Li, Kirubarajan, 11.7.2.

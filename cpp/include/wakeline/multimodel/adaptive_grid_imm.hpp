@@ -38,33 +38,40 @@ struct AdaptiveGrid {
         Rates{-max_turn_rate_rad_s / 2, 0.0, max_turn_rate_rad_s / 2});
   }
 
-  /// The next rates, given the mode probabilities of the last update.
-  [[nodiscard]] Rates moved(const Rates& rates, const Rates& probability) const noexcept {
-    const auto [left, centre, right] = rates;
-    const auto [mu_left, mu_centre, mu_right] = probability;
-    const double mean = mu_left * left + mu_centre * centre + mu_right * right;
-    const double next =
-        mu_centre < centre_threshold ? centre + centre_gain * (mean - centre) : centre;
-    double to_left = std::max(centre - left, min_spacing_rad_s);
-    double to_right = std::max(right - centre, min_spacing_rad_s);
-    if (mu_left > mu_centre && mu_left > mu_right) {
-      if (mu_left > likely_threshold) to_left *= 2.0;
-    } else if (mu_right > mu_centre && mu_right > mu_left) {
-      if (mu_right > likely_threshold) to_right *= 2.0;
-    } else {
-      if (mu_left < unlikely_threshold) to_left /= 2.0;
-      if (mu_right < unlikely_threshold) to_right /= 2.0;
-    }
-    to_left = std::max(to_left, kept_spacing_rad_s);
-    to_right = std::max(to_right, kept_spacing_rad_s);
-    const auto clipped = [&](double rate) {
-      return std::clamp(rate, -max_turn_rate_rad_s, max_turn_rate_rad_s);
+  /// The next rates, given the mode probabilities of the last update: vectors of three numbers, or
+  /// of three packs.
+  template <class Vector>
+  [[nodiscard]] Vector moved(const Vector& rates, const Vector& probability) const noexcept {
+    using Number = std::decay_t<decltype(rates[0])>;
+    using std::abs;
+    const Number left = rates[0], centre = rates[1], right = rates[2];
+    const Number mu_left = probability[0], mu_centre = probability[1], mu_right = probability[2];
+    const Number mean = mu_left * left + mu_centre * centre + mu_right * right;
+    const Number next = select(mu_centre < Number(centre_threshold),
+                               centre + centre_gain * (mean - centre), centre);
+    const auto left_leads = mu_left > mu_centre && mu_left > mu_right;
+    const auto right_leads = mu_right > mu_centre && mu_right > mu_left;
+    const auto centre_leads = !(left_leads || right_leads);
+    const auto spacing = [&](Number now, Number mu, const auto& leads) {
+      const Number wide = at_least(now, Number(min_spacing_rad_s));
+      const Number opened = select(leads && mu > Number(likely_threshold), 2.0 * wide, wide);
+      const Number closed =
+          select(centre_leads && mu < Number(unlikely_threshold), wide / 2.0, opened);
+      return at_least(closed, Number(kept_spacing_rad_s));
     };
-    const Rates wanted{clipped(next - to_left), clipped(next), clipped(next + to_right)};
-    double farthest = 0.0;
-    for (std::size_t k = 0; k < 3; ++k)
-      farthest = std::max(farthest, std::abs(wanted[k] - rates[k]));
-    return farthest < least_move_rad_s ? rates : wanted;
+    const auto clipped = [&](Number rate) {
+      const Number greatest = max_turn_rate_rad_s;
+      return at_least(select(rate < greatest, rate, greatest), -greatest);
+    };
+    Vector wanted = rates;
+    wanted[0] = clipped(next - spacing(centre - left, mu_left, left_leads));
+    wanted[1] = clipped(next);
+    wanted[2] = clipped(next + spacing(right - centre, mu_right, right_leads));
+    Number farthest = 0.0;
+    for (int k = 0; k < 3; ++k) farthest = at_least(Number(abs(wanted[k] - rates[k])), farthest);
+    const auto stays = farthest < Number(least_move_rad_s);
+    for (int k = 0; k < 3; ++k) wanted[k] = select(stays, rates[k], wanted[k]);
+    return wanted;
   }
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
@@ -106,10 +113,10 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
   /// Throws `std::invalid_argument` when a parameter makes no sense or there are not three filters.
   AdaptiveGridImm(const AdaptiveGrid& grid, const ModeChain<BankType::kModels>& chain,
                   const BankType& bank)
-      : Base(chain, bank, to_rates(validated(grid).initial())), grid_(grid) {
+      : Base(chain, bank, to_vector(validated(grid).initial())), grid_(grid) {
     const double side = (1.0 - grid.initial_centre_probability) / 2.0;
     this->initial_ =
-        to_rates({side, grid.initial_centre_probability, side}).template cast<Scalar>();
+        to_vector({side, grid.initial_centre_probability, side}).template cast<Scalar>();
   }
 
   /// Over filters like `prototype`, whose turn rate does not matter.
@@ -119,9 +126,9 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
       : AdaptiveGridImm(grid, chain, Bank(prototype)) {}
 
   /// Moves the grid, mixes and predicts.
-  Status predict(Scalar dt_s) noexcept { return step(dt_s); }
+  StatusOf<Scalar> predict(Scalar dt_s) noexcept { return step(dt_s); }
   /// The same under a known acceleration, [north, east]; see `Control`.
-  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return step(dt_s, acceleration_mps2);
   }
 
@@ -135,22 +142,20 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
   }
 
  private:
-  static typename Base::Rates to_rates(const AdaptiveGrid::Rates& rates) noexcept {
-    typename Base::Rates vector(3);
+  static ModeVector<double, kModels> to_vector(const AdaptiveGrid::Rates& rates) noexcept {
+    ModeVector<double, kModels> vector(3);
     for (int k = 0; k < 3; ++k) vector[k] = rates[static_cast<std::size_t>(k)];
     return vector;
   }
 
   template <class... Known>
-  Status step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
-    const auto move = [&] {
-      const auto& w = this->turn_rates_rad_s();
-      const auto& mu = this->probability_;
-      this->set_rates(
-          to_rates(grid_.moved({w[0], w[1], w[2]}, {double(mu[0]), double(mu[1]), double(mu[2])})));
+  StatusOf<Scalar> step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+    const auto move = [&](const MaskOf<Scalar>& lanes) {
+      const typename Base::Rates mu = this->probability_.template cast<TurnRate<Scalar>>();
+      this->set_rates(lanes, grid_.moved(this->turn_rates_rad_s(), mu));
     };
     return Base::move_and_predict(
-        move, [] {}, dt_s, acceleration_mps2...);
+        move, [](const MaskOf<Scalar>&) {}, dt_s, acceleration_mps2...);
   }
 
   AdaptiveGrid grid_;

@@ -62,7 +62,7 @@ class Imm {
   /// Begins every filter with the belief, over their own state or over `[x, vx, y, vy]`. Where one
   /// refuses it nothing changes.
   template <class BeliefType>
-  StatusOf<Scalar> start(const BeliefType& belief) noexcept {
+  [[gnu::noinline]] StatusOf<Scalar> start(const BeliefType& belief) noexcept {
     StatusOf<Scalar> status = Status::kOk;
     bank_.for_each([&](int, auto& filter, auto& before) {
       before = filter.estimate();
@@ -242,13 +242,18 @@ class Imm {
 
   /// Gives every filter back what it was before the step, in the lanes told.
   [[gnu::cold, gnu::noinline]] void restore(const MaskOf<Scalar>& lanes) noexcept {
-    bank_.for_each([&](int, auto& filter, auto& before) {
-      if constexpr (kLanesOf<Scalar> == 1) {
-        if (lanes) (void)filter.assign(before);
-      } else {
-        filter.assign_in(lanes, before);
-      }
-    });
+    bank_.for_each([&](int, auto& filter, auto& before) { assign_in(lanes, filter, before); });
+  }
+
+  /// Replaces the belief of a filter in the lanes told, unchecked.
+  template <class Filter, class BeliefType>
+  static void assign_in(const MaskOf<Scalar>& lanes, Filter& filter,
+                        const BeliefType& belief) noexcept {
+    if constexpr (kLanesOf<Scalar> == 1) {
+      if (lanes) (void)filter.assign(belief);
+    } else {
+      filter.assign_in(lanes, belief);
+    }
   }
 
   Bank bank_;

@@ -107,7 +107,7 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
  private:
   template <class... Known>
   Status step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
-    return Base::move_and_predict([&] { choose(); }, [] {}, dt_s, acceleration_mps2...);
+    return Base::move_and_predict([&](bool) { choose(); }, [](bool) {}, dt_s, acceleration_mps2...);
   }
 
   void choose() noexcept {

@@ -43,15 +43,13 @@ struct SwitchingGrid {
   }
 
   /// Where the centre goes: -1, 0 or 1, never off the grid.
-  template <class Probability>
-  [[nodiscard]] int direction(int centre, const Probability& mu) const noexcept {
-    int direction = 0;
-    if (mu[0] > threshold)
-      direction = -1;
-    else if (rule == SwitchRule::kSymmetric ? mu[2] > threshold : !(mu[1] > threshold))
-      direction = 1;
-    const int next = std::clamp(centre + direction, 1, grid_rad_s.size() - 2);
-    return next - centre;
+  template <class Place, class Probability>
+  [[nodiscard]] Place direction(Place centre, const Probability& mu) const noexcept {
+    const Place first = 1, last = grid_rad_s.size() - 2;
+    const auto to_left = mu[0] > threshold;
+    const auto to_right = rule == SwitchRule::kSymmetric ? mu[2] > threshold : !(mu[1] > threshold);
+    return select(to_left, select(centre > first, Place(-1), Place(0)),
+                  select(to_right && centre < last, Place(1), Place(0)));
   }
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
@@ -77,11 +75,13 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
   using typename Base::Probability;
   using typename Base::Scalar;
   static constexpr int kModels = BankType::kModels;
+  /// A place in the grid, or that of each lane.
+  using Place = std::conditional_t<kLanesOf<Scalar> == 1, int, Scalar>;
 
   /// Throws `std::invalid_argument` when a parameter makes no sense or there are not three filters.
   SwitchingGridImm(const SwitchingGrid& grid, const ModeChain<BankType::kModels>& chain,
                    const BankType& bank)
-      : Base(chain, bank, window(validated(grid), grid.initial())),
+      : Base(chain, bank, window<double>(validated(grid), grid.initial())),
         grid_(grid),
         centre_(grid.initial()) {
     this->initial_.setConstant(Scalar((1.0 - grid.initial_centre_probability) / 2.0));
@@ -96,21 +96,21 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
 
   /// As of `Imm`; the window is the initial one.
   template <class StartType>
-  Status start(const StartType& belief) noexcept {
-    const Status status = Base::start(belief);
-    if (status == Status::kOk) centre_ = grid_.initial();
+  StatusOf<Scalar> start(const StartType& belief) noexcept {
+    const StatusOf<Scalar> status = Base::start(belief);
+    centre_ = select(ok(status), Place(grid_.initial()), centre_);
     return status;
   }
 
   /// Moves the window, mixes and predicts.
-  Status predict(Scalar dt_s) noexcept { return step(dt_s); }
+  StatusOf<Scalar> predict(Scalar dt_s) noexcept { return step(dt_s); }
   /// The same under a known acceleration, [north, east]; see `Control`.
-  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return step(dt_s, acceleration_mps2);
   }
 
   /// Index of the window's middle in the grid.
-  [[nodiscard]] int centre() const noexcept { return centre_; }
+  [[nodiscard]] Place centre() const noexcept { return centre_; }
   [[nodiscard]] const SwitchingGrid& grid() const noexcept { return grid_; }
 
   /// Saves or restores beliefs, mode probabilities and the window.
@@ -120,59 +120,72 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
     if (centre < 1 || centre > grid_.grid_rad_s.size() - 2) fields.fail();
     if (fields.ok()) centre_ = centre;
     Base::archive_if(fields, [&](const typename Base::Rates& rates) {
-      return (rates.array() == window(grid_, centre_).array()).all();
+      return (rates.array() == window<double>(grid_, centre_).array()).all();
     });
   }
 
  private:
-  static typename Base::Rates window(const SwitchingGrid& grid, int centre) noexcept {
-    typename Base::Rates rates(3);
-    for (int k = 0; k < 3; ++k) rates[k] = grid.grid_rad_s[centre - 1 + k];
+  /// Turn rates around a place.
+  template <class Rate>
+  static ModeVector<Rate, kModels> window(const SwitchingGrid& grid, const Place& centre) noexcept {
+    ModeVector<Rate, kModels> rates(3);
+    for (int k = 0; k < 3; ++k)
+      rates[k] = lanes_of<Rate>(
+          [&](int lane_of) { return grid.grid_rad_s[int(lane(centre, lane_of)) - 1 + k]; });
     return rates;
   }
 
   template <class... Known>
-  Status step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
-    const int before = centre_;
+  StatusOf<Scalar> step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+    const Place before = centre_;
     BeliefType left_out;
-    const auto move = [&] {
-      const int direction = grid_.direction(centre_, this->probability_);
-      if (direction == 0) return;
+    const auto move = [&](const MaskOf<Scalar>& lanes) {
+      const Place direction = select(lanes, grid_.direction(centre_, this->probability_), Place(0));
+      if (none(direction != Place(0))) return;
       if (grid_.carry == SwitchCarry::kIdentity) {
         left_out = shifted(direction, this->estimate());
         const Probability mu = this->probability_;
-        for (int k = 0; k < 3; ++k) this->probability_[k] = mu[(k + direction + 3) % 3];
+        for (int k = 0; k < 3; ++k)
+          this->probability_[k] = select(direction > Place(0), mu[(k + 1) % 3],
+                                         select(direction < Place(0), mu[(k + 2) % 3], mu[k]));
       }
       centre_ += direction;
-      this->set_rates(window(grid_, centre_));
+      this->set_rates(window<TurnRate<Scalar>>(grid_, centre_));
     };
-    const auto undo = [&] {
-      if (centre_ != before && grid_.carry == SwitchCarry::kIdentity)
-        (void)shifted(before - centre_, left_out);
-      centre_ = before;
+    const auto undo = [&](const MaskOf<Scalar>& lanes) {
+      const Place back = select(lanes, before - centre_, Place(0));
+      if (none(back != Place(0))) return;
+      if (grid_.carry == SwitchCarry::kIdentity) (void)shifted(back, left_out);
+      centre_ += back;
     };
     return Base::move_and_predict(move, undo, dt_s, acceleration_mps2...);
   }
 
-  /// Gives each filter the belief of its neighbour in that direction, and the last one `entering`;
-  /// returns the belief that none has any more.
-  BeliefType shifted(int direction, const BeliefType& entering) noexcept {
+  /// Where a direction is not 0, gives each filter the belief of its neighbour in that direction,
+  /// and the last one `entering`; returns the belief that none has any more.
+  BeliefType shifted(const Place& direction, const BeliefType& entering) noexcept {
+    const auto moves = direction != Place(0);
     BeliefType leaving = entering;
     this->bank_.for_each([&](int k, auto& filter, auto& before) {
       before = filter.estimate();
-      if (k == 1 - direction) leaving = before;
+      const auto leaves = moves && direction == Place(1 - k);
+      if constexpr (kLanesOf<Scalar> == 1) {
+        if (leaves) leaving = before;
+      } else {
+        assign_where(leaves, leaving, before);
+      }
     });
     this->bank_.for_each([&](int k, auto& filter, auto&) {
-      if (k == 1 + direction) (void)filter.assign(entering);
+      this->assign_in(moves && direction == Place(k - 1), filter, entering);
       this->bank_.for_each_before([&](int i, const auto& before) {
-        if (i == k + direction) (void)filter.assign(before);
+        this->assign_in(moves && direction == Place(i - k), filter, before);
       });
     });
     return leaving;
   }
 
   SwitchingGrid grid_;
-  int centre_;
+  Place centre_;
 };
 
 template <class Filter>

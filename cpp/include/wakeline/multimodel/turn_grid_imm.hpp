@@ -21,18 +21,18 @@ class TurnGridImm : public Imm<BankType> {
   using typename Base::Probability;
   using typename Base::Scalar;
   static constexpr int kModels = Base::kModels;
-  using Rates = ModeVector<double, kModels>;
+  using Rates = ModeVector<TurnRate<Scalar>, kModels>;
 
   /// As of `Imm`; the grid is the initial one.
   template <class BeliefType>
-  Status start(const BeliefType& belief) noexcept {
+  StatusOf<Scalar> start(const BeliefType& belief) noexcept {
     const Rates before = rates_;
     set_rates(initial_rates_);
-    const Status status = Base::start(belief);
-    if (status == Status::kOk)
-      seen_ = false;
-    else
-      set_rates(before);
+    const StatusOf<Scalar> status = Base::start(belief);
+    const auto failed = !ok(status);
+    seen_ = seen_ && failed;
+    if (any(failed)) [[unlikely]]
+      set_rates(failed, before);
     return status;
   }
 
@@ -41,7 +41,7 @@ class TurnGridImm : public Imm<BankType> {
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     const auto step = Base::update(sensor, z);
-    if (step) seen_ = true;
+    seen_ = seen_ || ok(step.status);
     return step;
   }
 
@@ -50,7 +50,7 @@ class TurnGridImm : public Imm<BankType> {
   Scalar update(std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
                 std::span<Scalar> share) noexcept {
     const Scalar total = Base::update(readings, none, share);
-    if (total > Scalar(0) && !readings.empty()) seen_ = true;
+    if (!readings.empty()) seen_ = seen_ || total > Scalar(0);
     return total;
   }
 
@@ -59,36 +59,38 @@ class TurnGridImm : public Imm<BankType> {
 
  protected:
   /// Throws `std::invalid_argument` unless there is one filter for each turn rate.
-  TurnGridImm(const ModeChain<kModels>& chain, const Bank& bank, const Rates& initial)
-      : Base(chain, bank), initial_rates_(initial), rates_(initial) {
+  TurnGridImm(const ModeChain<kModels>& chain, const Bank& bank,
+              const ModeVector<double, kModels>& initial)
+      : Base(chain, bank),
+        initial_rates_(initial.template cast<TurnRate<Scalar>>()),
+        rates_(initial_rates_) {
     if (initial.size() != bank.size())
       throw std::invalid_argument("this estimator needs " + std::to_string(initial.size()) +
                                   " filters, got " + std::to_string(bank.size()));
     this->bank_.for_each([&](int k, auto& filter, auto&) { set_turn_rate(filter, rates_[k]); });
   }
 
-  /// `move()` where the grid may move, then a step of the Imm; `undo()` where that fails.
+  /// `move(lanes)` where the grid may move, then a step of the Imm; `undo(lanes)` where that fails.
   template <class Move, class Undo, class... Known>
-  Status move_and_predict(Move&& move, Undo&& undo, Scalar dt_s,
-                          const Known&... acceleration_mps2) noexcept {
-    if (!seen_ || !this->started_ || check_time_step(dt_s) != Status::kOk)
-      return Base::mix_and_move(dt_s, acceleration_mps2...);
+  StatusOf<Scalar> move_and_predict(Move&& move, Undo&& undo, Scalar dt_s,
+                                    const Known&... acceleration_mps2) noexcept {
+    const MaskOf<Scalar> moves = seen_ && ok(check_time_step(dt_s)) && this->started_;
     const Rates rates = rates_;
     const Probability probability = this->probability_;
-    move();
-    const Status status = Base::mix_and_move(dt_s, acceleration_mps2...);
-    if (status == Status::kOk) {
-      seen_ = false;
-    } else {
-      undo();
-      set_rates(rates);
-      this->probability_ = probability;
+    if (any(moves)) move(moves);
+    const StatusOf<Scalar> status = Base::mix_and_move(dt_s, acceleration_mps2...);
+    seen_ = seen_ && !ok(status);
+    if (const auto failed = moves && !ok(status); any(failed)) [[unlikely]] {
+      undo(failed);
+      set_rates(failed, rates);
+      for (Eigen::Index k = 0; k < rates.size(); ++k)
+        this->probability_[k] = select(failed, probability[k], this->probability_[k]);
     }
     return status;
   }
 
   void set_rates(const Rates& rates) noexcept {
-    if constexpr (requires { this->bank_.set_active(0, true); }) {
+    if constexpr (requires { this->bank_.set_active(0, true); } && kLanesOf<Scalar> == 1) {
       for (int k = 0; k < this->bank_.size(); ++k) {
         if (std::isnan(rates[k]) == std::isnan(rates_[k])) continue;
         this->bank_.set_active(k, !std::isnan(rates[k]));
@@ -96,9 +98,16 @@ class TurnGridImm : public Imm<BankType> {
       }
     }
     this->bank_.for_each([&](int k, auto& filter, auto&) {
-      if (rates[k] != rates_[k]) set_turn_rate(filter, rates[k]);
+      if (any(rates[k] != rates_[k])) set_turn_rate(filter, rates[k]);
     });
     rates_ = rates;
+  }
+
+  /// The same in the lanes told.
+  void set_rates(const MaskOf<Scalar>& lanes, const Rates& rates) noexcept {
+    Rates next = rates_;
+    for (Eigen::Index k = 0; k < rates.size(); ++k) next[k] = select(lanes, rates[k], rates_[k]);
+    set_rates(next);
   }
 
   /// Saves or restores beliefs, mode probabilities and such turn rates.
@@ -115,7 +124,7 @@ class TurnGridImm : public Imm<BankType> {
  private:
   Rates initial_rates_;
   Rates rates_;
-  bool seen_ = false;  ///< there was an update since the grid moved last
+  MaskOf<Scalar> seen_ = false;  ///< there was an update since the grid moved last
 };
 
 }  // namespace wakeline

@@ -7,7 +7,9 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
+#include "wakeline/core/scalar.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
 
 namespace wakeline {
@@ -66,12 +68,20 @@ class TurnRateGrid {
   Rates rates_;
 };
 
+/// A turn rate that may differ from lane to lane: of numbers `double`, which grids are given in.
+template <class Scalar>
+using TurnRate = std::conditional_t<kLanesOf<Scalar> == 1, double, Scalar>;
+
 /// Gives a filter another turn rate, and leaves its belief.
-template <class Filter>
-void set_turn_rate(Filter& filter, double turn_rate_rad_s) noexcept {
+template <class Filter, class Rate>
+void set_turn_rate(Filter& filter, Rate turn_rate_rad_s) noexcept {
   static_assert(
       requires { filter.motion().turn_rate_rad_s; },
       "wakeline: the motion model of this filter has no known turn rate (turn_rate_rad_s); use "
+      "CoordinatedTurn");
+  static_assert(
+      std::is_convertible_v<Rate, std::decay_t<decltype(filter.motion().turn_rate_rad_s)>>,
+      "wakeline: here each lane has a turn rate of its own; use KnownTurn<Scalar> instead of "
       "CoordinatedTurn");
   auto motion = filter.motion();
   motion.turn_rate_rad_s = turn_rate_rad_s;
