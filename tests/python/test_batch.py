@@ -135,7 +135,9 @@ def test_a_start_that_is_none_is_named():
         run(ESTIMATORS["imm3"], recordings(), begin=starts)
 
 
-@pytest.mark.parametrize("name", ["ekf_ct", "ukf_ctr", "imm3", "imm_mixed", "switching", "mode_history"])
+@pytest.mark.parametrize(
+    "name", ["ekf_ct", "ukf_ctr", "imm3", "imm_mixed", "switching", "mode_history"]
+)
 def test_results_do_not_depend_on_threads(name, restored_threads):
     z = np.tile(recordings(), (8, 1, 1))
     wl.set_threads(1)
