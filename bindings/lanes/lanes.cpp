@@ -100,7 +100,7 @@ bool run_begun(Estimator estimator, const LaneJob& job, const RunInput& in, cons
   return run_from<4>(estimator, job, in, out, threads);
 }
 
-/// A number of models that is known, each step without a loop over them.
+/// A number of models that is known.
 template <std::size_t... Models>
 bool run_few(std::index_sequence<Models...>, const LaneJob& job, const RunInput& in,
              const RunOutput& out, int threads) {
@@ -121,6 +121,8 @@ bool run_structured(std::monostate, const LaneJob& job, const RunInput& in, cons
       return run_few(std::make_index_sequence<2>{}, job, in, out, threads);
     case 3:
       return run_few(std::make_index_sequence<3>{}, job, in, out, threads);
+    case 5:
+      return run_few(std::make_index_sequence<5>{}, job, in, out, threads);
     default:
       return run_begun(Imm{*job.chain, turn_bank(job)}, job, in, out, threads);
   }

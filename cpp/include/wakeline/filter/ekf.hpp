@@ -193,7 +193,11 @@ class Ekf : public Belief<MotionType, ScalarType> {
   }
 
   [[gnu::cold, gnu::noinline]] void keep(Scalar dt_s) noexcept {
-    kept_ = {dt_s, this->motion_.matrix(dt_s), this->motion_.process_noise(dt_s)};
+    kept_.step_s = dt_s;
+    const Mat<Scalar, kStates, kStates> f = this->motion_.matrix(dt_s);
+    const Mat<Scalar, kStates, kStates> q = this->motion_.process_noise(dt_s);
+    unroll<kStates * kStates>([&](int k) { kept_.f.data()[k] = f.data()[k]; });
+    unroll<kStates * kStates>([&](int k) { kept_.q.data()[k] = q.data()[k]; });
   }
 
   /// F and Q of the last step.

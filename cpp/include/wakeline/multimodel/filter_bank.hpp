@@ -135,7 +135,7 @@ class FilterBank {
       return kKinematics;
   }();
 
-  explicit FilterBank(const Filters&... filters) : slots_(Slot<Filters>{filters, {}}...) {}
+  explicit FilterBank(const Filters&... filters) : slots_{Slot<Filters>{filters, {}}...} {}
 
   static constexpr int size() noexcept { return kModels; }
 
@@ -186,13 +186,21 @@ class FilterBank {
 
   template <class Self, class Function>
   static void visit(Self& self, Function&& function) noexcept {
-    [&]<std::size_t... Index>(std::index_sequence<Index...>) {
-      (function(static_cast<int>(Index), std::get<Index>(self.slots_)), ...);
+    if constexpr (kAlike) {
+      for (int k = 0; k < kModels; ++k) function(k, self.slots_[static_cast<std::size_t>(k)]);
+    } else {
+      [&]<std::size_t... Index>(std::index_sequence<Index...>) {
+        (function(static_cast<int>(Index), std::get<Index>(self.slots_)), ...);
+      }
+      (std::make_index_sequence<sizeof...(Filters)>{});
     }
-    (std::make_index_sequence<sizeof...(Filters)>{});
   }
 
-  std::tuple<Slot<Filters>...> slots_;
+  // Filters of one kind in a loop: a step of all of them written out is more code than a processor
+  // keeps at hand.
+  using First = std::tuple_element_t<0, std::tuple<Filters...>>;
+  static constexpr bool kAlike = (std::is_same_v<First, Filters> && ...);
+  std::conditional_t<kAlike, std::array<Slot<First>, kModels>, std::tuple<Slot<Filters>...>> slots_;
 };
 
 }  // namespace wakeline
