@@ -1,11 +1,13 @@
-"""The same work as others would do it from Python: an IMM over many recordings by numba and by JAX.
+"""The same work as others would do it from Python.
 
-Both are textbook code, as one writes it down from the book; `numba` goes through the recordings one
-after the other, `JAX` through all at once.
+An IMM over many recordings by numba and by JAX: both are textbook code, as one writes it down from
+the book; `numba` goes through the recordings one after the other, `JAX` through all at once. And a
+tracker of many targets by Stone Soup.
 """
 
 from __future__ import annotations
 
+import datetime
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -51,6 +53,7 @@ class ImmHistory(NamedTuple):
 
 
 Run = Callable[[np.ndarray], ImmHistory]
+TakeScan = Callable[[float, np.ndarray], None]  # time, s, and plots (P, 2), m
 
 
 def numba_imm(imm: LinearImm) -> Run | None:
@@ -84,6 +87,71 @@ def jax_imm(imm: LinearImm) -> Run | None:
         return ImmHistory(*(np.asarray(part) for part in run(z)))
 
     return call
+
+
+def stonesoup_tracker(position_std_m: float) -> TakeScan | None:
+    """What takes scans through Stone Soup's components; None where it is missing.
+
+    Kalman filters of constant velocity, global nearest neighbour among the four nearest plots; a
+    track starts by three plots and ends after three scans without one.
+    """
+    try:
+        from stonesoup.dataassociator.tree import DetectionKDTreeGNN2D
+        from stonesoup.deleter.time import UpdateTimeStepsDeleter
+        from stonesoup.hypothesiser.distance import DistanceHypothesiser
+        from stonesoup.initiator.simple import MultiMeasurementInitiator
+        from stonesoup.measures import Mahalanobis
+        from stonesoup.models.measurement.linear import LinearGaussian
+        from stonesoup.models.transition.linear import (
+            CombinedLinearGaussianTransitionModel,
+            ConstantVelocity,
+        )
+        from stonesoup.predictor.kalman import KalmanPredictor
+        from stonesoup.types.detection import Detection
+        from stonesoup.types.state import GaussianState
+        from stonesoup.updater.kalman import KalmanUpdater
+    except ImportError:
+        return None
+    sensor = LinearGaussian(4, (0, 2), position_std_m**2 * np.eye(2))
+    motion = CombinedLinearGaussianTransitionModel([ConstantVelocity(0.05), ConstantVelocity(0.05)])
+    predictor, updater = KalmanPredictor(motion), KalmanUpdater(sensor)
+    hypothesiser = DistanceHypothesiser(predictor, updater, Mahalanobis(), missed_distance=3.5)
+    associator = DetectionKDTreeGNN2D(
+        hypothesiser,
+        predictor,
+        updater,
+        number_of_neighbours=4,
+        max_distance_covariance_multiplier=3.0,
+    )
+    deleter = UpdateTimeStepsDeleter(3)
+    initiator = MultiMeasurementInitiator(
+        GaussianState(np.zeros((4, 1)), np.diag([0.0, 36.0, 0.0, 36.0])),
+        deleter=deleter,
+        data_associator=associator,
+        updater=updater,
+        measurement_model=sensor,
+        min_points=3,
+    )
+    began = datetime.datetime(2026, 1, 1)
+    tracks: set[Any] = set()
+
+    def take(time_s: float, position_m: np.ndarray) -> None:
+        now = began + datetime.timedelta(seconds=time_s)
+        plots = {
+            Detection(place[:, None], timestamp=now, measurement_model=sensor)
+            for place in position_m
+        }
+        taken = set()
+        for track, hypothesis in associator.associate(tracks, plots, now).items():
+            if hypothesis:
+                track.append(updater.update(hypothesis))
+                taken.add(hypothesis.measurement)
+            else:
+                track.append(hypothesis.prediction)
+        tracks.difference_update(deleter.delete_tracks(tracks))
+        tracks.update(initiator.initiate(plots - taken, now))
+
+    return take
 
 
 def _run_in_loops(

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ import wakeline as wl
 from wakeline._progress import progress
 
 from . import outputs, report
-from ._peers import LinearImm, jax_imm, numba_imm
+from ._peers import LinearImm, TakeScan, jax_imm, numba_imm, stonesoup_tracker
 
 OURS, LANES = "scalar_double", "batch_double"
 
@@ -26,7 +27,8 @@ _RUNS, _SCANS = 500, 250
 _DT_S = 3.0
 _LOOP_STEPS = 500
 _TURN_RATES_DEG_S = (0.0, 1.0, -1.0)
-_TRACKER_SETTLING, _TRACKER_SCANS = 20, 10
+_TRACKER_SETTLING, _TRACKER_SCANS, _PLOT_STD_M = 20, 10, 5.0
+_STONESOUP_SETTLING, _MOST_FOR_STONESOUP = 5, 200  # as its scans take seconds
 _GNN_SCANS, _GNN_GATE = 10, 9.21
 _SWEEPS, _CELLS, _TRAIN, _GUARD = 4096, 2048, 16, 4
 _RANGE_STD_M, _BEARING_STD_RAD = 20.0, np.deg2rad(0.5)
@@ -61,8 +63,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "bench",
         help="throughput on this machine",
         description="Measures throughput per estimator on this machine, from Python: the best of "
-        f"{_REPEATS} times, with ratios within the run. numba, jax, filterpy, scipy and opencv are "
-        "measured beside where they are installed.",
+        f"{_REPEATS} times, with ratios within the run. numba, jax, filterpy, stonesoup, scipy and "
+        "opencv are measured beside where they are installed.",
     )
     parser.add_argument("--json", type=Path, metavar="F", help="write the figures as JSON")
     parser.set_defaults(run=run)
@@ -287,34 +289,48 @@ def _filterpy_imm(problem: LinearImm, estimator_class: type, filter_class: type)
 def _tracker_works() -> Iterator[_Work]:
     """Targets that the tracker has settled on, each seen in every scan, among false plots."""
     for name, targets, false_plots in (("tracker_200", 200, 200), ("tracker_1000", 1000, 500)):
-        track = _tracking(targets, false_plots)
-        track(_TRACKER_SETTLING)
-        call = lambda track=track: track(_TRACKER_SCANS)  # noqa: E731
-        yield _Work(name, OURS, "ms_per_scan", call, _TRACKER_SCANS)
+        peers = [(OURS, _our_tracker(targets), _TRACKER_SETTLING, _TRACKER_SCANS)]
+        if targets <= _MOST_FOR_STONESOUP:
+            peers.append(("stonesoup", stonesoup_tracker(_PLOT_STD_M), _STONESOUP_SETTLING, 1))
+        for peer, process, settling, count in peers:
+            if process is None:
+                continue
+            scans = _busy_scans(targets, false_plots, settling + _REPEATS * count)
+            track = partial(_track, process, iter(scans))
+            track(settling)
+            yield _Work(name, peer, "ms_per_scan", partial(track, count), count)
 
 
-def _tracking(targets: int, false_plots: int) -> Callable[[int], None]:
-    """What takes so many scans through a tracker: boats on straight courses, 600 m apart."""
+def _busy_scans(targets: int, false_plots: int, count: int) -> list[tuple[float, np.ndarray]]:
+    """Times and plots (P, 2), m: boats on straight courses, 600 m apart, and false plots."""
     rng = np.random.default_rng(_SEED)
-    radar = wl.Radar(range_std_m=10.0, bearing_std_rad=np.deg2rad(0.1), period_s=_DT_S)
-    tracker = wl.Tracker(radar, wl.TrackerConfig(max_tracks=2 * targets + 100))
     side = int(np.ceil(np.sqrt(targets)))
     place_m = 2000.0 + 600.0 * np.column_stack(np.divmod(np.arange(targets), side))
     velocity_mps = rng.uniform(-6.0, 6.0, (targets, 2))
     scans = []
-    for k in range(_TRACKER_SETTLING + _REPEATS * _TRACKER_SCANS):
+    for k in range(count):
         false_m = rng.uniform(1700.0, 1700.0 + 600.0 * side, (false_plots, 2))
-        seen_m = place_m + k * _DT_S * velocity_mps + rng.normal(scale=5.0, size=place_m.shape)
-        north_m, east_m = np.concatenate([seen_m, false_m]).T
-        scans.append((k * _DT_S, np.hypot(north_m, east_m), np.arctan2(east_m, north_m)))
-    waiting = iter(scans)
+        seen_m = place_m + k * _DT_S * velocity_mps
+        seen_m += rng.normal(scale=_PLOT_STD_M, size=place_m.shape)
+        scans.append((k * _DT_S, np.concatenate([seen_m, false_m])))
+    return scans
 
-    def track(count: int) -> None:
-        for _ in range(count):
-            time_s, range_m, bearing_rad = next(waiting)
-            tracker.process(time_s, range_m=range_m, bearing_rad=bearing_rad)
 
-    return track
+def _track(process: TakeScan, scans: Iterator[tuple[float, np.ndarray]], count: int) -> None:
+    for time_s, position_m in islice(scans, count):
+        process(time_s, position_m)
+
+
+def _our_tracker(targets: int) -> TakeScan:
+    radar = wl.Radar(range_std_m=10.0, bearing_std_rad=np.deg2rad(0.1), period_s=_DT_S)
+    tracker = wl.Tracker(radar, wl.TrackerConfig(max_tracks=2 * targets + 100))
+
+    def process(time_s: float, position_m: np.ndarray) -> None:
+        north_m, east_m = position_m.T
+        range_m, bearing_rad = np.hypot(north_m, east_m), np.arctan2(east_m, north_m)
+        tracker.process(time_s, range_m=range_m, bearing_rad=bearing_rad)
+
+    return process
 
 
 def _assignment_works() -> Iterator[_Work]:

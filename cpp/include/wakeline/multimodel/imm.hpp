@@ -61,7 +61,7 @@ class Imm {
 
   /// Begins every filter with the belief, over their own state or over `[x, vx, y, vy]`. Where one
   /// refuses it nothing changes.
-  template <class BeliefType>
+  template <class BeliefType>  // not inlined: GCC 12 fails on what its branches leave of a mask
   [[gnu::noinline]] StatusOf<Scalar> start(const BeliefType& belief) noexcept {
     StatusOf<Scalar> status = Status::kOk;
     bank_.for_each([&](int, auto& filter, auto& before) {
