@@ -149,6 +149,11 @@ bool run_lanes(const AnySwitchingGridImm& imm, const AnySensor& sensor, const Ru
   return run_mixture(imm, imm.grid(), sensor, in, starts, out);
 }
 
+bool run_lanes(const AnyLikelyModelSetImm& imm, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  return run_mixture(imm, imm.grid(), sensor, in, starts, out);
+}
+
 bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
   const auto* history = std::get_if<ModeHistory<Ekf<CoordinatedTurn>>>(&any.variant());

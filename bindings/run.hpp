@@ -70,6 +70,8 @@ bool run_lanes(const AnyAdaptiveGridImm& imm, const AnySensor& sensor, const Run
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 bool run_lanes(const AnySwitchingGridImm& imm, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyLikelyModelSetImm& imm, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
 bool run_lanes(const AnyModeHistory& history, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 template <class Estimator>

@@ -10,6 +10,7 @@
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
 #include "wakeline/multimodel/uniform_bank.hpp"
@@ -133,13 +134,16 @@ bool run_structured(const HistoryTree& tree, const LaneJob& job, const RunInput&
   return run_begun(ModeHistory(tree, *job.chain, turn_bank(job)), job, in, out, threads);
 }
 
-/// Three filters whose turn rates differ from run to run.
+/// One whose turn rate differs from run to run.
+using OwnTurn4 = Ekf<KnownTurn<Lanes>, Lanes>;
+
+OwnTurn4 own_turn_filter(const LaneJob& job, std::size_t k) {
+  const auto& motion = std::get<CoordinatedTurn>(job.models[k].motion);
+  return OwnTurn4({motion.turn_rate_rad_s, motion.noise});
+}
+
 auto grid_bank(const LaneJob& job) {
-  const auto filter = [&](std::size_t k) {
-    const auto& motion = std::get<CoordinatedTurn>(job.models[k].motion);
-    return Ekf<KnownTurn<Lanes>, Lanes>({motion.turn_rate_rad_s, motion.noise});
-  };
-  return FilterBank(filter(0), filter(1), filter(2));
+  return FilterBank(own_turn_filter(job, 0), own_turn_filter(job, 1), own_turn_filter(job, 2));
 }
 
 bool run_structured(const AdaptiveGrid& grid, const LaneJob& job, const RunInput& in,
@@ -154,6 +158,15 @@ bool run_structured(const SwitchingGrid& grid, const LaneJob& job, const RunInpu
   using Estimator = SwitchingGridImm<decltype(grid_bank(job))>;
   return run_begun(Estimator(grid, ModeChain<3>(*job.chain), grid_bank(job)), job, in, out,
                    threads);
+}
+
+bool run_structured(const LikelyModelSet& set, const LaneJob& job, const RunInput& in,
+                    const RunOutput& out, int threads) {
+  std::vector<OwnTurn4> filters;
+  for (std::size_t k = 0; k < job.models.size(); ++k) filters.push_back(own_turn_filter(job, k));
+  const UniformBank<OwnTurn4> bank{std::span<const OwnTurn4>(filters)};
+  using Estimator = LikelyModelSetImm<UniformBank<OwnTurn4>>;
+  return run_begun(Estimator(set, *job.chain, bank), job, in, out, threads);
 }
 
 bool run_mixture(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {

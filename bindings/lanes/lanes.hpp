@@ -22,6 +22,7 @@
 #include "wakeline/motion/wandering_course.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/history_tree.hpp"
+#include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
 #include "wakeline/track/vessel_models.hpp"
@@ -43,8 +44,10 @@ struct LaneStart {
   double covariance[36] = {};
 };
 
-/// What a ModeHistory, AdaptiveGridImm or SwitchingGridImm has beside its chain; nothing of an Imm.
-using Structure = std::variant<std::monostate, HistoryTree, AdaptiveGrid, SwitchingGrid>;
+/// What a ModeHistory or an estimator over turn rates that change has beside its chain; nothing of
+/// an Imm.
+using Structure =
+    std::variant<std::monostate, HistoryTree, AdaptiveGrid, SwitchingGrid, LikelyModelSet>;
 
 /// An estimator, its sensor and where it starts.
 struct LaneJob {

@@ -20,6 +20,7 @@
 #include "wakeline/motion/singer.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
 
 namespace wakeline {
@@ -160,6 +161,18 @@ struct LiteralSwitching {
   }
 };
 
+/// Models that rest in some lanes and not in others.
+template <class Scalar>
+struct Likely {
+  static constexpr std::size_t kModels = 5;
+  static auto make() {
+    using Filter = Ekf<KnownTurn<TurnRate<Scalar>>, Scalar>;
+    return LikelyModelSetImm(LikelyModelSet{.unlikely_threshold = 0.1, .likely_threshold = 0.3},
+                             ModeChain<kRuntimeModes>::staying(0.9, 5),
+                             Filter({.noise = WhiteAcceleration{0.01}}));
+  }
+};
+
 template <class Scalar>
 struct EkfTurnRate {
   static constexpr std::size_t kModels = 0;
@@ -230,7 +243,7 @@ struct Of {
   using Kind = KindType<Scalar>;
 };
 using Cases = ::testing::Types<Of<Imm3>, Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>,
-                               Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>>;
+                               Of<Likely>, Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>>;
 TYPED_TEST_SUITE(Batch, Cases);
 
 TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
@@ -243,14 +256,27 @@ TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
   expect_near(lanes, one_by_one);
 }
 
-TYPED_TEST(Batch, TurnRatesFollowTheVessel) {
+template <class Case>
+struct Grids : ::testing::Test {};
+using GridCases = ::testing::Types<Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>>;
+TYPED_TEST_SUITE(Grids, GridCases);
+
+TYPED_TEST(Grids, FollowTheVessel) {
   const Results lanes = run<TypeParam::template Kind, Lanes>(kRadar, Dense(kRuns).in);
-  for (std::size_t run = 0; run < kRuns && !lanes.rates.empty(); ++run) {
+  for (std::size_t run = 0; run < kRuns; ++run) {
     const double* first = &lanes.rates[run * kScans * 3];
-    const double* last = first + (kScans - 1) * 3;
     EXPECT_EQ(first[1], 0.0);
-    EXPECT_NEAR(last[1], deg(1.0), deg(0.6)) << run;
+    EXPECT_NEAR(first[(kScans - 1) * 3 + 1], deg(1.0), deg(0.6)) << run;
   }
+}
+
+TEST(LikelyModels, RestInSomeLanesOnly) {
+  constexpr std::size_t kRow = kScans * Likely<Lanes>::kModels;
+  const Results lanes = run<Likely, Lanes>(kRadar, Dense(kRuns).in);
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < kRow; ++i)
+    differ += std::isnan(lanes.rates[i]) != std::isnan(lanes.rates[kRow + i]);
+  EXPECT_GT(differ, 0U);
 }
 
 TYPED_TEST(Batch, NeighboursDoNotMatter) {

@@ -230,8 +230,8 @@ class Imm {
     const Probability expected = weigh_transitions(dt_s);
     bank_.for_each([](int, auto& filter, auto& before) { before = filter.estimate(); });
     bank_.for_each([&](int mode, auto& filter, auto& before) {
-      status = first_failure(status, filter.assign(mixed(mode, before)));
-      status = first_failure(status, filter.predict(dt_s, acceleration_mps2...));
+      (void)filter.assign(mixed(mode, before));
+      status = first_failure(status, in_use(mode, filter.predict(dt_s, acceleration_mps2...)));
     });
     for (int mode = 0; mode < bank_.size(); ++mode)
       probability_[mode] = select(ok(status), expected[mode], probability_[mode]);
@@ -267,6 +267,14 @@ class Imm {
  private:
   static constexpr bool kMayRest = requires(const Bank& bank) { bank.active(0); };
 
+  /// The status of a filter, which does not count in lanes where it is at rest.
+  StatusOf<Scalar> in_use(int mode, const StatusOf<Scalar>& status) const noexcept {
+    if constexpr (kMayRest && kLanesOf < Scalar >> 1)
+      return select(bank_.active(mode), status, StatusOf<Scalar>(Status::kOk));
+    else
+      return status;
+  }
+
   /// Leaves out the modes at rest: each row stays with the same probability, and where it leaves it
   /// goes to an active one.
   void leave_out_resting() noexcept {
@@ -274,7 +282,9 @@ class Imm {
       Scalar resting = Scalar(0);
       Scalar leaving = Scalar(0);
       for (int j = 0; j < bank_.size(); ++j) {
-        if (!bank_.active(j)) resting += std::exchange(transition_(i, j), Scalar(0));
+        const auto rests = !bank_.active(j);
+        resting += select(rests, transition_(i, j), Scalar(0));
+        transition_(i, j) = select(rests, Scalar(0), transition_(i, j));
         if (j != i) leaving += transition_(i, j);
       }
       if (none(resting > Scalar(0))) continue;

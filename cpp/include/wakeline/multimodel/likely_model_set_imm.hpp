@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/multimodel/turn_grid_imm.hpp"
@@ -13,8 +16,6 @@ namespace wakeline {
 /// Which models of a `LikelyModelSetImm` are active. Source: the model-set rules of X. R. Li, Y.
 /// Zhang, "Multiple-model estimation with variable structure, part V", IEEE Trans. AES-36, 2000.
 struct LikelyModelSet {
-  using Rates = TurnRateGrid::Rates;
-
   TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(4.0), 2);  ///< of all models
   double unlikely_threshold = 0.03;  ///< a model less probable than this leaves
   double likely_threshold = 0.1;     ///< one at least as probable has its neighbours join it
@@ -22,21 +23,32 @@ struct LikelyModelSet {
 
   /// The rates of the models to be active, NaN for those at rest, from the rates and mode
   /// probabilities of the last update. The most probable model always has its neighbours with it.
-  template <class Probability>
+  template <class Rates, class Probability>
   [[nodiscard]] Rates chosen(const Rates& rates, const Probability& mu) const noexcept {
-    Eigen::Index best = 0;
-    for (Eigen::Index k = 1; k < rates.size(); ++k)
-      if (mu[k] > mu[best]) best = k;
-    const auto is_active = [&](Eigen::Index k) { return !std::isnan(rates[k]); };
-    const auto is_principal = [&](Eigen::Index k) {
-      return k >= 0 && k < rates.size() && is_active(k) &&
-             (k == best || !(double(mu[k]) < likely_threshold));
-    };
-    Rates next = grid_rad_s.rates_rad_s();
-    for (Eigen::Index k = 0; k < rates.size(); ++k)
-      if (!(is_active(k) && !(double(mu[k]) < unlikely_threshold)) && !is_principal(k) &&
-          !is_principal(k - 1) && !is_principal(k + 1))
-        next[k] = std::numeric_limits<double>::quiet_NaN();
+    using Number = std::decay_t<decltype(rates[0])>;
+    using std::isnan;
+    const Eigen::Index count = rates.size();
+    Number greatest = Number(mu[0]);
+    for (Eigen::Index k = 1; k < count; ++k) greatest = at_least(Number(mu[k]), greatest);
+    std::array<MaskOf<Number>, kMaxModes> active, principal;
+    MaskOf<Number> found = false;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const MaskOf<Number> best = Number(mu[k]) == greatest && !found;
+      found = found || best;
+      active[i] = !isnan(rates[k]);
+      principal[i] = active[i] && (best || !(Number(mu[k]) < Number(likely_threshold)));
+    }
+    Rates next = rates;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      MaskOf<Number> stays =
+          principal[i] || (active[i] && !(Number(mu[k]) < Number(unlikely_threshold)));
+      if (k > 0) stays = stays || principal[i - 1];
+      if (k + 1 < count) stays = stays || principal[i + 1];
+      next[k] = select(stays, Number(grid_rad_s[static_cast<int>(k)]),
+                       Number(std::numeric_limits<double>::quiet_NaN()));
+    }
     return next;
   }
 
@@ -83,9 +95,9 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
       : LikelyModelSetImm(set, chain, Bank(prototype, set.grid_rad_s.size())) {}
 
   /// Chooses the models, mixes and predicts.
-  Status predict(Scalar dt_s) noexcept { return step(dt_s); }
+  StatusOf<Scalar> predict(Scalar dt_s) noexcept { return step(dt_s); }
   /// The same under a known acceleration, [north, east]; see `Control`.
-  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return step(dt_s, acceleration_mps2);
   }
 
@@ -106,25 +118,29 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
 
  private:
   template <class... Known>
-  Status step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
-    return Base::move_and_predict([&](bool) { choose(); }, [](bool) {}, dt_s, acceleration_mps2...);
+  StatusOf<Scalar> step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+    return Base::move_and_predict([&](const MaskOf<Scalar>& lanes) { choose(lanes); },
+                                  [](const MaskOf<Scalar>&) {}, dt_s, acceleration_mps2...);
   }
 
-  void choose() noexcept {
+  void choose(const MaskOf<Scalar>& lanes) noexcept {
+    using std::isnan;
     const Rates before = this->turn_rates_rad_s();
-    Probability& mu = this->probability_;
-    const Rates next = set_.chosen(before, mu);
     const auto joined = this->estimate();
+    this->set_rates(lanes, set_.chosen(before, this->probability_));
+    const Rates& now = this->turn_rates_rad_s();
+    this->bank_.for_each([&](int k, auto& filter, auto&) {
+      this->assign_in(isnan(before[k]) && !isnan(now[k]), filter, joined);
+    });
+    Probability& mu = this->probability_;
     Scalar total = Scalar(0);
     Scalar left = Scalar(0);
-    for (Eigen::Index k = 0; k < next.size(); ++k) (std::isnan(next[k]) ? left : total) += mu[k];
-    this->set_rates(next);
-    this->bank_.for_each([&](int k, auto& filter, auto&) {
-      if (std::isnan(before[k])) (void)filter.assign(joined);
-    });
-    if (left > Scalar(0))
-      for (Eigen::Index k = 0; k < next.size(); ++k)
-        mu[k] = std::isnan(next[k]) ? Scalar(0) : mu[k] / total;
+    for (Eigen::Index k = 0; k < now.size(); ++k) {
+      total += select(isnan(now[k]), Scalar(0), mu[k]);
+      left += select(isnan(now[k]), mu[k], Scalar(0));
+    }
+    for (Eigen::Index k = 0; k < now.size(); ++k)
+      mu[k] = select(left > Scalar(0), select(isnan(now[k]), Scalar(0), mu[k] / total), mu[k]);
   }
 
   LikelyModelSet set_;

@@ -63,7 +63,8 @@ class TurnGridImm : public Imm<BankType> {
               const ModeVector<double, kModels>& initial)
       : Base(chain, bank),
         initial_rates_(initial.template cast<TurnRate<Scalar>>()),
-        rates_(initial_rates_) {
+        rates_(initial_rates_),
+        filter_rates_(initial_rates_) {
     if (initial.size() != bank.size())
       throw std::invalid_argument("this estimator needs " + std::to_string(initial.size()) +
                                   " filters, got " + std::to_string(bank.size()));
@@ -90,15 +91,20 @@ class TurnGridImm : public Imm<BankType> {
   }
 
   void set_rates(const Rates& rates) noexcept {
-    if constexpr (requires { this->bank_.set_active(0, true); } && kLanesOf<Scalar> == 1) {
+    using std::isnan;
+    if constexpr (requires { this->bank_.set_active(0, true); }) {
       for (int k = 0; k < this->bank_.size(); ++k) {
-        if (std::isnan(rates[k]) == std::isnan(rates_[k])) continue;
-        this->bank_.set_active(k, !std::isnan(rates[k]));
+        const MaskOf<Scalar> rests = isnan(rates[k]), rested = isnan(rates_[k]);
+        if (none((rests && !rested) || (rested && !rests))) continue;
+        this->bank_.set_active(k, !rests);
         this->active_changed();
       }
     }
     this->bank_.for_each([&](int k, auto& filter, auto&) {
-      if (any(rates[k] != rates_[k])) set_turn_rate(filter, rates[k]);
+      const TurnRate<Scalar> rate = select(isnan(rates[k]), filter_rates_[k], rates[k]);
+      if (none(rate != filter_rates_[k])) return;
+      set_turn_rate(filter, rate);
+      filter_rates_[k] = rate;
     });
     rates_ = rates;
   }
@@ -124,6 +130,7 @@ class TurnGridImm : public Imm<BankType> {
  private:
   Rates initial_rates_;
   Rates rates_;
+  Rates filter_rates_;           ///< the same, but the last one of a model at rest
   MaskOf<Scalar> seen_ = false;  ///< there was an update since the grid moved last
 };
 

@@ -13,8 +13,8 @@
 namespace wakeline {
 
 /// Filters of one kind: the face of `FilterBank`, with a number of filters that may be known at run
-/// time only (K = kRuntimeModes, at most kMaxModes), and filters that may rest. A filter at rest is
-/// left out of every `for_each`. Storage is in place: no heap.
+/// time only (K = kRuntimeModes, at most kMaxModes), and filters that may rest. A filter at rest
+/// (in all lanes) is left out of every `for_each`. Storage is in place: no heap.
 template <class Filter, int K = kRuntimeModes>
 class UniformBank {
   static_assert(
@@ -44,19 +44,19 @@ class UniformBank {
   }
 
   [[nodiscard]] int size() const noexcept { return size_; }
-  [[nodiscard]] bool active(int k) const noexcept { return slot(k).active; }
-  void set_active(int k, bool active) noexcept { slot(k).active = active; }
+  [[nodiscard]] MaskOf<Scalar> active(int k) const noexcept { return slot(k).active; }
+  void set_active(int k, const MaskOf<Scalar>& active) noexcept { slot(k).active = active; }
 
   template <class Function>
   void for_each(Function&& function) noexcept {
     for (int k = 0; k < size_; ++k)
-      if (Slot& s = slot(k); s.active) function(k, s.filter, s.before);
+      if (Slot& s = slot(k); any(s.active)) function(k, s.filter, s.before);
   }
 
   template <class Function>
   void for_each(Function&& function) const noexcept {
     for (int k = 0; k < size_; ++k)
-      if (const Slot& s = slot(k); s.active) function(k, s.filter);
+      if (const Slot& s = slot(k); any(s.active)) function(k, s.filter);
   }
 
   /// Calls `f(k, belief)` with the present belief of each filter.
@@ -71,7 +71,7 @@ class UniformBank {
   template <class Function>
   void for_each_before(Function&& function) const noexcept {
     for (int k = 0; k < size_; ++k)
-      if (const Slot& s = slot(k); s.active) function(k, s.before);
+      if (const Slot& s = slot(k); any(s.active)) function(k, s.before);
   }
 
   /// A zero belief over the components of the combined estimate.
@@ -90,7 +90,7 @@ class UniformBank {
   struct Slot {
     Filter filter;
     StateBelief<kComponents, Scalar> before = {};
-    bool active = true;
+    MaskOf<Scalar> active = true;
   };
   static constexpr std::size_t kCapacity = static_cast<std::size_t>(kModeCapacity<K>);
 
