@@ -230,7 +230,7 @@ class Imm {
     const Probability expected = weigh_transitions(dt_s);
     bank_.for_each([](int, auto& filter, auto& before) { before = filter.estimate(); });
     bank_.for_each([&](int mode, auto& filter, auto& before) {
-      (void)filter.assign(mixed(mode, before));
+      status = first_failure(status, in_use(mode, filter.assign(mixed(mode, before))));
       status = first_failure(status, in_use(mode, filter.predict(dt_s, acceleration_mps2...)));
     });
     for (int mode = 0; mode < bank_.size(); ++mode)
@@ -269,7 +269,7 @@ class Imm {
 
   /// The status of a filter, which does not count in lanes where it is at rest.
   StatusOf<Scalar> in_use(int mode, const StatusOf<Scalar>& status) const noexcept {
-    if constexpr (kMayRest && kLanesOf < Scalar >> 1)
+    if constexpr (kLanesOf < Scalar >> 1 && kMayRest)
       return select(bank_.active(mode), status, StatusOf<Scalar>(Status::kOk));
     else
       return status;
