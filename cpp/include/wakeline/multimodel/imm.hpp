@@ -269,7 +269,7 @@ class Imm {
 
   /// The status of a filter, which does not count in lanes where it is at rest.
   StatusOf<Scalar> in_use(int mode, const StatusOf<Scalar>& status) const noexcept {
-    if constexpr (kLanesOf < Scalar >> 1 && kMayRest)
+    if constexpr (kMayRest && kLanesOf<Scalar> != 1)
       return select(bank_.active(mode), status, StatusOf<Scalar>(Status::kOk));
     else
       return status;
