@@ -85,10 +85,28 @@ bool run_from(const Estimator& prototype, const LaneJob& job, const RunInput& in
   return true;
 }
 
-using Turn4 = Ekf<CoordinatedTurn, Lanes>;
+/// A filter of a known turn; `Rate` is `Lanes` where turn rates differ from run to run.
+template <class Rate>
+using Turn4 = Ekf<KnownTurn<Rate>, Lanes>;
 
-Turn4 turn_filter(const LaneJob& job, std::size_t k) {
-  return Turn4(std::get<CoordinatedTurn>(job.models[k].motion));
+template <class Rate>
+Turn4<Rate> turn_filter(const LaneJob& job, std::size_t k) {
+  const auto& motion = std::get<CoordinatedTurn>(job.models[k].motion);
+  return Turn4<Rate>({motion.turn_rate_rad_s, motion.noise});
+}
+
+/// As many as the job has.
+template <class Rate>
+UniformBank<Turn4<Rate>> turn_bank(const LaneJob& job) {
+  std::vector<Turn4<Rate>> filters;
+  for (std::size_t k = 0; k < job.models.size(); ++k) filters.push_back(turn_filter<Rate>(job, k));
+  return UniformBank<Turn4<Rate>>(std::span<const Turn4<Rate>>(filters));
+}
+
+/// A number that is known.
+template <class Rate, std::size_t... Models>
+auto turn_bank(const LaneJob& job, std::index_sequence<Models...>) {
+  return FilterBank(turn_filter<Rate>(job, Models)...);
 }
 
 template <class Estimator>
@@ -101,72 +119,54 @@ bool run_begun(Estimator estimator, const LaneJob& job, const RunInput& in, cons
   return run_from<4>(estimator, job, in, out, threads);
 }
 
-/// A number of models that is known.
-template <std::size_t... Models>
-bool run_few(std::index_sequence<Models...>, const LaneJob& job, const RunInput& in,
-             const RunOutput& out, int threads) {
-  const FilterBank bank(turn_filter(job, Models)...);
-  return run_begun(Imm{ModeChain<int(sizeof...(Models))>(*job.chain), bank}, job, in, out, threads);
-}
-
-UniformBank<Turn4> turn_bank(const LaneJob& job) {
-  std::vector<Turn4> filters;
-  for (std::size_t k = 0; k < job.models.size(); ++k) filters.push_back(turn_filter(job, k));
-  return UniformBank<Turn4>{std::span<const Turn4>(filters)};
+template <std::size_t Models>
+bool run_few(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
+  const auto bank = turn_bank<double>(job, std::make_index_sequence<Models>{});
+  return run_begun(Imm{ModeChain<int(Models)>(*job.chain), bank}, job, in, out, threads);
 }
 
 bool run_structured(std::monostate, const LaneJob& job, const RunInput& in, const RunOutput& out,
                     int threads) {
   switch (job.models.size()) {
     case 2:
-      return run_few(std::make_index_sequence<2>{}, job, in, out, threads);
+      return run_few<2>(job, in, out, threads);
     case 3:
-      return run_few(std::make_index_sequence<3>{}, job, in, out, threads);
+      return run_few<3>(job, in, out, threads);
     case 5:
-      return run_few(std::make_index_sequence<5>{}, job, in, out, threads);
+      return run_few<5>(job, in, out, threads);
     default:
-      return run_begun(Imm{*job.chain, turn_bank(job)}, job, in, out, threads);
+      return run_begun(Imm{*job.chain, turn_bank<double>(job)}, job, in, out, threads);
   }
 }
 
 bool run_structured(const HistoryTree& tree, const LaneJob& job, const RunInput& in,
                     const RunOutput& out, int threads) {
-  return run_begun(ModeHistory(tree, *job.chain, turn_bank(job)), job, in, out, threads);
+  return run_begun(ModeHistory(tree, *job.chain, turn_bank<double>(job)), job, in, out, threads);
 }
 
-/// One whose turn rate differs from run to run.
-using OwnTurn4 = Ekf<KnownTurn<Lanes>, Lanes>;
-
-OwnTurn4 own_turn_filter(const LaneJob& job, std::size_t k) {
-  const auto& motion = std::get<CoordinatedTurn>(job.models[k].motion);
-  return OwnTurn4({motion.turn_rate_rad_s, motion.noise});
-}
-
-auto grid_bank(const LaneJob& job) {
-  return FilterBank(own_turn_filter(job, 0), own_turn_filter(job, 1), own_turn_filter(job, 2));
+/// An estimator whose models change their turn rates by some rules.
+template <template <class> class Estimator, class Rules, class Bank>
+bool run_turning(const Rules& rules, const Bank& bank, const LaneJob& job, const RunInput& in,
+                 const RunOutput& out, int threads) {
+  const ModeChain<Bank::kModels> chain(*job.chain);
+  return run_begun(Estimator<Bank>(rules, chain, bank), job, in, out, threads);
 }
 
 bool run_structured(const AdaptiveGrid& grid, const LaneJob& job, const RunInput& in,
                     const RunOutput& out, int threads) {
-  using Estimator = AdaptiveGridImm<decltype(grid_bank(job))>;
-  return run_begun(Estimator(grid, ModeChain<3>(*job.chain), grid_bank(job)), job, in, out,
-                   threads);
+  const auto bank = turn_bank<Lanes>(job, std::make_index_sequence<3>{});
+  return run_turning<AdaptiveGridImm>(grid, bank, job, in, out, threads);
 }
 
 bool run_structured(const SwitchingGrid& grid, const LaneJob& job, const RunInput& in,
                     const RunOutput& out, int threads) {
-  using Estimator = SwitchingGridImm<decltype(grid_bank(job))>;
-  return run_begun(Estimator(grid, ModeChain<3>(*job.chain), grid_bank(job)), job, in, out,
-                   threads);
+  const auto bank = turn_bank<Lanes>(job, std::make_index_sequence<3>{});
+  return run_turning<SwitchingGridImm>(grid, bank, job, in, out, threads);
 }
 
 bool run_structured(const LikelyModelSet& set, const LaneJob& job, const RunInput& in,
                     const RunOutput& out, int threads) {
-  std::vector<OwnTurn4> filters;
-  for (std::size_t k = 0; k < job.models.size(); ++k) filters.push_back(own_turn_filter(job, k));
-  const UniformBank<OwnTurn4> bank{std::span<const OwnTurn4>(filters)};
-  using Estimator = LikelyModelSetImm<UniformBank<OwnTurn4>>;
-  return run_begun(Estimator(set, *job.chain, bank), job, in, out, threads);
+  return run_turning<LikelyModelSetImm>(set, turn_bank<Lanes>(job), job, in, out, threads);
 }
 
 bool run_mixture(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {

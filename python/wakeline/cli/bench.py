@@ -48,6 +48,8 @@ class _Work:
         Does it once.
     count : int
         Steps or scans in one call.
+    settle : callable, optional
+        What comes before it, and is not timed.
     """
 
     name: str
@@ -55,6 +57,7 @@ class _Work:
     metric: str
     call: Callable[[], Any]
     count: int
+    settle: Callable[[], Any] | None = None
 
 
 def add_to(commands: argparse._SubParsersAction) -> None:
@@ -91,6 +94,8 @@ def _works() -> list[_Work]:
 
 
 def _measured(work: _Work) -> dict[str, Any]:
+    if work.settle is not None:
+        work.settle()
     best_s = min(_elapsed_s(work.call) for _ in range(_REPEATS))
     unit_s = {"ns_per_step": 1e-9, "ms_per_scan": 1e-3}[work.metric]
     return {
@@ -297,8 +302,8 @@ def _tracker_works() -> Iterator[_Work]:
                 continue
             scans = _busy_scans(targets, false_plots, settling + _REPEATS * count)
             track = partial(_track, process, iter(scans))
-            track(settling)
-            yield _Work(name, peer, "ms_per_scan", partial(track, count), count)
+            call, settle = partial(track, count), partial(track, settling)
+            yield _Work(name, peer, "ms_per_scan", call, count, settle)
 
 
 def _busy_scans(targets: int, false_plots: int, count: int) -> list[tuple[float, np.ndarray]]:

@@ -73,23 +73,21 @@ class RunLanes {
   [[nodiscard]] Scalar load(const double* from, std::size_t size, std::size_t scan,
                             std::size_t k) const noexcept {
     return lanes_of<Scalar>([&](int lane) {
-      const std::size_t run =
-          first_ + std::min<std::size_t>(static_cast<std::size_t>(lane), used_ - 1);
-      return RealOf<Scalar>(from[(run * scans_ + scan) * size + k]);
+      const std::size_t lane_of = std::min(static_cast<std::size_t>(lane), used_ - 1);
+      return RealOf<Scalar>(from[row(lane_of, scan) * size + k]);
     });
   }
 
   void write(std::uint8_t* to, std::size_t scan, const StatusOf<Scalar>& status) const noexcept {
     for (std::size_t lane_of = 0; lane_of < used_; ++lane_of)
-      to[(first_ + lane_of) * scans_ + scan] =
-          static_cast<std::uint8_t>(lane(status, static_cast<int>(lane_of)));
+      to[row(lane_of, scan)] = static_cast<std::uint8_t>(lane(status, static_cast<int>(lane_of)));
   }
 
   /// Begins to fetch the memory that `size` numbers of a scan will be written to.
   void fetch(const double* to, std::size_t size, std::size_t scan) const noexcept {
     constexpr std::size_t kLine = 64 / sizeof(double);
     for (std::size_t lane_of = 0; lane_of < used_; ++lane_of) {
-      const double* place = to + ((first_ + lane_of) * scans_ + scan) * size;
+      const double* place = to + row(lane_of, scan) * size;
       for (std::size_t k = 0; k < size; k += kLine) __builtin_prefetch(place + k, 1);
     }
   }
@@ -98,9 +96,7 @@ class RunLanes {
   /// run one block of memory, which is what memory is fast at.
   void write(double* to, std::size_t size, std::size_t first_scan, std::size_t count,
              const RealOf<Scalar>* from, std::size_t stride) const noexcept {
-    const auto place = [&](std::size_t lane_of) {
-      return to + ((first_ + lane_of) * scans_ + first_scan) * size;
-    };
+    const auto place = [&](std::size_t lane_of) { return to + row(lane_of, first_scan) * size; };
     std::size_t k = 0;
     const auto next = [&] {
       const RealOf<Scalar>* numbers = from + k * kLanes;
@@ -128,6 +124,11 @@ class RunLanes {
   }
 
  private:
+  /// Of the results of a lane's run at a scan, among all runs and scans.
+  [[nodiscard]] std::size_t row(std::size_t lane_of, std::size_t scan) const noexcept {
+    return (first_ + lane_of) * scans_ + scan;
+  }
+
   std::size_t first_;
   std::size_t scans_;
   std::size_t used_;

@@ -63,8 +63,7 @@ class TurnGridImm : public Imm<BankType> {
               const ModeVector<double, kModels>& initial)
       : Base(chain, bank),
         initial_rates_(initial.template cast<TurnRate<Scalar>>()),
-        rates_(initial_rates_),
-        filter_rates_(initial_rates_) {
+        rates_(initial_rates_) {
     if (initial.size() != bank.size())
       throw std::invalid_argument("this estimator needs " + std::to_string(initial.size()) +
                                   " filters, got " + std::to_string(bank.size()));
@@ -101,10 +100,8 @@ class TurnGridImm : public Imm<BankType> {
       }
     }
     this->bank_.for_each([&](int k, auto& filter, auto&) {
-      const TurnRate<Scalar> rate = select(isnan(rates[k]), filter_rates_[k], rates[k]);
-      if (none(rate != filter_rates_[k])) return;
-      set_turn_rate(filter, rate);
-      filter_rates_[k] = rate;
+      // A model that rests comes back with the rate that it had: no rate is less or more than NaN.
+      if (any(rates[k] < rates_[k] || rates[k] > rates_[k])) set_turn_rate(filter, rates[k]);
     });
     rates_ = rates;
   }
@@ -130,7 +127,6 @@ class TurnGridImm : public Imm<BankType> {
  private:
   Rates initial_rates_;
   Rates rates_;
-  Rates filter_rates_;           ///< the same, but the last one of a model at rest
   MaskOf<Scalar> seen_ = false;  ///< there was an update since the grid moved last
 };
 
