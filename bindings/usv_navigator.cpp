@@ -166,18 +166,23 @@ class PyNavigator {
                            {"rate_of_turn", rate_of_turn}},
                           rows);
       std::vector<typename Navigator::State> beliefs;
-      std::vector<typename Navigator::Leg> legs;
-      for (py::ssize_t k = 0; k < rows; ++k) {
-        if (k > 0) {
-          const double dt_s = time_s.at(k) - time_s.at(k - 1);
-          const double* motion = readings.imu.at(k);
-          legs.push_back(motion ? navigator.leg(dt_s, to_imu(motion)) : navigator.leg(dt_s));
-          require_ok(navigator.predict(legs.back()), "predict");
+      Navigator moved = navigator;
+      {
+        const py::gil_scoped_release no_python;
+        std::vector<typename Navigator::Leg> legs;
+        for (py::ssize_t k = 0; k < rows; ++k) {
+          if (k > 0) {
+            const double dt_s = time_s.at(k) - time_s.at(k - 1);
+            const double* motion = readings.imu.at(k);
+            legs.push_back(motion ? moved.leg(dt_s, to_imu(motion)) : moved.leg(dt_s));
+            require_ok_in(k, moved.predict(legs.back()), "predict");
+          }
+          take(moved, readings, std, k, run);
+          beliefs.push_back(moved.estimate());
         }
-        take(navigator, readings, std, k, run);
-        beliefs.push_back(navigator.estimate());
+        if (smooth) require_ok(moved.smooth(beliefs, legs), "smooth");
       }
-      if (smooth) require_ok(navigator.smooth(beliefs, legs), "smooth");
+      navigator = moved;
       copy(beliefs, run);
       return run;
     });
@@ -192,6 +197,11 @@ class PyNavigator {
   static py::value_error no_such_state(const Navigator&, const char* what, const char* wanted) {
     return py::value_error(std::string(what) + " needs a navigator with " + wanted + ", got " +
                            std::to_string(Navigator::kStates) + " states");
+  }
+
+  static void require_ok_in(py::ssize_t row, Status status, const char* what) {
+    if (status != Status::kOk)
+      require_ok(status, (std::string(what) + " in row " + std::to_string(row)).c_str());
   }
 
   static Vec<double, 2> pair(const char* name, const DoubleArray& array) {
@@ -249,7 +259,7 @@ class PyNavigator {
       const auto reading = update(z);
       run.nis[name].mutable_data()[k] = reading.nis;
       run.rejected[name].mutable_data()[k] = reading.rejected;
-      if (!reading.rejected) require_ok(reading.status, name);
+      if (!reading.rejected) require_ok_in(k, reading.status, name);
     };
     note("gnss", readings.gnss, [&](const double* z) {
       return navigator.update(gnss(std.gnss_m), Vec<double, 2>(z[0], z[1]));
@@ -461,7 +471,7 @@ Raises
 ValueError
     When shapes do not fit, times decrease, or a sensor needs a state that is not there.
 FilterError
-    When the navigator was not started.)");
+    When the navigator was not started, or a row makes a step fail; the navigator is as it was then.)");
 }
 
 }  // namespace wakeline::python

@@ -1,5 +1,7 @@
 """Own ship's navigator on logs of IMU, GNSS, compass and log."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -156,3 +158,26 @@ def test_errors_name_what_is_wrong():
         navigator.predict(1.0, [np.nan, 0, 0])
     with pytest.raises(ValueError, match="heading_std_rad must be finite and positive"):
         navigator.update_heading(0.0, 0.0)
+
+
+def test_a_run_that_fails_names_the_row_and_leaves_the_navigator_as_it_was():
+    log = voyage(steps=20)
+    navigator = started(log)
+    before = navigator.estimate
+    imu = log["imu"].copy()
+    imu[7] = 1e200
+    with pytest.raises(wl.FilterError, match="predict in row 7: not finite"):
+        navigator.run(log["time_s"], imu)
+    np.testing.assert_array_equal(navigator.estimate.mean, before.mean)
+    np.testing.assert_array_equal(navigator.estimate.covariance, before.covariance)
+
+
+def test_runs_in_threads_are_runs_one_by_one():
+    logs = [voyage(seed, steps=200) for seed in range(4)]
+
+    def run(log):
+        return started(log).run(**sensors(log), smooth=True).mean
+
+    with ThreadPoolExecutor(2) as pool:
+        for many, single in zip(pool.map(run, logs), map(run, logs), strict=True):
+            np.testing.assert_array_equal(many, single)
