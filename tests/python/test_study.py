@@ -16,7 +16,7 @@ RUNS = 6
 MANEUVERS = ("imm", "variable-structure")
 CURVE_METRICS = (
     *("mean_position_m", "peak_position_m", "mean_velocity_mps", "peak_velocity_mps"),
-    *("nees", "settling_s", "ns_per_step"),
+    *("nees", "steady_nees", "steady_mean_nees_inside_share", "settling_s", "ns_per_step"),
 )
 ERRORS = ("position_rmse_m", "speed_rmse_mps", "course_rms_deg")
 METRICS = dict.fromkeys(MANEUVERS, CURVE_METRICS) | {

@@ -36,6 +36,8 @@ _HEADS = {
     "second_half_east_mse_m2": "2nd half east m²",
     "second_half_heading_mse_deg2": "2nd half heading °²",
     "nees": "NEES",
+    "steady_nees": "steady NEES",
+    "steady_mean_nees_inside_share": "scans in band",
     "ns_per_step": "ns a step",
 }
 _UNITS = {"mps": "m/s", "deg": "°", "arcmin": "′"}

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 METRICS = (
     *("mean_position_m", "peak_position_m", "mean_velocity_mps", "peak_velocity_mps"),
-    *("nees", "settling_s", "ns_per_step"),
+    *("nees", "steady_nees", "steady_mean_nees_inside_share", "settling_s", "ns_per_step"),
 )
 BOUND = "bound"
 _SAME_RATE_RAD_S = 1e-9
