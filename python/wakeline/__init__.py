@@ -135,7 +135,8 @@ for _noun in (
 ):
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
-from . import metrics, montecarlo, recording, scenario, study  # noqa: E402  (they use the nouns above)
+# They use the nouns above.
+from . import forecast, metrics, montecarlo, recording, scenario, study  # noqa: E402
 
 try:
     __version__ = _version("wakeline")
@@ -219,6 +220,7 @@ __all__ = [
     "dead_reckon",
     "drift_forecast",
     "drift_particles",
+    "forecast",
     "geodesic",
     "lanes",
     "metrics",

@@ -1,4 +1,4 @@
-"""Where other vessels will be: forecasts from AIS, by the same models as own ship's.
+"""Where other vessels will be: the models of :mod:`wakeline.forecast` on AIS.
 
 The vessels of the Solent report position, course and speed every few seconds. From each quarter of
 a minute on it is foretold where a vessel will be after one, three and six minutes, and compared
@@ -7,14 +7,13 @@ with where it then was. Nothing is random here: there is one run.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import wakeline as wl
-from wakeline import plot, recording
+from wakeline import forecast, plot, recording
 from wakeline.recording import AisTrack
 
 from .base import Picture, Report, Rows
@@ -39,31 +38,7 @@ _EVERY_S = 15.0
 _MAX_GAP_S = 25.0
 _LEAST_SPEED_MPS = 2.0
 _HISTORY_S = 60.0
-_RATE_OVER_S = 30.0
-_TURN_ENDS_S = 30.0
-_POSITION_STD_M = 10.0
 _CURVE_S = np.arange(20.0, 361.0, 20.0)
-
-
-class Origin(NamedTuple):
-    """A vessel at the time of a forecast: its reports so far, and its rate of turn."""
-
-    past: AisTrack
-    turn_rate_rad_s: float
-
-
-Model = Callable[[Origin, np.ndarray], np.ndarray]
-
-
-def models() -> dict[str, Model]:
-    """From an origin and times ahead (H,), places (H, 2) relative to the last report, by name."""
-    return {
-        "last_report": _last_report,
-        "line_60s": _line,
-        "kalman_cv": _kalman,
-        "turning_on": partial(_turning, ends_s=np.inf),
-        "turn_that_ends": partial(_turning, ends_s=_TURN_ENDS_S),
-    }
 
 
 def run(
@@ -83,12 +58,12 @@ def run(
         the course changes by more than half a degree a second.
     """
     ahead_s = np.unique([*_CURVE_S, *HORIZONS_S])
-    errors = {name: [] for name in models()}
+    errors = {name: [] for name in forecast.names()}
     turning = []
-    for origin, later_m in _cases(ahead_s):
-        turning.append(abs(origin.turn_rate_rad_s) > TURNING_RAD_S)
-        for name, model in models().items():
-            errors[name].append(np.hypot(*(model(origin, ahead_s) - later_m).T))
+    for past, later_m in _cases(ahead_s):
+        turning.append(abs(forecast.turn_rate_rad_s(past)) > TURNING_RAD_S)
+        for name, of_model in errors.items():
+            of_model.append(np.hypot(*(forecast.position_m(past, ahead_s, name) - later_m).T))
     table = {name: np.array(values) for name, values in errors.items()}
     return Report(
         name="ais-forecast",
@@ -125,79 +100,18 @@ def _tracks() -> tuple[AisTrack, ...]:
     return tuple(stretches)
 
 
-def _cases(ahead_s: np.ndarray) -> Iterator[tuple[Origin, np.ndarray]]:
-    """Origins, and where the vessel then was (H, 2) relative to its last report."""
+def _cases(ahead_s: np.ndarray) -> Iterator[tuple[AisTrack, np.ndarray]]:
+    """The reports of a vessel until a time, and where it was later (H, 2)."""
     for track in _tracks():
         last_s = track.time_s[-1] - ahead_s.max()
         for now_s in np.arange(track.time_s[0] + _HISTORY_S, last_s, _EVERY_S):
             end = int(np.searchsorted(track.time_s, now_s, side="right"))
-            begin = int(np.searchsorted(track.time_s, track.time_s[end - 1] - 2 * _HISTORY_S))
-            past = track.rows(slice(begin, end))
-            then_s = past.time_s[-1] + ahead_s
-            later_m = np.column_stack(
-                [
-                    np.interp(then_s, track.time_s, track.north_m) - past.north_m[-1],
-                    np.interp(then_s, track.time_s, track.east_m) - past.east_m[-1],
-                ]
-            )
-            yield Origin(past, _turn_rate_rad_s(past)), later_m
-
-
-def _turn_rate_rad_s(past: AisTrack) -> float:
-    """Slope of the reported course over the last half minute."""
-    age_s = past.time_s - past.time_s[-1]
-    recent = age_s >= -_RATE_OVER_S
-    if recent.sum() < 3:
-        return 0.0
-    return float(np.polyfit(age_s[recent], np.unwrap(past.course_rad[recent]), 1)[0])
-
-
-def _last_report(origin: Origin, ahead_s: np.ndarray) -> np.ndarray:
-    velocity = np.array([origin.past.vnorth_mps[-1], origin.past.veast_mps[-1]])
-    return ahead_s[:, None] * velocity
-
-
-def _line(origin: Origin, ahead_s: np.ndarray) -> np.ndarray:
-    past = origin.past
-    age_s = past.time_s - past.time_s[-1]
-    recent = age_s >= -_HISTORY_S
-    return np.column_stack(
-        [
-            np.polyval(np.polyfit(age_s[recent], (values - values[-1])[recent], 1), ahead_s)
-            for values in (past.north_m, past.east_m)
-        ]
-    )
-
-
-def _kalman(origin: Origin, ahead_s: np.ndarray) -> np.ndarray:
-    past = origin.past
-    place = np.column_stack([past.north_m - past.north_m[-1], past.east_m - past.east_m[-1]])
-    start = wl.Gaussian(
-        [place[0, 0], past.vnorth_mps[0], place[0, 1], past.veast_mps[0]],
-        np.diag([_POSITION_STD_M**2, 1.0, _POSITION_STD_M**2, 1.0]),
-    )
-    done = wl.Kalman(wl.ConstantVelocity()).run(
-        place,
-        dt_s=np.diff(past.time_s, prepend=past.time_s[0]),
-        sensor=wl.Position(position_std_m=_POSITION_STD_M),
-        start=start,
-    )
-    north, vnorth, east, veast = done.mean[-1]
-    return np.array([north, east]) + ahead_s[:, None] * np.array([vnorth, veast])
-
-
-def _turning(origin: Origin, ahead_s: np.ndarray, *, ends_s: float) -> np.ndarray:
-    """On with the reported speed and a rate of turn that fades with a time constant."""
-    step_s = 1.0
-    times = np.arange(0.0, ahead_s.max() + step_s, step_s)
-    rate = origin.turn_rate_rad_s
-    turned = rate * (times if np.isinf(ends_s) else ends_s * (1.0 - np.exp(-times / ends_s)))
-    course = origin.past.course_rad[-1] + turned
-    speed = origin.past.speed_mps[-1]
-    middle = 0.5 * (course[1:] + course[:-1])
-    way = speed * step_s * np.column_stack([np.cos(middle), np.sin(middle)])
-    places = np.vstack([np.zeros((1, 2)), np.cumsum(way, axis=0)])
-    return np.column_stack([np.interp(ahead_s, times, places[:, axis]) for axis in range(2)])
+            then_s = track.time_s[end - 1] + ahead_s
+            later_m = [
+                np.interp(then_s, track.time_s, place_m)
+                for place_m in (track.north_m, track.east_m)
+            ]
+            yield track.rows(slice(end)), np.column_stack(later_m)
 
 
 def _rows(table: dict[str, np.ndarray], turning: np.ndarray, ahead_s: np.ndarray) -> Rows:

@@ -1,0 +1,148 @@
+"""Where other vessels will be: forecasts from what they report of themselves.
+
+>>> from wakeline import forecast, recording
+>>> track = recording.load_ais().tracks["235007473"]
+>>> forecast.position_m(track, [60.0, 180.0], "turn_that_ends").shape
+(2, 2)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import wakeline as wl
+from wakeline.recording import AisTrack
+
+__all__ = ["names", "position_m", "turn_rate_rad_s"]
+
+_RATE_OVER_S = 30.0
+_LINE_OVER_S = 60.0
+_KALMAN_OVER_S = 120.0
+_TURN_ENDS_S = 30.0
+_STEP_S = 1.0
+_POSITION_STD_M = 10.0
+_VELOCITY_STD_MPS = 1.0
+
+
+def names() -> list[str]:
+    """Names of the models."""
+    return list(_MODELS)
+
+
+def position_m(
+    track: AisTrack, ahead_s: ArrayLike, model: str = "last_report"
+) -> NDArray[np.float64]:
+    """Where a vessel will be, some times after its last report.
+
+    Parameters
+    ----------
+    track : AisTrack
+        Its reports so far, all with course and speed.
+    ahead_s : (H,) array_like
+        Seconds after the last of them.
+    model : str
+        ``last_report``: straight on with the course and speed of the last report. ``line_60s``:
+        along the line through the positions of the last minute. ``kalman_cv``: straight on from a
+        Kalman filter over the positions of the last two minutes. ``turning_on``: with the last
+        speed and the rate of turn of the last half minute. ``turn_that_ends``: the same, the rate
+        fading with a time constant of half a minute.
+
+    Returns
+    -------
+    ndarray (H, 2)
+        North and east, in the plane of the track.
+
+    Raises
+    ------
+    ValueError
+        When there is no such model, a report is without course or speed, there are fewer than two
+        reports in the last minute, or a time lies before the last.
+    """
+    ahead_s = np.asarray(ahead_s, dtype=float)
+    if model not in _MODELS:
+        raise ValueError(f"no model {model!r}; there are {', '.join(_MODELS)}")
+    if ahead_s.ndim != 1 or not (ahead_s >= 0.0).all():
+        raise ValueError(f"ahead_s must be times (H,), none of them negative, got {ahead_s}")
+    if not np.isfinite([track.course_rad, track.speed_mps]).all():
+        raise ValueError("every report of the track must have a course and a speed")
+    if len(track) == 0 or len(_last(track, _LINE_OVER_S)) < 2:
+        raise ValueError("the track must have two reports or more in its last minute")
+    return np.array([track.north_m[-1], track.east_m[-1]]) + _MODELS[model](track, ahead_s)
+
+
+def turn_rate_rad_s(track: AisTrack) -> float:
+    """Slope of the reported course over the last half minute; zero of fewer than three reports."""
+    recent = _last(track, _RATE_OVER_S)
+    if len(recent) < 3:
+        return 0.0
+    return float(np.polyfit(_age_s(recent), np.unwrap(recent.course_rad), 1)[0])
+
+
+# The models: ways (H, 2) from the last report ----------------------------------------------------
+
+
+def _last_report(track: AisTrack, ahead_s: np.ndarray) -> np.ndarray:
+    return ahead_s[:, None] * np.array([track.vnorth_mps[-1], track.veast_mps[-1]])
+
+
+def _line(track: AisTrack, ahead_s: np.ndarray) -> np.ndarray:
+    recent = _last(track, _LINE_OVER_S)
+    lines = np.polyfit(_age_s(recent), _way_m(recent), 1)
+    return ahead_s[:, None] * lines[0] + lines[1]
+
+
+def _kalman(track: AisTrack, ahead_s: np.ndarray) -> np.ndarray:
+    recent = _last(track, _KALMAN_OVER_S)
+    way_m = _way_m(recent)
+    start = wl.Gaussian(
+        [way_m[0, 0], recent.vnorth_mps[0], way_m[0, 1], recent.veast_mps[0]],
+        np.diag([_POSITION_STD_M**2, _VELOCITY_STD_MPS**2] * 2),
+    )
+    done = wl.Kalman(wl.ConstantVelocity()).run(
+        way_m,
+        dt_s=np.diff(recent.time_s, prepend=recent.time_s[0]),
+        sensor=wl.Position(position_std_m=_POSITION_STD_M),
+        start=start,
+    )
+    north, vnorth, east, veast = done.mean[-1]
+    return np.array([north, east]) + ahead_s[:, None] * np.array([vnorth, veast])
+
+
+def _turning(track: AisTrack, ahead_s: np.ndarray, *, ends_s: float) -> np.ndarray:
+    """On with the reported speed and a rate of turn that fades with a time constant."""
+    times_s = np.arange(0.0, ahead_s.max(initial=0.0) + _STEP_S, _STEP_S)
+    turned_s = times_s if np.isinf(ends_s) else ends_s * (1.0 - np.exp(-times_s / ends_s))
+    course_rad = track.course_rad[-1] + turn_rate_rad_s(track) * turned_s
+    middle_rad = 0.5 * (course_rad[1:] + course_rad[:-1])
+    steps_m = track.speed_mps[-1] * _STEP_S * np.array([np.cos(middle_rad), np.sin(middle_rad)])
+    return np.column_stack(
+        [np.interp(ahead_s, times_s, np.append(0.0, np.cumsum(step_m))) for step_m in steps_m]
+    )
+
+
+_MODELS: dict[str, Callable[[AisTrack, np.ndarray], np.ndarray]] = {
+    "last_report": _last_report,
+    "line_60s": _line,
+    "kalman_cv": _kalman,
+    "turning_on": partial(_turning, ends_s=np.inf),
+    "turn_that_ends": partial(_turning, ends_s=_TURN_ENDS_S),
+}
+
+
+def _age_s(track: AisTrack) -> np.ndarray:
+    """Times of the reports, that of the last being zero."""
+    return track.time_s - track.time_s[-1]
+
+
+def _last(track: AisTrack, over_s: float) -> AisTrack:
+    """The reports of the last seconds."""
+    return track.rows(_age_s(track) >= -over_s)
+
+
+def _way_m(track: AisTrack) -> np.ndarray:
+    """Positions (n, 2) from the last report."""
+    return np.column_stack([track.north_m - track.north_m[-1], track.east_m - track.east_m[-1]])

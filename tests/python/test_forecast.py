@@ -1,0 +1,76 @@
+"""Where other vessels will be, from their reports."""
+
+import numpy as np
+import pytest
+
+from wakeline import forecast
+from wakeline.recording import AisTrack
+
+PLACE_M = [5000.0, -3000.0]  # of the last report
+
+
+def circling(rate_rad_s, speed_mps=8.0, step_s=5.0, count=25):
+    """Exact reports of a vessel that turns at a rate and ends with course north."""
+    age_s = step_s * (np.arange(count) - (count - 1))
+    course = rate_rad_s * age_s
+    if rate_rad_s == 0:
+        north, east = speed_mps * age_s, 0 * age_s
+    else:
+        radius = speed_mps / rate_rad_s
+        north, east = radius * np.sin(course), radius * (1 - np.cos(course))
+    speed = np.full(count, speed_mps)
+    return AisTrack("1", 1000.0 + age_s, PLACE_M[0] + north, PLACE_M[1] + east, course, speed)
+
+
+@pytest.mark.parametrize("model", forecast.names())
+def test_a_straight_is_foretold_exactly(model):
+    place_m = forecast.position_m(circling(0.0), [0.0, 60.0, 360.0], model)
+    np.testing.assert_allclose(place_m - PLACE_M, [[0, 0], [480, 0], [2880, 0]], atol=1e-3)
+
+
+def test_who_turns_on_stays_on_the_circle():
+    rate = np.deg2rad(1.0)
+    ahead_s = np.array([90.0, 180.0])
+    place_m = forecast.position_m(circling(rate), ahead_s, "turning_on")
+    radius = 8.0 / rate
+    wanted = radius * np.column_stack([np.sin(rate * ahead_s), 1 - np.cos(rate * ahead_s)])
+    np.testing.assert_allclose(place_m - PLACE_M, wanted, atol=0.1)
+
+
+def test_a_turn_that_ends_goes_on_straight():
+    rate = np.deg2rad(1.0)
+    place_m = forecast.position_m(circling(rate), [300.0, 360.0], "turn_that_ends")
+    north_m, east_m = np.diff(place_m, axis=0)[0]
+    assert np.hypot(north_m, east_m) == pytest.approx(480.0, rel=1e-6)
+    assert np.degrees(np.arctan2(east_m, north_m)) == pytest.approx(30.0, abs=0.01)
+
+
+def test_unless_told_otherwise_it_goes_on_as_last_reported():
+    track = circling(np.deg2rad(1.0))
+    place_m = forecast.position_m(track, [60.0])
+    np.testing.assert_allclose(place_m - PLACE_M, [[480.0, 0.0]], atol=1e-9)
+
+
+@pytest.mark.parametrize("rate_deg_s", [0.0, 1.0, -2.0])
+def test_the_rate_of_turn_is_that_of_the_course_through_north(rate_deg_s):
+    rate = np.deg2rad(rate_deg_s)
+    assert forecast.turn_rate_rad_s(circling(rate)) == pytest.approx(rate, abs=1e-9)
+    assert forecast.turn_rate_rad_s(circling(rate, count=2)) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("track", "ahead_s", "model", "wanted"),
+    [
+        (circling(0.0), [60.0], "magic", "no model 'magic'; there are last_report"),
+        (circling(0.0), [-1.0], "line_60s", "ahead_s must be times"),
+        (circling(0.0), [np.nan], "line_60s", "ahead_s must be times"),
+        (circling(0.0), 60.0, "line_60s", "ahead_s must be times"),
+        (circling(0.0, speed_mps=np.nan), [60.0], "last_report", "a course and a speed"),
+        (circling(0.0, count=1), [60.0], "line_60s", "two reports or more"),
+        (circling(0.0, count=0), [60.0], "last_report", "two reports or more"),
+        (circling(0.0, step_s=90.0), [60.0], "kalman_cv", "two reports or more"),
+    ],
+)
+def test_what_cannot_be_foretold_is_refused(track, ahead_s, model, wanted):
+    with pytest.raises(ValueError, match=wanted):
+        forecast.position_m(track, ahead_s, model)
