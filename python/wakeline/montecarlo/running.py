@@ -60,7 +60,8 @@ def run(
     client : object, optional
         A ``dask.distributed.Client``, the module ``ray`` after ``ray.init()``, or an executor with
         ``submit``: does the work elsewhere. Candidates are then built by functions, as engine
-        objects cannot be sent.
+        objects cannot be sent. Tested with a cluster of Dask and with executors of threads and of
+        processes; Ray only by a stand-in with its two calls, ``remote`` and ``get``.
     progress : bool or callable
         True draws a bar where stderr is a terminal; a callable is told chunks done and in all.
     lost_beyond_m : float
