@@ -54,7 +54,8 @@ class Outcome:
     right_mode_share : ndarray (T,) or None
         Share of the runs whose most probable model is the one nearest to the true turn rate.
     cpu_s : float
-        CPU time of the estimator over all runs that could start.
+        CPU time of the estimator over all runs that could start: that of the calling threads, and
+        so all of it only after ``wakeline.set_threads(1)``.
     """
 
     scenario: str
