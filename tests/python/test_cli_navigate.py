@@ -138,6 +138,28 @@ def test_without_heading_or_log_there_is_a_solution_without_drift(tmp_path, comp
     assert (rows[-1]["heading_deg"] == "") == (compass == "none")
 
 
+def test_short_parts_are_navigated_too(tmp_path, capsys):
+    lines = [line for line in voyage(62) if not line.startswith("$VW")]
+    kept = lines[:600] + lines[2 * 3700 : 2 * 3705] + lines[2 * 3715 : 2 * 3716]
+    rows = navigated(tmp_path, kept)
+    assert "306 fixes" in capsys.readouterr().out
+    times_s = {float(row["time_s"]) for row in rows}
+    assert len(rows) == len(kept)
+    assert max(times_s) - min(times_s) > 3600
+    assert float(rows[-1]["north_var_m2"]) < 25.0
+
+
+def test_readings_without_a_fix_before_them_are_told(tmp_path, capsys):
+    lines = voyage(12)
+    early = [line for line in lines[:30] if not line.startswith("$GPRMC")]
+    late = [sentence("GPZDA,101100,01,06,2020,00,00"), *lines[3 * 660 + 1 : 3 * 660 + 3]]
+    rows = navigated(tmp_path, [*early, *lines[30:900], *late])
+    assert "note: 22 readings with no fix before them are not used (first in line 1)" in (
+        capsys.readouterr().out
+    )
+    assert len(rows) == 870
+
+
 def test_bad_lines_are_told_and_nothing_else_is_lost(tmp_path, capsys):
     lines = voyage(5)
     lines[99] = lines[99][:20] + "\n"
@@ -155,7 +177,7 @@ def test_bad_lines_are_told_and_nothing_else_is_lost(tmp_path, capsys):
     [
         ("", "wanted"),
         ("north, east\n1, 2\n", "wanted"),
-        ("".join(voyage(1))[:200], "10 sound fixes"),
+        (sentence("GPZDA,100000,01,06,2020,00,00") + sentence("HEHDT,40.0,T"), "one sound fix"),
     ],
 )
 def test_what_is_no_log_is_one_clear_line(tmp_path, text, word, capsys):
@@ -173,7 +195,9 @@ def test_a_missing_log_is_one_clear_line(tmp_path, capsys):
     assert "none.nmea" in capsys.readouterr().err
 
 
-def test_pictures_are_drawn(tmp_path, pictures):
-    navigated(tmp_path, voyage(6))
+def test_pictures_are_drawn(tmp_path, pictures, capsys):
+    lines = voyage(8)
+    navigated(tmp_path, [*lines[:1080], *lines[-9:]])
+    assert "not drawn are 1 of 2 parts, of fewer than 10 fixes" in capsys.readouterr().out
     for name in ("own_map.png", "own_time.png"):
         assert (tmp_path / name).read_bytes()[:4] == b"\x89PNG"

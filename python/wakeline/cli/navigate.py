@@ -22,6 +22,7 @@ _COLUMNS = (
     *("vnorth_var_m2s2", "vnorth_veast_cov_m2s2", "veast_var_m2s2", "heading_std_deg", "status"),
 )
 _SHOWN_PROBLEMS = 5
+_LEAST_DRAWN_FIXES = 10
 _METHODS = {
     "navigator": "navigator",
     "dead_reckoning": "heading and log alone",
@@ -35,8 +36,9 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "navigate",
         help="own ship's solution from a log of her instruments",
         description="Reads NMEA 0183, fuses fixes, speeds and headings, and writes own.csv and "
-        "pictures. Then satellites are hidden for a minute at a time, and the errors of what is "
-        "foretold are told. What cannot be read of the log is counted, and never fatal.",
+        "pictures. A part after a gap of a minute is navigated by itself. Then satellites are "
+        "hidden for a minute at a time, and the errors of what is foretold are told. What cannot "
+        "be read of the log, or not be used, is counted, and never fatal.",
     )
     parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one a line")
     parser.add_argument(
@@ -65,14 +67,14 @@ def run(arguments: argparse.Namespace) -> None:
     log = read_nmea(arguments.log, variation_deg=arguments.variation)
     arguments.out.mkdir(parents=True, exist_ok=True)
     print(_input_lines(log), flush=True)
-    legs = list(_legs(log))
-    if not legs:
+    if len(log.fixes.sound()) == 0:
         raise RecordingError(
             arguments.log,
-            "there is no part to navigate by",
-            wanted=f"{navigating.LEAST_FIXES} sound fixes without a gap of a minute",
-            got=f"{len(log.fixes.sound())} in all",
+            "there is no fix to navigate by",
+            wanted="one sound fix or more",
+            got=f"{len(log.fixes)} that are not sound",
         )
+    legs = _legs(log)
     files = [arguments.out / "own.csv"]
     _write_csv(files[0], legs)
     if outputs.can_draw():
@@ -86,7 +88,7 @@ def run(arguments: argparse.Namespace) -> None:
         outputs.write_json(arguments.json, "navigate", _rows(errors, arguments.log.name))
 
 
-def _legs(log: NavigationLog) -> Iterator[_Leg]:
+def _legs(log: NavigationLog) -> list[_Leg]:
     offset_rad = 0.0
     magnetic = len(log.heading.sound()) == 0 and len(log.compass.sound()) > 0
     if magnetic:
@@ -94,10 +96,21 @@ def _legs(log: NavigationLog) -> Iterator[_Leg]:
         offset_rad = found_rad or 0.0
         how = "as courses over ground say" if found_rad is not None else "for nothing is known"
         print(f"note: {np.degrees(offset_rad):+.1f}° are added to magnetic headings, {how}")
-    for part in log.parts():
-        if len(part.fixes.sound()) >= navigating.LEAST_FIXES:
-            readings = navigating.readings_of(part, offset_rad)
-            yield _Leg(readings, navigating.navigate(readings))
+    parts = log.parts()
+    for note in _unused_notes(parts):
+        print(note, flush=True)
+    all_readings = (
+        navigating.readings_of(part, offset_rad) for part in parts if len(part.fixes.sound())
+    )
+    return [_Leg(readings, navigating.navigate(readings)) for readings in all_readings]
+
+
+def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
+    unused = [navigating.unused(part) for part in parts]
+    for what in unused[0]:
+        lines = np.concatenate([of_part[what] for of_part in unused])
+        if len(lines):
+            yield f"note: {len(lines)} {what} are not used (first in line {lines.min()})"
 
 
 def _input_lines(log: NavigationLog) -> str:
@@ -184,12 +197,16 @@ def _csv_rows(track: navigating.OwnTrack) -> Iterator[list[Any]]:
 
 
 def _write_pictures(folder: Path, legs: Sequence[_Leg]) -> list[Path]:
-    """Write the map and the panels over time, one pair a leg."""
+    """Write the map and the panels over time, one pair a leg that is not too short for it."""
     files = []
-    for number, (readings, track) in enumerate(legs, start=1):
-        end = f"-{number}" if len(legs) > 1 else ""
+    drawn = [leg for leg in legs if leg.readings.has_fix.sum() >= _LEAST_DRAWN_FIXES]
+    if len(drawn) < len(legs):
+        short = f"{len(legs) - len(drawn)} of {len(legs)} parts"
+        print(f"note: not drawn are {short}, of fewer than {_LEAST_DRAWN_FIXES} fixes")
+    for number, (readings, track) in enumerate(drawn, start=1):
+        end = f"-{number}" if len(drawn) > 1 else ""
         files += [folder / f"own_map{end}.png", folder / f"own_time{end}.png"]
-        has_fix = np.isfinite(readings.fix_m[:, 0])
+        has_fix = readings.has_fix
         figure = plot.figure(7.2, 6.4)
         plot.own_map(
             figure.add_subplot(),

@@ -22,7 +22,6 @@ LOG_STD_MPS = 0.15
 YAW_RATE_STD_RAD_S = np.deg2rad(6.0)
 SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.1, 0.02  # in one second
 
-LEAST_FIXES = 10
 COASTING_S = 5.0
 HIDDEN_S, HIDDEN_EVERY_S = 60.0, 150.0
 HORIZONS_S = (10.0, 30.0, 60.0)
@@ -44,6 +43,11 @@ class Readings(NamedTuple):
     velocity_mps: np.ndarray
     heading_rad: np.ndarray
     log_mps: np.ndarray
+
+    @property
+    def has_fix(self) -> np.ndarray:
+        """Mask (T,) of the times with a fix."""
+        return np.isfinite(self.fix_m[:, 0])
 
     @property
     def knows_water(self) -> bool:
@@ -102,6 +106,14 @@ def readings_of(part: NavigationLog, offset_rad: float) -> Readings:
     time_s = np.unique(np.concatenate([times for times, _ in series]))
     time_s = time_s[time_s >= fixes.time_s[0]]
     return Readings(plane, time_s, *(_at(time_s, *one) for one in series))
+
+
+def unused(part: NavigationLog) -> dict[str, np.ndarray]:
+    """Lines of the sound readings of a part that its solution does not use, by what they are."""
+    fixed_s = part.fixes.sound().time_s
+    first_s = fixed_s[0] if len(fixed_s) else np.inf
+    early = [s.line[s.usable & (s.time_s < first_s)] for s in part.series.values()]
+    return {"readings with no fix before them": np.concatenate(early)}
 
 
 def magnetic_offset_rad(log: NavigationLog) -> float | None:
@@ -236,8 +248,7 @@ def _velocity(mean: np.ndarray, states: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _status(readings: Readings, rejected: np.ndarray) -> np.ndarray:
-    has_fix = np.isfinite(readings.fix_m[:, 0])
-    last_s = np.maximum.accumulate(np.where(has_fix, readings.time_s, -np.inf))
+    last_s = np.maximum.accumulate(np.where(readings.has_fix, readings.time_s, -np.inf))
     status = np.where(readings.time_s - last_s > COASTING_S, "coasting", "ok")
     return np.where(rejected, "rejected", status)
 
@@ -272,7 +283,7 @@ def _held(time_s: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarra
 def _errors(
     readings: Readings, place_m: np.ndarray, starts_s: np.ndarray
 ) -> dict[float, np.ndarray]:
-    fixed = np.flatnonzero(np.isfinite(readings.fix_m[:, 0]))
+    fixed = np.flatnonzero(readings.has_fix)
     times = readings.time_s[fixed]
     errors: dict[float, list[float]] = {horizon_s: [] for horizon_s in HORIZONS_S}
     for start_s in starts_s:
