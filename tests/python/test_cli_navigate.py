@@ -160,6 +160,19 @@ def test_readings_without_a_fix_before_them_are_told(tmp_path, capsys):
     assert len(rows) == 870
 
 
+@pytest.mark.parametrize("water", [True, False])
+def test_a_fast_ship_without_speeds_over_ground_is_followed_from_the_start(tmp_path, water):
+    lines = []
+    for second in range(60):
+        north_min = 30.0 + 60.0 * 25.0 * KN * second / 111_229.0
+        place = f"50{north_min:08.5f},N,00230.00000,E"
+        lines += [sentence(f"GPGGA,1000{second:02d},{place},1,08,1.0,,M,,M,,")]
+        lines += [sentence("HEHDT,0.0,T")] + [sentence("VWVHW,,T,,M,25.0,N,,K")] * water
+    rows = navigated(tmp_path, lines)
+    assert all(row["status"] == "ok" for row in rows)
+    assert float(rows[-1]["vnorth_mps"]) == pytest.approx(25.0 * KN, abs=0.3)
+
+
 def test_bad_lines_are_told_and_nothing_else_is_lost(tmp_path, capsys):
     lines = voyage(5)
     lines[99] = lines[99][:20] + "\n"

@@ -20,6 +20,7 @@ VELOCITY_STD_MPS = 0.3  # over ground, by satellite: filtered by the receiver
 COMPASS_STD_RAD = np.deg2rad(4.0)  # of a small craft in waves
 LOG_STD_MPS = 0.15
 YAW_RATE_STD_RAD_S = np.deg2rad(6.0)
+START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over ground, and without
 SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.1, 0.02  # in one second
 
 COASTING_S = 5.0
@@ -199,13 +200,14 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
         current_walk_mps=CURRENT_WALK_MPS,
     )
     velocity = _first(readings.velocity_mps, np.zeros(2))
+    knows_velocity = np.isfinite(readings.velocity_mps).all(axis=1).any()
     heading = _first(readings.heading_rad, np.arctan2(velocity[1], velocity[0]))
     navigator.start(
         _first(readings.fix_m, np.zeros(2)),
         velocity,
         float(heading),
         position_std_m=[FIX_STD_M, FIX_STD_M],
-        velocity_std_mps=1.0,
+        velocity_std_mps=START_SPEED_STD_MPS if knows_velocity else ANY_SPEED_STD_MPS,
         heading_std_rad=np.deg2rad(10.0),
     )
     return navigator
