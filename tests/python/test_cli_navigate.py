@@ -160,17 +160,35 @@ def test_readings_without_a_fix_before_them_are_told(tmp_path, capsys):
     assert len(rows) == 870
 
 
+def fixes_alone(seconds, kn):
+    """Sentences of a ship that steers north, without speeds over ground."""
+    lines = []
+    for second in range(seconds):
+        north_min = 30.0 + 60.0 * kn * KN * second / 111_229.0
+        clock = f"10{second // 60:02d}{second % 60:02d}"
+        place = f"50{north_min:08.5f},N,00230.00000,E"
+        lines += [
+            sentence(f"GPGGA,{clock},{place},1,08,1.0,,M,,M,,"),
+            sentence("HEHDT,0.0,T"),
+            sentence(f"VWVHW,,T,,M,{kn:.1f},N,,K"),
+        ]
+    return lines
+
+
 @pytest.mark.parametrize("water", [True, False])
 def test_a_fast_ship_without_speeds_over_ground_is_followed_from_the_start(tmp_path, water):
-    lines = []
-    for second in range(60):
-        north_min = 30.0 + 60.0 * 25.0 * KN * second / 111_229.0
-        place = f"50{north_min:08.5f},N,00230.00000,E"
-        lines += [sentence(f"GPGGA,1000{second:02d},{place},1,08,1.0,,M,,M,,")]
-        lines += [sentence("HEHDT,0.0,T")] + [sentence("VWVHW,,T,,M,25.0,N,,K")] * water
+    lines = [line for line in fixes_alone(60, 25.0) if water or not line.startswith("$VW")]
     rows = navigated(tmp_path, lines)
     assert all(row["status"] == "ok" for row in rows)
     assert float(rows[-1]["vnorth_mps"]) == pytest.approx(25.0 * KN, abs=0.3)
+
+
+def test_without_speeds_over_ground_there_is_no_straight_to_compare_with(tmp_path):
+    answer = tmp_path / "errors.json"
+    navigated(tmp_path, fixes_alone(600, 6.0), "--json", str(answer))
+    rows = {row["estimator"]: row for row in json.loads(answer.read_text())["rows"]}
+    assert set(rows) == {"navigator", "dead_reckoning"}
+    assert rows["navigator"]["coast_60s_median_m"] < 10.0
 
 
 def test_bad_lines_are_told_and_nothing_else_is_lost(tmp_path, capsys):

@@ -186,7 +186,9 @@ def hold_out(readings: Readings) -> dict[str, dict[float, np.ndarray]]:
         fix_m=np.where(hidden[:, None], np.nan, readings.fix_m),
         velocity_mps=np.where(hidden[:, None], np.nan, readings.velocity_mps),
     )
-    foretold = {"navigator": navigate(seen).position_m, "constant_velocity": _straight_on(seen)}
+    foretold = {"navigator": navigate(seen).position_m}
+    if np.isfinite(seen.velocity_mps).any():
+        foretold["constant_velocity"] = _straight_on(seen)
     if readings.knows_water:
         foretold["dead_reckoning"] = _reckoned(seen)
     return {name: _errors(readings, place_m, starts_s) for name, place_m in foretold.items()}
@@ -294,8 +296,9 @@ def _errors(
             continue
         for horizon_s in HORIZONS_S:
             nearest = np.abs(times - start_s - horizon_s).argmin()
-            if abs(times[nearest] - start_s - horizon_s) <= _NEAR_S:
-                k = fixed[nearest]
+            k = fixed[nearest]
+            near = abs(times[nearest] - start_s - horizon_s) <= _NEAR_S
+            if near and np.isfinite(place_m[k]).all():
                 errors[horizon_s].append(float(np.hypot(*(place_m[k] - readings.fix_m[k]))))
     return {horizon_s: np.array(values) for horizon_s, values in errors.items()}
 
