@@ -40,7 +40,17 @@ def heading_deg(second):
     )
 
 
-def voyage(minutes=20, current_kn=(0.8, -0.5), *, compass="HDT", water=True, seed=1):
+def voyage(
+    minutes=20,
+    current_kn=(0.8, -0.5),
+    *,
+    compass="HDT",
+    water=True,
+    bottom=False,
+    turn=False,
+    compass_std_deg=1.0,
+    seed=1,
+):
     """Sentences of a ship of 6 kn that turns every five minutes, in a current (north, east)."""
     rng = np.random.default_rng(seed)
     lines, north, east = [], 0.0, 0.0
@@ -53,7 +63,7 @@ def voyage(minutes=20, current_kn=(0.8, -0.5), *, compass="HDT", water=True, see
         latitude_min = 30.0 + 60 * (north + 2 * rng.standard_normal()) / 111_229.0
         longitude_min = 30.0 + 60 * (east + 2 * rng.standard_normal()) / 71_696.0
         course = np.degrees(np.arctan2(ve, vn)) % 360
-        told = (np.degrees(heading) + rng.standard_normal()) % 360
+        told = (np.degrees(heading) + compass_std_deg * rng.standard_normal()) % 360
         lines.append(
             sentence(
                 f"GPRMC,{clock},A,50{latitude_min:08.5f},N,002{longitude_min:08.5f},E,"
@@ -66,6 +76,13 @@ def voyage(minutes=20, current_kn=(0.8, -0.5), *, compass="HDT", water=True, see
             lines.append(sentence(f"HCHDG,{(told - 3.0) % 360:.1f},,,,"))
         if water:
             lines.append(sentence(f"VWVHW,,T,,M,{6 + 0.1 * rng.standard_normal():.1f},N,,K"))
+        if bottom:
+            ahead = vn * np.cos(heading) + ve * np.sin(heading) + 0.1 * rng.standard_normal()
+            starboard = ve * np.cos(heading) - vn * np.sin(heading) + 0.1 * rng.standard_normal()
+            lines.append(sentence(f"VDVBW,,,V,{ahead / KN:.2f},{starboard / KN:.2f},A"))
+        if turn:
+            turned_deg = heading_deg(second) - heading_deg(max(second - 1, 0))
+            lines.append(sentence(f"TIROT,{60 * (turned_deg + rng.standard_normal()):.1f},A"))
     return lines
 
 
@@ -136,6 +153,44 @@ def test_without_heading_or_log_there_is_a_solution_without_drift(tmp_path, comp
     assert all(row["drift_mps"] == "" for row in rows)
     assert all(np.isfinite(float(row["vnorth_mps"])) for row in rows)
     assert (rows[-1]["heading_deg"] == "") == (compass == "none")
+
+
+def test_a_log_that_sees_the_bottom_coasts_through_turns_without_satellites(tmp_path):
+    error_m = {}
+    for bottom in (True, False):
+        answer = tmp_path / "errors.json"
+        navigated(tmp_path, voyage(water=False, bottom=bottom), "--json", str(answer))
+        rows = {row["estimator"]: row for row in json.loads(answer.read_text())["rows"]}
+        error_m[bottom] = rows["navigator"]["coast_60s_p95_m"]
+    assert error_m[True] < 0.4 * error_m[False]
+
+
+def test_rates_of_turn_steady_the_heading(tmp_path):
+    error_deg = {}
+    for turn in (True, False):
+        rows = navigated(tmp_path, voyage(turn=turn, compass_std_deg=4.0))
+        second = np.rint([float(row["time_s"]) for row in rows]) % 3600
+        told = np.array([float(row["heading_deg"]) for row in rows])
+        off = (told - heading_deg(second) + 180.0) % 360.0 - 180.0
+        error_deg[turn] = np.sqrt(np.mean(off**2))
+    assert error_deg[True] < 0.85 * error_deg[False]
+
+
+def test_what_no_state_is_there_for_is_told(tmp_path, capsys):
+    lines = voyage(3, compass="none", bottom=True, turn=True)
+    lines += [sentence("VDVBW,6.0,0.3,A,,,V"), sentence("VDVBW,6.0,0.0,A,6.0,,A")]
+    navigated(tmp_path, lines)
+    out = capsys.readouterr().out
+    for told in (
+        "182 speeds through the water without a heading are not used (first in line 2)",
+        "1 speeds across the hull through the water are not used (first in line 721)",
+        "181 speeds over ground by log that lack a heading or a side are not used (first in line",
+        "180 rates of turn without a heading are not used (first in line 4)",
+    ):
+        assert f"note: {told}" in out
+    navigated(tmp_path, [*voyage(3, bottom=True, turn=True), sentence("VDVBW,,,V,6.0,,A")])
+    (told,) = [line for line in capsys.readouterr().out.splitlines() if "not used" in line]
+    assert "1 speeds over ground by log that lack a heading or a side" in told
 
 
 def test_short_parts_are_navigated_too(tmp_path, capsys):

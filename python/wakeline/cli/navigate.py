@@ -35,10 +35,10 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "navigate",
         help="own ship's solution from a log of her instruments",
-        description="Reads NMEA 0183, fuses fixes, speeds and headings, and writes own.csv and "
-        "pictures. A part after a gap of a minute is navigated by itself. Then satellites are "
-        "hidden for a minute at a time, and the errors of what is foretold are told. What cannot "
-        "be read of the log, or not be used, is counted, and never fatal.",
+        description="Reads NMEA 0183, fuses fixes, speeds, headings and rates of turn, and writes "
+        "own.csv and pictures. A part after a gap of a minute is navigated by itself. Then "
+        "satellites are hidden for a minute at a time, and the errors of what is foretold are "
+        "told. What cannot be read of the log, or not be used, is counted, and never fatal.",
     )
     parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one a line")
     parser.add_argument(

@@ -1,7 +1,8 @@
 """Own ship's log through the navigator: where the ship was, and how well it is known.
 
-Without an IMU the ship coasts from reading to reading. With heading and speed through water the
-state has seven components, current among them; without either it has five.
+Without an IMU the ship coasts from reading to reading, turning as her rate of turn indicator says.
+With heading and speed through water the state has seven components, current among them; without
+either it has five.
 """
 
 from __future__ import annotations
@@ -14,12 +15,15 @@ import numpy as np
 
 import wakeline as wl
 from wakeline.recording import NavigationLog
+from wakeline.recording.nmea import BottomTrack
 
 FIX_STD_M = 3.0
-VELOCITY_STD_MPS = 0.3  # over ground, by satellite: filtered by the receiver
+VELOCITY_STD_MPS = 0.3  # over ground: filtered by the receiver, or turned by the heading
 COMPASS_STD_RAD = np.deg2rad(4.0)  # of a small craft in waves
 LOG_STD_MPS = 0.15
-YAW_RATE_STD_RAD_S = np.deg2rad(6.0)
+YAW_RATE_STD_RAD_S = np.deg2rad(6.0)  # where no rate of turn is told
+TURN_RATE_STD_RAD_S = np.deg2rad(2.0)  # of an indicator that lags
+ACCELERATION_STD_MPS2 = 0.1
 START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over ground, and without
 SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.1, 0.02  # in one second
 
@@ -35,7 +39,8 @@ class Readings(NamedTuple):
     """Readings at all times (T,) at which there is one, NaN where there is none; a plane for them.
 
     ``fix_m`` and ``velocity_mps`` (T, 2) north and east, ``heading_rad`` (T,) true, ``log_mps``
-    (T,) through the water ahead.
+    (T,) through the water ahead, ``bottom_mps`` (T, 2) north and east over ground by a log that
+    sees the bottom, ``turn_rate_rad_s`` (T,) to starboard.
     """
 
     plane: wl.navigation.LocalPlane
@@ -44,6 +49,13 @@ class Readings(NamedTuple):
     velocity_mps: np.ndarray
     heading_rad: np.ndarray
     log_mps: np.ndarray
+    bottom_mps: np.ndarray
+    turn_rate_rad_s: np.ndarray
+
+    @property
+    def over_ground_mps(self) -> np.ndarray:
+        """Velocities (T, 2) by satellite, or else by the log."""
+        return np.where(np.isfinite(self.velocity_mps), self.velocity_mps, self.bottom_mps)
 
     @property
     def has_fix(self) -> np.ndarray:
@@ -94,6 +106,7 @@ class OwnTrack:
 def readings_of(part: NavigationLog, offset_rad: float) -> Readings:
     """The readings of a log that has a fix, `offset_rad` added to magnetic headings."""
     fixes, ground, water = part.fixes.sound(), part.ground.sound(), part.water.sound()
+    bottom, turn = part.bottom.sound(), part.turn.sound()
     headings = _headings(part, offset_rad)
     latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
     plane = wl.navigation.LocalPlane(latitude_rad=latitude[0], longitude_rad=longitude[0])
@@ -103,6 +116,8 @@ def readings_of(part: NavigationLog, offset_rad: float) -> Readings:
         (ground.time_s, ground.speed_mps[:, None] * course),
         headings,
         (water.time_s, water.ahead_mps),
+        (bottom.time_s, _over_ground(bottom, *headings)),
+        (turn.time_s, turn.turn_rate_rad_s),
     )
     time_s = np.unique(np.concatenate([times for times, _ in series]))
     time_s = time_s[time_s >= fixes.time_s[0]]
@@ -114,7 +129,20 @@ def unused(part: NavigationLog) -> dict[str, np.ndarray]:
     fixed_s = part.fixes.sound().time_s
     first_s = fixed_s[0] if len(fixed_s) else np.inf
     early = [s.line[s.usable & (s.time_s < first_s)] for s in part.series.values()]
-    return {"readings with no fix before them": np.concatenate(early)}
+    water, bottom, turn = (
+        s.rows(s.usable & (s.time_s >= first_s)) for s in (part.water, part.bottom, part.turn)
+    )
+    headings = _headings(part, 0.0)
+    over_ground = np.isfinite(_over_ground(bottom, *headings)).all(axis=1)
+    nothing = np.zeros(0, dtype=np.int64)
+    blind = len(headings[0]) == 0
+    return {
+        "readings with no fix before them": np.concatenate(early),
+        "speeds through the water without a heading": water.line if blind else nothing,
+        "speeds across the hull through the water": water.line[np.abs(water.starboard_mps) > 0],
+        "speeds over ground by log that lack a heading or a side": bottom.line[~over_ground],
+        "rates of turn without a heading": turn.line if blind else nothing,
+    }
 
 
 def magnetic_offset_rad(log: NavigationLog) -> float | None:
@@ -138,9 +166,10 @@ def navigate(readings: Readings) -> OwnTrack:
     states = 7 if readings.knows_water else 5
     done = _navigator(states, readings).run(
         readings.time_s,
+        imu=_turning(readings),
         gnss=readings.fix_m,
         compass=readings.heading_rad,
-        velocity=readings.velocity_mps,
+        velocity=readings.over_ground_mps,
         log=readings.log_mps if states == 7 else None,
         gnss_std_m=[FIX_STD_M, FIX_STD_M],
         compass_std_rad=COMPASS_STD_RAD,
@@ -171,9 +200,9 @@ def navigate(readings: Readings) -> OwnTrack:
 def hold_out(readings: Readings) -> dict[str, dict[float, np.ndarray]]:
     """Errors (n,) in metres after seconds without satellites, by method and horizon.
 
-    Fixes and speeds over ground are hidden for a minute at a time, and what is foretold is compared
-    with the hidden fixes: by the navigator, by the last velocity over ground, and by heading and
-    speed through water alone.
+    Fixes and speeds by satellite are hidden for a minute at a time, and what is foretold is
+    compared with the hidden fixes: by the navigator, by the last velocity by satellite, and by
+    heading and speed through water alone.
     """
     time_s = readings.time_s
     starts_s = np.arange(
@@ -197,12 +226,15 @@ def hold_out(readings: Readings) -> dict[str, dict[float, np.ndarray]]:
 def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
     navigator = wl.UsvNavigator(
         states,
+        acceleration_std_mps2=ACCELERATION_STD_MPS2,
+        yaw_rate_std_rad_s=TURN_RATE_STD_RAD_S,
+        unmeasured_acceleration_std_mps2=ACCELERATION_STD_MPS2,
         unmeasured_yaw_rate_std_rad_s=YAW_RATE_STD_RAD_S,
         speed_walk_mps=SPEED_WALK_MPS,
         current_walk_mps=CURRENT_WALK_MPS,
     )
-    velocity = _first(readings.velocity_mps, np.zeros(2))
-    knows_velocity = np.isfinite(readings.velocity_mps).all(axis=1).any()
+    velocity = _first(readings.over_ground_mps, np.zeros(2))
+    knows_velocity = np.isfinite(readings.over_ground_mps).all(axis=1).any()
     heading = _first(readings.heading_rad, np.arctan2(velocity[1], velocity[0]))
     navigator.start(
         _first(readings.fix_m, np.zeros(2)),
@@ -222,6 +254,33 @@ def _headings(part: NavigationLog, offset_rad: float) -> tuple[np.ndarray, np.nd
         return true.time_s, true.heading_rad
     compass = part.compass.sound()
     return compass.time_s, wl.wrap_angle(compass.heading_magnetic_rad + offset_rad)
+
+
+def _over_ground(bottom: BottomTrack, times: np.ndarray, heading_rad: np.ndarray) -> np.ndarray:
+    """Velocities (n, 2) north and east of a log; NaN without a heading at about the time."""
+    heading = _between(bottom.time_s, times, np.unwrap(heading_rad))
+    c, s = np.cos(heading), np.sin(heading)
+    ahead, starboard = bottom.ahead_mps, bottom.starboard_mps
+    return np.column_stack([c * ahead - s * starboard, s * ahead + c * starboard])
+
+
+def _turning(readings: Readings) -> np.ndarray:
+    """What an IMU would say (T, 3) of rates of turn alone; NaN for steps without any."""
+    told = np.isfinite(readings.turn_rate_rad_s)
+    middle_s = readings.time_s - np.diff(readings.time_s, prepend=readings.time_s[:1]) / 2.0
+    rate = _between(middle_s, readings.time_s[told], readings.turn_rate_rad_s[told])
+    return np.column_stack([np.zeros((len(rate), 2)), rate])
+
+
+def _between(time_s: np.ndarray, times: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values (T,) by linear interpolation; NaN where none is near."""
+    if len(times) == 0:
+        return np.full(len(time_s), np.nan)
+    after = np.searchsorted(times, time_s)
+    before_s = times[np.maximum(after - 1, 0)]
+    after_s = times[np.minimum(after, len(times) - 1)]
+    near = np.minimum(np.abs(time_s - before_s), np.abs(after_s - time_s)) <= _NEAR_S
+    return np.where(near, np.interp(time_s, times, values), np.nan)
 
 
 def _at(time_s: np.ndarray, times: np.ndarray, values: np.ndarray) -> np.ndarray:
