@@ -12,7 +12,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from wakeline import recording
-from wakeline.recording import RecordingError, read_nmea
+from wakeline.recording import LocalPlane, RecordingError, read_nmea
 
 KNOT_MPS = 1852.0 / 3600.0
 DAY_S = 86400.0
@@ -303,6 +303,33 @@ def test_a_clock_that_was_set_back_begins_a_part(log, back_s):
     assert "the clock was set back 1 times (line 21)" in "".join(read.notes)
     parts = read.parts()
     assert [clock_s(part.fixes) for part in parts] == [list(first), list(second)]
+
+
+def test_the_track_of_a_log_is_where_its_sound_fixes_are(log):
+    times_s = range(1000, 1020)
+    still = [rmc(1020, longitude_deg=6.7 + 20 * 3.35e-5, kn="0.0", course="")]
+    read = log(*under_way(times_s), *still, gll(1021, longitude_deg=6.70067), rmc(1022, status="V"))
+    track = read.track()
+    assert len(track) == 22
+    assert (track.north_m[0], track.east_m[0]) == (0.0, 0.0)
+    np.testing.assert_allclose(np.diff(track.east_m[:20]), 5.0 * KNOT_MPS, atol=0.01)
+    np.testing.assert_allclose(track.veast_mps[:20], 5.0 * KNOT_MPS)
+    np.testing.assert_allclose(track.vnorth_mps[:20], 0.0, atol=1e-4)
+    assert (track.vnorth_mps[20], track.veast_mps[20]) == (0.0, 0.0)
+    assert np.isnan([track.vnorth_mps[21], track.veast_mps[21]]).all()
+    elsewhere = read.track(LocalPlane(46.6, 6.6))
+    np.testing.assert_allclose(elsewhere.north_m[0], -11_115.0, atol=10.0)
+    north_leans_rad = np.radians(0.1) * np.sin(np.radians(46.5))
+    np.testing.assert_allclose(
+        elsewhere.vnorth_mps[0], 5.0 * KNOT_MPS * np.sin(north_leans_rad), rtol=1e-3
+    )
+
+
+def test_a_log_without_a_track_says_why(log):
+    with pytest.raises(ValueError, match="own: a track wants a sound fix, got none"):
+        log(rmc(10, status="V")).track()
+    with pytest.raises(ValueError, match=r"own: the clock was set back.*parts\(\)"):
+        log(*[rmc(t) for t in range(5000, 5020)], *[rmc(t) for t in range(1000, 1020)]).track()
 
 
 @pytest.mark.parametrize("gap_s", [61, 3600, 43000, 50000, 80000, 86400, 10 * 86400 + 7])

@@ -91,6 +91,27 @@ def test_truths_and_own_ships_of_recordings_are_tracks():
         np.testing.assert_allclose(place_m, np.column_stack([track.north_m, track.east_m]))
 
 
+def test_a_log_of_instruments_is_a_track():
+    log = recording.load_navigation()
+    truth, fixes = TrackTruth.of(log), log.fixes.sound()
+    plane = recording.LocalPlane(fixes.latitude_deg[0], fixes.longitude_deg[0])
+    place_m = np.column_stack(plane.position_m(fixes.latitude_deg, fixes.longitude_deg))
+    state = truth.state_at(fixes.time_s)
+    np.testing.assert_allclose(state[:, 0::2], place_m, atol=1e-6)
+    assert np.hypot(*state[0, 0::2]) < 1e-6
+    np.testing.assert_allclose(np.hypot(state[::50, 1], state[::50, 3]), 3.0, atol=2.0)
+
+    first, second = map(TrackTruth.of, log.parts())
+    assert (first.start_time_s, second.end_time_s) == (truth.start_time_s, truth.end_time_s)
+    assert second.start_time_s - first.end_time_s > 60.0
+
+    start_s = second.start_time_s
+    yacht = Scenario("yacht", smoothed(log.parts()[1]), RADAR, scans=60, start_time_s=start_s)
+    ahead_m = yacht.truth.state_at(start_s + 60.0) - second.state_at(start_s + 60.0)
+    assert np.hypot(*ahead_m[0, 0::2]) < 20.0
+    assert np.isfinite(yacht.draw(runs=1, seed=1)).all()
+
+
 def test_a_track_can_be_moved_in_front_of_a_radar():
     truth = TrackTruth.of(track_of(TURN, np.arange(0.0, 181.0, 5.0)))
     moved = truth.moved(1000.0, -400.0)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import filter, motion
+from wakeline.recording import NavigationLog
 
 _TURNING_ABOVE_MPS = 0.5
 
@@ -62,12 +63,17 @@ class TrackTruth:
         """From what has ``time_s, north_m, east_m, vnorth_mps, veast_mps``.
 
         That is an ``AisTrack``, a ``TargetTruth`` or an ``OwnShip`` of :mod:`wakeline.recording`.
+        Of a ``NavigationLog`` it is the `track`, around the first sound fix.
+
+        What lies in a gap is joined like the rest. Where that is not wanted, take each of the
+        `parts` of an ``AisTrack`` or a ``NavigationLog`` by itself.
 
         Raises
         ------
         ValueError
-            As the class.
+            As the class, and as `NavigationLog.track`.
         """
+        track = _track(track)
         return cls(track.time_s, track.north_m, track.east_m, track.vnorth_mps, track.veast_mps)
 
     @property
@@ -137,6 +143,10 @@ class TrackTruth:
         return values
 
 
+def _track(recorded: Any) -> Any:
+    return recorded.track() if isinstance(recorded, NavigationLog) else recorded
+
+
 def _slopes(time_s: np.ndarray, place_m: np.ndarray) -> np.ndarray:
     """Slope at each point of the parabola through it and its neighbours; of the line for two."""
     step_s = np.diff(time_s)
@@ -187,6 +197,7 @@ def smoothed(
     ValueError
         As :class:`TrackTruth`, and when a parameter is not positive (a delay: negative).
     """
+    track = _track(track)
     exact = TrackTruth.of(track)
     if not (position_std_m > 0 and velocity_std_mps > 0 and accel_psd_m2s3 > 0):
         raise ValueError(

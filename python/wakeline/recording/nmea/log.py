@@ -12,6 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..local_plane import LocalPlane
+from ..model import OwnShip
+
 if TYPE_CHECKING:
     from typing_extensions import Self
 
@@ -287,6 +290,50 @@ class NavigationLog:
         fixes = self.fixes.sound()
         wide = np.flatnonzero(np.diff(fixes.time_s) > longer_than_s)
         return np.column_stack([fixes.time_s[wide], fixes.time_s[wide + 1]])
+
+    def track(self, plane: LocalPlane | None = None) -> OwnShip:
+        """Where the vessel was, by her sound fixes, and her velocities as told with them.
+
+        Gaps are not told apart: of a log in several parts take the track of each of `parts`, unless
+        what joins them may be made up.
+
+        Parameters
+        ----------
+        plane : LocalPlane, optional
+            Default the one that touches the earth at the first sound fix.
+
+        Returns
+        -------
+        OwnShip
+            Velocities are NaN at fixes that come without one; zero at rest without a course.
+
+        Raises
+        ------
+        ValueError
+            When there is no sound fix, or the clock was set back.
+        """
+        fixes, ground = self.fixes.sound(), self.ground.sound()
+        if len(fixes) == 0:
+            raise ValueError(f"{self.name}: a track wants a sound fix, got none")
+        if len(self.set_back_lines):
+            raise ValueError(
+                f"{self.name}: the clock was set back, so that times do not grow: "
+                "take the track of each of parts()"
+            )
+        place_deg = fixes.latitude_deg, fixes.longitude_deg
+        plane = plane or LocalPlane(fixes.latitude_deg[0], fixes.longitude_deg[0])
+        speed_mps, course_rad = np.full((2, len(fixes)), np.nan)
+        _, of_fix, of_ground = np.intersect1d(fixes.time_s, ground.time_s, return_indices=True)
+        speed_mps[of_fix] = ground.speed_mps[of_ground]
+        course_rad[of_fix] = ground.course_rad[of_ground]
+        course_rad[speed_mps == 0] = 0.0
+        course_rad = plane.course_rad(course_rad, *place_deg)
+        return OwnShip(
+            fixes.time_s,
+            *plane.position_m(*place_deg),
+            vnorth_mps=speed_mps * np.cos(course_rad),
+            veast_mps=speed_mps * np.sin(course_rad),
+        )
 
     def parts(self, max_gap_s: float = 60.0) -> list[NavigationLog]:
         """The log cut where no instrument was heard for longer than `max_gap_s`.
