@@ -166,11 +166,21 @@ def tracks_of(probability, tcpa_s=60.0):
 
 def test_an_alarm_does_not_flicker():
     danger = danger_of(
-        tracks_of([0.1, 0.49, 0.5, 0.31, 0.6, 0.31, 0.29, 0.49, 0.9]), DangerLimits()
+        tracks_of([0.1, 0.49, 0.5, 0.31, 0.6, 0.31, 0.29, 0.49, 0.9]),
+        DangerLimits(clear_hold_s=0.0),
     )
     assert danger.alarmed.tolist() == [False] * 2 + [True] * 4 + [False] * 2 + [True]
     assert [(alarm.begin_s, alarm.end_s) for alarm in danger.alarms] == [(20.0, 50.0), (80.0, 80.0)]
     assert "CPA 300 m (0.16 NM), TCPA 1.0 min, 50 %" in str(danger.alarms[0])
+
+
+@pytest.mark.parametrize(("below", "alarms"), [(6, 1), (7, 2)])
+def test_an_alarm_is_over_when_the_probability_stays_low(below, alarms):
+    danger = danger_of(tracks_of([0.9, *[0.1] * below, 0.6, 0.1, 0.3, *[0.0] * 9]), DangerLimits())
+    assert len(danger.alarms) == alarms
+    assert danger.alarms[0].begin_s == 0.0
+    assert danger.alarms[-1].end_s == 10.0 * (below + 3)
+    assert danger.alarmed.sum() == (below + 4 if alarms == 1 else 4)
 
 
 def test_an_alarm_begins_only_while_the_closest_point_is_ahead():
@@ -192,6 +202,7 @@ def test_what_is_not_known_is_no_alarm():
         ("tcpa_limit_s = inf", "[danger] tcpa_limit_s = inf"),
         ("alarm_probability = 1.5", "[danger] alarm_probability = 1.5"),
         ("clear_probability = 0.7", "[danger] clear_probability = 0.7"),
+        ("clear_hold_s = -1", "[danger] clear_hold_s = -1.0"),
         ("cpa = 3", "unknown key cpa in [danger]"),
     ],
 )
@@ -261,6 +272,28 @@ def test_the_ship_head_on_is_told_and_the_other_is_not(encounter, tmp_path, caps
     assert "1 alarm of tracks closer than 926 m within 20 min" in text
     assert f"track {alarm['track_id']} at " in text
     assert "alarms.csv" in text
+
+
+def test_one_encounter_from_afar_is_one_alarm(tmp_path):
+    rng = np.random.default_rng(3)
+    time_s = PERIOD_S * np.arange(260)
+    own_m = 5.0 * time_s
+    range_m = np.hypot(9000.0 - 12.0 * time_s, 600.0) + rng.normal(scale=25.0, size=260)
+    bearing = np.arctan2(600.0, 9000.0 - 12.0 * time_s) + rng.normal(scale=0.009, size=260)
+    place = zip(own_m + range_m * np.cos(bearing), range_m * np.sin(bearing), strict=True)
+    rows = [(t, *where) for t, where in zip(time_s, place, strict=True)]
+    write(tmp_path / "plots.csv", "time_s,north_m,east_m", rows)
+    rows = [(t, north_m, 0.0) for t, north_m in zip(time_s, own_m, strict=True)]
+    own = write(tmp_path / "own.csv", "time_s,own_north_m,own_east_m", rows)
+    limits = write(
+        tmp_path / "mine.toml", "[radar]", [("range_std_m = 25",), ("bearing_std_deg = 0.5",)]
+    )
+    counts = []
+    for hold in ("", "\n[danger]\nclear_hold_s = 0\n"):
+        limits.write_text(limits.read_text() + hold)
+        track(tmp_path, tmp_path, "--own", own, "--config", limits)
+        counts.append(len((tmp_path / "alarms.csv").read_text().splitlines()) - 1)
+    assert counts[0] == 1 < counts[1]
 
 
 def test_an_alarm_ends_when_the_ship_is_past(encounter, tmp_path):

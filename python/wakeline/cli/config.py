@@ -92,7 +92,8 @@ _DANGER = {
     "cpa_limit_m": "m, closer than this a track is dangerous; half a nautical mile",
     "tcpa_limit_s": "s, when it comes so close within this time",
     "alarm_probability": "0..1, with this probability or more, an alarm begins,",
-    "clear_probability": "0..1, and it ends below this one",
+    "clear_probability": "0..1, and it ends where the probability falls below this one",
+    "clear_hold_s": "s, for so long; shorter falls belong to the same alarm",
     "own_velocity_std_mps": "m/s per axis, error of own ship's velocity",
 }
 

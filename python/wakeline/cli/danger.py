@@ -19,8 +19,10 @@ class DangerLimits:
     """When a track is dangerous.
 
     An alarm begins when a track comes closer than `cpa_limit_m` within `tcpa_limit_s` with a
-    probability of `alarm_probability` or more, its closest point still ahead. It goes on until the
-    probability is below `clear_probability`, so that it does not flicker, or until the track ends.
+    probability of `alarm_probability` or more, its closest point still ahead. It is over when the
+    probability stays below `clear_probability` for `clear_hold_s`, so that one encounter is one
+    alarm while the estimate of a far ship still wanders, or when the track ends. Its last scan is
+    the last one that was not below.
 
     Attributes
     ----------
@@ -28,6 +30,8 @@ class DangerLimits:
         Not negative.
     alarm_probability, clear_probability : float
         Between 0 and 1, the second not above the first.
+    clear_hold_s : float
+        Not negative.
     own_velocity_std_mps : float
         Error of own ship's velocity per axis, which no file tells.
 
@@ -41,6 +45,7 @@ class DangerLimits:
     tcpa_limit_s: float = 1200.0
     alarm_probability: float = 0.5
     clear_probability: float = 0.3
+    clear_hold_s: float = 60.0
     own_velocity_std_mps: float = 0.2
 
     def __post_init__(self) -> None:
@@ -139,7 +144,7 @@ def danger_of(tracks: Tracks, limits: DangerLimits) -> Danger:
     alarms: list[Alarm] = []
     for track_id in tracks.ids():
         rows = np.flatnonzero(tracks.track_id == track_id)
-        for run in _runs(tracks.cpa_probability[rows], tracks.tcpa_s[rows] >= 0.0, limits):
+        for run in _runs(tracks.where(rows), limits):
             alarmed[rows[run]] = True
             first, last = rows[run][[0, -1]]
             alarms.append(
@@ -155,14 +160,18 @@ def danger_of(tracks: Tracks, limits: DangerLimits) -> Danger:
     return Danger(alarmed, sorted(alarms, key=lambda alarm: alarm.begin_s))
 
 
-def _runs(probability: np.ndarray, ahead: np.ndarray, limits: DangerLimits) -> Iterator[slice]:
-    """Stretches under an alarm, which begins at one probability and ends below a lower one."""
-    begin = None
-    for k, p in enumerate(probability):
-        if begin is None and p >= limits.alarm_probability and ahead[k]:
-            begin = k
-        elif begin is not None and not p >= limits.clear_probability:
-            yield slice(begin, k)
+def _runs(track: Tracks, limits: DangerLimits) -> Iterator[slice]:
+    """Stretches of a track under an alarm."""
+    begin = last = None
+    ahead = track.tcpa_s >= 0.0
+    for k, p in enumerate(track.cpa_probability):
+        if begin is None:
+            if p >= limits.alarm_probability and ahead[k]:
+                begin = last = k
+        elif p >= limits.clear_probability:
+            last = k
+        elif track.time_s[k] - track.time_s[last + 1] >= limits.clear_hold_s:
+            yield slice(begin, last + 1)
             begin = None
     if begin is not None:
-        yield slice(begin, len(probability))
+        yield slice(begin, last + 1)
