@@ -399,6 +399,35 @@ TYPED_TEST(EveryUsvModel, BelievesReadingsThatInsist) {
   EXPECT_FALSE(navigator.update(gnss(), elsewhere).rejected);
 }
 
+TYPED_TEST(EveryUsvModel, FindsACurrentThatChangedWhileItCoasted) {
+  constexpr std::size_t kChange = 300, kBack = 580, kRuns = 10;
+  const Vec2 change(0.4, -0.6);
+  double nees = 0;
+  for (std::size_t run = 0; run < kRuns; ++run) {
+    std::vector<Instant> log = mission(500 + run, kStatesOf<TypeParam> == 5 ? kNoBias : kBias);
+    for (std::size_t k = kChange; k < log.size(); ++k) {
+      log[k].position += change * double(k - kChange);
+      log[k].fix += change * double(k - kChange);
+    }
+    UsvNavigator<TypeParam> navigator;
+    ASSERT_EQ(navigator.start(start_of(log.front())), Status::kOk);
+    int rejected = 0;
+    for (std::size_t k = 1; k < kBack + 60; ++k) {
+      ASSERT_EQ(navigator.predict(1.0, log[k].imu), Status::kOk);
+      (void)navigator.update(Compass(), of(log[k].compass));
+      if (k >= kChange && k < kBack) continue;
+      rejected += navigator.update(gnss(), log[k].fix).rejected;
+      if (k < kBack + 20) continue;
+      const auto& belief = navigator.estimate();
+      const Vec2 error = belief.mean.template head<2>() - log[k].position;
+      nees += Cholesky<2>(belief.covariance.template topLeftCorner<2, 2>()).squared_norm(error) /
+              (40 * kRuns);
+    }
+    EXPECT_LE(rejected, UsvOutliers{}.rejections + 3) << "run " << run;
+  }
+  EXPECT_LT(nees, 4) << "of 2: it owns up to what it has learned anew";
+}
+
 TYPED_TEST(EveryUsvModel, CrossesNorthAndSouthAlike) {
   constexpr int kRow = index_of(TypeParam::kComponents, kHeading);
   for (const double middle : {0.0, kPi<double>}) {

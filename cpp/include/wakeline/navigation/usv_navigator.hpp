@@ -47,8 +47,8 @@ struct UsvLeg {
 /// - Without readings it coasts and the covariance grows; without the IMU too, a step assumes no
 ///   acceleration and no turn, with the noise `unmeasured`.
 /// - A reading outside the gate is rejected. When more than `rejections` of its kind in a row were,
-///   it is the belief that is wrong: the states which the sensor reads are widened by what would
-///   explain the reading, P_ii += (H⁺ v)_i², and it is taken.
+///   it is the belief that is wrong: the states are widened by the likeliest error that would
+///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
 /// - The heading of the estimate is in [-pi, pi].
 ///
 /// Model: `UsvMotion`, `UsvBiasMotion` or `UsvCurrentMotion`; FilterType: `Ekf` or `Ukf` (additive
@@ -183,20 +183,23 @@ class UsvNavigator {
     (void)filter_.assign(belief);
   }
 
-  /// P_ii += (H⁺ v)_i² of the states read, each row of H by itself.
+  /// P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v: of what the belief itself takes for the likeliest error
+  /// behind the innovation. After a silence that is of the velocity or the current that the
+  /// position comes from, too.
   template <class Sensor, int M>
   void widen(const Sensor& sensor, const Vec<Scalar, M>& innovation) noexcept {
     constexpr auto kRows = rows_read<Sensor>(kComponents);
-    constexpr int kReads = kReadsOf<Sensor>;
     State belief = estimate();
-    Vec<Scalar, kReads> read;
-    for (int k = 0; k < kReads; ++k) read[k] = belief.mean[kRows[k]];
-    const Mat<Scalar, M, kReads> h = sensor.jacobian(read);
-    for (int m = 0; m < M; ++m)
-      for (int k = 0; k < kReads; ++k) {
-        const Scalar change = h(m, k) * innovation[m] / h.row(m).squaredNorm();
-        belief.covariance(kRows[k], kRows[k]) += change * change;
-      }
+    Vec<Scalar, kReadsOf<Sensor>> read;
+    for (int k = 0; k < kReadsOf<Sensor>; ++k) read[k] = belief.mean[kRows[k]];
+    Mat<Scalar, kStates, M> ph;
+    Mat<Scalar, M, M> expected = Mat<Scalar, M, M>::Zero();
+    project<Sensor, kRows>(belief.covariance, sensor.jacobian(read), ph, expected);
+    const Cholesky<M, Scalar> factor(expected);
+    if (!factor.ok()) return;
+    const Vec<Scalar, kStates> error =
+        factor.whiten_rows(ph) * factor.template whiten<1>(innovation);
+    belief.covariance.diagonal() += error.cwiseAbs2();
     (void)filter_.assign(belief);
   }
 
