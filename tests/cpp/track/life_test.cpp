@@ -78,6 +78,24 @@ TEST(Life, ConfirmationNeedsMOfTheLastN) {
   EXPECT_EQ(confirmation_scan(config, std::string(40, '1')), 32);
 }
 
+TEST(Life, ABoatIsHeldHoweverFarTheRadarSeesIt) {
+  const Radar coarse;  // 1 degree, so 80 to 520 m across
+  for (const double range_m : {4500.0, 10e3, 20e3, 30e3}) {
+    Sea sea(7, coarse);
+    VesselTracker tracker = make_tracker({}, coarse);
+    const Boat boat{{range_m, 0.0}, {-3.0, 6.0}};
+    Ledger ledger;
+    for (int k = 1; k <= 60; ++k) {
+      const double time_s = 3.0 * k;
+      const Plot plot = sea.plot(boat.at(time_s), time_s);
+      ledger.note(tracker.process(time_s, {&plot, k % 5 == 0 ? 0u : 1u}));
+    }
+    EXPECT_EQ(ledger.ids, std::set<std::int64_t>{1}) << range_m << " m: one track, never lost";
+    EXPECT_NE(track_at(tracker, boat.at(180.0), 3.0 * coarse.bearing_std_rad * range_m), nullptr)
+        << range_m;
+  }
+}
+
 TEST(Life, ConfirmationNeedsExistence) {
   TrackerConfig config;
   config.confirm_existence = 1.0;

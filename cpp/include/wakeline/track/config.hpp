@@ -55,8 +55,8 @@ struct TrackerConfig {
   int coast_scans_max = 15;          ///< but never more than this
   int shown_scans = 4;  ///< a coasting track is shown for this many scans, then held in mind
   double drop_position_std_m =
-      100.0;  ///< a track that knows its place worse than this (a confirmed one: than
-              ///< a vessel runs in `coast_scans`, if that is more) is dropped
+      100.0;  ///< a track that knows its place worse than this, or than two of its plots (a
+              ///< confirmed one: than a vessel runs in `coast_scans`), if that is more, is dropped
   double drop_speed_factor =
       1.0;  ///< a track faster than this times the radar's speed limit is dropped
 

@@ -69,6 +69,7 @@ struct Track {
   int misses = 0;             ///< in a row
   std::uint32_t history = 0;  ///< bit k: seen k scans ago
   int duplicate_scans = 0;
+  double plot_m2 = 0.0;  ///< variance of its last plot, of an axis as the mean of both
 
   [[nodiscard]] bool confirmed() const noexcept { return status != TrackStatus::kTentative; }
   /// Confirmed and not merely held in mind.
@@ -78,9 +79,11 @@ struct Track {
   [[nodiscard]] double speed_mps() const noexcept {
     return std::hypot(kinematics.mean[1], kinematics.mean[3]);
   }
-  [[nodiscard]] double position_std_m() const noexcept {
-    return std::sqrt((kinematics.covariance(0, 0) + kinematics.covariance(2, 2)) / 2);
+  /// Of an axis, as the mean of both.
+  [[nodiscard]] double position_variance_m2() const noexcept {
+    return (kinematics.covariance(0, 0) + kinematics.covariance(2, 2)) / 2;
   }
+  [[nodiscard]] double position_std_m() const noexcept { return std::sqrt(position_variance_m2()); }
   [[nodiscard]] Vec<double, 2> position() const noexcept {
     return {kinematics.mean[0], kinematics.mean[2]};
   }
@@ -141,7 +144,7 @@ struct Track {
     const bool too_fast = speed_mps() > config.drop_speed_factor * radar.max_speed_mps;
     const double run_m = radar.max_speed_mps * radar.period_s * config.coast_scans;
     const double roam_m =
-        confirmed() ? std::max(config.drop_position_std_m, run_m) : config.drop_position_std_m;
+        std::max({config.drop_position_std_m, 2.0 * std::sqrt(plot_m2), confirmed() ? run_m : 0.0});
     return silent || doubtful || too_fast || !(position_std_m() <= roam_m);
   }
 
@@ -163,6 +166,7 @@ struct Track {
     fields(misses);
     fields(history);
     fields(duplicate_scans);
+    fields(plot_m2);
   }
 };
 

@@ -425,6 +425,7 @@ class Tracker {
       if (owns > best) {
         best = owns;
         track.nis = claim.nis;
+        track.plot_m2 = echoes_[claim.echo].position.covariance.trace() / 2;
       }
       settle(track, slot, echoes_[claim.echo], std::min(owns, 1.0));
     }
@@ -581,6 +582,7 @@ class Tracker {
     track.status = TrackStatus::kTentative;
     track.time_s = time_s;
     track.kinematics = belief;
+    track.plot_m2 = track.position_variance_m2();
     track.existence = existence;
     track.visibility = 1.0;
     track.nis = std::numeric_limits<double>::quiet_NaN();
