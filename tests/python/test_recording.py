@@ -194,6 +194,44 @@ def test_a_turning_antenna_makes_a_scan_of_each_turn(file):
     assert abs(len(sizes) - turns) <= 1
 
 
+def polar(time_s, bearing_deg):
+    rows = zip(time_s, bearing_deg % 360.0, strict=True)
+    return "time_s,range_m,bearing_deg\n" + "".join(f"{t:.3f},4000,{b:.3f}\n" for t, b in rows)
+
+
+@pytest.mark.parametrize(("period_s", "targets"), [(1.2, 1), (2.5, 3), (2.5, 200), (12.0, 30)])
+def test_a_turning_antenna_is_found_from_times_and_bearings(file, period_s, targets):
+    rng = np.random.default_rng(4)
+    place_deg = np.sort(rng.uniform(20.0, 340.0, targets)) + 0.2 * np.arange(40)[:, np.newaxis]
+    turn = np.arange(40)[:, np.newaxis] + place_deg / 360.0
+    seen = rng.random(turn.shape) < 0.8
+    bearing_deg = (place_deg + rng.normal(scale=0.5, size=turn.shape))[seen]
+    text = polar(1.7e9 + period_s * turn[seen], bearing_deg)
+    read = read_plots(file(text))
+    given = only(read_plots(file(text), period_s=period_s))
+    assert abs(len(only(read)) - np.count_nonzero(seen.any(axis=1))) <= 1
+    assert abs(len(only(read)) - len(given)) <= 1
+    assert len(read.notes) == (targets > 1)
+    assert all(f"turns of {period_s:.2g} s" in note for note in read.notes)
+
+
+def test_plots_that_tell_of_no_turn_are_told_and_left_as_they_are(file):
+    rng = np.random.default_rng(5)
+    time_s = np.cumsum(rng.uniform(0.1, 2.0, 300))
+    read = read_plots(file(polar(time_s, rng.uniform(0.0, 360.0, 300))))
+    assert len(only(read)) == 300
+    (note,) = read.notes
+    assert "nearly every scan holds one plot" in note
+    assert "period_s" in note
+
+
+def test_scans_stamped_with_one_time_are_no_turns(file):
+    time_s = np.repeat(2.5 * np.arange(60), 3)
+    read = read_plots(file(polar(time_s, np.tile([10.0, 12.0, 200.0], 60))))
+    assert len(only(read)) == 60
+    assert read.notes == []
+
+
 @given(st.lists(st.floats(0, 1000), min_size=1, max_size=60), st.floats(0.5, 50))
 def test_no_scan_is_as_long_as_the_period(times, period_s):
     times = np.sort(np.array(times))

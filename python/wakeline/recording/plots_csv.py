@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from .episodes import build_episode
-from .model import OwnShip, Recording
+from .model import Episode, OwnShip, Recording
 from .own_csv import OwnRows, read_own
 from .plot_rows import PlotRows, read_plot_rows, remark
+from .scans import turn_s
 from .truth_csv import read_truth
+
+_MANY, _NEARLY_ALL = 20, 0.9
 
 
 def read_plots(
@@ -35,11 +39,13 @@ def read_plots(
     ``scan_id``), ``scenario``, ``own_north_m`` and ``own_east_m``. Other columns are left alone.
 
     **Scans** are told apart by the ``scan`` column. Without one, a plot goes to the scan nearest in
-    time of those the own-ship file lists; without a list, plots of equal time are one scan, or,
-    when `period_s` is given, a scan begins at a plot more than half a period after the plot before
-    it or 95 % of a period or more after its scan's first plot. Every scan the own-ship file lists
-    is in the recording, with or without plots. Within a scan plots are sorted by time; scans are in
-    the order of their numbers and their times must grow.
+    time of those the own-ship file lists; without a list, a scan begins at a plot more than half a
+    period after the plot before it or 95 % of a period or more after its scan's first plot. The
+    period is `period_s`; where it is not given but the bearings grow with the times of the plots as
+    under an antenna that turns clockwise, it is found from them, which leaves a note. Where they
+    do not, plots of equal time are one scan. Every scan the own-ship file lists is in the
+    recording, with or without plots. Within a scan plots are sorted by time; scans are in the order
+    of their numbers and their times must grow.
 
     **Own ship** comes from the own columns of the plots file, else by linear interpolation from the
     own-ship file, else it is the fixed position `own`. A plot may lie at most one median step of
@@ -89,12 +95,51 @@ def read_plots(
     remark(plots, np.isnan(plots.place[:, 0]), "without a finite place left out", notes)
     own_rows = None if own_path is None else read_own(own_path, notes)
     fixed = OwnShip.fixed(*own)
-    episodes = [
-        build_episode(scenario, plots, own_rows, fixed, period_s, own_gap_s)
-        for scenario in _scenarios(plots, own_rows)
-    ]
+
+    def episodes_of(period_s: float | None) -> list[Episode]:
+        return [
+            build_episode(scenario, plots, own_rows, fixed, period_s, own_gap_s)
+            for scenario in _scenarios(plots, own_rows)
+        ]
+
+    episodes = episodes_of(period_s)
+    if period_s is None and plots.scan is None and (own_rows is None or own_rows.scan is None):
+        episodes = _in_turns(episodes, episodes_of, notes)
     recording = Recording(name or Path(plots_path or own_path).stem, episodes, notes)
     return recording if truth_path is None else _with_truth(recording, truth_path)
+
+
+def _in_turns(
+    episodes: list[Episode],
+    episodes_of: Callable[[float | None], list[Episode]],
+    notes: list[str],
+) -> list[Episode]:
+    """The episodes with turns of the antenna as scans, where the plots tell of turns."""
+    period_s = _turn_s(episodes)
+    turns = episodes if period_s is None else episodes_of(period_s)
+    if sum(map(len, turns)) < sum(map(len, episodes)):
+        notes.append(
+            f"scans are turns of {period_s:.2g} s, as times and bearings of the plots tell"
+        )
+        return turns
+    sizes = np.array([len(scan) for episode in episodes for scan in episode.scans])
+    if period_s is None and len(sizes) >= _MANY and np.mean(sizes == 1) > _NEARLY_ALL:
+        notes.append(
+            "nearly every scan holds one plot; where the antenna turns, its period_s tells which "
+            "plots make a scan"
+        )
+    return episodes
+
+
+def _turn_s(episodes: list[Episode]) -> float | None:
+    """Median over the episodes that tell of a turn, None where none does."""
+    found = []
+    for episode in filter(len, episodes):
+        time_s = np.concatenate([scan.plot_time_s for scan in episode.scans])
+        bearing_rad = np.concatenate([scan.bearing_rad for scan in episode.scans])
+        found.append(turn_s(time_s, bearing_rad))
+    known = [turn for turn in found if turn is not None]
+    return float(np.median(known)) if known else None
 
 
 def _scenarios(plots: PlotRows, own: OwnRows | None) -> list[str]:

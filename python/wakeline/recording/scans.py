@@ -7,6 +7,12 @@ import numpy as np
 _GAP_PERIODS = 0.5
 _SCAN_PERIODS = 0.95
 
+_TURNS_S = np.geomspace(20.0, 0.1, 533)  # in steps of 1 %
+_LEAST_PLOTS, _STARTS, _LEAST_SHARE = 20, 256, 0.1
+_LAGS = 0.5 + 2.5 * (np.arange(8 * _STARTS).reshape(_STARTS, 8) * 0.618034 % 1.0)  # of no rhythm
+_MOST_TURNS = 3.5
+_TURNING, _PEAK = 0.9, 16
+
 
 def by_time(time_s: np.ndarray, period_s: float | None) -> np.ndarray:
     """Scan number of each plot from its time alone, counted from 0.
@@ -44,6 +50,43 @@ def _next_begin(time_s: np.ndarray, begins: np.ndarray, first: int, period_s: fl
     full = max(int(np.searchsorted(time_s, time_s[first] + _SCAN_PERIODS * period_s)), first + 1)
     gap = np.flatnonzero(begins[first + 1 : full])
     return first + 1 + int(gap[0]) if len(gap) else full
+
+
+def turn_s(time_s: np.ndarray, bearing_rad: np.ndarray) -> float | None:
+    """Time of a turn of the antenna, right to a per cent or so, None where plots tell of none.
+
+    Where an antenna turns, the bearing of a plot says when in its turn the beam was there. Of 0.1
+    to 20 s it is the longest time after which plots, half a turn to three turns apart, differ in
+    bearing by as much as the beam turned meanwhile: the mean cosine of what is left is above 0.9.
+
+    Parameters
+    ----------
+    time_s : ndarray (n,)
+        Times of the plots, sorted.
+    bearing_rad : ndarray (n,)
+        Clockwise from north, as the antenna turns.
+    """
+    if len(time_s) < _LEAST_PLOTS:
+        return None
+    likeness = np.array([_likeness(time_s, bearing_rad, turn) for turn in _TURNS_S])
+    if not (likeness > _TURNING).any():
+        return None
+    first = int(np.argmax(likeness > _TURNING))
+    return float(_TURNS_S[first + np.argmax(likeness[first : first + _PEAK])])
+
+
+def _likeness(time_s: np.ndarray, bearing_rad: np.ndarray, turn: float) -> float:
+    """Mean cosine by which plots miss an antenna of this turn; 0 where too few can be compared."""
+    one = np.linspace(0, len(time_s) - 1, _STARTS).astype(int)[:, np.newaxis]
+    other = np.searchsorted(time_s, time_s[one] + turn * _LAGS)
+    there = other < len(time_s)
+    other = np.minimum(other, len(time_s) - 1)
+    turns = (time_s[other] - time_s[one]) / turn
+    chosen = there & (turns <= _MOST_TURNS)
+    if chosen.mean() < _LEAST_SHARE:
+        return 0.0
+    miss_rad = bearing_rad[other] - bearing_rad[one] - 2.0 * np.pi * turns
+    return float(np.cos(miss_rad[chosen]).mean())
 
 
 def by_list(time_s: np.ndarray, listed_time_s: np.ndarray, listed_number: np.ndarray) -> np.ndarray:
