@@ -248,6 +248,30 @@ def test_each_scenario_has_pictures_of_its_own(tmp_path, pictures):
     assert drawn == ["map-run_1.png", "map-run_2.png", "time-run_1.png", "time-run_2.png"]
 
 
+def test_files_of_an_earlier_run_that_this_one_does_not_write_are_removed(tmp_path):
+    rows = [(name, *row) for name in ("run/1", "run 2") for row in boat(20)]
+    plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")
+    one = write_plots(tmp_path / "one.csv", boat(20))
+    own = write_plots(tmp_path / "own.csv", [(990 + k, 0, 0) for k in range(70)])
+    out = tmp_path / "out"
+    assert track(plots, "--own", own, "--out", out) == 0
+    assert (out / "alarms.csv").exists()
+    drawn = ["map-run_1.png", "map-run_2.png", "time-run_1.png", "ppi.png", "tracks-partial.csv"]
+    mine = ["map-harbour.png", "time-series.png", "alarms-old.csv"]
+    for name in drawn + mine:
+        (out / name).write_text("earlier")
+    assert track(one, "--out", out) == 0
+    left = sorted(path.name for path in out.iterdir())
+    assert left == sorted(["tracks.csv", "events.csv", "plots_tracks.csv", *mine])
+
+
+def test_a_run_that_fails_leaves_the_files_of_an_earlier_one(plots_csv, tmp_path, capsys):
+    (tmp_path / "map.png").write_text("earlier")
+    plots_csv.write_text("time_s,north_m,east_m\n1,2,three\n")
+    refused(capsys, "track", plots_csv, "--out", tmp_path)
+    assert (tmp_path / "map.png").exists()
+
+
 def test_an_empty_recording_is_drawn_too(tmp_path, pictures):
     assert track(write_plots(tmp_path / "plots.csv", []), "--out", tmp_path) == 0
     assert (tmp_path / "map.png").read_bytes().startswith(PNG)

@@ -18,10 +18,34 @@ from wakeline.recording import Tracks, replacing, write_tracks
 from .tracking import MODE_NAMES, TrackedEpisode
 
 HOW_TO_GET_PICTURES = "no pictures without matplotlib: pip install 'wakeline[plot]'"
+PARTIAL = "-partial"
+
+_TABLES = ("tracks", "events", "plots_tracks", "alarms")
+_PICTURES = ("map", "time")
+
+
+def of_tracking(folder: Path) -> set[Path]:
+    """The files that a run of tracking before this one may have left in `folder`.
+
+    Pictures of scenarios are those of the scenarios that its ``plots_tracks.csv`` names, so that a
+    file of the user's with a name like theirs is none of them.
+    """
+    tables = {f"{stem}{suffix}.csv" for stem in _TABLES for suffix in ("", PARTIAL)}
+    ends = {"", *(f"-{_file_name(name)}" for name in _scenarios_in(folder / "plots_tracks.csv"))}
+    pictures = {f"{stem}{end}.png" for stem in _PICTURES for end in ends}
+    return {folder / name for name in tables | pictures | {"ppi.png"}}
+
+
+def remove_stale(earlier: Iterable[Path], files: Iterable[Path]) -> None:
+    """Remove files of an earlier run that this one has not written."""
+    for file in set(earlier) - set(files):
+        file.unlink(missing_ok=True)
 
 
 def write_results(folder: Path, parts: Sequence[TrackedEpisode], suffix: str = "") -> list[Path]:
     """Write ``tracks.csv``, ``events.csv`` and ``plots_tracks.csv``, and ``alarms.csv`` of danger.
+
+    Where no danger was asked for, ``alarms.csv`` of an earlier run is removed.
 
     Parameters
     ----------
@@ -36,9 +60,7 @@ def write_results(folder: Path, parts: Sequence[TrackedEpisode], suffix: str = "
     list of Path
         The files.
     """
-    tracks, events, plots = (
-        folder / f"{stem}{suffix}.csv" for stem in ("tracks", "events", "plots_tracks")
-    )
+    tracks, events, plots, alarms = (folder / f"{stem}{suffix}.csv" for stem in _TABLES)
     scenario = ["scenario"] if any(part.tracks.scenario is not None for part in parts) else []
     write_tracks(tracks, Tracks.joined([part.tracks for part in parts]))
     head = ["time_s", "event", "track_id", "tentative_id", *scenario]
@@ -46,8 +68,8 @@ def write_results(folder: Path, parts: Sequence[TrackedEpisode], suffix: str = "
     head = ["scan", "time_s", "north_m", "east_m", "track_id", *scenario]
     _write_csv(plots, head, (row for part in parts for row in _plot_rows(part)))
     if all(part.danger is None for part in parts):
+        alarms.unlink(missing_ok=True)
         return [tracks, events, plots]
-    alarms = folder / f"alarms{suffix}.csv"
     head = ["track_id", "begin_s", "end_s", "cpa_m", "tcpa_s", "cpa_probability", *scenario]
     _write_csv(alarms, head, (row for part in parts for row in _alarm_rows(part)))
     return [tracks, events, plots, alarms]
@@ -62,10 +84,11 @@ def write_pictures(folder: Path, parts: Sequence[TrackedEpisode]) -> list[Path]:
         end = f"-{_file_name(part.episode.name)}" if len(parts) > 1 else ""
         modes = part.tracks.mode_probability.shape[1]
         names = MODE_NAMES if modes == len(MODE_NAMES) else None
-        for stem, figure in (
-            ("map", plot.map_figure(part.episode, part.tracks, alarmed=_alarmed(part))),
-            ("time", plot.time_figure(part.episode, part.tracks, mode_names=names)),
-        ):
+        figures = (
+            plot.map_figure(part.episode, part.tracks, alarmed=_alarmed(part)),
+            plot.time_figure(part.episode, part.tracks, mode_names=names),
+        )
+        for stem, figure in zip(_PICTURES, figures, strict=True):
             files.append(folder / f"{stem}{end}.png")
             plot.save(figure, files[-1])
     return files
@@ -122,6 +145,15 @@ def _write_csv(path: Path, head: list[str], rows: Iterable[list]) -> None:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(head)
         writer.writerows(rows)
+
+
+def _scenarios_in(plots: Path) -> set[str]:
+    """Scenarios that a file of plots and their tracks names; none where there is no such file."""
+    try:
+        with plots.open(newline="", encoding="utf-8") as file:
+            return {row["scenario"] or "" for row in csv.DictReader(file)}
+    except (OSError, KeyError, TypeError, UnicodeDecodeError, csv.Error):
+        return set()
 
 
 def _file_name(scenario: str) -> str:

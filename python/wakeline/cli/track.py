@@ -17,7 +17,6 @@ from . import outputs, report, video
 from .config import Settings, radar_names, read_settings
 from .tracking import TrackedEpisode, has_names, median_step_s, track_episode
 
-_PARTIAL = "-partial"
 _MOST_ALARMS = 20
 
 
@@ -36,7 +35,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "value of a scenario column is tracked from a fresh start. When one of several scenarios "
         "fails, the files of those "
         "before it are written with -partial in their names, and files of an earlier run stay as "
-        "they were.",
+        "they were; else those of them that this run does not write are removed.",
     )
     parser.add_argument(
         "plots",
@@ -134,14 +133,16 @@ def track_into(
             parts.append(track_episode(episode, settings, named=named, danger=danger))
     except (ValueError, FilterError, KeyboardInterrupt):
         if parts:
-            files = outputs.write_results(folder, parts, _PARTIAL)
+            files = outputs.write_results(folder, parts, outputs.PARTIAL)
             print(f"of the scenarios before: {_listed(files)}", file=sys.stderr)
         raise
+    earlier = outputs.of_tracking(folder)
     files = outputs.write_results(folder, parts)
     print(_track_lines(parts))
     if danger:
         print(_alarm_lines(parts, settings))
     files += outputs.write_pictures(folder, parts)
+    outputs.remove_stale(earlier, files)
     print(f"written to {folder}: {_listed(files)}")
     if not outputs.can_draw():
         print(outputs.HOW_TO_GET_PICTURES)
