@@ -447,6 +447,17 @@ def test_an_output_folder_that_is_a_file(plots_csv, tmp_path, capsys):
     assert (tmp_path / "taken").read_text() == "mine"
 
 
+@pytest.mark.parametrize("place", ["here", "/proc/self/fd"])
+def test_a_json_that_cannot_be_written_is_told_before_the_work(place, plots_csv, tmp_path, capsys):
+    (tmp_path / "here" / "score.json").mkdir(parents=True)
+    result = tmp_path / place / "score.json"
+    if not result.parent.is_dir():
+        pytest.skip("no such folder on this system")
+    message = refused(capsys, "track", plots_csv, "--out", tmp_path / "out", "--json", result)
+    assert message.startswith(f"wakeline: {result}: ")
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "wanted"),
     [

@@ -327,6 +327,13 @@ def test_rates_that_move_with_the_run_tell_the_right_model():
 # Files --------------------------------------------------------------------------------------------
 
 
+def test_a_result_that_cannot_be_saved_names_its_file(result, tmp_path):
+    path = tmp_path / "none" / "result.npz"
+    with pytest.raises(FileNotFoundError) as caught:
+        result.save(path)
+    assert caught.value.filename == str(path)
+
+
 def test_what_is_saved_is_loaded(result, tmp_path):
     path = tmp_path / "result.npz"
     result.save(path)

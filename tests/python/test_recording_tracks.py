@@ -203,3 +203,17 @@ def test_what_was_written_before_is_kept_when_writing_fails(tmp_path):
         write_half()
     assert path.read_text() == "before"
     assert [p.name for p in tmp_path.iterdir()] == ["out.txt"]
+
+
+@pytest.mark.parametrize("name", ["none/out.txt", "taken/out.txt", "folder"])
+def test_a_file_that_cannot_be_written_is_named_as_it_was_given(tmp_path, name):
+    (tmp_path / "taken").write_text("mine")
+    (tmp_path / "folder").mkdir()
+    path = tmp_path / name
+    with (
+        pytest.raises(OSError, match=r"out\.txt|folder") as caught,
+        recording.replacing(path) as fresh,
+    ):
+        fresh.write_text("text")
+    assert caught.value.filename == str(path)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["folder", "taken"]

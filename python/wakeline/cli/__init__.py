@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from wakeline import FilterError, __version__
+from wakeline.recording.files import check_writable
 
 from . import bench, demo, navigate, score, study, track
 
@@ -38,6 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = _parser().parse_args(argv)
         if arguments.json is not None:
             arguments.json.parent.mkdir(parents=True, exist_ok=True)
+            check_writable(arguments.json)
         arguments.run(arguments)
         sys.stdout.flush()
     except SystemExit as done:  # --help and --version

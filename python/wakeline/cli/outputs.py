@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
+import os
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import astuple
@@ -22,6 +24,13 @@ PARTIAL = "-partial"
 
 _TABLES = ("tracks", "events", "plots_tracks", "alarms")
 _PICTURES = ("map", "time")
+
+
+def make_folder(folder: Path) -> None:
+    """Fail before the work, not after it, where nothing can be written."""
+    folder.mkdir(parents=True, exist_ok=True)
+    if not os.access(folder, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
 
 
 def of_tracking(folder: Path) -> set[Path]:

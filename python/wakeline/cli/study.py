@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import errno
-import os
 from pathlib import Path
 
 from wakeline import study
@@ -59,9 +57,7 @@ def list_studies(arguments: argparse.Namespace) -> None:
 
 def run_study(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
-    _make_folder(arguments.out)
-    if arguments.json is not None:
-        _make_folder(arguments.json.parent)
+    outputs.make_folder(arguments.out)
     done = study.load(arguments.name).run(
         arguments.runs, arguments.seed, full=arguments.full, progress=True
     )
@@ -76,13 +72,6 @@ def run_study(arguments: argparse.Namespace) -> None:
         return
     files = done.save_pictures(arguments.out)
     print(f"\nwritten to {arguments.out}: {', '.join(file.name for file in files)}")
-
-
-def _make_folder(folder: Path) -> None:
-    """Fail before the work, not after it, where nothing can be written."""
-    folder.mkdir(parents=True, exist_ok=True)
-    if not os.access(folder, os.W_OK):
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
 
 
 def _runs(text: str) -> int:

@@ -124,7 +124,7 @@ def track_into(
 
     With `danger`, the tracks are watched for those that come too close to own ship.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    outputs.make_folder(folder)
     print(_input_lines(recording, settings, radar), flush=True)
     parts: list[TrackedEpisode] = []
     try:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import secrets
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -19,11 +21,44 @@ def replacing(path: str | Path) -> Iterator[Path]:
     ----------
     path : str or Path
         The file to write. Its folder must exist.
+
+    Raises
+    ------
+    OSError
+        Naming `path`, when the fresh file cannot be written or cannot take its place.
     """
     path = Path(path)
-    fresh = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
+    fresh = _beside(path)
     try:
-        yield fresh
-        fresh.replace(path)
+        with _named(fresh, path):
+            yield fresh
+            fresh.replace(path)
     finally:
-        fresh.unlink(missing_ok=True)
+        with suppress(OSError):
+            fresh.unlink()
+
+
+def check_writable(path: str | Path) -> None:
+    """Raise OSError naming `path` where `replacing` could not write a file there."""
+    path = Path(path)
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    fresh = _beside(path)
+    with _named(fresh, path):
+        fresh.touch()
+        fresh.unlink()
+
+
+def _beside(path: Path) -> Path:
+    return path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
+
+
+@contextmanager
+def _named(fresh: Path, path: Path) -> Iterator[None]:
+    """Errors about the fresh file name the one that was asked for."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None or Path(error.filename) != fresh:
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from None
