@@ -537,6 +537,14 @@ def test_a_reader_that_leaves_and_a_silent_stderr():
     assert errors == b""
 
 
+def test_an_output_that_knows_ascii_only_loses_signs_and_no_scores():
+    command = [sys.executable, "-m", cli.__name__, "track", "--print-config"]
+    environment = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(command, capture_output=True, env=environment, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"# m?/s?, acceleration noise of a steady vessel at rest" in done.stdout
+
+
 def test_progress_is_drawn_on_a_terminal_only(monkeypatch, capsys):
     from wakeline import _progress as progress
 

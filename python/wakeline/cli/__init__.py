@@ -6,10 +6,11 @@ Built on argparse of the standard library, so that it works where nothing but nu
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import NoReturn, TextIO
 
 from wakeline import FilterError, __version__
 from wakeline.recording.files import check_writable
@@ -35,6 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         Exit status: 0 on success, 2 after one line on stderr about bad input, 130 when interrupted,
         141 when the reader of the output has gone.
     """
+    _degrade(sys.stdout)
     try:
         arguments = _parser().parse_args(argv)
         if arguments.json is not None:
@@ -54,6 +56,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"wakeline: {_one_line(error)}", file=sys.stderr)
         return _BAD_INPUT
     return 0
+
+
+def _degrade(output: TextIO) -> None:
+    """Let what the terminal's encoding cannot say come out as a question mark."""
+    if isinstance(output, io.TextIOWrapper):
+        output.reconfigure(errors="replace")
 
 
 class _Parser(argparse.ArgumentParser):
