@@ -135,3 +135,28 @@ def test_a_radar_that_does_not_exist(capsys):
 def test_a_configuration_that_does_not_exist(tmp_path, capsys):
     assert main(["track", "--config", str(tmp_path / "no.toml"), "--print-config"]) == 2
     assert "no.toml: No such file or directory" in capsys.readouterr().err
+
+
+def test_a_radar_file_has_keys_of_the_radar_alone(tmp_path, capsys):
+    full = tmp_path / "full.toml"
+    full.write_text("[radar]\nrange_std_m = 12.0\n[tracker]\nconfirm_hits = 3\n")
+    assert main(["track", "--radar", str(full), "--print-config"]) == 2
+    error = capsys.readouterr().err
+    assert "full.toml: a radar file has the keys of [radar] alone, got radar, tracker" in error
+    assert "--config" in error
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("[radar]\nrange_std_m = 12.0\n", "radar of mine.toml, period"),
+        ("[tracker]\nconfirm_hits = 3\n", "radar by default, period"),
+    ],
+)
+def test_whose_radar_holds_is_told(tmp_path, capsys, text, wanted):
+    (tmp_path / "mine.toml").write_text(text)
+    plots = tmp_path / "plots.csv"
+    plots.write_text("time_s,north_m,east_m\n")
+    files = [str(plots), "--config", str(tmp_path / "mine.toml"), "--out", str(tmp_path / "out")]
+    assert main(["track", *files]) == 0
+    assert wanted in capsys.readouterr().out

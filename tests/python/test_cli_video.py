@@ -215,4 +215,4 @@ def test_settings_without_a_radar_leave_its_errors_to_the_video(video, tmp_path,
     assert "as its echoes are" in capsys.readouterr().out
     config.write_text("[radar]\nrange_std_m = 11.0\n")
     assert main([*command, "--config", str(config)]) == 0
-    assert "radar of the configuration" in capsys.readouterr().out
+    assert "radar of some.toml" in capsys.readouterr().out

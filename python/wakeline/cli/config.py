@@ -197,9 +197,21 @@ def read_settings(config: Path | None = None, radar: str | None = None) -> Setti
             settings = _changed(settings, section, values, config)
     if radar is not None:
         path, document = _read_radar(radar)
-        values = document["radar"] if list(document) == ["radar"] else document
-        settings = _changed(settings, "radar", values, path)
+        settings = _changed(settings, "radar", _radar_of(path, document), path)
     return settings
+
+
+def _radar_of(path: Path, document: dict[str, Any]) -> Any:
+    """What a file says of a radar, under the head of its section or without it."""
+    if list(document) == ["radar"]:
+        return document["radar"]
+    sections = [key for key, value in document.items() if isinstance(value, dict)]
+    if sections:
+        raise ConfigError(
+            f"{path}: a radar file has the keys of [radar] alone, got {', '.join(sections)}; "
+            "settings of several sections go with --config"
+        )
+    return document
 
 
 def _changed(settings: Settings, section: str, values: Any, path: Path) -> Settings:

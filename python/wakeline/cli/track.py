@@ -51,7 +51,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--radar",
         metavar="NAME|F.toml",
-        help=f"what is known of the radar: {', '.join(radar_names())}, or a TOML file",
+        help=f"what is known of the radar: {', '.join(radar_names())}, or a TOML file with keys of "
+        "[radar]; wins over the [radar] of --config",
     )
     parser.add_argument(
         "--config", type=Path, metavar="F.toml", help="settings, in the form of --print-config"
@@ -80,7 +81,7 @@ def run(arguments: argparse.Namespace) -> None:
     recording = read_plots(
         arguments.plots, arguments.own, arguments.truth, period_s=settings.period_s
     )
-    radar = f"radar {arguments.radar}" if arguments.radar else "radar by default"
+    radar = _radar_text(arguments, settings)
     danger = arguments.own is not None
     parts = track_into(arguments.out, recording, settings, radar, danger=danger)
     rows = _rows(parts, arguments.plots.name)
@@ -101,7 +102,7 @@ def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
     film = video.read_plots_of_video(arguments.plots)
     measured = film.told_to(settings)
     if measured is None:
-        radar = f"radar {arguments.radar}" if arguments.radar else "radar of the configuration"
+        radar = _radar_text(arguments, settings)
     else:
         settings, radar = measured, f"radar as its echoes are: {_std_text(film)}"
     parts = track_into(arguments.out, film.recording, settings, radar)
@@ -110,6 +111,14 @@ def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
         print(f"and {file.name}")
     if arguments.json is not None:
         outputs.write_json(arguments.json, "track", _rows(parts, arguments.plots.name))
+
+
+def _radar_text(arguments: argparse.Namespace, settings: Settings) -> str:
+    """Whose description of the radar holds."""
+    if arguments.radar:
+        return f"radar {arguments.radar}"
+    default = settings.radar == Settings.default().radar
+    return "radar by default" if default else f"radar of {arguments.config.name}"
 
 
 def _std_text(film: video.VideoRecording) -> str:
