@@ -3,18 +3,20 @@
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 from importlib import resources
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import wakeline as wl
 from wakeline import cli, metrics, recording
-from wakeline.cli import main, outputs
+from wakeline.cli import config, main, outputs
 from wakeline.cli import track as track_command
-from wakeline.recording import read_tracks
+from wakeline.recording import own_csv, plot_rows, read_tracks, truth_csv
 
 PNG = b"\x89PNG"
 BUNDLED = resources.files("wakeline.recording") / "data"
@@ -310,6 +312,15 @@ def test_a_radar_with_a_period_groups_plots_that_have_times_of_their_own(tmp_pat
     assert len(np.unique(tracks.time_s)) <= 40
 
 
+def test_what_navigate_writes_is_an_own_ship_file(tmp_path, capsys):
+    assert main(["navigate", str(BUNDLED / "irene" / "irene.nmea"), "--out", str(tmp_path)]) == 0
+    start_s = float(read_rows(tmp_path / "own.csv")[0]["time_s"])
+    plots = write_plots(tmp_path / "plots.csv", boat(40, start_s=start_s))
+    assert track(plots, "--own", tmp_path / "own.csv", "--out", tmp_path) == 0
+    assert "closer than 926 m within 20 min" in capsys.readouterr().out
+    assert np.isfinite(read_tracks(tmp_path / "tracks.csv").cpa_m).all()
+
+
 # Bad input ----------------------------------------------------------------------------------------
 
 
@@ -490,6 +501,24 @@ def test_version_and_help(capsys):
     text = capsys.readouterr().out
     for command in ("demo", "track", "score", "bench"):
         assert command in text
+
+
+def test_help_names_every_column_and_every_key_of_the_radar(capsys):
+    assert main(["track", "--help"]) == 0
+    text = capsys.readouterr().out
+    _, _, columns = text.partition("columns, separated by commas")
+    wanted = {*plot_rows.COLUMNS, *truth_csv.COLUMNS, *own_csv.COLUMNS, *config.KEYS["radar"]}
+    named = set(re.findall(r"\w+", columns))
+    assert wanted - named == {"heading_rad"}
+
+
+def test_every_name_of_a_column_is_documented():
+    page = Path(__file__).parents[2] / "cpp" / "docs" / "files.md"
+    if not page.exists():
+        pytest.skip("the documentation is not here")
+    documented = set(re.findall(r"`(\w+)`", page.read_text(encoding="utf-8")))
+    for columns in (plot_rows.COLUMNS, truth_csv.COLUMNS, own_csv.COLUMNS):
+        assert {name for names in columns.values() for name in names} <= documented
 
 
 def test_bench_measures_every_work(tmp_path, monkeypatch, capsys):

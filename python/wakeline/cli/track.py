@@ -19,23 +19,44 @@ from .tracking import TrackedEpisode, has_names, median_step_s, track_episode
 
 _MOST_ALARMS = 20
 
+_ABOUT = """\
+Tracks the plots of a recording and writes tracks.csv, events.csv,
+plots_tracks.csv and pictures; with --own also how close each track will come to
+own ship, and alarms.csv of those that come too close. Radar video is made plots
+of first, with thresholds and plot errors found in it, and its last turn is
+drawn as ppi.png.
+
+Plots without a scan column, each with a time of its own, are grouped into turns
+of the antenna: of period_s, where the radar's settings tell it, else of what
+times and bearings of the plots say.
+
+Each value of a scenario column is tracked from a fresh start. When one of
+several scenarios fails, the files of those before it are written with -partial
+in their names, and files of an earlier run stay as they were; else those of
+them that this run does not write are removed.
+"""
+_COLUMNS = """\
+columns, separated by commas, known by name in any order:
+  RECORDING  time_s (UTC seconds or ISO 8601); range_m or range_nm and
+             bearing_deg or bearing_rad from true north, or north_m and east_m;
+             scan, scenario, own_north_m, own_east_m where known
+  --own      time_s, north_m, east_m; scan, scenario, vnorth_mps, veast_mps,
+             heading_deg where known; own.csv of wakeline navigate is one
+  --truth    time_s, target, north_m, east_m; vnorth_mps, veast_mps, scenario
+             where known
+  --radar    keys of a TOML file: range_std_m, bearing_std_deg, extent_std_m,
+             period_s, max_speed_mps, bearing_offset_deg
+"""
+
 
 def add_to(commands: argparse._SubParsersAction) -> None:
     """Add the command to the program."""
     parser = commands.add_parser(
         "track",
         help="track a recording",
-        description="Tracks the plots of a recording and writes tracks.csv, events.csv, "
-        "plots_tracks.csv and pictures; with --own also how close each track will come to own "
-        "ship, and alarms.csv of those that come too close. Radar video is made plots of first, "
-        "with thresholds and plot errors found in it, and its last turn is drawn as ppi.png. Plots "
-        "without a scan column, each with a time of its own, are grouped into turns of the "
-        "antenna: of period_s, where the radar's settings tell it, else of what times and bearings "
-        "of the plots say. Each "
-        "value of a scenario column is tracked from a fresh start. When one of several scenarios "
-        "fails, the files of those "
-        "before it are written with -partial in their names, and files of an earlier run stay as "
-        "they were; else those of them that this run does not write are removed.",
+        description=_ABOUT,
+        epilog=_COLUMNS,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "plots",
