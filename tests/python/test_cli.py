@@ -337,6 +337,7 @@ def test_what_navigate_writes_is_an_own_ship_file(tmp_path, capsys):
         ("scan,time_s,north_m,east_m\n0,9,2,3\n1,9,5,3\n", "scan times do not grow"),
         ("time_s,range_m,bearing_deg\n1,-5,3\n", "line 2, column range_m"),
         ("time_s,range_m,bearing_deg\n1,5,900\n", "line 2, column bearing_deg"),
+        ("time_s;north_m;east_m\n1;2;3\n", "line 1: columns are not separated by commas"),
         ("", "the file is empty"),
     ],
 )
@@ -371,6 +372,14 @@ def test_own_ship_that_ends_early_is_refused(plots_csv, tmp_path, capsys):
     own = write_plots(tmp_path / "own.csv", [(1000 + k, k, 0) for k in range(30)])
     message = refused(capsys, "track", plots_csv, "--own", own, "--out", tmp_path)
     assert "positions from 1000.0 to 1029.0" in message
+
+
+def test_truth_of_another_time_is_refused(plots_csv, tmp_path, capsys):
+    rows = [(5000 + k, "A", 0, 0) for k in range(30)]
+    truth = write_plots(tmp_path / "truth.csv", rows, "time_s,target,north_m,east_m")
+    message = refused(capsys, "track", plots_csv, "--truth", truth, "--out", tmp_path)
+    assert message.startswith(f"wakeline: {truth}, column time_s: the truth is of another time")
+    assert "wanted times that reach into 1000.0 to 1097.5, got 5000.0 to 5029.0" in message
 
 
 def test_plots_without_a_place_are_left_out_with_a_note(tmp_path, capsys):

@@ -38,8 +38,8 @@ class Table:
     Raises
     ------
     RecordingError
-        When the file cannot be read or is empty, when two columns mean the same, or when a row has
-        more or fewer cells than the header.
+        When the file cannot be read or is empty, when its columns are not separated by commas, when
+        two columns mean the same, or when a row has more or fewer cells than the header.
     """
 
     def __init__(self, path: str | Path, meanings: dict[str, Sequence[str]]) -> None:
@@ -50,6 +50,14 @@ class Table:
         if not header:
             raise RecordingError(self.path, "the file is empty", line=1, wanted="a header line")
         self.header = [name.strip() for name in header]
+        if len(header) == 1 and re.search(r"[;\t|]", header[0]):
+            raise RecordingError(
+                self.path,
+                "columns are not separated by commas",
+                line=1,
+                wanted="commas between columns and points in decimals",
+                got=repr(header[0]),
+            )
         self._place = self._recognise(self.header)
         self._line, cells = self._body(rows)
         self._cells = dict(zip(range(len(header)), zip(*cells, strict=True), strict=False))

@@ -46,7 +46,8 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
     Raises
     ------
     RecordingError
-        When a column is missing, a cell cannot be read, or no row follows the header.
+        When a column is missing, a cell cannot be read, no row follows the header, or no row is of
+        the time of the recording.
     """
     table = Table(path, COLUMNS)
     table.require("time_s", "target", "north_m", "east_m")
@@ -60,6 +61,7 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
     scenario = np.array(table.text("scenario") if "scenario" in table else [""] * len(table))
     kept = _kept(table, state, scenario, recording)
     episode = recording.episode_of(scenario[kept], time_s[kept])
+    _check_overlap(table, time_s[kept], episode, recording)
     return [
         _targets(target[kept][mine], time_s[kept][mine], state[kept][mine])
         for mine in (episode == k for k in range(len(recording)))
@@ -82,6 +84,26 @@ def _kept(
                 f"(first in line {first})"
             )
     return finite & known
+
+
+def _check_overlap(
+    table: Table, time_s: np.ndarray, episode: np.ndarray, recording: Recording
+) -> None:
+    """Truth must reach into the time of one episode, if there are scans and rows at all."""
+    spans = [
+        (own.time_s[[0, -1]], time_s[episode == k])
+        for k, own in enumerate(recording)
+        if len(own) and (episode == k).any()
+    ]
+    if spans and all(rows.max() < begin or rows.min() > end for (begin, end), rows in spans):
+        (begin, end), rows = spans[0]
+        raise RecordingError(
+            table.path,
+            "the truth is of another time than the recording",
+            column=table.name("time_s"),
+            wanted=f"times that reach into {begin} to {end}",
+            got=f"{rows.min()} to {rows.max()}",
+        )
 
 
 def _targets(target: np.ndarray, time_s: np.ndarray, state: np.ndarray) -> dict[str, TargetTruth]:
