@@ -327,6 +327,12 @@ def test_rates_that_move_with_the_run_tell_the_right_model():
 # Files --------------------------------------------------------------------------------------------
 
 
+def test_a_result_and_its_outcomes_are_shown_in_a_few_words(result):
+    assert len(repr(result)) < 100
+    assert repr(result).startswith("<Result: ")
+    assert all(len(repr(outcome)) < 100 for outcome in result.outcomes.values())
+
+
 def test_a_result_that_cannot_be_saved_names_its_file(result, tmp_path):
     path = tmp_path / "none" / "result.npz"
     with pytest.raises(FileNotFoundError) as caught:

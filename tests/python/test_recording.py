@@ -463,3 +463,19 @@ def test_any_bytes_give_a_recording_or_a_recording_error(tmp_path_factory, data)
         return
     for scan in only(read).scans:
         assert np.isfinite(scan.position_m).all()
+
+
+def test_what_holds_much_is_shown_in_a_few_words():
+    read = recording.load("joyride")
+    (episode,) = read
+    counts, when = "115 scans, 147 plots, 1 target", "1495196206.9 to 1495196526.2 s"
+    assert repr(read) == f"<Recording 'joyride': 1 episode, {counts}, {when}>"
+    assert repr(episode) == f"<Episode: {counts}, {when}>"
+    assert repr(episode.own) == f"<OwnShip: 115 positions, {when}>"
+    assert repr(episode.truth) == f"{{'1': <TargetTruth: 115 positions, {when}>}}"
+    assert repr(episode.scans[3]) == "<Scan: number 3, 1 plot, at 1495196214.5 s>"
+    assert (
+        repr(recording.Recording("none", [])) == "<Recording 'none': 0 episodes, 0 scans, 0 plots>"
+    )
+    assert repr(recording.Tracks.joined([])) == "<Tracks: 0 tracks, 0 rows>"
+    assert "14 tracks, 4951 reports" in repr(recording.load_ais())

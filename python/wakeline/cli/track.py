@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from wakeline import FilterError, metrics
+from wakeline._brief import many
 from wakeline.recording import Recording, Tracks, is_video, read_plots
 
 from . import outputs, report, video
@@ -188,7 +189,8 @@ def _input_lines(recording: Recording, settings: Settings, radar: str) -> str:
     scans = sum(map(len, recording.episodes))
     plots = sum(episode.plot_count for episode in recording)
     scenarios = f", {len(recording)} scenarios" if len(recording) > 1 else ""
-    lines = [f"{recording.name}: {scans} scans, {plots} plots{scenarios}"]
+    counts = f"{many(scans, 'scan')}, {many(plots, 'plot')}{scenarios}"
+    lines = [f"{recording.name}: {counts}"]
     lines += [f"note: {note}" for note in recording.notes]
     lines.append(f"{radar}, period {_period(recording, settings)}")
     return "\n".join(lines)
@@ -208,11 +210,10 @@ def _track_lines(parts: Sequence[TrackedEpisode]) -> str:
     tracks = sum(len(part.tracks.ids()) for part in parts)
     rows = sum(len(part.tracks) for part in parts)
     coasting = sum(Counter(part.tracks.status.tolist())["coasting"] for part in parts)
-    plural = "" if tracks == 1 else "s"
-    lines = [f"{tracks} track{plural} in {rows} rows, {coasting} of them coasting"]
+    lines = [f"{many(tracks, 'track')} in {many(rows, 'row')}, {coasting} of them coasting"]
     refused = sum(part.refused_plots for part in parts)
     if refused:
-        lines.append(f"note: {refused} plots that the tracker could not take")
+        lines.append(f"note: {many(refused, 'plot')} that the tracker could not take")
     return "\n".join(lines)
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import metrics
+from wakeline._brief import brief, many
 from wakeline.scenario import Scenario
 
 from . import archive
@@ -77,6 +78,10 @@ class Outcome:
     turn_rate_rad_s: np.ndarray | None
     right_mode_share: np.ndarray | None
     cpu_s: float
+
+    def __repr__(self) -> str:
+        scans, name = many(len(self.time_s), "scan"), f"{self.candidate} on {self.scenario}"
+        return brief(self, many(self.runs, "run"), scans, name=name)
 
     @classmethod
     def of(cls, scenario: Scenario, candidate: str, sums: Sums) -> Outcome:
@@ -212,6 +217,10 @@ class Result:
     seed: int
     parameters: Mapping[str, Any] = field(default_factory=dict)
     version: str = field(default_factory=archive.current_version)
+
+    def __repr__(self) -> str:
+        counts = many(len(self.scenarios), "scenario"), many(len(self.candidates), "candidate")
+        return brief(self, *counts, many(self.runs, "run"), f"seed {self.seed}")
 
     def __getitem__(self, names: tuple[str, str]) -> Outcome:
         try:

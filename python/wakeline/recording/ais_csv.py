@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._brief import brief, many, span
 from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
@@ -53,6 +54,9 @@ class AisTrack:
 
     def __len__(self) -> int:
         return len(self.time_s)
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self), "report"), span(self.time_s), name=self.mmsi)
 
     @property
     def vnorth_mps(self) -> np.ndarray:
@@ -104,6 +108,11 @@ class AisRecording:
     plane: LocalPlane
     tracks: dict[str, AisTrack]
     notes: list[str] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        reports = sum(map(len, self.tracks.values()))
+        when = span(*(track.time_s for track in self.tracks.values()))
+        return brief(self, many(len(self.tracks), "track"), many(reports, "report"), when)
 
 
 def read_ais(

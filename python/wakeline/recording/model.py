@@ -6,10 +6,12 @@ since 1970 in files); bearings are radians clockwise from north.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+
+from wakeline._brief import brief, many, span
 
 from .truth import TargetTruth
 
@@ -46,6 +48,11 @@ class Scan:
     def __len__(self) -> int:
         return len(self.plot_time_s)
 
+    def __repr__(self) -> str:
+        return brief(
+            self, f"number {self.number}", many(len(self), "plot"), f"at {self.time_s:.1f} s"
+        )
+
     @property
     def position_m(self) -> np.ndarray:
         """Plots as (n, 2), north and east."""
@@ -80,6 +87,9 @@ class OwnShip:
 
     def __len__(self) -> int:
         return len(self.time_s)
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self), "position"), span(self.time_s))
 
     @classmethod
     def fixed(cls, north_m: float = 0.0, east_m: float = 0.0) -> OwnShip:
@@ -154,6 +164,9 @@ class Episode:
     def __len__(self) -> int:
         return len(self.scans)
 
+    def __repr__(self) -> str:
+        return brief(self, *_facts([self]), name=self.name)
+
     @property
     def time_s(self) -> np.ndarray:
         """Times of the scans, (T,)."""
@@ -188,6 +201,9 @@ class Recording:
 
     def __len__(self) -> int:
         return len(self.episodes)
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self), "episode"), *_facts(self.episodes), name=self.name)
 
     def episode_of(self, scenario: np.ndarray, time_s: np.ndarray) -> np.ndarray:
         """Index of the episode that each row of another table belongs to.
@@ -232,3 +248,14 @@ class Recording:
         order = sorted(range(len(spans)), key=lambda k: spans[k])
         outside_s = [np.maximum(spans[k][0] - time_s, time_s - spans[k][1]) for k in order]
         return np.array(order)[np.argmin(np.maximum(outside_s, 0.0), axis=0)]
+
+
+def _facts(episodes: Sequence[Episode]) -> list[str]:
+    """How much there is of scans, plots and targets with truth, and when."""
+    targets = {name for episode in episodes for name in episode.truth or ()}
+    return [
+        many(sum(map(len, episodes)), "scan"),
+        many(sum(episode.plot_count for episode in episodes), "plot"),
+        many(len(targets), "target") if targets else "",
+        span(*(episode.time_s for episode in episodes)),
+    ]

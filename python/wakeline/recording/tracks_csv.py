@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._brief import brief, many, span
+
 from .errors import RecordingError
 from .files import replacing
 from .table import Table
@@ -103,6 +105,10 @@ class Tracks:
 
     def __len__(self) -> int:
         return len(self.time_s)
+
+    def __repr__(self) -> str:
+        when = span(np.sort(self.time_s))
+        return brief(self, many(len(self.ids()), "track"), many(len(self), "row"), when)
 
     def where(self, chosen: np.ndarray) -> Tracks:
         """The chosen rows, by mask or by index."""

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wakeline._brief import brief, many, span
+
 _SAME_SAMPLE_S = 0.02
 _SAME_TIME_S = 1e-6
 _FIT_POINTS = 4
@@ -32,6 +34,9 @@ class TargetTruth:
 
     def __len__(self) -> int:
         return len(self.time_s)
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self), "position"), span(self.time_s))
 
     def state_at(
         self, time_s: np.ndarray, *, max_gap_s: float = 2.5, window_s: float = 2.0

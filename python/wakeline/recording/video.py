@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from wakeline._brief import brief, many, span
+
 
 @dataclass(frozen=True)
 class RadarVideo:
@@ -66,6 +68,10 @@ class RadarVideo:
 
     def __len__(self) -> int:
         return len(self.amplitude)
+
+    def __repr__(self) -> str:
+        cells = many(self.amplitude.shape[1], "cell")
+        return brief(self, many(len(self), "sweep"), f"of {cells}", span(self.time_s))
 
     def __getitem__(self, sweeps: slice) -> RadarVideo:
         """Some of the sweeps."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wakeline import plot
+from wakeline._brief import brief, many
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -117,6 +118,16 @@ class Report:
     pictures: tuple[Picture, ...] = ()
     published: Mapping[str, Published] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return brief(
+            self,
+            many(self.runs, "run"),
+            f"seed {self.seed}",
+            many(len(self.rows), "row"),
+            many(len(self.pictures), "picture"),
+            name=self.name,
+        )
 
     def row(self, scenario: str, estimator: str) -> dict[str, Any]:
         """The row of an estimator on a scenario; raises KeyError where there is none."""

@@ -1,0 +1,23 @@
+"""Things that hold many numbers, in the few words that a prompt has room for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+
+def brief(thing: Any, *facts: str, name: str = "") -> str:
+    """``<Recording 'joyride': 115 scans, 147 plots>``, as ``__repr__`` should say it."""
+    title = f"{type(thing).__name__} {name!r}" if name else type(thing).__name__
+    return f"<{title}: {', '.join(filter(None, facts))}>"
+
+
+def many(count: int, noun: str) -> str:
+    """A count with its noun, such as "1 scan" and "2 scans"."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def span(*times_s: Sequence[float]) -> str:
+    """From the first to the last of times, each sequence of them sorted; '' where there is none."""
+    ends: Iterable[float] = [end for t in times_s if len(t) for end in (t[0], t[-1])]
+    return f"{min(ends):.1f} to {max(ends):.1f} s" if ends else ""
