@@ -250,6 +250,25 @@ def test_run_prints_the_table_and_writes_json(tmp_path, capsys, no_pictures):
         assert word in text
 
 
+@pytest.mark.parametrize(
+    ("name", "told", "counts"),
+    [
+        ("imm", "imm: 1 run, seed 0", (0, 1)),
+        ("solent", "solent: 10 runs, seed 0", (0, 10)),
+        ("ais-forecast", "ais-forecast: 1 run, nothing drawn at random", (None, 1)),
+    ],
+)
+def test_as_many_runs_are_told_as_there_were(name, told, counts, tmp_path, capsys, no_pictures):
+    runs = 1 if name == "imm" else 3
+    result = tmp_path / "study.json"
+    assert run("run", name, "--runs", runs, "--json", result, "--out", tmp_path / "out") == 0
+    text = capsys.readouterr().out
+    assert told in text
+    assert " 1 runs" not in text
+    written = json.loads(result.read_text())
+    assert (written["seed"], written["runs"]) == counts
+
+
 def test_run_draws_the_figures_of_the_paper(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     assert run("run", "imm", "--runs", 2, "--out", tmp_path) == 0

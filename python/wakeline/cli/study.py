@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from wakeline import study
+from wakeline._brief import many
 
 from . import outputs, report
 
@@ -33,7 +34,12 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     )
     one.add_argument("name", choices=study.names(), metavar="NAME", help=", ".join(study.names()))
     one.add_argument(
-        "--runs", type=_runs, default=_RUNS, metavar="N", help="Monte Carlo runs, default 500"
+        "--runs",
+        type=_runs,
+        default=_RUNS,
+        metavar="N",
+        help="Monte Carlo runs, default 500; solent rounds up to as many of each of its stretches, "
+        "ais-forecast draws nothing at random and runs once",
     )
     one.add_argument("--seed", type=_seed, default=_SEED, metavar="S", help="default 0")
     one.add_argument("--json", type=Path, metavar="F", help="write the table as JSON")
@@ -61,7 +67,8 @@ def run_study(arguments: argparse.Namespace) -> None:
     done = study.load(arguments.name).run(
         arguments.runs, arguments.seed, full=arguments.full, progress=True
     )
-    print(f"{done.name}: {done.runs} runs, seed {done.seed}\n")
+    drawn = "nothing drawn at random" if done.seed is None else f"seed {done.seed}"
+    print(f"{done.name}: {many(done.runs, 'run')}, {drawn}\n")
     print(report.aligned(done.table(), left=2))
     for note in done.notes:
         print(f"\n{note}")

@@ -49,7 +49,7 @@ def run(
     threads: int | None = None,
     progress: bool = False,
 ) -> Report:
-    """Run the study; there is nothing random in it, and no argument changes the figures.
+    """Run the study once; there is nothing random in it, and no argument changes the figures.
 
     Returns
     -------
@@ -67,7 +67,7 @@ def run(
     table = {name: np.array(values) for name, values in errors.items()}
     return Report(
         name="ais-forecast",
-        seed=seed,
+        seed=None,
         runs=1,
         rows=_rows(table, np.array(turning), ahead_s),
         result=table,

@@ -96,8 +96,10 @@ class Report:
     ----------
     name : str
         Name of the study.
-    seed, runs : int
-        What it was run with.
+    seed : int or None
+        What it was run with; None where nothing is drawn at random.
+    runs : int
+        How many there were.
     rows : list of dict
         ``scenario``, ``estimator`` and metrics with their unit, None where there is none.
     result : object
@@ -111,7 +113,7 @@ class Report:
     """
 
     name: str
-    seed: int
+    seed: int | None
     runs: int
     rows: Rows
     result: Any = None
@@ -123,7 +125,7 @@ class Report:
         return brief(
             self,
             many(self.runs, "run"),
-            f"seed {self.seed}",
+            "" if self.seed is None else f"seed {self.seed}",
             many(len(self.rows), "row"),
             many(len(self.pictures), "picture"),
             name=self.name,

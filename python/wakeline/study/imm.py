@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import PiecewiseAcceleration, montecarlo, plot
+from wakeline._brief import many
 from wakeline.scenario import Scenario, papers
 
 from . import curves
@@ -119,7 +120,7 @@ def _pictures(
         pictures += [
             Picture(
                 f"imm-modes-{reading}",
-                f"Mode probabilities, mean of {result.runs} runs; {_READINGS[reading]}",
+                f"Mode probabilities, mean of {many(result.runs, 'run')}; {_READINGS[reading]}",
                 tuple(
                     partial(
                         curves.draw_modes,
@@ -133,7 +134,7 @@ def _pictures(
             ),
             curves.error_picture(
                 f"imm-errors-{reading}",
-                f"RMSE of {result.runs} runs over the bound; {_READINGS[reading]}",
+                f"RMSE of {many(result.runs, 'run')} over the bound; {_READINGS[reading]}",
                 result,
                 scenario,
                 LABELS,

@@ -22,6 +22,7 @@ import numpy as np
 
 import wakeline as wl
 from wakeline import WhiteAcceleration, plot, recording
+from wakeline._brief import many
 from wakeline._progress import progress as told
 from wakeline.recording import AisTrack
 from wakeline.scenario import RadarSimulator, Scenario, TrackTruth
@@ -284,7 +285,7 @@ def run(
     return Report(
         name="solent",
         seed=seed,
-        runs=runs,
+        runs=each * len(vessels()),
         rows=rows,
         pictures=_pictures(rows, seed),
         notes=(_note(totals, each),),
@@ -327,7 +328,7 @@ def _note(totals: Mapping[tuple[str, str], _Sums], each: int) -> str:
     sums = next(iter(totals.values()))
     return (
         f"{len(vessels())} stretches of {len(set(map(_vessel, vessels())))} vessels, "
-        f"{minutes:.0f} min in all, {each} runs of each; "
+        f"{minutes:.0f} min in all, {many(each, 'run')} of each; "
         f"{100.0 * sums.scans_after / sums.scans:.0f} % of the scans are after a turn: at most\n"
         f"{AFTER_TURN_S:.0f} s after the course changed by more than {TURN_RATE_DEG_S:g}°/s "
         f"in the mean of {_WINDOW_S:.0f} s."

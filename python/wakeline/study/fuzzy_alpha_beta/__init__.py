@@ -253,8 +253,8 @@ def _video_rows(scenarios: dict[str, HardTurn], films: dict[str, list[on_video.V
 
 
 def _video_note(runs: int) -> str:
-    return f"""On video there are {runs} runs of each scenario; errors there are those of the runs
-in which the craft is not lost."""
+    return f"""Runs on video: {runs} of each scenario; errors there are those of the runs in which
+the craft is not lost."""
 
 
 def _median_worst(error_m: np.ndarray) -> float:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wakeline import montecarlo, plot, scenario
+from wakeline._brief import many
 from wakeline.montecarlo import Candidate
 from wakeline.scenario import Scenario
 
@@ -150,7 +151,7 @@ def _group_pictures(
     z = example.draw(min(_DRAWN_RUNS, result.runs), seed)
     yield Picture(
         f"{name}-modes{suffix}",
-        f"{title}: probabilities of the turn rates, mean of {len(z)} runs",
+        f"{title}: probabilities of the turn rates, mean of {many(len(z), 'run')}",
         tuple(
             partial(
                 _draw_modes,
@@ -166,7 +167,7 @@ def _group_pictures(
     )
     yield curves.error_picture(
         f"{name}-errors{suffix}",
-        f"{title}: RMSE of {result.runs} runs over the bound",
+        f"{title}: RMSE of {many(result.runs, 'run')} over the bound",
         result,
         example,
         {key: LABELS[key] for key in (*shown, "clairvoyant")},
