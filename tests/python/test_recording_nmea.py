@@ -448,6 +448,36 @@ def test_a_fix_where_the_vessel_cannot_have_come_is_suspect(log):
     assert not log(*across).fixes.suspect.any()
 
 
+def jumping(*where, seconds=300):
+    """RMC of a vessel that goes east, moved north by degrees at the times of some slices."""
+    north_deg = np.zeros(seconds)
+    for times, moved_deg in where:
+        north_deg[times] += moved_deg
+    return [rmc(t, 46.5 + north, 6.7 + 3.35e-5 * t) for t, north in enumerate(north_deg)]
+
+
+@pytest.mark.parametrize("count", [3, 9, 120])
+def test_fixes_that_jump_and_come_back_are_suspect_all_of_them(log, count):
+    read = log(*jumping((slice(100, 100 + count), 0.5)))
+    assert np.flatnonzero(read.fixes.suspect).tolist() == list(range(100, 100 + count))
+    (told,) = [note for note in read.notes if "cannot have come" in note]
+    assert f"{count} fixes" in told
+    assert "first in line 101" in told
+    twice = log(*jumping((slice(100, 120), 0.5), (slice(120, 130), -0.5)))
+    assert np.flatnonzero(twice.fixes.suspect).tolist() == list(range(100, 130))
+
+
+def test_fixes_that_jump_and_stay_are_believed_and_told(log):
+    read = log(*jumping((slice(100, 300), 0.5), (slice(150, 154), -0.4)))
+    assert np.flatnonzero(read.fixes.suspect).tolist() == [150, 151, 152, 153]
+    (told,) = [note for note in read.notes if "jumps" in note]
+    assert "1 times farther than the vessel can have come, first by 55.6 km in line 101" in told
+    assert "196 fixes go on" in told
+    silent = log(*(rmc(t + 3000 * (t > 50), 46.5 + 0.5 * (t > 50)) for t in range(100)))
+    assert not silent.fixes.suspect.any()
+    assert not any("jumps" in note for note in silent.notes)
+
+
 @pytest.mark.parametrize("source", ["rmc", "vhw"])
 def test_fixes_that_stay_while_the_vessel_moves_are_frozen(log, source):
     lines = []

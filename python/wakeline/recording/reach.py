@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 _SLACK_M, _SLACK_S = 50.0, 2.0
 _TRUSTED = 3
+_MOST_AWAY = 3  # stretches in a row
 
 
 def unreachable(time_s: np.ndarray, position_m: np.ndarray, max_speed_mps: float) -> np.ndarray:
     """Mask (n,) of the positions that do not follow from those before them.
 
-    Where three in a row follow from each other but not from the track so far, they are believed;
-    the track so far is not when it is no longer than they are.
+    Where three in a row follow from each other but not from the track so far, they begin another
+    stretch of it. A first stretch that is no longer than these three is not believed. Neither is a
+    stretch from which the track comes back to where it can have come without it, unless it is
+    longer than those before and after together: the vessel was never there.
 
     Parameters
     ----------
@@ -26,19 +31,72 @@ def unreachable(time_s: np.ndarray, position_m: np.ndarray, max_speed_mps: float
 
     def reachable(a: int, b: int) -> bool:
         way_m = np.sqrt(np.sum((position_m[b] - position_m[a]) ** 2))
-        return way_m <= _SLACK_M + max_speed_mps * (time_s[b] - time_s[a] + _SLACK_S)
+        return way_m <= _reach_m(time_s[b] - time_s[a], max_speed_mps)
 
-    kept: list[int] = []
-    doubted: list[int] = []
-    for k in range(len(time_s)):
-        if not kept or reachable(kept[-1], k):
-            kept.append(k)
-            doubted = []
-            continue
-        doubted = [*doubted, k] if doubted and reachable(doubted[-1], k) else [k]
-        if len(doubted) >= _TRUSTED:
-            kept = doubted if len(kept) <= len(doubted) else kept + doubted
-            doubted = []
     mask = np.ones(len(time_s), dtype=bool)
-    mask[kept] = False
+    for stretch in _without_excursions(_stretches(len(time_s), reachable), reachable):
+        mask[stretch] = False
     return mask
+
+
+def jumps_m(time_s: np.ndarray, position_m: np.ndarray, max_speed_mps: float) -> np.ndarray:
+    """Ways (n,) from the position before to those that do not follow from it; zero for others."""
+    way_m = np.sqrt(np.sum(np.diff(position_m, axis=0) ** 2, axis=1))
+    far = way_m > _reach_m(np.diff(time_s), max_speed_mps)
+    return np.append(0.0, np.where(far, way_m, 0.0))[: len(time_s)]
+
+
+def _reach_m(after_s, max_speed_mps: float):
+    return _SLACK_M + max_speed_mps * (after_s + _SLACK_S)
+
+
+def _stretches(count: int, reachable: Callable[[int, int], bool]) -> list[list[int]]:
+    """Positions of which each follows from the one before it in its stretch."""
+    stretches: list[list[int]] = []
+    doubted: list[int] = []
+    for k in range(count):
+        if not stretches:
+            stretches.append([k])
+        elif reachable(stretches[-1][-1], k):
+            stretches[-1].append(k)
+            doubted = []
+        else:
+            doubted = [*doubted, k] if doubted and reachable(doubted[-1], k) else [k]
+            if len(doubted) >= _TRUSTED:
+                if len(stretches) == 1 and len(stretches[0]) <= len(doubted):
+                    stretches.clear()
+                stretches.append(doubted)
+                doubted = []
+    return stretches
+
+
+def _without_excursions(
+    stretches: list[list[int]], reachable: Callable[[int, int], bool]
+) -> list[list[int]]:
+    """The stretches without those that the track comes back from, short ones left out first."""
+    longest = _TRUSTED
+    while longest < 2 * sum(map(len, stretches)):
+        kept: list[list[int]] = []
+        for stretch in stretches:
+            away = _stretches_away(kept, stretch, longest, reachable)
+            if away:
+                del kept[-away:]
+                kept[-1] = kept[-1] + stretch
+            else:
+                kept.append(stretch)
+        stretches, longest = kept, 2 * longest
+    return stretches
+
+
+def _stretches_away(
+    kept: list[list[int]], stretch: list[int], longest: int, reachable: Callable[[int, int], bool]
+) -> int:
+    """How many of the last stretches lie between this one and one it follows from."""
+    positions = 0
+    for back in range(1, min(_MOST_AWAY, len(kept) - 1) + 1):
+        before = kept[-1 - back]
+        positions += len(kept[-back])
+        few = positions <= min(longest, len(before) + len(stretch))
+        if few and reachable(before[-1], stretch[0]):
+            return back
+    return 0

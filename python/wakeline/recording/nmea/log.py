@@ -77,7 +77,8 @@ class Fixes(Series):
     frozen : ndarray of bool (n,)
         The position is that of the fix before, again and again, though the vessel moves.
     suspect : ndarray of bool (n,)
-        At latitude 0, longitude 0, or where the vessel cannot have come.
+        At latitude 0, longitude 0, or where the vessel cannot have come: alone, or several that
+        come back to where she can have come without them.
     """
 
     latitude_deg: np.ndarray

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import datetime
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import numpy as np
 from wakeline._units import KNOT_MPS
 
 from ..errors import RecordingError
-from ..reach import unreachable
+from ..reach import jumps_m, unreachable
 from .clock import Clock
 from .log import (
     SERIES,
@@ -73,8 +74,10 @@ def read_nmea(
     **Fixes** of one time are one fix: the valid one, of these GGA before RMC before GLL. Fixes are
     marked, never dropped: not `valid` (status V, quality 0); `frozen`, where the position stays the
     same while the vessel, by her speed over ground or else through the water, moves over 50 m;
-    `suspect` at 0/0 and where she cannot have come at `max_speed_mps`. Positions in sentences with
-    empty fields are no fixes.
+    `suspect` at 0/0 and where she cannot have come at `max_speed_mps`, for as long as they stay
+    there, if they come back to where she can have come meanwhile. Three or more that do not come
+    back are believed, and a note tells of the jump. Positions in sentences with empty fields are no
+    fixes.
 
     **Headings**: magnetic ones (HDG with its deviation, HDM) are kept apart, with the variation of
     the sentence, else of the RMC before it (or else the first), else `variation_deg`. They are the
@@ -139,7 +142,7 @@ def read_nmea(
         report=report,
         notes=notes,
     )
-    notes += [f"{path.name}: {note}" for note in _notes(log)]
+    notes += [f"{path.name}: {note}" for note in [*_notes(log), *_jump_notes(log, max_speed_mps)]]
     return log
 
 
@@ -501,6 +504,20 @@ def _notes(log: NavigationLog) -> list[str]:
         also = f"; {unknown} magnetic ones want a variation_deg" if unknown else ""
         notes.append(f"no true heading{also}")
     return notes
+
+
+def _jump_notes(log: NavigationLog, max_speed_mps: float) -> Iterator[str]:
+    for part in log.parts(np.inf):
+        fixes = part.fixes.sound()
+        jump_m = jumps_m(fixes.time_s, _earth_centred_m(fixes), max_speed_mps)
+        at = np.flatnonzero(jump_m)
+        if len(at):
+            count = np.append(at, len(fixes))[1] - at[0]
+            yield (
+                f"the position jumps {len(at)} times farther than the vessel can have come, first "
+                f"by {jump_m[at[0]] / 1e3:.3g} km in line {fixes.line[at[0]]}, where {count} fixes "
+                "go on"
+            )
 
 
 def _problem_note(report: NmeaReport, kind: str, count: int) -> str:
