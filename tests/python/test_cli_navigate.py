@@ -147,6 +147,49 @@ def test_satellites_that_fail_are_coasted_over_and_come_back_without_a_jump(tmp_
     assert np.hypot(*np.diff(place, axis=0).T).max() < 15.0
 
 
+def moved_north(lines, seconds, way_m):
+    """Sentences with the fixes of some seconds moved."""
+    lines = list(lines)
+    for k in [3 * second for second in seconds]:
+        fields = lines[k][1:].partition("*")[0].split(",")
+        fields[3] = f"50{float(fields[3][2:]) + 60 * way_m / 111_229.0:08.5f}"
+        lines[k] = sentence(",".join(fields))
+    return lines
+
+
+def north_off_m(rows, without):
+    place = [float(row["lat_deg"]) for row in rows], [float(row["lat_deg"]) for row in without]
+    return 111_229.0 * np.subtract(*place)
+
+
+def test_fixes_that_jump_far_and_come_back_move_nothing(tmp_path, capsys):
+    lines = voyage(10)
+    true = navigated(tmp_path, lines)
+    assert "note" not in capsys.readouterr().out
+    rows = navigated(tmp_path, moved_north(lines, range(400, 450), 50_000.0))
+    assert np.abs(north_off_m(rows, true)).max() < 25.0
+    assert "50 fixes at 0/0 or where the vessel cannot have come" in capsys.readouterr().out
+    assert rows[3 * 440]["status"] == "coasting"
+
+
+def test_a_position_that_jumped_is_not_ok_until_it_comes_back(tmp_path, capsys):
+    lines = voyage(12)
+    true = navigated(tmp_path, lines)
+    capsys.readouterr()
+    rows = navigated(tmp_path, moved_north(lines, range(400, 460), 150.0))
+    told = capsys.readouterr().out
+    assert "20 fixes that do not fit the other readings are rejected (first in line 1201)" in told
+    assert "the position jumps 2 times" in told
+    status = np.array([row["status"] for row in rows])
+    off = np.abs(north_off_m(rows, true)) > 75.0
+    assert off.sum() > 150
+    assert set(status[off]) == {"jumped", "rejected"}
+    assert set(status[~off]) == {"ok", "rejected"}
+    stays = navigated(tmp_path, moved_north(lines, range(400, 720), 50_000.0))
+    assert "first by 50 km in line 1201, where 320 fixes go on" in capsys.readouterr().out
+    assert {row["status"] for row in stays[3 * 411 :]} == {"jumped"}
+
+
 @pytest.mark.parametrize(("compass", "water"), [("none", True), ("HDT", False), ("none", False)])
 def test_without_heading_or_log_there_is_a_solution_without_drift(tmp_path, compass, water):
     rows = navigated(tmp_path, voyage(5, compass=compass, water=water))

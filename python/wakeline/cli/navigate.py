@@ -12,6 +12,7 @@ import numpy as np
 
 from wakeline import plot
 from wakeline.recording import NavigationLog, RecordingError, read_nmea, replacing
+from wakeline.recording.nmea import Fixes
 
 from . import navigating, outputs, report
 
@@ -38,7 +39,10 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         description="Reads NMEA 0183, fuses fixes, speeds, headings and rates of turn, and writes "
         "own.csv and pictures. A part after a gap of a minute is navigated by itself. Then "
         "satellites are hidden for a minute at a time, and the errors of what is foretold are "
-        "told. What cannot be read of the log, or not be used, is counted, and never fatal.",
+        "told. What cannot be read of the log, or not be used, is counted, and never fatal. In "
+        "own.csv the status is ok, coasting (no fix for five seconds), rejected (a fix that does "
+        "not fit) or jumped (from where fixes that were rejected but went on have moved the "
+        "position by over 50 m, until it comes back).",
     )
     parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one a line")
     parser.add_argument(
@@ -58,6 +62,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
 class _Leg(NamedTuple):
     """A part of the log without a gap of a minute."""
 
+    fixes: Fixes
     readings: navigating.Readings
     track: navigating.OwnTrack
 
@@ -99,10 +104,15 @@ def _legs(log: NavigationLog) -> list[_Leg]:
     parts = log.parts()
     for note in _unused_notes(parts):
         print(note, flush=True)
-    all_readings = (
-        navigating.readings_of(part, offset_rad) for part in parts if len(part.fixes.sound())
-    )
-    return [_Leg(readings, navigating.navigate(readings)) for readings in all_readings]
+    legs = [_leg(part, offset_rad) for part in parts if len(part.fixes.sound())]
+    for note in _doubt_notes(legs):
+        print(note, flush=True)
+    return legs
+
+
+def _leg(part: NavigationLog, offset_rad: float) -> _Leg:
+    readings = navigating.readings_of(part, offset_rad)
+    return _Leg(part.fixes.sound(), readings, navigating.navigate(readings))
 
 
 def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
@@ -111,6 +121,35 @@ def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
         lines = np.concatenate([of_part[what] for of_part in unused])
         if len(lines):
             yield f"note: {len(lines)} {what} are not used (first in line {lines.min()})"
+
+
+def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
+    """What the navigator did not believe, or did so only after a while."""
+    jump_m = np.concatenate([leg.track.jump_m for leg in legs])
+    jump_m = jump_m[jump_m > navigating.JUMP_M]
+    rejected = _fix_lines(legs, [leg.track.status == "rejected" for leg in legs])
+    jumps = _fix_lines(legs, [leg.track.jump_m > navigating.JUMP_M for leg in legs])
+    if len(rejected):
+        yield (
+            f"note: {len(rejected)} fixes that do not fit the other readings are rejected "
+            f"(first in line {rejected[0]})"
+        )
+    if len(jumps):
+        yield (
+            f"note: the position jumps {len(jumps)} times, to fixes that went on though rejected, "
+            f"first by {jump_m[0]:.0f} m in line {jumps[0]}; from there the status is jumped, "
+            "until it comes back"
+        )
+
+
+def _fix_lines(legs: Sequence[_Leg], masks: Sequence[np.ndarray]) -> np.ndarray:
+    """Lines of the fixes at the masked times of the legs."""
+    return np.concatenate(
+        [
+            leg.fixes.line[np.isin(leg.fixes.time_s, leg.track.time_s[mask])]
+            for leg, mask in zip(legs, masks, strict=True)
+        ]
+    )
 
 
 def _input_lines(log: NavigationLog) -> str:
@@ -203,7 +242,7 @@ def _write_pictures(folder: Path, legs: Sequence[_Leg]) -> list[Path]:
     if len(drawn) < len(legs):
         short = f"{len(legs) - len(drawn)} of {len(legs)} parts"
         print(f"note: not drawn are {short}, of fewer than {_LEAST_DRAWN_FIXES} fixes")
-    for number, (readings, track) in enumerate(drawn, start=1):
+    for number, (_, readings, track) in enumerate(drawn, start=1):
         end = f"-{number}" if len(drawn) > 1 else ""
         files += [folder / f"own_map{end}.png", folder / f"own_time{end}.png"]
         has_fix = readings.has_fix

@@ -26,8 +26,10 @@ TURN_RATE_STD_RAD_S = np.deg2rad(2.0)  # of an indicator that lags
 ACCELERATION_STD_MPS2 = 0.1
 START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over ground, and without
 SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.1, 0.02  # in one second
+GATE_PROBABILITY = 0.999
 
 COASTING_S = 5.0
+JUMP_M = 50.0
 HIDDEN_S, HIDDEN_EVERY_S = 60.0, 150.0
 HORIZONS_S = (10.0, 30.0, 60.0)
 _UNDER_WAY_MPS = 1.5
@@ -86,8 +88,11 @@ class OwnTrack:
         Covariances.
     heading_std_rad : ndarray (T,)
     status : ndarray of str (T,)
-        ``ok``; ``coasting`` without a fix for more than five seconds; ``rejected`` where a fix was
-        not believed.
+        ``ok``; ``coasting`` without a fix for more than five seconds; ``jumped`` from where fixes
+        that went on though rejected have moved the position by more than 50 m, until others move it
+        back; ``rejected`` where a fix was not believed.
+    jump_m : ndarray (T,)
+        How far such fixes have moved the position, zero at other times.
     """
 
     time_s: np.ndarray
@@ -101,6 +106,7 @@ class OwnTrack:
     velocity_m2s2: np.ndarray
     heading_std_rad: np.ndarray
     status: np.ndarray
+    jump_m: np.ndarray
 
 
 def readings_of(part: NavigationLog, offset_rad: float) -> Readings:
@@ -180,6 +186,7 @@ def navigate(readings: Readings) -> OwnTrack:
     heading = mean[:, 2 if states == 7 else 4]
     velocity, slope = _velocity(mean, states)
     latitude, longitude = readings.plane.place(mean[:, :2])
+    moved_m = _moved_m(readings, done, velocity)
     known = np.isfinite(readings.heading_rad).any()
     at = 2 if states == 7 else 4
     return OwnTrack(
@@ -193,7 +200,8 @@ def navigate(readings: Readings) -> OwnTrack:
         position_m2=covariance[:, :2, :2],
         velocity_m2s2=slope @ covariance @ np.swapaxes(slope, 1, 2),
         heading_std_rad=np.sqrt(covariance[:, at, at]) if known else np.full(len(mean), np.nan),
-        status=_status(readings, done.rejected["gnss"]),
+        status=_status(readings, done.rejected["gnss"], moved_m),
+        jump_m=np.hypot(*moved_m.T),
     )
 
 
@@ -232,6 +240,7 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
         unmeasured_yaw_rate_std_rad_s=YAW_RATE_STD_RAD_S,
         speed_walk_mps=SPEED_WALK_MPS,
         current_walk_mps=CURRENT_WALK_MPS,
+        gate_probability=GATE_PROBABILITY,
     )
     velocity = _first(readings.over_ground_mps, np.zeros(2))
     knows_velocity = np.isfinite(readings.over_ground_mps).all(axis=1).any()
@@ -310,10 +319,36 @@ def _velocity(mean: np.ndarray, states: int) -> tuple[np.ndarray, np.ndarray]:
     return mean[:, 3:4] * ahead + mean[:, 5:7], slope
 
 
-def _status(readings: Readings, rejected: np.ndarray) -> np.ndarray:
+def _moved_m(
+    readings: Readings, done: wl.navigation.UsvRun, velocity_mps: np.ndarray
+) -> np.ndarray:
+    """How far (T, 2) fixes outside the gate that were believed have moved the position."""
+    outside = done.nis["gnss"] > -2.0 * np.log(1.0 - GATE_PROBABILITY)
+    believed = np.flatnonzero(outside & ~done.rejected["gnss"])
+    step_s = readings.time_s[believed] - readings.time_s[believed - 1]
+    foretold_m = done.mean[believed - 1, :2] + velocity_mps[believed - 1] * step_s[:, None]
+    moved_m = np.zeros((len(readings.time_s), 2))
+    moved_m[believed] = readings.fix_m[believed] - foretold_m
+    return moved_m
+
+
+def _status(readings: Readings, rejected: np.ndarray, moved_m: np.ndarray) -> np.ndarray:
     last_s = np.maximum.accumulate(np.where(readings.has_fix, readings.time_s, -np.inf))
     status = np.where(readings.time_s - last_s > COASTING_S, "coasting", "ok")
+    status = np.where(_jumped(moved_m), "jumped", status)
     return np.where(rejected, "rejected", status)
+
+
+def _jumped(moved_m: np.ndarray) -> np.ndarray:
+    """Mask (T,) of the times at which the position is not where it would be unmoved."""
+    jumped = np.zeros(len(moved_m), dtype=bool)
+    away_m = np.zeros(2)
+    for k in np.flatnonzero(moved_m.any(axis=1)):
+        away_m = away_m + moved_m[k]
+        jumped[k:] = np.hypot(*away_m) > JUMP_M
+        if not jumped[k]:
+            away_m = np.zeros(2)
+    return jumped
 
 
 def _straight_on(seen: Readings) -> np.ndarray:
