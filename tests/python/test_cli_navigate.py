@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from importlib import resources
 
 import numpy as np
@@ -86,6 +87,14 @@ def voyage(
     return lines
 
 
+def column(rows, name):
+    return np.array([float(row[name]) for row in rows])
+
+
+def seconds(rows):
+    return column(rows, "time_s") - float(rows[0]["time_s"])
+
+
 def navigated(folder, lines, *options):
     log = folder / "some.nmea"
     log.write_text("".join(lines))
@@ -120,15 +129,49 @@ def test_set_and_drift_come_out(tmp_path):
     assert np.isfinite(heading).all()
 
 
-def test_a_compass_without_variation_is_set_by_courses_over_ground(tmp_path, capsys):
-    rows = navigated(tmp_path, voyage(current_kn=(0.0, 0.0), compass="HDG"))
-    assert "+3.0° are added" in capsys.readouterr().out.replace("+2.9°", "+3.0°").replace(
-        "+3.1°", "+3.0°"
-    )
-    second = np.array([float(row["time_s"]) for row in rows]) - float(rows[0]["time_s"])
-    told = np.array([float(row["heading_deg"]) for row in rows])
-    off = (told - heading_deg(second) + 180.0) % 360.0 - 180.0
+def added_deg(out):
+    """What is added to magnetic headings, and its standard deviation."""
+    found = re.search(r"note: ([+-][0-9.]+)° ± ([0-9.]+)° are added", out)
+    return float(found[1]), float(found[2])
+
+
+@pytest.mark.parametrize("current_kn", [(0.0, 0.0), (0.8, -0.5)])
+def test_a_compass_without_variation_is_set_by_velocities_over_ground(tmp_path, capsys, current_kn):
+    rows = navigated(tmp_path, voyage(12, current_kn=current_kn, compass="HDG"))
+    out = capsys.readouterr().out
+    added, std = added_deg(out)
+    assert added == pytest.approx(3.0, abs=0.3)
+    assert 0.3 < std < 2.0
+    assert f"without --variation set and drift err by {100 * np.deg2rad(std):.0f} %" in out
+    off = (column(rows, "heading_deg") - heading_deg(seconds(rows)) + 180.0) % 360.0 - 180.0
     assert abs(np.median(off)) < 0.5
+    drift, toward = column(rows, "drift_mps"), np.deg2rad(column(rows, "set_deg"))
+    found = np.column_stack([drift * np.cos(toward), drift * np.sin(toward)])[-360:]
+    np.testing.assert_allclose(np.median(found, axis=0) / KN, current_kn, atol=0.15)
+
+
+@pytest.mark.parametrize("water", [True, False])
+def test_an_offset_that_may_be_drift_is_in_the_error_of_the_heading(tmp_path, capsys, water):
+    lines = voyage(4, current_kn=(0.4, -0.7), compass="HDG", water=water)
+    rows = navigated(tmp_path, lines)
+    added, std = added_deg(capsys.readouterr().out)
+    assert abs(added - 3.0) > 3.0
+    assert abs(added - 3.0) < 2.0 * std
+    assert (column(rows, "heading_std_deg") > std).all()
+    known = column(navigated(tmp_path, lines, "--variation", "3"), "heading_std_deg")
+    np.testing.assert_allclose(
+        column(rows, "heading_std_deg"), np.hypot(known, std), rtol=0.1, atol=0.05
+    )
+
+
+def test_without_velocities_over_ground_the_variation_may_be_any(tmp_path, capsys):
+    lines = [
+        sentence("HCHDG,0.0,,,,") if line.startswith("$HEHDT") else line
+        for line in fixes_alone(60, 6.0)
+    ]
+    rows = navigated(tmp_path, lines)
+    assert added_deg(capsys.readouterr().out) == (0.0, 15.0)
+    assert (column(rows, "heading_std_deg") > 15.0).all()
 
 
 def test_satellites_that_fail_are_coasted_over_and_come_back_without_a_jump(tmp_path):

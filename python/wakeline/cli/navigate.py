@@ -49,8 +49,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "--variation",
         type=float,
         metavar="DEG",
-        help="magnetic variation, positive east, where the log has none; default what courses over "
-        "ground say of the compass",
+        help="magnetic variation, positive east, where the log has none; default what velocities "
+        "over ground say of the compass, which is little if the ship never alters course",
     )
     parser.add_argument(
         "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
@@ -94,24 +94,32 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _legs(log: NavigationLog) -> list[_Leg]:
-    offset_rad = 0.0
-    magnetic = len(log.heading.sound()) == 0 and len(log.compass.sound()) > 0
-    if magnetic:
-        found_rad = navigating.magnetic_offset_rad(log)
-        offset_rad = found_rad or 0.0
-        how = "as courses over ground say" if found_rad is not None else "for nothing is known"
-        print(f"note: {np.degrees(offset_rad):+.1f}° are added to magnetic headings, {how}")
+    offset = _magnetic_offset(log)
     parts = log.parts()
     for note in _unused_notes(parts):
         print(note, flush=True)
-    legs = [_leg(part, offset_rad) for part in parts if len(part.fixes.sound())]
+    legs = [_leg(part, offset) for part in parts if len(part.fixes.sound())]
     for note in _doubt_notes(legs):
         print(note, flush=True)
     return legs
 
 
-def _leg(part: NavigationLog, offset_rad: float) -> _Leg:
-    readings = navigating.readings_of(part, offset_rad)
+def _magnetic_offset(log: NavigationLog) -> navigating.MagneticOffset:
+    if len(log.heading.sound()) or not len(log.compass.sound()):
+        return navigating.NO_OFFSET
+    offset = navigating.magnetic_offset(log)
+    how = "for nothing is known" if offset is None else "as velocities over ground say"
+    offset = offset or navigating.ANY_OFFSET
+    degrees, std_deg = np.degrees(offset)
+    print(f"note: {degrees:+.1f}° ± {std_deg:.1f}° are added to magnetic headings, {how}")
+    if len(log.water.sound()):
+        share = f"{100.0 * offset.std_rad:.0f} %"
+        print(f"note: without --variation set and drift err by {share} of the speed")
+    return offset
+
+
+def _leg(part: NavigationLog, offset: navigating.MagneticOffset) -> _Leg:
+    readings = navigating.readings_of(part, offset)
     return _Leg(part.fixes.sound(), readings, navigating.navigate(readings))
 
 

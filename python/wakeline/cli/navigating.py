@@ -26,6 +26,7 @@ TURN_RATE_STD_RAD_S = np.deg2rad(2.0)  # of an indicator that lags
 ACCELERATION_STD_MPS2 = 0.1
 START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over ground, and without
 SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.1, 0.02  # in one second
+CURRENT_STD_MPS = 0.5
 GATE_PROBABILITY = 0.999
 
 COASTING_S = 5.0
@@ -33,8 +34,21 @@ JUMP_M = 50.0
 HIDDEN_S, HIDDEN_EVERY_S = 60.0, 150.0
 HORIZONS_S = (10.0, 30.0, 60.0)
 _UNDER_WAY_MPS = 1.5
+_SAME_CURRENT_S = 1800.0
+_MINUTE_STD_MPS = 0.2  # of the mean velocity of a minute: gusts, leeway, deviation
 _SETTLED_S = 120.0
 _NEAR_S = 3.0
+
+
+class MagneticOffset(NamedTuple):
+    """What is added to magnetic headings, and its standard deviation, which lasts."""
+
+    offset_rad: float
+    std_rad: float
+
+
+NO_OFFSET = MagneticOffset(0.0, 0.0)
+ANY_OFFSET = MagneticOffset(0.0, np.deg2rad(15.0))  # variations over the seas
 
 
 class Readings(NamedTuple):
@@ -42,7 +56,8 @@ class Readings(NamedTuple):
 
     ``fix_m`` and ``velocity_mps`` (T, 2) north and east, ``heading_rad`` (T,) true, ``log_mps``
     (T,) through the water ahead, ``bottom_mps`` (T, 2) north and east over ground by a log that
-    sees the bottom, ``turn_rate_rad_s`` (T,) to starboard.
+    sees the bottom, ``turn_rate_rad_s`` (T,) to starboard. ``offset_std_rad`` is the error that
+    all headings share.
     """
 
     plane: wl.navigation.LocalPlane
@@ -53,6 +68,7 @@ class Readings(NamedTuple):
     log_mps: np.ndarray
     bottom_mps: np.ndarray
     turn_rate_rad_s: np.ndarray
+    offset_std_rad: float
 
     @property
     def over_ground_mps(self) -> np.ndarray:
@@ -109,11 +125,11 @@ class OwnTrack:
     jump_m: np.ndarray
 
 
-def readings_of(part: NavigationLog, offset_rad: float) -> Readings:
-    """The readings of a log that has a fix, `offset_rad` added to magnetic headings."""
+def readings_of(part: NavigationLog, offset: MagneticOffset) -> Readings:
+    """The readings of a log that has a fix, `offset` added to magnetic headings."""
     fixes, ground, water = part.fixes.sound(), part.ground.sound(), part.water.sound()
     bottom, turn = part.bottom.sound(), part.turn.sound()
-    headings = _headings(part, offset_rad)
+    headings = _headings(part, offset.offset_rad)
     latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
     plane = wl.navigation.LocalPlane(latitude_rad=latitude[0], longitude_rad=longitude[0])
     course = np.column_stack([np.cos(ground.course_rad), np.sin(ground.course_rad)])
@@ -127,7 +143,7 @@ def readings_of(part: NavigationLog, offset_rad: float) -> Readings:
     )
     time_s = np.unique(np.concatenate([times for times, _ in series]))
     time_s = time_s[time_s >= fixes.time_s[0]]
-    return Readings(plane, time_s, *(_at(time_s, *one) for one in series))
+    return Readings(plane, time_s, *(_at(time_s, *one) for one in series), offset.std_rad)
 
 
 def unused(part: NavigationLog) -> dict[str, np.ndarray]:
@@ -151,20 +167,30 @@ def unused(part: NavigationLog) -> dict[str, np.ndarray]:
     }
 
 
-def magnetic_offset_rad(log: NavigationLog) -> float | None:
-    """What to add to magnetic headings that have no variation, found from courses over ground.
+def magnetic_offset(log: NavigationLog) -> MagneticOffset | None:
+    """What to add to magnetic headings that have no variation, found from velocities over ground.
 
-    The mean difference of course and heading under way, in which currents and leeway of all
-    directions cancel. None where there is nothing to find it from.
+    Least squares over minutes of ground = a · water + current, complex numbers of north and east,
+    water by the magnetic compass; the angle of a is the offset. The current is another in every
+    half hour: alterations of course tell it from the offset. Without a log, speeds over ground
+    stand for those through the water, and nothing does. None where there is nothing to find it
+    from.
     """
-    ground, compass = log.ground.sound(), log.compass.sound()
-    fast = ground.speed_mps > _UNDER_WAY_MPS
-    if not fast.any() or len(compass) == 0:
+    time_s, water, ground = _by_minute(log)
+    if len(time_s) == 0:
         return None
-    at = np.clip(np.searchsorted(compass.time_s, ground.time_s[fast]), 0, len(compass) - 1)
-    off = ground.course_rad[fast] - compass.heading_magnetic_rad[at]
-    off = off[np.isfinite(off)]
-    return float(np.angle(np.exp(1j * off).mean())) if len(off) else None
+    knows_water = len(log.water.sound()) > 0
+    information, correlation = 0.0, 0j
+    half_hour = (time_s - time_s[0]) // _SAME_CURRENT_S
+    for same in [half_hour == number for number in np.unique(half_hour)]:
+        w, g = water[same], ground[same]
+        share = 1.0 / (len(w) + (_MINUTE_STD_MPS / CURRENT_STD_MPS) ** 2) if knows_water else 0.0
+        information += np.vdot(w, w).real - share * abs(w.sum()) ** 2
+        correlation += np.vdot(w, g) - share * w.sum().conj() * g.sum()
+    std = _MINUTE_STD_MPS if knows_water else CURRENT_STD_MPS * np.sqrt(len(time_s))
+    return MagneticOffset(
+        float(np.angle(correlation)), float(std * np.sqrt(information) / abs(correlation))
+    )
 
 
 def navigate(readings: Readings) -> OwnTrack:
@@ -183,12 +209,13 @@ def navigate(readings: Readings) -> OwnTrack:
         log_std_mps=LOG_STD_MPS,
     )
     mean, covariance = done.mean, done.covariance
-    heading = mean[:, 2 if states == 7 else 4]
+    at = 2 if states == 7 else 4
+    heading = mean[:, at]
     velocity, slope = _velocity(mean, states)
     latitude, longitude = readings.plane.place(mean[:, :2])
     moved_m = _moved_m(readings, done, velocity)
+    heading_std = np.sqrt(covariance[:, at, at] + readings.offset_std_rad**2)
     known = np.isfinite(readings.heading_rad).any()
-    at = 2 if states == 7 else 4
     return OwnTrack(
         time_s=readings.time_s,
         latitude_deg=np.degrees(latitude),
@@ -199,7 +226,7 @@ def navigate(readings: Readings) -> OwnTrack:
         current_mps=mean[:, 5:7] if states == 7 else np.full((len(mean), 2), np.nan),
         position_m2=covariance[:, :2, :2],
         velocity_m2s2=slope @ covariance @ np.swapaxes(slope, 1, 2),
-        heading_std_rad=np.sqrt(covariance[:, at, at]) if known else np.full(len(mean), np.nan),
+        heading_std_rad=heading_std if known else np.full(len(mean), np.nan),
         status=_status(readings, done.rejected["gnss"], moved_m),
         jump_m=np.hypot(*moved_m.T),
     )
@@ -240,6 +267,7 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
         unmeasured_yaw_rate_std_rad_s=YAW_RATE_STD_RAD_S,
         speed_walk_mps=SPEED_WALK_MPS,
         current_walk_mps=CURRENT_WALK_MPS,
+        current_std_mps=CURRENT_STD_MPS,
         gate_probability=GATE_PROBABILITY,
     )
     velocity = _first(readings.over_ground_mps, np.zeros(2))
@@ -254,6 +282,36 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
         heading_std_rad=np.deg2rad(10.0),
     )
     return navigator
+
+
+def _by_minute(log: NavigationLog) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Minutes (n,) under way and their mean velocities by magnetic compass and over ground."""
+    rows = [_velocities(part) for part in log.parts()]
+    time_s, water, ground = (np.concatenate(column) for column in zip(*rows, strict=True))
+    known = np.isfinite(water) & np.isfinite(ground)
+    minute, of_row, count = np.unique(
+        time_s[known] // 60.0, return_inverse=True, return_counts=True
+    )
+    means = [
+        (np.bincount(of_row, v.real) + 1j * np.bincount(of_row, v.imag)) / count
+        for v in (water[known], ground[known])
+    ]
+    return 60.0 * minute, *means
+
+
+def _velocities(part: NavigationLog) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times (n,) of speeds over ground, the velocities by magnetic compass and those over ground.
+
+    Those by compass are through the water, or, without a log, of the speed over ground.
+    """
+    ground, compass, water = part.ground.sound(), part.compass.sound(), part.water.sound()
+    ground = ground.rows(ground.speed_mps > _UNDER_WAY_MPS)
+    heading = _between(ground.time_s, compass.time_s, np.unwrap(compass.heading_magnetic_rad))
+    speed_mps = ground.speed_mps
+    if len(water):
+        speed_mps = _between(ground.time_s, water.time_s, water.ahead_mps)
+    over_ground = ground.speed_mps * np.exp(1j * ground.course_rad)
+    return ground.time_s, speed_mps * np.exp(1j * heading), over_ground
 
 
 def _headings(part: NavigationLog, offset_rad: float) -> tuple[np.ndarray, np.ndarray]:
