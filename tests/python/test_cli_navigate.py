@@ -142,6 +142,7 @@ def test_a_compass_without_variation_is_set_by_velocities_over_ground(tmp_path, 
     added, std = added_deg(out)
     assert added == pytest.approx(3.0, abs=0.3)
     assert 0.3 < std < 2.0
+    assert "variation_deg" not in out
     assert f"without --variation set and drift err by {100 * np.deg2rad(std):.0f} %" in out
     off = (column(rows, "heading_deg") - heading_deg(seconds(rows)) + 180.0) % 360.0 - 180.0
     assert abs(np.median(off)) < 0.5
@@ -359,6 +360,17 @@ def test_what_is_no_log_is_one_clear_line(tmp_path, text, word, capsys):
     error = capsys.readouterr().err
     assert "some.nmea" in error
     assert word in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize("variation", ["400", "nan", "east"])
+def test_a_variation_that_is_none_is_one_clear_line(tmp_path, variation, capsys):
+    log = tmp_path / "some.nmea"
+    log.write_text("".join(voyage(1, compass="HDG")))
+    assert main(["navigate", str(log), "--out", str(tmp_path), "--variation", variation]) == 2
+    error = capsys.readouterr().err
+    assert f"--variation: wanted degrees from -180 to 180, got '{variation}'" in error
+    assert "variation_deg" not in error
     assert error.count("\n") == 1
 
 

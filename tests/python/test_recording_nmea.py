@@ -408,7 +408,7 @@ def test_the_variation_is_that_of_the_sentence_of_rmc_or_the_one_given(log):
     assert np.isnan(read.compass.variation_rad).all()
     assert np.isnan(read.compass.heading_rad).all()
     assert len(read.heading) == 0
-    assert read.notes == ["own.nmea: no true heading; 2 magnetic ones want a variation_deg"]
+    assert read.notes == ["own.nmea: no true heading; 2 magnetic ones want a variation"]
     assert log(rmc(10)).notes == ["own.nmea: no true heading"]
 
 
@@ -832,7 +832,7 @@ def test_irene_holds_what_its_source_says(irene):
     assert stops[stops > 10].tolist() == [140, 30]
     assert np.median(irene.ground.speed_mps) / KNOT_MPS == pytest.approx(5.7, abs=0.01)
     assert [len(part.fixes) for part in irene.parts()] == [256, 1940]
-    assert "3540 magnetic ones want a variation_deg" in irene.notes[-1]
+    assert "3540 magnetic ones want a variation" in irene.notes[-1]
 
 
 def test_speeds_and_courses_of_irene_are_those_of_her_positions(irene):

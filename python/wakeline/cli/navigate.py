@@ -47,7 +47,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one a line")
     parser.add_argument(
         "--variation",
-        type=float,
+        type=_variation_deg,
         metavar="DEG",
         help="magnetic variation, positive east, where the log has none; default what velocities "
         "over ground say of the compass, which is little if the ship never alters course",
@@ -57,6 +57,16 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--json", type=Path, metavar="F", help="errors without satellites")
     parser.set_defaults(run=run)
+
+
+def _variation_deg(text: str) -> float:
+    try:
+        variation_deg = float(text)
+    except ValueError:
+        variation_deg = np.nan
+    if not abs(variation_deg) <= 180.0:
+        raise argparse.ArgumentTypeError(f"wanted degrees from -180 to 180, got {text!r}")
+    return variation_deg
 
 
 class _Leg(NamedTuple):

@@ -501,7 +501,7 @@ def _notes(log: NavigationLog) -> list[str]:
         )
     unknown = np.count_nonzero(np.isnan(log.compass.variation_rad))
     if not log.heading.valid.any():
-        also = f"; {unknown} magnetic ones want a variation_deg" if unknown else ""
+        also = f"; {unknown} magnetic ones want a variation" if unknown else ""
         notes.append(f"no true heading{also}")
     return notes
 
