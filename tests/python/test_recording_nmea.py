@@ -439,6 +439,15 @@ def test_fixes_at_zero_are_suspect(log):
     assert log(*(rmc(t, 0.0, 0.0) for t in range(5))).fixes.suspect.all()
 
 
+def test_fixes_at_zero_are_not_frozen_too(log):
+    lines = under_way(range(200))
+    lines[30:180] = [rmc(t, 0.0, 0.0) for t in range(30, 180)]
+    read = log(*lines)
+    assert not read.fixes.frozen.any()
+    assert read.fixes.suspect.sum() == 150
+    assert not any("frozen" in note for note in read.notes)
+
+
 def test_a_fix_where_the_vessel_cannot_have_come_is_suspect(log):
     lines = under_way(range(10, 20))
     lines[4] = rmc(14, 46.6)

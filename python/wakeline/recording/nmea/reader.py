@@ -426,7 +426,7 @@ def _marked(series: dict[str, Series], clock: Clock, max_speed_mps: float) -> Fi
     for number in np.unique(section):
         here = np.flatnonzero(section == number)
         speed_mps = _speed_at(fixes.time_s[here], _of_section(series, clock, number))
-        frozen[here] = _frozen(fixes.rows(here), speed_mps)
+        frozen[here] = _frozen(fixes.rows(here), speed_mps) & ~suspect[here]
         placed = here[fixes.valid[here] & ~suspect[here]]
         position_m = _earth_centred_m(fixes.rows(placed))
         suspect[placed] = unreachable(fixes.time_s[placed], position_m, max_speed_mps)
