@@ -506,6 +506,21 @@ def test_a_vessel_at_rest_is_not_frozen(log):
     assert not log(*slow).fixes.frozen.any()
 
 
+def test_readings_that_their_instrument_calls_not_valid_are_told(log):
+    bad = ["VBW,5.0,0.1,V,5.1,0.2,V", "VBW,5.0,0.1,A,5.1,0.2,V", "ROT,3.0,V", "THS,90.0,V"]
+    read = log(rmc(10), *map(sentence, bad), sentence("HDG,89.0,,,1.0,E"), rmc(12))
+    assert read.heading.sentence.tolist() == ["HDG"]
+    for told in (
+        "1 headings that the instrument calls not valid (first in line 5)",
+        "1 speeds through the water that the instrument calls not valid (first in line 2)",
+        "2 speeds over ground by log that the instrument calls not valid (first in line 2)",
+        "1 rates of turn that the instrument calls not valid (first in line 4)",
+    ):
+        assert f"own.nmea: {told}" in read.notes
+    good = ["VBW,5.0,0.1,A,5.1,0.2,A", "VBW,,,V,,,V", "ROT,3.0,A", "THS,90.0,A"]
+    assert log(rmc(10), *map(sentence, good), rmc(12)).notes == []
+
+
 # ------------------------------------------------------------------ bad lines
 
 

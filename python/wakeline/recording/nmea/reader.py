@@ -127,6 +127,7 @@ def read_nmea(
     clock = Clock(*zip(*rows.timed, strict=True), first_day, reorder_s, report)
     report.examples.sort(key=_line)
     series = {name: _series(kind, rows.of[name], clock, report) for name, kind in SERIES.items()}
+    invalid_notes = list(_invalid_notes(series))
     series["compass"] = _with_variation(series["compass"], rows.variation, variation_deg)
     series["heading"] = _true_headings(series["heading"], series["compass"])
     series["fixes"] = _marked(series, clock, max_speed_mps)
@@ -142,7 +143,8 @@ def read_nmea(
         report=report,
         notes=notes,
     )
-    notes += [f"{path.name}: {note}" for note in [*_notes(log), *_jump_notes(log, max_speed_mps)]]
+    told = [*_notes(log), *invalid_notes, *_jump_notes(log, max_speed_mps)]
+    notes += [f"{path.name}: {note}" for note in told]
     return log
 
 
@@ -504,6 +506,19 @@ def _notes(log: NavigationLog) -> list[str]:
         also = f"; {unknown} magnetic ones want a variation" if unknown else ""
         notes.append(f"no true heading{also}")
     return notes
+
+
+def _invalid_notes(series: dict[str, Series]) -> Iterator[str]:
+    for name, what in (
+        ("heading", "headings"),
+        ("water", "speeds through the water"),
+        ("bottom", "speeds over ground by log"),
+        ("turn", "rates of turn"),
+    ):
+        line = series[name].line[~series[name].valid]
+        if len(line):
+            first = line.min()
+            yield f"{len(line)} {what} that the instrument calls not valid (first in line {first})"
 
 
 def _jump_notes(log: NavigationLog, max_speed_mps: float) -> Iterator[str]:
