@@ -11,7 +11,10 @@ from wakeline.recording import Episode, Tracks
 
 pytest.importorskip("matplotlib")
 
+from matplotlib.quiver import Quiver, QuiverKey
+
 from wakeline import plot
+from wakeline._units import KNOT_MPS
 
 
 @pytest.fixture(scope="module")
@@ -137,6 +140,37 @@ def test_nis_has_its_bound_and_hides_nothing(tracks):
 def test_mode_names_must_be_as_many_as_modes(tracks):
     with pytest.raises(ValueError, match="3 names, got 1"):
         plot.mode_panel(plot.figure().add_subplot(), tracks, "T1", mode_names=["one"])
+
+
+def test_arrows_of_current_are_whole_and_have_a_scale():
+    ax = plot.figure().add_subplot()
+    way_m = np.column_stack([np.zeros(50), np.linspace(0.0, 5000.0, 50)])
+    plot.own_map(ax, way_m, way_m, np.tile([0.6 * KNOT_MPS, 0.8 * KNOT_MPS], (50, 1)))
+    ax.figure.draw_without_rendering()
+    (arrows,) = [one for one in ax.collections if isinstance(one, Quiver)]
+    length_km = np.hypot(arrows.U, arrows.V) / arrows.scale
+    np.testing.assert_allclose(length_km, 0.5)
+    tips = arrows.get_offsets() + np.column_stack([arrows.U, arrows.V]) / arrows.scale
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    assert tips[:, 0].min() > left
+    assert tips[:, 0].max() < right
+    assert tips[:, 1].min() > bottom
+    assert tips[:, 1].max() < top
+    (key,) = [one for one in ax.artists if isinstance(one, QuiverKey)]
+    assert (key.U, key.text.get_text()) == (1.0, "current of 1 kn")
+
+
+@pytest.mark.parametrize("current_mps", [None, np.full((3, 2), np.nan), np.zeros((3, 2))])
+def test_a_map_without_a_current_has_no_arrows(current_mps):
+    ax = plot.figure().add_subplot()
+    plot.own_map(ax, np.eye(3)[:, :2], np.eye(3)[:, :2], current_mps)
+    assert not any(isinstance(one, Quiver) for one in ax.collections)
+
+
+def test_times_with_fixes_are_named():
+    ax = plot.figure().add_subplot()
+    plot.drift_over_time(ax, np.arange(9.0), np.ones((9, 2)), np.arange(5.0))
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["drift", "fixes"]
 
 
 @pytest.mark.parametrize("make", [plot.map_figure, plot.time_figure])

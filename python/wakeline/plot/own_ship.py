@@ -8,12 +8,13 @@ import numpy as np
 
 from wakeline._units import KNOT_MPS
 
-from .style import INK, MUTED, PALETTE, dress, dress_map, name_lines, with_gaps
+from .style import INK, MUTED, PALETTE, TEXT_PT, dress, dress_map, name_lines, with_gaps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ARROWS = 24
+_LONGEST = 0.1  # arrow, as a share of the way across the map
 
 
 def own_map(
@@ -33,7 +34,7 @@ def own_map(
     position_m, fix_m : ndarray (T, 2), (n, 2)
         North and east, of the solution and of fixes.
     current_mps : ndarray (T, 2), optional
-        North and east; drawn as arrows where finite.
+        North and east; drawn as arrows where finite, beside one of a round number of knots.
     coasting : ndarray of bool (T,), optional
         Where there were no fixes.
     """
@@ -46,17 +47,46 @@ def own_map(
     if current_mps is not None and np.isfinite(current_mps).any():
         known = np.flatnonzero(np.isfinite(current_mps[:, 0]))
         at = known[np.linspace(0, len(known) - 1, min(_ARROWS, len(known))).astype(int)]
-        ax.quiver(
-            way[at, 1],
-            way[at, 0],
-            current_mps[at, 1],
-            current_mps[at, 0],
-            color=PALETTE[2],
-            width=0.003,
-            label="current",
-            zorder=4,
-        )
+        _arrows(ax, way[at], current_mps[at] / KNOT_MPS, _LONGEST * max(np.ptp(way, axis=0)))
     return name_lines(dress_map(ax))
+
+
+def _arrows(ax: Axes, from_km: np.ndarray, drift_kn: np.ndarray, longest_km: float) -> None:
+    """Arrows (n, 2) north and east of drifts, the longest so long, and one beside a round drift."""
+    most_kn = np.hypot(*drift_kn.T).max()
+    if not (most_kn > 0 and longest_km > 0):
+        return
+    to_km = from_km + drift_kn * longest_km / most_kn
+    ax.update_datalim(to_km[:, ::-1])
+    arrows = ax.quiver(
+        from_km[:, 1],
+        from_km[:, 0],
+        drift_kn[:, 1],
+        drift_kn[:, 0],
+        color=PALETTE[2],
+        width=0.003,
+        angles="xy",
+        scale_units="xy",
+        scale=most_kn / longest_km,
+        zorder=4,
+    )
+    round_kn = _round_below(most_kn)
+    ax.quiverkey(
+        arrows,
+        1.0 - _LONGEST,
+        1.028,
+        round_kn,
+        f"current of {round_kn:g} kn",
+        labelpos="W",
+        labelcolor=INK,
+        fontproperties={"size": TEXT_PT},
+    )
+
+
+def _round_below(value: float) -> float:
+    """The greatest 1, 2 or 5 times a power of ten that is not above a value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value))
 
 
 def speed_over_time(
@@ -91,12 +121,12 @@ def course_over_time(
 def drift_over_time(
     ax: Axes, time_s: np.ndarray, current_mps: np.ndarray, fix_time_s: np.ndarray
 ) -> Axes:
-    """Drift in knots over time, with gaps of the fixes marked below; returns `ax`."""
+    """Drift in knots over time, with the times of fixes marked below; returns `ax`."""
     drift_kn = np.hypot(current_mps[:, 0], current_mps[:, 1]) / KNOT_MPS
-    ax.plot(*_by_minute(time_s, drift_kn), color=PALETTE[2], linewidth=1.2)
+    ax.plot(*_by_minute(time_s, drift_kn), color=PALETTE[2], linewidth=1.2, label="drift")
     minutes = (fix_time_s - time_s[0]) / 60.0
-    ax.plot(minutes, np.zeros(len(minutes)), "|", color=INK, markersize=4)
-    return _over_time(ax, "drift (kn)", at_least_0=True)
+    ax.plot(minutes, np.zeros(len(minutes)), "|", color=INK, markersize=4, label="fixes")
+    return name_lines(_over_time(ax, "drift (kn)", at_least_0=True))
 
 
 def _by_minute(time_s: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
