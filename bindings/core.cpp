@@ -48,6 +48,13 @@ ValueError
           "mean", [](const PyGaussian& g) { return to_array(g.mean); }, "(N,)")
       .def_property_readonly(
           "covariance", [](const PyGaussian& g) { return to_array(g.covariance); }, "(N, N)")
+      .def(py::pickle(
+          [](const PyGaussian& g) {
+            return py::make_tuple(to_array(g.mean), to_array(g.covariance));
+          },
+          [](const py::tuple& fields) {
+            return make_gaussian(fields[0].cast<DoubleArray>(), fields[1].cast<DoubleArray>());
+          }))
       .def("__repr__", [](const PyGaussian& g) {
         return "Gaussian(mean=" + py::repr(to_array(g.mean)).cast<std::string>() +
                ", covariance=" + py::repr(to_array(g.covariance)).cast<std::string>() + ")";

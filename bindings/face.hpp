@@ -16,6 +16,7 @@ namespace wakeline::python {
 /// those of the py::class_.
 template <class Estimator, class... Options>
 void define_face(py::class_<Estimator, Options...>& face) {
+  define_copies(face);
   face.def(
           "start",
           [](Estimator& estimator, const PyGaussian& belief) {
@@ -45,7 +46,11 @@ void define_face(py::class_<Estimator, Options...>& face) {
           },
           py::arg("sensor"), py::arg("z"), "Corrects the belief by a reading; returns the Step.")
       .def(
-          "estimate", [](const Estimator& estimator) { return to_gaussian(estimator.estimate()); },
+          "estimate",
+          [](const Estimator& estimator) {
+            if (!estimator.started()) require_ok(Status::kNotStarted, "estimate");
+            return to_gaussian(estimator.estimate());
+          },
           "The belief; of several models moment-matched, over the state where all share one, else "
           "over [x, vx, y, vy].")
       .def_property_readonly("started", &Estimator::started)

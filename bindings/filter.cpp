@@ -62,15 +62,25 @@ struct PySquareRootUkf : AnyFilter {
 
 template <class Filter, class... Motions>
 void define_plain(py::class_<Filter, AnyFilter>& filter) {
+  define_copies(filter);
   (filter.def(py::init<const Motions&>(), py::arg("motion")), ...);
 }
 
 template <class Filter, class... Motions>
 void define_unscented(py::class_<Filter, AnyFilter>& filter) {
+  define_copies(filter);
   (filter.def(py::init<const Motions&, double, double, double>(), py::arg("motion"), py::kw_only(),
               py::arg("alpha") = Unscented{}.alpha, py::arg("beta") = Unscented{}.beta,
               py::arg("kappa") = Unscented{}.kappa),
    ...);
+}
+
+/// A plot that there is.
+template <int M>
+Vec<double, M> to_plot(const char* name, const DoubleArray& array) {
+  const Vec<double, M> plot = to_vector<M>(name, array);
+  for (const double number : plot) require_finite(name, number);
+  return plot;
 }
 
 /// RTS smoothing of arrays (T, N) and (T, N, N).
@@ -127,7 +137,23 @@ void define_filter(py::module_& parent) {
                     "(..., T, M), measured minus predicted; NaN where there was no update")
       .def_readonly("nis", &RunResult::nis, "(..., T), NaN where there was no update")
       .def_readonly("log_likelihood", &RunResult::log_likelihood, "(..., T)")
-      .def_readonly("status", &RunResult::status, "(..., T) values of Status");
+      .def_readonly("status", &RunResult::status, "(..., T) values of Status")
+      .def(py::pickle(
+          [](const RunResult& r) {
+            return py::make_tuple(r.mean, r.covariance, r.mode_probability, r.turn_rate_rad_s,
+                                  r.innovation, r.nis, r.log_likelihood, r.status);
+          },
+          [](const py::tuple& fields) {
+            using Array = py::array_t<double>;
+            return RunResult{fields[0].cast<Array>(),
+                             fields[1].cast<Array>(),
+                             fields[2],
+                             fields[3],
+                             fields[4].cast<Array>(),
+                             fields[5].cast<Array>(),
+                             fields[6].cast<Array>(),
+                             fields[7].cast<py::array_t<std::uint8_t>>()};
+          }));
 
   py::class_<AnyFilter> filter(m, "Filter", "What Kalman, Ekf, Ukf and SquareRootUkf share.");
   define_face(filter);
@@ -168,7 +194,8 @@ Returns
       [](const py::object& sensor, const DoubleArray& z, double speed_std_mps) {
         return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
           constexpr int kM = Sensor::kMeasurements;
-          return PyGaussian::from(one_point(model, to_vector<kM>("z", z), speed_std_mps));
+          require_positive("speed_std_mps", speed_std_mps);
+          return PyGaussian::from(one_point(model, to_plot<kM>("z", z), speed_std_mps));
         });
       },
       py::arg("sensor"), py::arg("z"), py::arg("speed_std_mps"),
@@ -182,8 +209,8 @@ Returns
           throw py::value_error("dt_s must be positive, got " + std::to_string(dt_s));
         return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
           constexpr int kM = Sensor::kMeasurements;
-          return PyGaussian::from(two_point<Sensor, double>(model, to_vector<kM>("first", first),
-                                                            to_vector<kM>("second", second), dt_s));
+          return PyGaussian::from(two_point<Sensor, double>(model, to_plot<kM>("first", first),
+                                                            to_plot<kM>("second", second), dt_s));
         });
       },
       py::arg("sensor"), py::arg("first"), py::arg("second"), py::arg("dt_s"),

@@ -55,6 +55,7 @@ std::vector<double> per_scan_numbers(const char* name, const DoubleArray& array,
 
 /// One vector or one a scan, as one a scan.
 std::vector<Vec2> per_scan_vectors(const char* name, const DoubleArray& array, py::ssize_t scans) {
+  for (py::ssize_t k = 0; k < array.size(); ++k) require_finite(name, array.data()[k]);
   const bool one = array.ndim() == 1 && array.shape(0) == 2;
   require_shape(one || (array.ndim() == 2 && array.shape(0) == scans && array.shape(1) == 2), name,
                 "(2,) or " + shape_text({scans, 2}), array);
@@ -365,7 +366,10 @@ Returns
         require_latitudes(latitude);
         return to_pair(each_of<2>(
             [](double a, double b, double v, double k, double t, double vc, double kc) {
-              return to_array2(dead_reckon({a, b}, {v, k}, {vc, kc}, t));
+              const GeoPoint place = dead_reckon({a, b}, {v, k}, {vc, kc}, t);
+              return std::abs(place.latitude_rad) <= kPi<double> / 2
+                         ? to_array2(place)
+                         : std::array<double, 2>{NAN, NAN};
             },
             latitude, longitude, speed, course, dt_s, drift_speed, drift_course));
       },
@@ -383,7 +387,7 @@ Returns
 -------
 (latitude_rad, longitude_rad)
     In mid-latitude with the radii of the ellipsoid: within 1 m of the rhumb line over 20 km up to
-    70 degrees.)");
+    70 degrees. NaN beyond a pole.)");
 }
 
 // Leeway ------------------------------------------------------------------------------------------

@@ -15,17 +15,32 @@
 namespace wakeline::python {
 namespace {
 
-/// A smoother of a line or of angles; `fresh` is what a run begins with.
+/// A smoother of a line or of angles, which says nothing before its first reading; `fresh` is what
+/// a run begins with.
 template <class OfLine, class OfAngles>
 struct Either {
   using Variant = std::variant<OfLine, OfAngles>;
   Variant smoother;
   Variant fresh;
+  bool started = false;
 
   template <class... Settings>
   static Either make(bool wrapped, const Settings&... settings) {
     if (wrapped) return {OfAngles(settings...), OfAngles(settings...)};
     return {OfLine(settings...), OfLine(settings...)};
+  }
+
+  /// `update(smoother)` with a reading.
+  template <class Update>
+  void take(Update update) {
+    require_ok(std::visit(update, smoother), "update");
+    started = true;
+  }
+
+  /// `say(smoother)`, NaN before the first reading.
+  template <class Say>
+  [[nodiscard]] double said(Say say) const {
+    return started ? std::visit(say, smoother) : NAN;
   }
 };
 
@@ -52,7 +67,7 @@ void run_one(S smoother, const std::vector<double>& steps, const double* reading
   for (std::size_t k = 0; k < steps.size(); ++k) {
     waited_s += k > 0 ? steps[k] : 0.0;
     if (!std::isnan(reading[k])) {
-      require_ok(update(smoother, waited_s, reading[k]), "update");
+      require_ok(update(smoother, waited_s, reading[k]), ("reading " + std::to_string(k)).c_str());
       waited_s = 0.0;
       started = true;
     }
@@ -100,19 +115,16 @@ Returns
 template <class E>
 void define_reading(py::class_<E>& smoother) {
   smoother
-      .def_property_readonly("value",
-                             [](const E& e) {
-                               return std::visit([](const auto& s) { return s.value(); },
-                                                 e.smoother);
-                             })
       .def_property_readonly(
-          "rate",
-          [](const E& e) { return std::visit([](const auto& s) { return s.rate(); }, e.smoother); },
+          "value", [](const E& e) { return e.said([](const auto& s) { return s.value(); }); },
+          "NaN before the first reading")
+      .def_property_readonly(
+          "rate", [](const E& e) { return e.said([](const auto& s) { return s.rate(); }); },
           "of the value, per second")
       .def(
           "forecast",
           [](const E& e, double ahead_s) {
-            return std::visit([&](const auto& s) { return s.forecast(ahead_s); }, e.smoother);
+            return e.said([&](const auto& s) { return s.forecast(ahead_s); });
           },
           py::arg("ahead_s"), "The value `ahead_s` after the newest reading.");
 }
@@ -124,8 +136,7 @@ void define_smoother(py::class_<E>& smoother) {
       .def(
           "update",
           [](E& e, double dt_s, double reading) {
-            require_ok(std::visit([&](auto& s) { return s.update(dt_s, reading); }, e.smoother),
-                       "update");
+            e.take([&](auto& s) { return s.update(dt_s, reading); });
           },
           py::arg("dt_s"), py::arg("reading"),
           "Takes a reading, `dt_s` after the one before; the step of the first means nothing.")
@@ -363,9 +374,7 @@ ValueError
       .def(
           "update",
           [](Filter& e, double dt_s, double reading, double range_m) {
-            require_ok(
-                std::visit([&](auto& s) { return s.update(dt_s, reading, range_m); }, e.smoother),
-                "update");
+            e.take([&](auto& s) { return s.update(dt_s, reading, range_m); });
           },
           py::arg("dt_s"), py::arg("reading"), py::kw_only(), py::arg("range_m") = 0.0,
           "Takes a reading, `dt_s` after the one before, of an object at a range.")

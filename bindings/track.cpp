@@ -500,6 +500,10 @@ FilterError
           "designate",
           [](AnyTracker& tracker, double time_s, double north_m, double east_m,
              double position_std_m) {
+            require_finite("time_s", time_s);
+            require_finite("north_m", north_m);
+            require_finite("east_m", east_m);
+            require_positive("position_std_m", position_std_m);
             return tracker.visit(
                 [&](auto& one) { return one.designate(time_s, north_m, east_m, position_std_m); });
           },

@@ -24,6 +24,15 @@ inline void require_ok(Status status, const char* what) {
   if (status != Status::kOk) throw FilterError(std::string(what) + ": " + to_string(status));
 }
 
+/// Adds what `copy.copy` and `copy.deepcopy` ask for.
+template <class Value, class... Options>
+void define_copies(py::class_<Value, Options...>& value) {
+  value.def("__copy__", [](const Value& one) { return Value(one); })
+      .def(
+          "__deepcopy__", [](const Value& one, const py::dict&) { return Value(one); },
+          py::arg("memo"));
+}
+
 /// A belief of any size.
 struct PyGaussian {
   Eigen::VectorXd mean;

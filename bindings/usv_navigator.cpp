@@ -135,8 +135,13 @@ class PyNavigator {
   }
 
   PyGaussian estimate() const {
+    if (!started()) require_ok(Status::kNotStarted, "estimate");
     return std::visit([](const auto& navigator) { return PyGaussian::from(navigator.estimate()); },
                       navigator_);
+  }
+
+  bool started() const {
+    return std::visit([](const auto& navigator) { return navigator.started(); }, navigator_);
   }
 
   UsvRun run(const DoubleArray& time_s, const std::optional<DoubleArray>& imu,
@@ -421,6 +426,7 @@ ValueError
            py::arg("gyro_rad_s"), py::arg("rate_std_rad_s") = deg(0.1),
            "A rate of turn beside that of the IMU's gyro at the time; 7 or 8 states.")
       .def_property_readonly("estimate", &PyNavigator::estimate, "The belief, a Gaussian.")
+      .def_property_readonly("started", &PyNavigator::started)
       .def(
           "run",
           [](PyNavigator& self, const DoubleArray& time, const Arrays& imu, const Arrays& gnss,

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from wakeline.cli import main, outputs
+from wakeline.navigation import LocalPlane
 
 BUNDLED = resources.files("wakeline.recording") / "data" / "irene"
 KN = 1852.0 / 3600.0
@@ -289,6 +290,25 @@ def test_short_parts_are_navigated_too(tmp_path, capsys):
     assert len(rows) == len(kept)
     assert max(times_s) - min(times_s) > 3600
     assert float(rows[-1]["north_var_m2"]) < 25.0
+
+
+def test_all_parts_lie_in_one_plane(tmp_path):
+    lines = [line for line in voyage(62) if not line.startswith("$VW")]
+    rows = navigated(tmp_path, lines[:600] + lines[2 * 3700 :])
+    place_m = np.array([[float(row["north_m"]), float(row["east_m"])] for row in rows])
+    where = np.radians([[float(row["lat_deg"]), float(row["lon_deg"])] for row in rows])
+    plane = LocalPlane(latitude_rad=where[0, 0], longitude_rad=where[0, 1])
+    off_m = place_m - plane.position_m(*where.T)
+    assert np.hypot(*place_m[-1]) > 1000.0
+    assert np.ptp(off_m, axis=0) == pytest.approx([0.0, 0.0], abs=0.1)
+
+
+def test_pictures_of_an_earlier_log_are_removed(tmp_path, pictures):
+    for name in ("own_map-2.png", "own_time-2.png", "own_map-harbour.png"):
+        (tmp_path / name).touch()
+    navigated(tmp_path, voyage(2))
+    left = {file.name for file in tmp_path.glob("*.png")}
+    assert left == {"own_map.png", "own_time.png", "own_map-harbour.png"}
 
 
 def test_readings_without_a_fix_before_them_are_told(tmp_path, capsys):

@@ -1,6 +1,7 @@
 """Beliefs, angles and the chi-square law at the border to Python."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -35,6 +36,13 @@ def test_a_gaussian_of_wrong_shape_names_argument_wanted_and_given(states, rows,
 def test_a_mean_must_be_a_vector(mean):
     with pytest.raises(ValueError, match=r"mean must have shape \(N,\), got"):
         wl.Gaussian(mean, np.eye(2))
+
+
+def test_a_gaussian_goes_through_pickle():
+    belief = wl.Gaussian([1.0, 2.0], [[2.0, 0.5], [0.5, 1.0]])
+    again = pickle.loads(pickle.dumps(belief))
+    np.testing.assert_array_equal(again.mean, belief.mean)
+    np.testing.assert_array_equal(again.covariance, belief.covariance)
 
 
 def test_a_gaussian_holds_a_copy():

@@ -1,5 +1,7 @@
 """One-model estimators: laws, failures that change nothing, and `run` against single steps."""
 
+import copy
+import pickle
 import time
 from itertools import pairwise
 from threading import Thread
@@ -416,6 +418,43 @@ def test_a_start_from_two_plots_needs_time_between(dt_s):
         wl.two_point(RADAR, [3000.0, 0.3], [3000.0, 0.3], dt_s)
 
 
+@pytest.mark.parametrize("plot", [[np.nan, 0.3], [3000.0, np.inf]])
+def test_a_start_needs_plots_that_are_there(plot):
+    with pytest.raises(ValueError, match="first must be finite"):
+        wl.two_point(RADAR, plot, [3000.0, 0.3], 1.0)
+    with pytest.raises(ValueError, match="second must be finite"):
+        wl.two_point(RADAR, [3000.0, 0.3], plot, 1.0)
+    with pytest.raises(ValueError, match="z must be finite"):
+        wl.one_point(RADAR, plot, 5.0)
+    with pytest.raises(ValueError, match="speed_std_mps must be finite and positive, got -1"):
+        wl.one_point(RADAR, [3000.0, 0.3], -1.0)
+
+
+# --- copies -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ESTIMATORS)
+@pytest.mark.parametrize("how", [copy.copy, copy.deepcopy])
+def test_a_copy_goes_on_by_itself(name, how):
+    estimator = ESTIMATORS[name]()
+    estimator.start(START)
+    before = estimator.estimate()
+    twin = how(estimator)
+    assert type(twin) is type(estimator)
+    estimator.predict(1.0)
+    np.testing.assert_array_equal(twin.estimate().mean, before.mean)
+    twin.predict(1.0)
+    np.testing.assert_array_equal(twin.estimate().covariance, estimator.estimate().covariance)
+
+
+def test_results_go_through_pickle():
+    result = run(ESTIMATORS["Imm"](), readings(5))
+    again = pickle.loads(pickle.dumps(result))
+    for field in (*FIELDS, "mode_probability"):
+        np.testing.assert_array_equal(getattr(again, field), getattr(result, field))
+    assert again.turn_rate_rad_s is None
+
+
 # --- failures ---------------------------------------------------------------------------------
 
 NOT_BELIEFS = {
@@ -445,6 +484,8 @@ def test_an_estimator_that_was_not_started_says_so(name):
         estimator.predict(1.0)
     with pytest.raises(wl.FilterError, match="not started"):
         estimator.update(RADAR, [5000.0, 0.6])
+    with pytest.raises(wl.FilterError, match="estimate: not started"):
+        estimator.estimate()
 
 
 @pytest.mark.parametrize("name", ESTIMATORS)

@@ -185,6 +185,12 @@ def test_combined_dead_reckoning_is_the_rhumb_line(latitude, longitude, course, 
     assert metres_apart(reckoned, rhumb) < 1.0
 
 
+def test_there_is_nothing_beyond_a_pole():
+    north = np.deg2rad(89.99)
+    assert np.isnan(nav.dead_reckon(north, 0.0, 10.0, 0.0, 3600.0)).all()
+    assert np.isfinite(nav.dead_reckon(north, 0.0, 10.0, np.pi, 3600.0)).all()
+
+
 def test_velocity_over_a_window_and_from_rates():
     time_s = np.array([0.0, 30.0, 45.0, 100.0])
     place = nav.rhumb_destination(0.8, np.pi - 1e-5, 1.5, 6.0 * time_s)
@@ -360,7 +366,7 @@ def test_an_ellipse_has_the_axes_of_its_covariance():
 def test_bad_forecasts_are_refused():
     with pytest.raises(ValueError, match="leeway_std must be finite and not negative, got -1"):
         nav.DriftModel(leeway_std=-1.0)
-    with pytest.raises(wl.FilterError, match="not finite"):
+    with pytest.raises(ValueError, match="wind_mps must be finite"):
         nav.drift_forecast(nav.DriftModel(), START, 60.0, [np.nan, 0.0], [0.0, 0.0])
     with pytest.raises(
         ValueError, match=r"wind_mps must have shape \(2,\) or \(3, 2\), got \(4, 2\)"

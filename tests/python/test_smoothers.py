@@ -85,13 +85,14 @@ def test_missing_readings_let_time_go_on(kind):
 
 @every
 def test_bad_readings_are_refused(kind):
-    with pytest.raises(wl.FilterError, match="not finite"):
-        kind().run(1.0, [1.0, np.inf])
+    with pytest.raises(wl.FilterError, match="reading 2: not finite"):
+        kind().run(1.0, [1.0, np.nan, np.inf])
     with pytest.raises(ValueError, match="dt_s must be finite and not negative, got -1"):
         kind().run([0.0, -1.0], [1.0, 2.0])
     with pytest.raises(ValueError, match=r"dt_s must have shape \(\) or \(2,\), got \(3,\)"):
         kind().run([0.0, 1.0, 1.0], [1.0, 2.0])
     smoother = kind()
+    assert np.isnan([smoother.value, smoother.rate, smoother.forecast(1.0)]).all(), "none yet"
     smoother.update(0.0, 1.0)
     with pytest.raises(wl.FilterError, match="negative time step"):
         smoother.update(-1.0, 2.0)

@@ -248,9 +248,10 @@ def test_a_name_is_cut_between_letters():
         {"time_s": np.nan, "north_m": 0.0, "east_m": 0.0},
     ],
 )
-def test_a_designation_that_makes_no_sense_is_no_track(place):
+def test_a_designation_that_makes_no_sense_is_refused(place):
     tracker = wl.Tracker(RADAR)
-    assert tracker.designate(**({"time_s": 0.0} | place)) == 0
+    with pytest.raises(ValueError, match="must be finite"):
+        tracker.designate(**({"time_s": 0.0} | place))
     assert len(tracker.tracks(tentative=True)) == 0
 
 

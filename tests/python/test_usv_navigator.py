@@ -141,6 +141,9 @@ def test_errors_name_what_is_wrong():
         UsvNavigator(gate_probability=2)
     with pytest.raises(wl.FilterError, match="not started"):
         UsvNavigator().run(**sensors(log))
+    assert not UsvNavigator().started
+    with pytest.raises(wl.FilterError, match="estimate: not started"):
+        UsvNavigator().estimate  # noqa: B018
     navigator = started(log)
     with pytest.raises(ValueError, match=r"imu must have shape \(20, 3\), got \(19, 3\)"):
         navigator.run(log["time_s"], log["imu"][1:])

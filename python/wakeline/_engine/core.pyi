@@ -82,7 +82,9 @@ class Gaussian:
     ValueError
         When the shapes do not fit.
     """
+    def __getstate__(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
     def __init__(self, mean: ArrayLike, covariance: ArrayLike) -> None: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def covariance(self) -> NDArray[np.float64]:
         """

@@ -55,6 +55,19 @@ class RunResult:
     """
     What `run` returns: arrays over scans, and over runs where there are several.
     """
+    def __getstate__(
+        self,
+    ) -> tuple[
+        NDArray[np.float64],
+        NDArray[np.float64],
+        typing.Any,
+        typing.Any,
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.uint8],
+    ]: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def covariance(self) -> NDArray[np.float64]:
         """
@@ -100,6 +113,8 @@ class Filter:
     """
     What Kalman, Ekf, Ukf and SquareRootUkf share.
     """
+    def __copy__(self) -> Filter: ...
+    def __deepcopy__(self, memo: dict) -> Filter: ...
     def estimate(self) -> Gaussian:
         """
         The belief; of several models moment-matched, over the state where all share one, else over [x, vx, y, vy].
@@ -187,6 +202,8 @@ class Kalman(Filter):
     """
     The Kalman filter: linear motion and linear sensors, nothing approximated.
     """
+    def __copy__(self) -> Kalman: ...
+    def __deepcopy__(self, memo: dict) -> Kalman: ...
     @typing.overload
     def __init__(self, motion: ConstantVelocity) -> None: ...
     @typing.overload
@@ -200,6 +217,8 @@ class Ekf(Filter):
     """
     The extended Kalman filter: motion and sensor linearised about the mean.
     """
+    def __copy__(self) -> Ekf: ...
+    def __deepcopy__(self, memo: dict) -> Ekf: ...
     @typing.overload
     def __init__(self, motion: ConstantVelocity) -> None: ...
     @typing.overload
@@ -217,6 +236,8 @@ class Ukf(Filter):
     """
     The unscented Kalman filter, with the scaled transform's alpha, beta and kappa.
     """
+    def __copy__(self) -> Ukf: ...
+    def __deepcopy__(self, memo: dict) -> Ukf: ...
     @typing.overload
     def __init__(
         self, motion: ConstantVelocity, *, alpha: float = 1.0, beta: float = 2.0, kappa: float = 0.0
@@ -256,6 +277,8 @@ class SquareRootUkf(Filter):
     """
     The unscented Kalman filter on a square root of the covariance, for long runs.
     """
+    def __copy__(self) -> SquareRootUkf: ...
+    def __deepcopy__(self, memo: dict) -> SquareRootUkf: ...
     @typing.overload
     def __init__(
         self, motion: ConstantVelocity, *, alpha: float = 1.0, beta: float = 2.0, kappa: float = 0.0
@@ -480,6 +503,8 @@ class AlphaBeta:
     ValueError
         When a parameter makes no sense or gains are not stable.
     """
+    def __copy__(self) -> AlphaBeta: ...
+    def __deepcopy__(self, memo: dict) -> AlphaBeta: ...
     def __init__(
         self,
         gains: ConstantGains
@@ -575,6 +600,8 @@ class AlphaBetaGamma:
     ValueError
         When a parameter makes no sense or gains are not stable.
     """
+    def __copy__(self) -> AlphaBetaGamma: ...
+    def __deepcopy__(self, memo: dict) -> AlphaBetaGamma: ...
     def __init__(
         self,
         gains: ConstantGains | GrowingMemory | CriticallyDamped | TrackingIndex,
@@ -700,7 +727,10 @@ class ExponentialSmoother:
         of the value, per second
         """
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """
+        NaN before the first reading
+        """
 
 class AdaptiveExponentialSmoother:
     """
@@ -751,7 +781,10 @@ class AdaptiveExponentialSmoother:
         of the value, per second
         """
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """
+        NaN before the first reading
+        """
 
 class PrintedAdaptiveExponential:
     """
@@ -804,7 +837,10 @@ class PrintedAdaptiveExponential:
         of the value, per second
         """
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """
+        NaN before the first reading
+        """
 
 class ThreePointSmoother:
     """
@@ -876,7 +912,10 @@ class ThreePointSmoother:
         of the value, per second
         """
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """
+        NaN before the first reading
+        """
 
 class RecentMemory:
     """
@@ -960,7 +999,10 @@ class AlphaBetaSmoother:
         of the value, per second
         """
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """
+        NaN before the first reading
+        """
 
 class AdaptiveAlphaBeta:
     """
@@ -1019,7 +1061,10 @@ class AdaptiveAlphaBeta:
         of the value, per second
         """
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """
+        NaN before the first reading
+        """
 
 class PrintedAdaptiveAlphaBeta:
     """
@@ -1075,7 +1120,10 @@ class PrintedAdaptiveAlphaBeta:
         of the value, per second
         """
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """
+        NaN before the first reading
+        """
 
 class WindowBank:
     """
@@ -1134,7 +1182,10 @@ class WindowBank:
         of the value, per second
         """
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """
+        NaN before the first reading
+        """
     @property
     def window(self) -> int:
         """

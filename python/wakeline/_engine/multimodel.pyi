@@ -68,6 +68,8 @@ class Imm:
     initial_mode_probability : (K,) array, optional
         What a start begins with; uniform when left out.
     """
+    def __copy__(self) -> Imm: ...
+    def __deepcopy__(self, memo: dict) -> Imm: ...
     def __init__(
         self,
         filters: Sequence[Filter],
@@ -197,6 +199,8 @@ class AdaptiveGridImm:
     ----------
     Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.1.
     """
+    def __copy__(self) -> AdaptiveGridImm: ...
+    def __deepcopy__(self, memo: dict) -> AdaptiveGridImm: ...
     def __init__(
         self,
         filter: Filter,
@@ -331,6 +335,8 @@ class SwitchingGridImm:
     ----------
     Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.2.
     """
+    def __copy__(self) -> SwitchingGridImm: ...
+    def __deepcopy__(self, memo: dict) -> SwitchingGridImm: ...
     def __init__(
         self,
         filter: Filter,
@@ -462,6 +468,8 @@ class LikelyModelSetImm:
     ----------
     X. R. Li, Y. Zhang, IEEE Trans. AES-36, 2000: the likely-model set.
     """
+    def __copy__(self) -> LikelyModelSetImm: ...
+    def __deepcopy__(self, memo: dict) -> LikelyModelSetImm: ...
     def __init__(
         self,
         filter: Filter,
@@ -633,6 +641,8 @@ class ModeHistory:
         ----------
         Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 11.6.3-11.6.5.
         """
+    def __copy__(self) -> ModeHistory: ...
+    def __deepcopy__(self, memo: dict) -> ModeHistory: ...
     def __init__(
         self,
         filter: Filter,
@@ -757,6 +767,8 @@ class BayesianAlphaBeta:
     ValueError
         When a parameter makes no sense.
     """
+    def __copy__(self) -> BayesianAlphaBeta: ...
+    def __deepcopy__(self, memo: dict) -> BayesianAlphaBeta: ...
     def __init__(
         self,
         *,
@@ -920,6 +932,8 @@ class FuzzyAlphaBeta:
     ----------
     V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuzzy criterion of maneuver detection.
     """
+    def __copy__(self) -> FuzzyAlphaBeta: ...
+    def __deepcopy__(self, memo: dict) -> FuzzyAlphaBeta: ...
     def __init__(
         self,
         *,

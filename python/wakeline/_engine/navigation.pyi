@@ -475,7 +475,7 @@ class UsvNavigator:
         ValueError
             When shapes do not fit, times decrease, or a sensor needs a state that is not there.
         FilterError
-            When the navigator was not started.
+            When the navigator was not started, or a row makes a step fail; the navigator is as it was then.
         """
     def start(
         self,
@@ -521,6 +521,8 @@ class UsvNavigator:
         """
         The belief, a Gaussian.
         """
+    @property
+    def started(self) -> bool: ...
 
 def closest_approach(
     own: ArrayLike,
@@ -575,7 +577,7 @@ def dead_reckon(
     -------
     (latitude_rad, longitude_rad)
         In mid-latitude with the radii of the ellipsoid: within 1 m of the rhumb line over 20 km up to
-        70 degrees.
+        70 degrees. NaN beyond a pole.
     """
 
 def drift_between(over_ground: Gaussian, through_water: Gaussian) -> Gaussian:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wakeline import plot
+from wakeline.navigation import LocalPlane
 from wakeline.recording import NavigationLog, RecordingError, read_nmea, replacing
 from wakeline.recording.nmea import Fixes
 
@@ -80,7 +82,7 @@ class _Leg(NamedTuple):
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
     log = read_nmea(arguments.log, variation_deg=arguments.variation)
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    outputs.make_folder(arguments.out)
     print(_input_lines(log), flush=True)
     if len(log.fixes.sound()) == 0:
         raise RecordingError(
@@ -94,6 +96,7 @@ def run(arguments: argparse.Namespace) -> None:
     _write_csv(files[0], legs)
     if outputs.can_draw():
         files += _write_pictures(arguments.out, legs)
+    outputs.remove_stale(_earlier_pictures(arguments.out), files)
     errors = _hold_out(legs)
     print(_error_table(errors))
     print(f"written to {arguments.out}: {', '.join(file.name for file in files)}")
@@ -104,11 +107,11 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _legs(log: NavigationLog) -> list[_Leg]:
-    offset = _magnetic_offset(log)
+    offset, plane = _magnetic_offset(log), navigating.plane_of(log.fixes.sound())
     parts = log.parts()
     for note in _unused_notes(parts):
         print(note, flush=True)
-    legs = [_leg(part, offset) for part in parts if len(part.fixes.sound())]
+    legs = [_leg(part, offset, plane) for part in parts if len(part.fixes.sound())]
     for note in _doubt_notes(legs):
         print(note, flush=True)
     return legs
@@ -128,8 +131,8 @@ def _magnetic_offset(log: NavigationLog) -> navigating.MagneticOffset:
     return offset
 
 
-def _leg(part: NavigationLog, offset: navigating.MagneticOffset) -> _Leg:
-    readings = navigating.readings_of(part, offset)
+def _leg(part: NavigationLog, offset: navigating.MagneticOffset, plane: LocalPlane) -> _Leg:
+    readings = navigating.readings_of(part, offset, plane)
     return _Leg(part.fixes.sound(), readings, navigating.navigate(readings))
 
 
@@ -275,6 +278,11 @@ def _write_pictures(folder: Path, legs: Sequence[_Leg]) -> list[Path]:
         plot.save(figure, files[-2])
         plot.save(_time_figure(readings, track, readings.time_s[has_fix]), files[-1])
     return files
+
+
+def _earlier_pictures(folder: Path) -> Iterator[Path]:
+    names = re.compile(r"own_(map|time)(-\d+)?\.png")
+    return (file for file in folder.iterdir() if names.fullmatch(file.name))
 
 
 def _time_figure(

@@ -15,7 +15,7 @@ import numpy as np
 
 import wakeline as wl
 from wakeline.recording import NavigationLog
-from wakeline.recording.nmea import BottomTrack
+from wakeline.recording.nmea import BottomTrack, Fixes
 
 FIX_STD_M = 3.0
 VELOCITY_STD_MPS = 0.3  # over ground: filtered by the receiver, or turned by the heading
@@ -125,13 +125,20 @@ class OwnTrack:
     jump_m: np.ndarray
 
 
-def readings_of(part: NavigationLog, offset: MagneticOffset) -> Readings:
+def plane_of(fixes: Fixes) -> wl.navigation.LocalPlane:
+    """The plane that touches the Earth at the first fix."""
+    latitude_rad, longitude_rad = np.radians([fixes.latitude_deg[0], fixes.longitude_deg[0]])
+    return wl.navigation.LocalPlane(latitude_rad=latitude_rad, longitude_rad=longitude_rad)
+
+
+def readings_of(
+    part: NavigationLog, offset: MagneticOffset, plane: wl.navigation.LocalPlane
+) -> Readings:
     """The readings of a log that has a fix, `offset` added to magnetic headings."""
     fixes, ground, water = part.fixes.sound(), part.ground.sound(), part.water.sound()
     bottom, turn = part.bottom.sound(), part.turn.sound()
     headings = _headings(part, offset.offset_rad)
     latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
-    plane = wl.navigation.LocalPlane(latitude_rad=latitude[0], longitude_rad=longitude[0])
     course = np.column_stack([np.cos(ground.course_rad), np.sin(ground.course_rad)])
     series = (
         (fixes.time_s, plane.position_m(latitude, longitude)),
