@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wakeline._brief import brief, many, span
+
 from ..local_plane import LocalPlane
 from ..model import OwnShip
 
@@ -45,6 +47,9 @@ class Series:
     def __len__(self) -> int:
         return len(self.time_s)
 
+    def __repr__(self) -> str:
+        return brief(self, many(len(self), "reading"), span(self.time_s))
+
     @property
     def usable(self) -> np.ndarray:
         """Mask (n,) of the readings to work with."""
@@ -60,7 +65,7 @@ class Series:
         return self.rows(self.usable)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Fixes(Series):
     """Positions by satellite, one a time (RMC, GGA, GLL).
 
@@ -94,7 +99,7 @@ class Fixes(Series):
         return self.valid & ~self.frozen & ~self.suspect
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class GroundSpeed(Series):
     """Speed and course over ground, one a time (RMC, VTG).
 
@@ -108,7 +113,7 @@ class GroundSpeed(Series):
     course_rad: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TrueHeading(Series):
     """Heading from true north (HDT, THS, VHW; from a magnetic compass where there is none).
 
@@ -121,7 +126,7 @@ class TrueHeading(Series):
     heading_rad: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MagneticHeading(Series):
     """Heading from magnetic north (HDG, HDM, VHW), deviation removed where the sentence gives it.
 
@@ -142,7 +147,7 @@ class MagneticHeading(Series):
         return np.mod(self.heading_magnetic_rad + self.variation_rad, 2 * np.pi)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class WaterSpeed(Series):
     """Speed through the water (VHW, VBW).
 
@@ -156,7 +161,7 @@ class WaterSpeed(Series):
     starboard_mps: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BottomTrack(Series):
     """Speed over ground as a log sees it (VBW).
 
@@ -170,7 +175,7 @@ class BottomTrack(Series):
     starboard_mps: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class RateOfTurn(Series):
     """Rate of turn (ROT).
 
@@ -280,6 +285,10 @@ class NavigationLog:
     set_back_lines: np.ndarray
     report: NmeaReport
     notes: list[str]
+
+    def __repr__(self) -> str:
+        counts = (f"{name} {len(series)}" for name, series in self.series.items() if len(series))
+        return brief(self, *counts, span(self.fixes.time_s), name=self.name)
 
     @property
     def series(self) -> dict[str, Series]:
