@@ -110,6 +110,17 @@ def test_panels_share_the_time_from_the_first_scan(episode, tracks):
     assert high >= episode.time_s[-1] - episode.time_s[0]
 
 
+def test_of_many_tracks_the_longest_are_drawn(episode):
+    rows = [str(k) for k in range(1, 13) for _ in range(k)]
+    when = np.concatenate([episode.time_s[:k] for k in range(1, 13)])
+    speed, course = plot.time_view(
+        plot.figure(), episode, Tracks(rows, when, np.ones((len(rows), 4)))
+    )
+    named = {line.get_label() for line in speed.lines} - {"truth"}
+    assert {f"track {k}" for k in range(3, 13)} == {n for n in named if n.startswith("track")}
+    assert course.get_xlabel() == "time from start (s), the 10 longest of 12 tracks"
+
+
 def test_panels_follow_what_the_tracks_have(episode):
     plain = Tracks(["1", "1"], episode.time_s[:2], np.ones((2, 4)))
     assert len(plot.time_view(plot.figure(), episode, plain)) == 2

@@ -40,6 +40,7 @@ def time_view(
 ) -> list[Axes]:
     """Draw tracks over time, in seconds from the first scan, as panels one above the other.
 
+    Of more than ten tracks the ten longest; of more than ten true targets none.
     Speed and course always; NIS where the tracks have it, with the line that 95 % of two-component
     innovations stay below; mode probability, where the tracks have it, of the longest track.
 
@@ -60,6 +61,10 @@ def time_view(
         The panels from top to bottom.
     """
     start_s = _start_s(episode, tracks)
+    count = 0 if tracks is None else len(tracks.ids())
+    tracks = _longest(tracks)
+    if episode is not None and len(episode.truth or {}) > _MANY_TRACKS:
+        episode = None
     panels = [speed_panel, course_panel]
     if tracks is not None and tracks.nis is not None:
         panels.append(nis_panel)
@@ -68,12 +73,14 @@ def time_view(
     for ax, panel in zip(axes, panels, strict=False):
         panel(ax, tracks, episode, start_s=start_s)
     if modes:
-        longest = max(tracks.ids(), key=lambda i: np.count_nonzero(tracks.track_id == i))
-        mode_panel(axes[-1], tracks, longest, start_s=start_s, mode_names=mode_names)
+        mode_panel(axes[-1], tracks, _by_length(tracks)[0], start_s=start_s, mode_names=mode_names)
     for ax in axes[:-1]:
         ax.set_xlabel("")
     axes[0].margins(x=0.01)
     _name_tracks(axes[0], tracks)
+    if count > _MANY_TRACKS:
+        shown = f"the {_MANY_TRACKS} longest of {count} tracks"
+        axes[-1].set_xlabel(f"{axes[-1].get_xlabel()}, {shown}")
     fig.align_ylabels(axes)
     return axes
 
@@ -204,6 +211,18 @@ def _start_s(episode: Episode | None, tracks: Tracks | None) -> float:
     return float(tracks.time_s.min()) if tracks is not None and len(tracks) else 0.0
 
 
+def _by_length(tracks: Tracks) -> list[str]:
+    """Track ids, those with the most rows first."""
+    return sorted(tracks.ids(), key=lambda i: -np.count_nonzero(tracks.track_id == i))
+
+
+def _longest(tracks: Tracks | None) -> Tracks | None:
+    """As many tracks as can be told apart."""
+    if tracks is None or len(tracks.ids()) <= _MANY_TRACKS:
+        return tracks
+    return tracks.where(np.isin(tracks.track_id, _by_length(tracks)[:_MANY_TRACKS]))
+
+
 def _each(tracks: Tracks | None):
     """Id, colour and rows of each track."""
     for track_id, color in track_colors(tracks).items():
@@ -231,8 +250,7 @@ def _finish(ax: Axes, ylabel: str) -> Axes:
 
 
 def _name_tracks(ax: Axes, tracks: Tracks | None) -> None:
-    """Legend of the tracks above the first panel; none where there are too many to tell apart."""
-    ids = [] if tracks is None else tracks.ids()
-    if not 0 < len(ids) <= _MANY_TRACKS:
-        return
-    name_lines(ax, columns=(len(ids) + 2) // (1 + (len(ids) > _ONE_ROW)))
+    """Legend of the tracks above the first panel."""
+    count = 0 if tracks is None else len(tracks.ids())
+    if count > 0:
+        name_lines(ax, columns=(count + 2) // (1 + (count > _ONE_ROW)))
