@@ -401,6 +401,8 @@ void define_track(py::module_& parent) {
       .field("restless_sojourn_s", &VesselModels::restless_sojourn_s)
       .field("turning_sojourn_s", &VesselModels::turning_sojourn_s)
       .done();
+  models.python().def_static("ships", &VesselModels::ships,
+                             "Of ships under way, which go straight for most of an hour.");
 
   m.def("vessel_imm", &any_vessel_imm, py::arg("radar"),
         py::arg_v("models", VesselModels{}, "VesselModels()"),

@@ -64,6 +64,17 @@ def test_changed_settings_read_back_the_same(tmp_path, capsys):
     assert printed.models["steady_sojourn_s"] == 123.0
 
 
+def test_vessels_win_over_the_models_of_the_configuration(tmp_path, capsys):
+    settings = read(tmp_path, "[models]\nsteady_psd_m2s3 = 9.0", vessels="ships")
+    assert settings.models == wl.VesselModels.ships().as_dict()
+    assert [settings.vessels, Settings.default().vessels] == ["ships", "craft"]
+    assert read(tmp_path, "[models]\nsteady_psd_m2s3 = 9.0").vessels == "as configured"
+    assert main(["track", "--vessels", "ships", "--print-config"]) == 0
+    assert read(tmp_path, capsys.readouterr().out) == settings
+    assert main(["track", "--vessels", "yachts", "--print-config"]) == 2
+    assert "'ships'" in capsys.readouterr().err
+
+
 def test_radars_that_ship_are_complete_and_win_over_the_configuration(tmp_path):
     assert radar_names() == ["autoferry", "joyride"]
     settings = read(tmp_path, "[radar]\nrange_std_m = 99.0\nperiod_s = 9.0", radar="joyride")

@@ -36,8 +36,8 @@ ESTIMATORS = {
     ],
     "solent": [
         *("kalman_cv", "wandering_course", "kalman_ca", "singer", "ekf_turn_rate"),
-        *("ukf_turn_rate", "imm3", "imm5", "imm_turn_rate", "vessel_imm", "agmm", "sgmm"),
-        *("likely_model_set", "mode_history"),
+        *("ukf_turn_rate", "imm3", "imm5", "imm_turn_rate", "vessel_imm", "vessel_imm_ships"),
+        *("agmm", "sgmm", "likely_model_set", "mode_history"),
     ],
 }
 
@@ -172,6 +172,15 @@ def test_a_finer_radar_gives_finer_tracks(reports):
         fine, coarse = (report.row(f"coastal_{m}m", name) for m in (15, 60))
         assert fine["position_rmse_m"] < 0.5 * coarse["position_rmse_m"]
         assert fine["course_rms_deg"] < coarse["course_rms_deg"]
+
+
+@pytest.mark.parametrize("radar", SCENARIOS["solent"])
+def test_the_models_of_a_tracker_stand_beside_those_made_for_these_vessels(reports, radar):
+    report = reports["solent"]
+    made = report.row(radar, "imm3")
+    for name, factor in (("vessel_imm", 1.3), ("vessel_imm_ships", 1.05)):
+        row = report.row(radar, name)
+        assert all(row[metric] < factor * made[metric] for metric in ERRORS)
 
 
 def test_every_stretch_is_under_way_and_in_sight():

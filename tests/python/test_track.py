@@ -527,6 +527,14 @@ def test_the_usual_estimator_given_by_hand_gives_the_same_bits():
     assert_same(track_all(recorded), track_all(recorded, by_hand))
 
 
+def test_models_of_ships_are_those_of_the_estimator_for_ships():
+    recorded, ships = scans(25), wl.VesselModels.ships()
+    told = wl.Tracker(RADAR, models=ships)
+    by_hand = wl.Tracker(RADAR, estimator=wl.vessel_imm(RADAR, ships))
+    assert_same(track_all(recorded, told), track_all(recorded, by_hand))
+    assert ships != wl.VesselModels()
+
+
 def test_another_estimator_tracks():
     filters = [
         wl.Ukf(wl.ConstantVelocity(noise=wl.WhiteAcceleration(psd_m2s3=0.05))),

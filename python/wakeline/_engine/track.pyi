@@ -149,6 +149,11 @@ class VesselModels:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def ships() -> VesselModels:
+        """
+        Of ships under way, which go straight for most of an hour.
+        """
     def __eq__(self, other: object) -> bool: ...
     def __init__(
         self,
@@ -157,10 +162,10 @@ class VesselModels:
         steady_course_psd_rad2s: float = 0.004,
         restless_psd_m2s3: float = 0.2,
         restless_course_psd_rad2s: float = 0.055,
-        turning_psd_m2s3: float = 8.0,
-        turning_course_psd_rad2s: float = 0.08,
-        turn_rate_psd_rad2s3: float = 0.001,
-        prior_turn_rate_std_rad_s: float = 0.5,
+        turning_psd_m2s3: float = 3.0,
+        turning_course_psd_rad2s: float = 0.05,
+        turn_rate_psd_rad2s3: float = 0.0003,
+        prior_turn_rate_std_rad_s: float = 0.2,
         steady_sojourn_s: float = 300.0,
         restless_sojourn_s: float = 90.0,
         turning_sojourn_s: float = 80.0,

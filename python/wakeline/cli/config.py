@@ -10,7 +10,7 @@ import json
 import math
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -105,6 +105,7 @@ _CLASSES = {
     "models": wl.VesselModels,
     "danger": DangerLimits,
 }
+VESSELS = {"craft": wl.VesselModels, "ships": wl.VesselModels.ships}
 _ABOUT = {
     "radar": "What a console knows of its radar, as its plots come.",
     "tracker": "How tracks live; one set of defaults for all radars.",
@@ -140,6 +141,14 @@ class Settings:
         """Period of the antenna, None where it is left to the recording."""
         return float(self.radar["period_s"]) or None
 
+    @property
+    def vessels(self) -> str:
+        """Which of `VESSELS` the models are for."""
+        for name, models in VESSELS.items():
+            if self.models == models().as_dict():
+                return name
+        return "as configured"
+
     def tracker_of(self, period_s: float | None = None) -> wl.Tracker:
         """A fresh tracker; `period_s` stands in where the settings leave the period open."""
         radar = dict(self.radar)
@@ -173,8 +182,10 @@ def radar_names() -> list[str]:
     return sorted(Path(file.name).stem for file in _radars().iterdir())
 
 
-def read_settings(config: Path | None = None, radar: str | None = None) -> Settings:
-    """The defaults, changed by a configuration file and then by a description of the radar.
+def read_settings(
+    config: Path | None = None, radar: str | None = None, vessels: str | None = None
+) -> Settings:
+    """The defaults, changed by a configuration file and then by what is told of radar and vessels.
 
     Parameters
     ----------
@@ -182,6 +193,8 @@ def read_settings(config: Path | None = None, radar: str | None = None) -> Setti
         TOML with any of the sections and keys of `KEYS`.
     radar : str, optional
         Name of a radar that ships with the package, or a TOML file with keys of its section.
+    vessels : str, optional
+        A name of `VESSELS`, whose motion models take the place of all others.
 
     Raises
     ------
@@ -198,6 +211,8 @@ def read_settings(config: Path | None = None, radar: str | None = None) -> Setti
     if radar is not None:
         path, document = _read_radar(radar)
         settings = _changed(settings, "radar", _radar_of(path, document), path)
+    if vessels is not None:
+        settings = replace(settings, models=VESSELS[vessels]().as_dict())
     return settings
 
 
@@ -225,7 +240,7 @@ def _changed(settings: Settings, section: str, values: Any, path: Path) -> Setti
         _check_type(path, f"[{section}] {key}", value, type(before[key]))
     after = before | {k: float(v) if type(before[k]) is float else v for k, v in values.items()}
     _check_values(path, section, before, after)
-    return Settings(**(vars(settings) | {section: after}))
+    return replace(settings, **{section: after})
 
 
 def _check_type(path: Path, place: str, value: Any, wanted: type) -> None:

@@ -15,7 +15,7 @@ from wakeline._brief import many
 from wakeline.recording import Recording, Tracks, is_video, read_plots
 
 from . import outputs, report, video
-from .config import Settings, radar_names, read_settings
+from .config import VESSELS, Settings, radar_names, read_settings
 from .tracking import TrackedEpisode, has_names, median_step_s, track_episode
 
 _MOST_ALARMS = 20
@@ -77,6 +77,12 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "[radar]; wins over the [radar] of --config",
     )
     parser.add_argument(
+        "--vessels",
+        choices=VESSELS,
+        help="how vessels move: small craft nearby, the default, or ships under way, seen miles "
+        "away; wins over the [models] of --config",
+    )
+    parser.add_argument(
         "--config", type=Path, metavar="F.toml", help="settings, in the form of --print-config"
     )
     parser.add_argument(
@@ -91,7 +97,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
-    settings = read_settings(arguments.config, arguments.radar)
+    settings = read_settings(arguments.config, arguments.radar, arguments.vessels)
     if arguments.print_config:
         print(settings.toml(), end="")
         return
@@ -192,7 +198,7 @@ def _input_lines(recording: Recording, settings: Settings, radar: str) -> str:
     counts = f"{many(scans, 'scan')}, {many(plots, 'plot')}{scenarios}"
     lines = [f"{recording.name}: {counts}"]
     lines += [f"note: {note}" for note in recording.notes]
-    lines.append(f"{radar}, period {_period(recording, settings)}")
+    lines.append(f"{radar}, period {_period(recording, settings)}; vessels: {settings.vessels}")
     return "\n".join(lines)
 
 

@@ -48,7 +48,7 @@ METRICS = (
     "true_speed_p95_kn",
 )
 MANEUVERS = ("steady", "own_turn", "target_turn")
-CHOSEN = "mode_history"
+CHOSEN = "vessel_imm_ships"
 NO_GLINT = 2  # the scenario that is also run with an echo that stays in the middle of the hull
 
 _NAN = float("nan")
@@ -251,6 +251,7 @@ def estimators() -> dict[str, Any]:
         "singer": wl.Ekf(wl.Singer()),
         "ukf_turn_rate": wl.Ukf(turn_rate),
         "vessel_imm": wl.vessel_imm(radar),
+        "vessel_imm_ships": wl.vessel_imm(radar, wl.VesselModels.ships()),
         "alpha_beta": wl.AlphaBeta(wl.TrackingIndex(accel_std_mps2=0.02)),
         "bayesian_alpha_beta": wl.BayesianAlphaBeta(max_plots=16, parabolas=False),
     }

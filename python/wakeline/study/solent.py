@@ -201,6 +201,7 @@ _TABLE: dict[str, Callable[[], Any]] = {
     "imm5": lambda: _imm((0, 2, -2, 4, -4)),
     "imm_turn_rate": _imm_rate,
     "vessel_imm": lambda: wl.vessel_imm(wl.Radar()),
+    "vessel_imm_ships": lambda: wl.vessel_imm(wl.Radar(), wl.VesselModels.ships()),
     "agmm": lambda: wl.AdaptiveGridImm(turn_filter(0.0, _NOISE)),
     "sgmm": lambda: wl.SwitchingGridImm(turn_filter(0.0, _NOISE)),
     "likely_model_set": lambda: wl.LikelyModelSetImm(turn_filter(0.0, _NOISE)),

@@ -12,19 +12,36 @@ namespace wakeline {
 
 /// The motion models that a tracker uses unless told otherwise: steady, restless and turning. Their
 /// noise grows with the square of the speed, so that one set serves a drifting ferry and a boat at
-/// play.
+/// play; `ships()` is another, for ships under way.
 struct VesselModels {
   double steady_psd_m2s3 = 0.005;          ///< acceleration of a steady vessel at rest
   double steady_course_psd_rad2s = 0.004;  ///< wander of its course
   double restless_psd_m2s3 = 0.2;
   double restless_course_psd_rad2s = 0.055;
-  double turning_psd_m2s3 = 8.0;
-  double turning_course_psd_rad2s = 0.08;
-  double turn_rate_psd_rad2s3 = 0.001;     ///< wander of the rate of turn
-  double prior_turn_rate_std_rad_s = 0.5;  ///< rate of turn before it is known
+  double turning_psd_m2s3 = 3.0;
+  double turning_course_psd_rad2s = 0.05;
+  double turn_rate_psd_rad2s3 = 0.0003;    ///< wander of the rate of turn
+  double prior_turn_rate_std_rad_s = 0.2;  ///< rate of turn before it is known
   double steady_sojourn_s = 300.0;         ///< mean time in each mode
   double restless_sojourn_s = 90.0;
   double turning_sojourn_s = 80.0;
+
+  /// Of ships under way: straight for most of an hour, alterations of course within a minute. A
+  /// radar that sees them miles away then has their speed and course within a minute (see
+  /// cpp/docs/theory/a823.md); a boat at play is lost by them.
+  static constexpr VesselModels ships() noexcept {
+    return {.steady_psd_m2s3 = 2e-5,
+            .steady_course_psd_rad2s = 1e-6,
+            .restless_psd_m2s3 = 0.01,
+            .restless_course_psd_rad2s = 0.001,
+            .turning_psd_m2s3 = 0.002,
+            .turning_course_psd_rad2s = 0.001,
+            .turn_rate_psd_rad2s3 = 3e-6,
+            .prior_turn_rate_std_rad_s = 0.05,
+            .steady_sojourn_s = 3000.0,
+            .restless_sojourn_s = 60.0,
+            .turning_sojourn_s = 60.0};
+  }
 
   void validate() const {
     require_not_negative("steady_psd_m2s3", steady_psd_m2s3);

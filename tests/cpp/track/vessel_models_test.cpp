@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// What the motion models of a tracker are for: small craft nearby, and ships miles away.
+#include "track/scene.hpp"
+
+namespace wakeline {
+namespace {
+
+using namespace test;
+
+constexpr double kScan_s = 2.5;
+
+/// A radar that knows less of a ship miles away than of a boat nearby.
+const Radar kCoarse{.range_std_m = 23.0,
+                    .bearing_std_rad = deg(0.2),
+                    .extent_std_m = 20.0,
+                    .period_s = kScan_s,
+                    .max_speed_mps = 30.0};
+
+VesselTracker tracker_of(const VesselModels& models) {
+  return VesselTracker(kCoarse, {}, vessel_imm(kCoarse, models));
+}
+
+Vec<double, 2> velocity_of(const VesselTrack& track) {
+  return {track.kinematics.mean[1], track.kinematics.mean[3]};
+}
+
+/// A ship on her course, which turns to starboard by 0.75 degrees a second for a minute from a time
+/// on.
+struct Ship {
+  Vec<double, 2> start_m{11000.0, 9000.0};
+  double speed_mps = 8.0;
+  double turn_from_s = 1e9;
+
+  [[nodiscard]] double course_rad(double time_s) const {
+    return deg(200.0 + 0.75 * std::clamp(time_s - turn_from_s, 0.0, 60.0));
+  }
+  [[nodiscard]] Vec<double, 2> velocity_mps(double time_s) const {
+    return speed_mps * Vec<double, 2>(std::cos(course_rad(time_s)), std::sin(course_rad(time_s)));
+  }
+  [[nodiscard]] Vec<double, 2> at(double time_s) const {
+    constexpr double kStep_s = 0.5;
+    Vec<double, 2> place_m = start_m;
+    for (double t = 0.0; t < time_s; t += kStep_s)
+      place_m += kStep_s * velocity_mps(t + 0.5 * kStep_s);
+    return place_m;
+  }
+};
+
+/// Follows a ship for so many scans; calls `see(time_s, track)` after each of them, the track null
+/// where there is none near her.
+template <class See>
+void follow(VesselTracker& tracker, const Ship& ship, std::uint64_t seed, int scans, See&& see) {
+  Sea sea(seed, kCoarse);
+  for (int k = 0; k < scans; ++k) {
+    const double time_s = kScan_s * k;
+    const Plot plot = sea.plot(ship.at(time_s), time_s);
+    ASSERT_EQ(tracker.process(time_s, {&plot, 1}).status, Status::kOk);
+    see(time_s, track_at(tracker, ship.at(time_s), 500.0));
+  }
+}
+
+/// Root mean square error of the velocity a minute after the first plot, over many runs.
+double velocity_error_after_a_minute(const VesselModels& models) {
+  constexpr int kRuns = 60;
+  const Ship ship;
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    VesselTracker tracker = tracker_of(models);
+    follow(tracker, ship, seed, 25, [&](double time_s, const VesselTrack* track) {
+      if (time_s < 60.0) return;
+      ASSERT_NE(track, nullptr) << "seed " << seed;
+      sum += (velocity_of(*track) - ship.velocity_mps(time_s)).squaredNorm();
+    });
+  }
+  return std::sqrt(sum / kRuns);
+}
+
+TEST(VesselModelsOfShips, KnowTheVelocityOfAShipMilesAwayWithinAMinute) {
+  EXPECT_LT(velocity_error_after_a_minute(VesselModels::ships()),
+            0.6 * velocity_error_after_a_minute({}));
+}
+
+TEST(VesselModelsOfShips, HoldAShipThatAltersHerCourse) {
+  const Ship ship{.turn_from_s = 120.0};
+  double squared = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    VesselTracker tracker = tracker_of(VesselModels::ships());
+    follow(tracker, ship, seed, 144, [&](double time_s, const VesselTrack* track) {
+      if (time_s < 30.0) return;
+      ASSERT_NE(track, nullptr) << "seed " << seed << ", " << time_s << " s";
+      EXPECT_EQ(track->id, 1);
+      if (time_s >= 355.0)
+        squared += (velocity_of(*track) - ship.velocity_mps(time_s)).squaredNorm() / (20 * 2);
+    });
+  }
+  EXPECT_LT(std::sqrt(squared), 1.0) << "three minutes after the turn";
+}
+
+TEST(VesselModels, BelieveInNoVesselThatGoesFullCircleBetweenTwoScans) {
+  const RangeBearing sensor{.range_std_m = 60.0, .bearing_std_rad = deg(0.5)};
+  const Boat boat{{6000.0, 3000.0}, {-3.0, 4.0}};
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    Draw draw(seed);
+    VesselImm imm = vessel_imm(Radar{});
+    const auto read = [&](double time_s) -> Vec<double, 2> {
+      const Plot plot = exact_plot(boat.at(time_s), time_s);
+      return {plot.range_m + 60.0 * draw.normal(), plot.bearing_rad + deg(0.5) * draw.normal()};
+    };
+    const Gaussian<4> start = one_point(sensor, read(0.0), 10.0);
+    ASSERT_EQ(imm.start(start), Status::kOk);
+    for (int k = 1; k <= 100; ++k) {
+      ASSERT_EQ(imm.predict(3.0), Status::kOk);
+      ASSERT_EQ(imm.update(sensor, read(3.0 * k)).status, Status::kOk);
+      const Vec<double, 4> mean = imm.estimate().mean;
+      ASSERT_LT(std::hypot(mean[1], mean[3]), 60.0) << "seed " << seed << ", scan " << k;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wakeline
