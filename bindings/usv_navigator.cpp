@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "types.hpp"
-#include "wakeline/filter/ukf.hpp"
+#include "wakeline/filter/augmented_ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
 
 namespace wakeline::python {
@@ -17,8 +17,10 @@ namespace {
 
 using AnyNavigator =
     std::variant<UsvNavigator<UsvMotion, Ekf>, UsvNavigator<UsvMotion, Ukf>,
-                 UsvNavigator<UsvBiasMotion, Ekf>, UsvNavigator<UsvBiasMotion, Ukf>,
-                 UsvNavigator<UsvCurrentMotion, Ekf>, UsvNavigator<UsvCurrentMotion, Ukf>>;
+                 UsvNavigator<UsvMotion, AugmentedUkf>, UsvNavigator<UsvBiasMotion, Ekf>,
+                 UsvNavigator<UsvBiasMotion, Ukf>, UsvNavigator<UsvBiasMotion, AugmentedUkf>,
+                 UsvNavigator<UsvCurrentMotion, Ekf>, UsvNavigator<UsvCurrentMotion, Ukf>,
+                 UsvNavigator<UsvCurrentMotion, AugmentedUkf>>;
 
 struct PyReading : PyStep {
   bool rejected;
@@ -309,7 +311,9 @@ PyNavigator make(const Model& model, const std::string& filter, const UsvOutlier
   if (filter == "ekf") return PyNavigator(UsvNavigator<Model, Ekf>(model, outliers, unmeasured));
   if (filter == "ukf")
     return PyNavigator(UsvNavigator<Model, Ukf>(model, outliers, unmeasured, unscented));
-  throw py::value_error("filter must be 'ekf' or 'ukf', got '" + filter + "'");
+  if (filter == "augmented_ukf")
+    return PyNavigator(UsvNavigator<Model, AugmentedUkf>(model, outliers, unmeasured, unscented));
+  throw py::value_error("filter must be 'ekf', 'ukf' or 'augmented_ukf', got '" + filter + "'");
 }
 
 }  // namespace
@@ -342,7 +346,10 @@ row were, it is the belief that is widened, and the reading is taken.
 Parameters
 ----------
 states : {5, 7, 8}
-filter : {'ekf', 'ukf'}
+filter : {'ekf', 'ukf', 'augmented_ukf'}
+    The extended filter and the unscented one, whose noise of the IMU is added to the covariance, or
+    the unscented one that moves it through the motion as sigma points of its own. All agree where
+    turns between readings are small.
 acceleration_std_mps2, yaw_rate_std_rad_s : float
     Noise of a reading of the IMU, held over a step.
 unmeasured_acceleration_std_mps2, unmeasured_yaw_rate_std_rad_s : float
@@ -356,7 +363,7 @@ gate_probability : float
 rejections : int
     In a row, before a reading is believed nevertheless.
 alpha, beta, kappa : float
-    Of the unscented transform.
+    Of the unscented transforms.
 
 Raises
 ------

@@ -52,7 +52,7 @@ def wrapped(angle_rad):
     return (np.asarray(angle_rad) + np.pi) % (2 * np.pi) - np.pi
 
 
-@pytest.mark.parametrize("filter", ["ekf", "ukf"])
+@pytest.mark.parametrize("filter", ["ekf", "ukf", "augmented_ukf"])
 @pytest.mark.parametrize("states", [5, 7, 8])
 def test_a_run_is_its_steps(states, filter):
     log = voyage(steps=50, bias=0 * BIAS)
@@ -85,10 +85,24 @@ def test_biases_are_found_and_smoothing_helps():
     assert np.all(np.abs(wrapped(smooth.mean[:, 4] - log["heading"])) < 1 * DEG)
 
 
-def test_ekf_and_ukf_agree():
+def test_filters_agree():
     log = voyage()
-    ekf, ukf = (started(log, 8, name).run(**sensors(log)) for name in ("ekf", "ukf"))
-    assert np.max(np.abs(ekf.mean[:, :2] - ukf.mean[:, :2])) < 0.05
+    ekf, *others = (
+        started(log, 8, name).run(**sensors(log)) for name in ("ekf", "ukf", "augmented_ukf")
+    )
+    for other in others:
+        assert np.max(np.abs(ekf.mean[:, :2] - other.mean[:, :2])) < 0.05
+
+
+def test_augmented_noise_is_additive_noise_at_points_as_far_out():
+    """The IMU's three errors enter the motion linearly, and widen the points like kappa = 3."""
+    log = voyage(steps=200)
+    augmented = started(log, 8, "augmented_ukf").run(**sensors(log))
+    additive = started(log, 8, "ukf", kappa=3.0).run(**sensors(log))
+    plain = started(log, 8, "ukf").run(**sensors(log))
+    np.testing.assert_allclose(augmented.mean, additive.mean, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(augmented.covariance, additive.covariance, rtol=1e-8, atol=1e-12)
+    assert np.any(augmented.mean != plain.mean)
 
 
 def test_an_outage_grows_the_covariance_and_nothing_is_rejected_after_it():
@@ -135,7 +149,7 @@ def test_errors_name_what_is_wrong():
     log = voyage(steps=20)
     with pytest.raises(ValueError, match="states must be 5, 7 or 8, got 6"):
         UsvNavigator(6)
-    with pytest.raises(ValueError, match="filter must be 'ekf' or 'ukf', got 'kf'"):
+    with pytest.raises(ValueError, match=r"filter must be 'ekf', .* got 'kf'"):
         UsvNavigator(8, "kf")
     with pytest.raises(ValueError, match="gate probability must be between 0 and 1, got 2"):
         UsvNavigator(gate_probability=2)

@@ -34,6 +34,7 @@
 #include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/filter/alpha_beta_gains.hpp"
 #include "wakeline/filter/alpha_beta_smoother.hpp"
+#include "wakeline/filter/augmented_ukf.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/filter/concept.hpp"
 #include "wakeline/filter/control.hpp"

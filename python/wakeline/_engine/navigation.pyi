@@ -384,7 +384,10 @@ class UsvNavigator:
     Parameters
     ----------
     states : {5, 7, 8}
-    filter : {'ekf', 'ukf'}
+    filter : {'ekf', 'ukf', 'augmented_ukf'}
+        The extended filter and the unscented one, whose noise of the IMU is added to the covariance, or
+        the unscented one that moves it through the motion as sigma points of its own. All agree where
+        turns between readings are small.
     acceleration_std_mps2, yaw_rate_std_rad_s : float
         Noise of a reading of the IMU, held over a step.
     unmeasured_acceleration_std_mps2, unmeasured_yaw_rate_std_rad_s : float
@@ -398,7 +401,7 @@ class UsvNavigator:
     rejections : int
         In a row, before a reading is believed nevertheless.
     alpha, beta, kappa : float
-        Of the unscented transform.
+        Of the unscented transforms.
 
     Raises
     ------

@@ -125,7 +125,10 @@ ESTIMATORS = {
     "ukf7_current": Estimator(7, "ukf", _STEADY),
     "smoother8": Estimator(8, "ekf", smooth=True),
 }
-IN_FULL = {"ukf5_printed_noise": Estimator(5, "ukf", _PRINTED, told_bias=True)}
+IN_FULL = {
+    "ukf5_printed_noise": Estimator(5, "ukf", _PRINTED, told_bias=True),
+    "augmented_ukf8": Estimator(8, "augmented_ukf"),
+}
 
 
 def navigate(estimator: Estimator, mission: UsvMission, logs: UsvLogs, run: int) -> Any:
@@ -312,7 +315,8 @@ def run(
     runs, seed : int
         Of the Monte Carlo runs.
     full : bool
-        Also the paper's filter with its figures of the IMU read as variances.
+        Also the paper's filter with its figures of the IMU read as variances, and ours with
+        augmented noise.
     threads : int, optional
         Default as many as there are processors.
     progress : bool

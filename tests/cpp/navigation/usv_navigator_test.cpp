@@ -16,7 +16,7 @@
 #include "support/malloc_fence.hpp"
 #include "support/matrix_assert.hpp"
 #include "support/numeric_jacobian.hpp"
-#include "wakeline/filter/ukf.hpp"
+#include "wakeline/filter/augmented_ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
 
 namespace wakeline {
@@ -137,11 +137,11 @@ struct Score {
   double nees = 0.0;  ///< of the paper's five states
 };
 
-template <class Model>
+template <template <class, class> class Filter = Ekf, class Model>
 Score score(const Model& model, const Vec3& bias, int runs) {
   Score mean;
   for (int run = 0; run < runs; ++run) {
-    UsvNavigator<Model> navigator(model);
+    UsvNavigator<Model, Filter> navigator(model);
     const std::vector<Instant> log = mission(std::uint64_t(1000 + run), bias);
     auto beliefs = navigate(navigator, log);
     const double steps = double(log.size() - 1) * runs;
@@ -203,6 +203,16 @@ TEST(UsvNavigator, ReachesTheKnownErrorsAtAConstantSpeedInACurrent) {
   EXPECT_TRUE(matrices_near(seven.filter, Vec3(1.37, 1.13, 0.044), {0, 0.2}));
 }
 
+TEST(UsvNavigator, IsConsistentWithAugmentedNoise) {
+  const Score additive = score<Ukf>(UsvBiasMotion{}, kBias, 20);
+  const Score augmented = score<AugmentedUkf>(UsvBiasMotion{}, kBias, 20);
+  report("additive", additive);
+  report("augmented", augmented);
+  EXPECT_TRUE(matrices_near(augmented.filter, additive.filter, {0, 0.01}));
+  EXPECT_GT(augmented.nees, 4.5);
+  EXPECT_LT(augmented.nees, 5.5);
+}
+
 TEST(UsvNavigator, FindsTheBiasesAndTheCurrent) {
   const std::vector<Instant> log = mission(7, kBias);
   UsvNavigator<UsvBiasMotion> eight;
@@ -250,6 +260,7 @@ void expect_single_precision_will_do(const Vec3& bias) {
 TEST(UsvNavigator, WorksInSinglePrecision) {
   expect_single_precision_will_do<UsvBiasMotion, Ekf>(kBias);
   expect_single_precision_will_do<UsvMotion, Ukf>(kNoBias);
+  expect_single_precision_will_do<UsvBiasMotion, AugmentedUkf>(kBias);
 }
 
 template <class Model>
@@ -317,20 +328,26 @@ TYPED_TEST(EveryUsvModel, HasNoPreferredDirection) {
   EXPECT_TRUE(matrices_near(model.transition(turned, 1.0), expected, {1e-12, 1e-12}));
 }
 
-TYPED_TEST(EveryUsvModel, IsTheSameToEkfAndUkf) {
-  const std::vector<Instant> log = mission(11, kStatesOf<TypeParam> == 5 ? kNoBias : kBias);
-  UsvNavigator<TypeParam, Ekf> ekf;
-  UsvNavigator<TypeParam, Ukf> ukf;
-  const auto by_ekf = navigate(ekf, log);
-  const auto by_ukf = navigate(ukf, log);
-  for (std::size_t k = 0; k < log.size(); ++k) {
-    Vec3 difference = pose<TypeParam>(by_ekf[k].mean) - pose<TypeParam>(by_ukf[k].mean);
+template <class Model, class One, class Other>
+void expect_close(const std::vector<One>& one, const std::vector<Other>& other) {
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    Vec3 difference = pose<Model>(one[k].mean) - pose<Model>(other[k].mean);
     difference[2] = wrap_angle(difference[2]);
     EXPECT_LT(difference.template head<2>().norm(), 0.1) << k;
     EXPECT_LT(std::abs(difference[2]), deg(0.01)) << k;
-    EXPECT_TRUE(is_covariance(by_ekf[k].covariance));
-    EXPECT_TRUE(is_covariance(by_ukf[k].covariance));
+    EXPECT_TRUE(is_covariance(one[k].covariance));
+    EXPECT_TRUE(is_covariance(other[k].covariance));
   }
+}
+
+TYPED_TEST(EveryUsvModel, IsTheSameToEveryFilter) {
+  const std::vector<Instant> log = mission(11, kStatesOf<TypeParam> == 5 ? kNoBias : kBias);
+  UsvNavigator<TypeParam, Ekf> ekf;
+  UsvNavigator<TypeParam, Ukf> ukf;
+  UsvNavigator<TypeParam, AugmentedUkf> augmented;
+  const auto by_ekf = navigate(ekf, log);
+  expect_close<TypeParam>(by_ekf, navigate(ukf, log));
+  expect_close<TypeParam>(by_ekf, navigate(augmented, log));
 }
 
 TYPED_TEST(EveryUsvModel, CoastsThroughAnOutageAndComesBack) {
@@ -475,6 +492,7 @@ TYPED_TEST(EveryUsvModel, SmoothsAcrossTheSeam) {
 TYPED_TEST(EveryUsvModel, TouchesNoHeap) {
   UsvNavigator<TypeParam, Ekf> ekf;
   UsvNavigator<TypeParam, Ukf> ukf;
+  UsvNavigator<TypeParam, AugmentedUkf> augmented;
   std::array<typename UsvNavigator<TypeParam>::State, 3> beliefs;
   const std::array legs{ekf.leg(1.0, {}), ekf.leg(2.0)};
   const auto drive = [](auto& navigator) {
@@ -488,7 +506,8 @@ TYPED_TEST(EveryUsvModel, TouchesNoHeap) {
     return fine;
   };
   const test::NoHeap fence;
-  const bool fine = drive(ekf) && drive(ukf) && ekf.smooth(beliefs, legs) == Status::kOk;
+  const bool fine =
+      drive(ekf) && drive(ukf) && drive(augmented) && ekf.smooth(beliefs, legs) == Status::kOk;
   EXPECT_EQ(fence.allocations(), 0);
   EXPECT_TRUE(fine);
 }

@@ -86,6 +86,7 @@ Mat<Scalar, 2, 2> body_to_north_east(Scalar heading_rad) noexcept {
 template <bool Biases>
 struct UsvInertialMotion {
   static constexpr int kN = Biases ? 8 : 5;
+  static constexpr int kInputs = 3;  ///< readings that drive it
   static constexpr auto kComponents = [] {
     if constexpr (Biases)
       return std::array{Component::kNorth, Component::kEast, Component::kVnorth, Component::kVeast,
@@ -133,17 +134,24 @@ struct UsvInertialMotion {
 
   /// Q: the error of the IMU held over the step, and the walk of the biases.
   template <class Scalar>
-  Mat<Scalar, kN, kN> process_noise(const Vec<Scalar, kN>&, Scalar dt_s) const noexcept {
+  Mat<Scalar, kN, kN> process_noise(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     const Scalar a_std = Scalar(input.noise.acceleration_std_mps2);
     const Scalar w_std = Scalar(input.noise.yaw_rate_std_rad_s);
     const Vec<Scalar, 2> g = a_std * Vec<Scalar, 2>(dt_s * dt_s / 2, dt_s);
-    Mat<Scalar, kN, kN> q = Mat<Scalar, kN, kN>::Zero();
+    Mat<Scalar, kN, kN> q = walk_noise(x, dt_s);
     for (const int axis : {0, 1}) {
       q(axis, axis) = g[0] * g[0];
       q(axis, axis + 2) = q(axis + 2, axis) = g[0] * g[1];
       q(axis + 2, axis + 2) = g[1] * g[1];
     }
     q(4, 4) = dt_s * w_std * (dt_s * w_std);
+    return q;
+  }
+
+  /// The walk of the biases alone.
+  template <class Scalar>
+  Mat<Scalar, kN, kN> walk_noise(const Vec<Scalar, kN>&, Scalar dt_s) const noexcept {
+    Mat<Scalar, kN, kN> q = Mat<Scalar, kN, kN>::Zero();
     if constexpr (Biases) {
       const Scalar a_walk = Scalar(acceleration_bias_walk_mps2);
       const Scalar w_walk = Scalar(gyro_bias_walk_rad_s);
@@ -151,6 +159,21 @@ struct UsvInertialMotion {
       q(7, 7) = dt_s * w_walk * w_walk;
     }
     return q;
+  }
+
+  /// Standard deviations of the IMU's errors: [forward, starboard (m/s²), yaw rate (rad/s)].
+  [[nodiscard]] Vec<double, kInputs> input_std() const noexcept {
+    const double a_std = input.noise.acceleration_std_mps2;
+    return {a_std, a_std, input.noise.yaw_rate_std_rad_s};
+  }
+
+  /// The same motion with these errors added to the IMU's readings.
+  [[nodiscard]] UsvInertialMotion disturbed(const Vec<double, kInputs>& error) const noexcept {
+    UsvInertialMotion motion = *this;
+    motion.input.imu.forward_mps2 += error[0];
+    motion.input.imu.starboard_mps2 += error[1];
+    motion.input.imu.yaw_rate_rad_s += error[2];
+    return motion;
   }
 
   template <class Scalar>
@@ -207,6 +230,7 @@ using UsvBiasMotion = UsvInertialMotion<true>;
 /// changes, and less while it does.
 struct UsvCurrentMotion {
   static constexpr int kN = 7;
+  static constexpr int kInputs = 1;  ///< readings that drive it
   static constexpr std::array kComponents{Component::kNorth,  Component::kEast, kHeading,
                                           kSpeedThroughWater, kGyroBias,        kCurrentNorth,
                                           kCurrentEast};
@@ -242,10 +266,18 @@ struct UsvCurrentMotion {
     return f;
   }
 
-  /// Q: the error of the gyro held over the step, and the walks, which carry the position along.
+  /// Q: the error of the gyro held over the step, which turns the heading, and the walks.
   template <class Scalar>
   Mat<Scalar, kN, kN> process_noise(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     const Scalar w_std = Scalar(input.noise.yaw_rate_std_rad_s);
+    Mat<Scalar, kN, kN> q = walk_noise(x, dt_s);
+    q(2, 2) = dt_s * w_std * (dt_s * w_std);
+    return q;
+  }
+
+  /// The walks of speed, current and bias alone, which carry the position along.
+  template <class Scalar>
+  Mat<Scalar, kN, kN> walk_noise(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     const Scalar s = Scalar(speed_walk_mps * speed_walk_mps);
     const Scalar c = Scalar(current_walk_mps * current_walk_mps);
     const Scalar b = Scalar(gyro_bias_walk_rad_s * gyro_bias_walk_rad_s);
@@ -260,10 +292,21 @@ struct UsvCurrentMotion {
       q(axis, axis + 5) = q(axis + 5, axis) = squared * c;
       q(axis + 5, axis + 5) = dt_s * c;
     }
-    q(2, 2) = dt_s * w_std * (dt_s * w_std);
     q(3, 3) = dt_s * s;
     q(4, 4) = dt_s * b;
     return q;
+  }
+
+  /// Standard deviation of the gyro's error, rad/s.
+  [[nodiscard]] Vec<double, kInputs> input_std() const noexcept {
+    return Vec<double, kInputs>(input.noise.yaw_rate_std_rad_s);
+  }
+
+  /// The same motion with this error added to the gyro's reading.
+  [[nodiscard]] UsvCurrentMotion disturbed(const Vec<double, kInputs>& error) const noexcept {
+    UsvCurrentMotion motion = *this;
+    motion.input.imu.yaw_rate_rad_s += error[0];
+    return motion;
   }
 
   /// The speed is the start's velocity along its heading; the current begins at zero.

@@ -51,9 +51,10 @@ struct UsvLeg {
 ///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
 /// - The heading of the estimate is in [-pi, pi].
 ///
-/// Model: `UsvMotion`, `UsvBiasMotion` or `UsvCurrentMotion`; FilterType: `Ekf` or `Ukf` (additive
-/// noise; its transform is the third argument of the constructor). Both agree where turns between
-/// readings are small. Source: Evsyukov, Andreeva, Khanychev, equations (1)-(25).
+/// Model: `UsvMotion`, `UsvBiasMotion` or `UsvCurrentMotion`; FilterType: `Ekf`, `Ukf` (additive
+/// noise) or `AugmentedUkf` (the IMU's noise through the motion; the transform of both is the
+/// fourth argument of the constructor). All agree where turns between readings are small. Source:
+/// Evsyukov, Andreeva, Khanychev, equations (1)-(25).
 template <class Model, template <class, class> class FilterType = Ekf, class ScalarType = double>
 class UsvNavigator {
  public:
@@ -132,9 +133,10 @@ class UsvNavigator {
   [[nodiscard]] bool started() const noexcept { return filter_.started(); }
   [[nodiscard]] const Model& model() const noexcept { return model_; }
 
-  /// Rauch-Tung-Striebel smoother of a log, in place: `legs[k]` leads from belief k, as it was
-  /// after all readings of its time, to belief k + 1. Returns the first failure, with that belief
-  /// and all before it left as filtered. It knows nothing of a widening, whose jump it spreads.
+  /// Rauch-Tung-Striebel smoother of a log, with additive noise, in place: `legs[k]` leads from
+  /// belief k, as it was after all readings of its time, to belief k + 1. Returns the first
+  /// failure, with that belief and all before it left as filtered. It knows nothing of a widening,
+  /// whose jump it spreads.
   Status smooth(std::span<State> beliefs, std::span<const Leg> legs) const noexcept {
     for (std::size_t k = beliefs.size(); k-- > 1;) {
       const Leg& leg = legs[k - 1];

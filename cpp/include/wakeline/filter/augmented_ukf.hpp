@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <concepts>
+
+#include "wakeline/filter/ukf.hpp"
+
+namespace wakeline {
+
+/// A motion driven by `kInputs` readings whose errors, of `input_std()` and independent of each
+/// other, go through it: x' = f(x, e, dt) + w, w ~ N(0, W(x, dt)).
+///
+/// `disturbed(e)` is the motion with the errors e added to its readings, and `walk_noise(x, dt_s)`
+/// W, what of its `process_noise` the readings have no part in.
+template <class Motion>
+concept DisturbedMotionModel = NonlinearMotionModel<Motion> &&
+    requires(const Motion& motion, const Vec<double, Motion::kInputs>& error,
+             const StateOf<Motion>& x, double dt_s) {
+  { motion.input_std() } -> std::convertible_to<Vec<double, Motion::kInputs>>;
+  { motion.disturbed(error) } -> std::convertible_to<Motion>;
+  { motion.walk_noise(x, dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
+};
+
+/// The unscented Kalman filter with augmented noise: a prediction moves sigma points of the state
+/// and of the errors of the readings that drive it, 2 (N + kInputs) and the centre, and adds W
+/// alone, so that no noise counts twice. `Ukf`, whose noise is additive, moves 2 N and adds all of
+/// Q. Updates are those of `Ukf`.
+///
+/// Where the errors enter linearly both are the same but for how far the points stand out, alpha²
+/// (N + kInputs + kappa) here. Source: S. J. Julier, J. K. Uhlmann, Proc. IEEE 92, 2004, section
+/// III; E. A. Wan, R. van der Merwe, 2000.
+template <class MotionType, class ScalarType = double>
+class AugmentedUkf : public Ukf<MotionType, ScalarType> {
+  static_assert(DisturbedMotionModel<MotionType>,
+                "wakeline: AugmentedUkf needs a motion model whose readings err: kInputs, "
+                "input_std(), disturbed(error) and walk_noise(x, dt_s) beside what every nonlinear "
+                "one has; see cpp/docs/concepts.md");
+  using Base = Ukf<MotionType, ScalarType>;
+
+ public:
+  using Base::kStates;
+  using typename Base::Scalar;
+  static constexpr int kInputs = MotionType::kInputs;
+  static constexpr int kAugmented = kStates + kInputs;
+
+  explicit AugmentedUkf(const MotionType& motion, const Unscented& unscented = {})
+      : Base(motion, unscented) {}
+
+  /// The moments of the moved sigma points, and W.
+  StatusOf<Scalar> predict(Scalar dt_s) noexcept {
+    if (!this->started_) return Status::kNotStarted;
+    const StatusOf<Scalar> forward = check_time_step(dt_s);
+    if (none(ok(forward))) return forward;
+    const Vec<Scalar, kStates>& x = this->belief_.mean;
+    const Cholesky<kStates, Scalar> root(this->belief_.covariance);
+    const auto spread = this->unscented().template spread<Scalar>(kAugmented);
+    const MovedPoints<Scalar, kStates> moved(
+        this->motion_, dt_s, x, sigma_points<Scalar, kStates>(x, root.lower(), spread));
+    Mat<Scalar, kStates, 2 * kAugmented> differences;
+    differences << moved.differences, by_errors(dt_s, moved.centre);
+    Gaussian<kStates, Scalar> next =
+        unscented_moments(this->unscented(), kAugmented, moved.centre, differences);
+    next.covariance += this->motion_.walk_noise(x, dt_s);
+    mirror_lower<Scalar, kStates>(next.covariance);
+    const auto finite = is_finite(next.mean) && is_finite(next.covariance);
+    const auto definite = root.ok() && Cholesky<kStates, Scalar>(next.covariance).ok();
+    const StatusOf<Scalar> status =
+        first_failure(first_failure(forward, ok_or(finite, Status::kNotFinite)),
+                      ok_or(definite, Status::kNotPositiveDefinite));
+    this->assign_in(ok(status), next);
+    return status;
+  }
+
+ private:
+  /// From the centre's image, those of the mean under each reading's error to either side.
+  Mat<Scalar, kStates, 2 * kInputs> by_errors(Scalar dt_s,
+                                              const Vec<Scalar, kStates>& centre) const noexcept {
+    const Vec<double, kInputs> reach =
+        this->unscented().template spread<double>(kAugmented) * this->motion_.input_std();
+    Mat<Scalar, kStates, 2 * kInputs> differences;
+    for (int k = 0; k < kInputs; ++k)
+      for (const int side : {0, 1}) {
+        const Vec<double, kInputs> error =
+            (side == 0 ? reach[k] : -reach[k]) * Vec<double, kInputs>::Unit(k);
+        differences.col(2 * k + side) =
+            this->motion_.disturbed(error).transition(this->belief_.mean, dt_s) - centre;
+      }
+    return differences;
+  }
+};
+
+}  // namespace wakeline
