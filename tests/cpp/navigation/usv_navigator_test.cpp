@@ -328,6 +328,23 @@ TYPED_TEST(EveryUsvModel, HasNoPreferredDirection) {
   EXPECT_TRUE(matrices_near(model.transition(turned, 1.0), expected, {1e-12, 1e-12}));
 }
 
+// Q is what the errors of the readings do to the motion, and the walk.
+TYPED_TEST(EveryUsvModel, HasTheErrorsOfItsReadingsAndItsWalkInItsProcessNoise) {
+  using Errors = Vec<double, TypeParam::kInputs>;
+  Draw draw(6);
+  const TypeParam model = turning<TypeParam>();
+  for (const double dt : {0.1, 1.0, 5.0}) {
+    const StateOf<TypeParam> x = some_state<TypeParam>(draw);
+    const auto by_error = test::numeric_jacobian(
+        [&](const Errors& error) { return model.disturbed(error).transition(x, dt); },
+        Errors(Errors::Zero()));
+    const Errors variance = model.input_std().cwiseAbs2();
+    const StateMatrixOf<TypeParam> sum =
+        model.walk_noise(x, dt) + by_error * variance.asDiagonal() * by_error.transpose();
+    EXPECT_TRUE(matrices_near(sum, model.process_noise(x, dt), {1e-12, 1e-6}));
+  }
+}
+
 template <class Model, class One, class Other>
 void expect_close(const std::vector<One>& one, const std::vector<Other>& other) {
   for (std::size_t k = 0; k < one.size(); ++k) {

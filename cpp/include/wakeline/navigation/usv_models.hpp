@@ -266,12 +266,15 @@ struct UsvCurrentMotion {
     return f;
   }
 
-  /// Q: the error of the gyro held over the step, which turns the heading, and the walks.
+  /// Q: the error of the gyro held over the step, which turns heading and way, and the walks.
   template <class Scalar>
   Mat<Scalar, kN, kN> process_noise(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
-    const Scalar w_std = Scalar(input.noise.yaw_rate_std_rad_s);
+    const Scalar turned = dt_s * Scalar(input.noise.yaw_rate_std_rad_s);
+    const Vec<Scalar, 2> u = ahead(x, dt_s);
+    const Vec<Scalar, 3> by_gyro =
+        turned * Vec<Scalar, 3>(-dt_s / 2 * x[3] * u[1], dt_s / 2 * x[3] * u[0], Scalar(1));
     Mat<Scalar, kN, kN> q = walk_noise(x, dt_s);
-    q(2, 2) = dt_s * w_std * (dt_s * w_std);
+    q.template topLeftCorner<3, 3>() += by_gyro * by_gyro.transpose();
     return q;
   }
 
