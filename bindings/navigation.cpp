@@ -322,6 +322,66 @@ void define_dead_reckoning(py::module_& m) {
       py::arg("velocity_mps"), "(speed_mps, course_rad) of [north, east] (..., 2).");
 
   m.def(
+      "over_ground",
+      [](const DoubleArray& through_water, const DoubleArray& drift) {
+        const auto [wn, we] = components("through_water", through_water);
+        const auto [dn, de] = components("drift", drift);
+        return each_vector([](double a, double b, double c,
+                              double d) { return over_ground<double>(Vec2(a, b), Vec2(c, d)); },
+                           wn, we, dn, de);
+      },
+      py::arg("through_water"), py::arg("drift"),
+      R"(Motion over ground: motion through the water plus drift, as vectors; (3), and (4) of accelerations.
+
+Parameters
+----------
+through_water, drift : (..., 2) array
+    [north, east], both in m/s or both in m/s²; broadcast against each other.
+
+Returns
+-------
+(..., 2) array
+    [north, east], in the same unit.
+
+Raises
+------
+ValueError
+    When one is not of pairs, or the shapes do not go together.)");
+
+  const TotalDrift none;
+  py::class_<TotalDrift>(m, "TotalDrift",
+                         R"(What carries a vessel besides her engine; (3).
+
+Parameters
+----------
+wind_drift_mps, current_mps, residual_mps : (2,) array
+    [north, east] m/s of leeway, of the current of tide, wind and waves, and of what is left
+    unexplained.
+
+Raises
+------
+ValueError
+    When one is not a pair.)")
+      .def(py::init([](const DoubleArray& wind_drift, const DoubleArray& current,
+                       const DoubleArray& residual) {
+             return TotalDrift{to_vector("wind_drift_mps", wind_drift, 2),
+                               to_vector("current_mps", current, 2),
+                               to_vector("residual_mps", residual, 2)};
+           }),
+           py::arg("wind_drift_mps") = to_array(none.wind_drift_mps),
+           py::arg("current_mps") = to_array(none.current_mps),
+           py::arg("residual_mps") = to_array(none.residual_mps))
+      .def_property_readonly("wind_drift_mps",
+                             [](const TotalDrift& d) { return to_array(d.wind_drift_mps); })
+      .def_property_readonly("current_mps",
+                             [](const TotalDrift& d) { return to_array(d.current_mps); })
+      .def_property_readonly("residual_mps",
+                             [](const TotalDrift& d) { return to_array(d.residual_mps); })
+      .def(
+          "velocity_mps", [](const TotalDrift& d) { return to_array(d.velocity_mps()); },
+          "Their sum, [north, east] m/s.");
+
+  m.def(
       "velocity_over_window_mps",
       [](const DoubleArray& time_s, const DoubleArray& latitude, const DoubleArray& longitude) {
         require_latitudes(latitude);

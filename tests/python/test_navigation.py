@@ -174,6 +174,30 @@ def test_predictions_of_each_quantity():
     assert course == pytest.approx([0.1, 6.2])
 
 
+def test_motion_over_ground_adds_vectors_not_speeds():
+    ground = nav.over_ground(nav.velocity_mps(5.0, 0.0), nav.velocity_mps(5.0, 2 * np.pi / 3))
+    assert nav.speed_course(ground) == pytest.approx((5.0, np.pi / 3))
+    water, drift = np.arange(12.0).reshape(3, 2, 2), np.array([1.0, -2.0])
+    np.testing.assert_array_equal(nav.over_ground(water, drift), water + drift)
+    np.testing.assert_array_equal(nav.over_ground(water, 0 * water), water)
+    with pytest.raises(ValueError, match=r"drift must have shape \(\.\.\., 2\), got \(3,\)"):
+        nav.over_ground([1.0, 2.0], [1.0, 2.0, 3.0])
+
+
+def test_total_drift_is_the_sum_of_its_parts():
+    drift = nav.TotalDrift([1.0, 0.0], [0.0, 2.0], residual_mps=[0.5, 0.25])
+    np.testing.assert_array_equal(drift.velocity_mps(), [1.5, 2.25])
+    np.testing.assert_array_equal(drift.current_mps, [0.0, 2.0])
+    parts = (drift.wind_drift_mps, drift.current_mps, drift.residual_mps)
+    np.testing.assert_array_equal(nav.TotalDrift(*parts).velocity_mps(), drift.velocity_mps())
+    np.testing.assert_array_equal(nav.TotalDrift().velocity_mps(), [0.0, 0.0])
+    leeway = nav.wind_drift_mps([0.0, 10.0], 0.04)
+    blown = nav.TotalDrift(wind_drift_mps=leeway).velocity_mps()
+    np.testing.assert_array_equal(nav.over_ground([3.0, 0.0], blown), [3.0, leeway[1]])
+    with pytest.raises(ValueError, match=r"current_mps must have shape \(2,\), got \(3,\)"):
+        nav.TotalDrift(current_mps=[1.0, 2.0, 3.0])
+
+
 @given(st.floats(-1.2, 1.2), LONGITUDE, COURSE, st.floats(0.1, 10), COURSE, st.floats(0.0, 1.5))
 def test_combined_dead_reckoning_is_the_rhumb_line(latitude, longitude, course, speed, set_, drift):
     total = nav.velocity_mps(speed, course) + nav.velocity_mps(drift, set_)

@@ -15,6 +15,7 @@ __all__ = [
     "DriftWindow",
     "FloatingObject",
     "LocalPlane",
+    "TotalDrift",
     "UncertaintyEllipse",
     "UsvNavigator",
     "UsvReading",
@@ -30,6 +31,7 @@ __all__ = [
     "ground_stabilised_mps",
     "ground_velocity_from_marks",
     "leeway_factor",
+    "over_ground",
     "predict_course_rad",
     "predict_latitude_rad",
     "predict_longitude_rad",
@@ -92,6 +94,38 @@ class LocalPlane:
     def latitude_rad(self) -> float: ...
     @property
     def longitude_rad(self) -> float: ...
+
+class TotalDrift:
+    """
+    What carries a vessel besides her engine; (3).
+
+    Parameters
+    ----------
+    wind_drift_mps, current_mps, residual_mps : (2,) array
+        [north, east] m/s of leeway, of the current of tide, wind and waves, and of what is left
+        unexplained.
+
+    Raises
+    ------
+    ValueError
+        When one is not a pair.
+    """
+    def __init__(
+        self,
+        wind_drift_mps: ArrayLike = ...,
+        current_mps: ArrayLike = ...,
+        residual_mps: ArrayLike = ...,
+    ) -> None: ...
+    def velocity_mps(self) -> NDArray[np.float64]:
+        """
+        Their sum, [north, east] m/s.
+        """
+    @property
+    def current_mps(self) -> NDArray[np.float64]: ...
+    @property
+    def residual_mps(self) -> NDArray[np.float64]: ...
+    @property
+    def wind_drift_mps(self) -> NDArray[np.float64]: ...
 
 class FloatingObject:
     """
@@ -715,6 +749,26 @@ def ground_velocity_from_marks(relative_velocity_mps: ArrayLike, covariance: Arr
 def leeway_factor(object: FloatingObject) -> tuple[float, float]:
     """
     Least and greatest share of the wind's speed that an object takes on; (12).
+    """
+
+def over_ground(through_water: ArrayLike, drift: ArrayLike) -> NDArray[np.float64]:
+    """
+    Motion over ground: motion through the water plus drift, as vectors; (3), and (4) of accelerations.
+
+    Parameters
+    ----------
+    through_water, drift : (..., 2) array
+        [north, east], both in m/s or both in m/s²; broadcast against each other.
+
+    Returns
+    -------
+    (..., 2) array
+        [north, east], in the same unit.
+
+    Raises
+    ------
+    ValueError
+        When one is not of pairs, or the shapes do not go together.
     """
 
 def predict_course_rad(
