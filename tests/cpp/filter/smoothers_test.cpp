@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
@@ -138,6 +140,85 @@ TYPED_TEST(EverySmoother, NeedsNoHeapAndStaysFiniteWhenTimeStands) {
     EXPECT_TRUE(std::isfinite(smoother.forecast(Scalar(3)) + smoother.rate()));
   }
   EXPECT_EQ(fence.allocations(), 0);
+}
+
+TYPED_TEST(EverySmoother, GoesOnFromAnArchiveBitForBit) {
+  using Scalar = typename TypeParam::Scalar;
+  for (const int taken : {0, 1, 2, 4, 9, 60}) {
+    typename TypeParam::OnAngles saved, restored;
+    Draw draw(10);
+    for (int k = 0; k < taken; ++k)
+      ASSERT_EQ(saved.update(Scalar(1 + k % 3), Scalar(draw.normal())), Status::kOk);
+    for (int k = 0; k < 7; ++k)  // which the archive wipes out
+      ASSERT_EQ(restored.update(Scalar(2), Scalar(draw.normal())), Status::kOk);
+    Archive written;
+    saved.archive(written);
+    Archive read(written.bytes());
+    restored.archive(read);
+    ASSERT_TRUE(read.ok() && read.at_end());
+    for (int k = 0; k < 20; ++k) {
+      EXPECT_EQ(restored.value(), saved.value());
+      EXPECT_EQ(restored.rate(), saved.rate());
+      EXPECT_EQ(restored.forecast(Scalar(5)), saved.forecast(Scalar(5)));
+      const Scalar reading = Scalar(3 + draw.normal());
+      ASSERT_EQ(saved.update(Scalar(1.5), reading), Status::kOk);
+      ASSERT_EQ(restored.update(Scalar(1.5), reading), Status::kOk);
+    }
+  }
+}
+
+TYPED_TEST(EverySmoother, RefusesADamagedArchiveAndStaysAsItWas) {
+  using Scalar = typename TypeParam::Scalar;
+  typename TypeParam::OnLine smoother, same;
+  for (int k = 0; k < 9; ++k) {
+    ASSERT_EQ(smoother.update(Scalar(1), Scalar(k * k % 7)), Status::kOk);
+    ASSERT_EQ(same.update(Scalar(1), Scalar(k * k % 7)), Status::kOk);
+  }
+  Archive written;
+  typename TypeParam::OnLine{}.archive(written);
+  for (std::size_t size = 0; size < written.bytes().size(); ++size) {
+    Archive cut(std::span(written.bytes()).first(size));
+    smoother.archive(cut);
+    ASSERT_FALSE(cut.ok());
+    EXPECT_EQ(smoother.value(), same.value());
+    EXPECT_EQ(smoother.rate(), same.rate());
+  }
+  ASSERT_EQ(smoother.update(Scalar(1), Scalar(2)), Status::kOk);
+  ASSERT_EQ(same.update(Scalar(1), Scalar(2)), Status::kOk);
+  EXPECT_EQ(smoother.forecast(Scalar(3)), same.forecast(Scalar(3)));
+}
+
+/// All bits set: counts of -1.
+template <class S>
+bool takes_ones() {
+  Archive written;
+  S{}.archive(written);
+  const std::vector<std::byte> ones(written.bytes().size(), std::byte{0xFF});
+  Archive read{ones};
+  S{}.archive(read);
+  return read.ok();
+}
+
+TEST(Smoothers, RefuseCountsThatAreNone) {
+  EXPECT_FALSE(takes_ones<AdaptiveExponentialSmoother<>>());
+  EXPECT_FALSE(takes_ones<PrintedAdaptiveExponential<>>());
+  EXPECT_FALSE(takes_ones<ThreePointSmoother<>>());
+  EXPECT_FALSE(takes_ones<AlphaBetaSmoother<>>());
+  EXPECT_FALSE(takes_ones<AdaptiveAlphaBeta<>>());
+  EXPECT_FALSE(takes_ones<PrintedAdaptiveAlphaBeta<>>());
+  EXPECT_FALSE(takes_ones<WindowBank<>>());
+
+  // A bank of fewer windows than the one that spoke.
+  WindowBank<> longer({.max_readings = 32, .memory = 1.0}), shorter({.max_readings = 4});
+  Draw draw(11);
+  for (int k = 0; k < 64; ++k) ASSERT_EQ(longer.update(1, draw.normal()), Status::kOk);
+  ASSERT_GT(longer.window(), 4);
+  Archive written;
+  longer.archive(written);
+  Archive read{written.bytes()};
+  shorter.archive(read);
+  EXPECT_FALSE(read.ok());
+  EXPECT_EQ(shorter.window(), 0);
 }
 
 template <class Case>

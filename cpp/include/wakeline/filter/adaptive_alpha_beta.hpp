@@ -50,6 +50,15 @@ class AdaptiveAlphaBeta {
   [[nodiscard]] Scalar alpha() const noexcept { return gains_[0]; }
   [[nodiscard]] Scalar beta() const noexcept { return gains_[1]; }
 
+  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  void archive(Archive& fields) {
+    AdaptiveAlphaBeta read = *this;
+    read.readings_.archive(fields);
+    fields(read.line_);
+    fields(read.gains_);
+    if (fields.ok()) *this = read;
+  }
+
  private:
   /// Filters the window with the gains for its n-th reading; less the newest reading.
   template <class Gains>
@@ -105,6 +114,17 @@ class PrintedAdaptiveAlphaBeta {
   }
   [[nodiscard]] Scalar alpha() const noexcept { return gains_[0]; }
   [[nodiscard]] Scalar beta() const noexcept { return gains_[1]; }
+
+  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  void archive(Archive& fields) {
+    PrintedAdaptiveAlphaBeta read = *this;
+    fields(read.line_);
+    fields(read.steps_);
+    fields(read.gains_);
+    fields(read.count_);
+    if (read.count_ < 0) fields.fail();
+    if (fields.ok()) *this = read;
+  }
 
  private:
   AlphaBetaLine<Scalar> line_;

@@ -69,6 +69,15 @@ class AlphaBetaSmoother {
     return Residual::normal(line_.value + line_.rate * ahead_s);
   }
 
+  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  void archive(Archive& fields) {
+    AlphaBetaSmoother read = *this;
+    fields(read.line_);
+    fields(read.readings_);
+    if (read.readings_ < 0) fields.fail();
+    if (fields.ok()) *this = read;
+  }
+
  private:
   Schedule schedule_;
   double reading_std_;

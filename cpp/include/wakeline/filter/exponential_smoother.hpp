@@ -38,6 +38,14 @@ class ExponentialSmoother {
   [[nodiscard]] Scalar forecast(Scalar) const noexcept { return value_; }
   [[nodiscard]] Scalar alpha() const noexcept { return alpha_; }
 
+  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  void archive(Archive& fields) {
+    ExponentialSmoother read = *this;
+    fields(read.value_);
+    fields(read.started_);
+    if (fields.ok()) *this = read;
+  }
+
  private:
   Scalar alpha_;
   Scalar value_ = Scalar(0);
@@ -70,6 +78,15 @@ class AdaptiveExponentialSmoother {
   [[nodiscard]] Scalar rate() const noexcept { return Scalar(0); }
   [[nodiscard]] Scalar forecast(Scalar) const noexcept { return value_; }
   [[nodiscard]] Scalar alpha() const noexcept { return alpha_; }
+
+  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  void archive(Archive& fields) {
+    AdaptiveExponentialSmoother read = *this;
+    read.readings_.archive(fields);
+    fields(read.value_);
+    fields(read.alpha_);
+    if (fields.ok()) *this = read;
+  }
 
  private:
   [[nodiscard]] Scalar window_alpha() const noexcept {
@@ -127,6 +144,17 @@ class PrintedAdaptiveExponential {
   [[nodiscard]] Scalar rate() const noexcept { return Scalar(0); }
   [[nodiscard]] Scalar forecast(Scalar) const noexcept { return value_; }
   [[nodiscard]] Scalar alpha() const noexcept { return alpha_; }
+
+  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  void archive(Archive& fields) {
+    PrintedAdaptiveExponential read = *this;
+    fields(read.jumps_);
+    fields(read.alpha_);
+    fields(read.value_);
+    fields(read.count_);
+    if (read.count_ < 0) fields.fail();
+    if (fields.ok()) *this = read;
+  }
 
  private:
   struct Jump {

@@ -5,7 +5,8 @@
 //
 // A smoother takes readings one at a time, `update(dt_s, reading)`, and has a `value()`, a `rate()`
 // and a `forecast(ahead_s)`. The time step of the first reading means nothing. A reading that
-// cannot be taken (not finite, time running backwards) gives a status and changes nothing. Source
+// cannot be taken (not finite, time running backwards) gives a status and changes nothing. Its
+// `archive` goes into a smoother of the same settings. Source
 // of the smoothers, if not said otherwise: I. M. Hannoshyna, T. V. Kalinichenko, P. V. Nikitin,
 // Research of methods of forecasting the movement, search and tracking of sea objects, equations
 // (21)-(33) in their corrected form; see cpp/docs/theory/dead_reckoning.md.
@@ -18,6 +19,7 @@
 #include <cstddef>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/archive.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/filter/belief.hpp"
 
@@ -49,7 +51,7 @@ struct Wrapped {
 
 /// What a smoother offers.
 template <class T>
-concept Smoother = requires(T smoother, const T& view, typename T::Scalar x) {
+concept Smoother = requires(T smoother, const T& view, typename T::Scalar x, Archive fields) {
   { smoother.update(x, x) }
   noexcept->std::same_as<Status>;
   { view.value() }
@@ -58,6 +60,7 @@ concept Smoother = requires(T smoother, const T& view, typename T::Scalar x) {
   noexcept->std::same_as<typename T::Scalar>;
   { view.forecast(x) }
   noexcept->std::same_as<typename T::Scalar>;
+  smoother.archive(fields);
 };
 
 /// `kOk` when a reading can be taken `dt_s` after the one before; the first one at any time.
@@ -98,6 +101,17 @@ class ReadingWindow {
   [[nodiscard]] Scalar offset(int k) const noexcept { return offset_[std::size_t(k)]; }
   /// Time from reading k - 1 to reading k.
   [[nodiscard]] Scalar gap_s(int k) const noexcept { return gap_s_[std::size_t(k)]; }
+
+  /// Saves or restores the readings; bytes that do not fit change nothing.
+  void archive(Archive& fields) {
+    ReadingWindow read = *this;
+    fields(read.offset_);
+    fields(read.gap_s_);
+    fields(read.newest_);
+    fields(read.size_);
+    if (read.size_ < 0 || read.size_ > Capacity) fields.fail();
+    if (fields.ok()) *this = read;
+  }
 
  private:
   std::array<Scalar, std::size_t(Capacity)> offset_{};

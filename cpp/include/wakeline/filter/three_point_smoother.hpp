@@ -104,6 +104,15 @@ class ThreePointSmoother {
                             rate_ * (delay_s() + ahead_s));
   }
 
+  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  void archive(Archive& fields) {
+    ThreePointSmoother read = *this;
+    read.readings_.archive(fields);
+    fields(read.correction_);
+    fields(read.rate_);
+    if (fields.ok()) *this = read;
+  }
+
  private:
   /// About reading k of the window.
   [[nodiscard]] ThreePoints<Scalar> points(int k) const noexcept {

@@ -55,6 +55,17 @@ class WindowBank {
   /// Readings of the window that speaks.
   [[nodiscard]] int window() const noexcept { return std::min(chosen_, readings_.size()); }
 
+  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  void archive(Archive& fields) {
+    WindowBank read = *this;
+    read.readings_.archive(fields);
+    fields(read.lines_);
+    fields(read.energy_);
+    fields(read.chosen_);
+    if (read.chosen_ < 2 || read.chosen_ > settings_.max_readings) fields.fail();
+    if (fields.ok()) *this = read;
+  }
+
  private:
   using Line = AlphaBetaLine<Scalar>;  // less the newest reading, at its time
 
