@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wakeline import scenario
+from wakeline import plot, scenario
 from wakeline.cli import main, outputs
 from wakeline.cli.video import noise_of
 from wakeline.recording import read_tracks, write_video
@@ -101,10 +101,116 @@ def test_damage_is_told_and_what_is_sound_is_tracked(video, tmp_path, capsys):
     assert len(read_tracks(tmp_path / "tracks.csv").ids()) == len(SHIPS)
 
 
-@pytest.mark.parametrize("option", ["--own", "--truth"])
-def test_what_goes_with_plots_is_refused(video, tmp_path, option, capsys):
-    assert main(["track", str(video), option, "scans.csv", "--out", str(tmp_path)]) == 2
-    assert option in capsys.readouterr().err
+def test_truth_goes_with_plots(video, tmp_path, capsys):
+    assert main(["track", str(video), "--truth", "truth.csv", "--out", str(tmp_path)]) == 2
+    assert "--truth" in capsys.readouterr().err
+
+
+# Own ship -----------------------------------------------------------------------------------------
+
+OWN = np.array([400.0, 3.0, -900.0, -6.0])  # north, its rate, east, its rate
+DAY_S = 86400.0
+
+
+def own_file(path, own=OWN, begin_s=-2.0, end_s=SCANS * PERIOD_S + 2.0, day_s=0.0):
+    """A row a second of a ship on a straight course, at places that are hers at time 0."""
+    rows = ["time_s,north_m,east_m"]
+    for time_s in np.arange(begin_s, end_s):
+        north_m, east_m = own[::2] + time_s * own[1::2]
+        rows.append(f"{time_s + day_s},{north_m},{east_m}")
+    path.write_text("\n".join(rows) + "\n")
+    return path
+
+
+def tracked(video, folder, *own):
+    assert main(["track", str(video), *own, "--out", str(folder)]) == 0
+    return read_tracks(folder / "tracks.csv")
+
+
+def test_own_ship_in_motion_adds_her_place_and_her_velocity(video, tmp_path):
+    """What is seen from her is where it is seen, and moves as she does besides."""
+    tracks = tracked(video, tmp_path, "--own", str(own_file(tmp_path / "own.csv")))
+    now = tracks.time_s[:, None]
+    moved = np.column_stack([OWN[:1] + now * OWN[1], OWN[2:3] + now * OWN[3]])
+    moved = np.insert(moved, [1, 2], OWN[1::2], axis=1)
+    seen = replace(tracks, state=tracks.state - moved)
+    for name in SHIPS:
+        rows, position_m, velocity_mps = track_of(seen, name)
+        assert rows.sum() >= SCANS - 5
+        assert position_m[-5:].max() < 25.0
+        assert velocity_mps[-1] < 2.5
+    assert len(tracks.ids()) == len(SHIPS)
+
+
+def test_own_ship_at_rest_shifts_the_tracks(video, tmp_path):
+    at = np.array([700.0, 0.0, -300.0, 0.0])
+    alone = tracked(video, tmp_path)
+    shifted = tracked(video, tmp_path, "--own", str(own_file(tmp_path / "own.csv", at)))
+    np.testing.assert_array_equal(shifted.track_id, alone.track_id)
+    wanted = np.tile(at, (len(alone), 1))
+    np.testing.assert_allclose(shifted.state - alone.state, wanted, atol=0.02)
+
+
+def test_a_ship_that_comes_towards_own_ship_raises_an_alarm(tmp_path):
+    path = tmp_path / "some.cat240"
+    ahead = {"ahead": ship(2400.0, 150.0, -12.0, 0.0)}  # as own ship sees her
+    write_video(path, simulator().turns(ahead, SCANS, seed=5))
+    tracks = tracked(path, tmp_path, "--own", str(own_file(tmp_path / "own.csv")))
+    assert len(tracks.ids()) == 1
+    assert tracks.cpa_m[-1] == pytest.approx(150.0, abs=100.0)
+    assert tracks.tcpa_s[-1] + tracks.time_s[-1] == pytest.approx(200.0, rel=0.1)
+    assert len((tmp_path / "alarms.csv").read_text().splitlines()) == 2
+
+
+def test_the_day_of_video_is_that_of_own_ship(video, tmp_path):
+    same = tracked(video, tmp_path, "--own", str(own_file(tmp_path / "own.csv")))
+    day_s = 18752 * DAY_S
+    later = tracked(video, tmp_path, "--own", str(own_file(tmp_path / "o.csv", day_s=day_s)))
+    np.testing.assert_allclose(later.time_s - day_s, same.time_s, atol=1e-3)
+    np.testing.assert_allclose(later.state, same.state, atol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"end_s": 20.0}, "own ship is not known at"),
+        ({"begin_s": 10.0}, "own ship is not known at"),
+        ({"begin_s": 7200.0, "end_s": 7300.0}, "own.csv covers"),
+    ],
+)
+def test_own_ship_must_be_known_at_every_plot(video, tmp_path, changes, told, capsys):
+    own = own_file(tmp_path / "own.csv", **changes)
+    assert main(["track", str(video), "--own", str(own), "--out", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert "harbour.cat240" in error
+
+
+def test_a_list_of_scans_without_places_is_no_own_ship(video, tmp_path, capsys):
+    own = tmp_path / "scans.csv"
+    own.write_text("time_s,scan\n0.0,1\n2.5,2\n")
+    assert main(["track", str(video), "--own", str(own), "--out", str(tmp_path)]) == 2
+    assert "north_m and east_m" in capsys.readouterr().err
+
+
+def test_the_screen_shows_what_own_ship_sees(video, tmp_path, monkeypatch, pictures):
+    """Plots, strobes and tracks lie on the echoes, wherever she is."""
+    shown = {}
+
+    def keep(video, ax, **layers):
+        shown.update(layers)
+
+    monkeypatch.setattr(plot, "ppi", keep)
+    tracked(video, tmp_path, "--own", str(own_file(tmp_path / "own.csv")))
+    time_s = shown["tracks"].time_s.max()
+    here = shown["tracks"].where(shown["tracks"].time_s == time_s).state[:, ::2]
+    for ship in SHIPS.values():
+        place_m = ship.truth.state_at(time_s)[0, ::2]
+        for layer in (shown["plots"], here, [s.mean(axis=0) for s in shown["strobes"]]):
+            assert np.hypot(*(np.asarray(layer) - place_m).T).min() < 50.0
+
+
+# Recordings of all kinds --------------------------------------------------------------------------
 
 
 def test_noise_alone_gives_no_track(tmp_path):

@@ -25,7 +25,7 @@ Tracks the plots of a recording and writes tracks.csv, events.csv,
 plots_tracks.csv and pictures; with --own also how close each track will come to
 own ship, and alarms.csv of those that come too close. Radar video is made plots
 of first, with thresholds and plot errors found in it, and its last turn is
-drawn as ppi.png.
+drawn as ppi.png; it has the time of day alone, and its day is that of --own.
 
 Plots without a scan column, each with a time of its own, are grouped into turns
 of the antenna: of period_s, where the radar's settings tell it, else of what
@@ -124,16 +124,16 @@ def run(arguments: argparse.Namespace) -> None:
 
 def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
     """Track radar video: as plots, and a picture of the screen besides."""
-    for option in ("own", "truth"):
-        if getattr(arguments, option) is not None:
-            raise ValueError(f"--{option} goes with a file of plots, {arguments.plots} is video")
-    film = video.read_plots_of_video(arguments.plots)
+    if arguments.truth is not None:
+        raise ValueError(f"--truth goes with a file of plots, {arguments.plots} is video")
+    film = video.read_plots_of_video(arguments.plots, arguments.own)
     measured = film.told_to(settings)
     if measured is None:
         radar = _radar_text(arguments, settings)
     else:
         settings, radar = measured, f"radar as its echoes are: {_std_text(film)}"
-    parts = track_into(arguments.out, film.recording, settings, radar)
+    danger = arguments.own is not None
+    parts = track_into(arguments.out, film.recording, settings, radar, danger=danger)
     if outputs.can_draw():
         file = video.draw_ppi(arguments.out, film, parts[0])
         print(f"and {file.name}")

@@ -14,12 +14,16 @@ from wakeline import plot
 from wakeline._progress import counted
 from wakeline.recording import (
     Episode,
+    OwnShip,
     RadarVideo,
     Recording,
+    RecordingError,
     Scan,
+    Tracks,
     VideoReport,
     read_video,
 )
+from wakeline.recording.own_csv import OwnRows, read_own
 
 from .config import Settings
 from .tracking import TrackedEpisode
@@ -39,6 +43,8 @@ _UNSEEN = 2.0  # an echo errs more than its cells say: it wanders over the hull,
 _STROBE = 0.99  # probability that the target's plot lies in the strobe that is drawn
 _WIDE_ECHO_RAD = np.deg2rad(20.0)
 _LONG_ECHO_M = 800.0  # a land mass, as consoles have it
+_DAY_S = 86400.0
+_OWN_GAP_S = 10.0
 
 
 @dataclass(frozen=True)
@@ -71,16 +77,17 @@ class VideoRecording:
         return replace(settings, radar=radar)
 
 
-def read_plots_of_video(path: Path) -> VideoRecording:
+def read_plots_of_video(path: Path, own_path: Path | None = None) -> VideoRecording:
     """Read radar video and take its echoes as plots, a turn of the antenna after the other.
 
     A turn that is only begun, at either end of the recording, is left out: the beam has not been
-    everywhere.
+    everywhere. Without `own_path` the radar stands at the origin. Video has the time of day alone;
+    its day is that on which own ship's track lies.
 
     Raises
     ------
     RecordingError
-        When the file holds no radar video.
+        When the file holds no radar video, or own ship is not known at one of its plots.
     """
     report = VideoReport()
     extraction = _Extraction()
@@ -101,32 +108,45 @@ def read_plots_of_video(path: Path) -> VideoRecording:
     notes += [*report.notes, *extraction.notes()]
     if begun:
         notes.append(f"{begun} turn{'s' * (begun > 1)} only begun left out")
-    scans = [_scan(number, *turn) for number, turn in enumerate(turns)]
-    recording = Recording(path.stem, [Episode("", scans)], notes=notes)
+    ship = OwnShip.fixed()
+    if own_path is not None:
+        rows = _own_rows(own_path, notes)
+        turns = _on_the_day_of(rows, turns)
+        _check_covered(rows, turns, path)
+        ship = rows.ship()
+    scans = [_scan(number, *turn, ship) for number, turn in enumerate(turns)]
+    recording = Recording(path.stem, [Episode("", scans, ship)], notes=notes)
     return VideoRecording(recording, last, (_UNSEEN * float(std[0]), _UNSEEN * float(std[1])))
 
 
 def draw_ppi(folder: Path, video: VideoRecording, part: TrackedEpisode) -> Path:
-    """Write ``ppi.png``: the last turn, its plots, strobes around the tracks, and the tracks."""
+    """Write ``ppi.png``: the last turn, its plots, strobes around the tracks, and the tracks.
+
+    All as seen from own ship: tracks from where she is at the end of the turn.
+    """
     scan = part.episode.scans[-1]
-    last = part.tracks.time_s == scan.time_s
+    tracks = _seen_from(part.episode.own.position_at(scan.time_s)[0], part.tracks)
+    last = tracks.time_s == scan.time_s
     strobes = [
         _strobe(video, state[[0, 2]], covariance[np.ix_([0, 2], [0, 2])])
-        for state, covariance in zip(
-            part.tracks.state[last], part.tracks.covariance[last], strict=True
-        )
+        for state, covariance in zip(tracks.state[last], tracks.covariance[last], strict=True)
     ]
     figure = plot.figure(8.6, 8.6)
     plot.ppi(
         video.last,
         figure.add_subplot(),
-        plots=np.column_stack([scan.north_m, scan.east_m]),
+        plots=scan.position_m - np.column_stack([scan.own_north_m, scan.own_east_m]),
         strobes=strobes,
-        tracks=part.tracks,
+        tracks=tracks,
     )
     file = folder / "ppi.png"
     plot.save(figure, file)
     return file
+
+
+def _seen_from(place_m: np.ndarray, tracks: Tracks) -> Tracks:
+    """The tracks with positions about a place (2,), north and east."""
+    return replace(tracks, state=tracks.state - [place_m[0], 0.0, place_m[1], 0.0])
 
 
 def _strobe(video: VideoRecording, place_m: np.ndarray, covariance_m2: np.ndarray) -> np.ndarray:
@@ -333,19 +353,66 @@ def noise_of(amplitude: np.ndarray) -> Noise | None:
     return Noise(std, float(np.mean(away**3)) / std**3) if std > 0 else None
 
 
-def _scan(number: int, end_s: float, plots: _Plots) -> Scan:
-    """The plots of a turn, in order of time."""
+def _scan(number: int, end_s: float, plots: _Plots, ship: OwnShip) -> Scan:
+    """The plots of a turn, in order of time, each from where own ship was at its time."""
     order = np.argsort(plots.time_s, kind="stable")
-    range_m, bearing_rad = plots.range_m[order], plots.bearing_rad[order]
-    at_origin = np.zeros(len(order))
+    time_s, range_m, bearing_rad = (
+        column[order] for column in (plots.time_s, plots.range_m, plots.bearing_rad)
+    )
+    own_north_m, own_east_m = ship.position_at(time_s).T
     return Scan(
         time_s=end_s,
         number=number,
-        plot_time_s=plots.time_s[order],
-        north_m=range_m * np.cos(bearing_rad),
-        east_m=range_m * np.sin(bearing_rad),
+        plot_time_s=time_s,
+        north_m=own_north_m + range_m * np.cos(bearing_rad),
+        east_m=own_east_m + range_m * np.sin(bearing_rad),
         range_m=range_m,
         bearing_rad=bearing_rad,
-        own_north_m=at_origin,
-        own_east_m=at_origin,
+        own_north_m=own_north_m,
+        own_east_m=own_east_m,
     )
+
+
+# Own ship -----------------------------------------------------------------------------------------
+
+
+def _own_rows(path: Path, notes: list[str]) -> OwnRows:
+    """Rows with a position, in order of time."""
+    rows = read_own(path, notes)
+    if not rows.has_position:
+        raise RecordingError(
+            path,
+            "there is no own-ship position",
+            line=1,
+            wanted="columns north_m and east_m",
+            got="scans alone",
+        )
+    return rows.part("").by_time()
+
+
+def _on_the_day_of(
+    own: OwnRows, turns: Sequence[tuple[float, _Plots]]
+) -> list[tuple[float, _Plots]]:
+    """The turns so many days later that their middle comes nearest to that of own ship's track."""
+    if len(own.time_s) == 0:
+        return list(turns)
+    middle_s = (turns[0][0] + turns[-1][0]) / 2.0
+    days = round(((own.time_s[0] + own.time_s[-1]) / 2.0 - middle_s) / _DAY_S)
+    return [
+        (end_s + days * _DAY_S, plots._replace(time_s=plots.time_s + days * _DAY_S))
+        for end_s, plots in turns
+    ]
+
+
+def _check_covered(own: OwnRows, turns: Sequence[tuple[float, _Plots]], path: Path) -> None:
+    """Own ship must be known at each plot and at the end of each turn."""
+    time_s = np.sort(np.concatenate([np.append(plots.time_s, end_s) for end_s, plots in turns]))
+    lost = own.lacks(time_s, _OWN_GAP_S)
+    if lost is not None:
+        k, got = lost
+        raise RecordingError(
+            path,
+            f"own ship is not known at {time_s[k]}",
+            wanted=f"a time that {own.table.path} covers",
+            got=got,
+        )

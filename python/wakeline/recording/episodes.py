@@ -147,30 +147,11 @@ def _own_ship(
 
 def _check_covered(plots: PlotRows, own: OwnRows, own_gap_s: float) -> None:
     """Own ship must be known at each plot; `own` is sorted by time."""
-    if len(plots) == 0:
+    lost = own.lacks(plots.time_s, own_gap_s)
+    if lost is None:
         return
-    if len(own.row) == 0:
-        raise _not_covered(plots, 0, own, "no position at all")
-    step_s = np.diff(own.time_s)
-    margin_s = min(float(np.median(step_s)), own_gap_s) if len(step_s) else 0.0
-    start_s, end_s = own.time_s[0] - margin_s, own.time_s[-1] + margin_s
-    outside = (plots.time_s < start_s) | (plots.time_s > end_s)
-    if outside.any():
-        span = f"positions from {own.time_s[0]} to {own.time_s[-1]}"
-        raise _not_covered(plots, int(np.argmax(outside)), own, span)
-    after = np.clip(np.searchsorted(own.time_s, plots.time_s), 1, max(len(step_s), 1))
-    if len(step_s):
-        inside = (plots.time_s > own.time_s[after - 1]) & (plots.time_s < own.time_s[after])
-        lost = inside & (step_s[after - 1] > own_gap_s)
-        if lost.any():
-            k = int(np.argmax(lost))
-            line = own.table.line(own.row[after[k] - 1])
-            gap = f"a gap of {step_s[after[k] - 1]:g} s after its line {line}"
-            raise _not_covered(plots, k, own, gap)
-
-
-def _not_covered(plots: PlotRows, k: int, own: OwnRows, got: str) -> RecordingError:
-    return RecordingError(
+    k, got = lost
+    raise RecordingError(
         plots.table.path,
         f"own ship is not known at {plots.time_s[k]}",
         line=plots.table.line(plots.row[k]),

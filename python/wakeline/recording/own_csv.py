@@ -69,6 +69,33 @@ class OwnRows:
         """These rows, which must be sorted, as own ship's track."""
         return OwnShip(time_s=self.time_s, **self.columns)
 
+    def lacks(self, time_s: np.ndarray, own_gap_s: float) -> tuple[int, str] | None:
+        """Which of times (n,) these rows, which must be sorted, do not cover, and what they have.
+
+        A time may lie at most one median step outside of them, and in no step that is longer than
+        `own_gap_s`. None where all are covered.
+        """
+        if len(time_s) == 0:
+            return None
+        if len(self.row) == 0:
+            return 0, "no position at all"
+        step_s = np.diff(self.time_s)
+        margin_s = min(float(np.median(step_s)), own_gap_s) if len(step_s) else 0.0
+        start_s, end_s = self.time_s[0] - margin_s, self.time_s[-1] + margin_s
+        outside = (time_s < start_s) | (time_s > end_s)
+        if outside.any():
+            return int(np.argmax(outside)), f"positions from {self.time_s[0]} to {self.time_s[-1]}"
+        if len(step_s) == 0:
+            return None
+        after = np.clip(np.searchsorted(self.time_s, time_s), 1, len(step_s))
+        inside = (time_s > self.time_s[after - 1]) & (time_s < self.time_s[after])
+        lost = inside & (step_s[after - 1] > own_gap_s)
+        if not lost.any():
+            return None
+        k = int(np.argmax(lost))
+        line = self.table.line(self.row[after[k] - 1])
+        return k, f"a gap of {step_s[after[k] - 1]:g} s after its line {line}"
+
     def _where(self, chosen: np.ndarray) -> OwnRows:
         return OwnRows(
             table=self.table,
