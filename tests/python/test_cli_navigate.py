@@ -48,18 +48,24 @@ def voyage(
     *,
     compass="HDT",
     water=True,
+    across_kn=0.0,
+    across_told=False,
     bottom=False,
     turn=False,
     compass_std_deg=1.0,
     seed=1,
 ):
-    """Sentences of a ship of 6 kn that turns every five minutes, in a current (north, east)."""
+    """Sentences of a ship of 6 kn that turns every five minutes, in a current (north, east).
+
+    She moves through the water to starboard at `across_kn`, too.
+    """
     rng = np.random.default_rng(seed)
     lines, north, east = [], 0.0, 0.0
     for second in range(60 * minutes):
         heading = np.deg2rad(heading_deg(second))
-        vn = 6.0 * KN * np.cos(heading) + current_kn[0] * KN
-        ve = 6.0 * KN * np.sin(heading) + current_kn[1] * KN
+        c, s = np.cos(heading), np.sin(heading)
+        vn = (6.0 * c - across_kn * s + current_kn[0]) * KN
+        ve = (6.0 * s + across_kn * c + current_kn[1]) * KN
         north, east = north + vn, east + ve
         clock = f"{10 + second // 3600:02d}{second // 60 % 60:02d}{second % 60:02d}"
         latitude_min = 30.0 + 60 * (north + 2 * rng.standard_normal()) / 111_229.0
@@ -76,7 +82,10 @@ def voyage(
             lines.append(sentence(f"HEHDT,{told:.1f},T"))
         elif compass == "HDG":
             lines.append(sentence(f"HCHDG,{(told - 3.0) % 360:.1f},,,,"))
-        if water:
+        if water and across_told:
+            told_kn = [6.0, across_kn] + 0.1 * rng.standard_normal(2)
+            lines.append(sentence(f"VDVBW,{told_kn[0]:.1f},{told_kn[1]:.1f},A,,,V"))
+        elif water:
             lines.append(sentence(f"VWVHW,,T,,M,{6 + 0.1 * rng.standard_normal():.1f},N,,K"))
         if bottom:
             ahead = vn * np.cos(heading) + ve * np.sin(heading) + 0.1 * rng.standard_normal()
@@ -128,6 +137,40 @@ def test_set_and_drift_come_out(tmp_path):
     assert np.all([float(row["north_var_m2"]) > 0 for row in rows])
     heading = np.array([float(row["heading_deg"]) for row in late])
     assert np.isfinite(heading).all()
+
+
+def test_speed_across_the_hull_is_no_current(tmp_path):
+    """Told of it, the current is the water's own, on every course; else it has the leeway in it."""
+    off_kn, heading_off_deg = {}, {}
+    for told in (True, False):
+        rows = navigated(tmp_path, voyage(20, across_kn=0.8, across_told=told))
+        settled = seconds(rows) % 300 > 150
+        toward = np.deg2rad(column(rows, "set_deg"))
+        found = column(rows, "drift_mps") * np.array([np.cos(toward), np.sin(toward)]) / KN
+        off = found - np.array([[0.8], [-0.5]])
+        off_kn[told] = np.sqrt(np.mean(np.hypot(*off[:, settled]) ** 2))
+        off_deg = column(rows, "heading_deg") - heading_deg(np.rint(seconds(rows)))
+        heading_off_deg[told] = np.median((off_deg + 180.0) % 360.0 - 180.0)
+    assert off_kn[True] < 0.15
+    assert off_kn[False] > 0.5
+    assert abs(heading_off_deg[True]) < 0.3
+
+
+def test_speed_across_the_hull_coasts_through_turns(tmp_path):
+    error_m = {}
+    for told in (True, False):
+        answer = tmp_path / "errors.json"
+        navigated(tmp_path, voyage(across_kn=0.8, across_told=told), "--json", str(answer))
+        rows = {row["estimator"]: row for row in json.loads(answer.read_text())["rows"]}
+        error_m[told] = [rows[who]["coast_60s_p95_m"] for who in ("navigator", "dead_reckoning")]
+    assert np.all(np.array(error_m[True]) < 0.8 * np.array(error_m[False])), error_m
+
+
+def test_speed_across_the_hull_is_not_taken_for_an_error_of_the_compass(tmp_path, capsys):
+    navigated(tmp_path, voyage(12, compass="HDG", across_kn=0.8, across_told=True))
+    assert added_deg(capsys.readouterr().out)[0] == pytest.approx(3.0, abs=0.5)
+    navigated(tmp_path, voyage(12, compass="HDG", across_kn=0.8))
+    assert added_deg(capsys.readouterr().out)[0] > 8.0
 
 
 def added_deg(out):
@@ -266,12 +309,12 @@ def test_rates_of_turn_steady_the_heading(tmp_path):
 
 def test_what_no_state_is_there_for_is_told(tmp_path, capsys):
     lines = voyage(3, compass="none", bottom=True, turn=True)
-    lines += [sentence("VDVBW,6.0,0.3,A,,,V"), sentence("VDVBW,6.0,0.0,A,6.0,,A")]
+    lines += [sentence("VDVBW,,0.3,A,,,V"), sentence("VDVBW,6.0,0.0,A,6.0,,A")]
     navigated(tmp_path, lines)
     out = capsys.readouterr().out
     for told in (
         "182 speeds through the water without a heading are not used (first in line 2)",
-        "1 speeds across the hull through the water are not used (first in line 721)",
+        "1 speeds through the water across the hull alone are not used (first in line 721)",
         "181 speeds over ground by log that lack a heading or a side are not used (first in line",
         "180 rates of turn without a heading are not used (first in line 4)",
     ):

@@ -2,7 +2,8 @@
 
 Without an IMU the ship coasts from reading to reading, turning as her rate of turn indicator says.
 With heading and speed through water the state has seven components, current among them; without
-either it has five.
+either it has five. Where the log tells of the speed across the hull, too, her way through the water
+is not where she heads, and it is the way that the state's heading and speed are of.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 
 import wakeline as wl
 from wakeline.recording import NavigationLog
-from wakeline.recording.nmea import BottomTrack, Fixes
+from wakeline.recording.nmea import BottomTrack, Fixes, WaterSpeed
 
 FIX_STD_M = 3.0
 VELOCITY_STD_MPS = 0.3  # over ground: filtered by the receiver, or turned by the heading
@@ -55,7 +56,8 @@ class Readings(NamedTuple):
     """Readings at all times (T,) at which there is one, NaN where there is none; a plane for them.
 
     ``fix_m`` and ``velocity_mps`` (T, 2) north and east, ``heading_rad`` (T,) true, ``log_mps``
-    (T,) through the water ahead, ``bottom_mps`` (T, 2) north and east over ground by a log that
+    (T,) through the water ahead, ``leeway_rad`` (T,) from the heading to the way through the water,
+    0 where no log tells of it, ``bottom_mps`` (T, 2) north and east over ground by a log that
     sees the bottom, ``turn_rate_rad_s`` (T,) to starboard. ``offset_std_rad`` is the error that
     all headings share.
     """
@@ -66,6 +68,7 @@ class Readings(NamedTuple):
     velocity_mps: np.ndarray
     heading_rad: np.ndarray
     log_mps: np.ndarray
+    leeway_rad: np.ndarray
     bottom_mps: np.ndarray
     turn_rate_rad_s: np.ndarray
     offset_std_rad: float
@@ -74,6 +77,16 @@ class Readings(NamedTuple):
     def over_ground_mps(self) -> np.ndarray:
         """Velocities (T, 2) by satellite, or else by the log."""
         return np.where(np.isfinite(self.velocity_mps), self.velocity_mps, self.bottom_mps)
+
+    @property
+    def way_rad(self) -> np.ndarray:
+        """Directions (T,) of the way through the water."""
+        return self.heading_rad + self.leeway_rad
+
+    @property
+    def way_mps(self) -> np.ndarray:
+        """Speeds (T,) along it."""
+        return self.log_mps / np.cos(self.leeway_rad)
 
     @property
     def has_fix(self) -> np.ndarray:
@@ -150,7 +163,20 @@ def readings_of(
     )
     time_s = np.unique(np.concatenate([times for times, _ in series]))
     time_s = time_s[time_s >= fixes.time_s[0]]
-    return Readings(plane, time_s, *(_at(time_s, *one) for one in series), offset.std_rad)
+    fix, velocity, heading, log, over_bottom, turn_rate = (_at(time_s, *one) for one in series)
+    leeway = _leeway_rad(water, time_s)
+    return Readings(
+        plane,
+        time_s,
+        fix_m=fix,
+        velocity_mps=velocity,
+        heading_rad=heading,
+        log_mps=log,
+        leeway_rad=leeway,
+        bottom_mps=over_bottom,
+        turn_rate_rad_s=turn_rate,
+        offset_std_rad=offset.std_rad,
+    )
 
 
 def unused(part: NavigationLog) -> dict[str, np.ndarray]:
@@ -168,7 +194,7 @@ def unused(part: NavigationLog) -> dict[str, np.ndarray]:
     return {
         "readings with no fix before them": np.concatenate(early),
         "speeds through the water without a heading": water.line if blind else nothing,
-        "speeds across the hull through the water": water.line[np.abs(water.starboard_mps) > 0],
+        "speeds through the water across the hull alone": water.line[np.isnan(water.ahead_mps)],
         "speeds over ground by log that lack a heading or a side": bottom.line[~over_ground],
         "rates of turn without a heading": turn.line if blind else nothing,
     }
@@ -207,9 +233,9 @@ def navigate(readings: Readings) -> OwnTrack:
         readings.time_s,
         imu=_turning(readings),
         gnss=readings.fix_m,
-        compass=readings.heading_rad,
+        compass=readings.way_rad,
         velocity=readings.over_ground_mps,
-        log=readings.log_mps if states == 7 else None,
+        log=readings.way_mps if states == 7 else None,
         gnss_std_m=[FIX_STD_M, FIX_STD_M],
         compass_std_rad=COMPASS_STD_RAD,
         velocity_std_mps=VELOCITY_STD_MPS,
@@ -217,7 +243,7 @@ def navigate(readings: Readings) -> OwnTrack:
     )
     mean, covariance = done.mean, done.covariance
     at = 2 if states == 7 else 4
-    heading = mean[:, at]
+    heading = wl.wrap_angle(mean[:, at] - readings.leeway_rad)
     velocity, slope = _velocity(mean, states)
     latitude, longitude = readings.plane.place(mean[:, :2])
     moved_m = _moved_m(readings, done, velocity)
@@ -279,7 +305,7 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
     )
     velocity = _first(readings.over_ground_mps, np.zeros(2))
     knows_velocity = np.isfinite(readings.over_ground_mps).all(axis=1).any()
-    heading = _first(readings.heading_rad, np.arctan2(velocity[1], velocity[0]))
+    heading = _first(readings.way_rad, np.arctan2(velocity[1], velocity[0]))
     navigator.start(
         _first(readings.fix_m, np.zeros(2)),
         velocity,
@@ -316,7 +342,8 @@ def _velocities(part: NavigationLog) -> tuple[np.ndarray, np.ndarray, np.ndarray
     heading = _between(ground.time_s, compass.time_s, np.unwrap(compass.heading_magnetic_rad))
     speed_mps = ground.speed_mps
     if len(water):
-        speed_mps = _between(ground.time_s, water.time_s, water.ahead_mps)
+        sideways = np.tan(_leeway_rad(water, ground.time_s))
+        speed_mps = _between(ground.time_s, water.time_s, water.ahead_mps) * (1.0 + 1j * sideways)
     over_ground = ground.speed_mps * np.exp(1j * ground.course_rad)
     return ground.time_s, speed_mps * np.exp(1j * heading), over_ground
 
@@ -328,6 +355,17 @@ def _headings(part: NavigationLog, offset_rad: float) -> tuple[np.ndarray, np.nd
         return true.time_s, true.heading_rad
     compass = part.compass.sound()
     return compass.time_s, wl.wrap_angle(compass.heading_magnetic_rad + offset_rad)
+
+
+def _leeway_rad(water: WaterSpeed, time_s: np.ndarray) -> np.ndarray:
+    """Angles (T,) from the heading to the way through the water, 0 where no log tells of them.
+
+    They fade with the speed ahead, for a ship at rest has no way.
+    """
+    known = water.rows(np.isfinite(water.ahead_mps) & np.isfinite(water.starboard_mps))
+    ahead, starboard = known.ahead_mps, known.starboard_mps
+    leeway = np.arctan(ahead * starboard / np.maximum(ahead**2, _UNDER_WAY_MPS**2))
+    return np.nan_to_num(_between(time_s, known.time_s, leeway))
 
 
 def _over_ground(bottom: BottomTrack, times: np.ndarray, heading_rad: np.ndarray) -> np.ndarray:
@@ -425,9 +463,9 @@ def _straight_on(seen: Readings) -> np.ndarray:
 
 def _reckoned(seen: Readings) -> np.ndarray:
     """Places (T, 2) on from the last fix by heading and speed through water."""
-    heading, _ = _held(seen.time_s, seen.heading_rad)
-    speed, _ = _held(seen.time_s, seen.log_mps)
-    water = np.nan_to_num(speed[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]))
+    way_rad, _ = _held(seen.time_s, seen.way_rad)
+    speed, _ = _held(seen.time_s, seen.way_mps)
+    water = np.nan_to_num(speed[:, None] * np.column_stack([np.cos(way_rad), np.sin(way_rad)]))
     way = np.vstack(
         [np.zeros((1, 2)), np.cumsum(np.diff(seen.time_s)[:, None] * water[:-1], axis=0)]
     )
