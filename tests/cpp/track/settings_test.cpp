@@ -118,31 +118,32 @@ TEST(RadarSettings, NamesWhatItRefuses) {
 }
 
 TEST(VesselModelSettings, NamesWhatItRefuses) {
-  const auto expect = [](const char* word, const std::function<void(VesselModels&)>& spoil) {
+  const auto expect = [](const char* name, const std::function<void(VesselModels&)>& spoil) {
     VesselModels models;
     spoil(models);
     const std::string message = refusal([&] { (void)vessel_imm(kTestRadar, models); });
-    EXPECT_NE(message.find(word), std::string::npos) << word << ": '" << message << "'";
-    EXPECT_NE(message.find(" must be "), std::string::npos) << message;
+    EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u)
+        << name << ": '" << message << "'";
   };
-  for (const double value : {-1.0, kNan}) {
-    expect("psd_m2s3", [=](VesselModels& models) { models.steady_psd_m2s3 = value; });
-    expect("course_psd_rad2s",
-           [=](VesselModels& models) { models.steady_course_psd_rad2s = value; });
-    expect("psd_m2s3", [=](VesselModels& models) { models.restless_psd_m2s3 = value; });
-    expect("course_psd_rad2s",
-           [=](VesselModels& models) { models.restless_course_psd_rad2s = value; });
-    expect("psd_m2s3", [=](VesselModels& models) { models.turning_psd_m2s3 = value; });
-    expect("course_psd_rad2s",
-           [=](VesselModels& models) { models.turning_course_psd_rad2s = value; });
-    expect("turn_rate_psd_rad2s3",
-           [=](VesselModels& models) { models.turn_rate_psd_rad2s3 = value; });
-    expect("prior_turn_rate_std_rad_s",
-           [=](VesselModels& models) { models.prior_turn_rate_std_rad_s = value; });
-    expect("sojourn", [=](VesselModels& models) { models.steady_sojourn_s = value; });
-    expect("sojourn", [=](VesselModels& models) { models.restless_sojourn_s = value; });
-    expect("sojourn", [=](VesselModels& models) { models.turning_sojourn_s = value; });
-  }
+  const std::pair<const char*, double VesselModels::*> noises[] = {
+      {"steady_psd_m2s3", &VesselModels::steady_psd_m2s3},
+      {"steady_course_psd_rad2s", &VesselModels::steady_course_psd_rad2s},
+      {"restless_psd_m2s3", &VesselModels::restless_psd_m2s3},
+      {"restless_course_psd_rad2s", &VesselModels::restless_course_psd_rad2s},
+      {"turning_psd_m2s3", &VesselModels::turning_psd_m2s3},
+      {"turning_course_psd_rad2s", &VesselModels::turning_course_psd_rad2s},
+      {"turn_rate_psd_rad2s3", &VesselModels::turn_rate_psd_rad2s3}};
+  for (const auto& [name, field] : noises)
+    for (const double value : {-1.0, kNan, kInf})
+      expect(name, [=](VesselModels& models) { models.*field = value; });
+  const std::pair<const char*, double VesselModels::*> positive[] = {
+      {"prior_turn_rate_std_rad_s", &VesselModels::prior_turn_rate_std_rad_s},
+      {"steady_sojourn_s", &VesselModels::steady_sojourn_s},
+      {"restless_sojourn_s", &VesselModels::restless_sojourn_s},
+      {"turning_sojourn_s", &VesselModels::turning_sojourn_s}};
+  for (const auto& [name, field] : positive)
+    for (const double value : {0.0, -1.0, kNan, kInf})
+      expect(name, [=](VesselModels& models) { models.*field = value; });
 }
 
 }  // namespace

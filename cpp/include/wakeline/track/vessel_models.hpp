@@ -77,8 +77,10 @@ using VesselImm =
     Imm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<CoordinatedTurnRate>>>;
 
 /// The estimator of a tracker for this radar. A start believes in each mode as much as the chain in
-/// the long run.
+/// the long run. Throws `std::invalid_argument` on a setting that makes no sense.
 inline VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {}) {
+  radar.validate();
+  models.validate();
   const Vec<double, 3> sojourn_s{models.steady_sojourn_s, models.restless_sojourn_s,
                                  models.turning_sojourn_s};
   VesselImm imm(ModeChain<3>::from_sojourn_s(sojourn_s), Ekf(models.steady(radar.max_speed_mps)),
