@@ -150,10 +150,26 @@ TEST(ModeChain, SojournTimesThatAreNoneAreRefused) {
                 (void)Two::from_sojourn_s({10.0, bad});
               }).find("sojourn time"),
               std::string::npos);
-  EXPECT_NE(complaint([] { (void)Three::from_sojourn_s({10.0, 20.0}); }), "");
-  EXPECT_NE(complaint([] { (void)ModeChain<kRuntimeModes>(ModeMatrix<double, kRuntimeModes>()); }),
-            "")
-      << "no modes";
+}
+
+TEST(ModeChain, TooFewOrTooManyModesAreRefused) {
+  using Any = ModeChain<kRuntimeModes>;
+  EXPECT_EQ(complaint([] {
+              (void)Three::from_sojourn_s({10.0, 20.0});
+            }),
+            "a mode chain needs 3 mean sojourn times, got 2");
+  EXPECT_EQ(complaint([] { (void)Any::from_sojourn_s({}); }),
+            "a mode chain needs 1 to 16 mean sojourn times, got 0");
+  EXPECT_EQ(complaint([] { (void)Any::from_sojourn_s(ModeVector<double, kRuntimeModes>()); }),
+            "a mode chain needs 1 to 16 mean sojourn times, got 0");
+  EXPECT_EQ(
+      complaint([] {
+        (void)Any::from_sojourn_s({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17});
+      }),
+      "a mode chain needs 1 to 16 mean sojourn times, got 17");
+  EXPECT_EQ(complaint([] { (void)Any(Any::Matrix()); }), "a mode chain needs 1 to 16 modes, got 0");
+  EXPECT_EQ(complaint([] { (void)Any(Any::Matrix(Any::Matrix::Constant(2, 4, 0.25))); }),
+            "a mode chain needs a square matrix, got 2 x 4");
 }
 
 }  // namespace

@@ -76,6 +76,7 @@ class ModeChain {
   /// zero on the diagonal.
   static ModeChain from_sojourn_s(const ModeVector<double, K>& sojourn_s, const Matrix& next) {
     const Eigen::Index modes = sojourn_s.size();
+    require_modes("mean sojourn times", modes);
     if (next.rows() != modes || next.cols() != modes)
       throw std::invalid_argument(
           "from_sojourn_s needs one row and column of `next` for each of " + std::to_string(modes) +
@@ -92,8 +93,7 @@ class ModeChain {
   }
 
   static ModeChain from_sojourn_s(std::initializer_list<double> sojourn_s) {
-    if (K != kRuntimeModes && static_cast<int>(sojourn_s.size()) != K)
-      throw std::invalid_argument("from_sojourn_s needs one time for each mode");
+    require_modes("mean sojourn times", static_cast<Eigen::Index>(sojourn_s.size()));
     ModeVector<double, K> times(static_cast<Eigen::Index>(sojourn_s.size()));
     Eigen::Index k = 0;
     for (const double time : sojourn_s) times[k++] = time;
@@ -130,8 +130,22 @@ class ModeChain {
   };
   explicit ModeChain(const Generator& generator) : matrix_(generator.matrix), continuous_(true) {}
 
+  /// There must be K, or 1 to kMaxModes.
+  static void require_modes(const std::string& what, Eigen::Index count) {
+    constexpr int kLeast = K == kRuntimeModes ? 1 : K;
+    if (count >= kLeast && count <= kModeCapacity<K>) return;
+    throw std::invalid_argument(
+        "a mode chain needs " +
+        (K == kRuntimeModes ? "1 to " + std::to_string(kMaxModes) : std::to_string(K)) + " " +
+        what + ", got " + std::to_string(count));
+  }
+
   static void require_stochastic(const Matrix& matrix) {
-    if (matrix.rows() == 0) throw std::invalid_argument("a mode chain needs at least one mode");
+    require_modes("modes", matrix.rows());
+    if (matrix.rows() != matrix.cols())
+      throw std::invalid_argument("a mode chain needs a square matrix, got " +
+                                  std::to_string(matrix.rows()) + " x " +
+                                  std::to_string(matrix.cols()));
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
       for (Eigen::Index j = 0; j < matrix.cols(); ++j)
         require_probability("every element of the mode chain", matrix(i, j));
