@@ -55,6 +55,7 @@ class SquareRootUkf {
   /// Throws `std::invalid_argument` on parameters that make no sense.
   explicit SquareRootUkf(const MotionType& motion, const Unscented& unscented = {})
       : motion_(validated(motion)), unscented_(unscented) {
+    check_order<Motion>();
     unscented.validate(kStates);
     require(unscented.beta >= unscented.alpha * unscented.alpha, "beta", "at least alpha squared",
             unscented.beta);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 
 #include "wakeline/core/component.hpp"
@@ -79,6 +80,17 @@ StateMatrixOf<Motion, Scalar> process_noise(const Motion& motion, const StateOf<
     return motion.process_noise(dt_s);
   else
     return motion.process_noise(x, dt_s);
+}
+
+/// Refuses a state of position and velocity alone in another order than `[x, vx, y, vy]`: nothing
+/// could tell a start over the one from a start over the other.
+template <class Motion>
+constexpr void check_order() noexcept {
+  constexpr auto kComponents = Motion::kComponents;
+  static_assert(kComponents.size() != 4 || !holds(kComponents, kKinematics) ||
+                    std::equal(kComponents.begin(), kComponents.end(), kKinematics.begin()),
+                "wakeline: a state of position and velocity alone has the order [x, vx, y, vy] "
+                "(kNorth, kVnorth, kEast, kVeast); see cpp/docs/concepts.md");
 }
 
 /// Variance of a component that a start does not know (a turn rate, an acceleration): the model's
