@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -45,6 +46,20 @@ struct ScanReport {
       0;  ///< not finite, behind the antenna, of another time than the scan, or beyond `max_plots`
 };
 
+/// What a track can be: an estimator of `double` with the whole face of `Imm`. An `Imm` of one
+/// model is a single filter.
+template <class Estimator>
+concept TrackEstimator = std::copyable<Estimator> &&
+    requires(Estimator estimator, const Estimator& constant, std::span<double> share,
+             std::span<const Alternative<Fix>> readings, Archive& fields) {
+  { estimator.start(Gaussian<4>{}) } -> std::same_as<Status>;
+  { estimator.predict(1.0) } -> std::same_as<Status>;
+  { estimator.update(readings, 1.0, share) } -> std::same_as<double>;
+  { constant.evidence(Fix{}, Vec<double, 2>{}) } -> std::same_as<Evidence<double>>;
+  constant.estimate();
+  estimator.archive(fields);
+};
+
 /// Keeps tracks of all vessels a radar sees, scan by scan.
 ///
 /// Each track is an estimator of `Estimator`'s kind with a probability of existence and of
@@ -56,6 +71,11 @@ struct ScanReport {
 /// 2004, and IET RSN 2008 (existence, claims of other tracks); Bar-Shalom, Li 1995 (PDA, M of N).
 template <class Estimator>
 class Tracker {
+  static_assert(TrackEstimator<Estimator>,
+                "wakeline: a tracker needs an estimator of double with evidence(sensor, z) and the "
+                "update of several readings, as Imm has them (of one filter: an Imm of one model); "
+                "see cpp/docs/concepts.md");
+
  public:
   using TrackType = Track<Estimator>;
 
