@@ -3,17 +3,31 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace wakeline {
 
-/// Throws `std::invalid_argument` that says what was wanted and what came. For constructors only.
+/// Throws `std::invalid_argument`; where exceptions are switched off, says it on the standard error
+/// and aborts. For constructors only.
+[[noreturn]] inline void refuse(const std::string& message) {
+#if defined(__cpp_exceptions)
+  throw std::invalid_argument(message);
+#else
+  std::fprintf(stderr, "wakeline: %s\n", message.c_str());
+  std::abort();
+#endif
+}
+
+/// Refuses in words what was wanted and what came, unless the condition holds.
 inline void require(bool condition, const char* name, const char* wanted, double value) {
   if (condition) return;
   std::ostringstream message;
   message << name << " must be " << wanted << ", got " << value;
-  throw std::invalid_argument(message.str());
+  refuse(message.str());
 }
 
 inline void require_not_negative(const char* name, double value) {

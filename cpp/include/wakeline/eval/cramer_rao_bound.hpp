@@ -3,10 +3,10 @@
 #pragma once
 
 #include <concepts>
-#include <stdexcept>
 
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/component.hpp"
+#include "wakeline/core/require.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/measurement/concept.hpp"
@@ -37,8 +37,7 @@ class CramerRaoBound {
   /// symmetric and positive definite.
   explicit CramerRaoBound(const Covariance& start_covariance) : covariance_(start_covariance) {
     if (check(Gaussian<N, Scalar>{Vec<Scalar, N>::Zero(), start_covariance}) != Status::kOk)
-      throw std::invalid_argument(
-          "start_covariance must be finite, symmetric and positive definite");
+      refuse("start_covariance must be finite, symmetric and positive definite");
   }
 
   /// (N x N), over the state of the motion.

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
-#include <stdexcept>
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/cholesky.hpp"
@@ -44,8 +43,7 @@ struct CovarianceStrobe {
   /// Throws `std::invalid_argument` unless S is symmetric positive definite and γ positive.
   void validate() const {
     if (check(Gaussian<2>{.covariance = innovation_covariance_m2}) != Status::kOk)
-      throw std::invalid_argument(
-          "innovation_covariance_m2 must be finite, symmetric and positive definite");
+      refuse("innovation_covariance_m2 must be finite, symmetric and positive definite");
     require_positive("threshold", threshold);
   }
 

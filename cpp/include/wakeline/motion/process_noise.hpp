@@ -64,8 +64,7 @@ class ProcessNoise {
         break;
     }
     if (kind_ == Kind::kWhiteJerk && !holds_acceleration)
-      throw std::invalid_argument(
-          "white jerk needs an acceleration in the state, this model has none");
+      refuse("white jerk needs an acceleration in the state, this model has none");
   }
 
   /// Q of one axis `[position, velocity]` without turning.

@@ -8,7 +8,6 @@
 #include <initializer_list>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include "wakeline/core/require.hpp"
@@ -50,8 +49,8 @@ class ModeChain {
   requires(Other != K) explicit ModeChain(const ModeChain<Other>& chain)
       : matrix_(chain.matrix_), continuous_(chain.continuous_) {
     if (K != kRuntimeModes && chain.modes() != K)
-      throw std::invalid_argument("a chain of " + std::to_string(K) + " modes was given one of " +
-                                  std::to_string(chain.modes()));
+      refuse("a chain of " + std::to_string(K) + " modes was given one of " +
+             std::to_string(chain.modes()));
   }
 
   /// The chain whose transition over `period_s` is the matrix. Throws also when no continuous-time
@@ -78,9 +77,9 @@ class ModeChain {
     const Eigen::Index modes = sojourn_s.size();
     require_modes("mean sojourn times", modes);
     if (next.rows() != modes || next.cols() != modes)
-      throw std::invalid_argument(
-          "from_sojourn_s needs one row and column of `next` for each of " + std::to_string(modes) +
-          " modes, got " + std::to_string(next.rows()) + " x " + std::to_string(next.cols()));
+      refuse("from_sojourn_s needs one row and column of `next` for each of " +
+             std::to_string(modes) + " modes, got " + std::to_string(next.rows()) + " x " +
+             std::to_string(next.cols()));
     if (modes > 1) require_stochastic(next);
     Matrix generator = Matrix::Zero(modes, modes);
     for (Eigen::Index i = 0; i < modes; ++i) {
@@ -134,18 +133,16 @@ class ModeChain {
   static void require_modes(const std::string& what, Eigen::Index count) {
     constexpr int kLeast = K == kRuntimeModes ? 1 : K;
     if (count >= kLeast && count <= kModeCapacity<K>) return;
-    throw std::invalid_argument(
-        "a mode chain needs " +
-        (K == kRuntimeModes ? "1 to " + std::to_string(kMaxModes) : std::to_string(K)) + " " +
-        what + ", got " + std::to_string(count));
+    refuse("a mode chain needs " +
+           (K == kRuntimeModes ? "1 to " + std::to_string(kMaxModes) : std::to_string(K)) + " " +
+           what + ", got " + std::to_string(count));
   }
 
   static void require_stochastic(const Matrix& matrix) {
     require_modes("modes", matrix.rows());
     if (matrix.rows() != matrix.cols())
-      throw std::invalid_argument("a mode chain needs a square matrix, got " +
-                                  std::to_string(matrix.rows()) + " x " +
-                                  std::to_string(matrix.cols()));
+      refuse("a mode chain needs a square matrix, got " + std::to_string(matrix.rows()) + " x " +
+             std::to_string(matrix.cols()));
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
       for (Eigen::Index j = 0; j < matrix.cols(); ++j)
         require_probability("every element of the mode chain", matrix(i, j));
@@ -153,7 +150,7 @@ class ModeChain {
         std::ostringstream message;
         message << "row " << i << " of the mode chain must sum to 1, sums to " << sum
                 << " (rows: mode before; columns: mode now)";
-        throw std::invalid_argument(message.str());
+        refuse(message.str());
       }
     }
   }
@@ -184,7 +181,7 @@ class ModeChain {
       matrix_(i, i) = -row_sum(matrix_, i);
     }
     if (!valid || !(transition(period_s) - over_period).isZero(1e-9))
-      throw std::invalid_argument(
+      refuse(
           "this matrix is not the transition of a continuous-time chain over its period; leave the "
           "period out to apply "
           "it once per prediction");

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -73,9 +72,9 @@ class ModeHistory {
         transition_(ModeMatrix<Scalar, K>::Zero(bank.size(), bank.size())),
         ways_out_(ModeMatrix<int, K>::Zero(bank.size(), bank.size())) {
     if (chain.modes() != bank.size())
-      throw std::invalid_argument(
-          "a ModeHistory needs one mode of its chain for each filter, got " +
-          std::to_string(chain.modes()) + " modes and " + std::to_string(bank.size()) + " filters");
+      refuse("a ModeHistory needs one mode of its chain for each filter, got " +
+             std::to_string(chain.modes()) + " modes and " + std::to_string(bank.size()) +
+             " filters");
     require(tree.max_branches <= Capacity, "max_branches",
             ("at most the capacity of " + std::to_string(Capacity)).c_str(), tree.max_branches);
     require(tree.max_hypotheses >= bank.size(), "max_hypotheses",

@@ -65,8 +65,8 @@ class TurnGridImm : public Imm<BankType> {
         initial_rates_(initial.template cast<TurnRate<Scalar>>()),
         rates_(initial_rates_) {
     if (initial.size() != bank.size())
-      throw std::invalid_argument("this estimator needs " + std::to_string(initial.size()) +
-                                  " filters, got " + std::to_string(bank.size()));
+      refuse("this estimator needs " + std::to_string(initial.size()) + " filters, got " +
+             std::to_string(bank.size()));
     this->bank_.for_each([&](int k, auto& filter, auto&) { set_turn_rate(filter, rates_[k]); });
   }
 

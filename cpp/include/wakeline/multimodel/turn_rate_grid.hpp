@@ -5,7 +5,6 @@
 #include <cmath>
 #include <initializer_list>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
@@ -27,8 +26,8 @@ class TurnRateGrid {
   /// Throws `std::invalid_argument` unless they are 2 to kMaxModes, finite and rising.
   explicit TurnRateGrid(std::span<const double> rates_rad_s) {
     if (rates_rad_s.size() < 2 || rates_rad_s.size() > kMaxModes)
-      throw std::invalid_argument("grid_rad_s must have 2 to " + std::to_string(kMaxModes) +
-                                  " turn rates, got " + std::to_string(rates_rad_s.size()));
+      refuse("grid_rad_s must have 2 to " + std::to_string(kMaxModes) + " turn rates, got " +
+             std::to_string(rates_rad_s.size()));
     rates_.resize(static_cast<Eigen::Index>(rates_rad_s.size()));
     for (int k = 0; k < size(); ++k) {
       rates_[k] = rates_rad_s[static_cast<std::size_t>(k)];

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <span>
-#include <stdexcept>
 #include <string>
 
 #include "wakeline/multimodel/filter_bank.hpp"
@@ -35,9 +34,8 @@ class UniformBank {
 
   /// Throws `std::invalid_argument` unless there are K filters, or 1 to kMaxModes.
   explicit UniformBank(std::span<const Filter> filters)
-      : slots_(filled(filters.empty()
-                          ? throw std::invalid_argument("a bank needs filters, got none")
-                          : filters.front())),
+      : slots_(filled(filters.empty() ? (refuse("a bank needs filters, got none"), filters.front())
+                                      : filters.front())),
         size_(static_cast<int>(filters.size())) {
     check_size();
     for (std::size_t k = 0; k < filters.size(); ++k) slots_[k].filter = filters[k];
@@ -103,10 +101,9 @@ class UniformBank {
 
   void check_size() const {
     if (K == kRuntimeModes ? size_ < 1 || size_ > kMaxModes : size_ != K)
-      throw std::invalid_argument(
-          "a bank needs " +
-          (K == kRuntimeModes ? "1 to " + std::to_string(kMaxModes) : std::to_string(K)) +
-          " filters, got " + std::to_string(size_));
+      refuse("a bank needs " +
+             (K == kRuntimeModes ? "1 to " + std::to_string(kMaxModes) : std::to_string(K)) +
+             " filters, got " + std::to_string(size_));
   }
 
   Slot& slot(int k) noexcept { return slots_[static_cast<std::size_t>(k)]; }
