@@ -7,6 +7,10 @@
 #include "wakeline/core/scalar.hpp"
 #include "wakeline/core/unroll.hpp"
 
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+#error "wakeline: -ffast-math and -ffinite-math-only take out the checks for what is not a number"
+#endif
+
 namespace wakeline {
 
 /// Column vector of N scalars.
