@@ -106,8 +106,8 @@ class Tracker {
   Tracker(Tracker&&) noexcept = default;
   Tracker& operator=(Tracker&&) noexcept = default;
 
-  /// Takes in the plots of one scan, which ends at `time_s`. Refuses a scan that lies before the
-  /// last one.
+  /// Takes in the plots of one scan, a whole turn of the antenna that ends at `time_s`: a track
+  /// without a plot has missed it. Refuses a scan that lies before the last one.
   ScanReport process(double time_s, std::span<const Plot> plots) noexcept {
     events_.clear();
     plot_track_id_.clear();
@@ -158,7 +158,8 @@ class Tracker {
   }
 
   /// The operator says that there is a target: a confirmed track at rest. Returns its number, or 0
-  /// when there is no room or the position or time makes no sense.
+  /// when there is no room or the position or time makes no sense. Where the tracker is full, the
+  /// weakest tentative track gives way, without an event.
   std::int64_t designate(double time_s, double north_m, double east_m,
                          double position_std_m) noexcept {
     if (!std::isfinite(time_s) || !(position_std_m > 0.0)) return 0;
@@ -192,7 +193,8 @@ class Tracker {
     return true;
   }
 
-  /// The whole state, to be restored by a tracker with the same settings and models.
+  /// The whole state, to be restored by a tracker with the same settings and models that is
+  /// compiled for the same instruction set.
   [[nodiscard]] std::vector<std::byte> save() const {
     Archive fields;
     const_cast<Tracker*>(this)->archive(fields);  // writing changes nothing
@@ -202,7 +204,7 @@ class Tracker {
   }
 
   /// Goes on bit for bit where the saved tracker was. False, and nothing changed, when the bytes
-  /// are not the state of a tracker with the same settings and models.
+  /// are not the state of such a tracker.
   [[nodiscard]] bool restore(std::span<const std::byte> bytes) {
     std::uint64_t sum = 0;
     if (bytes.size() < sizeof(sum)) return false;
