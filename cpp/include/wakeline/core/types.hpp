@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <concepts>
+#include <type_traits>
 
 #include "wakeline/core/scalar.hpp"
 #include "wakeline/core/unroll.hpp"
@@ -20,6 +22,14 @@ using Vec = Eigen::Matrix<Scalar, N, 1>;
 /// Matrix of Rows x Cols scalars, column-major as Eigen has it.
 template <class Scalar, int Rows, int Cols>
 using Mat = Eigen::Matrix<Scalar, Rows, Cols>;
+
+/// What is an Eigen expression of the size of `Wanted`. Eigen itself says that it converts others,
+/// and fails within.
+template <class Given, class Wanted>
+concept SameSize =
+    std::convertible_to<Given, Wanted> && std::remove_cvref_t<Given>::RowsAtCompileTime ==
+    Wanted::RowsAtCompileTime&& std::remove_cvref_t<Given>::ColsAtCompileTime ==
+    Wanted::ColsAtCompileTime;
 
 /// A Gaussian belief: mean (N) and covariance (N x N, symmetric positive definite).
 template <int N, class Scalar = double>

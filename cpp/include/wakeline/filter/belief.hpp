@@ -37,8 +37,7 @@ class Belief {
                 "wakeline: this motion model is neither linear (kComponents, matrix(dt_s), "
                 "process_noise(dt_s)) nor "
                 "nonlinear (kComponents, transition(x, dt_s), jacobian(x, dt_s), process_noise(x, "
-                "dt_s)); see "
-                "cpp/docs/concepts.md");
+                "dt_s)), of the sizes that kComponents tells; see cpp/docs/concepts.md");
 
  public:
   using Motion = MotionType;
@@ -118,7 +117,7 @@ constexpr void check_sensor() noexcept {
   static_assert(
       MeasurementModel<Sensor>,
       "wakeline: this sensor needs kReads, kMeasurements, observe(z), measure(x), jacobian(x) and "
-      "residual(a, b); see cpp/docs/concepts.md");
+      "residual(a, b), of the sizes that the first two tell; see cpp/docs/concepts.md");
   static_assert(
       holds(Filter::kComponents, Sensor::kReads),
       "wakeline: this sensor reads a component that the state of the motion model does not hold");

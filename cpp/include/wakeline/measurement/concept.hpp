@@ -27,11 +27,9 @@ concept MeasurementModel = requires(const Sensor& sensor,
                                     const Vec<double, Sensor::kMeasurements>& z,
                                     const Vec<double, kReadsOf<Sensor>>& x) {
   { sensor.observe(z) } -> std::convertible_to<Gaussian<Sensor::kMeasurements>>;
-  { sensor.measure(x) } -> std::convertible_to<Vec<double, Sensor::kMeasurements>>;
-  {
-    sensor.jacobian(x)
-    } -> std::convertible_to<Mat<double, Sensor::kMeasurements, kReadsOf<Sensor>>>;
-  { sensor.residual(z, z) } -> std::convertible_to<Vec<double, Sensor::kMeasurements>>;
+  { sensor.measure(x) } -> SameSize<Vec<double, Sensor::kMeasurements>>;
+  { sensor.jacobian(x) } -> SameSize<Mat<double, Sensor::kMeasurements, kReadsOf<Sensor>>>;
+  { sensor.residual(z, z) } -> SameSize<Vec<double, Sensor::kMeasurements>>;
 };
 
 /// A sensor whose `measure` is linear and says so with `static constexpr bool kLinear = true`.

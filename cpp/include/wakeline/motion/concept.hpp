@@ -26,8 +26,8 @@ using StateMatrixOf = Mat<Scalar, kStatesOf<Motion>, kStatesOf<Motion>>;
 template <class Motion>
 concept LinearMotionModel = requires(const Motion& motion, double dt_s) {
   Motion::kComponents.size();
-  { motion.matrix(dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
-  { motion.process_noise(dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
+  { motion.matrix(dt_s) } -> SameSize<StateMatrixOf<Motion>>;
+  { motion.process_noise(dt_s) } -> SameSize<StateMatrixOf<Motion>>;
 };
 
 /// A vessel that moves as x' = f(x, dt) + w, w ~ N(0, Q(x, dt)).
@@ -37,9 +37,9 @@ template <class Motion>
 concept NonlinearMotionModel = requires(const Motion& motion, const StateOf<Motion>& x,
                                         double dt_s) {
   Motion::kComponents.size();
-  { motion.transition(x, dt_s) } -> std::convertible_to<StateOf<Motion>>;
-  { motion.jacobian(x, dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
-  { motion.process_noise(x, dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
+  { motion.transition(x, dt_s) } -> SameSize<StateOf<Motion>>;
+  { motion.jacobian(x, dt_s) } -> SameSize<StateMatrixOf<Motion>>;
+  { motion.process_noise(x, dt_s) } -> SameSize<StateMatrixOf<Motion>>;
 };
 
 template <class Motion>
