@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wakeline.scenario import RadarSimulator, Segment, Truth
+from wakeline.scenario import RadarSimulator, Segment, TrackTruth, Truth
 
 rates = st.floats(-0.3, 0.3)
 accelerations = st.floats(0.0, 0.5)
@@ -78,6 +78,14 @@ def test_outside_its_segments_a_vessel_goes_straight_on():
 def test_a_vessel_may_start_at_rest_on_a_given_course():
     truth = Truth([0, 0, 0, 0], [Segment(10.0, 0.0, 1.0)], start_course_rad=np.pi / 2)
     np.testing.assert_allclose(truth.state_at(10.0)[0], [0, 0, 50, 10], atol=1e-12)
+
+
+def test_truths_show_themselves_in_a_few_words():
+    truth = Truth([0.0, 5.0, 0.0, 0.0], [Segment(60.0), Segment(30.0, 0.02)], start_time_s=10.0)
+    assert repr(truth) == "<Truth: 2 segments, 10.0 to 100.0 s>"
+    assert repr(Truth([0.0, 5.0, 0.0, 0.0])) == "<Truth: 0 segments, 0.0 to 0.0 s>"
+    recorded = TrackTruth([0.0, 1.0, 2.5], [0.0, 5.0, 10.0], np.zeros(3))
+    assert repr(recorded) == "<TrackTruth: 3 positions, 0.0 to 2.5 s>"
 
 
 def test_truths_that_make_no_sense():

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import filter, motion
+from wakeline._brief import brief, many, span
 from wakeline.recording import NavigationLog
 
 _TURNING_ABOVE_MPS = 0.5
@@ -57,6 +58,9 @@ class TrackTruth:
         slope_mps = _slopes(self._time_s, place_m)
         self._place_m = place_m
         self._velocity_mps = np.where(np.isfinite(velocity_mps), velocity_mps, slope_mps)
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self._time_s), "position"), span(self._time_s))
 
     @classmethod
     def of(cls, track: Any) -> TrackTruth:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wakeline._brief import brief, many, span
+
 _SERIES_BELOW_RAD = 0.3
 
 
@@ -172,6 +174,9 @@ class Truth:
             speed_mps,
             course_rad if start_course_rad is None else start_course_rad,
         )
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self.segments), "segment"), span(self._time_s))
 
     @property
     def end_time_s(self) -> float:
