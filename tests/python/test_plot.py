@@ -178,6 +178,19 @@ def test_a_map_without_a_current_has_no_arrows(current_mps):
     assert not any(isinstance(one, Quiver) for one in ax.collections)
 
 
+def test_parts_of_own_ships_way_that_are_in_doubt_are_drawn_and_named():
+    way_m = np.column_stack([np.arange(6.0), np.zeros(6)])
+    coasting = np.array([False, True, True, False, False, False])
+    ax = plot.figure().add_subplot()
+    plot.own_map(ax, way_m, way_m, coasting=coasting, jumped=coasting[::-1])
+    drawn = {line.get_label(): np.isfinite(line.get_xdata()) for line in ax.lines}
+    np.testing.assert_array_equal(drawn["without fixes"], coasting)
+    np.testing.assert_array_equal(drawn["after a jump"], coasting[::-1])
+    ax = plot.figure().add_subplot()
+    plot.own_map(ax, way_m, way_m, coasting=np.zeros(6, bool), jumped=np.zeros(6, bool))
+    assert [line.get_label() for line in ax.lines] == ["fixes", "own ship"]
+
+
 def test_times_with_fixes_are_named():
     ax = plot.figure().add_subplot()
     plot.drift_over_time(ax, np.arange(9.0), np.ones((9, 2)), np.arange(5.0))

@@ -274,6 +274,7 @@ def _write_pictures(folder: Path, legs: Sequence[_Leg]) -> list[Path]:
             readings.fix_m[has_fix],
             track.current_mps,
             coasting=track.status == "coasting",
+            jumped=track.status == "jumped",
         )
         plot.save(figure, files[-2])
         plot.save(_time_figure(readings, track, readings.time_s[has_fix]), files[-1])

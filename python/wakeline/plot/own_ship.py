@@ -24,6 +24,7 @@ def own_map(
     current_mps: np.ndarray | None = None,
     *,
     coasting: np.ndarray | None = None,
+    jumped: np.ndarray | None = None,
 ) -> Axes:
     """Map of own ship's way and fixes, north up, with the current along it; returns `ax`.
 
@@ -37,13 +38,19 @@ def own_map(
         North and east; drawn as arrows where finite, beside one of a round number of knots.
     coasting : ndarray of bool (T,), optional
         Where there were no fixes.
+    jumped : ndarray of bool (T,), optional
+        Where the place is in doubt, for fixes that did not fit have moved it.
     """
     ax.plot(fix_m[:, 1] / 1e3, fix_m[:, 0] / 1e3, ".", color=MUTED, markersize=3, label="fixes")
     way = position_m / 1e3
     ax.plot(way[:, 1], way[:, 0], color=PALETTE[0], linewidth=1.5, label="own ship")
-    if coasting is not None and coasting.any():
-        gone = np.where(coasting[:, None], way, np.nan)
-        ax.plot(gone[:, 1], gone[:, 0], color=PALETTE[1], linewidth=2.0, label="without fixes")
+    for where, color, name in (
+        (coasting, PALETTE[1], "without fixes"),
+        (jumped, PALETTE[3], "after a jump"),
+    ):
+        if where is not None and where.any():
+            part = np.where(where[:, None], way, np.nan)
+            ax.plot(part[:, 1], part[:, 0], color=color, linewidth=2.0, label=name)
     if current_mps is not None and np.isfinite(current_mps).any():
         known = np.flatnonzero(np.isfinite(current_mps[:, 0]))
         at = known[np.linspace(0, len(known) - 1, min(_ARROWS, len(known))).astype(int)]
