@@ -1,4 +1,4 @@
-"""Where other vessels will be: forecasts from what they report of themselves.
+"""Where other vessels will be: forecasts from what they report of themselves, or from a track.
 
 >>> from wakeline import forecast, recording
 >>> track = recording.load_ais().tracks["235007473"]
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import wakeline as wl
-from wakeline.recording import AisTrack
+from wakeline.recording import AisTrack, Tracks
 
 __all__ = ["names", "position_m", "turn_rate_rad_s"]
 
@@ -34,14 +34,14 @@ def names() -> list[str]:
 
 
 def position_m(
-    track: AisTrack, ahead_s: ArrayLike, model: str = "last_report"
+    track: AisTrack | Tracks, ahead_s: ArrayLike, model: str = "last_report"
 ) -> NDArray[np.float64]:
     """Where a vessel will be, some times after its last report.
 
     Parameters
     ----------
-    track : AisTrack
-        Its reports so far, all with course and speed.
+    track : AisTrack or Tracks
+        Its reports so far, all with course and speed; or the rows of one track, in order of time.
     ahead_s : (H,) array_like
         Seconds after the last of them.
     model : str
@@ -60,8 +60,10 @@ def position_m(
     ------
     ValueError
         When there is no such model, a report is without course or speed, there are fewer than two
-        reports in the last minute, or a time lies before the last.
+        reports in the last minute, or a time lies before the last; when rows are of several tracks
+        or out of order.
     """
+    track = _reports(track)
     ahead_s = np.asarray(ahead_s, dtype=float)
     if model not in _MODELS:
         raise ValueError(f"no model {model!r}; there are {', '.join(_MODELS)}")
@@ -74,9 +76,9 @@ def position_m(
     return np.array([track.north_m[-1], track.east_m[-1]]) + _MODELS[model](track, ahead_s)
 
 
-def turn_rate_rad_s(track: AisTrack) -> float:
+def turn_rate_rad_s(track: AisTrack | Tracks) -> float:
     """Slope of the reported course over the last half minute; zero of fewer than three reports."""
-    recent = _last(track, _RATE_OVER_S)
+    recent = _last(_reports(track), _RATE_OVER_S)
     if len(recent) < 3:
         return 0.0
     return float(np.polyfit(_age_s(recent), np.unwrap(recent.course_rad), 1)[0])
@@ -131,6 +133,25 @@ _MODELS: dict[str, Callable[[AisTrack, np.ndarray], np.ndarray]] = {
     "turning_on": partial(_turning, ends_s=np.inf),
     "turn_that_ends": partial(_turning, ends_s=_TURN_ENDS_S),
 }
+
+
+def _reports(track: AisTrack | Tracks) -> AisTrack:
+    """Each row of a track as a report of where the vessel was and how she went."""
+    if isinstance(track, AisTrack):
+        return track
+    if len(track.ids()) > 1:
+        raise ValueError(f"track must be rows of one track, got {len(track.ids())} tracks")
+    if not (np.diff(track.time_s) > 0).all():
+        raise ValueError("the rows of the track must be in order of time")
+    north_m, vnorth_mps, east_m, veast_mps = track.state.T
+    return AisTrack(
+        mmsi="",
+        time_s=track.time_s,
+        north_m=north_m,
+        east_m=east_m,
+        course_rad=np.arctan2(veast_mps, vnorth_mps),
+        speed_mps=np.hypot(vnorth_mps, veast_mps),
+    )
 
 
 def _age_s(track: AisTrack) -> np.ndarray:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wakeline import forecast
-from wakeline.recording import AisTrack
+from wakeline.recording import AisTrack, Tracks
 
 PLACE_M = [5000.0, -3000.0]  # of the last report
 
@@ -49,6 +49,32 @@ def test_unless_told_otherwise_it_goes_on_as_last_reported():
     track = circling(np.deg2rad(1.0))
     place_m = forecast.position_m(track, [60.0])
     np.testing.assert_allclose(place_m - PLACE_M, [[480.0, 0.0]], atol=1e-9)
+
+
+def rows_of(track, number="7"):
+    """The same as rows of a track of the radar."""
+    columns = (track.north_m, track.vnorth_mps, track.east_m, track.veast_mps)
+    return Tracks(np.full(len(track), number), track.time_s, np.column_stack(columns))
+
+
+@pytest.mark.parametrize("model", forecast.names())
+def test_a_track_of_the_radar_is_foretold_as_the_reports_that_say_the_same(model):
+    reports, ahead_s = circling(np.deg2rad(-1.0)), [0.0, 60.0, 180.0]
+    rows = rows_of(reports)
+    np.testing.assert_allclose(
+        forecast.position_m(rows, ahead_s, model),
+        forecast.position_m(reports, ahead_s, model),
+        atol=1e-6,
+    )
+    assert forecast.turn_rate_rad_s(rows) == pytest.approx(np.deg2rad(-1.0), abs=1e-9)
+
+
+def test_of_several_tracks_none_is_foretold():
+    one, other = rows_of(circling(0.0)), rows_of(circling(0.0), "8")
+    with pytest.raises(ValueError, match="rows of one track, got 2"):
+        forecast.position_m(Tracks.joined([one, other]), [60.0])
+    with pytest.raises(ValueError, match="in order of time"):
+        forecast.position_m(Tracks.joined([one, one]), [60.0])
 
 
 @pytest.mark.parametrize("rate_deg_s", [0.0, 1.0, -2.0])

@@ -311,21 +311,17 @@ def _operators_view(states: np.ndarray) -> dict[str, np.ndarray]:
 def bound(ships: Passage, glint_std_m: float = GLINT_STD_M) -> dict[str, float]:
     """95 % errors of relative motion of an efficient estimator that knows the ships go straight.
 
-    First order, from the random errors of the budget alone, the roll's among them; biases and own
-    ship's motion come on top.
+    First order, from the errors of the budget that are new with each plot; biases, the roll, which
+    swings, and own ship's motion come on top.
     """
     apart = ships.target - ships.own
     range_m, bearing = np.hypot(apart[:, 0], apart[:, 2]), np.arctan2(apart[:, 2], apart[:, 0])
-    course = np.arctan2(ships.own[:, 3], ships.own[:, 1])
-    rolled_deg = 0.22 / np.sqrt(2.0) * np.sin(2 * (bearing - course))
-    bearing_std = np.deg2rad(
-        np.sqrt(0.05**2 + (0.05**2 + 0.1**2) / 3 + 0.03**2 + 0.12**2 + rolled_deg**2)
-    )
+    bearing_std = np.deg2rad(np.sqrt(0.05**2 + (0.05**2 + 0.1**2) / 3 + 0.03**2 + 0.12**2))
     range_std_m = np.hypot(20.0, 0.01 * NAUTICAL_MILE_M / np.sqrt(3.0))
     information = np.diag([0.0, _START_SPEED_STD_MPS**-2, 0.0, _START_SPEED_STD_MPS**-2])
     for k, ago_s in enumerate(ships.time_s - ships.time_s[-1]):
         heading = np.arctan2(ships.target[k, 3], ships.target[k, 1])
-        noise = _spread(bearing[k], range_std_m, range_m[k] * bearing_std[k])
+        noise = _spread(bearing[k], range_std_m, range_m[k] * bearing_std)
         noise += _spread(heading, glint_std_m, 1.0)
         sees = np.array([[1.0, ago_s, 0.0, 0.0], [0.0, 0.0, 1.0, ago_s]])
         information += sees.T @ np.linalg.solve(noise, sees)
