@@ -235,6 +235,22 @@ def test_satellites_that_fail_are_coasted_over_and_come_back_without_a_jump(tmp_
     assert np.hypot(*np.diff(place, axis=0).T).max() < 15.0
 
 
+def test_a_receiver_that_freezes_is_not_believed_in_its_velocity_either(tmp_path):
+    lines = voyage(14)
+    true = navigated(tmp_path, lines)
+    stood = lines[3 * 580].split(",")
+    for k in [3 * second for second in range(581, 700)]:
+        fields = lines[k][1:].partition("*")[0].split(",")
+        lines[k] = sentence(",".join([*fields[:3], *stood[3:9], *fields[9:]]))
+    rows = navigated(tmp_path, lines)
+    assert {row["status"] for row in rows} == {"ok", "coasting"}
+    off_m = [
+        column(rows, name) - np.interp(seconds(rows), seconds(true), column(true, name))
+        for name in ("north_m", "east_m")
+    ]
+    assert np.hypot(*off_m).max() < 25.0
+
+
 def moved_north(lines, seconds, way_m):
     """Sentences with the fixes of some seconds moved."""
     lines = list(lines)

@@ -499,6 +499,26 @@ def test_fixes_that_stay_while_the_vessel_moves_are_frozen(log, source):
     assert not fixes.usable[fixes.frozen].any()
 
 
+@pytest.mark.parametrize("speeds", ["rmc", "vtg"])
+@pytest.mark.parametrize("live", [True, False])
+def test_speeds_that_stay_the_same_beside_frozen_fixes_are_frozen_too(log, speeds, live):
+    lines = []
+    for t in range(60):
+        frozen = 20 < t < 50
+        where = 6.7 + 3.35e-5 * (20 if frozen else t)
+        kn = f"{5.0 + 0.1 * (t % 2)}" if live and frozen else "5.0"
+        if speeds == "rmc":
+            lines += [rmc(t, longitude_deg=where, kn=kn)]
+        else:
+            lines += [gll(t, longitude_deg=where), sentence(f"VTG,90,T,,M,{kn},N,,K,A")]
+    read = log(*lines)
+    frozen = [] if live else list(range(21, 50))
+    assert np.flatnonzero(read.ground.frozen).tolist() == frozen
+    assert np.flatnonzero(~read.ground.usable).tolist() == frozen
+    told = [note for note in read.notes if "29 speeds over ground repeated" in note]
+    assert len(told) == (not live)
+
+
 def test_a_vessel_at_rest_is_not_frozen(log):
     assert not log(*(rmc(t, kn="0.3") for t in range(0, 3600, 10))).fixes.frozen.any()
     assert not log(*(gll(t) for t in range(0, 3600, 10))).fixes.frozen.any()

@@ -107,10 +107,19 @@ class GroundSpeed(Series):
     ----------
     speed_mps, course_rad : ndarray (n,)
         NaN where only the other is given. Course from true north in [0, 2 pi).
+    frozen : ndarray of bool (n,)
+        Speed and course are those of the reading before, as is the position of the fix they come
+        with, which is frozen or suspect.
     """
 
     speed_mps: np.ndarray
     course_rad: np.ndarray
+    frozen: np.ndarray
+
+    @property
+    def usable(self) -> np.ndarray:
+        """Mask (n,) of readings that are valid and not frozen."""
+        return self.valid & ~self.frozen
 
 
 @dataclass(frozen=True, repr=False)

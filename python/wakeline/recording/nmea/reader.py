@@ -77,7 +77,8 @@ def read_nmea(
     `suspect` at 0/0 and where she cannot have come at `max_speed_mps`, for as long as they stay
     there, if they come back to where she can have come meanwhile. Three or more that do not come
     back are believed, and a note tells of the jump. Positions in sentences with empty fields are no
-    fixes.
+    fixes. Speeds over ground are `frozen` where speed and course stay the same with the position of
+    frozen or suspect fixes.
 
     **Headings**: magnetic ones (HDG with its deviation, HDM) are kept apart, with the variation of
     the sentence, else of the RMC before it (or else the first), else `variation_deg`. They are the
@@ -131,6 +132,7 @@ def read_nmea(
     series["compass"] = _with_variation(series["compass"], rows.variation, variation_deg)
     series["heading"] = _true_headings(series["heading"], series["compass"])
     series["fixes"] = _marked(series, clock, max_speed_mps)
+    series["ground"] = _marked_ground(series, clock)
     if not any(map(len, series.values())):
         raise _nothing_read(path, report)
     dated = date is not None or any(math.isfinite(day) for _, _, day in rows.timed)
@@ -217,7 +219,7 @@ def _rmc(s: Sentence, rows: _Rows) -> None:
     valid = status == "A" and quality not in _NOT_MEASURED
     stamp = rows.stamp(s, time_s, day)
     _add_fix(rows, s, stamp, valid, place, quality)
-    rows.add_where_known("ground", s, valid, _knots(s, 6), s.angle_rad(7), stamp=stamp)
+    _add_ground_speed(rows, s, valid, _knots(s, 6), s.angle_rad(7), stamp)
     variation_rad = s.signed_rad(9)
     if not math.isnan(variation_rad):
         rows.variation.append((s.line, variation_rad))
@@ -255,12 +257,24 @@ def _add_fix(
         rows.add_where_known("fixes", s, valid, *values, stamp=stamp)
 
 
+def _add_ground_speed(
+    rows: _Rows,
+    s: Sentence,
+    valid: bool,
+    speed_mps: float,
+    course_rad: float,
+    stamp: int | None = None,
+) -> None:
+    if not (math.isnan(speed_mps) and math.isnan(course_rad)):
+        rows.of["ground"].append((s.line, s.kind, stamp, valid, speed_mps, course_rad, False))
+
+
 def _vtg(s: Sentence, rows: _Rows) -> None:
     s.letter(1, "T"), s.letter(5, "N")
     if s.faults:
         return
     valid = _quality(s, 8) not in _NOT_MEASURED
-    rows.add_where_known("ground", s, valid, _speed_mps(s, 4), s.angle_rad(0))
+    _add_ground_speed(rows, s, valid, _speed_mps(s, 4), s.angle_rad(0))
 
 
 def _hdt(s: Sentence, rows: _Rows) -> None:
@@ -435,6 +449,20 @@ def _marked(series: dict[str, Series], clock: Clock, max_speed_mps: float) -> Fi
     return dataclasses.replace(fixes, frozen=frozen, suspect=suspect)
 
 
+def _marked_ground(series: dict[str, Series], clock: Clock) -> GroundSpeed:
+    """The speeds over ground with what is frozen marked."""
+    fixes, ground = series["fixes"], series["ground"]
+    same_place = _repeats(fixes.latitude_deg, fixes.longitude_deg)
+    stuck = fixes.rows(same_place & (fixes.frozen | fixes.suspect))
+    frozen = _repeats(ground.speed_mps, ground.course_rad)
+    section = clock.section(ground.line)
+    for number in np.unique(section):
+        here = section == number
+        stuck_s = stuck.time_s[clock.section(stuck.line) == number]
+        frozen[here] &= np.isin(ground.time_s[here], stuck_s)
+    return dataclasses.replace(ground, frozen=frozen)
+
+
 def _of_section(series: dict[str, Series], clock: Clock, number: int) -> dict[str, Series]:
     return {
         name: series[name].rows(clock.section(series[name].line) == number)
@@ -461,12 +489,18 @@ def _speed_at(time_s: np.ndarray, series: dict[str, Series]) -> np.ndarray:
 
 def _frozen(fixes: Fixes, speed_mps: np.ndarray) -> np.ndarray:
     """Mask (n,) of fixes that repeat the one before while the vessel goes too far for that."""
-    same = (np.diff(fixes.latitude_deg) == 0) & (np.diff(fixes.longitude_deg) == 0)
+    same = _repeats(fixes.latitude_deg, fixes.longitude_deg)
     speed_mps = np.where(speed_mps < _STILL_MPS, 0.0, speed_mps)
     step_m = 0.5 * (speed_mps[1:] + speed_mps[:-1]) * np.diff(fixes.time_s)
-    run = np.append(0, np.cumsum(~same))[: len(fixes)]
-    way_m = np.bincount(run[1:], np.where(same, step_m, 0.0), minlength=1)
-    return np.append(False, same)[: len(fixes)] & (way_m[run] > _FROZEN_M)
+    run = np.cumsum(~same) - 1
+    way_m = np.bincount(run[1:], np.where(same[1:], step_m, 0.0), minlength=1)
+    return same & (way_m[run] > _FROZEN_M)
+
+
+def _repeats(*columns: np.ndarray) -> np.ndarray:
+    """Mask (n,) of the rows that are the same as the one before."""
+    same = np.all([np.diff(column) == 0 for column in columns], axis=0)
+    return np.append(False, same)[: len(columns[0])]
 
 
 def _earth_centred_m(fixes: Fixes) -> np.ndarray:
@@ -481,21 +515,22 @@ def _earth_centred_m(fixes: Fixes) -> np.ndarray:
 
 
 def _notes(log: NavigationLog) -> list[str]:
-    report, fixes = log.report, log.fixes
+    report, fixes, ground = log.report, log.fixes, log.ground
     notes = [_problem_note(report, kind, n) for kind, n in report.problems.most_common()]
     if not log.dated:
         notes.append("no sentence has a date, so times count from the midnight before the first")
     if len(log.set_back_lines):
         where = ", ".join(map(str, log.set_back_lines[:5].tolist()))
         notes.append(f"the clock was set back {len(log.set_back_lines)} times (line {where})")
-    for mask, what in (
-        (~fixes.valid, "that the receiver calls not valid"),
-        (fixes.frozen, "frozen while the vessel moves"),
-        (fixes.suspect, "at 0/0 or where the vessel cannot have come"),
+    for series, mask, what in (
+        (fixes, ~fixes.valid, "fixes that the receiver calls not valid"),
+        (fixes, fixes.frozen, "fixes frozen while the vessel moves"),
+        (fixes, fixes.suspect, "fixes at 0/0 or where the vessel cannot have come"),
+        (ground, ground.frozen & ground.valid, "speeds over ground repeated with such a fix"),
     ):
         if mask.any():
-            first = int(fixes.line[mask][0])
-            notes.append(f"{np.count_nonzero(mask)} fixes {what} (first in line {first})")
+            first = int(series.line[mask][0])
+            notes.append(f"{np.count_nonzero(mask)} {what} (first in line {first})")
     gaps_s = np.diff(log.gaps_s()).ravel()
     if len(gaps_s):
         notes.append(
