@@ -276,7 +276,7 @@ def test_fixes_that_jump_far_and_come_back_move_nothing(tmp_path, capsys):
     assert rows[3 * 440]["status"] == "coasting"
 
 
-def test_a_position_that_jumped_is_not_ok_until_it_comes_back(tmp_path, capsys):
+def test_a_position_that_jumped_is_in_doubt_until_it_comes_back(tmp_path, capsys):
     lines = voyage(12)
     true = navigated(tmp_path, lines)
     capsys.readouterr()
@@ -289,9 +289,31 @@ def test_a_position_that_jumped_is_not_ok_until_it_comes_back(tmp_path, capsys):
     assert off.sum() > 150
     assert set(status[off]) == {"jumped", "rejected"}
     assert set(status[~off]) == {"ok", "rejected"}
-    stays = navigated(tmp_path, moved_north(lines, range(400, 720), 50_000.0))
-    assert "first by 50 km in line 1201, where 320 fixes go on" in capsys.readouterr().out
-    assert {row["status"] for row in stays[3 * 411 :]} == {"jumped"}
+
+
+@pytest.mark.parametrize("way_m", [150.0, 50_000.0])
+def test_a_position_that_jumped_is_in_doubt_until_fixes_have_fitted_for_a_minute(
+    tmp_path, capsys, way_m
+):
+    lines = moved_north(voyage(12), range(400, 720), way_m)
+    alone = moved_north(lines, [440], 30.0)
+    for log, until_s in ((lines, 470), (alone, 500)):
+        status = np.array([row["status"] for row in navigated(tmp_path, log)])
+        assert set(status[3 * 410 : 3 * until_s]) - {"rejected"} == {"jumped"}
+        assert set(status[3 * until_s :]) == {"ok"}
+    told = capsys.readouterr().out
+    assert "the position jumps 1 times, to fixes that went on though rejected" in told
+    if way_m > 1000.0:
+        assert "first by 50 km in line 1201, where 320 fixes go on" in told
+
+
+def test_a_minute_without_fixes_is_none_in_which_they_fit(tmp_path):
+    lines = moved_north(voyage(12), range(400, 720), 150.0)
+    hidden = [3 * second for second in range(430, 500)]
+    rows = navigated(tmp_path, [line for k, line in enumerate(lines) if k not in hidden])
+    status = np.array([row["status"] for row in rows])
+    assert set(status[(seconds(rows) > 411) & (seconds(rows) < 560)]) == {"jumped"}
+    assert set(status[seconds(rows) > 565]) == {"ok"}
 
 
 @pytest.mark.parametrize(("compass", "water"), [("none", True), ("HDT", False), ("none", False)])

@@ -44,7 +44,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "told. What cannot be read of the log, or not be used, is counted, and never fatal. In "
         "own.csv the status is ok, coasting (no fix for five seconds), rejected (a fix that does "
         "not fit) or jumped (from where fixes that were rejected but went on have moved the "
-        "position by over 50 m, until it comes back).",
+        "position by over 50 m, until it comes back or all fixes have fitted for a minute).",
     )
     parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one a line")
     parser.add_argument(
@@ -159,7 +159,7 @@ def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
         yield (
             f"note: the position jumps {len(jumps)} times, to fixes that went on though rejected, "
             f"first by {jump_m[0]:.0f} m in line {jumps[0]}; from there the status is jumped, "
-            "until it comes back"
+            "until it comes back or all fixes have fitted for a minute"
         )
 
 

@@ -31,7 +31,7 @@ CURRENT_STD_MPS = 0.5
 GATE_PROBABILITY = 0.999
 
 COASTING_S = 5.0
-JUMP_M = 50.0
+JUMP_M, JUMPED_S = 50.0, 60.0
 HIDDEN_S, HIDDEN_EVERY_S = 60.0, 150.0
 HORIZONS_S = (10.0, 30.0, 60.0)
 _UNDER_WAY_MPS = 1.5
@@ -119,7 +119,7 @@ class OwnTrack:
     status : ndarray of str (T,)
         ``ok``; ``coasting`` without a fix for more than five seconds; ``jumped`` from where fixes
         that went on though rejected have moved the position by more than 50 m, until others move it
-        back; ``rejected`` where a fix was not believed.
+        back or all fixes have fitted for a minute; ``rejected`` where a fix was not believed.
     jump_m : ndarray (T,)
         How far such fixes have moved the position, zero at other times.
     """
@@ -438,20 +438,29 @@ def _moved_m(
 def _status(readings: Readings, rejected: np.ndarray, moved_m: np.ndarray) -> np.ndarray:
     last_s = np.maximum.accumulate(np.where(readings.has_fix, readings.time_s, -np.inf))
     status = np.where(readings.time_s - last_s > COASTING_S, "coasting", "ok")
-    status = np.where(_jumped(moved_m), "jumped", status)
+    status = np.where(_jumped(readings, rejected, moved_m), "jumped", status)
     return np.where(rejected, "rejected", status)
 
 
-def _jumped(moved_m: np.ndarray) -> np.ndarray:
-    """Mask (T,) of the times at which the position is not where it would be unmoved."""
+def _jumped(readings: Readings, rejected: np.ndarray, moved_m: np.ndarray) -> np.ndarray:
+    """Mask (T,) of the times at which the position is in doubt, for it is not where it would be."""
     jumped = np.zeros(len(moved_m), dtype=bool)
+    moved = moved_m.any(axis=1)
+    ends = np.append(_fitted(readings, rejected | moved), len(moved))
     away_m = np.zeros(2)
-    for k in np.flatnonzero(moved_m.any(axis=1)):
-        away_m = away_m + moved_m[k]
-        jumped[k:] = np.hypot(*away_m) > JUMP_M
-        if not jumped[k]:
-            away_m = np.zeros(2)
+    for k in np.flatnonzero(moved):
+        away_m = moved_m[k] + (away_m if jumped[k] else 0.0)
+        jumped[k : ends[np.searchsorted(ends, k)]] = np.hypot(*away_m) > JUMP_M
     return jumped
+
+
+def _fitted(readings: Readings, misfit: np.ndarray) -> np.ndarray:
+    """Indices (n,) of the fixes up to which all have fitted for a minute, without a gap as long."""
+    fixed = np.flatnonzero(readings.has_fix)
+    time_s = readings.time_s[fixed]
+    again = misfit[fixed] | (np.diff(time_s, prepend=-np.inf) > JUMPED_S)
+    since_s = np.maximum.accumulate(np.where(again, time_s, -np.inf))
+    return fixed[time_s - since_s >= JUMPED_S]
 
 
 def _straight_on(seen: Readings) -> np.ndarray:
