@@ -218,6 +218,37 @@ def test_sentences_of_one_fix_are_one_fix(log):
     assert len(read.ground) == 1
 
 
+@pytest.mark.parametrize(
+    ("clock", "lost"),
+    [
+        (lambda t: t - (t % 50 == 49), 4),  # goes back by a second now and then
+        (lambda t: 100 if 100 <= t < 130 else t, 29),  # stands
+    ],
+)
+def test_fixes_that_a_wrong_clock_takes_for_others_are_told(log, clock, lost):
+    vessel = [6.7 + 3.35e-5 * t for t in range(200)]
+    read = log(*(rmc(clock(t), longitude_deg=where) for t, where in enumerate(vessel)))
+    first = 50 if lost == 4 else 102
+    assert len(read.fixes) == 200 - lost
+    assert len(read.report.displaced_lines) == lost
+    told = f"{lost} fixes of times told before, but at other places, are left out"
+    assert any(f"{told} (first in line {first})" in note for note in read.notes)
+
+
+def test_a_fix_told_again_at_its_place_or_by_another_sentence_is_not_lost(log):
+    where = [6.7 + 3.35e-5 * t for t in range(50)]
+    again = [
+        fix
+        for t, east in enumerate(where)
+        for fix in (rmc(t, longitude_deg=east), rmc(t, longitude_deg=east), gll(t, 46.50001, east))
+    ]
+    again += [rmc(60), rmc(60, 46.6, status="V")]
+    read = log(*again)
+    assert read.report.repeated > 100
+    assert read.report.displaced_lines == []
+    assert not any("told before" in note for note in read.notes)
+
+
 def test_the_valid_one_of_a_time_is_kept(log):
     read = log(gga(10, quality="0"), rmc(10), gll(12), rmc(12, status="V"))
     assert read.fixes.sentence.tolist() == ["RMC", "GLL"]

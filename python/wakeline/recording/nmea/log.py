@@ -240,6 +240,9 @@ class NmeaReport:
         Problems in the order of lines, at most `max_examples`.
     repeated : int
         Fixes and ground speeds of a time that another sentence had given already.
+    displaced_lines : list of int
+        Lines of valid fixes among them that were left out though at another place than the fix of
+        that time, which another sentence of their kind had given.
     max_examples : int
     """
 
@@ -248,6 +251,7 @@ class NmeaReport:
     problems: Counter[str] = field(default_factory=Counter)
     examples: list[NmeaProblem] = field(default_factory=list)
     repeated: int = 0
+    displaced_lines: list[int] = field(default_factory=list)
     max_examples: int = 1000
 
     def add(self, line: int, kind: str, reason: str) -> None:

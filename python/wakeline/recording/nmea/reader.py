@@ -396,7 +396,18 @@ def _one_a_time(series: Series, clock: Clock, report: NmeaReport) -> Series:
     series, millisecond, section = series.rows(order), millisecond[order], section[order]
     again = (np.diff(millisecond) == 0) & (np.diff(section) == 0)
     report.repeated += int(np.count_nonzero(again))
-    return series.rows(np.append(True, ~again)[: len(series)])
+    first = np.append(True, ~again)[: len(series)]
+    if isinstance(series, Fixes):
+        report.displaced_lines += _displaced_lines(series, first)
+    return series.rows(first)
+
+
+def _displaced_lines(fixes: Fixes, first: np.ndarray) -> list[int]:
+    """Lines of valid fixes at another place than the first of their time, of the same kind."""
+    kept = fixes.rows(np.maximum.accumulate(np.where(first, np.arange(len(fixes)), 0)))
+    north, east = fixes.latitude_deg - kept.latitude_deg, fixes.longitude_deg - kept.longitude_deg
+    same_kind = fixes.sentence == kept.sentence
+    return np.sort(fixes.line[fixes.valid & same_kind & ((north != 0) | (east != 0))]).tolist()
 
 
 # ------------------------------------------------------------------ headings
@@ -522,6 +533,12 @@ def _notes(log: NavigationLog) -> list[str]:
     if len(log.set_back_lines):
         where = ", ".join(map(str, log.set_back_lines[:5].tolist()))
         notes.append(f"the clock was set back {len(log.set_back_lines)} times (line {where})")
+    displaced = report.displaced_lines
+    if displaced:
+        notes.append(
+            f"{len(displaced)} fixes of times told before, but at other places, are left out "
+            f"(first in line {displaced[0]})"
+        )
     for series, mask, what in (
         (fixes, ~fixes.valid, "fixes that the receiver calls not valid"),
         (fixes, fixes.frozen, "fixes frozen while the vessel moves"),
