@@ -530,6 +530,33 @@ def test_fixes_that_stay_while_the_vessel_moves_are_frozen(log, source):
     assert not fixes.usable[fixes.frozen].any()
 
 
+@pytest.mark.parametrize("kind", ["HDT,40.0,T", "HDM,40.0,M"])
+@pytest.mark.parametrize(
+    ("lost", "longest_s"),
+    [(range(200, 300), 101), (range(100), 100), (range(500, 600), 100), (range(200, 250), 0)],
+)
+def test_a_heading_that_is_lost_for_long_is_told(log, kind, lost, longest_s):
+    lines = [
+        line
+        for t, fix in enumerate(under_way(range(600)))
+        for line in (fix, *([] if t in lost else [sentence(kind)]))
+    ]
+    told = [note for note in log(*lines).notes if "without a heading" in note]
+    if longest_s == 0:
+        assert told == []
+    else:
+        (note,) = told
+        assert "1 stretches of more than 60 s without a heading" in note
+        assert float(note.split()[-2]) == pytest.approx(longest_s, abs=1.0)
+
+
+def test_a_log_that_stopped_or_has_no_heading_lost_none(log):
+    fixes = under_way([*range(100), *range(4000, 4100)])
+    stopped = log(*(line for fix in fixes for line in (fix, sentence("HDT,40.0,T"))))
+    for read in (stopped, log(*fixes)):
+        assert not any("without a heading" in note for note in read.notes)
+
+
 @pytest.mark.parametrize("speeds", ["rmc", "vtg"])
 @pytest.mark.parametrize("live", [True, False])
 def test_speeds_that_stay_the_same_beside_frozen_fixes_are_frozen_too(log, speeds, live):

@@ -40,6 +40,7 @@ _MAX_RATE_DEG_MIN = 10_000.0
 _STILL_MPS = 1.0 * KNOT_MPS  # below, a vessel at rest and one that moves look the same
 _FROZEN_M = 50.0
 _AT_ZERO_DEG = 1e-4
+_BLIND_S = 60.0
 _EARTH_RADIUS_M = 6371e3
 
 
@@ -553,11 +554,29 @@ def _notes(log: NavigationLog) -> list[str]:
         notes.append(
             f"{len(gaps_s)} gaps of more than 10 s between fixes, the longest {gaps_s.max():g} s"
         )
+    blind_s = _blind_s(log)
+    if len(blind_s):
+        notes.append(
+            f"{len(blind_s)} stretches of more than {_BLIND_S:g} s without a heading, the longest "
+            f"{blind_s.max():.0f} s"
+        )
     unknown = np.count_nonzero(np.isnan(log.compass.variation_rad))
     if not log.heading.valid.any():
         also = f"; {unknown} magnetic ones want a variation" if unknown else ""
         notes.append(f"no true heading{also}")
     return notes
+
+
+def _blind_s(log: NavigationLog) -> np.ndarray:
+    """How long (k,) there was no heading though others were heard, in a log that has some."""
+    stretches_s = [np.zeros(0)]
+    if log.heading.valid.any() or log.compass.valid.any():
+        for part in log.parts():
+            heard_s = np.concatenate([series.time_s for series in part.series.values()])
+            told_s = (part.heading.sound() or part.compass.sound()).time_s
+            stretches_s.append(np.diff([heard_s.min(), *told_s, heard_s.max()]))
+    blind_s = np.concatenate(stretches_s)
+    return blind_s[blind_s > _BLIND_S]
 
 
 def _invalid_notes(series: dict[str, Series]) -> Iterator[str]:
