@@ -164,19 +164,32 @@ def tracks_of(probability, tcpa_s=60.0):
     )
 
 
+def danger_of_tracks(tracks, *, range_m=2000.0, **limits):
+    """What is dangerous to own ship at rest."""
+    own = OwnShip(np.array([0.0, 1.0]), np.full(2, range_m), np.zeros(2))
+    return danger_of(tracks, own, DangerLimits(**limits))
+
+
 def test_an_alarm_does_not_flicker():
-    danger = danger_of(
-        tracks_of([0.1, 0.49, 0.5, 0.31, 0.6, 0.31, 0.29, 0.49, 0.9]),
-        DangerLimits(clear_hold_s=0.0),
+    danger = danger_of_tracks(
+        tracks_of([0.1, 0.49, 0.5, 0.31, 0.6, 0.31, 0.29, 0.49, 0.9]), clear_hold_s=0.0
     )
     assert danger.alarmed.tolist() == [False] * 2 + [True] * 4 + [False] * 2 + [True]
     assert [(alarm.begin_s, alarm.end_s) for alarm in danger.alarms] == [(20.0, 50.0), (80.0, 80.0)]
-    assert "CPA 300 m (0.16 NM), TCPA 1.0 min, 50 %" in str(danger.alarms[0])
+    assert "at 20.0 s: CPA 300 m (0.16 NM), TCPA 1.0 min, 50 %" in str(danger.alarms[0])
+
+
+@pytest.mark.parametrize(("range_m", "inside"), [(500.0, True), (950.0, False)])
+def test_an_alarm_of_a_ship_inside_the_limit_says_how_near_she_is(range_m, inside):
+    (alarm,) = danger_of_tracks(tracks_of([0.9], tcpa_s=1830.0), range_m=range_m).alarms
+    assert alarm.range_m == range_m
+    assert alarm.inside == inside
+    assert ("inside already, 500 m (0.27 NM) off; CPA 300 m" in str(alarm)) == inside
 
 
 @pytest.mark.parametrize(("below", "alarms"), [(6, 1), (7, 2)])
 def test_an_alarm_is_over_when_the_probability_stays_low(below, alarms):
-    danger = danger_of(tracks_of([0.9, *[0.1] * below, 0.6, 0.1, 0.3, *[0.0] * 9]), DangerLimits())
+    danger = danger_of_tracks(tracks_of([0.9, *[0.1] * below, 0.6, 0.1, 0.3, *[0.0] * 9]))
     assert len(danger.alarms) == alarms
     assert danger.alarms[0].begin_s == 0.0
     assert danger.alarms[-1].end_s == 10.0 * (below + 3)
@@ -184,15 +197,15 @@ def test_an_alarm_is_over_when_the_probability_stays_low(below, alarms):
 
 
 def test_an_alarm_begins_only_while_the_closest_point_is_ahead():
-    assert danger_of(tracks_of([0.9, 0.9], tcpa_s=-1.0), DangerLimits()).alarms == []
-    danger = danger_of(tracks_of([0.9] * 3, tcpa_s=np.array([-5.0, 5.0, -5.0])), DangerLimits())
+    assert danger_of_tracks(tracks_of([0.9, 0.9], tcpa_s=-1.0)).alarms == []
+    danger = danger_of_tracks(tracks_of([0.9] * 3, tcpa_s=np.array([-5.0, 5.0, -5.0])))
     assert danger.alarmed.tolist() == [False, True, True]
 
 
 def test_what_is_not_known_is_no_alarm():
-    danger = danger_of(tracks_of([np.nan, 0.9, np.nan, np.nan]), DangerLimits())
+    danger = danger_of_tracks(tracks_of([np.nan, 0.9, np.nan, np.nan]))
     assert danger.alarmed.tolist() == [False, True, False, False]
-    assert danger_of(tracks_of([]), DangerLimits()).alarms == []
+    assert danger_of_tracks(tracks_of([])).alarms == []
 
 
 @pytest.mark.parametrize(
@@ -267,7 +280,9 @@ def test_the_ship_head_on_is_told_and_the_other_is_not(encounter, tmp_path, caps
     with (tmp_path / "alarms.csv").open(newline="") as file:
         (alarm,) = csv.DictReader(file)
     assert alarm["track_id"] == near.track_id[0]
-    assert 1000.0 < float(alarm["begin_s"]) < 1060.0
+    begin_s = float(alarm["begin_s"])
+    assert 1000.0 < begin_s < 1060.0
+    assert float(alarm["range_m"]) == pytest.approx(4000.0 - 11.0 * (begin_s - 1000.0), abs=30.0)
     text = capsys.readouterr().out
     assert "1 alarm of tracks closer than 926 m within 20 min" in text
     assert f"track {alarm['track_id']} at " in text
@@ -307,7 +322,7 @@ def test_an_alarm_ends_when_the_ship_is_past(encounter, tmp_path):
     tracks = Tracks(["1"] * len(time_s), time_s, state, covariance=covariance)
     settings = read_settings(limits).danger_limits
     told = with_closest_approach(tracks, own, settings)
-    (alarm,) = danger_of(told, settings).alarms
+    (alarm,) = danger_of(told, own, settings).alarms
     meeting_s = 1000.0 + 4000.0 / 11.0
     assert meeting_s <= alarm.end_s < meeting_s + 30.0
 

@@ -75,8 +75,10 @@ class Alarm:
     track_id : str
     begin_s, end_s : float
         Times of its first and last scan.
-    cpa_m, tcpa_s, cpa_probability : float
+    cpa_m, tcpa_s, cpa_probability, range_m : float
         As they stood when it began.
+    inside : bool
+        Whether it was closer than the limit already.
     """
 
     track_id: str
@@ -85,13 +87,20 @@ class Alarm:
     cpa_m: float
     tcpa_s: float
     cpa_probability: float
+    range_m: float
+    inside: bool
 
     def __str__(self) -> str:
+        inside = f"inside already, {_way(self.range_m)} off; " if self.inside else ""
         return (
-            f"track {self.track_id} at {self.begin_s:.1f} s: CPA {self.cpa_m:.0f} m "
-            f"({self.cpa_m / NAUTICAL_MILE_M:.2f} NM), TCPA {self.tcpa_s / 60.0:.1f} min, "
-            f"{100.0 * self.cpa_probability:.0f} %, until {self.end_s:.1f} s"
+            f"track {self.track_id} at {self.begin_s:.1f} s: {inside}CPA {_way(self.cpa_m)}, "
+            f"TCPA {self.tcpa_s / 60.0:.1f} min, {100.0 * self.cpa_probability:.0f} %, "
+            f"until {self.end_s:.1f} s"
         )
+
+
+def _way(way_m: float) -> str:
+    return f"{way_m:.0f} m ({way_m / NAUTICAL_MILE_M:.2f} NM)"
 
 
 @dataclass(frozen=True)
@@ -138,8 +147,9 @@ def with_closest_approach(tracks: Tracks, own: OwnShip, limits: DangerLimits) ->
     )
 
 
-def danger_of(tracks: Tracks, limits: DangerLimits) -> Danger:
+def danger_of(tracks: Tracks, own: OwnShip, limits: DangerLimits) -> Danger:
     """The alarms of tracks whose rows are in order of time and have a probability."""
+    range_m = np.hypot(*(tracks.state[:, [0, 2]] - own.position_at(tracks.time_s)).T)
     alarmed = np.zeros(len(tracks), dtype=bool)
     alarms: list[Alarm] = []
     for track_id in tracks.ids():
@@ -155,6 +165,8 @@ def danger_of(tracks: Tracks, limits: DangerLimits) -> Danger:
                     cpa_m=float(tracks.cpa_m[first]),
                     tcpa_s=float(tracks.tcpa_s[first]),
                     cpa_probability=float(tracks.cpa_probability[first]),
+                    range_m=float(range_m[first]),
+                    inside=bool(range_m[first] < limits.cpa_limit_m),
                 )
             )
     return Danger(alarmed, sorted(alarms, key=lambda alarm: alarm.begin_s))

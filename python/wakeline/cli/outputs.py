@@ -8,7 +8,6 @@ import json
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,7 @@ HOW_TO_GET_PICTURES = "no pictures without matplotlib: pip install 'wakeline[plo
 PARTIAL = "-partial"
 
 _TABLES = ("tracks", "events", "plots_tracks", "alarms")
+_OF_ALARM = ("track_id", "begin_s", "end_s", "cpa_m", "tcpa_s", "cpa_probability", "range_m")
 _PICTURES = ("map", "time")
 
 
@@ -79,7 +79,7 @@ def write_results(folder: Path, parts: Sequence[TrackedEpisode], suffix: str = "
     if all(part.danger is None for part in parts):
         alarms.unlink(missing_ok=True)
         return [tracks, events, plots]
-    head = ["track_id", "begin_s", "end_s", "cpa_m", "tcpa_s", "cpa_probability", *scenario]
+    head = [*_OF_ALARM, *scenario]
     _write_csv(alarms, head, (row for part in parts for row in _alarm_rows(part)))
     return [tracks, events, plots, alarms]
 
@@ -138,7 +138,7 @@ def _plot_rows(part: TrackedEpisode) -> Iterable[list]:
 def _alarm_rows(part: TrackedEpisode) -> Iterable[list]:
     scenario = _scenario(part)
     for alarm in part.danger.alarms if part.danger else ():
-        yield [*astuple(alarm), *scenario]
+        yield [*(getattr(alarm, name) for name in _OF_ALARM), *scenario]
 
 
 def _alarmed(part: TrackedEpisode) -> np.ndarray | None:

@@ -76,7 +76,7 @@ def track_episode(
     found = None
     if danger and episode.own.knows_velocity:
         tracks = with_closest_approach(tracks, episode.own, settings.danger_limits)
-        found = danger_of(tracks, settings.danger_limits)
+        found = danger_of(tracks, episode.own, settings.danger_limits)
     return TrackedEpisode(episode, tracks, events, plot_track_id, refused, elapsed_s, found)
 
 
