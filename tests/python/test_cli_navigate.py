@@ -307,6 +307,18 @@ def test_a_position_that_jumped_is_in_doubt_until_fixes_have_fitted_for_a_minute
         assert "first by 50 km in line 1201, where 320 fixes go on" in told
 
 
+def test_fixes_that_were_rejected_and_moved_the_position_a_little_are_told(tmp_path, capsys):
+    rows = navigated(tmp_path, moved_north(voyage(10), range(400, 600), 35.0))
+    told = re.search(
+        r"(\d+) fixes that do not fit the other readings are rejected \(first in line 1201\); "
+        r"1 times they went on and moved the position by up to (\d+) m",
+        capsys.readouterr().out,
+    )
+    assert int(told[1]) == sum(row["status"] == "rejected" for row in rows)
+    assert 25.0 < float(told[2]) < 45.0
+    assert "jumped" not in {row["status"] for row in rows}
+
+
 def test_a_minute_without_fixes_is_none_in_which_they_fit(tmp_path):
     lines = moved_north(voyage(12), range(400, 720), 150.0)
     hidden = [3 * second for second in range(430, 500)]

@@ -147,18 +147,21 @@ def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
 def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
     """What the navigator did not believe, or did so only after a while."""
     jump_m = np.concatenate([leg.track.jump_m for leg in legs])
-    jump_m = jump_m[jump_m > navigating.JUMP_M]
+    far_m, near_m = jump_m[jump_m > navigating.JUMP_M], jump_m[jump_m <= navigating.JUMP_M]
     rejected = _fix_lines(legs, [leg.track.status == "rejected" for leg in legs])
     jumps = _fix_lines(legs, [leg.track.jump_m > navigating.JUMP_M for leg in legs])
     if len(rejected):
+        moves = np.count_nonzero(near_m)
+        by = f"by up to {near_m.max(initial=0.0):.0f} m"
+        moved = f"; {moves} times they went on and moved the position {by}" if moves else ""
         yield (
             f"note: {len(rejected)} fixes that do not fit the other readings are rejected "
-            f"(first in line {rejected[0]})"
+            f"(first in line {rejected[0]}){moved}"
         )
     if len(jumps):
         yield (
             f"note: the position jumps {len(jumps)} times, to fixes that went on though rejected, "
-            f"first by {jump_m[0]:.0f} m in line {jumps[0]}; from there the status is jumped, "
+            f"first by {far_m[0]:.0f} m in line {jumps[0]}; from there the status is jumped, "
             "until it comes back or all fixes have fitted for a minute"
         )
 
