@@ -7,7 +7,7 @@ import sys
 import zlib
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -123,6 +123,26 @@ def test_other_processes_give_the_same_bits(result):
     assert_same_bits(told, SimpleNamespace(outcomes=wanted))
 
 
+def only_here():
+    """A candidate of a module that no worker can import."""
+    module = ModuleType("only_here")
+    exec("def candidate(scene, z): raise AssertionError", module.__dict__)
+    module.candidate.__module__ = "only_here"
+    return module
+
+
+@pytest.mark.slow
+def test_what_a_worker_cannot_import_is_told(monkeypatch):
+    module = only_here()
+    monkeypatch.setitem(sys.modules, "only_here", module)
+    spawn = multiprocessing.get_context("spawn")
+    with (
+        ProcessPoolExecutor(1, mp_context=spawn) as pool,
+        pytest.raises(ModuleNotFoundError, match="only_here"),
+    ):
+        run([CASE], {"lost": module.candidate}, client=pool)
+
+
 def test_a_client_in_the_manner_of_ray_gives_the_same_bits(result):
     ray = SimpleNamespace(
         remote=lambda function: SimpleNamespace(remote=partial(partial, function)),
@@ -137,6 +157,20 @@ def test_a_dask_cluster_gives_the_same_bits(result):
     options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         assert_same_bits(run([CASE, SELDOM], SENT, client=client), result)
+
+
+@pytest.mark.slow
+def test_what_a_worker_of_dask_cannot_import_is_told(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    module = only_here()
+    monkeypatch.setitem(sys.modules, "only_here", module)
+    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None}
+    with (
+        distributed.LocalCluster(**options) as cluster,
+        distributed.Client(cluster) as client,
+        pytest.raises(ModuleNotFoundError, match="only_here"),
+    ):
+        run([CASE], {"lost": module.candidate}, client=client)
 
 
 def test_progress_is_told_chunk_by_chunk():

@@ -12,6 +12,11 @@ from typing import Any
 
 import numpy as np
 
+try:
+    import cloudpickle as pickler  # comes with Dask; sends what __main__ defines, too
+except ImportError:
+    pickler = pickle
+
 from wakeline import _progress
 from wakeline._checks import whole_number
 from wakeline.scenario import Scenario
@@ -166,8 +171,11 @@ def _worked_off(chunks: list[Chunk], threads: int | None, client: Any) -> Iterat
     if client is None:
         with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
             yield from _gathered([pool.submit(sums_of, chunk) for chunk in chunks])
-    elif hasattr(client, "submit"):
+    elif isinstance(client, ThreadPoolExecutor):
         yield from _gathered([client.submit(sums_of, chunk) for chunk in chunks])
+    elif hasattr(client, "submit"):
+        packed = map(pickler.dumps, chunks)
+        yield from _gathered([client.submit(sums_of_packed, chunk) for chunk in packed])
     elif hasattr(client, "remote") and hasattr(client, "get"):
         remote = client.remote(sums_of)
         waiting = [remote.remote(chunk) for chunk in chunks]
@@ -177,6 +185,14 @@ def _worked_off(chunks: list[Chunk], threads: int | None, client: Any) -> Iterat
             "client must be a dask.distributed.Client, the module ray or an executor, "
             f"got {type(client)}"
         )
+
+
+def sums_of_packed(chunk: bytes) -> Sums:
+    """`sums_of` of a pickled chunk: what a worker cannot import is then an error of its task.
+
+    A worker of Dask that cannot unpickle the arguments of a task dies, and the client waits.
+    """
+    return sums_of(pickle.loads(chunk))
 
 
 def _gathered(futures: list[Future]) -> Iterator[Sums]:
