@@ -125,9 +125,13 @@ def test_other_processes_give_the_same_bits(result):
 
 def only_here():
     """A candidate of a module that no worker can import."""
+
+    def candidate(scene, z):
+        raise AssertionError
+
+    candidate.__module__, candidate.__qualname__ = "only_here", "candidate"
     module = ModuleType("only_here")
-    exec("def candidate(scene, z): raise AssertionError", module.__dict__)
-    module.candidate.__module__ = "only_here"
+    module.candidate = candidate
     return module
 
 
@@ -387,6 +391,10 @@ def test_what_is_saved_is_loaded(result, tmp_path):
     assert (loaded.parameters["chunk_runs"], loaded.parameters["lost_beyond_m"]) == (25, 500.0)
     seldom = {"range_std_m": 30.0, "period_s": 3.0, "detection_probability": 0.8, "scans": 30.0}
     assert loaded.parameters["scenarios"]["seldom"].items() >= seldom.items()
+    told = loaded.parameters["scenarios"]["case"]["truth"]
+    segments = [Segment(**segment) for segment in told["segments"]]
+    again = Truth(told["start"], segments, start_course_rad=told["start_course_rad"])
+    np.testing.assert_allclose(again.state_at(50.0), CASE.truth.state_at(50.0), rtol=1e-12)
     assert loaded.summary() == result.summary()
     assert (loaded.scenarios, loaded.candidates) == (["case", "seldom"], ["imm", "told"])
 
@@ -413,8 +421,11 @@ def test_files_that_hold_no_result(result, tmp_path):
             Result.load(wrong)
     for arrays in ({"x": np.zeros(3)}, {"header": np.array('{"format": "other"}')}):
         np.savez(wrong, **arrays)
-        with pytest.raises(ValueError, match=r"wrong\.npz: not a Monte Carlo result; wanted"):
+        with pytest.raises(
+            ValueError, match=r"wrong\.npz: not a Monte Carlo result; wanted"
+        ) as told:
             Result.load(wrong)
+        assert "pickle" not in str(told.value)
 
 
 # The filter that is told --------------------------------------------------------------------------

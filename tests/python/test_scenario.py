@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wakeline.scenario import RadarSimulator, Segment, TrackTruth, Truth
+from wakeline.scenario import RadarSimulator, Scenario, Segment, TrackTruth, Truth
 
 rates = st.floats(-0.3, 0.3)
 accelerations = st.floats(0.0, 0.5)
@@ -80,12 +80,33 @@ def test_a_vessel_may_start_at_rest_on_a_given_course():
     np.testing.assert_allclose(truth.state_at(10.0)[0], [0, 0, 50, 10], atol=1e-12)
 
 
+def test_scenarios_of_other_truths_have_other_parameters():
+    radar = RadarSimulator(30.0, 0.01, 3.0)
+
+    def parameters(truth):
+        return Scenario("one", truth, radar, 20).parameters["truth"]
+
+    straight = Truth([1000.0, 5.0, 0.0, 0.0], [Segment(60.0)])
+    turning = Truth([1000.0, 5.0, 0.0, 0.0], [Segment(60.0, 0.02)])
+    recorded = TrackTruth([0.0, 60.0], [1000.0, 1300.0], [0.0, 0.0])
+    moved = recorded.moved(1.0, 0.0)
+    told = [parameters(truth) for truth in (straight, turning, recorded, moved)]
+    assert all(one != other for k, one in enumerate(told) for other in told[:k])
+    assert parameters(recorded) == told[2]
+    assert told[2]["type"] == "TrackTruth"
+
+
 def test_truths_show_themselves_in_a_few_words():
     truth = Truth([0.0, 5.0, 0.0, 0.0], [Segment(60.0), Segment(30.0, 0.02)], start_time_s=10.0)
     assert repr(truth) == "<Truth: 2 segments, 10.0 to 100.0 s>"
     assert repr(Truth([0.0, 5.0, 0.0, 0.0])) == "<Truth: 0 segments, 0.0 to 0.0 s>"
     recorded = TrackTruth([0.0, 1.0, 2.5], [0.0, 5.0, 10.0], np.zeros(3))
     assert repr(recorded) == "<TrackTruth: 3 positions, 0.0 to 2.5 s>"
+
+
+def test_a_segment_must_be_one():
+    with pytest.raises(TypeError, match=r"of type Segment, got \(10, 0.1\)"):
+        Truth([1000.0, 5.0, 0.0, 0.0], [(10, 0.1)])
 
 
 def test_truths_that_make_no_sense():

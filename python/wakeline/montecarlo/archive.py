@@ -76,13 +76,13 @@ def load(path: str | Path, result_type: type, outcome_type: type) -> Any:
     except OSError as error:
         if error.strerror:
             raise ValueError(f"{path}: the file cannot be read ({error.strerror})") from error
-        raise _foreign(path, error) from error
+        raise _foreign(path) from error
     except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
-        raise _foreign(path, error) from error
+        raise _foreign(path) from error
 
 
-def _foreign(path: Path, error: Exception) -> ValueError:
+def _foreign(path: Path) -> ValueError:
     return ValueError(
-        f"{path}: not a Monte Carlo result; wanted an NPZ file of format {_FORMAT!r} as "
-        f"Result.save writes, got {type(error).__name__}: {error}"
+        f"{path}: not a Monte Carlo result; wanted a whole NPZ file of format {_FORMAT!r} as "
+        "Result.save writes, got another"
     )

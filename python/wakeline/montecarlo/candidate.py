@@ -66,10 +66,11 @@ class Candidate:
 def clairvoyant(
     scenario: Scenario, z: np.ndarray, *, sensor: Any = "polar", noise: Any = None
 ) -> SimpleNamespace:
-    """The Kalman filter that is told the turn rate at each instant: what no candidate can beat.
+    """The Kalman filter that is told the turn rate at each instant.
 
-    Where the rate switches between two scans it moves in two pieces. It is told of the control, but
-    not of thrust and disturbance. Bind options by ``functools.partial``.
+    Without thrust and disturbance, of which it is not told, no candidate can beat it. It is told of
+    the control. Where the rate switches between two scans it moves in two pieces. Bind options by
+    ``functools.partial``.
 
     Parameters
     ----------

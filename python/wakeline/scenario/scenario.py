@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import zlib
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -119,11 +120,19 @@ class Scenario:
         return switch_s[(switch_s > self.start_time_s) & (switch_s < self.time_s[-1])]
 
     @property
-    def parameters(self) -> dict[str, float]:
-        """The numbers of the radar and of the scenario by name; results are kept with them."""
+    def parameters(self) -> dict[str, Any]:
+        """The numbers of radar, scenario and truth by name; results are kept with them.
+
+        ``truth`` holds the `parameters` of a :class:`Truth`; of another truth its type and a digest
+        of :attr:`truth_states`.
+        """
         own = ("scans", "position_std_m", "velocity_std_mps", "start_time_s")
         numbers = asdict(self.radar) | {name: getattr(self, name) for name in own}
-        return {name: float(value) for name, value in numbers.items()}
+        truth = getattr(self.truth, "parameters", None) or {
+            "type": type(self.truth).__name__,
+            "states_sha256": hashlib.sha256(self.truth_states.tobytes()).hexdigest(),
+        }
+        return {name: float(value) for name, value in numbers.items()} | {"truth": truth}
 
     @property
     def start(self) -> core.Gaussian:

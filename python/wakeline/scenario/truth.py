@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -145,6 +146,8 @@ class Truth:
     ValueError
         When the start, its time or its course is not finite or the thrust of a segment brings the
         speed below zero.
+    TypeError
+        When a segment is something else.
     """
 
     def __init__(
@@ -168,6 +171,9 @@ class Truth:
         speed_mps = float(np.hypot(vnorth_mps, veast_mps))
         course_rad = float(np.arctan2(veast_mps, vnorth_mps))
         self.segments = tuple(segments)
+        for segment in self.segments:
+            if not isinstance(segment, Segment):
+                raise TypeError(f"segments must be of type Segment, got {segment!r}")
         self.start_time_s = float(start_time_s)
         self._lay_legs(
             complex(north_m, east_m),
@@ -177,6 +183,19 @@ class Truth:
 
     def __repr__(self) -> str:
         return brief(self, many(len(self.segments), "segment"), span(self._time_s))
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """What it was made with, in lists and numbers."""
+        return {
+            "start": self.state_at(self.start_time_s)[0].tolist(),
+            "start_time_s": self.start_time_s,
+            "start_course_rad": self.start_course_rad,
+            "segments": [
+                {name: np.asarray(value).tolist() for name, value in asdict(segment).items()}
+                for segment in self.segments
+            ],
+        }
 
     @property
     def end_time_s(self) -> float:
