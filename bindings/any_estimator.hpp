@@ -65,6 +65,18 @@ class AnyEstimator {
         estimator_);
   }
 
+  /// Of each model, where models change theirs; else none.
+  [[nodiscard]] AnyImm::Probability turn_rates_rad_s() const noexcept {
+    return std::visit(
+        [](const auto& estimator) -> AnyImm::Probability {
+          if constexpr (requires { estimator.turn_rates_rad_s(); })
+            return estimator.turn_rates_rad_s();
+          else
+            return {};
+        },
+        estimator_);
+  }
+
   void archive(Archive& fields) {
     std::visit([&](auto& estimator) { estimator.archive(fields); }, estimator_);
   }

@@ -207,6 +207,7 @@ struct PyTracks {
   py::array_t<std::int64_t> track_id;
   std::vector<std::string> status;
   py::array_t<double> time_s, mean, covariance, mode_probability, nis, existence, visibility;
+  py::object turn_rate_rad_s;  ///< None where no model changes its turn rate
   py::array_t<std::int64_t> hits, misses;
   std::vector<std::string> name;
 };
@@ -284,6 +285,19 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
   return result;
 }
 
+/// (k, K), those of each track.
+template <class Estimator>
+py::array_t<double> turn_rates(const std::vector<const Track<Estimator>*>& tracks,
+                               py::ssize_t modes) {
+  py::array_t<double> rates({static_cast<py::ssize_t>(tracks.size()), modes});
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    const auto of_track = tracks[k]->estimator.turn_rates_rad_s();
+    for (py::ssize_t mode = 0; mode < modes; ++mode)
+      rates.mutable_at(static_cast<py::ssize_t>(k), mode) = of_track[mode];
+  }
+  return rates;
+}
+
 template <class Estimator>
 PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& time_s,
                 bool tentative) {
@@ -303,6 +317,7 @@ PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& 
                  py::array_t<double>(count),
                  py::array_t<double>(count),
                  py::array_t<double>(count),
+                 py::none(),
                  py::array_t<std::int64_t>(count),
                  py::array_t<std::int64_t>(count),
                  {}};
@@ -325,6 +340,9 @@ PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& 
     table.misses.mutable_at(k) = track.misses;
     table.name.emplace_back(track.label());
   }
+  if constexpr (kHasTurnRates<Estimator>)
+    if (tracker.prototype().turn_rates_rad_s().size() > 0)
+      table.turn_rate_rad_s = turn_rates(wanted, modes);
   return table;
 }
 
@@ -434,6 +452,9 @@ void define_track(py::module_& parent) {
       .def_readonly("mean", &PyTracks::mean, "(k, 4) [x, vx, y, vy]")
       .def_readonly("covariance", &PyTracks::covariance, "(k, 4, 4)")
       .def_readonly("mode_probability", &PyTracks::mode_probability, "(k, K)")
+      .def_readonly("turn_rate_rad_s", &PyTracks::turn_rate_rad_s,
+                    "(k, K) of each model, positive to starboard, NaN for one at rest; None where "
+                    "models do not change theirs")
       .def_readonly("nis", &PyTracks::nis, "(k,) of the likeliest plot; NaN where there was none")
       .def_readonly("existence", &PyTracks::existence, "(k,)")
       .def_readonly("visibility", &PyTracks::visibility, "(k,)")
