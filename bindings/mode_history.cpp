@@ -32,7 +32,9 @@ TurnRateGrid grid_or_default(const std::optional<DoubleArray>& rates) {
 
 AnyModeHistory::AnyModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
                                const Chain& chain, const AnyFilter& filter)
-    : history_(over_filter(tree, grid_rad_s, chain, filter)), linear_(filter.linear()) {}
+    : history_(over_filter(tree, grid_rad_s, chain, filter)),
+      grid_rad_s_(grid_rad_s),
+      linear_(filter.linear()) {}
 
 void define_mode_history(py::module_& m) {
   const HistoryTree tree;
@@ -151,6 +153,15 @@ References
 ----------
 Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 11.6.3-11.6.5.)");
   define_face(history);
+  history.def(
+      "turn_rates_rad_s",
+      [](const AnyModeHistory& one) {
+        const TurnRateGrid& grid = one.grid_rad_s();
+        py::array_t<double> rates(grid.size());
+        for (int k = 0; k < grid.size(); ++k) rates.mutable_at(k) = grid[k];
+        return rates;
+      },
+      "(K,) turn rates of the grid, positive to starboard.");
   history.def_property_readonly("hypothesis_count", &AnyModeHistory::hypotheses,
                                 "How many there are at present.");
 }

@@ -102,6 +102,7 @@ class AnyModeHistory {
   }
 
   [[nodiscard]] const Variant& variant() const noexcept { return *history_; }
+  [[nodiscard]] const TurnRateGrid& grid_rad_s() const noexcept { return grid_rad_s_; }
 
   [[nodiscard]] std::size_t hypotheses() const noexcept {
     return std::visit([](const auto& history) { return history.hypotheses().size(); }, *history_);
@@ -116,6 +117,7 @@ class AnyModeHistory {
 
  private:
   Apart<Variant> history_;
+  TurnRateGrid grid_rad_s_;
   bool linear_;
 };
 

@@ -71,6 +71,22 @@ def test_any_tree_is_a_belief(kept, switches, min_segment_s, merge_distance, dat
     np.testing.assert_allclose(result.mode_probability.sum(axis=-1), 1.0, atol=1e-12)
 
 
+def test_it_tells_its_turn_rates_and_a_study_needs_no_others():
+    np.testing.assert_array_equal(tree().turn_rates_rad_s(), RATES)
+    default = wl.ModeHistory(wl.Ekf(TURN)).turn_rates_rad_s()
+    np.testing.assert_allclose(np.rad2deg(default), np.arange(-4.0, 5.0), atol=1e-12)
+    example = scenario.named("example1")
+    told = montecarlo.Candidate(tree(), turn_rates_rad_s=RATES)
+    figures = [
+        montecarlo.run(example, {"tree": one}, runs=2, progress=False).summary()["example1"]["tree"]
+        for one in (told, montecarlo.Candidate(tree()), montecarlo.Candidate(lambda _: tree()))
+    ]
+    assert figures[0]["right_mode_share"] is not None
+    for found in figures[1:]:
+        assert found["right_mode_share"] == figures[0]["right_mode_share"]
+        assert found["detection_delay_scans"] == figures[0]["detection_delay_scans"]
+
+
 def test_it_finds_the_turn_rate():
     truth = scenario.Truth(
         [2000.0, 8.0, 1000.0, 0.0], [scenario.Segment(60.0), scenario.Segment(60.0, np.deg2rad(3))]

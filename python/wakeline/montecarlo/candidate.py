@@ -34,8 +34,9 @@ class Candidate:
         The scenario's radar as ``RangeBearing`` or as ``ConvertedRangeBearing(unbiased=False)``, a
         sensor, or ``sensor(scenario)``.
     turn_rates_rad_s : sequence of K float, or callable, optional
-        Turn rate of each model, or ``turn_rates_rad_s(scenario)``. Gives the estimated turn rate
-        and tells which model is right, where the run itself does not tell ``turn_rate_rad_s``.
+        Turn rate of each model, or ``turn_rates_rad_s(scenario)``; default what the estimator tells
+        by a method of that name. Gives the estimated turn rate and tells which model is right,
+        where the run itself does not tell ``turn_rate_rad_s``.
     """
 
     estimator: Any
@@ -44,10 +45,7 @@ class Candidate:
 
     def __call__(self, scenario: Scenario, z: np.ndarray) -> Any:
         """Run the readings (R, T, 2) of a scenario: a ``RunResult`` or what looks like one."""
-        estimator = self.estimator
-        if not hasattr(estimator, "run"):
-            estimator = estimator(scenario)
-        return estimator.run(
+        return self._built(scenario).run(
             z,
             dt_s=scenario.radar.period_s,
             sensor=_sensor(self.sensor, scenario),
@@ -60,7 +58,12 @@ class Candidate:
         rates = self.turn_rates_rad_s
         if callable(rates):
             rates = rates(scenario)
+        if rates is None:
+            rates = getattr(self._built(scenario), "turn_rates_rad_s", lambda: None)()
         return None if rates is None else np.asarray(rates, dtype=float)
+
+    def _built(self, scenario: Scenario) -> Any:
+        return self.estimator if hasattr(self.estimator, "run") else self.estimator(scenario)
 
 
 def clairvoyant(
