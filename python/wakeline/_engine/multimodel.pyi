@@ -719,6 +719,10 @@ class ModeHistory:
         """
         Begins with a belief over the state of the estimate or over [x, vx, y, vy].
         """
+    def turn_rates_rad_s(self) -> NDArray[np.float64]:
+        """
+        (K,) turn rates of the grid, positive to starboard.
+        """
     def update(
         self,
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,

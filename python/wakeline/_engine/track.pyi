@@ -283,6 +283,11 @@ class TrackTable:
         (k,)
         """
     @property
+    def turn_rate_rad_s(self) -> NDArray[np.float64]:
+        """
+        (k, K) of each model, positive to starboard, NaN for one at rest; None where models do not change theirs
+        """
+    @property
     def visibility(self) -> NDArray[np.float64]:
         """
         (k,)
