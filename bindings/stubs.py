@@ -40,7 +40,10 @@ WORDS = [
         r"\1 -> NDArray[np.uint8] | NDArray[np.uint16]",
     ),
     (r"filters: collections\.abc\.Sequence", "filters: Sequence[Filter]"),
-    (r"(def mode_probability\(self\)) -> typing\.Any", r"\1 -> NDArray[np.float64] | None"),
+    (
+        r"(def (?:mode_probability|turn_rate_rad_s)\(self\)) -> typing\.Any",
+        r"\1 -> NDArray[np.float64] | None",
+    ),
     (r"-> typing\.Any:", "-> NDArray[np.float64]:"),
     (r"(def conversion_bias_matters\(.*\)) -> NDArray\[np\.float64\]", r"\1 -> NDArray[np.bool_]"),
     (r"(def smooth\(.*\)) -> tuple:", r"\1 -> tuple[NDArray[np.float64], NDArray[np.float64]]:"),

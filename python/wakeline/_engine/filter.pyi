@@ -104,7 +104,7 @@ class RunResult:
         (..., T) values of Status
         """
     @property
-    def turn_rate_rad_s(self) -> NDArray[np.float64]:
+    def turn_rate_rad_s(self) -> NDArray[np.float64] | None:
         """
         (..., T, K), of the models in each scan, NaN for one at rest; None where they do not change
         """

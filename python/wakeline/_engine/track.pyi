@@ -283,7 +283,7 @@ class TrackTable:
         (k,)
         """
     @property
-    def turn_rate_rad_s(self) -> NDArray[np.float64]:
+    def turn_rate_rad_s(self) -> NDArray[np.float64] | None:
         """
         (k, K) of each model, positive to starboard, NaN for one at rest; None where models do not change theirs
         """
