@@ -23,7 +23,7 @@ from wakeline.recording import (
     VideoReport,
     read_video,
 )
-from wakeline.recording.own_csv import OwnRows, read_own
+from wakeline.recording.own_csv import OWN_GAP_S, OwnRows, read_own
 
 from .config import Settings
 from .tracking import TrackedEpisode
@@ -44,7 +44,6 @@ _STROBE = 0.99  # probability that the target's plot lies in the strobe that is 
 _WIDE_ECHO_RAD = np.deg2rad(20.0)
 _LONG_ECHO_M = 800.0  # a land mass, as consoles have it
 _DAY_S = 86400.0
-_OWN_GAP_S = 10.0
 
 
 @dataclass(frozen=True)
@@ -407,12 +406,7 @@ def _on_the_day_of(
 def _check_covered(own: OwnRows, turns: Sequence[tuple[float, _Plots]], path: Path) -> None:
     """Own ship must be known at each plot and at the end of each turn."""
     time_s = np.sort(np.concatenate([np.append(plots.time_s, end_s) for end_s, plots in turns]))
-    lost = own.lacks(time_s, _OWN_GAP_S)
+    lost = own.lacks(time_s, OWN_GAP_S)
     if lost is not None:
         k, got = lost
-        raise RecordingError(
-            path,
-            f"own ship is not known at {time_s[k]}",
-            wanted=f"a time that {own.table.path} covers",
-            got=got,
-        )
+        raise own.not_known(path, time_s[k], got)

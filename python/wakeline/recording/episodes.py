@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import scans as grouping
-from .errors import RecordingError
 from .model import Episode, OwnShip, Scan
 from .own_csv import OwnRows
 from .plot_rows import PlotRows
@@ -151,13 +150,12 @@ def _check_covered(plots: PlotRows, own: OwnRows, own_gap_s: float) -> None:
     if lost is None:
         return
     k, got = lost
-    raise RecordingError(
+    raise own.not_known(
         plots.table.path,
-        f"own ship is not known at {plots.time_s[k]}",
+        plots.time_s[k],
+        got,
         line=plots.table.line(plots.row[k]),
         column=plots.table.name("time_s"),
-        wanted=f"a time that {own.table.path} covers",
-        got=got,
     )
 
 

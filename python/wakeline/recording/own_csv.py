@@ -11,6 +11,8 @@ from .errors import RecordingError
 from .model import OwnShip
 from .table import Table
 
+OWN_GAP_S = 10.0  # longest step that is interpolated across, unless told otherwise
+
 COLUMNS = {
     "time_s": ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime"),
     "scan": ("scan", "scan_number", "scan_id"),
@@ -95,6 +97,18 @@ class OwnRows:
         k = int(np.argmax(lost))
         line = self.table.line(self.row[after[k] - 1])
         return k, f"a gap of {step_s[after[k] - 1]:g} s after its line {line}"
+
+    def not_known(
+        self, path: str | Path, time_s: float, got: str, **place: int | str
+    ) -> RecordingError:
+        """That `path` needs own ship at a time that these rows lack; `place` is line and column."""
+        return RecordingError(
+            path,
+            f"own ship is not known at {time_s}",
+            wanted=f"a time that {self.table.path} covers",
+            got=got,
+            **place,
+        )
 
     def _where(self, chosen: np.ndarray) -> OwnRows:
         return OwnRows(

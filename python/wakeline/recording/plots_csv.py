@@ -10,7 +10,7 @@ import numpy as np
 
 from .episodes import build_episode
 from .model import Episode, OwnShip, Recording
-from .own_csv import OwnRows, read_own
+from .own_csv import OWN_GAP_S, OwnRows, read_own
 from .plot_rows import PlotRows, read_plot_rows, remark
 from .scans import turn_s
 from .truth_csv import read_truth
@@ -25,7 +25,7 @@ def read_plots(
     *,
     own: tuple[float, float] = (0.0, 0.0),
     period_s: float | None = None,
-    own_gap_s: float = 10.0,
+    own_gap_s: float = OWN_GAP_S,
     name: str | None = None,
 ) -> Recording:
     """Read radar plots, and own ship and truth where there are files of them.

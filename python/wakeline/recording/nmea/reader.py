@@ -41,6 +41,8 @@ _STILL_MPS = 1.0 * KNOT_MPS  # below, a vessel at rest and one that moves look t
 _FROZEN_M = 50.0
 _AT_ZERO_DEG = 1e-4
 _BLIND_S = 60.0
+_UNMARKED_FIX = (False, False)  # frozen, suspect: found when all are read
+_UNMARKED_GROUND = (False,)  # frozen
 _EARTH_RADIUS_M = 6371e3
 
 
@@ -205,11 +207,17 @@ class _Rows:
         return len(self.timed) - 1
 
     def add_where_known(
-        self, name: str, s: Sentence, valid: bool, *values: float, stamp: int | None = None
+        self,
+        name: str,
+        s: Sentence,
+        valid: bool,
+        *values: float,
+        stamp: int | None = None,
+        marks: tuple[bool, ...] = (),
     ) -> None:
-        """A row, if any of its values is known."""
+        """A row, if any of its values is known; `marks` are those of its last columns."""
         if not all(map(math.isnan, values)):
-            self.of[name].append((s.line, s.kind, stamp, valid, *values))
+            self.of[name].append((s.line, s.kind, stamp, valid, *values, *marks))
 
 
 def _rmc(s: Sentence, rows: _Rows) -> None:
@@ -220,7 +228,8 @@ def _rmc(s: Sentence, rows: _Rows) -> None:
     valid = status == "A" and quality not in _NOT_MEASURED
     stamp = rows.stamp(s, time_s, day)
     _add_fix(rows, s, stamp, valid, place, quality)
-    _add_ground_speed(rows, s, valid, _knots(s, 6), s.angle_rad(7), stamp)
+    speed = _knots(s, 6), s.angle_rad(7)
+    rows.add_where_known("ground", s, valid, *speed, stamp=stamp, marks=_UNMARKED_GROUND)
     variation_rad = s.signed_rad(9)
     if not math.isnan(variation_rad):
         rows.variation.append((s.line, variation_rad))
@@ -254,20 +263,8 @@ def _add_fix(
     hdop: float = math.nan,
 ) -> None:
     if not math.isnan(sum(place_deg)):
-        values = (*place_deg, quality, hdop, False, False)
-        rows.add_where_known("fixes", s, valid, *values, stamp=stamp)
-
-
-def _add_ground_speed(
-    rows: _Rows,
-    s: Sentence,
-    valid: bool,
-    speed_mps: float,
-    course_rad: float,
-    stamp: int | None = None,
-) -> None:
-    if not (math.isnan(speed_mps) and math.isnan(course_rad)):
-        rows.of["ground"].append((s.line, s.kind, stamp, valid, speed_mps, course_rad, False))
+        values = (*place_deg, quality, hdop)
+        rows.add_where_known("fixes", s, valid, *values, stamp=stamp, marks=_UNMARKED_FIX)
 
 
 def _vtg(s: Sentence, rows: _Rows) -> None:
@@ -275,7 +272,8 @@ def _vtg(s: Sentence, rows: _Rows) -> None:
     if s.faults:
         return
     valid = _quality(s, 8) not in _NOT_MEASURED
-    _add_ground_speed(rows, s, valid, _speed_mps(s, 4), s.angle_rad(0))
+    speed = _speed_mps(s, 4), s.angle_rad(0)
+    rows.add_where_known("ground", s, valid, *speed, marks=_UNMARKED_GROUND)
 
 
 def _hdt(s: Sentence, rows: _Rows) -> None:
