@@ -155,12 +155,7 @@ Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Naviga
   define_face(history);
   history.def(
       "turn_rates_rad_s",
-      [](const AnyModeHistory& one) {
-        const TurnRateGrid& grid = one.grid_rad_s();
-        py::array_t<double> rates(grid.size());
-        for (int k = 0; k < grid.size(); ++k) rates.mutable_at(k) = grid[k];
-        return rates;
-      },
+      [](const AnyModeHistory& one) { return to_array(one.grid_rad_s().rates_rad_s()); },
       "(K,) turn rates of the grid, positive to starboard.");
   history.def_property_readonly("hypothesis_count", &AnyModeHistory::hypotheses,
                                 "How many there are at present.");

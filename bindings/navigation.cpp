@@ -364,9 +364,9 @@ ValueError
     When one is not a pair.)")
       .def(py::init([](const DoubleArray& wind_drift, const DoubleArray& current,
                        const DoubleArray& residual) {
-             return TotalDrift{to_vector("wind_drift_mps", wind_drift, 2),
-                               to_vector("current_mps", current, 2),
-                               to_vector("residual_mps", residual, 2)};
+             return TotalDrift{to_vector<2>("wind_drift_mps", wind_drift),
+                               to_vector<2>("current_mps", current),
+                               to_vector<2>("residual_mps", residual)};
            }),
            py::arg("wind_drift_mps") = to_array(none.wind_drift_mps),
            py::arg("current_mps") = to_array(none.current_mps),

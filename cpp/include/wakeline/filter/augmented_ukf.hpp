@@ -17,9 +17,9 @@ template <class Motion>
 concept DisturbedMotionModel = NonlinearMotionModel<Motion> &&
     requires(const Motion& motion, const Vec<double, Motion::kInputs>& error,
              const StateOf<Motion>& x, double dt_s) {
-  { motion.input_std() } -> std::convertible_to<Vec<double, Motion::kInputs>>;
+  { motion.input_std() } -> SameSize<Vec<double, Motion::kInputs>>;
   { motion.disturbed(error) } -> std::convertible_to<Motion>;
-  { motion.walk_noise(x, dt_s) } -> std::convertible_to<StateMatrixOf<Motion>>;
+  { motion.walk_noise(x, dt_s) } -> SameSize<StateMatrixOf<Motion>>;
 };
 
 /// The unscented Kalman filter with augmented noise: a prediction moves sigma points of the state
@@ -53,23 +53,13 @@ class AugmentedUkf : public Ukf<MotionType, ScalarType> {
     const StatusOf<Scalar> forward = check_time_step(dt_s);
     if (none(ok(forward))) return forward;
     const Vec<Scalar, kStates>& x = this->belief_.mean;
-    const Cholesky<kStates, Scalar> root(this->belief_.covariance);
     const auto spread = this->unscented().template spread<Scalar>(kAugmented);
     const MovedPoints<Scalar, kStates> moved(
-        this->motion_, dt_s, x, sigma_points<Scalar, kStates>(x, root.lower(), spread));
+        this->motion_, dt_s, x, sigma_points<Scalar, kStates>(x, this->root().lower(), spread));
     Mat<Scalar, kStates, 2 * kAugmented> differences;
     differences << moved.differences, by_errors(dt_s, moved.centre);
-    Gaussian<kStates, Scalar> next =
-        unscented_moments(this->unscented(), kAugmented, moved.centre, differences);
-    next.covariance += this->motion_.walk_noise(x, dt_s);
-    mirror_lower<Scalar, kStates>(next.covariance);
-    const auto finite = is_finite(next.mean) && is_finite(next.covariance);
-    const auto definite = root.ok() && Cholesky<kStates, Scalar>(next.covariance).ok();
-    const StatusOf<Scalar> status =
-        first_failure(first_failure(forward, ok_or(finite, Status::kNotFinite)),
-                      ok_or(definite, Status::kNotPositiveDefinite));
-    this->assign_in(ok(status), next);
-    return status;
+    return this->take_moments(kAugmented, moved.centre, differences,
+                              this->motion_.walk_noise(x, dt_s), forward);
   }
 
  private:

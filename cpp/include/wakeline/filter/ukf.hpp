@@ -63,15 +63,8 @@ class Ukf : public Belief<MotionType, ScalarType> {
     const Cholesky<kStates, Scalar>& root = this->root();
     const Vec<Scalar, kStates>& x = this->belief_.mean;
     const MovedPoints<Scalar, kStates> moved(this->motion_, dt_s, x, points(root));
-    Gaussian<kStates, Scalar> next =
-        unscented_moments(unscented_, kStates, moved.centre, moved.differences);
-    next.covariance += process_noise(this->motion_, x, dt_s);
-    mirror_lower<Scalar, kStates>(next.covariance);
-    const auto finite = is_finite(next.mean) && is_finite(next.covariance);
-    const StatusOf<Scalar> status =
-        first_failure(first_failure(forward, ok_or(root.ok(), Status::kNotPositiveDefinite)),
-                      ok_or(finite, Status::kNotFinite));
-    return take(next, status);
+    return take_moments(kStates, moved.centre, moved.differences,
+                        process_noise(this->motion_, x, dt_s), forward);
   }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
@@ -156,13 +149,31 @@ class Ukf : public Belief<MotionType, ScalarType> {
     return correction;
   }
 
- private:
+ protected:
   /// The factor of the covariance, which the last step may have left.
   const Cholesky<kStates, Scalar>& root() noexcept {
     if (!std::exchange(rooted_, true)) root_.compute(this->belief_.covariance);
     return root_;
   }
 
+  /// Takes the moments of moved sigma points, which stand out as those of so many states, and a
+  /// noise on top. `root()` is the factor that the points were made with.
+  template <int Points>
+  [[gnu::always_inline]] StatusOf<Scalar> take_moments(
+      int states, const Vec<Scalar, kStates>& centre,
+      const Mat<Scalar, kStates, Points>& differences, const Mat<Scalar, kStates, kStates>& noise,
+      const StatusOf<Scalar>& so_far) noexcept {
+    Gaussian<kStates, Scalar> next = unscented_moments(unscented_, states, centre, differences);
+    next.covariance += noise;
+    mirror_lower<Scalar, kStates>(next.covariance);
+    const auto finite = is_finite(next.mean) && is_finite(next.covariance);
+    const StatusOf<Scalar> status =
+        first_failure(first_failure(so_far, ok_or(root_.ok(), Status::kNotPositiveDefinite)),
+                      ok_or(finite, Status::kNotFinite));
+    return take(next, status);
+  }
+
+ private:
   /// Takes a belief where nothing has failed and its covariance has a factor, which is kept.
   StatusOf<Scalar> take(const Gaussian<kStates, Scalar>& next,
                         const StatusOf<Scalar>& so_far) noexcept {
