@@ -156,16 +156,18 @@ bool run_lanes(const AnyLikelyModelSetImm& imm, const AnySensor& sensor, const R
 
 bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  const auto* history = std::get_if<ModeHistory<Ekf<CoordinatedTurn>>>(&any.variant());
-  if (history == nullptr) return false;
-  LaneJob job;
-  job.chain = &history->chain();
-  job.structure = history->tree();
-  for (int k = 0; k < history->bank().size(); ++k) {
-    job.models.push_back({history->bank().filter(k).motion()});
-    job.initial_mode_probability.push_back(history->initial_mode_probability()[k]);
-  }
-  return run(job, sensor, in, starts, out);
+  return std::visit(
+      [&]<class Filter>(const ModeHistory<Filter>& history) {
+        LaneJob job;
+        job.chain = &history.chain();
+        job.structure = history.tree();
+        for (int k = 0; k < history.bank().size(); ++k) {
+          if (!add_model(AnyFilter(history.bank().filter(k)), job)) return false;
+          job.initial_mode_probability.push_back(history.initial_mode_probability()[k]);
+        }
+        return run(job, sensor, in, starts, out);
+      },
+      any.variant());
 }
 
 }  // namespace wakeline::python

@@ -15,11 +15,12 @@ AnyModeHistory::Variant over_filter(const HistoryTree& tree, const TurnRateGrid&
                                     const Chain& chain, const AnyFilter& filter) {
   return std::visit(
       [&]<class Filter>(const Filter& prototype) -> AnyModeHistory::Variant {
-        if constexpr (std::is_same_v<typename Filter::Motion, CoordinatedTurn>)
+        if constexpr (std::is_constructible_v<AnyModeHistory::Variant, ModeHistory<Filter>>)
           return ModeHistory<Filter>(tree, grid_rad_s, chain, prototype);
         else
           throw py::value_error(
-              "filter must be one over CoordinatedTurn, whose turn rate is known");
+              "filter must be one over CoordinatedTurn, whose turn rate is known, or over "
+              "CoordinatedTurnRate, which learns it");
       },
       filter.variant());
 }
@@ -48,8 +49,9 @@ update weighs the hypotheses by their likelihood, joins those that have become a
 
 Parameters
 ----------
-filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
-    What every hypothesis is like; its turn rate does not matter.
+filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn, or one of these over CoordinatedTurnRate
+    What every hypothesis is like; its turn rate does not matter. Over CoordinatedTurnRate each learns its own rate: one that
+    comes into a mode begins at the rate of the grid, with `prior_turn_rate_std_rad_s`.
 grid_rad_s : (2 to 16,) array, optional
     Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
 straight_sojourn_s, turn_sojourn_s : float

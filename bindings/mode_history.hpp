@@ -34,15 +34,18 @@ class Apart {
   std::unique_ptr<Value> value_;
 };
 
-/// `wakeline::ModeHistory` over one of the filters that know a turn rate: each step dispatches once
-/// and then runs the template.
+/// `wakeline::ModeHistory` over one of the filters that know or learn a turn rate: each step
+/// dispatches once and then runs the template.
 class AnyModeHistory {
  public:
   using Scalar = double;
-  using Variant = std::variant<ModeHistory<Ekf<CoordinatedTurn>>, ModeHistory<Ukf<CoordinatedTurn>>,
-                               ModeHistory<SquareRootUkf<CoordinatedTurn>>>;
+  using Variant =
+      std::variant<ModeHistory<Ekf<CoordinatedTurn>>, ModeHistory<Ukf<CoordinatedTurn>>,
+                   ModeHistory<SquareRootUkf<CoordinatedTurn>>,
+                   ModeHistory<Ekf<CoordinatedTurnRate>>, ModeHistory<Ukf<CoordinatedTurnRate>>,
+                   ModeHistory<SquareRootUkf<CoordinatedTurnRate>>>;
 
-  /// Throws as `ModeHistory` does, and where the filter knows no turn rate.
+  /// Throws as `ModeHistory` does, and where the filter has no turn rate.
   AnyModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
                  const ModeChain<kRuntimeModes>& chain, const AnyFilter& filter);
 
@@ -51,7 +54,16 @@ class AnyModeHistory {
                *history_);
   }
 
-  Status start(const AnyBelief& belief) noexcept { return start(kinematics_of(belief)); }
+  Status start(const AnyBelief& belief) noexcept {
+    return std::visit(
+        [&]<class History>(History& history) {
+          if constexpr (History::kStates != 4)
+            if (belief.states() == History::kStates)
+              return history.start(Gaussian<History::kStates>{belief.mean, belief.covariance});
+          return history.start(kinematics_of(belief));
+        },
+        *history_);
+  }
 
   Status start(const Gaussian<4>& kinematics) noexcept {
     return std::visit([&](auto& history) { return history.start(kinematics); }, *history_);
@@ -89,9 +101,10 @@ class AnyModeHistory {
 
   [[nodiscard]] AnyBelief estimate() const noexcept {
     return std::visit(
-        [](const auto& history) {
+        []<class History>(const History& history) {
           const auto belief = history.estimate();
-          return AnyBelief{StateLayout::kKinematics, belief.mean, belief.covariance};
+          return AnyBelief{kLayoutOf<typename History::Filter::Motion>, belief.mean,
+                           belief.covariance};
         },
         *history_);
   }

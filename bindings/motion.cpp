@@ -125,15 +125,16 @@ void define_motion(py::module_& parent) {
       m, "CoordinatedTurnRate",
       "A turn whose rate is part of the state and wanders: [x, vx, y, vy, omega] (m, m/s, rad/s).");
   ctr.def(py::init([](const ProcessNoise& noise, double psd, double prior, double course_psd,
-                      double max_speed) {
-            return checked(CoordinatedTurnRate{noise, psd, prior, course_psd, max_speed});
+                      double max_speed, double rate) {
+            return checked(CoordinatedTurnRate{noise, psd, prior, course_psd, max_speed, rate});
           }),
           py::kw_only(),
           py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"),
           py::arg("turn_rate_psd_rad2s3") = CoordinatedTurnRate{}.turn_rate_psd_rad2s3,
           py::arg("prior_turn_rate_std_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_std_rad_s,
           py::arg("course_psd_rad2s") = CoordinatedTurnRate{}.course_psd_rad2s,
-          py::arg("max_speed_mps") = CoordinatedTurnRate{}.max_speed_mps);
+          py::arg("max_speed_mps") = CoordinatedTurnRate{}.max_speed_mps,
+          py::arg("prior_turn_rate_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_rad_s);
   define_model(ctr);
 
   py::class_<Singer> singer(

@@ -4,6 +4,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
+
 #include "wakeline/core/pack_math.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
@@ -116,7 +118,7 @@ bool run_begun(Estimator estimator, const LaneJob& job, const RunInput& in, cons
   for (std::size_t k = 0; k < job.models.size(); ++k)
     initial[static_cast<Eigen::Index>(k)] = job.initial_mode_probability[k];
   estimator.set_initial_mode_probability(initial);
-  return run_from<4>(estimator, job, in, out, threads);
+  return run_from<int(Estimator::kComponents.size())>(estimator, job, in, out, threads);
 }
 
 template <std::size_t Models>
@@ -139,9 +141,19 @@ bool run_structured(std::monostate, const LaneJob& job, const RunInput& in, cons
   }
 }
 
+template <class Motion>
+bool run_tree(const HistoryTree& tree, const LaneJob& job, const RunInput& in, const RunOutput& out,
+              int threads) {
+  using Filter = Ekf<Motion, Lanes>;
+  std::vector<Filter> filters;
+  for (const LaneModel& model : job.models) filters.emplace_back(std::get<Motion>(model.motion));
+  const UniformBank<Filter> bank{std::span<const Filter>(filters)};
+  return run_begun(ModeHistory(tree, *job.chain, bank), job, in, out, threads);
+}
+
 bool run_structured(const HistoryTree& tree, const LaneJob& job, const RunInput& in,
                     const RunOutput& out, int threads) {
-  return run_begun(ModeHistory(tree, *job.chain, turn_bank<double>(job)), job, in, out, threads);
+  return run_tree<CoordinatedTurn>(tree, job, in, out, threads);
 }
 
 /// An estimator whose models change their turn rates by some rules.
@@ -169,9 +181,19 @@ bool run_structured(const LikelyModelSet& set, const LaneJob& job, const RunInpu
   return run_turning<LikelyModelSetImm>(set, turn_bank<Lanes>(job), job, in, out, threads);
 }
 
+/// Whether all models are extended Kalman filters of one motion.
+template <class Motion>
+bool all_over(const LaneJob& job) {
+  return std::ranges::all_of(job.models, [](const LaneModel& model) {
+    return !model.unscented && std::holds_alternative<Motion>(model.motion);
+  });
+}
+
 bool run_mixture(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
-  for (const LaneModel& model : job.models)
-    if (model.unscented || !std::holds_alternative<CoordinatedTurn>(model.motion)) return false;
+  const auto* tree = std::get_if<HistoryTree>(&job.structure);
+  if (tree != nullptr && all_over<CoordinatedTurnRate>(job))
+    return run_tree<CoordinatedTurnRate>(*tree, job, in, out, threads);
+  if (!all_over<CoordinatedTurn>(job)) return false;
   return std::visit(
       [&](const auto& structure) { return run_structured(structure, job, in, out, threads); },
       job.structure);

@@ -59,6 +59,7 @@ ESTIMATORS = {
     "switching": wl.SwitchingGridImm(wl.Ekf(turning(0.0))),
     "likely": wl.LikelyModelSetImm(wl.Ekf(turning(0.0))),
     "mode_history": wl.ModeHistory(wl.Ekf(turning(0.0)), max_branches=100),
+    "mode_history_rates": wl.ModeHistory(wl.Ekf(wl.CoordinatedTurnRate(noise=NOISE))),
 }
 
 

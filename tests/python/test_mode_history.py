@@ -53,6 +53,51 @@ def test_runs_side_by_side_know_nothing_of_each_other():
         )
 
 
+LEARNT = wl.CoordinatedTurnRate(
+    noise=SMALL_NOISE, turn_rate_psd_rad2s3=0.0, prior_turn_rate_std_rad_s=np.deg2rad(0.5)
+)
+
+
+@pytest.mark.parametrize("kind", [wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_a_tree_that_learns_its_rates_runs_as_it_steps(kind):
+    z = readings(12, seed=4)
+    one, result = (wl.ModeHistory(kind(LEARNT), RATES) for _ in range(2))
+    result = result.run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    one.start(START)
+    for k, reading in enumerate(z):
+        one.predict(DT_S)
+        one.update(RADAR, reading)
+        np.testing.assert_array_equal(result.mean[k], one.estimate().mean)
+        np.testing.assert_array_equal(result.mode_probability[k], one.mode_probability())
+    assert result.mean.shape == (12, 5)
+
+
+def test_a_tree_that_learns_its_rates_in_lanes_is_the_same():
+    z = np.stack([readings(20, seed) for seed in range(3)])
+    learning = wl.ModeHistory(wl.Ekf(LEARNT), RATES)
+    together = learning.run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    for run, alone in enumerate(z):
+        expected = learning.run(alone, dt_s=DT_S, sensor=RADAR, start=START)
+        np.testing.assert_allclose(together.mean[run], expected.mean, rtol=1e-9, atol=1e-9)
+
+
+def test_a_start_may_know_the_rate():
+    rate_rad_s = np.deg2rad(0.7)
+    known = wl.Gaussian(
+        [*START.mean, rate_rad_s], np.pad(START.covariance, (0, 1)) + np.diag([0, 0, 0, 0, 1e-8])
+    )
+    one = wl.ModeHistory(wl.Ekf(LEARNT), RATES)
+    one.start(known)
+    np.testing.assert_allclose(one.estimate().mean[4], rate_rad_s, rtol=1e-12)
+    one.start(START)
+    np.testing.assert_allclose(one.estimate().mean[4], 0.0, atol=1e-15)
+
+
+def test_a_filter_without_turn_rate_is_refused():
+    with pytest.raises(ValueError, match=r"over CoordinatedTurn, .*CoordinatedTurnRate"):
+        wl.ModeHistory(wl.Ekf(wl.ConstantVelocity()), RATES)
+
+
 @settings(max_examples=20, deadline=None)
 @given(st.integers(5, 40), st.integers(0, 60), st.floats(0.0, 30.0), st.floats(0.0, 4.0), st.data())
 def test_any_tree_is_a_belief(kept, switches, min_segment_s, merge_distance, data):

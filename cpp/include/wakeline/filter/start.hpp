@@ -56,7 +56,7 @@ Gaussian<4, Scalar> two_point(const Sensor& sensor, const Vec<Scalar, Sensor::kM
 }
 
 /// The belief over `[x, vx, y, vy]` as the belief over the state of `motion`: components that it
-/// lacks start at zero with the model's prior variance.
+/// lacks start with the model's prior mean and variance.
 template <MotionModel Motion, class Scalar>
 Gaussian<kStatesOf<Motion>, Scalar> lift(const Motion& motion,
                                          const Gaussian<4, Scalar>& kinematics) noexcept {
@@ -65,8 +65,10 @@ Gaussian<kStatesOf<Motion>, Scalar> lift(const Motion& motion,
                                    Mat<Scalar, kStates, kStates>::Zero()};
   int row = 0;
   for (const Component component : Motion::kComponents) {
-    if (index_of(kKinematics, component) < 0)
+    if (index_of(kKinematics, component) < 0) {
+      belief.mean[row] = Scalar(prior_mean(motion, component));
       belief.covariance(row, row) = Scalar(prior_variance(motion, component));
+    }
     ++row;
   }
   constexpr auto kRows = rows_of(Motion::kComponents, kKinematics);

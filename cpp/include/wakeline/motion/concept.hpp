@@ -103,4 +103,13 @@ double prior_variance(const Motion& motion, Component component) noexcept {
     return 1.0;
 }
 
+/// Its mean: the model's own `prior_mean(component)` where it has one, else 0.
+template <class Motion>
+double prior_mean(const Motion& motion, Component component) noexcept {
+  if constexpr (requires { motion.prior_mean(component); })
+    return motion.prior_mean(component);
+  else
+    return 0.0;
+}
+
 }  // namespace wakeline

@@ -58,6 +58,7 @@ struct CoordinatedTurnRate {
   double prior_turn_rate_std_rad_s = deg(3.0);  ///< what a start without turn rate assumes of it
   double course_psd_rad2s = 0.0;                ///< wander of the course, as in WanderingCourse
   double max_speed_mps = 30.0;                  ///< speed that this wander grows up to
+  double prior_turn_rate_rad_s = 0.0;  ///< the rate that `prior_turn_rate_std_rad_s` is about
 
   /// f(x, dt).
   template <class Scalar>
@@ -106,6 +107,7 @@ struct CoordinatedTurnRate {
     return q;
   }
 
+  double prior_mean(Component) const noexcept { return prior_turn_rate_rad_s; }
   double prior_variance(Component) const noexcept {
     return prior_turn_rate_std_rad_s * prior_turn_rate_std_rad_s;
   }
@@ -114,6 +116,7 @@ struct CoordinatedTurnRate {
     noise.validate(false);
     require_not_negative("turn_rate_psd_rad2s3", turn_rate_psd_rad2s3);
     require_positive("prior_turn_rate_std_rad_s", prior_turn_rate_std_rad_s);
+    require_finite("prior_turn_rate_rad_s", prior_turn_rate_rad_s);
     require_not_negative("course_psd_rad2s", course_psd_rad2s);
     require_positive("max_speed_mps", max_speed_mps);
   }

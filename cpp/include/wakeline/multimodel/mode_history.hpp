@@ -28,7 +28,13 @@ namespace wakeline {
 /// switch to another one; the likeliest switches that there is room for are followed. `update`
 /// weighs each hypothesis by its likelihood, joins those of one mode that have become alike, and
 /// keeps the likeliest. An Imm of the same modes mixes in every scan, and pays for it with the
-/// spread of the mixture. Has the face of `Imm`, over filters of one kind; storage is in place, no
+/// spread of the mixture.
+///
+/// Where the turn rate is part of the state (`CoordinatedTurnRate`), a mode is a guess of it: a
+/// hypothesis that switches takes up the mode's prior rate and its deviation, and learns the rate
+/// from there. Vessels need not turn at the rates of a grid then.
+///
+/// Has the face of `Imm`, over filters of one kind; storage is in place, no
 /// heap: at most `Capacity` hypotheses, twice. In a missed scan the mode probabilities follow the
 /// chain, as far as there is room and except for segments still too short to end.
 ///
@@ -47,6 +53,7 @@ class ModeHistory {
   using Scalar = RealOf<Lanes>;
   static constexpr int kModels = K;
   static constexpr auto kComponents = Filter::kComponents;
+  static constexpr int kStates = Filter::kStates;
   using Bank = UniformBank<Filter, K>;
   using Probability = ModeVector<Scalar, K>;
   using BeliefType = StateBelief<kComponents, Scalar>;
@@ -80,14 +87,17 @@ class ModeHistory {
     require(tree.max_hypotheses >= bank.size(), "max_hypotheses",
             ("at least the number of modes, " + std::to_string(bank.size())).c_str(),
             tree.max_hypotheses);
+    require(kTurnRateRow < 0 || tree.pseudo_bayes_order != 1, "pseudo_bayes_order",
+            "2 or more where filters learn their turn rates, as one belief can learn but one",
+            tree.pseudo_bayes_order);
   }
 
-  /// Filters like `prototype` at the turn rates of a grid; at a start the straightest has a
-  /// probability of 0.9.
+  /// Filters like `prototype` at, or about, the turn rates of a grid; at a start the straightest
+  /// has a probability of 0.9.
   ModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s, const ModeChain<K>& chain,
               const Filter& prototype)
       : ModeHistory(tree, chain, Bank(prototype, grid_rad_s.size())) {
-    bank_.for_each([&](int k, Filter& filter, auto&) { set_turn_rate(filter, grid_rad_s[k]); });
+    bank_.for_each([&](int k, Filter& filter, auto&) { expect_turn_rate(filter, grid_rad_s[k]); });
     const int modes = grid_rad_s.size();
     initial_.setConstant(Scalar(0.1 / (modes - 1)));
     initial_[grid_rad_s.straightest()] = Scalar(0.9);
@@ -256,12 +266,12 @@ class ModeHistory {
  private:
   static constexpr std::size_t kCapacity = static_cast<std::size_t>(Capacity);
   static_assert(kMaxModes <= 16, "a mode has four bits of a history");
+  static constexpr int kTurnRateRow = index_of(kComponents, Component::kTurnRate);  ///< or -1
   using Hypotheses = std::array<Hypothesis, kCapacity>;
   using Indices = std::array<int, kCapacity>;
 
   using LaneBelief = StateBelief<kComponents, Lanes>;
   static constexpr int kLanes = kLanesOf<Lanes>;
-  static constexpr int kStates = BeliefType::kStates;
   static constexpr std::size_t kMostRows =
       kCapacity / kLanes + (kLanes > 1 ? static_cast<std::size_t>(kModeCapacity<K>) : 0);
 
@@ -415,10 +425,16 @@ class ModeHistory {
       switched.probability = change.probability;
       switched.segment_s = dt_s;
       switched.modes = followed_by(at(present(), change.from).modes, change.mode);
+      if constexpr (kTurnRateRow >= 0) {
+        switched.belief = at(present(), change.from).belief;
+        forget_turn_rate(switched.belief, change.mode);
+      }
     }
     const auto before = [&](int i) -> const BeliefType& {
       if (pooled()) return pool;
-      return at(present(), i < count_ ? i : at(switches, i - count_).from).belief;
+      if (i < count_) return at(present(), i).belief;
+      return kTurnRateRow >= 0 ? at(next, i).belief
+                               : at(present(), at(switches, i - count_).from).belief;
     };
     if (const Status status = move(next, count_ + switching, before, dt_s, acceleration_mps2...);
         status != Status::kOk)
@@ -502,10 +518,21 @@ class ModeHistory {
     return modes << 4 | static_cast<std::uint64_t>(mode);
   }
 
+  /// Takes the mode's prior for what is known of the turn rate.
+  void forget_turn_rate(BeliefType& belief, int mode) const noexcept {
+    const auto& motion = bank_.filter(mode).motion();
+    belief.mean[kTurnRateRow] = Scalar(prior_mean(motion, Component::kTurnRate));
+    belief.covariance.row(kTurnRateRow).setZero();
+    belief.covariance.col(kTurnRateRow).setZero();
+    belief.covariance(kTurnRateRow, kTurnRateRow) =
+        Scalar(prior_variance(motion, Component::kTurnRate));
+  }
+
   /// The switch may have come later in the scan: adds a part of u d, d the way from the mean that
   /// is without the switch, u uniform over one scan, whose variance is 1/12.
   void spread(BeliefType& belief, const Vec<Scalar, kStates>& without) const noexcept {
-    const Vec<Scalar, kStates> d = belief.mean - without;
+    Vec<Scalar, kStates> d = belief.mean - without;
+    if constexpr (kTurnRateRow >= 0) d[kTurnRateRow] = Scalar(0);
     const Scalar variance = Scalar(tree_.switch_time_spread / 12.0);
     for (int j = 0; j < kStates; ++j) belief.covariance.col(j) += variance * (d[j] * d);
   }

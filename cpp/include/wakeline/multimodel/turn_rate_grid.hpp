@@ -87,4 +87,17 @@ void set_turn_rate(Filter& filter, Rate turn_rate_rad_s) noexcept {
   filter.set_motion(motion);
 }
 
+/// Gives a filter the turn rate of a mode: the one that it knows, or the one around which it begins
+/// to learn its own.
+template <class Filter>
+void expect_turn_rate(Filter& filter, double turn_rate_rad_s) noexcept {
+  if constexpr (requires { filter.motion().prior_turn_rate_rad_s; }) {
+    auto motion = filter.motion();
+    motion.prior_turn_rate_rad_s = turn_rate_rad_s;
+    filter.set_motion(motion);
+  } else {
+    set_turn_rate(filter, turn_rate_rad_s);
+  }
+}
+
 }  // namespace wakeline

@@ -23,6 +23,7 @@ _PLAIN_LABELS = {
     "sgmm": "SGMM",
     "likely_model_set": "LMS",
     "imm9": "IMM9",
+    "mode_history_rates": "histories, own rates",
     "clairvoyant": "clairvoyant",
     "agmm_printed": "AGMM as printed",
     "sgmm_printed": "SGMM as printed",
@@ -43,6 +44,7 @@ _NOISE = {
 }
 _STAY = 0.9
 _NINE_DEG_S = range(-4, 5)
+_RATE_STD_DEG_S = 0.2
 
 
 @dataclass(frozen=True)
@@ -123,6 +125,17 @@ def mode_history(setting: Setting, form: str) -> Candidate:
     return Candidate(wl.ModeHistory(_turning(form), rates_rad_s), form, rates_rad_s)
 
 
+def mode_history_rates(setting: Setting, form: str) -> Candidate:
+    """The same tree, whose histories begin a turn at one of the rates and learn their own."""
+    learning = wl.CoordinatedTurnRate(
+        noise=_NOISE[form],
+        turn_rate_psd_rad2s3=0.0,
+        prior_turn_rate_std_rad_s=np.deg2rad(_RATE_STD_DEG_S),
+    )
+    rates_rad_s = np.deg2rad(_NINE_DEG_S)
+    return Candidate(wl.ModeHistory(wl.Ekf(learning), rates_rad_s), form, rates_rad_s)
+
+
 def unmixed(setting: Setting, form: str) -> dict[str, Candidate]:
     """IMM5, and estimators of its rates and its chain that mix less and less."""
     filter, rates_rad_s = _turning(form), np.deg2rad(setting.imm5_deg_s)
@@ -171,5 +184,6 @@ _TABLE: dict[str, Callable[[Setting, str], Candidate]] = {
     "sgmm_printed": sgmm_printed,
     "likely_model_set": likely_model_set,
     "mode_history": mode_history,
+    "mode_history_rates": mode_history_rates,
 }
 _CONVERTED = ("imm5", "agmm", "agmm_printed", "sgmm", "sgmm_printed")

@@ -36,7 +36,10 @@ _SHOWN = {
     "": ("imm5", "agmm", "sgmm", "mode_history"),
     "-printed": ("imm5", "agmm_printed", "sgmm_printed"),
 }
-_IN_ROBUSTNESS = ("imm5", "imm9", "agmm", "sgmm", "mode_history", "clairvoyant")
+_IN_ROBUSTNESS = (
+    *("imm5", "imm9", "agmm", "sgmm"),
+    *("mode_history", "mode_history_rates", "clairvoyant"),
+)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Trees whose hypotheses learn their own turn rates.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "filter/cases.hpp"
+#include "support/malloc_fence.hpp"
+#include "wakeline/core/pack_math.hpp"
+#include "wakeline/multimodel/mode_history.hpp"
+#include "wakeline/multimodel/turning_chain.hpp"
+
+namespace wakeline {
+namespace {
+
+using test::beliefs_identical;
+using test::Draw;
+using test::matrices_near;
+
+using Learner = Ekf<CoordinatedTurnRate>;
+using Tree = ModeHistory<Learner>;
+
+const RangeBearing kRadar{.range_std_m = 15, .bearing_std_rad = deg(0.5)};
+const TurnRateGrid kTriple{deg(-3.0), 0.0, deg(3.0)};
+const PiecewiseAcceleration kNoise{0.02};
+
+CoordinatedTurnRate learning(double prior_std_rad_s) {
+  return {
+      .noise = kNoise, .turn_rate_psd_rad2s3 = 0.0, .prior_turn_rate_std_rad_s = prior_std_rad_s};
+}
+
+template <class Scalar = double>
+auto tree_of(double prior_std_rad_s, const HistoryTree& settings = {}) {
+  using Filter = Ekf<CoordinatedTurnRate, Scalar>;
+  return ModeHistory<Filter>(settings, kTriple, turning_chain(kTriple),
+                             Filter(learning(prior_std_rad_s)));
+}
+
+Gaussian<4> steaming() {
+  Gaussian<4> start;
+  start.mean << 3000, 8, 0, 0;
+  start.covariance = Vec<double, 4>(400, 4, 400, 4).asDiagonal();
+  return start;
+}
+
+/// Straight for a minute, then on a circle; scans of 2.5 s.
+Vec<double, 2> place(int scan, double turn_rate_rad_s) {
+  const double straight_m = 8 * 2.5 * std::min(scan, 24);
+  const double turned = turn_rate_rad_s * 2.5 * std::max(scan - 24, 0);
+  const double radius_m = 8 / turn_rate_rad_s;
+  return {3000 + straight_m + radius_m * std::sin(turned), radius_m * (1 - std::cos(turned))};
+}
+
+Vec<double, 2> plot(Draw& draw, int scan, double turn_rate_rad_s) {
+  const Vec<double, 2> at = place(scan, turn_rate_rad_s);
+  return test::plot_of<double>(at[0] + 10 * draw.normal(), at[1] + 10 * draw.normal());
+}
+
+TEST(ModeHistoryOfRates, WithoutDoubtIsTheTreeOfKnownRates) {
+  Tree learns = tree_of(1e-9);
+  ModeHistory<Ekf<CoordinatedTurn>> knows(
+      {}, kTriple, turning_chain(kTriple),
+      Ekf<CoordinatedTurn>(CoordinatedTurn{.turn_rate_rad_s = 0.0, .noise = kNoise}));
+  ASSERT_EQ(learns.start(steaming()), Status::kOk);
+  ASSERT_EQ(knows.start(steaming()), Status::kOk);
+  Draw draw(81);
+  for (int scan = 1; scan < 40; ++scan) {
+    ASSERT_EQ(learns.predict(2.5), Status::kOk);
+    ASSERT_EQ(knows.predict(2.5), Status::kOk);
+    const Vec<double, 2> z = plot(draw, scan, deg(2.4));
+    ASSERT_TRUE(learns.update(kRadar, z) && knows.update(kRadar, z));
+    EXPECT_TRUE(matrices_near(learns.estimate().mean.head<4>().eval(), knows.estimate().mean,
+                              {.absolute = 1e-5, .relative = 1e-8}));
+    EXPECT_TRUE(matrices_near(learns.mode_probability(), knows.mode_probability(),
+                              {.absolute = 1e-6, .relative = 1e-6}));
+    ASSERT_EQ(learns.hypotheses().size(), knows.hypotheses().size()) << "scan " << scan;
+  }
+}
+
+TEST(ModeHistoryOfRates, OfOneModeIsItsFilterBitForBit) {
+  const ModeChain<kRuntimeModes> one(ModeChain<kRuntimeModes>::Matrix::Ones(1, 1));
+  Learner filter(learning(deg(1.0)));
+  Tree tree({}, one, Tree::Bank(filter, 1));
+  Gaussian<5> known{Vec<double, 5>::Zero(), Mat<double, 5, 5>::Identity() * 1e-4};
+  known.mean << 3000, 8, 0, 0, deg(2.0);
+  known.covariance.topLeftCorner<4, 4>() = steaming().covariance;
+  ASSERT_EQ(tree.start(known), Status::kOk);
+  ASSERT_EQ(filter.start(known), Status::kOk);
+  Draw draw(82);
+  for (int scan = 1; scan < 30; ++scan) {
+    ASSERT_EQ(tree.predict(2.5), Status::kOk);
+    ASSERT_EQ(filter.predict(2.5), Status::kOk);
+    const Vec<double, 2> z = plot(draw, scan, deg(2.4));
+    ASSERT_TRUE(tree.update(kRadar, z) && filter.update(kRadar, z));
+    ASSERT_TRUE(beliefs_identical<5>(tree.estimate(), filter.estimate())) << "scan " << scan;
+  }
+}
+
+TEST(ModeHistoryOfRates, ASwitchTakesUpThePriorOfItsMode) {
+  HistoryTree settings;
+  settings.switch_time_spread = 0.0;
+  Tree tree = tree_of(deg(0.5), settings);
+  ASSERT_EQ(tree.start(steaming()), Status::kOk);
+  Draw draw(83);
+  for (int scan = 1; scan < 12; ++scan) {
+    ASSERT_EQ(tree.predict(2.5), Status::kOk);
+    ASSERT_TRUE(tree.update(kRadar, plot(draw, scan, deg(2.4))));
+  }
+  const auto likeliest = tree.hypotheses().front();
+  ASSERT_EQ(tree.predict(2.5), Status::kOk);
+  int switches = 0;
+  for (const auto& one : tree.hypotheses()) {
+    if (one.segment_s != 2.5 || (one.modes >> 4 & 0xF) != (likeliest.modes & 0xF)) continue;
+    EXPECT_NEAR(one.belief.mean[4], kTriple[one.mode()], 1e-15);
+    EXPECT_NEAR(one.belief.covariance(4, 4), deg(0.5) * deg(0.5), 1e-15);
+    ++switches;
+  }
+  EXPECT_GT(switches, 0);
+  // The likeliest of them came from the likeliest hypothesis.
+  for (const auto& one : tree.hypotheses()) {
+    if (one.segment_s != 2.5) continue;
+    Learner filter = tree.bank().filter(one.mode());
+    ASSERT_EQ(filter.start(Gaussian<4>{likeliest.belief.mean.head<4>(),
+                                       likeliest.belief.covariance.topLeftCorner<4, 4>()}),
+              Status::kOk);
+    ASSERT_EQ(filter.predict(2.5), Status::kOk);
+    EXPECT_TRUE(matrices_near(one.belief.mean, filter.estimate().mean,
+                              {.absolute = 1e-9, .relative = 1e-12}));
+    EXPECT_TRUE(matrices_near(one.belief.covariance, filter.estimate().covariance,
+                              {.absolute = 1e-9, .relative = 1e-12}));
+    break;
+  }
+}
+
+TEST(ModeHistoryOfRates, LearnsARateBesideTheGrid) {
+  for (const double rate : {deg(1.9), deg(-3.8)}) {
+    Tree tree = tree_of(deg(0.8));
+    ASSERT_EQ(tree.start(steaming()), Status::kOk);
+    Draw draw(84);
+    for (int scan = 1; scan < 64; ++scan) {
+      ASSERT_EQ(tree.predict(2.5), Status::kOk);
+      ASSERT_TRUE(tree.update(kRadar, plot(draw, scan, rate)));
+    }
+    const auto& likeliest = tree.hypotheses().front().belief;
+    const double std_rad_s = std::sqrt(likeliest.covariance(4, 4));
+    EXPECT_NEAR(likeliest.mean[4], rate, 4 * std_rad_s);
+    EXPECT_LT(std_rad_s, deg(0.2)) << "and it knows that it does";
+  }
+}
+
+TEST(ModeHistoryOfRates, InLanesIsTheSame) {
+  Tree alone = tree_of(deg(0.8));
+  auto lanes = tree_of<Pack<double, kNativeLanes<double>>>(deg(0.8));
+  ASSERT_EQ(alone.start(steaming()), Status::kOk);
+  ASSERT_EQ(lanes.start(steaming()), Status::kOk);
+  Draw draw(85);
+  for (int scan = 1; scan < 40; ++scan) {
+    ASSERT_EQ(alone.predict(2.5), Status::kOk);
+    ASSERT_EQ(lanes.predict(2.5), Status::kOk);
+    if (scan % 7 == 0) continue;
+    const Vec<double, 2> z = plot(draw, scan, deg(2.4));
+    ASSERT_TRUE(alone.update(kRadar, z) && lanes.update(kRadar, z));
+    EXPECT_TRUE(matrices_near(lanes.estimate().mean, alone.estimate().mean,
+                              {.absolute = 1e-7, .relative = 1e-9}));
+    EXPECT_TRUE(matrices_near(lanes.mode_probability(), alone.mode_probability(),
+                              {.absolute = 1e-8, .relative = 1e-8}));
+  }
+}
+
+TEST(ModeHistoryOfRates, DoesNotTouchTheHeap) {
+  Tree tree = tree_of(deg(0.8));
+  const test::NoHeap fence;
+  bool good = tree.start(steaming()) == Status::kOk;
+  for (int scan = 1; scan < 6; ++scan) {
+    good = tree.predict(2.5) == Status::kOk && good;
+    good = static_cast<bool>(tree.update(kRadar, test::plot_of<double>(3020 * scan, 3))) && good;
+  }
+  EXPECT_EQ(fence.allocations(), 0);
+  EXPECT_TRUE(good);
+}
+
+TEST(ModeHistoryOfRates, OneBeliefForAllModesIsRefused) {
+  EXPECT_THROW(tree_of(deg(0.8), HistoryTree::pseudo_bayes(1, 3)), std::invalid_argument);
+  EXPECT_NO_THROW(tree_of(deg(0.8), HistoryTree::pseudo_bayes(2, 3)));
+  CoordinatedTurnRate motion = learning(deg(1.0));
+  motion.prior_turn_rate_rad_s = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(Learner{motion}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace wakeline
