@@ -144,6 +144,30 @@ TEST(ModeChain, WhatIsNoChainInContinuousTimeIsRefused) {
   EXPECT_THROW(Two(Two::Matrix{{0.9, 0.1}, {0.1, 0.9}}, kNan), std::invalid_argument);
 }
 
+TEST(ModeChain, ItsGeneratorMakesItAnew) {
+  const Three chains[] = {Three::from_sojourn_s({60.0, 30.0, 7.0}), Three(kStaying, 2.5)};
+  for (const Three& chain : chains) {
+    const Three same = Three::from_generator(*chain.generator_per_s());
+    ASSERT_TRUE(same.continuous());
+    EXPECT_TRUE(matrices_near(*same.generator_per_s(), *chain.generator_per_s(), {0, 0}));
+    for (const double dt : {0.0, 2.5, 3600.0})
+      EXPECT_TRUE(matrices_near(same.transition(dt), chain.transition(dt), {0, 0}));
+  }
+  EXPECT_FALSE(Three(kStaying).generator_per_s().has_value());
+}
+
+TEST(ModeChain, WhatIsNoGeneratorIsRefused) {
+  const auto says = [](const Two::Matrix& matrix, const char* words) {
+    const std::string message = complaint([&] { Two::from_generator(matrix); });
+    EXPECT_NE(message.find(words), std::string::npos) << matrix << "\n" << message;
+  };
+  says(Two::Matrix{{-0.5, 0.4}, {0.25, -0.25}}, "sum of a row of the generator must be 0");
+  says(Two::Matrix{{0.5, -0.5}, {0.25, -0.25}}, "every rate of the generator off its diagonal");
+  says(Two::Matrix{{kNan, 0.5}, {0.25, -0.25}}, "sum of a row of the generator must be 0");
+  using Any = ModeChain<kRuntimeModes>;
+  EXPECT_NE(complaint([] { Any::from_generator(Any::Matrix::Zero(2, 3)); }), "");
+}
+
 TEST(ModeChain, SojournTimesThatAreNoneAreRefused) {
   for (const double bad : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()})
     EXPECT_NE(complaint([&] {

@@ -44,6 +44,9 @@ class ProcessNoise {
 
   [[nodiscard]] constexpr Kind kind() const noexcept { return kind_; }
 
+  /// The number that the policy was given: a density, or a standard deviation.
+  [[nodiscard]] constexpr double parameter() const noexcept { return parameter_; }
+
   /// The density of white noise, or the variance s² of a piecewise acceleration.
   [[nodiscard]] constexpr double strength() const noexcept {
     return kind_ == Kind::kPiecewiseAcceleration ? parameter_ * parameter_ : parameter_;
@@ -104,7 +107,7 @@ class ProcessNoise {
 
  private:
   Kind kind_;
-  double parameter_;  ///< as the policy was given
+  double parameter_;
 };
 
 }  // namespace wakeline

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -99,6 +100,13 @@ class ModeChain {
     return from_sojourn_s(times);
   }
 
+  /// The chain in continuous time of a generator G (1/s): `G(i, j)` is how often it goes from mode
+  /// i to mode j, and rows sum to 0. Throws `std::invalid_argument` on any other matrix.
+  static ModeChain from_generator(const Matrix& generator_per_s) {
+    require_generator(generator_per_s);
+    return ModeChain(Generator{generator_per_s});
+  }
+
   /// The chain that stays with the given probability per prediction and leaves to each other mode
   /// alike: the papers' 0.9 and 0.1 / (K - 1).
   static ModeChain staying(double probability, Eigen::Index modes = K) {
@@ -114,6 +122,11 @@ class ModeChain {
 
   /// True when the transition depends on the time step.
   [[nodiscard]] bool continuous() const noexcept { return continuous_; }
+
+  /// G (1/s) of a chain in continuous time, else none.
+  [[nodiscard]] std::optional<Matrix> generator_per_s() const {
+    return continuous_ ? std::optional(matrix_) : std::nullopt;
+  }
 
   /// P(dt), row-stochastic.
   [[nodiscard]] Matrix transition(double dt_s) const noexcept {
@@ -138,11 +151,15 @@ class ModeChain {
            what + ", got " + std::to_string(count));
   }
 
-  static void require_stochastic(const Matrix& matrix) {
+  static void require_square(const Matrix& matrix) {
     require_modes("modes", matrix.rows());
     if (matrix.rows() != matrix.cols())
       refuse("a mode chain needs a square matrix, got " + std::to_string(matrix.rows()) + " x " +
              std::to_string(matrix.cols()));
+  }
+
+  static void require_stochastic(const Matrix& matrix) {
+    require_square(matrix);
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
       for (Eigen::Index j = 0; j < matrix.cols(); ++j)
         require_probability("every element of the mode chain", matrix(i, j));
@@ -152,6 +169,18 @@ class ModeChain {
                 << " (rows: mode before; columns: mode now)";
         refuse(message.str());
       }
+    }
+  }
+
+  static void require_generator(const Matrix& matrix) {
+    require_square(matrix);
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+        if (i != j)
+          require_not_negative("every rate of the generator off its diagonal", matrix(i, j));
+      const double sum = matrix.row(i).sum();
+      require(std::abs(sum) <= 1e-9 * std::abs(matrix(i, i)), "the sum of a row of the generator",
+              "0", sum);
     }
   }
 
