@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "wakeline/filter/alpha_beta.hpp"
 
+#include "call_text.hpp"
 #include "face.hpp"
 
 namespace wakeline::python {
@@ -73,7 +74,14 @@ void define_schedules(py::module_& m) {
            py::arg("alpha"), py::arg("beta"), py::arg("gamma") = 0.0)
       .def_readonly("alpha", &ConstantGains::alpha)
       .def_readonly("beta", &ConstantGains::beta)
-      .def_readonly("gamma", &ConstantGains::gamma);
+      .def_readonly("gamma", &ConstantGains::gamma)
+      .def("__repr__", [](const ConstantGains& gains) {
+        return CallText("ConstantGains")
+            .with("alpha", gains.alpha)
+            .with("beta", gains.beta)
+            .with("gamma", gains.gamma)
+            .text();
+      });
   define_gains<ConstantGains, true>(constant);
 
   py::class_<GrowingMemory> growing(
@@ -94,7 +102,13 @@ max_plots : int
            }),
            py::kw_only(), py::arg("plots_before") = 0, py::arg("max_plots") = 0)
       .def_readonly("plots_before", &GrowingMemory::plots_before)
-      .def_readonly("max_plots", &GrowingMemory::max_plots);
+      .def_readonly("max_plots", &GrowingMemory::max_plots)
+      .def("__repr__", [](const GrowingMemory& memory) {
+        return CallText("GrowingMemory")
+            .with("plots_before", memory.plots_before)
+            .with("max_plots", memory.max_plots)
+            .text();
+      });
   define_gains<GrowingMemory, true>(growing);
 
   py::class_<BenedictBordner> bordner(m, "BenedictBordner",
@@ -102,7 +116,10 @@ max_plots : int
                                       "of velocity for the noise that an "
                                       "alpha lets through.");
   bordner.def(py::init([](double alpha) { return BenedictBordner{alpha}; }), py::arg("alpha"))
-      .def_readonly("alpha", &BenedictBordner::alpha);
+      .def_readonly("alpha", &BenedictBordner::alpha)
+      .def("__repr__", [](const BenedictBordner& gains) {
+        return CallText("BenedictBordner").with("alpha", gains.alpha).text();
+      });
   define_gains<BenedictBordner, false>(bordner);
 
   py::class_<CriticallyDamped> damped(
@@ -110,7 +127,10 @@ max_plots : int
       "All poles at theta: the least-squares line or parabola with weights theta² a reading back "
       "(fading memory).");
   damped.def(py::init([](double theta) { return CriticallyDamped{theta}; }), py::arg("theta"))
-      .def_readonly("theta", &CriticallyDamped::theta);
+      .def_readonly("theta", &CriticallyDamped::theta)
+      .def("__repr__", [](const CriticallyDamped& gains) {
+        return CallText("CriticallyDamped").with("theta", gains.theta).text();
+      });
   define_gains<CriticallyDamped, true>(damped);
 
   py::class_<TrackingIndex> index(
@@ -131,6 +151,10 @@ P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alp
 1984.)");
   index.def(py::init([](double accel) { return TrackingIndex{accel}; }), py::arg("accel_std_mps2"))
       .def_readonly("accel_std_mps2", &TrackingIndex::accel_std_mps2)
+      .def("__repr__",
+           [](const TrackingIndex& index) {
+             return CallText("TrackingIndex").with("accel_std_mps2", index.accel_std_mps2).text();
+           })
       .def(
           "steady_covariance",
           [](const TrackingIndex& schedule, double period_s, double std_m, int order) {
@@ -163,7 +187,16 @@ P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alp
       .def_readonly("near_alpha", &RangeDependent::near_alpha)
       .def_readonly("near_beta", &RangeDependent::near_beta)
       .def_readonly("far_alpha", &RangeDependent::far_alpha)
-      .def_readonly("far_beta", &RangeDependent::far_beta);
+      .def_readonly("far_beta", &RangeDependent::far_beta)
+      .def("__repr__", [](const RangeDependent& gains) {
+        return CallText("RangeDependent")
+            .with("near_range_m", gains.near_range_m)
+            .with("near_alpha", gains.near_alpha)
+            .with("near_beta", gains.near_beta)
+            .with("far_alpha", gains.far_alpha)
+            .with("far_beta", gains.far_beta)
+            .text();
+      });
   define_gains<RangeDependent, false>(range);
 
   m.def(
@@ -184,6 +217,12 @@ AnyAlphaBeta<Order> make(const GainSchedule<Order>& gains, const std::optional<P
   if (noise) motion.noise = *noise;
   if constexpr (Order == 3) motion.prior_accel_std_mps2 = prior_accel_std_mps2;
   return AnyAlphaBeta<Order>(gains, motion);
+}
+
+/// The call that makes the filter, up to what it is told of an acceleration.
+template <int Order>
+CallText filter_call(const char* name, const AnyAlphaBeta<Order>& filter) {
+  return CallText(name).with("gains", filter.schedule()).with("noise", filter.motion().noise);
 }
 
 }  // namespace
@@ -214,6 +253,8 @@ ValueError
            }),
            py::arg("gains"), py::kw_only(), py::arg("noise") = py::none());
   define_face(line);
+  line.def("__repr__",
+           [](const AnyAlphaBeta<2>& one) { return filter_call("AlphaBeta", one).text(); });
 
   py::class_<AnyAlphaBeta<3>> parabola(
       m, "AlphaBetaGamma",
@@ -238,6 +279,11 @@ ValueError
                py::arg("gains"), py::kw_only(), py::arg("noise") = py::none(),
                py::arg("prior_accel_std_mps2") = ConstantAcceleration{}.prior_accel_std_mps2);
   define_face(parabola);
+  parabola.def("__repr__", [](const AnyAlphaBeta<3>& one) {
+    return filter_call("AlphaBetaGamma", one)
+        .with("prior_accel_std_mps2", one.motion().prior_accel_std_mps2)
+        .text();
+  });
 }
 
 }  // namespace wakeline::python

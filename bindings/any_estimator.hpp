@@ -77,6 +77,8 @@ class AnyEstimator {
         estimator_);
   }
 
+  [[nodiscard]] const Variant& variant() const noexcept { return estimator_; }
+
   void archive(Archive& fields) {
     std::visit([&](auto& estimator) { estimator.archive(fields); }, estimator_);
   }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "any_lines.hpp"
+#include "call_text.hpp"
 #include "face.hpp"
 
 namespace wakeline::python {
@@ -50,6 +51,17 @@ ValueError
            py::arg("longest_line_probability") = weighing.longest_line_probability,
            py::arg("acceleration_std_mps2") = weighing.acceleration_std_mps2);
   define_face(bank);
+  bank.def("__repr__", [](const AnyBayesianAlphaBeta& estimator) {
+    const LineWeighing& rules = estimator.weighing();
+    return CallText("BayesianAlphaBeta")
+        .with("min_plots", rules.min_plots)
+        .with("max_plots", rules.max_plots)
+        .with("parabolas", rules.parabolas)
+        .with("sojourn_s", rules.sojourn_s)
+        .with("longest_line_probability", rules.longest_line_probability)
+        .with("acceleration_std_mps2", rules.acceleration_std_mps2)
+        .text();
+  });
   bank.def_property_readonly(
       "plots_of_mode",
       [](const AnyBayesianAlphaBeta& estimator) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "wakeline/core/chi_square.hpp"
 
-#include "types.hpp"
+#include "call_text.hpp"
 #include "wakeline/core/angle.hpp"
 
 namespace wakeline::python {
@@ -56,8 +56,7 @@ ValueError
             return make_gaussian(fields[0].cast<DoubleArray>(), fields[1].cast<DoubleArray>());
           }))
       .def("__repr__", [](const PyGaussian& g) {
-        return "Gaussian(mean=" + py::repr(to_array(g.mean)).cast<std::string>() +
-               ", covariance=" + py::repr(to_array(g.covariance)).cast<std::string>() + ")";
+        return CallText("Gaussian").with("mean", g.mean).with("covariance", g.covariance).text();
       });
 
   py::class_<PyStep>(m, "Step", "What one measurement update has found.")

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "wakeline/filter/rts_smoother.hpp"
 
+#include "call_text.hpp"
 #include "face.hpp"
 
 namespace wakeline::python {
@@ -73,6 +74,33 @@ void define_unscented(py::class_<Filter, AnyFilter>& filter) {
               py::arg("alpha") = Unscented{}.alpha, py::arg("beta") = Unscented{}.beta,
               py::arg("kappa") = Unscented{}.kappa),
    ...);
+}
+
+template <class Motion>
+const char* class_of(const Ekf<Motion>&, bool linear) {
+  return linear ? "Kalman" : "Ekf";
+}
+template <class Motion>
+const char* class_of(const Ukf<Motion>&, bool) {
+  return "Ukf";
+}
+template <class Motion>
+const char* class_of(const SquareRootUkf<Motion>&, bool) {
+  return "SquareRootUkf";
+}
+
+std::string filter_text(const AnyFilter& any) {
+  return std::visit(
+      [&](const auto& filter) {
+        CallText call(class_of(filter, any.linear()));
+        call.with("motion", filter.motion());
+        if constexpr (requires { filter.unscented(); })
+          call.with("alpha", filter.unscented().alpha)
+              .with("beta", filter.unscented().beta)
+              .with("kappa", filter.unscented().kappa);
+        return call.text();
+      },
+      any.variant());
 }
 
 /// A plot that there is.
@@ -157,6 +185,7 @@ void define_filter(py::module_& parent) {
 
   py::class_<AnyFilter> filter(m, "Filter", "What Kalman, Ekf, Ukf and SquareRootUkf share.");
   define_face(filter);
+  filter.def("__repr__", &filter_text);
   filter.def("smooth", &smooth_arrays, py::arg("mean"), py::arg("covariance"), py::arg("dt_s"),
              R"(Rauch-Tung-Striebel smoother over the results of `run`.
 

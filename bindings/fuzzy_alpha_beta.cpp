@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "any_lines.hpp"
+#include "call_text.hpp"
 #include "face.hpp"
 
 namespace wakeline::python {
@@ -164,6 +165,18 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
             py::arg("hold") = criterion.hold,
             py::arg("acceleration_std_mps2") = criterion.acceleration_std_mps2);
   define_face(fuzzy);
+  fuzzy.def("__repr__", [](const AnyFuzzyAlphaBeta& estimator) {
+    const FuzzyCriterion& rules = estimator.criterion();
+    return CallText("FuzzyAlphaBeta")
+        .with("max_plots", rules.max_plots)
+        .with("steepness", rules.steepness)
+        .with("threshold", rules.threshold)
+        .with("clip", rules.clip)
+        .with("t_norm", rules.t_norm == TNorm::kProduct ? "product" : "minimum")
+        .with("hold", rules.hold)
+        .with("acceleration_std_mps2", rules.acceleration_std_mps2)
+        .text();
+  });
   fuzzy
       .def_property_readonly("quality", &AnyFuzzyAlphaBeta::quality,
                              "Output of the machine at the last plot, before it is held and "

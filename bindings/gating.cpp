@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-#include "types.hpp"
+#include "call_text.hpp"
 #include "wakeline/core/angle.hpp"
 #include "wakeline/gating/chi_square_gate.hpp"
 #include "wakeline/gating/radius_gate.hpp"
@@ -184,9 +184,11 @@ void define_strobe_echo(py::module_& m) {
                     "what was measured goes on beyond the strobe")
       .def_readonly("cut", &StrobeEcho::cut, "part of the strobe lies outside the picture")
       .def("__repr__", [](const StrobeEcho& e) {
-        return "StrobeEcho(status='" + std::string(to_string(e.status)) +
-               "', range_m=" + py::repr(py::float_(e.range_m)).cast<std::string>() +
-               ", bearing_rad=" + py::repr(py::float_(e.bearing_rad)).cast<std::string>() + ")";
+        return CallText("StrobeEcho")
+            .with("status", std::string(to_string(e.status)))
+            .with("range_m", e.range_m)
+            .with("bearing_rad", e.bearing_rad)
+            .text();
       });
 
   const StrobeSettings settings;
@@ -248,8 +250,7 @@ void define_gating(py::module_& parent) {
       .def("threshold", &ChiSquareGate::threshold, py::arg("dof"),
            "Largest normalised innovation squared inside, for `dof` measured quantities.")
       .def("__repr__", [](const ChiSquareGate& gate) {
-        return "ChiSquareGate(probability=" +
-               py::repr(py::float_(gate.probability)).cast<std::string>() + ")";
+        return CallText("ChiSquareGate").with("probability", gate.probability).text();
       });
   define_strobes(m);
   define_strobe_echo(m);

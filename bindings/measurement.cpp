@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "types.hpp"
+#include "call_text.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/measurement/range_bearing_doppler.hpp"
@@ -12,6 +12,17 @@ template <class Sensor>
 Sensor checked(const Sensor& sensor) {
   sensor.validate();
   return sensor;
+}
+
+/// The call that made a radar, up to what is its own.
+template <class Sensor>
+CallText polar_call(const char* name, const Sensor& sensor) {
+  return CallText(name)
+      .with("range_std_m", sensor.range_std_m)
+      .with("bearing_std_rad", sensor.bearing_std_rad)
+      .with("extent_std_m", sensor.extent_std_m)
+      .with("bearing_offset_rad", sensor.bearing_offset_rad)
+      .with("own", sensor.own);
 }
 
 /// What every sensor offers in Python.
@@ -79,7 +90,18 @@ void define_measurement(py::module_& parent) {
       .def_readwrite("veast_mps", &OwnShip::veast_mps)
       .def_readwrite("position_std_m", &OwnShip::position_std_m)
       .def_readwrite("velocity_std_mps", &OwnShip::velocity_std_mps)
-      .def_readwrite("heading_std_rad", &OwnShip::heading_std_rad);
+      .def_readwrite("heading_std_rad", &OwnShip::heading_std_rad)
+      .def("__repr__", [](const OwnShip& own) {
+        return CallText("OwnShip")
+            .with("north_m", own.north_m)
+            .with("east_m", own.east_m)
+            .with("vnorth_mps", own.vnorth_mps)
+            .with("veast_mps", own.veast_mps)
+            .with("position_std_m", own.position_std_m)
+            .with("velocity_std_mps", own.velocity_std_mps)
+            .with("heading_std_rad", own.heading_std_rad)
+            .text();
+      });
 
   const std::string polar =
       std::string("A plot [range m, bearing rad] for Ekf and Ukf.") + kPolarParameters;
@@ -97,7 +119,9 @@ void define_measurement(py::module_& parent) {
       .def_readonly("bearing_std_rad", &RangeBearing::bearing_std_rad)
       .def_readonly("extent_std_m", &RangeBearing::extent_std_m)
       .def_readonly("bearing_offset_rad", &RangeBearing::bearing_offset_rad)
-      .def_readwrite("own", &RangeBearing::own);
+      .def_readwrite("own", &RangeBearing::own)
+      .def("__repr__",
+           [](const RangeBearing& sensor) { return polar_call("RangeBearing", sensor).text(); });
   define_sensor(range_bearing);
 
   const std::string converted =
@@ -121,7 +145,10 @@ void define_measurement(py::module_& parent) {
       .def_readonly("unbiased", &ConvertedRangeBearing::unbiased)
       .def_readonly("extent_std_m", &ConvertedRangeBearing::extent_std_m)
       .def_readonly("bearing_offset_rad", &ConvertedRangeBearing::bearing_offset_rad)
-      .def_readwrite("own", &ConvertedRangeBearing::own);
+      .def_readwrite("own", &ConvertedRangeBearing::own)
+      .def("__repr__", [](const ConvertedRangeBearing& sensor) {
+        return polar_call("ConvertedRangeBearing", sensor).with("unbiased", sensor.unbiased).text();
+      });
   define_sensor(converted_range_bearing);
 
   const std::string doppler =
@@ -138,7 +165,12 @@ void define_measurement(py::module_& parent) {
            py::arg("range_rate_std_mps") = RangeBearingDoppler{}.range_rate_std_mps,
            py::arg("extent_std_m") = 0.0, py::arg("bearing_offset_rad") = 0.0,
            py::arg_v("own", OwnShip{}, "OwnShip()"))
-      .def_readwrite("own", &RangeBearingDoppler::own);
+      .def_readwrite("own", &RangeBearingDoppler::own)
+      .def("__repr__", [](const RangeBearingDoppler& sensor) {
+        return polar_call("RangeBearingDoppler", sensor)
+            .with("range_rate_std_mps", sensor.range_rate_std_mps)
+            .text();
+      });
   define_sensor(range_bearing_doppler);
 
   py::class_<Position> position(
@@ -146,7 +178,10 @@ void define_measurement(py::module_& parent) {
   position
       .def(py::init([](double std) { return checked(Position{std}); }), py::kw_only(),
            py::arg("position_std_m") = Position{}.position_std_m)
-      .def_readonly("position_std_m", &Position::position_std_m);
+      .def_readonly("position_std_m", &Position::position_std_m)
+      .def("__repr__", [](const Position& sensor) {
+        return CallText("Position").with("position_std_m", sensor.position_std_m).text();
+      });
   define_sensor(position);
 
   m.def("conversion_bias_ratio", py::vectorize(&conversion_bias_ratio), py::arg("range_m"),

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "mode_history.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "call_text.hpp"
 #include "face.hpp"
 #include "turn_grid.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
@@ -27,6 +29,60 @@ AnyModeHistory::Variant over_filter(const HistoryTree& tree, const TurnRateGrid&
 
 TurnRateGrid grid_or_default(const std::optional<DoubleArray>& rates) {
   return rates ? to_grid(*rates) : TurnRateGrid::evenly(deg(4.0), 4);
+}
+
+/// The habits that this is the chain of, where there are such.
+std::optional<TurnHabits> habits_of(const Chain& chain, const TurnRateGrid& grid_rad_s) {
+  const auto generator_per_s = chain.generator_per_s();
+  if (!generator_per_s) return std::nullopt;
+  const auto times_s = sojourn_times_s(*generator_per_s);
+  if (!times_s) return std::nullopt;
+  const int straight = grid_rad_s.straightest();
+  const int turn = straight == 0 ? 1 : 0;
+  const double straightens = -(*generator_per_s)(turn, straight) / (*generator_per_s)(turn, turn);
+  const TurnHabits habits{(*times_s)[straight], (*times_s)[turn],
+                          std::min(as_written(straightens), 1.0)};
+  const Chain same = turning_chain(grid_rad_s, habits);
+  return *same.generator_per_s() == *generator_per_s ? std::optional(habits) : std::nullopt;
+}
+
+void tell_chain(CallText& call, const Chain& chain, const TurnRateGrid& grid_rad_s) {
+  if (const auto habits = habits_of(chain, grid_rad_s))
+    call.with("straight_sojourn_s", habits->straight_sojourn_s)
+        .with("turn_sojourn_s", habits->turn_sojourn_s)
+        .with("straighten_probability", habits->straighten_probability);
+  else
+    call.with("chain", chain);
+}
+
+void tell_tree(CallText& call, const HistoryTree& tree) {
+  call.with("max_hypotheses", tree.max_hypotheses)
+      .with("max_branches", tree.max_branches)
+      .with("min_segment_s", tree.min_segment_s)
+      .with("merge_distance", tree.merge_distance)
+      .with("sibling_distance", tree.sibling_distance)
+      .with("switch_time_spread", tree.switch_time_spread)
+      .with("negligible_probability", tree.negligible_probability);
+}
+
+std::string history_text(const AnyModeHistory& any) {
+  return std::visit(
+      [&](const auto& history) {
+        const HistoryTree& tree = history.tree();
+        const bool pseudo_bayes = tree.pseudo_bayes_order > 0;
+        CallText call(pseudo_bayes ? "ModeHistory.pseudo_bayes" : "ModeHistory");
+        if (pseudo_bayes) call.with("order", tree.pseudo_bayes_order);
+        call.with("filter", without_turn(AnyFilter(history.bank().filter(0), any.linear())))
+            .with("grid_rad_s", any.grid_rad_s().rates_rad_s());
+        if (pseudo_bayes)
+          call.with("chain", history.chain());
+        else
+          tell_chain(call, history.chain(), any.grid_rad_s());
+        call.with("initial_mode_probability", history.initial_mode_probability());
+        if (!pseudo_bayes) tell_tree(call, tree);
+        return call.text();
+      },
+      any.variant());
 }
 
 }  // namespace
@@ -155,6 +211,7 @@ References
 ----------
 Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 11.6.3-11.6.5.)");
   define_face(history);
+  history.def("__repr__", &history_text);
   history.def(
       "turn_rates_rad_s",
       [](const AnyModeHistory& one) { return to_array(one.grid_rad_s().rates_rad_s()); },

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "types.hpp"
+#include "call_text.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
@@ -46,6 +46,18 @@ void define_model(py::class_<Motion>& model) {
   }
 }
 
+std::string policy_text(const ProcessNoise& noise) {
+  switch (noise.kind()) {
+    case ProcessNoise::Kind::kWhiteAcceleration:
+      return text_of(WhiteAcceleration{noise.parameter()});
+    case ProcessNoise::Kind::kPiecewiseAcceleration:
+      return text_of(PiecewiseAcceleration{noise.parameter()});
+    case ProcessNoise::Kind::kWhiteJerk:
+      return text_of(WhiteJerk{noise.parameter()});
+  }
+  return "";
+}
+
 /// Builds a model and refuses parameters that make no sense.
 template <class Motion>
 Motion checked(const Motion& motion) {
@@ -62,22 +74,32 @@ void define_motion(py::module_& parent) {
                                 "Continuous white acceleration per axis; Q is right for any dt.")
       .def(py::init([](double psd) { return WhiteAcceleration{psd}; }), py::kw_only(),
            py::arg("psd_m2s3") = WhiteAcceleration{}.psd_m2s3)
-      .def_readonly("psd_m2s3", &WhiteAcceleration::psd_m2s3);
+      .def_readonly("psd_m2s3", &WhiteAcceleration::psd_m2s3)
+      .def("__repr__", [](const WhiteAcceleration& noise) {
+        return CallText("WhiteAcceleration").with("psd_m2s3", noise.psd_m2s3).text();
+      });
   py::class_<PiecewiseAcceleration>(
       m, "PiecewiseAcceleration",
       "Acceleration drawn for each step, Q = G s² Gᵀ: the papers' form.")
       .def(py::init([](double std) { return PiecewiseAcceleration{std}; }), py::kw_only(),
            py::arg("std_mps2") = PiecewiseAcceleration{}.std_mps2)
-      .def_readonly("std_mps2", &PiecewiseAcceleration::std_mps2);
+      .def_readonly("std_mps2", &PiecewiseAcceleration::std_mps2)
+      .def("__repr__", [](const PiecewiseAcceleration& noise) {
+        return CallText("PiecewiseAcceleration").with("std_mps2", noise.std_mps2).text();
+      });
   py::class_<WhiteJerk>(m, "WhiteJerk",
                         "Continuous white jerk per axis, for states that hold an acceleration.")
       .def(py::init([](double psd) { return WhiteJerk{psd}; }), py::kw_only(),
            py::arg("psd_m2s5") = WhiteJerk{}.psd_m2s5)
-      .def_readonly("psd_m2s5", &WhiteJerk::psd_m2s5);
+      .def_readonly("psd_m2s5", &WhiteJerk::psd_m2s5)
+      .def("__repr__", [](const WhiteJerk& noise) {
+        return CallText("WhiteJerk").with("psd_m2s5", noise.psd_m2s5).text();
+      });
   py::class_<ProcessNoise>(m, "ProcessNoise", "One of the process-noise policies.")
       .def(py::init<WhiteAcceleration>())
       .def(py::init<PiecewiseAcceleration>())
-      .def(py::init<WhiteJerk>());
+      .def(py::init<WhiteJerk>())
+      .def("__repr__", &policy_text);
   py::implicitly_convertible<WhiteAcceleration, ProcessNoise>();
   py::implicitly_convertible<PiecewiseAcceleration, ProcessNoise>();
   py::implicitly_convertible<WhiteJerk, ProcessNoise>();
@@ -87,6 +109,9 @@ void define_motion(py::module_& parent) {
   cv.def(py::init([](const ProcessNoise& noise) { return checked(ConstantVelocity{noise}); }),
          py::kw_only(),
          py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
+  cv.def("__repr__", [](const ConstantVelocity& motion) {
+    return CallText("ConstantVelocity").with("noise", motion.noise).text();
+  });
   define_model(cv);
 
   py::class_<WanderingCourse> wandering(m, "WanderingCourse",
@@ -98,6 +123,13 @@ void define_motion(py::module_& parent) {
                 py::kw_only(), py::arg("psd_m2s3") = WanderingCourse{}.psd_m2s3,
                 py::arg("course_psd_rad2s") = WanderingCourse{}.course_psd_rad2s,
                 py::arg("max_speed_mps") = WanderingCourse{}.max_speed_mps);
+  wandering.def("__repr__", [](const WanderingCourse& motion) {
+    return CallText("WanderingCourse")
+        .with("psd_m2s3", motion.psd_m2s3)
+        .with("course_psd_rad2s", motion.course_psd_rad2s)
+        .with("max_speed_mps", motion.max_speed_mps)
+        .text();
+  });
   define_model(wandering);
 
   py::class_<ConstantAcceleration> ca(
@@ -108,6 +140,12 @@ void define_motion(py::module_& parent) {
          }),
          py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteJerk{}), "WhiteJerk()"),
          py::arg("prior_accel_std_mps2") = ConstantAcceleration{}.prior_accel_std_mps2);
+  ca.def("__repr__", [](const ConstantAcceleration& motion) {
+    return CallText("ConstantAcceleration")
+        .with("noise", motion.noise)
+        .with("prior_accel_std_mps2", motion.prior_accel_std_mps2)
+        .text();
+  });
   define_model(ca);
 
   py::class_<CoordinatedTurn> ct(
@@ -119,6 +157,12 @@ void define_motion(py::module_& parent) {
          py::kw_only(), py::arg("turn_rate_rad_s") = 0.0,
          py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
   ct.def_readonly("turn_rate_rad_s", &CoordinatedTurn::turn_rate_rad_s);
+  ct.def("__repr__", [](const CoordinatedTurn& motion) {
+    return CallText("CoordinatedTurn")
+        .with("turn_rate_rad_s", motion.turn_rate_rad_s)
+        .with("noise", motion.noise)
+        .text();
+  });
   define_model(ct);
 
   py::class_<CoordinatedTurnRate> ctr(
@@ -135,6 +179,16 @@ void define_motion(py::module_& parent) {
           py::arg("course_psd_rad2s") = CoordinatedTurnRate{}.course_psd_rad2s,
           py::arg("max_speed_mps") = CoordinatedTurnRate{}.max_speed_mps,
           py::arg("prior_turn_rate_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_rad_s);
+  ctr.def("__repr__", [](const CoordinatedTurnRate& motion) {
+    return CallText("CoordinatedTurnRate")
+        .with("noise", motion.noise)
+        .with("turn_rate_psd_rad2s3", motion.turn_rate_psd_rad2s3)
+        .with("prior_turn_rate_std_rad_s", motion.prior_turn_rate_std_rad_s)
+        .with("course_psd_rad2s", motion.course_psd_rad2s)
+        .with("max_speed_mps", motion.max_speed_mps)
+        .with("prior_turn_rate_rad_s", motion.prior_turn_rate_rad_s)
+        .text();
+  });
   define_model(ctr);
 
   py::class_<Singer> singer(
@@ -144,6 +198,12 @@ void define_motion(py::module_& parent) {
              }),
              py::kw_only(), py::arg("maneuver_time_s") = Singer{}.maneuver_time_s,
              py::arg("accel_std_mps2") = Singer{}.accel_std_mps2);
+  singer.def("__repr__", [](const Singer& motion) {
+    return CallText("Singer")
+        .with("maneuver_time_s", motion.maneuver_time_s)
+        .with("accel_std_mps2", motion.accel_std_mps2)
+        .text();
+  });
   define_model(singer);
 }
 

@@ -4,6 +4,7 @@
 
 #include "any_lines.hpp"
 #include "any_turn_grids.hpp"
+#include "call_text.hpp"
 #include "face.hpp"
 #include "mode_history.hpp"
 #include "turn_grid.hpp"
@@ -17,6 +18,83 @@ Chain make_chain(const DoubleArray& matrix, const std::optional<double>& period_
                 "matrix", "(K, K), K at most " + std::to_string(kMaxModes), matrix);
   const Chain::Matrix rows = to_matrix("matrix", matrix, matrix.shape(0), matrix.shape(0));
   return period_s ? Chain(rows, *period_s) : Chain(rows);
+}
+
+Chain chain_of_generator(const DoubleArray& rates) {
+  require_shape(rates.ndim() == 2 && rates.shape(0) == rates.shape(1) && rates.shape(0) > 0 &&
+                    rates.shape(0) <= kMaxModes,
+                "generator_per_s", "(K, K), K at most " + std::to_string(kMaxModes), rates);
+  return Chain::from_generator(to_matrix("generator_per_s", rates, rates.shape(0), rates.shape(0)));
+}
+
+/// True when the chain leaves each mode to all others alike, after these times.
+bool is_of_sojourn(const Chain::Matrix& generator_per_s, const Eigen::VectorXd& times_s) {
+  const Chain chain = Chain::from_sojourn_s(ModeVector<double, kRuntimeModes>(times_s));
+  return *chain.generator_per_s() == generator_per_s;
+}
+
+std::string chain_text(const Chain& chain) {
+  const auto generator_per_s = chain.generator_per_s();
+  if (!generator_per_s) return CallText("ModeChain").with("matrix", chain.transition(0.0)).text();
+  const auto times_s = sojourn_times_s(*generator_per_s);
+  if (times_s && is_of_sojourn(*generator_per_s, *times_s))
+    return CallText("ModeChain.from_sojourn_s").with("sojourn_s", *times_s).text();
+  return CallText("ModeChain.from_generator").with("generator_per_s", *generator_per_s).text();
+}
+
+/// The call that makes an estimator over a grid of turn rates, up to the rules of the grid.
+CallText grid_call(const char* name, const AnyImm& imm) {
+  return CallText(name)
+      .with("filter", without_turn(imm.bank().filter(0)))
+      .with("chain", imm.chain())
+      .with("initial_mode_probability", imm.initial_mode_probability());
+}
+
+std::string imm_text(const AnyImm& imm) {
+  std::vector<AnyFilter> filters;
+  for (int k = 0; k < imm.bank().size(); ++k)
+    filters.push_back(imm.bank().filter(static_cast<std::size_t>(k)));
+  return CallText("Imm")
+      .with("filters", filters)
+      .with("chain", imm.chain())
+      .with("initial_mode_probability", imm.initial_mode_probability())
+      .text();
+}
+
+std::string adaptive_grid_text(const AnyAdaptiveGridImm& imm) {
+  const AdaptiveGrid& grid = imm.grid();
+  const AdaptiveGrid::Rates initial = grid.initial();
+  return grid_call("AdaptiveGridImm", imm)
+      .with("max_turn_rate_rad_s", grid.max_turn_rate_rad_s)
+      .with("initial_turn_rates_rad_s", std::vector<double>(initial.begin(), initial.end()))
+      .with("min_spacing_rad_s", grid.min_spacing_rad_s)
+      .with("kept_spacing_rad_s", grid.kept_spacing_rad_s)
+      .with("least_move_rad_s", grid.least_move_rad_s)
+      .with("centre_threshold", grid.centre_threshold)
+      .with("centre_gain", grid.centre_gain)
+      .with("unlikely_threshold", grid.unlikely_threshold)
+      .with("likely_threshold", grid.likely_threshold)
+      .text();
+}
+
+std::string switching_grid_text(const AnySwitchingGridImm& imm) {
+  const SwitchingGrid& grid = imm.grid();
+  return grid_call("SwitchingGridImm", imm)
+      .with("grid_rad_s", grid.grid_rad_s.rates_rad_s())
+      .with("threshold", grid.threshold)
+      .with("rule", grid.rule == SwitchRule::kSymmetric ? "symmetric" : "literal")
+      .with("carry", grid.carry == SwitchCarry::kSlot ? "slot" : "identity")
+      .with("initial_centre", grid.initial())
+      .text();
+}
+
+std::string likely_model_set_text(const AnyLikelyModelSetImm& imm) {
+  const LikelyModelSet& set = imm.grid();
+  return grid_call("LikelyModelSetImm", imm)
+      .with("grid_rad_s", set.grid_rad_s.rates_rad_s())
+      .with("unlikely_threshold", set.unlikely_threshold)
+      .with("likely_threshold", set.likely_threshold)
+      .text();
 }
 
 AnyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
@@ -131,6 +209,7 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
       py::arg("likely_threshold") = grid.likely_threshold, py::arg("stay_probability") = 0.9,
       py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none());
   define_face(adaptive);
+  adaptive.def("__repr__", &adaptive_grid_text);
 }
 
 void define_switching_grid(py::module_& m) {
@@ -197,6 +276,7 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
   switching.def_property_readonly("centre", &AnySwitchingGridImm::centre,
                                   "Index of the window's middle in the grid.");
   define_face(switching);
+  switching.def("__repr__", &switching_grid_text);
 }
 
 void define_likely_model_set(py::module_& m) {
@@ -249,6 +329,7 @@ X. R. Li, Y. Zhang, IEEE Trans. AES-36, 2000: the likely-model set.)");
       py::arg("likely_threshold") = set.likely_threshold, py::arg("stay_probability") = 0.9,
       py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none());
   define_face(likely);
+  likely.def("__repr__", &likely_model_set_text);
 }
 
 }  // namespace
@@ -285,12 +366,16 @@ ValueError
           py::arg("sojourn_s"),
           "The chain that stays in mode k for sojourn_s[k] seconds on average and leaves to each "
           "other mode alike.")
+      .def_static("from_generator", &chain_of_generator, py::arg("generator_per_s"),
+                  "The chain in continuous time that goes from mode i to mode j "
+                  "generator_per_s[i, j] times a second; rows sum to 0.")
       .def(
           "transition",
           [](const Chain& chain, double dt_s) { return to_array(chain.transition(dt_s)); },
           py::arg("dt_s"), "P(dt), (K, K).")
       .def_property_readonly("modes", [](const Chain& chain) { return chain.modes(); })
-      .def_property_readonly("continuous", &Chain::continuous);
+      .def_property_readonly("continuous", &Chain::continuous)
+      .def("__repr__", &chain_text);
 
   py::class_<AnyImm> imm(m, "Imm", R"(The interacting multiple model estimator.
 
@@ -307,6 +392,7 @@ initial_mode_probability : (K,) array, optional
           }),
           py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none());
   define_face(imm);
+  imm.def("__repr__", &imm_text);
 
   define_adaptive_grid(m);
   define_switching_grid(m);

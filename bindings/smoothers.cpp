@@ -4,8 +4,8 @@
 #include <tuple>
 #include <variant>
 
+#include "call_text.hpp"
 #include "each.hpp"
-#include "types.hpp"
 #include "wakeline/filter/adaptive_alpha_beta.hpp"
 #include "wakeline/filter/alpha_beta_smoother.hpp"
 #include "wakeline/filter/exponential_smoother.hpp"
@@ -16,18 +16,20 @@ namespace wakeline::python {
 namespace {
 
 /// A smoother of a line or of angles, which says nothing before its first reading; `fresh` is what
-/// a run begins with.
+/// a run begins with, `call` the text of the call that made it.
 template <class OfLine, class OfAngles>
 struct Either {
   using Variant = std::variant<OfLine, OfAngles>;
   Variant smoother;
   Variant fresh;
+  std::string call;
   bool started = false;
 
   template <class... Settings>
-  static Either make(bool wrapped, const Settings&... settings) {
-    if (wrapped) return {OfAngles(settings...), OfAngles(settings...)};
-    return {OfLine(settings...), OfLine(settings...)};
+  static Either make(CallText call, bool wrapped, const Settings&... settings) {
+    const std::string text = call.with("wrapped", wrapped).text();
+    if (wrapped) return {OfAngles(settings...), OfAngles(settings...), text};
+    return {OfLine(settings...), OfLine(settings...), text};
   }
 
   /// `update(smoother)` with a reading.
@@ -114,7 +116,7 @@ Returns
 /// What all smoothers offer.
 template <class E>
 void define_reading(py::class_<E>& smoother) {
-  smoother
+  smoother.def("__repr__", [](const E& e) { return e.call; })
       .def_property_readonly(
           "value", [](const E& e) { return e.said([](const auto& s) { return s.value(); }); },
           "NaN before the first reading")
@@ -180,7 +182,10 @@ alpha : float
     Above 0 and at most 1.
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.)");
-  plain.def(py::init([](double alpha, bool wrapped) { return Plain::make(wrapped, alpha); }),
+  plain.def(py::init([](double alpha, bool wrapped) {
+              return Plain::make(CallText("ExponentialSmoother").with("alpha", alpha), wrapped,
+                                 alpha);
+            }),
             py::arg("alpha") = 0.5, py::kw_only(), py::arg("wrapped") = false);
   define_smoother(plain);
   define_alpha(plain);
@@ -195,8 +200,10 @@ Parameters
 ----------
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.)");
-  adaptive.def(py::init([](bool wrapped) { return Adaptive::make(wrapped); }), py::kw_only(),
-               py::arg("wrapped") = false);
+  adaptive.def(py::init([](bool wrapped) {
+                 return Adaptive::make(CallText("AdaptiveExponentialSmoother"), wrapped);
+               }),
+               py::kw_only(), py::arg("wrapped") = false);
   define_smoother(adaptive);
   define_alpha(adaptive);
 
@@ -211,7 +218,11 @@ first_alpha : float
     Above 0 and at most 1; it stays.
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.)");
-  printed.def(py::init([](double alpha, bool wrapped) { return Printed::make(wrapped, alpha); }),
+  printed.def(py::init([](double alpha, bool wrapped) {
+                return Printed::make(
+                    CallText("PrintedAdaptiveExponential").with("first_alpha", alpha), wrapped,
+                    alpha);
+              }),
               py::arg("first_alpha") = 0.5, py::kw_only(), py::arg("wrapped") = false);
   define_smoother(printed);
   define_alpha(printed);
@@ -242,7 +253,12 @@ Raises
 ValueError
     When a weight is negative.)");
   points.def(py::init([](double before, double after, bool adaptive, bool parabola, bool wrapped) {
-               return Points::make(wrapped, ThreePointSettings{before, after, adaptive, parabola});
+               return Points::make(CallText("ThreePointSmoother")
+                                       .with("weight_before_s", before)
+                                       .with("weight_after_s", after)
+                                       .with("adaptive", adaptive)
+                                       .with("parabola", parabola),
+                                   wrapped, ThreePointSettings{before, after, adaptive, parabola});
              }),
              py::kw_only(), py::arg("weight_before_s") = defaults.weight_before_s,
              py::arg("weight_after_s") = defaults.weight_after_s,
@@ -338,6 +354,10 @@ max_plots : int
       .def(py::init([](int most) { return RecentMemory{most}; }), py::kw_only(),
            py::arg("max_plots") = 0)
       .def_readonly("max_plots", &RecentMemory::max_plots)
+      .def("__repr__",
+           [](const RecentMemory& memory) {
+             return CallText("RecentMemory").with("max_plots", memory.max_plots).text();
+           })
       .def(
           "gains",
           [](const RecentMemory& schedule, std::int64_t reading) {
@@ -364,11 +384,14 @@ Raises
 ------
 ValueError
     When a parameter makes no sense or gains are not stable.)");
-  filter.def(py::init([](const Schedule& gains, bool wrapped, double reading_std) {
-               return Filter::make(wrapped, gains, reading_std);
-             }),
-             py::arg_v("gains", GrowingMemory{}, "GrowingMemory()"), py::kw_only(),
-             py::arg("wrapped") = false, py::arg("reading_std") = 1.0);
+  filter.def(
+      py::init([](const Schedule& gains, bool wrapped, double reading_std) {
+        return Filter::make(
+            CallText("AlphaBetaSmoother").with("gains", gains).with("reading_std", reading_std),
+            wrapped, gains, reading_std);
+      }),
+      py::arg_v("gains", GrowingMemory{}, "GrowingMemory()"), py::kw_only(),
+      py::arg("wrapped") = false, py::arg("reading_std") = 1.0);
   define_reading(filter);
   filter
       .def(
@@ -402,8 +425,9 @@ Parameters
 ----------
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.)");
-  adaptive.def(py::init([](bool wrapped) { return Adaptive::make(wrapped); }), py::kw_only(),
-               py::arg("wrapped") = false);
+  adaptive.def(
+      py::init([](bool wrapped) { return Adaptive::make(CallText("AdaptiveAlphaBeta"), wrapped); }),
+      py::kw_only(), py::arg("wrapped") = false);
   define_smoother(adaptive);
   define_beta(adaptive);
 
@@ -416,8 +440,10 @@ Parameters
 ----------
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.)");
-  printed.def(py::init([](bool wrapped) { return Printed::make(wrapped); }), py::kw_only(),
-              py::arg("wrapped") = false);
+  printed.def(py::init([](bool wrapped) {
+                return Printed::make(CallText("PrintedAdaptiveAlphaBeta"), wrapped);
+              }),
+              py::kw_only(), py::arg("wrapped") = false);
   define_smoother(printed);
   define_beta(printed);
 
@@ -443,7 +469,9 @@ Raises
 ValueError
     When a setting makes no sense.)");
   bank.def(py::init([](int most, double memory, bool wrapped) {
-             return Bank::make(wrapped, WindowBankSettings{most, memory});
+             return Bank::make(
+                 CallText("WindowBank").with("max_readings", most).with("memory", memory), wrapped,
+                 WindowBankSettings{most, memory});
            }),
            py::kw_only(), py::arg("max_readings") = defaults.max_readings,
            py::arg("memory") = defaults.memory, py::arg("wrapped") = false);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "any_estimator.hpp"
+#include "call_text.hpp"
 #include "estimators.hpp"
 #include "lanes/lanes.hpp"
 #include "wakeline/track/tracker.hpp"
@@ -106,11 +107,9 @@ class SettingsClass {
         },
         "The settings by name.");
     class_.def("__repr__", [names = names_](const py::object& self) {
-      std::string text = py::type::of(self).attr("__name__").cast<std::string>() + "(";
-      for (std::size_t k = 0; k < names.size(); ++k)
-        text += (k ? ", " : "") + names[k] + "=" +
-                py::repr(self.attr(names[k].c_str())).cast<std::string>();
-      return text + ")";
+      CallText call(py::type::of(self).attr("__name__").cast<std::string>());
+      for (const std::string& name : names) call.with(name, py::object(self.attr(name.c_str())));
+      return call.text();
     });
   }
 
@@ -171,15 +170,18 @@ const char* event_name(TrackEvent event) {
 using Course = Ekf<WanderingCourse>;
 using Turn = Ekf<CoordinatedTurnRate>;
 
-/// `vessel_imm` over filters composed at run time.
-AnyImm any_vessel_imm(const Radar& radar, const VesselModels& models) {
-  const VesselImm imm = vessel_imm(radar, models);
+/// The same over filters composed at run time.
+AnyImm as_any_imm(const VesselImm& imm) {
   AnyImm any(ModeChain<kRuntimeModes>(imm.chain()),
              AnyFilterBank({AnyFilter(imm.filter<0>()), AnyFilter(imm.filter<1>()),
                             AnyFilter(imm.filter<2>())}));
   any.set_initial_mode_probability(
       ModeVector<double, kRuntimeModes>(imm.initial_mode_probability()));
   return any;
+}
+
+AnyImm any_vessel_imm(const Radar& radar, const VesselModels& models) {
+  return as_any_imm(vessel_imm(radar, models));
 }
 
 /// The reverse, of an estimator that is made like it.
@@ -251,6 +253,19 @@ AnyTracker tracker_with(const Radar& radar, const TrackerConfig& config,
     if (const auto imm = as_vessel_imm(estimator.cast<const AnyImm&>()))
       return AnyTracker(radar, config, *imm);
   return AnyTracker(radar, config, to_estimator(estimator));
+}
+
+py::object python_estimator(const VesselImm& imm) { return py::cast(as_any_imm(imm)); }
+py::object python_estimator(const AnyEstimator& estimator) { return py::cast(estimator.variant()); }
+
+std::string tracker_text(const AnyTracker& any) {
+  return any.visit([](const auto& tracker) {
+    return CallText("Tracker")
+        .with("radar", Radar(tracker.radar()))
+        .with("config", TrackerConfig(tracker.config()))
+        .with("estimator", python_estimator(tracker.prototype()))
+        .text();
+  });
 }
 
 PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
@@ -570,9 +585,12 @@ FilterError
           [](const AnyTracker& tracker) {
             return tracker.visit([](const auto& one) { return Radar(one.radar()); });
           })
-      .def_property_readonly("config", [](const AnyTracker& tracker) {
-        return tracker.visit([](const auto& one) { return TrackerConfig(one.config()); });
-      });
+      .def_property_readonly(
+          "config",
+          [](const AnyTracker& tracker) {
+            return tracker.visit([](const auto& one) { return TrackerConfig(one.config()); });
+          })
+      .def("__repr__", &tracker_text);
 }
 
 }  // namespace wakeline::python

@@ -8,7 +8,7 @@
 #include <optional>
 #include <variant>
 
-#include "types.hpp"
+#include "call_text.hpp"
 #include "wakeline/filter/augmented_ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
 
@@ -80,8 +80,12 @@ class PyNavigator {
   }
 
  public:
+  /// `call` is the text of the call that makes an equal one.
   template <class Navigator>
-  explicit PyNavigator(const Navigator& navigator) : navigator_(navigator) {}
+  PyNavigator(const Navigator& navigator, const std::string& call)
+      : navigator_(navigator), call_(call) {}
+
+  const std::string& call() const { return call_; }
 
   void start(const UsvStart& start) {
     validate(start);
@@ -303,16 +307,19 @@ class PyNavigator {
   }
 
   AnyNavigator navigator_;
+  std::string call_;
 };
 
 template <class Model>
 PyNavigator make(const Model& model, const std::string& filter, const UsvOutliers& outliers,
-                 const ImuNoise& unmeasured, const Unscented& unscented) {
-  if (filter == "ekf") return PyNavigator(UsvNavigator<Model, Ekf>(model, outliers, unmeasured));
+                 const ImuNoise& unmeasured, const Unscented& unscented, const std::string& call) {
+  if (filter == "ekf")
+    return PyNavigator(UsvNavigator<Model, Ekf>(model, outliers, unmeasured), call);
   if (filter == "ukf")
-    return PyNavigator(UsvNavigator<Model, Ukf>(model, outliers, unmeasured, unscented));
+    return PyNavigator(UsvNavigator<Model, Ukf>(model, outliers, unmeasured, unscented), call);
   if (filter == "augmented_ukf")
-    return PyNavigator(UsvNavigator<Model, AugmentedUkf>(model, outliers, unmeasured, unscented));
+    return PyNavigator(UsvNavigator<Model, AugmentedUkf>(model, outliers, unmeasured, unscented),
+                       call);
   throw py::value_error("filter must be 'ekf', 'ukf' or 'augmented_ukf', got '" + filter + "'");
 }
 
@@ -375,10 +382,28 @@ ValueError
                        int rejections, double alpha, double beta, double kappa) {
              const UsvOutliers outliers{ChiSquareGate{gate}, rejections};
              const UsvInput input{{}, {a_std, w_std}, 1.0};
+             const std::string call = CallText("UsvNavigator")
+                                          .with("states", states)
+                                          .with("filter", filter)
+                                          .with("acceleration_std_mps2", a_std)
+                                          .with("yaw_rate_std_rad_s", w_std)
+                                          .with("unmeasured_acceleration_std_mps2", blind_a_std)
+                                          .with("unmeasured_yaw_rate_std_rad_s", blind_w_std)
+                                          .with("acceleration_bias_std_mps2", a_bias)
+                                          .with("gyro_bias_std_rad_s", w_bias)
+                                          .with("current_std_mps", current)
+                                          .with("speed_walk_mps", speed_walk)
+                                          .with("current_walk_mps", current_walk)
+                                          .with("gate_probability", gate)
+                                          .with("rejections", rejections)
+                                          .with("alpha", alpha)
+                                          .with("beta", beta)
+                                          .with("kappa", kappa)
+                                          .text();
              const auto build = [&](auto model) {
                model.input = input;
                return make(model, filter, outliers, {blind_a_std, blind_w_std},
-                           {alpha, beta, kappa});
+                           {alpha, beta, kappa}, call);
              };
              if (states == 5) return build(UsvMotion{});
              if (states == 8)
@@ -404,6 +429,7 @@ ValueError
            py::arg("gate_probability") = UsvOutliers{}.gate.probability,
            py::arg("rejections") = UsvOutliers{}.rejections, py::arg("alpha") = Unscented{}.alpha,
            py::arg("beta") = Unscented{}.beta, py::arg("kappa") = Unscented{}.kappa)
+      .def("__repr__", &PyNavigator::call)
       .def(
           "start",
           [](PyNavigator& self, const DoubleArray& position, const DoubleArray& velocity,

@@ -42,6 +42,11 @@ class ModeChain:
         When a row is no distribution, or no continuous-time chain has this matrix over the period.
     """
     @staticmethod
+    def from_generator(generator_per_s: ArrayLike) -> ModeChain:
+        """
+        The chain in continuous time that goes from mode i to mode j generator_per_s[i, j] times a second; rows sum to 0.
+        """
+    @staticmethod
     def from_sojourn_s(sojourn_s: ArrayLike) -> ModeChain:
         """
         The chain that stays in mode k for sojourn_s[k] seconds on average and leaves to each other mode alike.
