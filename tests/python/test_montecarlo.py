@@ -1,6 +1,7 @@
 """Monte Carlo runs: the same bits however they are worked off, figures as worked out by hand."""
 
 import dataclasses
+import json
 import multiprocessing
 import pickle
 import sys
@@ -397,6 +398,72 @@ def test_what_is_saved_is_loaded(result, tmp_path):
     np.testing.assert_allclose(again.state_at(50.0), CASE.truth.state_at(50.0), rtol=1e-12)
     assert loaded.summary() == result.summary()
     assert (loaded.scenarios, loaded.candidates) == (["case", "seldom"], ["imm", "told"])
+
+
+def made_by(text):
+    """What a kept text makes, where Wakeline's names are known."""
+    return eval(text, dict(vars(wl)))
+
+
+def test_a_loaded_result_tells_what_it_was_made_with(result, tmp_path):
+    result.save(tmp_path / "result.npz")
+    loaded = Result.load(tmp_path / "result.npz")
+    for scene in (CASE, SELDOM):
+        kept = loaded[scene.name, "imm"]
+        assert kept.estimator == repr(IMM.estimator)
+        assert kept.sensor == repr(scene.polar_sensor)
+        again = run(scene, {"imm": Candidate(made_by(kept.estimator), made_by(kept.sensor))})
+        np.testing.assert_array_equal(again[scene.name, "imm"].nees, kept.nees)
+        assert loaded[scene.name, "told"].estimator == "<function clairvoyant>"
+        assert loaded[scene.name, "told"].sensor is None
+
+
+def by_radar(scene):
+    noise = wl.WhiteAcceleration(psd_m2s3=scene.radar.range_std_m)
+    return wl.Ekf(wl.ConstantVelocity(noise=noise))
+
+
+def test_what_is_built_for_a_scenario_is_told_as_it_was_there():
+    blunt = case("blunt", RadarSimulator(50.0, 0.01, 3.0))
+    told = run([CASE, blunt], {"x": Candidate(by_radar, "converted")}, runs=1)
+    assert "psd_m2s3=30.0" in told["case", "x"].estimator
+    assert "psd_m2s3=50.0" in told["blunt", "x"].estimator
+    assert told["blunt", "x"].sensor == repr(blunt.converted_sensor)
+
+
+def test_what_is_not_an_estimator_of_ours_is_told_without_its_address():
+    bound = partial(montecarlo.clairvoyant, noise=NO_NOISE)
+    own = Candidate(SimpleNamespace(run=IMM.estimator.run, name="mine"), lambda s: s.polar_sensor)
+    told = run(CASE, {"bound": bound, "own": own}, runs=1)
+    wanted = "functools.partial(<function clairvoyant>, noise=PiecewiseAcceleration(std_mps2=0.0))"
+    assert told["case", "bound"].estimator == wanted
+    assert told["case", "own"].estimator.endswith("name='mine')")
+    assert "0x" not in told["case", "own"].estimator
+    assert told["case", "own"].sensor == repr(CASE.polar_sensor)
+
+
+def not_here(scene):
+    raise wl.FilterError("not today")
+
+
+def test_what_cannot_be_built_is_told_as_what_builds_it():
+    told = run(CASE, {"x": Candidate(not_here)}, runs=1)["case", "x"]
+    assert (told.failed_runs, told.estimator) == (1, "<function not_here>")
+    assert told.sensor == repr(CASE.polar_sensor)
+
+
+def test_a_file_of_before_estimators_were_told_is_loaded(result, tmp_path):
+    path = tmp_path / "result.npz"
+    result.save(path)
+    with np.load(path) as file:
+        arrays = dict(file)
+    header = json.loads(str(arrays.pop("header")))
+    for outcome in header["outcomes"]:
+        del outcome["estimator"], outcome["sensor"]
+    np.savez(path, header=np.array(json.dumps(header)), **arrays)
+    loaded = Result.load(path)
+    assert all(o.estimator is None and o.sensor is None for o in loaded.outcomes.values())
+    assert loaded.summary() == result.summary()
 
 
 def test_saving_replaces_and_leaves_nothing_else(result, tmp_path):

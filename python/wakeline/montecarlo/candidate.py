@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -62,8 +63,26 @@ class Candidate:
             rates = getattr(self._built(scenario), "turn_rates_rad_s", lambda: None)()
         return None if rates is None else np.asarray(rates, dtype=float)
 
+    def told(self, scenario: Scenario) -> dict[str, str]:
+        """The text of ``estimator`` and of ``sensor``, as they are on a scenario.
+
+        An estimator that cannot be built, and so fails in every run, is told as what builds it.
+        """
+        try:
+            estimator = self._built(scenario)
+        except core.FilterError:
+            estimator = self.estimator
+        return {"estimator": _text(estimator), "sensor": _text(_sensor(self.sensor, scenario))}
+
     def _built(self, scenario: Scenario) -> Any:
         return self.estimator if hasattr(self.estimator, "run") else self.estimator(scenario)
+
+
+def told(candidate: Candidate | Callable[..., Any], scenario: Scenario) -> dict[str, str]:
+    """What a candidate is on a scenario, by attribute of an outcome; of a callable its name."""
+    if isinstance(candidate, Candidate):
+        return candidate.told(scenario)
+    return {"estimator": _text(candidate)}
 
 
 def clairvoyant(
@@ -121,6 +140,11 @@ def clairvoyant(
 def _told(control_mps2: np.ndarray) -> dict[str, np.ndarray]:
     """The argument by which an estimator is told of a control (T, 2); none where it is zero."""
     return {"acceleration_mps2": control_mps2} if control_mps2.any() else {}
+
+
+def _text(thing: Any) -> str:
+    """Its repr, without where it is in memory."""
+    return re.sub(r" at 0x[0-9a-fA-F]+", "", repr(thing))
 
 
 def _sensor(sensor: Any, scenario: Scenario) -> Any:

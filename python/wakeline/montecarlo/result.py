@@ -57,6 +57,13 @@ class Outcome:
     cpu_s : float
         CPU time of the estimator over all runs that could start: that of the calling threads, and
         so all of it only after ``wakeline.set_threads(1)``.
+    estimator : str or None
+        The call that makes the candidate's estimator anew, with all of its parameters, such as
+        ``Imm(filters=[Ekf(motion=...), ...], chain=..., initial_mode_probability=[...])``; of
+        estimators that are not Wakeline's, and of candidates that are functions, their ``repr``.
+        None in a file of before this was kept.
+    sensor : str or None
+        The same of the sensor it is told of; None also where a function chooses it.
     """
 
     scenario: str
@@ -78,13 +85,22 @@ class Outcome:
     turn_rate_rad_s: np.ndarray | None
     right_mode_share: np.ndarray | None
     cpu_s: float
+    estimator: str | None = None
+    sensor: str | None = None
 
     def __repr__(self) -> str:
         scans, name = many(len(self.time_s), "scan"), f"{self.candidate} on {self.scenario}"
         return brief(self, many(self.runs, "run"), scans, name=name)
 
     @classmethod
-    def of(cls, scenario: Scenario, candidate: str, sums: Sums) -> Outcome:
+    def of(
+        cls,
+        scenario: Scenario,
+        candidate: str,
+        sums: Sums,
+        estimator: str | None = None,
+        sensor: str | None = None,
+    ) -> Outcome:
         """From the sums over all runs; curves over no run are NaN."""
 
         def mean(total: np.ndarray | None) -> np.ndarray | None:
@@ -110,6 +126,8 @@ class Outcome:
             turn_rate_rad_s=mean(sums.turn_rate_rad_s),
             right_mode_share=mean(sums.right_mode),
             cpu_s=sums.cpu_s,
+            estimator=estimator,
+            sensor=sensor,
         )
 
     def summary(self) -> dict[str, float | None]:
@@ -206,8 +224,9 @@ class Result:
     runs, seed : int
         As given to :func:`wakeline.montecarlo.run`.
     parameters : mapping
-        What else the figures depend on: ``chunk_runs``, ``lost_beyond_m`` and, in ``scenarios``,
-        the ``parameters`` of each scenario by its name.
+        What else the figures depend on, beside the ``estimator`` and ``sensor`` that each outcome
+        tells: ``chunk_runs``, ``lost_beyond_m`` and, in ``scenarios``, the ``parameters`` of each
+        scenario by its name.
     version : str
         Of Wakeline, that made it.
     """

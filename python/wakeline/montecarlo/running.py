@@ -21,7 +21,7 @@ from wakeline import _progress
 from wakeline._checks import whole_number
 from wakeline.scenario import Scenario
 
-from .candidate import Candidate
+from .candidate import Candidate, told
 from .result import Outcome, Result
 from .sums import Chunk, Sums, sums_of
 
@@ -101,9 +101,15 @@ def run(
         for scenario, name in pairs
         for first in firsts
     ]
+    texts = {(scenario.name, name): told(candidates[name], scenario) for scenario, name in pairs}
     done = _told(_worked_off(chunks, threads, client), len(chunks), progress)
     outcomes = {
-        (scenario.name, name): Outcome.of(scenario, name, reduce(add, [next(done) for _ in firsts]))
+        (scenario.name, name): Outcome.of(
+            scenario,
+            name,
+            reduce(add, [next(done) for _ in firsts]),
+            **texts[scenario.name, name],
+        )
         for scenario, name in pairs
     }
     next(done, None)
