@@ -6,7 +6,9 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <variant>
+#include <vector>
 
 #include "call_text.hpp"
 #include "wakeline/filter/augmented_ukf.hpp"
@@ -177,6 +179,7 @@ class PyNavigator {
                            {"rate_of_turn", rate_of_turn}},
                           rows);
       std::vector<typename Navigator::State> beliefs;
+      std::vector<std::size_t> widened;
       Navigator moved = navigator;
       {
         const py::gil_scoped_release no_python;
@@ -188,10 +191,10 @@ class PyNavigator {
             legs.push_back(motion ? moved.leg(dt_s, to_imu(motion)) : moved.leg(dt_s));
             require_ok_in(k, moved.predict(legs.back()), "predict");
           }
-          take(moved, readings, std, k, run);
+          if (take(moved, readings, std, k, run)) widened.push_back(beliefs.size());
           beliefs.push_back(moved.estimate());
         }
-        if (smooth) require_ok(moved.smooth(beliefs, legs), "smooth");
+        if (smooth) smooth_between(widened, moved, beliefs, legs);
       }
       navigator = moved;
       copy(beliefs, run);
@@ -259,10 +262,28 @@ class PyNavigator {
     return run;
   }
 
-  /// All readings of row k.
+  /// Smooths the rows before, between and from those where the belief was widened, each part by
+  /// itself.
   template <class Navigator>
-  static void take(Navigator& navigator, const Readings& readings, const ReadingStd& std,
+  static void smooth_between(std::vector<std::size_t> ends, const Navigator& navigator,
+                             std::span<typename Navigator::State> beliefs,
+                             std::span<const typename Navigator::Leg> legs) {
+    ends.push_back(beliefs.size());
+    std::size_t first = 0;
+    for (const std::size_t end : ends) {
+      if (end > first)
+        require_ok(navigator.smooth(beliefs.subspan(first, end - first),
+                                    legs.subspan(first, end - first - 1)),
+                   "smooth");
+      first = end;
+    }
+  }
+
+  /// All readings of row k; whether the belief was widened for one of them.
+  template <class Navigator>
+  static bool take(Navigator& navigator, const Readings& readings, const ReadingStd& std,
                    py::ssize_t k, UsvRun& run) {
+    bool widened = false;
     const auto note = [&](const char* name, const Column& column, auto update) {
       if (!column.values) return;
       const double* z = column.at(k);
@@ -270,6 +291,7 @@ class PyNavigator {
       const auto reading = update(z);
       run.nis[name].mutable_data()[k] = reading.nis;
       run.rejected[name].mutable_data()[k] = reading.rejected;
+      widened |= reading.widened;
       if (!reading.rejected) require_ok_in(k, reading.status, name);
     };
     note("gnss", readings.gnss, [&](const double* z) {
@@ -291,6 +313,7 @@ class PyNavigator {
           return navigator.update(rate_of_turn(navigator, motion[2], std.rate_of_turn_rad_s),
                                   Vec<double, 1>(z[0]));
         });
+    return widened;
   }
 
   template <class Belief>
@@ -497,7 +520,8 @@ compass, log, rate_of_turn : (T,) array, optional
 gnss_std_m, compass_std_rad, velocity_std_mps, log_std_mps, rate_of_turn_std_rad_s : float
     Standard deviations; that of gnss is [north, east].
 smooth : bool
-    Whether the beliefs returned know the readings after them, too.
+    Whether the beliefs returned know the readings after them, too, up to one for which the belief
+    was widened: nothing is known across it.
 
 In every array a row that is not finite is no reading; without one of the IMU, the ship coasts.
 

@@ -13,6 +13,7 @@ from wakeline.navigation import LocalPlane
 
 BUNDLED = resources.files("wakeline.recording") / "data" / "irene"
 KN = 1852.0 / 3600.0
+NORTH_M, EAST_M = 111_239.0, 70_949.0  # of a degree at 50.5 degrees north
 
 
 @pytest.fixture(autouse=True)
@@ -68,8 +69,8 @@ def voyage(
         ve = (6.0 * s + across_kn * c + current_kn[1]) * KN
         north, east = north + vn, east + ve
         clock = f"{10 + second // 3600:02d}{second // 60 % 60:02d}{second % 60:02d}"
-        latitude_min = 30.0 + 60 * (north + 2 * rng.standard_normal()) / 111_229.0
-        longitude_min = 30.0 + 60 * (east + 2 * rng.standard_normal()) / 71_696.0
+        latitude_min = 30.0 + 60 * (north + 2 * rng.standard_normal()) / NORTH_M
+        longitude_min = 30.0 + 60 * (east + 2 * rng.standard_normal()) / EAST_M
         course = np.degrees(np.arctan2(ve, vn)) % 360
         told = (np.degrees(heading) + compass_std_deg * rng.standard_normal()) % 360
         lines.append(
@@ -256,14 +257,14 @@ def moved_north(lines, seconds, way_m):
     lines = list(lines)
     for k in [3 * second for second in seconds]:
         fields = lines[k][1:].partition("*")[0].split(",")
-        fields[3] = f"50{float(fields[3][2:]) + 60 * way_m / 111_229.0:08.5f}"
+        fields[3] = f"50{float(fields[3][2:]) + 60 * way_m / NORTH_M:08.5f}"
         lines[k] = sentence(",".join(fields))
     return lines
 
 
 def north_off_m(rows, without):
     place = [float(row["lat_deg"]) for row in rows], [float(row["lat_deg"]) for row in without]
-    return 111_229.0 * np.subtract(*place)
+    return NORTH_M * np.subtract(*place)
 
 
 def test_fixes_that_jump_far_and_come_back_move_nothing(tmp_path, capsys):
@@ -396,6 +397,102 @@ def test_all_parts_lie_in_one_plane(tmp_path):
     assert np.ptp(off_m, axis=0) == pytest.approx([0.0, 0.0], abs=0.1)
 
 
+def both(folder, lines):
+    """What is found of a log, and what it is smoothed."""
+    return navigated(folder, lines), navigated(folder, lines, "--smooth")
+
+
+def drift_mps(rows):
+    toward = np.deg2rad(column(rows, "set_deg"))
+    return column(rows, "drift_mps")[:, None] * np.column_stack([np.cos(toward), np.sin(toward)])
+
+
+def motion_off(rows):
+    """Errors (T, 2) of the places and of the velocities of a `voyage`."""
+    second = np.rint(seconds(rows)).astype(int)
+    heading = np.deg2rad(heading_deg(np.arange(second[-1] + 1)))
+    over_ground = 6.0 * np.column_stack([np.cos(heading), np.sin(heading)]) + [0.8, -0.5]
+    true_mps = over_ground * KN
+    true_m = np.cumsum(true_mps, axis=0)
+    degrees = np.column_stack([column(rows, "lat_deg"), column(rows, "lon_deg")])
+    mps = np.column_stack([column(rows, "vnorth_mps"), column(rows, "veast_mps")])
+    place_m = (degrees - [50.5, 2.5]) * [NORTH_M, EAST_M]
+    return place_m - true_m[second], mps - true_mps[second]
+
+
+def rms(error):
+    return np.sqrt(np.mean(error**2))
+
+
+VARIANCES = ("north_var_m2", "east_var_m2", "vnorth_var_m2s2", "veast_var_m2s2")
+
+
+def test_smoothed_places_speeds_and_drift_are_nearer_to_the_truth(tmp_path, capsys):
+    found, smooth = both(tmp_path, voyage())
+    assert "smoothed: own.csv and pictures" in capsys.readouterr().out
+    assert [row["time_s"] for row in found] == [row["time_s"] for row in smooth]
+    assert [row["status"] for row in found] == [row["status"] for row in smooth]
+    for smooth_off, off in zip(motion_off(smooth), motion_off(found), strict=True):
+        assert rms(smooth_off) < 0.9 * rms(off)
+    current_mps = np.array([0.8, -0.5]) * KN
+    assert rms(drift_mps(smooth) - current_mps) < 0.85 * rms(drift_mps(found) - current_mps)
+    off_deg, smooth_off_deg = (
+        (column(rows, "heading_deg") - heading_deg(np.rint(seconds(rows))) + 180.0) % 360.0 - 180.0
+        for rows in (found, smooth)
+    )
+    assert rms(smooth_off_deg) < 0.6 * rms(off_deg)
+
+
+def test_smoothed_deviations_are_no_larger_and_the_last_row_is_the_same(tmp_path):
+    found, smooth = both(tmp_path, voyage())
+    assert found[-1] == smooth[-1]
+    for name in (*VARIANCES[:2], "heading_std_deg"):
+        assert np.all(column(smooth, name) <= column(found, name)), name
+    for name in VARIANCES:
+        assert np.median(column(smooth, name)) < 0.6 * np.median(column(found, name)), name
+
+
+def test_nothing_is_smoothed_across_a_gap(tmp_path):
+    """What comes after the gap, of another current and place, changes nothing before it."""
+    lines, other = voyage(12), moved_north(voyage(12, (-0.8, 0.5), seed=2), range(360, 720), 300.0)
+    before, after = slice(0, 3 * 300), slice(3 * 400, None)
+    alone = navigated(tmp_path, lines[before], "--smooth")
+    for later in (lines[after], other[after]):
+        rows = navigated(tmp_path, lines[before] + later, "--smooth")
+        assert len(rows) > len(alone)
+        assert rows[: len(alone)] == alone
+
+
+def test_a_jump_is_not_spread_by_smoothing(tmp_path):
+    lines = voyage(10)
+    true = navigated(tmp_path, lines, "--smooth")
+    rows = navigated(tmp_path, moved_north(lines, range(400, 600), 150.0), "--smooth")
+    off_m = north_off_m(rows, true)
+    jumped = np.array([row["status"] for row in rows]) == "jumped"
+    first = np.flatnonzero(jumped)[0]
+    assert np.abs(off_m[:first]).max() < 10.0
+    assert np.abs(off_m[first:] - 150.0).max() < 20.0
+
+
+def test_the_bundled_log_is_smoothed(tmp_path, capsys):
+    logs = tmp_path / "found", tmp_path / "smooth"
+    rows = {}
+    for folder, options in zip(logs, ([], ["--smooth"]), strict=True):
+        assert main(["navigate", str(BUNDLED / "irene.nmea"), "--out", str(folder), *options]) == 0
+        with (folder / "own.csv").open() as file:
+            rows[folder] = list(csv.DictReader(file))
+    found, smooth = (rows[folder] for folder in logs)
+    assert found[-1] == smooth[-1]
+    for name in (*VARIANCES[:2], "heading_std_deg"):
+        assert np.all(column(smooth, name) <= column(found, name)), name
+    for name in VARIANCES:
+        assert np.median(column(smooth, name)) < 0.6 * np.median(column(found, name)), name
+    told = [
+        text.partition("error in metres")[2] for text in capsys.readouterr().out.split("irene:")
+    ]
+    assert told[1].splitlines()[:5] == told[2].splitlines()[:5], "errors without satellites"
+
+
 def test_pictures_of_an_earlier_log_are_removed(tmp_path, pictures):
     for name in ("own_map-2.png", "own_time-2.png", "own_map-harbour.png"):
         (tmp_path / name).touch()
@@ -419,7 +516,7 @@ def fixes_alone(seconds, kn):
     """Sentences of a ship that steers north, without speeds over ground."""
     lines = []
     for second in range(seconds):
-        north_min = 30.0 + 60.0 * kn * KN * second / 111_229.0
+        north_min = 30.0 + 60.0 * kn * KN * second / NORTH_M
         clock = f"10{second // 60:02d}{second % 60:02d}"
         place = f"50{north_min:08.5f},N,00230.00000,E"
         lines += [

@@ -85,6 +85,22 @@ def test_biases_are_found_and_smoothing_helps():
     assert np.all(np.abs(wrapped(smooth.mean[:, 4] - log["heading"])) < 1 * DEG)
 
 
+def test_smoothing_ends_where_the_belief_was_widened():
+    log = voyage(steps=300)
+    log["gnss"][150:] += [400.0, 0.0]
+    run = started(log).run(**sensors(log))
+    smooth = started(log).run(**sensors(log), smooth=True)
+    (widened,) = np.flatnonzero(~run.rejected["gnss"] & (run.nis["gnss"] > 100.0))
+    cut = {name: log[name][:widened] for name in sensors(log)}
+    alone = started(log).run(**cut, smooth=True)
+    np.testing.assert_array_equal(smooth.mean[:widened], alone.mean)
+    np.testing.assert_array_equal(smooth.covariance[:widened], alone.covariance)
+    assert np.all(np.abs(smooth.mean[:widened, 0] - log["position"][:widened, 0]) < 15.0)
+    assert np.all(smooth.mean[widened:, 0] - log["position"][widened:, 0] > 370.0)
+    variance, filtered = (np.diagonal(r.covariance, axis1=1, axis2=2) for r in (smooth, run))
+    assert np.all(variance <= filtered * (1.0 + 1e-9))
+
+
 def test_filters_agree():
     log = voyage()
     ekf, *others = (

@@ -499,7 +499,8 @@ class UsvNavigator:
         gnss_std_m, compass_std_rad, velocity_std_mps, log_std_mps, rate_of_turn_std_rad_s : float
             Standard deviations; that of gnss is [north, east].
         smooth : bool
-            Whether the beliefs returned know the readings after them, too.
+            Whether the beliefs returned know the readings after them, too, up to one for which the belief
+            was widened: nothing is known across it.
 
         In every array a row that is not finite is no reading; without one of the IMU, the ship coasts.
 

@@ -26,6 +26,10 @@ _COLUMNS = (
 )
 _SHOWN_PROBLEMS = 5
 _LEAST_DRAWN_FIXES = 10
+_SMOOTHED = (
+    "smoothed: own.csv and pictures know at each time the readings after it, too, up to a gap or a "
+    "jump"
+)
 _METHODS = {
     "navigator": "navigator",
     "dead_reckoning": "heading and log alone",
@@ -53,6 +57,12 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         metavar="DEG",
         help="magnetic variation, positive east, where the log has none; default what velocities "
         "over ground say of the compass, which is little if the ship never alters course",
+    )
+    parser.add_argument(
+        "--smooth",
+        action="store_true",
+        help="let own.csv and the pictures know at each time the readings after it, too, up to a "
+        "gap or a jump: the best that can be said of a voyage that is over",
     )
     parser.add_argument(
         "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
@@ -91,12 +101,15 @@ def run(arguments: argparse.Namespace) -> None:
             wanted="one sound fix or more",
             got=f"{len(log.fixes)} that are not sound",
         )
-    legs = _legs(log)
+    legs = _legs(log, smooth=arguments.smooth)
     files = [arguments.out / "own.csv"]
     _write_csv(files[0], legs)
     if outputs.can_draw():
-        files += _write_pictures(arguments.out, legs)
+        way = "own ship, smoothed" if arguments.smooth else "own ship"
+        files += _write_pictures(arguments.out, legs, way)
     outputs.remove_stale(_earlier_pictures(arguments.out), files)
+    if arguments.smooth:
+        print(_SMOOTHED)
     errors = _hold_out(legs)
     print(_error_table(errors))
     print(f"written to {arguments.out}: {', '.join(file.name for file in files)}")
@@ -106,12 +119,12 @@ def run(arguments: argparse.Namespace) -> None:
         outputs.write_json(arguments.json, "navigate", _rows(errors, arguments.log.name))
 
 
-def _legs(log: NavigationLog) -> list[_Leg]:
+def _legs(log: NavigationLog, *, smooth: bool) -> list[_Leg]:
     offset, plane = _magnetic_offset(log), navigating.plane_of(log.fixes.sound())
     parts = log.parts()
     for note in _unused_notes(parts):
         print(note, flush=True)
-    legs = [_leg(part, offset, plane) for part in parts if len(part.fixes.sound())]
+    legs = [_leg(part, offset, plane, smooth) for part in parts if len(part.fixes.sound())]
     for note in _doubt_notes(legs):
         print(note, flush=True)
     return legs
@@ -131,9 +144,11 @@ def _magnetic_offset(log: NavigationLog) -> navigating.MagneticOffset:
     return offset
 
 
-def _leg(part: NavigationLog, offset: navigating.MagneticOffset, plane: LocalPlane) -> _Leg:
+def _leg(
+    part: NavigationLog, offset: navigating.MagneticOffset, plane: LocalPlane, smooth: bool
+) -> _Leg:
     readings = navigating.readings_of(part, offset, plane)
-    return _Leg(part.fixes.sound(), readings, navigating.navigate(readings))
+    return _Leg(part.fixes.sound(), readings, navigating.navigate(readings, smooth=smooth))
 
 
 def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
@@ -259,7 +274,7 @@ def _csv_rows(track: navigating.OwnTrack) -> Iterator[list[Any]]:
         yield [f"{time_s:.3f}", f"{latitude_deg:.8f}", f"{longitude_deg:.8f}", *texts, status]
 
 
-def _write_pictures(folder: Path, legs: Sequence[_Leg]) -> list[Path]:
+def _write_pictures(folder: Path, legs: Sequence[_Leg], way: str) -> list[Path]:
     """Write the map and the panels over time, one pair a leg that is not too short for it."""
     files = []
     drawn = [leg for leg in legs if leg.readings.has_fix.sum() >= _LEAST_DRAWN_FIXES]
@@ -278,6 +293,7 @@ def _write_pictures(folder: Path, legs: Sequence[_Leg]) -> list[Path]:
             track.current_mps,
             coasting=track.status == "coasting",
             jumped=track.status == "jumped",
+            name=way,
         )
         plot.save(figure, files[-2])
         plot.save(_time_figure(readings, track, readings.time_s[has_fix]), files[-1])

@@ -226,27 +226,22 @@ def magnetic_offset(log: NavigationLog) -> MagneticOffset | None:
     )
 
 
-def navigate(readings: Readings) -> OwnTrack:
-    """The solution at every reading from the first fix on."""
+def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
+    """The solution at every reading from the first fix on.
+
+    Smoothed, it knows the readings after each time, too, up to one that was not believed until its
+    like went on. What was not believed is the same.
+    """
     states = 7 if readings.knows_water else 5
-    done = _navigator(states, readings).run(
-        readings.time_s,
-        imu=_turning(readings),
-        gnss=readings.fix_m,
-        compass=readings.way_rad,
-        velocity=readings.over_ground_mps,
-        log=readings.way_mps if states == 7 else None,
-        gnss_std_m=[FIX_STD_M, FIX_STD_M],
-        compass_std_rad=COMPASS_STD_RAD,
-        velocity_std_mps=VELOCITY_STD_MPS,
-        log_std_mps=LOG_STD_MPS,
-    )
+    done = _run(states, readings)
+    moved_m = _moved_m(readings, done, _velocity(done.mean, states)[0])
+    if smooth:
+        done = _run(states, readings, smooth=True)
     mean, covariance = done.mean, done.covariance
     at = 2 if states == 7 else 4
     heading = wl.wrap_angle(mean[:, at] - readings.leeway_rad)
     velocity, slope = _velocity(mean, states)
     latitude, longitude = readings.plane.place(mean[:, :2])
-    moved_m = _moved_m(readings, done, velocity)
     heading_std = np.sqrt(covariance[:, at, at] + readings.offset_std_rad**2)
     known = np.isfinite(readings.heading_rad).any()
     return OwnTrack(
@@ -289,6 +284,22 @@ def hold_out(readings: Readings) -> dict[str, dict[float, np.ndarray]]:
     if readings.knows_water:
         foretold["dead_reckoning"] = _reckoned(seen)
     return {name: _errors(readings, place_m, starts_s) for name, place_m in foretold.items()}
+
+
+def _run(states: int, readings: Readings, *, smooth: bool = False) -> wl.navigation.UsvRun:
+    return _navigator(states, readings).run(
+        readings.time_s,
+        imu=_turning(readings),
+        gnss=readings.fix_m,
+        compass=readings.way_rad,
+        velocity=readings.over_ground_mps,
+        log=readings.way_mps if states == 7 else None,
+        gnss_std_m=[FIX_STD_M, FIX_STD_M],
+        compass_std_rad=COMPASS_STD_RAD,
+        velocity_std_mps=VELOCITY_STD_MPS,
+        log_std_mps=LOG_STD_MPS,
+        smooth=smooth,
+    )
 
 
 def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:

@@ -25,6 +25,7 @@ def own_map(
     *,
     coasting: np.ndarray | None = None,
     jumped: np.ndarray | None = None,
+    name: str = "own ship",
 ) -> Axes:
     """Map of own ship's way and fixes, north up, with the current along it; returns `ax`.
 
@@ -40,17 +41,19 @@ def own_map(
         Where there were no fixes.
     jumped : ndarray of bool (T,), optional
         Where the place is in doubt, for fixes that did not fit have moved it.
+    name : str
+        What the way is called.
     """
     ax.plot(fix_m[:, 1] / 1e3, fix_m[:, 0] / 1e3, ".", color=MUTED, markersize=3, label="fixes")
     way = position_m / 1e3
-    ax.plot(way[:, 1], way[:, 0], color=PALETTE[0], linewidth=1.5, label="own ship")
-    for where, color, name in (
+    ax.plot(way[:, 1], way[:, 0], color=PALETTE[0], linewidth=1.5, label=name)
+    for where, color, doubt in (
         (coasting, PALETTE[1], "without fixes"),
         (jumped, PALETTE[3], "after a jump"),
     ):
         if where is not None and where.any():
             part = np.where(where[:, None], way, np.nan)
-            ax.plot(part[:, 1], part[:, 0], color=color, linewidth=2.0, label=name)
+            ax.plot(part[:, 1], part[:, 0], color=color, linewidth=2.0, label=doubt)
     if current_mps is not None and np.isfinite(current_mps).any():
         known = np.flatnonzero(np.isfinite(current_mps[:, 0]))
         at = known[np.linspace(0, len(known) - 1, min(_ARROWS, len(known))).astype(int)]
