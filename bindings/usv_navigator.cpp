@@ -371,7 +371,8 @@ north, current east] for 7, which does not use the accelerometer. Metres, second
 in [-pi, pi].
 
 A reading whose NIS is outside the gate is rejected. When more than `rejections` of one sensor in a
-row were, it is the belief that is widened, and the reading is taken.
+row were, it is the belief that is widened, and the reading is taken, unless it is more than a
+million standard deviations off.
 
 Parameters
 ----------

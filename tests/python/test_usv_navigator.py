@@ -142,6 +142,22 @@ def test_an_outlier_is_rejected():
     assert np.abs(run.mean[150, 0] - log["position"][150, 0]) < 15
 
 
+@pytest.mark.parametrize("filter", ["ekf", "ukf", "augmented_ukf"])
+@pytest.mark.parametrize("states", [5, 7, 8])
+@pytest.mark.parametrize("off_m", [1e12, 1e160, 1.7e308])
+def test_absurd_fixes_are_rejected_and_nothing_else_is_lost(states, filter, off_m):
+    absurd, lost = voyage(steps=200, bias=0 * BIAS), voyage(steps=200, bias=0 * BIAS)
+    rows = [20, *range(100, 115)]
+    absurd["gnss"][rows] = [off_m, -off_m]
+    lost["gnss"][rows] = np.nan
+    run = started(absurd, states, filter).run(**sensors(absurd))
+    without = started(lost, states, filter).run(**sensors(lost))
+    assert run.rejected["gnss"][rows].all()
+    assert np.all(run.nis["gnss"][rows] > 1e9)
+    np.testing.assert_array_equal(run.mean, without.mean)
+    np.testing.assert_array_equal(run.covariance, without.covariance)
+
+
 def test_steps_without_the_imu_coast():
     log = voyage(steps=300)
     log["imu"][100:130] = np.nan

@@ -433,6 +433,52 @@ TYPED_TEST(EveryUsvModel, BelievesReadingsThatInsist) {
   EXPECT_FALSE(navigator.update(gnss(), elsewhere).rejected);
 }
 
+/// Fixes that are `off` from the truth for so many steps.
+template <class Navigator>
+void expect_absurd_readings_to_do_nothing(const std::vector<Instant>& log, double off, int steps) {
+  using Scalar = typename Navigator::Scalar;
+  using Pair = Vec<Scalar, 2>;
+  Navigator navigator;
+  ASSERT_EQ(navigator.start(start_of(log.front())), Status::kOk);
+  const auto outcome = [](const auto& reading) {
+    return reading.status == (reading.rejected ? Status::kMissed : Status::kOk);
+  };
+  const int first = 100, last = first + steps;
+  for (int k = 1; k < last + 100; ++k) {
+    const Instant& now = log[std::size_t(k)];
+    ASSERT_EQ(navigator.predict(Scalar(1), now.imu), Status::kOk) << off << " " << k;
+    const auto before = navigator.estimate();
+    const bool is_absurd = k >= first && k < last;
+    const Vec2 wild = is_absurd ? Vec2(off, -off / 2) : Vec2(0, 0);
+    const auto fixed = navigator.update(gnss(), Pair((now.fix + wild).cast<Scalar>()));
+    if (is_absurd) {
+      EXPECT_TRUE(fixed.rejected) << off << " " << k;
+      EXPECT_GT(fixed.nis, 1e5) << off << " " << k;
+      EXPECT_TRUE(test::matrices_identical(navigator.estimate().mean, before.mean));
+      EXPECT_TRUE(test::matrices_identical(navigator.estimate().covariance, before.covariance));
+    }
+    ASSERT_TRUE(outcome(fixed)) << off << " " << k << ": " << to_string(fixed.status);
+    const auto turned = navigator.update(Compass(), Vec<Scalar, 1>(Scalar(now.compass)));
+    ASSERT_TRUE(outcome(turned)) << off << " " << k << ": " << to_string(turned.status);
+  }
+  const Vec2 error = navigator.estimate().mean.template head<2>().template cast<double>() -
+                     log[std::size_t(last + 99)].position;
+  EXPECT_LT(error.norm(), 20) << off;
+}
+
+// What is too far for the square of a number, and what is not, but leaves it no digits.
+TYPED_TEST(EveryUsvModel, IsNotMovedByAbsurdReadingsHoweverOftenTheyCome) {
+  const std::vector<Instant> log = mission(17, kStatesOf<TypeParam> == 5 ? kNoBias : kBias);
+  for (const double off : {1e9, 1e12, 1e30, 1e80, 1e154, 1e160, 1e300, 1.7e308})
+    for (const int steps : {1, 15}) {
+      expect_absurd_readings_to_do_nothing<UsvNavigator<TypeParam, Ekf>>(log, off, steps);
+      expect_absurd_readings_to_do_nothing<UsvNavigator<TypeParam, Ukf>>(log, off, steps);
+      expect_absurd_readings_to_do_nothing<UsvNavigator<TypeParam, AugmentedUkf>>(log, off, steps);
+    }
+  for (const double off : {1e6, 1e12, 1e20, 1e38})
+    expect_absurd_readings_to_do_nothing<UsvNavigator<TypeParam, Ekf, float>>(log, off, 15);
+}
+
 TYPED_TEST(EveryUsvModel, FindsACurrentThatChangedWhileItCoasted) {
   constexpr std::size_t kChange = 300, kBack = 580, kRuns = 10;
   const Vec2 change(0.4, -0.6);

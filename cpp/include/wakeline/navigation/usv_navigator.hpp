@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "wakeline/filter/ekf.hpp"
@@ -26,7 +27,8 @@ struct UsvOutliers {
 };
 
 /// What a reading has done. A rejected one has status `kMissed` and leaves the belief as it was;
-/// innovation and NIS are those before any widening.
+/// innovation and NIS are those before any widening. The NIS of one that is too far for a number is
+/// infinite.
 template <int M, class Scalar = double>
 struct [[nodiscard]] UsvReading : Step<M, Scalar> {
   bool rejected = false;  ///< outside the gate
@@ -48,7 +50,10 @@ struct UsvLeg {
 ///   acceleration and no turn, with the noise `unmeasured`.
 /// - A reading outside the gate is rejected. When more than `rejections` of its kind in a row were,
 ///   it is the belief that is wrong: the states are widened by the likeliest error that would
-///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
+///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken. But never one more
+///   than a million standard deviations off, a thousand in `float`: a belief so wide would have no
+///   digits left for its errors. Such readings are rejected, and not counted, for as long as they
+///   come.
 /// - The heading of the estimate is in [-pi, pi].
 ///
 /// Model: `UsvMotion`, `UsvBiasMotion` or `UsvCurrentMotion`; FilterType: `Ekf`, `Ukf` (additive
@@ -110,22 +115,28 @@ class UsvNavigator {
   UsvReading<Sensor::kMeasurements, Scalar> update(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     UsvReading<Sensor::kMeasurements, Scalar> reading{filter_.innovation(sensor, z)};
-    if (!reading) return reading;
+    const bool believable = !is_absurd(reading);
+    if (believable && !reading) return reading;
     int& in_a_row = rejected_[static_cast<std::size_t>(rows_read<Sensor>(kComponents)[0])];
     if (gate<Sensor::kMeasurements>().contains(reading.nis)) {
       in_a_row = 0;
-    } else if (in_a_row < rejections_) {
-      ++in_a_row;
+    } else if (!believable || in_a_row < rejections_) {
+      in_a_row += believable;
       reading.rejected = true;
       reading.status = Status::kMissed;
+      if (!std::isfinite(reading.nis)) reading.nis = std::numeric_limits<Scalar>::infinity();
       return reading;
     } else {
       in_a_row = 0;
       reading.widened = true;
-      widen(sensor, reading.innovation);
     }
+    const State before = estimate();
+    if (reading.widened) widen(sensor, reading.innovation);
     reading.status = filter_.update(sensor, z).status;
-    if (reading) wrap();
+    if (reading)
+      wrap();
+    else
+      (void)filter_.assign(before);
     return reading;
   }
 
@@ -161,6 +172,7 @@ class UsvNavigator {
 
  private:
   static constexpr int kHeadingRow = index_of(kComponents, kHeading);
+  static constexpr Scalar kFarthest = std::numeric_limits<Scalar>::digits > 24 ? 1e6F : 1e3F;
 
   [[nodiscard]] Model driven(const Leg& leg) const noexcept {
     Model model = model_;
@@ -175,6 +187,17 @@ class UsvNavigator {
       return gate1_;
     else
       return gate2_;
+  }
+
+  /// Whether a finite innovation is so many standard deviations long that no widening helps.
+  template <int M>
+  static bool is_absurd(const Step<M, Scalar>& step) noexcept {
+    if (!is_finite(step.innovation)) return false;
+    for (int k = 0; k < M; ++k) {
+      const Scalar std = std::sqrt(step.innovation_covariance(k, k));
+      if (std::abs(step.innovation[k]) > kFarthest * std) return true;
+    }
+    return false;
   }
 
   void wrap() noexcept {
