@@ -21,6 +21,14 @@ RATES = {"on": 1.0, "between": 0.75, "outside": 1.5}
 """By what the turn rates of example 1 are multiplied to lie on, between, outside the IMM's own."""
 NOISES = (1.0, 0.3, 0.1)
 """By what both errors of the radar are multiplied."""
+FIRST = {
+    "even": (1 / 3, 1 / 3, 1 / 3),
+    "half": (0.25, 0.5, 0.25),
+    "sure": (0.01, 0.98, 0.01),
+    "left": (0.9, 0.05, 0.05),
+    "right": (0.05, 0.05, 0.9),
+}
+"""First probabilities of three models, left, centre and right."""
 _SURVEY = 60
 
 
@@ -71,9 +79,11 @@ def _finer(radar: scenario.RadarSimulator, times: float) -> scenario.RadarSimula
 def _variants(setting: Setting) -> dict[str, Candidate]:
     """The printed rules, with other thresholds, with other choices of what is not printed.
 
-    Rates of AGMM are in degrees a second. `agmm_kept` and `agmm_patient` have one each of two of
-    the additions that the library's defaults make to the rules.
+    Rates of AGMM are in degrees a second, first probabilities those of `FIRST`. `agmm_kept` and
+    `agmm_patient` have one each of two of the additions that the library's defaults make to the
+    rules.
     """
+    first = {name: {"initial_mode_probability": given} for name, given in FIRST.items()}
     adaptive = {
         "agmm_printed": {},
         **{f"agmm_t1_{t1:g}": {"centre_threshold": t1} for t1 in (0.3, 0.7)},
@@ -82,12 +92,14 @@ def _variants(setting: Setting) -> dict[str, Candidate]:
             f"agmm_initial_{side:g}": {"initial_turn_rates_rad_s": np.deg2rad([-side, 0.0, side])}
             for side in (0.5, 1.0, 2.0)
         },
+        **{f"agmm_first_{name}": given for name, given in first.items()},
         "agmm_kept": {"kept_spacing_rad_s": np.deg2rad(3.0)},
         "agmm_patient": {"centre_threshold": 0.8, "centre_gain": 0.3},
     }
     switching = {
         "sgmm_printed": {},
         **{f"sgmm_t_{t:g}": {"threshold": t} for t in (0.3, 0.5, 0.7, 0.9)},
+        **{f"sgmm_first_{name}": given for name, given in first.items()},
         "sgmm_identity": {"carry": "identity"},
         "sgmm_literal": {"rule": "literal"},
         "sgmm_literal_t_0.9": {"rule": "literal", "threshold": 0.9},
@@ -153,7 +165,7 @@ def survey(runs: int, seed: int, threads: int | None) -> str:
 
 
 def _drawn(setting: Setting) -> dict[str, Candidate]:
-    rng = np.random.default_rng(0)
+    rng, first = np.random.default_rng(0), np.random.default_rng(1)
     found = {}
     for k in range(_SURVEY):
         side_deg_s = rng.uniform(0.2, setting.agmm_max_deg_s)
@@ -165,6 +177,7 @@ def _drawn(setting: Setting) -> dict[str, Candidate]:
             centre_threshold=rng.uniform(0.1, 0.9),
             unlikely_threshold=rng.uniform(0.02, 0.4),
             likely_threshold=rng.uniform(0.5, 0.98),
+            initial_mode_probability=first.dirichlet(np.ones(3)),
         )
         found[f"sgmm-{k}"] = candidates.sgmm_printed(
             setting,
@@ -172,6 +185,7 @@ def _drawn(setting: Setting) -> dict[str, Candidate]:
             threshold=rng.uniform(0.3, 0.95),
             rule=str(rng.choice(["symmetric", "literal"])),
             carry=str(rng.choice(["slot", "identity"])),
+            initial_mode_probability=first.dirichlet(np.ones(3)),
         )
     return found
 
