@@ -143,6 +143,23 @@ def test_windows_and_centres_move_the_more_the_lower_their_threshold_asks():
     assert eager > 1.5 * calm > 0
 
 
+def test_what_covariances_are_worth_is_what_the_rows_say(reports):
+    report = reports["variable-structure"]
+    told = report.notes[1].splitlines()
+    assert told[2].split() == SCENARIOS["variable-structure"]
+    for name in ("imm5", "sgmm", "mode_history"):
+        (line,) = [line for line in told if line.split()[0] == name]
+        for scene, result in report.result.items():
+            outcomes = [result[one, name] for one in result.scenarios]
+            found = study.variable_structure.covariances.worth(outcomes)
+            row = report.row(scene, name)
+            assert found.nees == pytest.approx(row["steady_nees"])
+            inside = row["steady_mean_nees_inside_share"]
+            assert found.below + found.above + inside == pytest.approx(1.0)
+            assert found.soon <= found.above
+            assert str(found) in line
+
+
 def test_the_window_forgets_its_first_probabilities_and_the_moving_grid_does_not():
     example = scenario.named("example1")
     setting = study.variable_structure.SETTINGS["example1"]
@@ -172,7 +189,7 @@ def test_in_full_it_also_tells_what_the_outcome_hangs_on():
         assert ("example1_settings", name) in keys
     assert ("example2_from_plots", "imm5_unbiased") in keys
     assert "robustness" in [picture.name for picture in report.pictures]
-    _, moves, survey = report.notes
+    *_, moves, survey = report.notes
     assert "SGMM t = 0.87" in moves
     assert "AGMM: less in both examples" in survey
 

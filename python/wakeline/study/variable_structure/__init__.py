@@ -14,6 +14,7 @@ from wakeline.scenario import Scenario
 
 from .. import curves
 from ..base import Report
+from . import covariances
 from .candidates import SETTINGS, estimators
 from .pictures import pictures_of, robustness_picture
 from .published import PAPER, REFERENCE
@@ -78,6 +79,9 @@ def run(
     for example, candidates in swept() if full else ():
         result = monte_carlo([example], candidates)
         rows += curves.rows(result, example.name, example)
+    notes = [NOTE, covariances.note(results)]
+    if full:
+        notes += [moves(runs, seed), survey(-(-runs // 5), seed, threads)]
     drawn = [*pictures_of(results, rows, seed), *([robustness_picture(rows)] if full else [])]
     return Report(
         name="variable-structure",
@@ -87,5 +91,5 @@ def run(
         result=results,
         pictures=tuple(drawn),
         published={"paper": PAPER, "reference": REFERENCE},
-        notes=(NOTE, *((moves(runs, seed), survey(-(-runs // 5), seed, threads)) if full else ())),
+        notes=tuple(notes),
     )
