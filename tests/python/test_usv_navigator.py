@@ -158,6 +158,15 @@ def test_absurd_fixes_are_rejected_and_nothing_else_is_lost(states, filter, off_
     np.testing.assert_array_equal(run.covariance, without.covariance)
 
 
+def test_headings_of_more_turns_than_a_number_can_tell_are_rejected():
+    absurd, lost = voyage(steps=200), voyage(steps=200)
+    rows = [20, *range(100, 115)]
+    absurd["compass"][rows], lost["compass"][rows] = 1e30, np.nan
+    run, without = (started(log).run(**sensors(log)) for log in (absurd, lost))
+    assert run.rejected["compass"][rows].all()
+    np.testing.assert_array_equal(run.mean, without.mean)
+
+
 def test_steps_without_the_imu_coast():
     log = voyage(steps=300)
     log["imu"][100:130] = np.nan

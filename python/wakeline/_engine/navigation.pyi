@@ -414,7 +414,7 @@ class UsvNavigator:
 
     A reading whose NIS is outside the gate is rejected. When more than `rejections` of one sensor in a
     row were, it is the belief that is widened, and the reading is taken, unless it is more than a
-        million standard deviations off.
+    million standard deviations off.
 
     Parameters
     ----------

@@ -466,6 +466,21 @@ void expect_absurd_readings_to_do_nothing(const std::vector<Instant>& log, doubl
   EXPECT_LT(error.norm(), 20) << off;
 }
 
+TYPED_TEST(EveryUsvModel, RejectsHeadingsWithoutADigit) {
+  const std::vector<Instant> log = mission(18, kNoBias);
+  UsvNavigator<TypeParam> navigator;
+  navigate(navigator, log);
+  const auto before = navigator.estimate();
+  for (const double heading_rad : {1e17, -1e30, 1e160, 1.7e308}) {
+    const auto reading = navigator.update(Compass(), of(heading_rad));
+    EXPECT_TRUE(reading.rejected) << heading_rad;
+    EXPECT_EQ(reading.nis, std::numeric_limits<double>::infinity()) << heading_rad;
+  }
+  EXPECT_TRUE(test::matrices_identical(navigator.estimate().mean, before.mean));
+  EXPECT_TRUE(test::matrices_identical(navigator.estimate().covariance, before.covariance));
+  EXPECT_TRUE(navigator.update(Compass(), of(log.back().compass + 200 * kPi<double>)));
+}
+
 // What is too far for the square of a number, and what is not, but leaves it no digits.
 TYPED_TEST(EveryUsvModel, IsNotMovedByAbsurdReadingsHoweverOftenTheyCome) {
   const std::vector<Instant> log = mission(17, kStatesOf<TypeParam> == 5 ? kNoBias : kBias);

@@ -27,8 +27,7 @@ struct UsvOutliers {
 };
 
 /// What a reading has done. A rejected one has status `kMissed` and leaves the belief as it was;
-/// innovation and NIS are those before any widening. The NIS of one that is too far for a number is
-/// infinite.
+/// innovation and NIS are those before any widening. The NIS of an absurd one is infinite.
 template <int M, class Scalar = double>
 struct [[nodiscard]] UsvReading : Step<M, Scalar> {
   bool rejected = false;  ///< outside the gate
@@ -50,10 +49,11 @@ struct UsvLeg {
 ///   acceleration and no turn, with the noise `unmeasured`.
 /// - A reading outside the gate is rejected. When more than `rejections` of its kind in a row were,
 ///   it is the belief that is wrong: the states are widened by the likeliest error that would
-///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken. But never one more
-///   than a million standard deviations off, a thousand in `float`: a belief so wide would have no
-///   digits left for its errors. Such readings are rejected, and not counted, for as long as they
-///   come.
+///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
+/// - An absurd reading, finite but more than a million standard deviations off (a thousand in
+///   `float`) or so large that its last digit is more than one, says nothing of the belief: it is
+///   rejected however often it comes, and not counted. A belief widened to it would have no digits
+///   left.
 /// - The heading of the estimate is in [-pi, pi].
 ///
 /// Model: `UsvMotion`, `UsvBiasMotion` or `UsvCurrentMotion`; FilterType: `Ekf`, `Ukf` (additive
@@ -115,17 +115,17 @@ class UsvNavigator {
   UsvReading<Sensor::kMeasurements, Scalar> update(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     UsvReading<Sensor::kMeasurements, Scalar> reading{filter_.innovation(sensor, z)};
-    const bool believable = !is_absurd(reading);
-    if (believable && !reading) return reading;
+    if (is_absurd(reading, z)) {
+      reading.nis = std::numeric_limits<Scalar>::infinity();
+      return rejected(reading);
+    }
+    if (!reading) return reading;
     int& in_a_row = rejected_[static_cast<std::size_t>(rows_read<Sensor>(kComponents)[0])];
     if (gate<Sensor::kMeasurements>().contains(reading.nis)) {
       in_a_row = 0;
-    } else if (!believable || in_a_row < rejections_) {
-      in_a_row += believable;
-      reading.rejected = true;
-      reading.status = Status::kMissed;
-      if (!std::isfinite(reading.nis)) reading.nis = std::numeric_limits<Scalar>::infinity();
-      return reading;
+    } else if (in_a_row < rejections_) {
+      ++in_a_row;
+      return rejected(reading);
     } else {
       in_a_row = 0;
       reading.widened = true;
@@ -172,7 +172,8 @@ class UsvNavigator {
 
  private:
   static constexpr int kHeadingRow = index_of(kComponents, kHeading);
-  static constexpr Scalar kFarthest = std::numeric_limits<Scalar>::digits > 24 ? 1e6F : 1e3F;
+  static constexpr Scalar kDigit = std::numeric_limits<Scalar>::epsilon();
+  static constexpr Scalar kFarthestStds = kDigit < 1e-10F ? 1e6F : 1e3F;
 
   [[nodiscard]] Model driven(const Leg& leg) const noexcept {
     Model model = model_;
@@ -189,13 +190,21 @@ class UsvNavigator {
       return gate2_;
   }
 
-  /// Whether a finite innovation is so many standard deviations long that no widening helps.
+  template <class Reading>
+  static Reading rejected(Reading reading) noexcept {
+    reading.rejected = true;
+    reading.status = Status::kMissed;
+    return reading;
+  }
+
+  /// Whether a reading is finite, but too far or too large to be one.
   template <int M>
-  static bool is_absurd(const Step<M, Scalar>& step) noexcept {
-    if (!is_finite(step.innovation)) return false;
+  static bool is_absurd(const Step<M, Scalar>& step, const Vec<Scalar, M>& z) noexcept {
+    if (step.status == Status::kNotStarted || !is_finite(z)) return false;
     for (int k = 0; k < M; ++k) {
       const Scalar std = std::sqrt(step.innovation_covariance(k, k));
-      if (std::abs(step.innovation[k]) > kFarthest * std) return true;
+      if (std::abs(step.innovation[k]) > kFarthestStds * std || std::abs(z[k]) * kDigit > std)
+        return true;
     }
     return false;
   }
