@@ -72,7 +72,9 @@ std::string history_text(const AnyModeHistory& any) {
         const bool pseudo_bayes = tree.pseudo_bayes_order > 0;
         CallText call(pseudo_bayes ? "ModeHistory.pseudo_bayes" : "ModeHistory");
         if (pseudo_bayes) call.with("order", tree.pseudo_bayes_order);
-        call.with("filter", without_turn(AnyFilter(history.bank().filter(0), any.linear())))
+        auto filter = history.bank().filter(0);
+        expect_turn_rate(filter, 0.0);
+        call.with("filter", AnyFilter(filter, any.linear()))
             .with("grid_rad_s", any.grid_rad_s().rates_rad_s());
         if (pseudo_bayes)
           call.with("chain", history.chain());

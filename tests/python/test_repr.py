@@ -80,6 +80,9 @@ OF_ALL_KINDS = {
         switch_time_spread=0.0,
         negligible_probability=1e-5,
     ),
+    "ModeHistory-rates": wl.ModeHistory(
+        wl.Ekf(wl.CoordinatedTurnRate(prior_turn_rate_std_rad_s=0.01)), RATES
+    ),
     "ModeHistory-pseudo_bayes": wl.ModeHistory.pseudo_bayes(2, TURN, RATES, stay_probability=0.8),
     "FuzzyAlphaBeta": wl.FuzzyAlphaBeta(max_plots=6, threshold=1.2, t_norm="minimum", hold=False),
     "BayesianAlphaBeta": wl.BayesianAlphaBeta(max_plots=7, parabolas=False, sojourn_s=20.0),
