@@ -8,7 +8,7 @@ from importlib import resources
 import numpy as np
 import pytest
 
-from wakeline.cli import main, outputs
+from wakeline.cli import main, navigating, outputs
 from wakeline.navigation import LocalPlane
 
 BUNDLED = resources.files("wakeline.recording") / "data" / "irene"
@@ -125,6 +125,12 @@ def test_the_bundled_log_coasts_better_than_on_a_straight(tmp_path, capsys):
     assert ours["coast_10s_median_m"] < 1.05 * straight["coast_10s_median_m"]
     assert ours["coast_60s_median_m"] < rows["dead_reckoning"]["coast_60s_median_m"]
     assert "median of" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("water", [True, False])
+def test_the_first_fix_is_taken_once(tmp_path, water):
+    first = navigated(tmp_path, voyage(minutes=1, water=water))[0]
+    np.testing.assert_allclose(float(first["north_var_m2"]), navigating.FIX_STD_M**2, rtol=0.01)
 
 
 def test_set_and_drift_come_out(tmp_path):

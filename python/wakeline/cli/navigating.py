@@ -25,6 +25,7 @@ LOG_STD_MPS = 0.15
 YAW_RATE_STD_RAD_S = np.deg2rad(6.0)  # where no rate of turn is told
 TURN_RATE_STD_RAD_S = np.deg2rad(2.0)  # of an indicator that lags
 ACCELERATION_STD_MPS2 = 0.1
+START_STD_M = 100.0  # at the first fix, which is yet to be taken as any other
 START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over ground, and without
 SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.1, 0.02  # in one second
 CURRENT_STD_MPS = 0.5
@@ -321,7 +322,7 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
         _first(readings.fix_m, np.zeros(2)),
         velocity,
         float(heading),
-        position_std_m=[FIX_STD_M, FIX_STD_M],
+        position_std_m=[START_STD_M, START_STD_M],
         velocity_std_mps=START_SPEED_STD_MPS if knows_velocity else ANY_SPEED_STD_MPS,
         heading_std_rad=np.deg2rad(10.0),
     )
