@@ -72,8 +72,8 @@ std::string history_text(const AnyModeHistory& any) {
         const bool pseudo_bayes = tree.pseudo_bayes_order > 0;
         CallText call(pseudo_bayes ? "ModeHistory.pseudo_bayes" : "ModeHistory");
         if (pseudo_bayes) call.with("order", tree.pseudo_bayes_order);
-        auto filter = history.bank().filter(0);
-        expect_turn_rate(filter, 0.0);
+        auto filter = history.bank().filter(any.grid_rad_s().straightest() == 0 ? 1 : 0);
+        expect_turn_rate(filter, 0.0, 1.0);
         call.with("filter", AnyFilter(filter, any.linear()))
             .with("grid_rad_s", any.grid_rad_s().rates_rad_s());
         if (pseudo_bayes)
@@ -107,9 +107,10 @@ update weighs the hypotheses by their likelihood, joins those that have become a
 
 Parameters
 ----------
-filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn, or one of these over CoordinatedTurnRate
+filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn, or Ekf, Ukf or SquareRootUkf over CoordinatedTurnRate
     What every hypothesis is like; its turn rate does not matter. Over CoordinatedTurnRate each learns its own rate: one that
-    comes into a mode begins at the rate of the grid, with `prior_turn_rate_std_rad_s`.
+    comes into a mode begins at the rate of the grid, with `prior_turn_rate_std_rad_s` (the straightest with a tenth of it); what it has learnt is
+    in the state.
 grid_rad_s : (2 to 16,) array, optional
     Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
 straight_sojourn_s, turn_sojourn_s : float
@@ -198,7 +199,7 @@ Histories with the same last ``order - 1`` turn rates join in every scan.
 Parameters
 ----------
 order : int
-    1 or more; K to the power of it is at most 256.
+    1 or more, 2 or more over CoordinatedTurnRate; K to the power of it is at most 256.
 filter, grid_rad_s, chain, initial_mode_probability
     As of the class.
 stay_probability : float
@@ -217,7 +218,7 @@ Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Naviga
   history.def(
       "turn_rates_rad_s",
       [](const AnyModeHistory& one) { return to_array(one.grid_rad_s().rates_rad_s()); },
-      "(K,) turn rates of the grid, positive to starboard.");
+      "(K,) turn rates of the grid, positive to starboard. Those learnt are in the state.");
   history.def_property_readonly("hypothesis_count", &AnyModeHistory::hypotheses,
                                 "How many there are at present.");
 }

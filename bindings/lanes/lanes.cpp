@@ -118,7 +118,7 @@ bool run_begun(Estimator estimator, const LaneJob& job, const RunInput& in, cons
   for (std::size_t k = 0; k < job.models.size(); ++k)
     initial[static_cast<Eigen::Index>(k)] = job.initial_mode_probability[k];
   estimator.set_initial_mode_probability(initial);
-  return run_from<int(Estimator::kComponents.size())>(estimator, job, in, out, threads);
+  return run_from<decltype(estimator.estimate())::kStates>(estimator, job, in, out, threads);
 }
 
 template <std::size_t Models>

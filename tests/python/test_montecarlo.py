@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wakeline as wl
-from cases import MOTIONS, turning_imm
+from cases import MOTIONS, made_by, turning_imm
 from wakeline import metrics, montecarlo, scenario
 from wakeline.montecarlo import Candidate, Result, running
 from wakeline.scenario import RadarSimulator, Scenario, Segment, Truth
@@ -400,11 +400,6 @@ def test_what_is_saved_is_loaded(result, tmp_path):
     assert (loaded.scenarios, loaded.candidates) == (["case", "seldom"], ["imm", "told"])
 
 
-def made_by(text):
-    """What a kept text makes, where Wakeline's names are known."""
-    return eval(text, dict(vars(wl)))
-
-
 def test_a_loaded_result_tells_what_it_was_made_with(result, tmp_path):
     result.save(tmp_path / "result.npz")
     loaded = Result.load(tmp_path / "result.npz")
@@ -450,6 +445,8 @@ def test_what_cannot_be_built_is_told_as_what_builds_it():
     told = run(CASE, {"x": Candidate(not_here)}, runs=1)["case", "x"]
     assert (told.failed_runs, told.estimator) == (1, "<function not_here>")
     assert told.sensor == repr(CASE.polar_sensor)
+    blind = run(CASE, {"x": Candidate(IMM.estimator, not_here)}, runs=1)["case", "x"]
+    assert (blind.failed_runs, blind.sensor) == (1, "<function not_here>")
 
 
 def test_a_file_of_before_estimators_were_told_is_loaded(result, tmp_path):

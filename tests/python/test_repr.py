@@ -18,6 +18,7 @@ from cases import (
     RADAR,
     SMALL_NOISE,
     START,
+    made_by,
     readings,
     turning_imm,
 )
@@ -83,15 +84,13 @@ OF_ALL_KINDS = {
     "ModeHistory-rates": wl.ModeHistory(
         wl.Ekf(wl.CoordinatedTurnRate(prior_turn_rate_std_rad_s=0.01)), RATES
     ),
+    "ModeHistory-one_side": wl.ModeHistory(
+        wl.Ekf(wl.CoordinatedTurnRate(prior_turn_rate_std_rad_s=0.01)), [0.0, 0.05]
+    ),
     "ModeHistory-pseudo_bayes": wl.ModeHistory.pseudo_bayes(2, TURN, RATES, stay_probability=0.8),
     "FuzzyAlphaBeta": wl.FuzzyAlphaBeta(max_plots=6, threshold=1.2, t_norm="minimum", hold=False),
     "BayesianAlphaBeta": wl.BayesianAlphaBeta(max_plots=7, parabolas=False, sojourn_s=20.0),
 }
-
-
-def made_by(text):
-    """What a text makes, where Wakeline's names are known."""
-    return eval(text, vars(wl.filter) | vars(wl))
 
 
 def again(thing):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -51,7 +52,7 @@ class Candidate:
             dt_s=scenario.radar.period_s,
             sensor=_sensor(self.sensor, scenario),
             start=scenario.start,
-            **_told(scenario.control_mps2),
+            **_control_of(scenario.control_mps2),
         )
 
     def rates(self, scenario: Scenario) -> np.ndarray | None:
@@ -66,13 +67,12 @@ class Candidate:
     def told(self, scenario: Scenario) -> dict[str, str]:
         """The text of ``estimator`` and of ``sensor``, as they are on a scenario.
 
-        An estimator that cannot be built, and so fails in every run, is told as what builds it.
+        One that cannot be built, so that every run fails, is told as what builds it.
         """
-        try:
-            estimator = self._built(scenario)
-        except core.FilterError:
-            estimator = self.estimator
-        return {"estimator": _text(estimator), "sensor": _text(_sensor(self.sensor, scenario))}
+        return {
+            "estimator": _text_of(partial(self._built, scenario), self.estimator),
+            "sensor": _text_of(partial(_sensor, self.sensor, scenario), self.sensor),
+        }
 
     def _built(self, scenario: Scenario) -> Any:
         return self.estimator if hasattr(self.estimator, "run") else self.estimator(scenario)
@@ -127,7 +127,7 @@ def clairvoyant(
         read = [k for k, step in enumerate(steps) if step.scan is not None]
         told[:, read] = z[:, [steps[k].scan for k in read]]
         known = filter.Ekf(motion.CoordinatedTurn(turn_rate_rad_s=rate_rad_s, noise=noise))
-        control = _told(np.array([step.control_mps2 for step in steps]))
+        control = _control_of(np.array([step.control_mps2 for step in steps]))
         piece = known.run(told, dt_s=dt_s, sensor=sensor, start=starts, **control)
         starts = list(map(core.Gaussian, piece.mean[:, -1], piece.covariance[:, -1]))
         for name, parts in fields.items():
@@ -137,7 +137,7 @@ def clairvoyant(
     return SimpleNamespace(**joined, mode_probability=None, turn_rate_rad_s=rates)
 
 
-def _told(control_mps2: np.ndarray) -> dict[str, np.ndarray]:
+def _control_of(control_mps2: np.ndarray) -> dict[str, np.ndarray]:
     """The argument by which an estimator is told of a control (T, 2); none where it is zero."""
     return {"acceleration_mps2": control_mps2} if control_mps2.any() else {}
 
@@ -145,6 +145,13 @@ def _told(control_mps2: np.ndarray) -> dict[str, np.ndarray]:
 def _text(thing: Any) -> str:
     """Its repr, without where it is in memory."""
     return re.sub(r" at 0x[0-9a-fA-F]+", "", repr(thing))
+
+
+def _text_of(build: Callable[[], Any], otherwise: Any) -> str:
+    try:
+        return _text(build())
+    except core.FilterError:
+        return _text(otherwise)
 
 
 def _sensor(sensor: Any, scenario: Scenario) -> Any:

@@ -29,7 +29,7 @@ from wakeline.scenario import RadarSimulator, Scenario, TrackTruth
 
 from . import curves
 from .base import Picture, Report, Rows
-from .estimators import peaked, turn_filter, turn_imm
+from .estimators import learning_filter, peaked, turn_filter, turn_imm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,7 +57,7 @@ _NOISE = WhiteAcceleration(psd_m2s3=0.06)
 _STRAIGHT_S, _TURN_S = 200.0, 20.0
 _LEAST_S = 6.0  # of a history's segments; the times beyond it are those of its chain
 _THREE_DEG_S = (0, 2, -2)
-_RATE_STD_DEG_S, _WANDERING_PSD_M2S3, _COURSE_PSD_RAD2S = 0.2, 0.001, 0.0015
+_WANDERING, _COURSE_PSD_RAD2S = WhiteAcceleration(psd_m2s3=0.001), 0.0015
 _OTHER_NOISES_M2S3 = (0.003, 0.01, 0.3)
 _SHOWN = ("kalman_ca", "kalman_cv", "mode_history")
 _SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
@@ -191,18 +191,6 @@ def _histories(filter: wl.Ekf) -> wl.ModeHistory:
     )
 
 
-def _wandering_turn() -> wl.Ekf:
-    """Of a turn whose rate is learnt and a course that wanders, at a speed that hardly does."""
-    return wl.Ekf(
-        wl.CoordinatedTurnRate(
-            noise=WhiteAcceleration(psd_m2s3=_WANDERING_PSD_M2S3),
-            turn_rate_psd_rad2s3=0.0,
-            prior_turn_rate_std_rad_s=np.deg2rad(_RATE_STD_DEG_S),
-            course_psd_rad2s=_COURSE_PSD_RAD2S,
-        )
-    )
-
-
 _TABLE: dict[str, Callable[[], Any]] = {
     "kalman_cv": lambda: wl.Ekf(wl.ConstantVelocity()),
     "wandering_course": lambda: wl.Ekf(wl.WanderingCourse()),
@@ -219,7 +207,9 @@ _TABLE: dict[str, Callable[[], Any]] = {
     "sgmm": lambda: wl.SwitchingGridImm(turn_filter(0.0, _NOISE)),
     "likely_model_set": lambda: wl.LikelyModelSetImm(turn_filter(0.0, _NOISE)),
     "mode_history": lambda: _histories(turn_filter(0.0, _NOISE)),
-    "mode_history_rates": lambda: _histories(_wandering_turn()),
+    "mode_history_rates": lambda: _histories(
+        learning_filter(_WANDERING, course_psd_rad2s=_COURSE_PSD_RAD2S)
+    ),
 }
 
 

@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+#include <span>
+#include <vector>
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
@@ -115,7 +116,8 @@ TEST(ModeHistoryOfRates, ASwitchTakesUpThePriorOfItsMode) {
   for (const auto& one : tree.hypotheses()) {
     if (one.segment_s != 2.5 || (one.modes >> 4 & 0xF) != (likeliest.modes & 0xF)) continue;
     EXPECT_NEAR(one.belief.mean[4], kTriple[one.mode()], 1e-15);
-    EXPECT_NEAR(one.belief.covariance(4, 4), deg(0.5) * deg(0.5), 1e-15);
+    const double std_rad_s = one.mode() == 1 ? deg(0.05) : deg(0.5);  // a straight is straight
+    EXPECT_NEAR(one.belief.covariance(4, 4), std_rad_s * std_rad_s, 1e-15);
     ++switches;
   }
   EXPECT_GT(switches, 0);
@@ -176,17 +178,110 @@ TEST(ModeHistoryOfRates, DoesNotTouchTheHeap) {
   bool good = tree.start(steaming()) == Status::kOk;
   for (int scan = 1; scan < 6; ++scan) {
     good = tree.predict(2.5) == Status::kOk && good;
-    good = static_cast<bool>(tree.update(kRadar, test::plot_of<double>(3020 * scan, 3))) && good;
+    good = tree.predict(2.5) == Status::kOk && good;  // a scan was missed
+    good =
+        static_cast<bool>(tree.update(kRadar, test::plot_of<double>(3000 + 40 * scan, 3))) && good;
   }
   EXPECT_EQ(fence.allocations(), 0);
   EXPECT_TRUE(good);
 }
 
+/// A quiet mode and a restless one, of one prior rate.
+Tree of_two_noises(const HistoryTree& settings) {
+  std::vector<Learner> filters(2, Learner(learning(deg(3.0))));
+  CoordinatedTurnRate restless = learning(deg(3.0));
+  restless.turn_rate_psd_rad2s3 = 1e-4;
+  filters[1] = Learner(restless);
+  const ModeChain<kRuntimeModes> chain(ModeChain<kRuntimeModes>::Matrix{{0.9, 0.1}, {0.2, 0.8}});
+  return Tree(settings, chain, Tree::Bank(std::span<const Learner>(filters)));
+}
+
+TEST(ModeHistoryOfRates, WhereModesDoNotGuessTheRateASwitchKeepsIt) {
+  Gaussian<5> known{Vec<double, 5>::Zero(), Mat<double, 5, 5>::Identity() * 1e-8};
+  known.mean << 3000, 8, 0, 0, deg(5.0);
+  known.covariance.topLeftCorner<4, 4>() = steaming().covariance;
+  for (const int order : {0, 1, 2}) {
+    Tree tree = of_two_noises(order == 0 ? HistoryTree{} : HistoryTree::pseudo_bayes(order, 2));
+    ASSERT_EQ(tree.start(known), Status::kOk);
+    for (int scan = 0; scan < 3; ++scan) ASSERT_EQ(tree.predict(2.5), Status::kOk);
+    for (const auto& one : tree.hypotheses()) EXPECT_NEAR(one.belief.mean[4], deg(5.0), 1e-12);
+  }
+}
+
+/// Both trees take the same scans, of which some are missed, and stay alike.
+template <class One, class Other>
+void expect_alike(One& one, Other& other, double tolerance) {
+  using Scalar = typename Other::Scalar;
+  Draw draw(86);
+  for (int scan = 1; scan < 40; ++scan) {
+    const bool missed = scan % 9 > 6;  // two in a row
+    ASSERT_EQ(one.predict(2.5), Status::kOk);
+    ASSERT_EQ(other.predict(Scalar(2.5)), Status::kOk);
+    const Vec<double, 2> z = plot(draw, scan, deg(2.4));
+    if (missed) continue;
+    ASSERT_TRUE(one.update(kRadar, z) && other.update(kRadar, z.cast<Scalar>()));
+    const Vec<double, 5> apart =
+        other.estimate().mean.template cast<double>() - one.estimate().mean;
+    EXPECT_LT(apart.head<4>().norm(), tolerance) << scan;
+    EXPECT_LT(std::abs(apart[4]), 1e-3 * tolerance) << scan;
+  }
+}
+
+TEST(ModeHistoryOfRates, InFloatIsTheSameToItsDigits) {
+  Tree one = tree_of(deg(0.8));
+  auto other = tree_of<float>(deg(0.8));
+  ASSERT_EQ(one.start(steaming()), Status::kOk);
+  ASSERT_EQ(other.start(steaming().cast<float>()), Status::kOk);
+  expect_alike(one, other, 1.0);
+}
+
+TEST(ModeHistoryOfRates, GoesOnFromItsArchiveWithTheSameBits) {
+  Tree tree = tree_of(deg(0.8)), other = tree;
+  ASSERT_EQ(tree.start(steaming()), Status::kOk);
+  Draw draw(87);
+  for (int scan = 1; scan < 30; ++scan) {
+    ASSERT_EQ(tree.predict(2.5), Status::kOk);
+    ASSERT_TRUE(tree.update(kRadar, plot(draw, scan, deg(2.4))));
+  }
+  Archive writing;
+  tree.archive(writing);
+  Archive reading(writing.bytes());
+  other.archive(reading);
+  ASSERT_TRUE(reading.ok() && reading.at_end());
+  for (int scan = 30; scan < 36; ++scan) {
+    ASSERT_EQ(tree.predict(2.5), Status::kOk);
+    ASSERT_EQ(other.predict(2.5), Status::kOk);
+    if (scan < 33) continue;  // missed
+    const Vec<double, 2> z = plot(draw, scan, deg(2.4));
+    ASSERT_TRUE(tree.update(kRadar, z) && other.update(kRadar, z));
+    EXPECT_TRUE(beliefs_identical<5>(other.estimate(), tree.estimate()));
+  }
+}
+
+TEST(ModeHistoryOfRates, EvidenceIsTheLikelihoodOfTheUpdate) {
+  Tree tree = tree_of(deg(0.8));
+  ASSERT_EQ(tree.start(steaming()), Status::kOk);
+  ASSERT_EQ(tree.predict(2.5), Status::kOk);
+  const Vec<double, 2> z = test::plot_of<double>(3025, -4);
+  const auto evidence = tree.evidence(kRadar, z);
+  const auto step = tree.update(kRadar, z);
+  EXPECT_NEAR(std::log(evidence.likelihood), step.log_likelihood, 1e-9);
+}
+
 TEST(ModeHistoryOfRates, OneBeliefForAllModesIsRefused) {
   EXPECT_THROW(tree_of(deg(0.8), HistoryTree::pseudo_bayes(1, 3)), std::invalid_argument);
   EXPECT_NO_THROW(tree_of(deg(0.8), HistoryTree::pseudo_bayes(2, 3)));
+}
+
+TEST(CoordinatedTurnRate, StartsAboutItsPriorRate) {
   CoordinatedTurnRate motion = learning(deg(1.0));
-  motion.prior_turn_rate_rad_s = std::numeric_limits<double>::infinity();
+  motion.prior_turn_rate_rad_s = deg(-2.0);
+  Learner filter(motion);
+  ASSERT_EQ(filter.start(steaming()), Status::kOk);
+  EXPECT_EQ(filter.estimate().mean[4], deg(-2.0));
+  EXPECT_EQ(filter.estimate().covariance(4, 4), deg(1.0) * deg(1.0));
+  EXPECT_EQ(filter.estimate().mean.head<4>(), steaming().mean);
+  motion.prior_turn_rate_rad_s = std::nan("");
   EXPECT_THROW(Learner{motion}, std::invalid_argument);
 }
 

@@ -103,7 +103,8 @@ double prior_variance(const Motion& motion, Component component) noexcept {
     return 1.0;
 }
 
-/// Its mean: the model's own `prior_mean(component)` where it has one, else 0.
+/// Mean of a component that a start does not know: the model's own `prior_mean(component)` where it
+/// has one, else 0.
 template <class Motion>
 double prior_mean(const Motion& motion, Component component) noexcept {
   if constexpr (requires { motion.prior_mean(component); })

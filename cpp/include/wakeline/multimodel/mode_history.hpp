@@ -31,8 +31,8 @@ namespace wakeline {
 /// spread of the mixture.
 ///
 /// Where the turn rate is part of the state (`CoordinatedTurnRate`), a mode is a guess of it: a
-/// hypothesis that switches takes up the mode's prior rate and its deviation, and learns the rate
-/// from there. Vessels need not turn at the rates of a grid then.
+/// hypothesis that switches to a mode with another prior rate, or another deviation of it, takes
+/// that up and learns its rate from there. Vessels need not turn at the rates of a grid then.
 ///
 /// Has the face of `Imm`, over filters of one kind; storage is in place, no
 /// heap: at most `Capacity` hypotheses, twice. In a missed scan the mode probabilities follow the
@@ -87,17 +87,19 @@ class ModeHistory {
     require(tree.max_hypotheses >= bank.size(), "max_hypotheses",
             ("at least the number of modes, " + std::to_string(bank.size())).c_str(),
             tree.max_hypotheses);
-    require(kTurnRateRow < 0 || tree.pseudo_bayes_order != 1, "pseudo_bayes_order",
-            "2 or more where filters learn their turn rates, as one belief can learn but one",
-            tree.pseudo_bayes_order);
+    for (int k = 1; k < bank.size(); ++k)
+      require(same_prior_rate(0, k) || tree.pseudo_bayes_order != 1, "pseudo_bayes_order",
+              "2 or more where each mode learns a turn rate of its own, as order 1 keeps one "
+              "belief for all",
+              tree.pseudo_bayes_order);
   }
 
-  /// Filters like `prototype` at, or about, the turn rates of a grid; at a start the straightest
-  /// has a probability of 0.9.
+  /// Filters like `prototype` at the turn rates of a grid; of those that learn theirs, the
+  /// straightest has a tenth of the deviation of the prior, as a straight is straight. At a start
+  /// it has a probability of 0.9.
   ModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s, const ModeChain<K>& chain,
               const Filter& prototype)
-      : ModeHistory(tree, chain, Bank(prototype, grid_rad_s.size())) {
-    bank_.for_each([&](int k, Filter& filter, auto&) { expect_turn_rate(filter, grid_rad_s[k]); });
+      : ModeHistory(tree, chain, bank_about(grid_rad_s, prototype)) {
     const int modes = grid_rad_s.size();
     initial_.setConstant(Scalar(0.1 / (modes - 1)));
     initial_[grid_rad_s.straightest()] = Scalar(0.9);
@@ -112,7 +114,8 @@ class ModeHistory {
   }
 
   /// Begins a hypothesis in every mode with the belief, over the state or over `[x, vx, y, vy]`.
-  /// Where a filter refuses it nothing changes.
+  /// One over a state with turn rate gives every mode that rate. Where a filter refuses it nothing
+  /// changes.
   template <class StartType>
   Status start(const StartType& belief) noexcept {
     Hypotheses& next = spare();
@@ -266,6 +269,7 @@ class ModeHistory {
  private:
   static constexpr std::size_t kCapacity = static_cast<std::size_t>(Capacity);
   static_assert(kMaxModes <= 16, "a mode has four bits of a history");
+  static constexpr double kStraightPart = 0.1;
   static constexpr int kTurnRateRow = index_of(kComponents, Component::kTurnRate);  ///< or -1
   using Hypotheses = std::array<Hypothesis, kCapacity>;
   using Indices = std::array<int, kCapacity>;
@@ -426,8 +430,10 @@ class ModeHistory {
       switched.segment_s = dt_s;
       switched.modes = followed_by(at(present(), change.from).modes, change.mode);
       if constexpr (kTurnRateRow >= 0) {
-        switched.belief = at(present(), change.from).belief;
-        forget_turn_rate(switched.belief, change.mode);
+        const Hypothesis& from = at(present(), change.from);
+        switched.belief = from.belief;
+        if (!same_prior_rate(from.mode(), change.mode))
+          forget_turn_rate(switched.belief, change.mode);
       }
     }
     const auto before = [&](int i) -> const BeliefType& {
@@ -518,6 +524,24 @@ class ModeHistory {
     return modes << 4 | static_cast<std::uint64_t>(mode);
   }
 
+  static Bank bank_about(const TurnRateGrid& grid_rad_s, const Filter& prototype) {
+    Bank bank(prototype, grid_rad_s.size());
+    bank.for_each([&](int k, Filter& filter, auto&) {
+      expect_turn_rate(filter, grid_rad_s[k], k == grid_rad_s.straightest() ? kStraightPart : 1.0);
+    });
+    return bank;
+  }
+
+  /// Whether two modes assume the same of a turn rate that is not known.
+  [[nodiscard]] bool same_prior_rate(int a, int b) const noexcept {
+    if constexpr (kTurnRateRow < 0) return true;
+    const auto& one = bank_.filter(a).motion();
+    const auto& other = bank_.filter(b).motion();
+    constexpr auto kRate = Component::kTurnRate;
+    return prior_mean(one, kRate) == prior_mean(other, kRate) &&
+           prior_variance(one, kRate) == prior_variance(other, kRate);
+  }
+
   /// Takes the mode's prior for what is known of the turn rate.
   void forget_turn_rate(BeliefType& belief, int mode) const noexcept {
     const auto& motion = bank_.filter(mode).motion();
@@ -529,7 +553,8 @@ class ModeHistory {
   }
 
   /// The switch may have come later in the scan: adds a part of u d, d the way from the mean that
-  /// is without the switch, u uniform over one scan, whose variance is 1/12.
+  /// is without the switch, u uniform over one scan, whose variance is 1/12. A turn rate is that of
+  /// the mode whenever the switch came.
   void spread(BeliefType& belief, const Vec<Scalar, kStates>& without) const noexcept {
     Vec<Scalar, kStates> d = belief.mean - without;
     if constexpr (kTurnRateRow >= 0) d[kTurnRateRow] = Scalar(0);

@@ -77,7 +77,8 @@ void set_turn_rate(Filter& filter, Rate turn_rate_rad_s) noexcept {
   static_assert(
       requires { filter.motion().turn_rate_rad_s; },
       "wakeline: the motion model of this filter has no known turn rate (turn_rate_rad_s); use "
-      "CoordinatedTurn");
+      "CoordinatedTurn, or in a ModeHistory a model that begins to learn one "
+      "(prior_turn_rate_rad_s), as CoordinatedTurnRate does");
   static_assert(
       std::is_convertible_v<Rate, std::decay_t<decltype(filter.motion().turn_rate_rad_s)>>,
       "wakeline: here each lane has a turn rate of its own; use KnownTurn<Scalar> instead of "
@@ -88,12 +89,13 @@ void set_turn_rate(Filter& filter, Rate turn_rate_rad_s) noexcept {
 }
 
 /// Gives a filter the turn rate of a mode: the one that it knows, or the one around which it begins
-/// to learn its own.
+/// to learn its own, with so much of the deviation that it had.
 template <class Filter>
-void expect_turn_rate(Filter& filter, double turn_rate_rad_s) noexcept {
+void expect_turn_rate(Filter& filter, double turn_rate_rad_s, double of_deviation) noexcept {
   if constexpr (requires { filter.motion().prior_turn_rate_rad_s; }) {
     auto motion = filter.motion();
     motion.prior_turn_rate_rad_s = turn_rate_rad_s;
+    motion.prior_turn_rate_std_rad_s *= of_deviation;
     filter.set_motion(motion);
   } else {
     set_turn_rate(filter, turn_rate_rad_s);

@@ -122,21 +122,20 @@ class UsvNavigator {
     if (!reading) return reading;
     int& in_a_row = rejected_[static_cast<std::size_t>(rows_read<Sensor>(kComponents)[0])];
     if (gate<Sensor::kMeasurements>().contains(reading.nis)) {
-      in_a_row = 0;
+      reading.status = filter_.update(sensor, z).status;
     } else if (in_a_row < rejections_) {
       ++in_a_row;
       return rejected(reading);
     } else {
-      in_a_row = 0;
-      reading.widened = true;
+      const State before = estimate();
+      widen(sensor, reading.innovation);
+      reading.status = filter_.update(sensor, z).status;
+      reading.widened = bool(reading);
+      if (!reading) (void)filter_.assign(before);
     }
-    const State before = estimate();
-    if (reading.widened) widen(sensor, reading.innovation);
-    reading.status = filter_.update(sensor, z).status;
-    if (reading)
-      wrap();
-    else
-      (void)filter_.assign(before);
+    if (!reading) return reading;
+    in_a_row = 0;
+    wrap();
     return reading;
   }
 

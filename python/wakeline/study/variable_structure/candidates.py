@@ -14,7 +14,7 @@ from wakeline import PiecewiseAcceleration, montecarlo, plot
 from wakeline.montecarlo import Candidate
 from wakeline.scenario import Scenario
 
-from ..estimators import sticky_chain, turn_candidate, turn_filter
+from ..estimators import learning_filter, sticky_chain, turn_candidate, turn_filter
 
 _PLAIN_LABELS = {
     "imm5": "IMM5",
@@ -44,7 +44,6 @@ _NOISE = {
 }
 _STAY = 0.9
 _NINE_DEG_S = range(-4, 5)
-_RATE_STD_DEG_S = 0.2
 
 
 @dataclass(frozen=True)
@@ -127,13 +126,8 @@ def mode_history(setting: Setting, form: str) -> Candidate:
 
 def mode_history_rates(setting: Setting, form: str) -> Candidate:
     """The same tree, whose histories begin a turn at one of the rates and learn their own."""
-    learning = wl.CoordinatedTurnRate(
-        noise=_NOISE[form],
-        turn_rate_psd_rad2s3=0.0,
-        prior_turn_rate_std_rad_s=np.deg2rad(_RATE_STD_DEG_S),
-    )
     rates_rad_s = np.deg2rad(_NINE_DEG_S)
-    return Candidate(wl.ModeHistory(wl.Ekf(learning), rates_rad_s), form, rates_rad_s)
+    return Candidate(wl.ModeHistory(learning_filter(_NOISE[form]), rates_rad_s), form, rates_rad_s)
 
 
 def unmixed(setting: Setting, form: str) -> dict[str, Candidate]:
