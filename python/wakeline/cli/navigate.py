@@ -27,8 +27,8 @@ _COLUMNS = (
 _SHOWN_PROBLEMS = 5
 _LEAST_DRAWN_FIXES = 10
 _SMOOTHED = (
-    "smoothed: own.csv and pictures know at each time the readings after it, too, up to a gap or to "
-    "what was not believed until it went on"
+    "smoothed: own.csv and pictures know at each time the readings after it, too, up to a gap or "
+    "to what was not believed until it went on"
 )
 _METHODS = {
     "navigator": "navigator",
@@ -62,7 +62,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "--smooth",
         action="store_true",
         help="let own.csv and the pictures know at each time the readings after it, too, up to a "
-        "gap or to what was not believed until it went on: the best that can be said of a voyage that is over",
+        "gap or to what was not believed until it went on: the best that can be said of a voyage "
+        "that is over",
     )
     parser.add_argument(
         "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
