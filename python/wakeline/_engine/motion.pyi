@@ -153,6 +153,7 @@ class CoordinatedTurnRate:
         prior_turn_rate_std_rad_s: float = 0.05235987755982989,
         course_psd_rad2s: float = 0.0,
         max_speed_mps: float = 30.0,
+        prior_turn_rate_rad_s: float = 0.0,
     ) -> None: ...
     def jacobian(self, x: ArrayLike, dt_s: float) -> NDArray[np.float64]:
         """

@@ -575,8 +575,10 @@ class ModeHistory:
 
     Parameters
     ----------
-    filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
-        What every hypothesis is like; its turn rate does not matter.
+    filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn, or Ekf, Ukf or SquareRootUkf over CoordinatedTurnRate
+        What every hypothesis is like; its turn rate does not matter. Over CoordinatedTurnRate each learns its own rate: one that
+        comes into a mode begins at the rate of the grid, with `prior_turn_rate_std_rad_s` (the straightest with a tenth of it); what it has learnt is
+        in the state.
     grid_rad_s : (2 to 16,) array, optional
         Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
     straight_sojourn_s, turn_sojourn_s : float
@@ -631,7 +633,7 @@ class ModeHistory:
         Parameters
         ----------
         order : int
-            1 or more; K to the power of it is at most 256.
+            1 or more, 2 or more over CoordinatedTurnRate; K to the power of it is at most 256.
         filter, grid_rad_s, chain, initial_mode_probability
             As of the class.
         stay_probability : float
@@ -726,7 +728,7 @@ class ModeHistory:
         """
     def turn_rates_rad_s(self) -> NDArray[np.float64]:
         """
-        (K,) turn rates of the grid, positive to starboard.
+        (K,) turn rates of the grid, positive to starboard. Those learnt are in the state.
         """
     def update(
         self,

@@ -57,7 +57,7 @@ _NOISE = WhiteAcceleration(psd_m2s3=0.06)
 _STRAIGHT_S, _TURN_S = 200.0, 20.0
 _LEAST_S = 6.0  # of a history's segments; the times beyond it are those of its chain
 _THREE_DEG_S = (0, 2, -2)
-_WANDERING, _COURSE_PSD_RAD2S = WhiteAcceleration(psd_m2s3=0.001), 0.0015
+_WANDERING_M2S3, _COURSE_PSD_RAD2S = 0.001, 0.0015
 _OTHER_NOISES_M2S3 = (0.003, 0.01, 0.3)
 _SHOWN = ("kalman_ca", "kalman_cv", "mode_history")
 _SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
@@ -157,6 +157,7 @@ def variants() -> dict[str, Any]:
         | {
             "imm3_restless": turn_imm(_THREE_DEG_S, _NOISE, stay=0.95),
             "mode_history_restless": wl.ModeHistory(turn_filter(0.0, _NOISE)),
+            "imm_turn_rate_wandering": _imm_wandering(),
         }
     )
 
@@ -171,6 +172,15 @@ def _imm_rate() -> wl.Imm:
     return _straight_first(
         [wl.Ekf(wl.ConstantVelocity(noise=_NOISE)), wl.Ekf(wl.CoordinatedTurnRate(noise=_NOISE))]
     )
+
+
+def _imm_wandering() -> wl.Imm:
+    """The same, with the noise of the histories that learn their rates."""
+    straight = wl.WanderingCourse(psd_m2s3=_WANDERING_M2S3, course_psd_rad2s=_COURSE_PSD_RAD2S)
+    turn = wl.CoordinatedTurnRate(
+        noise=WhiteAcceleration(psd_m2s3=_WANDERING_M2S3), course_psd_rad2s=_COURSE_PSD_RAD2S
+    )
+    return _straight_first([wl.Ekf(straight), wl.Ekf(turn)])
 
 
 def _straight_first(filters: list[wl.Ekf]) -> wl.Imm:
@@ -208,7 +218,9 @@ _TABLE: dict[str, Callable[[], Any]] = {
     "likely_model_set": lambda: wl.LikelyModelSetImm(turn_filter(0.0, _NOISE)),
     "mode_history": lambda: _histories(turn_filter(0.0, _NOISE)),
     "mode_history_rates": lambda: _histories(
-        learning_filter(_WANDERING, course_psd_rad2s=_COURSE_PSD_RAD2S)
+        learning_filter(
+            WhiteAcceleration(psd_m2s3=_WANDERING_M2S3), course_psd_rad2s=_COURSE_PSD_RAD2S
+        )
     ),
 }
 
