@@ -105,7 +105,7 @@ def robustness_picture(rows: Rows) -> Picture:
         "robustness",
         "Example 1 with other turn rates, finer radars: mean position RMSE over the bound",
         tuple(partial(_draw_robustness, rows=rows, noise=noise) for noise in NOISES),
-        size_in=(7.2, 7.2),
+        size_in=(8.8, 7.2),
     )
 
 
