@@ -1,6 +1,7 @@
 """What an object shows is the call that makes an equal one."""
 
 import copy
+import re
 
 import numpy as np
 import pytest
@@ -126,6 +127,24 @@ def test_the_text_is_of_the_parameters_not_of_the_belief(name):
     assert repr(estimator) == repr(OF_ALL_KINDS[name])
 
 
+TOLD_AS_A_CHAIN = {
+    *("chain", "stay_probability"),
+    *("straight_sojourn_s", "turn_sojourn_s", "straighten_probability"),
+}
+
+
+@pytest.mark.parametrize("thing", [*OF_ALL_KINDS.values(), *MOTIONS.values(), RADAR, CONVERTED])
+def test_the_text_tells_every_argument(thing):
+    text = repr(thing)
+    signature = type(thing).__init__.__doc__.split("->")[0]
+    arguments = set(re.findall(r"(\w+):", signature)) - {"self"}
+    untold = {name for name in arguments if f"{name}=" not in text}
+    if untold & TOLD_AS_A_CHAIN:
+        assert "chain=" in text or "sojourn_s=" in text
+    assert arguments
+    assert not untold - TOLD_AS_A_CHAIN or ".pseudo_bayes(" in text
+
+
 def test_the_text_of_an_imm():
     imm = wl.Imm(
         [wl.Ekf(wl.ConstantVelocity(noise=SMALL_NOISE)), wl.Ukf(wl.Singer())],
@@ -236,6 +255,7 @@ motions = st.one_of(
         prior_turn_rate_std_rad_s=positive,
         course_psd_rad2s=positive,
         max_speed_mps=positive,
+        prior_turn_rate_rad_s=st.floats(-1, 1),
     ),
     st.builds(wl.Singer, maneuver_time_s=positive, accel_std_mps2=positive),
     st.builds(
@@ -254,6 +274,12 @@ def test_motions_of_any_parameters(motion):
     np.testing.assert_array_equal(
         again(motion).process_noise(*state, 2.5), motion.process_noise(*state, 2.5)
     )
+    begun = [wl.Ekf(one) for one in (again(motion), motion)]
+    for filter in begun:
+        filter.start(START)
+    got, wanted = (filter.estimate() for filter in begun)
+    np.testing.assert_array_equal(got.mean, wanted.mean)
+    np.testing.assert_array_equal(got.covariance, wanted.covariance)
 
 
 def test_a_policy_shows_itself_however_it_is_wrapped():
