@@ -91,15 +91,16 @@ bool run(LaneJob& job, const AnySensor& sensor, const RunInput& in,
   return kernels->run(job, in, out, threads.count());
 }
 
-/// The same of an Imm and what it has beside its chain.
-bool run_mixture(const AnyImm& imm, const Structure& structure, const AnySensor& sensor,
+/// The same of an estimator of several models and what it has beside its chain.
+template <class Estimator>
+bool run_mixture(const Estimator& estimator, const Structure& structure, const AnySensor& sensor,
                  const RunInput& in, const std::vector<AnyBelief>& starts, const RunOutput& out) {
   LaneJob job;
-  job.chain = &imm.chain();
+  job.chain = &estimator.chain();
   job.structure = structure;
-  for (int k = 0; k < imm.bank().size(); ++k) {
-    if (!add_model(imm.bank().filter(static_cast<std::size_t>(k)), job)) return false;
-    job.initial_mode_probability.push_back(imm.initial_mode_probability()[k]);
+  for (int k = 0; k < estimator.bank().size(); ++k) {
+    if (!add_model(AnyFilter(estimator.bank().filter(k)), job)) return false;
+    job.initial_mode_probability.push_back(estimator.initial_mode_probability()[k]);
   }
   return run(job, sensor, in, starts, out);
 }
@@ -157,15 +158,8 @@ bool run_lanes(const AnyLikelyModelSetImm& imm, const AnySensor& sensor, const R
 bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
   return std::visit(
-      [&]<class Filter>(const ModeHistory<Filter>& history) {
-        LaneJob job;
-        job.chain = &history.chain();
-        job.structure = history.tree();
-        for (int k = 0; k < history.bank().size(); ++k) {
-          if (!add_model(AnyFilter(history.bank().filter(k)), job)) return false;
-          job.initial_mode_probability.push_back(history.initial_mode_probability()[k]);
-        }
-        return run(job, sensor, in, starts, out);
+      [&](const auto& history) {
+        return run_mixture(history, history.tree(), sensor, in, starts, out);
       },
       any.variant());
 }

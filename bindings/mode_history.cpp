@@ -109,8 +109,9 @@ Parameters
 ----------
 filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn, or Ekf, Ukf or SquareRootUkf over CoordinatedTurnRate
     What every hypothesis is like; its turn rate does not matter. Over CoordinatedTurnRate each learns its own rate: one that
-    comes into a mode begins at the rate of the grid, with `prior_turn_rate_std_rad_s` (the straightest with a tenth of it); what it has learnt is
-    in the state. A fifth of the grid's step, and `turn_rate_psd_rad2s3` of 0, keep the modes apart.
+    comes into a mode begins at the rate of the grid, with `prior_turn_rate_std_rad_s` (the straightest with a tenth of
+    it); what it has learnt is in the state. A fifth of the grid's step, and `turn_rate_psd_rad2s3` of 0, keep the modes
+    apart.
 grid_rad_s : (2 to 16,) array, optional
     Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
 straight_sojourn_s, turn_sojourn_s : float

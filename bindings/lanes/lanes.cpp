@@ -97,12 +97,17 @@ Turn4<Rate> turn_filter(const LaneJob& job, std::size_t k) {
   return Turn4<Rate>({motion.turn_rate_rad_s, motion.noise});
 }
 
+/// One that learns its turn rate.
+Ekf<CoordinatedTurnRate, Lanes> learning_filter(const LaneJob& job, std::size_t k) {
+  return Ekf<CoordinatedTurnRate, Lanes>(std::get<CoordinatedTurnRate>(job.models[k].motion));
+}
+
 /// As many as the job has.
-template <class Rate>
-UniformBank<Turn4<Rate>> turn_bank(const LaneJob& job) {
-  std::vector<Turn4<Rate>> filters;
-  for (std::size_t k = 0; k < job.models.size(); ++k) filters.push_back(turn_filter<Rate>(job, k));
-  return UniformBank<Turn4<Rate>>(std::span<const Turn4<Rate>>(filters));
+template <class Filter>
+UniformBank<Filter> bank_of(Filter (*filter)(const LaneJob&, std::size_t), const LaneJob& job) {
+  std::vector<Filter> filters;
+  for (std::size_t k = 0; k < job.models.size(); ++k) filters.push_back(filter(job, k));
+  return UniformBank<Filter>(std::span<const Filter>(filters));
 }
 
 /// A number that is known.
@@ -137,23 +142,25 @@ bool run_structured(std::monostate, const LaneJob& job, const RunInput& in, cons
     case 5:
       return run_few<5>(job, in, out, threads);
     default:
-      return run_begun(Imm{*job.chain, turn_bank<double>(job)}, job, in, out, threads);
+      return run_begun(Imm{*job.chain, bank_of(&turn_filter<double>, job)}, job, in, out, threads);
   }
 }
 
+/// Whether all models are extended Kalman filters of one motion.
 template <class Motion>
-bool run_tree(const HistoryTree& tree, const LaneJob& job, const RunInput& in, const RunOutput& out,
-              int threads) {
-  using Filter = Ekf<Motion, Lanes>;
-  std::vector<Filter> filters;
-  for (const LaneModel& model : job.models) filters.emplace_back(std::get<Motion>(model.motion));
-  const UniformBank<Filter> bank{std::span<const Filter>(filters)};
-  return run_begun(ModeHistory(tree, *job.chain, bank), job, in, out, threads);
+bool all_over(const LaneJob& job) {
+  return std::ranges::all_of(job.models, [](const LaneModel& model) {
+    return !model.unscented && std::holds_alternative<Motion>(model.motion);
+  });
 }
 
 bool run_structured(const HistoryTree& tree, const LaneJob& job, const RunInput& in,
                     const RunOutput& out, int threads) {
-  return run_tree<CoordinatedTurn>(tree, job, in, out, threads);
+  const auto run_over = [&](const auto& bank) {
+    return run_begun(ModeHistory(tree, *job.chain, bank), job, in, out, threads);
+  };
+  return all_over<CoordinatedTurnRate>(job) ? run_over(bank_of(&learning_filter, job))
+                                            : run_over(bank_of(&turn_filter<double>, job));
 }
 
 /// An estimator whose models change their turn rates by some rules.
@@ -178,22 +185,14 @@ bool run_structured(const SwitchingGrid& grid, const LaneJob& job, const RunInpu
 
 bool run_structured(const LikelyModelSet& set, const LaneJob& job, const RunInput& in,
                     const RunOutput& out, int threads) {
-  return run_turning<LikelyModelSetImm>(set, turn_bank<Lanes>(job), job, in, out, threads);
-}
-
-/// Whether all models are extended Kalman filters of one motion.
-template <class Motion>
-bool all_over(const LaneJob& job) {
-  return std::ranges::all_of(job.models, [](const LaneModel& model) {
-    return !model.unscented && std::holds_alternative<Motion>(model.motion);
-  });
+  const auto bank = bank_of(&turn_filter<Lanes>, job);
+  return run_turning<LikelyModelSetImm>(set, bank, job, in, out, threads);
 }
 
 bool run_mixture(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
-  const auto* tree = std::get_if<HistoryTree>(&job.structure);
-  if (tree != nullptr && all_over<CoordinatedTurnRate>(job))
-    return run_tree<CoordinatedTurnRate>(*tree, job, in, out, threads);
-  if (!all_over<CoordinatedTurn>(job)) return false;
+  const bool learns =
+      std::holds_alternative<HistoryTree>(job.structure) && all_over<CoordinatedTurnRate>(job);
+  if (!learns && !all_over<CoordinatedTurn>(job)) return false;
   return std::visit(
       [&](const auto& structure) { return run_structured(structure, job, in, out, threads); },
       job.structure);

@@ -60,25 +60,38 @@ Vec<double, 2> plot(Draw& draw, int scan, double turn_rate_rad_s) {
   return test::plot_of<double>(at[0] + 10 * draw.normal(), at[1] + 10 * draw.normal());
 }
 
+/// Starts both trees and gives them the same scans, some of which are missed; `check(scan)` after
+/// each that is not.
+template <class One, class Other, class Missed, class Check>
+void take_the_same(One& one, Other& other, unsigned seed, const Missed& missed,
+                   const Check& check) {
+  using Scalar = typename Other::Scalar;
+  ASSERT_EQ(one.start(steaming()), Status::kOk);
+  ASSERT_EQ(other.start(steaming().cast<Scalar>()), Status::kOk);
+  Draw draw(seed);
+  for (int scan = 1; scan < 40; ++scan) {
+    ASSERT_EQ(one.predict(2.5), Status::kOk);
+    ASSERT_EQ(other.predict(Scalar(2.5)), Status::kOk);
+    if (missed(scan)) continue;
+    const Vec<double, 2> z = plot(draw, scan, deg(2.4));
+    ASSERT_TRUE(one.update(kRadar, z) && other.update(kRadar, z.cast<Scalar>()));
+    check(scan);
+  }
+}
+
 TEST(ModeHistoryOfRates, WithoutDoubtIsTheTreeOfKnownRates) {
   Tree learns = tree_of(1e-9);
   ModeHistory<Ekf<CoordinatedTurn>> knows(
       {}, kTriple, turning_chain(kTriple),
       Ekf<CoordinatedTurn>(CoordinatedTurn{.turn_rate_rad_s = 0.0, .noise = kNoise}));
-  ASSERT_EQ(learns.start(steaming()), Status::kOk);
-  ASSERT_EQ(knows.start(steaming()), Status::kOk);
-  Draw draw(81);
-  for (int scan = 1; scan < 40; ++scan) {
-    ASSERT_EQ(learns.predict(2.5), Status::kOk);
-    ASSERT_EQ(knows.predict(2.5), Status::kOk);
-    const Vec<double, 2> z = plot(draw, scan, deg(2.4));
-    ASSERT_TRUE(learns.update(kRadar, z) && knows.update(kRadar, z));
+  const auto none = [](int) { return false; };
+  take_the_same(learns, knows, 81, none, [&](int scan) {
     EXPECT_TRUE(matrices_near(learns.estimate().mean.head<4>().eval(), knows.estimate().mean,
                               {.absolute = 1e-5, .relative = 1e-8}));
     EXPECT_TRUE(matrices_near(learns.mode_probability(), knows.mode_probability(),
                               {.absolute = 1e-6, .relative = 1e-6}));
     ASSERT_EQ(learns.hypotheses().size(), knows.hypotheses().size()) << "scan " << scan;
-  }
+  });
 }
 
 TEST(ModeHistoryOfRates, OfOneModeIsItsFilterBitForBit) {
@@ -156,20 +169,13 @@ TEST(ModeHistoryOfRates, LearnsARateBesideTheGrid) {
 TEST(ModeHistoryOfRates, InLanesIsTheSame) {
   Tree alone = tree_of(deg(0.8));
   auto lanes = tree_of<Pack<double, kNativeLanes<double>>>(deg(0.8));
-  ASSERT_EQ(alone.start(steaming()), Status::kOk);
-  ASSERT_EQ(lanes.start(steaming()), Status::kOk);
-  Draw draw(85);
-  for (int scan = 1; scan < 40; ++scan) {
-    ASSERT_EQ(alone.predict(2.5), Status::kOk);
-    ASSERT_EQ(lanes.predict(2.5), Status::kOk);
-    if (scan % 7 == 0) continue;
-    const Vec<double, 2> z = plot(draw, scan, deg(2.4));
-    ASSERT_TRUE(alone.update(kRadar, z) && lanes.update(kRadar, z));
+  const auto every_seventh = [](int scan) { return scan % 7 == 0; };
+  take_the_same(alone, lanes, 85, every_seventh, [&](int) {
     EXPECT_TRUE(matrices_near(lanes.estimate().mean, alone.estimate().mean,
                               {.absolute = 1e-7, .relative = 1e-9}));
     EXPECT_TRUE(matrices_near(lanes.mode_probability(), alone.mode_probability(),
                               {.absolute = 1e-8, .relative = 1e-8}));
-  }
+  });
 }
 
 TEST(ModeHistoryOfRates, DoesNotTouchTheHeap) {
@@ -208,31 +214,15 @@ TEST(ModeHistoryOfRates, WhereModesDoNotGuessTheRateASwitchKeepsIt) {
   }
 }
 
-/// Both trees take the same scans, of which some are missed, and stay alike.
-template <class One, class Other>
-void expect_alike(One& one, Other& other, double tolerance) {
-  using Scalar = typename Other::Scalar;
-  Draw draw(86);
-  for (int scan = 1; scan < 40; ++scan) {
-    const bool missed = scan % 9 > 6;  // two in a row
-    ASSERT_EQ(one.predict(2.5), Status::kOk);
-    ASSERT_EQ(other.predict(Scalar(2.5)), Status::kOk);
-    const Vec<double, 2> z = plot(draw, scan, deg(2.4));
-    if (missed) continue;
-    ASSERT_TRUE(one.update(kRadar, z) && other.update(kRadar, z.cast<Scalar>()));
-    const Vec<double, 5> apart =
-        other.estimate().mean.template cast<double>() - one.estimate().mean;
-    EXPECT_LT(apart.head<4>().norm(), tolerance) << scan;
-    EXPECT_LT(std::abs(apart[4]), 1e-3 * tolerance) << scan;
-  }
-}
-
 TEST(ModeHistoryOfRates, InFloatIsTheSameToItsDigits) {
   Tree one = tree_of(deg(0.8));
   auto other = tree_of<float>(deg(0.8));
-  ASSERT_EQ(one.start(steaming()), Status::kOk);
-  ASSERT_EQ(other.start(steaming().cast<float>()), Status::kOk);
-  expect_alike(one, other, 1.0);
+  const auto two_in_a_row = [](int scan) { return scan % 9 > 6; };
+  take_the_same(one, other, 86, two_in_a_row, [&](int scan) {
+    const Vec<double, 5> apart = other.estimate().mean.cast<double>() - one.estimate().mean;
+    EXPECT_LT(apart.head<4>().norm(), 1.0) << scan;
+    EXPECT_LT(std::abs(apart[4]), 1e-3) << scan;
+  });
 }
 
 TEST(ModeHistoryOfRates, GoesOnFromItsArchiveWithTheSameBits) {
