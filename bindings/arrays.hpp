@@ -9,6 +9,7 @@
 #include <pybind11/pybind11.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,30 @@ namespace wakeline::python {
 
 namespace py = pybind11;
 
-using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+/// Anything numpy can take for an array of numbers, row-major. Masked numbers are NaN, as a missed
+/// reading is.
+class DoubleArray : public py::array_t<double, py::array::c_style | py::array::forcecast> {
+ public:
+  using Base = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  using Base::Base;
+  DoubleArray() = default;
+  DoubleArray(const py::object& numbers) : Base(filled(numbers)) {}
+
+  /// Null, and no error set, for what is no array of numbers.
+  static DoubleArray ensure(py::handle numbers) {
+    return py::reinterpret_steal<DoubleArray>(Base::ensure(filled(numbers)).release());
+  }
+
+ private:
+  static py::object filled(py::handle numbers) {
+    const auto& numpy = py::detail::npy_api::get();
+    const bool plain = Py_TYPE(numbers.ptr()) == numpy.PyArray_Type_;
+    if (plain || !numpy.PyArray_Check_(numbers.ptr()) || !py::hasattr(numbers, "filled"))
+      return py::reinterpret_borrow<py::object>(numbers);
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    return numbers.attr("astype")(py::dtype::of<double>()).attr("filled")(kNaN);
+  }
+};
 
 /// "(3, 2)".
 inline std::string shape_text(const std::vector<py::ssize_t>& shape) {
@@ -82,3 +106,21 @@ inline Eigen::MatrixXd to_matrix(const std::string& name, const DoubleArray& arr
 }
 
 }  // namespace wakeline::python
+
+namespace pybind11::detail {
+
+/// As that of its base, which does not know of masks.
+template <>
+struct pyobject_caster<wakeline::python::DoubleArray> {
+  using type = wakeline::python::DoubleArray;
+
+  bool load(handle numbers, bool convert) {
+    if (!convert && !type::check_(numbers)) return false;
+    value = type::ensure(numbers);
+    return static_cast<bool>(value);
+  }
+  static handle cast(const handle& array, return_value_policy, handle) { return array.inc_ref(); }
+  PYBIND11_TYPE_CASTER(type, handle_type_name<type::Base>::name);
+};
+
+}  // namespace pybind11::detail

@@ -113,17 +113,25 @@ Vec<double, M> to_plot(const char* name, const DoubleArray& array) {
 
 /// RTS smoothing of arrays (T, N) and (T, N, N).
 py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
-                        const DoubleArray& covariance, const py::object& dt_s) {
+                        const DoubleArray& covariance, const py::object& dt_s,
+                        const std::optional<DoubleArray>& acceleration_mps2) {
   const py::ssize_t states = states_of(filter.layout());
-  require_shape(mean.ndim() == 2 && mean.shape(1) == states && mean.shape(0) > 0, "mean",
+  require_shape(mean.ndim() == 2 && mean.shape(1) == states, "mean",
                 "(T, " + std::to_string(states) + ")", mean);
   const py::ssize_t scans = mean.shape(0);
   require_shape(covariance.ndim() == 3 && covariance.shape(0) == scans &&
                     covariance.shape(1) == states && covariance.shape(2) == states,
                 "covariance", shape_text({scans, states, states}), covariance);
   const std::vector<double> steps = parse_steps(dt_s, static_cast<std::size_t>(scans));
+  std::vector<Vec<double, 2>> known;
+  if (acceleration_mps2) {
+    const double* number = per_scan("acceleration_mps2", *acceleration_mps2, steps.size());
+    for (std::size_t k = 0; k < steps.size(); ++k, number += 2)
+      known.emplace_back(number[0], number[1]);
+  }
   py::array_t<double> smooth_mean({scans, states});
   py::array_t<double> smooth_covariance({scans, states, states});
+  if (scans == 0) return py::make_tuple(smooth_mean, smooth_covariance);
   std::visit(
       [&]<class Filter>(const Filter& model) {
         constexpr int kN = Filter::kStates;
@@ -134,7 +142,8 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
           beliefs[k].covariance = Eigen::Map<const RowMajor>(covariance.data() + k * kN * kN);
         }
         require_ok(smooth<typename Filter::Motion, double>(
-                       model.motion(), beliefs, std::span<const double>(steps).subspan(1)),
+                       model.motion(), beliefs, std::span<const double>(steps).subspan(1),
+                       std::span<const Vec<double, 2>>(known).subspan(known.empty() ? 0 : 1)),
                    "smooth");
         for (std::size_t k = 0; k < beliefs.size(); ++k) {
           Eigen::Map<Vec<double, kN>>(smooth_mean.mutable_data() + k * kN) = beliefs[k].mean;
@@ -187,6 +196,7 @@ void define_filter(py::module_& parent) {
   define_face(filter);
   filter.def("__repr__", &filter_text);
   filter.def("smooth", &smooth_arrays, py::arg("mean"), py::arg("covariance"), py::arg("dt_s"),
+             py::arg("acceleration_mps2") = py::none(),
              R"(Rauch-Tung-Striebel smoother over the results of `run`.
 
 Parameters
@@ -194,12 +204,20 @@ Parameters
 mean : (T, N) array
 covariance : (T, N, N) array
 dt_s : float or (T,) array
+acceleration_mps2 : (T, 2) array, optional
     As for `run`.
 
 Returns
 -------
 (mean, covariance)
-    Smoothed, same shapes.)");
+    Smoothed, same shapes.
+
+Raises
+------
+ValueError
+    When a shape does not fit.
+FilterError
+    When a covariance is not positive definite, a number not finite or a step below zero.)");
 
   py::class_<PyKalman, AnyFilter> kalman(
       m, "Kalman", "The Kalman filter: linear motion and linear sensors, nothing approximated.");

@@ -371,8 +371,11 @@ ValueError
                   "generator_per_s[i, j] times a second; rows sum to 0.")
       .def(
           "transition",
-          [](const Chain& chain, double dt_s) { return to_array(chain.transition(dt_s)); },
-          py::arg("dt_s"), "P(dt), (K, K).")
+          [](const Chain& chain, double dt_s) {
+            require_not_negative("dt_s", dt_s);
+            return to_array(chain.transition(dt_s));
+          },
+          py::arg("dt_s"), "P(dt), (K, K). Raises ValueError for a step below zero.")
       .def_property_readonly("modes", [](const Chain& chain) { return chain.modes(); })
       .def_property_readonly("continuous", &Chain::continuous)
       .def("__repr__", &chain_text);

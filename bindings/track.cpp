@@ -273,6 +273,7 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
                  const py::object& own_north_m, const py::object& own_east_m,
                  double heading_std_rad) {
   require_shape(range_m.ndim() == 1, "range_m", "(n,)", range_m);
+  require_not_negative("heading_std_rad", heading_std_rad);
   const py::ssize_t count = range_m.shape(0);
   const DoubleArray bearing = column("bearing_rad", bearing_rad, count);
   const DoubleArray time = column(
@@ -524,6 +525,8 @@ ScanReport
 
 Raises
 ------
+ValueError
+    When a shape does not fit or the error of the heading is below zero.
 FilterError
     When time runs backwards or is not finite; nothing changed.)")
       .def(
@@ -532,8 +535,8 @@ FilterError
             return tracker.visit([&](const auto& one) { return tracks(one, time_s, tentative); });
           },
           py::arg("time_s") = py::none(), py::arg("tentative") = false,
-          "The confirmed and coasting tracks (with `tentative` all), predicted to `time_s` when "
-          "given; a TrackTable.")
+          "The confirmed and coasting tracks (with `tentative` all), a TrackTable: as of the last "
+          "scan, or predicted to `time_s` where that is later.")
       .def(
           "designate",
           [](AnyTracker& tracker, double time_s, double north_m, double east_m,

@@ -39,6 +39,10 @@ def run(estimator, z, **changes):
     return estimator.run(z, **({"dt_s": DT_S, "sensor": RADAR, "start": START} | changes))
 
 
+def north_east(z):
+    return np.column_stack([z[:, 0] * np.cos(z[:, 1]), z[:, 0] * np.sin(z[:, 1])])
+
+
 # --- laws -------------------------------------------------------------------------------------
 
 
@@ -48,7 +52,7 @@ def run(estimator, z, **changes):
 def test_every_filter_is_the_kalman_filter_on_a_linear_model(name, kind, sensor):
     z = readings()
     if sensor is POSITION:
-        z = np.column_stack([z[:, 0] * np.cos(z[:, 1]), z[:, 0] * np.sin(z[:, 1])])
+        z = north_east(z)
     exact = run(wl.Kalman(LINEAR_MOTIONS[name]), z, sensor=sensor)
     other = run(kind(LINEAR_MOTIONS[name]), z, sensor=sensor)
     assert (exact.status == 0).all()
@@ -523,7 +527,6 @@ def test_a_single_reading_of_wrong_shape_is_refused(name, size):
     ("mean", "covariance", "wanted"),
     [
         (np.zeros((5, 3)), np.zeros((5, 4, 4)), r"mean must have shape \(T, 4\), got \(5, 3\)"),
-        (np.zeros((0, 4)), np.zeros((0, 4, 4)), r"mean must have shape"),
         (np.zeros((5, 4)), np.zeros((4, 4, 4)), r"covariance must have shape \(5, 4, 4\)"),
     ],
 )
@@ -532,9 +535,60 @@ def test_smoothing_arrays_of_wrong_shape_is_refused(mean, covariance, wanted):
         ekf().smooth(mean, covariance, DT_S)
 
 
+def test_smoothing_knows_the_acceleration_that_the_filter_knew():
+    """Smoothed under a push is smoothed without one, plus the way that the push alone makes."""
+    kalman = wl.Kalman(MOTIONS["ConstantVelocity"])
+    z = readings()
+    push = np.zeros_like(z)
+    push[5:9] = [0.8, -0.5]
+    way = np.zeros((len(z), 4))
+    gain = np.kron(np.eye(2), [[DT_S**2 / 2], [DT_S]])
+    for k in range(1, len(z)):
+        way[k] = MOTIONS["ConstantVelocity"].matrix(DT_S) @ way[k - 1] + gain @ push[k]
+    plain = run(kalman, north_east(z), sensor=wl.Position(position_std_m=20.0))
+    pushed = run(
+        kalman,
+        north_east(z) + way[:, [0, 2]],
+        sensor=wl.Position(position_std_m=20.0),
+        acceleration_mps2=push,
+    )
+    expected, spread = kalman.smooth(plain.mean, plain.covariance, DT_S)
+    mean, covariance = kalman.smooth(pushed.mean, pushed.covariance, DT_S, push)
+    np.testing.assert_allclose(mean, expected + way, atol=1e-7)
+    np.testing.assert_allclose(covariance, spread, rtol=1e-9)
+
+
+def test_smoothing_of_nothing_is_nothing_and_backwards_an_error():
+    mean, covariance = ekf().smooth(np.zeros((0, 4)), np.zeros((0, 4, 4)), DT_S)
+    assert mean.shape == (0, 4)
+    assert covariance.shape == (0, 4, 4)
+    beliefs = np.zeros((3, 4)), np.tile(np.eye(4), (3, 1, 1))
+    with pytest.raises(wl.FilterError, match="smooth: negative time step"):
+        ekf().smooth(*beliefs, [1.0, 1.0, -3.0])
+    with pytest.raises(ValueError, match=r"acceleration_mps2 must have shape \(3, 2\)"):
+        ekf().smooth(*beliefs, DT_S, np.zeros((2, 2)))
+
+
 def test_smoothing_what_is_no_covariance_is_an_error():
     with pytest.raises(wl.FilterError, match="smooth"):
         ekf().smooth(np.zeros((3, 4)), np.full((3, 4, 4), -1.0), DT_S)
+
+
+def test_masked_readings_are_missed():
+    z = readings()
+    masked = np.ma.masked_array(z, mask=np.zeros_like(z, dtype=bool))
+    masked[4] = np.ma.masked
+    missed = z.copy()
+    missed[4] = np.nan
+    for given_z, wanted_z in ((masked, missed), (np.ma.masked_array(z), z)):
+        got, wanted = run(ekf(), given_z), run(ekf(), wanted_z)
+        for field in FIELDS:
+            np.testing.assert_array_equal(getattr(got, field), getattr(wanted, field))
+    one = ekf()
+    one.start(START)
+    one.predict(DT_S)
+    with pytest.raises(wl.FilterError, match="update: not finite"):
+        one.update(RADAR, masked[4])
 
 
 # --- traps ------------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 """Monte Carlo runs: the same bits however they are worked off, figures as worked out by hand."""
 
+import contextlib
 import dataclasses
 import json
 import multiprocessing
@@ -483,6 +484,11 @@ def test_files_that_hold_no_result(result, tmp_path):
         wrong.write_bytes(content)
         with pytest.raises(ValueError, match=r"wrong\.npz: not a Monte Carlo result; wanted"):
             Result.load(wrong)
+    content = whole.read_bytes()
+    for k in range(0, len(content), 97):  # a damaged byte is found out, or does no damage
+        wrong.write_bytes(content[:k] + bytes([content[k] ^ 0xFF]) + content[k + 1 :])
+        with contextlib.suppress(ValueError):
+            Result.load(wrong)
     for arrays in ({"x": np.zeros(3)}, {"header": np.array('{"format": "other"}')}):
         np.savez(wrong, **arrays)
         with pytest.raises(
@@ -807,6 +813,31 @@ def test_a_sensor_may_be_given_or_built():
     one, other, usual = (run(CASE, {"imm": c}) for c in (given_one, built, IMM))
     assert_same_bits(one, usual)
     assert_same_bits(other, usual)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("nis", np.zeros(3), r"'x' must give nis \(R, T\) with R = 3 and T = \d+, got \(3,\)"),
+        ("nis", np.zeros((3, 1)), r"must give nis \(R, T\) .*got \(3, 1\)"),
+        ("nis", None, "'x' must give a result with nis, got SimpleNamespace without"),
+        ("status", np.zeros(()), r"must give status \(R, T\) .*got \(\)"),
+        ("status", np.zeros(3), r"must give status \(R, T\) .*got \(3,\)"),
+        ("mode_probability", np.zeros((3, 2)), r"must give mode_probability \(R, T, K\)"),
+        ("turn_rate_rad_s", np.zeros((3, 2)), r"must give turn_rate_rad_s \(R, T\)"),
+        ("turn_rate_rad_s", np.zeros(4), r"must give turn_rate_rad_s \(R, T, K\)"),
+        ("mean", None, "must give a result with mean"),
+        ("covariance", np.zeros((3, 4)), r"must give mean \(R, T, N\) and covariance"),
+    ],
+)
+def test_what_a_candidate_gives_must_have_the_shapes_that_are_told(name, value, message):
+    def candidate(scene, z):
+        result = IMM(scene, z)
+        given = {field: getattr(result, field) for field in ("mean", "covariance", "nis", "status")}
+        return SimpleNamespace(**given | {name: value})
+
+    with pytest.raises(ValueError, match=message):
+        run(CASE, {"x": candidate}, runs=3)
 
 
 def test_turn_rates_that_are_not_those_of_the_models():

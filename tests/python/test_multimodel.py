@@ -45,6 +45,9 @@ def test_a_matrix_is_applied_once_whatever_the_time(matrix):
     assert not chain.continuous
     for dt_s in (0.1, 60.0):
         np.testing.assert_array_equal(chain.transition(dt_s), matrix)
+    for wrong in (-0.1, np.nan):
+        with pytest.raises(ValueError, match="dt_s must be"):
+            chain.transition(wrong)
 
 
 @given(

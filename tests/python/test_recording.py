@@ -478,7 +478,7 @@ def test_what_holds_much_is_shown_in_a_few_words():
         repr(recording.Recording("none", [])) == "<Recording 'none': 0 episodes, 0 scans, 0 plots>"
     )
     assert repr(recording.Tracks.joined([])) == "<Tracks: 0 tracks, 0 rows>"
-    assert "14 tracks, 4951 reports" in repr(recording.load_ais())
+    assert "14 tracks, 4958 reports" in repr(recording.load_ais())
     log = recording.load_navigation()
     assert repr(log).startswith(f"<NavigationLog 'irene': fixes {len(log.fixes)}, ground ")
     assert repr(log.compass).startswith(f"<MagneticHeading: {len(log.compass)} readings, ")

@@ -1,5 +1,7 @@
 """AIS reports: what is read, what is left out and said so, what is refused; the Solent."""
 
+import gzip
+
 import numpy as np
 import pytest
 
@@ -66,6 +68,43 @@ def test_what_is_not_available_is_not_a_number(tmp_path, cog, sog):
     assert np.isfinite(track.north_m).all()
 
 
+@pytest.mark.parametrize(("cog", "sog"), [("409.5", "5"), ("-100.5", "5"), ("90", "-0.1")])
+def test_what_a_message_can_hold_but_no_vessel_can_do_is_left_out_and_said(tmp_path, cog, sog):
+    ais = read_ais(written(tmp_path, row(0), row(3, cog=cog, sog=sog), row(6)))
+    (track,) = ais.tracks.values()
+    assert np.isnan(track.vnorth_mps).tolist() == [False, True, False]
+    assert np.isfinite(track.north_m).all()
+    (note,) = ais.notes
+    assert "1 values of" in note
+    assert "that no vessel has left out (first in line 3)" in note
+
+
+def test_a_stream_faster_than_wanted_is_thinned_not_lost(tmp_path):
+    path = written(tmp_path, *northbound(np.arange(0.0, 10.0, 0.5)))
+    (track,) = read_ais(path).tracks.values()
+    np.testing.assert_allclose(track.time_s - track.time_s[0], np.arange(10.0))
+    (track,) = read_ais(path, min_step_s=3.0).tracks.values()
+    assert (np.diff(track.time_s) >= 3.0).all()
+    assert len(track) == 4
+    ais = read_ais(path, min_step_s=100.0)
+    assert [len(track) for track in ais.tracks.values()] == [1]
+    assert "19 reports less than 100 s before the next of the vessel" in ais.notes[0]
+
+
+def test_a_vessel_that_crosses_180_degrees_goes_on(tmp_path):
+    crossing = [
+        row(0, latitude=-17.0, longitude=179.999, cog=90.0),
+        row(20, latitude=-17.0, longitude=-179.999, cog=90.0),
+    ]
+    (track,) = (ais := read_ais(written(tmp_path, *crossing))).tracks.values()
+    assert abs(ais.plane.longitude_deg) == pytest.approx(180.0)
+    assert np.diff(track.east_m) == pytest.approx(
+        0.002 * 111_320.0 * np.cos(np.radians(17)), rel=0.01
+    )
+    np.testing.assert_allclose(track.north_m, 0.0, atol=0.1)
+    np.testing.assert_allclose(np.degrees(track.course_rad), 90.0, atol=1e-3)
+
+
 def test_a_vessel_at_rest_needs_no_course(tmp_path):
     (track,) = read_ais(written(tmp_path, row(0, cog="360", sog="0"))).tracks.values()
     assert (track.vnorth_mps[0], track.veast_mps[0]) == (0.0, 0.0)
@@ -109,11 +148,12 @@ def test_parts_are_cut_at_gaps(tmp_path):
     [
         ([row(0, latitude=90.5)], ["line 2", "latitude", "-90 to 90", "90.5"]),
         ([row(0), row(1, longitude=-181)], ["line 3", "longitude", "-180 to 180", "-181"]),
-        ([row(0, cog=361)], ["line 2", "cog", "0 to 360", "361"]),
-        ([row(0, sog=-1)], ["line 2", "sog", "0 to 102.4", "-1"]),
+        ([row(0, cog=900)], ["line 2", "cog", "0 to 410", "900"]),
+        ([row(0, sog=140)], ["line 2", "sog", "0 to 102.4", "140"]),
         ([row(0, sog="fast")], ["line 2", "SOG", "fast"]),
         ([row(0, mmsi="")], ["line 2", "mmsi"]),
         ([row(0).replace("2026-05-01", "May")], ["line 2", "Time"]),
+        (["1777636800000,211,54,10,0,5"], ["line 2", "Time", "seconds", "not milliseconds"]),
         ([row(0, latitude=91)], ["no report has a position"]),
     ],
 )
@@ -129,6 +169,10 @@ def test_files_and_parameters_that_make_no_sense(tmp_path):
         read_ais(tmp_path / "none.csv")
     with pytest.raises(RecordingError, match="mmsi"):
         read_ais(written(tmp_path, "12:00,54,10", head="Time,Latitude,Longitude"))
+    packed = tmp_path / "ais.csv.gz"
+    packed.write_bytes(gzip.compress(HEAD.encode()))
+    with pytest.raises(RecordingError, match="packed by gzip, unpack it first"):
+        read_ais(packed)
     path = written(tmp_path, row(0))
     for name in ("min_step_s", "max_speed_mps"):
         for wrong in (0.0, np.nan):

@@ -353,6 +353,12 @@ def test_a_time_that_is_not_finite_is_an_error(time_s):
         tracker.process(time_s, range_m=[], bearing_rad=[])
 
 
+@pytest.mark.parametrize("wrong", [-0.01, np.nan, np.inf])
+def test_an_error_of_the_heading_that_is_none_is_an_error(wrong):
+    with pytest.raises(ValueError, match="heading_std_rad must be"):
+        wl.Tracker(RADAR).process(0.0, range_m=[1e3], bearing_rad=[0.1], heading_std_rad=wrong)
+
+
 def test_plots_that_make_no_sense_are_refused_and_counted():
     tracker = wl.Tracker(RADAR)
     report = tracker.process(

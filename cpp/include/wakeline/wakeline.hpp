@@ -106,6 +106,7 @@
 #include "wakeline/track/echoes.hpp"
 #include "wakeline/track/free_plots.hpp"
 #include "wakeline/track/mode_places.hpp"
+#include "wakeline/track/place_index.hpp"
 #include "wakeline/track/plane_index.hpp"
 #include "wakeline/track/radar.hpp"
 #include "wakeline/track/start.hpp"

@@ -166,7 +166,11 @@ class Filter:
             When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
         """
     def smooth(
-        self, mean: ArrayLike, covariance: ArrayLike, dt_s: ArrayLike
+        self,
+        mean: ArrayLike,
+        covariance: ArrayLike,
+        dt_s: ArrayLike,
+        acceleration_mps2: ArrayLike | None = None,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """
         Rauch-Tung-Striebel smoother over the results of `run`.
@@ -176,12 +180,20 @@ class Filter:
         mean : (T, N) array
         covariance : (T, N, N) array
         dt_s : float or (T,) array
+        acceleration_mps2 : (T, 2) array, optional
             As for `run`.
 
         Returns
         -------
         (mean, covariance)
             Smoothed, same shapes.
+
+        Raises
+        ------
+        ValueError
+            When a shape does not fit.
+        FilterError
+            When a covariance is not positive definite, a number not finite or a step below zero.
         """
     def start(self, belief: Gaussian) -> None:
         """

@@ -54,7 +54,7 @@ class ModeChain:
     def __init__(self, matrix: ArrayLike, period_s: float | None = None) -> None: ...
     def transition(self, dt_s: float) -> NDArray[np.float64]:
         """
-        P(dt), (K, K).
+        P(dt), (K, K). Raises ValueError for a step below zero.
         """
     @property
     def continuous(self) -> bool: ...

@@ -312,10 +312,11 @@ class ClosestApproach:
         """
         Probability that the ships come closer than a limit L between now and a horizon H:
 
-            ∫ P(-h / |v| < tcpa < H + h / |v|, given d) p(d) dd,    -L < d < L,
+            ∫ (P(s - |v| H < h, given d) - P(s < -h, given d)) p(d) dd,    -L < d < L,
 
-        d is signed_cpa_m, of one joint Gaussian with tcpa, and h² = L² - d². Within 0.03 of the truth while
-        v errs per axis by a tenth of |v|, within 0.1 at a fifth; rough as it errs by all of itself.
+        d is signed_cpa_m, s = tcpa |v| the way to the closest point, of one joint Gaussian with d, and
+        h² = L² - d²; at least the probability that they are so close now. Within 0.03 of the truth while v
+        errs per axis by a tenth of |v|, within 0.1 at a fifth; rough as it errs by all of itself.
 
         Parameters
         ----------

@@ -367,6 +367,8 @@ class Tracker:
 
         Raises
         ------
+        ValueError
+            When a shape does not fit or the error of the heading is below zero.
         FilterError
             When time runs backwards or is not finite; nothing changed.
         """
@@ -384,7 +386,7 @@ class Tracker:
         """
     def tracks(self, time_s: float | None = None, tentative: bool = False) -> TrackTable:
         """
-        The confirmed and coasting tracks (with `tentative` all), predicted to `time_s` when given; a TrackTable.
+        The confirmed and coasting tracks (with `tentative` all), a TrackTable: as of the last scan, or predicted to `time_s` where that is later.
         """
     @property
     def config(self) -> TrackerConfig: ...

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -14,6 +15,15 @@ import numpy as np
 from wakeline.recording import replacing
 
 _FORMAT = "wakeline montecarlo 1"
+_DAMAGES = (
+    ValueError,
+    KeyError,
+    TypeError,
+    AttributeError,
+    EOFError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 def current_version() -> str:
@@ -77,7 +87,7 @@ def load(path: str | Path, result_type: type, outcome_type: type) -> Any:
         if error.strerror:
             raise ValueError(f"{path}: the file cannot be read ({error.strerror})") from error
         raise _foreign(path) from error
-    except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
+    except _DAMAGES as error:
         raise _foreign(path) from error
 
 

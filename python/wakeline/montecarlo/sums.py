@@ -112,13 +112,14 @@ def _summed(chunk: Chunk, z: np.ndarray) -> Sums:
     cpu_s = time.thread_time() - began_s
     mean, covariance = _kinematics(chunk, result, len(z))
     usable = np.isfinite(mean).all(axis=(1, 2))
-    status = np.asarray(result.status)
+    status = _of_each_scan(chunk, result, "status", len(z), "RT")
     error = mean[usable] - chunk.scenario.truth_states
     position_m2 = error[..., 0] ** 2 + error[..., 2] ** 2
     nees = squared_distance(error, covariance[usable])
-    nis = np.asarray(result.nis, dtype=float)[usable]
-    modes = getattr(result, "mode_probability", None)
-    modes = None if modes is None else np.asarray(modes, dtype=float)[usable]
+    nis = _of_each_scan(chunk, result, "nis", len(z), "RT")[usable]
+    modes = None
+    if getattr(result, "mode_probability", None) is not None:
+        modes = _of_each_scan(chunk, result, "mode_probability", len(z), "RTK")[usable]
     rates, estimated_rate = _rates(chunk, result, modes, usable)
     return Sums(
         runs=int(np.count_nonzero(usable)),
@@ -138,10 +139,32 @@ def _summed(chunk: Chunk, z: np.ndarray) -> Sums:
     )
 
 
+def _told(chunk: Chunk, result: Any, name: str) -> np.ndarray:
+    """An array that a candidate must give."""
+    value = getattr(result, name, None)
+    if value is None:
+        raise ValueError(
+            f"candidate {chunk.candidate_name!r} must give a result with {name}, "
+            f"got {type(result).__name__} without"
+        )
+    return np.asarray(value, dtype=float)
+
+
+def _of_each_scan(chunk: Chunk, result: Any, name: str, runs: int, axes: str) -> np.ndarray:
+    """An array (R, T) or (R, T, K), as `axes` says, that a candidate must give."""
+    value, scans = _told(chunk, result, name), chunk.scenario.scans
+    if value.ndim != len(axes) or value.shape[:2] != (runs, scans):
+        raise ValueError(
+            f"candidate {chunk.candidate_name!r} must give {name} ({', '.join(axes)}) with "
+            f"R = {runs} and T = {scans}, got {value.shape}"
+        )
+    return value
+
+
 def _kinematics(chunk: Chunk, result: Any, runs: int) -> tuple[np.ndarray, np.ndarray]:
     """Means (R, T, 4) and covariances (R, T, 4, 4) over ``[north, vnorth, east, veast]``."""
-    mean = np.asarray(result.mean, dtype=float)
-    covariance = np.asarray(result.covariance, dtype=float)
+    mean = _told(chunk, result, "mean")
+    covariance = _told(chunk, result, "covariance")
     states = mean.shape[-1] if mean.ndim else 0
     told = mean.shape == (runs, chunk.scenario.scans, states)
     if not (told and states in _KINEMATICS and covariance.shape == (*mean.shape, states)):
@@ -161,9 +184,12 @@ def _rates(
     told = getattr(result, "turn_rate_rad_s", None)
     mean = np.asarray(result.mean)
     if told is not None:
-        told = np.asarray(told, dtype=float)[usable]
-        if told.ndim == 2:
+        axes = "RT" if np.ndim(told) == 2 else "RTK"
+        told = _of_each_scan(chunk, result, "turn_rate_rad_s", len(usable), axes)[usable]
+        if axes == "RT":
             return None, told
+        if modes is not None:
+            _require_rates(chunk, modes, told.shape == modes.shape, told.shape)
         return told, None if modes is None else (modes * told).sum(axis=-1)
     rates = (
         chunk.candidate.rates(chunk.scenario) if isinstance(chunk.candidate, Candidate) else None
@@ -172,12 +198,16 @@ def _rates(
         return rates, mean[usable, :, 4]
     if rates is None or modes is None:
         return rates, None
-    if rates.shape != modes.shape[-1:]:
+    _require_rates(chunk, modes, rates.shape == modes.shape[-1:], rates.shape)
+    return rates, modes @ rates
+
+
+def _require_rates(chunk: Chunk, modes: np.ndarray, fit: bool, shape: tuple[int, ...]) -> None:
+    if not fit:
         raise ValueError(
             f"candidate {chunk.candidate_name!r} must have one turn rate for each of its "
-            f"{modes.shape[-1]} models, got {rates.shape}"
+            f"{modes.shape[-1]} models, got {shape}"
         )
-    return rates, modes @ rates
 
 
 def _right_mode(

@@ -27,6 +27,7 @@ COLUMNS = {
 
 _NO_LATITUDE_DEG, _NO_LONGITUDE_DEG = 91.0, 181.0
 _NO_COURSE_DEG, _NO_SPEED_KN = 360.0, 102.25
+_LARGEST_COURSE_DEG, _LARGEST_SPEED_KN = 410.0, 102.4  # that the fields of a message can hold
 
 
 @dataclass(frozen=True)
@@ -127,9 +128,10 @@ def read_ais(
     Columns, by these or like names: ``Time`` (UTC), ``MMSI``, ``Latitude_degrees``,
     ``Longitude_degrees`` (WGS84) and, where known, ``COG_degrees`` (true) and ``SOG_knots``. Rows
     need not be sorted. What AIS sends for "not available" (latitude 91, longitude 181, course 360,
-    speed 102.3) is taken as that: a report without position is left out. Left out are, too, of
-    reports of a vessel closer together than `min_step_s` the earlier ones, which came late, and
-    positions that it cannot have come to from those before at `max_speed_mps`.
+    speed 102.3) is taken as that, and so are courses and speeds that a message can hold but a
+    vessel cannot have: a report without position is left out. Left out are, too, of reports of a
+    vessel closer together than `min_step_s` the earlier ones, which came late, and positions that
+    it cannot have come to from those before at `max_speed_mps`.
 
     Parameters
     ----------
@@ -138,7 +140,7 @@ def read_ais(
     origin_deg : (float, float), optional
         Latitude and longitude of the origin of the plane; default the middle of the positions.
     min_step_s : float
-        Least time between reports of a vessel.
+        Least time between reports of a vessel: of more frequent ones as many are kept as fit.
     max_speed_mps : float
         No vessel is faster.
 
@@ -163,20 +165,17 @@ def read_ais(
     time_s = table.times("time")
     mmsi = np.array(table.text("mmsi"))
     table.check("mmsi", np.char.str_len(mmsi) > 0 if len(mmsi) else np.zeros(0), "a number")
-    latitude_deg = _checked(table, "latitude", -90.0, 90.0, _NO_LATITUDE_DEG)
-    longitude_deg = _checked(table, "longitude", -180.0, 180.0, _NO_LONGITUDE_DEG)
-    cog_deg = _checked(table, "cog", 0.0, _NO_COURSE_DEG, _NO_COURSE_DEG)
-    sog_kn = _checked(table, "sog", 0.0, 102.4, _NO_SPEED_KN)
+    latitude_deg = _coordinate(table, "latitude", 90.0, _NO_LATITUDE_DEG)
+    longitude_deg = _coordinate(table, "longitude", 180.0, _NO_LONGITUDE_DEG)
+    notes: list[str] = []
+    cog_deg = _over_ground(table, "cog", _NO_COURSE_DEG, _LARGEST_COURSE_DEG, notes)
+    sog_kn = _over_ground(table, "sog", _NO_SPEED_KN, _LARGEST_SPEED_KN, notes)
     placed = np.isfinite(latitude_deg) & np.isfinite(longitude_deg)
     if not placed.any():
         raise RecordingError(table.path, "no report has a position", wanted="at least one")
-    notes: list[str] = []
-    _note(notes, table, ~placed, "without a position")
+    _note(notes, table, ~placed, "reports without a position")
     if origin_deg is None:
-        origin_deg = (
-            float(np.mean([latitude_deg[placed].min(), latitude_deg[placed].max()])),
-            float(np.mean([longitude_deg[placed].min(), longitude_deg[placed].max()])),
-        )
+        origin_deg = _middle_deg(latitude_deg[placed], longitude_deg[placed])
     plane = LocalPlane(*origin_deg)
     north_m, east_m = plane.position_m(latitude_deg, longitude_deg)
     course_rad = plane.course_rad(np.radians(cog_deg), latitude_deg, longitude_deg)
@@ -185,7 +184,7 @@ def read_ais(
     for number in dict.fromkeys(mmsi[placed].tolist()):
         row = np.flatnonzero(placed & (mmsi == number))
         row = row[np.argsort(time_s[row], kind="stable")]
-        soon = np.append(np.diff(time_s[row]) < min_step_s, False)
+        soon = _too_soon(time_s[row], min_step_s)
         late[row[soon]] = True
         row = row[~soon]
         far = unreachable(time_s[row], np.column_stack([north_m, east_m])[row], max_speed_mps)
@@ -194,26 +193,60 @@ def read_ais(
         tracks[number] = AisTrack(
             number, time_s[row], north_m[row], east_m[row], course_rad[row], sog_kn[row] * KNOT_MPS
         )
-    _note(notes, table, late, f"less than {min_step_s:g} s before the next of the vessel")
-    _note(notes, table, jumped, f"farther off than a vessel gets at {max_speed_mps:g} m/s")
+    _note(notes, table, late, f"reports less than {min_step_s:g} s before the next of the vessel")
+    _note(notes, table, jumped, f"reports farther off than a vessel gets at {max_speed_mps:g} m/s")
     return AisRecording(plane, tracks, notes)
 
 
-def _checked(table: Table, column: str, low: float, high: float, missing: float) -> np.ndarray:
-    """Numbers (n,) of a column that lie in an interval; NaN for what stands for "not available"."""
+def _coordinate(table: Table, column: str, largest_deg: float, missing_deg: float) -> np.ndarray:
+    """Latitudes or longitudes (n,); NaN where not available."""
+    values = table.numbers(column)
+    absent = np.isnan(values) | (values == missing_deg)
+    good = absent | (np.abs(values) <= largest_deg)
+    table.check(column, good, f"a number from {-largest_deg:g} to {largest_deg:g}")
+    return np.where(absent, np.nan, values)
+
+
+def _over_ground(
+    table: Table, column: str, missing: float, largest: float, notes: list[str]
+) -> np.ndarray:
+    """Courses or speeds (n,); NaN from `missing` on and below zero."""
     if column not in table:
         return np.full(len(table), np.nan)
     values = table.numbers(column)
-    absent = values >= missing if column == "sog" else values == missing
-    with np.errstate(invalid="ignore"):
-        good = np.isnan(values) | absent | ((values >= low) & (values <= high))
-    table.check(column, good, f"a number from {low:g} to {high:g}")
-    return np.where(absent, np.nan, values)
+    good = np.isnan(values) | (np.abs(values) <= largest)
+    table.check(column, good, f"a number from 0 to {largest:g}")
+    odd = (values < 0.0) | (values > _NO_COURSE_DEG)
+    _note(notes, table, odd, f"values of {table.name(column)} that no vessel has")
+    return np.where((values < 0.0) | (values >= missing), np.nan, values)
+
+
+def _middle_deg(latitude_deg: np.ndarray, longitude_deg: np.ndarray) -> tuple[float, float]:
+    """The middle of the latitudes and of the longitudes, on whichever side of 180 degrees."""
+    east_deg = (longitude_deg - longitude_deg[0] + 180.0) % 360.0 - 180.0
+    middle_deg = longitude_deg[0] + (east_deg.min() + east_deg.max()) / 2.0
+    return (
+        float((latitude_deg.min() + latitude_deg.max()) / 2.0),
+        float((middle_deg + 180.0) % 360.0 - 180.0),
+    )
+
+
+def _too_soon(time_s: np.ndarray, min_step_s: float) -> np.ndarray:
+    """Mask (n,) of reports that lie less than a step before the next one that is kept."""
+    soon = np.zeros(len(time_s), dtype=bool)
+    if np.all(np.diff(time_s) >= min_step_s):
+        return soon
+    kept_s = np.inf
+    for k in reversed(range(len(time_s))):
+        soon[k] = kept_s - time_s[k] < min_step_s
+        if not soon[k]:
+            kept_s = time_s[k]
+    return soon
 
 
 def _note(notes: list[str], table: Table, rows: np.ndarray, what: str) -> None:
     if rows.any():
         notes.append(
-            f"{table.path.name}: {np.count_nonzero(rows)} reports {what} left out "
+            f"{table.path.name}: {np.count_nonzero(rows)} {what} left out "
             f"(first in line {table.line(int(np.argmax(rows)))})"
         )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import os
 import secrets
+import shutil
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -15,7 +17,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
     """Give a fresh path beside `path`; on success the file written there takes the place of `path`.
 
     When the block raises, what stood at `path` is left as it was and the fresh file is removed. The
-    fresh path keeps the suffix of `path`.
+    fresh path keeps the suffix of `path`. Where `path` is a link, what it leads to is replaced; a
+    pipe or a device takes the content and stays what it is.
 
     Parameters
     ----------
@@ -28,11 +31,19 @@ def replacing(path: str | Path) -> Iterator[Path]:
         Naming `path`, when the fresh file cannot be written or cannot take its place.
     """
     path = Path(path)
-    fresh = _beside(path)
+    if _is_stream(path):
+        with tempfile.TemporaryDirectory() as folder:
+            fresh = Path(folder, path.name)
+            yield fresh
+            with fresh.open("rb") as source, path.open("wb") as target:
+                shutil.copyfileobj(source, target)
+        return
+    target = path.resolve() if path.is_symlink() else path
+    fresh = _beside(target)
     try:
         with _named(fresh, path):
             yield fresh
-            fresh.replace(path)
+            fresh.replace(target)
     finally:
         with suppress(OSError):
             fresh.unlink()
@@ -43,10 +54,19 @@ def check_writable(path: str | Path) -> None:
     path = Path(path)
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    fresh = _beside(path)
+    if _is_stream(path):
+        if not os.access(path, os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+        return
+    fresh = _beside(path.resolve() if path.is_symlink() else path)
     with _named(fresh, path):
         fresh.touch()
         fresh.unlink()
+
+
+def _is_stream(path: Path) -> bool:
+    """Whether the path is there but neither a file nor a folder."""
+    return path.exists() and not path.is_file() and not path.is_dir()
 
 
 def _beside(path: Path) -> Path:

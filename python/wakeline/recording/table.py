@@ -15,6 +15,9 @@ from .errors import RecordingError
 
 TIME_WANTED = "UTC seconds or ISO 8601 text such as 2021-05-04T07:54:53.034Z"
 
+_PACKED = {b"\x1f\x8b": "gzip", b"PK": "zip", b"BZh": "bzip2", b"\xfd7zX": "xz", b"(\xb5/": "zstd"}
+_LATEST_S = 1e11  # of the year 5138; what is later is in another unit
+
 _ISO_TIME = re.compile(
     r"(\d{4}-\d{2}-\d{2})[T ](\d{2}:\d{2}(?::\d{2})?)(?:[.,](\d+))?\s*(Z|[+-]\d{2}(?::?\d{2})?)?",
     re.IGNORECASE,
@@ -115,6 +118,7 @@ class Table:
         """Cells of a column as UTC seconds (n,), read from numbers or ISO 8601 text."""
         values = self._parsed(column, _time_s, TIME_WANTED)
         self.check(column, np.isfinite(values), TIME_WANTED)
+        self.check(column, np.abs(values) < _LATEST_S, f"{TIME_WANTED}, not milliseconds or less")
         return values
 
     def check(self, column: str, good: np.ndarray, wanted: str) -> None:
@@ -193,7 +197,16 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
     except OSError as error:
         raise RecordingError(path, f"the file cannot be read ({error.strerror})") from error
     except (UnicodeDecodeError, csv.Error) as error:
-        raise RecordingError(path, "the file is not CSV text in UTF-8", got=str(error)) from error
+        packed = _packed(path)
+        got = f"a file packed by {packed}, unpack it first" if packed else str(error)
+        raise RecordingError(path, "the file is not CSV text in UTF-8", got=got) from error
+
+
+def _packed(path: Path) -> str | None:
+    """The program that a file is packed by, of those that are common."""
+    with path.open("rb") as file:
+        begin = file.read(4)
+    return next((name for magic, name in _PACKED.items() if begin.startswith(magic)), None)
 
 
 def _plain(name: str) -> str:

@@ -130,6 +130,16 @@ TEST(ProbabilisticData, BadInputIsRefusedAndNothingWritten) {
   EXPECT_EQ(
       pda.association_probability(std::span<const double>(two), std::span<double>(probability)),
       Status::kNotFinite);
+  const std::vector<double> one = {0.0};
+  for (const ProbabilisticData& wrong :
+       {ProbabilisticData{.detection_probability = 2.0, .gate_probability = 0.3},
+        ProbabilisticData{.gate_probability = -5.0}, ProbabilisticData{.gate_probability = 1.05},
+        ProbabilisticData{.clutter_density = -1.0}}) {
+    EXPECT_EQ(
+        wrong.association_probability(std::span<const double>(one), std::span<double>(probability)),
+        Status::kNotFinite);
+    EXPECT_EQ(probability, (std::vector<double>{7.0, 7.0}));
+  }
   EXPECT_THROW(ProbabilisticData{.detection_probability = 1.1}.validate(), std::invalid_argument);
   EXPECT_THROW(ProbabilisticData{.gate_probability = -0.1}.validate(), std::invalid_argument);
   EXPECT_THROW(ProbabilisticData{.clutter_density = -1.0}.validate(), std::invalid_argument);

@@ -366,6 +366,61 @@ TEST(AlphaBetaFilter, TakesThePositionOutOfAnySensorAndAKnownAcceleration) {
   EXPECT_TRUE(beliefs_identical<4>(filter.estimate(), plain.estimate()));
 }
 
+TEST(AlphaBetaFilter, AloneInAnImmIsTheFilter) {
+  for (const auto& schedule : every_schedule<2>()) {
+    Draw draw(23);
+    auto filter = started(AlphaBeta<>(schedule));
+    Imm imm{ModeChain<1>(Mat<double, 1, 1>::Ones()), AlphaBeta<>(schedule)};
+    ASSERT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);
+    for (int scan = 0; scan < 30; ++scan) {
+      ASSERT_EQ(filter.predict(2.5), Status::kOk);
+      ASSERT_EQ(imm.predict(2.5), Status::kOk);
+      if (scan % 7 == 3) continue;
+      const Vec<double, 2> z = filter.estimate().mean({0, 2}) + 30.0 * draw.normals<2>();
+      const auto one = filter.update(kSensor, z);
+      const auto other = imm.update(kSensor, z);
+      ASSERT_TRUE(one);
+      ASSERT_TRUE(other);
+      EXPECT_NEAR(other.log_likelihood, one.log_likelihood, 1e-12 * std::abs(one.log_likelihood));
+      ASSERT_TRUE(matrices_near(imm.estimate().mean, filter.estimate().mean,
+                                {.absolute = 1e-9, .relative = 1e-12}));
+      ASSERT_TRUE(matrices_near(imm.estimate().covariance, filter.estimate().covariance,
+                                {.absolute = 1e-9, .relative = 1e-12}));
+    }
+  }
+}
+
+TEST(AlphaBetaFilter, TakesOneOfSeveralReadingsAsIfItWereAlone) {
+  auto filter = started(AlphaBeta<>(ConstantGains{0.5, 0.2}));
+  Imm imm{ModeChain<1>(Mat<double, 1, 1>::Ones()), AlphaBeta<>(ConstantGains{0.5, 0.2})};
+  ASSERT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);
+  for (int scan = 0; scan < 5; ++scan) {
+    ASSERT_EQ(filter.predict(2.5), Status::kOk);
+    ASSERT_EQ(imm.predict(2.5), Status::kOk);
+    const Vec<double, 2> z = filter.estimate().mean({0, 2}) + Vec<double, 2>(20.0, -10.0);
+    ASSERT_TRUE(filter.update(kSensor, z));
+    const Vec<double, 2> impossible(1e9, 1e9);
+    const Alternative<Position> readings[] = {{kSensor, impossible, 1.0}, {kSensor, z, 1.0}};
+    double share[2];
+    ASSERT_GT(imm.update(std::span<const Alternative<Position>>(readings), 0.0, share), 0.0);
+    EXPECT_EQ(share[1], 1.0);
+    ASSERT_TRUE(matrices_near(imm.estimate().mean, filter.estimate().mean,
+                              {.absolute = 1e-9, .relative = 1e-12}));
+  }
+}
+
+TEST(AlphaBetaFilter, RefusesPlotsWhoseErrorsMakeNoGain) {
+  for (const Mat<double, 2, 2>& errors : {Mat<double, 2, 2>(Mat<double, 2, 2>::Zero()),
+                                          Mat<double, 2, 2>(Mat<double, 2, 2>::Ones())}) {
+    auto filter = started(AlphaBeta<>(TrackingIndex{0.3}));
+    ASSERT_EQ(filter.predict(2.5), Status::kOk);
+    const auto before = filter.estimate();
+    const auto step = filter.update(Fix{errors}, Vec<double, 2>(1.0, 2.0));
+    EXPECT_EQ(step.status, Status::kNotFinite);
+    EXPECT_TRUE(beliefs_identical(filter.estimate(), before));
+  }
+}
+
 TEST(AlphaBetaFilter, IsAModelOfAnImm) {
   const ModeChain<2> chain(ModeChain<2>::Matrix{{0.95, 0.05}, {0.1, 0.9}});
   using Bank = FilterBank<AlphaBeta<>, Ekf<CoordinatedTurnRate>>;

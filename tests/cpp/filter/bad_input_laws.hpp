@@ -50,6 +50,19 @@ TYPED_TEST_P(BadInput, StepsOfTimeThatAreNone) {
   EXPECT_EQ(this->filter.predict(1), Status::kOk) << "and it goes on";
 }
 
+TYPED_TEST_P(BadInput, AnErrorThatGrowsBeyondAllNumbers) {
+  using Scalar = typename TypeParam::Scalar;
+  auto wide = this->before;
+  wide.covariance *= std::numeric_limits<Scalar>::max() / Scalar(1e10) / wide.covariance(0, 0);
+  if (this->filter.start(wide) != Status::kOk) return;
+  const auto started = this->filter.estimate();
+  ASSERT_TRUE(is_finite(started.covariance));
+  if (this->filter.predict(Scalar(1e5)) == Status::kOk)
+    EXPECT_TRUE(is_finite(this->filter.estimate().covariance));
+  else
+    EXPECT_TRUE(test::beliefs_identical<TypeParam::kStates>(this->filter.estimate(), started));
+}
+
 TYPED_TEST_P(BadInput, NoTimeChangesNothing) {
   using Scalar = typename TypeParam::Scalar;
   EXPECT_EQ(this->filter.predict(0), Status::kOk);
@@ -156,7 +169,8 @@ TYPED_TEST_P(BadInput, SensorsThatAreNone) {
   EXPECT_TRUE(test::beliefs_identical<TypeParam::kStates>(this->filter.estimate(), this->before));
 }
 
-REGISTER_TYPED_TEST_SUITE_P(BadInput, NotStarted, StepsOfTimeThatAreNone, NoTimeChangesNothing,
+REGISTER_TYPED_TEST_SUITE_P(BadInput, NotStarted, StepsOfTimeThatAreNone,
+                            AnErrorThatGrowsBeyondAllNumbers, NoTimeChangesNothing,
                             PlotsThatAreNone, InnovationIsTheStepOfTheUpdateNotTaken,
                             StartsThatAreNone, SensorsThatAreNone);
 

@@ -28,6 +28,10 @@ constexpr std::array<double, kScans - 1> kSteps{2.5, 2.5, 0.7, 6.0, 2.5};
 const CoordinatedTurn kMotion{.turn_rate_rad_s = 0.06, .noise = WhiteAcceleration{0.4}};
 const Position kSensor{.position_std_m = 12};
 
+using Pushes = std::array<Vec<double, 2>, kScans - 1>;
+const Pushes kNoPush{Vec<double, 2>(0, 0), {0, 0}, {0, 0}, {0, 0}, {0, 0}};
+const Pushes kPush{Vec<double, 2>(3, 0), {0, -2}, {1, 1}, {-4, 2}, {0, 5}};
+
 struct Voyage {
   std::vector<Gaussian<4>> beliefs;
   std::vector<Vec<double, 2>> plots;
@@ -35,7 +39,7 @@ struct Voyage {
 };
 
 /// Filtered beliefs of a short run; scan 2 is missed.
-Voyage filtered() {
+Voyage filtered(const Pushes& push = kNoPush) {
   Draw draw(31);
   Voyage run;
   run.start.mean << 100, 5, -50, 8;
@@ -46,8 +50,10 @@ Voyage filtered() {
   for (int scan = 0; scan < kScans; ++scan) {
     if (scan > 0) {
       const double dt = kSteps[std::size_t(scan - 1)];
-      EXPECT_EQ(kalman.predict(dt), Status::kOk);
+      const Vec<double, 2>& u = push[std::size_t(scan - 1)];
+      EXPECT_EQ(kalman.predict(dt, u), Status::kOk);
       truth = (kMotion.matrix(dt) * truth + draw.error(kMotion.process_noise(dt))).eval();
+      truth += Control::shift(kMotion.kComponents, dt, u);
     }
     const Vec<double, 2> z(truth[0] + 12 * draw.normal(), truth[2] + 12 * draw.normal());
     run.plots.push_back(z);
@@ -61,14 +67,14 @@ Voyage filtered() {
   return run;
 }
 
-Status smooth_run(std::vector<Gaussian<4>>& beliefs) {
-  return smooth<CoordinatedTurn, double>(kMotion, beliefs, kSteps);
+Status smooth_run(std::vector<Gaussian<4>>& beliefs, const Pushes& push = kNoPush) {
+  return smooth<CoordinatedTurn, double>(kMotion, beliefs, kSteps, push);
 }
 
 // The smoothed beliefs are the marginals of one Gaussian over the whole trajectory, whose
 // information matrix and vector add up from the start, the motions and the plots.
-TEST(RtsSmoother, IsTheBatchSolution) {
-  Voyage run = filtered();
+void expect_the_batch_solution(const Pushes& push) {
+  Voyage run = filtered(push);
   constexpr int kSize = 4 * kScans;
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kSize, kSize);
   Eigen::VectorXd vector = Eigen::VectorXd::Zero(kSize);
@@ -81,6 +87,8 @@ TEST(RtsSmoother, IsTheBatchSolution) {
     change.block<4, 4>(0, 4 * k + 4).setIdentity();
     const Mat<double, 4, 4> q = kMotion.process_noise(kSteps[std::size_t(k)]);
     information += change.transpose() * q.inverse() * change;
+    vector += change.transpose() * q.inverse() *
+              Control::shift(kMotion.kComponents, kSteps[std::size_t(k)], push[std::size_t(k)]);
   }
   for (int k = 0; k < kScans; ++k) {
     if (k == 2) continue;
@@ -94,7 +102,7 @@ TEST(RtsSmoother, IsTheBatchSolution) {
   const Eigen::VectorXd means = solver.solve(vector);
   const Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(kSize, kSize));
 
-  ASSERT_EQ(smooth_run(run.beliefs), Status::kOk);
+  ASSERT_EQ(smooth_run(run.beliefs, push), Status::kOk);
   for (int k = 0; k < kScans; ++k) {
     const Gaussian<4>& belief = run.beliefs[std::size_t(k)];
     EXPECT_TRUE(
@@ -104,6 +112,10 @@ TEST(RtsSmoother, IsTheBatchSolution) {
     EXPECT_LT(test::covariance_difference(belief.covariance, expected), 1e-8) << k;
   }
 }
+
+TEST(RtsSmoother, IsTheBatchSolution) { expect_the_batch_solution(kNoPush); }
+
+TEST(RtsSmoother, KnowsTheAccelerationThatTheFilterKnew) { expect_the_batch_solution(kPush); }
 
 TEST(RtsSmoother, NeverWidensABelief) {
   Voyage run = filtered();
@@ -170,6 +182,17 @@ TEST(RtsSmoother, LeavesTheRestFilteredWhereItFails) {
     EXPECT_TRUE(test::matrices_identical(run.beliefs[k].mean, before[k].mean)) << k;
     EXPECT_TRUE(test::matrices_identical(run.beliefs[k].covariance, before[k].covariance)) << k;
   }
+}
+
+TEST(RtsSmoother, RefusesTimeThatRunsBackwards) {
+  Voyage run = filtered();
+  const std::vector<Gaussian<4>> before = run.beliefs;
+  std::array<double, kScans - 1> steps = kSteps;
+  steps[4] = -2.5;
+  EXPECT_EQ((smooth<CoordinatedTurn, double>(kMotion, run.beliefs, steps)),
+            Status::kNegativeTimeStep);
+  for (std::size_t k = 0; k < before.size(); ++k)
+    EXPECT_TRUE(test::matrices_identical(run.beliefs[k].mean, before[k].mean)) << k;
 }
 
 TEST(RtsSmoother, OfNothingAndOfOneScan) {

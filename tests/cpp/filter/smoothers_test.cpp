@@ -131,6 +131,20 @@ TYPED_TEST(EverySmoother, RefusesWhatIsNoReadingAndStaysAsItWas) {
   }
 }
 
+TYPED_TEST(EverySmoother, StaysFiniteHoweverLargeTheReadings) {
+  using Scalar = typename TypeParam::Scalar;
+  constexpr Scalar largest = std::numeric_limits<Scalar>::max();
+  typename TypeParam::OnLine smoother;
+  for (int k = 0; k < 10; ++k) ASSERT_EQ(smoother.update(Scalar(1), Scalar(k)), Status::kOk);
+  for (const Scalar size : {largest, std::sqrt(largest), std::sqrt(largest) / 1000})
+    for (const Scalar dt : {Scalar(1), std::numeric_limits<Scalar>::denorm_min(), Scalar(0)})
+      for (const Scalar sign : {Scalar(1), Scalar(-1)}) {
+        (void)smoother.update(dt, sign * size);
+        EXPECT_TRUE(std::isfinite(smoother.value()));
+        EXPECT_TRUE(std::isfinite(smoother.rate()));
+      }
+}
+
 TYPED_TEST(EverySmoother, NeedsNoHeapAndStaysFiniteWhenTimeStands) {
   using Scalar = typename TypeParam::Scalar;
   typename TypeParam::OnAngles smoother;

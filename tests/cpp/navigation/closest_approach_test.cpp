@@ -173,7 +173,8 @@ TEST(ClosestApproach, OfShipsAtRelativeRestIsTheRangeNow) {
   const auto unsure =
       closest_approach(Gaussian<4>{own, errors(0, 0)}, Gaussian<4>{target, errors(30, 0.1)});
   EXPECT_NEAR(unsure.cpa_std_m(), 30, 1e-9);
-  EXPECT_NEAR(unsure.probability(500), 0.5, 1e-9);
+  EXPECT_NEAR(unsure.probability(500), 0.5, 0.02);
+  EXPECT_LT(unsure.probability(500), 0.5);  // a disc curves away
   const auto together = closest_approach(own, own);
   EXPECT_EQ(together.cpa_m(), 0.0);
   EXPECT_EQ(together.probability(1), 1.0);
@@ -212,6 +213,41 @@ TEST(ProbabilityOfPassing, IsThatOfManyDrawsWhileTheVelocityIsKnown) {  // to a 
   EXPECT_LT(worst_error(0.5), 0.015);
   EXPECT_LT(worst_error(1.0), 0.03);
   EXPECT_LT(worst_error(2.0), 0.1);
+}
+
+TEST(ProbabilityOfPassing, IsThatOfManyDrawsForTargetsThatComeAndGo) {
+  test::Draw draw(11);
+  for (int k = 0; k < 60; ++k) {
+    const double limit_m = draw.uniform(100, 1000), speed = draw.uniform(1, 10);
+    const double sight = draw.uniform(-4, 4), across = draw.uniform(-1, 1);
+    const double course = k % 3 == 0 ? sight : sight + deg(180) + 0.5 * across;
+    const Gaussian<4> relative{
+        state(polar(limit_m * draw.uniform(0, 4), sight), polar(speed, course)),
+        errors(draw.uniform(5, 50), 0.1 * speed)};
+    EXPECT_LT(probability_error(relative, limit_m, draw.uniform(60, 1200)), 0.04) << k;
+  }
+  const Gaussian<4> going{state({600, 0}, {10, 0}), errors(10, 1)};  // never comes back
+  EXPECT_LT(ClosestApproach(going).probability(570), 0.002);
+}
+
+TEST(ProbabilityOfPassing, IsThatOfADiscForATargetThatIsNearNow) {
+  const auto at_rest = [](double std) {
+    return ClosestApproach({Vec4::Zero(), errors(std, 0.0)}).probability(100.0);
+  };
+  for (const double std : {20.0, 60.0, 100.0, 400.0})  // Rayleigh's distribution
+    EXPECT_NEAR(at_rest(std), 1.0 - std::exp(-0.5 * 1e4 / (std * std)), 1e-3) << std;
+
+  test::Draw draw(8);
+  for (int k = 0; k < 20; ++k) {
+    Gaussian<4> near{state(polar(draw.uniform(0, 150), draw.uniform(-4, 4)),
+                           polar(draw.uniform(1, 8), draw.uniform(-4, 4))),
+                     errors(0.0, 0.05)};
+    const Vec2 along = polar(draw.uniform(5, 150), draw.uniform(-4, 4));
+    const Vec4 longer = state(along, {0, 0}),
+               shorter = state({-along[1] / 4, along[0] / 4}, {0, 0});
+    near.covariance += longer * longer.transpose() + shorter * shorter.transpose();
+    EXPECT_LT(probability_error(near, 100, 60), 0.02) << k;
+  }
 }
 
 TEST(ProbabilityOfPassing, IsRoughWhereTheVelocityErrsByAllOfItself) {

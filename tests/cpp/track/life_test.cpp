@@ -62,6 +62,20 @@ int confirmation_scan(const TrackerConfig& config, const std::string& pattern) {
   return 0;
 }
 
+TEST(Life, TracksStartHoweverSoonTheyEnd) {
+  for (const int coast_scans_max : {0, 1}) {
+    TrackerConfig config;
+    config.coast_scans_max = coast_scans_max;
+    VesselTracker tracker = make_tracker(config);
+    for (int k = 0; k < 12; ++k) {
+      const double time_s = 1.01 * kTestRadar.period_s * k;
+      const Plot plot = exact_plot({1500.0 + 4.0 * time_s, 800.0}, time_s);
+      (void)tracker.process(time_s, std::span(&plot, 1));
+    }
+    EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1}) << coast_scans_max;
+  }
+}
+
 TEST(Life, ConfirmationNeedsMOfTheLastN) {
   TrackerConfig config;
   config.confirm_existence = 0.5;  // so that only the count decides

@@ -153,6 +153,37 @@ TEST(Room, TheWeakestTentativeTrackGivesWay) {
   EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1});
 }
 
+TEST(Room, WhoFollowsTheEventsKnowsAllTracksHoweverManyGiveWay) {
+  TrackerConfig config;
+  config.max_tracks = 2;
+  config.max_plots = 20;
+  config.clutter_memory_s = 6000.0;
+  VesselTracker tracker = make_tracker(config);
+  std::set<std::int64_t> known;
+  std::size_t most_started = 0;
+  const auto scan = [&](double time_s, int places) {
+    std::vector<Plot> plots;
+    for (int n = 0; n < places; ++n)
+      plots.push_back(exact_plot({1000.0 + 1500.0 * n, 0.0}, time_s));
+    const ScanReport report = tracker.process(time_s, plots);
+    for (const Event& event : report.events) {
+      if (event.kind == TrackEvent::kStarted) {
+        EXPECT_TRUE(known.insert(event.track_id).second);
+      } else if (event.kind == TrackEvent::kLost) {
+        EXPECT_EQ(known.erase(event.track_id), 1u);
+      }
+    }
+    most_started = std::max(most_started, events_of(report, TrackEvent::kStarted).size());
+    EXPECT_EQ(ids_of(tracker), known) << time_s;
+  };
+  // The farther off the less clutter is learned, so that each plot is worth more than those before.
+  double time_s = 0.0;
+  for (int k = 0; k < 20; ++k) scan(time_s += 100.0, 20 - k);
+  scan(time_s += 100.0, 20);
+  scan(time_s + 2.5, 20);
+  EXPECT_EQ(most_started, 2u);
+}
+
 TEST(Room, ANewTrackThatCannotStartDisplacesNobody) {
   TrackerConfig config;
   config.max_tracks = 1;

@@ -73,12 +73,6 @@ TEST(PlaneIndex, PointsOfOnePlaceComeInTheOrderOfTheirNames) {
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
 }
 
-TEST(PlaneIndex, TellsWhatLiesFromSouthToNorth) {
-  const PlaneIndex index = index_of_points({{5.0, 0.0}, {-1.0, 7.0}, {2.0, -3.0}, {-1.0, 2.0}});
-  EXPECT_EQ(std::vector<int>(index.by_north().begin(), index.by_north().end()),
-            (std::vector<int>{1, 3, 2, 0}));
-}
-
 TEST(PlaneIndex, NothingIsNearWhatIsNoPlace) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const PlaneIndex index = index_of_points({{0.0, 0.0}, {1.0, 1.0}});
@@ -94,7 +88,7 @@ TEST(PlaneIndex, ForgetsWhenCleared) {
   index.clear();
   index.sort();
   EXPECT_TRUE(found_near(index, {0.0, 0.0}, 1.0).empty());
-  EXPECT_TRUE(index.by_north().empty());
+  EXPECT_TRUE(index.empty());
 }
 
 }  // namespace

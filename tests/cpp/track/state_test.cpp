@@ -135,6 +135,7 @@ TEST(Saving, RefusesWhatIsNoStateOfItsOwn) {
   expect_refused(make_tracker(config).save(), "another configuration");
   Radar radar = kTestRadar;
   radar.max_speed_mps += 1.0;
+  expect_refused(VesselTracker(kTestRadar, {}, vessel_imm(radar)).save(), "other models");
   expect_refused(make_tracker({}, radar).save(), "another radar");
   EXPECT_TRUE(victim.restore(state));
 }

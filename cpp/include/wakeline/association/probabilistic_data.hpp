@@ -67,7 +67,9 @@ struct ProbabilisticData {
         std::log((1.0 - detection_probability * gate_probability) * clutter_density));
     const Scalar log_detection = static_cast<Scalar>(std::log(detection_probability));
     Scalar largest = log_none;
-    bool valid = log_none < infinity && log_detection < infinity;
+    const auto is_probability = [](double p) { return p >= 0.0 && p <= 1.0; };
+    bool valid = is_probability(detection_probability) && is_probability(gate_probability) &&
+                 clutter_density >= 0.0 && log_none < infinity;
     for (const Scalar& value : log_likelihood) {
       valid = valid && value < infinity;
       largest = std::max(largest, log_detection + value);

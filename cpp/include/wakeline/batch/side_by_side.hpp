@@ -51,6 +51,11 @@ requires(kForPacks<Motion>) struct InLanes<Ekf<Motion>, Scalar> {
 };
 
 template <class Motion, class Scalar>
+requires(kForPacks<Motion>) struct InLanes<Kalman<Motion>, Scalar> {
+  static auto of(const Kalman<Motion>& filter) { return Kalman<Motion, Scalar>(filter.motion()); }
+};
+
+template <class Motion, class Scalar>
 requires(kForPacks<Motion>) struct InLanes<Ukf<Motion>, Scalar> {
   static auto of(const Ukf<Motion>& filter) {
     return Ukf<Motion, Scalar>(filter.motion(), filter.unscented());

@@ -74,27 +74,29 @@ class AlphaBetaFilter
         PositionSensor<Sensor>,
         "wakeline: an alpha-beta filter needs a sensor that fixes a position: position(z) "
         "-> Gaussian<2>; see cpp/docs/concepts.md");
-    const Gaussian<2, Scalar> plot = sensor.position(z);
-    return Base::innovation(Fix{plot.covariance.template cast<double>()}, plot.mean);
+    return Base::compare(Fix{}, sensor.position(z)).scored();
+  }
+
+  /// The innovation of a position that the sensor has observed and its likelihood in two parts,
+  /// without taking it.
+  template <class Sensor>
+  Correction<2, Scalar> compare(const Sensor&, const Gaussian<2, Scalar>& reading) const noexcept {
+    check_reads_position<Sensor>();
+    return Base::compare(Fix{}, reading);
   }
 
   /// Corrects the belief by a plot.
   template <class Sensor>
   Step<2, Scalar> update(const Sensor& sensor,
                          const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
-    const Step<2, Scalar> step = innovation(sensor, z);
-    if (!step) return step;
-    const Gaussian<2, Scalar> plot = sensor.position(z);
-    const Gain k = gain(plot.covariance, range(sensor, plot.mean));
-    this->belief_.mean += k * step.innovation;
-    Mat<Scalar, kStates, kStates> rest = Mat<Scalar, kStates, kStates>::Identity();
-    for (int axis = 0; axis < 2; ++axis) rest.col(Order * axis) -= k.col(axis);
-    this->belief_.covariance =
-        (rest * this->belief_.covariance * rest.transpose() + k * plot.covariance * k.transpose())
-            .eval();
-    mirror_lower<Scalar, kStates>(this->belief_.covariance);
-    occasion_.taken = true;
-    return step;
+    return take(sensor, sensor.position(z)).scored();
+  }
+
+  /// The same by a position that the sensor has observed, the likelihood in two parts.
+  template <class Sensor>
+  Correction<2, Scalar> correct(const Sensor& sensor, const Gaussian<2, Scalar>& reading) noexcept {
+    check_reads_position<Sensor>();
+    return take(sensor, reading);
   }
 
   /// Saves or restores the belief and where the schedule is.
@@ -141,6 +143,33 @@ class AlphaBetaFilter
   }
 
   template <class Sensor>
+  static constexpr void check_reads_position() noexcept {
+    static_assert(kIsDirect<Sensor> && Sensor::kReads == kPosition,
+                  "wakeline: among several models an alpha-beta filter needs a sensor whose "
+                  "readings are positions: ConvertedRangeBearing, Position or Fix");
+  }
+
+  /// Where the result is not finite nothing changes.
+  template <class Sensor>
+  Correction<2, Scalar> take(const Sensor& sensor, const Gaussian<2, Scalar>& plot) noexcept {
+    Correction<2, Scalar> correction = Base::compare(Fix{}, plot);
+    if (correction.status != Status::kOk) return correction;
+    const Gain k = gain(plot.covariance, range(sensor, plot.mean));
+    Mat<Scalar, kStates, kStates> rest = Mat<Scalar, kStates, kStates>::Identity();
+    for (int axis = 0; axis < 2; ++axis) rest.col(Order * axis) -= k.col(axis);
+    const Vec<Scalar, kStates> mean = this->belief_.mean + k * correction.innovation;
+    Mat<Scalar, kStates, kStates> covariance =
+        rest * this->belief_.covariance * rest.transpose() + k * plot.covariance * k.transpose();
+    if (!is_finite(mean) || !is_finite(covariance))
+      return failed_correction<2, Scalar>(Status::kNotFinite);
+    mirror_lower<Scalar, kStates>(covariance);
+    this->belief_.mean = mean;
+    this->belief_.covariance = covariance;
+    occasion_.taken = true;
+    return correction;
+  }
+
+  template <class Sensor>
   static Scalar range(const Sensor& sensor, const Vec<Scalar, 2>& plot) noexcept {
     using std::sqrt;
     if constexpr (requires { sensor.own; })
@@ -169,7 +198,8 @@ class AlphaBetaFilter
     const Scalar half_difference = (r(0, 0) - r(1, 1)) / 2;
     const Scalar spread = sqrt(half_difference * half_difference + r(1, 0) * r(1, 0));
     const Scalar longest = half_sum + spread;  // variances along the axes of R
-    const Scalar shortest = (r(0, 0) * r(1, 1) - r(1, 0) * r(1, 0)) / longest;
+    const Scalar product = r(0, 0) * r(1, 1) - r(1, 0) * r(1, 0);
+    const Scalar shortest = product > Scalar(0) ? product / longest : Scalar(0);
     const AxisGain along = axis_gain(sqrt(shortest), range_m);
     Mat<Scalar, 2, 2> onto_long = Mat<Scalar, 2, 2>::Zero();  // projection on the long axis
     AxisGain more = AxisGain::Zero();

@@ -5,6 +5,8 @@
 #include <span>
 
 #include "wakeline/core/cholesky.hpp"
+#include "wakeline/filter/belief.hpp"
+#include "wakeline/filter/control.hpp"
 #include "wakeline/motion/concept.hpp"
 
 namespace wakeline {
@@ -12,19 +14,24 @@ namespace wakeline {
 /// Rauch-Tung-Striebel smoother, in place: turns the filtered beliefs of T scans into smoothed
 /// ones.
 ///
-/// `dt_s[k]` leads from scan k to scan k + 1 (T - 1 of them). The covariance is kept in a form that
-/// stays positive definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q) Gᵀ. Returns the first failure, with
-/// that scan and everything before it left as filtered. Source: Bar-Shalom, Li, Kirubarajan, 8.6.
+/// `dt_s[k]` leads from scan k to scan k + 1 (T - 1 of them), under `acceleration_mps2[k]` where
+/// the filter was told any; see `Control`. The covariance is kept in a form that stays positive
+/// definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q) Gᵀ. Returns the first failure, with that scan and
+/// everything before it left as filtered. Source: Bar-Shalom, Li, Kirubarajan, 8.6.
 template <MotionModel Motion, class Scalar>
 Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs,
-              std::span<const Scalar> dt_s) noexcept {
+              std::span<const Scalar> dt_s,
+              std::span<const Vec<Scalar, 2>> acceleration_mps2 = {}) noexcept {
   constexpr int kStates = kStatesOf<Motion>;
   using Matrix = Mat<Scalar, kStates, kStates>;
   for (std::size_t k = beliefs.size(); k-- > 1;) {
     const Gaussian<kStates, Scalar>& later = beliefs[k];
     Gaussian<kStates, Scalar>& belief = beliefs[k - 1];
     const Scalar dt = dt_s[k - 1];
-    const Vec<Scalar, kStates> predicted = transition(motion, belief.mean, dt);
+    if (const Status forward = check_time_step(dt); forward != Status::kOk) return forward;
+    Vec<Scalar, kStates> predicted = transition(motion, belief.mean, dt);
+    if (!acceleration_mps2.empty())
+      predicted += Control::shift(Motion::kComponents, dt, acceleration_mps2[k - 1]);
     const Matrix f = transition_jacobian(motion, belief.mean, dt);
     const Matrix q = process_noise(motion, belief.mean, dt);
     const Matrix fp = f * belief.covariance;

@@ -63,11 +63,13 @@ concept Smoother = requires(T smoother, const T& view, typename T::Scalar x, Arc
   smoother.archive(fields);
 };
 
-/// `kOk` when a reading can be taken `dt_s` after the one before; the first one at any time.
+/// `kOk` when a reading can be taken `dt_s` after the one before; the first one at any time. One so
+/// large that its square, or the square of a rate to it, has no room in a number is not finite.
 template <class Scalar>
 Status check_reading(bool first, Scalar dt_s, Scalar reading) noexcept {
-  using std::isfinite;
-  if (!isfinite(reading)) return Status::kNotFinite;
+  constexpr Scalar kLargest = sizeof(Scalar) > 4 ? Scalar(1e150L) : Scalar(1e17L);
+  const Scalar within_s = !first && dt_s > Scalar(0) ? std::min(dt_s, Scalar(1)) : Scalar(1);
+  if (!(std::abs(reading) <= kLargest * within_s)) return Status::kNotFinite;
   return first ? Status::kOk : check_time_step(dt_s);
 }
 

@@ -116,8 +116,11 @@ class SquareRootUkf {
     array << sqrt(weight()) * moved.differences, centre_root() * shift,
         semidefinite_root<kStates, Scalar>(process_noise(motion_, mean_, dt_s));
     if (!is_finite(moved.centre) || !is_finite(array)) return Status::kNotFinite;
-    mean_ = moved.centre + shift;
-    root_ = lower_root(array);
+    const Vec<Scalar, kStates> mean = moved.centre + shift;
+    const Mat<Scalar, kStates, kStates> root = lower_root(array);
+    if (!has_finite_moments(mean, root)) return Status::kNotFinite;
+    mean_ = mean;
+    root_ = root;
     return Status::kOk;
   }
 
@@ -186,13 +189,23 @@ class SquareRootUkf {
     const Vec<Scalar, kM> whitened = factor.template whiten<1>(innovation);
     rate(correction, whitened, factor);
     if (!correction) return correction;
-    mean_.noalias() += root.template bottomLeftCorner<kStates, kM>() * whitened;
-    root_ = root.template bottomRightCorner<kStates, kStates>();
+    const Vec<Scalar, kStates> mean =
+        mean_ + root.template bottomLeftCorner<kStates, kM>() * whitened;
+    const Mat<Scalar, kStates, kStates> next = root.template bottomRightCorner<kStates, kStates>();
+    if (!has_finite_moments(mean, next)) return failed_correction<kM, Scalar>(Status::kNotFinite);
+    mean_ = mean;
+    root_ = next;
     return correction;
   }
 
  private:
   friend struct Control;
+
+  /// Whether a mean and the squares of the rows of a root, the variances, are finite.
+  static bool has_finite_moments(const Vec<Scalar, kStates>& mean,
+                                 const Mat<Scalar, kStates, kStates>& root) noexcept {
+    return is_finite(mean) && std::isfinite(root.squaredNorm());
+  }
 
   Vec<Scalar, kStates>& mean() noexcept { return mean_; }
   Mat<Scalar, kStates, kPoints> points() const noexcept {

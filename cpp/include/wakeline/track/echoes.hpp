@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "wakeline/core/cholesky.hpp"
-#include "wakeline/track/plane_index.hpp"
+#include "wakeline/track/place_index.hpp"
 #include "wakeline/track/radar.hpp"
 
 namespace wakeline {
@@ -43,7 +43,6 @@ class Echoes {
             double slack_s) noexcept {
     echoes_.clear();
     index_.clear();
-    largest_variance_ = 0.0;
     earliest_s_ = latest_s_ = time_s;
     const std::size_t count = std::min(plots.size(), echoes_.capacity());
     for (std::size_t k = 0; k < count; ++k) {
@@ -52,18 +51,19 @@ class Echoes {
       const bool usable = std::fabs(plot.time_s - time_s) <= slack_s && plot.range_m >= 0.0 &&
                           is_finite(position.mean) && Cholesky<2>(position.covariance).ok();
       if (!usable) continue;
-      index_.add(position.mean, size());
+      index_.add(position.mean, position.covariance.trace(), size());
       echoes_.push_back({.position = position, .time_s = plot.time_s, .plot = static_cast<int>(k)});
-      largest_variance_ = std::max(largest_variance_, position.covariance.trace());
       earliest_s_ = std::min(earliest_s_, plot.time_s);
       latest_s_ = std::max(latest_s_, plot.time_s);
     }
     index_.sort();
   }
 
-  /// Calls `f(echo index)` for every plot in the square of half side `reach_m` about a position.
-  template <class Function>
-  void for_each_near(const Vec<double, 2>& position, double reach_m, Function&& function) const {
+  /// Calls `f(echo index)` for every plot in a square about a position: `reach_m(variance)` is its
+  /// half side for plots whose covariance has at most that trace.
+  template <class Reach, class Function>
+  void for_each_near(const Vec<double, 2>& position, const Reach& reach_m,
+                     Function&& function) const {
     index_.for_each_near(position, reach_m, function);
   }
 
@@ -77,11 +77,8 @@ class Echoes {
   [[nodiscard]] auto begin() noexcept { return echoes_.begin(); }
   [[nodiscard]] auto end() noexcept { return echoes_.end(); }
 
-  /// Indices from south to north.
-  [[nodiscard]] std::span<const int> by_north() const noexcept { return index_.by_north(); }
-
-  /// Largest trace of a covariance, m².
-  [[nodiscard]] double largest_variance_m2() const noexcept { return largest_variance_; }
+  [[nodiscard]] auto begin() const noexcept { return echoes_.begin(); }
+  [[nodiscard]] auto end() const noexcept { return echoes_.end(); }
 
   /// No plot is farther from that time.
   [[nodiscard]] double apart_s(double time_s) const noexcept {
@@ -90,8 +87,7 @@ class Echoes {
 
  private:
   std::vector<Echo> echoes_;
-  PlaneIndex index_;
-  double largest_variance_ = 0.0;
+  PlaceIndex index_;
   double earliest_s_ = 0.0;
   double latest_s_ = 0.0;
 };

@@ -24,7 +24,8 @@ struct FreePlot {
 /// The free plots of the scan before, from which tracks start. Memory is taken by the constructor.
 class FreePlots {
  public:
-  explicit FreePlots(int max_plots) : capacity_(static_cast<std::size_t>(max_plots)) {
+  explicit FreePlots(int max_plots)
+      : capacity_(static_cast<std::size_t>(max_plots)), index_(max_plots) {
     plots_.reserve(capacity_);
   }
 
@@ -33,29 +34,26 @@ class FreePlots {
   template <class Function>
   void for_each_before(const Echo& echo, double max_speed_mps, double sigmas, double longest_s,
                        Function&& function) const {
-    const double reach = max_speed_mps * std::clamp(echo.time_s - earliest_s_, 0.0, longest_s) +
-                         sigmas * std::sqrt(largest_variance_ + echo.position.covariance.trace());
-    const double north = echo.position.mean[0];
-    const double east = echo.position.mean[1];
-    auto place = std::lower_bound(
-        plots_.begin(), plots_.end(), north - reach,
-        [](const FreePlot& plot, double limit) { return plot.position.mean[0] < limit; });
-    for (; place != plots_.end() && place->position.mean[0] <= north + reach; ++place) {
-      if (!(std::fabs(place->position.mean[1] - east) <= reach)) continue;
-      const double dt_s = echo.time_s - place->time_s;
+    const double way_m = max_speed_mps * std::clamp(echo.time_s - earliest_s_, 0.0, longest_s);
+    const double variance_m2 = echo.position.covariance.trace();
+    const auto reach_m = [&](double earlier_m2) {
+      return way_m + sigmas * std::sqrt(earlier_m2 + variance_m2);
+    };
+    index_.for_each_near(echo.position.mean, reach_m, [&](int k) {
+      const FreePlot& plot = plots_[static_cast<std::size_t>(k)];
+      const double dt_s = echo.time_s - plot.time_s;
       if (dt_s > 0.0 && dt_s <= longest_s &&
-          within_speed_limit(place->position, echo.position, dt_s, max_speed_mps, sigmas))
-        function(*place);
-    }
+          within_speed_limit(plot.position, echo.position, dt_s, max_speed_mps, sigmas))
+        function(plot);
+    });
   }
 
   /// Keeps the echoes that are free with more than that probability, for the next scan.
   void replace(const Echoes& echoes, double free) noexcept {
     plots_.clear();
-    for (const int index : echoes.by_north())
-      if (const Echo& echo = echoes[index]; echo.free > free)
-        plots_.push_back({echo.position, echo.time_s});
-    measure();
+    for (const Echo& echo : echoes)
+      if (echo.free > free) plots_.push_back({echo.position, echo.time_s});
+    sort();
   }
 
   /// Saves or restores the plots.
@@ -70,22 +68,24 @@ class FreePlots {
       fields(plot.position.covariance);
       fields(plot.time_s);
     }
-    measure();
+    sort();
   }
 
  private:
-  void measure() noexcept {
-    largest_variance_ = 0.0;
+  void sort() noexcept {
+    index_.clear();
     earliest_s_ = std::numeric_limits<double>::infinity();
-    for (const FreePlot& plot : plots_) {
-      largest_variance_ = std::max(largest_variance_, plot.position.covariance.trace());
+    for (std::size_t k = 0; k < plots_.size(); ++k) {
+      const FreePlot& plot = plots_[k];
+      index_.add(plot.position.mean, plot.position.covariance.trace(), static_cast<int>(k));
       earliest_s_ = std::min(earliest_s_, plot.time_s);
     }
+    index_.sort();
   }
 
   std::size_t capacity_;
-  std::vector<FreePlot> plots_;  ///< from south to north
-  double largest_variance_ = 0.0;
+  std::vector<FreePlot> plots_;
+  PlaceIndex index_;  ///< of `plots_`
   double earliest_s_ = std::numeric_limits<double>::infinity();
 };
 

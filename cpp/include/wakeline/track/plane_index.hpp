@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "wakeline/core/types.hpp"
@@ -23,13 +22,11 @@ class PlaneIndex {
   explicit PlaneIndex(int capacity) {
     const auto size = static_cast<std::size_t>(capacity);
     points_.reserve(size);
-    by_north_.reserve(size);
     south_m_.reserve(static_cast<std::size_t>(std::sqrt(double(capacity))) + 2);
   }
 
   void clear() noexcept {
     points_.clear();
-    by_north_.clear();
     south_m_.clear();
   }
 
@@ -43,7 +40,6 @@ class PlaneIndex {
     std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) {
       return a.north < b.north || (a.north == b.north && a.name < b.name);
     });
-    for (const Point& point : points_) by_north_.push_back(point.name);
     const auto size = static_cast<std::ptrdiff_t>(points_.size());
     per_strip_ = std::max<std::ptrdiff_t>(
         1, static_cast<std::ptrdiff_t>(std::ceil(std::sqrt(double(size)))));
@@ -79,8 +75,7 @@ class PlaneIndex {
     }
   }
 
-  /// Names from south to north.
-  [[nodiscard]] std::span<const int> by_north() const noexcept { return by_north_; }
+  [[nodiscard]] bool empty() const noexcept { return points_.empty(); }
 
  private:
   struct Point {
@@ -102,8 +97,7 @@ class PlaneIndex {
     return first;
   }
 
-  std::vector<Point> points_;  ///< strip by strip, each from west to east
-  std::vector<int> by_north_;
+  std::vector<Point> points_;    ///< strip by strip, each from west to east
   std::vector<double> south_m_;  ///< southernmost point of each strip
   std::ptrdiff_t per_strip_ = 1;
 };

@@ -29,7 +29,7 @@
 #include "wakeline/track/echoes.hpp"
 #include "wakeline/track/free_plots.hpp"
 #include "wakeline/track/mode_places.hpp"
-#include "wakeline/track/plane_index.hpp"
+#include "wakeline/track/place_index.hpp"
 #include "wakeline/track/radar.hpp"
 #include "wakeline/track/start.hpp"
 #include "wakeline/track/track_list.hpp"
@@ -149,12 +149,14 @@ class Tracker {
   /// The track of that number, or null.
   [[nodiscard]] const TrackType* find(std::int64_t id) const noexcept { return tracks_.find(id); }
 
-  /// The belief of a track at a time that is not before its estimate.
+  /// The belief of a track at a time that is not before its estimate; NaN for a time that is none
+  /// or so far off that nothing can be said.
   [[nodiscard]] Gaussian<4> kinematics_at(const TrackType& track, double time_s) const noexcept {
-    if (!(time_s > track.time_s)) return track.kinematics;
+    if (time_s <= track.time_s) return track.kinematics;
     Estimator ahead = track.estimator;
-    (void)ahead.predict(time_s - track.time_s);
-    return kinematics_of(ahead.estimate());
+    if (ahead.predict(time_s - track.time_s) == Status::kOk) return kinematics_of(ahead.estimate());
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    return {Vec<double, 4>::Constant(kNaN), Mat<double, 4, 4>::Constant(kNaN)};
   }
 
   /// The operator says that there is a target: a confirmed track at rest. Returns its number, or 0
@@ -231,6 +233,7 @@ class Tracker {
   static constexpr double kDesignatedExistence = 0.999;
   /// A plot that many periods from its scan has a wrong clock.
   static constexpr double kClockPeriods = 10.0;
+  static constexpr int kStartScans = 2;  ///< so long apart the plots of a start may be at least
   static constexpr std::uint32_t kArchiveVersion = 2;
   static constexpr std::size_t kGroup = 32;  ///< tracks that take their steps together
 
@@ -291,12 +294,11 @@ class Tracker {
     if (echoes_.apart_s(time_s_) == 0.0) return time_s_;
     const double ahead_s = std::max(time_s_ - track.time_s, 0.0);
     const Vec<double, 2> expected = track.position() + ahead_s * track.velocity();
-    const double reach = 3.0 * track.position_std_m() +
-                         3.0 * std::sqrt(echoes_.largest_variance_m2()) +
-                         radar_.max_speed_mps * ahead_s;
+    const double own_m = 3.0 * track.position_std_m() + radar_.max_speed_mps * ahead_s;
+    const auto reach_m = [&](double plot_m2) { return own_m + 3.0 * std::sqrt(plot_m2); };
     double least = std::numeric_limits<double>::infinity();
     double time_s = time_s_;
-    echoes_.for_each_near(expected, reach, [&](int index) {
+    echoes_.for_each_near(expected, reach_m, [&](int index) {
       const Echo& echo = echoes_[index];
       const double distance = (echo.position.mean - expected).squaredNorm();
       if (distance < least) {
@@ -312,15 +314,16 @@ class Tracker {
     claims.clear();
     const double threshold = gate_.threshold();
     const auto& p = track.kinematics.covariance;
-    const double plot_m2 = config_.wild_variance() * echoes_.largest_variance_m2();
     modes_.take(track.estimator);
-    // Generous: the widest mode of an estimator may be some times wider than the mixture.
-    const double generous =
-        3.0 * std::sqrt(threshold * (p(0, 0) + p(2, 2))) + std::sqrt(threshold * plot_m2);
+    const double own_m = 3.0 * std::sqrt(threshold * (p(0, 0) + p(2, 2)));
     const double moved = echoes_.apart_s(track.time_s) * track.velocity().cwiseAbs().maxCoeff();
-    const double reach =
-        std::min(generous, modes_.reach_m(track.position(), plot_m2, threshold) + moved);
-    echoes_.for_each_near(track.position(), reach, [&](int index) {
+    const auto reach_m = [&](double plot_m2) {
+      const double wild_m2 = config_.wild_variance() * plot_m2;
+      // Generous: the widest mode of an estimator may be some times wider than the mixture.
+      const double generous = own_m + std::sqrt(threshold * wild_m2);
+      return std::min(generous, modes_.reach_m(track.position(), wild_m2, threshold) + moved);
+    };
+    echoes_.for_each_near(track.position(), reach_m, [&](int index) {
       const Gaussian<2>& position = echoes_[index].position;
       // The plot moves along with the track from its own time to the track's.
       const double dt_s = track.time_s - echoes_[index].time_s;
@@ -511,11 +514,9 @@ class Tracker {
 
   void index_tracks() noexcept {
     places_.clear();
-    widest_m2_ = 0.0;
     tracks_.for_each([&](const TrackType& track, int slot) {
       if (!is_finite(track.position())) return;  // near nothing
-      places_.add(track.position(), slot);
-      widest_m2_ = std::max(widest_m2_, widest_m2(track));
+      places_.add(track.position(), widest_m2(track), slot);
     });
     places_.sort();
   }
@@ -528,10 +529,11 @@ class Tracker {
   /// Whether a senior track is on the same target.
   [[nodiscard]] bool has_senior(const TrackType& track) const noexcept {
     // No farther apart can two tracks be that `same_target` calls one; a little more for rounding.
-    const double reach =
-        1.001 * std::sqrt(config_.duplicate_distance * (widest_m2(track) + widest_m2_));
+    const auto reach_m = [&](double other_m2) {
+      return 1.001 * std::sqrt(config_.duplicate_distance * (widest_m2(track) + other_m2));
+    };
     bool found = false;
-    places_.for_each_near(track.position(), reach, [&](int slot) {
+    places_.for_each_near(track.position(), reach_m, [&](int slot) {
       const TrackType& other = tracks_.at(slot);
       found =
           found || (&other != &track && !tracks_.ended(other) && senior(other, track) &&
@@ -568,14 +570,24 @@ class Tracker {
   /// A free plot and one of the scan before, near enough for the speed limit, start a tentative
   /// track.
   void start_tracks() noexcept {
-    const double longest_s = config_.coast_scans_max * radar_.period_s;
+    const double longest_s = std::max(config_.coast_scans_max, kStartScans) * radar_.period_s;
     weak_listed_ = false;
+    newest_before_ = next_tentative_id_ + 1;
     for (const Echo& echo : echoes_) {
       if (!(echo.free > config_.free_plot)) continue;
       free_.for_each_before(echo, radar_.max_speed_mps, config_.start_gate_sigma, longest_s,
                             [&](const FreePlot& earlier) { start_track(earlier, echo); });
     }
     free_.replace(echoes_, config_.free_plot);
+    tracks_.for_each([&](const TrackType& track) {
+      if (is_new(track)) announce(TrackEvent::kStarted, track);
+    });
+    newest_before_ = next_tentative_id_ + 1;
+  }
+
+  /// Whether a track has started in this scan: tentative tracks count downwards.
+  [[nodiscard]] bool is_new(const TrackType& track) const noexcept {
+    return track.id < newest_before_;
   }
 
   void start_track(const FreePlot& earlier, const Echo& echo) noexcept {
@@ -588,7 +600,6 @@ class Tracker {
                    config_.initial_existence * config_.clutter_density_per_m2 / echo.density);
     if (track == nullptr) return;
     track->history = 3u;
-    announce(TrackEvent::kStarted, *track);
   }
 
   /// A new tentative track of two plots; null when it cannot start or there is no room.
@@ -619,14 +630,14 @@ class Tracker {
   }
 
   /// Gives up the weakest tentative track, of equals the oldest, if it is weaker than a new one
-  /// would be.
+  /// would be. One that has started in this scan has never been told of.
   bool make_room(double existence) noexcept {
     if (!weak_listed_) list_weak();
     if (weak_.empty() || !(weak_.front().existence < existence)) return false;
     const int slot = weak_.front().slot;
     std::pop_heap(weak_.begin(), weak_.end(), stronger);
     weak_.pop_back();
-    lose(tracks_.at(slot));
+    if (!is_new(tracks_.at(slot))) lose(tracks_.at(slot));
     tracks_.remove_slot(slot);
     return true;
   }
@@ -659,13 +670,20 @@ class Tracker {
       events_.push_back({kind, track.id, track.tentative_id, time_s_});
   }
 
-  /// Tells estimators of different models or chains apart, by what they make of one start.
+  /// Tells estimators of different models or chains apart, by what they make of a slow start and of
+  /// fast ones, two time steps and a reading.
   [[nodiscard]] std::uint64_t fingerprint() const {
-    Estimator estimator = prototype_;
     Archive fields;
-    (void)estimator.start(Gaussian<4>{{100.0, 5.0, 200.0, -3.0}, Mat<double, 4, 4>::Identity()});
-    for (const double dt_s : {1.0, 2.5}) (void)estimator.predict(dt_s);
-    estimator.archive(fields);
+    const Alternative<Fix> reading{Fix{}, {101.0, 199.0}, 1.0};
+    for (const double speed_mps : {5.0, 15.0, 40.0, 200.0}) {
+      Estimator estimator = prototype_;
+      double share = 0.0;
+      (void)estimator.start(
+          Gaussian<4>{{100.0, speed_mps, 200.0, -3.0}, Mat<double, 4, 4>::Identity()});
+      for (const double dt_s : {1.0, 2.5}) (void)estimator.predict(dt_s);
+      (void)estimator.update(std::span(&reading, 1), 1.0, std::span(&share, 1));
+      estimator.archive(fields);
+    }
     return checksum(fields.bytes());
   }
 
@@ -706,9 +724,8 @@ class Tracker {
   ModePlaces modes_;  ///< of the track at hand
   SideBySide<Estimator> side_by_side_;
   std::array<Readings, kGroup> readings_;  ///< of the tracks at hand
-  PlaneIndex places_;                      ///< of the tracks, by slot
-  double widest_m2_ = 0.0;
-  FreePlots free_;  ///< of the scan before
+  PlaceIndex places_;                      ///< of the tracks, by slot
+  FreePlots free_;                         ///< of the scan before
   std::vector<std::int64_t> plot_track_id_;
   std::vector<Event> events_;
   std::vector<int> row_slot_;  ///< of the rows of `candidates_`
@@ -721,6 +738,7 @@ class Tracker {
   bool started_ = false;
   std::int64_t next_id_ = 1;
   std::int64_t next_tentative_id_ = -1;
+  std::int64_t newest_before_ = 0;  ///< of the tentative tracks, the number before this scan
 };
 
 }  // namespace wakeline

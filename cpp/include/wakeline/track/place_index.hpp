@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "wakeline/track/plane_index.hpp"
+
+namespace wakeline {
+
+/// Places that are known more or less well, found by where they are.
+///
+/// How far one has to look for what may belong together depends on the errors of what is looked
+/// for: places with about the same errors make a layer, so that a plot at the horizon, which may be
+/// kilometres off, does not make the search wide for those near the antenna. Memory is taken by the
+/// constructor.
+class PlaceIndex {
+ public:
+  explicit PlaceIndex(int capacity) {
+    layers_.reserve(kLayers);
+    for (int k = 0; k < kLayers; ++k) layers_.push_back({PlaneIndex(capacity)});
+  }
+
+  void clear() noexcept {
+    for (Layer& layer : layers_) {
+      layer.places.clear();
+      layer.largest_m2 = 0.0;
+    }
+  }
+
+  /// Adds a place, [north, east] m, which must be finite, with a variance; `name` is what it is
+  /// found as.
+  void add(const Vec<double, 2>& position, double variance_m2, int name) noexcept {
+    Layer& layer = layers_[static_cast<std::size_t>(layer_of(variance_m2))];
+    layer.places.add(position, name);
+    layer.largest_m2 = std::max(layer.largest_m2, variance_m2);
+  }
+
+  /// Sorts the places; to be called when all are there.
+  void sort() noexcept {
+    for (Layer& layer : layers_) layer.places.sort();
+  }
+
+  /// Calls `f(name)` for every place in a square about a position, layer by layer:
+  /// `reach_m(variance)` is its half side for places of at most that variance.
+  template <class Reach, class Function>
+  void for_each_near(const Vec<double, 2>& position, const Reach& reach_m,
+                     Function&& function) const {
+    for (const Layer& layer : layers_)
+      if (!layer.places.empty())
+        layer.places.for_each_near(position, reach_m(layer.largest_m2), function);
+  }
+
+ private:
+  /// Standard deviations below 32, 128, 512 m, 2 km, and any.
+  static constexpr int kLayers = 5;
+
+  static int layer_of(double variance_m2) noexcept {
+    if (!(variance_m2 < 0x1p22)) return kLayers - 1;
+    return variance_m2 < 0x1p10 ? 0 : (std::ilogb(variance_m2) - 6) / 4;
+  }
+
+  struct Layer {
+    PlaneIndex places;
+    double largest_m2 = 0.0;
+  };
+  std::vector<Layer> layers_;
+};
+
+}  // namespace wakeline
