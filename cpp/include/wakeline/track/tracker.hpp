@@ -574,7 +574,7 @@ class Tracker {
     weak_listed_ = false;
     newest_before_ = next_tentative_id_ + 1;
     for (const Echo& echo : echoes_) {
-      if (!(echo.free > config_.free_plot)) continue;
+      if (!(echo.free > config_.free_plot) || !has_room_for(existence_of_start(echo))) continue;
       free_.for_each_before(echo, radar_.max_speed_mps, config_.start_gate_sigma, longest_s,
                             [&](const FreePlot& earlier) { start_track(earlier, echo); });
     }
@@ -590,23 +590,27 @@ class Tracker {
     return track.id < newest_before_;
   }
 
+  [[nodiscard]] double existence_of_start(const Echo& echo) const noexcept {
+    return config_.initial_existence * config_.clutter_density_per_m2 / echo.density;
+  }
+
   void start_track(const FreePlot& earlier, const Echo& echo) noexcept {
+    if (!has_room_for(existence_of_start(echo))) return;
     Gaussian<4> belief =
         two_point<double>(earlier.position, echo.position, echo.time_s - earlier.time_s);
     if (config_.start_speed_factor > 0.0)
       belief = with_speed_prior(belief, std::sqrt(resting_velocity().covariance(0, 0)));
-    TrackType* track =
-        open_track(echo.time_s, belief,
-                   config_.initial_existence * config_.clutter_density_per_m2 / echo.density);
+    TrackType* track = open_track(echo.time_s, belief, existence_of_start(echo));
     if (track == nullptr) return;
     track->history = 3u;
   }
 
   /// A new tentative track of two plots; null when it cannot start or there is no room.
   TrackType* open_track(double time_s, const Gaussian<4>& belief, double existence) noexcept {
+    if (!has_room_for(existence)) return nullptr;
     Estimator estimator = prototype_;
     if (estimator.start(belief) != Status::kOk) return nullptr;
-    if (tracks_.full() && !make_room(existence)) return nullptr;
+    if (tracks_.full()) make_room();
     const int slot = tracks_.open();
     TrackType& track = tracks_.at(slot);
     track.estimator = estimator;
@@ -629,17 +633,21 @@ class Tracker {
     return &track;
   }
 
-  /// Gives up the weakest tentative track, of equals the oldest, if it is weaker than a new one
-  /// would be. One that has started in this scan has never been told of.
-  bool make_room(double existence) noexcept {
+  /// Whether there is room for a new track, be it that of a weaker tentative one.
+  bool has_room_for(double existence) noexcept {
+    if (!tracks_.full()) return true;
     if (!weak_listed_) list_weak();
-    if (weak_.empty() || !(weak_.front().existence < existence)) return false;
+    return !weak_.empty() && weak_.front().existence < existence;
+  }
+
+  /// Gives up the weakest tentative track, of equals the oldest. One that has started in this scan
+  /// has never been told of.
+  void make_room() noexcept {
     const int slot = weak_.front().slot;
     std::pop_heap(weak_.begin(), weak_.end(), stronger);
     weak_.pop_back();
     if (!is_new(tracks_.at(slot))) lose(tracks_.at(slot));
     tracks_.remove_slot(slot);
-    return true;
   }
 
   /// A tentative track that may have to make room.
