@@ -28,7 +28,11 @@ class DoubleArray : public py::array_t<double, py::array::c_style | py::array::f
 
   /// Null, and no error set, for what is no array of numbers.
   static DoubleArray ensure(py::handle numbers) {
-    return py::reinterpret_steal<DoubleArray>(Base::ensure(filled(numbers)).release());
+    try {
+      return py::reinterpret_steal<DoubleArray>(Base::ensure(filled(numbers)).release());
+    } catch (const py::error_already_set&) {  // masked, but no numbers
+      return py::reinterpret_steal<DoubleArray>(py::handle());
+    }
   }
 
  private:

@@ -485,10 +485,12 @@ def test_files_that_hold_no_result(result, tmp_path):
         with pytest.raises(ValueError, match=r"wrong\.npz: not a Monte Carlo result; wanted"):
             Result.load(wrong)
     content = whole.read_bytes()
-    for k in range(0, len(content), 97):  # a damaged byte is found out, or does no damage
-        wrong.write_bytes(content[:k] + bytes([content[k] ^ 0xFF]) + content[k + 1 :])
-        with contextlib.suppress(ValueError):
-            Result.load(wrong)
+    # A damaged byte is found out, or does no damage: where the files begin, and in their list.
+    for k in [*range(160), *range(len(content) - 1200, len(content), 3)]:
+        for bits in (0xFF, 0x01, 0x08):
+            wrong.write_bytes(content[:k] + bytes([content[k] ^ bits]) + content[k + 1 :])
+            with contextlib.suppress(ValueError):
+                Result.load(wrong)
     for arrays in ({"x": np.zeros(3)}, {"header": np.array('{"format": "other"}')}):
         np.savez(wrong, **arrays)
         with pytest.raises(

@@ -2,6 +2,7 @@
 
 import os
 import stat
+from pathlib import Path
 from threading import Thread
 
 import pytest
@@ -35,7 +36,7 @@ def test_a_file_is_replaced_when_the_new_one_is_complete(tmp_path):
 @pytest.mark.parametrize("there", [True, False])
 def test_what_a_link_leads_to_is_replaced_and_the_link_stays(tmp_path, there):
     (tmp_path / "far").mkdir()
-    target, link = tmp_path / "far" / "target.txt", tmp_path / "link.txt"
+    target, link = tmp_path / "far" / "target.data", tmp_path / "link.txt"
     if there:
         target.write_text("old")
     link.symlink_to(target)
@@ -43,7 +44,7 @@ def test_what_a_link_leads_to_is_replaced_and_the_link_stays(tmp_path, there):
     write(link)
     assert link.is_symlink()
     assert target.read_text() == "new"
-    assert sorted(tmp_path.rglob("*.txt")) == [target, link]
+    assert sorted(tmp_path.rglob("*.*")) == [target, link]
 
 
 def test_a_pipe_takes_the_content_and_stays_a_pipe(tmp_path):
@@ -57,6 +58,15 @@ def test_a_pipe_takes_the_content_and_stays_a_pipe(tmp_path):
     assert got == ["through"]
     assert stat.S_ISFIFO(pipe.stat().st_mode)
     assert list(tmp_path.iterdir()) == [pipe]
+
+
+def test_an_error_of_a_device_names_it():
+    full = Path("/dev/full")
+    if not full.exists():
+        pytest.skip("there is no such device")
+    with pytest.raises(OSError, match="No space") as told:
+        write(full)
+    assert told.value.filename == str(full)
 
 
 def test_where_nothing_can_be_written_is_told_by_the_path_asked_for(tmp_path):

@@ -35,11 +35,11 @@ def replacing(path: str | Path) -> Iterator[Path]:
         with tempfile.TemporaryDirectory() as folder:
             fresh = Path(folder, path.name)
             yield fresh
-            with fresh.open("rb") as source, path.open("wb") as target:
-                shutil.copyfileobj(source, target)
+            with _named(path, path), fresh.open("rb") as source, path.open("wb") as stream:
+                shutil.copyfileobj(source, stream)
         return
-    target = path.resolve() if path.is_symlink() else path
-    fresh = _beside(target)
+    target = _led_to(path)
+    fresh = _beside(target, path.suffix)
     try:
         with _named(fresh, path):
             yield fresh
@@ -58,7 +58,7 @@ def check_writable(path: str | Path) -> None:
         if not os.access(path, os.W_OK):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
         return
-    fresh = _beside(path.resolve() if path.is_symlink() else path)
+    fresh = _beside(_led_to(path), path.suffix)
     with _named(fresh, path):
         fresh.touch()
         fresh.unlink()
@@ -69,8 +69,13 @@ def _is_stream(path: Path) -> bool:
     return path.exists() and not path.is_file() and not path.is_dir()
 
 
-def _beside(path: Path) -> Path:
-    return path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
+def _led_to(path: Path) -> Path:
+    """What a link leads to in the end; any other path itself."""
+    return Path(os.path.realpath(path)) if path.is_symlink() else path
+
+
+def _beside(target: Path, suffix: str) -> Path:
+    return target.with_name(f".{target.stem}-{secrets.token_hex(4)}{suffix}")
 
 
 @contextmanager
@@ -79,6 +84,7 @@ def _named(fresh: Path, path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if error.filename is None or Path(error.filename) != fresh:
+        nameless = error.filename is None and error.errno is not None
+        if not nameless and (error.filename is None or Path(error.filename) != fresh):
             raise
         raise OSError(error.errno, error.strerror, str(path)) from None

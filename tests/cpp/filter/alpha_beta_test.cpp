@@ -409,6 +409,24 @@ TEST(AlphaBetaFilter, TakesOneOfSeveralReadingsAsIfItWereAlone) {
   }
 }
 
+TEST(AlphaBetaFilter, DoesNotCountAReadingThatOnlyWasTried) {
+  const Vec<double, 2> impossible(1e9, 1e9);
+  Imm imm{ModeChain<1>(Mat<double, 1, 1>::Ones()), AlphaBeta<>(ConstantGains{0.5, 0.2})};
+  ASSERT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);
+  ASSERT_EQ(imm.predict(2.5), Status::kOk);
+  Imm tried = imm;
+  const Alternative<Position> reading{kSensor, impossible, 1.0};
+  double share = 0.0;
+  ASSERT_EQ(tried.update(std::span(&reading, 1), 0.0, std::span(&share, 1)), 0.0);
+  ASSERT_GT(tried.update(std::span(&reading, 1), 1.0, std::span(&share, 1)), 0.0);
+  for (auto* one : {&imm, &tried}) {
+    ASSERT_EQ(one->predict(2.5), Status::kOk);
+    ASSERT_TRUE(one->update(kSensor, Vec<double, 2>(3050.0, 3950.0)));
+  }
+  EXPECT_TRUE(matrices_near(tried.estimate().mean, imm.estimate().mean,
+                            {.absolute = 1e-9, .relative = 1e-12}));
+}
+
 TEST(AlphaBetaFilter, RefusesPlotsWhoseErrorsMakeNoGain) {
   for (const Mat<double, 2, 2>& errors : {Mat<double, 2, 2>(Mat<double, 2, 2>::Zero()),
                                           Mat<double, 2, 2>(Mat<double, 2, 2>::Ones())}) {

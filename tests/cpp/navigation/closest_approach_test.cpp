@@ -285,6 +285,10 @@ TEST(ClosestApproach, OfWhatIsNoNumberIsNone) {
     EXPECT_TRUE(std::isnan(approach.tcpa_s()));
     EXPECT_TRUE(std::isnan(approach.probability(500, 1200)));
   }
+  const ClosestApproach near({state({400, 0}, {-1, 0}), errors(50, 0.1)});
+  ASSERT_GT(near.probability(500, 600), 0.5);
+  EXPECT_TRUE(std::isnan(near.probability(NAN, 600)));
+  EXPECT_TRUE(std::isnan(near.probability(500, NAN)));
 }
 
 TEST(ClosestApproach, IsFoundWithoutTheHeap) {

@@ -70,10 +70,7 @@ class AlphaBetaFilter
   template <class Sensor>
   Step<2, Scalar> innovation(const Sensor& sensor,
                              const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
-    static_assert(
-        PositionSensor<Sensor>,
-        "wakeline: an alpha-beta filter needs a sensor that fixes a position: position(z) "
-        "-> Gaussian<2>; see cpp/docs/concepts.md");
+    check_fixes_position<Sensor>();
     return Base::compare(Fix{}, sensor.position(z)).scored();
   }
 
@@ -89,6 +86,7 @@ class AlphaBetaFilter
   template <class Sensor>
   Step<2, Scalar> update(const Sensor& sensor,
                          const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    check_fixes_position<Sensor>();
     return take(sensor, sensor.position(z)).scored();
   }
 
@@ -113,15 +111,19 @@ class AlphaBetaFilter
 
   [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }
 
- private:
-  using Gain = Mat<Scalar, kStates, 2>;
-  using AxisGain = Vec<Scalar, Order>;
-
+  /// Where the schedule is: which reading is due, the time since the one before, and whether it has
+  /// come. To be kept and given back where an update is only tried.
   struct Occasion {
     std::int64_t reading = 1;
     Scalar elapsed_s = Scalar(0);
     bool taken = false;  ///< the reading has come; the next time step begins another one
   };
+  [[nodiscard]] const Occasion& memory() const noexcept { return occasion_; }
+  void recall(const Occasion& occasion) noexcept { occasion_ = occasion; }
+
+ private:
+  using Gain = Mat<Scalar, kStates, 2>;
+  using AxisGain = Vec<Scalar, Order>;
 
   static const Schedule& checked(const Schedule& schedule) {
     std::visit([](const auto& gains) { gains.template validate<Order>(); }, schedule);
@@ -140,6 +142,14 @@ class AlphaBetaFilter
     if (occasion_.taken) occasion_ = {occasion_.reading + 1, Scalar(0), false};
     occasion_.elapsed_s += dt_s;
     return status;
+  }
+
+  template <class Sensor>
+  static constexpr void check_fixes_position() noexcept {
+    static_assert(
+        PositionSensor<Sensor>,
+        "wakeline: an alpha-beta filter needs a sensor that fixes a position: position(z) "
+        "-> Gaussian<2>; see cpp/docs/concepts.md");
   }
 
   template <class Sensor>

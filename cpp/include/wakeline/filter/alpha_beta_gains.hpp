@@ -231,7 +231,8 @@ struct TrackingIndex {
 /// `near_range_m`, beyond it in inverse proportion to the range, down to those of `far`. Source: I.
 /// M. Hannoshyna, T. V. Kalinichenko, P. V. Nikitin, Research of methods of forecasting the
 /// movement, search and tracking of sea objects, equation (30), joined at 20 km, where the printed
-/// alpha jumps.
+/// alpha jumps. The range is that from own ship where the sensor knows it, else that from the
+/// origin: of a `Fix`, so in a `Tracker`, too.
 struct RangeDependent {
   double near_range_m = 20e3;
   double near_alpha = 0.5;

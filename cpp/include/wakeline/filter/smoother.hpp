@@ -63,11 +63,12 @@ concept Smoother = requires(T smoother, const T& view, typename T::Scalar x, Arc
   smoother.archive(fields);
 };
 
-/// `kOk` when a reading can be taken `dt_s` after the one before; the first one at any time. One so
-/// large that its square, or the square of a rate to it, has no room in a number is not finite.
+/// `kOk` when a reading can be taken `dt_s` after the one before; the first one at any time. Beyond
+/// 1e75 (`float`: 1e9), times a step below a second, it counts as not finite: its fourth power, or
+/// that of a rate to it, would have no room in a number.
 template <class Scalar>
 Status check_reading(bool first, Scalar dt_s, Scalar reading) noexcept {
-  constexpr Scalar kLargest = sizeof(Scalar) > 4 ? Scalar(1e150L) : Scalar(1e17L);
+  constexpr Scalar kLargest = sizeof(Scalar) > 4 ? Scalar(1e75L) : Scalar(1e9L);
   const Scalar within_s = !first && dt_s > Scalar(0) ? std::min(dt_s, Scalar(1)) : Scalar(1);
   if (!(std::abs(reading) <= kLargest * within_s)) return Status::kNotFinite;
   return first ? Status::kOk : check_time_step(dt_s);

@@ -151,6 +151,21 @@ StatusOf<Scalar> failure_of(std::span<const Correction<M, Scalar>> parts) noexce
   return first_failure(failure, Status::kNotFinite);
 }
 
+/// What a filter remembers beside its belief: where its gains are in their schedule. Of most
+/// filters nothing.
+template <class Filter>
+auto memory_of(const Filter& filter) noexcept {
+  if constexpr (requires { filter.memory(); })
+    return filter.memory();
+  else
+    return std::true_type{};
+}
+
+template <class Filter, class Memory>
+void recall(Filter& filter, const Memory& memory) noexcept {
+  if constexpr (requires { filter.recall(memory); }) filter.recall(memory);
+}
+
 /// Replaces the belief of a filter, `before`, by the mixture of what each reading makes of it, and
 /// returns the total weight of that. Adds to `share` what each reading has of it, times
 /// `weight_of_filter`. Of packs as `reweigh`.
@@ -170,6 +185,8 @@ Part absorb(Filter& filter, const BeliefType& before,
   };
   Part total = Part(none);
   add(total, before);
+  auto memory = memory_of(filter);
+  const auto memory_before = memory;
   for (std::size_t k = 0; k < count; ++k) {
     const auto& [sensor, z, before_likelihood] = readings[k];
     const auto correction = filter.correct(sensor, sensor.observe(z).template cast<Part>());
@@ -179,8 +196,10 @@ Part absorb(Filter& filter, const BeliefType& before,
       BeliefType after;
       after = filter.estimate();
       add(weight, after);
+      memory = memory_of(filter);
     }
     (void)filter.assign(before);
+    recall(filter, memory_before);
     total += weight;
     share[k] += sum_to<Scalar>(weight_of_filter * weight);
   }
@@ -193,6 +212,7 @@ Part absorb(Filter& filter, const BeliefType& before,
   if constexpr (kLanesOf < Part >> 1)
     assign_where<MaskOf<Part>, BeliefType::kStates, Part>(!possible, mixture, before);
   (void)filter.assign(mixture);
+  recall(filter, memory);
   return select(possible, total, Part(0));
 }
 
