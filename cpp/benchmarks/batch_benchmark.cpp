@@ -59,11 +59,10 @@ bool agrees(Hand hand, const LaneCourse<Scalar>& course) {
 template <int K, class Scalar, class Hand, Work kWork>
 void by_hand(benchmark::State& state) {
   static const LaneCourse<Scalar> course;
-  Hand hand(course.start);
-  if (!agrees<K, Scalar>(hand, course)) state.SkipWithError("differs from ours");
-  const double seconds = go_round<Scalar>(state, course.position, [&](const Vec<Scalar, 2>& z) {
-    hand.step(z);
-    benchmark::DoNotOptimize(hand);
+  const Hand started(course.start);
+  if (!agrees<K, Scalar>(started, course)) state.SkipWithError("differs from ours");
+  const double seconds = seconds_of([&] {
+    go_round(state, started, course.position, [](Hand& hand, const auto& z) { hand.step(z); });
   });
   tell_arithmetic<Scalar>(state, arithmetic_of(kWork), tell_time<Scalar>(state, seconds));
 }

@@ -5,7 +5,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <ctime>
 #include <vector>
 
@@ -14,16 +13,11 @@
 
 namespace wakeline::bench {
 
-/// Goes round the course; returns the processor's time in seconds.
-template <class Scalar, class Step>
-double go_round(benchmark::State& state, const std::vector<Vec<Scalar, 2>>& plots,
-                const Step& step) {
-  std::size_t k = 0;
+/// The processor's time, in seconds, that `work()` takes.
+template <class Function>
+double seconds_of(const Function& work) {
   const std::clock_t began = std::clock();
-  for (auto _ : state) {
-    step(plots[k]);
-    k = (k + 1) % plots.size();
-  }
+  work();
   return double(std::clock() - began) / CLOCKS_PER_SEC;
 }
 
@@ -51,11 +45,12 @@ template <class Scalar, class Estimator, class Sensor>
 void ours(benchmark::State& state, Estimator estimator, const Sensor& sensor, Work work) {
   static const LaneCourse<Scalar> course;
   (void)estimator.start(course.start);
-  const double seconds =
-      go_round<Scalar>(state, course.plots(sensor), [&](const Vec<Scalar, 2>& z) {
-        benchmark::DoNotOptimize(take(estimator, sensor, z));
-        benchmark::DoNotOptimize(estimator.estimate());
-      });
+  const double seconds = seconds_of([&] {
+    go_round(state, estimator, course.plots(sensor), [&](Estimator& at, const auto& z) {
+      benchmark::DoNotOptimize(take(at, sensor, z));
+      benchmark::DoNotOptimize(at.estimate());
+    });
+  });
   tell_arithmetic<Scalar>(state, arithmetic_of(work), tell_time<Scalar>(state, seconds));
 }
 

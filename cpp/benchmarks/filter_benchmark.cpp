@@ -159,24 +159,17 @@ void check(benchmark::State& state, Filter filter, Hand hand, const Sensor& sens
 }
 
 template <class Filter, class Sensor, class Plots>
-void run_ours(benchmark::State& state, Filter filter, const Sensor& sensor, const Plots& plots) {
-  std::size_t k = 0;
-  for (auto _ : state) {
+void run_ours(benchmark::State& state, const Filter& started, const Sensor& sensor,
+              const Plots& plots) {
+  go_round(state, started, plots, [&](Filter& filter, const auto& z) {
     benchmark::DoNotOptimize(filter.predict(kStep_s));
-    benchmark::DoNotOptimize(filter.update(sensor, plots[k]));
-    benchmark::DoNotOptimize(filter);
-    k = (k + 1) % plots.size();
-  }
+    benchmark::DoNotOptimize(filter.update(sensor, z));
+  });
 }
 
 template <class Hand, class Plots>
-void run_hand(benchmark::State& state, Hand hand, const Plots& plots) {
-  std::size_t k = 0;
-  for (auto _ : state) {
-    hand.step(plots[k]);
-    benchmark::DoNotOptimize(hand);
-    k = (k + 1) % plots.size();
-  }
+void run_hand(benchmark::State& state, const Hand& started, const Plots& plots) {
+  go_round(state, started, plots, [](Hand& hand, const auto& z) { hand.step(z); });
 }
 
 const Course<double>& course() {

@@ -147,27 +147,19 @@ bool agree(const Course<Scalar>& course) {
 template <class Scalar, int K>
 void ours(benchmark::State& state) {
   const Course<Scalar> course;
-  auto imm = started_imm<Scalar, K>(course);
   if (!agree<Scalar, K>(course)) state.SkipWithError("differs from the hand-written loop");
-  std::size_t k = 0;
-  for (auto _ : state) {
+  go_round(state, started_imm<Scalar, K>(course), course.polar, [](auto& imm, const auto& z) {
     benchmark::DoNotOptimize(imm.predict(Scalar(kStep_s)));
-    benchmark::DoNotOptimize(imm.update(kRadar, course.polar[k]));
+    benchmark::DoNotOptimize(imm.update(kRadar, z));
     benchmark::DoNotOptimize(imm.estimate());
-    k = (k + 1) % course.polar.size();
-  }
+  });
 }
 
 template <class Scalar, int K>
 void hand_loop(benchmark::State& state) {
   const Course<Scalar> course;
-  HandImm<K, Scalar> hand(course.start);
-  std::size_t k = 0;
-  for (auto _ : state) {
-    hand.step(course.polar[k]);
-    benchmark::DoNotOptimize(hand);
-    k = (k + 1) % course.polar.size();
-  }
+  go_round(state, HandImm<K, Scalar>(course.start), course.polar,
+           [](auto& hand, const auto& z) { hand.step(z); });
 }
 
 }  // namespace
