@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "wakeline/core/chi_square.hpp"
 
+#include <pybind11/native_enum.h>
+
 #include "call_text.hpp"
 #include "wakeline/core/angle.hpp"
 
@@ -22,14 +24,16 @@ void define_core(py::module_& parent) {
   py::register_exception<FilterError>(m, "FilterError", PyExc_RuntimeError).attr("__doc__") =
       "An estimator could not be started, predicted or updated; its belief is as it was.";
 
-  py::enum_<Status>(m, "Status", "What became of one step; anything but `ok` changed nothing.")
-      .value("ok", Status::kOk)
+  py::native_enum<Status>(m, "Status", "enum.IntEnum",
+                          "What became of one step: a number, as in the `status` of a run.")
+      .value("ok", Status::kOk, "all was taken")
       .value("missed", Status::kMissed, "no measurement in this scan: predicted only")
       .value("not_started", Status::kNotStarted, "the estimator has no belief yet")
       .value("not_finite", Status::kNotFinite, "an input or a result is not finite")
       .value("not_positive_definite", Status::kNotPositiveDefinite,
              "a covariance is not positive definite")
-      .value("negative_time_step", Status::kNegativeTimeStep, "time would run backwards");
+      .value("negative_time_step", Status::kNegativeTimeStep, "time would run backwards")
+      .finalize();
 
   py::class_<PyGaussian>(m, "Gaussian", R"(A Gaussian belief.
 

@@ -56,7 +56,8 @@ void define_face(py::class_<Estimator, Options...>& face) {
       .def_property_readonly("started", &Estimator::started)
       .def("run", &run<Estimator>, py::arg("z"), py::arg("dt_s"), py::arg("sensor"),
            py::arg("start"), py::arg("own_position_m") = py::none(),
-           py::arg("acceleration_mps2") = py::none(), py::arg("gate") = py::none(), kRunDoc);
+           py::arg("own_velocity_mps") = py::none(), py::arg("acceleration_mps2") = py::none(),
+           py::arg("gate") = py::none(), kRunDoc);
   if constexpr (requires(const Estimator& estimator) { estimator.mode_probability(); })
     face.def(
             "mode_probability",
@@ -71,8 +72,13 @@ void define_face(py::class_<Estimator, Options...>& face) {
   if constexpr (requires(const Estimator& estimator) { estimator.bank(); })
     face.def(
         "filter_estimate",
-        [](const Estimator& estimator, std::size_t index) {
-          return to_gaussian(estimator.bank().filter(index).estimate());
+        [](const Estimator& estimator, int index) {
+          if (!estimator.started()) require_ok(Status::kNotStarted, "filter_estimate");
+          const int models = estimator.bank().size();
+          if (index < 0 || index >= models)
+            throw py::index_error("index must be 0 to " + std::to_string(models - 1) + ", got " +
+                                  std::to_string(index));
+          return to_gaussian(estimator.bank().filter(static_cast<std::size_t>(index)).estimate());
         },
         py::arg("index"), "The belief of one of the filters, over its own state.");
 }

@@ -24,8 +24,10 @@ std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs, i
 }
 
 std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans) {
-  if (dt_s.is_none()) throw py::type_error("dt_s must be a number or an array, got None");
-  const DoubleArray array = dt_s.cast<DoubleArray>();
+  const DoubleArray array = dt_s.is_none() ? DoubleArray() : DoubleArray::ensure(dt_s);
+  if (!array || dt_s.is_none())
+    throw py::type_error("dt_s must be a number or an array, got " +
+                         py::repr(dt_s).cast<std::string>());
   if (array.ndim() == 0) return std::vector<double>(scans, *array.data());
   require_shape(array.ndim() == 1 && array.shape(0) == static_cast<py::ssize_t>(scans), "dt_s",
                 "() or " + shape_text({static_cast<py::ssize_t>(scans)}), array);

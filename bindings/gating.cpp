@@ -38,7 +38,8 @@ double even_step_rad(const DoubleArray& azimuth_rad, double width_rad) {
     off += turned(k) - step;
     if (!(std::abs(off) <= 0.25 * step))
       throw py::value_error("video must have sweeps at even steps of azimuth, got sweep " +
-                            std::to_string(k) + " " + std::to_string(off) + " rad off its place");
+                            std::to_string(k) + " " + std::to_string(off) +
+                            " rad off its place; a wakeline.ScanImage puts them there");
   }
   if (static_cast<double>(sweeps) * step > 2 * kPi<double> + 0.5 * step)
     throw py::value_error("video must hold at most one turn, got " +
@@ -77,8 +78,11 @@ StrobeEcho lay_strobe(const py::object& video, const AnyStrobe& strobe,
   const StrobeSettings settings{least_amplitude, pedestal, to_choice(several)};
   settings.validate();
   const Vec<double, 2> predicted = to_position("predicted_m", predicted_m);
-  if (!py::isinstance(video, py::module_::import("wakeline.recording").attr("RadarVideo")))
-    throw py::type_error("video must be a wakeline.recording.RadarVideo, got " +
+  const auto is_a = [&](const char* module, const char* name) {
+    return py::isinstance(video, py::module_::import(module).attr(name));
+  };
+  if (!is_a("wakeline.recording", "RadarVideo") && !is_a("wakeline", "ScanImage"))
+    throw py::type_error("video must be a wakeline.recording.RadarVideo or a ScanImage, got " +
                          py::str(py::type::of(video).attr("__name__")).cast<std::string>());
   const auto amplitude = video.attr("amplitude").cast<py::array>();
   const auto on = [&](const auto& image) {
@@ -203,7 +207,7 @@ of cells, plus what the grid rounds away.
 
 Parameters
 ----------
-video : RadarVideo
+video : RadarVideo or ScanImage
     One turn or less, at even steps of azimuth.
 strobe : RadiusGate, CovarianceStrobe or RangeBearingWindow
 predicted_m : (2,) array

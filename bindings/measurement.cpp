@@ -29,6 +29,7 @@ CallText polar_call(const char* name, const Sensor& sensor) {
 template <class Sensor>
 void define_sensor(py::class_<Sensor>& sensor) {
   constexpr int kM = Sensor::kMeasurements;
+  define_copies(sensor);
   sensor.def_property_readonly_static(
       "measurements", [](const py::object&) { return kM; }, "numbers per reading, M");
   sensor.def(
@@ -57,6 +58,17 @@ void define_sensor(py::class_<Sensor>& sensor) {
       py::arg("x"), "dh/dx of those components.");
 }
 
+/// A number of own ship that can be read and, where it makes sense, set.
+void define_number(py::class_<OwnShip>& own_ship, const char* name, double OwnShip::*number) {
+  own_ship.def_property(
+      name, [number](const OwnShip& own) { return own.*number; },
+      [number](OwnShip& own, double value) {
+        OwnShip changed = own;
+        changed.*number = value;
+        own = checked(changed);
+      });
+}
+
 const char* const kPolarParameters = R"(
 
 Parameters
@@ -75,8 +87,17 @@ own : OwnShip
 void define_measurement(py::module_& parent) {
   py::module_ m = parent.def_submodule("measurement", "What a sensor reports.");
 
-  py::class_<OwnShip>(m, "OwnShip",
-                      "Where the antenna is when it measures, and how well that is known.")
+  py::class_<OwnShip> own_ship(
+      m, "OwnShip", "Where the antenna is when it measures, and how well that is known.");
+  define_number(own_ship, "north_m", &OwnShip::north_m);
+  define_number(own_ship, "east_m", &OwnShip::east_m);
+  define_number(own_ship, "vnorth_mps", &OwnShip::vnorth_mps);
+  define_number(own_ship, "veast_mps", &OwnShip::veast_mps);
+  define_number(own_ship, "position_std_m", &OwnShip::position_std_m);
+  define_number(own_ship, "velocity_std_mps", &OwnShip::velocity_std_mps);
+  define_number(own_ship, "heading_std_rad", &OwnShip::heading_std_rad);
+  define_copies(own_ship);
+  own_ship
       .def(py::init([](double north, double east, double vnorth, double veast, double position,
                        double velocity, double heading) {
              return checked(OwnShip{north, east, vnorth, veast, position, velocity, heading});
@@ -84,13 +105,6 @@ void define_measurement(py::module_& parent) {
            py::kw_only(), py::arg("north_m") = 0.0, py::arg("east_m") = 0.0,
            py::arg("vnorth_mps") = 0.0, py::arg("veast_mps") = 0.0, py::arg("position_std_m") = 0.0,
            py::arg("velocity_std_mps") = 0.0, py::arg("heading_std_rad") = 0.0)
-      .def_readwrite("north_m", &OwnShip::north_m)
-      .def_readwrite("east_m", &OwnShip::east_m)
-      .def_readwrite("vnorth_mps", &OwnShip::vnorth_mps)
-      .def_readwrite("veast_mps", &OwnShip::veast_mps)
-      .def_readwrite("position_std_m", &OwnShip::position_std_m)
-      .def_readwrite("velocity_std_mps", &OwnShip::velocity_std_mps)
-      .def_readwrite("heading_std_rad", &OwnShip::heading_std_rad)
       .def("__repr__", [](const OwnShip& own) {
         return CallText("OwnShip")
             .with("north_m", own.north_m)
@@ -165,6 +179,11 @@ void define_measurement(py::module_& parent) {
            py::arg("range_rate_std_mps") = RangeBearingDoppler{}.range_rate_std_mps,
            py::arg("extent_std_m") = 0.0, py::arg("bearing_offset_rad") = 0.0,
            py::arg_v("own", OwnShip{}, "OwnShip()"))
+      .def_readonly("range_std_m", &RangeBearingDoppler::range_std_m)
+      .def_readonly("bearing_std_rad", &RangeBearingDoppler::bearing_std_rad)
+      .def_readonly("range_rate_std_mps", &RangeBearingDoppler::range_rate_std_mps)
+      .def_readonly("extent_std_m", &RangeBearingDoppler::extent_std_m)
+      .def_readonly("bearing_offset_rad", &RangeBearingDoppler::bearing_offset_rad)
       .def_readwrite("own", &RangeBearingDoppler::own)
       .def("__repr__", [](const RangeBearingDoppler& sensor) {
         return polar_call("RangeBearingDoppler", sensor)

@@ -10,37 +10,46 @@
 namespace wakeline::python {
 namespace {
 
+double time_step(double dt_s) {
+  require_not_negative("dt_s", dt_s);
+  return dt_s;
+}
+
 /// What every motion model offers in Python.
 template <class Motion>
 void define_model(py::class_<Motion>& model) {
   constexpr int kStates = kStatesOf<Motion>;
+  define_copies(model);
   model.def_property_readonly_static(
       "states", [](const py::object&) { return kStates; }, "number of states N");
   if constexpr (LinearMotionModel<Motion>) {
     model.def(
-        "matrix", [](const Motion& motion, double dt_s) { return to_array(motion.matrix(dt_s)); },
+        "matrix",
+        [](const Motion& motion, double dt_s) { return to_array(motion.matrix(time_step(dt_s))); },
         py::arg("dt_s"), "F(dt), (N, N).");
     model.def(
         "process_noise",
-        [](const Motion& motion, double dt_s) { return to_array(motion.process_noise(dt_s)); },
+        [](const Motion& motion, double dt_s) {
+          return to_array(motion.process_noise(time_step(dt_s)));
+        },
         py::arg("dt_s"), "Q(dt), (N, N).");
   } else {
     model.def(
         "transition",
         [](const Motion& motion, const DoubleArray& x, double dt_s) {
-          return to_array(motion.transition(to_vector<kStates>("x", x), dt_s));
+          return to_array(motion.transition(to_vector<kStates>("x", x), time_step(dt_s)));
         },
         py::arg("x"), py::arg("dt_s"), "f(x, dt), (N,).");
     model.def(
         "jacobian",
         [](const Motion& motion, const DoubleArray& x, double dt_s) {
-          return to_array(motion.jacobian(to_vector<kStates>("x", x), dt_s));
+          return to_array(motion.jacobian(to_vector<kStates>("x", x), time_step(dt_s)));
         },
         py::arg("x"), py::arg("dt_s"), "df/dx, (N, N).");
     model.def(
         "process_noise",
         [](const Motion& motion, const DoubleArray& x, double dt_s) {
-          return to_array(motion.process_noise(to_vector<kStates>("x", x), dt_s));
+          return to_array(motion.process_noise(to_vector<kStates>("x", x), time_step(dt_s)));
         },
         py::arg("x"), py::arg("dt_s"), "Q(x, dt), (N, N).");
   }

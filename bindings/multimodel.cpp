@@ -159,9 +159,9 @@ centre_threshold : float
 centre_gain : float
     How far it moves towards it. Not in the paper: 1, all the way.
 unlikely_threshold : float
-    A side less probable than this comes half way nearer.
+    Where the centre is the most probable, a side less probable than this comes half way nearer.
 likely_threshold : float
-    A side more probable than this goes twice as far.
+    Where a side is the most probable, and more than this, it goes twice as far.
 stay_probability : float
     Of the models' chain: to stay, the rest to each other model alike.
 chain : ModeChain, optional
@@ -234,7 +234,7 @@ carry : 'slot' or 'identity'
     Whether each slot keeps its estimate and probability, or each model that stays does and the entering one begins with
     the combined estimate and the probability of the leaving one. Not printed.
 initial_centre : int, optional
-    Index of the window's middle at a start; the straightest rate when left out. Not printed.
+    Index of the window's middle at a start; the straightest rate but the ends when left out. Not printed.
 stay_probability : float
     Of the models' chain: to stay, the rest to each other model alike.
 chain : ModeChain, optional

@@ -95,10 +95,25 @@ const double* per_scan(const char* name, const DoubleArray& array, std::size_t s
 /// A scalar step or one per scan.
 std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans);
 
+/// Throws where own ship moves under a sensor of range rates that takes her to be at rest.
+template <class Sensor>
+void require_own_velocity(const Sensor& sensor, const RunInput& in) {
+  if constexpr (requires { sensor.range_rate_std_mps; }) {
+    if (in.own_m == nullptr || in.own_mps != nullptr) return;
+    if (sensor.own.vnorth_mps != 0.0 || sensor.own.veast_mps != 0.0) return;
+    for (std::size_t k = 2; k < 2 * in.scans; ++k)
+      if (in.own_m[k] != in.own_m[k - 2])
+        throw py::value_error(
+            "own_velocity_mps must be told where own_position_m moves and the sensor reads range "
+            "rates, got None");
+  }
+}
+
 template <class Estimator>
 RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object& dt_s,
               const py::object& sensor, const py::object& start,
               const std::optional<DoubleArray>& own_position_m,
+              const std::optional<DoubleArray>& own_velocity_mps,
               const std::optional<DoubleArray>& acceleration_mps2,
               const std::optional<RadiusGate>& gate) {
   return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
@@ -115,11 +130,15 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
     in.dt_s = steps_s.data();
     const std::vector<AnyBelief> starts = parse_starts(start, in.runs, states_of(prototype));
     in.gate = gate ? &*gate : nullptr;
-    if (own_position_m) {
+    const auto of_own_ship = [&](const char* name, const std::optional<DoubleArray>& array) {
       if constexpr (!requires { model.own; })
-        throw py::value_error("own_position_m must be None for a sensor without own ship");
-      in.own_m = per_scan("own_position_m", *own_position_m, in.scans);
-    }
+        if (array)
+          throw py::value_error(std::string(name) + " must be None for a sensor without own ship");
+      return array ? per_scan(name, *array, in.scans) : nullptr;
+    };
+    in.own_m = of_own_ship("own_position_m", own_position_m);
+    in.own_mps = of_own_ship("own_velocity_mps", own_velocity_mps);
+    require_own_velocity(model, in);
     if (acceleration_mps2)
       in.acceleration_mps2 = per_scan("acceleration_mps2", *acceleration_mps2, in.scans);
 
@@ -180,6 +199,8 @@ start : Gaussian or sequence of R of them
     Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
 own_position_m : (T, 2) array, optional
     North and east of own ship at each reading.
+own_velocity_mps : (T, 2) array, optional
+    Her velocity over ground at each reading, which range rates are measured from.
 acceleration_mps2 : (T, 2) array, optional
     Known acceleration, north and east, in the step before each reading.
 gate : RadiusGate, optional
@@ -194,8 +215,9 @@ RunResult
 Raises
 ------
 ValueError
-    When a shape does not fit.
+    When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
 FilterError
-    When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.)";
+    When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+    cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.)";
 
 }  // namespace wakeline::python

@@ -34,6 +34,7 @@ WORDS = [
     (r"\bplot_time_s: typing\.Any", "plot_time_s: ArrayLike | None"),
     (r"NDArray\[np\.bool\]", "NDArray[np.bool_]"),
     (r"\bvideo: typing\.Any", "video: RadarVideo"),
+    (r"(def strobe_echo\(video: RadarVideo)", r"\1 | ScanImage"),
     (r"\bamplitude: typing\.Any", "amplitude: NDArray[np.uint8] | NDArray[np.uint16]"),
     (
         r"(def (?:amplitude\(self|cfar_threshold\(.*)\)) -> numpy\.ndarray",
@@ -55,6 +56,8 @@ WORDS = [
     (r"\barg0: (WhiteAcceleration|PiecewiseAcceleration|WhiteJerk)", r"policy: \1, /"),
     (r"wakeline\._engine\.\w+\.", ""),
     (r"(__hash__: typing\.ClassVar\[None\]) = None", r"\1  # type: ignore[assignment]"),
+    (r"    @classmethod\n    def __new__\(cls, value\):\n        \.\.\.\n", ""),
+    (r"    def __format__\(self, format_spec\):\n        \.\.\.\n", ""),
     (r"    def __(repr|str)__\(self\) -> str:\n        \.\.\.\n", ""),
 ]
 # A property that can be set is an attribute.
@@ -73,6 +76,7 @@ HOMES = {
     ],
     "filter": ["Filter", "RunResult"],
     "gating": ["RadiusGate"],
+    "video": ["ScanImage"],
     "motion": [
         "ConstantAcceleration",
         "ConstantVelocity",
@@ -121,6 +125,8 @@ def imports(noun: str, text: str) -> str:
     lines = []
     if "Sequence[" in text:
         lines.append("from collections.abc import Sequence")
+    if "enum." in text:
+        lines.append("import enum")
     if "typing." in text:
         lines.append("import typing")
     if "np." in text:

@@ -155,7 +155,8 @@ class PyNavigator {
   UsvRun run(const DoubleArray& time_s, const std::optional<DoubleArray>& imu,
              const std::optional<DoubleArray>& gnss, const std::optional<DoubleArray>& compass,
              const std::optional<DoubleArray>& velocity, const std::optional<DoubleArray>& log,
-             const std::optional<DoubleArray>& rate_of_turn, const ReadingStd& std, bool smooth) {
+             const std::optional<DoubleArray>& rate_of_turn,
+             const std::optional<DoubleArray>& imu_std, const ReadingStd& std, bool smooth) {
     require_shape(time_s.ndim() == 1 && time_s.shape(0) > 0, "time_s", "(T,), T > 0", time_s);
     const py::ssize_t rows = time_s.shape(0);
     for (py::ssize_t k = 0; k < rows; ++k)
@@ -164,7 +165,8 @@ class PyNavigator {
                               std::to_string(time_s.at(k)) + " in row " + std::to_string(k));
     const Readings readings{{"imu", imu, rows, 3},         {"gnss", gnss, rows, 2},
                             {"compass", compass, rows, 1}, {"velocity", velocity, rows, 2},
-                            {"log", log, rows, 1},         {"rate_of_turn", rate_of_turn, rows, 1}};
+                            {"log", log, rows, 1},         {"rate_of_turn", rate_of_turn, rows, 1},
+                            {"imu_std", imu_std, rows, 2}};
     return visit([&](auto& navigator) {
       using Navigator = std::remove_reference_t<decltype(navigator)>;
       if (!navigator.started()) require_ok(Status::kNotStarted, "run");
@@ -189,6 +191,8 @@ class PyNavigator {
             const double dt_s = time_s.at(k) - time_s.at(k - 1);
             const double* motion = readings.imu.at(k);
             legs.push_back(motion ? moved.leg(dt_s, to_imu(motion)) : moved.leg(dt_s));
+            if (const double* noise = readings.imu_std.at(k))
+              legs.back().input.noise = validated(ImuNoise{noise[0], noise[1]});
             require_ok_in(k, moved.predict(legs.back()), "predict");
           }
           if (take(moved, readings, std, k, run)) widened.push_back(beliefs.size());
@@ -204,7 +208,7 @@ class PyNavigator {
 
  private:
   struct Readings {
-    Column imu, gnss, compass, velocity, log, rate_of_turn;
+    Column imu, gnss, compass, velocity, log, rate_of_turn, imu_std;
   };
 
   template <class Navigator>
@@ -488,8 +492,8 @@ ValueError
           "run",
           [](PyNavigator& self, const DoubleArray& time, const Arrays& imu, const Arrays& gnss,
              const Arrays& compass, const Arrays& velocity, const Arrays& log, const Arrays& rate,
-             const DoubleArray& gnss_std, double compass_std, double velocity_std, double log_std,
-             double rate_std, bool smooth) {
+             const Arrays& imu_std, const DoubleArray& gnss_std, double compass_std,
+             double velocity_std, double log_std, double rate_std, bool smooth) {
             const ReadingStd std{to_vector("gnss_std_m", gnss_std, 2), compass_std, velocity_std,
                                  log_std, rate_std};
             for (const double each : std.gnss_m) require_positive("gnss_std_m", each);
@@ -497,12 +501,12 @@ ValueError
             require_positive("velocity_std_mps", velocity_std);
             require_positive("log_std_mps", log_std);
             require_positive("rate_of_turn_std_rad_s", rate_std);
-            return self.run(time, imu, gnss, compass, velocity, log, rate, std, smooth);
+            return self.run(time, imu, gnss, compass, velocity, log, rate, imu_std, std, smooth);
           },
           py::arg("time_s"), py::arg("imu") = py::none(), py::arg("gnss") = py::none(),
           py::arg("compass") = py::none(), py::kw_only(), py::arg("velocity") = py::none(),
           py::arg("log") = py::none(), py::arg("rate_of_turn") = py::none(),
-          py::arg("gnss_std_m") = std::vector<double>{8.0, 7.0},
+          py::arg("imu_std") = py::none(), py::arg("gnss_std_m") = std::vector<double>{8.0, 7.0},
           py::arg("compass_std_rad") = deg(1.0), py::arg("velocity_std_mps") = 0.1,
           py::arg("log_std_mps") = 0.1, py::arg("rate_of_turn_std_rad_s") = deg(0.1),
           py::arg("smooth") = false,
@@ -518,6 +522,9 @@ gnss, velocity : (T, 2) array, optional
     Position m and velocity over ground m/s, [north, east].
 compass, log, rate_of_turn : (T,) array, optional
     Heading rad, speed through water m/s (7 states), rate of turn rad/s (7 or 8 states).
+imu_std : (T, 2) array, optional
+    Row k is the noise from time k - 1 to time k of [acceleration m/s², yaw rate rad/s], measured or
+    not, in place of the navigator's.
 gnss_std_m, compass_std_rad, velocity_std_mps, log_std_mps, rate_of_turn_std_rad_s : float
     Standard deviations; that of gnss is [north, east].
 smooth : bool

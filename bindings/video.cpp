@@ -333,6 +333,10 @@ class AnyScanImage {
   std::variant<ScanImage<std::uint8_t>, ScanImage<std::uint16_t>> image_;
 };
 
+double step_of(const AnyScanImage& image) {
+  return image.with_view([](const auto& view) { return view.azimuth_step_rad; });
+}
+
 /// The image's own memory, not to be written to.
 py::array view_of(const py::object& self) {
   return self.cast<const AnyScanImage&>().with_view(
@@ -415,7 +419,8 @@ With N = 2 `train_cells`, factor f and p the probability::
     ordered_statistic  exponential   p = prod_{i<k} (N - i) / (N - i + f),   k = ceil(rank N)
                        rayleigh      the same with f^2
 
-The second is right to some per cent, the others are exact.
+The second takes a mean of Rayleigh amplitudes for simpler than it is: with 8 to 16 training cells noise is detected
+10 to 30 % more often than a probability of 1e-4 to 1e-6 says. The others are exact.
 
 Parameters
 ----------
@@ -488,7 +493,7 @@ after ``time_constant_s * log(factor / (factor - 1))``, and so does a ship that 
 Parameters
 ----------
 azimuths : int
-    Rows in a turn.
+    Rows in a turn; of several sweeps in a row the strongest amplitudes are learned.
 cells : int
     Cells of range; cells of sweeps beyond are left alone.
 time_constant_s : float
@@ -654,11 +659,12 @@ first_azimuth_rad : float
           [](const AnyScanImage& image) {
             return image.with_view([](const auto& view) { return view.first_azimuth_rad; });
           })
-      .def_property_readonly(
-          "azimuth_step_rad",
-          [](const AnyScanImage& image) {
-            return image.with_view([](const auto& view) { return view.azimuth_step_rad; });
-          })
+      .def_property_readonly("azimuth_step_rad", &step_of)
+      .def_property_readonly("azimuth_width_rad", &step_of, "What a row stands for, as of a video.")
+      .def("__len__",
+           [](const AnyScanImage& image) {
+             return image.with_view([](const auto& view) { return view.sweeps; });
+           })
       .def_property_readonly(
           "start_range_m",
           [](const AnyScanImage& image) {

@@ -250,6 +250,20 @@ def test_each_scenario_has_pictures_of_its_own(tmp_path, pictures):
     assert drawn == ["map-run_1.png", "map-run_2.png", "time-run_1.png", "time-run_2.png"]
 
 
+def test_scenarios_of_like_names_do_not_overwrite_each_others_pictures(tmp_path, pictures):
+    names = ("a b", "a_b", "A_B", "a_b-2")
+    rows = [(name, *boat(1)[0]) for name in names]
+    plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")
+    out = tmp_path / "out"
+    assert track(plots, "--out", out) == 0
+    drawn = sorted(path.stem for path in out.glob("map*.png"))
+    assert drawn == ["map-A_B-3", "map-a_b", "map-a_b-2", "map-a_b-2-2"]
+    (out / "map-a_b-4.png").write_text("mine")
+    one = write_plots(tmp_path / "one.csv", boat(1))
+    assert track(one, "--out", out) == 0
+    assert sorted(path.name for path in out.glob("map*.png")) == ["map-a_b-4.png", "map.png"]
+
+
 def test_files_of_an_earlier_run_that_this_one_does_not_write_are_removed(tmp_path):
     rows = [(name, *row) for name in ("run/1", "run 2") for row in boat(20)]
     plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")

@@ -10,6 +10,8 @@ import pytest
 
 from wakeline.cli import main, navigating, outputs
 from wakeline.navigation import LocalPlane
+from wakeline.recording import read_nmea
+from wakeline.recording.own_csv import read_own
 
 BUNDLED = resources.files("wakeline.recording") / "data" / "irene"
 KN = 1852.0 / 3600.0
@@ -216,6 +218,41 @@ def test_an_offset_that_may_be_drift_is_in_the_error_of_the_heading(tmp_path, ca
     )
 
 
+@pytest.mark.parametrize("variation", ["3.0,E", ","])
+def test_a_part_without_true_headings_takes_those_of_its_compass(tmp_path, capsys, variation):
+    """With the variation where it is told, else with what velocities over ground say of it."""
+    second_part = [
+        re.sub(r"HDG,([0-9.]+),.*", rf"HDG,\1,,,{variation}", line.strip())[1:]
+        if line.startswith("$HCHDG")
+        else line.strip()[1:].partition("*")[0]
+        for line in voyage(20, compass="HDG")[3 * 660 :]
+    ]
+    rows = navigated(tmp_path, voyage(9) + list(map(sentence, second_part)))
+    off_deg = (column(rows, "heading_deg") - heading_deg(seconds(rows)) + 180.0) % 360.0 - 180.0
+    later = seconds(rows) > 600
+    assert abs(np.median(off_deg[later])) < 0.7
+    assert ("are added to magnetic headings" in capsys.readouterr().out) == (variation == ",")
+    earlier_std, later_std = (
+        np.median(column(rows, "heading_std_deg")[which]) for which in (~later, later)
+    )
+    assert (later_std > 1.03 * earlier_std) == (variation == ",")
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_log_that_is_stuck_is_told_and_says_nothing_of_the_compass(tmp_path, capsys):
+    stuck = [
+        sentence("VWVHW,,T,,M,0.00,N,,K") if line.startswith("$VWVHW") else line
+        for line in voyage(6, compass="HDG")
+    ]
+    navigated(tmp_path, stuck)
+    told = capsys.readouterr().out
+    assert added_deg(told) == (0.0, 15.0)
+    assert "360 speeds through the water are 0 while the ship makes way" in told
+    assert "(first in line 3)" in told
+    navigated(tmp_path, voyage(6))
+    assert "are 0 while" not in capsys.readouterr().out
+
+
 def test_without_velocities_over_ground_the_variation_may_be_any(tmp_path, capsys):
     lines = [
         sentence("HCHDG,0.0,,,,") if line.startswith("$HEHDT") else line
@@ -295,7 +332,17 @@ def test_a_position_that_jumped_is_in_doubt_until_it_comes_back(tmp_path, capsys
     off = np.abs(north_off_m(rows, true)) > 75.0
     assert off.sum() > 150
     assert set(status[off]) == {"jumped", "rejected"}
-    assert set(status[~off]) == {"ok", "rejected"}
+    assert set(status[~off]) == {"ok", "rejected", "coasting"}
+
+
+def test_while_fixes_are_rejected_she_coasts(tmp_path):
+    rows = navigated(tmp_path, moved_north(voyage(8), range(400, 480), 150.0))
+    status, second = np.array([row["status"] for row in rows]), seconds(rows)
+    last_s = second[(status == "ok") & (second < 405)][-1]
+    jump_s = second[status == "jumped"][0]
+    waits = (second > last_s) & (second < jump_s)
+    assert set(status[waits]) == {"rejected", "coasting"}
+    assert last_s < 406
 
 
 @pytest.mark.parametrize("way_m", [150.0, 50_000.0])
@@ -335,12 +382,65 @@ def test_a_minute_without_fixes_is_none_in_which_they_fit(tmp_path):
     assert set(status[seconds(rows) > 565]) == {"ok"}
 
 
+def test_the_deviation_of_the_drift_covers_its_error_and_falls(tmp_path):
+    rows = navigated(tmp_path, voyage())
+    std_mps = column(rows, "drift_std_mps")
+    error_mps = np.hypot(*(drift_mps(rows) - np.array([0.8, -0.5]) * KN).T)
+    assert np.mean(error_mps < 2.5 * std_mps) > 0.95
+    assert np.median(error_mps / std_mps) > 0.15
+    assert std_mps[0] > 0.4
+    assert np.median(std_mps[-300:]) < 0.15
+
+
+def test_an_offset_that_is_not_known_well_is_in_the_deviation_of_the_drift(tmp_path):
+    lines = voyage(4, compass="HDG")
+    sure = column(navigated(tmp_path, lines, "--variation", "3"), "drift_std_mps")
+    found = navigated(tmp_path, lines)
+    shared_rad = np.deg2rad(column(found, "heading_std_deg"))
+    assert np.all(column(found, "drift_std_mps")[60:] > sure[60:])
+    assert np.all(column(found, "drift_std_mps") < np.hypot(sure, 8.0 * KN * shared_rad))
+
+
 @pytest.mark.parametrize(("compass", "water"), [("none", True), ("HDT", False), ("none", False)])
 def test_without_heading_or_log_there_is_a_solution_without_drift(tmp_path, compass, water):
     rows = navigated(tmp_path, voyage(5, compass=compass, water=water))
-    assert all(row["drift_mps"] == "" for row in rows)
+    assert all(row["drift_mps"] == row["drift_std_mps"] == "" for row in rows)
     assert all(np.isfinite(float(row["vnorth_mps"])) for row in rows)
     assert (rows[-1]["heading_deg"] == "") == (compass == "none")
+
+
+@pytest.mark.parametrize("kinds", ["RMC GGA GLL", "RMC GGA GLL VTG HDG HDM HDT VHW MTW"])
+def test_turns_of_a_yacht_are_no_reason_to_reject_fixes(tmp_path, kinds):
+    lines = (BUNDLED / "irene.nmea").read_text(encoding="latin-1").splitlines(keepends=True)
+    rows = navigated(tmp_path, [line for line in lines if line[3:6] in kinds.split()])
+    assert len(rows) > 2000
+    assert "rejected" not in {row["status"] for row in rows}
+
+
+def silent_satellites(headings_in_a_second):
+    """Sentences of a ship that goes straight north, without fixes from 120 s to 180 s."""
+    lines = []
+    for second in range(240):
+        clock = f"10{second // 60:02d}{second % 60:02d}"
+        north_min = 30.0 + 60.0 * 5.0 * second / NORTH_M
+        place = f"50{north_min:08.5f},N,00230.00000,E"
+        lines.append(
+            sentence(f"GPZDA,{clock},01,06,2020,00,00")
+            if 120 <= second < 180
+            else sentence(f"GPRMC,{clock},A,{place},{5.0 / KN:.2f},0.0,010620,,")
+        )
+        lines += headings_in_a_second * [sentence("HEHDT,0.0,T")]
+    return lines
+
+
+def test_how_well_the_place_is_known_does_not_hang_on_how_many_headings_come(tmp_path):
+    variance_m2 = []
+    for headings_in_a_second in (1, 4, 20):
+        rows = navigated(tmp_path, silent_satellites(headings_in_a_second))
+        coasting = np.array([row["status"] == "coasting" for row in rows])
+        variance_m2.append(column(rows, "north_var_m2")[coasting][-1])
+    assert variance_m2[0] > 1000.0
+    np.testing.assert_allclose(variance_m2, variance_m2[0], rtol=0.1)
 
 
 def test_a_log_that_sees_the_bottom_coasts_through_turns_without_satellites(tmp_path):
@@ -392,6 +492,60 @@ def test_short_parts_are_navigated_too(tmp_path, capsys):
     assert float(rows[-1]["north_var_m2"]) < 25.0
 
 
+def eastward(
+    hours, *, latitude_deg=60.0, over_ground_mps=10.0, through_water_mps=9.5, bottom=False
+):
+    """Sentences of a ship on a parallel of latitude that heads east in a current that sets east."""
+    across_m = 6378137.0 / np.sqrt(1.0 - 0.00669438 * np.sin(np.radians(latitude_deg)) ** 2)
+    of_degree_m = np.radians(across_m * np.cos(np.radians(latitude_deg)))
+    lines = []
+    for second in range(0, int(3600 * hours), 20):
+        clock = f"{second // 3600:02d}{second // 60 % 60:02d}{second % 60:02d}"
+        longitude_deg = 10.0 + over_ground_mps * second / of_degree_m
+        where = f"{int(longitude_deg):03d}{longitude_deg % 1.0 * 60.0:09.6f}"
+        ground = "," if bottom else f"{over_ground_mps / KN:.2f},90.0"
+        lines += [
+            sentence(f"GPRMC,{clock},A,{latitude_deg:.0f}00.000000,N,{where},E,{ground},010620,,"),
+            sentence("HEHDT,90.0,T"),
+            sentence(f"VWVHW,,T,,M,{through_water_mps / KN:.2f},N,,K"),
+        ]
+        if bottom:
+            lines.append(sentence(f"VDVBW,,,V,{over_ground_mps / KN:.2f},0.00,A"))
+    return lines
+
+
+@pytest.mark.parametrize("bottom", [False, True])
+def test_far_from_the_first_fix_headings_and_set_are_true_and_the_current_is_the_waters(
+    tmp_path, bottom
+):
+    rows = navigated(tmp_path, eastward(12, bottom=bottom))
+    assert {row["status"] for row in rows} <= {"ok", "coasting"}
+    assert column(rows, "heading_deg") == pytest.approx(90.0, abs=0.3)
+    late = [row for row in rows if float(row["east_m"]) > 100e3]
+    assert column(late, "drift_mps") == pytest.approx(0.5, abs=0.05)
+    assert column(late, "set_deg") == pytest.approx(90.0, abs=3.0)
+
+
+def test_courses_of_the_solution_are_true(tmp_path):
+    file = tmp_path / "some.nmea"
+    file.write_text("".join(eastward(6)))
+    log = read_nmea(file)
+    plane = navigating.plane_of(log.fixes)
+    readings = navigating.readings_of(log, navigating.NO_OFFSET, plane)
+    track = navigating.navigate(readings)
+    assert np.degrees(track.course_rad) == pytest.approx(90.0, abs=0.3)
+    assert np.degrees(track.lean_rad[-1]) == pytest.approx(-3.3, abs=0.1)
+
+
+def test_places_are_written_to_the_millimetre_however_far(tmp_path):
+    rows = navigated(tmp_path, eastward(6))
+    where = np.radians([[float(row["lat_deg"]), float(row["lon_deg"])] for row in rows])
+    place_m = np.column_stack([column(rows, "north_m"), column(rows, "east_m")])
+    plane = LocalPlane(*np.radians([60.0, 10.0]))
+    assert place_m[-1, 1] > 200e3
+    np.testing.assert_allclose(place_m, plane.position_m(*where.T), atol=0.005)
+
+
 def test_all_parts_lie_in_one_plane(tmp_path):
     lines = [line for line in voyage(62) if not line.startswith("$VW")]
     rows = navigated(tmp_path, lines[:600] + lines[2 * 3700 :])
@@ -401,6 +555,31 @@ def test_all_parts_lie_in_one_plane(tmp_path):
     off_m = place_m - plane.position_m(*where.T)
     assert np.hypot(*place_m[-1]) > 1000.0
     assert np.ptp(off_m, axis=0) == pytest.approx([0.0, 0.0], abs=0.1)
+
+
+def test_a_clock_set_back_is_told_where_it_puts_own_ship_at_two_places_at_a_time(tmp_path, capsys):
+    lines = voyage(10)
+    again = [
+        sentence(re.sub(r",10(\d\d)", lambda m: f",10{int(m[1]) - 2:02d}", line[1:-4], count=1))
+        if line.startswith("$GPRMC")
+        else line
+        for line in lines[900:]
+    ]
+    rows = navigated(tmp_path, lines[:900] + again)
+    (k,) = np.flatnonzero(np.diff(column(rows, "time_s")) < 0)
+    assert f"own.csv go back 1 times, where the clock was set back (line {k + 3})" in (
+        capsys.readouterr().out
+    )
+    notes = []
+    own = read_own(tmp_path / "own.csv", notes)
+    assert len(own.time_s) == len(rows)
+    (told,) = notes
+    assert f"times go back 1 times (first in line {k + 3})" in told
+    navigated(tmp_path, lines)
+    assert "go back" not in capsys.readouterr().out
+    notes.clear()
+    read_own(tmp_path / "own.csv", notes)
+    assert notes == []
 
 
 def both(folder, lines):
@@ -446,7 +625,7 @@ def test_smoothed_places_speeds_and_drift_are_nearer_to_the_truth(tmp_path, caps
         (column(rows, "heading_deg") - heading_deg(np.rint(seconds(rows))) + 180.0) % 360.0 - 180.0
         for rows in (found, smooth)
     )
-    assert rms(smooth_off_deg) < 0.6 * rms(off_deg)
+    assert rms(smooth_off_deg) < 0.75 * rms(off_deg)
 
 
 def test_smoothed_deviations_are_no_larger_and_the_last_row_is_the_same(tmp_path):
@@ -455,7 +634,7 @@ def test_smoothed_deviations_are_no_larger_and_the_last_row_is_the_same(tmp_path
     for name in (*VARIANCES[:2], "heading_std_deg"):
         assert np.all(column(smooth, name) <= column(found, name)), name
     for name in VARIANCES:
-        assert np.median(column(smooth, name)) < 0.6 * np.median(column(found, name)), name
+        assert np.median(column(smooth, name)) < 0.75 * np.median(column(found, name)), name
 
 
 def test_nothing_is_smoothed_across_a_gap(tmp_path):
@@ -492,7 +671,7 @@ def test_the_bundled_log_is_smoothed(tmp_path, capsys):
     for name in (*VARIANCES[:2], "heading_std_deg"):
         assert np.all(column(smooth, name) <= column(found, name)), name
     for name in VARIANCES:
-        assert np.median(column(smooth, name)) < 0.6 * np.median(column(found, name)), name
+        assert np.median(column(smooth, name)) < 0.75 * np.median(column(found, name)), name
     told = [
         text.partition("error in metres")[2] for text in capsys.readouterr().out.split("irene:")
     ]

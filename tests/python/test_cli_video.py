@@ -289,9 +289,29 @@ def with_many_cells(turns):
     return [replace(turn, amplitude=np.hstack([turn.amplitude, more])) for turn in turns]
 
 
+def with_a_false_time(turns):
+    time_s = turns[6].time_s.copy()
+    time_s[400] += 600.0
+    return [*turns[:6], replace(turns[6], time_s=time_s), *turns[7:]]
+
+
+def with_a_false_azimuth_in_every_turn(turns):
+    azimuth = [turn.azimuth_rad.copy() for turn in turns]
+    for turn in azimuth:
+        turn[300] = turn[30]
+    return [replace(t, azimuth_rad=a) for t, a in zip(turns, azimuth, strict=True)]
+
+
+def of_a_sender_that_tells_narrow_sweeps(turns):
+    return [replace(turn, azimuth_width_rad=turn.azimuth_width_rad / 20) for turn in turns]
+
+
 @pytest.mark.parametrize(
     "change",
     [
+        with_a_false_time,
+        with_a_false_azimuth_in_every_turn,
+        of_a_sender_that_tells_narrow_sweeps,
         begun_late,
         ended_early,
         begun_and_ended_in_between,
@@ -311,6 +331,103 @@ def test_recordings_as_they_are(tmp_path, change):
     assert (tracks.status == "confirmed").all()
     for name in SHIPS:
         assert track_of(tracks, name)[1][-3:].max() < 25.0
+
+
+def tracks_of(turns, folder, *options):
+    path = folder / "some.cat240"
+    write_video(path, turns)
+    assert main(["track", str(path), "--out", str(folder), *options]) == 0
+    return read_tracks(folder / "tracks.csv")
+
+
+@pytest.mark.parametrize("sector_deg", [(90.0, 180.0), (-60.0, 60.0), (20.0, 320.0)])
+def test_a_radar_that_shows_a_sector_gives_a_scan_a_turn(tmp_path, sector_deg):
+    """Wherever it lies: across north, and so wide that the beam seems to go on from its end."""
+    middle_rad = np.deg2rad(np.mean(sector_deg))
+    sight = np.array([np.cos(middle_rad), np.sin(middle_rad)])
+    truth = scenario.Truth(np.array([*(2000.0 * sight), *(6.0 * sight)])[[0, 2, 1, 3]])
+    target = scenario.VideoTarget(truth=truth, length_m=40.0, beam_m=10.0, rcs_m2=10.0, swerling=0)
+    radar = simulator(sector_rad=tuple(np.deg2rad(sector_deg)))
+    tracks = tracks_of(radar.turns({"ship": target}, SCANS, seed=2), tmp_path)
+    assert len(tracks.ids()) == 1
+    assert np.diff(np.unique(tracks.time_s)) == pytest.approx(PERIOD_S, abs=0.1)
+    assert len(tracks) >= SCANS - 4
+
+
+def test_a_short_range_scale_leaves_no_blind_ring(tmp_path):
+    """The whole sweep is shorter than the windows that fit ships at sea."""
+    radar = simulator(cells=512, cell_m=0.28, pulse_length_m=1.0)
+    boat = scenario.VideoTarget(
+        truth=scenario.Truth([75.0, 0.5, 60.0, 0.3]),
+        length_m=6.0,
+        beam_m=2.0,
+        rcs_m2=5.0,
+        swerling=0,
+    )
+    tracks = tracks_of(radar.turns({"boat": boat}, SCANS, seed=2), tmp_path)
+    last = tracks.state[tracks.time_s == tracks.time_s.max()][:, [0, 2]]
+    place_m = boat.truth.state_at(tracks.time_s.max())[0, ::2]
+    assert np.hypot(*(last - place_m).T).min() < 5.0
+
+
+def test_a_change_of_the_range_scale_keeps_the_ships(tmp_path):
+    """Windows are lengths of water, not numbers of cells."""
+    ship = scenario.VideoTarget(
+        truth=scenario.Truth([1200.0, -4.0, 300.0, -1.0]),
+        length_m=200.0,
+        beam_m=30.0,
+        rcs_m2=1e3,
+        swerling=0,
+    )
+    wide = simulator(cell_m=24.0, pulse_length_m=24.0).turns({"ship": ship}, 5, seed=2)
+    near = simulator(cell_m=4.0).turns({"ship": ship}, 5 + SCANS, seed=2)
+    tracks = tracks_of([*wide, *list(near)[5:]], tmp_path)
+    shown_s = tracks.time_s[tracks.status == "confirmed"]
+    assert np.unique(shown_s[shown_s > 8 * PERIOD_S]).size >= SCANS - 4
+
+
+def test_video_without_a_time_of_day_is_tracked_by_the_period(video, tmp_path, capsys):
+    untimed = tmp_path / "untimed.cat240"
+    untimed.write_bytes(without_times(video.read_bytes()))
+    command = ["track", str(untimed), "--out", str(tmp_path)]
+    assert main(command) != 0
+    assert "period_s" in capsys.readouterr().err
+    config = tmp_path / "some.toml"
+    config.write_text(f"[radar]\nperiod_s = {PERIOD_S}\n")
+    assert main([*command, "--config", str(config)]) == 0
+    assert len(read_tracks(tmp_path / "tracks.csv").ids()) == len(SHIPS)
+
+
+def without_times(octets):
+    """The same blocks without item I240/140, the last of each record."""
+    blocks, at = [], 0
+    while at < len(octets):
+        length = int.from_bytes(octets[at + 1 : at + 3], "big")
+        head = bytearray(octets[at : at + length - 3])
+        head[1:3] = (length - 3).to_bytes(2, "big")
+        head[4] &= ~0x08
+        blocks.append(bytes(head))
+        at += length
+    return b"".join(blocks)
+
+
+def test_the_screen_shows_tracks_at_their_echoes_under_an_offset(
+    video, tmp_path, monkeypatch, pictures
+):
+    drawn = {}
+    monkeypatch.setattr(plot, "ppi", lambda shown, axes, **kinds: drawn.update(kinds, video=shown))
+    monkeypatch.setattr(plot, "save", lambda figure, file: file.write_bytes(b""))
+    config = tmp_path / "some.toml"
+    config.write_text("[radar]\nbearing_offset_deg = 10.0\n")
+    tracked(video, tmp_path, "--config", str(config))
+    last = drawn["tracks"].time_s == drawn["tracks"].time_s.max()
+    for place_m in drawn["tracks"].state[last][:, [0, 2]]:
+        assert np.hypot(*(drawn["plots"] - place_m).T).min() < 40.0
+    brightest = np.unravel_index(drawn["video"].amplitude.argmax(), drawn["video"].amplitude.shape)
+    at_m = drawn["video"].range_m[brightest[1]] * np.exp(
+        1j * drawn["video"].azimuth_rad[brightest[0]]
+    )
+    assert np.hypot(*(drawn["plots"] - [at_m.real, at_m.imag]).T).min() < 60.0
 
 
 def test_settings_without_a_radar_leave_its_errors_to_the_video(video, tmp_path, capsys):

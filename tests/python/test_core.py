@@ -138,6 +138,14 @@ def test_names_of_the_status_values():
     assert int(wl.Status.ok) == 0
 
 
+def test_a_status_is_its_number():
+    status = np.array([0, 1, 0], dtype=np.uint8)
+    assert (status == wl.Status.missed).tolist() == [False, True, False]
+    assert (status != wl.Status.ok).tolist() == [False, True, False]
+    assert np.isin(status, [wl.Status.missed]).tolist() == [False, True, False]
+    assert {wl.Status.missed: "m"}[1] == "m"
+
+
 def test_a_filter_error_is_a_runtime_error():
     assert issubclass(wl.FilterError, RuntimeError)
 

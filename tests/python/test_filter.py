@@ -345,8 +345,9 @@ def test_own_positions_of_wrong_shape_name_wanted_and_given(shape):
 
 
 def test_a_position_sensor_has_no_own_ship():
-    with pytest.raises(ValueError, match="own_position_m"):
-        run(ekf(), readings(6), sensor=POSITION, own_position_m=np.zeros((6, 2)))
+    for name in ("own_position_m", "own_velocity_mps"):
+        with pytest.raises(ValueError, match=name):
+            run(ekf(), readings(6), sensor=POSITION, **{name: np.zeros((6, 2))})
 
 
 def test_doppler_readings_are_three_numbers():
@@ -355,6 +356,44 @@ def test_doppler_readings_are_three_numbers():
         run(ekf(), readings(6), sensor=doppler)
     z = np.column_stack([readings(6), np.zeros(6)])
     assert run(ekf(), z, sensor=doppler).mean.shape == (6, 4)
+
+
+def seen_on_the_way(scans=60):
+    """A vessel at 5 m/s east, seen with its range rate from own ship, who turns: z, place, way."""
+    time_s = DT_S * np.arange(1, scans + 1)
+    course_rad = 0.01 * time_s
+    own_mps = 8.0 * np.column_stack([np.cos(course_rad), np.sin(course_rad)])
+    own_m = 800.0 * np.column_stack([np.sin(course_rad), 1.0 - np.cos(course_rad)])
+    way_m = np.column_stack([np.full(scans, 3000.0), 1000.0 + 5.0 * time_s]) - own_m
+    range_m = np.hypot(*way_m.T)
+    rate_mps = ((np.array([0.0, 5.0]) - own_mps) * way_m).sum(axis=1) / range_m
+    bearing_rad = np.arctan2(way_m[:, 1], way_m[:, 0])
+    return np.column_stack([range_m, bearing_rad, rate_mps]), own_m, own_mps
+
+
+@pytest.mark.parametrize("runs", [None, 9])
+def test_range_rates_are_those_that_a_turning_own_ship_sees(runs):
+    z, own_m, own_mps = seen_on_the_way()
+    doppler = wl.RangeBearingDoppler(
+        range_std_m=10.0, bearing_std_rad=0.003, range_rate_std_mps=0.3
+    )
+    start = wl.Gaussian([3000.0, 0.0, 1000.0, 5.0], np.diag([100.0, 1.0, 100.0, 1.0]))
+    many = z if runs is None else np.tile(z, (runs, 1, 1))
+    told = {"dt_s": DT_S, "sensor": doppler, "start": start, "own_position_m": own_m}
+    result = ekf().run(many, own_velocity_mps=own_mps, **told)
+    truth = np.column_stack([0.0 * z[:, 0] + 3000.0, 1000.0 + 5.0 * DT_S * np.arange(1, 61)])
+    assert np.abs(result.mean[..., [0, 2]] - truth).max() < 1e-6
+    assert np.abs(result.nis).max() < 1e-9
+    with pytest.raises(ValueError, match=r"own_velocity_mps must be told .* got None"):
+        ekf().run(many, **told)
+    with pytest.raises(ValueError, match=r"own_velocity_mps must have shape \(60, 2\), got"):
+        ekf().run(many, own_velocity_mps=own_mps[1:], **told)
+
+
+@pytest.mark.parametrize("dt_s", ["abc", object(), None])
+def test_a_time_step_that_is_no_number_is_named(dt_s):
+    with pytest.raises(TypeError, match="dt_s must be a number or an array, got"):
+        run(ekf(), readings(3), dt_s=dt_s)
 
 
 def test_strides_dtypes_and_lists_are_taken():

@@ -1,5 +1,7 @@
 """Sensors as Python sees them: seams, own ship, the polar conversion and refused parameters."""
 
+import copy
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -162,6 +164,24 @@ def test_a_reading_of_wrong_size_is_refused(name, size):
 def test_parameters_that_make_no_sense_are_refused_by_name(build, name, value):
     with pytest.raises(ValueError, match=name):
         build(value)
+
+
+@pytest.mark.parametrize("name", ["position_std_m", "velocity_std_mps", "heading_std_rad"])
+@pytest.mark.parametrize("value", [-1.0, np.nan, np.inf])
+def test_own_ship_is_not_set_to_what_makes_no_sense(name, value):
+    sensor = wl.RangeBearing(own=wl.OwnShip(north_m=5.0))
+    with pytest.raises(ValueError, match=f"own.{name} must be finite and not negative"):
+        setattr(sensor.own, name, value)
+    setattr(sensor.own, name, 2.0)
+    assert getattr(sensor.own, name) == 2.0
+    assert sensor.own.north_m == 5.0
+
+
+@pytest.mark.parametrize("name", SENSORS)
+def test_a_sensor_copies(name):
+    for copied in (copy.copy(SENSORS[name]), copy.deepcopy(SENSORS[name])):
+        assert repr(copied) == repr(SENSORS[name])
+        assert copied is not SENSORS[name]
 
 
 def test_parameters_are_given_by_name():

@@ -233,9 +233,14 @@ def test_episodes_add_up():
 
 
 def test_parameters_and_scenarios_that_make_no_sense():
-    for parameters in ({"gate_m": 0.0}, {"bonus_m": -1.0}, {"warmup_scans": 0}):
-        with pytest.raises(ValueError, match=next(iter(parameters))):
-            overall([track("A", NORTHBOUND)], episode_of(NORTHBOUND), **parameters)
+    for name, values in {
+        "gate_m": (0.0, np.inf, np.nan),
+        "bonus_m": (-1.0, np.inf, np.nan),
+        "warmup_scans": (0, np.inf),
+    }.items():
+        for value in values:
+            with pytest.raises(ValueError, match=f"^{name} must be .*finite.*, got {value}"):
+                overall([track("A", NORTHBOUND)], episode_of(NORTHBOUND), **{name: value})
     lost = Tracks(["1"], [0.0], np.zeros((1, 4)), scenario=["9"])
     with pytest.raises(ValueError, match="'9'"):
         metrics.score(lost, recording.load("autoferry"))
@@ -299,8 +304,14 @@ def test_ospa_of_one_pair_is_their_distance():
 def test_sets_of_the_wrong_shape(metric):
     with pytest.raises(ValueError, match=r"\(n, d\)"):
         metric(np.zeros(2), np.zeros((1, 2)))
-    with pytest.raises(ValueError, match="cutoff_m"):
-        metric(np.zeros((1, 2)), np.zeros((1, 2)), cutoff_m=0.0)
+
+
+@pytest.mark.parametrize("metric", [metrics.gospa, metrics.ospa])
+@pytest.mark.parametrize("value", [0.0, np.inf, np.nan])
+@pytest.mark.parametrize("name", ["cutoff_m", "p"])
+def test_cutoffs_and_orders_that_make_no_sense(metric, name, value):
+    with pytest.raises(ValueError, match=f"^{name} must be .*finite.*, got {value}"):
+        metric(np.zeros((1, 2)), np.zeros((1, 2)), **{name: value})
 
 
 # ------------------------------------------------------------------ errors of states

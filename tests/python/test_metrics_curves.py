@@ -142,6 +142,27 @@ def test_steady_are_the_scans_but_for_the_three_after_a_switch():
         metrics.steady_scans(TIME_S, SWITCHES_S, scans=-1)
 
 
+# ------------------------------------------------------------------ time of day
+
+
+@pytest.mark.parametrize("shift_s", [-1e5, 1e3, 1.7e9])
+def test_the_time_of_day_changes_no_figure(shift_s):
+    time_s = 0.7 * np.arange(1, 21)
+    switches_s = np.cumsum([0.7] * 5 + [5.3])[[4, 5]]  # one on a reading, one between two
+    curve = np.random.default_rng(4).uniform(0.1, 1.0, 20)
+    later = time_s + shift_s, curve, switches_s + shift_s
+    for figure in (metrics.settling_times_s, metrics.detection_delays_scans):
+        np.testing.assert_allclose(figure(*later), figure(time_s, curve, switches_s), atol=1e-6)
+    np.testing.assert_array_equal(
+        metrics.steady_scans(time_s + shift_s, switches_s + shift_s),
+        metrics.steady_scans(time_s, switches_s),
+    )
+    for moved, here in zip(
+        metrics.by_segment(*later), metrics.by_segment(time_s, curve, switches_s), strict=True
+    ):
+        assert (moved.scans, moved.mean, moved.peak) == (here.scans, here.mean, here.peak)
+
+
 # ------------------------------------------------------------------ right models
 
 RATES = np.array([-0.02, 0.0, 0.02])

@@ -6,7 +6,7 @@ import json
 import multiprocessing
 import pickle
 import sys
-import zlib
+import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from types import ModuleType, SimpleNamespace
@@ -206,6 +206,30 @@ def test_the_first_failure_calls_the_others_off():
     assert len(calls) < 100
 
 
+def told_to_stop(done, total):
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("who", ["progress", "outcome"])
+def test_who_stops_the_run_calls_the_others_off(monkeypatch, who):
+    calls = []
+
+    def slow(scene, z):
+        calls.append(len(z))
+        time.sleep(0.01)
+        return IMM(scene, z)
+
+    if who == "outcome":
+        stop = SimpleNamespace(of=lambda *given, **told: told_to_stop(1, 1))
+        monkeypatch.setattr(running, "Outcome", stop)
+    scenes = [CASE, *(case(f"later {k}") for k in range(60))]
+    progress = told_to_stop if who == "progress" else False
+    with ThreadPoolExecutor(1) as pool, pytest.raises(KeyboardInterrupt) as caught:
+        run(scenes, {"slow": slow}, runs=1, client=pool, progress=progress)
+    assert caught.tb is not None, "it holds on to whatever raised"
+    assert len(calls) < 30
+
+
 # Figures ------------------------------------------------------------------------------------------
 
 
@@ -279,6 +303,18 @@ def test_a_delay_begins_where_another_model_becomes_the_right_one():
     assert outcome.right_mode_share[10] > 0.5, "at 33 s the old model still counts"
     assert outcome.right_mode_share[11] < 0.5
     assert outcome.summary()["detection_delay_scans"] >= 1
+
+
+@pytest.mark.parametrize("start_s", [-100.0, 1000.0, 1.7e9])
+def test_the_time_of_day_changes_no_summary(start_s):
+    segments = [Segment(1.0), Segment(44.0, np.deg2rad(1.0)), Segment(45.0, np.deg2rad(-1.0))]
+    early, later = (
+        case(truth=Truth([2000.0, 8.0, 1000.0, -3.0], segments, start_time_s=at), start_time_s=at)
+        for at in (0.0, start_s)
+    )
+    wanted, got = (run(scene)["case", "imm"].summary() for scene in (early, later))
+    del wanted["ns_per_step"], got["ns_per_step"]
+    assert got == pytest.approx(wanted, rel=1e-6)
 
 
 def test_a_summary_is_silent_where_there_is_nothing_to_say(result):
@@ -594,6 +630,21 @@ def test_an_estimator_without_control_meets_none_where_there_is_none():
         run(controlled((0.1, 0.0)), {"simple": simple}, runs=2)
 
 
+@pytest.mark.parametrize(
+    ("segments", "start_s"),
+    [
+        ([Segment(61.5), Segment(20.0, control_mps2=(0.3, 0.0))], 0.0),
+        ([Segment(31.0, np.deg2rad(2.0)), Segment(20.0, control_mps2=(0.0, 0.2))], 10.0),
+    ],
+)
+def test_clairvoyant_is_right_about_switches_between_scans(segments, start_s):
+    truth = Truth([2000.0, 8.0, 1000.0, -3.0], segments, start_time_s=start_s)
+    exact = case(radar=RadarSimulator(0.0, 0.0, 3.0), truth=truth).draw(1, 0)
+    scene = case(truth=truth)
+    got = montecarlo.clairvoyant(scene, exact)
+    np.testing.assert_allclose(got.mean[0], scene.truth_states, atol=1e-6)
+
+
 # The bound ----------------------------------------------------------------------------------------
 
 
@@ -654,23 +705,12 @@ def test_nothing_is_learnt_out_of_range():
     assert (np.diff(position_m) > 0).all()
 
 
-def drawn_start(estimator, scene, z):
-    """A candidate whose start errs as the prior says, which the bound takes for granted."""
-    rng = np.random.default_rng(zlib.crc32(np.nan_to_num(z).tobytes()))
-    std = np.sqrt(np.diag(scene.start.covariance))
-    means = scene.start.mean + std * rng.standard_normal((len(z), 4))
-    starts = [wl.Gaussian(mean, scene.start.covariance) for mean in means]
-    return estimator.run(z, dt_s=3.0, sensor=scene.polar_sensor, start=starts)
-
-
 def test_no_estimator_is_below_the_bound_and_the_right_one_is_on_it():
     turn = case(truth=Truth([2000.0, 8.0, 1000.0, -3.0], [Segment(90.0, 0.02)]))
     right = wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=0.02, noise=NO_NOISE))
     runs = 2000
     result = run(
-        turn,
-        {"right": partial(drawn_start, right), "imm": partial(drawn_start, IMM.estimator)},
-        runs,
+        turn, {"right": Candidate(right), "imm": Candidate(IMM.estimator)}, runs, draw_start=True
     )
     chance = 4 / np.sqrt(4 * runs)  # of the root of a mean of at least two squares
     for name, curve in zip(
@@ -684,6 +724,51 @@ def test_no_estimator_is_below_the_bound_and_the_right_one_is_on_it():
     assert honest["nees_inside_share"] == pytest.approx(0.95, abs=0.01)
     assert honest["mean_nees_inside_share"] > 0.7
     assert honest["mean_nis_inside_share"] > 0.8
+
+
+# Starts that are drawn ----------------------------------------------------------------------------
+
+
+def test_with_drawn_starts_the_told_filter_is_consistent_from_the_first_scan_on():
+    runs = 2000
+    turn = case(scans=60)
+    outcome = run(turn, {"told": montecarlo.clairvoyant}, runs, draw_start=True)["case", "told"]
+    low, high = wl.consistency_bounds(0.9999, 4, runs)
+    assert ((low < outcome.nees) & (outcome.nees < high)).all()
+    position_m, velocity_mps = montecarlo.bound_curves(turn)
+    chance = 4 / np.sqrt(4 * runs)  # of the root of a mean of at least two squares
+    np.testing.assert_allclose(outcome.position_rmse_m, position_m, rtol=1.5 * chance)
+    np.testing.assert_allclose(outcome.velocity_rmse_mps, velocity_mps, rtol=1.5 * chance)
+    exact = run(turn, {"told": montecarlo.clairvoyant}, runs)["case", "told"]
+    assert exact.nees[0] < 0.5 * low
+
+
+@pytest.mark.parametrize("threads", [2, None])
+def test_drawn_starts_are_the_same_bits_on_any_number_of_threads(threads):
+    one = run([CASE, SELDOM], BOTH, draw_start=True, threads=1)
+    assert_same_bits(run([CASE, SELDOM], BOTH, draw_start=True, threads=threads), one)
+    assert one.parameters["draw_start"]
+
+
+def test_each_run_has_its_own_start_where_they_are_run_one_by_one():
+    def picky_too(scene, z, *, start):
+        if (z[:, 0, 0] > 2250.0).any():
+            raise wl.FilterError("too far")
+        return IMM(scene, z, start=start)
+
+    near = CASE.draw(RUNS, 0)[:, 0, 0] <= 2250.0
+    outcome = run(CASE, {"picky": picky_too}, draw_start=True)["case", "picky"]
+    assert outcome.runs == near.sum() < RUNS
+    starts = CASE.draw_starts(RUNS, 0)
+    got = IMM(CASE, CASE.draw(RUNS, 0)[near], start=[starts[k] for k in np.flatnonzero(near)])
+    error = got.mean - CASE.truth_states
+    np.testing.assert_allclose(outcome.position_rmse_m, metrics.rmse_curve(error[..., 0::2]))
+
+
+@pytest.mark.parametrize("name", sorted(MOTIONS))
+def test_starts_are_drawn_for_states_of_any_size(name):
+    ekf = Candidate(wl.Ekf(MOTIONS[name]))
+    assert run(CASE, {"x": ekf}, runs=3, draw_start=True)["case", "x"].runs == 3
 
 
 # Estimators that fail -----------------------------------------------------------------------------
@@ -807,6 +892,21 @@ def test_a_sensor_that_is_no_word_of_ours(sensor):
     ):
         with pytest.raises(ValueError, match=f'"polar" or "converted" where text, got {sensor!r}'):
             run(CASE, {"x": candidate}, runs=1)
+
+
+class Built:
+    """An estimator that is built for a scenario."""
+
+    def __init__(self, scene):
+        self.estimator = built_imm(scene)
+
+    def run(self, z, **told):
+        return self.estimator.run(z, **told)
+
+
+def test_an_estimator_may_be_built_by_its_class():
+    built = run(CASE, {"imm": Candidate(Built, turn_rates_rad_s=np.deg2rad(RATES_DEG_S))})
+    np.testing.assert_array_equal(built["case", "imm"].nees, run()["case", "imm"].nees)
 
 
 def test_a_sensor_may_be_given_or_built():

@@ -1,5 +1,7 @@
 """Motion models as Python sees them: laws of time, limits, and refused parameters."""
 
+import copy
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -151,3 +153,21 @@ def test_parameters_are_given_by_name():
 def test_a_state_of_wrong_size_is_refused(size):
     with pytest.raises(ValueError, match=rf"x must have shape \(5,\), got \({size},\)"):
         wl.CoordinatedTurnRate().transition(np.zeros(size), 1.0)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize("dt_s", [-3.0, np.nan, np.inf])
+def test_no_step_goes_back_or_for_ever(name, dt_s):
+    motion = MOTIONS[name]
+    state = () if name in LINEAR_MOTIONS else (a_state(motion),)
+    for of_step in ("matrix", "transition", "jacobian", "process_noise"):
+        if hasattr(motion, of_step):
+            with pytest.raises(ValueError, match="dt_s must be finite and not negative"):
+                getattr(motion, of_step)(*state, dt_s)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_a_model_copies(name):
+    assert (
+        repr(copy.deepcopy(MOTIONS[name])) == repr(copy.copy(MOTIONS[name])) == repr(MOTIONS[name])
+    )

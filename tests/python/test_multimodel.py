@@ -372,9 +372,37 @@ def test_kalman_filters_refuse_a_sensor_that_is_not_linear():
         imm.run(readings(3), dt_s=DT_S, sensor=RADAR, start=START)
 
 
-def test_there_is_no_filter_of_that_number():
-    with pytest.raises(IndexError):
-        turning_imm().filter_estimate(3)
+@pytest.mark.parametrize("index", [3, -1])
+def test_there_is_no_filter_of_that_number(index):
+    imm = turning_imm()
+    imm.start(START)
+    with pytest.raises(IndexError, match=f"index must be 0 to 2, got {index}"):
+        imm.filter_estimate(index)
+
+
+def test_a_filter_that_was_not_started_believes_nothing():
+    with pytest.raises(wl.FilterError, match="not started"):
+        turning_imm().filter_estimate(0)
+
+
+@pytest.mark.parametrize("runs", [1, 9])
+def test_models_that_never_take_turns_run_on(runs):
+    """Of an identity for a chain one model dwindles beyond what numbers hold."""
+    filters = [wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=rate)) for rate in (0.0, 0.035)]
+    imm = wl.Imm(filters, wl.ModeChain(np.eye(2)))
+    north_m = 30.0 * np.arange(1, 1001)
+    z = np.tile(np.column_stack([north_m, 0.0 * north_m]), (runs, 1, 1))
+    start = wl.Gaussian([0.0, 10.0, 0.0, 0.0], 100.0 * np.eye(4))
+    result = imm.run(z, dt_s=3.0, sensor=wl.Position(position_std_m=10.0), start=start)
+    assert (result.status == wl.Status.ok).all()
+    assert result.mean[:, -1, 0] == pytest.approx(30000.0, abs=1.0)
+    assert result.mode_probability.sum(axis=-1) == pytest.approx(1.0)
+
+
+def test_before_a_start_the_modes_are_those_that_it_begins_with():
+    filters = [wl.Ekf(wl.ConstantVelocity()), wl.Ekf(wl.ConstantVelocity())]
+    imm = wl.Imm(filters, wl.ModeChain(np.eye(2)), initial_mode_probability=[0.95, 0.05])
+    assert imm.mode_probability() == pytest.approx([0.95, 0.05])
 
 
 def test_an_estimator_keeps_its_own_filters():

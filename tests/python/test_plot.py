@@ -11,6 +11,8 @@ from wakeline.recording import Episode, Tracks
 
 pytest.importorskip("matplotlib")
 
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
 from matplotlib.quiver import Quiver, QuiverKey
 
 from wakeline import plot
@@ -86,6 +88,60 @@ def test_plots_out_of_sight_are_counted_and_shown_on_request(episode, tracks):
     assert not [text for text in texts(whole) if "outside" in text]
 
 
+def crowd(count, side_m, seed):
+    """Tracks of five scans in a square, of which the first comes closest to own ship."""
+    rng = np.random.default_rng(seed)
+    state = np.zeros((count, 5, 4))
+    velocity_mps = rng.normal(size=(count, 1, 2))
+    steps = velocity_mps * np.arange(5.0)[:, None]
+    state[..., ::2] = rng.uniform(0.0, side_m, (count, 1, 2)) + steps
+    state[..., 1::2] = velocity_mps
+    ids = np.repeat(np.arange(1, count + 1), 5).astype(str)
+    cpa_m = np.repeat(np.arange(1.0, count + 1.0), 5)
+    when_s = np.tile(np.arange(5.0), count)
+    return Tracks(ids, when_s, state.reshape(-1, 4), cpa_m=cpa_m, tcpa_s=np.full(5 * count, 90.0))
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("count", [1, 2, 15])
+@pytest.mark.parametrize("side_m", [0.0, 100.0, 1000.0])
+def test_labels_of_danger_cover_no_other_text_and_stay_within_the_axes(count, side_m, seed):
+    tracks = crowd(count, side_m, seed)
+    fig = plot.map_figure(None, tracks, alarmed=np.ones(len(tracks), dtype=bool))
+    fig.draw_without_rendering()
+    (ax,) = fig.axes
+    ids = [text.get_window_extent() for text in ax.texts if "CPA" not in text.get_text()]
+    shown = [text for text in ax.texts if "CPA" in text.get_text() and text.get_visible()]
+    boxes = [text.get_window_extent() for text in shown]
+    window = ax.get_window_extent()
+    for k, box in enumerate(boxes):
+        assert not box.count_overlaps(boxes[:k] + ids)
+        assert window.x0 <= box.x0 < box.x1 <= window.x1
+        assert window.y0 <= box.y0 < box.y1 <= window.y1
+    assert "1: CPA 1 m in 1.5 min" in [text.get_text() for text in shown]
+
+
+def test_a_dangerous_track_is_red_and_has_its_own_colour():
+    state = np.column_stack([np.zeros(9), np.zeros(9), 10.0 * np.arange(9), np.full(9, 10.0)])
+    tracks = Tracks(["1"] * 9, np.arange(9.0), state)
+    fig = plot.map_figure(None, tracks, alarmed=np.ones(9, dtype=bool))
+    canvas = FigureCanvasAgg(fig)
+    canvas.draw()
+    image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255.0
+    column, row = fig.axes[0].transData.transform((45.0, 0.0)).round().astype(int)
+    across = image[row - 20 : row + 20, column]
+    for color in (plot.PALETTE[0], "#E00000"):
+        assert np.isclose(across, to_rgb(color), atol=0.02).all(axis=1).any()
+
+
+def test_danger_is_cut_where_its_track_is():
+    when_s = np.array([0.0, 1.0, 2.0, 30.0, 31.0])
+    tracks = Tracks(["1"] * 5, when_s, np.ones((5, 4)))
+    ax = plot.map_figure(None, tracks, alarmed=np.ones(5, dtype=bool)).axes[0]
+    cuts = [np.isnan(line.get_xdata()).tolist() for line in ax.lines if len(line.get_xdata()) > 1]
+    assert cuts == [[False, False, False, True, False, False]] * 2
+
+
 def test_an_ellipse_holds_what_it_says():
     rng = np.random.default_rng(1)
     root = np.array([[30.0, 0.0], [20.0, 5.0]])
@@ -121,6 +177,18 @@ def test_of_many_tracks_the_longest_are_drawn(episode):
     assert course.get_xlabel() == "time from start (s), the 10 longest of 12 tracks"
 
 
+def test_many_tracks_have_over_time_the_colours_of_the_map_and_can_be_told_apart():
+    rows = [str(k) for k in (5, 1, 12, 11, 2, 9, 3, 10, 4, 8, 6, 7) for _ in range(k)]
+    tracks = Tracks(rows, np.arange(float(len(rows))), np.ones((len(rows), 4)))
+    speed, course = plot.time_view(plot.figure(), None, tracks)
+    colors = {line.get_label().removeprefix("track "): line.get_color() for line in speed.lines}
+    assert len(set(colors.values())) == 10
+    assert [line.get_color() for line in course.lines] == list(colors.values())
+    (ax,) = plot.map_figure(None, tracks).axes
+    on_map = {text.get_text(): text.get_color() for text in ax.texts}
+    assert colors.items() <= on_map.items()
+
+
 def test_panels_follow_what_the_tracks_have(episode):
     plain = Tracks(["1", "1"], episode.time_s[:2], np.ones((2, 4)))
     assert len(plot.time_view(plot.figure(), episode, plain)) == 2
@@ -146,6 +214,19 @@ def test_nis_has_its_bound_and_hides_nothing(tracks):
     shown = np.concatenate([group.get_offsets() for group in ax.collections])
     assert len(shown) == len(tracks)
     assert shown[:, 1].max() <= ax.get_ylim()[1]
+
+
+def test_mode_probabilities_are_cut_where_a_track_has_a_gap():
+    when_s = np.concatenate([np.arange(5.0), 50.0 + np.arange(5.0)])
+    modes = np.tile([0.2, 0.5, 0.3], (10, 1))
+    ax = plot.figure().add_subplot()
+    plot.mode_panel(ax, Tracks(["1"] * 10, when_s, np.ones((10, 4)), mode_probability=modes), "1")
+    spans = [
+        path.get_extents().intervalx.tolist() for b in ax.collections for path in b.get_paths()
+    ]
+    assert spans == [[0.0, 4.0]] * 3 + [[50.0, 54.0]] * 3
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert names == ["mode 1", "mode 2", "mode 3"]
 
 
 def test_mode_names_must_be_as_many_as_modes(tracks):
@@ -251,6 +332,14 @@ def test_errors_start_at_nothing_and_their_lines_are_named(ax):
     assert low == 0.0
     assert 9.0 < high < 11.0
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["bound", "one"]
+
+
+@pytest.mark.parametrize("names", [["failed", "one"], ["one", "failed"], ["failed"], []])
+def test_the_axis_of_errors_reaches_to_the_highest_that_is_known(ax, names):
+    curves = {"one": np.linspace(1, 9, 10), "failed": np.array([np.nan] * 9 + [np.inf])}
+    plot.error_panel(ax, TIME_S, {name: curves[name] for name in names}, bound=np.ones(10))
+    highest = 9.0 if "one" in names else 1.0
+    assert highest < ax.get_ylim()[1] < 1.2 * highest
 
 
 def test_bands_stand_in_order_of_turn_rate_under_the_true_turn(ax):

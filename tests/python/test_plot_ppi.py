@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import wakeline as wl
 from wakeline.recording import RadarVideo, Tracks
 from wakeline.scenario import RadarVideoSimulator, Truth, VideoTarget
 
@@ -146,6 +147,76 @@ def test_a_jitter_of_the_antenna_leaves_no_holes():
     assert not np.isnan(raster).any()
 
 
+def numbered(sweeps, first_step, jitter_steps=0.0, rounded=False, width_steps=1.0):
+    """A turn whose sweep k has the amplitude k + 1 in one cell, at another range than others."""
+    rng = np.random.default_rng(sweeps)
+    number = np.arange(sweeps)
+    step = number + first_step + rng.uniform(-jitter_steps, jitter_steps, sweeps)
+    turned = np.rint(step / sweeps * 65536) / 65536 if rounded else step / sweeps
+    amplitude = np.zeros((sweeps, 16), np.uint16)
+    amplitude[number, number % 16] = number + 1
+    width_rad = width_steps * TURN / sweeps
+    return RadarVideo(amplitude, turned * TURN % TURN, number * 1e-3, width_rad, 2000.0, 100.0)
+
+
+FRAME = (-3700.0, 3700.0, -3700.0, 3700.0)
+REGULAR = [
+    *({"first_step": first} for first in (0.0, 0.25, 0.5, 0.999)),
+    *({"first_step": first, "rounded": True} for first in (0.0, 0.5)),
+    *({"first_step": first, "rounded": True, "jitter_steps": 0.2} for first in (0.0, 0.5)),
+]
+
+
+@pytest.mark.parametrize("turn", REGULAR, ids=str)
+@pytest.mark.parametrize("sweeps", [8, 512, 1000, 3600, 4000, 4096, 5000])
+def test_every_sweep_of_a_regular_turn_is_in_an_echo(sweeps, turn):
+    video = numbered(sweeps, **turn)
+    ax = plot.echo(video, half_range_m=5000.0, half_azimuth_rad=np.pi, colorbar=False)
+    assert len(np.unique(ax.images[0].get_array())) == sweeps + 1
+    west, east = ax.images[0].get_extent()[:2]
+    shown = np.asarray(ax.images[0].get_array()).max(axis=0)
+    middle_deg = west + (np.arange(sweeps) + 0.5) * (east - west) / sweeps
+    off_deg = middle_deg - np.rad2deg(video.azimuth_rad[shown.astype(int) - 1])
+    assert np.abs((off_deg + 180.0) % 360.0 - 180.0).max() < 0.5 * 360.0 / sweeps
+
+
+@pytest.mark.parametrize("turn", REGULAR, ids=str)
+@pytest.mark.parametrize("sweeps", [720, 4000])
+def test_every_sweep_of_a_regular_turn_is_on_the_screen(sweeps, turn):
+    raster = plot.screen_raster(numbered(sweeps, **turn), FRAME, 1000)
+    assert set(np.unique(raster[raster > 0])) == set(range(1, sweeps + 1))
+
+
+def test_of_sweeps_in_the_width_of_one_none_is_lost():
+    raster = plot.screen_raster(numbered(1440, 0.3, width_steps=2.0), FRAME, 1000)
+    assert set(np.unique(raster[raster > 0])) == set(range(1, 1441))
+
+
+@pytest.mark.parametrize("turn", REGULAR, ids=str)
+def test_nothing_is_left_of_a_turn_before(turn):
+    early, late = numbered(720, **turn), numbered(720, **turn)
+    both = RadarVideo(
+        np.concatenate([early.amplitude, np.zeros_like(late.amplitude)]),
+        np.concatenate([early.azimuth_rad, late.azimuth_rad]),
+        np.concatenate([early.time_s, late.time_s + 3.0]),
+        early.azimuth_width_rad,
+        2000.0,
+        100.0,
+    )
+    assert np.nanmax(plot.screen_raster(both, FRAME, 500)) == 0.0
+
+
+def test_a_scan_image_is_drawn_as_its_video_is():
+    video = numbered(720, 0.0)
+    image = wl.ScanImage(720, 16, bits=16)
+    image.add(video)
+    for draw in (plot.ppi, plot.echo):
+        drawn_video, drawn_image = (draw(of).images[0].get_array() for of in (video, image))
+        np.testing.assert_array_equal(drawn_video.filled(-1.0), drawn_image.filled(-1.0))
+    same = (plot.screen_raster(of, FRAME, 100) for of in (video, image))
+    np.testing.assert_array_equal(*same)
+
+
 def test_missing_sweeps_stay_dark():
     whole = video_of(np.full((720, 100), 9))
     raster = plot.screen_raster(whole[:500], (-700.0, 700.0, -700.0, 700.0), 200)
@@ -220,6 +291,8 @@ def test_bad_arguments_are_named(screen):
     for draw in (plot.ppi, plot.echo):
         with pytest.raises(ValueError, match="video must have a sweep, got none"):
             draw(nothing)
+        with pytest.raises(TypeError, match="must be a RadarVideo or a ScanImage, got ndarray"):
+            draw(screen.amplitude)
         with pytest.raises(ValueError, match=r"plots must have shape \(n, 2\).*got \(3,\)"):
             draw(screen, plots=[1.0, 2.0, 3.0])
         with pytest.raises(ValueError, match=r"strobe must have shape \(n, 2\).*got \(1, 3\)"):

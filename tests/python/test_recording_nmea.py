@@ -59,6 +59,11 @@ def gga(time_s, latitude_deg=46.5, longitude_deg=6.7, quality="1", hdop="0.9"):
     return sentence(f"GGA,{hhmmss(time_s)},{where},{quality},08,{hdop},372.0,M,48.0,M,,")
 
 
+def gns(time_s, latitude_deg=46.5, longitude_deg=6.7, modes="AA", hdop="0.9"):
+    where = place(latitude_deg, longitude_deg)
+    return sentence(f"GNS,{hhmmss(time_s)},{where},{modes},14,{hdop},372.0,48.0,,", "GN")
+
+
 def under_way(times_s, **more):
     """RMC of a vessel that goes east at 5 kn."""
     return [rmc(t, longitude_deg=6.7 + 3.35e-5 * (t - times_s[0]), **more) for t in times_s]
@@ -111,6 +116,25 @@ def test_gga_gives_quality_and_hdop(log):
     assert read.fixes.valid.tolist() == [True, True, False]
     np.testing.assert_array_equal(read.fixes.hdop, [np.nan, 1.25, np.nan])
     assert read.fixes.latitude_deg[1] == pytest.approx(1.5)
+
+
+def test_gns_is_a_gga_of_several_systems_of_satellites(log):
+    modes = ("AA", "AN", "NDA", "FR", "NN", "EN", "")
+    lines = [gns(12 + k, 1.5, 2.5, mode, "1.25") for k, mode in enumerate(modes)]
+    read = log(rmc(10), *lines, sentence("GNS,000030,,,,,NN,00,,,,,"))
+    assert read.fixes.quality[1:].tolist() == [1, 1, 2, 4, 0, 6, -1]
+    assert read.fixes.valid[1:].tolist() == [True] * 4 + [False] * 3
+    assert read.fixes.sentence[1:].tolist() == ["GNS"] * len(modes)
+    assert clock_s(read.fixes) == [10, *range(12, 12 + len(modes))]
+    assert read.fixes.hdop[1] == 1.25
+    assert read.fixes.latitude_deg[1] == pytest.approx(1.5)
+    assert read.report.problems == {}
+
+
+def test_a_gns_of_another_mode_is_told(log):
+    read = log(rmc(10), gns(12, modes="AX"))
+    assert len(read.fixes) == 1
+    assert "GNS field 6: wanted letters out of" in str(read.report.examples[0])
 
 
 def test_gll_of_old_has_neither_time_nor_status(log):
@@ -287,6 +311,21 @@ def test_without_a_date_times_count_from_midnight(log):
     assert read.fixes.time_s.tolist() == [5, 7]
     assert not read.dated
     assert "no sentence has a date" in read.notes[0]
+
+
+def test_the_date_of_a_sentence_that_is_left_out_is_better_than_none(log):
+    """The date comes from another clock, 18 s ahead, of which no time is believed."""
+    lines = []
+    for t in range(10, 100):
+        lines.append(gga(t, longitude_deg=6.7 + 3.35e-5 * t))
+        if t % 10 == 5:
+            lines.append(sentence(f"ZDA,{hhmmss(t + 18)},21,05,2008,00,00"))
+    read = log(*lines)
+    assert read.report.problems == {"time": 9}
+    assert clock_s(read.fixes) == list(range(10, 100))
+    assert read.dated
+    given = log(*lines, date=datetime.date(2008, 5, 22))
+    assert given.fixes.time_s == pytest.approx(read.fixes.time_s + DAY_S)
 
 
 def test_the_century_of_two_digits(log):
@@ -725,6 +764,21 @@ def test_lines_in_many_dresses(log, dress, end):
     assert np.degrees(read.heading.heading_rad) == pytest.approx([90])
 
 
+@pytest.mark.parametrize(("end", "of_each"), [("\r\n\r\n", 2), ("\n\r", 2), ("\n\n\n", 3)])
+def test_blank_lines_change_nothing(log, end, of_each):
+    lines = [
+        line
+        for t in [*range(10, 50), *range(900, 940)]
+        for line in (rmc(t), *(sentence(f"HDT,{(7 * t + k) % 360},T") for k in range(3)))
+    ]
+    dense, sparse = log(*lines), log(*lines, end=end)
+    assert sparse.heading.time_s == pytest.approx(dense.heading.time_s)
+    np.testing.assert_array_equal(sparse.heading.heading_rad, dense.heading.heading_rad)
+    assert sparse.fixes.time_s == pytest.approx(dense.fixes.time_s)
+    assert dense.report.lines == len(lines)
+    assert sparse.report.lines == of_each * len(lines)
+
+
 def test_other_sentences_are_counted(log):
     ais = "!AIVDM,1,1,,A,13aG?P0P00PD;88MD5MTDww@2<0L,0*23"
     ais = ais[:-2] + f"{reduce(xor, ais[1:-3].encode(), 0):02X}"
@@ -775,6 +829,13 @@ def test_what_is_no_file_is_an_error(tmp_path):
 def test_parameters_that_make_no_sense(log, wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         log(rmc(10), **wrong)
+
+
+def test_a_date_is_a_date(log):
+    read = log(gll(5), date=datetime.datetime(2008, 5, 21, 12, 30))
+    assert clock_s(read.fixes) == [5]
+    with pytest.raises(TypeError, match=r"date must be a datetime.date, got '2008-05-21'"):
+        log(gll(5), date="2008-05-21")
 
 
 # ------------------------------------------------------------------ laws

@@ -158,6 +158,54 @@ def test_an_antenna_that_scans_a_sector_gives_a_turn_at_most(path):
     assert report.notes == ["11 reversals of the antenna"]
 
 
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("sector_deg", [(10, 80), (-40, 50), (20, 320), (0, 359)])
+def test_a_sector_is_cut_where_the_beam_goes_back(path, sector_deg, sense):
+    """A radar that turns on behind what it shows: every turn but the first is one block."""
+    sector = np.deg2rad(np.arange(*sector_deg))[::sense]
+    turns = 6
+    videos, report = read(
+        path, octets_of(path, video(len(sector) * turns, azimuth_rad=np.tile(sector, turns)))
+    )
+    assert sum(len(v) for v in videos) == len(sector) * turns
+    assert [len(v) for v in videos[-(turns - 2) :]] == [len(sector)] * (turns - 2)
+    assert report.notes == []
+    whole = recording.RadarVideo(
+        amplitudes(videos),
+        np.concatenate([v.azimuth_rad for v in videos]),
+        np.concatenate([v.time_s for v in videos]),
+        np.deg2rad(1.0),
+        0.0,
+        6.0,
+    )
+    assert [len(v) for v in whole.turns()] == [len(v) for v in videos]
+
+
+def test_an_antenna_that_jitters_about_north_begins_one_turn(path):
+    steps = np.arange(2000) + np.tile([0, 2.5, 0, -2.5], 500)
+    videos, _ = read(path, octets_of(path, video(2000, azimuth_rad=steps * 2 * np.pi / 500 + 3.0)))
+    assert len(videos) == 5
+    assert all(abs(len(v) - 500) <= 6 for v in videos[1:-1])
+
+
+def test_a_lone_sweep_far_from_its_neighbours_is_left_out(path):
+    azimuth = np.arange(200) * 2 * np.pi / 512
+    azimuth[50] += 2.0
+    shown = video(200, azimuth_rad=azimuth)
+    shown.time_s[120] += 300.0
+    videos, report = read(path, octets_of(path, shown))
+    kept = np.delete(np.arange(200), [50, 120])
+    assert len(videos) == 1
+    assert np.array_equal(videos[0].amplitude, shown.amplitude[kept])
+    assert report.notes == ["2 sweeps far from their neighbours in azimuth or time left out"]
+
+
+def test_sweeps_are_as_wide_as_they_come_apart(path):
+    octets = b"".join(record(azimuth=(64 * k, 64 * k + 1), sequence=k, ticks=k) for k in range(10))
+    (block,), _ = read(path, octets)
+    assert block.azimuth_width_rad == pytest.approx(64 * STEP)
+
+
 # ------------------------------------------------------------------ what other senders write
 
 

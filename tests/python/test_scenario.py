@@ -80,6 +80,16 @@ def test_a_vessel_may_start_at_rest_on_a_given_course():
     np.testing.assert_allclose(truth.state_at(10.0)[0], [0, 0, 50, 10], atol=1e-12)
 
 
+@pytest.mark.parametrize("turns", [-1, 0, 1])
+def test_a_vessel_that_moves_starts_on_the_course_of_its_velocity(turns):
+    course_rad = np.arctan2(START[3], START[1])
+    told = Truth(START, [Segment(9.0, 0.1)], start_course_rad=course_rad + turns * 2 * np.pi)
+    wanted = Truth(START, [Segment(9.0, 0.1)])
+    np.testing.assert_allclose(told.state_at(20.0), wanted.state_at(20.0), atol=1e-9)
+    with pytest.raises(ValueError, match=r"start_course_rad must be the course of .*got 1\.57"):
+        Truth(START, start_course_rad=np.pi / 2)
+
+
 def test_scenarios_of_other_truths_have_other_parameters():
     radar = RadarSimulator(30.0, 0.01, 3.0)
 
@@ -165,6 +175,55 @@ def test_a_rotating_antenna_points_at_the_target_when_it_sees_it():
     np.testing.assert_allclose(z[:, 1], np.arctan2(state[:, 2], state[:, 0]), atol=1e-9)
     pointing = 2 * np.pi * (time_s - 2.5 * np.arange(40)) / 2.5
     np.testing.assert_allclose(np.exp(1j * pointing), np.exp(1j * z[:, 1]), atol=1e-9)
+
+
+CROSSING = {
+    "clockwise": Truth([1000.0, 0.0, -120.0, 10.0]),
+    "anticlockwise": Truth([1000.0, 0.0, 120.0, -10.0]),
+    "to and fro": Truth([300.0, 10.0, -30.0, 0.0], [Segment(60.0, 0.3)]),
+}
+TURNING = RadarSimulator(0.0, 0.0, 2.5, rotating=True)
+
+
+def looks_at(truth, scans):
+    """When an antenna that begins at north at 0 s laps the target, from fine steps."""
+    time_s = np.linspace(0.0, 2.5 * scans, 200 * scans + 1)
+    north_m, _, east_m, _ = truth.state_at(time_s).T
+    laps = time_s / 2.5 - np.unwrap(np.arctan2(east_m, north_m)) / (2 * np.pi)
+    return np.interp(np.arange(np.ceil(laps[0]), laps[-1]), laps, time_s)
+
+
+@pytest.mark.parametrize("way", CROSSING)
+def test_every_look_is_recorded_once_and_in_its_turn(way):
+    (episode,) = TURNING.record({"a": CROSSING[way]}, 20, 1).episodes
+    time_s = np.concatenate([scan.plot_time_s for scan in episode.scans])
+    np.testing.assert_allclose(time_s, looks_at(CROSSING[way], 20), atol=1e-4)
+    for scan in episode.scans:
+        assert ((scan.time_s - 2.5 <= scan.plot_time_s) & (scan.plot_time_s < scan.time_s)).all()
+
+
+@pytest.mark.parametrize("way", CROSSING)
+def test_a_row_is_the_last_look_of_its_turn_and_missed_without_any(way):
+    time_s, z = TURNING.observe(CROSSING[way], 20, 1)
+    wanted = {int(at // 2.5): at for at in looks_at(CROSSING[way], 20)}
+    assert np.flatnonzero(np.isfinite(z[:, 0])).tolist() == sorted(wanted)
+    np.testing.assert_allclose(time_s[sorted(wanted)], list(wanted.values()), atol=1e-4)
+    assert (np.diff(time_s) > 0).all()
+
+
+@pytest.mark.parametrize("way", CROSSING)
+def test_who_crosses_north_does_not_change_what_else_is_drawn(way):
+    radar = RadarSimulator(
+        10.0, 0.01, 2.5, 0.9, clutter_per_scan=3.0, max_range_m=200.0, rotating=True
+    )
+    near = Truth([-50.0, 1.0, 80.0, 0.0])
+    one, other = (
+        radar.record({"unseen": unseen, "near": near}, 20, 5).episodes[0].scans
+        for unseen in (CROSSING[way], FAR)
+    )
+    for a, b in zip(one, other, strict=True):
+        np.testing.assert_array_equal(a.plot_time_s, b.plot_time_s)
+        np.testing.assert_array_equal(a.range_m, b.range_m)
 
 
 @pytest.mark.parametrize("rotating", [False, True])

@@ -104,7 +104,15 @@ def test_switches_are_where_the_rate_changes():
     )
     np.testing.assert_allclose(truth.switch_times_s, [115.0, 125.0])
     assert len(Truth(START, [Segment(10.0)]).switch_times_s) == 0
-    np.testing.assert_allclose(Truth(START, [Segment(10.0, 0.1)]).switch_times_s, [10.0])
+    np.testing.assert_allclose(Truth(START, [Segment(10.0, 0.1)]).switch_times_s, [0.0, 10.0])
+
+
+def test_the_control_switches_where_it_changes():
+    north, other = (0.1, 0.0), (0.1, 0.2)
+    pushed = [Segment(5.0, 0.1, control_mps2=u) for u in (north, north, other, (0.0, 0.0))]
+    truth = Truth(START, pushed, start_time_s=100.0)
+    np.testing.assert_allclose(truth.control_switch_times_s, [100.0, 110.0, 115.0])
+    assert len(Truth(START, [Segment(10.0, 0.1)]).control_switch_times_s) == 0
 
 
 def test_a_table_of_segments():
@@ -173,6 +181,32 @@ def test_accelerations_are_held_for_the_interval():
     assert sorted(pushes) == list(range(20))
     assert all(len(same) == 1 for same in pushes.values())
     assert len(set.union(*pushes.values())) == 20
+
+
+@given(rates, pushes.filter(any), st.floats(0.5, 39.0))
+def test_under_a_disturbance_a_thrust_ends_when_it_has_taken_the_speed(rate, push, ends_s):
+    braking = -np.hypot(START[1], START[3]) / ends_s
+    whole = Truth(START, [Segment(40.0, rate, braking, disturbance_mps2=push)])
+    halves = Truth(
+        START,
+        [
+            Segment(ends_s, rate, braking, disturbance_mps2=push),
+            Segment(40.0 - ends_s, rate, disturbance_mps2=push),
+        ],
+    )
+    time_s = np.linspace(0.0, 60.0, 41)
+    np.testing.assert_allclose(whole.state_at(time_s), halves.state_at(time_s), atol=1e-6)
+
+
+STOPPING = Truth([0.0, 10.0, 0.0, 0.0], [Segment(60.0), Segment(100.0, 0.0, -0.1), Segment(100.0)])
+
+
+def test_a_vessel_that_brakes_to_a_stop_may_be_disturbed():
+    time_s = np.linspace(0.0, 250.0, 51)
+    for seed in range(30):
+        disturbed(STOPPING, 0.01, 3.0, seed)
+        hardly = disturbed(STOPPING, 1e-7, 3.0, seed)
+        np.testing.assert_allclose(hardly.state_at(time_s), STOPPING.state_at(time_s), atol=0.02)
 
 
 def drawn(**options):

@@ -131,6 +131,35 @@ def test_a_scenario_may_start_at_any_time():
     np.testing.assert_allclose(late.turn_rates_rad_s[[9, 10]], [0.0, 0.1])
 
 
+def test_a_truth_that_begins_after_the_scenario_may_switch_at_its_beginning():
+    segments = [Segment(9.0, 0.1, control_mps2=(0.2, 0.0)), Segment(9.0, 0.1)]
+    truth = Truth([0.0, 10.0, 500.0, 0.0], segments, start_time_s=11.0)
+    early, with_it = (Scenario("at", truth, RADAR, 30, start_time_s=t) for t in (0.0, 11.0))
+    np.testing.assert_allclose(early.switch_times_s, [11.0, 29.0])
+    np.testing.assert_allclose(early.control_switch_times_s, [11.0, 20.0])
+    np.testing.assert_allclose(with_it.switch_times_s, [29.0])
+    np.testing.assert_allclose(with_it.control_switch_times_s, [20.0])
+
+
+def test_starts_err_as_the_prior_says_and_have_nothing_in_common_with_the_readings():
+    case = Scenario("starts", STRAIGHT, RADAR, 1, position_std_m=20.0, velocity_std_mps=2.0)
+    starts = case.draw_starts(4000, 3)
+    errors = np.array([start.mean for start in starts]) - case.start.mean
+    np.testing.assert_allclose(errors.mean(axis=0) / [20, 2, 20, 2], 0.0, atol=0.06)
+    np.testing.assert_allclose(errors.std(axis=0) / [20, 2, 20, 2], 1.0, atol=0.05)
+    np.testing.assert_array_equal(starts[7].covariance, case.start.covariance)
+    both = np.column_stack([errors, case.draw(4000, 3)[:, 0]])
+    assert np.abs(np.corrcoef(both.T) - np.eye(6)).max() < 0.07
+
+
+def test_a_run_starts_alike_however_many_there_are():
+    case = papers.example1()
+    some = [start.mean for start in case.draw_starts(5, 9)]
+    alone = [case.draw_starts(1, 9, first_run=k)[0].mean for k in range(5)]
+    np.testing.assert_array_equal(some, alone)
+    assert not np.array_equal(some, [start.mean for start in case.draw_starts(5, 10)])
+
+
 def test_sensors_have_the_errors_of_the_radar():
     case = Scenario("sensors", STRAIGHT, RADAR, 5)
     assert isinstance(case.polar_sensor, wl.RangeBearing)

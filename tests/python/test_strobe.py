@@ -193,17 +193,39 @@ def test_predict_strobe_update_holds_a_target():
     assert np.linalg.norm(estimator.estimate().mean[[0, 2]] - truth) < 4.0
 
 
+def test_a_scan_image_stands_in_for_video_with_gaps():
+    video = blob_video((100, 100, 90))
+    strobe = wl.RadiusGate(radius_m=400.0)
+    there = video.range_m[90] * np.array(
+        [np.cos(video.azimuth_rad[100]), np.sin(video.azimuth_rad[100])]
+    )
+    image = wl.ScanImage(
+        len(video), video.amplitude.shape[1], first_azimuth_rad=video.azimuth_rad[0]
+    )
+    assert image.add(video) == len(video) == len(image)
+    whole = wl.strobe_echo(video, strobe, there)
+    shown = wl.strobe_echo(image, strobe, there)
+    assert shown.position.mean == pytest.approx(whole.position.mean, abs=1e-6)
+    gappy = wl.ScanImage(
+        len(video), video.amplitude.shape[1], first_azimuth_rad=video.azimuth_rad[0]
+    )
+    gappy.add(video[np.delete(np.arange(len(video)), 300)])
+    assert wl.strobe_echo(gappy, strobe, there).position.mean == pytest.approx(
+        whole.position.mean, abs=1e-6
+    )
+
+
 def test_video_that_is_no_picture_is_refused():
     video = blob_video((100, 100, 90))
     strobe = wl.RadiusGate(radius_m=60.0)
-    with pytest.raises(TypeError, match="RadarVideo, got ndarray"):
+    with pytest.raises(TypeError, match="RadarVideo or a ScanImage, got ndarray"):
         wl.strobe_echo(video.amplitude, strobe, [0.0, 0.0])
     with pytest.raises(ValueError, match="sweeps, got none"):
         wl.strobe_echo(video[:0], strobe, [0.0, 0.0])
     with pytest.raises(ValueError, match="clockwise"):
         wl.strobe_echo(video[::-1], strobe, [0.0, 0.0])
     uneven = np.delete(np.arange(720), 300)
-    with pytest.raises(ValueError, match=r"even steps of azimuth, got sweep \d+"):
+    with pytest.raises(ValueError, match=r"even steps of azimuth, got sweep \d+ .*ScanImage"):
         wl.strobe_echo(video[uneven], strobe, [0.0, 0.0])
     twice = np.concatenate([np.arange(720), np.arange(720)])
     with pytest.raises(ValueError, match="at most one turn, got 2"):

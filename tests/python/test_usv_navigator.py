@@ -175,6 +175,37 @@ def test_steps_without_the_imu_coast():
     assert run.covariance[125, 2, 2] > 2 * run.covariance[99, 2, 2]
 
 
+@pytest.mark.parametrize("filter", ["ekf", "ukf", "augmented_ukf"])
+@pytest.mark.parametrize("states", [5, 7, 8])
+def test_the_noise_of_each_step_may_be_told(states, filter):
+    log = voyage(steps=100)
+    log["imu"][40:60] = np.nan
+    plain = started(log, states, filter).run(**sensors(log))
+    std = np.full((100, 2), np.nan)
+    std[:40] = std[60:] = 0.004, 0.033 * DEG
+    told = started(log, states, filter).run(**sensors(log), imu_std=std)
+    np.testing.assert_array_equal(told.mean, plain.mean)
+    np.testing.assert_array_equal(told.covariance, plain.covariance)
+    std[45:55] = 0.3, 5 * DEG
+    more = started(log, states, filter).run(**sensors(log), imu_std=std)
+    np.testing.assert_array_equal(more.covariance[:45], plain.covariance[:45])
+    heading = 2 if states == 7 else 4
+    assert more.covariance[54, heading, heading] > 1.1 * plain.covariance[54, heading, heading]
+
+
+@pytest.mark.parametrize("states", [5, 7])
+def test_noise_of_more_in_shorter_steps_grows_the_same_in_any_steps(states):
+    stds = []
+    for steps in (60, 240, 1200):
+        dt_s = 60 / steps
+        std = np.full((steps + 1, 2), [0.2, 2 * DEG]) / np.sqrt(dt_s)
+        navigator = UsvNavigator(states)
+        navigator.start([0.0, 0.0], [5.0, 0.0], 0.0)
+        run = navigator.run(dt_s * np.arange(steps + 1), imu_std=std)
+        stds.append(np.sqrt(np.diagonal(run.covariance[-1])))
+    np.testing.assert_allclose(stds[1:], [stds[0], stds[0]], rtol=1e-3)
+
+
 def test_log_velocity_and_rate_of_turn():
     log = voyage(steps=200)
     rate = log["imu"][:, 2] - BIAS[2]
@@ -202,6 +233,10 @@ def test_errors_name_what_is_wrong():
     navigator = started(log)
     with pytest.raises(ValueError, match=r"imu must have shape \(20, 3\), got \(19, 3\)"):
         navigator.run(log["time_s"], log["imu"][1:])
+    with pytest.raises(ValueError, match=r"imu_std must have shape \(20, 2\), got \(20, 3\)"):
+        navigator.run(**sensors(log), imu_std=log["imu"])
+    with pytest.raises(ValueError, match="yaw_rate_std_rad_s must be finite and not negative"):
+        navigator.run(**sensors(log), imu_std=np.full((20, 2), [0.1, -0.1]))
     with pytest.raises(ValueError, match=r"time_s must be finite and not decrease.*row 1"):
         navigator.run(log["time_s"][::-1], log["imu"])
     with pytest.raises(ValueError, match="log needs a navigator with a speed through water"):

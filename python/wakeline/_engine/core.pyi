@@ -2,6 +2,7 @@
 Beliefs, statuses, angles and the chi-square law.
 """
 
+import enum
 import typing
 
 import numpy as np
@@ -22,50 +23,17 @@ class FilterError(RuntimeError):
     An estimator could not be started, predicted or updated; its belief is as it was.
     """
 
-class Status:
+class Status(enum.IntEnum):
     """
-    What became of one step; anything but `ok` changed nothing.
-
-    Members:
-
-      ok
-
-      missed : no measurement in this scan: predicted only
-
-      not_started : the estimator has no belief yet
-
-      not_finite : an input or a result is not finite
-
-      not_positive_definite : a covariance is not positive definite
-
-      negative_time_step : time would run backwards
+    What became of one step: a number, as in the `status` of a run.
     """
 
-    __members__: typing.ClassVar[dict[str, Status]]
     missed: typing.ClassVar[Status]
     negative_time_step: typing.ClassVar[Status]
     not_finite: typing.ClassVar[Status]
     not_positive_definite: typing.ClassVar[Status]
     not_started: typing.ClassVar[Status]
     ok: typing.ClassVar[Status]
-    @typing.overload
-    def __eq__(self, other: Status) -> bool: ...
-    @typing.overload
-    def __eq__(self, other: object) -> bool: ...
-    def __getstate__(self) -> int: ...
-    def __hash__(self) -> int: ...
-    def __index__(self) -> int: ...
-    def __init__(self, value: int) -> None: ...
-    def __int__(self) -> int: ...
-    @typing.overload
-    def __ne__(self, other: Status) -> bool: ...
-    @typing.overload
-    def __ne__(self, other: object) -> bool: ...
-    def __setstate__(self, state: int) -> None: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def value(self) -> int: ...
 
 class Gaussian:
     """

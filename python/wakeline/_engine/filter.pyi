@@ -130,6 +130,7 @@ class Filter:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -147,6 +148,8 @@ class Filter:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -161,9 +164,10 @@ class Filter:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def smooth(
         self,
@@ -543,6 +547,7 @@ class AlphaBeta:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -560,6 +565,8 @@ class AlphaBeta:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -574,9 +581,10 @@ class AlphaBeta:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -636,6 +644,7 @@ class AlphaBetaGamma:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -653,6 +662,8 @@ class AlphaBetaGamma:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -667,9 +678,10 @@ class AlphaBetaGamma:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def start(self, belief: Gaussian) -> None:
         """

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..recording.video import RadarVideo
 from .core import Gaussian
+from .video import ScanImage
 
 __all__ = [
     "ChiSquareGate",
@@ -150,7 +151,7 @@ class StrobeEcho:
         """
 
 def strobe_echo(
-    video: RadarVideo,
+    video: RadarVideo | ScanImage,
     strobe: RadiusGate | CovarianceStrobe | RangeBearingWindow,
     predicted_m: ArrayLike,
     *,
@@ -167,7 +168,7 @@ def strobe_echo(
 
     Parameters
     ----------
-    video : RadarVideo
+    video : RadarVideo or ScanImage
         One turn or less, at even steps of azimuth.
     strobe : RadiusGate, CovarianceStrobe or RangeBearingWindow
     predicted_m : (2,) array

@@ -23,6 +23,8 @@ class OwnShip:
     """
     Where the antenna is when it measures, and how well that is known.
     """
+    def __copy__(self) -> OwnShip: ...
+    def __deepcopy__(self, memo: dict) -> OwnShip: ...
     def __init__(
         self,
         *,
@@ -60,6 +62,8 @@ class RangeBearing:
 
     measurements: typing.ClassVar[int] = 2
     own: OwnShip
+    def __copy__(self) -> RangeBearing: ...
+    def __deepcopy__(self, memo: dict) -> RangeBearing: ...
     def __init__(
         self,
         *,
@@ -114,6 +118,8 @@ class ConvertedRangeBearing:
 
     measurements: typing.ClassVar[int] = 2
     own: OwnShip
+    def __copy__(self) -> ConvertedRangeBearing: ...
+    def __deepcopy__(self, memo: dict) -> ConvertedRangeBearing: ...
     def __init__(
         self,
         *,
@@ -171,6 +177,8 @@ class RangeBearingDoppler:
 
     measurements: typing.ClassVar[int] = 3
     own: OwnShip
+    def __copy__(self) -> RangeBearingDoppler: ...
+    def __deepcopy__(self, memo: dict) -> RangeBearingDoppler: ...
     def __init__(
         self,
         *,
@@ -197,6 +205,16 @@ class RangeBearingDoppler:
         """
         The reading in north/east, m: mean (2,), covariance (2, 2).
         """
+    @property
+    def bearing_offset_rad(self) -> float: ...
+    @property
+    def bearing_std_rad(self) -> float: ...
+    @property
+    def extent_std_m(self) -> float: ...
+    @property
+    def range_rate_std_mps(self) -> float: ...
+    @property
+    def range_std_m(self) -> float: ...
 
 class Position:
     """
@@ -204,6 +222,8 @@ class Position:
     """
 
     measurements: typing.ClassVar[int] = 2
+    def __copy__(self) -> Position: ...
+    def __deepcopy__(self, memo: dict) -> Position: ...
     def __init__(self, *, position_std_m: float = 10.0) -> None: ...
     def jacobian(self, x: ArrayLike) -> NDArray[np.float64]:
         """

@@ -61,6 +61,8 @@ class ConstantVelocity:
     """
 
     states: typing.ClassVar[int] = 4
+    def __copy__(self) -> ConstantVelocity: ...
+    def __deepcopy__(self, memo: dict) -> ConstantVelocity: ...
     def __init__(
         self, *, noise: ProcessNoise | WhiteAcceleration | PiecewiseAcceleration | WhiteJerk = ...
     ) -> None: ...
@@ -79,6 +81,8 @@ class WanderingCourse:
     """
 
     states: typing.ClassVar[int] = 4
+    def __copy__(self) -> WanderingCourse: ...
+    def __deepcopy__(self, memo: dict) -> WanderingCourse: ...
     def __init__(
         self, *, psd_m2s3: float = 0.01, course_psd_rad2s: float = 0.01, max_speed_mps: float = 30.0
     ) -> None: ...
@@ -101,6 +105,8 @@ class ConstantAcceleration:
     """
 
     states: typing.ClassVar[int] = 6
+    def __copy__(self) -> ConstantAcceleration: ...
+    def __deepcopy__(self, memo: dict) -> ConstantAcceleration: ...
     def __init__(
         self,
         *,
@@ -122,6 +128,8 @@ class CoordinatedTurn:
     """
 
     states: typing.ClassVar[int] = 4
+    def __copy__(self) -> CoordinatedTurn: ...
+    def __deepcopy__(self, memo: dict) -> CoordinatedTurn: ...
     def __init__(
         self,
         *,
@@ -145,6 +153,8 @@ class CoordinatedTurnRate:
     """
 
     states: typing.ClassVar[int] = 5
+    def __copy__(self) -> CoordinatedTurnRate: ...
+    def __deepcopy__(self, memo: dict) -> CoordinatedTurnRate: ...
     def __init__(
         self,
         *,
@@ -174,6 +184,8 @@ class Singer:
     """
 
     states: typing.ClassVar[int] = 6
+    def __copy__(self) -> Singer: ...
+    def __deepcopy__(self, memo: dict) -> Singer: ...
     def __init__(self, *, maneuver_time_s: float = 20.0, accel_std_mps2: float = 0.5) -> None: ...
     def matrix(self, dt_s: float) -> NDArray[np.float64]:
         """

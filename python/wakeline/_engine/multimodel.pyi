@@ -104,6 +104,7 @@ class Imm:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -121,6 +122,8 @@ class Imm:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -135,9 +138,10 @@ class Imm:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -185,9 +189,9 @@ class AdaptiveGridImm:
     centre_gain : float
         How far it moves towards it. Not in the paper: 1, all the way.
     unlikely_threshold : float
-        A side less probable than this comes half way nearer.
+        Where the centre is the most probable, a side less probable than this comes half way nearer.
     likely_threshold : float
-        A side more probable than this goes twice as far.
+        Where a side is the most probable, and more than this, it goes twice as far.
     stay_probability : float
         Of the models' chain: to stay, the rest to each other model alike.
     chain : ModeChain, optional
@@ -246,6 +250,7 @@ class AdaptiveGridImm:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -263,6 +268,8 @@ class AdaptiveGridImm:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -277,9 +284,10 @@ class AdaptiveGridImm:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -323,7 +331,7 @@ class SwitchingGridImm:
         Whether each slot keeps its estimate and probability, or each model that stays does and the entering one begins with
         the combined estimate and the probability of the leaving one. Not printed.
     initial_centre : int, optional
-        Index of the window's middle at a start; the straightest rate when left out. Not printed.
+        Index of the window's middle at a start; the straightest rate but the ends when left out. Not printed.
     stay_probability : float
         Of the models' chain: to stay, the rest to each other model alike.
     chain : ModeChain, optional
@@ -378,6 +386,7 @@ class SwitchingGridImm:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -395,6 +404,8 @@ class SwitchingGridImm:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -409,9 +420,10 @@ class SwitchingGridImm:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -509,6 +521,7 @@ class LikelyModelSetImm:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -526,6 +539,8 @@ class LikelyModelSetImm:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -540,9 +555,10 @@ class LikelyModelSetImm:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -688,6 +704,7 @@ class ModeHistory:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -705,6 +722,8 @@ class ModeHistory:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -719,9 +738,10 @@ class ModeHistory:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -810,6 +830,7 @@ class BayesianAlphaBeta:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -827,6 +848,8 @@ class BayesianAlphaBeta:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -841,9 +864,10 @@ class BayesianAlphaBeta:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -980,6 +1004,7 @@ class FuzzyAlphaBeta:
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
         start: Gaussian | Sequence[Gaussian],
         own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
         acceleration_mps2: ArrayLike | None = None,
         gate: RadiusGate | None = None,
     ) -> RunResult:
@@ -997,6 +1022,8 @@ class FuzzyAlphaBeta:
             Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
         own_position_m : (T, 2) array, optional
             North and east of own ship at each reading.
+        own_velocity_mps : (T, 2) array, optional
+            Her velocity over ground at each reading, which range rates are measured from.
         acceleration_mps2 : (T, 2) array, optional
             Known acceleration, north and east, in the step before each reading.
         gate : RadiusGate, optional
@@ -1011,9 +1038,10 @@ class FuzzyAlphaBeta:
         Raises
         ------
         ValueError
-            When a shape does not fit.
+            When a shape does not fit, or a sensor of range rates moves and its velocity is not told.
         FilterError
-            When an estimator cannot start. A step that fails later is marked in `status` and changes nothing.
+            When an estimator cannot start. A step that fails later is marked in `status`: a reading that
+            cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
     def start(self, belief: Gaussian) -> None:
         """

@@ -72,7 +72,7 @@ class StaticClutterMap:
     Parameters
     ----------
     azimuths : int
-        Rows in a turn.
+        Rows in a turn; of several sweeps in a row the strongest amplitudes are learned.
     cells : int
         Cells of range; cells of sweeps beyond are left alone.
     time_constant_s : float
@@ -297,6 +297,7 @@ class ScanImage:
     def __init__(
         self, sweeps: int, cells: int, *, bits: int = 8, first_azimuth_rad: float = 0.0
     ) -> None: ...
+    def __len__(self) -> int: ...
     def add(self, video: RadarVideo) -> int:
         """
         Takes the sweeps of a video; the number of those that made sense and were taken. Another start range or cell length clears the image first.
@@ -314,6 +315,11 @@ class ScanImage:
         """
     @property
     def azimuth_step_rad(self) -> float: ...
+    @property
+    def azimuth_width_rad(self) -> float:
+        """
+        What a row stands for, as of a video.
+        """
     @property
     def cell_m(self) -> float: ...
     @property
@@ -541,7 +547,8 @@ def threshold_factor(
         ordered_statistic  exponential   p = prod_{i<k} (N - i) / (N - i + f),   k = ceil(rank N)
                            rayleigh      the same with f^2
 
-    The second is right to some per cent, the others are exact.
+    The second takes a mean of Rayleigh amplitudes for simpler than it is: with 8 to 16 training cells noise is detected
+    10 to 30 % more often than a probability of 1e-4 to 1e-6 says. The others are exact.
 
     Parameters
     ----------

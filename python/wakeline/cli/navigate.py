@@ -20,7 +20,7 @@ from . import navigating, outputs, report
 
 _COLUMNS = (
     *("time_s", "lat_deg", "lon_deg", "north_m", "east_m", "vnorth_mps", "veast_mps"),
-    *("heading_deg", "set_deg", "drift_mps"),
+    *("heading_deg", "set_deg", "drift_mps", "drift_std_mps"),
     *("north_var_m2", "north_east_cov_m2", "east_var_m2"),
     *("vnorth_var_m2s2", "vnorth_veast_cov_m2s2", "veast_var_m2s2", "heading_std_deg", "status"),
 )
@@ -46,9 +46,9 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "own.csv and pictures. A part after a gap of a minute is navigated by itself. Then "
         "satellites are hidden for a minute at a time, and the errors of what is foretold are "
         "told. What cannot be read of the log, or not be used, is counted, and never fatal. In "
-        "own.csv the status is ok, coasting (no fix for five seconds), rejected (a fix that does "
-        "not fit) or jumped (from where fixes that were rejected but went on have moved the "
-        "position by over 50 m, until it comes back or all fixes have fitted for a minute).",
+        "own.csv the status is ok, coasting (no fix that fits for five seconds), rejected (a fix "
+        "that does not fit) or jumped (from where fixes that were rejected but went on have moved "
+        "the position by over 50 m, until it comes back or all fixes have fitted for a minute).",
     )
     parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one a line")
     parser.add_argument(
@@ -121,24 +121,27 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _legs(log: NavigationLog, *, smooth: bool) -> list[_Leg]:
-    offset, plane = _magnetic_offset(log), navigating.plane_of(log.fixes.sound())
     parts = log.parts()
-    for note in _unused_notes(parts):
+    offset, plane = _magnetic_offset(log, parts), navigating.plane_of(log.fixes.sound())
+    for note in (*_unused_notes(parts), *_stuck_notes(parts)):
         print(note, flush=True)
     legs = [_leg(part, offset, plane, smooth) for part in parts if len(part.fixes.sound())]
-    for note in _doubt_notes(legs):
+    for note in (*_doubt_notes(legs), *_order_notes(legs)):
         print(note, flush=True)
     return legs
 
 
-def _magnetic_offset(log: NavigationLog) -> navigating.MagneticOffset:
-    if len(log.heading.sound()) or not len(log.compass.sound()):
+def _magnetic_offset(
+    log: NavigationLog, parts: Sequence[NavigationLog]
+) -> navigating.MagneticOffset:
+    if not any(map(navigating.wants_offset, parts)):
         return navigating.NO_OFFSET
     offset = navigating.magnetic_offset(log)
     how = "for nothing is known" if offset is None else "as velocities over ground say"
     offset = offset or navigating.ANY_OFFSET
     degrees, std_deg = np.degrees(offset)
-    print(f"note: {degrees:+.1f}° ± {std_deg:.1f}° are added to magnetic headings, {how}")
+    added = f"{degrees:+.1f}° ± {std_deg:.1f}° are added to magnetic headings"
+    print(f"note: {added} of unknown variation, {how}")
     if len(log.water.sound()):
         share = f"{100.0 * offset.std_rad:.0f} %"
         print(f"note: without --variation set and drift err by {share} of the speed")
@@ -160,6 +163,15 @@ def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
             yield f"note: {len(lines)} {what} are not used (first in line {lines.min()})"
 
 
+def _stuck_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
+    lines = np.concatenate([navigating.zero_speeds(part) for part in parts])
+    if len(lines):
+        yield (
+            f"note: {len(lines)} speeds through the water are 0 while the ship makes way over "
+            f"ground (first in line {lines.min()}): if the log is stuck, set and drift are wrong"
+        )
+
+
 def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
     """What the navigator did not believe, or did so only after a while."""
     jump_m = np.concatenate([leg.track.jump_m for leg in legs])
@@ -179,6 +191,17 @@ def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
             f"note: the position jumps {len(jumps)} times, to fixes that went on though rejected, "
             f"first by {far_m[0]:.0f} m in line {jumps[0]}; from there the status is jumped, "
             "until it comes back or all fixes have fitted for a minute"
+        )
+
+
+def _order_notes(legs: Sequence[_Leg]) -> Iterator[str]:
+    time_s = np.concatenate([leg.track.time_s for leg in legs])
+    back = np.flatnonzero(np.diff(time_s) < 0)
+    if len(back):
+        rows = ", ".join(f"{k + 3}" for k in back[:_SHOWN_PROBLEMS])
+        yield (
+            f"note: the times of own.csv go back {len(back)} times, where the clock was set back "
+            f"(line {rows}): cut it there before it is used as an own-ship file"
         )
 
 
@@ -254,25 +277,29 @@ def _write_csv(path: Path, legs: Sequence[_Leg]) -> None:
 
 
 def _csv_rows(track: navigating.OwnTrack) -> Iterator[list[Any]]:
-    north, east = track.current_mps.T
     place, speed = track.position_m2, track.velocity_m2s2
     numbers = np.column_stack(
         [
-            track.position_m,
             track.velocity_mps,
             np.degrees(track.heading_rad) % 360.0,
-            np.degrees(np.arctan2(east, north)) % 360.0,
-            np.hypot(north, east),
+            np.degrees(track.set_rad) % 360.0,
+            np.hypot(*track.current_mps.T),
+            track.drift_std_mps,
             *(place[:, 0, 0], place[:, 0, 1], place[:, 1, 1]),
             *(speed[:, 0, 0], speed[:, 0, 1], speed[:, 1, 1]),
             np.degrees(track.heading_std_rad),
         ]
     )
-    where = zip(track.time_s, track.latitude_deg, track.longitude_deg, strict=True)
-    for place_and_time, row, status in zip(where, numbers, track.status, strict=True):
-        time_s, latitude_deg, longitude_deg = place_and_time
-        texts = ("" if np.isnan(value) else f"{value:.6g}" for value in row)
-        yield [f"{time_s:.3f}", f"{latitude_deg:.8f}", f"{longitude_deg:.8f}", *texts, status]
+    where = np.column_stack([track.latitude_deg, track.longitude_deg])
+    columns = (track.time_s, where, track.position_m, numbers, track.status)
+    for time_s, where_deg, place_m, row, status in zip(*columns, strict=True):
+        yield [
+            f"{time_s:.3f}",
+            *(f"{value:.8f}" for value in where_deg),
+            *(f"{value:.3f}" for value in place_m),
+            *("" if np.isnan(value) else f"{value:.6g}" for value in row),
+            status,
+        ]
 
 
 def _write_pictures(folder: Path, legs: Sequence[_Leg], way: str) -> list[Path]:
@@ -315,12 +342,7 @@ def _time_figure(
     plot.speed_over_time(
         speed, track.time_s, np.hypot(over_ground[:, 0], over_ground[:, 1]), readings.log_mps
     )
-    plot.course_over_time(
-        course,
-        track.time_s,
-        np.arctan2(over_ground[:, 1], over_ground[:, 0]),
-        track.heading_rad,
-    )
+    plot.course_over_time(course, track.time_s, track.course_rad, track.heading_rad)
     plot.drift_over_time(drift, track.time_s, track.current_mps, fix_time_s)
     for ax in (speed, course):
         ax.set_xlabel("")

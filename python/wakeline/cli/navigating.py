@@ -22,12 +22,12 @@ FIX_STD_M = 3.0
 VELOCITY_STD_MPS = 0.3  # over ground: filtered by the receiver, or turned by the heading
 COMPASS_STD_RAD = np.deg2rad(4.0)  # of a small craft in waves
 LOG_STD_MPS = 0.15
-YAW_RATE_STD_RAD_S = np.deg2rad(6.0)  # where no rate of turn is told
-TURN_RATE_STD_RAD_S = np.deg2rad(2.0)  # of an indicator that lags
-ACCELERATION_STD_MPS2 = 0.1
 START_STD_M = 100.0  # at the first fix, which is yet to be taken as any other
 START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over ground, and without
-SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.1, 0.02  # in one second
+# What is gained in one second, whatever the steps:
+VELOCITY_WALK_MPS, SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.4, 0.1, 0.02
+HEADING_WALK_RAD = np.deg2rad(10.0)  # where no rate of turn is told
+TURNED_WALK_RAD = np.deg2rad(2.0)  # beside what an indicator tells, which lags
 CURRENT_STD_MPS = 0.5
 GATE_PROBABILITY = 0.999
 
@@ -56,11 +56,12 @@ ANY_OFFSET = MagneticOffset(0.0, np.deg2rad(15.0))  # variations over the seas
 class Readings(NamedTuple):
     """Readings at all times (T,) at which there is one, NaN where there is none; a plane for them.
 
-    ``fix_m`` and ``velocity_mps`` (T, 2) north and east, ``heading_rad`` (T,) true, ``log_mps``
+    ``fix_m`` and ``velocity_mps`` (T, 2) north and east, ``heading_rad`` (T,), ``log_mps``
     (T,) through the water ahead, ``leeway_rad`` (T,) from the heading to the way through the water,
     0 where no log tells of it, ``bottom_mps`` (T, 2) north and east over ground by a log that
-    sees the bottom, ``turn_rate_rad_s`` (T,) to starboard. ``offset_std_rad`` is the error that
-    all headings share.
+    sees the bottom, ``turn_rate_rad_s`` (T,) to starboard. Directions are those on the plane, which
+    are ``lean_rad`` (T,) more than from true north. ``offset_std_rad`` is the error that all
+    headings share.
     """
 
     plane: wl.navigation.LocalPlane
@@ -72,6 +73,7 @@ class Readings(NamedTuple):
     leeway_rad: np.ndarray
     bottom_mps: np.ndarray
     turn_rate_rad_s: np.ndarray
+    lean_rad: np.ndarray
     offset_std_rad: float
 
     @property
@@ -104,23 +106,33 @@ class Readings(NamedTuple):
 class OwnTrack:
     """Own ship's solution at times (T,).
 
+    Positions, velocities and currents are north and east on the plane of the log, which touches the
+    Earth at its first fix. Elsewhere its north leans against true north, and across the line to the
+    first fix it is stretched, by 4e-4 at 300 km and 4e-3 at 1000 km: by as much of the speed
+    velocity and current err there.
+
     Attributes
     ----------
     time_s : ndarray (T,)
     latitude_deg, longitude_deg : ndarray (T,)
     position_m, velocity_mps : ndarray (T, 2)
-        North and east, over ground.
+        Over ground.
     heading_rad : ndarray (T,)
-        NaN where the log has no heading.
+        From true north; NaN where the log has no heading.
     current_mps : ndarray (T, 2)
-        Set and drift as north and east; NaN where there is no heading or no speed through water.
+        NaN where there is no heading or no speed through water.
+    lean_rad : ndarray (T,)
+        By how much directions on the plane are more than from true north.
     position_m2, velocity_m2s2 : ndarray (T, 2, 2)
         Covariances.
     heading_std_rad : ndarray (T,)
+    drift_std_mps : ndarray (T,)
+        Of the current in the direction in which it is known least.
     status : ndarray of str (T,)
-        ``ok``; ``coasting`` without a fix for more than five seconds; ``jumped`` from where fixes
-        that went on though rejected have moved the position by more than 50 m, until others move it
-        back or all fixes have fitted for a minute; ``rejected`` where a fix was not believed.
+        ``ok``; ``coasting`` without a fix that was believed for more than five seconds; ``jumped``
+        from where fixes that went on though rejected have moved the position by more than 50 m,
+        until others move it back or all fixes have fitted for a minute; ``rejected`` where a fix
+        was not believed.
     jump_m : ndarray (T,)
         How far such fixes have moved the position, zero at other times.
     """
@@ -132,11 +144,23 @@ class OwnTrack:
     velocity_mps: np.ndarray
     heading_rad: np.ndarray
     current_mps: np.ndarray
+    lean_rad: np.ndarray
     position_m2: np.ndarray
     velocity_m2s2: np.ndarray
     heading_std_rad: np.ndarray
+    drift_std_mps: np.ndarray
     status: np.ndarray
     jump_m: np.ndarray
+
+    @property
+    def course_rad(self) -> np.ndarray:
+        """Course over ground (T,) from true north."""
+        return np.arctan2(self.velocity_mps[:, 1], self.velocity_mps[:, 0]) - self.lean_rad
+
+    @property
+    def set_rad(self) -> np.ndarray:
+        """Where the current goes (T,), from true north."""
+        return np.arctan2(self.current_mps[:, 1], self.current_mps[:, 0]) - self.lean_rad
 
 
 def plane_of(fixes: Fixes) -> wl.navigation.LocalPlane:
@@ -148,12 +172,14 @@ def plane_of(fixes: Fixes) -> wl.navigation.LocalPlane:
 def readings_of(
     part: NavigationLog, offset: MagneticOffset, plane: wl.navigation.LocalPlane
 ) -> Readings:
-    """The readings of a log that has a fix, `offset` added to magnetic headings."""
+    """The readings of a log that has a fix, `offset` added to headings of unknown variation."""
     fixes, ground, water = part.fixes.sound(), part.ground.sound(), part.water.sound()
     bottom, turn = part.bottom.sound(), part.turn.sound()
-    headings = _headings(part, offset.offset_rad)
+    heading_s, true_heading_rad = _headings(part, offset.offset_rad)
+    headings = heading_s, true_heading_rad + _lean_rad(fixes, plane, heading_s)
     latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
-    course = np.column_stack([np.cos(ground.course_rad), np.sin(ground.course_rad)])
+    course_rad = ground.course_rad + _lean_rad(fixes, plane, ground.time_s)
+    course = np.column_stack([np.cos(course_rad), np.sin(course_rad)])
     series = (
         (fixes.time_s, plane.position_m(latitude, longitude)),
         (ground.time_s, ground.speed_mps[:, None] * course),
@@ -176,7 +202,8 @@ def readings_of(
         leeway_rad=leeway,
         bottom_mps=over_bottom,
         turn_rate_rad_s=turn_rate,
-        offset_std_rad=offset.std_rad,
+        lean_rad=_lean_rad(fixes, plane, time_s),
+        offset_std_rad=offset.std_rad if wants_offset(part) else 0.0,
     )
 
 
@@ -201,6 +228,19 @@ def unused(part: NavigationLog) -> dict[str, np.ndarray]:
     }
 
 
+def zero_speeds(part: NavigationLog) -> np.ndarray:
+    """Lines (n,) of sound speeds through the water of 0 while the ship makes way over ground."""
+    water, ground = part.water.sound(), part.ground.sound()
+    over_ground_mps = _between(water.time_s, ground.time_s, ground.speed_mps)
+    return water.line[(water.ahead_mps == 0.0) & (over_ground_mps > _UNDER_WAY_MPS)]
+
+
+def wants_offset(part: NavigationLog) -> bool:
+    """Whether the headings of a part are magnetic ones whose variation is not always known."""
+    unknown = np.isnan(part.compass.sound().variation_rad)
+    return len(part.heading.sound()) == 0 and bool(unknown.any())
+
+
 def magnetic_offset(log: NavigationLog) -> MagneticOffset | None:
     """What to add to magnetic headings that have no variation, found from velocities over ground.
 
@@ -208,7 +248,7 @@ def magnetic_offset(log: NavigationLog) -> MagneticOffset | None:
     water by the magnetic compass; the angle of a is the offset. The current is another in every
     half hour: alterations of course tell it from the offset. Without a log, speeds over ground
     stand for those through the water, and nothing does. None where there is nothing to find it
-    from.
+    from, or the log reads nothing but 0.
     """
     time_s, water, ground = _by_minute(log)
     if len(time_s) == 0:
@@ -221,6 +261,8 @@ def magnetic_offset(log: NavigationLog) -> MagneticOffset | None:
         share = 1.0 / (len(w) + (_MINUTE_STD_MPS / CURRENT_STD_MPS) ** 2) if knows_water else 0.0
         information += np.vdot(w, w).real - share * abs(w.sum()) ** 2
         correlation += np.vdot(w, g) - share * w.sum().conj() * g.sum()
+    if correlation == 0:
+        return None
     std = _MINUTE_STD_MPS if knows_water else CURRENT_STD_MPS * np.sqrt(len(time_s))
     return MagneticOffset(
         float(np.angle(correlation)), float(std * np.sqrt(information) / abs(correlation))
@@ -240,22 +282,25 @@ def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
         done = _run(states, readings, smooth=True)
     mean, covariance = done.mean, done.covariance
     at = 2 if states == 7 else 4
-    heading = wl.wrap_angle(mean[:, at] - readings.leeway_rad)
+    heading = wl.wrap_angle(mean[:, at] - readings.leeway_rad - readings.lean_rad)
     velocity, slope = _velocity(mean, states)
     latitude, longitude = readings.plane.place(mean[:, :2])
     heading_std = np.sqrt(covariance[:, at, at] + readings.offset_std_rad**2)
     known = np.isfinite(readings.heading_rad).any()
+    unknown = np.full(len(mean), np.nan)
     return OwnTrack(
         time_s=readings.time_s,
         latitude_deg=np.degrees(latitude),
         longitude_deg=np.degrees(longitude),
         position_m=mean[:, :2],
         velocity_mps=velocity,
-        heading_rad=heading if known else np.full(len(mean), np.nan),
+        heading_rad=heading if known else unknown,
         current_mps=mean[:, 5:7] if states == 7 else np.full((len(mean), 2), np.nan),
+        lean_rad=readings.lean_rad,
         position_m2=covariance[:, :2, :2],
         velocity_m2s2=slope @ covariance @ np.swapaxes(slope, 1, 2),
-        heading_std_rad=heading_std if known else np.full(len(mean), np.nan),
+        heading_std_rad=heading_std if known else unknown,
+        drift_std_mps=_drift_std_mps(done, readings.offset_std_rad) if states == 7 else unknown,
         status=_status(readings, done.rejected["gnss"], moved_m),
         jump_m=np.hypot(*moved_m.T),
     )
@@ -288,13 +333,15 @@ def hold_out(readings: Readings) -> dict[str, dict[float, np.ndarray]]:
 
 
 def _run(states: int, readings: Readings, *, smooth: bool = False) -> wl.navigation.UsvRun:
+    turning = _turning(readings)
     return _navigator(states, readings).run(
         readings.time_s,
-        imu=_turning(readings),
+        imu=turning,
         gnss=readings.fix_m,
         compass=readings.way_rad,
         velocity=readings.over_ground_mps,
         log=readings.way_mps if states == 7 else None,
+        imu_std=_motion_std(readings.time_s, np.isfinite(turning[:, 2])),
         gnss_std_m=[FIX_STD_M, FIX_STD_M],
         compass_std_rad=COMPASS_STD_RAD,
         velocity_std_mps=VELOCITY_STD_MPS,
@@ -306,10 +353,6 @@ def _run(states: int, readings: Readings, *, smooth: bool = False) -> wl.navigat
 def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
     navigator = wl.UsvNavigator(
         states,
-        acceleration_std_mps2=ACCELERATION_STD_MPS2,
-        yaw_rate_std_rad_s=TURN_RATE_STD_RAD_S,
-        unmeasured_acceleration_std_mps2=ACCELERATION_STD_MPS2,
-        unmeasured_yaw_rate_std_rad_s=YAW_RATE_STD_RAD_S,
         speed_walk_mps=SPEED_WALK_MPS,
         current_walk_mps=CURRENT_WALK_MPS,
         current_std_mps=CURRENT_STD_MPS,
@@ -361,12 +404,23 @@ def _velocities(part: NavigationLog) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def _headings(part: NavigationLog, offset_rad: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times and true headings: those that are told as true, else of the compass."""
+    """Times and true headings: those that are told as true, else of the compass.
+
+    `offset_rad` is added to magnetic ones where the variation is not known.
+    """
     true = part.heading.sound()
     if len(true):
         return true.time_s, true.heading_rad
     compass = part.compass.sound()
-    return compass.time_s, wl.wrap_angle(compass.heading_magnetic_rad + offset_rad)
+    variation = np.where(np.isnan(compass.variation_rad), offset_rad, compass.variation_rad)
+    return compass.time_s, wl.wrap_angle(compass.heading_magnetic_rad + variation)
+
+
+def _lean_rad(fixes: Fixes, plane: wl.navigation.LocalPlane, time_s: np.ndarray) -> np.ndarray:
+    """By how much (T,) directions on the plane are more than true ones where the last fix is."""
+    last = np.maximum(np.searchsorted(fixes.time_s, time_s, side="right") - 1, 0)
+    latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
+    return wl.wrap_angle(plane.plane_course_rad(np.zeros(len(fixes)), latitude, longitude))[last]
 
 
 def _leeway_rad(water: WaterSpeed, time_s: np.ndarray) -> np.ndarray:
@@ -394,6 +448,16 @@ def _turning(readings: Readings) -> np.ndarray:
     middle_s = readings.time_s - np.diff(readings.time_s, prepend=readings.time_s[:1]) / 2.0
     rate = _between(middle_s, readings.time_s[told], readings.turn_rate_rad_s[told])
     return np.column_stack([np.zeros((len(rate), 2)), rate])
+
+
+def _motion_std(time_s: np.ndarray, told: np.ndarray) -> np.ndarray:
+    """Deviations (T, 2) of acceleration and rate of turn in each step that make up the walks.
+
+    `told` (T,) is whether an indicator tells of the turn.
+    """
+    heading_walk_rad = np.where(told, TURNED_WALK_RAD, HEADING_WALK_RAD)
+    walk = np.column_stack([np.full(len(time_s), VELOCITY_WALK_MPS), heading_walk_rad])
+    return walk / np.sqrt(np.diff(time_s, prepend=-np.inf))[:, None]
 
 
 def _between(time_s: np.ndarray, times: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -434,6 +498,18 @@ def _velocity(mean: np.ndarray, states: int) -> tuple[np.ndarray, np.ndarray]:
     return mean[:, 3:4] * ahead + mean[:, 5:7], slope
 
 
+def _drift_std_mps(done: wl.navigation.UsvRun, offset_std_rad: float) -> np.ndarray:
+    """Deviations (T,) of the current of seven states, in the direction in which it is known least.
+
+    An error of all headings takes speed through the water for current.
+    """
+    way_rad, way_mps = done.mean[:, 2], done.mean[:, 3]
+    across = np.column_stack([-np.sin(way_rad), np.cos(way_rad)])
+    by_offset_mps = (offset_std_rad * way_mps)[:, None] * across
+    by_offset_m2s2 = by_offset_mps[:, :, None] * by_offset_mps[:, None, :]
+    return np.sqrt(np.linalg.eigvalsh(done.covariance[:, 5:7, 5:7] + by_offset_m2s2)[:, -1])
+
+
 def _moved_m(
     readings: Readings, done: wl.navigation.UsvRun, velocity_mps: np.ndarray
 ) -> np.ndarray:
@@ -448,7 +524,8 @@ def _moved_m(
 
 
 def _status(readings: Readings, rejected: np.ndarray, moved_m: np.ndarray) -> np.ndarray:
-    last_s = np.maximum.accumulate(np.where(readings.has_fix, readings.time_s, -np.inf))
+    believed = readings.has_fix & ~rejected
+    last_s = np.maximum.accumulate(np.where(believed, readings.time_s, -np.inf))
     status = np.where(readings.time_s - last_s > COASTING_S, "coasting", "ok")
     status = np.where(_jumped(readings, rejected, moved_m), "jumped", status)
     return np.where(rejected, "rejected", status)

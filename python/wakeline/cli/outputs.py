@@ -8,6 +8,7 @@ import json
 import os
 import re
 from collections.abc import Iterable, Sequence
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +41,7 @@ def of_tracking(folder: Path) -> set[Path]:
     file of the user's with a name like theirs is none of them.
     """
     tables = {f"{stem}{suffix}.csv" for stem in _TABLES for suffix in ("", PARTIAL)}
-    ends = {"", *(f"-{_file_name(name)}" for name in _scenarios_in(folder / "plots_tracks.csv"))}
+    ends = {"", *(f"-{name}" for name in _file_names(_scenarios_in(folder / "plots_tracks.csv")))}
     pictures = {f"{stem}{end}.png" for stem in _PICTURES for end in ends}
     return {folder / name for name in tables | pictures | {"ppi.png"}}
 
@@ -89,8 +90,9 @@ def write_pictures(folder: Path, parts: Sequence[TrackedEpisode]) -> list[Path]:
     if not can_draw():
         return []
     files = []
-    for part in parts:
-        end = f"-{_file_name(part.episode.name)}" if len(parts) > 1 else ""
+    names_of_files = _file_names(part.episode.name for part in parts)
+    for part, name in zip(parts, names_of_files, strict=True):
+        end = f"-{name}" if len(parts) > 1 else ""
         modes = part.tracks.mode_probability.shape[1]
         names = MODE_NAMES if modes == len(MODE_NAMES) else None
         figures = (
@@ -156,15 +158,24 @@ def _write_csv(path: Path, head: list[str], rows: Iterable[list]) -> None:
         writer.writerows(rows)
 
 
-def _scenarios_in(plots: Path) -> set[str]:
+def _scenarios_in(plots: Path) -> list[str]:
     """Scenarios that a file of plots and their tracks names; none where there is no such file."""
     try:
         with plots.open(newline="", encoding="utf-8") as file:
-            return {row["scenario"] or "" for row in csv.DictReader(file)}
+            return list(dict.fromkeys(row["scenario"] or "" for row in csv.DictReader(file)))
     except (OSError, KeyError, TypeError, UnicodeDecodeError, csv.Error):
-        return set()
+        return []
 
 
-def _file_name(scenario: str) -> str:
-    """A scenario's name without what a file name cannot hold."""
-    return re.sub(r"[^\w.+-]+", "_", scenario) or "unnamed"
+def _file_names(scenarios: Iterable[str]) -> list[str]:
+    """Names of scenarios without what a file name cannot hold; one that is taken gets a number.
+
+    Names that differ only in case are the same: on some disks their files are.
+    """
+    taken: dict[str, str] = {}
+    for scenario in scenarios:
+        plain = re.sub(r"[^\w.+-]+", "_", scenario) or "unnamed"
+        numbered = chain([plain], (f"{plain}-{number}" for number in count(2)))
+        free = next(name for name in numbered if name.lower() not in taken)
+        taken[free.lower()] = free
+    return list(taken.values())

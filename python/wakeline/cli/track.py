@@ -126,7 +126,7 @@ def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
     """Track radar video: as plots, and a picture of the screen besides."""
     if arguments.truth is not None:
         raise ValueError(f"--truth goes with a file of plots, {arguments.plots} is video")
-    film = video.read_plots_of_video(arguments.plots, arguments.own)
+    film = video.read_plots_of_video(arguments.plots, arguments.own, period_s=settings.period_s)
     measured = film.told_to(settings)
     if measured is None:
         radar = _radar_text(arguments, settings)
@@ -135,7 +135,8 @@ def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
     danger = arguments.own is not None
     parts = track_into(arguments.out, film.recording, settings, radar, danger=danger)
     if outputs.can_draw():
-        file = video.draw_ppi(arguments.out, film, parts[0])
+        offset_rad = math.radians(settings.radar["bearing_offset_deg"])
+        file = video.draw_ppi(arguments.out, film, parts[0], offset_rad)
         print(f"and {file.name}")
     if arguments.json is not None:
         outputs.write_json(arguments.json, "track", _rows(parts, arguments.plots.name))

@@ -24,6 +24,7 @@ from wakeline.recording import (
     read_video,
 )
 from wakeline.recording.own_csv import OWN_GAP_S, OwnRows, read_own
+from wakeline.recording.video import Beam
 
 from .config import Settings
 from .tracking import TrackedEpisode
@@ -31,6 +32,7 @@ from .tracking import TrackedEpisode
 _FALSE_ALARMS = 1e-5
 _TRAIN_M, _GUARD_M = 400.0, 150.0  # either side of a cell; ships are up to 300 m long
 _MOST_TRAIN_CELLS = 128
+_WINDOW_SHARE = 8  # of a sweep, so that every cell has others to be compared with
 _LOGARITHMIC_BELOW = 0.2  # skewness of noise: 0.63 behind a linear receiver, -1.1 in decibels
 _RAYLEIGH_SPREAD_DB = 5.57  # standard deviation of noise in decibels
 _WINDOW_CELLS = 32
@@ -39,6 +41,7 @@ _MOST_PLOTS = 150  # of a turn
 _MOST_CELLS = 65536
 _NEARLY = 0.7  # of its neighbour, and a turn counts as a whole one
 _PAUSE_S = 10.0
+_SWEEPS_THAT_TELL = 16  # which way the antenna turns
 _UNSEEN = 2.0  # an echo errs more than its cells say: it wanders over the hull, and is cut in two
 _STROBE = 0.99  # probability that the target's plot lies in the strobe that is drawn
 _WIDE_ECHO_RAD = np.deg2rad(20.0)
@@ -76,12 +79,15 @@ class VideoRecording:
         return replace(settings, radar=radar)
 
 
-def read_plots_of_video(path: Path, own_path: Path | None = None) -> VideoRecording:
+def read_plots_of_video(
+    path: Path, own_path: Path | None = None, *, period_s: float | None = None
+) -> VideoRecording:
     """Read radar video and take its echoes as plots, a turn of the antenna after the other.
 
     A turn that is only begun, at either end of the recording, is left out: the beam has not been
     everywhere. Without `own_path` the radar stands at the origin. Video has the time of day alone;
-    its day is that on which own ship's track lies.
+    its day is that on which own ship's track lies. Where it has none, `period_s` is the time of a
+    turn.
 
     Raises
     ------
@@ -92,7 +98,8 @@ def read_plots_of_video(path: Path, own_path: Path | None = None) -> VideoRecord
     extraction = _Extraction()
     turns: list[tuple[float, _Plots]] = []
     begun = 0
-    for turn in counted(_judged(_turns(read_video(path, report=report))), "turns"):
+    blocks = read_video(path, period_s=period_s, report=report)
+    for turn in counted(_judged(_turns(blocks)), "turns"):
         if turn.whole:
             turns.append((float(turn.blocks[-1].time_s[-1]), extraction.plots_of(turn)))
             last = turn.longest
@@ -118,10 +125,13 @@ def read_plots_of_video(path: Path, own_path: Path | None = None) -> VideoRecord
     return VideoRecording(recording, last, (_UNSEEN * float(std[0]), _UNSEEN * float(std[1])))
 
 
-def draw_ppi(folder: Path, video: VideoRecording, part: TrackedEpisode) -> Path:
+def draw_ppi(
+    folder: Path, video: VideoRecording, part: TrackedEpisode, bearing_offset_rad: float
+) -> Path:
     """Write ``ppi.png``: the last turn, its plots, strobes around the tracks, and the tracks.
 
-    All as seen from own ship: tracks from where she is at the end of the turn.
+    All as seen from own ship, tracks from where she is at the end of the turn; the offset is taken
+    off what the radar reads.
     """
     scan = part.episode.scans[-1]
     tracks = _seen_from(part.episode.own.position_at(scan.time_s)[0], part.tracks)
@@ -131,10 +141,11 @@ def draw_ppi(folder: Path, video: VideoRecording, part: TrackedEpisode) -> Path:
         for state, covariance in zip(tracks.state[last], tracks.covariance[last], strict=True)
     ]
     figure = plot.figure(8.6, 8.6)
+    bearing_rad = scan.bearing_rad - bearing_offset_rad
     plot.ppi(
-        video.last,
+        replace(video.last, azimuth_rad=video.last.azimuth_rad - bearing_offset_rad),
         figure.add_subplot(),
-        plots=scan.position_m - np.column_stack([scan.own_north_m, scan.own_east_m]),
+        plots=scan.range_m[:, None] * np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)]),
         strobes=strobes,
         tracks=tracks,
     )
@@ -163,7 +174,7 @@ def _strobe(video: VideoRecording, place_m: np.ndarray, covariance_m2: np.ndarra
 
 @dataclass
 class _Turn:
-    """Blocks of video from one passage of the beam through north to the next."""
+    """Blocks of video from one beginning of a turn to the next."""
 
     blocks: list[RadarVideo]
     whole: bool = True
@@ -180,9 +191,11 @@ class _Turn:
 
 
 def _turns(blocks: Iterable[RadarVideo]) -> Iterator[_Turn]:
+    beam = Beam()
     turn: _Turn | None = None
     for block in blocks:
-        if turn is not None and _begins_anew(turn.blocks[-1], block):
+        begins = [beam.begins_turn(azimuth_rad) for azimuth_rad in block.azimuth_rad.tolist()]
+        if turn is not None and (begins[0] or _pauses(turn.blocks[-1], block)):
             yield turn
             turn = None
         turn = turn or _Turn([])
@@ -191,10 +204,8 @@ def _turns(blocks: Iterable[RadarVideo]) -> Iterator[_Turn]:
         yield turn
 
 
-def _begins_anew(before: RadarVideo, block: RadarVideo) -> bool:
-    """Whether the beam has passed north between two blocks, or stood still."""
-    step_rad = block.azimuth_rad[0] - before.azimuth_rad[-1]
-    return abs(step_rad) > np.pi or abs(block.time_s[0] - before.time_s[-1]) > _PAUSE_S
+def _pauses(before: RadarVideo, block: RadarVideo) -> bool:
+    return abs(block.time_s[0] - before.time_s[-1]) > _PAUSE_S
 
 
 def _judged(turns: Iterable[_Turn]) -> Iterator[_Turn]:
@@ -232,11 +243,12 @@ def _joined(parts: Sequence[_Plots]) -> _Plots:
 
 
 class _Extraction:
-    """Plots of turn after turn, with settings found in the first of them."""
+    """Plots of turn after turn, with settings found where cells, their bits or the way the antenna
+    turns change."""
 
     def __init__(self) -> None:
         self._extractor: wl.PlotExtractor | None = None
-        self._dtype: np.dtype | None = None
+        self._kind: tuple[np.dtype, float, int] | None = None
         self._above_db = 0
         self._mirrored = False
         self._refused = 0
@@ -245,9 +257,11 @@ class _Extraction:
         """Plots of the echoes that end in a turn."""
         plots = []
         for block in turn.blocks:
-            if self._dtype != block.amplitude.dtype:
+            kind = (block.amplitude.dtype, block.cell_m, block.amplitude.shape[1])
+            if self._kind != kind or self._turns_back(block):
                 plots.append(self.finished())
-                self._begin(block if self._dtype is not None else turn.longest)
+                self._begin(turn.longest if self._kind is None else block)
+                self._kind = kind
             plots.append(self._as_seen(self._extractor.process(self._clockwise(block))))
         return _joined(plots)
 
@@ -274,10 +288,13 @@ class _Extraction:
         return notes
 
     def _begin(self, sample: RadarVideo) -> None:
-        steps_rad = np.diff(np.unwrap(sample.azimuth_rad))
-        self._mirrored = len(steps_rad) > 0 and float(np.median(steps_rad)) < 0.0
-        self._extractor, self._above_db = _extractor_for(self._clockwise(sample))
-        self._dtype = sample.amplitude.dtype
+        self._mirrored = _sense(sample) < 0.0
+        self._extractor, above_db = _extractor_for(self._clockwise(sample))
+        self._above_db = max(self._above_db, above_db)
+
+    def _turns_back(self, block: RadarVideo) -> bool:
+        """Whether the antenna turns the other way from this block on."""
+        return _sense(block) * (-1.0 if self._mirrored else 1.0) < 0.0
 
     def _clockwise(self, video: RadarVideo) -> RadarVideo:
         """The video as it is, or in a mirror where the antenna turns the other way."""
@@ -287,6 +304,13 @@ class _Extraction:
         bearing_rad = -plots.bearing_rad if self._mirrored else plots.bearing_rad
         variance = np.diagonal(plots.covariance, axis1=1, axis2=2)
         return _Plots(plots.time_s, plots.range_m, np.mod(bearing_rad, 2 * np.pi), variance)
+
+
+def _sense(video: RadarVideo) -> float:
+    """1 where the antenna turns clockwise, -1 anticlockwise, 0 where too few sweeps tell."""
+    if len(video) < _SWEEPS_THAT_TELL:
+        return 0.0
+    return float(np.sign(np.median(np.diff(np.unwrap(video.azimuth_rad)))))
 
 
 def _extractor_for(turn: RadarVideo) -> tuple[wl.PlotExtractor, int]:
@@ -307,7 +331,8 @@ def _extractor_for(turn: RadarVideo) -> tuple[wl.PlotExtractor, int]:
 
 def _settings(turn: RadarVideo, noise: Noise | None, above_db: float) -> dict[str, float]:
     """Settings for cells of this length and a receiver of this kind."""
-    train = int(np.clip(_TRAIN_M / turn.cell_m, 8, _MOST_TRAIN_CELLS))
+    most = max(turn.amplitude.shape[1] // _WINDOW_SHARE, 1)
+    train = min(int(np.clip(_TRAIN_M / turn.cell_m, 8, _MOST_TRAIN_CELLS)), most)
     if noise is not None and noise.skewness < _LOGARITHMIC_BELOW:
         steps_per_db = noise.std / _RAYLEIGH_SPREAD_DB
         offset_db = wl.video.threshold_offset_db(_FALSE_ALARMS) + above_db
@@ -319,7 +344,7 @@ def _settings(turn: RadarVideo, noise: Noise | None, above_db: float) -> dict[st
         "max_sweep_cells": _MOST_CELLS,
         "gap_sweeps": 1,  # azimuth is often counted as coarsely as sweeps come
         "train_cells": train,
-        "guard_cells": int(_GUARD_M / turn.cell_m),
+        "guard_cells": min(int(_GUARD_M / turn.cell_m), most),
         "max_range_extent_m": _LONG_ECHO_M,
         "max_bearing_extent_rad": _WIDE_ECHO_RAD,
         **threshold,

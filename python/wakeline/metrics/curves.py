@@ -218,8 +218,12 @@ def steady_scans(time_s: np.ndarray, switch_times_s: np.ndarray, *, scans: int =
 
 
 def _parts(time_s: np.ndarray, switch_times_s: np.ndarray) -> list[slice]:
-    """Readings of each of the S + 1 segments."""
-    tolerance_s = 1e-9 * max(float(np.abs(time_s).max()), 1.0)
+    """Readings of each of the S + 1 segments.
+
+    A reading is at a switch when rounding of the times, or of what they were added up from, can be
+    what parts them.
+    """
+    tolerance_s = 1e-9 * (time_s[-1] - time_s[0]) + 8.0 * np.spacing(np.abs(time_s).max())
     cuts = np.searchsorted(time_s, switch_times_s + tolerance_s, side="right")
     edges = [0, *cuts.tolist(), len(time_s)]
     return [slice(a, b) for a, b in itertools.pairwise(edges)]

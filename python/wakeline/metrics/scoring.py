@@ -49,13 +49,14 @@ def score(
     ------
     ValueError
         When tracks name a scenario that the recording does not have, or a parameter is not
-        positive.
+        positive and finite (the bonus may be zero).
     """
-    if not (gate_m > 0 and bonus_m >= 0 and warmup_scans >= 1):
-        raise ValueError(
-            f"gate_m must be positive, bonus_m not negative and warmup_scans at least 1, "
-            f"got {gate_m}, {bonus_m}, {warmup_scans}"
-        )
+    if not 0 < gate_m < np.inf:
+        raise ValueError(f"gate_m must be positive and finite, got {gate_m}")
+    if not 0 <= bonus_m < np.inf:
+        raise ValueError(f"bonus_m must be finite and not negative, got {bonus_m}")
+    if not 1 <= warmup_scans < np.inf:
+        raise ValueError(f"warmup_scans must be finite and at least 1, got {warmup_scans}")
     if isinstance(recording, Episode):
         recording = Recording(recording.name, [recording])
     named = tracks.scenario if tracks.scenario is not None else np.full(len(tracks), "")

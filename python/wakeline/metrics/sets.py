@@ -54,7 +54,8 @@ def gospa(
     Raises
     ------
     ValueError
-        On arrays of another shape, a cut-off that is not positive or an order below 1.
+        On arrays of another shape, a cut-off that is not positive and finite or an order that is
+        not finite and at least 1.
     """
     return gospa_of(_checked_distances(truth_m, tracks_m, cutoff_m, p), cutoff_m, p)
 
@@ -115,6 +116,8 @@ def _checked_distances(
             f"truth_m and tracks_m must have shapes (n, d) and (m, d), "
             f"got {truth_m.shape} and {tracks_m.shape}"
         )
-    if not (cutoff_m > 0 and p >= 1):
-        raise ValueError(f"cutoff_m must be positive and p at least 1, got {cutoff_m} and {p}")
+    if not 0 < cutoff_m < np.inf:
+        raise ValueError(f"cutoff_m must be positive and finite, got {cutoff_m}")
+    if not 1 <= p < np.inf:
+        raise ValueError(f"p must be finite and at least 1, got {p}")
     return np.linalg.norm(truth_m[:, np.newaxis] - tracks_m[np.newaxis], axis=2)

@@ -30,8 +30,8 @@ class Candidate:
     Attributes
     ----------
     estimator : object or callable
-        Anything with ``run(z, dt_s=, sensor=, start=)``, or ``estimator(scenario)`` that builds it;
-        under control also with ``acceleration_mps2=``.
+        Anything with ``run(z, dt_s=, sensor=, start=)``, or ``estimator(scenario)``, a function or
+        a class, that builds it; under control also with ``acceleration_mps2=``.
     sensor : {"polar", "converted"}, object or callable
         The scenario's radar as ``RangeBearing`` or as ``ConvertedRangeBearing(unbiased=False)``, a
         sensor, or ``sensor(scenario)``.
@@ -45,13 +45,16 @@ class Candidate:
     sensor: Any = "polar"
     turn_rates_rad_s: Sequence[float] | Callable[[Scenario], Sequence[float]] | None = None
 
-    def __call__(self, scenario: Scenario, z: np.ndarray) -> Any:
-        """Run the readings (R, T, 2) of a scenario: a ``RunResult`` or what looks like one."""
+    def __call__(self, scenario: Scenario, z: np.ndarray, *, start: Any = None) -> Any:
+        """Run the readings (R, T, 2) of a scenario: a ``RunResult`` or what looks like one.
+
+        The start is that of the scenario or, where they are given, R of them.
+        """
         return self._built(scenario).run(
             z,
             dt_s=scenario.radar.period_s,
             sensor=_sensor(self.sensor, scenario),
-            start=scenario.start,
+            start=scenario.start if start is None else start,
             **_control_of(scenario.control_mps2),
         )
 
@@ -75,7 +78,8 @@ class Candidate:
         }
 
     def _built(self, scenario: Scenario) -> Any:
-        return self.estimator if hasattr(self.estimator, "run") else self.estimator(scenario)
+        ready = hasattr(self.estimator, "run") and not isinstance(self.estimator, type)
+        return self.estimator if ready else self.estimator(scenario)
 
 
 def told(candidate: Candidate | Callable[..., Any], scenario: Scenario) -> dict[str, str]:
@@ -86,13 +90,18 @@ def told(candidate: Candidate | Callable[..., Any], scenario: Scenario) -> dict[
 
 
 def clairvoyant(
-    scenario: Scenario, z: np.ndarray, *, sensor: Any = "polar", noise: Any = None
+    scenario: Scenario,
+    z: np.ndarray,
+    *,
+    sensor: Any = "polar",
+    noise: Any = None,
+    start: Any = None,
 ) -> SimpleNamespace:
     """The Kalman filter that is told the turn rate at each instant.
 
     Without thrust and disturbance, of which it is not told, no candidate can beat it. It is told of
-    the control. Where the rate switches between two scans it moves in two pieces. Bind options by
-    ``functools.partial``.
+    the control. Where the rate or the control switches between two scans it moves in two pieces.
+    Bind options by ``functools.partial``.
 
     Parameters
     ----------
@@ -103,6 +112,8 @@ def clairvoyant(
         As of :class:`Candidate`. Converted readings err where the antenna is near.
     noise : process-noise policy, optional
         Default none at all.
+    start : Gaussian or sequence of R Gaussian, optional
+        Default ``scenario.start``.
 
     Returns
     -------
@@ -117,7 +128,7 @@ def clairvoyant(
     """
     sensor = _sensor(sensor, scenario)
     noise = motion.PiecewiseAcceleration(std_mps2=0.0) if noise is None else noise
-    starts: Any = scenario.start
+    starts = scenario.start if start is None else start
     fields: dict[str, list[np.ndarray]] = {
         name: [] for name in ("mean", "covariance", "innovation", "nis", "log_likelihood", "status")
     }

@@ -1,4 +1,4 @@
-"""The time of a scenario in pieces of steady turn, between which its readings come."""
+"""The time of a scenario in pieces of steady turn and control, between which its readings come."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from wakeline.scenario import Scenario
 
 @dataclass(frozen=True)
 class Piece:
-    """A time of steady turn.
+    """A time of steady turn and control.
 
     Attributes
     ----------
@@ -20,7 +20,7 @@ class Piece:
     scan : int or None
         The reading it ends at; None where it ends at a switch between two.
     control_mps2 : (float, float)
-        Known acceleration north and east, half way.
+        Known acceleration north and east.
     """
 
     turn_rate_rad_s: float
@@ -31,7 +31,8 @@ class Piece:
 
 def pieces(scenario: Scenario) -> list[Piece]:
     """The time from the start to the last reading, cut at every reading and at every switch."""
-    time_s, switch_s = scenario.time_s, scenario.switch_times_s
+    time_s = scenario.time_s
+    switch_s = np.union1d(scenario.switch_times_s, scenario.control_switch_times_s)
     cuts_s = np.union1d(time_s, switch_s)
     begins_s = np.concatenate([[scenario.start_time_s], cuts_s[:-1]])
     middles_s = 0.5 * (begins_s + cuts_s)

@@ -153,7 +153,7 @@ class Outcome:
         """
         time_s, switch_s, right = self.time_s, self.switch_times_s, self.right_mode_share
         # The right model of a reading is that of half a scan before.
-        half_before_s = time_s - 0.5 * np.diff(time_s, prepend=0.0)
+        half_before_s = _half_a_scan_before(time_s)
         delays = (
             [] if right is None else metrics.detection_delays_scans(half_before_s, right, switch_s)
         )
@@ -225,8 +225,8 @@ class Result:
         As given to :func:`wakeline.montecarlo.run`.
     parameters : mapping
         What else the figures depend on, beside the ``estimator`` and ``sensor`` that each outcome
-        tells: ``chunk_runs``, ``lost_beyond_m`` and, in ``scenarios``, the ``parameters`` of each
-        scenario by its name.
+        tells: ``chunk_runs``, ``lost_beyond_m``, ``draw_start`` and, in ``scenarios``, the
+        ``parameters`` of each scenario by its name.
     version : str
         Of Wakeline, that made it.
     """
@@ -331,6 +331,12 @@ class Result:
 def _divided(total: np.ndarray, count: int | np.ndarray) -> np.ndarray:
     count = np.broadcast_to(np.asarray(count, dtype=float), total.shape)
     return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+
+
+def _half_a_scan_before(time_s: np.ndarray) -> np.ndarray:
+    """Times half a step before the given; the first step is as long as the second."""
+    step_s = np.diff(time_s)
+    return time_s - 0.5 * np.concatenate([step_s[:1], step_s]) if len(step_s) else time_s
 
 
 def _number(value: float) -> float | None:

@@ -6,6 +6,7 @@ import os
 import pickle
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import closing
 from functools import reduce
 from operator import add
 from typing import Any
@@ -39,6 +40,7 @@ def run(
     client: Any = None,
     progress: bool | Callable[[int, int], None] = True,
     lost_beyond_m: float = 500.0,
+    draw_start: bool = False,
 ) -> Result:
     """Run every candidate on the same readings of every scenario.
 
@@ -68,9 +70,14 @@ def run(
         objects cannot be sent. Tested with a cluster of Dask and with executors of threads and of
         processes; Ray only by a stand-in with its two calls, ``remote`` and ``get``.
     progress : bool or callable
-        True draws a bar where stderr is a terminal; a callable is told chunks done and in all.
+        True draws a bar where stderr is a terminal; a callable is told chunks done and in all. What
+        it raises ends the run: chunks that have not begun are called off.
     lost_beyond_m : float
         A run is counted as lost when its last position is farther off than this.
+    draw_start : bool
+        False: every run starts at the true state, so that errors begin below what the prior says,
+        and below the bound for as long as the start is remembered. True: run r starts at the r-th
+        of ``scenario.draw_starts(runs, seed)``; a callable is then told R of them as ``start=``.
 
     Returns
     -------
@@ -97,25 +104,30 @@ def run(
             min(CHUNK_RUNS, runs - first),
             seed,
             float(lost_beyond_m),
+            bool(draw_start),
         )
         for scenario, name in pairs
         for first in firsts
     ]
     texts = {(scenario.name, name): told(candidates[name], scenario) for scenario, name in pairs}
-    done = _told(_worked_off(chunks, threads, client), len(chunks), progress)
-    outcomes = {
-        (scenario.name, name): Outcome.of(
-            scenario,
-            name,
-            reduce(add, [next(done) for _ in firsts]),
-            **texts[scenario.name, name],
-        )
-        for scenario, name in pairs
-    }
-    next(done, None)
+    with (
+        closing(_worked_off(chunks, threads, client)) as sums,
+        closing(_told(sums, len(chunks), progress)) as done,
+    ):
+        outcomes = {
+            (scenario.name, name): Outcome.of(
+                scenario,
+                name,
+                reduce(add, [next(done) for _ in firsts]),
+                **texts[scenario.name, name],
+            )
+            for scenario, name in pairs
+        }
+        next(done, None)
     parameters = {
         "chunk_runs": CHUNK_RUNS,
         "lost_beyond_m": float(lost_beyond_m),
+        "draw_start": bool(draw_start),
         "scenarios": {scenario.name: scenario.parameters for scenario in scenarios},
     }
     return Result(outcomes, runs, seed, parameters)
@@ -202,7 +214,7 @@ def sums_of_packed(chunk: bytes) -> Sums:
 
 
 def _gathered(futures: list[Future]) -> Iterator[Sums]:
-    """Results in order; the first failure calls off what has not begun."""
+    """Results in order; the first failure, or an early end, calls off what has not begun."""
     try:
         for future in futures:
             yield future.result()

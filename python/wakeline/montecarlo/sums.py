@@ -85,30 +85,35 @@ class Chunk:
     runs: int
     seed: int
     lost_beyond_m: float
+    draw_start: bool
 
 
 def sums_of(chunk: Chunk) -> Sums:
     """Draw the readings, run the candidate and sum up; one by one where not all runs can start."""
-    z = chunk.scenario.draw(chunk.runs, chunk.seed, first_run=chunk.first_run)
+    which = {"runs": chunk.runs, "seed": chunk.seed, "first_run": chunk.first_run}
+    z = chunk.scenario.draw(**which)
+    starts = chunk.scenario.draw_starts(**which) if chunk.draw_start else None
     try:
-        return _summed(chunk, z)
+        return _summed(chunk, z, starts)
     except core.FilterError:
-        ones = [_summed_one(chunk, z[k : k + 1]) for k in range(chunk.runs)]
+        own = [None if starts is None else starts[k : k + 1] for k in range(chunk.runs)]
+        ones = [_summed_one(chunk, z[k : k + 1], own[k]) for k in range(chunk.runs)]
         return reduce(add, ones)
 
 
-def _summed_one(chunk: Chunk, z: np.ndarray) -> Sums:
+def _summed_one(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> Sums:
     """Of a single run, failed where it cannot start."""
     try:
-        return _summed(chunk, z)
+        return _summed(chunk, z, starts)
     except core.FilterError:
         zero = np.zeros(chunk.scenario.scans)
         return Sums(0, 1, 0, 0, *[zero] * 6, None, None, None, 0.0)
 
 
-def _summed(chunk: Chunk, z: np.ndarray) -> Sums:
+def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> Sums:
+    told = {} if starts is None else {"start": starts}
     began_s = time.thread_time()
-    result = chunk.candidate(chunk.scenario, z)
+    result = chunk.candidate(chunk.scenario, z, **told)
     cpu_s = time.thread_time() - began_s
     mean, covariance = _kinematics(chunk, result, len(z))
     usable = np.isfinite(mean).all(axis=(1, 2))

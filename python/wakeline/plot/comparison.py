@@ -111,8 +111,7 @@ def error_panel(
         ax.plot(time_s, bound, color=MUTED, linewidth=1.1, label="bound", zorder=2)
     for name, color in _colored(errors, colors):
         ax.plot(time_s, errors[name], color=color, linewidth=1.4, label=name, zorder=3)
-    highest = max((np.nanmax(curve) for curve in errors.values()), default=1.0)
-    ax.set_ylim(0.0, _ROOM_ABOVE * highest if top is None else top)
+    ax.set_ylim(0.0, _ROOM_ABOVE * _highest(errors.values()) if top is None else top)
     return _over_time(ax, time_s, ylabel, legend)
 
 
@@ -327,6 +326,12 @@ def _colored(
     """Names with their colours; those without one take the palette in order."""
     colors = colors or {}
     return [(name, colors.get(name, PALETTE[k % len(PALETTE)])) for k, name in enumerate(named)]
+
+
+def _highest(curves: Iterable[np.ndarray]) -> float:
+    """The largest finite value, 1 where there is none above 0."""
+    values = np.concatenate([np.zeros(0), *curves])
+    return float(values[np.isfinite(values)].max(initial=0.0)) or 1.0
 
 
 def _draw_strip(ax: Axes, time_s: np.ndarray, rate: np.ndarray, colors: Sequence[str]) -> None:

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 CHI_SQUARE_95_2DOF = -2.0 * float(np.log(0.05))
 _ID_OFFSET_PT = 11.0
+_DANGER_PT = 5.4
+_DANGER_CORE_PT = 3.0
+_RING_PT = 11.0
 _WATER_AROUND = 0.12
 _FLATTEST = 0.75
 _GRID_LINES = 10
@@ -61,7 +64,8 @@ def map_view(
     legend : bool
         Whether to explain the marks.
     alarmed : ndarray of bool (n,), optional
-        Rows of `tracks` that are dangerous, drawn in red with a ring where danger begins.
+        Rows of `tracks` that are dangerous, edged in red with a ring where danger begins and what
+        threatened then. Of labels that would lie on each other the closest approach keeps its own.
 
     Returns
     -------
@@ -193,29 +197,38 @@ def _draw_track(ax: Axes, track: Tracks, track_id: str, color: str, label: str |
 
 def _draw_danger(ax: Axes, tracks: Tracks, alarmed: np.ndarray) -> None:
     """The dangerous part of each track, a ring where it begins, and what threatened then."""
-    label = "danger"
+    from matplotlib.patheffects import Normal, Stroke
+
+    from .labels import ClearLabels
+
+    core = [Normal(), Stroke(linewidth=_DANGER_CORE_PT, foreground="white")]
+    edge = {"linewidth": _DANGER_PT, "path_effects": core, "solid_capstyle": "round"}
+    ring = {"markersize": _RING_PT, "markerfacecolor": "none", "markeredgewidth": 1.8}
+    threats, label = [], "danger"
     for track_id in tracks.where(alarmed).ids():
         mine = tracks.track_id == track_id
-        north_m, east_m = (
-            np.where(alarmed, place, np.nan)[mine] for place in (tracks.north_m, tracks.east_m)
+        _, north_m, east_m = with_gaps(
+            tracks.time_s[mine],
+            *(np.where(alarmed, way_m, np.nan)[mine] for way_m in (tracks.north_m, tracks.east_m)),
         )
-        ax.plot(east_m, north_m, color=DANGER, linewidth=3.2, label=label, zorder=5)
+        ax.plot(east_m, north_m, color=DANGER, label=label, zorder=3.5, **edge)
+        label = None
         first = tracks.where(np.flatnonzero(mine & alarmed)[:1])
         place = (first.east_m[0], first.north_m[0])
-        ring = {"marker": "o", "markersize": 11, "markerfacecolor": "none", "markeredgewidth": 1.8}
-        ax.plot(*place, color=DANGER, **ring, zorder=6)
-        ax.annotate(
+        ax.plot(*place, color=DANGER, marker="o", **ring, zorder=6)
+        text = ax.annotate(
             _threat(first),
             place,
-            xytext=(9, -9),
+            xytext=(0.0, 0.0),
             textcoords="offset points",
-            va="top",
             color=DANGER,
             fontsize=TEXT_PT - 1,
             path_effects=halo(),
             zorder=7,
         )
-        label = None
+        threats.append((0.0 if first.cpa_m is None else first.cpa_m[0], text))
+    nearest_first = [text for _, text in sorted(threats, key=lambda threat: threat[0])]
+    ax.add_artist(ClearLabels(nearest_first, clear_pt=_RING_PT / 2.0))
 
 
 def _threat(row: Tracks) -> str:

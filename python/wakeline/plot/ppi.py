@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wakeline._checks import whole_number
+from wakeline._engine.video import ScanImage
 from wakeline.recording import RadarVideo, Tracks
 
 from .map import ellipse_outline
@@ -38,7 +40,7 @@ _SIDE_AROUND = 0.02
 
 
 def ppi(
-    video: RadarVideo,
+    video: RadarVideo | ScanImage,
     ax: Axes | None = None,
     *,
     plots: ArrayLike | None = None,
@@ -56,7 +58,7 @@ def ppi(
 
     Parameters
     ----------
-    video : RadarVideo
+    video : RadarVideo or ScanImage
         A turn, a sector of it, or as much as there is.
     ax : matplotlib.axes.Axes, optional
         Axes to draw into; default those of a new figure.
@@ -86,8 +88,11 @@ def ppi(
     ------
     ValueError
         When the video has no sweep, the extent is empty, or a layer has another shape.
+    TypeError
+        When the video is something else.
     """
     whole_number("pixels", pixels, 16)
+    video = _as_video(video)
     ax = figure(7.2, 7.2).add_subplot() if ax is None else ax
     extent = _checked_extent(extent_m, video)
     raster = screen_raster(video, extent, pixels)
@@ -100,7 +105,7 @@ def ppi(
 
 
 def echo(
-    video: RadarVideo,
+    video: RadarVideo | ScanImage,
     ax: Axes | None = None,
     *,
     around_m: tuple[float, float] | None = None,
@@ -115,7 +120,7 @@ def echo(
 
     Parameters
     ----------
-    video : RadarVideo
+    video : RadarVideo or ScanImage
         Of sweeps of the same azimuth the last one is shown.
     ax : matplotlib.axes.Axes, optional
         Axes to draw into; default those of a new figure.
@@ -139,7 +144,10 @@ def echo(
     ------
     ValueError
         When nothing of the video lies there, or a layer has another shape.
+    TypeError
+        When the video is something else.
     """
+    video = _as_video(video)
     ax = figure(6.4, 4.8).add_subplot() if ax is None else ax
     azimuth_rad, range_m = _middle(video, around_m)
     sweep, azimuth_edges_rad = _sweeps_about(video, azimuth_rad, half_azimuth_rad)
@@ -194,7 +202,7 @@ def window_outline(
 
 
 def screen_raster(
-    video: RadarVideo, extent_m: tuple[float, float, float, float], pixels: int
+    video: RadarVideo | ScanImage, extent_m: tuple[float, float, float, float], pixels: int
 ) -> NDArray[np.float32]:
     """Video on a square grid north up: row 0 in the south, NaN where there is no video.
 
@@ -203,7 +211,7 @@ def screen_raster(
 
     Parameters
     ----------
-    video : RadarVideo
+    video : RadarVideo or ScanImage
     extent_m : (west, east, south, north)
     pixels : int
         Of the longer side.
@@ -212,14 +220,16 @@ def screen_raster(
     -------
     ndarray (rows, columns) of float32
     """
+    video = _as_video(video)
     west, east, south, north = extent_m
     pixel_m = max(east - west, north - south) / pixels
     columns, rows = (max(1, round(side / pixel_m)) for side in (east - west, north - south))
     east_m = west + (np.arange(columns) + 0.5) * (east - west) / columns
     north_m = south + (np.arange(rows) + 0.5) * (north - south) / rows
-    slot = _slots(video)
-    raster = _cells_below(video, slot, north_m[:, None], east_m)
-    for sweeps in np.array_split(slot[slot >= 0], max(1, len(slot) // _SWEEPS_AT_ONCE)):
+    steps = _steps(video)
+    raster = _cells_below(video, steps, north_m[:, None], east_m)
+    latest = _latest(video, steps)
+    for sweeps in np.array_split(latest, max(1, len(latest) // _SWEEPS_AT_ONCE)):
         place = np.exp(1j * video.azimuth_rad[sweeps, None])
         row = np.floor((place.real * video.range_m - south) * (rows / (north - south)))
         column = np.floor((place.imag * video.range_m - west) * (columns / (east - west)))
@@ -229,33 +239,86 @@ def screen_raster(
     return raster
 
 
-def _cells_below(
-    video: RadarVideo, slot: NDArray[np.intp], north_m: NDArray, east_m: NDArray
-) -> NDArray[np.float32]:
-    """Amplitude of the cell at each place, NaN where there is none."""
-    turned = (np.arctan2(east_m, north_m) / _TURN_RAD) % 1.0
-    sweep = slot[np.minimum((turned * len(slot)).astype(int), len(slot) - 1)]
-    cell = np.floor((np.hypot(north_m, east_m) - video.start_range_m) / video.cell_m).astype(int)
-    seen = (sweep >= 0) & (cell >= 0) & (cell < video.amplitude.shape[1])
-    picture = np.full(seen.shape, np.nan, np.float32)
-    picture[seen] = video.amplitude[sweep[seen], cell[seen]]
-    return picture
+def _as_video(video: RadarVideo | ScanImage) -> RadarVideo:
+    if isinstance(video, RadarVideo):
+        return video
+    if not isinstance(video, ScanImage):
+        raise TypeError(f"video must be a RadarVideo or a ScanImage, got {type(video).__name__}")
+    return RadarVideo(
+        video.amplitude,
+        video.azimuth_rad,
+        np.zeros_like(video.azimuth_rad),
+        video.azimuth_step_rad,
+        video.start_range_m,
+        video.cell_m,
+    )
 
 
-def _slots(video: RadarVideo) -> NDArray[np.intp]:
-    """Number of the last sweep in each of the even steps of a turn, -1 where there is none.
+@dataclass(frozen=True)
+class _Steps:
+    """A turn cut into even steps as wide as a sweep.
+
+    Sweeps have their centres about the middle of steps, so that each sweep of a regular turn has a
+    step of its own, wherever a turn begins and however its azimuths are rounded.
+
+    Attributes
+    ----------
+    sweep : ndarray (count,)
+        Number of the last sweep in each step, -1 where there is none.
+    shift : float
+        Steps from where the first begins to north.
+    """
+
+    sweep: NDArray[np.intp]
+    shift: float
+
+    @property
+    def width_rad(self) -> float:
+        return _TURN_RAD / len(self.sweep)
+
+    def of(self, azimuth_rad: ArrayLike) -> NDArray[np.intp]:
+        """Number of the step at an azimuth, not wrapped."""
+        return np.floor(np.asarray(azimuth_rad) / self.width_rad + self.shift).astype(int)
+
+    def begin_rad(self, step: int) -> float:
+        """Azimuth at which a step begins."""
+        return (step - self.shift) * self.width_rad
+
+
+def _steps(video: RadarVideo) -> _Steps:
+    """The steps of a turn with their last sweeps.
 
     A single empty step between two sweeps takes the one before it: real antennas jitter.
     """
     if len(video) == 0:
         raise ValueError("video must have a sweep, got none")
     count = max(8, round(_TURN_RAD / video.azimuth_width_rad))
-    slot = np.full(count, -1)
-    turned = (video.azimuth_rad % _TURN_RAD) / _TURN_RAD
-    slot[np.minimum((turned * count).astype(int), count - 1)] = np.arange(len(video))
-    lone = (slot < 0) & (np.roll(slot, 1) >= 0) & (np.roll(slot, -1) >= 0)
-    slot[lone] = np.roll(slot, 1)[lone]
-    return slot
+    off_rad = np.angle(np.exp(1j * count * video.azimuth_rad).mean())
+    steps = _Steps(np.full(count, -1), 0.5 - off_rad / _TURN_RAD)
+    sweep = steps.sweep
+    sweep[steps.of(video.azimuth_rad) % count] = np.arange(len(video))
+    lone = (sweep < 0) & (np.roll(sweep, 1) >= 0) & (np.roll(sweep, -1) >= 0)
+    sweep[lone] = np.roll(sweep, 1)[lone]
+    return steps
+
+
+def _latest(video: RadarVideo, steps: _Steps) -> NDArray[np.intp]:
+    """Sweeps since which the beam has not come back to their step."""
+    step = steps.of(video.azimuth_rad) % len(steps.sweep)
+    stay = np.cumsum(np.diff(step, prepend=step[0]) != 0)
+    return np.flatnonzero(stay == stay[steps.sweep[step]])
+
+
+def _cells_below(
+    video: RadarVideo, steps: _Steps, north_m: NDArray, east_m: NDArray
+) -> NDArray[np.float32]:
+    """Amplitude of the cell at each place, NaN where there is none."""
+    sweep = steps.sweep[steps.of(np.arctan2(east_m, north_m)) % len(steps.sweep)]
+    cell = np.floor((np.hypot(north_m, east_m) - video.start_range_m) / video.cell_m).astype(int)
+    seen = (sweep >= 0) & (cell >= 0) & (cell < video.amplitude.shape[1])
+    picture = np.full(seen.shape, np.nan, np.float32)
+    picture[seen] = video.amplitude[sweep[seen], cell[seen]]
+    return picture
 
 
 def _sweeps_about(
@@ -265,12 +328,12 @@ def _sweeps_about(
 
     Azimuths run on across north.
     """
-    slot = _slots(video)
-    step_rad = _TURN_RAD / len(slot)
-    first, last = (int(np.floor((azimuth_rad + side) / step_rad)) for side in (-half_rad, half_rad))
-    last = min(last, first + len(slot) - 1)
-    steps = np.arange(first, last + 1)
-    return slot[steps % len(slot)], (first * step_rad, (last + 1) * step_rad)
+    steps = _steps(video)
+    count = len(steps.sweep)
+    first, last = steps.of([azimuth_rad - half_rad, azimuth_rad + half_rad]).tolist()
+    last = min(last, first + count - 1)
+    edges_rad = (steps.begin_rad(first), steps.begin_rad(last + 1))
+    return steps.sweep[np.arange(first, last + 1) % count], edges_rad
 
 
 def _middle(video: RadarVideo, around_m: tuple[float, float] | None) -> tuple[float, float]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterator
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -97,9 +100,19 @@ def name_lines(ax: Axes, columns: int | None = None) -> Axes:
 
 
 def track_colors(tracks: Tracks | None) -> dict[str, str]:
-    """Colour of each track id, the same in every view of the same tracks."""
+    """Colour of each track id, the same in every view of the same tracks.
+
+    No two of the longest tracks share one, as many as there are colours.
+    """
     ids = [] if tracks is None else tracks.ids()
-    return {track_id: PALETTE[k % len(PALETTE)] for k, track_id in enumerate(ids)}
+    longest = [] if tracks is None else by_length(tracks)[: len(PALETTE)]
+    color = dict(zip(sorted(ids, key=lambda i: i not in longest), cycle(PALETTE), strict=False))
+    return {track_id: color[track_id] for track_id in ids}
+
+
+def by_length(tracks: Tracks) -> list[str]:
+    """Track ids, those with the most rows first."""
+    return [track_id for track_id, _ in Counter(tracks.track_id.tolist()).most_common()]
 
 
 def with_gaps(time_s: np.ndarray, *columns: np.ndarray) -> list[np.ndarray]:
@@ -107,8 +120,18 @@ def with_gaps(time_s: np.ndarray, *columns: np.ndarray) -> list[np.ndarray]:
 
     A gap is a step more than four times the median one.
     """
+    after = _after_gaps(time_s)
+    return [np.insert(column.astype(float), after, np.nan) for column in (time_s, *columns)]
+
+
+def stretches(time_s: np.ndarray, *columns: np.ndarray) -> Iterator[tuple[np.ndarray, ...]]:
+    """Times (n,) and columns (n, ...) from one gap, as of :func:`with_gaps`, to the next."""
+    after = _after_gaps(time_s)
+    return zip(*(np.split(column, after) for column in (time_s, *columns)), strict=True)
+
+
+def _after_gaps(time_s: np.ndarray) -> np.ndarray:
+    """Rows that follow a gap."""
     step_s = np.diff(time_s)
-    if len(step_s) == 0:
-        return [time_s, *columns]
-    before = np.flatnonzero(step_s > _GAP_STEPS * np.median(step_s)) + 1
-    return [np.insert(column.astype(float), before, np.nan) for column in (time_s, *columns)]
+    usual_s = np.median(step_s) if len(step_s) else 0.0
+    return np.flatnonzero(step_s > _GAP_STEPS * usual_s) + 1

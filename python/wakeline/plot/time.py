@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,10 +14,12 @@ from .style import (
     INK,
     MODE_PALETTE,
     TEXT_PT,
+    by_length,
     dress,
     figure,
     halo,
     name_lines,
+    stretches,
     track_colors,
     with_gaps,
 )
@@ -62,6 +64,7 @@ def time_view(
     """
     start_s = _start_s(episode, tracks)
     count = 0 if tracks is None else len(tracks.ids())
+    colors = track_colors(tracks)
     tracks = _longest(tracks)
     if episode is not None and len(episode.truth or {}) > _MANY_TRACKS:
         episode = None
@@ -71,9 +74,9 @@ def time_view(
     modes = tracks is not None and tracks.mode_probability is not None and len(tracks) > 0
     axes = list(fig.subplots(len(panels) + modes, 1, sharex=True, squeeze=False)[:, 0])
     for ax, panel in zip(axes, panels, strict=False):
-        panel(ax, tracks, episode, start_s=start_s)
+        panel(ax, tracks, episode, start_s=start_s, colors=colors)
     if modes:
-        mode_panel(axes[-1], tracks, _by_length(tracks)[0], start_s=start_s, mode_names=mode_names)
+        mode_panel(axes[-1], tracks, by_length(tracks)[0], start_s=start_s, mode_names=mode_names)
     for ax in axes[:-1]:
         ax.set_xlabel("")
     axes[0].margins(x=0.01)
@@ -98,14 +101,22 @@ def time_figure(
 
 
 def speed_panel(
-    ax: Axes, tracks: Tracks | None, episode: Episode | None = None, *, start_s: float = 0.0
+    ax: Axes,
+    tracks: Tracks | None,
+    episode: Episode | None = None,
+    *,
+    start_s: float = 0.0,
+    colors: Mapping[str, str] | None = None,
 ) -> Axes:
-    """Speed over ground in m/s of every track and truth; returns `ax`."""
+    """Speed over ground in m/s of every track and truth; returns `ax`.
+
+    `colors` by track id are those of :func:`track_colors` by default, in every panel.
+    """
     for k, (time_s, state) in enumerate(_true_states(episode)):
         speed_mps = np.hypot(state[:, 1], state[:, 3])
         label = "truth" if k == 0 else None
         ax.plot(time_s - start_s, speed_mps, label=label, **_TRUTH_LINE)
-    for track_id, color, track in _each(tracks):
+    for track_id, color, track in _each(tracks, colors):
         time_s, speed_mps = with_gaps(track.time_s, track.speed_mps)
         ax.plot(time_s - start_s, speed_mps, color=color, linewidth=1.5, label=f"track {track_id}")
     ax.set_ylim(bottom=0.0)
@@ -113,13 +124,18 @@ def speed_panel(
 
 
 def course_panel(
-    ax: Axes, tracks: Tracks | None, episode: Episode | None = None, *, start_s: float = 0.0
+    ax: Axes,
+    tracks: Tracks | None,
+    episode: Episode | None = None,
+    *,
+    start_s: float = 0.0,
+    colors: Mapping[str, str] | None = None,
 ) -> Axes:
     """Course over ground in degrees, lines cut where they pass through north; returns `ax`."""
     for time_s, state in _true_states(episode):
         course_deg = np.degrees(np.arctan2(state[:, 3], state[:, 1])) % 360.0
         ax.plot(*_cut_at_north(time_s - start_s, course_deg), **_TRUTH_LINE)
-    for _, color, track in _each(tracks):
+    for _, color, track in _each(tracks, colors):
         time_s, course_deg = with_gaps(track.time_s, track.course_deg)
         line = _cut_at_north(time_s - start_s, course_deg)
         ax.plot(*line, color=color, linewidth=1.5)
@@ -129,13 +145,18 @@ def course_panel(
 
 
 def nis_panel(
-    ax: Axes, tracks: Tracks, episode: Episode | None = None, *, start_s: float = 0.0
+    ax: Axes,
+    tracks: Tracks,
+    episode: Episode | None = None,
+    *,
+    start_s: float = 0.0,
+    colors: Mapping[str, str] | None = None,
 ) -> Axes:
     """Normalised innovation squared, with the 95 % line of two degrees of freedom; returns `ax`.
 
     What lies above the panel is drawn as a triangle at its upper edge.
     """
-    for _, color, track in _each(tracks):
+    for _, color, track in _each(tracks, colors):
         time_s, nis = track.time_s - start_s, track.nis
         above = nis > _NIS_TOP
         ax.scatter(
@@ -184,10 +205,15 @@ def draw_bands(
     names: Sequence[str],
     colors: Sequence[str] | None = None,
 ) -> Axes:
-    """Probabilities (T, K) as bands that add up to 1, explained above the axes; returns `ax`."""
+    """Probabilities (T, K) as bands that add up to 1, explained above the axes; returns `ax`.
+
+    Bands are cut where times are missing, as lines are.
+    """
     modes = probability.shape[1]
     colors = colors or [MODE_PALETTE[k % len(MODE_PALETTE)] for k in range(modes)]
-    ax.stackplot(time_s, probability.T, colors=colors, labels=names, linewidth=0)
+    for when_s, bands in stretches(time_s, probability):
+        ax.stackplot(when_s, bands.T, colors=colors, labels=names, linewidth=0)
+        names = ()
     ax.set_ylim(0.0, 1.0)
     ax.legend(
         loc="lower right",
@@ -211,22 +237,20 @@ def _start_s(episode: Episode | None, tracks: Tracks | None) -> float:
     return float(tracks.time_s.min()) if tracks is not None and len(tracks) else 0.0
 
 
-def _by_length(tracks: Tracks) -> list[str]:
-    """Track ids, those with the most rows first."""
-    return sorted(tracks.ids(), key=lambda i: -np.count_nonzero(tracks.track_id == i))
-
-
 def _longest(tracks: Tracks | None) -> Tracks | None:
     """As many tracks as can be told apart."""
     if tracks is None or len(tracks.ids()) <= _MANY_TRACKS:
         return tracks
-    return tracks.where(np.isin(tracks.track_id, _by_length(tracks)[:_MANY_TRACKS]))
+    return tracks.where(np.isin(tracks.track_id, by_length(tracks)[:_MANY_TRACKS]))
 
 
-def _each(tracks: Tracks | None):
+def _each(
+    tracks: Tracks | None, colors: Mapping[str, str] | None
+) -> Iterator[tuple[str, str, Tracks]]:
     """Id, colour and rows of each track."""
-    for track_id, color in track_colors(tracks).items():
-        yield track_id, color, tracks.where(tracks.track_id == track_id)
+    colors = colors or track_colors(tracks)
+    for track_id in [] if tracks is None else tracks.ids():
+        yield track_id, colors[track_id], tracks.where(tracks.track_id == track_id)
 
 
 def _true_states(episode: Episode | None):

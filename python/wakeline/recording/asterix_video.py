@@ -15,7 +15,7 @@ from wakeline._engine.video import Cat240Decoder, Cat240Encoder, Cat240Sweeps
 
 from .errors import RecordingError
 from .files import replacing
-from .video import RadarVideo
+from .video import Beam, RadarVideo
 
 _PIECE = 1 << 22  # octets read at once
 _HEAD = 1 << 19  # octets that tell what a file is
@@ -26,6 +26,8 @@ _LATE = 64  # messages; a sender that goes back further has begun anew
 _SEQUENCES = 1 << 32
 _HELD_S = 1.0
 _PAUSE_S = 60.0
+_ASTRAY_RAD = 0.2
+_ABUT = 1.5  # sweeps further apart, or nearer, by this factor are not as wide as is told
 
 
 @dataclass
@@ -62,6 +64,9 @@ class VideoReport:
         Times that go back further, or on by more than a minute.
     reversals : int
         Changes of the way the antenna turns.
+    astray : int
+        Sweeps left out whose azimuth or time is far from those of the sweeps before and after,
+        which agree.
     """
 
     sweeps: int = 0
@@ -79,6 +84,7 @@ class VideoReport:
     held: int = 0
     time_jumps: int = 0
     reversals: int = 0
+    astray: int = 0
 
     @property
     def notes(self) -> list[str]:
@@ -94,6 +100,7 @@ class VideoReport:
             (self.held, "sweeps whose time goes back, put to the time before"),
             (self.time_jumps, "jumps of time"),
             (self.reversals, "reversals of the antenna"),
+            (self.astray, "sweeps far from their neighbours in azimuth or time left out"),
         ]
         return [f"{count} {what}" for count, what in words if count]
 
@@ -126,13 +133,14 @@ def read_video(
 
     The file is ASTERIX category 240, data block after data block; what is read of it and what is
     done with damage stands in ``cpp/docs/video_files.md``. A new block begins where the antenna
-    passes north, where start range, length or number of cells or the bits of a cell change, where
-    the width of sweeps changes by more than half, and where time jumps. A turn of more than 128 MiB
-    is cut. The azimuth is taken as the true bearing.
+    passes north or, where the radar shows a sector only, where the beam goes back; where start
+    range, length or number of cells or the bits of a cell change, where the width of sweeps changes
+    by more than half, and where time jumps. A turn of more than 128 MiB is cut. The azimuth is
+    taken as the true bearing.
 
     Cells of 8 bits and fewer come as ``uint8`` (fewer are scaled to full scale 255), of 16 bits as
-    ``uint16``. The width of a sweep is the mean of its block; a sender that tells none is given the
-    median step from sweep to sweep.
+    ``uint16``. The width of a sweep is the mean of its block; where none is told, or sweeps do not
+    come that far apart, it is the median step from sweep to sweep.
 
     Parameters
     ----------
@@ -228,12 +236,12 @@ def write_video(
 def _blocks(path: Path, order: _Order, strict: bool) -> Iterator[RadarVideo]:
     report = order.report
     block = _Block()
-    for sweeps in _decoded(path, report, strict):
-        for sweep, jump in order.kept(_rows(sweeps)):
-            if jump or block.ends_before(sweep):
-                yield from block.videos()
-                block = _Block()
-            block.add(sweep)
+    sweeps = (row for decoded in _decoded(path, report, strict) for row in _rows(decoded))
+    for sweep, begins in order.kept(sweeps):
+        if begins or block.ends_before(sweep):
+            yield from block.videos()
+            block = _Block()
+        block.add(sweep)
     yield from block.videos()
     if report.sweeps == 0:
         raise _nothing(path, report)
@@ -307,6 +315,20 @@ class _Sweep(NamedTuple):
             then.dtype,
         )
 
+    def strays(self, before: _Sweep, after: _Sweep) -> bool:
+        """Whether it is far, in azimuth or time, from two that are not far from each other."""
+        return any(
+            (far(self, before) or far(after, self)) and not far(after, before)
+            for far in (_Sweep._turned_far, _Sweep._jumps)
+        )
+
+    def _turned_far(self, since: _Sweep) -> bool:
+        way_rad = (self.azimuth_rad - since.azimuth_rad + math.pi) % _TURN - math.pi
+        return abs(way_rad) > _ASTRAY_RAD
+
+    def _jumps(self, since: _Sweep) -> bool:
+        return _jumps(self.time_s - since.time_s)
+
 
 def _rows(sweeps: Cat240Sweeps) -> Iterator[_Sweep]:
     columns = (
@@ -336,23 +358,39 @@ class _Order:
         self._period_s = period_s
         self._before: _Sweep | None = None
         self._time_s: float | None = None
-        self._turned_rad = 0.0
-        self._sense = 0.0
+        self._beam = Beam()
 
     def kept(self, sweeps: Iterable[_Sweep]) -> Iterator[tuple[_Sweep, bool]]:
-        """The sweeps to keep, with their absolute time, and whether time jumps before each."""
-        for sweep in sweeps:
-            if not self._is_ours(sweep) or not self._is_next(sweep):
-                continue
-            self._turn(sweep)
-            self._before = sweep
+        """The sweeps to keep, with their absolute time, and whether a block begins with each."""
+        for sweep in self._steady(filter(self._is_wanted, sweeps)):
+            begins_turn = self._beam.begins_turn(sweep.azimuth_rad)
+            self.report.reversals = self._beam.reversals
             time_s = self._time_of(sweep)
             if math.isnan(time_s):
                 self.report.untimed += 1
                 continue
             time_s, jump = self._in_order(time_s)
             self.report.sweeps += 1
-            yield sweep._replace(time_s=time_s), jump
+            yield sweep._replace(time_s=time_s), begins_turn or jump
+
+    def _steady(self, sweeps: Iterable[_Sweep]) -> Iterator[_Sweep]:
+        """The sweeps, but those that stand alone where their neighbours do not."""
+        before = held = None
+        for sweep in sweeps:
+            if held is not None and before is not None and held.strays(before, sweep):
+                self.report.astray += 1
+            elif held is not None:
+                yield held
+                before = held
+            held = sweep
+        if held is not None:
+            yield held
+
+    def _is_wanted(self, sweep: _Sweep) -> bool:
+        wanted = self._is_ours(sweep) and self._is_next(sweep)
+        if wanted:
+            self._before = sweep
+        return wanted
 
     def _is_ours(self, sweep: _Sweep) -> bool:
         source = divmod(sweep.source, 256)
@@ -378,31 +416,26 @@ class _Order:
         self.report.missing += max(step - 1, 0)
         return True
 
-    def _turn(self, sweep: _Sweep) -> None:
-        if self._before is None:
-            return
-        step = (sweep.azimuth_rad - self._before.azimuth_rad + math.pi) % _TURN - math.pi
-        self._turned_rad += step
-        self.report.reversals += step * self._sense < 0
-        self._sense = step or self._sense
-
     def _time_of(self, sweep: _Sweep) -> float:
         if self._period_s is not None and math.isnan(sweep.time_s):
-            return self._midnight_s + abs(self._turned_rad) / _TURN * self._period_s
+            return self._midnight_s + abs(self._beam.turned_rad) / _TURN * self._period_s
         return self._midnight_s + sweep.time_s
 
     def _in_order(self, time_s: float) -> tuple[float, bool]:
         before, self._time_s = self._time_s, time_s
         if before is None:
             return time_s, False
-        step = time_s - before
-        if -_HELD_S < step < 0:
+        if -_HELD_S < time_s - before < 0:
             self.report.held += 1
             self._time_s = before
             return before, False
-        jump = step < 0 or step > _PAUSE_S
+        jump = _jumps(time_s - before)
         self.report.time_jumps += jump
         return time_s, jump
+
+
+def _jumps(step_s: float) -> bool:
+    return step_s <= -_HELD_S or step_s > _PAUSE_S
 
 
 def _same(sweep: _Sweep, before: _Sweep) -> bool:
@@ -411,24 +444,18 @@ def _same(sweep: _Sweep, before: _Sweep) -> bool:
 
 
 class _Block:
-    """Sweeps of one geometry, at most a turn of them."""
+    """Sweeps of one geometry and one turn."""
 
     def __init__(self) -> None:
         self._sweeps: list[_Sweep] = []
-        self._turned_rad = 0.0
         self._octets = 0
 
     def ends_before(self, sweep: _Sweep) -> bool:
         """Whether a sweep belongs to the next block."""
         if not self._sweeps:
             return False
-        step_rad = abs(sweep.azimuth_rad - self._sweeps[-1].azimuth_rad)
         return (
-            step_rad > math.pi  # passes north
-            or self._turned_rad + step_rad >= _TURN
-            or self._octets > _MOST
-            or not sweep.follows(self._sweeps[0])
-            or not self._as_wide(sweep)
+            self._octets > _MOST or not sweep.follows(self._sweeps[0]) or not self._as_wide(sweep)
         )
 
     def _as_wide(self, sweep: _Sweep) -> bool:
@@ -437,8 +464,6 @@ class _Block:
         return not told or abs(width_rad - first_rad) <= 0.5 * first_rad + 1.5 * _STEP
 
     def add(self, sweep: _Sweep) -> None:
-        if self._sweeps:
-            self._turned_rad += abs(sweep.azimuth_rad - self._sweeps[-1].azimuth_rad)
         self._octets += sweep.amplitude.nbytes
         self._sweeps.append(sweep)
 
@@ -458,8 +483,11 @@ class _Block:
 
     def _mean_width_rad(self) -> float:
         told = np.array([sweep.width_rad for sweep in self._sweeps])
-        if told.any():
-            return float(told[told > 0].mean())
+        told_rad = float(told[told > 0].mean()) if told.any() else 0.0
         steps = np.abs(np.diff([sweep.azimuth_rad for sweep in self._sweeps]))
         steps = steps[(steps > 0) & (steps < math.pi)]
-        return float(np.median(steps)) if len(steps) else _STEP
+        if len(steps) == 0:
+            return told_rad or _STEP
+        step_rad = float(np.median(steps))
+        abut = step_rad / _ABUT <= told_rad <= step_rad * _ABUT
+        return told_rad if abut else step_rad

@@ -156,6 +156,7 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
         columns=_motion(table, notes),
     )
     _check_scans_once(rows)
+    _note_order(rows, notes)
     return rows
 
 
@@ -178,6 +179,17 @@ def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
     elif "heading_rad" in table:
         motion["heading_rad"] = table.numbers("heading_rad")
     return motion
+
+
+def _note_order(rows: OwnRows, notes: list[str]) -> None:
+    parts = [rows] if rows.scenario is None else map(rows.part, np.unique(rows.scenario))
+    back = np.concatenate([part.row[1:][np.diff(part.time_s) < 0] for part in parts])
+    if len(back):
+        notes.append(
+            f"{rows.table.path.name}: times go back {len(back)} times (first in line "
+            f"{rows.table.line(int(back.min()))}), and rows are put in order: if a clock was set "
+            "back, own ship is at two places at a time, so cut the file there"
+        )
 
 
 def _check_scans_once(rows: OwnRows) -> None:

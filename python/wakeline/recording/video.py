@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -9,6 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wakeline._brief import brief, many, span
+
+_TURN = 2 * math.pi
+_BACK_RAD = 0.2  # of steps against the way the antenna turns: more than any jitter
 
 
 @dataclass(frozen=True)
@@ -88,9 +92,82 @@ class RadarVideo:
         return self.start_range_m + (np.arange(self.amplitude.shape[1]) + 0.5) * self.cell_m
 
     def turns(self) -> Iterator[RadarVideo]:
-        """The turns of the antenna one by one, cut where it passes north."""
-        azimuth = np.mod(self.azimuth_rad, 2 * np.pi)
-        cuts = np.flatnonzero(np.diff(azimuth) < -np.pi) + 1
+        """The turns of the antenna one by one, cut as `read_video` cuts them."""
+        beam = Beam()
+        begins = [beam.begins_turn(azimuth_rad) for azimuth_rad in self.azimuth_rad.tolist()]
+        cuts = np.flatnonzero(begins)
         for first, last in zip([0, *cuts], [*cuts, len(self)], strict=True):
             if last > first:
                 yield self[first:last]
+
+
+class Beam:
+    """Where the beam of an antenna looks, sweep by sweep, and where its turns begin.
+
+    A turn begins at north, whichever way the antenna turns. Of a radar that shows a sector only it
+    begins where the beam goes back: at once, as what lies between is not sent, or by and by, as the
+    antenna itself turns back.
+
+    Attributes
+    ----------
+    turned_rad : float
+        Way in all, less than zero anticlockwise; what is not sent of a turn counts.
+    reversals : int
+        Steps against the step before.
+    """
+
+    def __init__(self) -> None:
+        self.turned_rad = 0.0
+        self.reversals = 0
+        self._azimuth_rad: float | None = None
+        self._step_rad = 0.0  # the last that was not zero
+        self._sense = 0.0
+        self._begin(0.0, from_north=True)
+
+    def begins_turn(self, azimuth_rad: float) -> bool:
+        """Whether a turn begins with the next sweep, which looks there."""
+        azimuth_rad %= _TURN
+        before_rad, self._azimuth_rad = self._azimuth_rad, azimuth_rad
+        if before_rad is None:
+            self._begin(azimuth_rad, from_north=True)
+            return False
+        step_rad = (azimuth_rad - before_rad + math.pi) % _TURN - math.pi
+        if step_rad * self._sense < -_BACK_RAD:
+            self.turned_rad += step_rad + self._sense * _TURN
+            self._begin(azimuth_rad, from_north=False)
+            return True
+        if step_rad:
+            self.reversals += step_rad * self._step_rad < 0
+            self._step_rad = step_rad
+        self.turned_rad += step_rad
+        turns = round((self._place_rad + step_rad - azimuth_rad) / _TURN)
+        self._place_rad = azimuth_rad + turns * _TURN  # exact, as a sum of steps is not
+        return self._turns_back() or self._completes()
+
+    def _begin(self, place_rad: float, *, from_north: bool) -> None:
+        """A turn begins at an azimuth, from which places go on without a wrap."""
+        self._from_north = from_north
+        self._start_rad = self._place_rad = self._furthest_rad = place_rad
+
+    def _turns_back(self) -> bool:
+        if self._sense == 0.0:
+            way_rad = self._place_rad - self._start_rad
+            self._sense = math.copysign(abs(way_rad) > _BACK_RAD, way_rad)
+        if (self._place_rad - self._furthest_rad) * self._sense >= 0.0:
+            self._furthest_rad = self._place_rad
+        if (self._furthest_rad - self._place_rad) * self._sense <= _BACK_RAD:
+            return False
+        self._sense = -self._sense
+        self._begin(self._place_rad % _TURN, from_north=False)
+        return True
+
+    def _completes(self) -> bool:
+        """Whether the beam has come to north, or once round to where a sector began."""
+        low_rad = 0.0 if self._from_north else self._start_rad - _TURN
+        high_rad = _TURN if self._from_north else self._start_rad + _TURN
+        complete = (self._sense >= 0.0 and self._place_rad >= high_rad) or (
+            self._sense <= 0.0 and self._place_rad < low_rad
+        )
+        if complete:
+            self._begin(self._place_rad % _TURN, from_north=True)
+        return complete

@@ -23,7 +23,8 @@ def disturbed(
     The accelerations are drawn anew after each interval and held in between, so that the truth
     stays exact in closed form: scale times Student's t, per axis, drawn again where it exceeds the
     limit. One degree of freedom is the Cauchy law of paper A, equation (4), which has no variance
-    and, untruncated, now and then throws a vessel to the moon.
+    and, untruncated, now and then throws a vessel to the moon. An order that brakes ends when the
+    vessel has lost its speed: it then drifts, and does not go astern.
 
     Parameters
     ----------

@@ -26,15 +26,16 @@ class RadarSimulator:
     period_s : float
         Time from scan to scan.
     detection_probability : float
-        Chance that a scan holds a plot of a target in range.
+        Chance that a look at a target in range gives a plot.
     clutter_per_scan : float
         Mean number of false plots in a scan, Poisson, evenly spread over the disc in range.
     max_range_m : float
         Farthest range seen; must be finite for clutter.
     rotating : bool
         True: the antenna points north when a scan begins and turns clockwise once in `period_s`,
-        and a plot has the time at which the antenna points at it. False: all plots of a scan have
-        the time of the scan.
+        and a plot has the time at which the antenna points at it. A scan is one turn: it holds no
+        look at a target that runs across north before the antenna, and two at one that runs
+        towards it. False: all plots of a scan have the time of the scan.
 
     Raises
     ------
@@ -92,16 +93,21 @@ class RadarSimulator:
         Returns
         -------
         time_s : ndarray (T,)
-            Time at which the antenna points at the target.
+            Time at which the antenna points at the target: the later one in a scan of two looks,
+            half way through a scan of none.
         z : ndarray (T, 2)
-            Range in metres and bearing in [-pi, pi]; NaN rows where the target is missed.
+            Range in metres and bearing in [-pi, pi]; NaN rows where the target is missed or not
+            looked at.
         """
         rng = np.random.default_rng(rng)
         own = _at_rest() if own is None else own
         begin_s = start_time_s + self.period_s * np.arange(scans)
-        time_s = self._looking_time_s(truth, own, begin_s)
-        exact = polar(truth.state_at(time_s) - own.state_at(time_s))
-        return time_s, _proper(self.readings(exact, rng))
+        scan, look_s = self._looks(truth, own, begin_s)
+        time_s = begin_s + 0.5 * self.period_s
+        time_s[scan] = look_s
+        z = self._plots(truth, own, time_s, rng)
+        z[np.setdiff1d(np.arange(scans), scan)] = np.nan
+        return time_s, z
 
     def readings(self, exact: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """What comes of exact ranges and bearings: errors added as they are, and misses.
@@ -150,7 +156,8 @@ class RadarSimulator:
         -------
         Recording
             One episode. The time of a scan is that of its begin, or of its end for a rotating
-            antenna; truth stands at those times, with velocities.
+            antenna; truth stands at those times, with velocities. Every look is in the scan in
+            whose turn it lies.
         """
         rng = np.random.default_rng(rng)
         own = _at_rest() if own is None else own
@@ -160,7 +167,21 @@ class RadarSimulator:
             self.observe(truth, scans, rng, own=own, start_time_s=start_time_s)
             for truth in truths.values()
         ]
-        found = [self._scan(k, begin_s[k], scan_time_s[k], looks, own, rng) for k in range(scans)]
+        clutter = [self._clutter(begin, rng) for begin in begin_s]
+        earlier = [self._earlier_looks(truth, own, begin_s, rng) for truth in truths.values()]
+        found = [
+            _scan(
+                k,
+                scan_time_s[k],
+                [
+                    *((time_s[k : k + 1], z[k : k + 1]) for time_s, z in looks),
+                    clutter[k],
+                    *((time_s[scan == k], z[scan == k]) for scan, time_s, z in earlier),
+                ],
+                own,
+            )
+            for k in range(scans)
+        ]
         own_state = own.state_at(scan_time_s)
         ship = OwnShip(
             time_s=scan_time_s,
@@ -172,67 +193,99 @@ class RadarSimulator:
         known = {key: _sampled(truth, scan_time_s) for key, truth in truths.items()}
         return Recording(name, [Episode("", found, ship, known)])
 
-    def _looking_time_s(self, truth: Truth, own: Truth, begin_s: np.ndarray) -> np.ndarray:
-        """Time (T,) in each scan at which the antenna points at the target.
+    def _plots(
+        self, truth: Truth, own: Truth, time_s: np.ndarray, rng: np.random.Generator
+    ) -> np.ndarray:
+        """Range and bearing (n, 2) of looks at the target, NaN rows where it is missed."""
+        exact = polar(truth.state_at(time_s) - own.state_at(time_s))
+        return _proper(self.readings(exact, rng))
 
-        Solves ``time = begin + period * bearing(time) / turn`` by fixed point; it contracts as long
-        as the target's bearing changes slower than the antenna turns.
+    def _looks(
+        self, truth: Truth, own: Truth, begin_s: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Scan (L,) and time (L,) of every look at the target, in order of time.
+
+        A turn holds one look, none where the target crosses north clockwise in it, and two where
+        it does so the other way: the next after the turn begins and the last before it ends.
         """
+        scans = np.arange(len(begin_s))
         if not self.rotating:
-            return begin_s
+            return scans, begin_s
+        edge_s = np.append(begin_s, begin_s[-1:] + self.period_s)
+        bearing_rad = _bearing_at(truth, own, edge_s)
+        ahead_rad = bearing_rad % _TURN_RAD
+        turns = np.round((np.unwrap(bearing_rad) - ahead_rad) / _TURN_RAD)
+        looks = 1 - np.diff(turns).astype(int)
+        twice = looks > 1
+        first_s = self._pointing_s(truth, own, begin_s, ahead_rad[:-1])
+        last_s = self._pointing_s(truth, own, edge_s[1:][twice], ahead_rad[1:][twice] - _TURN_RAD)
+        scan, time_s = np.repeat(scans, looks), np.repeat(first_s, looks)
+        time_s[np.cumsum(looks)[twice] - 1] = last_s
+        return scan, time_s
 
-        def bearing_at(time_s: np.ndarray) -> np.ndarray:
-            return polar(truth.state_at(time_s) - own.state_at(time_s))[:, 1]
+    def _pointing_s(
+        self, truth: Truth, own: Truth, north_s: np.ndarray, bearing_rad: np.ndarray
+    ) -> np.ndarray:
+        """Times (n,) at which the antenna, at north at `north_s`, points at the target.
 
-        bearing_rad = bearing_at(begin_s) % _TURN_RAD
+        Solves ``time = north + period * bearing(time) / turn`` from a bearing (n,) nearby by fixed
+        point; it contracts as long as the target's bearing changes slower than the antenna turns.
+        """
         for _ in range(_SWEEP_STEPS):
-            time_s = begin_s + self.period_s * bearing_rad / _TURN_RAD
-            bearing_rad = bearing_rad + _wrapped(bearing_at(time_s) - bearing_rad)
-        return begin_s + self.period_s * bearing_rad / _TURN_RAD
+            time_s = north_s + self.period_s * bearing_rad / _TURN_RAD
+            bearing_rad = bearing_rad + _wrapped(_bearing_at(truth, own, time_s) - bearing_rad)
+        return north_s + self.period_s * bearing_rad / _TURN_RAD
 
-    def _scan(
-        self,
-        k: int,
-        begin_s: float,
-        scan_time_s: float,
-        looks: list[tuple[np.ndarray, np.ndarray]],
-        own: Truth,
-        rng: np.random.Generator,
-    ) -> Scan:
-        """Scan k: what was seen of the targets, and clutter, in order of time."""
-        clutter = self._clutter(rng)
-        clutter_s = begin_s + np.zeros(len(clutter))
-        if self.rotating:
-            clutter_s += self.period_s * (clutter[:, 1] % _TURN_RAD) / _TURN_RAD
-        time_s = np.concatenate([[look[0][k] for look in looks], clutter_s])
-        z = np.concatenate([*(look[1][k : k + 1] for look in looks), clutter])
-        order = np.argsort(time_s, kind="stable")
-        order = order[np.isfinite(z[order, 0])]
-        time_s, range_m, bearing_rad = time_s[order], z[order, 0], z[order, 1]
-        own_north_m, own_east_m = own.state_at(time_s)[:, 0::2].T
-        return Scan(
-            time_s=float(scan_time_s),
-            number=k,
-            plot_time_s=time_s,
-            north_m=own_north_m + range_m * np.cos(bearing_rad),
-            east_m=own_east_m + range_m * np.sin(bearing_rad),
-            range_m=range_m,
-            bearing_rad=bearing_rad,
-            own_north_m=own_north_m,
-            own_east_m=own_east_m,
-        )
+    def _earlier_looks(
+        self, truth: Truth, own: Truth, begin_s: np.ndarray, rng: np.random.Generator
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Scan (n,), time (n,) and plot (n, 2) of the looks that `observe` leaves out."""
+        scan, time_s = self._looks(truth, own, begin_s)
+        earlier = np.flatnonzero(np.diff(scan) == 0)
+        time_s = time_s[earlier]
+        return scan[earlier], time_s, self._plots(truth, own, time_s, rng)
 
-    def _clutter(self, rng: np.random.Generator) -> np.ndarray:
-        """False plots (n, 2), range and bearing, evenly over the disc."""
+    def _clutter(self, begin_s: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+        """Times (n,) and plots (n, 2) of false plots, evenly over the disc."""
         if self.clutter_per_scan == 0:
-            return np.zeros((0, 2))
+            return np.zeros(0), np.zeros((0, 2))
         count = rng.poisson(self.clutter_per_scan)
         range_m = self.max_range_m * np.sqrt(rng.random(count))
-        return np.column_stack([range_m, rng.uniform(-np.pi, np.pi, count)])
+        z = np.column_stack([range_m, rng.uniform(-np.pi, np.pi, count)])
+        time_s = np.full(count, begin_s)
+        if self.rotating:
+            time_s += self.period_s * (z[:, 1] % _TURN_RAD) / _TURN_RAD
+        return time_s, z
+
+
+def _scan(
+    k: int, scan_time_s: float, plots: list[tuple[np.ndarray, np.ndarray]], own: Truth
+) -> Scan:
+    """Scan k: plots at their times, in order of time."""
+    time_s, z = (np.concatenate(parts) for parts in zip(*plots, strict=True))
+    order = np.argsort(time_s, kind="stable")
+    order = order[np.isfinite(z[order, 0])]
+    time_s, range_m, bearing_rad = time_s[order], z[order, 0], z[order, 1]
+    own_north_m, own_east_m = own.state_at(time_s)[:, 0::2].T
+    return Scan(
+        time_s=float(scan_time_s),
+        number=k,
+        plot_time_s=time_s,
+        north_m=own_north_m + range_m * np.cos(bearing_rad),
+        east_m=own_east_m + range_m * np.sin(bearing_rad),
+        range_m=range_m,
+        bearing_rad=bearing_rad,
+        own_north_m=own_north_m,
+        own_east_m=own_east_m,
+    )
 
 
 def _at_rest() -> Truth:
     return Truth([0.0, 0.0, 0.0, 0.0])
+
+
+def _bearing_at(truth: Truth, own: Truth, time_s: np.ndarray) -> np.ndarray:
+    return polar(truth.state_at(time_s) - own.state_at(time_s))[:, 1]
 
 
 def polar(states: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol, runtime_checkable
 
@@ -116,8 +116,20 @@ class Scenario:
 
         Empty for a truth that does not tell ``switch_times_s``, as a recorded track.
         """
-        switch_s = np.asarray(getattr(self.truth, "switch_times_s", ()), dtype=float)
-        return switch_s[(switch_s > self.start_time_s) & (switch_s < self.time_s[-1])]
+        return self._within(getattr(self.truth, "switch_times_s", ()))
+
+    @property
+    def control_switch_times_s(self) -> np.ndarray:
+        """Times (S,) after the start and before the last reading at which the control changes.
+
+        Empty for a truth that does not tell ``control_switch_times_s``.
+        """
+        return self._within(getattr(self.truth, "control_switch_times_s", ()))
+
+    def _within(self, time_s: Sequence[float]) -> np.ndarray:
+        """Those of the times that lie after the start and before the last reading."""
+        time_s = np.asarray(time_s, dtype=float)
+        return time_s[(time_s > self.start_time_s) & (time_s < self.time_s[-1])]
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -169,15 +181,47 @@ class Scenario:
         ValueError
             When runs, first_run or a seed is negative or no whole number.
         """
+        chances = self._chances(runs, seed, first_run)
+        exact = polar(self.truth_states)
+        z = np.empty((runs, self.scans, 2))
+        for run, rng in enumerate(chances):
+            z[run] = self.radar.readings(exact, rng)
+        return z
+
+    def draw_starts(
+        self, runs: int, seed: int | Sequence[int] = 0, *, first_run: int = 0
+    ) -> list[core.Gaussian]:
+        """Starts of independent runs: :attr:`start` with a mean that errs as its covariance says.
+
+        Parameters
+        ----------
+        runs, seed, first_run
+            As for :meth:`draw`, with whose readings the starts have nothing in common.
+
+        Returns
+        -------
+        list of R Gaussian
+
+        Raises
+        ------
+        ValueError
+            As for :meth:`draw`.
+        """
+        exact = self.start
+        std = np.sqrt(np.diag(exact.covariance))
+        return [
+            core.Gaussian(exact.mean + std * rng.standard_normal(4), exact.covariance)
+            for rng in self._chances(runs, seed, first_run, zlib.crc32(b"start"))
+        ]
+
+    def _chances(
+        self, runs: int, seed: int | Sequence[int], first_run: int, *purpose: int
+    ) -> Iterator[np.random.Generator]:
+        """Source of chance of each run."""
         whole_number("runs", runs, 0)
         whole_number("first_run", first_run, 0)
         entropy = [*np.atleast_1d(seed).tolist(), zlib.crc32(self.name.encode())]
-        exact = polar(self.truth_states)
-        z = np.empty((runs, self.scans, 2))
-        for run in range(runs):
-            rng = np.random.default_rng([*entropy, first_run + run])
-            z[run] = self.radar.readings(exact, rng)
-        return z
+        return (np.random.default_rng([*entropy, first_run + run, *purpose]) for run in range(runs))
 
     @property
     def polar_sensor(self) -> measurement.RangeBearing:

@@ -11,6 +11,7 @@ import numpy as np
 from wakeline._brief import brief, many, span
 
 _SERIES_BELOW_RAD = 0.3
+_SAME_COURSE_RAD = 1e-9
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,8 @@ class Segment:
         papers.
     disturbance_mps2 : (float, float)
         An acceleration north and east that nobody knows of: the ``w`` of the papers. It moves the
-        vessel as `control_mps2` does and is not part of :meth:`Truth.control_at`.
+        vessel as `control_mps2` does and is not part of :meth:`Truth.control_at`. Under it a thrust
+        that brakes ends when it has taken all the speed that the segment began with.
 
     Raises
     ------
@@ -125,6 +127,9 @@ class Truth:
     turns it, too. Without ``u`` the steered course is the course over ground. Before the first and
     after the last segment the vessel goes straight on at constant speed.
 
+    A thrust may not brake for longer than until ``v + a t`` is zero. Under a disturbance, which
+    leaves the speed of the segments after it to chance, it ends there by itself.
+
     Parameters
     ----------
     start : array_like (4,)
@@ -134,7 +139,8 @@ class Truth:
     start_time_s : float
         Time of the beginning.
     start_course_rad : float, optional
-        Course at the beginning of a vessel that starts at rest; default that of the velocity.
+        Course at the beginning of a vessel that starts at rest; default that of the velocity, from
+        which it may not differ.
 
     Attributes
     ----------
@@ -144,8 +150,8 @@ class Truth:
     Raises
     ------
     ValueError
-        When the start, its time or its course is not finite or the thrust of a segment brings the
-        speed below zero.
+        When the start, its time or its course is not finite, the course is another than that of the
+        velocity or the thrust of a segment without disturbance brings the speed below zero.
     TypeError
         When a segment is something else.
     """
@@ -170,16 +176,19 @@ class Truth:
         north_m, vnorth_mps, east_m, veast_mps = start
         speed_mps = float(np.hypot(vnorth_mps, veast_mps))
         course_rad = float(np.arctan2(veast_mps, vnorth_mps))
+        if start_course_rad is None:
+            start_course_rad = course_rad
+        elif speed_mps and abs(np.exp(1j * (start_course_rad - course_rad)) - 1) > _SAME_COURSE_RAD:
+            raise ValueError(
+                f"start_course_rad must be the course of the velocity, {course_rad}, where the "
+                f"vessel does not start at rest, got {start_course_rad}"
+            )
         self.segments = tuple(segments)
         for segment in self.segments:
             if not isinstance(segment, Segment):
                 raise TypeError(f"segments must be of type Segment, got {segment!r}")
         self.start_time_s = float(start_time_s)
-        self._lay_legs(
-            complex(north_m, east_m),
-            speed_mps,
-            course_rad if start_course_rad is None else start_course_rad,
-        )
+        self._lay_legs(complex(north_m, east_m), speed_mps, start_course_rad)
 
     def __repr__(self) -> str:
         return brief(self, many(len(self.segments), "segment"), span(self._time_s))
@@ -210,8 +219,12 @@ class Truth:
     @property
     def switch_times_s(self) -> np.ndarray:
         """Times (S,) from the start on at which the turn rate changes, in order."""
-        change = np.flatnonzero(np.diff(self._turn_rate_rad_s[1:]))
-        return self._time_s[1:][change]
+        return self._time_s[np.diff(self._turn_rate_rad_s) != 0]
+
+    @property
+    def control_switch_times_s(self) -> np.ndarray:
+        """Times (S,) from the start on at which the known acceleration changes, in order."""
+        return self._time_s[(np.diff(self._control_mps2, axis=0) != 0).any(axis=1)]
 
     def state_at(self, time_s: np.ndarray | float) -> np.ndarray:
         """States ``[north, vnorth, east, veast]`` at the given times.
@@ -259,12 +272,17 @@ class Truth:
         self._place_m = np.full(len(legs), place_m)
         self._speed_mps = np.full(len(legs), speed_mps)
         self._course_rad = np.full(len(legs), course_rad)
+        self._thrust_ends_s = np.full(len(legs), np.inf)
         least_mps = -1e-9 * max(speed_mps, 1.0)
         for leg, segment in enumerate(self.segments, start=1):
-            end_m, velocity_mps = self._motion(np.array([leg]), np.array([segment.duration_s]))
             end_mps = self._speed_mps[leg] + segment.acceleration_mps2 * segment.duration_s
             if end_mps < least_mps:
-                raise ValueError(f"segment {leg - 1} brings the speed below zero")
+                if not any(segment.disturbance_mps2):
+                    raise ValueError(f"segment {leg - 1} brings the speed below zero")
+                braking_mps2 = -segment.acceleration_mps2
+                self._thrust_ends_s[leg] = max(self._speed_mps[leg], 0.0) / braking_mps2
+                end_mps = 0.0
+            end_m, velocity_mps = self._motion(np.array([leg]), np.array([segment.duration_s]))
             end_rad = self._course_rad[leg] + segment.turn_rate_rad_s * segment.duration_s
             if segment.push_mps2 and velocity_mps[0]:
                 end_mps, end_rad = abs(velocity_mps[0]), np.angle(velocity_mps[0])
@@ -276,19 +294,23 @@ class Truth:
 
         With ``h = w t / 2`` and the steered course ``m`` half way, the way made by the vessel is
         ``t e^(i m) [(v + a t / 2) sin(h) / h + i (a t / 2) (sin(h) - h cos(h)) / h^2]`` and what
-        the push ``u`` adds is ``u t^2 (e^(2 i h) - 1 - 2 i h) / (2 i h)^2``.
+        the push ``u`` adds is ``u t^2 (e^(2 i h) - 1 - 2 i h) / (2 i h)^2``. Where the thrust ends
+        for want of speed, the first of them stays as it is then.
         """
         half_turn_rad = 0.5 * self._turn_rate_rad_s[leg] * since_s
-        half_gain_mps = 0.5 * self._acceleration_mps2[leg] * since_s
-        middle = np.exp(1j * (self._course_rad[leg] + half_turn_rad))
+        way_s = np.minimum(since_s, self._thrust_ends_s[leg])
+        share = np.divide(way_s, since_s, out=np.ones(len(since_s)), where=way_s < since_s)
+        half_way_rad = share * half_turn_rad
+        half_gain_mps = 0.5 * self._acceleration_mps2[leg] * way_s
+        middle = np.exp(1j * (self._course_rad[leg] + half_way_rad))
         swing = np.exp(1j * half_turn_rad)
         shrink = np.sinc(half_turn_rad / np.pi)
-        ahead = (self._speed_mps[leg] + half_gain_mps) * shrink
-        aside = half_gain_mps * _bow(half_turn_rad)
+        ahead = (self._speed_mps[leg] + half_gain_mps) * np.sinc(half_way_rad / np.pi)
+        aside = half_gain_mps * _bow(half_way_rad)
         pushed_mps = self._push_mps2[leg] * since_s
         pushed = 0.5 * shrink**2 + 1j * _lag(2.0 * half_turn_rad)
         place_m = self._place_m[leg] + since_s * (
-            middle * (ahead + 1j * aside) + pushed_mps * pushed
+            share * middle * (ahead + 1j * aside) + pushed_mps * pushed
         )
         speed_mps = self._speed_mps[leg] + 2.0 * half_gain_mps
         return place_m, middle * swing * speed_mps + pushed_mps * swing * shrink

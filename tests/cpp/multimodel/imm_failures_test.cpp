@@ -209,5 +209,56 @@ TEST(ImmFailures, APredictionThatFailsInOneFilterIsTakenBackInAll) {
   EXPECT_TRUE(before.matches(imm));
 }
 
+TEST(ImmFailures, AModeThatDwindlesBeyondNumbersHoldsNothingUp) {
+  // No way leads back: what is as unlikely as 1e-300 and less must not spoil what is likely.
+  const Position fix{.position_std_m = 10.0};
+  for (const double leaves : {0.0, 0.05}) {
+    const ModeChain<2>::Matrix matrix{{1.0, 0.0}, {leaves, 1.0 - leaves}};
+    Imm imm{ModeChain<2>(matrix), Ekf{CoordinatedTurn{.turn_rate_rad_s = 0.0}},
+            Ekf{CoordinatedTurn{.turn_rate_rad_s = deg(2.0)}}};
+    Gaussian<4> start;
+    start.mean << 0.0, 10.0, 0.0, 0.0;
+    start.covariance *= 100.0;
+    ASSERT_EQ(imm.start(start), Status::kOk);
+    for (int scan = 1; scan <= 3000; ++scan) {
+      ASSERT_EQ(imm.predict(3.0), Status::kOk) << scan;
+      ASSERT_EQ(imm.update(fix, Vec<double, 2>(30.0 * scan, 0.0)).status, Status::kOk) << scan;
+      ASSERT_NEAR(imm.mode_probability().sum(), 1.0, 1e-12) << scan;
+    }
+    EXPECT_LT(imm.mode_probability()[1], 1e-290);
+    EXPECT_NEAR(imm.estimate().mean[0], 90000.0, 1.0);
+  }
+}
+
+TEST(ImmFailures, APlotFarOffDoesNotSpoilAnotherOfTheSameInstant) {
+  const auto chain = ModeChain<3>::from_sojourn_s(Vec<double, 3>(60.0, 30.0, 30.0));
+  const Position fix{.position_std_m = 2.0};
+  for (double away_m = 10.0; away_m < 400.0; away_m += 1.0) {
+    Imm imm{chain, Ekf{CoordinatedTurn{.turn_rate_rad_s = 0.0}},
+            Ekf{CoordinatedTurn{.turn_rate_rad_s = deg(3.0)}},
+            Ekf{CoordinatedTurn{.turn_rate_rad_s = deg(-3.0)}}};
+    Gaussian<4> start;
+    start.mean << 0.0, 10.0, 0.0, 0.0;
+    ASSERT_EQ(imm.start(start), Status::kOk);
+    for (const Vec<double, 2>& z : {Vec<double, 2>(30.0, away_m), Vec<double, 2>(30.0, 0.0)}) {
+      ASSERT_EQ(imm.predict(z[1] == 0.0 ? 0.0 : 3.0), Status::kOk) << away_m;
+      ASSERT_EQ(imm.update(fix, z).status, Status::kOk) << away_m;
+      ASSERT_TRUE(imm.estimate().mean.allFinite()) << away_m;
+    }
+  }
+}
+
+TEST(ImmFailures, WeightsNearTheLeastNumberAreZero) {
+  constexpr double kTiny = 1.5e-308;
+  Imm imm{ModeChain<2>(ModeChain<2>::Matrix{{1.0, 0.0}, {0.0, 1.0}}), straight(), straight(1.0)};
+  imm.set_initial_mode_probability(Vec<double, 2>(1.0, kTiny));
+  EXPECT_EQ(imm.mode_probability()[1], kTiny);  // before a start, too
+  ASSERT_EQ(imm.start(Gaussian<4>{}), Status::kOk);
+  ASSERT_EQ(imm.update(Position{.position_std_m = 1.0}, Vec<double, 2>(75.0, 0.0)).status,
+            Status::kOk);
+  EXPECT_EQ(imm.mode_probability()[0], 1.0);
+  EXPECT_EQ(imm.mode_probability()[1], 0.0);
+}
+
 }  // namespace
 }  // namespace wakeline

@@ -22,6 +22,7 @@ struct RunInput {
   const double* z = nullptr;                  ///< (R, T, M); not a number: a missed scan
   const double* dt_s = nullptr;               ///< (T), before each scan
   const double* own_m = nullptr;              ///< (T, 2) north and east of own ship, or null
+  const double* own_mps = nullptr;            ///< (T, 2) velocity of own ship, or null
   const double* acceleration_mps2 = nullptr;  ///< (T, 2) known acceleration, or null
   const RadiusGate* gate = nullptr;           ///< a reading outside is missed; or null
 };
@@ -48,12 +49,16 @@ inline constexpr bool kHasTurnRates = requires(const Estimator& estimator) {
 
 /// The sensor as own ship carries it at a scan.
 template <class Sensor>
-Sensor seen_from(const Sensor& sensor, const double* own_m) noexcept {
+Sensor seen_from(const Sensor& sensor, const RunInput& in, std::size_t scan) noexcept {
   Sensor moved = sensor;
   if constexpr (requires { moved.own; }) {
-    if (own_m != nullptr) {
-      moved.own.north_m = own_m[0];
-      moved.own.east_m = own_m[1];
+    if (in.own_m != nullptr) {
+      moved.own.north_m = in.own_m[2 * scan];
+      moved.own.east_m = in.own_m[2 * scan + 1];
+    }
+    if (in.own_mps != nullptr) {
+      moved.own.vnorth_mps = in.own_mps[2 * scan];
+      moved.own.veast_mps = in.own_mps[2 * scan + 1];
     }
   }
   return moved;
@@ -215,8 +220,8 @@ auto position_of(const Belief& belief) noexcept {
 }
 
 /// Runs the recordings `first`, `first + 1`, ... through an estimator that has been started, one in
-/// each lane of its scalar. A step that fails is told in its status and changes nothing; no lane
-/// influences another.
+/// each lane of its scalar. A step that fails is told in its status: a reading that cannot be taken
+/// leaves the prediction, a time that cannot leaves all as it was. No lane influences another.
 template <class Estimator, class Sensor>
 void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput& in,
                       std::size_t first, const RunOutput& out) noexcept {
@@ -242,7 +247,7 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
       z[m] = lanes.load(in.z, kM, scan, static_cast<std::size_t>(m));
       missed = missed && z[m] != z[m];
     }
-    const Sensor seen = seen_from(sensor, in.own_m == nullptr ? nullptr : in.own_m + 2 * scan);
+    const Sensor seen = seen_from(sensor, in, scan);
     if (in.gate != nullptr)
       missed = missed || !in.gate->template contains<Scalar>(position_of(estimator.estimate()),
                                                              seen.position(z).mean);

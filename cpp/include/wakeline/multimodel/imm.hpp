@@ -57,6 +57,7 @@ class Imm {
   void set_initial_mode_probability(const Probability& probability) {
     require_distribution("initial_mode_probability", probability, bank_.size());
     initial_ = probability;
+    if (!started_) probability_ = probability;
   }
 
   /// Begins every filter with the belief, over their own state or over `[x, vx, y, vy]`. Where one
@@ -330,7 +331,8 @@ class Imm {
         weight_(i, j) = transition_(i, j) * probability_[i];
         expected[j] += weight_(i, j);
       }
-      const auto reachable = expected[j] > Scalar(0);
+      const auto reachable = expected[j] > Scalar(kLeastWeight<Scalar>);
+      expected[j] = select(reachable, expected[j], Scalar(0));
       const Scalar scale = reciprocal(select(reachable, expected[j], Scalar(1)));
       for (int i = 0; i < bank_.size(); ++i)
         weight_(i, j) = select(reachable, weight_(i, j) * scale, Scalar(i == j));

@@ -65,6 +65,11 @@ void require_distribution(const char* name, const Probability& probability, Eige
   }
 }
 
+/// Weights and probabilities below this count as zero: what is divided by them is beyond numbers.
+template <class Scalar>
+inline constexpr RealOf<Scalar> kLeastWeight =
+    std::numeric_limits<RealOf<Scalar>>::min() / std::numeric_limits<RealOf<Scalar>>::epsilon();
+
 /// Its part of a total, times 1 / total; what is all of it is 1 to the last bit.
 template <class Scalar>
 Scalar part_of(Scalar part, Scalar total, Scalar scale) noexcept {
@@ -83,15 +88,15 @@ Scalar reweigh(std::span<Part> weights, const LikelihoodOf& likelihood_of) noexc
   for (std::size_t k = 0; k < weights.size(); ++k) {
     const Likelihood<Part> likelihood = likelihood_of(k);
     likely[k] = weights[k] * likelihood.peak;
-    nearest_part =
-        select(likely[k] > Part(0) && likelihood.nis < nearest_part, likelihood.nis, nearest_part);
+    nearest_part = select(likely[k] > Part(kLeastWeight<Part>) && likelihood.nis < nearest_part,
+                          likelihood.nis, nearest_part);
   }
   const Scalar nearest = least_to<Scalar>(nearest_part);
   Part sum = Part(0);
   for (std::size_t k = 0; k < weights.size(); ++k) {
     // Where the prior is zero the likelihood may be beyond exp: 0 times infinity is 0 here.
     const Part nearness = exp((Part(nearest) - likelihood_of(k).nis) / 2);
-    likely[k] = select(likely[k] > Part(0), likely[k] * nearness, Part(0));
+    likely[k] = select(likely[k] > Part(kLeastWeight<Part>), likely[k] * nearness, Part(0));
     sum += likely[k];
   }
   const Scalar total = sum_to<Scalar>(sum);
@@ -108,7 +113,8 @@ template <int M, class Scalar, class Part>
 Step<M, Scalar> mixed_step(std::span<const Correction<M, Part>> parts,
                            std::span<const std::type_identity_t<Part>> weights) noexcept {
   const auto weight_of = [&](std::size_t k) {
-    return select(ok(parts[k].status), weights[k], Part(0));
+    return select(ok(parts[k].status) && weights[k] > Part(kLeastWeight<Part>), weights[k],
+                  Part(0));
   };
   Part sum = Part(0);
   for (std::size_t k = 0; k < parts.size(); ++k) sum += weight_of(k);
@@ -203,7 +209,7 @@ Part absorb(Filter& filter, const BeliefType& before,
     total += weight;
     share[k] += sum_to<Scalar>(weight_of_filter * weight);
   }
-  const auto possible = total > Part(0);
+  const auto possible = total > Part(kLeastWeight<Part>);
   if (!any(possible)) return Part(0);
   const Part scale = reciprocal(select(possible, total, Part(1)));
   mixture.mean *= scale;

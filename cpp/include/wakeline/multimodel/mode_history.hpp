@@ -40,7 +40,8 @@ namespace wakeline {
 ///
 /// Over filters of packs (`Ekf<CoordinatedTurn, Pack<double, kNativeLanes<double>>>`) the
 /// hypotheses of a mode are filtered side by side, in the lanes of one filter; the face is that
-/// over filters of numbers, and so are the results, to rounding.
+/// over filters of numbers, and so are the results, to rounding, which may decide among hypotheses
+/// of equal probability which of them are kept.
 ///
 /// Source: G. A. Ackerson, K. S. Fu, IEEE Trans. AC-15, 1970 (the tree); J. K. Tugnait, Automatica
 /// 18, 1982 (detection and estimation over it); D. J. Salmond, SPIE 1305, 1990 (joining around the

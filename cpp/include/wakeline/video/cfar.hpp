@@ -78,8 +78,9 @@ struct CfarSettings {
 ///     ordered statistic  exponential   prod_{i<k} (N - i) / (N - i + f)
 ///                        Rayleigh      the same with f²
 ///
-/// The second takes the square of a mean of Rayleigh amplitudes for gamma distributed; it is right
-/// to some per cent, and exact for N = 1 and in the limit of large N. The others are exact.
+/// The second takes the square of a mean of Rayleigh amplitudes for gamma distributed: with N = 16
+/// to 32, noise is detected 10 to 30 % more often than a probability of 1e-4 to 1e-6 says. It is
+/// exact for N = 1 and in the limit of large N, the others are exact.
 [[nodiscard]] inline double false_alarm_probability(const CfarSettings& cfar, Noise noise) {
   cfar.validate();
   const double n = 2.0 * cfar.train_cells;

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "wakeline/core/angle.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/video/azimuth_rows.hpp"
 #include "wakeline/video/sweep.hpp"
@@ -31,9 +32,10 @@ class StaticClutterMap {
  public:
   StaticClutterMap() = default;
 
-  /// `azimuths` rows in a turn and `cells` of range; cells of sweeps beyond are left alone. Takes
-  /// all memory that is ever needed, 4 bytes a cell. Throws `std::invalid_argument` for sizes,
-  /// times and factors that make no sense.
+  /// `azimuths` rows in a turn and `cells` of range; cells of sweeps beyond are left alone. Of
+  /// several sweeps in a row the strongest amplitudes are learned. Takes all memory that is ever
+  /// needed, 4 bytes a cell. Throws `std::invalid_argument` for sizes, times and factors that make
+  /// no sense.
   StaticClutterMap(int azimuths, int cells, double time_constant_s, double factor = 1.5)
       : cells_(static_cast<std::size_t>(cells)),
         time_constant_s_(time_constant_s),
@@ -44,6 +46,7 @@ class StaticClutterMap {
     require(factor >= 1.0 && factor <= 1000.0, "factor", "1 to 1000", factor);
     seen_s_.resize(static_cast<std::size_t>(azimuths), kNever);
     mean_.resize(seen_s_.size() * cells_, 0.0f);
+    strongest_.resize(cells_, 0.0f);
   }
 
   [[nodiscard]] bool enabled() const noexcept { return !mean_.empty(); }
@@ -56,6 +59,7 @@ class StaticClutterMap {
   void clear() noexcept {
     std::ranges::fill(mean_, 0.0f);
     std::ranges::fill(seen_s_, kNever);
+    visited_ = kNone;
   }
 
   /// Lifts thresholds to what always stands there, and then learns the sweep.
@@ -68,22 +72,33 @@ class StaticClutterMap {
       cell_m_ = sweep.cell_m;
     }
     const std::size_t row = detail::AzimuthRows(azimuths()).of(sweep.azimuth_rad);
+    const double step_rad = std::fabs(wrap_angle(sweep.azimuth_rad - azimuth_rad_));
+    const bool first = row != visited_ || step_rad < 0.5 * sweep.azimuth_width_rad;
+    azimuth_rad_ = sweep.azimuth_rad;
+    if (first) {
+      visited_ = row;
+      gain_ = gain_at(row, sweep.time_s);
+    }
     constexpr auto kMost = static_cast<float>(std::numeric_limits<Amplitude>::max());
-    const float gain = gain_at(row, sweep.time_s);
+    const float gain = gain_;
     const float factor = factor_;
     const std::size_t cells = std::min(cells_, sweep.amplitude.size());
     const Amplitude* __restrict a = sweep.amplitude.data();
     Amplitude* __restrict t = threshold.data();
     float* __restrict m = mean_.data() + row * cells_;
+    float* __restrict s = strongest_.data();
     for (std::size_t i = 0; i < cells; ++i) {
       const auto level = static_cast<Amplitude>(static_cast<int>(std::min(factor * m[i], kMost)));
       t[i] = std::max(t[i], level);
-      m[i] += gain * (static_cast<float>(a[i]) - m[i]);
+      const auto amplitude = static_cast<float>(a[i]);
+      m[i] += gain * (first ? amplitude - m[i] : std::max(amplitude - s[i], 0.0f));
+      s[i] = first ? amplitude : std::max(amplitude, s[i]);
     }
   }
 
  private:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   /// Share of the new amplitude in the mean of a row; none at first, or when time
   /// stands still or runs back.
@@ -100,6 +115,10 @@ class StaticClutterMap {
   double cell_m_ = 0.0;
   std::vector<double> seen_s_;  ///< by azimuth
   std::vector<float> mean_;
+  std::size_t visited_ = kNone;   ///< the row of the last sweep
+  double azimuth_rad_ = 0.0;      ///< of it
+  float gain_ = 0.0f;             ///< of the visit to that row
+  std::vector<float> strongest_;  ///< of the visit, by cell
 };
 
 }  // namespace wakeline

@@ -41,7 +41,8 @@ class Clock:
     line, time_of_day_s, day : array_like (n,)
         Line, time of day, and days since 1970 or NaN, of each timed sentence, in order; n >= 1.
     first_day : float
-        Days since 1970 of the first, where no sentence has a date.
+        Days since 1970 of the first, where no sentence has a date; NaN where that is not known.
+        Then the dates of sentences with a wrong time are believed.
     reorder_s : float
     report : NmeaReport
         Wrong times and dates are added to it.
@@ -49,7 +50,9 @@ class Clock:
     Attributes
     ----------
     time_s : ndarray (n,)
-        UTC seconds, NaN for a wrong time.
+        UTC seconds, NaN for a wrong time; from the midnight before the first where no day is known.
+    dated : bool
+        Whether a day is known.
     set_back_lines : ndarray of int (k,)
         First line of each section but the first.
     """
@@ -60,7 +63,10 @@ class Clock:
         usual_s = _usual_step_s(clock_s)
         self._leap_s = max(_LEAP_S, _LEAP_STEPS * usual_s)
         unrolled_s, wrong, set_back = _unrolled_s(clock_s, usual_s, self._leap_s, reorder_s)
-        day_offset = _day_offset(unrolled_s, clock_s, np.where(wrong, np.nan, day), first_day)
+        believed = np.where(wrong, np.nan, day)
+        knows_day = math.isfinite(first_day) or bool(np.isfinite(believed).any())
+        self.dated = knows_day or bool(np.isfinite(day).any())
+        day_offset = _day_offset(unrolled_s, clock_s, believed if knows_day else day, first_day)
         for k in np.flatnonzero(wrong):
             report.add(int(line[k]), "time", "the time leaps, and the next ones do not follow it")
         for k in np.flatnonzero(~wrong & (day - day_offset != _midnights(unrolled_s, clock_s))):
@@ -176,7 +182,7 @@ def _day_offset(
     """Days (n,) to add to unrolled times."""
     dated = np.flatnonzero(np.isfinite(day))
     if len(dated) == 0:
-        return np.full(len(day), first_day)
+        return np.full(len(day), np.nan_to_num(first_day))
     told = (day - _midnights(unrolled_s, clock_s))[dated]
     edges = [0, *(np.flatnonzero(np.diff(told) != 0) + 1).tolist(), len(told)]
     for (a, b), (_, c) in itertools.pairwise(itertools.pairwise(edges)):

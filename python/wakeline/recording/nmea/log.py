@@ -67,7 +67,7 @@ class Series:
 
 @dataclass(frozen=True, repr=False)
 class Fixes(Series):
-    """Positions by satellite, one a time (RMC, GGA, GLL).
+    """Positions by satellite, one a time (RMC, GGA, GNS, GLL).
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Fixes(Series):
     quality : ndarray of int (n,)
         As GGA counts: 0 none, 1 autonomous, 2 differential, 3 precise, 4 RTK, 5 RTK float,
         6 estimated, 7 put in by hand, 8 simulated; -1 not said. `valid` is false for 0, 6 and 7 and
-        where the status is V.
+        where the status is V. Of the modes of a GNS it is the best.
     hdop : ndarray (n,)
         Horizontal dilution of precision, NaN where not said.
     frozen : ndarray of bool (n,)

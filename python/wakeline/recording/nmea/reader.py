@@ -29,9 +29,10 @@ from .log import (
 from .sentence import Sentence, sentences
 
 # Which sentence is kept of those that tell the same time.
-_BEST_FIRST = ("GGA", "RMC", "GLL", "VTG")
+_BEST_FIRST = ("GGA", "GNS", "RMC", "GLL", "VTG")
 # Quality of GGA for the mode of RMC, GLL and VTG, and those that are no measurement.
 _QUALITY = {"A": 1, "D": 2, "P": 3, "R": 4, "F": 5, "E": 6, "M": 7, "S": 8, "N": 0}
+_BEST_MODE_FIRST = "RFPDASEMN"  # of the modes of several systems of satellites
 _NOT_MEASURED = (0, 6, 7)
 _NOT_SAID = -1
 
@@ -56,27 +57,29 @@ def read_nmea(
 ) -> NavigationLog:
     """Read what a vessel's instruments said of her own motion.
 
-    **Sentences**: RMC, GGA, GLL, VTG, HDT, HDG, HDM, THS, VHW, VBW, ROT and ZDA of any talker,
+    **Sentences**: RMC, GGA, GNS, GLL, VTG, HDT, HDG, HDM, THS, VHW, VBW, ROT and ZDA of any talker,
     upper or lower case; the others are counted. A checksum need not be there but must be right.
     What stands before the ``$`` of a line, a time stamp or a TAG block, is passed over. An empty
     field is NaN. No line is fatal: what cannot be used is counted by kind in the report and kept
     there with its line.
 
-    **Times** are those of the sentences (RMC, GGA, GLL, ZDA), with dates from RMC and ZDA, and go
-    on over midnight:
+    **Times** are those of the sentences (RMC, GGA, GNS, GLL, ZDA), with dates from RMC and ZDA, and
+    go on over midnight:
 
     - Without a date, a step is less than half a day.
     - A time before the last or a leap after it (10 s, or five usual steps where these are longer)
       is wrong when one of the next three timed sentences goes on from where the clock was; its
       sentence is left out, unless it was only late by up to `reorder_s`. Otherwise there is a gap,
-      or the clock was set back. So it is with dates, of which only the date is left aside.
+      or the clock was set back. So it is with dates, of which only the date is left aside. Where
+      all that is known of the day are dates of left out sentences, they are believed.
     - A reading without a time lies between the timed sentences around it, equally spaced by lines;
       where the log itself had stopped between them, as many lines after the first as usual. A VTG
       has the time of the timed sentence before it, whose fix it belongs to.
 
-    **Fixes** of one time are one fix: the valid one, of these GGA before RMC before GLL. Fixes are
-    marked, never dropped: not `valid` (status V, quality 0); `frozen`, where the position stays the
-    same while the vessel, by her speed over ground or else through the water, moves over 50 m;
+    **Fixes** of one time are one fix: the valid one, of these GGA before GNS before RMC before GLL.
+    Fixes are marked, never dropped: not `valid` (status V, quality 0); `frozen`, where the position
+    stays the same while the vessel, by her speed over ground or else through the water, moves over
+    50 m;
     `suspect` at 0/0 and where she cannot have come at `max_speed_mps`, for as long as they stay
     there, if they come back to where she can have come meanwhile. Three or more that do not come
     back are believed, and a note tells of the jump. Positions in sentences with empty fields are no
@@ -95,7 +98,7 @@ def read_nmea(
     variation_deg : float, optional
         Magnetic variation where the log does not tell it, positive east.
     date : datetime.date, optional
-        Day of the first timed sentence, where no sentence has a date.
+        Day of the first timed sentence, where none that is believed has a date; that of a datetime.
     reorder_s : float
         Sentences that are late by as much are put in order; a clock that goes back farther was set.
     max_speed_mps : float
@@ -109,6 +112,8 @@ def read_nmea(
     ------
     RecordingError
         When the file cannot be read, or holds no sentence with a time, or none of a reading.
+    TypeError
+        When `date` is no date.
     ValueError
         When a parameter makes no sense.
     """
@@ -119,7 +124,7 @@ def read_nmea(
         )
     if variation_deg is not None and not abs(variation_deg) <= 180:
         raise ValueError(f"variation_deg must be from -180 to 180, got {variation_deg}")
-    path, report = Path(path), NmeaReport()
+    first_day, path, report = _day(date), Path(path), NmeaReport()
     rows = _Rows()
     for sentence in sentences(_octets(path), report):
         _READERS[sentence.kind](sentence, rows)
@@ -127,7 +132,6 @@ def read_nmea(
             report.add(sentence.line, kind, reason)
     if not rows.timed:
         raise _nothing_read(path, report)
-    first_day = 0.0 if date is None else float((date - datetime.date(1970, 1, 1)).days)
     clock = Clock(*zip(*rows.timed, strict=True), first_day, reorder_s, report)
     report.examples.sort(key=_line)
     series = {name: _series(kind, rows.of[name], clock, report) for name, kind in SERIES.items()}
@@ -138,12 +142,11 @@ def read_nmea(
     series["ground"] = _marked_ground(series, clock)
     if not any(map(len, series.values())):
         raise _nothing_read(path, report)
-    dated = date is not None or any(math.isfinite(day) for _, _, day in rows.timed)
     notes: list[str] = []
     log = NavigationLog(
         path.stem,
         **series,
-        dated=dated,
+        dated=clock.dated,
         set_back_lines=clock.set_back_lines,
         report=report,
         notes=notes,
@@ -151,6 +154,15 @@ def read_nmea(
     told = [*_notes(log), *invalid_notes, *_jump_notes(log, max_speed_mps)]
     notes += [f"{path.name}: {note}" for note in told]
     return log
+
+
+def _day(date: datetime.date | None) -> float:
+    """Days since 1970, NaN for no date."""
+    if date is None:
+        return math.nan
+    if not isinstance(date, datetime.date):
+        raise TypeError(f"date must be a datetime.date, got {date!r}")
+    return float(date.toordinal() - datetime.date(1970, 1, 1).toordinal())
 
 
 def _octets(path: Path) -> bytes:
@@ -175,7 +187,7 @@ def _nothing_read(path: Path, report: NmeaReport) -> RecordingError:
     return RecordingError(
         path,
         "no reading with a time in the log" + (f" (first problem in {first})" if first else ""),
-        wanted="NMEA 0183 sentences, RMC, GGA, GLL or ZDA among them",
+        wanted="NMEA 0183 sentences, RMC, GGA, GNS, GLL or ZDA among them",
         got=f"{report.lines} lines: {', '.join(found) or 'no sentence'}",
     )
 
@@ -239,9 +251,22 @@ def _gga(s: Sentence, rows: _Rows) -> None:
     time_s, place, quality = s.time_of_day_s(0), s.place_deg(1), s.number(5, 0, 8)
     if s.faults:
         return
-    quality = _NOT_SAID if math.isnan(quality) else int(quality)
+    _add_fix_with_hdop(rows, s, time_s, place, _NOT_SAID if math.isnan(quality) else int(quality))
+
+
+def _gns(s: Sentence, rows: _Rows) -> None:
+    time_s, place, modes = s.time_of_day_s(0), s.place_deg(1), s.letters(5, _BEST_MODE_FIRST)
+    if s.faults:
+        return
+    quality = _QUALITY[min(modes, key=_BEST_MODE_FIRST.index)] if modes else _NOT_SAID
+    _add_fix_with_hdop(rows, s, time_s, place, quality)
+
+
+def _add_fix_with_hdop(
+    rows: _Rows, s: Sentence, time_s: float, place_deg: tuple[float, float], quality: int
+) -> None:
     valid = quality not in (*_NOT_MEASURED, _NOT_SAID)
-    _add_fix(rows, s, rows.stamp(s, time_s), valid, place, quality, s.number(7, 0.0, 1000.0))
+    _add_fix(rows, s, rows.stamp(s, time_s), valid, place_deg, quality, s.number(7, 0.0, 1000.0))
 
 
 def _gll(s: Sentence, rows: _Rows) -> None:
@@ -322,6 +347,7 @@ def _zda(s: Sentence, rows: _Rows) -> None:
 _READERS = {
     "RMC": _rmc,
     "GGA": _gga,
+    "GNS": _gns,
     "GLL": _gll,
     "VTG": _vtg,
     "HDT": _hdt,

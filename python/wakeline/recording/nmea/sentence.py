@@ -15,6 +15,7 @@ from .log import NmeaReport
 FIELDS = {
     "RMC": 9,
     "GGA": 6,
+    "GNS": 6,
     "GLL": 6,
     "VTG": 6,
     "HDT": 2,
@@ -72,6 +73,14 @@ class Sentence:
         text = self.text(k)
         if text and (len(text) > 1 or text not in allowed):
             self._fault("field", k, f"one of {' '.join(allowed)}")
+            return ""
+        return text
+
+    def letters(self, k: int, allowed: str) -> str:
+        """A field of letters out of `allowed`, or ''."""
+        text = self.text(k)
+        if not set(text) <= set(allowed):
+            self._fault("field", k, f"letters out of {' '.join(allowed)}")
             return ""
         return text
 
@@ -184,8 +193,9 @@ def sentences(octets: bytes, report: NmeaReport) -> list[Sentence]:
     found: list[Sentence] = []
     unchecked: list[tuple[int, str, bytes]] = []
     with_checksum: set[str] = set()
-    for line, text in enumerate(_LINE_END.split(octets), 1):
-        report.lines += bool(text)
+    lines = _LINE_END.split(octets)
+    report.lines = len(lines) - (lines[-1] == b"")
+    for line, text in enumerate(lines, 1):
         pieces = _PIECE.findall(text)
         if not pieces and text.strip():
             report.add(line, "no sentence", f"wanted a sentence that begins with $, {_got(text)}")

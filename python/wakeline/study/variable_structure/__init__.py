@@ -28,7 +28,7 @@ RANDOM_SCENARIOS = 24
 NOTE = (
     "The paper's mean position errors of AGMM and SGMM lie on or below the bound of an estimator\n"
     "that is told every turn. Runs start at the true state, while the bound takes the start to be\n"
-    "known to 10 m and 1 m/s only: over the first scans an estimator can be below it."
+    "known to 10 m and 1 m/s only: as long as that is remembered, an estimator can be below it."
 )
 
 
