@@ -306,9 +306,19 @@ def of_a_sender_that_tells_narrow_sweeps(turns):
     return [replace(turn, azimuth_width_rad=turn.azimuth_width_rad / 20) for turn in turns]
 
 
+def with_cells_that_come_and_go(turns):
+    """A sender that leaves the last cell out every tenth sweep on."""
+    return [
+        replace(part, amplitude=part.amplitude[:, : 400 - k % 2])
+        for turn in turns
+        for k, part in enumerate(turn[first : first + 10] for first in range(0, 720, 10))
+    ]
+
+
 @pytest.mark.parametrize(
     "change",
     [
+        with_cells_that_come_and_go,
         with_a_false_time,
         with_a_false_azimuth_in_every_turn,
         of_a_sender_that_tells_narrow_sweeps,

@@ -188,6 +188,43 @@ def test_an_antenna_that_jitters_about_north_begins_one_turn(path):
     assert all(abs(len(v) - 500) <= 6 for v in videos[1:-1])
 
 
+@pytest.mark.parametrize("away", [1.0, -1.0, 0.5, -0.5])
+def test_a_few_false_sweeps_begin_no_turn(path, away):
+    azimuth = np.arange(6 * 512) * 2 * np.pi / 512
+    azimuth[1300:1303] += away
+    videos, _ = read(path, octets_of(path, video(len(azimuth), azimuth_rad=azimuth)))
+    assert [len(v) for v in videos] == [512] * 6
+
+
+def test_an_antenna_that_begins_to_show_a_sector_is_followed(path):
+    whole = np.arange(3 * 512) * 2 * np.pi / 512
+    sector = np.tile(np.arange(100, 200), 6) * 2 * np.pi / 512
+    azimuth = np.concatenate([whole, sector])
+    videos, _ = read(path, octets_of(path, video(len(azimuth), azimuth_rad=azimuth)))
+    assert [len(v) for v in videos[:3]] == [512] * 3
+    assert [len(v) for v in videos[-4:]] == [100] * 4
+
+
+@pytest.mark.parametrize("sector_deg", [(350, 371), (100, 141)])
+def test_a_period_stands_in_for_times_of_a_sector(path, sector_deg):
+    steps = np.deg2rad(np.tile(np.arange(*sector_deg), 6)) / STEP
+    octets = b"".join(record(azimuth=(int(k), int(k) + 180)) for k in steps)
+    videos, report = read(path, octets, period_s=2.0)
+    begins_s = [v.time_s[0] for v in videos[-4:]]
+    assert np.diff(begins_s) == pytest.approx(2.0, abs=0.01)
+    assert report.held == 0
+
+
+def test_a_turn_that_begins_with_a_sweep_without_a_time_is_a_turn(path):
+    octets = b"".join(
+        record(azimuth=(256 * k, 256 * k + 256), sequence=k, ticks=None if k % 256 == 0 else k)
+        for k in range(1, 4 * 256)
+    )
+    videos, report = read(path, octets)
+    assert [len(v) for v in videos] == [255] * 4
+    assert report.untimed == 3
+
+
 def test_a_lone_sweep_far_from_its_neighbours_is_left_out(path):
     azimuth = np.arange(200) * 2 * np.pi / 512
     azimuth[50] += 2.0

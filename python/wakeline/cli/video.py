@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, islice, pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -32,6 +33,7 @@ from .tracking import TrackedEpisode
 _FALSE_ALARMS = 1e-5
 _TRAIN_M, _GUARD_M = 400.0, 150.0  # either side of a cell; ships are up to 300 m long
 _MOST_TRAIN_CELLS = 128
+_ALIKE = 0.25  # parts by which windows may differ before settings are found anew
 _WINDOW_SHARE = 8  # of a sweep, so that every cell has others to be compared with
 _LOGARITHMIC_BELOW = 0.2  # skewness of noise: 0.63 behind a linear receiver, -1.1 in decibels
 _RAYLEIGH_SPREAD_DB = 5.57  # standard deviation of noise in decibels
@@ -209,21 +211,23 @@ def _pauses(before: RadarVideo, block: RadarVideo) -> bool:
 
 
 def _judged(turns: Iterable[_Turn]) -> Iterator[_Turn]:
-    """The turns, the first and the last marked where they are much less than their neighbour."""
-    before: _Turn | None = None
-    seen = 0
-    for turn in turns:
-        seen += 1
-        if seen == 2:
-            before.whole = before.covered_rad > _NEARLY * turn.covered_rad
-        if before is not None:
-            neighbour = before
-            yield before
-        before = turn
-    if seen > 1:
-        before.whole = before.covered_rad > _NEARLY * neighbour.covered_rad or not neighbour.whole
-    if before is not None:
+    """The turns, those at either end marked where they are much less than their neighbours.
+
+    At the beginning there may be two: a sector across north is cut there until its end is known.
+    """
+    turns = iter(turns)
+    first = list(islice(turns, 3))
+    most_rad = max((turn.covered_rad for turn in first), default=0.0)
+    for turn in first[:-1]:
+        turn.whole = turn.covered_rad > _NEARLY * most_rad
+    for before, turn in pairwise(chain(first, turns)):
         yield before
+        neighbour, last = before, turn
+    if len(first) > 1:
+        last.whole = last.covered_rad > _NEARLY * neighbour.covered_rad or not neighbour.whole
+        yield last
+    else:
+        yield from first
 
 
 # Plots --------------------------------------------------------------------------------------------
@@ -242,13 +246,34 @@ def _joined(parts: Sequence[_Plots]) -> _Plots:
     return _Plots(*map(np.concatenate, zip(*parts, strict=True)))
 
 
+class _Kind(NamedTuple):
+    """What the settings of an extractor depend on, beside the noise: bits and windows in cells."""
+
+    dtype: np.dtype
+    train_cells: int
+    guard_cells: int
+
+    @classmethod
+    def of(cls, video: RadarVideo) -> _Kind:
+        most = max(video.amplitude.shape[1] // _WINDOW_SHARE, 1)
+        train = int(np.clip(_TRAIN_M / video.cell_m, 8, _MOST_TRAIN_CELLS))
+        return cls(video.amplitude.dtype, min(train, most), min(int(_GUARD_M / video.cell_m), most))
+
+    def fits(self, other: _Kind) -> bool:
+        """Whether windows of one do for the other."""
+        windows = zip(self[1:], other[1:], strict=True)
+        return self.dtype == other.dtype and all(
+            abs(mine - its) <= _ALIKE * max(mine, its) for mine, its in windows
+        )
+
+
 class _Extraction:
-    """Plots of turn after turn, with settings found where cells, their bits or the way the antenna
-    turns change."""
+    """Plots of turn after turn, with settings found where a kind of video is met first."""
 
     def __init__(self) -> None:
         self._extractor: wl.PlotExtractor | None = None
-        self._kind: tuple[np.dtype, float, int] | None = None
+        self._kind: _Kind | None = None
+        self._settings: dict[_Kind, dict[str, float]] = {}
         self._above_db = 0
         self._mirrored = False
         self._refused = 0
@@ -257,11 +282,11 @@ class _Extraction:
         """Plots of the echoes that end in a turn."""
         plots = []
         for block in turn.blocks:
-            kind = (block.amplitude.dtype, block.cell_m, block.amplitude.shape[1])
-            if self._kind != kind or self._turns_back(block):
+            kind = _Kind.of(block)
+            if self._kind is None or not kind.fits(self._kind) or self._turns_back(block):
                 plots.append(self.finished())
-                self._begin(turn.longest if self._kind is None else block)
-                self._kind = kind
+                alike = [other for other in turn.blocks if _Kind.of(other).fits(kind)]
+                self._begin(max(alike, key=len), kind, _sense(block))
             plots.append(self._as_seen(self._extractor.process(self._clockwise(block))))
         return _joined(plots)
 
@@ -287,10 +312,14 @@ class _Extraction:
             notes.append(f"{self._refused} sweeps that make no sense left out")
         return notes
 
-    def _begin(self, sample: RadarVideo) -> None:
-        self._mirrored = _sense(sample) < 0.0
-        self._extractor, above_db = _extractor_for(self._clockwise(sample))
-        self._above_db = max(self._above_db, above_db)
+    def _begin(self, sample: RadarVideo, kind: _Kind, sense: float) -> None:
+        self._mirrored = (sense or _sense(sample)) < 0.0
+        if kind not in self._settings:
+            settings, above_db = _settings_for(self._clockwise(sample), kind)
+            self._settings[kind] = settings
+            self._above_db = max(self._above_db, above_db)
+        self._extractor = wl.PlotExtractor(**self._settings[kind])
+        self._kind = kind
 
     def _turns_back(self, block: RadarVideo) -> bool:
         """Whether the antenna turns the other way from this block on."""
@@ -310,11 +339,11 @@ def _sense(video: RadarVideo) -> float:
     """1 where the antenna turns clockwise, -1 anticlockwise, 0 where too few sweeps tell."""
     if len(video) < _SWEEPS_THAT_TELL:
         return 0.0
-    return float(np.sign(np.median(np.diff(np.unwrap(video.azimuth_rad)))))
+    return float(np.sign(np.sum(wl.wrap_angle(np.diff(video.azimuth_rad)))))
 
 
-def _extractor_for(turn: RadarVideo) -> tuple[wl.PlotExtractor, int]:
-    """An extractor for this picture, and how far its threshold lies above that of noise, in dB.
+def _settings_for(turn: RadarVideo, kind: _Kind) -> tuple[dict[str, float], int]:
+    """Settings for this picture, and how far its threshold lies above that of noise, in dB.
 
     It is raised until the turn gives no more plots than an operator would bear: land and sea
     clutter fluctuate more than noise.
@@ -322,29 +351,27 @@ def _extractor_for(turn: RadarVideo) -> tuple[wl.PlotExtractor, int]:
     noise = noise_of(turn.amplitude)
     most = _MOST_PLOTS * min(len(turn) * turn.azimuth_width_rad / (2 * np.pi), 1.0)
     for above_db in _ABOVE_NOISE_DB:
-        settings = _settings(turn, noise, above_db)
+        settings = _settings(kind, noise, above_db)
         trial = wl.PlotExtractor(**settings)
         if len(trial.process(turn)) + len(trial.finish()) <= most:
             break
-    return wl.PlotExtractor(**settings), above_db
+    return settings, above_db
 
 
-def _settings(turn: RadarVideo, noise: Noise | None, above_db: float) -> dict[str, float]:
-    """Settings for cells of this length and a receiver of this kind."""
-    most = max(turn.amplitude.shape[1] // _WINDOW_SHARE, 1)
-    train = min(int(np.clip(_TRAIN_M / turn.cell_m, 8, _MOST_TRAIN_CELLS)), most)
+def _settings(kind: _Kind, noise: Noise | None, above_db: float) -> dict[str, float]:
+    """Settings for windows of this length and a receiver of this kind."""
     if noise is not None and noise.skewness < _LOGARITHMIC_BELOW:
         steps_per_db = noise.std / _RAYLEIGH_SPREAD_DB
         offset_db = wl.video.threshold_offset_db(_FALSE_ALARMS) + above_db
         threshold = {"threshold_factor": 1.0, "threshold_offset": int(steps_per_db * offset_db) + 1}
     else:
-        factor = wl.video.threshold_factor(_FALSE_ALARMS, train_cells=train)
+        factor = wl.video.threshold_factor(_FALSE_ALARMS, train_cells=kind.train_cells)
         threshold = {"threshold_factor": min(factor * 10 ** (above_db / 20), 1000.0)}
     return {
         "max_sweep_cells": _MOST_CELLS,
         "gap_sweeps": 1,  # azimuth is often counted as coarsely as sweeps come
-        "train_cells": train,
-        "guard_cells": min(int(_GUARD_M / turn.cell_m), most),
+        "train_cells": kind.train_cells,
+        "guard_cells": kind.guard_cells,
         "max_range_extent_m": _LONG_ECHO_M,
         "max_bearing_extent_rad": _WIDE_ECHO_RAD,
         **threshold,

@@ -362,8 +362,9 @@ class _Order:
 
     def kept(self, sweeps: Iterable[_Sweep]) -> Iterator[tuple[_Sweep, bool]]:
         """The sweeps to keep, with their absolute time, and whether a block begins with each."""
+        begins = False
         for sweep in self._steady(filter(self._is_wanted, sweeps)):
-            begins_turn = self._beam.begins_turn(sweep.azimuth_rad)
+            begins |= self._beam.begins_turn(sweep.azimuth_rad)
             self.report.reversals = self._beam.reversals
             time_s = self._time_of(sweep)
             if math.isnan(time_s):
@@ -371,7 +372,8 @@ class _Order:
                 continue
             time_s, jump = self._in_order(time_s)
             self.report.sweeps += 1
-            yield sweep._replace(time_s=time_s), begins_turn or jump
+            yield sweep._replace(time_s=time_s), begins or jump
+            begins = False
 
     def _steady(self, sweeps: Iterable[_Sweep]) -> Iterator[_Sweep]:
         """The sweeps, but those that stand alone where their neighbours do not."""
@@ -418,7 +420,7 @@ class _Order:
 
     def _time_of(self, sweep: _Sweep) -> float:
         if self._period_s is not None and math.isnan(sweep.time_s):
-            return self._midnight_s + abs(self._beam.turned_rad) / _TURN * self._period_s
+            return self._midnight_s + self._beam.turned_rad / _TURN * self._period_s
         return self._midnight_s + sweep.time_s
 
     def _in_order(self, time_s: float) -> tuple[float, bool]:

@@ -106,12 +106,13 @@ class Beam:
 
     A turn begins at north, whichever way the antenna turns. Of a radar that shows a sector only it
     begins where the beam goes back: at once, as what lies between is not sent, or by and by, as the
-    antenna itself turns back.
+    antenna itself turns back. Where the beam has come all the way round, it goes back only if it
+    stays behind: else a few sweeps were false, or most of a turn was lost.
 
     Attributes
     ----------
     turned_rad : float
-        Way in all, less than zero anticlockwise; what is not sent of a turn counts.
+        Way in all, whichever way the antenna turns; what is not sent of a turn counts.
     reversals : int
         Steps against the step before.
     """
@@ -121,7 +122,9 @@ class Beam:
         self.reversals = 0
         self._azimuth_rad: float | None = None
         self._step_rad = 0.0  # the last that was not zero
+        self._seen_rad = 0.0  # way until it is known which way the antenna turns
         self._sense = 0.0
+        self._goes_round = False
         self._begin(0.0, from_north=True)
 
     def begins_turn(self, azimuth_rad: float) -> bool:
@@ -132,32 +135,59 @@ class Beam:
             self._begin(azimuth_rad, from_north=True)
             return False
         step_rad = (azimuth_rad - before_rad + math.pi) % _TURN - math.pi
-        if step_rad * self._sense < -_BACK_RAD:
-            self.turned_rad += step_rad + self._sense * _TURN
-            self._begin(azimuth_rad, from_north=False)
-            return True
-        if step_rad:
+        back = -step_rad * self._sense > self._most_back_rad
+        if back:
+            step_rad += self._sense * _TURN
+        elif step_rad:
             self.reversals += step_rad * self._step_rad < 0
             self._step_rad = step_rad
-        self.turned_rad += step_rad
+        self._learn_sense(step_rad)
+        self.turned_rad += step_rad * (self._sense or 1.0)
+        if back and not self._goes_round:
+            self._begin(azimuth_rad, from_north=False)
+            return True
+        if step_rad * self._sense > _BACK_RAD:
+            self._left_rad = self._place_rad
         turns = round((self._place_rad + step_rad - azimuth_rad) / _TURN)
         self._place_rad = azimuth_rad + turns * _TURN  # exact, as a sum of steps is not
-        return self._turns_back() or self._completes()
+        return self._turns_back(step_rad) or self._completes()
+
+    @property
+    def _most_back_rad(self) -> float:
+        return math.pi / 2 if self._goes_round else _BACK_RAD
 
     def _begin(self, place_rad: float, *, from_north: bool) -> None:
         """A turn begins at an azimuth, from which places go on without a wrap."""
         self._from_north = from_north
-        self._start_rad = self._place_rad = self._furthest_rad = place_rad
+        self._start_rad = self._place_rad = self._furthest_rad = self._left_rad = place_rad
+        self._behind_rad = 0.0
 
-    def _turns_back(self) -> bool:
-        if self._sense == 0.0:
-            way_rad = self._place_rad - self._start_rad
-            self._sense = math.copysign(abs(way_rad) > _BACK_RAD, way_rad)
-        if (self._place_rad - self._furthest_rad) * self._sense >= 0.0:
+    def _learn_sense(self, step_rad: float) -> None:
+        if self._sense or abs(step_rad) > _BACK_RAD:
+            return
+        self._seen_rad += step_rad
+        if abs(self._seen_rad) > _BACK_RAD:
+            self._sense = math.copysign(1.0, self._seen_rad)
+            self.turned_rad *= self._sense
+
+    def _turns_back(self, step_rad: float) -> bool:
+        steps_back = step_rad * self._sense < -_BACK_RAD
+        returns = steps_back and (self._place_rad - self._left_rad) * self._sense > 0.0
+        if returns or (self._place_rad - self._furthest_rad) * self._sense >= 0.0:
             self._furthest_rad = self._place_rad
-        if (self._furthest_rad - self._place_rad) * self._sense <= _BACK_RAD:
+            self._behind_rad = 0.0
+        back_rad = (self._furthest_rad - self._place_rad) * self._sense
+        if back_rad <= _BACK_RAD:
             return False
-        self._sense = -self._sense
+        if abs(step_rad) <= _BACK_RAD:
+            self._behind_rad += step_rad * self._sense
+        reverses = self._behind_rad < 0.0 and back_rad > self._most_back_rad
+        if not reverses and not (self._goes_round and self._behind_rad > _BACK_RAD):
+            return False
+        if reverses:
+            self._sense = -self._sense
+            self.turned_rad += 2.0 * back_rad
+        self._goes_round = False
         self._begin(self._place_rad % _TURN, from_north=False)
         return True
 
@@ -169,5 +199,6 @@ class Beam:
             self._sense <= 0.0 and self._place_rad < low_rad
         )
         if complete:
+            self._goes_round = abs(self._place_rad - self._start_rad) > _TURN - _BACK_RAD
             self._begin(self._place_rad % _TURN, from_north=True)
         return complete
