@@ -175,10 +175,16 @@ def readings_of(
     """The readings of a log that has a fix, `offset` added to headings of unknown variation."""
     fixes, ground, water = part.fixes.sound(), part.ground.sound(), part.water.sound()
     bottom, turn = part.bottom.sound(), part.turn.sound()
-    heading_s, true_heading_rad = _headings(part, offset.offset_rad)
-    headings = heading_s, true_heading_rad + _lean_rad(fixes, plane, heading_s)
     latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
-    course_rad = ground.course_rad + _lean_rad(fixes, plane, ground.time_s)
+    leans_rad = wl.wrap_angle(plane.plane_course_rad(np.zeros(len(fixes)), latitude, longitude))
+
+    def lean_rad(times: np.ndarray) -> np.ndarray:
+        """By how much directions on the plane are more than true ones where the last fix is."""
+        return leans_rad[np.maximum(np.searchsorted(fixes.time_s, times, side="right") - 1, 0)]
+
+    heading_s, true_heading_rad = _headings(part, offset.offset_rad)
+    headings = heading_s, true_heading_rad + lean_rad(heading_s)
+    course_rad = ground.course_rad + lean_rad(ground.time_s)
     course = np.column_stack([np.cos(course_rad), np.sin(course_rad)])
     series = (
         (fixes.time_s, plane.position_m(latitude, longitude)),
@@ -202,7 +208,7 @@ def readings_of(
         leeway_rad=leeway,
         bottom_mps=over_bottom,
         turn_rate_rad_s=turn_rate,
-        lean_rad=_lean_rad(fixes, plane, time_s),
+        lean_rad=lean_rad(time_s),
         offset_std_rad=offset.std_rad if wants_offset(part) else 0.0,
     )
 
@@ -414,13 +420,6 @@ def _headings(part: NavigationLog, offset_rad: float) -> tuple[np.ndarray, np.nd
     compass = part.compass.sound()
     variation = np.where(np.isnan(compass.variation_rad), offset_rad, compass.variation_rad)
     return compass.time_s, wl.wrap_angle(compass.heading_magnetic_rad + variation)
-
-
-def _lean_rad(fixes: Fixes, plane: wl.navigation.LocalPlane, time_s: np.ndarray) -> np.ndarray:
-    """By how much (T,) directions on the plane are more than true ones where the last fix is."""
-    last = np.maximum(np.searchsorted(fixes.time_s, time_s, side="right") - 1, 0)
-    latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
-    return wl.wrap_angle(plane.plane_course_rad(np.zeros(len(fixes)), latitude, longitude))[last]
 
 
 def _leeway_rad(water: WaterSpeed, time_s: np.ndarray) -> np.ndarray:

@@ -122,7 +122,10 @@ def read_plots_of_video(
         turns = _on_the_day_of(rows, turns)
         _check_covered(rows, turns, path)
         ship = rows.ship()
-    scans = [_scan(number, *turn, ship) for number, turn in enumerate(turns)]
+    scans = [
+        Scan.of_plots(end_s, k, seen.time_s, seen.range_m, seen.bearing_rad, ship.position_at)
+        for k, (end_s, seen) in enumerate(turns)
+    ]
     recording = Recording(path.stem, [Episode("", scans, ship)], notes=notes)
     return VideoRecording(recording, last, (_UNSEEN * float(std[0]), _UNSEEN * float(std[1])))
 
@@ -285,8 +288,7 @@ class _Extraction:
             kind = _Kind.of(block)
             if self._kind is None or not kind.fits(self._kind) or self._turns_back(block):
                 plots.append(self.finished())
-                alike = [other for other in turn.blocks if _Kind.of(other).fits(kind)]
-                self._begin(max(alike, key=len), kind, _sense(block))
+                self._begin(turn, kind, block)
             plots.append(self._as_seen(self._extractor.process(self._clockwise(block))))
         return _joined(plots)
 
@@ -312,10 +314,11 @@ class _Extraction:
             notes.append(f"{self._refused} sweeps that make no sense left out")
         return notes
 
-    def _begin(self, sample: RadarVideo, kind: _Kind, sense: float) -> None:
-        self._mirrored = (sense or _sense(sample)) < 0.0
+    def _begin(self, turn: _Turn, kind: _Kind, block: RadarVideo) -> None:
+        self._mirrored = (_sense(block) or _sense(turn.longest)) < 0.0
         if kind not in self._settings:
-            settings, above_db = _settings_for(self._clockwise(sample), kind)
+            alike = [other for other in turn.blocks if _Kind.of(other).fits(kind)]
+            settings, above_db = _settings_for(self._clockwise(max(alike, key=len)), kind)
             self._settings[kind] = settings
             self._above_db = max(self._above_db, above_db)
         self._extractor = wl.PlotExtractor(**self._settings[kind])
@@ -402,26 +405,6 @@ def noise_of(amplitude: np.ndarray) -> Noise | None:
     away = pieces[quiet] - mean[quiet, None]
     std = float(np.sqrt(np.mean(away**2)))
     return Noise(std, float(np.mean(away**3)) / std**3) if std > 0 else None
-
-
-def _scan(number: int, end_s: float, plots: _Plots, ship: OwnShip) -> Scan:
-    """The plots of a turn, in order of time, each from where own ship was at its time."""
-    order = np.argsort(plots.time_s, kind="stable")
-    time_s, range_m, bearing_rad = (
-        column[order] for column in (plots.time_s, plots.range_m, plots.bearing_rad)
-    )
-    own_north_m, own_east_m = ship.position_at(time_s).T
-    return Scan(
-        time_s=end_s,
-        number=number,
-        plot_time_s=time_s,
-        north_m=own_north_m + range_m * np.cos(bearing_rad),
-        east_m=own_east_m + range_m * np.sin(bearing_rad),
-        range_m=range_m,
-        bearing_rad=bearing_rad,
-        own_north_m=own_north_m,
-        own_east_m=own_east_m,
-    )
 
 
 # Own ship -----------------------------------------------------------------------------------------

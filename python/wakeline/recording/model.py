@@ -6,7 +6,7 @@ since 1970 in files); bearings are radians clockwise from north.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -44,6 +44,32 @@ class Scan:
     bearing_rad: np.ndarray
     own_north_m: np.ndarray
     own_east_m: np.ndarray
+
+    @classmethod
+    def of_plots(
+        cls,
+        time_s: float,
+        number: int,
+        plot_time_s: np.ndarray,
+        range_m: np.ndarray,
+        bearing_rad: np.ndarray,
+        own_position_m: Callable[[np.ndarray], np.ndarray],
+    ) -> Scan:
+        """Of plots (n,) in any order; own ship is at `own_position_m(times)`, (n, 2)."""
+        order = np.argsort(plot_time_s, kind="stable")
+        plot_time_s, range_m, bearing_rad = plot_time_s[order], range_m[order], bearing_rad[order]
+        own_north_m, own_east_m = own_position_m(plot_time_s).T
+        return cls(
+            time_s=time_s,
+            number=number,
+            plot_time_s=plot_time_s,
+            north_m=own_north_m + range_m * np.cos(bearing_rad),
+            east_m=own_east_m + range_m * np.sin(bearing_rad),
+            range_m=range_m,
+            bearing_rad=bearing_rad,
+            own_north_m=own_north_m,
+            own_east_m=own_east_m,
+        )
 
     def __len__(self) -> int:
         return len(self.plot_time_s)

@@ -102,12 +102,7 @@ class RadarSimulator:
         rng = np.random.default_rng(rng)
         own = _at_rest() if own is None else own
         begin_s = start_time_s + self.period_s * np.arange(scans)
-        scan, look_s = self._looks(truth, own, begin_s)
-        time_s = begin_s + 0.5 * self.period_s
-        time_s[scan] = look_s
-        z = self._plots(truth, own, time_s, rng)
-        z[np.setdiff1d(np.arange(scans), scan)] = np.nan
-        return time_s, z
+        return self._rows(truth, own, begin_s, self._looks(truth, own, begin_s), rng)
 
     def readings(self, exact: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """What comes of exact ranges and bearings: errors added as they are, and misses.
@@ -163,25 +158,26 @@ class RadarSimulator:
         own = _at_rest() if own is None else own
         begin_s = start_time_s + self.period_s * np.arange(scans)
         scan_time_s = begin_s + (self.period_s if self.rotating else 0.0)
-        looks = [
-            self.observe(truth, scans, rng, own=own, start_time_s=start_time_s)
-            for truth in truths.values()
-        ]
+        looks = [(truth, self._looks(truth, own, begin_s)) for truth in truths.values()]
+        rows = [self._rows(truth, own, begin_s, look, rng) for truth, look in looks]
         clutter = [self._clutter(begin, rng) for begin in begin_s]
-        earlier = [self._earlier_looks(truth, own, begin_s, rng) for truth in truths.values()]
-        found = [
-            _scan(
-                k,
-                scan_time_s[k],
-                [
-                    *((time_s[k : k + 1], z[k : k + 1]) for time_s, z in looks),
-                    clutter[k],
-                    *((time_s[scan == k], z[scan == k]) for scan, time_s, z in earlier),
-                ],
-                own,
+        earlier = [self._earlier(truth, own, look, rng) for truth, look in looks]
+
+        def own_position_m(time_s: np.ndarray) -> np.ndarray:
+            return own.state_at(time_s)[:, 0::2]
+
+        found = []
+        for k in range(scans):
+            plots = [
+                *((time_s[k : k + 1], z[k : k + 1]) for time_s, z in rows),
+                clutter[k],
+                *((time_s[scan == k], z[scan == k]) for scan, time_s, z in earlier),
+            ]
+            time_s, z = (np.concatenate(parts) for parts in zip(*plots, strict=True))
+            seen = np.isfinite(z[:, 0])
+            found.append(
+                Scan.of_plots(float(scan_time_s[k]), k, time_s[seen], *z[seen].T, own_position_m)
             )
-            for k in range(scans)
-        ]
         own_state = own.state_at(scan_time_s)
         ship = OwnShip(
             time_s=scan_time_s,
@@ -236,11 +232,31 @@ class RadarSimulator:
             bearing_rad = bearing_rad + _wrapped(_bearing_at(truth, own, time_s) - bearing_rad)
         return north_s + self.period_s * bearing_rad / _TURN_RAD
 
-    def _earlier_looks(
-        self, truth: Truth, own: Truth, begin_s: np.ndarray, rng: np.random.Generator
+    def _rows(
+        self,
+        truth: Truth,
+        own: Truth,
+        begin_s: np.ndarray,
+        looks: tuple[np.ndarray, np.ndarray],
+        rng: np.random.Generator,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Time (T,) and plot (T, 2) of the last look of each scan, as `observe` has them."""
+        scan, look_s = looks
+        time_s = begin_s + 0.5 * self.period_s
+        time_s[scan] = look_s
+        z = self._plots(truth, own, time_s, rng)
+        z[np.setdiff1d(np.arange(len(begin_s)), scan)] = np.nan
+        return time_s, z
+
+    def _earlier(
+        self,
+        truth: Truth,
+        own: Truth,
+        looks: tuple[np.ndarray, np.ndarray],
+        rng: np.random.Generator,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Scan (n,), time (n,) and plot (n, 2) of the looks that `observe` leaves out."""
-        scan, time_s = self._looks(truth, own, begin_s)
+        scan, time_s = looks
         earlier = np.flatnonzero(np.diff(scan) == 0)
         time_s = time_s[earlier]
         return scan[earlier], time_s, self._plots(truth, own, time_s, rng)
@@ -256,28 +272,6 @@ class RadarSimulator:
         if self.rotating:
             time_s += self.period_s * (z[:, 1] % _TURN_RAD) / _TURN_RAD
         return time_s, z
-
-
-def _scan(
-    k: int, scan_time_s: float, plots: list[tuple[np.ndarray, np.ndarray]], own: Truth
-) -> Scan:
-    """Scan k: plots at their times, in order of time."""
-    time_s, z = (np.concatenate(parts) for parts in zip(*plots, strict=True))
-    order = np.argsort(time_s, kind="stable")
-    order = order[np.isfinite(z[order, 0])]
-    time_s, range_m, bearing_rad = time_s[order], z[order, 0], z[order, 1]
-    own_north_m, own_east_m = own.state_at(time_s)[:, 0::2].T
-    return Scan(
-        time_s=float(scan_time_s),
-        number=k,
-        plot_time_s=time_s,
-        north_m=own_north_m + range_m * np.cos(bearing_rad),
-        east_m=own_east_m + range_m * np.sin(bearing_rad),
-        range_m=range_m,
-        bearing_rad=bearing_rad,
-        own_north_m=own_north_m,
-        own_east_m=own_east_m,
-    )
 
 
 def _at_rest() -> Truth:
