@@ -131,7 +131,7 @@ fingerprint=$(
 if [[ ! -e $stamp || $(<"$stamp") != "$fingerprint" ]]; then
   say "building and installing the Python package (extra: $extra)"
   # Without build isolation and with a build folder that stays, so that the next build compiles only what changed.
-  "$python" -m pip install -q --disable-pip-version-check "scikit-build-core>=0.10" "pybind11>=2.12"
+  "$python" -m pip install -q --disable-pip-version-check "scikit-build-core>=0.10" "pybind11>=3.0"
   if ninja --version >/dev/null 2>&1; then generator=Ninja; else generator="Unix Makefiles"; fi
   SKBUILD_BUILD_DIR="$root/build/wheel/$generator" CMAKE_GENERATOR=$generator CMAKE_BUILD_PARALLEL_LEVEL=$jobs \
     "$python" -m pip install -q --disable-pip-version-check --no-build-isolation "$root[$extra]"
