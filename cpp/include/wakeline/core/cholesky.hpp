@@ -53,14 +53,17 @@ class Cholesky {
 
   /// L⁻¹ B: whitens the columns of B, so that Bᵀ A⁻¹ B = (L⁻¹ B)ᵀ (L⁻¹ B).
   template <int Cols>
-  Mat<Scalar, N, Cols> whiten(Mat<Scalar, N, Cols> right) const noexcept {
-    for (int column = 0; column < Cols; ++column)
-      for (int row = 0; row < N; ++row) {
-        Scalar sum = right(row, column);
-        for (int k = 0; k < row; ++k) sum -= lower_(row, k) * right(k, column);
-        right(row, column) = sum * inverse_diagonal_[row];
-      }
-    return right;
+  Mat<Scalar, N, Cols> whiten(const Mat<Scalar, N, Cols>& right) const noexcept {
+    Mat<Scalar, N, Cols> whitened;
+    unroll<N>([&](auto row) {
+      constexpr int kRow = row.value;
+      unroll<Cols>([&](int column) {
+        Scalar sum = right(kRow, column);
+        unroll<kRow>([&](int k) { sum -= lower_(kRow, k) * whitened(k, column); });
+        whitened(kRow, column) = sum * inverse_diagonal_[kRow];
+      });
+    });
+    return whitened;
   }
 
   /// vᵀ A⁻¹ v; `squared_norms` of a v in each lane.
@@ -89,16 +92,17 @@ class Cholesky {
 
   /// B L⁻ᵀ: whitens the rows of B.
   template <int Rows>
-  Mat<Scalar, Rows, N> whiten_rows(Mat<Scalar, Rows, N> left) const noexcept {
+  Mat<Scalar, Rows, N> whiten_rows(const Mat<Scalar, Rows, N>& left) const noexcept {
+    Mat<Scalar, Rows, N> whitened;
     unroll<N>([&](auto column) {
       constexpr int kColumn = column.value;
       unroll<Rows>([&](int row) {
         Scalar sum = left(row, kColumn);
-        unroll<kColumn>([&](int k) { sum -= lower_(kColumn, k) * left(row, k); });
-        left(row, kColumn) = sum * inverse_diagonal_[kColumn];
+        unroll<kColumn>([&](int k) { sum -= lower_(kColumn, k) * whitened(row, k); });
+        whitened(row, kColumn) = sum * inverse_diagonal_[kColumn];
       });
     });
-    return left;
+    return whitened;
   }
 
   /// W L⁻¹: what turns whitened rows W = B L⁻ᵀ into B A⁻¹.

@@ -39,7 +39,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
       const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.f};
       return move(forward, f * x, f, kept_.q);
     } else {
-      const Mat<Scalar, kStates, kStates> jacobian = this->motion_.jacobian(x, dt_s);
+      Mat<Scalar, kStates, kStates> jacobian = this->motion_.jacobian(x, dt_s);
       return move(forward, this->motion_.transition(x, dt_s),
                   Patterned<kPatternOf<Motion>, Scalar, kStates>{jacobian},
                   this->motion_.process_noise(x, dt_s));
@@ -68,9 +68,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
   template <class Sensor>
   [[gnu::flatten]] Correction<Sensor::kMeasurements, Scalar> compare(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
-    Correction<Sensor::kMeasurements, Scalar> correction;
-    (void)Innovation<Sensor>(*this, sensor, reading, correction);
-    return correction;
+    Innovation<Sensor> innovation(*this, sensor, reading);
+    return innovation;
   }
 
   /// Corrects the belief by the reading z of a sensor.
@@ -85,12 +84,12 @@ class Ekf : public Belief<MotionType, ScalarType> {
   [[gnu::flatten]] Correction<Sensor::kMeasurements, Scalar> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
     constexpr int kM = Sensor::kMeasurements;
-    Correction<kM, Scalar> correction;
-    const Innovation<Sensor> innovation(*this, sensor, reading, correction);
-    const auto taken = ok(correction.status);
+    Innovation<Sensor> innovation(*this, sensor, reading);
+    Correction<kM, Scalar> correction = innovation;
+    const auto taken = ok(innovation.status);
     if (none(taken)) return correction;
     Gaussian<kStates, Scalar>& belief = this->belief_;
-    const Mat<Scalar, kStates, kM> gain = innovation.factor.whiten_rows(innovation.ph);  // P Hᵀ L⁻ᵀ
+    Mat<Scalar, kStates, kM> gain = innovation.factor.whiten_rows(innovation.ph);  // P Hᵀ L⁻ᵀ
     Gaussian<kStates, Scalar> next = belief;
     shift(next.mean, gain, innovation.whitened);
     subtract_gram(next.covariance, gain);
@@ -99,15 +98,16 @@ class Ekf : public Belief<MotionType, ScalarType> {
       copy(next, belief);
     } else {
       Gaussian<kStates, Scalar> posterior = next;  // so that the other one stays in registers
-      take_with_care(posterior, innovation, reading.covariance, gain, taken, lost);
+      take_with_care(posterior, sensor, reading, taken, lost);
     }
     return correction;
   }
 
  private:
-  /// All of an update but the correction.
+  /// A correction and what an update needs beside it. Locals of this type are not const: GCC keeps
+  /// const ones in memory.
   template <class Sensor>
-  struct Innovation {
+  struct Innovation : Correction<Sensor::kMeasurements, Scalar> {
     static constexpr int kM = Sensor::kMeasurements;
     static constexpr int kReads = kReadsOf<Sensor>;
     static constexpr auto kRows = rows_read<Sensor>(kComponents);
@@ -117,9 +117,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
     Cholesky<kM, Scalar> factor;  ///< of S
     Vec<Scalar, kM> whitened;     ///< L⁻¹ v
 
-    /// Fills `correction`, too.
-    Innovation(const Ekf& filter, const Sensor& sensor, const Gaussian<kM, Scalar>& reading,
-               Correction<kM, Scalar>& correction) noexcept {
+    Innovation(const Ekf& filter, const Sensor& sensor,
+               const Gaussian<kM, Scalar>& reading) noexcept {
       check_sensor<Sensor, Ekf>();
       if (!filter.started_) return;
       const Gaussian<kStates, Scalar>& belief = filter.belief_;
@@ -127,17 +126,17 @@ class Ekf : public Belief<MotionType, ScalarType> {
       unroll<kReads>([&](int k) { read[k] = belief.mean[kRows[k]]; });
       // First, because an arc tangent takes as long as all that follows, which the processor does
       // meanwhile.
-      correction.innovation = sensor.residual(reading.mean, sensor.measure(read));
+      this->innovation = sensor.residual(reading.mean, sensor.measure(read));
       h = sensor.jacobian(read);
-      correction.innovation_covariance = reading.covariance;
-      project<Sensor, kRows>(belief.covariance, h, ph, correction.innovation_covariance);
-      factor.compute(correction.innovation_covariance);
+      this->innovation_covariance = reading.covariance;
+      project<Sensor, kRows>(belief.covariance, h, ph, this->innovation_covariance);
+      factor.compute(this->innovation_covariance);
       if (none(factor.ok())) {
-        correction.status = refusal<Scalar, kM>(correction.innovation_covariance);
+        this->status = refusal<Scalar, kM>(this->innovation_covariance);
         return;
       }
-      whitened = factor.template whiten<1>(correction.innovation);
-      rate(correction, whitened, factor);
+      whitened = factor.template whiten<1>(this->innovation);
+      rate(*this, whitened, factor);
     }
   };
 
@@ -147,7 +146,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
       const Patterned<kPatternOf<Motion>, Scalar, kStates>& f,
       const Mat<Scalar, kStates, kStates>& q) noexcept {
     Gaussian<kStates, Scalar>& belief = this->belief_;
-    const Mat<Scalar, kStates, kStates> fp = f.transposed_product(belief.covariance);
+    Mat<Scalar, kStates, kStates> fp = f.transposed_product(belief.covariance);
     Gaussian<kStates, Scalar> next;
     unroll_lower<kStates>([&](auto row, auto column) {
       constexpr int i = row.value, j = column.value;
@@ -165,27 +164,29 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return status;
   }
 
-  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which it is lost.
+  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which it is lost. Works out the
+  /// innovation anew, so that the hot one stays in registers.
   template <class Sensor>
   [[gnu::cold, gnu::noinline]] void take_with_care(
-      Gaussian<kStates, Scalar>& posterior, const Innovation<Sensor>& innovation,
-      const Mat<Scalar, Sensor::kMeasurements, Sensor::kMeasurements>& r,
-      const Mat<Scalar, kStates, Sensor::kMeasurements>& gain, const MaskOf<Scalar>& taken,
+      Gaussian<kStates, Scalar>& posterior, const Sensor& sensor,
+      const Gaussian<Sensor::kMeasurements, Scalar>& reading, const MaskOf<Scalar>& taken,
       const MaskOf<Scalar>& lost) noexcept {
-    if (any(lost))
-      assign_where(lost, posterior.covariance,
-                   joseph<Sensor>(innovation.h, innovation.factor.unwhiten_rows(gain), r));
+    if (any(lost)) {
+      const Innovation<Sensor> innovation(*this, sensor, reading);
+      assign_where(lost, posterior.covariance, joseph(innovation, reading.covariance));
+    }
     assign_where(taken, this->belief_, posterior);
   }
 
   /// (I - K H) P (I - K H)ᵀ + K R Kᵀ.
-  template <class Sensor, int M, int Reads>
-  Mat<Scalar, kStates, kStates> joseph(const Mat<Scalar, M, Reads>& h,
-                                       const Mat<Scalar, kStates, M>& gain,
+  template <class Sensor, int M>
+  Mat<Scalar, kStates, kStates> joseph(const Innovation<Sensor>& innovation,
                                        const Mat<Scalar, M, M>& r) const noexcept {
-    constexpr auto kRows = rows_read<Sensor>(kComponents);
+    const Mat<Scalar, kStates, M> gain =
+        innovation.factor.unwhiten_rows(innovation.factor.whiten_rows(innovation.ph));
     Mat<Scalar, kStates, kStates> rest = Mat<Scalar, kStates, kStates>::Identity();
-    for (int k = 0; k < Reads; ++k) rest.col(kRows[k]) -= gain * h.col(k);
+    for (int k = 0; k < innovation.kReads; ++k)
+      rest.col(innovation.kRows[k]) -= gain * innovation.h.col(k);
     Mat<Scalar, kStates, kStates> p =
         rest * this->belief_.covariance * rest.transpose() + gain * r * gain.transpose();
     mirror_lower<Scalar, kStates>(p);

@@ -103,18 +103,18 @@ class Ukf : public Belief<MotionType, ScalarType> {
     const Cholesky<kStates, Scalar>& root = this->root();
     if (none(root.ok())) return failed_correction<kM, Scalar>(Status::kNotPositiveDefinite);
 
-    const Mat<Scalar, kStates, kPoints> sigma = points(root);
-    const MeasuredPoints<kComponents, Sensor, Scalar> images(sensor, this->belief_.mean, sigma);
-    const Gaussian<kM, Scalar> predicted =
+    // Not const: GCC keeps const matrices in memory.
+    MeasuredPoints<kComponents, Sensor, Scalar> images(sensor, this->belief_.mean, points(root));
+    Gaussian<kM, Scalar> predicted =
         unscented_moments(unscented_, kStates, images.centre, images.differences);
 
     Correction<kM, Scalar> correction;
     correction.innovation = sensor.residual(reading.mean, predicted.mean);
     correction.innovation_covariance = predicted.covariance + reading.covariance;
-    const Cholesky<kM, Scalar> factor(correction.innovation_covariance);
+    Cholesky<kM, Scalar> factor(correction.innovation_covariance);
     if (none(factor.ok()))
       return failed_correction<kM, Scalar>(refusal<Scalar, kM>(correction.innovation_covariance));
-    const Vec<Scalar, kM> whitened = factor.template whiten<1>(correction.innovation);
+    Vec<Scalar, kM> whitened = factor.template whiten<1>(correction.innovation);
     rate(correction, whitened, factor);
 
     // The points of a pair are as far from the mean on one side as on the other.
@@ -135,15 +135,14 @@ class Ukf : public Belief<MotionType, ScalarType> {
         cross(i, m) = w * sum;
       });
     });
-    const Mat<Scalar, kStates, kM> gain = factor.whiten_rows(cross);
+    Mat<Scalar, kStates, kM> gain = factor.whiten_rows(cross);
     Gaussian<kStates, Scalar> next = this->belief_;
     shift(next.mean, gain, whitened);
     subtract_gram(next.covariance, gain);
     const auto lost = cancels<Scalar, kStates>(this->belief_.covariance, next.covariance);
     if (any(lost)) [[unlikely]]
-      assign_where(
-          lost, next.covariance,
-          joseph(sigma, images.differences, factor.unwhiten_rows(gain), reading.covariance));
+      assign_where(lost, next.covariance,
+                   joseph(sensor, factor.unwhiten_rows(gain), reading.covariance));
     correction.status = take(
         next, first_failure(correction.status, ok_or(root.ok(), Status::kNotPositiveDefinite)));
     return correction;
@@ -190,15 +189,19 @@ class Ukf : public Belief<MotionType, ScalarType> {
 
   /// P - K S Kᵀ as what the points keep of their spread, Σ w (e_x - K e_z)(e_x - K e_z)ᵀ, with K of
   /// the rest of S.
-  template <int M, int Seen>
+  template <class Sensor, int M>
   [[gnu::cold, gnu::noinline]] Mat<Scalar, kStates, kStates> joseph(
-      const Mat<Scalar, kStates, kPoints>& sigma, const Mat<Scalar, M, Seen>& differences,
-      const Mat<Scalar, kStates, M>& gain, const Mat<Scalar, M, M>& r) const noexcept {
+      const Sensor& sensor, const Mat<Scalar, kStates, M>& gain,
+      const Mat<Scalar, M, M>& r) const noexcept {
+    const Vec<Scalar, kStates>& x = this->belief_.mean;
+    const Mat<Scalar, kStates, kPoints> sigma = points(root_);
+    const auto differences =
+        MeasuredPoints<kComponents, Sensor, Scalar>(sensor, x, sigma).differences;
     const Scalar w = unscented_.template weight<Scalar>(kStates);
     Vec<Scalar, M> shift;
     for (int m = 0; m < M; ++m) shift[m] = w * differences.row(m).sum();
-    Mat<Scalar, kStates, kPoints> kept = sigma.colwise() - this->belief_.mean;
-    kept.template leftCols<Seen>() -= gain * differences;
+    Mat<Scalar, kStates, kPoints> kept = sigma.colwise() - x;
+    kept.template leftCols<differences.ColsAtCompileTime>() -= gain * differences;
     const Mat<Scalar, M, M> rest =
         r + unscented_.template centre_correction<Scalar>() * shift * shift.transpose();
     const Mat<Scalar, kStates, M> pushed = gain * rest;

@@ -93,17 +93,21 @@ struct CoordinatedTurnRate {
   /// x: per axis the chain of integrators of white jerk q v², across the course.
   template <class Scalar>
   Mat<Scalar, 5, 5> process_noise(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
-    const ProcessNoise wander = WhiteJerk{turn_rate_psd_rad2s3};
-    const Mat<Scalar, 3, 3> chain = wander.of_acceleration_axis(dt_s);
-    Mat<Scalar, 5, 3> spread = Mat<Scalar, 5, 3>::Zero();  // [position, velocity, rate] -> state
-    spread(0, 0) = spread(1, 1) = -x[3];
-    spread(2, 0) = spread(3, 1) = x[1];
-    spread(4, 2) = Scalar(1);
-    Mat<Scalar, 5, 5> q = spread * chain * spread.transpose();
-    const Turn<Scalar> turn(x[4], dt_s);
-    q.template topLeftCorner<4, 4>() +=
-        turn.noise(noise) + course_wander_psd(course_psd_rad2s, max_speed_mps, x[1], x[3]) *
-                                turn.noise(WhiteAcceleration{1.0});
+    // Position and velocity, to the north and to the east, are `across` times two of the chain's
+    // integrators.
+    const Scalar across[5] = {-x[3], -x[3], x[1], x[1], Scalar(1)};
+    constexpr int kIntegrator[5] = {0, 1, 0, 1, 2};
+    Mat<Scalar, 3, 3> chain =
+        ProcessNoise(WhiteJerk{turn_rate_psd_rad2s3}).of_acceleration_axis(dt_s);
+    Turn<Scalar> turn(x[4], dt_s);
+    Mat<Scalar, 4, 4> white =
+        turn.noise(noise, course_wander_psd(course_psd_rad2s, max_speed_mps, x[1], x[3]));
+    Mat<Scalar, 5, 5> q;
+    unroll_lower<5>([&](int i, int j) {
+      Scalar element = across[i] * across[j] * chain(kIntegrator[i], kIntegrator[j]);
+      if (i < 4) element += white(i, j);
+      q(i, j) = q(j, i) = element;
+    });
     return q;
   }
 

@@ -66,13 +66,20 @@ struct Turn {
     return q;
   }
 
-  /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn. White
-  /// acceleration gives the exact integral of F(s) G q Gᵀ F(s)ᵀ; the piecewise policy is the
-  /// papers' G s² Gᵀ, which knows nothing of the turn.
-  Mat<Scalar, 4, 4> noise(const ProcessNoise& policy) const noexcept {
-    using std::abs;
+  /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn, and white
+  /// acceleration of so much more density. White acceleration gives the exact integral of
+  /// F(s) G q Gᵀ F(s)ᵀ; the piecewise policy is the papers' G s² Gᵀ, which knows nothing of the
+  /// turn.
+  Mat<Scalar, 4, 4> noise(const ProcessNoise& policy, Scalar more_m2s3 = Scalar(0)) const noexcept {
     if (policy.kind() == ProcessNoise::Kind::kPiecewiseAcceleration)
-      return piecewise_noise(policy, dt_s);
+      return piecewise_noise(policy, dt_s) + white_noise(more_m2s3);
+    return white_noise(Scalar(policy.strength()) + more_m2s3);
+  }
+
+ private:
+  /// That of white acceleration.
+  Mat<Scalar, 4, 4> white_noise(Scalar density) const noexcept {
+    using std::abs;
     Mat<Scalar, 4, 4> q;
     const Scalar a2 = angle * angle;
     const auto nearly_straight = abs(angle) < Scalar(kSeries);
@@ -83,7 +90,6 @@ struct Turn {
     const auto straight = abs(angle) < Scalar(kTiny);
     const Scalar coupling =
         select(straight, Scalar(0.5), across_s / select(straight, Scalar(1), angle * dt_s));
-    const Scalar density = Scalar(policy.strength());
     const Scalar dt2 = dt_s * dt_s;
     const Scalar position = density * dt2 * dt_s * spread;
     const Scalar velocity = density * dt_s;
@@ -98,7 +104,6 @@ struct Turn {
     return q;
   }
 
- private:
   static constexpr double kTiny = 1e-12;
   static constexpr double kSeries = sizeof(RealOf<Scalar>) > 4 ? 0.02 : 0.3;
 };

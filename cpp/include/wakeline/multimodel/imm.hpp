@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "wakeline/core/in_place_array.hpp"
 #include "wakeline/core/scalar.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/multimodel/mixture.hpp"
@@ -92,14 +93,17 @@ class Imm {
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
-    const Gaussian<kM, Scalar> reading = sensor.observe(z);
-    std::array<Correction<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> each;
+    Gaussian<kM, Scalar> reading = sensor.observe(z);
+    InPlaceArray<Correction<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> each;
+    if constexpr (kMayRest)
+      for (int mode = 0; mode < bank_.size(); ++mode)
+        each.make(static_cast<std::size_t>(mode), [] { return Correction<kM, Scalar>(); });
     bank_.for_each([&](int mode, auto& filter, auto&) {
-      each[static_cast<std::size_t>(mode)] = filter.correct(sensor, reading);
+      each.make(static_cast<std::size_t>(mode), [&] { return filter.correct(sensor, reading); });
     });
 
     const auto count = static_cast<std::size_t>(bank_.size());
-    const std::span<const Correction<kM, Scalar>> parts(each.data(), count);
+    const std::span<const Correction<kM, Scalar>> parts = each.first(count);
     const std::span<Scalar> weights(probability_.data(), count);
     Step<kM, Scalar> step = mixed_step<kM, Scalar>(parts, weights);
     step.log_likelihood = reweigh<kModeCapacity<kModels>, Scalar>(
@@ -228,7 +232,7 @@ class Imm {
     if (!started_) return Status::kNotStarted;
     StatusOf<Scalar> status = check_time_step(dt_s);
     if (none(ok(status))) return status;
-    const Probability expected = weigh_transitions(dt_s);
+    Probability expected = weigh_transitions(dt_s);
     bank_.for_each([](int, auto& filter, auto& before) { before = filter.estimate(); });
     bank_.for_each([&](int mode, auto& filter, auto& before) {
       status = first_failure(status, in_use(mode, filter.assign(mixed(mode, before))));

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "wakeline/core/archive.hpp"
+#include "wakeline/core/in_place_array.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/multimodel/history_tree.hpp"
 #include "wakeline/multimodel/mixture.hpp"
@@ -152,19 +153,19 @@ class ModeHistory {
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
-    const Gaussian<kM, Lanes> reading = sensor.observe(z).template cast<Lanes>();
-    std::array<Correction<kM, Lanes>, kMostRows> corrections;
+    Gaussian<kM, Lanes> reading = sensor.observe(z).template cast<Lanes>();
+    InPlaceArray<Correction<kM, Lanes>, kMostRows> corrections;
     std::array<Lanes, kMostRows> weights;
     const Rows rows(hypotheses());
     Hypotheses& next = spare();
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const Row& row = rows[r];
       Filter& filter = filter_of(row, present_beliefs());
-      corrections[r] = filter.correct(sensor, reading);
+      corrections.make(r, [&] { return filter.correct(sensor, reading); });
       weights[r] = probability_of(row, present());
       go_on(row, filter.estimate(), next);
     }
-    const std::span<const Correction<kM, Lanes>> taken(corrections.data(), rows.size());
+    const std::span<const Correction<kM, Lanes>> taken = corrections.first(rows.size());
     const std::span<Lanes> weighed(weights.data(), rows.size());
     Step<kM, Scalar> step = mixed_step<kM, Scalar>(taken, weighed);
     step.log_likelihood =
