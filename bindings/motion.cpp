@@ -176,18 +176,20 @@ void define_motion(py::module_& parent) {
 
   py::class_<CoordinatedTurnRate> ctr(
       m, "CoordinatedTurnRate",
-      "A turn whose rate is part of the state and wanders: [x, vx, y, vy, omega] (m, m/s, rad/s).");
-  ctr.def(py::init([](const ProcessNoise& noise, double psd, double prior, double course_psd,
-                      double max_speed, double rate) {
-            return checked(CoordinatedTurnRate{noise, psd, prior, course_psd, max_speed, rate});
-          }),
-          py::kw_only(),
-          py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"),
-          py::arg("turn_rate_psd_rad2s3") = CoordinatedTurnRate{}.turn_rate_psd_rad2s3,
-          py::arg("prior_turn_rate_std_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_std_rad_s,
-          py::arg("course_psd_rad2s") = CoordinatedTurnRate{}.course_psd_rad2s,
-          py::arg("max_speed_mps") = CoordinatedTurnRate{}.max_speed_mps,
-          py::arg("prior_turn_rate_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_rad_s);
+      "A turn whose rate is part of the state and wanders: [x, vx, y, vy, omega] (m, m/s, rad/s); "
+      "it returns to the prior rate within `turn_rate_time_s`, or never where that is 0.");
+  ctr.def(
+      py::init([](const ProcessNoise& noise, double psd, double prior, double course_psd,
+                  double max_speed, double rate, double time) {
+        return checked(CoordinatedTurnRate{noise, psd, prior, course_psd, max_speed, rate, time});
+      }),
+      py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"),
+      py::arg("turn_rate_psd_rad2s3") = CoordinatedTurnRate{}.turn_rate_psd_rad2s3,
+      py::arg("prior_turn_rate_std_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_std_rad_s,
+      py::arg("course_psd_rad2s") = CoordinatedTurnRate{}.course_psd_rad2s,
+      py::arg("max_speed_mps") = CoordinatedTurnRate{}.max_speed_mps,
+      py::arg("prior_turn_rate_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_rad_s,
+      py::arg("turn_rate_time_s") = CoordinatedTurnRate{}.turn_rate_time_s);
   ctr.def("__repr__", [](const CoordinatedTurnRate& motion) {
     return CallText("CoordinatedTurnRate")
         .with("noise", motion.noise)
@@ -196,6 +198,7 @@ void define_motion(py::module_& parent) {
         .with("course_psd_rad2s", motion.course_psd_rad2s)
         .with("max_speed_mps", motion.max_speed_mps)
         .with("prior_turn_rate_rad_s", motion.prior_turn_rate_rad_s)
+        .with("turn_rate_time_s", motion.turn_rate_time_s)
         .text();
   });
   define_model(ctr);

@@ -460,7 +460,8 @@ void define_track(py::module_& parent) {
                     "one, 0 for none")
       .def_readonly("events", &PyReport::events)
       .def_readonly("refused_plots", &PyReport::refused_plots,
-                    "plots not finite, behind the antenna, or beyond max_plots");
+                    "plots not finite, behind the antenna, of another time than the scan, or "
+                    "beyond max_plots");
   py::class_<PyTracks>(m, "TrackTable", "Tracks as arrays, older ones first.")
       .def_readonly("track_id", &PyTracks::track_id, "(k,)")
       .def_readonly("status", &PyTracks::status, "tentative, confirmed, coasting or held")

@@ -106,6 +106,8 @@ def test_each_row_has_its_own_way_out():
     [
         ({"indptr": [0, 2, 1]}, "indptr"),
         ({"indptr": [0, 1, 3]}, "indptr"),
+        ({"indptr": [1, 1, 2]}, "indptr"),
+        ({"indptr": [0, 1, 1]}, "indptr"),
         ({"indices": [0, 2]}, "indices .* got 2"),
         ({"indices": [0, -1]}, "indices .* got -1"),
         ({"indices": [0]}, "indices"),

@@ -125,6 +125,7 @@ def test_white_acceleration_is_the_textbooks_form(dt_s, psd):
         (lambda v: wl.Singer(maneuver_time_s=v), "maneuver_time_s"),
         (lambda v: wl.Singer(accel_std_mps2=v), "accel_std_mps2"),
         (lambda v: wl.CoordinatedTurnRate(turn_rate_psd_rad2s3=v), "turn_rate_psd_rad2s3"),
+        (lambda v: wl.CoordinatedTurnRate(turn_rate_time_s=v), "turn_rate_time_s"),
         (lambda v: wl.WanderingCourse(psd_m2s3=v), "psd_m2s3"),
     ],
 )

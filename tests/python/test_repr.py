@@ -256,6 +256,7 @@ motions = st.one_of(
         course_psd_rad2s=positive,
         max_speed_mps=positive,
         prior_turn_rate_rad_s=st.floats(-1, 1),
+        turn_rate_time_s=positive,
     ),
     st.builds(wl.Singer, maneuver_time_s=positive, accel_std_mps2=positive),
     st.builds(

@@ -149,7 +149,7 @@ class CoordinatedTurn:
 
 class CoordinatedTurnRate:
     """
-    A turn whose rate is part of the state and wanders: [x, vx, y, vy, omega] (m, m/s, rad/s).
+    A turn whose rate is part of the state and wanders: [x, vx, y, vy, omega] (m, m/s, rad/s); it returns to the prior rate within `turn_rate_time_s`, or never where that is 0.
     """
 
     states: typing.ClassVar[int] = 5
@@ -164,6 +164,7 @@ class CoordinatedTurnRate:
         course_psd_rad2s: float = 0.0,
         max_speed_mps: float = 30.0,
         prior_turn_rate_rad_s: float = 0.0,
+        turn_rate_time_s: float = 0.0,
     ) -> None: ...
     def jacobian(self, x: ArrayLike, dt_s: float) -> NDArray[np.float64]:
         """

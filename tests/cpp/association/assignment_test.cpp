@@ -427,6 +427,23 @@ TEST(AssignDense, FindsMostPairsThenLeastCost) {
   }
 }
 
+/// A finite cost may be the largest number there is, which is how many mark a pair of last resort.
+template <class Scalar>
+void expect_the_largest_costs_are_taken() {
+  constexpr Scalar kMost = std::numeric_limits<Scalar>::max();
+  const std::vector<int> crossed{1, 0}, straight{0, 1};
+  using Cost = Eigen::Matrix<Scalar, 2, 2>;
+  EXPECT_EQ(assign_dense((Cost() << kMost, 1, 2, kMost).finished()), crossed);
+  EXPECT_EQ(assign_dense((Cost() << kMost, -kMost, 0, kMost).finished()), crossed);
+  EXPECT_EQ(assign_dense((Cost() << -kMost, 0, 0, -kMost).finished()), straight);
+  EXPECT_EQ(assign_dense(Cost::Constant(kMost).eval()), straight);
+}
+
+TEST(AssignDense, TakesTheLargestNumbers) {
+  expect_the_largest_costs_are_taken<double>();
+  expect_the_largest_costs_are_taken<float>();
+}
+
 TEST(AssignDense, TreatsEqualCostsAndForbiddenRows) {
   EXPECT_EQ(assign_dense(Eigen::MatrixXd::Constant(3, 3, 7.0)).size(), 3u);
   const auto forbidden = assign_dense(Eigen::MatrixXd::Constant(2, 3, kInfinity));

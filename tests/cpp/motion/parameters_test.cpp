@@ -82,6 +82,9 @@ TEST(MotionParameters, AWrongParameterIsNamedWithItsValue) {
   EXPECT_TRUE(
       names(complaint(CoordinatedTurnRate{.turn_rate_psd_rad2s3 = -2.5}), "turn_rate_psd_rad2s3"));
   EXPECT_TRUE(names(complaint(CoordinatedTurnRate{.turn_rate_psd_rad2s3 = -2.5}), "got -2.5"));
+  for (const double bad : {-1.0, kNan, kInfinity})
+    EXPECT_TRUE(names(complaint(CoordinatedTurnRate{.turn_rate_time_s = bad}), "turn_rate_time_s"))
+        << bad;
 }
 
 TEST(MotionParameters, PriorOfWhatAStartDoesNotKnow) {

@@ -103,18 +103,20 @@ constexpr double kRates[] = {0.0,    1e-300,  1e-13, 1e-7,  -1e-7, 1e-4, 7.9e-3,
                              8.1e-3, -8.1e-3, 0.05,  0.119, 0.121, -0.3, 1.2};
 
 TEST(CoordinatedTurnRate, JacobianIsTheDerivative) {
-  const CoordinatedTurnRate motion;
-  for (const double rate : kRates)
-    for (const double dt : {0.1, 2.5, 10.0}) {
-      Vec<double, 5> x;
-      x << 500, 7, -300, -4, rate;
-      const auto move = [&](const Vec<double, 5>& state) { return motion.transition(state, dt); };
-      // Central differences over h = 6e-6 of values near 1000: rounding 1000 eps / h = 4e-8, times
-      // dt of truncation.
-      EXPECT_TRUE(matrices_near(motion.jacobian(x, dt), numeric_jacobian(move, x),
-                                {.absolute = 3e-7, .relative = 1e-7}))
-          << "rate " << rate << ", dt " << dt;
-    }
+  for (const CoordinatedTurnRate& motion :
+       {CoordinatedTurnRate{},
+        CoordinatedTurnRate{.prior_turn_rate_rad_s = 0.1, .turn_rate_time_s = 20.0}})
+    for (const double rate : kRates)
+      for (const double dt : {0.1, 2.5, 10.0}) {
+        Vec<double, 5> x;
+        x << 500, 7, -300, -4, rate;
+        const auto move = [&](const Vec<double, 5>& state) { return motion.transition(state, dt); };
+        // Central differences over h = 6e-6 of values near 1000: rounding 1000 eps / h = 4e-8,
+        // times dt of truncation.
+        EXPECT_TRUE(matrices_near(motion.jacobian(x, dt), numeric_jacobian(move, x),
+                                  {.absolute = 3e-7, .relative = 1e-7}))
+            << "rate " << rate << ", dt " << dt;
+      }
 }
 
 TEST(CoordinatedTurnRate, FloatJacobianIsThatOfDouble) {
@@ -154,6 +156,27 @@ TYPED_TEST(TurnOf, NoiseOfTheRateActsAcrossTheCourse) {
     const Scalar along = q(1, 1) * 36 + 2 * q(1, 3) * 48 + q(3, 3) * 64;
     EXPECT_NEAR(along, 0.0, 1e-4) << "a turn does not change the speed";
     EXPECT_NEAR(q(1, 1) + q(3, 3), 100 * 1e-3 * 8.0 / 3.0, 1e-6) << "v² q dt³/3";
+    const auto root = semidefinite_root<5, Scalar>(q);
+    EXPECT_LT(covariance_difference(Mat<Scalar, 5, 5>(root * root.transpose()), q),
+              1e3 * this->kEpsilon);
+  }
+}
+
+TYPED_TEST(TurnOf, ARateThatReturnsForgetsItself) {
+  using Scalar = TypeParam;
+  constexpr double kTime = 40.0, kPsd = 1e-3, kPrior = 0.1;
+  const CoordinatedTurnRate motion{.noise = WhiteAcceleration{0.0},
+                                   .turn_rate_psd_rad2s3 = kPsd,
+                                   .prior_turn_rate_rad_s = kPrior,
+                                   .turn_rate_time_s = kTime};
+  Vec<Scalar, 5> x;
+  x << Scalar(0), Scalar(6), Scalar(0), Scalar(8), Scalar(0.3);
+  for (const double dt : {0.0, 0.01, 0.039, 0.041, 2.5, 40.0, 3600.0}) {
+    const double left = std::exp(-dt / kTime);
+    EXPECT_NEAR(motion.transition(x, Scalar(dt))[4], kPrior + 0.2 * left, 4 * this->kEpsilon);
+    const Mat<Scalar, 5, 5> q = motion.process_noise(x, Scalar(dt));
+    const double variance = -kPsd * kTime / 2 * std::expm1(-2 * dt / kTime);
+    EXPECT_NEAR(q(4, 4), variance, std::max(1e-8, 1e3 * this->kEpsilon) * variance) << dt;
     const auto root = semidefinite_root<5, Scalar>(q);
     EXPECT_LT(covariance_difference(Mat<Scalar, 5, 5>(root * root.transpose()), q),
               1e3 * this->kEpsilon);

@@ -260,5 +260,34 @@ TEST(Many, TheClutterMapQuietensAShoal) {
   EXPECT_LE(10 * with, without) << with;
 }
 
+/// The probability of existence that a start among false plots has, one of which came in every scan
+/// before, in a cell of the map.
+double existence_of_a_start(double clutter_density_per_m2, double cell_m, double memory_s) {
+  VesselTracker tracker = make_tracker({.clutter_density_per_m2 = clutter_density_per_m2,
+                                        .clutter_cell_m = cell_m,
+                                        .clutter_memory_s = memory_s});
+  const OwnShip middle{.north_m = cell_m / 2, .east_m = cell_m / 2};
+  const Vec<double, 2> spot(0.0, 200.0);
+  double existence = 0.0;
+  for (int k = 0; k <= 1001; ++k) {  // on two spots in turn, too far apart for a start; at last not
+    const bool odd = k % 2 == 1 && k < 1001;
+    Plot plot = exact_plot((odd ? 1.0 : -1.0) * spot, 2.5 * k);
+    plot.own = middle;
+    (void)tracker.process(2.5 * k, {&plot, 1});
+    EXPECT_EQ(tracker.size(), k == 1001 ? 1 : 0);
+  }
+  tracker.for_each([&](const VesselTrack& track) { existence = track.existence; });
+  return existence;
+}
+
+TEST(Many, AFalsePlotInEveryScanIsADensityOfOnePerCell) {
+  constexpr double kCell = 40'000.0, kDensity = 1e-12;
+  const double expected =
+      TrackerConfig{}.initial_existence * kDensity / (kDensity + 1.0 / (kCell * kCell));
+  for (const double memory_s : {2.5, 10.0, 60.0})
+    EXPECT_NEAR(existence_of_a_start(kDensity, kCell, memory_s) / expected, 1.0, 0.03)
+        << memory_s << " s";
+}
+
 }  // namespace
 }  // namespace wakeline

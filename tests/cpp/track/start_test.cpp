@@ -38,6 +38,23 @@ TEST(SpeedPrior, IsAKalmanUpdateWithAVelocityOfZero) {
   }
 }
 
+TEST(SpeedPrior, KnowsTheVelocityHoweverShortTheTimeBetweenTwoPlots) {
+  const Mat<double, 2, 2> unit = Mat<double, 2, 2>::Identity();
+  const Gaussian<2> first{{1000.0, 0.0}, 100.0 * unit}, second{{1004.0, -3.0}, 100.0 * unit};
+  for (const double dt_s : {1e-3, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12}) {
+    const Gaussian<4> belief = with_speed_prior(two_point<double>(first, second, dt_s), 20.0);
+    // Without time between them they are two plots of one place, which tell nothing of a velocity.
+    EXPECT_TRUE(matrices_near(belief.mean, Vec<double, 4>(1002.0, 0.0, -1.5, 0.0),
+                              {.absolute = 0.02, .relative = 0}))
+        << dt_s << " s\n" << belief.mean;
+    EXPECT_TRUE(matrices_near(belief.covariance.diagonal().eval(),
+                              Vec<double, 4>(50.0, 400.0, 50.0, 400.0),
+                              {.absolute = 0, .relative = 1e-3}))
+        << dt_s << " s\n" << belief.covariance;
+    EXPECT_TRUE(Cholesky<4>(belief.covariance).ok()) << dt_s << " s";
+  }
+}
+
 TEST(SpeedPrior, SlowsButNeverTurnsRound) {
   const Gaussian<2> first{{1000.0, 0.0}, 100.0 * Mat<double, 2, 2>::Identity()};
   const Gaussian<2> second{{1000.0, 60.0}, 100.0 * Mat<double, 2, 2>::Identity()};

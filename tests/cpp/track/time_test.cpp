@@ -78,6 +78,40 @@ TEST(RotatingAntenna, TheEstimateIsOfThePlotsTime) {
   EXPECT_EQ(tracker.kinematics_at(track, track.time_s - 1.0).mean, track.kinematics.mean);
 }
 
+/// Error of the position of a boat in a steady turn, m, each of whose plots comes again so much
+/// later; never where that is 0.
+double rmse_with_plots_that_come_again(double late_s) {
+  constexpr double kRate_rad_s = 0.05, kRadius_m = 160.0;
+  const auto at = [&](double time_s) -> Vec<double, 2> {
+    const double angle = kRate_rad_s * time_s;
+    return {2000.0 + kRadius_m * std::cos(angle), 500.0 + kRadius_m * std::sin(angle)};
+  };
+  double squared = 0.0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Sea sea(seed), again(seed + 1000);
+    VesselTracker tracker = make_tracker();
+    for (int k = 0; k < 200; ++k) {
+      const double time_s = 2.5 * k;
+      std::vector<Plot> plots{sea.plot(at(time_s), time_s)};
+      if (late_s > 0.0) plots.push_back(again.plot(at(time_s - late_s), time_s - late_s));
+      (void)tracker.process(time_s, plots);
+      const VesselTrack* track = track_at(tracker, at(time_s), 300.0);
+      if (k < 20 || track == nullptr) continue;
+      squared += (track->position() - at(track->time_s)).squaredNorm();
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 1750);
+  return std::sqrt(squared / count);
+}
+
+TEST(LatePlots, AreBelievedAsFarAsTheVelocityIsKnown) {
+  const double without = rmse_with_plots_that_come_again(0.0);
+  for (const double late_s : {2.5, 10.0, 20.0})
+    EXPECT_LT(rmse_with_plots_that_come_again(late_s), 1.45 * without) << late_s << " s";
+}
+
 TEST(BearingOffset, IsTakenOut) {
   Radar skewed = kTestRadar;
   skewed.bearing_offset_rad = deg(2.0);

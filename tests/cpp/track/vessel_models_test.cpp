@@ -98,6 +98,28 @@ TEST(VesselModelsOfShips, HoldAShipThatAltersHerCourse) {
   EXPECT_LT(std::sqrt(squared), 1.0) << "three minutes after the turn";
 }
 
+TEST(VesselModels, AVesselAtAnchorStaysAtRestForHours) {
+  constexpr int kScans = 3000;
+  for (const double period_s : {1.0, 2.5, 6.0}) {
+    Radar radar = kTestRadar;
+    radar.period_s = period_s;
+    Sea sea(1, radar);
+    VesselTracker tracker = make_tracker({}, radar);
+    double squared = 0.0;
+    for (int k = 1; k <= kScans; ++k) {
+      const double time_s = period_s * k;
+      std::vector<Plot> plots;
+      if (sea.draw.uniform(0, 1) < 0.9) plots.push_back(sea.plot({1500.0, 300.0}, time_s));
+      ASSERT_EQ(tracker.process(time_s, plots).status, Status::kOk);
+      if (k < 30) continue;
+      const VesselTrack* track = tracker.find(1);
+      ASSERT_NE(track, nullptr) << period_s << " s, scan " << k;
+      squared += track->velocity().squaredNorm() / kScans;
+    }
+    EXPECT_LT(std::sqrt(squared), 0.5) << period_s << " s";
+  }
+}
+
 TEST(VesselModels, BelieveInNoVesselThatGoesFullCircleBetweenTwoScans) {
   const RangeBearing sensor{.range_std_m = 60.0, .bearing_std_rad = deg(0.5)};
   const Boat boat{{6000.0, 3000.0}, {-3.0, 4.0}};

@@ -49,15 +49,21 @@ class DenseAssignment {
         least = std::min(least, element);
         most = std::max(most, element);
       }
-    const Scalar spread = most > least ? most - least : Scalar(1);
-    const Scalar unassigned_cost = static_cast<Scalar>(std::min(rows, columns) + 1) * spread;
+    // Costs near the largest number there is are made smaller, lest their sums overflow.
+    const Scalar more_than_pairs = static_cast<Scalar>(std::min(rows, columns) + 1);
+    const Scalar small = Scalar(1) / (Scalar(16) * more_than_pairs);
+    const Scalar safe = small * std::numeric_limits<Scalar>::max();
+    const Scalar scale = most > safe || least < -safe ? small : Scalar(1);
+    const Scalar spread = most > least ? scale * most - scale * least : Scalar(1);
+    const Scalar unassigned_cost = more_than_pairs * spread;
 
     // Costs count from the least one, which changes no choice among assignments of equally many
     // pairs.
     for (int row = 0; row < rows; ++row) {
       candidates_.start_row(unassigned_cost);
       for (int column = 0; column < columns; ++column)
-        candidates_.add(column, cost(row, column) - least);  // refuses what is not finite
+        candidates_.add(column, scale * cost(row, column) -
+                                    scale * least);  // refuses what is not finite
     }
     return solver_.solve(candidates_);
   }

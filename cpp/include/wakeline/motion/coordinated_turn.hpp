@@ -46,12 +46,15 @@ struct KnownTurn {
 using CoordinatedTurn = KnownTurn<double>;
 
 /// A turn whose rate is part of the state and wanders: `[x, vx, y, vy, omega]` (m, m/s, rad/s).
-/// Source: Bar-Shalom, Li, Kirubarajan, 11.7.2.
+///
+/// Without `turn_rate_time_s` it wanders without end. With it the rate returns to its prior, as the
+/// acceleration of Singer's model does; of a target at rest, whose turns nobody sees, an estimator
+/// else comes to believe in half a turn a scan. Source: Bar-Shalom, Li, Kirubarajan, 11.7.2, 8.2.
 struct CoordinatedTurnRate {
   static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
                                           Component::kVeast, Component::kTurnRate};
   static constexpr bool kForPacks = true;
-  static constexpr Pattern<5> kPattern{"1x0xx 0x0xx 0x1xx 0x0xx 00001"};
+  static constexpr Pattern<5> kPattern{"1x0xx 0x0xx 0x1xx 0x0xx 0000x"};
 
   ProcessNoise noise = WhiteAcceleration{};
   double turn_rate_psd_rad2s3 = 1e-4;           ///< density of the white noise that drives omega
@@ -59,6 +62,7 @@ struct CoordinatedTurnRate {
   double course_psd_rad2s = 0.0;                ///< wander of the course, as in WanderingCourse
   double max_speed_mps = 30.0;                  ///< speed that this wander grows up to
   double prior_turn_rate_rad_s = 0.0;  ///< the rate that `prior_turn_rate_std_rad_s` is about
+  double turn_rate_time_s = 0.0;  ///< correlation time in which omega returns to it; 0: never
 
   /// f(x, dt).
   template <class Scalar>
@@ -69,7 +73,7 @@ struct CoordinatedTurnRate {
     next[1] = turn.cosine * x[1] - turn.sine * x[3];
     next[2] = x[2] + turn.across_s * x[1] + turn.along_s * x[3];
     next[3] = turn.sine * x[1] + turn.cosine * x[3];
-    next[4] = x[4];
+    next[4] = x[4] + (1 - remembered(dt_s)) * (Scalar(prior_turn_rate_rad_s) - x[4]);
     return next;
   }
 
@@ -85,6 +89,7 @@ struct CoordinatedTurnRate {
     f(1, 4) = dt_s * (-turn.sine * vx - turn.cosine * vy);
     f(2, 4) = slope[1] * vx + slope[0] * vy;
     f(3, 4) = dt_s * (turn.cosine * vx - turn.sine * vy);
+    f(4, 4) = remembered(dt_s);
     return f;
   }
 
@@ -95,7 +100,7 @@ struct CoordinatedTurnRate {
   Mat<Scalar, 5, 5> process_noise(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
     // Position and velocity, to the north and to the east, are `across` times two of the chain's
     // integrators.
-    const Scalar across[5] = {-x[3], -x[3], x[1], x[1], Scalar(1)};
+    const Scalar across[5] = {-x[3], -x[3], x[1], x[1], kept_wander(dt_s)};
     constexpr int kIntegrator[5] = {0, 1, 0, 1, 2};
     Mat<Scalar, 3, 3> chain =
         ProcessNoise(WhiteJerk{turn_rate_psd_rad2s3}).of_acceleration_axis(dt_s);
@@ -121,8 +126,30 @@ struct CoordinatedTurnRate {
     require_not_negative("turn_rate_psd_rad2s3", turn_rate_psd_rad2s3);
     require_positive("prior_turn_rate_std_rad_s", prior_turn_rate_std_rad_s);
     require_finite("prior_turn_rate_rad_s", prior_turn_rate_rad_s);
+    require_not_negative("turn_rate_time_s", turn_rate_time_s);
     require_not_negative("course_psd_rad2s", course_psd_rad2s);
     require_positive("max_speed_mps", max_speed_mps);
+  }
+
+ private:
+  /// How much of omega's distance from its prior mean a step leaves.
+  template <class Scalar>
+  Scalar remembered(Scalar dt_s) const noexcept {
+    using std::exp;
+    return turn_rate_time_s > 0.0 ? exp(-dt_s / Scalar(turn_rate_time_s)) : Scalar(1);
+  }
+
+  /// The standard deviation of omega that a step adds, over that without any return: the square
+  /// root of (1 - e^-2u) / 2u, u = dt / turn_rate_time_s.
+  template <class Scalar>
+  Scalar kept_wander(Scalar dt_s) const noexcept {
+    using std::sqrt;
+    if (!(turn_rate_time_s > 0.0)) return Scalar(1);
+    const Scalar u = dt_s / Scalar(turn_rate_time_s);
+    const Scalar left = remembered(dt_s);
+    const auto is_short = u < Scalar(1e-3);
+    const Scalar divisor = select(is_short, Scalar(1), 2 * u);
+    return sqrt(select(is_short, 1 - u * (1 - 2 * u / 3), (1 - left * left) / divisor));
   }
 };
 

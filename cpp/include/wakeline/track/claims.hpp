@@ -14,10 +14,11 @@ namespace wakeline {
 /// A plot in the gate of a track.
 struct Claim {
   int echo;
-  Vec<double, 2> z;         ///< brought to the track's time
-  double likelihood = 0.0;  ///< under all modes, nominal and wild
-  double odds = 0.0;        ///< that it is this track's
-  double nis = 0.0;         ///< under the moment-matched prediction
+  Vec<double, 2> z;            ///< brought to the track's time
+  Mat<double, 2, 2> moved_m2;  ///< covariance that this adds to the plot's own
+  double likelihood = 0.0;     ///< under all modes, nominal and wild
+  double odds = 0.0;           ///< that it is this track's
+  double nis = 0.0;            ///< under the moment-matched prediction
 };
 
 /// The likeliest plots of one track, best first.

@@ -55,7 +55,8 @@ class ClutterMap {
 
   [[nodiscard]] bool enabled() const noexcept { return cell_m_ > 0.0; }
 
-  /// False plots per m² and scan about a position, for scans `period_s` apart.
+  /// False plots per m² and scan about a position, for scans `period_s` apart, of which the last
+  /// was at `time_s`.
   [[nodiscard]] double density(const Vec<double, 2>& position, double time_s,
                                double period_s) const noexcept {
     if (!enabled()) return 0.0;

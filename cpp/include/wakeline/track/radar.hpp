@@ -16,7 +16,7 @@ struct Radar {
   double bearing_std_rad = deg(1.0);
   double extent_std_m = 5.0;        ///< wander of an echo over its hull, per axis
   double period_s = 3.0;            ///< of the antenna
-  double max_speed_mps = 30.0;      ///< of the vessels
+  double max_speed_mps = 30.0;      ///< of the vessels, with a fifth to spare: tracks above end
   double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
 
   /// A plot seen from own ship as a position with its covariance.

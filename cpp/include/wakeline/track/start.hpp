@@ -10,18 +10,25 @@
 namespace wakeline {
 
 /// A belief over `[x, vx, y, vy]` after learning that the velocity is drawn from N(0, std² I): what
-/// a speed limit says of a start from two plots.
+/// a speed limit says of a start from two plots. In Joseph form, as the velocity of two plots that
+/// are no time apart is far wider than the limit.
 inline Gaussian<4> with_speed_prior(const Gaussian<4>& belief, double speed_std_mps) noexcept {
   Mat<double, 2, 4> velocity_rows;
   velocity_rows << belief.covariance.row(1), belief.covariance.row(3);
+  const double variance = speed_std_mps * speed_std_mps;
   Mat<double, 2, 2> s;
   s << velocity_rows.col(1), velocity_rows.col(3);
-  s.diagonal().array() += speed_std_mps * speed_std_mps;
+  s.diagonal().array() += variance;
   const Cholesky<2> factor(s);
   if (!factor.ok()) return belief;
-  const Mat<double, 2, 4> gain = factor.whiten<4>(velocity_rows);
-  const Vec<double, 2> excess = factor.whiten<1>(Vec<double, 2>(-belief.mean[1], -belief.mean[3]));
-  return {belief.mean + gain.transpose() * excess, belief.covariance - gain.transpose() * gain};
+  const Mat<double, 4, 2> gain = factor.solve<4>(velocity_rows).transpose();
+  Mat<double, 4, 4> rest = Mat<double, 4, 4>::Identity();
+  rest.col(1) -= gain.col(0);
+  rest.col(3) -= gain.col(1);
+  Gaussian<4> slower{rest * belief.mean, rest * belief.covariance * rest.transpose() +
+                                             variance * gain * gain.transpose()};
+  mirror_lower(slower.covariance);
+  return slower;
 }
 
 /// Whether a target under a speed limit can have given both plots: their distance is at most what

@@ -90,6 +90,10 @@ struct Track {
   [[nodiscard]] Vec<double, 2> velocity() const noexcept {
     return {kinematics.mean[1], kinematics.mean[3]};
   }
+  [[nodiscard]] Mat<double, 2, 2> velocity_covariance() const noexcept {
+    const auto rows = Eigen::seqN(1, Eigen::fix<2>, Eigen::fix<2>);
+    return kinematics.covariance(rows, rows);
+  }
   [[nodiscard]] std::string_view label() const noexcept { return name.data(); }
 
   /// Time passes: the target may leave, be hidden from the radar, or be seen again.

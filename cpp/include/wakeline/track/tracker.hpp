@@ -259,10 +259,12 @@ class Tracker {
     plot_track_id_.assign(count, 0);
     echoes_.take(radar_, plots.first(count), time_s_,
                  std::max(kClockPeriods * radar_.period_s, dt_s));
+    // The map as it was when it had learned the scan before: a period later it has faded by one.
+    const double learned_s = time_s_ - std::min(dt_s, radar_.period_s);
     for (Echo& echo : echoes_)
       echo.density =
           config_.clutter_density_per_m2 +
-          config_.clutter_weight * map_.density(echo.position.mean, time_s_, radar_.period_s);
+          config_.clutter_weight * map_.density(echo.position.mean, learned_s, radar_.period_s);
     return static_cast<int>(plots.size()) - echoes_.size();
   }
 
@@ -316,26 +318,34 @@ class Tracker {
     const auto& p = track.kinematics.covariance;
     modes_.take(track.estimator);
     const double own_m = 3.0 * std::sqrt(threshold * (p(0, 0) + p(2, 2)));
-    const double moved = echoes_.apart_s(track.time_s) * track.velocity().cwiseAbs().maxCoeff();
+    const double apart_s = echoes_.apart_s(track.time_s);
+    const double moved = apart_s * track.velocity().cwiseAbs().maxCoeff();
+    const Mat<double, 2, 2> velocity_covariance = track.velocity_covariance();
+    const double moved_m2 = apart_s * apart_s * velocity_covariance.trace();
     const auto reach_m = [&](double plot_m2) {
-      const double wild_m2 = config_.wild_variance() * plot_m2;
+      const double wild_m2 = config_.wild_variance() * plot_m2 + moved_m2;
       // Generous: the widest mode of an estimator may be some times wider than the mixture.
       const double generous = own_m + std::sqrt(threshold * wild_m2);
-      return std::min(generous, modes_.reach_m(track.position(), wild_m2, threshold) + moved);
+      return std::min(generous, modes_.reach_m(track.position(), wild_m2, threshold)) + moved;
     };
     echoes_.for_each_near(track.position(), reach_m, [&](int index) {
       const Gaussian<2>& position = echoes_[index].position;
-      // The plot moves along with the track from its own time to the track's.
+      // The plot moves along with the track from its own time to the track's, with a velocity that
+      // is not known for certain.
       const double dt_s = track.time_s - echoes_[index].time_s;
-      Claim claim{.echo = index, .z = position.mean + dt_s * track.velocity()};
-      const Mat<double, 2, 2> wild_covariance = config_.wild_variance() * position.covariance;
+      Claim claim{.echo = index,
+                  .z = position.mean + dt_s * track.velocity(),
+                  .moved_m2 = dt_s * dt_s * velocity_covariance};
+      const Mat<double, 2, 2> wild_covariance =
+          config_.wild_variance() * position.covariance + claim.moved_m2;
       if (!modes_.may_own(claim.z, wild_covariance, threshold)) return;
       const Evidence<double> wild = evidence(track, claim.z, wild_covariance);
       if (!gate_.contains(wild.least_nis)) return;
-      const Evidence<double> nominal = evidence(track, claim.z, position.covariance);
+      const Mat<double, 2, 2> covariance = position.covariance + claim.moved_m2;
+      const Evidence<double> nominal = evidence(track, claim.z, covariance);
       claim.likelihood = (1.0 - config_.wild_probability) * nominal.likelihood +
                          config_.wild_probability * wild.likelihood;
-      claim.nis = squared_distance(track.kinematics, claim.z, position.covariance);
+      claim.nis = squared_distance(track.kinematics, claim.z, covariance);
       claims.add(claim);
     });
   }
@@ -466,10 +476,11 @@ class Tracker {
       const double claimed_by_others = std::max(echo.odds - claim.odds, 0.0);
       const double weight =
           config_.detection_probability * track.visibility / (echo.density + claimed_by_others);
-      readings.fixes[count++] = {Fix{echo.position.covariance}, claim.z,
+      const Mat<double, 2, 2>& nominal_m2 = echo.position.covariance;
+      readings.fixes[count++] = {Fix{nominal_m2 + claim.moved_m2}, claim.z,
                                  (1.0 - config_.wild_probability) * weight};
-      readings.fixes[count++] = {Fix{config_.wild_variance() * echo.position.covariance}, claim.z,
-                                 config_.wild_probability * weight};
+      readings.fixes[count++] = {Fix{config_.wild_variance() * nominal_m2 + claim.moved_m2},
+                                 claim.z, config_.wild_probability * weight};
     }
     return count;
   }

@@ -21,7 +21,7 @@ struct VesselModels {
   double turning_psd_m2s3 = 3.0;
   double turning_course_psd_rad2s = 0.05;
   double turn_rate_psd_rad2s3 = 0.0003;    ///< wander of the rate of turn
-  double prior_turn_rate_std_rad_s = 0.2;  ///< rate of turn before it is known
+  double prior_turn_rate_std_rad_s = 0.2;  ///< rate of turn before it is known, and in the long run
   double steady_sojourn_s = 300.0;         ///< mean time in each mode
   double restless_sojourn_s = 90.0;
   double turning_sojourn_s = 80.0;
@@ -63,12 +63,16 @@ struct VesselModels {
   [[nodiscard]] WanderingCourse restless(double max_speed_mps) const noexcept {
     return {restless_psd_m2s3, restless_course_psd_rad2s, max_speed_mps};
   }
+  /// The wander of the rate of turn and its return balance at the prior.
   [[nodiscard]] CoordinatedTurnRate turning(double max_speed_mps) const noexcept {
+    const double prior_variance = prior_turn_rate_std_rad_s * prior_turn_rate_std_rad_s;
     return {.noise = WhiteAcceleration{turning_psd_m2s3},
             .turn_rate_psd_rad2s3 = turn_rate_psd_rad2s3,
             .prior_turn_rate_std_rad_s = prior_turn_rate_std_rad_s,
             .course_psd_rad2s = turning_course_psd_rad2s,
-            .max_speed_mps = max_speed_mps};
+            .max_speed_mps = max_speed_mps,
+            .turn_rate_time_s =
+                turn_rate_psd_rad2s3 > 0.0 ? 2.0 * prior_variance / turn_rate_psd_rad2s3 : 0.0};
   }
 };
 
