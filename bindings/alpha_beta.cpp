@@ -44,6 +44,10 @@ void define_gains(py::class_<Schedule>& schedule) {
       [](const Schedule& s, int order, std::int64_t reading, double elapsed_s, double std_m,
          double range_m) {
         require_order(order);
+        require(reading >= 1, "reading", "1 or more", static_cast<double>(reading));
+        require_not_negative("elapsed_s", elapsed_s);
+        require_positive("std_m", std_m);
+        require_not_negative("range_m", range_m);
         const GainOccasion<double> occasion{reading, elapsed_s, std_m, range_m};
         if constexpr (OfThree) {
           if (order == 3) {
@@ -124,7 +128,7 @@ max_plots : int
 
   py::class_<CriticallyDamped> damped(
       m, "CriticallyDamped",
-      "All poles at theta: the least-squares line or parabola with weights theta² a reading back "
+      "All poles at theta: the least-squares line or parabola with weights theta a reading back "
       "(fading memory).");
   damped.def(py::init([](double theta) { return CriticallyDamped{theta}; }), py::arg("theta"))
       .def_readonly("theta", &CriticallyDamped::theta)

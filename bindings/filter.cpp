@@ -254,8 +254,7 @@ FilterError
       "two_point",
       [](const py::object& sensor, const DoubleArray& first, const DoubleArray& second,
          double dt_s) {
-        if (!(dt_s > 0.0))
-          throw py::value_error("dt_s must be positive, got " + std::to_string(dt_s));
+        require_positive("dt_s", dt_s);
         return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
           constexpr int kM = Sensor::kMeasurements;
           return PyGaussian::from(two_point<Sensor, double>(model, to_plot<kM>("first", first),
@@ -263,7 +262,8 @@ FilterError
         });
       },
       py::arg("sensor"), py::arg("first"), py::arg("second"), py::arg("dt_s"),
-      "Start over [x, vx, y, vy] from two plots dt_s apart.");
+      "Start over [x, vx, y, vy] from two plots dt_s apart. The own ship of the sensor is where "
+      "the second one was taken, to which it has come at its velocity.");
 
   define_alpha_beta(m);
   define_smoothers(m);

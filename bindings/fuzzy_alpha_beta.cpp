@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -210,15 +211,19 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
             require_shape(ratios.ndim() == 1 && ratios.size() >= 1 && ratios.size() <= most,
                           "ratios", "(n,), n from 1 to " + std::to_string(most), ratios);
             const auto lines = static_cast<std::size_t>(ratios.size());
+            std::vector<double> clipped(ratios.data(), ratios.data() + lines);
+            for (double& ratio : clipped) {
+              require(ratio >= 0.0, "ratios", "0 or more", ratio);
+              ratio = std::min(ratio, estimator.criterion().clip);
+            }
             std::vector<double> strengths(lines + 1);
             const double quality =
-                estimator.criterion().judge({ratios.data(), lines}, {strengths.data(), lines + 1});
+                estimator.criterion().judge(clipped, {strengths.data(), lines + 1});
             return std::pair<double, py::array_t<double>>(quality, to_array(strengths));
           },
           py::arg("ratios"),
           "The machine alone: its output and the strengths (n + 1,) of its rules for the ratios "
-          "(n,) "
-          "of the lines through 2, 3, ... plots.")
+          "(n,), 0 or more, of the lines through 2, 3, ... plots.")
       .def("trace", &trace_runs, py::arg("z"), py::arg("dt_s"), py::arg("sensor"), py::arg("start"),
            R"(What the criterion sees and does in every scan of whole recordings.
 

@@ -235,7 +235,8 @@ void define_three_point(py::module_& m) {
       m, "ThreePointSmoother",
       R"(Each reading smoothed by its neighbours, at uneven steps; (22), (24), (25).
 
-The value and the rate are those at the reading before the newest.
+The value and the rate are those at the reading before the newest. A reading of the time of the one before joins it: both become
+their mean.
 
 Parameters
 ----------
@@ -362,6 +363,7 @@ max_plots : int
           "gains",
           [](const RecentMemory& schedule, std::int64_t reading) {
             schedule.validate<2>();
+            require(reading >= 1, "reading", "1 or more", static_cast<double>(reading));
             return to_array(schedule.gains<2, double>({.reading = reading}));
           },
           py::kw_only(), py::arg("reading") = 1, "[alpha, beta] for the reading-th reading.");

@@ -24,7 +24,7 @@ def progress(items: Iterable[T], total: int, label: str) -> Iterator[T]:
     label : str
         What is being done.
     """
-    if not sys.stderr.isatty():
+    if not _seen():
         yield from items
         return
     drawn_s = time.monotonic()
@@ -40,7 +40,7 @@ def progress(items: Iterable[T], total: int, label: str) -> Iterator[T]:
 
 def counted(items: Iterable[T], label: str) -> Iterator[T]:
     """Hand on `items` of which nobody knows how many there are, with a count where that is seen."""
-    if not sys.stderr.isatty():
+    if not _seen():
         yield from items
         return
     try:
@@ -49,6 +49,11 @@ def counted(items: Iterable[T], label: str) -> Iterator[T]:
             yield item
     finally:
         _draw("")
+
+
+def _seen() -> bool:
+    """Whether stderr is a terminal; where it is closed there is none."""
+    return sys.stderr is not None and sys.stderr.isatty()
 
 
 def _bar(done: int, total: int) -> str:

@@ -77,8 +77,9 @@ def position_m(
 
 
 def turn_rate_rad_s(track: AisTrack | Tracks) -> float:
-    """Slope of the reported course over the last half minute; zero of fewer than three reports."""
+    """Slope of the courses reported over the last half minute; zero of fewer than three."""
     recent = _last(_reports(track), _RATE_OVER_S)
+    recent = recent.rows(np.isfinite(recent.course_rad))
     if len(recent) < 3:
         return 0.0
     return float(np.polyfit(_age_s(recent), np.unwrap(recent.course_rad), 1)[0])
@@ -156,7 +157,7 @@ def _reports(track: AisTrack | Tracks) -> AisTrack:
 
 def _age_s(track: AisTrack) -> np.ndarray:
     """Times of the reports, that of the last being zero."""
-    return track.time_s - track.time_s[-1]
+    return track.time_s - track.time_s[-1:]
 
 
 def _last(track: AisTrack, over_s: float) -> AisTrack:

@@ -62,6 +62,17 @@ def test_growing_memory_is_the_polynomial_fit(seed, scans, dt_s):
         np.testing.assert_allclose(mean.reshape(2, -1) / scale, fit.T / scale, atol=1e-8)
 
 
+@pytest.mark.parametrize(("one", "degree"), [(wl.AlphaBeta, 1), (wl.AlphaBetaGamma, 2)])
+def test_critically_damped_weighs_readings_by_theta_a_reading_back(one, degree):
+    theta, scans, dt_s = 0.7, 200, 2.0
+    z = np.random.default_rng(3).normal(0.0, 10.0, (scans, 2))
+    age = dt_s * np.arange(1 - scans, 1)
+    mean = one(wl.CriticallyDamped(theta)).run(z, dt_s=dt_s, sensor=POSITION, start=START).mean[-1]
+    root_weight = theta ** (np.arange(scans)[::-1] / 2)  # that of the squares is theta a reading
+    fit = np.polynomial.polynomial.polyfit(age, z, degree, w=root_weight)
+    np.testing.assert_allclose(mean.reshape(2, -1)[:, :2], fit.T[:, :2], atol=1e-6)
+
+
 def test_a_tracking_index_is_the_kalman_filter_in_its_steady_state():
     z = readings(300, seed=5)
     accel = wl.PiecewiseAcceleration(std_mps2=0.2)
@@ -141,6 +152,11 @@ def test_gains_can_be_asked_for():
         ),
         (lambda: wl.BenedictBordner(0.5).gains(3), ValueError, "order"),
         (lambda: wl.TrackingIndex(0.5).gains(4), ValueError, "order"),
+        (lambda: wl.GrowingMemory().gains(reading=0), ValueError, "reading"),
+        (lambda: wl.GrowingMemory().gains(reading=-1000), ValueError, "reading"),
+        (lambda: wl.TrackingIndex(0.5).gains(elapsed_s=-1.0), ValueError, "elapsed_s"),
+        (lambda: wl.TrackingIndex(0.5).gains(std_m=0.0), ValueError, "std_m"),
+        (lambda: wl.RangeDependent().gains(range_m=np.nan), ValueError, "range_m"),
         (lambda: wl.TrackingIndex(0.5).steady_covariance(0.0, 1.0), ValueError, "period_s"),
     ],
 )

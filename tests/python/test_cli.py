@@ -153,6 +153,25 @@ def test_score_says_what_metrics_says(demo, name, tmp_path, capsys):
     assert json.loads((tmp_path / "again.json").read_text()) == written
 
 
+def test_a_score_needs_scans(demo, tmp_path, capsys):
+    own = write_plots(tmp_path / "own.csv", [(1495196200 + k, 0, 0) for k in range(340)])
+    files = [demo / "joyride" / "tracks.csv", bundled("joyride", "truth"), "--scans", own]
+    message = refused(capsys, "score", *files)
+    assert message == (
+        f"wakeline: {own}, line 1: there are no scans; wanted a column scan, or --plots\n"
+    )
+    assert main([*map(str, ["score", *files, "--plots", bundled("joyride", "plots")])]) == 0
+
+
+def test_a_score_of_no_scans_says_why(tmp_path, capsys):
+    plots = write_plots(tmp_path / "plots.csv", boat(40))
+    rows = [(1001.0 + 4.0 * k, "A", *boat(40)[0, 1:]) for k in range(20)]
+    truth = write_plots(tmp_path / "truth.csv", rows, "time_s,target,north_m,east_m")
+    assert track(plots, "--truth", truth, "--out", tmp_path) == 0
+    told = "no scan counts: of 40 truth of a target is known in at most 4,"
+    assert told in capsys.readouterr().out
+
+
 def test_score_with_another_gate(demo, tmp_path):
     files = [demo / "joyride" / "tracks.csv", bundled("joyride", "truth")]
     scans = ["--scans", bundled("joyride", "scans"), "--json", tmp_path / "score.json"]
@@ -214,6 +233,23 @@ def test_track_with_truth_scores_as_well(tmp_path, capsys):
     assert row["coverage"] >= 0.97
     assert row["scans"] == 115
     assert "coverage" in capsys.readouterr().out
+
+
+def test_plots_are_shown_and_scored_without_the_offset_of_the_radar(tmp_path):
+    time_s, north_m, east_m = boat(40).T
+    bearing_deg = np.degrees(np.arctan2(east_m, north_m)) + 5.0
+    polar = np.column_stack([time_s, np.hypot(north_m, east_m), bearing_deg])
+    plots = write_plots(tmp_path / "plots.csv", polar, "time_s,range_m,bearing_deg")
+    rows = [(t, "A", n, e) for t, n, e in zip(time_s, north_m, east_m, strict=True)]
+    truth = write_plots(tmp_path / "truth.csv", rows, "time_s,target,north_m,east_m")
+    (tmp_path / "radar.toml").write_text("bearing_offset_deg = 5.0\n")
+    options = ["--radar", tmp_path / "radar.toml", "--out", tmp_path]
+    assert track(plots, "--truth", truth, *options, "--json", tmp_path / "track.json") == 0
+    shown = read_rows(tmp_path / "plots_tracks.csv")
+    place_m = [[float(row["north_m"]), float(row["east_m"])] for row in shown]
+    np.testing.assert_allclose(place_m, np.column_stack([north_m, east_m]), atol=1e-6)
+    row = json.loads((tmp_path / "track.json").read_text())["rows"][-1]
+    assert row["coverage"] == 1.0
 
 
 def test_range_and_bearing_give_the_tracks_of_north_and_east(plots_csv, tmp_path):
@@ -587,6 +623,14 @@ def test_a_reader_that_leaves_and_a_silent_stderr():
         errors = process.stderr.read()
     assert process.returncode == 141
     assert errors == b""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the shell of POSIX closes the outputs")
+def test_closed_outputs_are_none(plots_csv, tmp_path):
+    command = [sys.executable, "-m", cli.__name__, "track", plots_csv, "--out", tmp_path / "out"]
+    closed = ["sh", "-c", 'exec "$@" >&- 2>&-', "sh", *map(str, command)]
+    assert subprocess.run(closed, check=False).returncode == 0
+    assert (tmp_path / "out" / "tracks.csv").exists()
 
 
 def test_an_output_that_knows_ascii_only_loses_signs_and_no_scores():

@@ -43,6 +43,12 @@ def test_printed_settings_read_back_the_same(tmp_path, capsys):
             assert f"# {about}\n{key} = " in text
 
 
+def test_a_byte_order_mark_does_not_matter(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_bytes(b"\xef\xbb\xbfrange_std_m = 3.0\n")
+    assert read_settings(radar=str(path)).radar["range_std_m"] == 3.0
+
+
 def test_changed_settings_read_back_the_same(tmp_path, capsys):
     changed = """
         [tracker]

@@ -145,6 +145,13 @@ def test_two_point_start_is_the_line_through_both():
     )
 
 
+def test_a_two_point_start_knows_that_own_ship_moves():
+    own = wl.OwnShip(vnorth_mps=10.0)
+    radar = wl.RangeBearing(range_std_m=10.0, bearing_std_rad=1e-4, own=own)
+    belief = wl.two_point(radar, [5030.0, 0.0], [5000.0, 0.0], 3.0)  # of a buoy ahead
+    np.testing.assert_allclose(belief.mean, [5000.0, 0.0, 0.0, 0.0], atol=1e-3)
+
+
 def test_one_point_start_knows_the_place_and_a_speed():
     belief = wl.one_point(RADAR, [3000.0, 0.3], 12.0)
     np.testing.assert_allclose(belief.mean[[1, 3]], 0.0)
@@ -455,7 +462,7 @@ def test_sigma_points_that_make_no_sense_are_refused_by_name(kind, wrong):
         kind(MOTIONS["ConstantVelocity"], **wrong)
 
 
-@pytest.mark.parametrize("dt_s", [0.0, -1.0, np.nan])
+@pytest.mark.parametrize("dt_s", [0.0, -1.0, np.nan, np.inf])
 def test_a_start_from_two_plots_needs_time_between(dt_s):
     with pytest.raises(ValueError, match="dt_s must be"):
         wl.two_point(RADAR, [3000.0, 0.3], [3000.0, 0.3], dt_s)

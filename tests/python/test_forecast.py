@@ -69,6 +69,15 @@ def test_a_track_of_the_radar_is_foretold_as_the_reports_that_say_the_same(model
     assert forecast.turn_rate_rad_s(rows) == pytest.approx(np.deg2rad(-1.0), abs=1e-9)
 
 
+def test_the_rate_of_turn_is_that_of_the_courses_that_are_reported():
+    track = circling(np.deg2rad(1.0))
+    track.course_rad[[-4, -2]] = np.nan
+    assert forecast.turn_rate_rad_s(track) == pytest.approx(np.deg2rad(1.0), abs=1e-9)
+    assert forecast.turn_rate_rad_s(track.rows(slice(-2, None))) == 0.0
+    assert forecast.turn_rate_rad_s(track.rows(slice(0, 0))) == 0.0
+    assert forecast.turn_rate_rad_s(Tracks.joined([])) == 0.0
+
+
 def test_of_several_tracks_none_is_foretold():
     one, other = rows_of(circling(0.0)), rows_of(circling(0.0), "8")
     with pytest.raises(ValueError, match="rows of one track, got 2"):

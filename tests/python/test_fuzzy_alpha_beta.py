@@ -70,6 +70,8 @@ def test_the_machine_gives_the_values_of_its_source():
     quality, strengths = product.judge(np.full(9, 1.5))
     assert quality == pytest.approx(5.6)
     np.testing.assert_allclose(strengths, np.full(10, 0.5**9))
+    for clipped in (3.0, 1e3, np.inf):
+        assert minimum.judge(np.full(9, clipped))[0] == pytest.approx(2.019812, abs=1e-6)
 
 
 def test_the_hold_lengthens_and_never_shortens():
@@ -156,8 +158,9 @@ def test_arrays_that_do_not_fit_are_refused():
         fuzzy.trace(np.zeros((3, 5, 2)), dt_s=DT_S, sensor=RADAR, start=[START] * 2)
     with pytest.raises(TypeError, match="sensor"):
         fuzzy.trace(np.zeros((5, 2)), dt_s=DT_S, sensor=None, start=START)
-    with pytest.raises(ValueError, match="ratios"):
-        fuzzy.judge(np.zeros(10))
+    for ratios in (np.zeros(10), [-1.0, 1.0], [np.nan]):
+        with pytest.raises(ValueError, match="ratios"):
+            fuzzy.judge(ratios)
 
 
 def test_a_step_that_fails_says_so_and_changes_nothing():

@@ -314,6 +314,13 @@ def test_cutoffs_and_orders_that_make_no_sense(metric, name, value):
         metric(np.zeros((1, 2)), np.zeros((1, 2)), **{name: value})
 
 
+@pytest.mark.parametrize("metric", [metrics.gospa, metrics.ospa])
+@pytest.mark.parametrize(("cutoff_m", "p"), [(50.0, 200.0), (0.3, 1000.0)])
+def test_the_cutoff_to_the_power_of_the_order_must_be_a_number(metric, cutoff_m, p):
+    with pytest.raises(ValueError, match=f"^p must be .*number, got {p}"):
+        metric(np.zeros((1, 2)), np.zeros((0, 2)), cutoff_m, p)
+
+
 # ------------------------------------------------------------------ errors of states
 
 

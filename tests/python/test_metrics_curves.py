@@ -54,6 +54,7 @@ def test_segments_part_the_readings(curve, switches_s):
     assert sum(s.scans * s.mean for s in segments) == pytest.approx(curve.sum())
     assert max(segment.peak for segment in segments) == curve.max()
     assert all(a.end_s <= b.begin_s for a, b in itertools.pairwise(segments))
+    assert (segments[0].begin_s, segments[-1].end_s) == (TIME_S[0], TIME_S[-1])
 
 
 @pytest.mark.parametrize(

@@ -2,12 +2,13 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from wakeline import metrics, recording
-from wakeline.recording import Episode, Tracks
+from wakeline.recording import Episode, OwnShip, TargetTruth, Tracks
 
 pytest.importorskip("matplotlib")
 
@@ -69,6 +70,32 @@ def test_tracks_lie_where_they_are_and_carry_their_ids(episode, tracks):
         low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
         assert (low <= end.xy).all()
         assert (end.xy <= high).all()
+
+
+def test_rows_that_are_not_known_are_not_in_the_window_of_the_map():
+    state = np.array([[0.0, 1.0, 0.0, 1.0], [np.nan] * 4, [100.0, 1.0, 50.0, 1.0]])
+    (ax,) = plot.map_figure(None, Tracks(["1"] * 3, np.arange(3.0), state)).axes
+    low, high = ax.get_ylim()
+    assert low < 0.0
+    assert high > 100.0
+    plot.map_figure(None, Tracks(["1"], [0.0], state[1:2]))
+
+
+def test_the_map_shows_records_of_own_ship_and_truth_for_the_time_of_the_scans(episode):
+    start_s, end_s = episode.time_s[[0, -1]]
+    time_s = np.arange(start_s - 36000.0, end_s + 36000.0)
+    way_m = (5.0 * (time_s - start_s), 0.0 * time_s)
+    unknown = np.full(len(time_s), np.nan)
+    longer = replace(
+        episode,
+        own=OwnShip(time_s, *way_m),
+        truth={"1": TargetTruth(time_s, *way_m, unknown, unknown)},
+    )
+    ax = plot.map_figure(longer).axes[0]
+    shown = {line.get_label(): line.get_ydata() for line in ax.lines}
+    assert np.ptp(shown["truth"]) == pytest.approx(5.0 * (end_s - start_s), abs=10.0)
+    np.testing.assert_allclose(shown["own ship"], [5.0 * (end_s - start_s)])
+    assert ax.get_ylim()[1] - ax.get_ylim()[0] < 2.0 * 5.0 * (end_s - start_s)
 
 
 def test_every_kind_of_mark_is_explained_once(episode, tracks):
@@ -187,6 +214,15 @@ def test_many_tracks_have_over_time_the_colours_of_the_map_and_can_be_told_apart
     (ax,) = plot.map_figure(None, tracks).axes
     on_map = {text.get_text(): text.get_color() for text in ax.texts}
     assert colors.items() <= on_map.items()
+
+
+@pytest.mark.parametrize("number", ["1", "1234", "23500747"])
+def test_names_of_tracks_leave_the_panels_their_room(number):
+    rows = [f"{number}{k}" for k in range(10) for _ in range(3)]
+    tracks = Tracks(rows, np.tile(np.arange(3.0), 10), np.ones((30, 4)))
+    fig = plot.time_figure(None, tracks)
+    FigureCanvasAgg(fig).draw()
+    assert fig.axes[0].get_position().width > 0.8
 
 
 def test_panels_follow_what_the_tracks_have(episode):

@@ -1,6 +1,8 @@
 """Recordings: what a good file becomes, and what is said about each bad one."""
 
+import os
 import pickle
+import threading
 import time
 
 import numpy as np
@@ -132,10 +134,24 @@ def test_times_are_utc_seconds_or_iso_text(file, text):
 def test_byte_order_mark_crlf_blank_lines_and_spaces_do_not_matter(file):
     plain = file("scan,time_s,north_m,east_m\n0,1,2,3\n1,2,4,5\n", "plain.csv")
     odd = file(
-        b"\xef\xbb\xbfscan , time_s,north_m,east_m\r\n\r\n0, 1 ,2,3\r\n   \r\n1,2,4, 5\r\n\r\n",
+        b"\xef\xbb\xbfscan , time_s,north_m,east_m\r\n\r\n0, 1 ,2,3\r\n"
+        b"   \r\n1,2,4, 5\r\n,, ,\r\n\r\n",
         "odd.csv",
     )
     assert places(only(read_plots(odd))) == places(only(read_plots(plain)))
+
+
+def test_spaces_before_quotes_do_not_matter(file):
+    path = file('"time_s", "note", "north_m" ,"east_m"\n"1", "a, b", "2" ,"3"\n')
+    assert places(only(read_plots(path))) == [[[2.0, 3.0]]]
+
+
+@pytest.mark.parametrize("end", ["", '2,4,5,c"\n', '2,4,5,"c\n', '2,4,5,"c"\n'])
+def test_a_quote_that_is_not_closed_hides_no_rows(file, end):
+    path = file('time_s,north_m,east_m,note\n0,1,2,a\n1,2,3,"b\n1.5,2,3,b\n' + end)
+    with pytest.raises(RecordingError) as caught:
+        read_plots(path)
+    assert_says(caught, path, 3, None, "a quoted cell does not end in its line")
 
 
 def test_own_columns_beside_the_plots_are_used(file):
@@ -296,6 +312,15 @@ def test_plots_without_a_finite_place_are_left_out_and_counted(file, cell):
     assert "line 3" in note
 
 
+def test_times_that_go_back_are_told_where_no_scans_are_numbered(file):
+    rows = "86399.5,1,1\n86399,2,2\n0.5,3,3\n3,4,4\n"
+    (note,) = read_plots(file("time_s,north_m,east_m\n" + rows)).notes
+    assert "plots.csv: 1 plots put in order that are more than a minute earlier" in note
+    assert "line 4" in note
+    rows = "a,900,1,1\na,902,1,1\nb,0,1,1\nb,2,1,1\n"
+    assert read_plots(file("scenario,time_s,north_m,east_m\n" + rows)).notes == []
+
+
 def test_repeated_rows_are_left_out_and_counted(file):
     text = "scan,time_s,north_m,east_m\n0,0,1,1\n0,0,1,1\n0,0,1,2\n1,1,1,1\n0,0,1,1\n"
     read = read_plots(file(text))
@@ -327,6 +352,16 @@ def test_a_plot_beyond_own_ship_is_an_error(file):
     with pytest.raises(RecordingError) as caught:
         read_plots(plots, own)
     assert_says(caught, plots, 3, "time_s", "own ship is not known at 7", "own.csv", "0.0 to 2.0")
+
+
+def test_a_plot_that_says_where_own_ship_was_must_be_within_her_record_too(file):
+    text = "time_s,north_m,east_m,own_north_m,own_east_m\n1,9,9,1,0\n2,9,9,2,0\n9,9,9,9,0\n"
+    plots, own = file(text), "time_s,north_m,east_m\n0,0,0\n1,1,0\n"
+    with pytest.raises(RecordingError) as caught:
+        read_plots(plots, file(own, "own.csv"))
+    assert_says(caught, plots, 4, "time_s", "own ship is not known at 9", "0.0 to 1.0")
+    episode = only(read_plots(plots, file(own + "9,9,0\n", "own.csv")))
+    assert episode.own.time_s.tolist() == [0.0, 1.0, 9.0]
 
 
 def test_a_plot_inside_an_own_ship_gap_is_an_error(file):
@@ -428,6 +463,35 @@ def test_scenarios_must_be_told_apart_in_both_files(file):
     with pytest.raises(RecordingError) as caught:
         read_plots(without, with_scenario)
     assert_says(caught, without, 1, "scenario", "missing")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+def test_a_pipe_that_is_no_text_is_not_read_again(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    told = []
+
+    def read():
+        with pytest.raises(RecordingError) as caught:
+            read_plots(pipe)
+        told.append(str(caught.value))
+
+    reader = threading.Thread(target=read, daemon=True)
+    reader.start()
+    pipe.write_bytes(b"\x1f\x8b")
+    reader.join(timeout=10.0)
+    assert "not CSV text in UTF-8" in told[0]
+
+
+def test_a_turned_scan_keeps_its_ranges_about_own_ship(file):
+    plots = file("time_s,range_m,bearing_deg\n0,100,175\n0,50,0\n")
+    (scan,) = only(read_plots(plots, own=(10.0, 20.0))).scans
+    turned = scan.turned(np.radians(10.0))
+    np.testing.assert_allclose(turned.range_bearing[:, 0], scan.range_m)
+    np.testing.assert_allclose(np.degrees(turned.bearing_rad), [-175.0, 10.0])
+    from_own_m = turned.position_m - np.column_stack([turned.own_north_m, turned.own_east_m])
+    np.testing.assert_allclose(np.hypot(*from_own_m.T), turned.range_m)
+    np.testing.assert_allclose(np.arctan2(*from_own_m.T[::-1]), turned.bearing_rad)
 
 
 def test_files_that_are_no_text_or_not_there(file, tmp_path):

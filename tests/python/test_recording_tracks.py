@@ -47,6 +47,18 @@ def test_truth_is_read_by_target_and_time(file):
     assert "1 rows without a finite position" in read.notes[0]
 
 
+def test_truth_of_another_scenario_is_left_out_of_the_only_one(file):
+    truth = file(
+        "scenario,time_s,target,north_m,east_m\na,0,1,0,0\nb,1,1,900,900\na,2,1,4,4\n", "truth.csv"
+    )
+    named = file("scenario,time_s,north_m,east_m\na,0,1,1\na,2,1,1\n", "named.csv")
+    read = read_plots(named, truth_path=truth)
+    assert read.episodes[0].truth["1"].north_m.tolist() == [0.0, 4.0]
+    assert read.notes == ["truth.csv: 1 rows of scenarios without scans left out (first in line 3)"]
+    nameless = read_plots(file(PLOTS, "plots.csv"), truth_path=truth)
+    assert nameless.episodes[0].truth["1"].north_m.tolist() == [0.0, 900.0, 4.0]
+
+
 @pytest.mark.parametrize(
     ("text", "column", "parts"),
     [

@@ -84,6 +84,14 @@ def test_missing_readings_let_time_go_on(kind):
 
 
 @every
+def test_two_readings_of_one_time_are_taken(kind):
+    steps = np.tile([1.0, 0.0], 9)
+    value, rate, forecast = kind().run(steps, np.repeat(np.arange(9.0) / 10, 2))
+    assert np.isfinite([value, rate, forecast]).all()
+    assert forecast[-1] == pytest.approx(0.8, abs=0.1)
+
+
+@every
 def test_bad_readings_are_refused(kind):
     with pytest.raises(wl.FilterError, match="reading 2: not finite"):
         kind().run(1.0, [1.0, np.nan, np.inf])
@@ -135,10 +143,14 @@ def test_the_schedules_are_those_of_the_paper():
     assert wf.RecentMemory().gains(reading=9) == pytest.approx([54 / 110, 12 / 110])
     with pytest.raises(ValueError, match="max_plots"):
         wf.AlphaBetaSmoother(wf.RecentMemory(max_plots=1))
+    with pytest.raises(ValueError, match="reading"):
+        wf.RecentMemory().gains(reading=0)
     with pytest.raises(ValueError, match="reading_std"):
         wf.AlphaBetaSmoother(reading_std=0.0)
     far = wf.AlphaBetaSmoother(wf.RangeDependent()).run(1.0, [0.0, 1.0], range_m=40e3)
     assert far[0][1] == pytest.approx(0.25)
+    with pytest.raises(wl.FilterError, match="not finite"):
+        wf.AlphaBetaSmoother(wf.RangeDependent()).run(1.0, [0.0, 1.0], range_m=np.nan)
 
 
 @pytest.mark.parametrize("settings", [{"max_readings": 1}, {"max_readings": 33}, {"memory": -0.1}])

@@ -407,7 +407,7 @@ class BenedictBordner:
 
 class CriticallyDamped:
     """
-    All poles at theta: the least-squares line or parabola with weights theta² a reading back (fading memory).
+    All poles at theta: the least-squares line or parabola with weights theta a reading back (fading memory).
     """
     def __init__(self, theta: float) -> None: ...
     def gains(
@@ -870,7 +870,8 @@ class ThreePointSmoother:
     """
     Each reading smoothed by its neighbours, at uneven steps; (22), (24), (25).
 
-    The value and the rate are those at the reading before the newest.
+    The value and the rate are those at the reading before the newest. A reading of the time of the one before joins it: both become
+    their mean.
 
     Parameters
     ----------
@@ -1259,5 +1260,5 @@ def two_point(
     dt_s: float,
 ) -> Gaussian:
     """
-    Start over [x, vx, y, vy] from two plots dt_s apart.
+    Start over [x, vx, y, vy] from two plots dt_s apart. The own ship of the sensor is where the second one was taken, to which it has come at its velocity.
     """

@@ -987,7 +987,7 @@ class FuzzyAlphaBeta:
         """
     def judge(self, ratios: ArrayLike) -> tuple[float, NDArray[np.float64]]:
         """
-        The machine alone: its output and the strengths (n + 1,) of its rules for the ratios (n,) of the lines through 2, 3, ... plots.
+        The machine alone: its output and the strengths (n + 1,) of its rules for the ratios (n,), 0 or more, of the lines through 2, 3, ... plots.
         """
     def mode_probability(self) -> NDArray[np.float64]:
         """

@@ -137,6 +137,14 @@ def _tail(score: Score) -> str:
         f"false tracks {total.false_tracks} ({total.false_track_scans_per_scan:.2f} a scan), "
         f"GOSPA {metres(total.gospa_m)}, gate {score.gate_m:g} m"
     )
+    targets = [target for episode in score.episodes for target in episode.targets]
+    if targets and not total.eligible_scans:
+        known = max(target.present_scans for target in targets)
+        near = max(target.supported_scans for target in targets)
+        tail += (
+            f"\nno scan counts: of {total.scans} truth of a target is known in at most {known}, "
+            f"with plots near it in {near}, of which the first {score.warmup_scans} do not count"
+        )
     left_out = sum(episode.unmatched_rows for episode in score.episodes)
     if left_out:
         tail += f"\n{left_out} rows of tracks at no scan's time, or not finite, left out"

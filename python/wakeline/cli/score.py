@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from wakeline import metrics
-from wakeline.recording import read_plots, read_tracks
+from wakeline.recording import RecordingError, read_plots, read_tracks
 
 from . import outputs, report
 
@@ -41,6 +41,10 @@ def run(arguments: argparse.Namespace) -> None:
     beside = arguments.scans.with_name("plots.csv")
     plots = arguments.plots or (beside if beside.exists() else None)
     recording = read_plots(plots, arguments.scans, arguments.truth)
+    if not any(map(len, recording)):
+        raise RecordingError(
+            arguments.scans, "there are no scans", line=1, wanted="a column scan, or --plots"
+        )
     tracks = read_tracks(arguments.tracks)
     score = metrics.score(tracks, recording, gate_m=arguments.gate)
     for note in recording.notes:

@@ -7,6 +7,7 @@ import math
 import sys
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -189,7 +190,8 @@ def track_into(
 
 def score_of(recording: Recording, parts: Sequence[TrackedEpisode]) -> metrics.Score:
     """The score of the tracks against the truth of the recording."""
-    return metrics.score(Tracks.joined([part.tracks for part in parts]), recording)
+    shown = replace(recording, episodes=[part.episode for part in parts])
+    return metrics.score(Tracks.joined([part.tracks for part in parts]), shown)
 
 
 def _input_lines(recording: Recording, settings: Settings, radar: str) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +26,7 @@ class TrackedEpisode:
     Attributes
     ----------
     episode : Episode
+        With the offset of the radar taken off the bearings of its plots.
     tracks : Tracks
         One row a shown track and scan, predicted to the time of the scan.
     events : list of wakeline.Event
@@ -77,7 +79,8 @@ def track_episode(
     if danger and episode.own.knows_velocity:
         tracks = with_closest_approach(tracks, episode.own, settings.danger_limits)
         found = danger_of(tracks, episode.own, settings.danger_limits)
-    return TrackedEpisode(episode, tracks, events, plot_track_id, refused, elapsed_s, found)
+    shown = _without_offset(episode, math.radians(settings.radar["bearing_offset_deg"]))
+    return TrackedEpisode(shown, tracks, events, plot_track_id, refused, elapsed_s, found)
 
 
 def median_step_s(episode: Episode) -> float | None:
@@ -88,6 +91,13 @@ def median_step_s(episode: Episode) -> float | None:
 def has_names(recording: Recording) -> bool:
     """Whether the recording tells its episodes apart by name."""
     return any(episode.name for episode in recording)
+
+
+def _without_offset(episode: Episode, bearing_offset_rad: float) -> Episode:
+    """The episode with its plots where the tracker takes them to be."""
+    if bearing_offset_rad == 0.0:
+        return episode
+    return replace(episode, scans=[scan.turned(-bearing_offset_rad) for scan in episode.scans])
 
 
 def _process(tracker: wl.Tracker, end_s: float, scan: Scan):

@@ -146,11 +146,11 @@ def draw_ppi(
         for state, covariance in zip(tracks.state[last], tracks.covariance[last], strict=True)
     ]
     figure = plot.figure(8.6, 8.6)
-    bearing_rad = scan.bearing_rad - bearing_offset_rad
+    range_m, bearing_rad = scan.range_bearing.T
     plot.ppi(
         replace(video.last, azimuth_rad=video.last.azimuth_rad - bearing_offset_rad),
         figure.add_subplot(),
-        plots=scan.range_m[:, None] * np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)]),
+        plots=range_m[:, None] * np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)]),
         strobes=strobes,
         tracks=tracks,
     )

@@ -81,7 +81,8 @@ def by_segment(
         When the shapes do not fit, a curve is empty or times do not increase.
     """
     time_s, curve, switch_times_s = _checked(time_s, curve, switch_times_s)
-    cuts_s = [float(time_s[0]), *switch_times_s.tolist(), float(time_s[-1])]
+    begin_s, end_s = float(time_s[0]), float(time_s[-1])
+    cuts_s = [begin_s, *np.clip(switch_times_s, begin_s, end_s).tolist(), end_s]
     return [
         SegmentFigures(
             begin_s=cuts_s[k],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -55,7 +56,7 @@ def gospa(
     ------
     ValueError
         On arrays of another shape, a cut-off that is not positive and finite or an order that is
-        not finite and at least 1.
+        not finite and at least 1, or so high that the cut-off to its power is no number.
     """
     return gospa_of(_checked_distances(truth_m, tracks_m, cutoff_m, p), cutoff_m, p)
 
@@ -120,4 +121,8 @@ def _checked_distances(
         raise ValueError(f"cutoff_m must be positive and finite, got {cutoff_m}")
     if not 1 <= p < np.inf:
         raise ValueError(f"p must be finite and at least 1, got {p}")
+    with np.errstate(over="ignore", under="ignore"):
+        cutoff_power = np.float64(cutoff_m) ** p
+    if not sys.float_info.min <= cutoff_power < np.inf:
+        raise ValueError(f"p must be such that cutoff_m to its power is a number, got {p}")
     return np.linalg.norm(truth_m[:, np.newaxis] - tracks_m[np.newaxis], axis=2)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wakeline.recording import Episode, OwnShip, TargetTruth, Tracks
+from wakeline.recording import Episode, Tracks
 
 from .style import (
     DANGER,
@@ -52,7 +53,8 @@ def map_view(
     ax : matplotlib.axes.Axes
         Axes to draw into.
     episode : Episode, optional
-        Its plots, own ship and, where it has it, truth are drawn.
+        Its plots and, from its first scan to its last, own ship and, where it has it, truth are
+        drawn.
     tracks : Tracks, optional
         Tracks of that episode, each with its id at its end and, where it has a covariance, the
         95 % ellipse of every `ellipse_every`-th row.
@@ -74,9 +76,9 @@ def map_view(
     """
     if episode is not None:
         _draw_plots(ax, episode)
-        _draw_own_ship(ax, episode.own)
-        for k, truth in enumerate((episode.truth or {}).values()):
-            _draw_truth(ax, truth, "truth" if k == 0 else None)
+        _draw_own_ship(ax, *_own_way(episode))
+        for k, truth in enumerate(_true_ways(episode)):
+            _draw_truth(ax, *truth, "truth" if k == 0 else None)
     for k, (track_id, color) in enumerate(track_colors(tracks).items()):
         track = tracks.where(tracks.track_id == track_id)
         if ellipse_every > 0 and track.covariance is not None:
@@ -143,12 +145,28 @@ def _draw_plots(ax: Axes, episode: Episode) -> None:
     ax.scatter(east_m, north_m, s=11, color=MUTED, alpha=0.7, linewidths=0, label="plot", zorder=2)
 
 
-def _draw_own_ship(ax: Axes, own: OwnShip) -> None:
-    _, north_m, east_m = with_gaps(own.time_s, own.north_m, own.east_m)
+def _own_way(episode: Episode) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times, north and east (n,) of own ship from the first scan to the last."""
+    time_s = episode.time_s if len(episode) else episode.own.time_s
+    return time_s, *episode.own.position_at(time_s).T
+
+
+def _true_ways(episode: Episode) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Times, north and east (n,) of each target from the first scan to the last."""
+    begin_s, end_s = episode.time_s[[0, -1]] if len(episode) else (-np.inf, np.inf)
+    for truth in (episode.truth or {}).values():
+        shown = (begin_s <= truth.time_s) & (truth.time_s <= end_s)
+        yield truth.time_s[shown], truth.north_m[shown], truth.east_m[shown]
+
+
+def _draw_own_ship(
+    ax: Axes, time_s: np.ndarray, own_north_m: np.ndarray, own_east_m: np.ndarray
+) -> None:
+    _, north_m, east_m = with_gaps(time_s, own_north_m, own_east_m)
     ax.plot(east_m, north_m, color=INK, linewidth=1.0, linestyle=(0, (1, 1.5)), zorder=2)
     ax.plot(
-        own.east_m[-1:],
-        own.north_m[-1:],
+        own_east_m[-1:],
+        own_north_m[-1:],
         color=INK,
         linestyle=(0, (1, 1.5)),
         linewidth=1.0,
@@ -160,8 +178,14 @@ def _draw_own_ship(ax: Axes, own: OwnShip) -> None:
     )
 
 
-def _draw_truth(ax: Axes, truth: TargetTruth, label: str | None) -> None:
-    _, north_m, east_m = with_gaps(truth.time_s, truth.north_m, truth.east_m)
+def _draw_truth(
+    ax: Axes,
+    time_s: np.ndarray,
+    true_north_m: np.ndarray,
+    true_east_m: np.ndarray,
+    label: str | None,
+) -> None:
+    _, north_m, east_m = with_gaps(time_s, true_north_m, true_east_m)
     ax.plot(east_m, north_m, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=label, zorder=5)
 
 
@@ -255,10 +279,11 @@ def _set_window(ax: Axes, episode: Episode | None, tracks: Tracks | None, whole:
     if whole or len(seen) == 0:
         seen = np.concatenate([seen, plots])
     elif episode is not None:
-        seen = np.concatenate([seen, np.column_stack([episode.own.north_m, episode.own.east_m])])
+        seen = np.concatenate([seen, np.column_stack(_own_way(episode)[1:])])
+    seen = seen[np.isfinite(seen).all(axis=1)]
     if len(seen) == 0:
         return
-    low, high = np.nanmin(seen, axis=0), np.nanmax(seen, axis=0)
+    low, high = seen.min(axis=0), seen.max(axis=0)
     side_m = np.maximum(high - low, 1.0) * (1.0 + 2.0 * _WATER_AROUND)
     side_m = np.maximum(side_m, _FLATTEST * side_m.max())
     low, high = (low + high - side_m) / 2.0, (low + high + side_m) / 2.0
@@ -283,11 +308,9 @@ def _plot_positions(episode: Episode) -> np.ndarray:
 
 def _tracked_positions(episode: Episode | None, tracks: Tracks | None) -> np.ndarray:
     """All positions (n, 2) of truth and tracks, north and east."""
-    paths = [] if episode is None else list((episode.truth or {}).values())
-    paths += [] if tracks is None else [tracks]
-    return np.concatenate(
-        [np.zeros((0, 2)), *(np.column_stack([path.north_m, path.east_m]) for path in paths)]
-    )
+    ways = [] if episode is None else [np.column_stack(way[1:]) for way in _true_ways(episode)]
+    ways += [] if tracks is None else [tracks.state[:, 0::2]]
+    return np.concatenate([np.zeros((0, 2)), *ways])
 
 
 def _count_outside(ax: Axes, outside: np.ndarray) -> None:

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 _NIS_TOP = 16.0
 _MANY_TRACKS = 10
 _ONE_ROW = 5
+_LETTER_EM, _LINE_EM = 0.62, 4.0  # of a name in the legend: a letter; its line and the space around
+_PT_PER_IN, _PANEL_SHARE = 72.0, 0.88
 
 
 def time_view(
@@ -275,6 +277,10 @@ def _finish(ax: Axes, ylabel: str) -> Axes:
 
 def _name_tracks(ax: Axes, tracks: Tracks | None) -> None:
     """Legend of the tracks above the first panel."""
-    count = 0 if tracks is None else len(tracks.ids())
-    if count > 0:
-        name_lines(ax, columns=(count + 2) // (1 + (count > _ONE_ROW)))
+    ids = [] if tracks is None else tracks.ids()
+    if ids:
+        columns = (len(ids) + 2) // (1 + (len(ids) > _ONE_ROW))
+        name_em = _LETTER_EM * max(len(f"track {track_id}") for track_id in ids) + _LINE_EM
+        width_in = ax.figure.bbox.width / ax.figure.dpi
+        room_em = _PANEL_SHARE * width_in * _PT_PER_IN / TEXT_PT
+        name_lines(ax, columns=max(1, min(columns, int(room_em / name_em))))

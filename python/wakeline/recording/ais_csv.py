@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -181,9 +182,7 @@ def read_ais(
     course_rad = plane.course_rad(np.radians(cog_deg), latitude_deg, longitude_deg)
     tracks: dict[str, AisTrack] = {}
     late, jumped = np.zeros(len(table), dtype=bool), np.zeros(len(table), dtype=bool)
-    for number in dict.fromkeys(mmsi[placed].tolist()):
-        row = np.flatnonzero(placed & (mmsi == number))
-        row = row[np.argsort(time_s[row], kind="stable")]
+    for number, row in _rows_by_vessel(mmsi, time_s, np.flatnonzero(placed)):
         soon = _too_soon(time_s[row], min_step_s)
         late[row[soon]] = True
         row = row[~soon]
@@ -196,6 +195,17 @@ def read_ais(
     _note(notes, table, late, f"reports less than {min_step_s:g} s before the next of the vessel")
     _note(notes, table, jumped, f"reports farther off than a vessel gets at {max_speed_mps:g} m/s")
     return AisRecording(plane, tracks, notes)
+
+
+def _rows_by_vessel(
+    mmsi: np.ndarray, time_s: np.ndarray, row: np.ndarray
+) -> Iterator[tuple[str, np.ndarray]]:
+    """Each vessel of the rows, as they come, with its rows in order of time."""
+    numbers, first, vessel = np.unique(mmsi[row], return_index=True, return_inverse=True)
+    order = np.lexsort((time_s[row], vessel))
+    rows = np.split(row[order], np.flatnonzero(np.diff(vessel[order])) + 1)
+    for k in np.argsort(first).tolist():
+        yield str(numbers[k]), rows[k]
 
 
 def _coordinate(table: Table, column: str, largest_deg: float, missing_deg: float) -> np.ndarray:

@@ -133,11 +133,9 @@ def _own_ship(
     """Own position (n, 2) at each plot, and own ship's track."""
     if own is not None and own.has_position:
         rows = own.by_time()
+        _check_covered(plots, rows, own_gap_s)
         ship = rows.ship() if len(rows.row) else fixed
-        if plots.own_m is None:
-            _check_covered(plots, rows, own_gap_s)
-            return ship.position_at(plots.time_s), ship
-        return plots.own_m, ship
+        return ship.position_at(plots.time_s) if plots.own_m is None else plots.own_m, ship
     if plots.own_m is not None and len(plots):
         time_s, first = np.unique(plots.time_s, return_index=True)
         return plots.own_m, OwnShip(time_s, *plots.own_m[first].T)

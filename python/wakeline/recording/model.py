@@ -71,6 +71,14 @@ class Scan:
             own_east_m=own_east_m,
         )
 
+    def turned(self, by_rad: float) -> Scan:
+        """The scan with its plots turned about own ship, clockwise by an angle."""
+        bearing_rad = (self.bearing_rad + by_rad + np.pi) % (2.0 * np.pi) - np.pi
+        own_m = np.column_stack([self.own_north_m, self.own_east_m])
+        return Scan.of_plots(
+            self.time_s, self.number, self.plot_time_s, self.range_m, bearing_rad, lambda _: own_m
+        )
+
     def __len__(self) -> int:
         return len(self.plot_time_s)
 

@@ -34,6 +34,13 @@ _MEASUREMENT_WANTED = (
 )
 
 
+_BACK_S = 60.0
+_PUT_IN_ORDER = (
+    "put in order that are more than a minute earlier than the row above them: where a clock was "
+    "set back, or a day of seconds ended, cut the file"
+)
+
+
 @dataclass(frozen=True)
 class PlotRows:
     """Rows of a plots file, in the order of the file.
@@ -104,8 +111,7 @@ def read_plot_rows(path: str | Path, notes: list[str]) -> PlotRows:
     path : str or Path
         The file.
     notes : list of str
-        Remarks are added to it: plots without a finite place (kept here as NaN), repeated rows
-        (left out), no plots at all.
+        Remarks are added to it: times that go back, repeated rows (left out), no plots at all.
 
     Raises
     ------
@@ -128,6 +134,8 @@ def read_plot_rows(path: str | Path, notes: list[str]) -> PlotRows:
     )
     if len(rows) == 0:
         notes.append(f"{table.path.name}: no plots")
+    if rows.scan is None:
+        remark(rows, _set_back(rows), _PUT_IN_ORDER, notes)
     return _without_repeats(rows, notes)
 
 
@@ -203,6 +211,13 @@ def _own_beside(table: Table) -> np.ndarray | None:
         return None
     table.require("own_north_m", "own_east_m")
     return np.column_stack([table.finite("own_north_m"), table.finite("own_east_m")])
+
+
+def _set_back(rows: PlotRows) -> np.ndarray:
+    """Mask (n,) of rows that are much earlier than the row before them, of the same scenario."""
+    back = np.diff(rows.time_s, prepend=rows.time_s[:1]) < -_BACK_S
+    back[1:] &= rows.scenario[1:] == rows.scenario[:-1]
+    return back
 
 
 def _without_repeats(rows: PlotRows, notes: list[str]) -> PlotRows:

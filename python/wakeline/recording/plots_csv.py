@@ -51,8 +51,9 @@ def read_plots(
     own-ship file, else it is the fixed position `own`. A plot may lie at most one median step of
     the own-ship file outside its record.
 
-    **Left out with a note**: plots without a finite place (the scan stays) and repeated rows. A
-    file with a header only has no plots, which is no error.
+    **Left out with a note**: plots without a finite place (the scan stays) and repeated rows. Where
+    no scans are numbered a note tells, too, of times that go back by more than a minute. A file
+    with a header only has no plots, which is no error.
 
     Parameters
     ----------

@@ -27,9 +27,9 @@ _ISO_TIME = re.compile(
 class Table:
     """Columns of text read from a CSV file with one header line.
 
-    A byte-order mark, CRLF line ends, blank lines and spaces around cells do not matter. Column
-    names are compared in lower case with every run of other characters as one underscore, so
-    ``Range [m]`` is ``range_m``.
+    A byte-order mark, CRLF line ends, blank lines, lines of empty cells as spreadsheets leave them,
+    and spaces around cells do not matter. Column names are compared in lower case with every run of
+    other characters as one underscore, so ``Range [m]`` is ``range_m``.
 
     Parameters
     ----------
@@ -42,7 +42,8 @@ class Table:
     ------
     RecordingError
         When the file cannot be read or is empty, when its columns are not separated by commas, when
-        two columns mean the same, or when a row has more or fewer cells than the header.
+        two columns mean the same, when a quoted cell goes on in the next line, or when a row has
+        more or fewer cells than the header.
     """
 
     def __init__(self, path: str | Path, meanings: dict[str, Sequence[str]]) -> None:
@@ -190,10 +191,17 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
     """Line number and cells of each line that is not blank."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file)
-            for row in reader:
-                if row and not (len(row) == 1 and not row[0].strip()):
-                    yield reader.line_num, row
+            reader = csv.reader(file, skipinitialspace=True)
+            for line, row in enumerate(reader, start=1):
+                if reader.line_num != line:
+                    raise RecordingError(
+                        path,
+                        "a quoted cell does not end in its line",
+                        line=line,
+                        wanted="a row on one line",
+                    )
+                if any(map(str.strip, row)):
+                    yield line, row
     except OSError as error:
         raise RecordingError(path, f"the file cannot be read ({error.strerror})") from error
     except (UnicodeDecodeError, csv.Error) as error:
@@ -203,7 +211,9 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
 
 
 def _packed(path: Path) -> str | None:
-    """The program that a file is packed by, of those that are common."""
+    """The program that a file is packed by, of those that are common; a pipe cannot be reread."""
+    if not path.is_file():
+        return None
     with path.open("rb") as file:
         begin = file.read(4)
     return next((name for magic, name in _PACKED.items() if begin.startswith(magic)), None)

@@ -29,7 +29,7 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
     Columns: a time, ``target``, ``north_m``, ``east_m``; where known ``vnorth_mps``, ``veast_mps``;
     ``scenario``. Rows need not be sorted; of equal times of a target the last row counts. Rows
     without a finite position, and rows of scenarios the recording does not have, are left out with
-    a note on the recording.
+    a note on the recording; one that names no scenario takes the rows of any.
 
     Parameters
     ----------
@@ -73,8 +73,8 @@ def _kept(
 ) -> np.ndarray:
     """Mask (n,) of the rows that can be used; the others leave a note."""
     finite = np.isfinite(state[:, :2]).all(axis=1)
-    known = np.isin(scenario, ["", *(episode.name for episode in recording)])
-    known |= len(recording) == 1
+    names = [episode.name for episode in recording]
+    known = np.isin(scenario, ["", *names]) | (names == [""])
     reasons = ((finite, "without a finite position"), (known, "of scenarios without scans"))
     for good, what in reasons:
         if not good.all():

@@ -177,6 +177,8 @@ TEST(Gospa, AUsedWorkspaceTakesNoHeapAndRefusesLargerSets) {
 TEST(Gospa, RejectsSettingsWithoutAMeaning) {
   EXPECT_THROW(Gospa({.cutoff_m = 0.0, .order = 2.0}, 1, 1), std::invalid_argument);
   EXPECT_THROW(Gospa({.cutoff_m = 5.0, .order = 0.5}, 1, 1), std::invalid_argument);
+  EXPECT_THROW(Gospa({.cutoff_m = 50.0, .order = 200.0}, 1, 1), std::invalid_argument);
+  EXPECT_THROW(Gospa({.cutoff_m = 0.3, .order = 1000.0}, 1, 1), std::invalid_argument);
   EXPECT_THROW(Gospa({}, -1, 1), std::invalid_argument);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "filter/bad_input_laws.hpp"
+#include "wakeline/measurement/position.hpp"
 
 namespace wakeline {
 namespace {
@@ -19,6 +20,28 @@ TEST(UkfOfNegativeCovariance, IsRefusedAndLeavesTheBelief) {
   EXPECT_TRUE(test::beliefs_identical<5>(ukf.estimate(), belief));
   EXPECT_EQ(ukf.predict(0.1), Status::kOk);
 }
+
+/// Of readings in lanes, one is good, one of a negative variance and one of none that is a number.
+template <template <class, class> class Filter>
+void expect_each_lane_to_say_what_is_wrong() {
+  using Lanes = Pack<float, 4>;
+  Filter<ConstantVelocity, Lanes> filter(ConstantVelocity{});
+  Gaussian<4, Lanes> belief;
+  ASSERT_TRUE(all(ok(filter.start(belief))));
+  Gaussian<2, Lanes> reading;
+  reading.covariance(0, 0).set(1, -100.0f);
+  reading.covariance(0, 0).set(2, std::numeric_limits<float>::quiet_NaN());
+  const auto found = filter.correct(Position{}, reading);
+  const Status wanted[] = {Status::kOk, Status::kNotPositiveDefinite, Status::kNotFinite,
+                           Status::kOk};
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(lane(found.status, k), wanted[k]) << "lane " << k;
+    EXPECT_EQ(std::isnan(lane(found.nis, k)), wanted[k] != Status::kOk) << "lane " << k;
+  }
+}
+
+TEST(EkfInLanes, EachSaysWhatIsWrong) { expect_each_lane_to_say_what_is_wrong<Ekf>(); }
+TEST(UkfInLanes, EachSaysWhatIsWrong) { expect_each_lane_to_say_what_is_wrong<Ukf>(); }
 
 }  // namespace
 }  // namespace wakeline

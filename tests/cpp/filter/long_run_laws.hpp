@@ -70,7 +70,32 @@ TYPED_TEST_P(LongRun, AnHourWithoutAPlotThenAPreciseOne) {
   }
 }
 
+// A plot far off is a thin ellipse: askew to the axes, neither variance tells how thin.
+TYPED_TEST_P(LongRun, AWideBeliefThenAThinPlotAskew) {
+  using Scalar = typename TypeParam::Scalar;
+  constexpr double kRange_m = 20e3, kRangeStd_m = 1.0;
+  const auto radar = test::radar_of<TypeParam>(kRangeStd_m, deg(1.0));
+  for (double prior_std_m = 300.0; prior_std_m < 30e3; prior_std_m *= 1.1)
+    for (const double bearing_deg : {30.0, 45.0, 60.0}) {
+      const Vec<Scalar, 2> ahead = towards(Scalar(deg(bearing_deg)));
+      Gaussian<4, Scalar> wide;
+      wide.mean << Scalar(kRange_m) * ahead[0], 0, Scalar(kRange_m) * ahead[1], 0;
+      wide.covariance.diagonal() = Vec<Scalar, 4>(Scalar(prior_std_m * prior_std_m), 25,
+                                                  Scalar(prior_std_m * prior_std_m), 25);
+      TypeParam filter{typename TypeParam::Motion{}};
+      ASSERT_EQ(filter.start(wide), Status::kOk);
+      ASSERT_TRUE(filter.update(radar, Vec<Scalar, 2>(Scalar(kRange_m), Scalar(deg(bearing_deg)))));
+      const auto after = filter.estimate().covariance;
+      EXPECT_TRUE((test::is_covariance<Scalar, TypeParam::kStates>(after))) << after;
+      const int east = index_of(TypeParam::kComponents, Component::kEast);
+      const double along = double(ahead[0]) * double(ahead[0]) * double(after(0, 0)) +
+                           2 * double(ahead[0]) * double(ahead[1]) * double(after(0, east)) +
+                           double(ahead[1]) * double(ahead[1]) * double(after(east, east));
+      EXPECT_GT(along, 0.9 * kRangeStd_m * kRangeStd_m) << "never over-confident";
+    }
+}
+
 REGISTER_TYPED_TEST_SUITE_P(LongRun, CovarianceStaysPositiveDefinite,
-                            AnHourWithoutAPlotThenAPreciseOne);
+                            AnHourWithoutAPlotThenAPreciseOne, AWideBeliefThenAThinPlotAskew);
 
 }  // namespace wakeline

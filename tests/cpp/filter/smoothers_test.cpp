@@ -162,6 +162,15 @@ TYPED_TEST(EverySmoother, NeedsNoHeapAndStaysFiniteWhenTimeStands) {
   EXPECT_EQ(fence.allocations(), 0);
 }
 
+TYPED_TEST(EverySmoother, TakesTwoReadingsOfOneTime) {
+  using Scalar = typename TypeParam::Scalar;
+  typename TypeParam::OnLine smoother;
+  for (int k = 0; k < 9; ++k)
+    for (const int dt : {1, 0})
+      ASSERT_EQ(smoother.update(Scalar(dt), Scalar(k)), Status::kOk) << "reading " << k;
+  EXPECT_NEAR(double(smoother.forecast(Scalar(0))), 8.0, 1.0);
+}
+
 TYPED_TEST(EverySmoother, GoesOnFromAnArchiveBitForBit) {
   using Scalar = typename TypeParam::Scalar;
   for (const int taken : {0, 1, 2, 4, 9, 60}) {
@@ -339,6 +348,22 @@ TEST(ThreePointSmoother, IsTheWeightedMeanOfNeighbours) {
   EXPECT_THROW((ThreePointSmoother<>({.weight_before_s = -1})), std::invalid_argument);
 }
 
+TEST(ThreePointSmoother, TwoReadingsOfOneTimeAreTheirMean) {
+  for (const bool adaptive : {false, true}) {
+    ThreePointSmoother<Wrapped> twice({.adaptive = adaptive}), once({.adaptive = adaptive});
+    Draw draw(12);
+    for (int k = 0; k < 20; ++k) {
+      const double reading = 3.0 + 0.1 * k + 0.1 * draw.normal(), dt = 1.0 + k % 3;
+      ASSERT_EQ(twice.update(dt, wrap_angle(reading - 0.05)), Status::kOk);
+      ASSERT_EQ(twice.update(0, wrap_angle(reading + 0.05)), Status::kOk);
+      ASSERT_EQ(once.update(dt, wrap_angle(reading)), Status::kOk);
+      EXPECT_NEAR(wrap_angle(twice.value() - once.value()), 0, 1e-9);
+      EXPECT_NEAR(twice.rate(), once.rate(), 1e-9);
+      EXPECT_EQ(twice.update(0, NAN), Status::kNotFinite);
+    }
+  }
+}
+
 TEST(ThreePointSmoother, SmoothsNoiseAndItsAdaptiveWeightsComeNearTheLine) {
   Draw draw(5);
   ThreePointSmoother<> fixed, adaptive({.adaptive = true});
@@ -413,6 +438,15 @@ TEST(AlphaBetaSmoother, HasTheSchedulesOfThePaper) {
   EXPECT_THROW((AlphaBetaSmoother<RecentMemory>({.max_plots = 1})), std::invalid_argument);
   EXPECT_THROW((AlphaBetaSmoother<ConstantGains>({.alpha = 2})), std::invalid_argument);
   EXPECT_THROW((AlphaBetaSmoother<>({}, 0.0)), std::invalid_argument);
+}
+
+TEST(AlphaBetaSmoother, RefusesARangeThatIsNoNumberAndStaysAsItWas) {
+  AlphaBetaSmoother<RangeDependent> smoother;
+  ASSERT_EQ(smoother.update(0, 1, 1e3), Status::kOk);
+  EXPECT_EQ(smoother.update(1, 2, std::numeric_limits<double>::quiet_NaN()), Status::kNotFinite);
+  EXPECT_EQ(smoother.value(), 1.0);
+  EXPECT_EQ(smoother.update(1, 2, 1e3), Status::kOk);
+  EXPECT_EQ(smoother.value(), 1.5);
 }
 
 TEST(AdaptiveAlphaBeta, GoesThroughAManeuverFasterThanAtRest) {

@@ -69,6 +69,24 @@ TEST(TwoPoint, IsTheFormulaOfTwoFixes) {
   EXPECT_TRUE(test::is_covariance(belief.covariance));
 }
 
+TEST(TwoPoint, OwnShipWasElsewhereAtTheFirstPlot) {
+  const Vec<double, 4> truth(3000, -8, -4000, 6);
+  const double dt = 2.5;
+  RangeBearing radar{.own = {.north_m = 200, .east_m = 100, .vnorth_mps = 9, .veast_mps = -4}};
+  const Vec<double, 2> second = radar.measure(Vec<double, 2>(truth[0], truth[2]));
+  RangeBearing earlier = radar;
+  earlier.own.north_m -= dt * radar.own.vnorth_mps;
+  earlier.own.east_m -= dt * radar.own.veast_mps;
+  const Vec<double, 2> first =
+      earlier.measure(Vec<double, 2>(truth[0] - dt * truth[1], truth[2] - dt * truth[3]));
+  const Gaussian<4> belief = two_point(radar, first, second, dt);
+  const Gaussian<4> wanted = two_point(earlier.position(first), radar.position(second), dt);
+  EXPECT_TRUE(matrices_near(belief.mean, wanted.mean, {.absolute = 1e-9}));
+  EXPECT_TRUE(matrices_near(belief.covariance, wanted.covariance));
+  EXPECT_NEAR(belief.mean[1], truth[1], 0.5);
+  EXPECT_NEAR(belief.mean[3], truth[3], 0.5);
+}
+
 TEST(TwoPoint, OfTwoPlotsAtOneTimeIsRefusedByTheStart) {
   const RangeBearing radar;
   Ekf ekf{CoordinatedTurn{}};

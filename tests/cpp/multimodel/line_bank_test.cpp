@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "support/draw.hpp"
@@ -208,6 +209,60 @@ TEST(LineBank, ArchiveBringsEverythingBackAndRefusesWhatItIsNot) {
   Archive again(written.bytes());
   shorter.archive(again);
   EXPECT_FALSE(again.ok());
+}
+
+TEST(LineBank, TheTimeSinceTheNewestPlotCostsNoAccuracy) {
+  LineBank<10, float> coarse;
+  LineBank<10, double> fine;
+  Draw draw(5);
+  for (int k = 0; k < 10; ++k) {
+    const Vec<float, 2> plot(float(1000.0 + 15.0 * k + draw.normal()), float(3.0 * draw.normal()));
+    coarse.advance(3.0f);
+    fine.advance(3.0);
+    coarse.add({plot, kPlot.cast<float>()});
+    fine.add({plot.cast<double>(), kPlot});
+  }
+  for (const double waited_s : {600.0, 3000.0, 32400.0}) {
+    coarse.advance(float(waited_s));
+    fine.advance(waited_s);
+    LineBank<10, float>::Lines line{};
+    LineBank<10, double>::Lines wanted{};
+    coarse.fit(line);
+    fine.fit(wanted);
+    for (std::size_t k = 1; k < 9; ++k) {  // through three plots and more
+      EXPECT_NEAR(double(line[k].acceleration_factor) / wanted[k].acceleration_factor, 1.0, 1e-4);
+      const auto parabola = line[k].parabola();
+      const auto exact = wanted[k].parabola();
+      EXPECT_NEAR(double(parabola.position_factor) / exact.position_factor, 1.0, 1e-4);
+      const double error_m = (parabola.position_m.cast<double>() - exact.position_m).norm();
+      EXPECT_LT(error_m, 1e-2 * std::sqrt(exact.position_factor)) << k << " after " << waited_s;
+    }
+  }
+}
+
+template <class Scalar>
+void expect_sound_lines_across_a_gap(double period_s, double gap_s) {
+  Draw draw(6);
+  for (int before = 3; before < 9; ++before) {
+    LineBank<10, Scalar> bank;
+    typename LineBank<10, Scalar>::Lines lines{};
+    for (int k = 0; k <= before; ++k) {
+      bank.add({draw.normals<2>().template cast<Scalar>(), kPlot.cast<Scalar>()});
+      bank.advance(Scalar(k + 1 < before ? period_s : gap_s));
+    }
+    bank.fit(lines);
+    for (int k = 1; k < bank.lines(); ++k) {
+      const auto belief = lines[std::size_t(k)].parabola().belief(Scalar(0.15));
+      EXPECT_TRUE(belief.mean.allFinite() && belief.covariance.allFinite()) << k + 2 << " plots";
+      EXPECT_GT(belief.covariance.diagonal().minCoeff(), Scalar(0)) << k + 2 << " plots";
+    }
+  }
+}
+
+TEST(LineBank, AGapThatDwarfsAllOthersLeavesSoundLines) {
+  for (const double gap_s : {3e3, 1e4, 3e4, 1e5})
+    expect_sound_lines_across_a_gap<float>(3.0, gap_s);
+  for (const double gap_s : {1e5, 1e6, 1e7}) expect_sound_lines_across_a_gap<double>(0.002, gap_s);
 }
 
 TEST(LineBank, IsOfFloatTooAndTouchesNoHeap) {

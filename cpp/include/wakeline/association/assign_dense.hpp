@@ -62,8 +62,8 @@ class DenseAssignment {
     for (int row = 0; row < rows; ++row) {
       candidates_.start_row(unassigned_cost);
       for (int column = 0; column < columns; ++column)
-        candidates_.add(column, scale * cost(row, column) -
-                                    scale * least);  // refuses what is not finite
+        candidates_.add(column,
+                        scale * cost(row, column) - scale * least);  // refuses what is not finite
     }
     return solver_.solve(candidates_);
   }

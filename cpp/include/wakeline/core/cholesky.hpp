@@ -156,7 +156,6 @@ class Cholesky {
   void compute_2x2(Scalar a, Scalar b, Scalar c) noexcept {
     const Scalar determinant = a * c - b * b;
     ok_ = is_variance(a) && is_variance(determinant);
-    if (none(ok_)) return;
     const Scalar inverse_root = inverse_sqrt(determinant);
     inverse_diagonal_[0] = inverse_sqrt(a);
     lower_(0, 0) = a * inverse_diagonal_[0];

@@ -19,11 +19,8 @@ class InPlaceArray {
  public:
   InPlaceArray() noexcept {}
 
-  /// Value k is what `make()` returns.
-  template <class Make>
-  [[gnu::always_inline]] void make(std::size_t k, const Make& make) noexcept {
-    ::new (static_cast<void*>(&values_[k])) T(make());
-  }
+  /// Where value k is to be made, by a placement new.
+  [[nodiscard]] void* place(auto k) noexcept { return &values_[static_cast<std::size_t>(k)]; }
 
   /// The first `count` values, all of which have been made.
   [[nodiscard]] std::span<const T> first(std::size_t count) const noexcept {

@@ -48,7 +48,8 @@ class Gospa {
   };
 
   /// Takes all memory, for up to this many targets and tracks. Throws `std::invalid_argument` when
-  /// the cut-off is not positive, the order below 1, or a capacity negative.
+  /// the cut-off is not positive, the order below 1 or so high that c^p overflows or underflows, or
+  /// a capacity negative.
   Gospa(const Options& options, int target_capacity, int track_capacity)
       : options_(options),
         candidates_(Candidates<double>::dense(target_capacity, track_capacity)),
@@ -57,6 +58,8 @@ class Gospa {
     require(options.order >= 1.0 && std::isfinite(options.order), "order", "at least 1",
             options.order);
     cutoff_power_ = std::pow(options.cutoff_m, options.order);
+    require(std::isnormal(cutoff_power_), "order", "such that cutoff_m to its power is a number",
+            options.order);
   }
 
   [[nodiscard]] const Options& options() const noexcept { return options_; }

@@ -119,7 +119,7 @@ struct BenedictBordner {
 };
 
 /// Critically damped: all poles at theta, which is the least-squares line or parabola with weights
-/// theta² per reading back (fading memory); 0 takes the newest readings only.
+/// theta per reading back (fading memory); 0 takes the newest readings only.
 ///     alpha = 1 - theta²,  beta = (1 - theta)²;
 ///     alpha = 1 - theta³,  beta = 3/2 (1 - theta)² (1 + theta),  gamma = 2 (1 - theta)³.
 /// One theta a reading, however long the step. Source: Brookner 1998, 1.2.6 and 7.2.

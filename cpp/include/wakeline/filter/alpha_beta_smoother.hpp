@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "wakeline/core/require.hpp"
@@ -52,6 +53,7 @@ class AlphaBetaSmoother {
   Status update(Scalar dt_s, Scalar reading, Scalar range_m = Scalar(0)) noexcept {
     if (const Status status = check_reading(readings_ == 0, dt_s, reading); status != Status::kOk)
       return status;
+    if (!std::isfinite(range_m)) return Status::kNotFinite;
     if (++readings_ == 1) {
       line_.value = Residual::normal(reading);
       return Status::kOk;

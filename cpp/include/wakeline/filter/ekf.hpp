@@ -68,6 +68,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
   template <class Sensor>
   [[gnu::flatten]] Correction<Sensor::kMeasurements, Scalar> compare(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
+    if (!this->started_)
+      return failed_correction<Sensor::kMeasurements, Scalar>(Status::kNotStarted);
     Innovation<Sensor> innovation(*this, sensor, reading);
     return innovation;
   }
@@ -84,6 +86,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
   [[gnu::flatten]] Correction<Sensor::kMeasurements, Scalar> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
     constexpr int kM = Sensor::kMeasurements;
+    if (!this->started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
     Innovation<Sensor> innovation(*this, sensor, reading);
     Correction<kM, Scalar> correction = innovation;
     const auto taken = ok(innovation.status);
@@ -120,7 +123,6 @@ class Ekf : public Belief<MotionType, ScalarType> {
     Innovation(const Ekf& filter, const Sensor& sensor,
                const Gaussian<kM, Scalar>& reading) noexcept {
       check_sensor<Sensor, Ekf>();
-      if (!filter.started_) return;
       const Gaussian<kStates, Scalar>& belief = filter.belief_;
       Vec<Scalar, kReads> read;
       unroll<kReads>([&](int k) { read[k] = belief.mean[kRows[k]]; });
@@ -131,10 +133,6 @@ class Ekf : public Belief<MotionType, ScalarType> {
       this->innovation_covariance = reading.covariance;
       project<Sensor, kRows>(belief.covariance, h, ph, this->innovation_covariance);
       factor.compute(this->innovation_covariance);
-      if (none(factor.ok())) {
-        this->status = refusal<Scalar, kM>(this->innovation_covariance);
-        return;
-      }
       whitened = factor.template whiten<1>(this->innovation);
       rate(*this, whitened, factor);
     }
@@ -164,8 +162,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return status;
   }
 
-  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which it is lost. Works out the
-  /// innovation anew, so that the hot one stays in registers.
+  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which it is lost. Works out
+  /// the innovation anew, so that the hot one stays in registers.
   template <class Sensor>
   [[gnu::cold, gnu::noinline]] void take_with_care(
       Gaussian<kStates, Scalar>& posterior, const Sensor& sensor,

@@ -98,6 +98,16 @@ class ReadingWindow {
     return Status::kOk;
   }
 
+  /// Moves the newest reading half way to another one of its time.
+  Status join(Scalar reading) noexcept {
+    if (const Status status = check_reading(false, Scalar(0), reading); status != Status::kOk)
+      return status;
+    const Scalar half = Residual::difference(reading, newest_) / 2;
+    for (int k = 0; k + 1 < size_; ++k) offset_[std::size_t(k)] -= half;
+    newest_ += half;
+    return Status::kOk;
+  }
+
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] Scalar newest() const noexcept { return newest_; }
   /// Reading k, oldest first, less the newest.

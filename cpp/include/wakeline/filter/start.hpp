@@ -47,12 +47,16 @@ Gaussian<4, Scalar> two_point(const Gaussian<2, Scalar>& first, const Gaussian<2
   return kinematics_from<Scalar>(second, velocity, second.covariance / dt_s);
 }
 
-/// Start from two plots of one sensor.
+/// Start from two plots of one sensor. Its own ship is where the second plot was taken, to which it
+/// has come at its velocity.
 template <PositionSensor Sensor, class Scalar>
 Gaussian<4, Scalar> two_point(const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& first,
                               const Vec<Scalar, Sensor::kMeasurements>& second,
                               std::type_identity_t<Scalar> dt_s) noexcept {
-  return two_point<Scalar>(sensor.position(first), sensor.position(second), dt_s);
+  Gaussian<2, Scalar> before = sensor.position(first);
+  if constexpr (requires { sensor.own.template velocity<Scalar>(); })
+    before.mean -= dt_s * sensor.own.template velocity<Scalar>();
+  return two_point<Scalar>(before, sensor.position(second), dt_s);
 }
 
 /// The belief over `[x, vx, y, vy]` as the belief over the state of `motion`: components that it

@@ -69,14 +69,15 @@ class ThreePointSmoother {
     require_not_negative("weight_after_s", settings.weight_after_s);
   }
 
-  /// Takes a reading; one of the time of the reading before has no step to weigh by and is refused.
+  /// Takes a reading; one of the time of the reading before has no step to weigh by and joins it:
+  /// both become their mean.
   Status update(Scalar dt_s, Scalar reading) noexcept {
-    if (readings_.size() > 0 && dt_s == Scalar(0)) return Status::kNegativeTimeStep;
-    const Status status = readings_.add(dt_s, reading);
+    const bool same_time = readings_.size() > 0 && dt_s == Scalar(0);
+    const Status status = same_time ? readings_.join(reading) : readings_.add(dt_s, reading);
     if (status != Status::kOk) return status;
     const int n = readings_.size();
     correction_ = rate_ = Scalar(0);
-    if (n == 2) rate_ = -readings_.offset(0) / dt_s;
+    if (n == 2) rate_ = -readings_.offset(0) / delay_s();
     if (n < 3) return status;
     const ThreePoints<Scalar> last = points(n - 2);
     correction_ =

@@ -97,9 +97,9 @@ class Imm {
     InPlaceArray<Correction<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> each;
     if constexpr (kMayRest)
       for (int mode = 0; mode < bank_.size(); ++mode)
-        each.make(static_cast<std::size_t>(mode), [] { return Correction<kM, Scalar>(); });
+        ::new (each.place(mode)) Correction<kM, Scalar>();
     bank_.for_each([&](int mode, auto& filter, auto&) {
-      each.make(static_cast<std::size_t>(mode), [&] { return filter.correct(sensor, reading); });
+      ::new (each.place(mode)) Correction<kM, Scalar>(filter.correct(sensor, reading));
     });
 
     const auto count = static_cast<std::size_t>(bank_.size());
@@ -184,7 +184,7 @@ class Imm {
     unroll<kModels>([&](auto mode) {
       const auto& belief = bank_.template get<mode.value>().estimate();
       using Lane = decltype(of_lane(0).bank_.template get<mode.value>().to_assign());
-      std::array<std::remove_reference_t<Lane>*, kLanesOf<Scalar>> each;
+      std::array<std::remove_reference_t<Lane>*, kLanesOf<Scalar>> each{};
       for (int k = 0; k < count; ++k)
         each[std::size_t(k)] = &of_lane(k).bank_.template get<mode.value>().to_assign();
       scatter_lanes(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -147,13 +148,13 @@ class LineBank {
     if (size_ == 0) return;
     const Vec<Scalar, 2> origin = latest(0).position_m;  // small numbers: nothing cancels
     Sums sums;
-    Scalar age = elapsed_s_;
+    Scalar age = Scalar(0);
     for (int k = 0; k < size_; ++k) {
       const Plot& plot = latest(k);
       sums.add(age, plot.position_m - origin, plot.covariance_m2);
       if (k > 0) {
         Line<Scalar>& line = lines[static_cast<std::size_t>(k - 1)];
-        line = sums.line(elapsed_s_, elapsed_s_ + latest(0).gap_s);
+        line = sums.line(elapsed_s_, latest(0).gap_s);
         line.position_m += origin;
       }
       age += plot.gap_s;
@@ -187,7 +188,8 @@ class LineBank {
     Scalar gap_s = Scalar(0);  ///< time since the plot before
   };
 
-  /// Means and centred sums over plots of ages a (s before now) at places p: what a line needs.
+  /// Means and centred sums over plots of ages a (s before the newest) at places p: what a line
+  /// needs, whatever the time since then.
   struct Sums {
     int plots = 0;
     Scalar age = Scalar(0);
@@ -217,30 +219,33 @@ class LineBank {
       covariance += weight * (r - covariance);
     }
 
-    /// The line at age 0; the ages of the newest plot and of the one before it.
-    [[nodiscard]] Line<Scalar> line(Scalar newest, Scalar second) const noexcept {
+    /// The line `elapsed` after the newest plot, which came `gap` after the one before it.
+    [[nodiscard]] Line<Scalar> line(Scalar elapsed, Scalar gap) const noexcept {
       const Scalar inverse = Scalar(1) / age_age;
+      const Scalar mean_age = elapsed + age;  // at present
       Line<Scalar> line;
       line.plots = plots;
       line.velocity_mps = -inverse * age_place;
-      line.position_m = place + age * line.velocity_mps;
+      line.position_m = place + mean_age * line.velocity_mps;
       line.velocity_factor = inverse;
-      line.cross_factor = age * inverse;
-      line.position_factor = Scalar(1) / Scalar(plots) + age * line.cross_factor;
+      line.cross_factor = mean_age * inverse;
+      line.position_factor = Scalar(1) / Scalar(plots) + mean_age * line.cross_factor;
       line.plot_covariance_m2 = covariance;
       const Scalar slope = -inverse * age_bow;
-      line.steady_lag = {bow + age * slope, slope};
+      const Scalar bend = bow + age * slope;  // of the line at the newest plot
+      line.steady_lag = {bend + elapsed * (slope - elapsed / 2), slope - elapsed};
       // Of an acceleration since the second plot, the newest one alone has felt anything.
-      const Scalar gap = second - newest;
-      const Scalar pull = (age - newest) * inverse;  // of the newest plot on the slope
+      const Scalar second = elapsed + gap;
+      const Scalar pull = age * inverse;  // of the newest plot on the slope
       const Scalar felt = gap * gap / 2;
-      line.onset_lag = {(Scalar(1) / Scalar(plots) + age * pull) * felt - second * second / 2,
+      line.onset_lag = {(Scalar(1) / Scalar(plots) + mean_age * pull) * felt - second * second / 2,
                         pull * felt - second};
       if (plots > 2) {
-        line.acceleration_factor = Scalar(1) / (bow_bow + slope * age_bow);
+        // Beside a very long gap the bow of the other plots is lost in rounding.
+        const Scalar lost = 16 * std::numeric_limits<Scalar>::epsilon() * bow_bow;
+        line.acceleration_factor = Scalar(1) / std::max(bow_bow + slope * age_bow, lost);
         line.acceleration_mps2 = line.acceleration_factor * (bow_place + slope * age_place);
-        const Scalar bend = newest * newest / 2 - bow + slope * (newest - age);
-        line.onset_acceleration = line.acceleration_factor * bend * felt;
+        line.onset_acceleration = -line.acceleration_factor * bend * felt;
       }
       return line;
     }

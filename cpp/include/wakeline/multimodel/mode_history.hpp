@@ -161,7 +161,7 @@ class ModeHistory {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const Row& row = rows[r];
       Filter& filter = filter_of(row, present_beliefs());
-      corrections.make(r, [&] { return filter.correct(sensor, reading); });
+      ::new (corrections.place(r)) Correction<kM, Lanes>(filter.correct(sensor, reading));
       weights[r] = probability_of(row, present());
       go_on(row, filter.estimate(), next);
     }
