@@ -19,6 +19,7 @@
 #include "wakeline/core/chi_square.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/component.hpp"
+#include "wakeline/core/in_place_array.hpp"
 #include "wakeline/core/pack.hpp"
 #include "wakeline/core/pack_math.hpp"
 #include "wakeline/core/require.hpp"

@@ -97,7 +97,7 @@ class Imm {
     InPlaceArray<Correction<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> each;
     if constexpr (kMayRest)
       for (int mode = 0; mode < bank_.size(); ++mode)
-        ::new (each.place(mode)) Correction<kM, Scalar>();
+        if (none(bank_.active(mode))) ::new (each.place(mode)) Correction<kM, Scalar>();
     bank_.for_each([&](int mode, auto& filter, auto&) {
       ::new (each.place(mode)) Correction<kM, Scalar>(filter.correct(sensor, reading));
     });
