@@ -35,7 +35,6 @@ class Cholesky {
       Scalar pivot = matrix(column, column);
       for (int k = 0; k < column; ++k) pivot -= lower_(column, k) * lower_(column, k);
       ok_ = ok_ && is_variance(pivot);
-      if (none(ok_)) return;
       inverse_diagonal_[column] = inverse_sqrt(pivot);
       lower_(column, column) = pivot * inverse_diagonal_[column];
       for (int row = column + 1; row < N; ++row) {
