@@ -36,7 +36,7 @@ _RADAR = {
     "bearing_std_deg": "degrees, standard deviation of its bearing",
     "extent_std_m": "m per axis, wander of an echo over the hull of its vessel",
     "period_s": "s, one turn of the antenna, which groups plots without a scan number; 0: found",
-    "max_speed_mps": "m/s, no vessel is faster",
+    "max_speed_mps": "m/s, of the vessels, with a fifth to spare",
     "bearing_offset_deg": "degrees, bearing read minus true bearing; taken off every plot",
 }
 
