@@ -46,11 +46,9 @@ Candidates<double> to_candidates(const IntArray& indptr, const IntArray& indices
   Candidates<double> candidates(static_cast<int>(rows), static_cast<int>(data.shape(0)));
   candidates.clear(columns);
   const std::int64_t* start = indptr.data();
-  if (start[0] != 0 || start[rows] != data.shape(0))
+  if (start[0] != 0 || start[rows] != data.shape(0) || !std::is_sorted(start, start + rows + 1))
     throw py::value_error("indptr must rise from 0 to the number of costs");
   for (py::ssize_t row = 0; row < rows; ++row) {
-    if (start[row + 1] < start[row] || start[row + 1] > data.shape(0))
-      throw py::value_error("indptr must rise from 0 to the number of costs");
     const double out = unassigned_cost.data()[unassigned_cost.ndim() == 0 ? 0 : row];
     if (!candidates.start_row(out)) throw py::value_error("unassigned_cost must be finite");
     for (std::int64_t k = start[row]; k < start[row + 1]; ++k) {

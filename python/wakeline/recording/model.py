@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from wakeline._brief import brief, many, span
+from wakeline._engine.core import wrap_angle
 
 from .truth import TargetTruth
 
@@ -73,7 +74,7 @@ class Scan:
 
     def turned(self, by_rad: float) -> Scan:
         """The scan with its plots turned about own ship, clockwise by an angle."""
-        bearing_rad = (self.bearing_rad + by_rad + np.pi) % (2.0 * np.pi) - np.pi
+        bearing_rad = wrap_angle(self.bearing_rad + by_rad)
         own_m = np.column_stack([self.own_north_m, self.own_east_m])
         return Scan.of_plots(
             self.time_s, self.number, self.plot_time_s, self.range_m, bearing_rad, lambda _: own_m

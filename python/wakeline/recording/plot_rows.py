@@ -33,7 +33,6 @@ _MEASUREMENT_WANTED = (
     "azimuth_rad)"
 )
 
-
 _BACK_S = 60.0
 _PUT_IN_ORDER = (
     "put in order that are more than a minute earlier than the row above them: where a clock was "

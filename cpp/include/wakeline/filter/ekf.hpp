@@ -70,8 +70,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
     if (!this->started_)
       return failed_correction<Sensor::kMeasurements, Scalar>(Status::kNotStarted);
-    Innovation<Sensor> innovation(*this, sensor, reading);
-    return innovation;
+    return Innovation<Sensor>(*this, sensor, reading);
   }
 
   /// Corrects the belief by the reading z of a sensor.
