@@ -243,6 +243,17 @@ TYPED_TEST(PackOf, RowsBecomeColumns) {
       EXPECT_EQ(rows[row][column], Real(100 * column + row));
 }
 
+TYPED_TEST(PackOf, SumsOfSeveralAreThoseOfEach) {
+  using Real = RealOf<TypeParam>;
+  constexpr int kSize = 15, kLanes = kLanesOf<TypeParam>;
+  TypeParam packs[kSize];
+  for (int k = 0; k < kSize; ++k)
+    packs[k] = TypeParam::of([&](int lane) { return Real(1) / Real(1 + k + lane * lane); });
+  Real sums[kSize + kLanes];
+  sum_lanes<kSize>(packs, sums);
+  for (int k = 0; k < kSize; ++k) EXPECT_EQ(sums[k], sum_of_lanes(packs[k])) << k;
+}
+
 template <int Size, class PackType>
 void expect_gathered_and_scattered() {
   using Real = RealOf<PackType>;

@@ -4,6 +4,7 @@
 // Trees whose hypotheses learn their own turn rates.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -38,6 +39,17 @@ auto tree_of(double prior_std_rad_s, const HistoryTree& settings = {}) {
   using Filter = Ekf<CoordinatedTurnRate, Scalar>;
   return ModeHistory<Filter>(settings, kTriple, turning_chain(kTriple),
                              Filter(learning(prior_std_rad_s)));
+}
+
+/// The likeliest of those that a condition holds for.
+Tree::Hypothesis likeliest_of(const Tree& tree, auto condition) {
+  Tree::Hypothesis likeliest;
+  for (const auto& one : tree.hypotheses())
+    if (condition(one) && one.probability > likeliest.probability) likeliest = one;
+  return likeliest;
+}
+Tree::Hypothesis likeliest_of(const Tree& tree) {
+  return likeliest_of(tree, [](const auto&) { return true; });
 }
 
 Gaussian<4> steaming() {
@@ -123,7 +135,7 @@ TEST(ModeHistoryOfRates, ASwitchTakesUpThePriorOfItsMode) {
     ASSERT_EQ(tree.predict(2.5), Status::kOk);
     ASSERT_TRUE(tree.update(kRadar, plot(draw, scan, deg(2.4))));
   }
-  const auto likeliest = tree.hypotheses().front();
+  const auto likeliest = likeliest_of(tree);
   ASSERT_EQ(tree.predict(2.5), Status::kOk);
   int switches = 0;
   for (const auto& one : tree.hypotheses()) {
@@ -134,20 +146,17 @@ TEST(ModeHistoryOfRates, ASwitchTakesUpThePriorOfItsMode) {
     ++switches;
   }
   EXPECT_GT(switches, 0);
-  // The likeliest of them came from the likeliest hypothesis.
-  for (const auto& one : tree.hypotheses()) {
-    if (one.segment_s != 2.5) continue;
-    Learner filter = tree.bank().filter(one.mode());
-    ASSERT_EQ(filter.start(Gaussian<4>{likeliest.belief.mean.head<4>(),
-                                       likeliest.belief.covariance.topLeftCorner<4, 4>()}),
-              Status::kOk);
-    ASSERT_EQ(filter.predict(2.5), Status::kOk);
-    EXPECT_TRUE(matrices_near(one.belief.mean, filter.estimate().mean,
-                              {.absolute = 1e-9, .relative = 1e-12}));
-    EXPECT_TRUE(matrices_near(one.belief.covariance, filter.estimate().covariance,
-                              {.absolute = 1e-9, .relative = 1e-12}));
-    break;
-  }
+  const auto one = likeliest_of(tree, [](const auto& any) { return any.segment_s == 2.5; });
+  Learner filter = tree.bank().filter(one.mode());
+  ASSERT_EQ(filter.start(Gaussian<4>{likeliest.belief.mean.head<4>(),
+                                     likeliest.belief.covariance.topLeftCorner<4, 4>()}),
+            Status::kOk);
+  ASSERT_EQ(filter.predict(2.5), Status::kOk);
+  EXPECT_TRUE(
+      matrices_near(one.belief.mean, filter.estimate().mean, {.absolute = 1e-9, .relative = 1e-12}))
+      << "the likeliest of them came from the likeliest hypothesis";
+  EXPECT_TRUE(matrices_near(one.belief.covariance, filter.estimate().covariance,
+                            {.absolute = 1e-9, .relative = 1e-12}));
 }
 
 TEST(ModeHistoryOfRates, LearnsARateBesideTheGrid) {
@@ -159,7 +168,7 @@ TEST(ModeHistoryOfRates, LearnsARateBesideTheGrid) {
       ASSERT_EQ(tree.predict(2.5), Status::kOk);
       ASSERT_TRUE(tree.update(kRadar, plot(draw, scan, rate)));
     }
-    const auto& likeliest = tree.hypotheses().front().belief;
+    const auto likeliest = likeliest_of(tree).belief;
     const double std_rad_s = std::sqrt(likeliest.covariance(4, 4));
     EXPECT_NEAR(likeliest.mean[4], rate, 4 * std_rad_s);
     EXPECT_LT(std_rad_s, deg(0.2)) << "and it knows that it does";

@@ -31,18 +31,20 @@ class Cholesky {
       compute_2x2(matrix(0, 0), matrix(1, 0), matrix(1, 1));
       return;
     }
-    for (int column = 0; column < N; ++column) {
-      Scalar pivot = matrix(column, column);
-      for (int k = 0; k < column; ++k) pivot -= lower_(column, k) * lower_(column, k);
+    unroll<N>([&](auto column) {
+      constexpr int kColumn = column.value;
+      Scalar pivot = matrix(kColumn, kColumn);
+      unroll<kColumn>([&](int k) { pivot -= lower_(kColumn, k) * lower_(kColumn, k); });
       ok_ = ok_ && is_variance(pivot);
-      inverse_diagonal_[column] = inverse_sqrt(pivot);
-      lower_(column, column) = pivot * inverse_diagonal_[column];
-      for (int row = column + 1; row < N; ++row) {
-        Scalar sum = matrix(row, column);
-        for (int k = 0; k < column; ++k) sum -= lower_(row, k) * lower_(column, k);
-        lower_(row, column) = sum * inverse_diagonal_[column];
-      }
-    }
+      inverse_diagonal_[kColumn] = inverse_sqrt(pivot);
+      lower_(kColumn, kColumn) = pivot * inverse_diagonal_[kColumn];
+      unroll<N - 1 - kColumn>([&](auto below) {
+        constexpr int kRow = kColumn + 1 + below.value;
+        Scalar sum = matrix(kRow, kColumn);
+        unroll<kColumn>([&](int k) { sum -= lower_(kRow, k) * lower_(kColumn, k); });
+        lower_(kRow, kColumn) = sum * inverse_diagonal_[kColumn];
+      });
+    });
   }
 
   [[nodiscard]] MaskOf<Scalar> ok() const noexcept { return ok_; }
@@ -65,28 +67,27 @@ class Cholesky {
     return whitened;
   }
 
-  /// vᵀ A⁻¹ v; `squared_norms` of a v in each lane.
-  Scalar squared_norm(const Vec<Scalar, N>& v) const noexcept { return squared_norms(v); }
-  template <class Lanes>
-  Lanes squared_norms(const Vec<Lanes, N>& v) const noexcept {
-    Lanes whitened[N];
-    Lanes norm = Lanes(0);
-    for (int row = 0; row < N; ++row) {
-      Lanes sum = v[row];
-      for (int k = 0; k < row; ++k) sum -= Lanes(lower_(row, k)) * whitened[k];
-      whitened[row] = sum * Lanes(inverse_diagonal_[row]);
-      norm += whitened[row] * whitened[row];
-    }
+  /// vᵀ A⁻¹ v.
+  Scalar squared_norm(const Vec<Scalar, N>& v) const noexcept {
+    Scalar norm = Scalar(0);
+    const Vec<Scalar, N> whitened = whiten<1>(v);
+    for (int row = 0; row < N; ++row) norm += whitened[row] * whitened[row];
     return norm;
   }
 
-  /// That of one lane.
-  [[nodiscard]] Cholesky<N, RealOf<Scalar>> of_lane(int k) const noexcept {
-    Cholesky<N, RealOf<Scalar>> one;
-    one.ok_ = (bits_of(ok_) >> k & 1u) != 0;
-    unroll<N>([&](int i) { one.inverse_diagonal_[i] = lane(inverse_diagonal_[i], k); });
-    unroll<N * N>([&](int i) { one.lower_.data()[i] = lane(lower_.data()[i], k); });
-    return one;
+  /// That of a v in each lane, by the matrix of one lane.
+  template <class Lanes>
+  Lanes squared_norms(const Vec<Lanes, N>& v, int of_lane) const noexcept {
+    Lanes whitened[N];
+    Lanes norm = Lanes(0);
+    unroll<N>([&](auto row) {
+      constexpr int kRow = row.value;
+      Lanes sum = v[kRow];
+      unroll<kRow>([&](int k) { sum -= Lanes(lane(lower_(kRow, k), of_lane)) * whitened[k]; });
+      whitened[kRow] = sum * Lanes(lane(inverse_diagonal_[kRow], of_lane));
+      norm += whitened[kRow] * whitened[kRow];
+    });
+    return norm;
   }
 
   /// B L⁻ᵀ: whitens the rows of B.
@@ -143,9 +144,6 @@ class Cholesky {
   }
 
  private:
-  template <int, class>
-  friend class Cholesky;
-
   static MaskOf<Scalar> is_variance(Scalar pivot) noexcept {
     return pivot > Scalar(0) && pivot <= Scalar(std::numeric_limits<RealOf<Scalar>>::max());
   }

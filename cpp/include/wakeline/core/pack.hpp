@@ -213,7 +213,7 @@ class Pack {
     return rounded - select(rounded > a, Pack(1), Pack(0));
   }
 
-  friend Real lane(Pack a, int k) noexcept { return a.raw[k]; }
+  friend Real lane(const Pack& a, int k) noexcept { return a.raw[k]; }
   // In the order of the lanes, so that the result is the same on every machine.
   friend Real sum_of_lanes(Pack a) noexcept {
     Real sum = a.raw[0];
@@ -351,6 +351,22 @@ requires(kLanesIn<Packs> > 1)
   });
   if constexpr (Size < kLanes)
     for (int k = 0; k < count; ++k) unroll<Size>([&](int i) { array(k)[i] = lane(packs[i], k); });
+}
+
+/// `sums[k]` is the sum of the lanes of `packs[k]`, in their order. Writes whole registers, so that
+/// there must be room for as many numbers as there are lanes behind `sums + Size`.
+template <int Size, class Real, int Lanes>
+[[gnu::always_inline]] inline void sum_lanes(const Pack<Real, Lanes>* packs, Real* sums) noexcept {
+  unroll<(Size + Lanes - 1) / Lanes>([&](auto block) {
+    constexpr int kFirst = block.value * Lanes;
+    Pack<Real, Lanes> rows[Lanes];
+    unroll<Lanes>([&](auto k) {
+      rows[k] = kFirst + k.value < Size ? packs[kFirst + k.value] : Pack<Real, Lanes>(0);
+    });
+    transpose(rows);
+    unroll<Lanes - 1>([&](auto k) { rows[0] += rows[k.value + 1]; });
+    store(rows[0], sums + kFirst);
+  });
 }
 
 }  // namespace WAKELINE_INSTRUCTION_SET

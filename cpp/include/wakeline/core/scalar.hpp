@@ -93,6 +93,13 @@ requires(kLanesOf<Scalar> == 1) constexpr Scalar least_of_lanes(Scalar x) noexce
 template <class Scalar>
 requires(kLanesOf<Scalar> == 1) constexpr Scalar greatest_of_lanes(Scalar x) noexcept { return x; }
 
+/// `sums[k]` is the sum of the lanes of `scalars[k]`.
+template <int Size, class Scalar>
+requires(kLanesOf<Scalar> == 1)
+    [[gnu::always_inline]] inline void sum_lanes(const Scalar* scalars, Scalar* sums) noexcept {
+  unroll<Size>([&](int k) { sums[k] = scalars[k]; });
+}
+
 /// `fold(x)` where `Result` is one number and x are many; else each lane for itself.
 template <class Result, class Scalar, class Fold>
 Result fold_to(Scalar x, const Fold& fold) noexcept {

@@ -136,9 +136,8 @@ class Ukf : public Belief<MotionType, ScalarType> {
       });
     });
     Mat<Scalar, kStates, kM> gain = factor.whiten_rows(cross);
-    Gaussian<kStates, Scalar> next = this->belief_;
-    shift(next.mean, gain, whitened);
-    subtract_gram(next.covariance, gain);
+    Gaussian<kStates, Scalar> next;
+    correct_by(gain, whitened, this->belief_, next);
     const auto lost = cancels<Scalar, kStates>(this->belief_.covariance, next.covariance);
     if (any(lost)) [[unlikely]]
       assign_where(lost, next.covariance,

@@ -6,16 +6,22 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "wakeline/core/archive.hpp"
 #include "wakeline/core/in_place_array.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/multimodel/history_tree.hpp"
+#include "wakeline/multimodel/hypothesis_clusters.hpp"
+#include "wakeline/multimodel/hypothesis_rows.hpp"
+#include "wakeline/multimodel/likeliest.hpp"
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/multimodel/turn_rate_grid.hpp"
 #include "wakeline/multimodel/uniform_bank.hpp"
@@ -78,8 +84,7 @@ class ModeHistory {
         bank_(bank),
         initial_(Probability::Constant(bank.size(), Scalar(1) / Scalar(bank.size()))),
         probability_(initial_),
-        transition_(ModeMatrix<Scalar, K>::Zero(bank.size(), bank.size())),
-        ways_out_(ModeMatrix<int, K>::Zero(bank.size(), bank.size())) {
+        transition_(ModeMatrix<Scalar, K>::Zero(bank.size(), bank.size())) {
     if (chain.modes() != bank.size())
       refuse("a ModeHistory needs one mode of its chain for each filter, got " +
              std::to_string(chain.modes()) + " modes and " + std::to_string(bank.size()) +
@@ -120,20 +125,21 @@ class ModeHistory {
   /// changes.
   template <class StartType>
   Status start(const StartType& belief) noexcept {
-    Hypotheses& next = spare();
+    Leaves& next = spare();
+    next.clear();
     for (int k = 0; k < bank_.size(); ++k) {
       Filter& filter = bank_.filter(k);
       if (const Status status = lane(filter.start(belief.template cast<Lanes>()), 0);
           status != Status::kOk)
         return status;
-      Hypothesis& hypothesis = at(next, k);
-      put({&k, 1, k}, filter.estimate(), next);
-      hypothesis.probability = initial_[k];
-      hypothesis.segment_s = std::numeric_limits<Scalar>::infinity();
-      hypothesis.modes = static_cast<std::uint64_t>(k);
+      Row& row = next.row_of(next.append(k));
+      row.set_beliefs(filter.estimate());
+      row.probability[0] = initial_[k];
+      row.segment_s.fill(std::numeric_limits<Scalar>::infinity());
+      row.modes.fill(static_cast<std::uint64_t>(k));
     }
     started_ = true;
-    take(bank_.size());
+    take();
     return Status::kOk;
   }
 
@@ -154,27 +160,28 @@ class ModeHistory {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
     Gaussian<kM, Lanes> reading = sensor.observe(z).template cast<Lanes>();
-    InPlaceArray<Correction<kM, Lanes>, kMostRows> corrections;
-    std::array<Lanes, kMostRows> weights;
-    const Rows rows(hypotheses());
-    Hypotheses& next = spare();
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      const Row& row = rows[r];
-      Filter& filter = filter_of(row, present_beliefs());
+    InPlaceArray<Correction<kM, Lanes>, Leaves::kMostRows> corrections;
+    std::array<Lanes, Leaves::kMostRows> weights;
+    const std::span<const Row> before = present().all();
+    Leaves& next = spare();
+    next.clear();
+    for (std::size_t r = 0; r < before.size(); ++r) {
+      Filter& filter = filter_of(before[r]);
       ::new (corrections.place(r)) Correction<kM, Lanes>(filter.correct(sensor, reading));
-      weights[r] = probability_of(row, present());
-      go_on(row, filter.estimate(), next);
+      weights[r] = load<Lanes>(before[r].probability.data());
+      next.append_pasts(before[r]).set_beliefs(filter.estimate());
     }
-    const std::span<const Correction<kM, Lanes>> taken = corrections.first(rows.size());
-    const std::span<Lanes> weighed(weights.data(), rows.size());
+    const std::span<const Correction<kM, Lanes>> taken = corrections.first(before.size());
+    const std::span<Lanes> weighed(weights.data(), before.size());
     Step<kM, Scalar> step = mixed_step<kM, Scalar>(taken, weighed);
-    step.log_likelihood =
-        reweigh<kMostRows, Scalar>(weighed, [&](std::size_t r) { return taken[r].likelihood(); });
+    step.log_likelihood = reweigh<Leaves::kMostRows, Scalar>(
+        weighed, [&](std::size_t r) { return taken[r].likelihood(); });
     if (step.log_likelihood == kImpossible<Scalar>)
       return failed_step<kM, Scalar>(first_failure_of_lanes(failure_of(taken)));
-    for (std::size_t r = 0; r < rows.size(); ++r) set_probability(rows[r], weights[r], next);
-    take(count_);
-    if (!pooled()) reduce();
+    for (std::size_t r = 0; r < weighed.size(); ++r)
+      store(weights[r], next.all()[r].probability.data());
+    now_ = 1 - now_;
+    settle();
     return step;
   }
 
@@ -184,11 +191,10 @@ class ModeHistory {
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     Evidence<Lanes> evidence;
     const auto reading = sensor.observe(z).template cast<Lanes>();
-    const Rows rows(hypotheses());
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      Filter filter = bank_.filter(rows[r].mode);
-      (void)filter.assign(side_by_side(rows[r], present_beliefs()));
-      evidence.add(probability_of(rows[r], present()), filter.compare(sensor, reading));
+    for (const Row& row : present().all()) {
+      Filter filter = bank_.filter(row.mode);
+      (void)filter.assign(row.beliefs());
+      evidence.add(load<Lanes>(row.probability.data()), filter.compare(sensor, reading));
     }
     return {sum_to<Scalar>(evidence.likelihood), least_to<Scalar>(evidence.least_nis)};
   }
@@ -200,60 +206,93 @@ class ModeHistory {
                 std::span<Scalar> share) noexcept {
     for (Scalar& part : share) part = Scalar(0);
     if (!started_) return Scalar(0);
-    Hypotheses& next = spare();
+    Leaves& next = spare();
+    next.clear();
     Scalar total = Scalar(0);
-    const Rows rows(hypotheses());
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      const LaneBelief before = side_by_side(rows[r], present_beliefs());
-      Filter& filter = bank_.filter(rows[r].mode);
-      (void)filter.assign(before);
-      const Lanes weight = probability_of(rows[r], present());
+    for (const Row& row : present().all()) {
+      LaneBelief before;
+      before = row.beliefs();
+      Filter& filter = filter_of(row);
+      const Lanes weight = load<Lanes>(row.probability.data());
       const Lanes posterior = weight * absorb(filter, before, readings, none, weight, share);
       total += sum_to<Scalar>(posterior);
-      go_on(rows[r], filter.estimate(), next);
-      set_probability(rows[r], posterior, next);
+      Row& after = next.append_pasts(row);
+      after.set_beliefs(filter.estimate());
+      store(posterior, after.probability.data());
     }
     if (!(total > Scalar(0)) || !std::isfinite(total)) return Scalar(0);
     for (Scalar& part : share) part /= total;
-    take(count_);
-    if (!pooled()) reduce();
+    for (Row& row : next.all())
+      store(load<Lanes>(row.probability.data()) / Lanes(total), row.probability.data());
+    now_ = 1 - now_;
+    settle();
     return total;
   }
 
   /// Saves or restores the hypotheses.
   void archive(Archive& fields) {
     bool started = started_;
-    int count = count_;
+    int count = present().size();
     fields(started);
     fields(count);
     if (count < int(started) || count > tree_.max_branches ||
         (pooled() && started && count != bank_.size()))
       return fields.fail();
-    Hypotheses& hypotheses = fields.loading() ? spare() : present();
+    auto next = hypotheses().begin();
+    Leaves& loaded = spare();
+    if (fields.loading()) loaded.clear();
     bool sound = true;
+    int mode = 0;
     for (int i = 0; i < count; ++i) {
-      Hypothesis& hypothesis = at(hypotheses, i);
+      Hypothesis hypothesis;
+      if (!fields.loading()) hypothesis = *next++;
       fields(hypothesis.belief.mean);
       fields(hypothesis.belief.covariance);
       fields(hypothesis.probability);
       fields(hypothesis.segment_s);
       fields(hypothesis.modes);
-      sound = sound && hypothesis.mode() < bank_.size() && hypothesis.probability >= Scalar(0) &&
-              hypothesis.probability <= Scalar(1) && (!pooled() || hypothesis.mode() == i);
+      sound = sound && hypothesis.mode() >= mode && hypothesis.mode() < bank_.size() &&
+              hypothesis.probability >= Scalar(0) && hypothesis.probability <= Scalar(1) &&
+              (!pooled() || hypothesis.mode() == i);
+      if (!sound || !fields.loading()) continue;
+      mode = hypothesis.mode();
+      const int place = loaded.append(mode);
+      const auto k = static_cast<std::size_t>(Leaves::lane_of(place));
+      Row& row = loaded.row_of(place);
+      row.set_belief(Leaves::lane_of(place), hypothesis.belief);
+      row.probability[k] = hypothesis.probability;
+      row.segment_s[k] = hypothesis.segment_s;
+      row.modes[k] = hypothesis.modes;
     }
     if (!sound) fields.fail();
     if (!fields.loading() || !fields.ok()) return;
     started_ = started;
     now_ = 1 - now_;
-    count_ = count;
     weigh_modes();
   }
 
   /// The moment-matched estimate.
   [[nodiscard]] BeliefType estimate() const noexcept {
-    return joined(
-               size(), [&](std::size_t i) -> auto& { return present()[i]; })
-        .belief;
+    BeliefType joint;
+    Vec<Lanes, kStates> mean = Vec<Lanes, kStates>::Zero();
+    for (const Row& row : present().all()) {
+      const Lanes probability = load<Lanes>(row.probability.data());
+      unroll<kStates>([&](int i) { mean[i] += probability * row.mean_lanes(i); });
+    }
+    unroll<kStates>([&](int i) { joint.mean[i] = sum_to<Scalar>(mean[i]); });
+    Mat<Lanes, kStates, kStates> covariance = Mat<Lanes, kStates, kStates>::Zero();
+    for (const Row& row : present().all()) {
+      const Lanes probability = load<Lanes>(row.probability.data());
+      Vec<Lanes, kStates> d;
+      unroll<kStates>([&](int i) { d[i] = row.mean_lanes(i) - Lanes(joint.mean[i]); });
+      unroll_lower<kStates>([&](int i, int j) {
+        covariance(i, j) += probability * (row.covariance_lanes(i, j) + d[i] * d[j]);
+      });
+    }
+    unroll_lower<kStates>([&](int i, int j) {
+      joint.covariance(i, j) = joint.covariance(j, i) = sum_to<Scalar>(covariance(i, j));
+    });
+    return joint;
   }
 
   [[nodiscard]] const Probability& mode_probability() const noexcept { return probability_; }
@@ -263,246 +302,240 @@ class ModeHistory {
   [[nodiscard]] const Bank& bank() const noexcept { return bank_; }
   [[nodiscard]] bool started() const noexcept { return started_; }
 
-  /// What is believed at present.
-  [[nodiscard]] std::span<const Hypothesis> hypotheses() const noexcept {
-    return {buffers_[now_].data(), size()};
-  }
+  /// What is believed at present: hypotheses by mode, as a range of them.
+  [[nodiscard]] auto hypotheses() const noexcept { return Hypotheses{present()}; }
 
  private:
   static constexpr std::size_t kCapacity = static_cast<std::size_t>(Capacity);
   static_assert(kMaxModes <= 16, "a mode has four bits of a history");
   static constexpr double kStraightPart = 0.1;
   static constexpr int kTurnRateRow = index_of(kComponents, Component::kTurnRate);  ///< or -1
-  using Hypotheses = std::array<Hypothesis, kCapacity>;
-  using Indices = std::array<int, kCapacity>;
-
   using LaneBelief = StateBelief<kComponents, Lanes>;
-  static constexpr int kLanes = kLanesOf<Lanes>;
-  static constexpr std::size_t kMostRows =
-      kCapacity / kLanes + (kLanes > 1 ? static_cast<std::size_t>(kModeCapacity<K>) : 0);
+  using Leaves = HypothesisRows<kStates, Lanes, Capacity, kModeCapacity<K>>;
+  using Row = typename Leaves::Row;
 
-  /// Hypotheses of one mode, by their numbers, as many as there are lanes or fewer: the last one
-  /// stands in all lanes that are left over.
-  struct Row {
-    const int* first;
-    int count;
-    int mode;
-
-    int operator[](int of_lane) const noexcept { return first[std::min(of_lane, count - 1)]; }
-  };
-
-  /// All hypotheses in rows.
-  class Rows {
+  /// The hypotheses of some rows, one by one.
+  class Hypotheses {
    public:
-    explicit Rows(std::span<const Hypothesis> hypotheses) noexcept {
-      std::array<int, kModeCapacity<K> + 1> begin{};
-      for (const Hypothesis& hypothesis : hypotheses) ++at(begin, hypothesis.mode() + 1);
-      for (int mode = 0; mode < kModeCapacity<K>; ++mode) at(begin, mode + 1) += at(begin, mode);
-      std::array<int, kModeCapacity<K> + 1> end = begin;
-      for (std::size_t i = 0; i < hypotheses.size(); ++i)
-        at(order_, at(end, hypotheses[i].mode())++) = static_cast<int>(i);
-      for (int mode = 0; mode < kModeCapacity<K>; ++mode)
-        for (int i = at(begin, mode); i < at(end, mode); i += kLanes)
-          rows_[size_++] = {&at(order_, i), std::min(kLanes, at(end, mode) - i), mode};
-    }
-    Rows(const Rows&) = delete;
-    Rows& operator=(const Rows&) = delete;
+    class Iterator {
+     public:
+      using iterator_category = std::input_iterator_tag;
+      using value_type = Hypothesis;
+      using difference_type = std::ptrdiff_t;
 
-    [[nodiscard]] std::size_t size() const noexcept { return size_; }
-    const Row& operator[](std::size_t k) const noexcept { return rows_[k]; }
+      Iterator() = default;
+      explicit Iterator(const Row* row) noexcept : row_(row) {}
+
+      Hypothesis operator*() const noexcept {
+        const auto k = static_cast<std::size_t>(lane_);
+        Hypothesis one;
+        one.belief = row_->belief(lane_);
+        one.probability = row_->probability[k];
+        one.segment_s = row_->segment_s[k];
+        one.modes = row_->modes[k];
+        return one;
+      }
+      Iterator& operator++() noexcept {
+        if (++lane_ == row_->count) {
+          ++row_;
+          lane_ = 0;
+        }
+        return *this;
+      }
+      Iterator operator++(int) noexcept {
+        const Iterator before = *this;
+        ++*this;
+        return before;
+      }
+      bool operator==(const Iterator&) const = default;
+
+     private:
+      const Row* row_ = nullptr;
+      int lane_ = 0;
+    };
+
+    explicit Hypotheses(const Leaves& leaves) noexcept : leaves_(leaves) {}
+
+    [[nodiscard]] std::size_t size() const noexcept {
+      return static_cast<std::size_t>(leaves_.size());
+    }
+    [[nodiscard]] Iterator begin() const noexcept { return Iterator(leaves_.all().data()); }
+    [[nodiscard]] Iterator end() const noexcept {
+      return Iterator(leaves_.all().data() + leaves_.all().size());
+    }
 
    private:
-    Indices order_;
-    std::array<Row, kMostRows> rows_;
-    std::size_t size_ = 0;
+    const Leaves& leaves_;
   };
 
-  [[nodiscard]] auto present_beliefs() const noexcept {
-    return [this](int i) -> const BeliefType& { return at(present(), i).belief; };
-  }
-
-  /// Each lane of a row takes `belief_of(i)` of its hypothesis.
-  template <class BeliefOf>
-  [[gnu::flatten]] static LaneBelief side_by_side(const Row& row,
-                                                  const BeliefOf& belief_of) noexcept {
-    const BeliefType* of_lane[kLanes];
-    for (int k = 0; k < kLanes; ++k) of_lane[k] = &belief_of(row[k]);
-    LaneBelief belief;
-    Gaussian<kStates, Lanes>& lanes = belief;
-    gather_lanes([&](int k) -> const BeliefType& { return *of_lane[k]; }, lanes);
-    return belief;
-  }
-
-  /// Takes the beliefs of a row out of their lanes.
-  [[gnu::flatten]] static void put(const Row& row, const Gaussian<kStates, Lanes>& lanes,
-                                   Hypotheses& hypotheses) noexcept {
-    BeliefType* of_lane[kLanes];
-    for (int k = 0; k < kLanes; ++k) of_lane[k] = &at(hypotheses, row[k]).belief;
-    scatter_lanes(lanes, row.count, [&](int k) -> BeliefType& { return *of_lane[k]; });
-  }
-
-  /// The hypotheses of a row go on in their modes with other beliefs.
-  void go_on(const Row& row, const Gaussian<kStates, Lanes>& lanes,
-             Hypotheses& next) const noexcept {
-    put(row, lanes, next);
-    for (int of_lane = 0; of_lane < row.count; ++of_lane) {
-      const int i = row[of_lane];
-      at(next, i).segment_s = at(present(), i).segment_s;
-      at(next, i).modes = at(present(), i).modes;
-    }
-  }
-
-  static void set_probability(const Row& row, const Lanes& probability,
-                              Hypotheses& hypotheses) noexcept {
-    for (int of_lane = 0; of_lane < row.count; ++of_lane)
-      at(hypotheses, row[of_lane]).probability = lane(probability, of_lane);
-  }
-
-  /// Zero in lanes that are left over.
-  static Lanes probability_of(const Row& row, const Hypotheses& of) noexcept {
-    return lanes_of<Lanes>([&](int of_lane) {
-      return of_lane < row.count ? at(of, row[of_lane]).probability : Scalar(0);
-    });
-  }
-
   /// The filter of its mode, with the beliefs of a row.
-  template <class BeliefOf>
-  Filter& filter_of(const Row& row, const BeliefOf& belief_of) noexcept {
+  Filter& filter_of(const Row& row) noexcept {
     Filter& filter = bank_.filter(row.mode);
-    (void)filter.assign(side_by_side(row, belief_of));
+    (void)filter.assign(row.beliefs());
     return filter;
   }
 
-  /// Predicts the first `count` of some hypotheses, each from `before(i)`. Where one fails none is
-  /// to be used.
-  template <class Before, class... Known>
-  Status move(Hypotheses& hypotheses, int count, const Before& before, Scalar dt_s,
-              const Known&... acceleration_mps2) noexcept {
-    const Rows rows({hypotheses.data(), static_cast<std::size_t>(count)});
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      Filter& filter = filter_of(rows[r], before);
+  /// Predicts all hypotheses. Where one fails none is to be used.
+  template <class... Known>
+  Status move(Leaves& leaves, Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+    for (Row& row : leaves.all()) {
+      Filter& filter = filter_of(row);
       const Status status = first_failure_of_lanes(
           filter.predict(Lanes(dt_s), acceleration_mps2.template cast<Lanes>()...));
       if (status != Status::kOk) return status;
-      put(rows[r], filter.estimate(), hypotheses);
+      row.set_beliefs(filter.estimate());
     }
     return Status::kOk;
   }
 
-  /// A switch of a hypothesis to another mode.
+  /// A switch to another mode of the hypothesis at a place.
   struct Switch {
     Scalar probability;
     int from;
     int mode;
+    int to = 0;     ///< its place then
+    int other = 0;  ///< the number of another one to that mode, or -1
   };
 
   template <class... Known>
   Status branch_and_move(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
     if (!started_) return Status::kNotStarted;
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
-    if (!pooled() && count_ > tree_.max_hypotheses) {  // the last scan was missed
+    if (!pooled() && present().size() > tree_.max_hypotheses) {  // the last scan was missed
       spare() = present();
-      if (const Status status =
-              move(spare(), count_, present_beliefs(), dt_s, acceleration_mps2...);
-          status != Status::kOk)
+      if (const Status status = move(spare(), dt_s, acceleration_mps2...); status != Status::kOk)
         return status;
       reduce();
     }
     if (dt_s != transition_step_s_) prepare(dt_s);
-    std::array<Switch, kCapacity> switches;
-    const int switching = pooled() ? 0 : likeliest_switches(dt_s, switches);
-    const BeliefType pool = pooled() ? estimate() : BeliefType{};
-    Hypotheses& next = spare();
-    for (int i = 0; i < count_; ++i) {
-      const Hypothesis& before = at(present(), i);
-      Hypothesis& stays = at(next, i);
-      const int mode = before.mode();
-      stays.probability = before.probability;
-      if (pooled())
-        stays.probability = arriving(mode);
-      else if (may_switch(before, dt_s))
-        stays.probability *= transition_(mode, mode);
-      stays.segment_s = before.segment_s + dt_s;
-      stays.modes = followed_by(before.modes, mode);
-    }
-    for (int s = 0; s < switching; ++s) {
-      const Switch& change = at(switches, s);
-      Hypothesis& switched = at(next, count_ + s);
-      switched.probability = change.probability;
-      switched.segment_s = dt_s;
-      switched.modes = followed_by(at(present(), change.from).modes, change.mode);
-      if constexpr (kTurnRateRow >= 0) {
-        const Hypothesis& from = at(present(), change.from);
-        switched.belief = from.belief;
-        if (!same_prior_rate(from.mode(), change.mode))
-          forget_turn_rate(switched.belief, change.mode);
-      }
-    }
-    const auto before = [&](int i) -> const BeliefType& {
-      if (pooled()) return pool;
-      if (i < count_) return at(present(), i).belief;
-      return kTurnRateRow >= 0 ? at(next, i).belief
-                               : at(present(), at(switches, i - count_).from).belief;
-    };
-    if (const Status status = move(next, count_ + switching, before, dt_s, acceleration_mps2...);
-        status != Status::kOk)
+    std::array<Switch, kCapacity> room;
+    const std::span<Switch> switches = likeliest_switches(dt_s, room);
+    Leaves& next = spare();
+    branch(switches, dt_s, next);
+    if (const Status status = move(next, dt_s, acceleration_mps2...); status != Status::kOk)
       return status;
-    for (int s = 0; s < switching; ++s)
-      spread(at(next, count_ + s).belief, at(next, at(switches, s).from).belief.mean);
-    take(count_ + switching);
+    for (const Switch& change : switches) spread(change, next);
+    take();
     return Status::kOk;
   }
 
-  /// Fills in the likeliest switches that there is room for; returns how many.
-  int likeliest_switches(Scalar dt_s, std::array<Switch, kCapacity>& chosen) const noexcept {
-    const auto better = [](const Switch& a, const Switch& b) {
-      if (a.probability != b.probability) return a.probability > b.probability;
-      return a.from != b.from ? a.from < b.from : a.mode < b.mode;
-    };
-    const int room = tree_.max_branches - count_;
-    int count = 0;
-    bool full = false;
-    for (int from = 0; from < count_ && room > 0; ++from) {
-      const Hypothesis& hypothesis = at(present(), from);
-      if (!may_switch(hypothesis, dt_s)) continue;
-      for (int way = 0; way < bank_.size() - 1; ++way) {
-        const int mode = ways_out_(hypothesis.mode(), way);
-        const Scalar probability = hypothesis.probability * transition_(hypothesis.mode(), mode);
-        const Switch change{probability, from, mode};
-        if (!(probability > Scalar(0))) break;
-        if (count == room) {
-          if (!better(change, chosen.front())) break;
-          std::pop_heap(chosen.begin(), chosen.begin() + count--, better);
+  /// Every hypothesis stays, those that switch do so too. Beliefs are those before the scan.
+  void branch(std::span<Switch> switches, Scalar dt_s, Leaves& next) const noexcept {
+    std::array<int, static_cast<std::size_t>(kModeCapacity<K>)> first;  // into each mode
+    first.fill(-1);
+    for (int s = static_cast<int>(switches.size()) - 1; s >= 0; --s)
+      at(switches, s).other = std::exchange(at(first, at(switches, s).mode), s);
+    BeliefType pool;
+    if (pooled()) pool = estimate();
+    next.clear();
+    for (int mode = 0; mode < bank_.size(); ++mode) {
+      for (const Row& row : present().of_mode(mode)) {
+        Row& stays = next.append_pasts(row);
+        if (pooled()) {
+          stays.set_belief(0, pool);
+          stays.probability[0] = arriving(mode);
+        } else {
+          stays.copy_beliefs(row);
+          stay(stays, dt_s);
         }
-        at(chosen, count++) = change;
-        if (count < room) continue;
-        // A heap from here on, whose front is the first to go.
-        if (!full)
-          std::make_heap(chosen.begin(), chosen.begin() + count, better);
-        else
-          std::push_heap(chosen.begin(), chosen.begin() + count, better);
-        full = true;
       }
+      for (int s = at(first, mode); s >= 0; s = at(switches, s).other)
+        at(switches, s).to = follow(at(switches, s), next);
     }
-    return count;
+    for (Row& row : next.all()) go_on(row, dt_s);
   }
 
-  /// Keeps the chain's transition over one step, and the ways out of each mode, likeliest first.
+  /// The likeliest switches that there is room for.
+  std::span<Switch> likeliest_switches(Scalar dt_s,
+                                       std::array<Switch, kCapacity>& room) const noexcept {
+    if (pooled() || present().size() >= tree_.max_branches) return {};
+    const auto left = static_cast<std::size_t>(tree_.max_branches - present().size());
+    Likeliest<Switch> likeliest(std::span<Switch>(room).first(left));
+    std::array<Lanes, Leaves::kMostRows> leaving;  // probabilities of what may switch
+    const std::span<const Row> rows = present().all();
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      leaving[r] =
+          select(may_switch(rows[r], dt_s), load<Lanes>(rows[r].probability.data()), Lanes(0));
+      for (const Exit& exit : exits(rows[r].mode)) {
+        const Lanes probability = leaving[r] * Lanes(exit.probability);
+        for (int k = 0; k < rows[r].count; ++k)
+          likeliest.count(lane(probability, k), std::popcount(exit.modes));
+      }
+    }
+    likeliest.cut();
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (const Exit& exit : exits(rows[r].mode)) {
+        const Lanes probability = leaving[r] * Lanes(exit.probability);
+        const auto likely = probability >= Lanes(likeliest.least()) && probability > Lanes(0);
+        for_each_bit(bits_of(likely), [&](int k) {
+          for_each_bit(exit.modes, [&](int to) {
+            likeliest.add({lane(probability, k), static_cast<int>(r) * Leaves::kLanes + k, to});
+          });
+        });
+      }
+    return likeliest.items();
+  }
+
+  /// The hypotheses of a row stay in their mode.
+  void stay(Row& row, Scalar dt_s) const noexcept {
+    const Lanes probability = load<Lanes>(row.probability.data());
+    store(select(may_switch(row, dt_s), probability * Lanes(transition_(row.mode, row.mode)),
+                 probability),
+          row.probability.data());
+  }
+
+  /// A hypothesis switches to another mode. Returns its place there.
+  int follow(const Switch& change, Leaves& next) const noexcept {
+    const Row& before = present().row_of(change.from);
+    const int place = next.append(change.mode, before, Leaves::lane_of(change.from));
+    Row& row = next.row_of(place);
+    const auto k = static_cast<std::size_t>(Leaves::lane_of(place));
+    row.probability[k] = change.probability;
+    row.segment_s[k] = Scalar(0);
+    if constexpr (kTurnRateRow >= 0)
+      if (!same_prior_rate(before.mode, change.mode)) {
+        Gaussian<kStates, Scalar> belief = row.belief(Leaves::lane_of(place));
+        forget_turn_rate(belief, change.mode);
+        row.set_belief(Leaves::lane_of(place), belief);
+      }
+    return place;
+  }
+
+  /// The hypotheses of a row are in its mode for one more scan.
+  static void go_on(Row& row, Scalar dt_s) noexcept {
+    store(load<Lanes>(row.segment_s.data()) + Lanes(dt_s), row.segment_s.data());
+    for (std::uint64_t& modes : row.modes)
+      modes = modes << 4 | static_cast<std::uint64_t>(row.mode);
+  }
+
+  /// Keeps the chain's transition over one step, and the ways out of each mode.
   void prepare(Scalar dt_s) noexcept {
     transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
     transition_step_s_ = dt_s;
-    for (int mode = 0; mode < bank_.size(); ++mode) {
-      auto ways = ways_out_.row(mode);
-      int count = 0;
-      for (int to = 0; to < bank_.size(); ++to)
-        if (to != mode) {
-          int at_way = count++;
-          for (; at_way > 0 && transition_(mode, ways[at_way - 1]) < transition_(mode, to);
-               --at_way)
-            ways[at_way] = ways[at_way - 1];
-          ways[at_way] = to;
-        }
+    for (int from = 0; from < bank_.size(); ++from) {
+      Exits& exits = at(exits_, from);
+      exits.count = 0;
+      for (int to = 0; to < bank_.size(); ++to) {
+        if (to == from) continue;
+        std::size_t k = 0;
+        while (k < exits.count && exits.exit[k].probability != transition_(from, to)) ++k;
+        if (k == exits.count) exits.exit[exits.count++] = {transition_(from, to), 0};
+        exits.exit[k].modes |= 1u << to;
+      }
     }
+  }
+
+  /// Modes that a mode is left for with the same probability, a bit for each.
+  struct Exit {
+    Scalar probability;
+    unsigned modes;
+  };
+  struct Exits {
+    std::array<Exit, static_cast<std::size_t>(kModeCapacity<K>)> exit;
+    std::size_t count = 0;
+  };
+  [[nodiscard]] std::span<const Exit> exits(int mode) const noexcept {
+    return std::span(at(exits_, mode).exit).first(at(exits_, mode).count);
   }
 
   /// The first-order pseudo-Bayes estimator has one belief, from which every mode sets out.
@@ -516,14 +549,10 @@ class ModeHistory {
     return sum;
   }
 
-  /// Whether the present segment is long enough, to the nearest scan.
-  [[nodiscard]] bool may_switch(const Hypothesis& hypothesis, Scalar dt_s) const noexcept {
-    return tree_.min_segment_s <= 0.0 ||
-           hypothesis.segment_s + dt_s / 2 > Scalar(tree_.min_segment_s);
-  }
-
-  static std::uint64_t followed_by(std::uint64_t modes, int mode) noexcept {
-    return modes << 4 | static_cast<std::uint64_t>(mode);
+  /// Whether the present segments are long enough, to the nearest scan.
+  [[nodiscard]] MaskOf<Lanes> may_switch(const Row& row, Scalar dt_s) const noexcept {
+    return Lanes(Scalar(tree_.min_segment_s <= 0.0 ? 1 : 0)) > Lanes(0) ||
+           load<Lanes>(row.segment_s.data()) + Lanes(dt_s / 2) > Lanes(Scalar(tree_.min_segment_s));
   }
 
   static Bank bank_about(const TurnRateGrid& grid_rad_s, const Filter& prototype) {
@@ -545,7 +574,7 @@ class ModeHistory {
   }
 
   /// Takes the mode's prior for what is known of the turn rate.
-  void forget_turn_rate(BeliefType& belief, int mode) const noexcept {
+  void forget_turn_rate(Gaussian<kStates, Scalar>& belief, int mode) const noexcept {
     const auto& motion = bank_.filter(mode).motion();
     belief.mean[kTurnRateRow] = Scalar(prior_mean(motion, Component::kTurnRate));
     belief.covariance.row(kTurnRateRow).setZero();
@@ -557,208 +586,78 @@ class ModeHistory {
   /// The switch may have come later in the scan: adds a part of u d, d the way from the mean that
   /// is without the switch, u uniform over one scan, whose variance is 1/12. A turn rate is that of
   /// the mode whenever the switch came.
-  void spread(BeliefType& belief, const Vec<Scalar, kStates>& without) const noexcept {
-    Vec<Scalar, kStates> d = belief.mean - without;
-    if constexpr (kTurnRateRow >= 0) d[kTurnRateRow] = Scalar(0);
+  void spread(const Switch& change, Leaves& next) const noexcept {
+    const int mode = present().row_of(change.from).mode;
+    const int stayed = change.from + Leaves::kLanes * (next.begin(mode) - present().begin(mode));
+    const Row& without = next.row_of(stayed);
+    const auto lane_without = static_cast<std::size_t>(Leaves::lane_of(stayed));
+    Row& row = next.row_of(change.to);
+    const auto of_lane = static_cast<std::size_t>(Leaves::lane_of(change.to));
+    Vec<Scalar, kStates> d;
+    unroll<kStates>([&](auto i) {
+      constexpr auto k = static_cast<std::size_t>(i.value);
+      d[i] = i == kTurnRateRow ? Scalar(0) : row.mean[k][of_lane] - without.mean[k][lane_without];
+    });
     const Scalar variance = Scalar(tree_.switch_time_spread / 12.0);
-    for (int j = 0; j < kStates; ++j) belief.covariance.col(j) += variance * (d[j] * d);
+    unroll_lower<kStates>(
+        [&](int i, int j) { row.of_covariance(i, j)[of_lane] += variance * (d[i] * d[j]); });
   }
 
-  /// Joins the similar hypotheses of each mode, around the heaviest of them, and keeps the
-  /// likeliest, in that order.
+  /// What follows an update: a tree is cut, and the probabilities sum to 1.
+  void settle() noexcept {
+    if (pooled())
+      normalise();
+    else
+      reduce();
+  }
+
+  /// Joins the similar hypotheses of each mode and keeps the likeliest, in that order.
   void reduce() noexcept {
-    const Clusters clusters(*this);
-    Hypotheses& next = spare();
-    const int kept = std::min(clusters.count, tree_.max_hypotheses);
-    for (int i = 0; i < kept; ++i) {
-      const Cluster& cluster = at(clusters.cluster, i);
-      const auto member = [&](std::size_t k) -> auto& {
-        return at(present(), clusters.member[static_cast<std::size_t>(cluster.first) + k]);
-      };
-      Hypothesis& joint = at(next, i) = member(0);
-      if (cluster.members == 1) continue;
-      joint.belief = joined(static_cast<std::size_t>(cluster.members), member).belief;
-      joint.probability = cluster.probability;
-    }
-    take(kept);
-  }
-
-  /// Hypotheses that join, from `first` on in a list of them. The likelier cluster comes first.
-  struct Cluster {
-    Scalar probability;
-    int first;
-    int members;
-
-    bool operator<(const Cluster& other) const noexcept {
-      return probability != other.probability ? probability > other.probability
-                                              : first < other.first;
-    }
-  };
-
-  /// All clusters that are not negligible, the likeliest first, at least that one.
-  class Clusters {
-   public:
-    explicit Clusters(const ModeHistory& tree) noexcept
-        : tree_(tree), limits_(tree.tree_), rows_(tree.hypotheses()) {
-      Scalar likeliest = Scalar(0);
-      for (const Hypothesis& one : tree_.hypotheses())
-        likeliest = std::max(likeliest, one.probability);
-      const Lanes dropped = std::min(Scalar(limits_.negligible_probability), likeliest / 2);
-      for (std::size_t r = 0; r < rows_.size(); ++r) {
-        const Lanes probability = tree_.probability_of(rows_[r], tree_.present());
-        free_[r] = select(probability > dropped, probability, Lanes(0));
-        segment_s_[r] = lanes_of<Lanes>([&](int of_lane) { return one(r, of_lane).segment_s; });
-        gather_lanes<kStates>([&](int of_lane) { return one(r, of_lane).belief.mean.data(); },
-                              mean_[r].data());
-      }
-      for (std::size_t r = 0; r < rows_.size(); r = end_) {
-        end_ = r + 1;
-        while (end_ < rows_.size() && rows_[end_].mode == rows_[r].mode) ++end_;
-        while (take_heaviest(r)) {
-        }
-      }
-      std::sort(cluster.begin(), cluster.begin() + count);
-    }
-
-    std::array<Cluster, kCapacity> cluster;
-    Indices member;
-    int count = 0;
-
-   private:
-    const Hypothesis& one(std::size_t row, int of_lane) const noexcept {
-      return at(tree_.present(), rows_[row][of_lane]);
-    }
-
-    /// Makes a cluster of the heaviest free hypothesis of the mode of rows `begin` to `end_`; false
-    /// when none is free.
-    bool take_heaviest(std::size_t begin) noexcept {
-      Lanes greatest = free_[begin];
-      for (std::size_t r = begin + 1; r < end_; ++r) greatest = at_least(free_[r], greatest);
-      const Scalar heaviest = greatest_of_lanes(greatest);
-      if (!(heaviest > Scalar(0))) return false;
-      std::size_t row = begin;
-      while (none(free_[row] == Lanes(heaviest))) ++row;
-      const int of_lane = std::countr_zero(bits_of(free_[row] == Lanes(heaviest)));
-      const Hypothesis& center = one(row, of_lane);
-      const int first = taken_;
-      at(member, taken_++) = rows_[row][of_lane];
-      Scalar probability = heaviest;
-      const bool by_past = limits_.pseudo_bayes_order > 0;
-      const bool by_distance = !by_past && limits_.sibling_distance > 0.0;
-      Cholesky<kStates, Scalar> center_factor;
-      if (by_distance) center_factor = factor_of(row, of_lane);
-      for (std::size_t r = begin; r < end_; ++r) {
-        const MaskOf<Lanes> left = free_[r] > Lanes(0);
-        if (none(left)) continue;
-        const MaskOf<Lanes> own = lane_number_ == Lanes(r == row ? of_lane : kLanes);
-        MaskOf<Lanes> alike = own;
-        if (by_past)
-          alike = own || same_past(center, r);
-        else if (center_factor.ok())
-          alike = own || near(center, center_factor, r);
-        const MaskOf<Lanes> joins = left && alike;
-        unsigned others = bits_of(joins);
-        if (r == row) others &= ~(1u << of_lane);
-        for (; others != 0; others &= others - 1) {
-          const int k = std::countr_zero(others);
-          at(member, taken_++) = rows_[r][k];
-          probability += lane(free_[r], k);
-        }
-        free_[r] = select(joins, Lanes(0), free_[r]);
-      }
-      at(cluster, count++) = {probability, first, taken_ - first};
-      return true;
-    }
-
-    /// Which of a row have the same last modes, as a pseudo-Bayes tree wants it.
-    MaskOf<Lanes> same_past(const Hypothesis& center, std::size_t r) const noexcept {
-      const int forgotten = 64 - 4 * (limits_.pseudo_bayes_order - 1);
-      return lanes_of<Lanes>([&](int of_lane) {
-               return Scalar((center.modes ^ one(r, of_lane).modes) << forgotten == 0);
-             }) > Lanes(0);
-    }
-
-    /// Which of a row are near one of the same mode, by the Cholesky factor of its covariance.
-    MaskOf<Lanes> near(const Hypothesis& center, const Cholesky<kStates, Scalar>& factor,
-                       std::size_t r) const noexcept {
-      const auto siblings = segment_s_[r] == Lanes(center.segment_s);
-      const Lanes distance = select(siblings, Lanes(Scalar(limits_.sibling_distance)),
-                                    Lanes(Scalar(limits_.merge_distance)));
-      const Vec<Lanes, kStates> d = mean_[r] - center.belief.mean.template cast<Lanes>();
-      return factor.squared_norms(d) < distance * distance;
-    }
-
-    /// Cholesky factor of the covariance of a hypothesis; of its row all at once, when the first is
-    /// needed.
-    Cholesky<kStates, Scalar> factor_of(std::size_t row, int of_lane) noexcept {
-      if (!std::exchange(factored_[row], true)) {
-        Mat<Lanes, kStates, kStates> covariance;
-        gather_lanes<kStates * kStates>([&](int k) { return one(row, k).belief.covariance.data(); },
-                                        covariance.data());
-        factor_[row].compute(covariance);
-      }
-      return factor_[row].of_lane(of_lane);
-    }
-
-    const ModeHistory& tree_;
-    const HistoryTree& limits_;
-    const Rows rows_;
-    const Lanes lane_number_ = lanes_of<Lanes>([](int of_lane) { return Scalar(of_lane); });
-    std::array<Lanes, kMostRows> free_;  ///< probability of what is in no cluster yet, else 0
-    std::array<Lanes, kMostRows> segment_s_;
-    std::array<Vec<Lanes, kStates>, kMostRows> mean_;
-    std::array<Cholesky<kStates, Lanes>, kMostRows> factor_;
-    std::array<bool, kMostRows> factored_{};
-    std::size_t end_ = 0;
-    int taken_ = 0;
-  };
-
-  struct Joint {
-    BeliefType belief;
-    Scalar probability;
-  };
-
-  /// Moment matching of hypotheses `part(0 .. count - 1)`.
-  template <class Part>
-  static Joint joined(std::size_t count, Part&& part) noexcept {
-    Scalar total = Scalar(0);
-    for (std::size_t i = 0; i < count; ++i) total += part(i).probability;
-    BeliefType sum = zero_like(BeliefType{});
-    for (std::size_t i = 0; i < count; ++i)
-      sum.mean += part(i).probability / total * part(i).belief.mean;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec<Scalar, kStates> d = part(i).belief.mean - sum.mean;
-      sum.covariance +=
-          part(i).probability / total * (part(i).belief.covariance + d * d.transpose());
-    }
-    return {sum, total};
-  }
-
-  /// Makes the first `count` of the spare hypotheses the present ones, with probabilities that sum
-  /// to 1.
-  void take(int count) noexcept {
+    HypothesisClusters clusters(present(), tree_);
+    spare().clear();
+    for (int mode = 0; mode < bank_.size(); ++mode) clusters.append_joined(mode, spare());
     now_ = 1 - now_;
-    count_ = count;
-    Scalar total = Scalar(0);
-    for (const Hypothesis& hypothesis : hypotheses()) total += hypothesis.probability;
-    for (int i = 0; i < count_; ++i) at(present(), i).probability /= total;
+    if (present().size() > tree_.max_hypotheses) {
+      copy_likeliest(present(), tree_.max_hypotheses, spare());
+      now_ = 1 - now_;
+    }
+    normalise();
+  }
+
+  /// Makes the spare hypotheses the present ones.
+  void take() noexcept {
+    now_ = 1 - now_;
+    normalise();
+  }
+
+  /// Gives the hypotheses probabilities that sum to 1.
+  void normalise() noexcept {
+    Lanes sum = Lanes(0);
+    for (const Row& row : present().all()) sum += load<Lanes>(row.probability.data());
+    const Scalar total = sum_of_lanes(sum);
+    const Lanes scale = reciprocal(total);
+    for (Row& row : present().all()) {
+      const Lanes probability = load<Lanes>(row.probability.data());
+      store(part_of(probability, Lanes(total), scale), row.probability.data());
+    }
     weigh_modes();
   }
 
   void weigh_modes() noexcept {
-    probability_.setZero();
-    for (const Hypothesis& hypothesis : hypotheses())
-      probability_[hypothesis.mode()] += hypothesis.probability;
+    for (int mode = 0; mode < bank_.size(); ++mode) {
+      Lanes sum = Lanes(0);
+      for (const Row& row : present().of_mode(mode)) sum += load<Lanes>(row.probability.data());
+      probability_[mode] = sum_of_lanes(sum);
+    }
   }
 
   template <class Array>
   static auto& at(Array& array, int i) noexcept {
     return array[static_cast<std::size_t>(i)];
   }
-  [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
-  Hypotheses& present() noexcept { return buffers_[now_]; }
-  [[nodiscard]] const Hypotheses& present() const noexcept { return buffers_[now_]; }
-  Hypotheses& spare() noexcept { return buffers_[1 - now_]; }
+  Leaves& present() noexcept { return buffers_[now_]; }
+  [[nodiscard]] const Leaves& present() const noexcept { return buffers_[now_]; }
+  Leaves& spare() noexcept { return buffers_[1 - now_]; }
 
   HistoryTree tree_;
   ModeChain<K> chain_;
@@ -766,11 +665,10 @@ class ModeHistory {
   Probability initial_;
   Probability probability_;
   ModeMatrix<Scalar, K> transition_;
-  ModeMatrix<int, K> ways_out_;
   Scalar transition_step_s_ = Scalar(-1);
-  std::array<Hypotheses, 2> buffers_;
+  std::array<Exits, static_cast<std::size_t>(kModeCapacity<K>)> exits_;
+  std::array<Leaves, 2> buffers_;
   std::size_t now_ = 0;
-  int count_ = 0;
   bool started_ = false;
 };
 

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "wakeline/core/cholesky.hpp"
+#include "wakeline/multimodel/history_tree.hpp"
+#include "wakeline/multimodel/hypothesis_rows.hpp"
+
+namespace wakeline {
+
+/// Joins the hypotheses of each mode that are so alike that one can stand for them: around the
+/// likeliest that is in no cluster yet, by moment matching. What is negligible is left out, but
+/// never all. Source: D. J. Salmond, SPIE 1305, 1990.
+template <class Rows>
+class HypothesisClusters {
+ public:
+  HypothesisClusters(const Rows& rows, const HistoryTree& limits) noexcept
+      : rows_(rows), limits_(limits) {
+    const std::span<const Row> all = rows.all();
+    Lanes likeliest = Lanes(0);
+    for (const Row& row : all) likeliest = at_least(load<Lanes>(row.probability.data()), likeliest);
+    const Lanes dropped =
+        std::min(Scalar(limits.negligible_probability), greatest_of_lanes(likeliest) / 2);
+    for (std::size_t r = 0; r < all.size(); ++r) {
+      const Lanes probability = load<Lanes>(all[r].probability.data());
+      free_[r] = select(probability > dropped, probability, Lanes(0));
+    }
+  }
+
+  /// Appends the clusters of a mode, in the order of their likeliest members.
+  void append_joined(int mode, Rows& to) noexcept {
+    const auto begin = static_cast<std::size_t>(rows_.begin(mode));
+    const std::span<const Row> rows = rows_.of_mode(mode);
+    if (by_distance())
+      for (std::size_t r = 0; r < rows.size(); ++r)
+        factors_[r].compute(rows[r].beliefs().covariance);
+    std::array<int, Rows::kCapacity> places;
+    const int candidates = weightiest_first<Lanes>(std::span(free_).subspan(begin, rows.size()),
+                                                   rows_.begin(mode), places);
+    for (int k = 0; k < candidates; ++k) {
+      const int place = places[static_cast<std::size_t>(k)];
+      if (lane(free_[static_cast<std::size_t>(Rows::row_number(place))], Rows::lane_of(place)) >
+          Scalar(0))
+        append_around(place, to);
+    }
+  }
+
+ private:
+  using Row = typename Rows::Row;
+  using Lanes = typename Rows::Lanes;
+  using Scalar = RealOf<Lanes>;
+  static constexpr int kStates = Rows::kStates;
+
+  [[nodiscard]] bool by_past() const noexcept { return limits_.pseudo_bayes_order > 0; }
+  [[nodiscard]] bool by_distance() const noexcept {
+    return !by_past() && limits_.sibling_distance > 0.0;
+  }
+
+  /// Appends what is free and like the hypothesis of a place, in one.
+  void append_around(int place, Rows& to) noexcept {
+    const auto own_row = static_cast<std::size_t>(Rows::row_number(place));
+    const auto own_lane = static_cast<std::size_t>(Rows::lane_of(place));
+    const Row& own = rows_.all()[own_row];
+    const std::span<const Row> rows = rows_.of_mode(own.mode);
+    const auto first = static_cast<std::size_t>(rows_.begin(own.mode));
+    Vec<Scalar, kStates> center;
+    unroll<kStates>([&](auto i) { center[i] = own.mean[std::size_t(i.value)][own_lane]; });
+    const auto away = [&](const Row& row) {
+      Vec<Lanes, kStates> d;
+      unroll<kStates>([&](int i) { d[i] = row.mean_lanes(i) - Lanes(center[i]); });
+      return d;
+    };
+    const Cholesky<kStates, Lanes>& factor = factors_[own_row - first];
+    const bool joinable =
+        by_past() || (by_distance() && (bits_of(factor.ok()) >> own_lane & 1u) != 0);
+    std::array<Lanes, Rows::kMostRows> weights;
+    int members = 0;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const auto alike =
+          !joinable   ? lane_number_ == Lanes(r == own_row - first ? Scalar(own_lane) : Scalar(-1))
+          : by_past() ? same_past(own.modes[own_lane], rows[r])
+                      : near(own, own_lane, rows[r], away(rows[r]), factor);
+      weights[r] = select(alike, free_[first + r], Lanes(0));
+      free_[first + r] = select(alike, Lanes(0), free_[first + r]);
+      members += std::popcount(bits_of(weights[r] > Lanes(0)));
+    }
+    const int next = to.append(own.mode);
+    Row& joined = to.row_of(next);
+    joined.set_past(Rows::lane_of(next), own, Rows::lane_of(place));
+    if (members == 1)
+      return joined.set_belief(Rows::lane_of(next), own.belief(Rows::lane_of(place)));
+    // Sums over the members, about the mean of the likeliest.
+    constexpr int kSums = 1 + kStates + kStates * (kStates + 1) / 2;
+    Lanes sums[kSums];
+    unroll<kSums>([&](int k) { sums[k] = Lanes(0); });
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      if (none(weights[r] > Lanes(0))) continue;
+      const Vec<Lanes, kStates> d = away(rows[r]);
+      sums[0] += weights[r];
+      unroll<kStates>([&](int i) { sums[1 + i] += weights[r] * d[i]; });
+      int k = 1 + kStates;
+      unroll_lower<kStates>([&](int i, int j) {
+        sums[k++] += weights[r] * (rows[r].covariance_lanes(i, j) + d[i] * d[j]);
+      });
+    }
+    alignas(Lanes) std::array<Scalar, kSums + kLanesOf<Lanes> - 1> total;
+    sum_lanes<kSums>(sums, total.data());
+    const Scalar scale = Scalar(1) / total[0];
+    Gaussian<kStates, Scalar> joint;
+    unroll<kStates>([&](int i) {
+      total[std::size_t(1 + i)] *= scale;
+      joint.mean[i] = center[i] + total[std::size_t(1 + i)];
+    });
+    std::size_t k = 1 + kStates;
+    unroll_lower<kStates>([&](int i, int j) {
+      joint.covariance(i, j) =
+          scale * total[k++] - total[std::size_t(1 + i)] * total[std::size_t(1 + j)];
+    });
+    joined.set_belief(Rows::lane_of(next), joint);
+    joined.probability[static_cast<std::size_t>(Rows::lane_of(next))] = total[0];
+  }
+
+  /// Which of a row have the same last modes, as a pseudo-Bayes tree wants it.
+  [[nodiscard]] MaskOf<Lanes> same_past(std::uint64_t modes, const Row& row) const noexcept {
+    const int forgotten = 64 - 4 * (limits_.pseudo_bayes_order - 1);
+    return lanes_of<Lanes>([&](int k) {
+             return Scalar((modes ^ row.modes[static_cast<std::size_t>(k)]) << forgotten == 0);
+           }) > Lanes(0);
+  }
+
+  /// Which of a row, which are `d` away from one of the same mode, are near by its covariance.
+  [[nodiscard]] MaskOf<Lanes> near(const Row& own, std::size_t own_lane, const Row& row,
+                                   const Vec<Lanes, kStates>& d,
+                                   const Cholesky<kStates, Lanes>& factor) const noexcept {
+    const auto siblings = load<Lanes>(row.segment_s.data()) == Lanes(own.segment_s[own_lane]);
+    return factor.squared_norms(d, static_cast<int>(own_lane)) <
+           select(siblings, squared_sibling_distance_, squared_merge_distance_);
+  }
+
+  const Rows& rows_;
+  const HistoryTree& limits_;
+  const Lanes squared_sibling_distance_ =
+      Scalar(limits_.sibling_distance) * Scalar(limits_.sibling_distance);
+  const Lanes squared_merge_distance_ =
+      Scalar(limits_.merge_distance) * Scalar(limits_.merge_distance);
+  const Lanes lane_number_ = lanes_of<Lanes>([](int k) { return Scalar(k); });
+  std::array<Lanes, Rows::kMostRows> free_;  ///< probability of what is in no cluster yet, else 0
+  std::array<Cholesky<kStates, Lanes>, Rows::kMostRows> factors_;  ///< of a mode's rows
+};
+
+}  // namespace wakeline

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <type_traits>
+
+namespace wakeline {
+
+/// The likeliest of many items that have a probability, as many as there is room for, without a
+/// list of them all: they come twice. First each is counted by the size of its probability; then,
+/// after `cut`, those that may be among the likeliest are added, of which only those of the last
+/// size need an order. Of equal ones the first is kept.
+template <class Item>
+class Likeliest {
+ public:
+  using Scalar = decltype(Item::probability);
+
+  explicit Likeliest(std::span<Item> room) noexcept : room_(room) {}
+
+  void count(Scalar probability, int times) noexcept { of_size_[size_of(probability)] += times; }
+
+  void cut() noexcept {
+    std::size_t size = 0;
+    const auto of = [this](std::size_t k) { return static_cast<std::size_t>(of_size_[k]); };
+    for (; size + 1 < kSizes && larger_ + of(size) < room_.size(); ++size) larger_ += of(size);
+    least_ = size + 1 < kSizes ? least_of(size) : Scalar(0);
+    sure_ = size > 0 ? least_of(size - 1) : std::numeric_limits<Scalar>::infinity();
+    count_ = larger_;
+  }
+
+  /// What is less likely need not be added.
+  [[nodiscard]] Scalar least() const noexcept { return least_; }
+
+  void add(const Item& item) noexcept {
+    if (item.probability >= sure_)
+      room_[sure_count_++] = item;
+    else
+      add_to_last(item);
+  }
+
+  [[nodiscard]] std::span<Item> items() const noexcept { return room_.first(count_); }
+
+ private:
+  using Bits = std::conditional_t<sizeof(Scalar) == 8, std::uint64_t, std::uint32_t>;
+  static_assert(sizeof(Bits) == sizeof(Scalar));
+  // Sizes go from 1 down by an eighth of a power of two: the exponent and three bits. All that is
+  // smaller has the last one.
+  static constexpr int kDropped = std::numeric_limits<Scalar>::digits - 1 - 3;
+  static constexpr Bits kOne = std::bit_cast<Bits>(Scalar(1)) >> kDropped;
+  static constexpr std::size_t kSizes = 256;
+
+  static std::size_t size_of(Scalar probability) noexcept {
+    return std::min<std::size_t>(kOne - (std::bit_cast<Bits>(probability) >> kDropped), kSizes - 1);
+  }
+  static Scalar least_of(std::size_t size) noexcept {
+    return std::bit_cast<Scalar>((kOne - static_cast<Bits>(size)) << kDropped);
+  }
+
+  /// Those of the last size, the likeliest first.
+  void add_to_last(const Item& item) noexcept {
+    const std::span<Item> last = items().subspan(larger_);
+    const auto likelier = [](const Item& a, const Item& b) {
+      return a.probability > b.probability;
+    };
+    const auto place = std::upper_bound(last.begin(), last.end(), item, likelier);
+    if (count_ < room_.size())
+      ++count_;
+    else if (place == last.end())
+      return;
+    std::shift_right(place, items().end(), 1);
+    *place = item;
+  }
+
+  std::span<Item> room_;
+  std::array<int, kSizes> of_size_{};
+  Scalar least_ = Scalar(0);
+  Scalar sure_ = Scalar(0);     ///< likely enough to be kept
+  std::size_t larger_ = 0;      ///< items of larger sizes than the last
+  std::size_t sure_count_ = 0;  ///< of which so many have been added
+  std::size_t count_ = 0;
+};
+
+}  // namespace wakeline
