@@ -6,10 +6,9 @@
 
 #include <algorithm>
 
-#include "wakeline/core/pack_math.hpp"
+#include "job.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
-#include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/multimodel/likely_model_set_imm.hpp"
@@ -19,73 +18,6 @@
 
 namespace wakeline::python {
 namespace {
-
-using Lanes = Pack<double, kNativeLanes<double>>;
-
-/// A position fixed by whatever sensor.
-struct AnyDirect : Fix {
-  std::variant<ConvertedRangeBearing, Position> sensor;
-  OwnShip own = {};
-
-  explicit AnyDirect(const Position& position) : sensor(position) {}
-  explicit AnyDirect(const ConvertedRangeBearing& converted)
-      : sensor(converted), own(converted.own) {}
-
-  template <class Scalar>
-  Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
-    if (const auto* converted = std::get_if<ConvertedRangeBearing>(&sensor)) {
-      ConvertedRangeBearing carried = *converted;
-      carried.own = own;
-      return carried.observe(z);
-    }
-    return std::get_if<Position>(&sensor)->observe(z);
-  }
-  template <class Scalar>
-  Gaussian<2, Scalar> position(const Vec<Scalar, 2>& z) const noexcept {
-    return observe(z);
-  }
-};
-
-/// The starts of the runs `first`, `first + 1`, ...
-template <int N, class Scalar>
-Gaussian<N, Scalar> gather(const std::vector<LaneStart>& starts, std::size_t first) noexcept {
-  const auto of_lane = [&](int lane) -> const LaneStart& {
-    return starts[std::min(first + static_cast<std::size_t>(lane), starts.size() - 1)];
-  };
-  Gaussian<N, Scalar> belief;
-  gather_lanes<N>([&](int lane) { return of_lane(lane).mean; }, belief.mean.data());
-  gather_lanes<N * N>([&](int lane) { return of_lane(lane).covariance; }, belief.covariance.data());
-  return belief;
-}
-
-template <int N, class Estimator>
-bool run_from(const Estimator& prototype, const LaneJob& job, const RunInput& in,
-              const RunOutput& out, int threads) {
-  for (const LaneStart& start : job.starts)
-    if (start.states != job.starts.front().states) return false;
-  const auto begin = [&]<int States>(Index<States>) {
-    return [&](std::size_t first) {
-      Estimator estimator = prototype;
-      (void)estimator.start(gather<States, typename Estimator::Scalar>(job.starts, first));
-      return estimator;
-    };
-  };
-  const auto run = [&](const auto& begin_at) {
-    if (const auto* polar = std::get_if<RangeBearing>(&job.sensor))
-      run_batch(begin_at, *polar, in, out, Threads{threads});
-    else if (const auto* converted = std::get_if<ConvertedRangeBearing>(&job.sensor))
-      run_batch(begin_at, AnyDirect(*converted), in, out, Threads{threads});
-    else
-      run_batch(begin_at, AnyDirect(std::get<Position>(job.sensor)), in, out, Threads{threads});
-  };
-  if (job.starts.front().states == N)
-    run(begin(Index<N>{}));
-  else if (job.starts.front().states == 4)
-    run(begin(Index<4>{}));
-  else
-    return false;
-  return true;
-}
 
 /// A filter of a known turn; `Rate` is `Lanes` where turn rates differ from run to run.
 template <class Rate>
@@ -116,24 +48,23 @@ auto turn_bank(const LaneJob& job, std::index_sequence<Models...>) {
   return FilterBank(turn_filter<Rate>(job, Models)...);
 }
 
-template <class Estimator>
-bool run_begun(Estimator estimator, const LaneJob& job, const RunInput& in, const RunOutput& out,
-               int threads) {
-  typename Estimator::Probability initial = estimator.initial_mode_probability();
-  for (std::size_t k = 0; k < job.models.size(); ++k)
-    initial[static_cast<Eigen::Index>(k)] = job.initial_mode_probability[k];
-  estimator.set_initial_mode_probability(initial);
-  return run_from<decltype(estimator.estimate())::kStates>(estimator, job, in, out, threads);
-}
-
 template <std::size_t Models>
 bool run_few(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
   const auto bank = turn_bank<double>(job, std::make_index_sequence<Models>{});
   return run_begun(Imm{ModeChain<int(Models)>(*job.chain), bank}, job, in, out, threads);
 }
 
+/// Whether all models are extended Kalman filters of one motion.
+template <class Motion>
+bool all_over(const LaneJob& job) {
+  return std::ranges::all_of(job.models, [](const LaneModel& model) {
+    return !model.unscented && std::holds_alternative<Motion>(model.motion);
+  });
+}
+
 bool run_structured(std::monostate, const LaneJob& job, const RunInput& in, const RunOutput& out,
                     int threads) {
+  if (!all_over<CoordinatedTurn>(job)) return run_mixed_imm(job, in, out, threads);
   switch (job.models.size()) {
     case 2:
       return run_few<2>(job, in, out, threads);
@@ -144,14 +75,6 @@ bool run_structured(std::monostate, const LaneJob& job, const RunInput& in, cons
     default:
       return run_begun(Imm{*job.chain, bank_of(&turn_filter<double>, job)}, job, in, out, threads);
   }
-}
-
-/// Whether all models are extended Kalman filters of one motion.
-template <class Motion>
-bool all_over(const LaneJob& job) {
-  return std::ranges::all_of(job.models, [](const LaneModel& model) {
-    return !model.unscented && std::holds_alternative<Motion>(model.motion);
-  });
 }
 
 bool run_structured(const HistoryTree& tree, const LaneJob& job, const RunInput& in,
@@ -189,10 +112,14 @@ bool run_structured(const LikelyModelSet& set, const LaneJob& job, const RunInpu
   return run_turning<LikelyModelSetImm>(set, bank, job, in, out, threads);
 }
 
+/// Whether lanes are compiled for the structure over these models.
+bool has_kernel(const LaneJob& job) {
+  return all_over<CoordinatedTurn>(job) || std::holds_alternative<std::monostate>(job.structure) ||
+         (std::holds_alternative<HistoryTree>(job.structure) && all_over<CoordinatedTurnRate>(job));
+}
+
 bool run_mixture(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
-  const bool learns =
-      std::holds_alternative<HistoryTree>(job.structure) && all_over<CoordinatedTurnRate>(job);
-  if (!learns && !all_over<CoordinatedTurn>(job)) return false;
+  if (!has_kernel(job)) return false;
   return std::visit(
       [&](const auto& structure) { return run_structured(structure, job, in, out, threads); },
       job.structure);

@@ -48,6 +48,20 @@ ESTIMATORS = {
     "imm_mixed": imm(
         wl.Ekf(wl.ConstantVelocity(noise=NOISE)), wl.Ukf(wl.CoordinatedTurnRate(noise=NOISE))
     ),
+    "imm_all_kinds": imm(
+        wl.Ekf(wl.ConstantVelocity(noise=NOISE)),
+        wl.Ekf(wl.WanderingCourse()),
+        wl.Ekf(wl.CoordinatedTurnRate(noise=NOISE)),
+        wl.Ukf(wl.ConstantAcceleration()),
+        wl.Ekf(wl.Singer()),
+    ),
+    "imm_of_rates": imm(
+        wl.Ekf(wl.CoordinatedTurnRate(noise=NOISE)),
+        wl.Ukf(wl.CoordinatedTurnRate(noise=NOISE, turn_rate_psd_rad2s3=1e-6)),
+    ),
+    "imm_of_ukfs": imm(*(wl.Ukf(turning(w)) for w in (0.0, 2.0, -2.0))),
+    "imm_of_pushes": imm(wl.Ekf(wl.ConstantAcceleration()), wl.Ekf(wl.Singer())),
+    "imm_with_roots": imm(wl.Ekf(turning(0.0)), wl.SquareRootUkf(turning(2.0))),
     "adaptive": wl.AdaptiveGridImm(wl.Ekf(turning(0.0))),
     "adaptive_printed": wl.AdaptiveGridImm(
         wl.Ekf(turning(0.0)),
@@ -137,7 +151,8 @@ def test_a_start_that_is_none_is_named():
 
 
 @pytest.mark.parametrize(
-    "name", ["ekf_ct", "ukf_ctr", "imm3", "imm_mixed", "switching", "mode_history"]
+    "name",
+    ["ekf_ct", "ukf_ctr", "imm3", "imm_mixed", "imm_all_kinds", "switching", "mode_history"],
 )
 def test_results_do_not_depend_on_threads(name, restored_threads):
     z = np.tile(recordings(), (8, 1, 1))
@@ -149,7 +164,9 @@ def test_results_do_not_depend_on_threads(name, restored_threads):
         np.testing.assert_array_equal(getattr(one, array), getattr(three, array))
 
 
-@pytest.mark.parametrize("name", ["ekf_ctr", "ukf_ctr", "imm3", "imm4", "adaptive", "switching"])
+@pytest.mark.parametrize(
+    "name", ["ekf_ctr", "ukf_ctr", "imm3", "imm4", "imm_all_kinds", "adaptive", "switching"]
+)
 def test_runs_do_not_depend_on_their_neighbours(name):
     z = recordings()
     order = np.random.default_rng(0).permutation(RUNS)

@@ -94,6 +94,7 @@
 #include "wakeline/multimodel/turn_rate_grid.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 #include "wakeline/multimodel/uniform_bank.hpp"
+#include "wakeline/multimodel/variant_bank.hpp"
 #include "wakeline/navigation/closest_approach.hpp"
 #include "wakeline/navigation/dead_reckoning.hpp"
 #include "wakeline/navigation/drift.hpp"
