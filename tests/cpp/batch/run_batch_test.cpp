@@ -334,8 +334,17 @@ void expect_numbers_in_place() {
       return double((run * scans + scan) * row + k);
     };
     for (std::size_t scan = 0; scan < scans; ++scan) {
-      for (std::size_t k = 0; k < row; ++k)
-        writer << Scalar::of([&](int lane) { return number(std::size_t(lane), scan, k); });
+      std::size_t k = 0;
+      for (const std::size_t size : {states, states * states, std::size_t(2)}) {
+        Eigen::Matrix<Scalar, Eigen::Dynamic, 1, 0, 400, 1> column(Eigen::Index(size), 1);
+        for (std::size_t i = 0; i < size; ++i, ++k)
+          column[Eigen::Index(i)] = Scalar::of(
+              [&](int lane) { return number(std::min(std::size_t(lane), runs - 1), scan, k); });
+        writer << column;
+      }
+      for (; k < row; ++k)
+        writer << Scalar::of(
+            [&](int lane) { return number(std::min(std::size_t(lane), runs - 1), scan, k); });
       writer.next();
     }
     writer.flush();

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 
 #include "wakeline/batch/threads.hpp"
 #include "wakeline/core/pack_math.hpp"
@@ -65,88 +66,84 @@ Sensor seen_from(const Sensor& sensor, const RunInput& in, std::size_t scan) noe
 }
 
 /// Some runs, side by side in the lanes of a `Scalar`: run `first`, `first + 1`, ... Where there
-/// are fewer runs than lanes, the last one is run more than once.
+/// are fewer runs than lanes, the last one is run more than once, and its results are written as
+/// often.
 template <class Scalar>
 class RunLanes {
  public:
   static constexpr int kLanes = kLanesOf<Scalar>;
 
-  RunLanes(const RunInput& in, std::size_t first) noexcept
-      : first_(first), scans_(in.scans), used_(std::min<std::size_t>(kLanes, in.runs - first)) {}
+  RunLanes(const RunInput& in, std::size_t first) noexcept {
+    for (int lane = 0; lane < kLanes; ++lane)
+      row_[lane] = std::min(first + static_cast<std::size_t>(lane), in.runs - 1) * in.scans;
+  }
+
+  /// Where the `size` numbers of a lane's run at a scan are, among those of all runs and scans.
+  template <class Number>
+  [[nodiscard]] Number* place(Number* of, std::size_t size, int lane,
+                              std::size_t scan) const noexcept {
+    return of + (row_[lane] + scan) * size;
+  }
 
   /// Number k of `size` that each run has at a scan.
   [[nodiscard]] Scalar load(const double* from, std::size_t size, std::size_t scan,
                             std::size_t k) const noexcept {
-    return lanes_of<Scalar>([&](int lane) {
-      const std::size_t lane_of = std::min(static_cast<std::size_t>(lane), used_ - 1);
-      return RealOf<Scalar>(from[row(lane_of, scan) * size + k]);
-    });
+    return lanes_of<Scalar>(
+        [&](int lane) { return RealOf<Scalar>(place(from, size, lane, scan)[k]); });
   }
 
   void write(std::uint8_t* to, std::size_t scan, const StatusOf<Scalar>& status) const noexcept {
-    for (std::size_t lane_of = 0; lane_of < used_; ++lane_of)
-      to[row(lane_of, scan)] = static_cast<std::uint8_t>(lane(status, static_cast<int>(lane_of)));
+    for (int k = 0; k < kLanes; ++k)
+      *place(to, 1, k, scan) = static_cast<std::uint8_t>(lane(status, k));
   }
 
   /// Begins to fetch the memory that `size` numbers of a scan will be written to.
   void fetch(const double* to, std::size_t size, std::size_t scan) const noexcept {
     constexpr std::size_t kLine = 64 / sizeof(double);
-    for (std::size_t lane_of = 0; lane_of < used_; ++lane_of) {
-      const double* place = to + row(lane_of, scan) * size;
-      for (std::size_t k = 0; k < size; k += kLine) __builtin_prefetch(place + k, 1);
-    }
+    for (std::size_t k = 0; k < size; k += kLine)
+      for (int lane = 0; lane < kLanes; ++lane)
+        __builtin_prefetch(place(to, size, lane, scan) + k, 1);
   }
 
-  /// `size` numbers of each of some scans in a row, which lie `stride` apart in `from`: for each
-  /// run one block of memory, which is what memory is fast at.
+  /// `size` numbers of each of `count` scans in a row: for each run one block of memory, which is
+  /// what memory is fast at.
   void write(double* to, std::size_t size, std::size_t first_scan, std::size_t count,
-             const RealOf<Scalar>* from, std::size_t stride) const noexcept {
-    const auto place = [&](std::size_t lane_of) { return to + row(lane_of, first_scan) * size; };
-    std::size_t k = 0;
-    const auto next = [&] {
-      const RealOf<Scalar>* numbers = from + k * kLanes;
-      if (++k == size) {
-        k = 0;
-        from += stride * kLanes;
-      }
-      return numbers;
-    };
+             const RealOf<Scalar>* from) const noexcept {
+    double* places[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane) places[lane] = place(to, size, lane, first_scan);
     std::size_t at = 0;
     if constexpr (kLanes > 1) {
-      for (; at + kLanes <= count * size; at += kLanes) {
+      for (; at + kLanes <= count * size; at += kLanes, from += kLanes * kLanes) {
         Scalar block[kLanes];
-        unroll<kLanes>([&](int i) { block[i] = Scalar::load(next()); });
-        transpose(block);
-        for (std::size_t lane_of = 0; lane_of < used_; ++lane_of)
-          store(block[lane_of], place(lane_of) + at);
+        unroll<kLanes>([&](int i) { block[i] = Scalar::load(from + i * kLanes); });
+        store_columns(block, [&](int lane) { return places[lane] + at; });
       }
     }
-    for (; at < count * size; ++at) {
-      const RealOf<Scalar>* numbers = next();
-      for (std::size_t lane_of = 0; lane_of < used_; ++lane_of)
-        place(lane_of)[at] = double(numbers[lane_of]);
-    }
+    for (; at < count * size; ++at, from += kLanes)
+      for (int lane = 0; lane < kLanes; ++lane) places[lane][at] = double(from[lane]);
   }
 
  private:
-  /// Of the results of a lane's run at a scan, among all runs and scans.
-  [[nodiscard]] std::size_t row(std::size_t lane_of, std::size_t scan) const noexcept {
-    return (first_ + lane_of) * scans_ + scan;
-  }
-
-  std::size_t first_;
-  std::size_t scans_;
-  std::size_t used_;
+  std::size_t row_[kLanes];  ///< of the first scan of each lane's run, among all runs and scans
 };
 
-/// Collects what some runs side by side give, a few scans at a time. There is room for estimators
-/// of up to 20 states.
+/// Collects what some runs side by side give, until each of them has a block to be written. There
+/// is room for estimators of up to 20 states.
 template <class Scalar>
 class RunWriter {
  public:
   RunWriter(const RunLanes<Scalar>& lanes, const RunOutput& out, std::size_t measurements,
             bool turn_rates) noexcept
       : lanes_(lanes) {
+    RealOf<Scalar>* free = numbers_;
+    const auto add = [&](double* to, std::size_t size) {
+      if (size == 0) return;
+      const std::size_t whole = kLanes / std::gcd(kLanes, size);
+      const std::size_t scans = whole * size <= kMost ? whole : 1;
+      column_[columns_++] = {to, size, scans, free};
+      free += scans * size * kLanes;
+      assert(free <= numbers_ + kCapacity * kLanes);
+    };
     add(out.mean, out.states);
     add(out.covariance, out.states * out.states);
     add(out.mode_probability, out.models);
@@ -154,62 +151,64 @@ class RunWriter {
     add(out.innovation, measurements);
     add(out.nis, 1);
     add(out.log_likelihood, 1);
-    held_ = std::clamp<std::size_t>(kCapacity / row_, 1, kScans);
-    assert(row_ <= kCapacity);
   }
 
-  /// The next number, or numbers, of the scan, in the order of `RunOutput`.
-  void operator<<(const Scalar& number) noexcept {
-    store(number, next_);
-    next_ += kLanesOf<Scalar>;
-  }
+  /// What a scan gives for the next column of `RunOutput`.
+  void operator<<(const Scalar& number) noexcept { store(number, next_column()); }
   template <class Matrix>
   void operator<<(const Eigen::MatrixBase<Matrix>& numbers) noexcept {
+    RealOf<Scalar>* to = next_column();
     for (Eigen::Index i = 0; i < numbers.rows(); ++i)
-      for (Eigen::Index j = 0; j < numbers.cols(); ++j) *this << numbers(i, j);
+      for (Eigen::Index j = 0; j < numbers.cols(); ++j, to += kLanes)
+        store(Scalar(numbers(i, j)), to);
   }
 
   /// To be called after each scan.
   void next() noexcept {
+    ++scan_;
+    next_ = 0;
+    // Again and again the same line of a narrow column, so that neither it nor its page is dropped.
     for (std::size_t c = 0; c < columns_; ++c)
-      lanes_.fetch(column_[c].to, column_[c].size, first_ + scans_ + 1);
-    if (++scans_ == held_) flush();
+      lanes_.fetch(column_[c].to, column_[c].size, scan_ + 1);
+    for (std::size_t c = 0; c < columns_; ++c)
+      if (held(column_[c]) == 0) write(column_[c], column_[c].scans);
   }
 
+  /// To be called after the last one.
   void flush() noexcept {
-    std::size_t offset = 0;
-    for (std::size_t c = 0; c < columns_; ++c) {
-      lanes_.write(column_[c].to, column_[c].size, first_, scans_,
-                   numbers_ + kLanesOf<Scalar> * offset, row_);
-      offset += column_[c].size;
-    }
-    first_ += scans_;
-    scans_ = 0;
-    next_ = numbers_;
+    for (std::size_t c = 0; c < columns_; ++c) write(column_[c], held(column_[c]));
   }
 
  private:
-  static constexpr std::size_t kScans = 8;  ///< of one with 6 states and 16 models
-  static constexpr std::size_t kCapacity = kScans * (6 + 36 + 2 * 16 + 3 + 2);
-
-  void add(double* to, std::size_t size) noexcept {
-    if (size > 0) column_[columns_++] = {to, size};
-    row_ += size;
-  }
+  static constexpr std::size_t kLanes = kLanesOf<Scalar>;
+  static constexpr std::size_t kMost = 400;  ///< numbers of a column: a covariance of 20 states
+  static constexpr std::size_t kCapacity = kMost + kLanes * (20 + 2 * 16 + 3 + 2);
 
   struct Column {
     double* to;
     std::size_t size;
+    std::size_t scans;  ///< of which so many, a power of two, make whole blocks
+    RealOf<Scalar>* numbers;
   };
+
+  /// Scans that are held of a column.
+  std::size_t held(const Column& column) const noexcept { return scan_ & (column.scans - 1); }
+
+  RealOf<Scalar>* next_column() noexcept {
+    const Column& column = column_[next_++];
+    return column.numbers + held(column) * column.size * kLanes;
+  }
+
+  void write(const Column& column, std::size_t scans) const noexcept {
+    lanes_.write(column.to, column.size, scan_ - scans, scans, column.numbers);
+  }
+
   RunLanes<Scalar> lanes_;
   Column column_[7];
   std::size_t columns_ = 0;
-  std::size_t row_ = 0;    ///< numbers of a scan
-  std::size_t held_ = 1;   ///< scans that there is room for
-  std::size_t first_ = 0;  ///< scan of the first that is held
-  std::size_t scans_ = 0;  ///< that are held
-  alignas(64) RealOf<Scalar> numbers_[kCapacity * kLanesOf<Scalar>];
-  RealOf<Scalar>* next_ = numbers_;
+  std::size_t next_ = 0;  ///< column that the next numbers are for
+  std::size_t scan_ = 0;
+  alignas(64) RealOf<Scalar> numbers_[kCapacity * kLanes];
 };
 
 /// North and east of an estimate in any layout of 4, 5 or 6 states.

@@ -310,6 +310,38 @@ template <class Real, int Lanes>
   static_assert(Lanes <= 16);
 }
 
+/// Writes the numbers of lanes `First` and `First + 1`.
+template <int First, class Real, int Lanes, class Number>
+[[gnu::always_inline]] inline void store_pair(Pack<Real, Lanes> pack, Number* to) noexcept {
+#if defined(__AVX512DQ__)
+  if constexpr (First > 0 && sizeof(pack) == 64 && std::same_as<Real, double>) {
+    // One instruction, of which GCC 12 makes a shuffle and a store.
+    _mm_storeu_pd(to, _mm512_maskz_extractf64x2_pd(__mmask8(-1), (__m512d)pack.raw, First / 2));
+    return;
+  }
+#endif
+  using Pair [[gnu::vector_size(2 * sizeof(Real))]] = Real;
+  using Numbers [[gnu::vector_size(2 * sizeof(Number))]] = Number;
+  const Numbers numbers =
+      __builtin_convertvector((Pair{pack.raw[First], pack.raw[First + 1]}), Numbers);
+  std::memcpy(to, &numbers, sizeof numbers);
+}
+
+/// Writes as many rows as there are lanes as columns, that of a lane to `column(lane)`. Two numbers
+/// at a time: what is aligned to no more than that would, in whole registers, lie across two cache
+/// lines, and a store of such takes as long as six others.
+template <class Real, int Lanes, class Column>
+[[gnu::always_inline]] inline void store_columns(Pack<Real, Lanes> (&rows)[Lanes],
+                                                 const Column& column) noexcept {
+  swap_blocks<1>(rows, std::make_integer_sequence<int, Lanes>{});
+  unroll<Lanes>([&](auto lane) {
+    constexpr int kOdd = lane.value & 1;
+    unroll<Lanes / 2>([&](auto pair) {
+      store_pair<lane.value - kOdd>(rows[2 * pair.value + kOdd], column(lane) + 2 * pair.value);
+    });
+  });
+}
+
 /// Where blocks of as many numbers as there are lanes begin, so that they cover `Size` numbers:
 /// side by side, but for the last.
 template <int Size, int Lanes, class Function>

@@ -205,8 +205,12 @@ void rate(Correction<M, Scalar>& correction, const Vec<Scalar, M>& whitened,
   const auto definite = factor.ok();
   correction.nis = select(definite, correction.nis, Scalar(kUnknown));
   correction.peak = select(definite, correction.peak, Scalar(0));
-  correction.status = select(definite, ok_or(isfinite(correction.nis), Status::kNotFinite),
-                             refusal<Scalar, M>(correction.innovation_covariance));
+  // First what is most often, as GCC 12 would else join the two masks bit by bit. (NIS is finite
+  // only where S is definite.)
+  const auto finite = isfinite(correction.nis);
+  correction.status = select(finite, StatusOf<Scalar>(Status::kOk),
+                             select(definite, StatusOf<Scalar>(Status::kNotFinite),
+                                    refusal<Scalar, M>(correction.innovation_covariance)));
 }
 
 /// A correction that could not be done, and why.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <new>
 #include <type_traits>
 
 #include "wakeline/filter/belief.hpp"
@@ -34,10 +35,9 @@ class Ekf : public Belief<MotionType, ScalarType> {
     if (none(ok(forward))) return forward;
     const Vec<Scalar, kStates>& x = this->belief_.mean;
     if constexpr (LinearMotionModel<Motion>) {
-      if (any(dt_s != kept_.step_s)) [[unlikely]]
-        keep(dt_s);
-      const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.f};
-      return move(forward, f * x, f, kept_.q);
+      prepare(dt_s);
+      const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.matrices.f};
+      return move(forward, f * x, f, kept_.matrices.q);
     } else {
       Mat<Scalar, kStates, kStates> jacobian = this->motion_.jacobian(x, dt_s);
       return move(forward, this->motion_.transition(x, dt_s),
@@ -49,6 +49,12 @@ class Ekf : public Belief<MotionType, ScalarType> {
   /// The same under a known acceleration, [north, east]; see `Control`.
   StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return Control::predict(*this, dt_s, acceleration_mps2);
+  }
+
+  /// Works out F and Q of a linear model, which a prediction by this step then finds.
+  void prepare(Scalar dt_s) noexcept requires(LinearMotionModel<Motion>) {
+    if (any(dt_s != kept_.step_s)) [[unlikely]]
+      keep(dt_s);
   }
 
   /// Replaces the motion model, unchecked; the belief stays.
@@ -191,17 +197,15 @@ class Ekf : public Belief<MotionType, ScalarType> {
 
   [[gnu::cold, gnu::noinline]] void keep(Scalar dt_s) noexcept {
     kept_.step_s = dt_s;
-    const Mat<Scalar, kStates, kStates> f = this->motion_.matrix(dt_s);
-    const Mat<Scalar, kStates, kStates> q = this->motion_.process_noise(dt_s);
-    unroll<kStates * kStates>([&](int k) { kept_.f.data()[k] = f.data()[k]; });
-    unroll<kStates * kStates>([&](int k) { kept_.q.data()[k] = q.data()[k]; });
+    ::new (&kept_.matrices) Matrices(step_matrices(this->motion_, dt_s));  // made where they stay
   }
 
-  /// F and Q of the last step.
+  /// What the last step took.
+  using Matrices = StepMatrices<kStates, Scalar>;
   struct Transition {
     Scalar step_s = Scalar(-1);
-    Mat<Scalar, kStates, kStates> f = Mat<Scalar, kStates, kStates>::Zero();
-    Mat<Scalar, kStates, kStates> q = Mat<Scalar, kStates, kStates>::Zero();
+    Matrices matrices = {Mat<Scalar, kStates, kStates>::Zero(),
+                         Mat<Scalar, kStates, kStates>::Zero()};
   };
   struct Nothing {};
   [[no_unique_address]] std::conditional_t<LinearMotionModel<Motion>, Transition, Nothing> kept_;

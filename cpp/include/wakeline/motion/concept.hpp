@@ -82,6 +82,22 @@ StateMatrixOf<Motion, Scalar> process_noise(const Motion& motion, const StateOf<
     return motion.process_noise(x, dt_s);
 }
 
+/// F and Q of a linear model over a step.
+template <int N, class Scalar>
+struct StepMatrices {
+  Mat<Scalar, N, N> f;
+  Mat<Scalar, N, N> q;
+};
+
+/// Both at once, by the model's own `step_matrices(dt_s)` where it has one.
+template <LinearMotionModel Motion, class Scalar>
+StepMatrices<kStatesOf<Motion>, Scalar> step_matrices(const Motion& motion, Scalar dt_s) noexcept {
+  if constexpr (requires { motion.step_matrices(dt_s); })
+    return motion.step_matrices(dt_s);
+  else
+    return {motion.matrix(dt_s), motion.process_noise(dt_s)};
+}
+
 /// Refuses a state of position and velocity alone in another order than `[x, vx, y, vy]`: nothing
 /// could tell a start over the one from a start over the other.
 template <class Motion>

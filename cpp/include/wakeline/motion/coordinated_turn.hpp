@@ -36,6 +36,13 @@ struct KnownTurn {
     return Turn<Scalar>(Scalar(turn_rate_rad_s), dt_s).noise(noise);
   }
 
+  /// Both of them; the trigonometry is done once.
+  template <class Scalar>
+  StepMatrices<4, Scalar> step_matrices(Scalar dt_s) const noexcept {
+    Turn<Scalar> turn(Scalar(turn_rate_rad_s), dt_s);
+    return {turn.matrix(), turn.noise(noise)};
+  }
+
   void validate() const {
     for (int k = 0; k < kLanesOf<Rate>; ++k)
       require_finite("turn_rate_rad_s", lane(turn_rate_rad_s, k));
@@ -62,7 +69,7 @@ struct CoordinatedTurnRate {
   double course_psd_rad2s = 0.0;                ///< wander of the course, as in WanderingCourse
   double max_speed_mps = 30.0;                  ///< speed that this wander grows up to
   double prior_turn_rate_rad_s = 0.0;  ///< the rate that `prior_turn_rate_std_rad_s` is about
-  double turn_rate_time_s = 0.0;  ///< correlation time in which omega returns to it; 0: never
+  double turn_rate_time_s = 0.0;       ///< correlation time in which omega returns to it; 0: never
 
   /// f(x, dt).
   template <class Scalar>

@@ -19,6 +19,7 @@ struct Turn {
   Scalar cosine;    ///< cos theta
   Scalar along_s;   ///< sin(theta) / omega, s: how far a unit speed goes ahead
   Scalar across_s;  ///< (1 - cos(theta)) / omega, s: how far it goes to starboard
+  Scalar inverse;   ///< 1 / theta; of no turn 1
   Scalar dt_s;
 
   Turn(Scalar turn_rate_rad_s, Scalar dt) noexcept : angle(turn_rate_rad_s * dt), dt_s(dt) {
@@ -28,9 +29,9 @@ struct Turn {
     sine = 2 * half_sine * half_cosine;
     cosine = 1 - 2 * half_sine * half_sine;
     const auto straight = abs(angle) < Scalar(kTiny);
-    const Scalar inverse_rate_s = dt * reciprocal(select(straight, Scalar(1), angle));
-    along_s = select(straight, dt, sine * inverse_rate_s);
-    across_s = select(straight, dt * angle / 2, 2 * half_sine * half_sine * inverse_rate_s);
+    inverse = reciprocal(select(straight, Scalar(1), angle));
+    along_s = select(straight, dt, sine * inverse * dt);
+    across_s = dt * select(straight, angle / 2, 2 * half_sine * half_sine * inverse);
   }
 
   /// F of `[x, vx, y, vy]`.
@@ -66,11 +67,17 @@ struct Turn {
     return q;
   }
 
-  /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn, and white
-  /// acceleration of so much more density. White acceleration gives the exact integral of
-  /// F(s) G q Gᵀ F(s)ᵀ; the piecewise policy is the papers' G s² Gᵀ, which knows nothing of the
-  /// turn.
-  Mat<Scalar, 4, 4> noise(const ProcessNoise& policy, Scalar more_m2s3 = Scalar(0)) const noexcept {
+  /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn. White
+  /// acceleration gives the exact integral of F(s) G q Gᵀ F(s)ᵀ; the piecewise policy is the
+  /// papers' G s² Gᵀ, which knows nothing of the turn.
+  Mat<Scalar, 4, 4> noise(const ProcessNoise& policy) const noexcept {
+    if (policy.kind() == ProcessNoise::Kind::kPiecewiseAcceleration)
+      return piecewise_noise(policy, dt_s);
+    return white_noise(Scalar(policy.strength()));
+  }
+
+  /// The same with white acceleration of so much more density.
+  Mat<Scalar, 4, 4> noise(const ProcessNoise& policy, Scalar more_m2s3) const noexcept {
     if (policy.kind() == ProcessNoise::Kind::kPiecewiseAcceleration)
       return piecewise_noise(policy, dt_s) + white_noise(more_m2s3);
     return white_noise(Scalar(policy.strength()) + more_m2s3);
@@ -83,18 +90,17 @@ struct Turn {
     Mat<Scalar, 4, 4> q;
     const Scalar a2 = angle * angle;
     const auto nearly_straight = abs(angle) < Scalar(kSeries);
-    const Scalar divisor = select(nearly_straight, Scalar(1), angle);
-    // 2 (theta - sin theta) / theta³ and (1 - cos theta) / theta²
-    const Scalar spread = select(nearly_straight, (1 - a2 / 20 * (1 - a2 / 42)) / 3,
-                                 2 * (angle - sine) / (divisor * divisor * divisor));
+    // 2 (theta - sin theta) / theta³
+    const Scalar spread =
+        select(nearly_straight, Scalar(1.0 / 3) - a2 * (Scalar(1.0 / 60) - a2 * Scalar(1.0 / 2520)),
+               2 * (angle - sine) * inverse * inverse * inverse);
+    // dt (1 - cos theta) / theta²
     const auto straight = abs(angle) < Scalar(kTiny);
-    const Scalar coupling =
-        select(straight, Scalar(0.5), across_s / select(straight, Scalar(1), angle * dt_s));
-    const Scalar dt2 = dt_s * dt_s;
-    const Scalar position = density * dt2 * dt_s * spread;
+    const Scalar coupling_s = select(straight, dt_s / 2, across_s * inverse);
     const Scalar velocity = density * dt_s;
-    const Scalar ahead = density * dt2 * coupling;
-    const Scalar aside = density * dt2 * angle * spread / 2;
+    const Scalar position = velocity * dt_s * dt_s * spread;
+    const Scalar ahead = velocity * coupling_s;
+    const Scalar aside = velocity * dt_s * angle * spread / 2;
     // clang-format off
     q << position,  ahead,    0,        aside,
          ahead,     velocity, -aside,   0,
