@@ -150,20 +150,25 @@ template <class Sensor, auto kRows, class Scalar, int N, int M, int Reads>
   });
 }
 
-/// x + W v and P - W Wᵀ, symmetric to the last bit.
+/// x += W v.
 template <class Scalar, int N, int M>
-[[gnu::always_inline]] inline void correct_by(const Mat<Scalar, N, M>& w, const Vec<Scalar, M>& v,
-                                              const Gaussian<N, Scalar>& prior,
-                                              Gaussian<N, Scalar>& posterior) noexcept {
+[[gnu::always_inline]] inline void shift(Vec<Scalar, N>& x, const Mat<Scalar, N, M>& w,
+                                         const Vec<Scalar, M>& v) noexcept {
   unroll<N>([&](int i) {
-    Scalar element = prior.mean[i];
+    Scalar element = x[i];
     unroll<M>([&](int m) { element += w(i, m) * v[m]; });
-    posterior.mean[i] = element;
+    x[i] = element;
   });
+}
+
+/// P -= W Wᵀ, symmetric to the last bit.
+template <class Scalar, int N, int M>
+[[gnu::always_inline]] inline void subtract_gram(Mat<Scalar, N, N>& p,
+                                                 const Mat<Scalar, N, M>& w) noexcept {
   unroll_lower<N>([&](int i, int j) {
-    Scalar element = prior.covariance(i, j);
+    Scalar element = p(i, j);
     unroll<M>([&](int m) { element -= w(i, m) * w(j, m); });
-    posterior.covariance(i, j) = posterior.covariance(j, i) = element;
+    p(i, j) = p(j, i) = element;
   });
 }
 

@@ -98,8 +98,9 @@ class Ekf : public Belief<MotionType, ScalarType> {
     if (none(taken)) return correction;
     Gaussian<kStates, Scalar>& belief = this->belief_;
     Mat<Scalar, kStates, kM> gain = innovation.factor.whiten_rows(innovation.ph);  // P Hᵀ L⁻ᵀ
-    Gaussian<kStates, Scalar> next;
-    correct_by(gain, innovation.whitened, belief, next);
+    Gaussian<kStates, Scalar> next = belief;
+    shift(next.mean, gain, innovation.whitened);
+    subtract_gram(next.covariance, gain);
     const auto lost = cancels<Scalar, kStates>(belief.covariance, next.covariance);
     if (all(taken) && none(lost)) [[likely]] {
       copy(next, belief);

@@ -136,8 +136,9 @@ class Ukf : public Belief<MotionType, ScalarType> {
       });
     });
     Mat<Scalar, kStates, kM> gain = factor.whiten_rows(cross);
-    Gaussian<kStates, Scalar> next;
-    correct_by(gain, whitened, this->belief_, next);
+    Gaussian<kStates, Scalar> next = this->belief_;
+    shift(next.mean, gain, whitened);
+    subtract_gram(next.covariance, gain);
     const auto lost = cancels<Scalar, kStates>(this->belief_.covariance, next.covariance);
     if (any(lost)) [[unlikely]]
       assign_where(lost, next.covariance,
