@@ -65,66 +65,81 @@ class HypothesisClusters {
 
   /// Appends what is free and like the hypothesis of a place, in one.
   void append_around(int place, Rows& to) noexcept {
-    const auto own_row = static_cast<std::size_t>(Rows::row_number(place));
+    const Row& own = rows_.row_of(place);
+    const int next = to.append(own.mode);
+    Row& row = to.row_of(next);
+    row.set_past(Rows::lane_of(next), own, Rows::lane_of(place));
+    if (take_alike(place) > 1)
+      join(place, row, Rows::lane_of(next));
+    else
+      row.set_belief(Rows::lane_of(next), own.belief(Rows::lane_of(place)));
+  }
+
+  /// Takes the hypothesis of a place and what is like it out of what is free; `taken_` has their
+  /// probabilities then, else zeros. Returns how many they are.
+  int take_alike(int place) noexcept {
     const auto own_lane = static_cast<std::size_t>(Rows::lane_of(place));
-    const Row& own = rows_.all()[own_row];
+    const Row& own = rows_.row_of(place);
     const std::span<const Row> rows = rows_.of_mode(own.mode);
     const auto first = static_cast<std::size_t>(rows_.begin(own.mode));
-    Vec<Scalar, kStates> center;
-    unroll<kStates>([&](auto i) { center[i] = own.mean[std::size_t(i.value)][own_lane]; });
-    const auto away = [&](const Row& row) {
-      Vec<Lanes, kStates> d;
-      unroll<kStates>([&](int i) { d[i] = row.mean_lanes(i) - Lanes(center[i]); });
-      return d;
-    };
-    const Cholesky<kStates, Lanes>& factor = factors_[own_row - first];
-    const bool joinable =
-        by_past() || (by_distance() && (bits_of(factor.ok()) >> own_lane & 1u) != 0);
-    std::array<Lanes, Rows::kMostRows> weights;
+    const auto own_row = static_cast<std::size_t>(Rows::row_number(place)) - first;
+    const bool joins =
+        by_past() || (by_distance() && (bits_of(factors_[own_row].ok()) >> own_lane & 1u) != 0);
     int members = 0;
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const auto alike =
-          !joinable   ? lane_number_ == Lanes(r == own_row - first ? Scalar(own_lane) : Scalar(-1))
-          : by_past() ? same_past(own.modes[own_lane], rows[r])
-                      : near(own, own_lane, rows[r], away(rows[r]), factor);
-      weights[r] = select(alike, free_[first + r], Lanes(0));
+      const Lanes self = r == own_row ? Scalar(own_lane) : Scalar(-1);
+      const auto alike = !joins      ? lane_number_ == self
+                         : by_past() ? same_past(own.modes[own_lane], rows[r])
+                                     : near(own, own_lane, rows[r], factors_[own_row]);
+      taken_[r] = select(alike, free_[first + r], Lanes(0));
       free_[first + r] = select(alike, Lanes(0), free_[first + r]);
-      members += std::popcount(bits_of(weights[r] > Lanes(0)));
+      members += std::popcount(bits_of(taken_[r] > Lanes(0)));
     }
-    const int next = to.append(own.mode);
-    Row& joined = to.row_of(next);
-    joined.set_past(Rows::lane_of(next), own, Rows::lane_of(place));
-    if (members == 1)
-      return joined.set_belief(Rows::lane_of(next), own.belief(Rows::lane_of(place)));
-    // Sums over the members, about the mean of the likeliest.
+    return members;
+  }
+
+  /// Moment matching of what is taken, by sums about the mean of the hypothesis of a place.
+  void join(int place, Row& to, int to_lane) const noexcept {
+    const Row& own = rows_.row_of(place);
+    const auto own_lane = static_cast<std::size_t>(Rows::lane_of(place));
+    const std::span<const Row> rows = rows_.of_mode(own.mode);
     constexpr int kSums = 1 + kStates + kStates * (kStates + 1) / 2;
     Lanes sums[kSums];
     unroll<kSums>([&](int k) { sums[k] = Lanes(0); });
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      if (none(weights[r] > Lanes(0))) continue;
-      const Vec<Lanes, kStates> d = away(rows[r]);
-      sums[0] += weights[r];
-      unroll<kStates>([&](int i) { sums[1 + i] += weights[r] * d[i]; });
+      if (none(taken_[r] > Lanes(0))) continue;
+      const Vec<Lanes, kStates> d = away(rows[r], own, own_lane);
+      sums[0] += taken_[r];
+      unroll<kStates>([&](int i) { sums[1 + i] += taken_[r] * d[i]; });
       int k = 1 + kStates;
       unroll_lower<kStates>([&](int i, int j) {
-        sums[k++] += weights[r] * (rows[r].covariance_lanes(i, j) + d[i] * d[j]);
+        sums[k++] += taken_[r] * (rows[r].covariance_lanes(i, j) + d[i] * d[j]);
       });
     }
-    alignas(Lanes) std::array<Scalar, kSums + kLanesOf<Lanes> - 1> total;
-    sum_lanes<kSums>(sums, total.data());
-    const Scalar scale = Scalar(1) / total[0];
+    alignas(Lanes) std::array<Scalar, kSums + kLanesOf<Lanes> - 1> sum;
+    sum_lanes<kSums>(sums, sum.data());
+    const Scalar scale = Scalar(1) / sum[0];
+    Vec<Scalar, kStates> shift;
     Gaussian<kStates, Scalar> joint;
-    unroll<kStates>([&](int i) {
-      total[std::size_t(1 + i)] *= scale;
-      joint.mean[i] = center[i] + total[std::size_t(1 + i)];
+    unroll<kStates>([&](auto i) {
+      constexpr auto k = static_cast<std::size_t>(i.value);
+      shift[i] = scale * sum[1 + k];
+      joint.mean[i] = own.mean[k][own_lane] + shift[i];
     });
     std::size_t k = 1 + kStates;
-    unroll_lower<kStates>([&](int i, int j) {
-      joint.covariance(i, j) =
-          scale * total[k++] - total[std::size_t(1 + i)] * total[std::size_t(1 + j)];
+    unroll_lower<kStates>(
+        [&](int i, int j) { joint.covariance(i, j) = scale * sum[k++] - shift[i] * shift[j]; });
+    to.set_belief(to_lane, joint);
+    to.probability[static_cast<std::size_t>(to_lane)] = sum[0];
+  }
+
+  /// How far the means of a row are from one of its mode.
+  static Vec<Lanes, kStates> away(const Row& row, const Row& own, std::size_t own_lane) noexcept {
+    Vec<Lanes, kStates> d;
+    unroll<kStates>([&](auto i) {
+      d[i] = row.mean_lanes(i) - Lanes(own.mean[static_cast<std::size_t>(i.value)][own_lane]);
     });
-    joined.set_belief(Rows::lane_of(next), joint);
-    joined.probability[static_cast<std::size_t>(Rows::lane_of(next))] = total[0];
+    return d;
   }
 
   /// Which of a row have the same last modes, as a pseudo-Bayes tree wants it.
@@ -135,12 +150,11 @@ class HypothesisClusters {
            }) > Lanes(0);
   }
 
-  /// Which of a row, which are `d` away from one of the same mode, are near by its covariance.
+  /// Which of a row are near one of the same mode, by its covariance.
   [[nodiscard]] MaskOf<Lanes> near(const Row& own, std::size_t own_lane, const Row& row,
-                                   const Vec<Lanes, kStates>& d,
                                    const Cholesky<kStates, Lanes>& factor) const noexcept {
     const auto siblings = load<Lanes>(row.segment_s.data()) == Lanes(own.segment_s[own_lane]);
-    return factor.squared_norms(d, static_cast<int>(own_lane)) <
+    return factor.squared_norms(away(row, own, own_lane), static_cast<int>(own_lane)) <
            select(siblings, squared_sibling_distance_, squared_merge_distance_);
   }
 
@@ -151,8 +165,9 @@ class HypothesisClusters {
   const Lanes squared_merge_distance_ =
       Scalar(limits_.merge_distance) * Scalar(limits_.merge_distance);
   const Lanes lane_number_ = lanes_of<Lanes>([](int k) { return Scalar(k); });
-  std::array<Lanes, Rows::kMostRows> free_;  ///< probability of what is in no cluster yet, else 0
-  std::array<Cholesky<kStates, Lanes>, Rows::kMostRows> factors_;  ///< of a mode's rows
+  std::array<Lanes, Rows::kMostRows> free_;   ///< probability of what is in no cluster yet, else 0
+  std::array<Lanes, Rows::kMostRows> taken_;  ///< of the rows of a mode, as are these:
+  std::array<Cholesky<kStates, Lanes>, Rows::kMostRows> factors_;
 };
 
 }  // namespace wakeline

@@ -98,12 +98,16 @@ struct HypothesisRow {
     unroll_lower<N>([&](int i, int j) { of_covariance(i, j)[lane] = one.covariance(i, j); });
   }
 
-  /// Takes all but the belief from lane `of` of another row.
+  /// Says how lane k came to its mode.
+  void set_past(int k, Scalar its_probability, Scalar in_mode_s, std::uint64_t its_modes) noexcept {
+    const auto lane = static_cast<std::size_t>(k);
+    probability[lane] = its_probability;
+    segment_s[lane] = in_mode_s;
+    modes[lane] = its_modes;
+  }
   void set_past(int k, const HypothesisRow& from, int of) noexcept {
-    const auto to_lane = static_cast<std::size_t>(k), of_lane = static_cast<std::size_t>(of);
-    probability[to_lane] = from.probability[of_lane];
-    segment_s[to_lane] = from.segment_s[of_lane];
-    modes[to_lane] = from.modes[of_lane];
+    const auto lane = static_cast<std::size_t>(of);
+    set_past(k, from.probability[lane], from.segment_s[lane], from.modes[lane]);
   }
 };
 
@@ -182,7 +186,9 @@ class HypothesisRows {
     if (at(end_, mode) == at(begin_, mode)) at(begin_, mode) = rows_used_;
     at(end_, mode) = ++rows_used_;
     row.mode = mode;
+    row.modes.fill(0);
     row.probability.fill(Scalar(0));
+    row.segment_s.fill(Scalar(0));
     return row;
   }
 

@@ -134,9 +134,8 @@ class ModeHistory {
         return status;
       Row& row = next.row_of(next.append(k));
       row.set_beliefs(filter.estimate());
-      row.probability[0] = initial_[k];
-      row.segment_s.fill(std::numeric_limits<Scalar>::infinity());
-      row.modes.fill(static_cast<std::uint64_t>(k));
+      row.set_past(0, initial_[k], std::numeric_limits<Scalar>::infinity(),
+                   static_cast<std::uint64_t>(k));
     }
     started_ = true;
     take();
@@ -257,12 +256,10 @@ class ModeHistory {
       if (!sound || !fields.loading()) continue;
       mode = hypothesis.mode();
       const int place = loaded.append(mode);
-      const auto k = static_cast<std::size_t>(Leaves::lane_of(place));
       Row& row = loaded.row_of(place);
       row.set_belief(Leaves::lane_of(place), hypothesis.belief);
-      row.probability[k] = hypothesis.probability;
-      row.segment_s[k] = hypothesis.segment_s;
-      row.modes[k] = hypothesis.modes;
+      row.set_past(Leaves::lane_of(place), hypothesis.probability, hypothesis.segment_s,
+                   hypothesis.modes);
     }
     if (!sound) fields.fail();
     if (!fields.loading() || !fields.ok()) return;
@@ -487,17 +484,14 @@ class ModeHistory {
   /// A hypothesis switches to another mode. Returns its place there.
   int follow(const Switch& change, Leaves& next) const noexcept {
     const Row& before = present().row_of(change.from);
-    const int place = next.append(change.mode, before, Leaves::lane_of(change.from));
-    Row& row = next.row_of(place);
-    const auto k = static_cast<std::size_t>(Leaves::lane_of(place));
-    row.probability[k] = change.probability;
-    row.segment_s[k] = Scalar(0);
+    const auto lane_before = static_cast<std::size_t>(Leaves::lane_of(change.from));
+    Gaussian<kStates, Scalar> belief = before.belief(Leaves::lane_of(change.from));
     if constexpr (kTurnRateRow >= 0)
-      if (!same_prior_rate(before.mode, change.mode)) {
-        Gaussian<kStates, Scalar> belief = row.belief(Leaves::lane_of(place));
-        forget_turn_rate(belief, change.mode);
-        row.set_belief(Leaves::lane_of(place), belief);
-      }
+      if (!same_prior_rate(before.mode, change.mode)) forget_turn_rate(belief, change.mode);
+    const int place = next.append(change.mode);
+    Row& row = next.row_of(place);
+    row.set_belief(Leaves::lane_of(place), belief);
+    row.set_past(Leaves::lane_of(place), change.probability, Scalar(0), before.modes[lane_before]);
     return place;
   }
 
