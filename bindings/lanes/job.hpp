@@ -5,6 +5,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <variant>
+#include <vector>
 
 #include "lanes.hpp"
 #include "wakeline/core/pack_math.hpp"
@@ -89,8 +92,9 @@ bool run_begun(Estimator estimator, const LaneJob& job, const RunInput& in, cons
   return run_from<decltype(estimator.estimate())::kStates>(estimator, job, in, out, threads);
 }
 
-/// An Imm over filters of whatever kinds. False, and nothing done, where they agree on more than
-/// position and velocity and are not of kinds that are compiled together.
+/// An Imm over filters of different kinds. False, and nothing done, where there are too many, where
+/// they are not of kinds that are compiled together, or where the starts are not all over position
+/// and velocity or all over the state of the estimate.
 bool run_mixed_imm(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads);
 
 }  // namespace wakeline::python

@@ -34,7 +34,7 @@ Ekf<CoordinatedTurnRate, Lanes> learning_filter(const LaneJob& job, std::size_t 
   return Ekf<CoordinatedTurnRate, Lanes>(std::get<CoordinatedTurnRate>(job.models[k].motion));
 }
 
-/// As many as the job has.
+/// A bank of as many filters as the job has models.
 template <class Filter>
 UniformBank<Filter> bank_of(Filter (*filter)(const LaneJob&, std::size_t), const LaneJob& job) {
   std::vector<Filter> filters;
@@ -42,7 +42,7 @@ UniformBank<Filter> bank_of(Filter (*filter)(const LaneJob&, std::size_t), const
   return UniformBank<Filter>(std::span<const Filter>(filters));
 }
 
-/// A number that is known.
+/// A bank of as many as `Models` says at compile time.
 template <class Rate, std::size_t... Models>
 auto turn_bank(const LaneJob& job, std::index_sequence<Models...>) {
   return FilterBank(turn_filter<Rate>(job, Models)...);

@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
+#include <span>
+#include <type_traits>
+#include <vector>
+
 #include "job.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
@@ -29,7 +33,7 @@ bool run_over(const LaneJob& job, const RunInput& in, const RunOutput& out, int 
   for (const LaneModel& model : job.models) {
     const auto add = [&]<class Filter>(std::type_identity<Filter>) {
       const auto* motion = std::get_if<typename Filter::Motion>(&model.motion);
-      const bool unscented = !std::is_same_v<Filter, Ekf<typename Filter::Motion, Lanes>>;
+      constexpr bool unscented = !std::is_same_v<Filter, Ekf<typename Filter::Motion, Lanes>>;
       if (motion != nullptr && unscented == model.unscented)
         filters.push_back(filter_of<Filter>(*motion, model));
     };

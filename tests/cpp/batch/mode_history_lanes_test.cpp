@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -182,6 +184,25 @@ TEST(ModeHistoryInLanes, GoesOnFromItsArchiveWithTheSameBits) {
     scan(others.many, z);
     EXPECT_TRUE(test::beliefs_identical<4>(others.many.estimate(), trees.many.estimate()));
   }
+}
+
+TEST(ModeHistoryInLanes, AnArchiveWithoutAnyProbabilityIsDamaged) {
+  Pair trees{HistoryTree{}};
+  trees.start();
+  Archive writing;
+  trees.many.archive(writing);
+  const auto before = trees.many.estimate();
+  std::vector<std::byte> bytes = writing.bytes();
+  for (const auto& hypothesis : trees.many.hypotheses()) {
+    const auto wanted = std::as_bytes(std::span(&hypothesis.probability, 1));
+    const auto found = std::search(bytes.begin(), bytes.end(), wanted.begin(), wanted.end());
+    ASSERT_NE(found, bytes.end());
+    std::fill_n(found, sizeof(double), std::byte{0});
+  }
+  Archive damaged(bytes);
+  trees.many.archive(damaged);
+  EXPECT_FALSE(damaged.ok());
+  EXPECT_TRUE(test::beliefs_identical<4>(trees.many.estimate(), before));
 }
 
 TEST(ModeHistoryInLanes, DoesNotTouchTheHeap) {

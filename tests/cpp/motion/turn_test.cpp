@@ -197,5 +197,24 @@ TYPED_TEST(TurnOf, WithoutNoiseOfTheRateIsTheNoiseOfTheTurn) {
   }
 }
 
+/// A turn with a process noise of its own.
+struct OwnNoise : CoordinatedTurn {
+  template <class Scalar>
+  Mat<Scalar, 4, 4> process_noise(Scalar) const noexcept {
+    return Scalar(7) * Mat<Scalar, 4, 4>::Identity();
+  }
+};
+
+TEST(CoordinatedTurn, BothMatricesTogetherAreEachAlone) {
+  for (const double rate : {0.0, 1e-9, 0.02, -0.3}) {
+    const CoordinatedTurn turn{.turn_rate_rad_s = rate, .noise = WhiteAcceleration{0.3}};
+    const auto both = step_matrices(turn, 2.5);
+    EXPECT_EQ(both.f, turn.matrix(2.5)) << rate;
+    EXPECT_EQ(both.q, turn.process_noise(2.5)) << rate;
+    const OwnNoise own{turn};
+    EXPECT_EQ(step_matrices(own, 2.5).q, own.process_noise(2.5)) << "not what it inherits";
+  }
+}
+
 }  // namespace
 }  // namespace wakeline

@@ -533,6 +533,8 @@ TEST(ModeHistory, ParametersThatMakeNoSenseAreRefused) {
   EXPECT_THROW(with({.max_hypotheses = 2}), std::invalid_argument) << "fewer than modes";
   EXPECT_THROW(with({.max_hypotheses = 100, .max_branches = 99}), std::invalid_argument);
   EXPECT_THROW(with({.max_branches = 257}), std::invalid_argument) << "beyond the capacity";
+  EXPECT_THROW(with({.max_hypotheses = 3, .max_branches = 2, .pseudo_bayes_order = 1}),
+               std::invalid_argument);
   EXPECT_THROW(with({.min_segment_s = -1.0}), std::invalid_argument);
   EXPECT_THROW(with({.merge_distance = std::nan("")}), std::invalid_argument);
   EXPECT_THROW(with({.merge_distance = 2.0, .sibling_distance = 1.0}), std::invalid_argument);

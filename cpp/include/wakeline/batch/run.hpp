@@ -93,7 +93,7 @@ class RunLanes {
   }
 
   void write(std::uint8_t* to, std::size_t scan, const StatusOf<Scalar>& status) const noexcept {
-    for (int k = 0; k < kLanes; ++k)
+    for (int k = kLanes - 1; k >= 0; --k)
       *place(to, 1, k, scan) = static_cast<std::uint8_t>(lane(status, k));
   }
 
@@ -120,7 +120,7 @@ class RunLanes {
       }
     }
     for (; at < count * size; ++at, from += kLanes)
-      for (int lane = 0; lane < kLanes; ++lane) places[lane][at] = double(from[lane]);
+      for (int lane = kLanes - 1; lane >= 0; --lane) places[lane][at] = double(from[lane]);
   }
 
  private:

@@ -329,15 +329,16 @@ template <int First, class Real, int Lanes, class Number>
 
 /// Writes as many rows as there are lanes as columns, that of a lane to `column(lane)`. Two numbers
 /// at a time: what is aligned to no more than that would, in whole registers, lie across two cache
-/// lines, and a store of such takes as long as six others.
+/// lines, and a store of such takes as long as six others. The last lane comes first. Shuffles the
+/// rows.
 template <class Real, int Lanes, class Column>
 [[gnu::always_inline]] inline void store_columns(Pack<Real, Lanes> (&rows)[Lanes],
                                                  const Column& column) noexcept {
   swap_blocks<1>(rows, std::make_integer_sequence<int, Lanes>{});
-  unroll<Lanes>([&](auto lane) {
-    constexpr int kOdd = lane.value & 1;
+  unroll<Lanes>([&](auto before) {
+    constexpr int kLane = Lanes - 1 - before.value, kOdd = kLane & 1;
     unroll<Lanes / 2>([&](auto pair) {
-      store_pair<lane.value - kOdd>(rows[2 * pair.value + kOdd], column(lane) + 2 * pair.value);
+      store_pair<kLane - kOdd>(rows[2 * pair.value + kOdd], column(kLane) + 2 * pair.value);
     });
   });
 }
@@ -385,8 +386,8 @@ requires(kLanesIn<Packs> > 1)
     for (int k = 0; k < count; ++k) unroll<Size>([&](int i) { array(k)[i] = lane(packs[i], k); });
 }
 
-/// `sums[k]` is the sum of the lanes of `packs[k]`, in their order. Writes whole registers, so that
-/// there must be room for as many numbers as there are lanes behind `sums + Size`.
+/// `sums[k]` is the sum of the lanes of `packs[k]`, in their order. Writes whole registers: there
+/// must be room for `Size`, rounded up to a multiple of the lanes.
 template <int Size, class Real, int Lanes>
 [[gnu::always_inline]] inline void sum_lanes(const Pack<Real, Lanes>* packs, Real* sums) noexcept {
   unroll<(Size + Lanes - 1) / Lanes>([&](auto block) {

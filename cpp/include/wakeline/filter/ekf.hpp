@@ -51,7 +51,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return Control::predict(*this, dt_s, acceleration_mps2);
   }
 
-  /// Works out F and Q of a linear model, which a prediction by this step then finds.
+  /// Works out F and Q of a linear model, which a prediction by this step, unchecked here, then
+  /// finds.
   void prepare(Scalar dt_s) noexcept requires(LinearMotionModel<Motion>) {
     if (any(dt_s != kept_.step_s)) [[unlikely]]
       keep(dt_s);
@@ -201,8 +202,9 @@ class Ekf : public Belief<MotionType, ScalarType> {
     ::new (&kept_.matrices) Matrices(step_matrices(this->motion_, dt_s));  // made where they stay
   }
 
-  /// What the last step took.
   using Matrices = StepMatrices<kStates, Scalar>;
+
+  /// F and Q of the last step.
   struct Transition {
     Scalar step_s = Scalar(-1);
     Matrices matrices = {Mat<Scalar, kStates, kStates>::Zero(),

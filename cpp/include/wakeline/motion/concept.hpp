@@ -89,10 +89,11 @@ struct StepMatrices {
   Mat<Scalar, N, N> q;
 };
 
-/// Both at once, by the model's own `step_matrices(dt_s)` where it has one.
+/// Both at once, by the model's own `step_matrices(dt_s)` where it has one: not by one that it
+/// inherits, which would know nothing of an F or Q of its own.
 template <LinearMotionModel Motion, class Scalar>
 StepMatrices<kStatesOf<Motion>, Scalar> step_matrices(const Motion& motion, Scalar dt_s) noexcept {
-  if constexpr (requires { motion.step_matrices(dt_s); })
+  if constexpr (requires { requires std::same_as<typename Motion::HasStepMatrices, Motion>; })
     return motion.step_matrices(dt_s);
   else
     return {motion.matrix(dt_s), motion.process_noise(dt_s)};

@@ -36,6 +36,7 @@ struct KnownTurn {
     return Turn<Scalar>(Scalar(turn_rate_rad_s), dt_s).noise(noise);
   }
 
+  using HasStepMatrices = KnownTurn;
   /// Both of them; the trigonometry is done once.
   template <class Scalar>
   StepMatrices<4, Scalar> step_matrices(Scalar dt_s) const noexcept {

@@ -14,12 +14,12 @@ namespace wakeline {
 /// Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
 template <class Scalar>
 struct Turn {
-  Scalar angle;     ///< theta
-  Scalar sine;      ///< sin theta
-  Scalar cosine;    ///< cos theta
-  Scalar along_s;   ///< sin(theta) / omega, s: how far a unit speed goes ahead
-  Scalar across_s;  ///< (1 - cos(theta)) / omega, s: how far it goes to starboard
-  Scalar inverse;   ///< 1 / theta; of no turn 1
+  Scalar angle;          ///< theta
+  Scalar sine;           ///< sin theta
+  Scalar cosine;         ///< cos theta
+  Scalar along_s;        ///< sin(theta) / omega, s: how far a unit speed goes ahead
+  Scalar across_s;       ///< (1 - cos(theta)) / omega, s: how far it goes to starboard
+  Scalar inverse_angle;  ///< 1 / theta; of no turn 1
   Scalar dt_s;
 
   Turn(Scalar turn_rate_rad_s, Scalar dt) noexcept : angle(turn_rate_rad_s * dt), dt_s(dt) {
@@ -29,9 +29,9 @@ struct Turn {
     sine = 2 * half_sine * half_cosine;
     cosine = 1 - 2 * half_sine * half_sine;
     const auto straight = abs(angle) < Scalar(kTiny);
-    inverse = reciprocal(select(straight, Scalar(1), angle));
-    along_s = select(straight, dt, sine * inverse * dt);
-    across_s = dt * select(straight, angle / 2, 2 * half_sine * half_sine * inverse);
+    inverse_angle = reciprocal(select(straight, Scalar(1), angle));
+    along_s = select(straight, dt, sine * inverse_angle * dt);
+    across_s = dt * select(straight, angle / 2, 2 * half_sine * half_sine * inverse_angle);
   }
 
   /// F of `[x, vx, y, vy]`.
@@ -93,10 +93,10 @@ struct Turn {
     // 2 (theta - sin theta) / theta³
     const Scalar spread =
         select(nearly_straight, Scalar(1.0 / 3) - a2 * (Scalar(1.0 / 60) - a2 * Scalar(1.0 / 2520)),
-               2 * (angle - sine) * inverse * inverse * inverse);
+               2 * (angle - sine) * inverse_angle * inverse_angle * inverse_angle);
     // dt (1 - cos theta) / theta²
     const auto straight = abs(angle) < Scalar(kTiny);
-    const Scalar coupling_s = select(straight, dt_s / 2, across_s * inverse);
+    const Scalar coupling_s = select(straight, dt_s / 2, across_s * inverse_angle);
     const Scalar velocity = density * dt_s;
     const Scalar position = velocity * dt_s * dt_s * spread;
     const Scalar ahead = velocity * coupling_s;

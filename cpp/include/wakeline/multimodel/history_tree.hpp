@@ -47,6 +47,7 @@ struct HistoryTree {
     require(max_hypotheses >= 1, "max_hypotheses", "1 or more", max_hypotheses);
     require(max_branches > max_hypotheses || pseudo_bayes_order > 0, "max_branches",
             "more than max_hypotheses", max_branches);
+    require(max_branches >= max_hypotheses, "max_branches", "max_hypotheses or more", max_branches);
     require_not_negative("min_segment_s", min_segment_s);
     require(merge_distance >= 0.0, "merge_distance", "not negative", merge_distance);
     require(sibling_distance >= merge_distance, "sibling_distance", "merge_distance or more",

@@ -12,6 +12,7 @@
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/multimodel/history_tree.hpp"
 #include "wakeline/multimodel/hypothesis_rows.hpp"
+#include "wakeline/multimodel/likeliest.hpp"
 
 namespace wakeline {
 
@@ -83,14 +84,14 @@ class HypothesisClusters {
     const std::span<const Row> rows = rows_.of_mode(own.mode);
     const auto first = static_cast<std::size_t>(rows_.begin(own.mode));
     const auto own_row = static_cast<std::size_t>(Rows::row_number(place)) - first;
-    const bool joins =
-        by_past() || (by_distance() && (bits_of(factors_[own_row].ok()) >> own_lane & 1u) != 0);
+    const bool joins = by_distance() && (bits_of(factors_[own_row].ok()) >> own_lane & 1u) != 0;
     int members = 0;
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const Lanes self = r == own_row ? Scalar(own_lane) : Scalar(-1);
-      const auto alike = !joins      ? lane_number_ == self
-                         : by_past() ? same_past(own.modes[own_lane], rows[r])
-                                     : near(own, own_lane, rows[r], factors_[own_row]);
+      auto alike = lane_number_ == Lanes(r == own_row ? Scalar(own_lane) : Scalar(-1));
+      if (by_past())
+        alike = alike || same_past(own.modes[own_lane], rows[r]);
+      else if (joins)
+        alike = alike || near(own, own_lane, rows[r], factors_[own_row]);
       taken_[r] = select(alike, free_[first + r], Lanes(0));
       free_[first + r] = select(alike, Lanes(0), free_[first + r]);
       members += std::popcount(bits_of(taken_[r] > Lanes(0)));
@@ -165,9 +166,10 @@ class HypothesisClusters {
   const Lanes squared_merge_distance_ =
       Scalar(limits_.merge_distance) * Scalar(limits_.merge_distance);
   const Lanes lane_number_ = lanes_of<Lanes>([](int k) { return Scalar(k); });
-  std::array<Lanes, Rows::kMostRows> free_;   ///< probability of what is in no cluster yet, else 0
-  std::array<Lanes, Rows::kMostRows> taken_;  ///< of the rows of a mode, as are these:
-  std::array<Cholesky<kStates, Lanes>, Rows::kMostRows> factors_;
+  std::array<Lanes, Rows::kMostRows> free_;  ///< probability of what is in no cluster yet, else 0
+  // Of the rows of one mode:
+  std::array<Lanes, Rows::kMostRows> taken_;  ///< probability of what is in the cluster, else 0
+  std::array<Cholesky<kStates, Lanes>, Rows::kMostRows> factors_;  ///< of the covariances
 };
 
 }  // namespace wakeline

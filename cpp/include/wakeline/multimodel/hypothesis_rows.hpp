@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,12 +13,6 @@
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
-
-/// Calls `f(k)` for each bit k that is set.
-template <class Function>
-void for_each_bit(unsigned bits, const Function& function) noexcept {
-  for (; bits != 0; bits &= bits - 1) function(std::countr_zero(bits));
-}
 
 /// Hypotheses of one mode side by side, as many as a filter has lanes or fewer. Lanes left over
 /// repeat the belief of another, and have no probability.
@@ -131,7 +124,8 @@ class HypothesisRows {
     rows_used_ = size_ = 0;
   }
 
-  /// Makes room for one more, and returns its place. Modes come one after the other.
+  /// Makes room for one more, and returns its place. Those of a mode are to be appended one after
+  /// the other.
   int append(int mode) noexcept {
     if (at(end_, mode) == at(begin_, mode) || at(rows_, at(end_, mode) - 1).count == kLanes)
       add_row(mode).count = 0;
@@ -223,26 +217,6 @@ void copy_likeliest(const Rows& from, int most, Rows& to) noexcept {
   std::for_each(places.begin(), cut, [&](int place) {
     to.append(from.row_of(place).mode, from.row_of(place), Rows::lane_of(place));
   });
-}
-
-/// Writes the places of what has a weight in some rows, the weightiest first, and returns how many
-/// there are. `weights[r - begin]` are those of row r.
-template <class Lanes>
-int weightiest_first(std::span<const Lanes> weights, int begin, std::span<int> places) noexcept {
-  constexpr int kLanes = kLanesOf<Lanes>;
-  int count = 0;
-  for (std::size_t r = 0; r < weights.size(); ++r)
-    for_each_bit(bits_of(weights[r] > Lanes(0)), [&](int k) {
-      const Lanes own = lane(weights[r], k);
-      int before =
-          std::popcount(bits_of(weights[r] > own) | (bits_of(weights[r] == own) & ((1u << k) - 1)));
-      for (std::size_t q = 0; q < r; ++q) before += std::popcount(bits_of(weights[q] >= own));
-      for (std::size_t q = r + 1; q < weights.size(); ++q)
-        before += std::popcount(bits_of(weights[q] > own));
-      places[static_cast<std::size_t>(before)] = (begin + static_cast<int>(r)) * kLanes + k;
-      ++count;
-    });
-  return count;
 }
 
 }  // namespace wakeline

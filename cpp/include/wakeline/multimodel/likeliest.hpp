@@ -11,7 +11,35 @@
 #include <span>
 #include <type_traits>
 
+#include "wakeline/core/scalar.hpp"
+
 namespace wakeline {
+
+/// Calls `f(k)` for each bit k that is set.
+template <class Function>
+void for_each_bit(unsigned bits, const Function& function) noexcept {
+  for (; bits != 0; bits &= bits - 1) function(std::countr_zero(bits));
+}
+
+/// Writes the places of what has a weight in some rows, the weightiest first, and returns how many
+/// there are. `weights[r - begin]` are those of row r.
+template <class Lanes>
+int weightiest_first(std::span<const Lanes> weights, int begin, std::span<int> places) noexcept {
+  constexpr int kLanes = kLanesOf<Lanes>;
+  int count = 0;
+  for (std::size_t r = 0; r < weights.size(); ++r)
+    for_each_bit(bits_of(weights[r] > Lanes(0)), [&](int k) {
+      const Lanes own = lane(weights[r], k);
+      int before =
+          std::popcount(bits_of(weights[r] > own) | (bits_of(weights[r] == own) & ((1u << k) - 1)));
+      for (std::size_t q = 0; q < r; ++q) before += std::popcount(bits_of(weights[q] >= own));
+      for (std::size_t q = r + 1; q < weights.size(); ++q)
+        before += std::popcount(bits_of(weights[q] > own));
+      places[static_cast<std::size_t>(before)] = (begin + static_cast<int>(r)) * kLanes + k;
+      ++count;
+    });
+  return count;
+}
 
 /// The likeliest of many items that have a probability, as many as there is room for, without a
 /// list of them all: they come twice. First each is counted by the size of its probability; then,
@@ -39,10 +67,10 @@ class Likeliest {
   [[nodiscard]] Scalar least() const noexcept { return least_; }
 
   void add(const Item& item) noexcept {
-    if (item.probability >= sure_)
-      room_[sure_count_++] = item;
-    else
+    if (item.probability < sure_)
       add_to_last(item);
+    else if (sure_count_ < larger_)
+      room_[sure_count_++] = item;
   }
 
   [[nodiscard]] std::span<Item> items() const noexcept { return room_.first(count_); }

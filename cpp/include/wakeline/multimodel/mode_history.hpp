@@ -12,7 +12,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "wakeline/core/archive.hpp"
@@ -219,7 +218,10 @@ class ModeHistory {
       after.set_beliefs(filter.estimate());
       store(posterior, after.probability.data());
     }
-    if (!(total > Scalar(0)) || !std::isfinite(total)) return Scalar(0);
+    if (!(total > Scalar(0)) || !std::isfinite(total)) {
+      std::ranges::fill(share, Scalar(0));
+      return Scalar(0);
+    }
     for (Scalar& part : share) part /= total;
     for (Row& row : next.all())
       store(load<Lanes>(row.probability.data()) / Lanes(total), row.probability.data());
@@ -242,6 +244,7 @@ class ModeHistory {
     if (fields.loading()) loaded.clear();
     bool sound = true;
     int mode = 0;
+    Scalar sum = Scalar(0);
     for (int i = 0; i < count; ++i) {
       Hypothesis hypothesis;
       if (!fields.loading()) hypothesis = *next++;
@@ -253,6 +256,7 @@ class ModeHistory {
       sound = sound && hypothesis.mode() >= mode && hypothesis.mode() < bank_.size() &&
               hypothesis.probability >= Scalar(0) && hypothesis.probability <= Scalar(1) &&
               (!pooled() || hypothesis.mode() == i);
+      sum += hypothesis.probability;
       if (!sound || !fields.loading()) continue;
       mode = hypothesis.mode();
       const int place = loaded.append(mode);
@@ -261,7 +265,7 @@ class ModeHistory {
       row.set_past(Leaves::lane_of(place), hypothesis.probability, hypothesis.segment_s,
                    hypothesis.modes);
     }
-    if (!sound) fields.fail();
+    if (!sound || (started && !(sum > Scalar(0)))) fields.fail();
     if (!fields.loading() || !fields.ok()) return;
     started_ = started;
     now_ = 1 - now_;
@@ -316,6 +320,7 @@ class ModeHistory {
    public:
     class Iterator {
      public:
+      using iterator_concept = std::forward_iterator_tag;
       using iterator_category = std::input_iterator_tag;
       using value_type = Hypothesis;
       using difference_type = std::ptrdiff_t;
@@ -391,7 +396,7 @@ class ModeHistory {
     int from;
     int mode;
     int to = 0;     ///< its place then
-    int other = 0;  ///< the number of another one to that mode, or -1
+    int next = -1;  ///< the number of the next switch to that mode, or -1
   };
 
   template <class... Known>
@@ -399,7 +404,7 @@ class ModeHistory {
     if (!started_) return Status::kNotStarted;
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
     if (!pooled() && present().size() > tree_.max_hypotheses) {  // the last scan was missed
-      spare() = present();
+      spare() = present();  // to try first: where a prediction fails nothing is joined
       if (const Status status = move(spare(), dt_s, acceleration_mps2...); status != Status::kOk)
         return status;
       reduce();
@@ -421,7 +426,7 @@ class ModeHistory {
     std::array<int, static_cast<std::size_t>(kModeCapacity<K>)> first;  // into each mode
     first.fill(-1);
     for (int s = static_cast<int>(switches.size()) - 1; s >= 0; --s)
-      at(switches, s).other = std::exchange(at(first, at(switches, s).mode), s);
+      at(switches, s).next = std::exchange(at(first, at(switches, s).mode), s);
     BeliefType pool;
     if (pooled()) pool = estimate();
     next.clear();
@@ -436,7 +441,7 @@ class ModeHistory {
           stay(stays, dt_s);
         }
       }
-      for (int s = at(first, mode); s >= 0; s = at(switches, s).other)
+      for (int s = at(first, mode); s >= 0; s = at(switches, s).next)
         at(switches, s).to = follow(at(switches, s), next);
     }
     for (Row& row : next.all()) go_on(row, dt_s);
