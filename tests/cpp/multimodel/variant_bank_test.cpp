@@ -38,9 +38,11 @@ auto at_compile_time() { return Imm{kChain, Ekf{kStraight}, Ukf{kTurning}, Ekf{k
 
 template <class Scalar>
 Imm<Bank<Scalar>> at_run_time() {
-  const std::array<typename Bank<Scalar>::Filter, 3> filters{
-      Ekf<ConstantVelocity, Scalar>{kStraight}, Ukf<CoordinatedTurnRate, Scalar>{kTurning},
-      Ekf<ConstantAcceleration, Scalar>{kPushed}};
+  std::vector<typename Bank<Scalar>::Filter> filters;
+  filters.reserve(3);
+  filters.emplace_back(std::in_place_type<Ekf<ConstantVelocity, Scalar>>, kStraight);
+  filters.emplace_back(std::in_place_type<Ukf<CoordinatedTurnRate, Scalar>>, kTurning);
+  filters.emplace_back(std::in_place_type<Ekf<ConstantAcceleration, Scalar>>, kPushed);
   return {ModeChain<kRuntimeModes>(kChain), Bank<Scalar>(filters)};
 }
 
