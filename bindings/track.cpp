@@ -174,7 +174,7 @@ using Turn = Ekf<CoordinatedTurnRate>;
 AnyImm as_any_imm(const VesselImm& imm) {
   AnyImm any(ModeChain<kRuntimeModes>(imm.chain()),
              AnyFilterBank({AnyFilter(imm.filter<0>()), AnyFilter(imm.filter<1>()),
-                            AnyFilter(imm.filter<2>())}));
+                            AnyFilter(imm.filter<2>()), AnyFilter(imm.filter<3>())}));
   any.set_initial_mode_probability(
       ModeVector<double, kRuntimeModes>(imm.initial_mode_probability()));
   return any;
@@ -186,14 +186,16 @@ AnyImm any_vessel_imm(const Radar& radar, const VesselModels& models) {
 
 /// The reverse, of an estimator that is made like it.
 std::optional<VesselImm> as_vessel_imm(const AnyImm& any) {
-  if (any.bank().size() != 3) return std::nullopt;
+  if (any.bank().size() != VesselImm::kModels) return std::nullopt;
   const auto filter = [&](std::size_t k) -> const auto& { return any.bank().filter(k).variant(); };
-  const auto* steady = std::get_if<Course>(&filter(0));
-  const auto* restless = std::get_if<Course>(&filter(1));
-  const auto* turning = std::get_if<Turn>(&filter(2));
-  if (steady == nullptr || restless == nullptr || turning == nullptr) return std::nullopt;
-  VesselImm imm(ModeChain<3>(any.chain()), Course(steady->motion()), Course(restless->motion()),
-                Turn(turning->motion()));
+  const auto* cruising = std::get_if<Course>(&filter(0));
+  const auto* steady = std::get_if<Course>(&filter(1));
+  const auto* restless = std::get_if<Course>(&filter(2));
+  const auto* turning = std::get_if<Turn>(&filter(3));
+  if (cruising == nullptr || steady == nullptr || restless == nullptr || turning == nullptr)
+    return std::nullopt;
+  VesselImm imm(ModeChain<VesselImm::kModels>(any.chain()), Course(cruising->motion()),
+                Course(steady->motion()), Course(restless->motion()), Turn(turning->motion()));
   imm.set_initial_mode_probability(any.initial_mode_probability());
   return imm;
 }
@@ -422,8 +424,10 @@ void define_track(py::module_& parent) {
       .done();
 
   SettingsClass<VesselModels> models(
-      m, "VesselModels", "The motion models of a tracker: steady, restless and turning.");
-  models.field("steady_psd_m2s3", &VesselModels::steady_psd_m2s3)
+      m, "VesselModels", "The motion models of a tracker: cruising, steady, restless and turning.");
+  models.field("cruising_psd_m2s3", &VesselModels::cruising_psd_m2s3)
+      .field("cruising_course_psd_rad2s", &VesselModels::cruising_course_psd_rad2s)
+      .field("steady_psd_m2s3", &VesselModels::steady_psd_m2s3)
       .field("steady_course_psd_rad2s", &VesselModels::steady_course_psd_rad2s)
       .field("restless_psd_m2s3", &VesselModels::restless_psd_m2s3)
       .field("restless_course_psd_rad2s", &VesselModels::restless_course_psd_rad2s)
@@ -431,12 +435,15 @@ void define_track(py::module_& parent) {
       .field("turning_course_psd_rad2s", &VesselModels::turning_course_psd_rad2s)
       .field("turn_rate_psd_rad2s3", &VesselModels::turn_rate_psd_rad2s3)
       .field("prior_turn_rate_std_rad_s", &VesselModels::prior_turn_rate_std_rad_s)
+      .field("cruising_probability", &VesselModels::cruising_probability)
+      .field("cruising_sojourn_s", &VesselModels::cruising_sojourn_s)
+      .field("settling_s", &VesselModels::settling_s)
       .field("steady_sojourn_s", &VesselModels::steady_sojourn_s)
       .field("restless_sojourn_s", &VesselModels::restless_sojourn_s)
       .field("turning_sojourn_s", &VesselModels::turning_sojourn_s)
       .done();
   models.python().def_static("ships", &VesselModels::ships,
-                             "Of ships under way, which go straight for most of an hour.");
+                             "Of ships under way, which alter course as ships do.");
 
   m.def("vessel_imm", &any_vessel_imm, py::arg("radar"),
         py::arg_v("models", VesselModels{}, "VesselModels()"),

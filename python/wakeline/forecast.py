@@ -10,11 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import wakeline as wl
+from wakeline import filter as wf
 from wakeline.recording import AisTrack, Tracks
 
 __all__ = ["names", "position_m", "turn_rate_rad_s"]
@@ -49,7 +51,10 @@ def position_m(
         along the line through the positions of the last minute. ``kalman_cv``: straight on from a
         Kalman filter over the positions of the last two minutes. ``turning_on``: with the last
         speed and the rate of turn of the last half minute. ``turn_that_ends``: the same, the rate
-        fading with a time constant of half a minute.
+        fading with a time constant of half a minute. ``window_5``, ``two_pass`` and
+        ``window_bank``: straight on with the course and speed that a smoother makes of those
+        reported in the last two minutes; the combined prediction of `theory/dead_reckoning.md`,
+        (11), by the gains (27) over five reports, by (33) and by the bank of windows.
 
     Returns
     -------
@@ -127,12 +132,34 @@ def _turning(track: AisTrack, ahead_s: np.ndarray, *, ends_s: float) -> np.ndarr
     )
 
 
+def _smoothed(
+    track: AisTrack, ahead_s: np.ndarray, *, make: Callable[[bool], Any], reports: int | None = None
+) -> np.ndarray:
+    """Straight on with the speed and the course that a smoother makes of those reported."""
+    recent = _last(track, _KALMAN_OVER_S)
+    if reports is not None:
+        recent = recent.rows(slice(-reports, None))
+    dt_s = np.diff(recent.time_s, prepend=recent.time_s[0])
+    speed_mps, course_rad = (
+        make(wrapped).run(dt_s, readings)[0][-1]
+        for wrapped, readings in ((False, recent.speed_mps), (True, recent.course_rad))
+    )
+    return ahead_s[:, None] * speed_mps * np.array([np.cos(course_rad), np.sin(course_rad)])
+
+
 _MODELS: dict[str, Callable[[AisTrack, np.ndarray], np.ndarray]] = {
     "last_report": _last_report,
     "line_60s": _line,
     "kalman_cv": _kalman,
     "turning_on": partial(_turning, ends_s=np.inf),
     "turn_that_ends": partial(_turning, ends_s=_TURN_ENDS_S),
+    "window_5": partial(
+        _smoothed,
+        make=lambda wrapped: wf.AlphaBetaSmoother(wf.GrowingMemory(), wrapped=wrapped),
+        reports=5,
+    ),
+    "two_pass": partial(_smoothed, make=lambda wrapped: wf.AdaptiveAlphaBeta(wrapped=wrapped)),
+    "window_bank": partial(_smoothed, make=lambda wrapped: wf.WindowBank(wrapped=wrapped)),
 }
 
 

@@ -235,6 +235,16 @@ def test_track_with_truth_scores_as_well(tmp_path, capsys):
     assert "coverage" in capsys.readouterr().out
 
 
+def test_a_boat_at_play_is_held_even_when_ships_are_expected(tmp_path):
+    files = [bundled("joyride", kind) for kind in ("plots", "scans", "truth")]
+    options = ["--own", files[1], "--truth", files[2], "--radar", "joyride", "--vessels", "ships"]
+    result = tmp_path / "track.json"
+    assert track(files[0], *options, "--out", tmp_path, "--json", result) == 0
+    row = json.loads(result.read_text())["rows"][-1]
+    assert row["coverage"] >= 0.97
+    assert row["ids"] == 1
+
+
 def test_plots_are_shown_and_scored_without_the_offset_of_the_radar(tmp_path):
     time_s, north_m, east_m = boat(40).T
     bearing_deg = np.degrees(np.arctan2(east_m, north_m)) + 5.0

@@ -73,7 +73,7 @@ def test_changed_settings_read_back_the_same(tmp_path, capsys):
 def test_vessels_win_over_the_models_of_the_configuration(tmp_path, capsys):
     settings = read(tmp_path, "[models]\nsteady_psd_m2s3 = 9.0", vessels="ships")
     assert settings.models == wl.VesselModels.ships().as_dict()
-    assert [settings.vessels, Settings.default().vessels] == ["ships", "craft"]
+    assert [settings.vessels, Settings.default().vessels] == ["ships", "any"]
     assert read(tmp_path, "[models]\nsteady_psd_m2s3 = 9.0").vessels == "as configured"
     assert main(["track", "--vessels", "ships", "--print-config"]) == 0
     assert read(tmp_path, capsys.readouterr().out) == settings

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import wakeline as wl
 from wakeline import forecast
 from wakeline.recording import AisTrack, Tracks
 
@@ -43,6 +44,19 @@ def test_a_turn_that_ends_goes_on_straight():
     north_m, east_m = np.diff(place_m, axis=0)[0]
     assert np.hypot(north_m, east_m) == pytest.approx(480.0, rel=1e-6)
     assert np.degrees(np.arctan2(east_m, north_m)) == pytest.approx(30.0, abs=0.01)
+
+
+@pytest.mark.parametrize("model", ["window_5", "two_pass", "window_bank"])
+def test_smoothers_rest_from_the_noise_of_reports(model):
+    rng = np.random.default_rng(5)
+    off_m = {model: [], "last_report": []}
+    for _ in range(60):
+        noisy = circling(0.0)
+        noisy.course_rad[:] = wl.wrap_angle(np.pi + np.deg2rad(3.0) * rng.standard_normal(25))
+        for name, found in off_m.items():
+            place_m = forecast.position_m(noisy, [60.0], name)[0] - PLACE_M
+            found.append(np.hypot(place_m[0] + 480.0, place_m[1]))
+    assert np.mean(off_m[model]) < 0.95 * np.mean(off_m["last_report"])
 
 
 def test_unless_told_otherwise_it_goes_on_as_last_reported():

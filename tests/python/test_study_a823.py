@@ -80,7 +80,7 @@ def test_one_minute_is_enough_for_the_resolutions_figures(report, number):
     row = report.row(case, a823.CHOSEN)
     for metric in a823.METRICS[:3]:
         # Sampling: a 95th percentile of 120 runs is sure to 12 % or so.
-        assert row[metric] < 0.8 * a823.STANDARD.get(case, a823.CHOSEN, metric)
+        assert row[metric] < 0.9 * a823.STANDARD.get(case, a823.CHOSEN, metric)
 
 
 def test_with_glint_the_speed_of_the_second_scenario_is_beyond_any_estimator(report):
@@ -97,9 +97,9 @@ def test_without_glint_the_second_scenario_asks_for_nothing_special(report):
             assert report.row(case, name)[metric] < 0.9 * limit
 
 
-def test_what_is_tuned_for_small_craft_fails(report):
-    shares = a823.shares(report.rows, "vessel_imm", 60.0)
-    assert min(shares.values()) > 1.2
+def test_what_expects_a_maneuver_at_any_time_fails(report):
+    for name in ("agmm", "sgmm", "likely_model_set", "singer"):
+        assert min(a823.shares(report.rows, name, 60.0).values()) > 1.2
 
 
 @pytest.mark.parametrize("number", a823.ENCOUNTERS)
@@ -114,7 +114,7 @@ def test_the_best_are_near_the_bound(report, number, name, after_s):
 
 
 def test_three_minutes_tell_more_than_one(report):
-    for name in ("mode_history", "kalman_cv", "imm_turn_rate", "vessel_imm_ships"):
+    for name in ("mode_history", "kalman_cv", "imm_turn_rate", "vessel_imm"):
         for number in a823.ENCOUNTERS:
             one, three = (
                 report.row(a823.case_name(number, "steady", after_s), name)

@@ -75,6 +75,8 @@ _TRACKER = {
 }
 
 _MODELS = {
+    "cruising_psd_m2s3": "m²/s³, acceleration noise of a cruising vessel at rest",
+    "cruising_course_psd_rad2s": "rad²/s, wander of the course of a cruising vessel",
     "steady_psd_m2s3": "m²/s³, acceleration noise of a steady vessel at rest",
     "steady_course_psd_rad2s": "rad²/s, wander of the course of a steady vessel",
     "restless_psd_m2s3": "m²/s³, acceleration noise of a restless vessel at rest",
@@ -83,7 +85,10 @@ _MODELS = {
     "turning_course_psd_rad2s": "rad²/s, wander of the course of a turning vessel",
     "turn_rate_psd_rad2s3": "rad²/s³, wander of the rate of turn",
     "prior_turn_rate_std_rad_s": "rad/s, rate of turn before it is known",
-    "steady_sojourn_s": "s, mean time for which a vessel goes on steadily",
+    "cruising_probability": "of a vessel that is seen for the first time",
+    "cruising_sojourn_s": "s, mean time until a cruising vessel does something else",
+    "settling_s": "s, mean time until a steady vessel is taken to cruise",
+    "steady_sojourn_s": "s, mean time until a steady vessel becomes restless or turns",
     "restless_sojourn_s": "s, mean time for which it is restless",
     "turning_sojourn_s": "s, mean time for which it turns",
 }
@@ -105,7 +110,7 @@ _CLASSES = {
     "models": wl.VesselModels,
     "danger": DangerLimits,
 }
-VESSELS = {"craft": wl.VesselModels, "ships": wl.VesselModels.ships}
+VESSELS = {"any": wl.VesselModels, "ships": wl.VesselModels.ships}
 _ABOUT = {
     "radar": "What a console knows of its radar, as its plots come.",
     "tracker": "How tracks live; one set of defaults for all radars.",

@@ -80,8 +80,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--vessels",
         choices=VESSELS,
-        help="how vessels move: small craft nearby, the default, or ships under way, seen miles "
-        "away; wins over the [models] of --config",
+        help="how vessels move: any, the default, ships and small craft alike, or ships under way, "
+        "which alter course as ships do; wins over the [models] of --config",
     )
     parser.add_argument(
         "--config", type=Path, metavar="F.toml", help="settings, in the form of --print-config"

@@ -16,7 +16,7 @@ from wakeline.recording import Episode, Recording, Scan, Tracks
 from .config import Settings
 from .danger import Danger, danger_of, with_closest_approach
 
-MODE_NAMES = ("steady", "restless", "turning")
+MODE_NAMES = ("cruising", "steady", "restless", "turning")
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ METRICS = (
     "true_speed_p95_kn",
 )
 MANEUVERS = ("steady", "own_turn", "target_turn")
-CHOSEN = "vessel_imm_ships"
+CHOSEN = "vessel_imm"
 NO_GLINT = 2  # the scenario that is also run with an echo that stays in the middle of the hull
 
 _NAN = float("nan")
@@ -248,7 +248,12 @@ def estimators() -> dict[str, Any]:
         "sgmm": wl.SwitchingGridImm(known_turn),
         "likely_model_set": wl.LikelyModelSetImm(known_turn),
         "kalman_cv": straight,
+        "wandering_course": wl.Ekf(
+            wl.WanderingCourse(psd_m2s3=noise.psd_m2s3, course_psd_rad2s=1e-6)
+        ),
+        "kalman_ca": wl.Ekf(wl.ConstantAcceleration()),
         "singer": wl.Ekf(wl.Singer()),
+        "ekf_turn_rate": wl.Ekf(turn_rate),
         "ukf_turn_rate": wl.Ukf(turn_rate),
         "vessel_imm": wl.vessel_imm(radar),
         "vessel_imm_ships": wl.vessel_imm(radar, wl.VesselModels.ships()),

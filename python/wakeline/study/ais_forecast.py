@@ -31,6 +31,9 @@ LABELS = {
     "kalman_cv": "Kalman, straight on",
     "turning_on": "turning on",
     "turn_that_ends": "a turn that ends",
+    "window_5": "smoothed, last five",
+    "two_pass": "smoothed, two passes",
+    "window_bank": "smoothed, bank of windows",
 }
 
 _NOTE = "{count} forecasts, {share:.0%} of them from a turn of more than half a degree a second on"

@@ -93,14 +93,12 @@ TEST(AnyFilterBank, EqualsMixedSizesBitForBit) {
 TEST(AnyFilterBank, EqualsTheTrackersEstimatorBitForBit) {
   const Radar radar{.max_speed_mps = 20.0};
   const VesselModels models;
-  const Vec<double, 3> sojourn_s{models.steady_sojourn_s, models.restless_sojourn_s,
-                                 models.turning_sojourn_s};
   AnyImm composed(
-      ModeChain<kRuntimeModes>::from_sojourn_s(ModeVector<double, kRuntimeModes>(sojourn_s)),
-      AnyFilterBank({AnyFilter(Ekf(models.steady(20.0))), AnyFilter(Ekf(models.restless(20.0))),
-                     AnyFilter(Ekf(models.turning(20.0)))}));
+      ModeChain<kRuntimeModes>(models.chain()),
+      AnyFilterBank({AnyFilter(Ekf(models.cruising(20.0))), AnyFilter(Ekf(models.steady(20.0))),
+                     AnyFilter(Ekf(models.restless(20.0))), AnyFilter(Ekf(models.turning(20.0)))}));
   composed.set_initial_mode_probability(
-      ModeVector<double, kRuntimeModes>(sojourn_s / sojourn_s.sum()));
+      ModeVector<double, kRuntimeModes>(models.initial_mode_probability()));
   expect_same_bits(vessel_imm(radar, models), composed,
                    ConvertedRangeBearing{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)});
 }

@@ -126,6 +126,8 @@ TEST(VesselModelSettings, NamesWhatItRefuses) {
         << name << ": '" << message << "'";
   };
   const std::pair<const char*, double VesselModels::*> noises[] = {
+      {"cruising_psd_m2s3", &VesselModels::cruising_psd_m2s3},
+      {"cruising_course_psd_rad2s", &VesselModels::cruising_course_psd_rad2s},
       {"steady_psd_m2s3", &VesselModels::steady_psd_m2s3},
       {"steady_course_psd_rad2s", &VesselModels::steady_course_psd_rad2s},
       {"restless_psd_m2s3", &VesselModels::restless_psd_m2s3},
@@ -138,12 +140,17 @@ TEST(VesselModelSettings, NamesWhatItRefuses) {
       expect(name, [=](VesselModels& models) { models.*field = value; });
   const std::pair<const char*, double VesselModels::*> positive[] = {
       {"prior_turn_rate_std_rad_s", &VesselModels::prior_turn_rate_std_rad_s},
+      {"cruising_sojourn_s", &VesselModels::cruising_sojourn_s},
+      {"settling_s", &VesselModels::settling_s},
       {"steady_sojourn_s", &VesselModels::steady_sojourn_s},
       {"restless_sojourn_s", &VesselModels::restless_sojourn_s},
       {"turning_sojourn_s", &VesselModels::turning_sojourn_s}};
   for (const auto& [name, field] : positive)
     for (const double value : {0.0, -1.0, kNan, kInf})
       expect(name, [=](VesselModels& models) { models.*field = value; });
+  for (const double value : {-0.1, 1.1, kNan})
+    expect("cruising_probability",
+           [=](VesselModels& models) { models.cruising_probability = value; });
 }
 
 }  // namespace

@@ -77,9 +77,42 @@ double velocity_error_after_a_minute(const VesselModels& models) {
   return std::sqrt(sum / kRuns);
 }
 
-TEST(VesselModelsOfShips, KnowTheVelocityOfAShipMilesAwayWithinAMinute) {
-  EXPECT_LT(velocity_error_after_a_minute(VesselModels::ships()),
-            0.6 * velocity_error_after_a_minute({}));
+TEST(VesselModels, KnowTheVelocityOfAShipMilesAwayWithinAMinute) {
+  const VesselModels craft{.cruising_probability = 0.0, .settling_s = 1e9};
+  const double of_craft_mps = velocity_error_after_a_minute(craft);
+  EXPECT_LT(velocity_error_after_a_minute({}), 0.65 * of_craft_mps);
+  EXPECT_LT(velocity_error_after_a_minute(VesselModels::ships()), 0.6 * of_craft_mps);
+}
+
+TEST(VesselModels, TakeForAShipWhatCruisesAndForCraftWhatMovesLikeIt) {
+  const auto cruising = [](double turn_from_s) {
+    const Ship ship{.turn_from_s = turn_from_s};
+    double probability = 0.0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      VesselTracker tracker = tracker_of({});
+      follow(tracker, ship, seed, 74, [&](double time_s, const VesselTrack* track) {
+        if (time_s < 180.0) return;
+        ASSERT_NE(track, nullptr) << "seed " << seed;
+        probability += track->estimator.mode_probability()[0] / 30;
+      });
+    }
+    return probability;
+  };
+  EXPECT_GT(cruising(1e9), 0.5);
+  EXPECT_LT(cruising(120.0), 0.2);
+}
+
+TEST(VesselModels, LeaveAndSettleAsOftenAsTold) {
+  const VesselModels models;
+  const double step_s = 1e-3;
+  const auto chance = models.chain().transition(step_s);
+  EXPECT_NEAR(1.0 - chance(0, 0), step_s / models.cruising_sojourn_s, 1e-9);
+  EXPECT_NEAR(chance(1, 0), step_s / models.settling_s, 1e-9);
+  EXPECT_NEAR(chance(1, 2) + chance(1, 3), step_s / models.steady_sojourn_s, 1e-9);
+  EXPECT_NEAR(1.0 - chance(2, 2), step_s / models.restless_sojourn_s, 1e-9);
+  EXPECT_NEAR(1.0 - chance(3, 3), step_s / models.turning_sojourn_s, 1e-9);
+  EXPECT_LT(chance(2, 0) + chance(3, 0), 1e-9) << "only a steady vessel is taken to cruise";
+  EXPECT_DOUBLE_EQ(models.initial_mode_probability().sum(), 1.0);
 }
 
 TEST(VesselModelsOfShips, HoldAShipThatAltersHerCourse) {

@@ -10,40 +10,57 @@
 
 namespace wakeline {
 
-/// The motion models that a tracker uses unless told otherwise: steady, restless and turning. Their
-/// noise grows with the square of the speed, so that one set serves a drifting ferry and a boat at
-/// play; `ships()` is another, for ships under way.
+/// The motion models that a tracker uses unless told otherwise: cruising, steady, restless and
+/// turning. Their noise grows with the square of the speed, so that one set serves a drifting ferry
+/// and a boat at play.
+///
+/// A vessel that cruises is a ship under way, which keeps course and speed for half an hour; the
+/// others are craft, which do anything at any time. Most vessels are taken for ships when they are
+/// first seen, and for craft as soon as they move like craft; one that goes steadily for long
+/// enough is taken for a ship again. `ships()` is another set, where ships alter course as ships
+/// do.
 struct VesselModels {
-  double steady_psd_m2s3 = 0.005;          ///< acceleration of a steady vessel at rest
-  double steady_course_psd_rad2s = 0.004;  ///< wander of its course
+  double cruising_psd_m2s3 = 1e-4;          ///< acceleration of a cruising vessel at rest
+  double cruising_course_psd_rad2s = 1e-6;  ///< wander of its course
+  double steady_psd_m2s3 = 0.005;
+  double steady_course_psd_rad2s = 0.004;
   double restless_psd_m2s3 = 0.2;
-  double restless_course_psd_rad2s = 0.055;
+  double restless_course_psd_rad2s = 0.08;
   double turning_psd_m2s3 = 3.0;
   double turning_course_psd_rad2s = 0.05;
   double turn_rate_psd_rad2s3 = 0.0003;    ///< wander of the rate of turn
   double prior_turn_rate_std_rad_s = 0.2;  ///< rate of turn before it is known, and in the long run
-  double steady_sojourn_s = 300.0;         ///< mean time in each mode
-  double restless_sojourn_s = 90.0;
+  double cruising_probability = 0.95;      ///< of a vessel that is seen for the first time
+  double cruising_sojourn_s = 1500.0;  ///< mean time until a cruising vessel does something else
+  double settling_s = 600.0;           ///< mean time until a steady vessel is taken to cruise
+  double steady_sojourn_s = 300.0;     ///< mean time until it becomes restless or turns
+  double restless_sojourn_s = 90.0;    ///< mean time in each mode
   double turning_sojourn_s = 80.0;
 
-  /// Of ships under way: straight for most of an hour, alterations of course within a minute. A
-  /// radar that sees them miles away then has their speed and course within a minute (see
-  /// cpp/docs/theory/a823.md); a boat at play is lost by them.
+  /// Of ships under way: straight for most of an hour, alterations of course within a minute. Three
+  /// minutes after one their speed and course are known again (see cpp/docs/theory/a823.md); a boat
+  /// at play is followed, its course less well.
   static constexpr VesselModels ships() noexcept {
-    return {.steady_psd_m2s3 = 2e-5,
-            .steady_course_psd_rad2s = 1e-6,
-            .restless_psd_m2s3 = 0.01,
-            .restless_course_psd_rad2s = 0.001,
+    return {.cruising_psd_m2s3 = 2e-5,
+            .steady_psd_m2s3 = 0.01,
+            .steady_course_psd_rad2s = 0.001,
+            .restless_psd_m2s3 = 0.1,
+            .restless_course_psd_rad2s = 0.02,
             .turning_psd_m2s3 = 0.002,
             .turning_course_psd_rad2s = 0.001,
             .turn_rate_psd_rad2s3 = 3e-6,
             .prior_turn_rate_std_rad_s = 0.05,
-            .steady_sojourn_s = 3000.0,
+            .cruising_probability = 0.98,
+            .cruising_sojourn_s = 3000.0,
+            .settling_s = 80.0,
+            .steady_sojourn_s = 600.0,
             .restless_sojourn_s = 60.0,
             .turning_sojourn_s = 60.0};
   }
 
   void validate() const {
+    require_not_negative("cruising_psd_m2s3", cruising_psd_m2s3);
+    require_not_negative("cruising_course_psd_rad2s", cruising_course_psd_rad2s);
     require_not_negative("steady_psd_m2s3", steady_psd_m2s3);
     require_not_negative("steady_course_psd_rad2s", steady_course_psd_rad2s);
     require_not_negative("restless_psd_m2s3", restless_psd_m2s3);
@@ -52,11 +69,17 @@ struct VesselModels {
     require_not_negative("turning_course_psd_rad2s", turning_course_psd_rad2s);
     require_not_negative("turn_rate_psd_rad2s3", turn_rate_psd_rad2s3);
     require_positive("prior_turn_rate_std_rad_s", prior_turn_rate_std_rad_s);
+    require_probability("cruising_probability", cruising_probability);
+    require_positive("cruising_sojourn_s", cruising_sojourn_s);
+    require_positive("settling_s", settling_s);
     require_positive("steady_sojourn_s", steady_sojourn_s);
     require_positive("restless_sojourn_s", restless_sojourn_s);
     require_positive("turning_sojourn_s", turning_sojourn_s);
   }
 
+  [[nodiscard]] WanderingCourse cruising(double max_speed_mps) const noexcept {
+    return {cruising_psd_m2s3, cruising_course_psd_rad2s, max_speed_mps};
+  }
   [[nodiscard]] WanderingCourse steady(double max_speed_mps) const noexcept {
     return {steady_psd_m2s3, steady_course_psd_rad2s, max_speed_mps};
   }
@@ -74,23 +97,50 @@ struct VesselModels {
             .turn_rate_time_s =
                 turn_rate_psd_rad2s3 > 0.0 ? 2.0 * prior_variance / turn_rate_psd_rad2s3 : 0.0};
   }
+
+  /// Who stops cruising is in the modes of craft as often as craft are; these go over to each other
+  /// alike, and a steady vessel to cruising besides.
+  [[nodiscard]] ModeChain<4> chain() const {
+    const Vec<double, 3> rate_per_s = craft_sojourn_s().inverse();
+    Mat<double, 4, 4> generator_per_s = Mat<double, 4, 4>::Zero();
+    generator_per_s.row(0).tail<3>() = share_of_craft().transpose() / cruising_sojourn_s;
+    generator_per_s.bottomRightCorner<3, 3>().colwise() = 0.5 * rate_per_s;
+    generator_per_s(1, 0) = 1.0 / settling_s;
+    generator_per_s.diagonal().setZero();
+    generator_per_s.diagonal() = -generator_per_s.rowwise().sum();
+    return ModeChain<4>::from_generator(generator_per_s);
+  }
+
+  [[nodiscard]] Vec<double, 4> initial_mode_probability() const noexcept {
+    Vec<double, 4> probability;
+    probability << cruising_probability, (1.0 - cruising_probability) * share_of_craft();
+    return probability;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Array3d craft_sojourn_s() const noexcept {
+    return {steady_sojourn_s, restless_sojourn_s, turning_sojourn_s};
+  }
+  /// How much of its time a craft spends in each mode.
+  [[nodiscard]] Vec<double, 3> share_of_craft() const noexcept {
+    return craft_sojourn_s() / craft_sojourn_s().sum();
+  }
 };
 
 /// The estimator made of them.
-using VesselImm =
-    Imm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<CoordinatedTurnRate>>>;
+using VesselImm = Imm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<WanderingCourse>,
+                                 Ekf<CoordinatedTurnRate>>>;
 
-/// The estimator of a tracker for this radar. A start believes in each mode as much as the chain in
-/// the long run. Throws `std::invalid_argument` on a setting that makes no sense.
+/// The estimator of a tracker for this radar. Throws `std::invalid_argument` on a setting that
+/// makes no sense.
 inline VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {}) {
   radar.validate();
   models.validate();
-  const Vec<double, 3> sojourn_s{models.steady_sojourn_s, models.restless_sojourn_s,
-                                 models.turning_sojourn_s};
-  VesselImm imm(ModeChain<3>::from_sojourn_s(sojourn_s), Ekf(models.steady(radar.max_speed_mps)),
-                Ekf(models.restless(radar.max_speed_mps)),
-                Ekf(models.turning(radar.max_speed_mps)));
-  imm.set_initial_mode_probability(sojourn_s / sojourn_s.sum());
+  const double max_speed_mps = radar.max_speed_mps;
+  VesselImm imm(models.chain(), Ekf(models.cruising(max_speed_mps)),
+                Ekf(models.steady(max_speed_mps)), Ekf(models.restless(max_speed_mps)),
+                Ekf(models.turning(max_speed_mps)));
+  imm.set_initial_mode_probability(models.initial_mode_probability());
   return imm;
 }
 
