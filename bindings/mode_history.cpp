@@ -134,7 +134,7 @@ merge_distance : float
 sibling_distance : float
     The same for those that came to it in one scan and differ only in what came before; `merge_distance` or more.
 switch_time_spread : float
-    Uncertainty of when in the scan a switch came: this part of the variance of a time uniform in it.
+    Uncertainty of when in the scan a switch came: this part, 0 to 1, of the variance of a time uniform in it.
 negligible_probability : float
     Hypotheses that have less are dropped.
 
@@ -204,7 +204,7 @@ order : int
 filter, grid_rad_s, chain, initial_mode_probability
     As of the class.
 stay_probability : float
-    Of the turn rates' chain: to stay, the rest to each other one alike.
+    Of the turn rates' chain where none is given: to stay, the rest to each other one alike.
 
 Raises
 ------

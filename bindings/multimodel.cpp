@@ -147,7 +147,8 @@ filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
 max_turn_rate_rad_s : float
     No model turns faster.
 initial_turn_rates_rad_s : (3,) array, optional
-    Left, centre and right at a start, rising; zero and half the maximum to each side when left out. Not printed.
+    Left, centre and right at a start, none less than the one before it; zero and half the maximum to each side when left
+    out. Not printed.
 min_spacing_rad_s : float
     The least spacing that a move starts from. Not printed.
 kept_spacing_rad_s : float
@@ -165,7 +166,7 @@ likely_threshold : float
 stay_probability : float
     Of the models' chain: to stay, the rest to each other model alike.
 chain : ModeChain, optional
-    Another chain of three modes.
+    Another chain of three modes, instead of `stay_probability`.
 initial_mode_probability : (3,) array, optional
     What a start begins with; 0.9 for the centre when left out. Not printed.
 
@@ -238,7 +239,7 @@ initial_centre : int, optional
 stay_probability : float
     Of the models' chain: to stay, the rest to each other model alike.
 chain : ModeChain, optional
-    Another chain of three modes.
+    Another chain of three modes, instead of `stay_probability`.
 initial_mode_probability : (3,) array, optional
     What a start begins with; 0.9 for the centre when left out. Not printed.
 
@@ -256,7 +257,8 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
                   const std::optional<int>& centre, double stay, const std::optional<Chain>& chain,
                   const std::optional<DoubleArray>& initial) {
         const SwitchingGrid grid{
-            .grid_rad_s = rates ? to_grid(*rates) : SwitchingGrid{}.grid_rad_s,
+            .grid_rad_s =
+                rates ? to_grid(*rates, SwitchingGrid::kLeastRates) : SwitchingGrid{}.grid_rad_s,
             .threshold = threshold,
             .rule = to_option<SwitchRule>(
                 "rule", rule,
@@ -286,7 +288,7 @@ void define_likely_model_set(py::module_& m) {
 
 All are active at a start. Before each prediction that follows an update the unlikely ones go to rest and the neighbours
 of the likely ones join; the most probable one always has its neighbours with it. Has the face of `Imm`; a model at rest
-has probability 0 and turn rate NaN.
+has probability 0 and turn rate NaN, and its `filter_estimate` is the belief that it went to rest with.
 
 Parameters
 ----------
@@ -301,7 +303,7 @@ likely_threshold : float
 stay_probability : float
     Of the models' chain: to stay, the rest to each other active model alike.
 chain : ModeChain, optional
-    Another chain of as many modes; what leads to a model at rest goes to the active ones.
+    Another chain of as many modes, instead of `stay_probability`; what leads to a model at rest goes to the active ones.
 initial_mode_probability : (K,) array, optional
     What a start begins with; 0.9 for the straightest when left out.
 

@@ -51,8 +51,10 @@ inline AnyFilter without_turn(AnyFilter filter) {
   return filter;
 }
 
-inline TurnRateGrid to_grid(const DoubleArray& rates) {
+/// Of `least` rates or more.
+inline TurnRateGrid to_grid(const DoubleArray& rates, int least = 2) {
   const Eigen::VectorXd vector = to_vector("grid_rad_s", rates);
+  TurnRateGrid::require_count(vector.size(), least);
   return TurnRateGrid(
       std::span<const double>(vector.data(), static_cast<std::size_t>(vector.size())));
 }

@@ -11,3 +11,11 @@ def whole_number(name: str, value: Any, least: int) -> None:
     """ValueError unless the argument of that name is an integer, `least` or more."""
     if not isinstance(value, (int, np.integer)) or value < least:
         raise ValueError(f"{name} must be a whole number, at least {least}, got {value!r}")
+
+
+def in_a_row(name: str, values: Any) -> np.ndarray:
+    """Numbers (T,), one of a single number; ValueError where the argument has more axes."""
+    row = np.atleast_1d(np.asarray(values, dtype=float))
+    if row.ndim != 1:
+        raise ValueError(f"{name} must be a number or have shape (T,), got {row.shape}")
+    return row

@@ -184,6 +184,26 @@ def test_equally_near_models_are_both_right_and_rates_may_move():
     assert runs.tolist() == [[True, False]] * 4
 
 
+@pytest.mark.filterwarnings("error")
+@given(st.integers(0, 2**32))
+def test_a_model_at_rest_is_as_if_it_were_not_there(seed):
+    draw = np.random.default_rng(seed)
+    modes, truth = draw.random((5, 7, 3)), draw.normal(size=7)
+    rates = draw.normal(size=(5, 7, 3))
+    without = metrics.right_mode(modes, rates, truth)
+    at = draw.integers(4)
+    with_one = metrics.right_mode(
+        np.insert(modes, at, 0.0, axis=-1), np.insert(rates, at, np.nan, axis=-1), truth
+    )
+    np.testing.assert_array_equal(with_one, without)
+
+
+def test_a_model_at_rest_is_never_right():
+    assert metrics.right_mode([[0.0, 1.0]], [[np.nan, 0.0]], [0.0]).tolist() == [True]
+    assert metrics.right_mode([[1.0, 0.0]], [[np.nan, 9.0]], [0.0]).tolist() == [False]
+    assert metrics.right_mode([[0.5, 0.5]], [[np.nan, np.nan]], [0.0]).tolist() == [False]
+
+
 @pytest.mark.parametrize(
     ("modes", "rates", "truth", "message"),
     [

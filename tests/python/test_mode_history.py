@@ -223,6 +223,7 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         (lambda: tree(min_segment_s=-1.0), "min_segment_s"),
         (lambda: tree(merge_distance=-1.0), "merge_distance"),
         (lambda: tree(sibling_distance=0.1), "sibling_distance must be merge_distance or more"),
+        (lambda: tree(switch_time_spread=100.0), "switch_time_spread must be 0 to 1, got 100"),
         (lambda: tree(negligible_probability=1.0), "negligible_probability"),
         (lambda: tree(straighten_probability=2.0), "straighten_probability"),
         (lambda: tree(straight_sojourn_s=0.0), "sojourn"),

@@ -400,6 +400,42 @@ def test_rates_that_move_with_the_run_tell_the_right_model():
     np.testing.assert_array_equal(outcome.right_mode_share, fixed["case", "x"].right_mode_share)
 
 
+def test_models_at_rest_do_not_count():
+    def resting(scene, z):
+        found = IMM(scene, z)
+        rates = np.broadcast_to([0.0, 0.02, -0.02], found.mode_probability.shape)
+        names = ("mean", "covariance", "nis", "status")
+        return SimpleNamespace(
+            **{name: getattr(found, name) for name in names},
+            mode_probability=np.insert(found.mode_probability, 1, 0.0, axis=-1),
+            turn_rate_rad_s=np.insert(rates, 1, np.nan, axis=-1),
+        )
+
+    outcome = run(CASE, {"resting": resting})["case", "resting"]
+    alone = run(CASE, {"x": dataclasses.replace(IMM, turn_rates_rad_s=[0.0, 0.02, -0.02])})
+    np.testing.assert_allclose(outcome.turn_rate_rad_s, alone["case", "x"].turn_rate_rad_s)
+    np.testing.assert_array_equal(outcome.right_mode_share, alone["case", "x"].right_mode_share)
+
+
+def test_the_likely_model_set_is_judged_as_if_its_grid_were_all_active():
+    turn = wl.Ekf(wl.CoordinatedTurn(noise=wl.PiecewiseAcceleration(std_mps2=0.003)))
+    models = wl.LikelyModelSetImm(turn)
+    hard = scenario.named("example2")
+    outcome = run(hard, {"likely": Candidate(models)})["example2", "likely"]
+    found = Candidate(models)(hard, hard.draw(RUNS, 0))
+    assert np.isnan(found.turn_rate_rad_s).mean() > 0.1, "some rest"
+    right = metrics.right_mode(
+        found.mode_probability, models.turn_rates_rad_s(), hard.turn_rates_rad_s
+    )
+    assert outcome.right_mode_share.mean() == pytest.approx(right.mean(), abs=0.02)
+    assert np.isfinite(outcome.turn_rate_rad_s).all()
+    np.testing.assert_allclose(
+        outcome.turn_rate_rad_s,
+        np.nansum(found.mode_probability * found.turn_rate_rad_s, axis=-1).mean(axis=0),
+        atol=1e-12,
+    )
+
+
 # Files --------------------------------------------------------------------------------------------
 
 

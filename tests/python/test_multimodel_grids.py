@@ -234,6 +234,45 @@ def test_a_known_acceleration_has_one_row_for_each_scan():
         )
 
 
+# --- before a start ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("build", BUILD.values(), ids=BUILD)
+def test_before_a_start_the_modes_are_those_that_it_begins_with(build):
+    estimator = build()
+    before = estimator.mode_probability()
+    assert before[len(before) // 2] == pytest.approx(0.9)
+    estimator.start(START)
+    np.testing.assert_array_equal(estimator.mode_probability(), before)
+
+
+@pytest.mark.parametrize("build", [wl.AdaptiveGridImm, wl.SwitchingGridImm])
+def test_before_a_start_the_modes_are_those_told(build):
+    estimator = build(EKF, initial_mode_probability=[0.2, 0.3, 0.5])
+    np.testing.assert_array_equal(estimator.mode_probability(), [0.2, 0.3, 0.5])
+
+
+# --- models at rest ---------------------------------------------------------------------------
+
+
+def test_a_model_at_rest_keeps_the_belief_that_it_went_to_rest_with():
+    estimator = BUILD["likely"]()
+    estimator.start(START)
+    known = [estimator.filter_estimate(k) for k in range(5)]
+    rested = 0
+    for z in readings(80):
+        estimator.predict(DT_S)
+        resting = np.isnan(estimator.turn_rates_rad_s())
+        estimator.update(RADAR, z)
+        now = [estimator.filter_estimate(k) for k in range(5)]
+        for k in np.flatnonzero(resting):
+            np.testing.assert_array_equal(now[k].mean, known[k].mean)
+            np.testing.assert_array_equal(now[k].covariance, known[k].covariance)
+            rested += 1
+        known = now
+    assert rested > 80
+
+
 # --- in a tracker -----------------------------------------------------------------------------
 
 TRACKER_RADAR = wl.Radar(
@@ -282,7 +321,7 @@ def test_a_tracker_names_the_estimators_it_takes():
         (
             wl.AdaptiveGridImm,
             {"initial_turn_rates_rad_s": [-0.2, 0.0, 0.2], "max_turn_rate_rad_s": 0.1},
-            "within max_turn_rate_rad_s",
+            "within max_turn_rate_rad_s, 0.1 to either side, got -0.2",
         ),
         (wl.AdaptiveGridImm, {"initial_turn_rates_rad_s": [0.01, 0.0, 0.02]}, "not less than"),
         (wl.AdaptiveGridImm, {"initial_turn_rates_rad_s": [0.0, 0.01]}, r"shape \(3,\)"),
@@ -296,10 +335,12 @@ def test_a_tracker_names_the_estimators_it_takes():
             "at most likely_threshold",
         ),
         (wl.AdaptiveGridImm, {"initial_mode_probability": [0.5, 0.6, 0.5]}, "sum to 1"),
-        (wl.AdaptiveGridImm, {"chain": wl.ModeChain([[1.0]])}, "chain"),
+        (wl.AdaptiveGridImm, {"chain": wl.ModeChain([[1.0]])}, "chain must have 3 modes, .*got 1"),
+        (wl.LikelyModelSetImm, {"chain": wl.ModeChain([[1.0]])}, "chain must have 5 modes"),
         (wl.SwitchingGridImm, {"grid_rad_s": [0.0, 0.02, 0.01]}, "greater than the one before"),
-        (wl.SwitchingGridImm, {"grid_rad_s": [0.0, 0.02]}, "3 or more"),
-        (wl.SwitchingGridImm, {"grid_rad_s": np.linspace(-1, 1, 40)}, "2 to 16 turn rates, got 40"),
+        (wl.SwitchingGridImm, {"grid_rad_s": [0.0]}, "3 to 16 turn rates, got 1"),
+        (wl.SwitchingGridImm, {"grid_rad_s": [0.0, 0.02]}, "3 to 16 turn rates, got 2"),
+        (wl.SwitchingGridImm, {"grid_rad_s": np.linspace(-1, 1, 40)}, "3 to 16 turn rates, got 40"),
         (wl.SwitchingGridImm, {"grid_rad_s": [0.0, np.nan, 0.1]}, "finite"),
         (wl.SwitchingGridImm, {"threshold": 1.2}, "threshold"),
         (wl.SwitchingGridImm, {"rule": "other"}, "rule must be 'symmetric' or 'literal'"),

@@ -117,6 +117,17 @@ def test_truths_show_themselves_in_a_few_words():
 def test_a_segment_must_be_one():
     with pytest.raises(TypeError, match=r"of type Segment, got \(10, 0.1\)"):
         Truth([1000.0, 5.0, 0.0, 0.0], [(10, 0.1)])
+    for what in (None, Segment(10.0)):
+        with pytest.raises(TypeError, match="segments must be a sequence of Segment, got"):
+            Truth(START, what)
+
+
+@pytest.mark.parametrize(
+    "truth", [Truth(START, [Segment(10.0)]), TrackTruth([0.0, 1.0], [0.0, 5.0], [0.0, 0.0])]
+)
+def test_times_are_in_a_row(truth):
+    with pytest.raises(ValueError, match=r"time_s must be a number or .* \(T,\), got \(2, 2\)"):
+        truth.state_at(np.zeros((2, 2)))
 
 
 def test_truths_that_make_no_sense():

@@ -127,6 +127,9 @@ def test_a_table_of_segments():
         ([], "at least one row"),
         ([(0, 10)], "row 0 must be three finite numbers"),
         ([0, 10, 0], "row 0 must be three finite numbers"),
+        ([("a", "b", "c")], r"row 0 must be three finite numbers, .*got \('a', 'b', 'c'\)"),
+        ([(0, 10, 0), None], "row 1 must be three finite numbers, .*got None"),
+        ([(0, 10, 0), (10, (20, 30), 0)], "row 1 must be three finite numbers"),
         ([(0, 10, 0), (10, np.nan, 0)], "row 1 must be three finite numbers"),
         ([(0, 10, 0), (10, 10, 0)], "row 1 ends at 10.0 s, not after its begin"),
         ([(0, 10, 0), (9, 20, 0)], "row 1 begins at 9.0 s and overlaps with row 0"),
@@ -137,6 +140,12 @@ def test_a_table_of_segments():
 def test_tables_that_make_no_sense_are_told_by_row(rows, message):
     with pytest.raises(ValueError, match=message):
         segments_from_table(rows, max_turn_rate_rad_s=0.2)
+
+
+@pytest.mark.parametrize("what", [None, 3.0])
+def test_what_is_no_table_is_told(what):
+    with pytest.raises(TypeError, match=f"rows must be a sequence of .*got {what}"):
+        segments_from_table(what)
 
 
 @pytest.mark.parametrize("most", [-0.1, np.nan])

@@ -250,6 +250,8 @@ def test_random_maneuvers_depend_on_the_seed_alone():
         ({"count": 0}, "count must be a whole number, at least 1, got 0"),
         ({"count": 2.0}, "count must be a whole number"),
         ({"seed": -1}, "seed must be a whole number, at least 0, got -1"),
+        ({"turn_rate_deg_s": 2}, "turn_rate_deg_s must be an interval from 0 up, .*got 2"),
+        ({"speed_mps": (5.0, 6.0, 7.0)}, r"speed_mps must be an interval .*got \(5.0, 6.0, 7.0\)"),
         ({"turn_rate_deg_s": (-1.0, 4.0)}, "turn_rate_deg_s must be an interval from 0 up"),
         ({"range_m": (0.0, np.inf)}, "range_m must be an interval"),
         ({"speed_mps": (5.0, 4.0)}, "speed_mps must be an interval"),

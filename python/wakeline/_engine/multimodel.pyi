@@ -177,7 +177,8 @@ class AdaptiveGridImm:
     max_turn_rate_rad_s : float
         No model turns faster.
     initial_turn_rates_rad_s : (3,) array, optional
-        Left, centre and right at a start, rising; zero and half the maximum to each side when left out. Not printed.
+        Left, centre and right at a start, none less than the one before it; zero and half the maximum to each side when left
+        out. Not printed.
     min_spacing_rad_s : float
         The least spacing that a move starts from. Not printed.
     kept_spacing_rad_s : float
@@ -195,7 +196,7 @@ class AdaptiveGridImm:
     stay_probability : float
         Of the models' chain: to stay, the rest to each other model alike.
     chain : ModeChain, optional
-        Another chain of three modes.
+        Another chain of three modes, instead of `stay_probability`.
     initial_mode_probability : (3,) array, optional
         What a start begins with; 0.9 for the centre when left out. Not printed.
 
@@ -335,7 +336,7 @@ class SwitchingGridImm:
     stay_probability : float
         Of the models' chain: to stay, the rest to each other model alike.
     chain : ModeChain, optional
-        Another chain of three modes.
+        Another chain of three modes, instead of `stay_probability`.
     initial_mode_probability : (3,) array, optional
         What a start begins with; 0.9 for the centre when left out. Not printed.
 
@@ -457,7 +458,7 @@ class LikelyModelSetImm:
 
     All are active at a start. Before each prediction that follows an update the unlikely ones go to rest and the neighbours
     of the likely ones join; the most probable one always has its neighbours with it. Has the face of `Imm`; a model at rest
-    has probability 0 and turn rate NaN.
+    has probability 0 and turn rate NaN, and its `filter_estimate` is the belief that it went to rest with.
 
     Parameters
     ----------
@@ -472,7 +473,7 @@ class LikelyModelSetImm:
     stay_probability : float
         Of the models' chain: to stay, the rest to each other active model alike.
     chain : ModeChain, optional
-        Another chain of as many modes; what leads to a model at rest goes to the active ones.
+        Another chain of as many modes, instead of `stay_probability`; what leads to a model at rest goes to the active ones.
     initial_mode_probability : (K,) array, optional
         What a start begins with; 0.9 for the straightest when left out.
 
@@ -618,7 +619,7 @@ class ModeHistory:
     sibling_distance : float
         The same for those that came to it in one scan and differ only in what came before; `merge_distance` or more.
     switch_time_spread : float
-        Uncertainty of when in the scan a switch came: this part of the variance of a time uniform in it.
+        Uncertainty of when in the scan a switch came: this part, 0 to 1, of the variance of a time uniform in it.
     negligible_probability : float
         Hypotheses that have less are dropped.
 
@@ -654,7 +655,7 @@ class ModeHistory:
         filter, grid_rad_s, chain, initial_mode_probability
             As of the class.
         stay_probability : float
-            Of the turn rates' chain: to stay, the rest to each other one alike.
+            Of the turn rates' chain where none is given: to stay, the rest to each other one alike.
 
         Raises
         ------

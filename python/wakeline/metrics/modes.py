@@ -17,7 +17,8 @@ def right_mode(
     mode_probability : array_like (..., T, K)
         Of one or more runs, or their mean.
     turn_rates_rad_s : array_like (K,), (T, K) or (..., T, K)
-        Turn rates of the models, fixed or as they move.
+        Turn rates of the models, fixed or as they move; NaN for one at rest, which is not right and
+        in nobody's way.
     true_turn_rate_rad_s : array_like (T,)
 
     Returns
@@ -42,7 +43,8 @@ def right_mode(
         raise ValueError(
             f"turn_rates_rad_s must have shape (K,), (T, K) or {modes.shape}, got {rates.shape}"
         )
-    distance = np.broadcast_to(np.abs(rates - truth[:, np.newaxis]), modes.shape)
+    distance = np.abs(rates - truth[:, np.newaxis])
+    distance = np.broadcast_to(np.where(np.isnan(distance), np.inf, distance), modes.shape)
     first = modes.argmax(axis=-1)[..., np.newaxis]
     chosen = np.take_along_axis(distance, first, axis=-1)[..., 0]
-    return chosen <= distance.min(axis=-1) + _SAME_RATE_RAD_S
+    return np.isfinite(chosen) & (chosen <= distance.min(axis=-1) + _SAME_RATE_RAD_S)

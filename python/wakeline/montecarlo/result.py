@@ -53,7 +53,8 @@ class Outcome:
     turn_rate_rad_s : ndarray (T,) or None
         Estimate, mean over the runs.
     right_mode_share : ndarray (T,) or None
-        Share of the runs whose most probable model is the one nearest to the true turn rate.
+        Share of the runs whose most probable model is, of those not at rest, the one nearest to the
+        true turn rate.
     cpu_s : float
         CPU time of the estimator over all runs that could start: that of the calling threads, and
         so all of it only after ``wakeline.set_threads(1)``.

@@ -56,8 +56,9 @@ def run(
         gives what looks like a ``RunResult``: ``mean`` (R, T, N), ``covariance`` (R, T, N, N) with
         N of 4, 5 or 6 in the engine's state orders, ``nis`` (R, T), ``status`` (R, T),
         ``mode_probability`` (R, T, K) or None; where it also has ``turn_rate_rad_s``, that is the
-        estimated turn rate (R, T) or the models' turn rates (R, T, K). It raises ``FilterError``
-        when a run cannot start. Candidates are called by several threads at once.
+        estimated turn rate (R, T) or the models' turn rates (R, T, K), NaN for one at rest. It
+        raises ``FilterError`` when a run cannot start. Candidates are called by several threads at
+        once.
     runs : int
         Number of runs, the readings being those of ``scenario.draw(runs, seed)``.
     seed : int

@@ -195,7 +195,7 @@ def _rates(
             return None, told
         if modes is not None:
             _require_rates(chunk, modes, told.shape == modes.shape, told.shape)
-        return told, None if modes is None else (modes * told).sum(axis=-1)
+        return told, None if modes is None else _mean_rate(modes, told)
     rates = (
         chunk.candidate.rates(chunk.scenario) if isinstance(chunk.candidate, Candidate) else None
     )
@@ -205,6 +205,11 @@ def _rates(
         return rates, None
     _require_rates(chunk, modes, rates.shape == modes.shape[-1:], rates.shape)
     return rates, modes @ rates
+
+
+def _mean_rate(modes: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """Mean turn rate (R, T) of models, of which one without probability may have none."""
+    return np.where(modes == 0.0, 0.0, modes * rates).sum(axis=-1)
 
 
 def _require_rates(chunk: Chunk, modes: np.ndarray, fit: bool, shape: tuple[int, ...]) -> None:

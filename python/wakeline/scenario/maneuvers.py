@@ -47,8 +47,8 @@ def random_maneuvers(
     Raises
     ------
     ValueError
-        When the count is below 1, the seed below 0, an interval is empty or not finite, or a
-        duration is not positive.
+        When the count is below 1, the seed below 0, an interval is no pair, empty or not finite, or
+        a duration is not positive.
     """
     whole_number("count", count, 1)
     whole_number("seed", seed, 0)
@@ -58,9 +58,11 @@ def random_maneuvers(
         "duration_s": duration_s,
         "range_m": range_m,
     }
-    for name, (low, high) in intervals.items():
-        if not 0 <= low <= high < np.inf:
-            raise ValueError(f"{name} must be an interval from 0 up, got {(low, high)}")
+    for name, interval in intervals.items():
+        if np.shape(interval) != (2,) or not 0 <= interval[0] <= interval[1] < np.inf:
+            raise ValueError(
+                f"{name} must be an interval from 0 up, least and largest, got {interval}"
+            )
     if not duration_s[0] > 0 or not RADAR.period_s <= total_s < np.inf:
         raise ValueError(
             f"duration_s must be positive and total_s hold a scan, got {duration_s}, {total_s}"

@@ -8,6 +8,7 @@ import numpy as np
 
 from wakeline import filter, motion
 from wakeline._brief import brief, many, span
+from wakeline._checks import in_a_row
 from wakeline.recording import NavigationLog
 
 _TURNING_ABOVE_MPS = 0.5
@@ -108,6 +109,11 @@ class TrackTruth:
         -------
         ndarray (T, 4)
             One row for a single time.
+
+        Raises
+        ------
+        ValueError
+            When the times have more than one axis.
         """
         place_m, velocity_mps, _ = self._motion(time_s)
         return np.column_stack([place_m.real, velocity_mps.real, place_m.imag, velocity_mps.imag])
@@ -122,7 +128,7 @@ class TrackTruth:
 
     def _motion(self, time_s: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Places, velocities and accelerations (T,) as north + i east."""
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        time_s = in_a_row("time_s", time_s)
         last = len(self._time_s) - 1
         k = np.clip(np.searchsorted(self._time_s, time_s, side="right") - 1, 0, last - 1)
         step_s = self._time_s[k + 1] - self._time_s[k]

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from wakeline._brief import brief, many, span
+from wakeline._checks import in_a_row
 
 _SERIES_BELOW_RAD = 0.3
 _SAME_COURSE_RAD = 1e-9
@@ -86,17 +87,18 @@ def segments_from_table(
         Naming the row, counted from 0: not three finite numbers, an end that is not after its
         begin, rows that overlap or leave a gap, a turn that is too fast; or when there is no row
         or the fastest turn is negative.
+    TypeError
+        When the rows are no sequence.
     """
     if max_turn_rate_rad_s is not None and not max_turn_rate_rad_s >= 0:
         raise ValueError(f"max_turn_rate_rad_s must not be negative, got {max_turn_rate_rad_s}")
-    if len(rows) == 0:
+    rows = _listed("rows", rows, "(begin_s, end_s, turn_rate_rad_s)")
+    if not rows:
         raise ValueError("a table of segments must have at least one row")
     segments = []
     last_end_s = None
     for k, row in enumerate(rows):
-        if np.shape(row) != (3,) or not np.isfinite(row).all():
-            raise ValueError(f"row {k} must be three finite numbers, begin, end and rate: {row}")
-        begin_s, end_s, rate_rad_s = (float(value) for value in row)
+        begin_s, end_s, rate_rad_s = _three_numbers(k, row)
         if end_s <= begin_s:
             raise ValueError(f"row {k} ends at {end_s} s, not after its begin at {begin_s} s")
         if last_end_s is not None and begin_s != last_end_s:
@@ -112,6 +114,26 @@ def segments_from_table(
         segments.append(Segment(end_s - begin_s, rate_rad_s))
         last_end_s = end_s
     return tuple(segments)
+
+
+def _listed(name: str, sequence: Any, of_what: str) -> list[Any]:
+    try:
+        return list(sequence)
+    except TypeError:
+        raise TypeError(f"{name} must be a sequence of {of_what}, got {sequence!r}") from None
+
+
+def _three_numbers(number: int, row: Any) -> list[float]:
+    """Those of a row of a table."""
+    try:
+        values = np.asarray(row, dtype=float)
+    except (TypeError, ValueError):
+        values = np.array(np.nan)
+    if values.shape != (3,) or not np.isfinite(values).all():
+        raise ValueError(
+            f"row {number} must be three finite numbers, begin, end and rate, got {row!r}"
+        )
+    return values.tolist()
 
 
 class Truth:
@@ -153,7 +175,7 @@ class Truth:
         When the start, its time or its course is not finite, the course is another than that of the
         velocity or the thrust of a segment without disturbance brings the speed below zero.
     TypeError
-        When a segment is something else.
+        When a segment is something else, or the segments are no sequence.
     """
 
     def __init__(
@@ -183,7 +205,7 @@ class Truth:
                 f"start_course_rad must be the course of the velocity, {course_rad}, where the "
                 f"vessel does not start at rest, got {start_course_rad}"
             )
-        self.segments = tuple(segments)
+        self.segments = tuple(_listed("segments", segments, "Segment"))
         for segment in self.segments:
             if not isinstance(segment, Segment):
                 raise TypeError(f"segments must be of type Segment, got {segment!r}")
@@ -238,6 +260,11 @@ class Truth:
         -------
         ndarray (T, 4)
             One row for a single time.
+
+        Raises
+        ------
+        ValueError
+            When the times have more than one axis.
         """
         leg, since_s = self._legs_at(time_s)
         place_m, velocity_mps = self._motion(leg, since_s)
@@ -253,7 +280,7 @@ class Truth:
 
     def _legs_at(self, time_s: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
         """Leg (T,) in force at each time, and the time (T,) since it began."""
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        time_s = in_a_row("time_s", time_s)
         leg = np.searchsorted(self._time_s, time_s, side="right")
         return leg, time_s - self._time_s[np.maximum(leg - 1, 0)]
 

@@ -171,13 +171,12 @@ def leads_by_segment(outcome: montecarlo.Outcome, rates_rad_s: Sequence[float]) 
     """How far the right model leads in each segment of a steady true turn rate."""
     rates = np.asarray(rates_rad_s, dtype=float)
     true = outcome.true_turn_rate_rad_s
-    distance = np.abs(rates - true[:, np.newaxis])
-    leads = outcome.mode_probability.argmax(axis=1) == distance.argmin(axis=1)
+    leads = metrics.right_mode(outcome.mode_probability, rates, true)
     segments = np.split(np.arange(len(true)), np.flatnonzero(np.diff(true)) + 1)
     found = []
     for part in segments:
         in_half = np.append(outcome.right_mode_share[part] >= 0.5, True)
-        has_model = distance[part[0]].min() < _SAME_RATE_RAD_S
+        has_model = (np.abs(rates - true[part[0]]) < _SAME_RATE_RAD_S).any()
         lead = (float(leads[part].mean()), int(in_half.argmax())) if has_model else (None, None)
         found.append(Lead(float(np.degrees(true[part[0]])), *lead))
     return found

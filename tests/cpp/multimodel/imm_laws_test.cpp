@@ -176,6 +176,70 @@ TEST(Imm, MixingKeepsTheMomentsOfTheMixture) {
             1e-12);
 }
 
+/// A model over position and velocity as paper A prints it, with rows and columns of zeros for an
+/// acceleration.
+template <class Motion>
+struct WithoutAcceleration {
+  static constexpr auto kComponents = kAccelerationKinematics;
+
+  Motion motion;
+
+  template <class Scalar>
+  Mat<Scalar, 6, 6> matrix(Scalar dt_s) const noexcept {
+    return spread(motion.matrix(dt_s));
+  }
+  template <class Scalar>
+  Mat<Scalar, 6, 6> process_noise(Scalar dt_s) const noexcept {
+    return spread(motion.process_noise(dt_s));
+  }
+  double prior_variance(Component) const noexcept { return 1.0; }
+
+ private:
+  template <class Scalar>
+  static Mat<Scalar, 6, 6> spread(const Mat<Scalar, 4, 4>& four) noexcept {
+    constexpr auto kAt = rows_of(kComponents, kKinematics);
+    Mat<Scalar, 6, 6> six = Mat<Scalar, 6, 6>::Zero();
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i) six(kAt[i], kAt[j]) = four(i, j);
+    return six;
+  }
+};
+template <class Motion>
+WithoutAcceleration(Motion) -> WithoutAcceleration<Motion>;
+
+TEST(Imm, OfSixStatesAsPrintedGivesTheNumbersOfFour) {
+  const PiecewiseAcceleration noise{0.05};
+  const ConstantVelocity straight{.noise = noise};
+  const CoordinatedTurn starboard{.turn_rate_rad_s = deg(1.0), .noise = noise};
+  const CoordinatedTurn port{.turn_rate_rad_s = -deg(1.0), .noise = noise};
+  const auto chain = ModeChain<3>::staying(0.95);
+  Imm four{chain, Ekf{straight}, Ekf{starboard}, Ekf{port}};
+  Imm six{chain, Ekf{WithoutAcceleration{straight}}, Ekf{WithoutAcceleration{starboard}},
+          Ekf{WithoutAcceleration{port}}};
+  ASSERT_EQ(four.start(test::five_km_off<double>()), Status::kOk);
+  ASSERT_EQ(six.start(test::five_km_off<double>()), Status::kOk);
+  Draw draw(67);
+  for (int scan = 0; scan < 100; ++scan) {
+    ASSERT_EQ(four.predict(3.0), Status::kOk);
+    ASSERT_EQ(six.predict(3.0), Status::kOk);
+    const Vec<double, 2> z = plot_near(four.estimate(), draw);
+    const auto step = six.update(kRadar, z);
+    const auto expected = four.update(kRadar, z);
+    ASSERT_TRUE(step && expected);
+    EXPECT_NEAR(step.log_likelihood, expected.log_likelihood, 1e-10);
+    EXPECT_TRUE(
+        matrices_near(six.mode_probability(), four.mode_probability(), {.absolute = 1e-12}));
+    const Gaussian<4> kinematics = kinematics_of(six.estimate());
+    EXPECT_TRUE(matrices_near(kinematics.mean, four.estimate().mean, {.relative = 1e-12}));
+    EXPECT_TRUE(matrices_near(kinematics.covariance, four.estimate().covariance,
+                              {.absolute = 1e-10, .relative = 1e-10}));
+    for (const int acceleration : {2, 5}) {
+      EXPECT_EQ(six.estimate().mean[acceleration], 0.0);
+      EXPECT_TRUE(six.estimate().covariance.row(acceleration).isZero(0.0));
+    }
+  }
+}
+
 TEST(Imm, EstimateIsTheMixturesMeanAndCovariance) {
   Imm imm{ModeChain<2>(kAsymmetric), turning(0.0), turning(6.0)};
   ASSERT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);

@@ -539,6 +539,7 @@ TEST(ModeHistory, ParametersThatMakeNoSenseAreRefused) {
   EXPECT_THROW(with({.merge_distance = std::nan("")}), std::invalid_argument);
   EXPECT_THROW(with({.merge_distance = 2.0, .sibling_distance = 1.0}), std::invalid_argument);
   EXPECT_THROW(with({.switch_time_spread = -0.1}), std::invalid_argument);
+  EXPECT_THROW(with({.switch_time_spread = 1.1}), std::invalid_argument) << "more than the scan";
   EXPECT_THROW(with({.negligible_probability = 0.5}), std::invalid_argument);
   EXPECT_THROW(Tree({}, kPair, chain, turning()), std::invalid_argument)
       << "three modes, two rates";

@@ -236,6 +236,15 @@ struct Likely {
 using All = testing::Types<Adaptive, LiteralAdaptive, SwitchingBySlot, Switching, Likely>;
 TYPED_TEST_SUITE(TurnGrids, All);
 
+TYPED_TEST(TurnGrids, BeforeAStartTheModesAreThoseThatItBeginsWith) {
+  auto estimator = TypeParam::build();
+  const Rates before = estimator.mode_probability();
+  EXPECT_TRUE(matrices_identical(before, Rates(estimator.initial_mode_probability())));
+  EXPECT_EQ(before[before.size() / 2], 0.9);
+  ASSERT_EQ(estimator.start(beginning()), Status::kOk);
+  EXPECT_TRUE(matrices_identical(before, Rates(estimator.mode_probability())));
+}
+
 TYPED_TEST(TurnGrids, MirroredReadingsGiveMirroredEstimates) {
   auto there = TypeParam::build();
   auto mirror = TypeParam::build();
@@ -402,6 +411,36 @@ TEST(TurnGrid, RefusesWhatIsNoGrid) {
   EXPECT_THROW(TurnRateGrid(std::span<const double>(forty)), std::invalid_argument);
   EXPECT_THROW(TurnRateGrid::evenly(0.0, 2), std::invalid_argument);
   EXPECT_THROW(TurnRateGrid::evenly(1.0, 8), std::invalid_argument);
+}
+
+template <class Build>
+std::string refusal_of(Build&& build) {
+  try {
+    (void)build();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(TurnGrid, SaysWhatWasWantedAndWhatCame) {
+  EXPECT_EQ(refusal_of([] { return TurnRateGrid({0.0}); }),
+            "grid_rad_s must have 2 to 16 turn rates, got 1");
+  EXPECT_EQ(refusal_of([] {
+              return switching({.grid_rad_s = {0.0, 0.1}});
+            }),
+            "grid_rad_s must have 3 to 16 turn rates, got 2");
+  EXPECT_EQ(refusal_of([] {
+              return adaptive({.max_turn_rate_rad_s = 0.1,
+                               .initial_turn_rates_rad_s = AdaptiveGrid::Rates{-0.2, 0.0, 0.1}});
+            }),
+            "every rate of initial_turn_rates_rad_s must be within max_turn_rate_rad_s, 0.1 to "
+            "either side, got -0.2");
+  EXPECT_EQ(refusal_of([] {
+              return LikelyModelSetImm<UniformBank<Filter>>(
+                  {}, ModeChain<kRuntimeModes>::staying(0.9, 3), turn());
+            }),
+            "chain must have 5 modes, one for each model, got 3");
 }
 
 TEST(AdaptiveGrid, RefusesWhatMakesNoSense) {

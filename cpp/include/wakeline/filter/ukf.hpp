@@ -222,7 +222,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
   }
 
   Unscented unscented_;
-  Cholesky<kStates, Scalar> root_;
+  Cholesky<kStates, Scalar> root_{Mat<Scalar, kStates, kStates>::Identity()};
   bool rooted_ = false;  ///< whether that is of the belief
 };
 

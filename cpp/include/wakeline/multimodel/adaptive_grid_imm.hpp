@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <sstream>
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/multimodel/turn_grid_imm.hpp"
@@ -22,7 +23,8 @@ struct AdaptiveGrid {
   using Rates = std::array<double, 3>;
 
   double max_turn_rate_rad_s = deg(5.0);
-  /// Where they begin, in rising order; not printed. Half the maximum to each side when left out.
+  /// Where they begin, none less than the one before it; not printed. Half the maximum to each side
+  /// when left out.
   std::optional<Rates> initial_turn_rates_rad_s = std::nullopt;
   double min_spacing_rad_s = deg(2.0);      ///< r; not printed
   double kept_spacing_rad_s = deg(3.0);     ///< no side comes nearer, but for the maximum
@@ -77,10 +79,12 @@ struct AdaptiveGrid {
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
   void validate() const {
     require_positive("max_turn_rate_rad_s", max_turn_rate_rad_s);
+    std::ostringstream within;
+    within << "within max_turn_rate_rad_s, " << max_turn_rate_rad_s << " to either side";
     double before = -max_turn_rate_rad_s;
     for (const double rate : initial()) {
       require(std::abs(rate) <= max_turn_rate_rad_s, "every rate of initial_turn_rates_rad_s",
-              "within max_turn_rate_rad_s", rate);
+              within.str().c_str(), rate);
       require(rate >= before, "every rate of initial_turn_rates_rad_s",
               "not less than the one before it", rate);
       before = rate;
@@ -115,8 +119,8 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
                   const BankType& bank)
       : Base(chain, bank, to_vector(validated(grid).initial())), grid_(grid) {
     const double side = (1.0 - grid.initial_centre_probability) / 2.0;
-    this->initial_ =
-        to_vector({side, grid.initial_centre_probability, side}).template cast<Scalar>();
+    this->set_initial(
+        to_vector({side, grid.initial_centre_probability, side}).template cast<Scalar>());
   }
 
   /// Over filters like `prototype`, whose turn rate does not matter.

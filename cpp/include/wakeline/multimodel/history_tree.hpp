@@ -52,7 +52,8 @@ struct HistoryTree {
     require(merge_distance >= 0.0, "merge_distance", "not negative", merge_distance);
     require(sibling_distance >= merge_distance, "sibling_distance", "merge_distance or more",
             sibling_distance);
-    require_not_negative("switch_time_spread", switch_time_spread);
+    require(switch_time_spread >= 0.0 && switch_time_spread <= 1.0, "switch_time_spread", "0 to 1",
+            switch_time_spread);
     require(negligible_probability >= 0.0 && negligible_probability < 1e-2,
             "negligible_probability", "0 or more and below 0.01", negligible_probability);
     require(pseudo_bayes_order >= 0 && pseudo_bayes_order <= 8, "pseudo_bayes_order", "0 to 8",

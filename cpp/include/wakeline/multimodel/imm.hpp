@@ -49,9 +49,8 @@ class Imm {
         weight_(ModeMatrix<Scalar, kModels>::Zero(bank.size(), bank.size())),
         transition_(weight_) {
     if (chain.modes() != bank.size())
-      refuse("an Imm needs one mode of its chain for each filter, got " +
-             std::to_string(chain.modes()) + " modes and " + std::to_string(bank.size()) +
-             " filters");
+      refuse("chain must have " + std::to_string(bank.size()) + " modes, one for each model, got " +
+             std::to_string(chain.modes()));
   }
 
   /// Mode probabilities that a start begins with (uniform unless set). Throws unless they sum to 1.

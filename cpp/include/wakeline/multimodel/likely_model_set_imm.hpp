@@ -65,7 +65,8 @@ struct LikelyModelSet {
 /// Turn models that join and leave by their probability: an Imm over the part of a grid of turn
 /// rates that is likely. All are active at a start. A model that joins begins with what the chain
 /// brings it from the others; the chain leaves a model as often as with all of them, but to the
-/// active ones only. Has the face of `Imm`; a model at rest has probability 0.
+/// active ones only. Has the face of `Imm`; a model at rest has probability 0, and its filter keeps
+/// the belief that it went to rest with.
 template <class BankType>
 class LikelyModelSetImm : public TurnGridImm<BankType> {
   using Base = TurnGridImm<BankType>;
@@ -83,9 +84,10 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
                     const BankType& bank)
       : Base(chain, bank, validated(set).grid_rad_s.rates_rad_s()), set_(set) {
     const int straight = set.grid_rad_s.straightest();
-    this->initial_.setConstant(
-        Scalar((1.0 - set.initial_straight_probability) / (bank.size() - 1)));
-    this->initial_[straight] = Scalar(set.initial_straight_probability);
+    Probability initial = Probability::Constant(
+        bank.size(), Scalar((1.0 - set.initial_straight_probability) / (bank.size() - 1)));
+    initial[straight] = Scalar(set.initial_straight_probability);
+    this->set_initial(initial);
   }
 
   /// Over filters like `prototype`, whose turn rate does not matter.

@@ -29,7 +29,9 @@ enum class SwitchCarry : std::uint8_t {
 /// window often comes too late; by slot it loses what the models know at each move. Source: paper
 /// B, step 1.2.
 struct SwitchingGrid {
-  TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(5.0), 2);  ///< three or more
+  static constexpr int kLeastRates = 3;
+
+  TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(5.0), 2);  ///< of kLeastRates or more
   double threshold = 0.5;                                       ///< t
   SwitchRule rule = SwitchRule::kSymmetric;    ///< the printed rule drifts right while undecided
   SwitchCarry carry = SwitchCarry::kIdentity;  ///< not printed
@@ -54,8 +56,7 @@ struct SwitchingGrid {
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
   void validate() const {
-    require(grid_rad_s.size() >= 3, "the number of rates of grid_rad_s", "3 or more",
-            grid_rad_s.size());
+    TurnRateGrid::require_count(grid_rad_s.size(), kLeastRates);
     require(initial() >= 1 && initial() <= grid_rad_s.size() - 2, "initial_centre",
             "the index of a turn rate with one on each side", initial());
     require_probability("threshold", threshold);
@@ -84,8 +85,10 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
       : Base(chain, bank, window<double>(validated(grid), grid.initial())),
         grid_(grid),
         centre_(grid.initial()) {
-    this->initial_.setConstant(Scalar((1.0 - grid.initial_centre_probability) / 2.0));
-    this->initial_[1] = Scalar(grid.initial_centre_probability);
+    Probability initial =
+        Probability::Constant(bank.size(), Scalar((1.0 - grid.initial_centre_probability) / 2.0));
+    initial[1] = Scalar(grid.initial_centre_probability);
+    this->set_initial(initial);
   }
 
   /// Over filters like `prototype`, whose turn rate does not matter.

@@ -25,9 +25,7 @@ class TurnRateGrid {
 
   /// Throws `std::invalid_argument` unless they are 2 to kMaxModes, finite and rising.
   explicit TurnRateGrid(std::span<const double> rates_rad_s) {
-    if (rates_rad_s.size() < 2 || rates_rad_s.size() > kMaxModes)
-      refuse("grid_rad_s must have 2 to " + std::to_string(kMaxModes) + " turn rates, got " +
-             std::to_string(rates_rad_s.size()));
+    require_count(static_cast<Eigen::Index>(rates_rad_s.size()), 2);
     rates_.resize(static_cast<Eigen::Index>(rates_rad_s.size()));
     for (int k = 0; k < size(); ++k) {
       rates_[k] = rates_rad_s[static_cast<std::size_t>(k)];
@@ -35,6 +33,13 @@ class TurnRateGrid {
       require(k == 0 || rates_[k] > rates_[k - 1], "every turn rate of grid_rad_s",
               "greater than the one before it", rates_[k]);
     }
+  }
+
+  /// Throws `std::invalid_argument` unless a number of rates is `least` to kMaxModes.
+  static void require_count(Eigen::Index count, int least) {
+    if (count >= least && count <= kMaxModes) return;
+    refuse("grid_rad_s must have " + std::to_string(least) + " to " + std::to_string(kMaxModes) +
+           " turn rates, got " + std::to_string(count));
   }
 
   /// i wmax / n for i = -n .. n: paper B, step 1.2. Throws as above.
