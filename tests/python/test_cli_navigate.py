@@ -45,6 +45,17 @@ def heading_deg(second):
     )
 
 
+def changed(lines, kind, seconds, field, value):
+    """Sentences with another field, or what a function makes of it, in some seconds."""
+    lines = list(lines)
+    for k, line in enumerate(lines):
+        if line[3:6] == kind and k // 3 in seconds:
+            fields = line[1:].partition("*")[0].split(",")
+            fields[field] = value(fields[field]) if callable(value) else value
+            lines[k] = sentence(",".join(fields))
+    return lines
+
+
 def voyage(
     minutes=20,
     current_kn=(0.8, -0.5),
@@ -293,6 +304,116 @@ def test_a_receiver_that_freezes_is_not_believed_in_its_velocity_either(tmp_path
         for name in ("north_m", "east_m")
     ]
     assert np.hypot(*off_m).max() < 25.0
+
+
+def turned_by(angle_deg):
+    return lambda told: f"{(float(told) + angle_deg) % 360.0:.1f}"
+
+
+@pytest.mark.parametrize("begins_s", [400, 590])
+@pytest.mark.parametrize(
+    ("kind", "lasts_s", "field", "value", "what"),
+    [
+        ("VHW", 15, 5, "30.0", "speeds through the water"),
+        ("VHW", 15, 5, "199.0", "speeds through the water"),
+        ("VHW", 100, 5, "0.0", "speeds through the water"),
+        ("RMC", 30, 7, "0.0", "speeds over ground by satellite"),
+        ("RMC", 30, 7, "40.0", "speeds over ground by satellite"),
+        ("HDT", 20, 1, turned_by(180.0), "headings"),
+        ("HDT", 100, 1, turned_by(180.0), "headings"),
+    ],
+)
+def test_an_instrument_that_good_fixes_refute_is_named_and_moves_nothing(
+    tmp_path, capsys, begins_s, kind, lasts_s, field, value, what
+):
+    lines = voyage(14)
+    true = navigated(tmp_path, lines)
+    assert "rejected" not in capsys.readouterr().out
+    rows = navigated(
+        tmp_path, changed(lines, kind, range(begins_s, begins_s + lasts_s), field, value)
+    )
+    line = 3 * begins_s + 1 + ("RMC", "HDT", "VHW").index(kind)
+    (told,) = [line for line in capsys.readouterr().out.splitlines() if "rejected" in line]
+    assert told == (
+        f"note: {lasts_s} {what} that do not fit the other readings are rejected "
+        f"(first in line {line})"
+    )
+    off_m = [column(rows, name) - column(true, name) for name in ("north_m", "east_m")]
+    assert np.hypot(*off_m).max() < 3.0
+    assert column(rows, "drift_mps").max() < 1.5 * KN
+    off_deg = column(rows, "heading_deg") - column(true, "heading_deg")
+    assert np.abs((off_deg + 180.0) % 360.0 - 180.0).max() < 20.0
+    assert {row["status"] for row in rows} == {"ok"}
+
+
+@pytest.mark.parametrize("missing", [{"water": False}, {"compass": "none"}])
+def test_without_a_log_or_a_heading_fixes_refute_speeds_over_ground_as_well(tmp_path, missing):
+    lines = voyage(10, **missing)
+    true = navigated(tmp_path, lines)
+    stuck = [
+        sentence(re.sub(r"E,[0-9.]+,", "E,0.0,", line[1:-4]))
+        if line.startswith("$GPRMC") and 400 <= k // 2 < 430
+        else line
+        for k, line in enumerate(lines)
+    ]
+    rows = navigated(tmp_path, stuck)
+    off_m = [column(rows, name) - column(true, name) for name in ("north_m", "east_m")]
+    assert np.hypot(*off_m).max() < 5.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "field", "value"), [("HDT", 1, turned_by(180.0)), ("VHW", 5, "0.0")]
+)
+def test_an_instrument_that_was_wrong_at_first_is_believed_when_it_is_right(
+    tmp_path, kind, field, value
+):
+    rows = navigated(tmp_path, changed(voyage(12), kind, range(200), field, value))
+    later = np.array([row for row in rows if float(row["time_s"]) - float(rows[0]["time_s"]) > 400])
+    off_deg = column(later, "heading_deg") - heading_deg(np.rint(seconds(rows)[-len(later) :]))
+    assert abs(np.median((off_deg + 180.0) % 360.0 - 180.0)) < 1.0
+    drift = np.median(drift_mps(later), axis=0) / KN
+    np.testing.assert_allclose(drift, [0.8, -0.5], atol=0.15)
+
+
+def test_errors_know_nothing_of_the_hidden_speeds_in_the_magnetic_offset_either(tmp_path):
+    lines = voyage(12, compass="HDG")
+    hidden = [second for second in range(120, 720) if 0 < (second - 120) % 150 <= 60]
+    turned = changed(lines, "RMC", hidden, 8, turned_by(40.0))
+    errors = []
+    for log in (lines, turned):
+        answer = tmp_path / "errors.json"
+        navigated(tmp_path, log, "--json", str(answer))
+        rows = {row["estimator"]: row for row in json.loads(answer.read_text())["rows"]}
+        errors.append([rows[who]["coast_60s_median_m"] for who in ("navigator", "dead_reckoning")])
+    np.testing.assert_allclose(errors[1], errors[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("every_s", [7, 8, 11])
+def test_errors_are_those_at_hidden_fixes(tmp_path, every_s):
+    """Fixes after the hidden minute have been seen: the solution there is as good as they are."""
+    file = tmp_path / "some.nmea"
+    kept = [
+        line
+        for k, line in enumerate(voyage(30))
+        if not line.startswith("$GPRMC") or k // 3 % every_s == 0
+    ]
+    file.write_text("".join(kept))
+    log = read_nmea(file)
+    readings = navigating.readings_of(log, navigating.NO_OFFSET, navigating.plane_of(log.fixes))
+    fixed_s = readings.time_s[readings.has_fix]
+    starts_s = np.arange(fixed_s[0] + 120.0, readings.time_s[-1] - 135.0, 150.0)
+    errors = navigating.hold_out(readings)
+    fresh = [s for s in starts_s if s - fixed_s[fixed_s <= s][-1] <= 3.0]
+    assert fresh
+    for horizon_s in navigating.HORIZONS_S:
+        end_s = 60.0 if horizon_s == 60.0 else np.inf
+        compared = [
+            start_s
+            for start_s in fresh
+            if np.any((np.abs(fixed_s - start_s - horizon_s) <= 3.0) & (fixed_s <= start_s + end_s))
+        ]
+        for by_horizon in errors.values():
+            assert len(by_horizon[horizon_s]) == len(compared)
 
 
 def moved_north(lines, seconds, way_m):
@@ -720,12 +841,13 @@ def test_a_fast_ship_without_speeds_over_ground_is_followed_from_the_start(tmp_p
     assert float(rows[-1]["vnorth_mps"]) == pytest.approx(25.0 * KN, abs=0.3)
 
 
-def test_without_speeds_over_ground_there_is_no_straight_to_compare_with(tmp_path):
+def test_without_speeds_over_ground_the_straight_is_that_of_the_last_fixes(tmp_path):
     answer = tmp_path / "errors.json"
     navigated(tmp_path, fixes_alone(600, 6.0), "--json", str(answer))
     rows = {row["estimator"]: row for row in json.loads(answer.read_text())["rows"]}
-    assert set(rows) == {"navigator", "dead_reckoning"}
+    assert set(rows) == {"navigator", "dead_reckoning", "constant_velocity"}
     assert rows["navigator"]["coast_60s_median_m"] < 10.0
+    assert rows["constant_velocity"]["coast_60s_median_m"] < 1.0
 
 
 def test_bad_lines_are_told_and_nothing_else_is_lost(tmp_path, capsys):
@@ -735,9 +857,21 @@ def test_bad_lines_are_told_and_nothing_else_is_lost(tmp_path, capsys):
     lines[300] = "\x00\x01 nonsense\n"
     rows = navigated(tmp_path, lines)
     told = capsys.readouterr().out
-    assert "line 100" in told
-    assert "line 202" in told
+    for line in (100, 202, 301):
+        assert told.count(f"line {line}:") == 1
     assert len(rows) >= 298
+    with (tmp_path / "problems.csv").open(newline="") as file:
+        problems = list(csv.DictReader(file))
+    assert [(row["line"], row["kind"]) for row in problems] == [
+        ("100", "cut"),
+        ("202", "checksum"),
+        ("301", "no sentence"),
+    ]
+    assert problems[1]["reason"].startswith("wanted ")
+    assert ", got '$" in problems[1]["reason"]
+    assert "note: all problems are listed in problems.csv" in told
+    navigated(tmp_path, voyage(5))
+    assert not (tmp_path / "problems.csv").exists()
 
 
 @pytest.mark.parametrize(

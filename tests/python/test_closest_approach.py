@@ -11,7 +11,8 @@ import wakeline as wl
 from wakeline.cli import main, outputs
 from wakeline.cli.config import ConfigError, Settings, read_settings
 from wakeline.cli.danger import DangerLimits, danger_of, with_closest_approach
-from wakeline.recording import OwnShip, Tracks, read_tracks
+from wakeline.recording import OwnShip, RecordingError, Tracks, read_tracks
+from wakeline.recording.own_csv import read_own
 
 KNOT = 1852.0 / 3600.0
 MILE_M = 1852.0
@@ -287,6 +288,60 @@ def test_the_ship_head_on_is_told_and_the_other_is_not(encounter, tmp_path, caps
     assert "1 alarm of tracks closer than 926 m within 20 min" in text
     assert f"track {alarm['track_id']} at " in text
     assert "alarms.csv" in text
+
+
+COVARIANCE = "vnorth_var_m2s2,vnorth_veast_cov_m2s2,veast_var_m2s2"
+
+
+def own_file(path, variance_m2s2, status="ok"):
+    """Own ship of `encounter` as ``wakeline navigate`` writes her, with this variance per axis."""
+    rows = [
+        (1000.0 + t, 5.0 * t, 0.0, 5.0, 0.0, variance_m2s2, 0.0, variance_m2s2, status)
+        for t in PERIOD_S * np.arange(120)
+    ]
+    return write(path, f"time_s,north_m,east_m,vnorth_mps,veast_mps,{COVARIANCE},status", rows)
+
+
+def test_the_covariance_of_own_ships_velocity_is_in_the_probability(encounter, tmp_path):
+    probability = {}
+    for std_mps in (0.05, 0.2, 2.0, ""):
+        variance = std_mps and std_mps**2
+        track(encounter, tmp_path, "--own", own_file(tmp_path / "own.csv", variance))
+        tracks = read_tracks(tmp_path / "tracks.csv")
+        probability[std_mps] = tracks.where(tracks.time_s > 1060.0).cpa_probability
+    np.testing.assert_allclose(probability[""], probability[0.2], atol=1e-12)
+    assert np.abs(probability[0.05] - probability[0.2]).max() > 1e-3
+    assert np.abs(probability[2.0] - probability[0.05]).max() > 0.1
+
+
+def test_a_covariance_of_own_ship_is_interpolated_over_rows_that_tell_none():
+    time_s = np.arange(4.0)
+    covariance = np.array([1.0, np.nan, 3.0, 5.0])[:, None, None] * np.array(
+        [[1.0, 0.5], [0.5, 2.0]]
+    )
+    own = OwnShip(time_s, time_s, time_s, time_s, time_s, velocity_m2s2=covariance)
+    at = own.velocity_m2s2_at([0.0, 1.0, 2.5, 9.0])
+    np.testing.assert_allclose(at[:, 0, 0], [1.0, 2.0, 4.0, 5.0])
+    np.testing.assert_allclose(at[:, 0, 1], at[:, 0, 0] / 2.0)
+    assert OwnShip(time_s, time_s, time_s).velocity_m2s2_at([0.0]) is None
+
+
+@pytest.mark.parametrize(
+    ("cells", "name"), [("-1,0,1", "vnorth_var_m2s2"), ("1,1.1,1", "vnorth_veast_cov_m2s2")]
+)
+def test_a_covariance_that_is_none_is_an_error_at_its_cell(tmp_path, cells, name):
+    head = f"time_s,north_m,east_m,vnorth_mps,veast_mps,{COVARIANCE}"
+    own = write(tmp_path / "own.csv", head, [(0, 0, 0, 0, 0, "1,0,1"), (1, 0, 0, 0, 0, cells)])
+    with pytest.raises(RecordingError, match=f"line 3.*{name}"):
+        read_own(own, [])
+
+
+def test_rows_in_which_own_ships_place_is_in_doubt_are_told(tmp_path):
+    notes = []
+    read_own(own_file(tmp_path / "own.csv", 0.01, "jumped"), notes)
+    assert notes == [
+        "own.csv: own ship's place is in doubt in 120 rows, of status jumped (first in line 2)"
+    ]
 
 
 def test_one_encounter_from_afar_is_one_alarm(tmp_path):

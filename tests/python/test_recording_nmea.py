@@ -727,10 +727,42 @@ def test_without_checksums_what_is_cut_is_found_or_does_no_harm(log):
                 assert len(read.fixes) == 1
 
 
+def test_fields_are_shown_as_they_are_written(log):
+    read = log(sentence("RMC,100000,A,50three,N,00230.0,E,1.0,0.0,010620,,"), rmc(10))
+    assert "got '50three'" in str(read.report.examples[0])
+
+
+def test_sentences_without_what_they_are_there_for_are_told(log):
+    empty = ["HDT,,T", "HDT,,T", "ROT,,A", "RMC,100011,V,,,,,,,010620,,", "VHW,,T,,M,,N,,K"]
+    notes = log(rmc(10), sentence("HDT,40.0,T"), *map(sentence, empty), rmc(12)).notes
+    for told in (
+        "2 HDT sentences tell no heading (first in line 3)",
+        "1 ROT sentences tell no rate of turn (first in line 5)",
+        "1 RMC sentences tell no place (first in line 6)",
+        "1 VHW sentences tell no heading or speed (first in line 7)",
+    ):
+        assert f"own.nmea: {told}" in notes
+
+
+def test_a_date_that_stays_the_same_over_midnight_is_stale_until_it_changes(log):
+    def timed(clock, date):
+        return sentence(f"RMC,{clock},A,5000.0,N,00230.0,E,0.0,0.0,{date},,")
+
+    before = [timed(f"2359{s:02d}", "010620") for s in range(50, 60)]
+    stale = [timed(f"0000{s:02d}", "010620") for s in range(20)]
+    mended = [timed(f"0000{s:02d}", "020620") for s in range(20, 40)]
+    for lines in (before + stale, before + stale + mended):
+        read = log(*lines)
+        assert len(read.set_back_lines) == 0
+        assert np.diff(read.fixes.time_s) == pytest.approx(1.0)
+        assert read.report.problems == {"date": 20}
+        assert "the date is that of the day before" in str(read.report.examples[0])
+
+
 def test_examples_are_bounded_and_counts_are_not(log):
-    read = log(rmc(10), *["junk"] * 1500)
-    assert read.report.problems["no sentence"] == 1500
-    assert len(read.report.examples) == 1000
+    read = log(rmc(10), *["junk"] * 100_500)
+    assert read.report.problems["no sentence"] == 100_500
+    assert len(read.report.examples) == 100_000
 
 
 # ------------------------------------------------------------------ forms of lines

@@ -99,7 +99,7 @@ _DANGER = {
     "alarm_probability": "0..1, with this probability or more, an alarm begins,",
     "clear_probability": "0..1, and it ends where the probability falls below this one",
     "clear_hold_s": "s, for so long; shorter falls belong to the same alarm",
-    "own_velocity_std_mps": "m/s per axis, error of own ship's velocity",
+    "own_velocity_std_mps": "m/s per axis, error of own ship's velocity where --own has none",
 }
 
 KEYS = {"radar": _RADAR, "tracker": _TRACKER, "models": _MODELS, "danger": _DANGER}

@@ -33,7 +33,7 @@ class DangerLimits:
     clear_hold_s : float
         Not negative.
     own_velocity_std_mps : float
-        Error of own ship's velocity per axis, which no file tells.
+        Error of own ship's velocity per axis, where her file does not tell its covariance.
 
     Raises
     ------
@@ -122,6 +122,9 @@ class Danger:
 def with_closest_approach(tracks: Tracks, own: OwnShip, limits: DangerLimits) -> Tracks:
     """The tracks with CPA, TCPA and the probability of passing closer than the limit.
 
+    Errors are those of the tracks and of own ship's velocity. An error of her place is none of
+    them: plots are seen from there, so that it moves the tracks with her.
+
     Parameters
     ----------
     tracks : Tracks
@@ -132,11 +135,15 @@ def with_closest_approach(tracks: Tracks, own: OwnShip, limits: DangerLimits) ->
     """
     north_m, east_m = own.position_at(tracks.time_s).T
     vnorth_mps, veast_mps = own.velocity_at(tracks.time_s).T
-    variance = limits.own_velocity_std_mps**2
+    velocity_m2s2 = own.velocity_m2s2_at(tracks.time_s)
+    if velocity_m2s2 is None:
+        velocity_m2s2 = limits.own_velocity_std_mps**2 * np.eye(2)
+    own_covariance = np.zeros((len(tracks), 4, 4))
+    own_covariance[:, 1::2, 1::2] = velocity_m2s2
     approach = wl.navigation.closest_approach(
         np.column_stack([north_m, vnorth_mps, east_m, veast_mps]),
         tracks.state,
-        np.diag([0.0, variance, 0.0, variance]),
+        own_covariance,
         tracks.covariance,
     )
     return replace(

@@ -14,7 +14,6 @@ import numpy as np
 from wakeline import plot
 from wakeline.navigation import LocalPlane
 from wakeline.recording import NavigationLog, RecordingError, read_nmea, replacing
-from wakeline.recording.nmea import Fixes
 
 from . import navigating, outputs, report
 
@@ -24,7 +23,7 @@ _COLUMNS = (
     *("north_var_m2", "north_east_cov_m2", "east_var_m2"),
     *("vnorth_var_m2s2", "vnorth_veast_cov_m2s2", "veast_var_m2s2", "heading_std_deg", "status"),
 )
-_SHOWN_PROBLEMS = 5
+_SHOWN_ROWS = 5
 _LEAST_DRAWN_FIXES = 10
 _SMOOTHED = (
     "smoothed: own.csv and pictures know at each time the readings after it, too, up to a gap or "
@@ -45,7 +44,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         description="Reads NMEA 0183, fuses fixes, speeds, headings and rates of turn, and writes "
         "own.csv and pictures. A part after a gap of a minute is navigated by itself. Then "
         "satellites are hidden for a minute at a time, and the errors of what is foretold are "
-        "told. What cannot be read of the log, or not be used, is counted, and never fatal. In "
+        "told. What cannot be read of the log, or not be used, is counted, never fatal, and listed "
+        "in problems.csv. In "
         "own.csv the status is ok, coasting (no fix that fits for five seconds), rejected (a fix "
         "that does not fit) or jumped (from where fixes that were rejected but went on have moved "
         "the position by over 50 m, until it comes back or all fixes have fitted for a minute).",
@@ -85,7 +85,7 @@ def _variation_deg(text: str) -> float:
 class _Leg(NamedTuple):
     """A part of the log without a gap of a minute."""
 
-    fixes: Fixes
+    part: NavigationLog
     readings: navigating.Readings
     track: navigating.OwnTrack
 
@@ -95,6 +95,7 @@ def run(arguments: argparse.Namespace) -> None:
     log = read_nmea(arguments.log, variation_deg=arguments.variation)
     outputs.make_folder(arguments.out)
     print(_input_lines(log), flush=True)
+    problems = _write_problems(arguments.out / "problems.csv", log)
     if len(log.fixes.sound()) == 0:
         raise RecordingError(
             arguments.log,
@@ -103,7 +104,7 @@ def run(arguments: argparse.Namespace) -> None:
             got=f"{len(log.fixes)} that are not sound",
         )
     legs = _legs(log, smooth=arguments.smooth)
-    files = [arguments.out / "own.csv"]
+    files = [arguments.out / "own.csv", *problems]
     _write_csv(files[0], legs)
     if outputs.can_draw():
         way = "own ship, smoothed" if arguments.smooth else "own ship"
@@ -122,7 +123,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _legs(log: NavigationLog, *, smooth: bool) -> list[_Leg]:
     parts = log.parts()
-    offset, plane = _magnetic_offset(log, parts), navigating.plane_of(log.fixes.sound())
+    offset = _magnetic_offset(log, parts)
+    plane = navigating.plane_of(log.fixes.sound())
     for note in (*_unused_notes(parts), *_stuck_notes(parts)):
         print(note, flush=True)
     legs = [_leg(part, offset, plane, smooth) for part in parts if len(part.fixes.sound())]
@@ -136,7 +138,7 @@ def _magnetic_offset(
 ) -> navigating.MagneticOffset:
     if not any(map(navigating.wants_offset, parts)):
         return navigating.NO_OFFSET
-    offset = navigating.magnetic_offset(log)
+    offset = navigating.magnetic_offset(parts)
     how = "for nothing is known" if offset is None else "as velocities over ground say"
     offset = offset or navigating.ANY_OFFSET
     degrees, std_deg = np.degrees(offset)
@@ -152,7 +154,7 @@ def _leg(
     part: NavigationLog, offset: navigating.MagneticOffset, plane: LocalPlane, smooth: bool
 ) -> _Leg:
     readings = navigating.readings_of(part, offset, plane)
-    return _Leg(part.fixes.sound(), readings, navigating.navigate(readings, smooth=smooth))
+    return _Leg(part, readings, navigating.navigate(readings, smooth=smooth))
 
 
 def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
@@ -176,15 +178,15 @@ def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
     """What the navigator did not believe, or did so only after a while."""
     jump_m = np.concatenate([leg.track.jump_m for leg in legs])
     far_m, near_m = jump_m[jump_m > navigating.JUMP_M], jump_m[jump_m <= navigating.JUMP_M]
-    rejected = _fix_lines(legs, [leg.track.status == "rejected" for leg in legs])
     jumps = _fix_lines(legs, [leg.track.jump_m > navigating.JUMP_M for leg in legs])
-    if len(rejected):
-        moves = np.count_nonzero(near_m)
-        by = f"by up to {near_m.max(initial=0.0):.0f} m"
-        moved = f"; {moves} times they went on and moved the position {by}" if moves else ""
+    moves = np.count_nonzero(near_m)
+    by = f"by up to {near_m.max(initial=0.0):.0f} m"
+    for what, lines in _rejected_lines(legs).items():
+        went_on = moves and what == "fixes"
+        moved = f"; {moves} times they went on and moved the position {by}" if went_on else ""
         yield (
-            f"note: {len(rejected)} fixes that do not fit the other readings are rejected "
-            f"(first in line {rejected[0]}){moved}"
+            f"note: {len(lines)} {what} that do not fit the other readings are rejected "
+            f"(first in line {lines[0]}){moved}"
         )
     if len(jumps):
         yield (
@@ -194,11 +196,19 @@ def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
         )
 
 
+def _rejected_lines(legs: Sequence[_Leg]) -> dict[str, np.ndarray]:
+    """Lines of what was not believed, of the instruments of which something was not."""
+    rejected = [navigating.rejected_lines(leg.part, leg.track) for leg in legs]
+    kinds = dict.fromkeys(what for of_leg in rejected for what in of_leg)
+    lines = {w: np.concatenate([r[w] for r in rejected if w in r]) for w in kinds}
+    return {what: found for what, found in lines.items() if len(found)}
+
+
 def _order_notes(legs: Sequence[_Leg]) -> Iterator[str]:
     time_s = np.concatenate([leg.track.time_s for leg in legs])
     back = np.flatnonzero(np.diff(time_s) < 0)
     if len(back):
-        rows = ", ".join(f"{k + 3}" for k in back[:_SHOWN_PROBLEMS])
+        rows = ", ".join(f"{k + 3}" for k in back[:_SHOWN_ROWS])
         yield (
             f"note: the times of own.csv go back {len(back)} times, where the clock was set back "
             f"(line {rows}): cut it there before it is used as an own-ship file"
@@ -209,8 +219,9 @@ def _fix_lines(legs: Sequence[_Leg], masks: Sequence[np.ndarray]) -> np.ndarray:
     """Lines of the fixes at the masked times of the legs."""
     return np.concatenate(
         [
-            leg.fixes.line[np.isin(leg.fixes.time_s, leg.track.time_s[mask])]
+            fixes.line[np.isin(fixes.time_s, leg.track.time_s[mask])]
             for leg, mask in zip(legs, masks, strict=True)
+            for fixes in [leg.part.fixes.sound()]
         ]
     )
 
@@ -218,20 +229,19 @@ def _fix_lines(legs: Sequence[_Leg], masks: Sequence[np.ndarray]) -> np.ndarray:
 def _input_lines(log: NavigationLog) -> str:
     fixes = log.fixes.sound()
     hours = np.ptp(fixes.time_s) / 3600.0 if len(fixes) else 0.0
-    problems = sum(log.report.problems.values())
     lines = [f"{log.name}: {log.report.lines} lines, {len(fixes)} fixes in {hours:.2f} h"]
     lines += [f"note: {note}" for note in log.notes]
-    lines += [f"  {problem}" for problem in log.report.examples[:_SHOWN_PROBLEMS]]
-    if problems > _SHOWN_PROBLEMS:
-        lines.append(f"  and {problems - _SHOWN_PROBLEMS} more")
     return "\n".join(lines)
 
 
 def _hold_out(legs: Sequence[_Leg]) -> dict[str, dict[float, np.ndarray]]:
-    """Errors without satellites over all legs."""
+    """Errors without satellites over all legs, to magnetic offsets, too."""
+    seen = [navigating.without_hidden(leg.part, leg.readings) for leg in legs]
+    offset = navigating.magnetic_offset(seen) or navigating.ANY_OFFSET
     joined: dict[str, dict[float, list[np.ndarray]]] = {}
     for leg in legs:
-        for name, errors in navigating.hold_out(leg.readings).items():
+        readings = navigating.readings_of(leg.part, offset, leg.readings.plane)
+        for name, errors in navigating.hold_out(readings).items():
             for horizon_s, values in errors.items():
                 joined.setdefault(name, {}).setdefault(horizon_s, []).append(values)
     return {
@@ -266,6 +276,21 @@ def _rows(errors: dict[str, dict[float, np.ndarray]], file: str) -> list[dict[st
             )
         rows.append(row)
     return rows
+
+
+def _write_problems(path: Path, log: NavigationLog) -> list[Path]:
+    """Write what could not be used of the log, and tell where; without any, remove the file."""
+    problems, count = log.report.examples, sum(log.report.problems.values())
+    if count == 0:
+        path.unlink(missing_ok=True)
+        return []
+    with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(("line", "kind", "reason"))
+        writer.writerows((problem.line, problem.kind, problem.reason) for problem in problems)
+    which = "all problems" if len(problems) == count else f"the first {len(problems)} problems"
+    print(f"note: {which} are listed in {path.name}", flush=True)
+    return [path]
 
 
 def _write_csv(path: Path, legs: Sequence[_Leg]) -> None:

@@ -8,7 +8,8 @@ is not where she heads, and it is the way that the state's heading and speed are
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import dataclasses
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -40,6 +41,7 @@ _SAME_CURRENT_S = 1800.0
 _MINUTE_STD_MPS = 0.2  # of the mean velocity of a minute: gusts, leeway, deviation
 _SETTLED_S = 120.0
 _NEAR_S = 3.0
+_MADE_GOOD_S = 10.0
 
 
 class MagneticOffset(NamedTuple):
@@ -135,6 +137,8 @@ class OwnTrack:
         was not believed.
     jump_m : ndarray (T,)
         How far such fixes have moved the position, zero at other times.
+    rejected : dict of str to ndarray of bool (T,)
+        Where a reading was not believed, of ``gnss``, ``velocity``, ``compass`` and ``log``.
     """
 
     time_s: np.ndarray
@@ -151,6 +155,7 @@ class OwnTrack:
     drift_std_mps: np.ndarray
     status: np.ndarray
     jump_m: np.ndarray
+    rejected: Mapping[str, np.ndarray]
 
     @property
     def course_rad(self) -> np.ndarray:
@@ -234,6 +239,26 @@ def unused(part: NavigationLog) -> dict[str, np.ndarray]:
     }
 
 
+def rejected_lines(part: NavigationLog, track: OwnTrack) -> dict[str, np.ndarray]:
+    """Lines of the sound readings of a part that were not believed, by what they are."""
+    headings = part.heading.sound() or part.compass.sound()
+    ground, bottom = part.ground.sound(), part.bottom.sound()
+    by_satellite = np.isin(track.time_s, ground.time_s)
+    velocity = track.rejected.get("velocity", np.zeros(len(track.time_s), dtype=bool))
+    masks = {
+        "fixes": (part.fixes.sound(), track.rejected["gnss"]),
+        "speeds over ground by satellite": (ground, velocity & by_satellite),
+        "speeds over ground by log": (bottom, velocity & ~by_satellite),
+        "headings": (headings, track.rejected["compass"]),
+        "speeds through the water": (part.water.sound(), track.rejected.get("log")),
+    }
+    return {
+        what: series.line[np.isin(series.time_s, track.time_s[mask])]
+        for what, (series, mask) in masks.items()
+        if mask is not None
+    }
+
+
 def zero_speeds(part: NavigationLog) -> np.ndarray:
     """Lines (n,) of sound speeds through the water of 0 while the ship makes way over ground."""
     water, ground = part.water.sound(), part.ground.sound()
@@ -247,7 +272,7 @@ def wants_offset(part: NavigationLog) -> bool:
     return len(part.heading.sound()) == 0 and bool(unknown.any())
 
 
-def magnetic_offset(log: NavigationLog) -> MagneticOffset | None:
+def magnetic_offset(parts: Sequence[NavigationLog]) -> MagneticOffset | None:
     """What to add to magnetic headings that have no variation, found from velocities over ground.
 
     Least squares over minutes of ground = a · water + current, complex numbers of north and east,
@@ -256,10 +281,10 @@ def magnetic_offset(log: NavigationLog) -> MagneticOffset | None:
     stand for those through the water, and nothing does. None where there is nothing to find it
     from, or the log reads nothing but 0.
     """
-    time_s, water, ground = _by_minute(log)
+    time_s, water, ground = _by_minute(parts)
     if len(time_s) == 0:
         return None
-    knows_water = len(log.water.sound()) > 0
+    knows_water = any(len(part.water.sound()) for part in parts)
     information, correlation = 0.0, 0j
     half_hour = (time_s - time_s[0]) // _SAME_CURRENT_S
     for same in [half_hour == number for number in np.unique(half_hour)]:
@@ -309,6 +334,7 @@ def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
         drift_std_mps=_drift_std_mps(done, readings.offset_std_rad) if states == 7 else unknown,
         status=_status(readings, done.rejected["gnss"], moved_m),
         jump_m=np.hypot(*moved_m.T),
+        rejected=done.rejected,
     )
 
 
@@ -316,26 +342,37 @@ def hold_out(readings: Readings) -> dict[str, dict[float, np.ndarray]]:
     """Errors (n,) in metres after seconds without satellites, by method and horizon.
 
     Fixes and speeds by satellite are hidden for a minute at a time, and what is foretold is
-    compared with the hidden fixes: by the navigator, by the last velocity by satellite, and by
-    heading and speed through water alone.
+    compared with the hidden fixes: by the navigator, by the last velocity by satellite or, where
+    there is none, of the last fixes, and by heading and speed through water alone.
     """
-    time_s = readings.time_s
-    starts_s = np.arange(
-        time_s[0] + _SETTLED_S, time_s[-1] - HIDDEN_S - HIDDEN_EVERY_S / 2, HIDDEN_EVERY_S
-    )
-    hidden = np.zeros(len(time_s), dtype=bool)
-    for start_s in starts_s:
-        hidden |= (time_s > start_s) & (time_s <= start_s + HIDDEN_S)
+    starts_s = _hidden_from_s(readings)
+    hidden = _is_hidden(readings.time_s, starts_s)
     seen = readings._replace(
         fix_m=np.where(hidden[:, None], np.nan, readings.fix_m),
         velocity_mps=np.where(hidden[:, None], np.nan, readings.velocity_mps),
     )
-    foretold = {"navigator": navigate(seen).position_m}
-    if np.isfinite(seen.velocity_mps).any():
-        foretold["constant_velocity"] = _straight_on(seen)
+    foretold = {"navigator": navigate(seen).position_m, "constant_velocity": _straight_on(seen)}
     if readings.knows_water:
         foretold["dead_reckoning"] = _reckoned(seen)
     return {name: _errors(readings, place_m, starts_s) for name, place_m in foretold.items()}
+
+
+def without_hidden(part: NavigationLog, readings: Readings) -> NavigationLog:
+    """A part of a log without the speeds over ground that `hold_out` of its readings hides."""
+    hidden = _is_hidden(part.ground.time_s, _hidden_from_s(readings))
+    return dataclasses.replace(part, ground=part.ground.rows(~hidden))
+
+
+def _hidden_from_s(readings: Readings) -> np.ndarray:
+    """Times (n,) from which on satellites are hidden."""
+    first_s, last_s = readings.time_s[[0, -1]]
+    return np.arange(first_s + _SETTLED_S, last_s - HIDDEN_S - HIDDEN_EVERY_S / 2, HIDDEN_EVERY_S)
+
+
+def _is_hidden(time_s: np.ndarray, starts_s: np.ndarray) -> np.ndarray:
+    """Mask (T,) of times after a start, up to its end."""
+    since_s = np.subtract.outer(time_s, starts_s)
+    return ((since_s > 0.0) & (since_s <= HIDDEN_S)).any(axis=1)
 
 
 def _run(states: int, readings: Readings, *, smooth: bool = False) -> wl.navigation.UsvRun:
@@ -378,9 +415,9 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
     return navigator
 
 
-def _by_minute(log: NavigationLog) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _by_minute(parts: Sequence[NavigationLog]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Minutes (n,) under way and their mean velocities by magnetic compass and over ground."""
-    rows = [_velocities(part) for part in log.parts()]
+    rows = [_velocities(part) for part in parts]
     time_s, water, ground = (np.concatenate(column) for column in zip(*rows, strict=True))
     known = np.isfinite(water) & np.isfinite(ground)
     minute, of_row, count = np.unique(
@@ -554,8 +591,21 @@ def _fitted(readings: Readings, misfit: np.ndarray) -> np.ndarray:
 def _straight_on(seen: Readings) -> np.ndarray:
     """Places (T, 2) on from the last fix with the last velocity over ground."""
     fix, fixed_s = _held(seen.time_s, seen.fix_m)
-    velocity, _ = _held(seen.time_s, seen.velocity_mps)
+    told = np.isfinite(seen.velocity_mps).any()
+    velocity, _ = _held(seen.time_s, seen.velocity_mps if told else _made_good_mps(seen))
     return fix + velocity * (seen.time_s - fixed_s)[:, None]
+
+
+def _made_good_mps(seen: Readings) -> np.ndarray:
+    """Velocities (T, 2) at fixes since one ten seconds or more before; NaN elsewhere."""
+    fixed = np.flatnonzero(seen.has_fix)
+    time_s, fix_m = seen.time_s[fixed], seen.fix_m[fixed]
+    before = np.searchsorted(time_s, time_s - _MADE_GOOD_S, side="right") - 1
+    known = before >= 0
+    velocity = np.full(seen.fix_m.shape, np.nan)
+    since_s = time_s[known] - time_s[before[known]]
+    velocity[fixed[known]] = (fix_m[known] - fix_m[before[known]]) / since_s[:, None]
+    return velocity
 
 
 def _reckoned(seen: Readings) -> np.ndarray:
@@ -588,11 +638,11 @@ def _errors(
         before = np.searchsorted(times, start_s, side="right") - 1
         if start_s - times[before] > _NEAR_S:
             continue
+        hidden = _is_hidden(times, np.array([start_s]))
         for horizon_s in HORIZONS_S:
-            nearest = np.abs(times - start_s - horizon_s).argmin()
-            k = fixed[nearest]
-            near = abs(times[nearest] - start_s - horizon_s) <= _NEAR_S
-            if near and np.isfinite(place_m[k]).all():
+            apart_s = np.where(hidden, np.abs(times - start_s - horizon_s), np.inf)
+            k = fixed[apart_s.argmin()]
+            if apart_s.min() <= _NEAR_S and np.isfinite(place_m[k]).all():
                 errors[horizon_s].append(float(np.hypot(*(place_m[k] - readings.fix_m[k]))))
     return {horizon_s: np.array(values) for horizon_s, values in errors.items()}
 

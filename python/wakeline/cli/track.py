@@ -43,7 +43,9 @@ columns, separated by commas, known by name in any order:
              bearing_deg or bearing_rad from true north, or north_m and east_m;
              scan, scenario, own_north_m, own_east_m where known
   --own      time_s, north_m, east_m; scan, scenario, vnorth_mps, veast_mps,
-             heading_deg where known; own.csv of wakeline navigate is one
+             heading_deg, vnorth_var_m2s2, vnorth_veast_cov_m2s2,
+             veast_var_m2s2, status where known; own.csv of wakeline navigate
+             is one
   --truth    time_s, target, north_m, east_m; vnorth_mps, veast_mps, scenario
              where known
   --radar    keys of a TOML file: range_std_m, bearing_std_deg, extent_std_m,

@@ -111,6 +111,8 @@ class OwnShip:
         Velocity over ground, where recorded.
     heading_rad : ndarray (n,) or None
         Heading, clockwise from north, where recorded.
+    velocity_m2s2 : ndarray (n, 2, 2) or None
+        Covariance of the velocity, NaN where not known.
     """
 
     time_s: np.ndarray
@@ -119,6 +121,7 @@ class OwnShip:
     vnorth_mps: np.ndarray | None = None
     veast_mps: np.ndarray | None = None
     heading_rad: np.ndarray | None = None
+    velocity_m2s2: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.time_s)
@@ -164,6 +167,18 @@ class OwnShip:
             return np.column_stack([np.interp(time_s, known_s, v) for v in velocities_mps])
         moved_m = self.position_at(time_s) - self.position_at(time_s - _VELOCITY_SPAN_S)
         return moved_m / _VELOCITY_SPAN_S
+
+    def velocity_m2s2_at(self, time_s: np.ndarray) -> np.ndarray | None:
+        """Covariances (T, 2, 2) of recorded velocities, interpolated like them; None if unknown."""
+        if self.velocity_m2s2 is None or self._recorded_velocity() is None:
+            return None
+        known = np.isfinite(self.velocity_m2s2).all(axis=(1, 2))
+        if not known.any():
+            return None
+        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        entries = self.velocity_m2s2[known].reshape(-1, 4).T
+        at = [np.interp(time_s, self.time_s[known], entry) for entry in entries]
+        return np.column_stack(at).reshape(-1, 2, 2)
 
     def _recorded_velocity(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Times and velocities where they are finite, None where none is."""

@@ -12,7 +12,9 @@ from .model import OwnShip
 from .table import Table
 
 OWN_GAP_S = 10.0  # longest step that is interpolated across, unless told otherwise
+_ROUNDED = 1e-4  # of covariances written to six digits
 
+VELOCITY_COVARIANCE = ("vnorth_var_m2s2", "vnorth_veast_cov_m2s2", "veast_var_m2s2")
 COLUMNS = {
     "time_s": ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime"),
     "scan": ("scan", "scan_number", "scan_id"),
@@ -23,6 +25,8 @@ COLUMNS = {
     "veast_mps": ("own_veast_mps", "veast_mps"),
     "heading_deg": ("own_heading_deg", "heading_deg"),
     "heading_rad": ("own_heading_rad", "heading_rad"),
+    **{name: (name,) for name in VELOCITY_COVARIANCE},
+    "status": ("status",),
 }
 
 
@@ -41,7 +45,8 @@ class OwnRows:
         None when the file lists no scans.
     time_s : ndarray (n,)
     columns : dict of str to ndarray (n,)
-        ``north_m``, ``east_m`` and what else of velocity and ``heading_rad`` the file holds.
+        ``north_m``, ``east_m`` and what else of velocity, ``heading_rad`` and, (n, 2, 2),
+        ``velocity_m2s2`` the file holds.
     """
 
     table: Table
@@ -125,8 +130,10 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
     """Read an own-ship file.
 
     Columns: a time; ``own_north_m, own_east_m`` (or ``north_m, east_m``); where known
-    ``own_vnorth_mps, own_veast_mps, own_heading_deg``; ``scan`` when each row is a scan (positions
-    may then be absent); ``scenario``. An empty or NaN position is a gap.
+    ``own_vnorth_mps, own_veast_mps, own_heading_deg``, and the covariance of the velocity,
+    ``vnorth_var_m2s2, vnorth_veast_cov_m2s2, veast_var_m2s2``; ``scan`` when each row is a scan
+    (positions may then be absent); ``scenario``; ``status``, of which ``jumped`` is told. An empty
+    or NaN position is a gap.
 
     Parameters
     ----------
@@ -138,8 +145,8 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
     Raises
     ------
     RecordingError
-        When a column is missing, a cell cannot be read, a scan is listed twice, or no row follows
-        the header.
+        When a column is missing, a cell cannot be read, a covariance is none, a scan is listed
+        twice, or no row follows the header.
     """
     table = Table(path, COLUMNS)
     table.require("time_s")
@@ -157,6 +164,7 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
     )
     _check_scans_once(rows)
     _note_order(rows, notes)
+    _note_jumped(table, notes)
     return rows
 
 
@@ -178,7 +186,28 @@ def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
         motion["heading_rad"] = np.deg2rad(table.numbers("heading_deg"))
     elif "heading_rad" in table:
         motion["heading_rad"] = table.numbers("heading_rad")
+    if all(column in table for column in VELOCITY_COVARIANCE):
+        motion["velocity_m2s2"] = _velocity_m2s2(table)
     return motion
+
+
+def _velocity_m2s2(table: Table) -> np.ndarray:
+    """Covariances (n, 2, 2) of the velocity, NaN where a cell is empty."""
+    north, cross, east = (table.numbers(column) for column in VELOCITY_COVARIANCE)
+    for column, variance in zip(VELOCITY_COVARIANCE[::2], (north, east), strict=True):
+        table.check(column, ~(variance < 0.0), "a variance, not negative")
+    too_large = cross**2 > north * east * (1.0 + _ROUNDED)
+    table.check(VELOCITY_COVARIANCE[1], ~too_large, "a covariance within those of its variances")
+    return np.stack([north, cross, cross, east], axis=1).reshape(-1, 2, 2)
+
+
+def _note_jumped(table: Table, notes: list[str]) -> None:
+    status = table.text("status") if "status" in table else []
+    if "jumped" in status:
+        notes.append(
+            f"{table.path.name}: own ship's place is in doubt in {status.count('jumped')} rows, of "
+            f"status jumped (first in line {table.line(status.index('jumped'))})"
+        )
 
 
 def _note_order(rows: OwnRows, notes: list[str]) -> None:

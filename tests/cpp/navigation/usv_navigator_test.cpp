@@ -433,6 +433,145 @@ TYPED_TEST(EveryUsvModel, BelievesReadingsThatInsist) {
   EXPECT_FALSE(navigator.update(gnss(), elsewhere).rejected);
 }
 
+/// What the instruments say of a ship that goes north at 3 m/s, and is made to say.
+struct Told {
+  double log_mps, heading_rad;
+  Vec2 velocity_mps;
+};
+
+/// A ship that fixes of 3 m, of which a few go astray, a log, a compass and velocities over ground
+/// follow, the latter three changed by `fault` for some seconds after the first 150.
+class StraightNorth {
+ public:
+  using Navigator = UsvNavigator<UsvCurrentMotion>;
+
+  template <class Fault>
+  StraightNorth(double heading_rad, int seconds, Fault fault) {
+    EXPECT_EQ(navigator.start({.velocity_mps = {3, 0}, .heading_rad = heading_rad}), Status::kOk);
+    Draw draw(19);
+    for (int k = 1; k < 150 + seconds + 100; ++k) {
+      EXPECT_EQ(navigator.predict(1.0, {}), Status::kOk);
+      const Vec2 truth(3 * k, 0);
+      const bool is_stray = k % 30 == 20;
+      const Vec2 noisy = truth + Vec2(is_stray ? 60 : 0, 0) + 3 * draw.normals<2>();
+      Told told{3 + 0.1 * draw.normal(), deg(1) * draw.normal(),
+                Vec2(3, 0) + 0.1 * draw.normals<2>()};
+      if (k >= 150 && k < 150 + seconds) fault(told);
+      const Fix gnss{.covariance_m2 = 9 * Mat<double, 2, 2>::Identity()};
+      rejected[0] += navigator.update(gnss, noisy).rejected != is_stray;
+      rejected[1] += navigator.update(GroundVelocityInCurrent(), told.velocity_mps).rejected;
+      rejected[2] += navigator.update(Compass(), of(told.heading_rad)).rejected;
+      rejected[3] += navigator.update(SpeedLog(), of(told.log_mps)).rejected;
+      const Vec2 off = navigator.estimate().mean.head<2>() - truth;
+      farthest_m = std::max(farthest_m, off.norm());
+      strongest_current_mps =
+          std::max(strongest_current_mps, navigator.estimate().mean.tail<2>().norm());
+    }
+  }
+
+  Navigator navigator;
+  std::array<int, 4> rejected{};  ///< fixes but the stray ones, velocities, headings, speeds
+  double farthest_m = 0, strongest_current_mps = 0;
+};
+
+void nothing(Told&) {}
+
+// Good fixes and one wrong instrument: she is where the fixes are, and it is the one rejected.
+TEST(UsvNavigator, IsNotMovedByAnInstrumentThatGoodFixesRefute) {
+  for (const double knots : {15.0, 30.0, 100.0, 199.0})
+    for (const int seconds : {15, 100}) {
+      const StraightNorth ship(0, seconds, [&](Told& told) { told.log_mps = knots * 0.5144; });
+      EXPECT_LT(ship.farthest_m, 5) << knots;
+      EXPECT_LT(ship.strongest_current_mps, 0.5) << knots;
+      EXPECT_GE(ship.rejected[3], seconds) << knots;
+      EXPECT_LE(ship.rejected[0] + ship.rejected[1] + ship.rejected[2], 6) << knots;
+    }
+  for (const Vec2& wrong : {Vec2(0, 0), Vec2(20, 0), Vec2(-3, 0), Vec2(3, 2)}) {
+    const StraightNorth ship(0, 30, [&](Told& told) { told.velocity_mps = wrong; });
+    EXPECT_LT(ship.farthest_m, 5) << wrong.transpose();
+    EXPECT_GE(ship.rejected[1], 30) << wrong.transpose();
+    EXPECT_LE(ship.rejected[0] + ship.rejected[2] + ship.rejected[3], 6) << wrong.transpose();
+  }
+  for (const int seconds : {20, 100}) {
+    const StraightNorth ship(0, seconds, [](Told& told) { told.heading_rad += kPi<double>; });
+    EXPECT_LT(ship.farthest_m, 5);
+    EXPECT_GE(ship.rejected[2], seconds);
+    EXPECT_LT(std::abs(ship.navigator.estimate().mean[2]), deg(5));
+  }
+}
+
+TEST(UsvNavigator, BelievesACompassOrALogThatOnlyTheCurrentDenies) {
+  const StraightNorth turned(0, 60, [](Told& told) { told.heading_rad += deg(20); });
+  EXPECT_LT(turned.farthest_m, 5);
+  EXPECT_NEAR(turned.rejected[2], 2 * UsvOutliers{}.rejections, 2) << "there and back";
+  EXPECT_NEAR(turned.strongest_current_mps, 2 * 3 * std::sin(deg(10)), 0.2);
+  const StraightNorth slower(0, 60, [](Told& told) { told.log_mps -= 1; });
+  EXPECT_LT(slower.farthest_m, 5);
+  EXPECT_NEAR(slower.rejected[3], 2 * UsvOutliers{}.rejections, 2);
+  EXPECT_NEAR(slower.strongest_current_mps, 1, 0.2);
+}
+
+// Speed astern over the stern is the way ahead: compass and log are right together or not at all.
+TEST(UsvNavigator, BelievesACompassAndALogThatInsistTogether) {
+  const StraightNorth ship(kPi<double>, 0, nothing);
+  EXPECT_LT(ship.farthest_m, 15);
+  const auto& mean = ship.navigator.estimate().mean;
+  EXPECT_NEAR(mean[2], 0, deg(2));
+  EXPECT_NEAR(mean[3], 3, 0.2);
+  EXPECT_LT(mean.tail<2>().norm(), 0.3);
+}
+
+// Five times as many speeds as fixes: log and velocities agree that she is faster, and are right.
+TEST(UsvNavigator, FollowsAVesselThatChangesHerSpeed) {
+  for (const double faster_mps : {2.0, 5.0, 9.0}) {
+    UsvNavigator<UsvCurrentMotion> navigator;
+    ASSERT_EQ(navigator.start({.velocity_mps = {3, 0}}), Status::kOk);
+    Draw draw(21);
+    double north_m = 0, farthest_m = 0;
+    for (int k = 1; k < 1000; ++k) {
+      const double speed_mps = 3 + std::clamp(0.2 * 3 * (k - 500), 0.0, faster_mps);
+      north_m += 0.2 * speed_mps;
+      ASSERT_EQ(navigator.predict(0.2, {}), Status::kOk);
+      if (k % 5 == 0)
+        (void)navigator.update(Fix{.covariance_m2 = 9 * Mat<double, 2, 2>::Identity()},
+                               Vec2(Vec2(north_m, 0) + 2 * draw.normals<2>()));
+      (void)navigator.update(GroundVelocityInCurrent(),
+                             Vec2(Vec2(speed_mps, 0) + 0.1 * draw.normals<2>()));
+      (void)navigator.update(Compass(), of(deg(1) * draw.normal()));
+      (void)navigator.update(SpeedLog(), of(speed_mps + 0.1 * draw.normal()));
+      const Vec2 off = navigator.estimate().mean.head<2>() - Vec2(north_m, 0);
+      if (k > 100) farthest_m = std::max(farthest_m, off.norm());
+    }
+    EXPECT_LT(farthest_m, 15) << faster_mps;
+    EXPECT_LT(navigator.estimate().mean.tail<2>().norm(), 0.2) << faster_mps;
+  }
+}
+
+TYPED_TEST(EveryUsvModel, IsNotMovedByVelocitiesThatGoodFixesRefute) {
+  const std::vector<Instant> log = mission(20, kStatesOf<TypeParam> == 5 ? kNoBias : kBias);
+  for (const Vec2& wrong : {Vec2(0, 0), Vec2(10, -10)}) {
+    UsvNavigator<TypeParam> navigator;
+    ASSERT_EQ(navigator.start(start_of(log.front())), Status::kOk);
+    int rejected_fixes = 0;
+    for (std::size_t k = 1; k < 500; ++k) {
+      const bool is_wrong = k >= 300 && k < 340;
+      ASSERT_EQ(navigator.predict(1.0, log[k].imu), Status::kOk);
+      rejected_fixes += navigator.update(gnss(), log[k].fix).rejected;
+      (void)navigator.update(Compass(), of(log[k].compass));
+      const Vec2 told = is_wrong ? wrong : log[k].velocity;
+      if constexpr (kStatesOf<TypeParam> == 7) {
+        EXPECT_EQ(navigator.update(GroundVelocityInCurrent(), told).rejected, is_wrong) << k;
+      } else {
+        EXPECT_EQ(navigator.update(GroundVelocity(), told).rejected, is_wrong) << k;
+      }
+      const Vec2 position = navigator.estimate().mean.template head<2>();
+      if (k < 50) continue;
+      EXPECT_LT((position - log[k].position).norm(), 8) << k;
+    }
+    EXPECT_LE(rejected_fixes, 2);
+  }
+}
+
 /// Fixes that are `off` from the truth for so many steps.
 template <class Navigator>
 void expect_absurd_readings_to_do_nothing(const std::vector<Instant>& log, double off, int steps) {
@@ -659,6 +798,18 @@ TEST(UsvSensors, RateOfTurnTellsTheBiasOfTheGyro) {
     EXPECT_TRUE(navigator.update(RateOfTurn{.gyro_rad_s = gyro}, of(turn)));
   }
   EXPECT_NEAR(navigator.estimate().mean[7], deg(0.3), deg(0.01));
+}
+
+TEST(UsvSensors, ARateOfTurnThatHeadingsRefuteIsNotTheBiasOfTheGyro) {
+  UsvNavigator<UsvBiasMotion> navigator;
+  ASSERT_EQ(navigator.start(UsvStart{}), Status::kOk);
+  for (int k = 0; k < 60; ++k) {
+    ASSERT_EQ(navigator.predict(1.0, {}), Status::kOk);
+    ASSERT_TRUE(navigator.update(Compass(), of(0))) << k;
+    const bool is_wrong = k >= 20 && k < 50;
+    EXPECT_EQ(navigator.update(RateOfTurn{}, of(is_wrong ? deg(10) : 0)).rejected, is_wrong) << k;
+  }
+  EXPECT_NEAR(navigator.estimate().mean[7], 0, deg(0.05));
 }
 
 TEST(UsvSensors, GroundVelocityTightensTheVelocity) {

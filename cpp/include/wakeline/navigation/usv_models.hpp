@@ -312,6 +312,14 @@ struct UsvCurrentMotion {
     return motion;
   }
 
+  /// The current that is left of the velocity over ground of one state for the heading and the
+  /// speed through the water of another.
+  template <class Scalar>
+  static Vec<Scalar, 2> current_left(const Vec<Scalar, kN>& over_ground,
+                                     const Vec<Scalar, kN>& through_water) noexcept {
+    return over_ground.template tail<2>() + way_mps(over_ground) - way_mps(through_water);
+  }
+
   /// The speed is the start's velocity along its heading; the current begins at zero.
   template <class Scalar>
   [[nodiscard]] Gaussian<kN, Scalar> start_belief(const UsvStart& start) const noexcept {
@@ -338,6 +346,12 @@ struct UsvCurrentMotion {
   template <class Scalar>
   [[nodiscard]] Scalar turn_rate(const Vec<Scalar, kN>& x) const noexcept {
     return Scalar(input.imu.yaw_rate_rad_s) - Scalar(input.bias_share) * x[4];
+  }
+
+  /// Velocity through the water.
+  template <class Scalar>
+  static Vec<Scalar, 2> way_mps(const Vec<Scalar, kN>& x) noexcept {
+    return x[3] * body_to_north_east(x[2]).col(0);
   }
 
   /// Unit vector of the heading in the middle of the step.

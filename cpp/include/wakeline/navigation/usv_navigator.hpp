@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -50,10 +51,18 @@ struct UsvLeg {
 /// - A reading outside the gate is rejected. When more than `rejections` of its kind in a row were,
 ///   it is the belief that is wrong: the states are widened by the likeliest error that would
 ///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
+/// - It is not, where a position was believed since the first of them, and no three in a row were
+///   rejected since: place and velocity over ground are then right. Velocities over ground stay
+///   rejected until one lies in the gate of 0.9. Compass and log move the current in place of them,
+///   and are rejected where it would be stronger than now and outside the gate of
+///   `current_std_mps`. Log and velocities that insist both, before more than three positions came,
+///   are believed. Likewise rates of turn stay rejected while headings are believed.
 /// - An absurd reading, finite but more than a million standard deviations off (a thousand in
 ///   `float`) or so large that its last digit is more than one, says nothing of the belief: it is
 ///   rejected however often it comes, and not counted. A belief widened to it would have no digits
 ///   left.
+/// - Each fix is one to it: it does not find that a receiver froze. Who reads a log marks that
+///   (`recording.read_nmea` in Python does).
 /// - The heading of the estimate is in [-pi, pi].
 ///
 /// Model: `UsvMotion`, `UsvBiasMotion` or `UsvCurrentMotion`; FilterType: `Ekf`, `Ukf` (additive
@@ -79,8 +88,10 @@ class UsvNavigator {
         model_(model),
         unmeasured_(validated(unmeasured)),
         rejections_(validated(outliers).rejections),
-        gate1_(outliers.gate),
-        gate2_(outliers.gate) {}
+        gates1_{EllipsoidalGate<1, Scalar>(outliers.gate),
+                EllipsoidalGate<1, Scalar>(narrower(outliers.gate))},
+        gates2_{EllipsoidalGate<2, Scalar>(outliers.gate),
+                EllipsoidalGate<2, Scalar>(narrower(outliers.gate))} {}
 
   Status start(const UsvStart& start) noexcept {
     return this->start(model_.template start_belief<Scalar>(start));
@@ -90,6 +101,8 @@ class UsvNavigator {
     const Status status = filter_.start(belief);
     if (status != Status::kOk) return status;
     rejected_ = {};
+    refuted_ = {};
+    told_ = {};
     wrap();
     return status;
   }
@@ -120,21 +133,25 @@ class UsvNavigator {
       return rejected(reading);
     }
     if (!reading) return reading;
-    int& in_a_row = rejected_[static_cast<std::size_t>(rows_read<Sensor>(kComponents)[0])];
-    if (gate<Sensor::kMeasurements>().contains(reading.nis)) {
-      reading.status = filter_.update(sensor, z).status;
-    } else if (in_a_row < rejections_) {
-      ++in_a_row;
+    constexpr int kKind = kKindOf<Sensor>;
+    const State before = estimate();
+    if constexpr (Sensor::kMeasurements == 1 && !kIsRate<Sensor>)
+      told_[kKind] = before.mean[kKind] + reading.innovation[0];
+    const bool fits = gate<Sensor>().contains(reading.nis);
+    if (!fits && (rejected_[kKind] < rejections_ || !widen(sensor, reading.innovation))) {
+      rejected_[kKind] = std::min(rejected_[kKind] + 1, rejections_);
+      judge_others(kKind);
       return rejected(reading);
-    } else {
-      const State before = estimate();
-      widen(sensor, reading.innovation);
-      reading.status = filter_.update(sensor, z).status;
-      reading.widened = bool(reading);
-      if (!reading) (void)filter_.assign(before);
     }
-    if (!reading) return reading;
-    in_a_row = 0;
+    reading.status = filter_.update(sensor, z).status;
+    reading.widened = !fits && bool(reading);
+    if (!reading) {
+      (void)filter_.assign(before);
+      return reading;
+    }
+    rejected_[kKind] = 0;
+    refuted_[kKind] = 0;
+    judge_others(kKind);
     wrap();
     return reading;
   }
@@ -163,14 +180,36 @@ class UsvNavigator {
     return Status::kOk;
   }
 
-  /// Saves or restores belief and counts of rejections.
+  /// Saves or restores the belief and what is known of rejections.
   void archive(Archive& fields) {
     filter_.archive(fields);
     fields(rejected_);
+    fields(refuted_);
+    fields(told_);
   }
 
  private:
   static constexpr int kHeadingRow = index_of(kComponents, kHeading);
+  static constexpr int kGyroBiasRow = index_of(kComponents, kGyroBias);
+  static constexpr int kSpeedRow = index_of(kComponents, kSpeedThroughWater);
+  static constexpr int kCurrentRow = index_of(kComponents, kCurrentNorth);
+  static constexpr bool kHasCurrent = kCurrentRow >= 0;
+
+  template <class Sensor>
+  static constexpr int kKindOf = rows_read<Sensor>(kComponents)[0];
+
+  /// Whether a sensor tells how fast changes what another one tells: velocity, rate of turn.
+  template <class Sensor>
+  static constexpr bool kIsRate =
+      Sensor::kReads[0] == Component::kVnorth || Sensor::kReads[0] == kCurrentNorth ||
+      Sensor::kReads[0] == kGyroBias;
+
+  template <class Sensor>
+  static constexpr bool kTellsSpeed =
+      Sensor::kReads[0] == kCurrentNorth || Sensor::kReads[0] == kSpeedThroughWater;
+
+  static constexpr int kFew = 3;                   ///< misfits in a row that are no chance
+  static constexpr double kBackProbability = 0.9;  ///< of the gate of rates once refuted
   static constexpr Scalar kDigit = std::numeric_limits<Scalar>::epsilon();
   static constexpr Scalar kFarthestStds = kDigit < 1e-10F ? 1e6F : 1e3F;
 
@@ -180,13 +219,20 @@ class UsvNavigator {
     return model;
   }
 
-  template <int M>
+  static ChiSquareGate narrower(const ChiSquareGate& gate) noexcept {
+    return {std::min(gate.probability, kBackProbability)};
+  }
+
+  template <class Sensor>
   [[nodiscard]] const auto& gate() const noexcept {
-    static_assert(M == 1 || M == 2, "wakeline: the navigator takes readings of one or two numbers");
-    if constexpr (M == 1)
-      return gate1_;
+    constexpr int kM = Sensor::kMeasurements;
+    static_assert(kM == 1 || kM == 2,
+                  "wakeline: the navigator takes readings of one or two numbers");
+    const std::size_t which = kIsRate<Sensor> && refuted_[kKindOf<Sensor>] > 0;
+    if constexpr (kM == 1)
+      return gates1_[which];
     else
-      return gate2_;
+      return gates2_[which];
   }
 
   template <class Reading>
@@ -216,11 +262,79 @@ class UsvNavigator {
     (void)filter_.assign(belief);
   }
 
+  /// What readings of a kind say of other kinds that are being rejected: positions of all of them,
+  /// headings of the rate of turn. One that is believed refutes them, a few rejected in a row take
+  /// that back.
+  void judge_others(int kind) noexcept {
+    const int misfits = rejected_[static_cast<std::size_t>(kind)];
+    const bool is_position = kind == index_of(kComponents, Component::kNorth);
+    for (int other = 0; other < kStates; ++other) {
+      const bool is_judge = other == kGyroBiasRow ? kind == kHeadingRow : is_position;
+      const auto k = static_cast<std::size_t>(other);
+      if (!is_judge || other == kind) continue;
+      if (misfits == 0) refuted_[k] = rejected_[k] > 0 ? std::min(refuted_[k] + 1, 2 * kFew) : 0;
+      if (misfits >= kFew) refuted_[k] = 0;
+    }
+  }
+
+  /// Makes room in the belief for a reading that insists; false where it is refuted.
+  template <class Sensor, int M>
+  bool widen(const Sensor& sensor, const Vec<Scalar, M>& innovation) noexcept {
+    if (refuted_[kKindOf<Sensor>] > 0 && !(kTellsSpeed<Sensor> && speed_changed())) {
+      if constexpr (kIsRate<Sensor>) return false;
+      if constexpr (kHasCurrent && M == 1) return blame_current(kKindOf<Sensor>);
+    }
+    doubt_all(sensor, innovation);
+    return true;
+  }
+
+  /// Whether log and velocities over ground insist both, at a rate at which few positions could
+  /// refute them.
+  [[nodiscard]] bool speed_changed() const noexcept {
+    if constexpr (kHasCurrent)
+      return std::min(rejected_[kSpeedRow], rejected_[kCurrentRow]) >= rejections_ &&
+             std::max(refuted_[kSpeedRow], refuted_[kCurrentRow]) <= kFew;
+    return false;
+  }
+
+  /// Takes heading or speed through the water as they are read, or both where both insist.
+  bool blame_current(int row) noexcept {
+    const int other = row == kHeadingRow ? kSpeedRow : kHeadingRow;
+    const bool both = rejected_[static_cast<std::size_t>(other)] >= rejections_;
+    return blame_current(std::array{row}) || (both && blame_current(std::array{row, other}));
+  }
+
+  /// The same of these rows. Place and velocity over ground stay as they are: the current has the
+  /// rest, and is doubted by as much. False where that is a current that the model does not expect,
+  /// and a stronger one than now.
+  template <std::size_t N>
+  bool blame_current(const std::array<int, N>& rows) noexcept {
+    const State now = estimate();
+    State told = now;
+    for (const int row : rows) {
+      told.mean[row] = told_[static_cast<std::size_t>(row)];
+      told.covariance.row(row).setZero();
+      told.covariance.col(row).setZero();
+      told.covariance(row, row) = square(told.mean[row] - now.mean[row]);
+    }
+    const Vec<Scalar, 2> current = Model::current_left(now.mean, told.mean);
+    const Vec<Scalar, 2> before = now.mean.template tail<2>();
+    const Scalar strength = current.squaredNorm();
+    const bool expected = gates2_[0].contains(strength / square(Scalar(model_.current_std_mps)));
+    if (!expected && strength > before.squaredNorm()) return false;
+    told.mean.template tail<2>() = current;
+    told.covariance.template bottomRightCorner<2, 2>() +=
+        (current - before) * (current - before).transpose();
+    return filter_.assign(told) == Status::kOk;
+  }
+
+  static Scalar square(Scalar x) noexcept { return x * x; }
+
   /// P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v: of what the belief itself takes for the likeliest error
   /// behind the innovation. After a silence that is of the velocity or the current that the
   /// position comes from, too.
   template <class Sensor, int M>
-  void widen(const Sensor& sensor, const Vec<Scalar, M>& innovation) noexcept {
+  void doubt_all(const Sensor& sensor, const Vec<Scalar, M>& innovation) noexcept {
     constexpr auto kRows = rows_read<Sensor>(kComponents);
     State belief = estimate();
     Vec<Scalar, kReadsOf<Sensor>> read;
@@ -240,9 +354,12 @@ class UsvNavigator {
   Model model_;
   ImuNoise unmeasured_;
   int rejections_;
-  EllipsoidalGate<1, Scalar> gate1_;
-  EllipsoidalGate<2, Scalar> gate2_;
-  std::array<int, kStates> rejected_{};  ///< in a row, by the first state that the sensor reads
+  std::array<EllipsoidalGate<1, Scalar>, 2> gates1_;  ///< the second for rates once refuted
+  std::array<EllipsoidalGate<2, Scalar>, 2> gates2_;
+  // By kind of sensor, which is the first state that it reads:
+  std::array<int, kStates> rejected_{};  ///< in a row, counted up to `rejections_`
+  std::array<int, kStates> refuted_{};   ///< by how many readings believed since, counted up to 6
+  std::array<Scalar, kStates> told_{};   ///< heading, speed: as they were last read
 };
 
 }  // namespace wakeline

@@ -26,7 +26,7 @@ class Clock:
     where the clock was, rather than from the time in doubt, that was a late sentence, where it is
     before the last by up to `reorder_s`, or else a wrong time. If none does, there was a gap, or
     the clock was set back. A date is wrong when the date before it is back within three dated
-    sentences.
+    sentences, and from where it stays the same over midnight until it changes.
 
     **Sections.** Where the clock was set back a section begins. Within a section times grow: late
     sentences are put in order. A clock set back by a step or so more than `reorder_s`, or less,
@@ -69,11 +69,11 @@ class Clock:
         day_offset = _day_offset(unrolled_s, clock_s, believed if knows_day else day, first_day)
         for k in np.flatnonzero(wrong):
             report.add(int(line[k]), "time", "the time leaps, and the next ones do not follow it")
-        for k in np.flatnonzero(~wrong & (day - day_offset != _midnights(unrolled_s, clock_s))):
-            if np.isfinite(day[k]):
-                report.add(
-                    int(line[k]), "date", "the date leaps, and the next ones do not follow it"
-                )
+        off_days = day - day_offset - _midnights(unrolled_s, clock_s)
+        for k in np.flatnonzero(~wrong & np.isfinite(day) & (off_days != 0)):
+            stale = "the date is that of the day before"
+            leaps = "the date leaps, and the next ones do not follow it"
+            report.add(int(line[k]), "date", stale if off_days[k] == -1 else leaps)
         self.time_s = np.where(wrong, np.nan, unrolled_s + DAY_S * day_offset)
         self.set_back_lines = self._set_back_lines(set_back, reorder_s)
         self._anchors = self._all_anchors(report.lines)
@@ -183,7 +183,7 @@ def _day_offset(
     dated = np.flatnonzero(np.isfinite(day))
     if len(dated) == 0:
         return np.full(len(day), np.nan_to_num(first_day))
-    told = (day - _midnights(unrolled_s, clock_s))[dated]
+    told = _over_midnight((day - _midnights(unrolled_s, clock_s))[dated], day[dated])
     edges = [0, *(np.flatnonzero(np.diff(told) != 0) + 1).tolist(), len(told)]
     for (a, b), (_, c) in itertools.pairwise(itertools.pairwise(edges)):
         if 0 < a and b - a <= _DOUBTED and told[b:c][0] == told[a - 1]:
@@ -195,6 +195,19 @@ def _day_offset(
         unrolled_s - unrolled_s[dated[before]]
     )
     return told[np.where(nearer, after, before)]
+
+
+def _over_midnight(told: np.ndarray, day: np.ndarray) -> np.ndarray:
+    """Days (n,) to add as dates tell, those before where a date (n,) stays the same over midnight.
+
+    It is stale until it changes.
+    """
+    told = told.copy()
+    changes = np.flatnonzero(np.diff(day) != 0) + 1
+    for first in np.flatnonzero((np.diff(told) == -1) & (np.diff(day) == 0)) + 1:
+        end = np.append(changes[changes > first], len(told))[0]
+        told[first:end] = told[first - 1]
+    return told
 
 
 def _midnights(unrolled_s: np.ndarray, clock_s: np.ndarray) -> np.ndarray:

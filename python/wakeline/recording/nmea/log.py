@@ -252,7 +252,7 @@ class NmeaReport:
     examples: list[NmeaProblem] = field(default_factory=list)
     repeated: int = 0
     displaced_lines: list[int] = field(default_factory=list)
-    max_examples: int = 1000
+    max_examples: int = 100_000
 
     def add(self, line: int, kind: str, reason: str) -> None:
         """Count a problem and keep it while there is room."""

@@ -127,7 +127,7 @@ def read_nmea(
     first_day, path, report = _day(date), Path(path), NmeaReport()
     rows = _Rows()
     for sentence in sentences(_octets(path), report):
-        _READERS[sentence.kind](sentence, rows)
+        rows.read(sentence)
         for kind, reason in sentence.faults:
             report.add(sentence.line, kind, reason)
     if not rows.timed:
@@ -135,7 +135,7 @@ def read_nmea(
     clock = Clock(*zip(*rows.timed, strict=True), first_day, reorder_s, report)
     report.examples.sort(key=_line)
     series = {name: _series(kind, rows.of[name], clock, report) for name, kind in SERIES.items()}
-    invalid_notes = list(_invalid_notes(series))
+    invalid_notes = [*_empty_notes(rows.empty), *_invalid_notes(series)]
     series["compass"] = _with_variation(series["compass"], rows.variation, variation_deg)
     series["heading"] = _true_headings(series["heading"], series["compass"])
     series["fixes"] = _marked(series, clock, max_speed_mps)
@@ -204,12 +204,23 @@ class _Rows:
     variation : list of (line, radians)
     of : dict of str to list of tuple
         For each series rows of line, sentence, index in `timed` or None, valid, and its values.
+    empty : dict of str to list of int
+        For each kind of sentence lines where the fields of what it is there for are empty.
     """
 
     def __init__(self) -> None:
         self.timed: list[tuple[int, float, float]] = []
         self.variation: list[tuple[int, float]] = []
         self.of: dict[str, list[tuple]] = {name: [] for name in SERIES}
+        self.empty: dict[str, list[int]] = {}
+
+    def read(self, s: Sentence) -> None:
+        """Add what a sentence says."""
+        names, _ = _IS_FOR.get(s.kind, ((), ""))
+        before = [len(self.of[name]) for name in names]
+        _READERS[s.kind](s, self)
+        if names and not s.faults and before == [len(self.of[name]) for name in names]:
+            self.empty.setdefault(s.kind, []).append(s.line)
 
     def stamp(self, s: Sentence, time_of_day_s: float, day: float = math.nan) -> int | None:
         """Note a time; its index in `timed`, or None for an empty field."""
@@ -358,6 +369,16 @@ _READERS = {
     "VBW": _vbw,
     "ROT": _rot,
     "ZDA": _zda,
+}
+
+# The series to which a kind of sentence should add, and what it is to tell.
+_IS_FOR = {
+    **dict.fromkeys(("RMC", "GGA", "GNS", "GLL"), (("fixes",), "place")),
+    "VTG": (("ground",), "speed"),
+    **dict.fromkeys(("HDT", "THS"), (("heading",), "heading")),
+    **dict.fromkeys(("HDG", "HDM"), (("compass",), "heading")),
+    "VHW": (("heading", "compass", "water"), "heading or speed"),
+    "ROT": (("turn",), "rate of turn"),
 }
 
 
@@ -601,6 +622,12 @@ def _blind_s(log: NavigationLog) -> np.ndarray:
             stretches_s.append(np.diff([heard_s.min(), *told_s, heard_s.max()]))
     blind_s = np.concatenate(stretches_s)
     return blind_s[blind_s > _BLIND_S]
+
+
+def _empty_notes(empty: dict[str, list[int]]) -> Iterator[str]:
+    for kind, lines in empty.items():
+        _, what = _IS_FOR[kind]
+        yield f"{len(lines)} {kind} sentences tell no {what} (first in line {lines[0]})"
 
 
 def _invalid_notes(series: dict[str, Series]) -> Iterator[str]:

@@ -56,11 +56,12 @@ class Sentence:
         Fields with commas between.
     """
 
-    __slots__ = ("faults", "fields", "kind", "line")
+    __slots__ = ("_written", "faults", "fields", "kind", "line")
 
     def __init__(self, line: int, kind: str, body: str) -> None:
         self.line = line
         self.kind = kind
+        self._written = body
         self.fields = [field.strip() for field in body.upper().split(",")]
         self.faults: list[tuple[str, str]] = []
 
@@ -170,9 +171,8 @@ class Sentence:
         return value if low <= value <= high else self._fault("range", k, f"{low:g} to {high:g}")
 
     def _fault(self, kind: str, k: int, wanted: str) -> float:
-        self.faults.append(
-            (kind, f"{self.kind} field {k + 1}: wanted {wanted}, {_got(self.text(k))}")
-        )
+        written = self._written.split(",")[k].strip() if self.text(k) else ""
+        self.faults.append((kind, f"{self.kind} field {k + 1}: wanted {wanted}, {_got(written)}"))
         return math.nan
 
 
