@@ -129,6 +129,9 @@ def test_a_radar_of_ones_own(tmp_path, head):
         ("[radar]\nbearing_std_deg = -1", "[radar] bearing_std_deg = -1.0"),
         ("[radar]\nperiod_s = -2.5", "[radar] period_s = -2.5"),
         ("[radar]\nrange_std_m = inf", "[radar] range_std_m = inf"),
+        (f"[radar]\nrange_std_m = 1{400 * '0'}", "[radar] range_std_m must be below 1.79"),
+        (f"[radar]\nrange_std_m = 1{5000 * '0'}", "not TOML"),
+        ("[models]\ncruising_probability = 2.0", "[models] cruising_probability = 2.0"),
         ("[radar\n", "not TOML"),
     ],
 )
@@ -142,6 +145,11 @@ def test_what_is_wrong_is_named(tmp_path, capsys, text, wanted):
     assert error.startswith("wakeline: ")
     assert error.count("\n") == 1
     assert wanted in error
+
+
+def test_no_vessel_need_be_taken_for_a_ship(tmp_path):
+    settings = read(tmp_path, "[models]\ncruising_probability = 0")
+    assert settings.models["cruising_probability"] == 0.0
 
 
 def test_a_radar_that_does_not_exist(capsys):

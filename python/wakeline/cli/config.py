@@ -252,8 +252,9 @@ def _check_type(path: Path, place: str, value: Any, wanted: type) -> None:
     good = (int, float) if wanted is float else wanted
     if isinstance(value, bool) or not isinstance(value, good):
         raise ConfigError(f"{path}: {place} must be {_WHAT[wanted]}, got {value!r}")
-    if wanted is int and not abs(value) < _MANY:
-        raise ConfigError(f"{path}: {place} must be below {_MANY}, got {value}")
+    below = _MANY if wanted is int else sys.float_info.max
+    if isinstance(value, int) and not abs(value) < below:
+        raise ConfigError(f"{path}: {place} must be below {below}, got {value}")
 
 
 def _check_values(
@@ -273,7 +274,7 @@ def _check_engine(section: str, values: dict[str, Value]) -> None:
     for key, value in values.items():
         if isinstance(value, float) and not math.isfinite(value):
             raise ValueError(f"{_engine_name(key)} must be finite, got {value}")
-        if section == "models" and not value > 0:
+        if section == "models" and key != "cruising_probability" and not value > 0:
             raise ValueError(f"{key} must be positive, got {value}")
     if section == "radar" and values["period_s"] < 0:
         raise ValueError(f"period_s must not be negative, got {values['period_s']}")
@@ -321,10 +322,10 @@ def _read_radar(name: str) -> tuple[Path, dict[str, Any]]:
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{path}: not TOML: {error}") from None
     except UnicodeDecodeError:
         raise ConfigError(f"{path}: not text in UTF-8") from None
+    except ValueError as error:  # TOMLDecodeError, and whole numbers of thousands of digits
+        raise ConfigError(f"{path}: not TOML: {error}") from None
 
 
 def _radars():
