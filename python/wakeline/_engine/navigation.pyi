@@ -416,7 +416,12 @@ class UsvNavigator:
 
     A reading whose NIS is outside the gate is rejected. When more than `rejections` of one sensor in a
     row were, it is the belief that is widened, and the reading is taken, unless it is more than a
-    million standard deviations off.
+    million standard deviations off, or positions that are believed meanwhile refute it. Then velocities
+    stay rejected, and compass and log may move the current alone, but not beyond what `current_std_mps`
+    lets expect, unless it was stronger before. Headings that are believed refute rates of turn.
+
+    Every position given is one to it: it does not find that a receiver froze. `recording.read_nmea`
+    marks such fixes in a log.
 
     Parameters
     ----------
@@ -436,7 +441,7 @@ class UsvNavigator:
     gate_probability : float
         That a good reading is inside the gate.
     rejections : int
-        In a row, before a reading is believed nevertheless.
+        In a row, before a reading is believed nevertheless; of 0 all are, and nothing is refuted.
     alpha, beta, kappa : float
         Of the unscented transforms.
 

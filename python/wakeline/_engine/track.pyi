@@ -145,27 +145,32 @@ class TrackerConfig:
 
 class VesselModels:
     """
-    The motion models of a tracker: steady, restless and turning.
+    The motion models of a tracker: cruising, steady, restless and turning.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
     @staticmethod
     def ships() -> VesselModels:
         """
-        Of ships under way, which go straight for most of an hour.
+        Of ships under way, which alter course as ships do.
         """
     def __eq__(self, other: object) -> bool: ...
     def __init__(
         self,
         *,
+        cruising_psd_m2s3: float = 0.0001,
+        cruising_course_psd_rad2s: float = 1e-06,
         steady_psd_m2s3: float = 0.005,
         steady_course_psd_rad2s: float = 0.004,
         restless_psd_m2s3: float = 0.2,
-        restless_course_psd_rad2s: float = 0.055,
+        restless_course_psd_rad2s: float = 0.08,
         turning_psd_m2s3: float = 3.0,
         turning_course_psd_rad2s: float = 0.05,
         turn_rate_psd_rad2s3: float = 0.0003,
         prior_turn_rate_std_rad_s: float = 0.2,
+        cruising_probability: float = 0.95,
+        cruising_sojourn_s: float = 1500.0,
+        settling_s: float = 600.0,
         steady_sojourn_s: float = 300.0,
         restless_sojourn_s: float = 90.0,
         turning_sojourn_s: float = 80.0,
@@ -174,10 +179,15 @@ class VesselModels:
         """
         The settings by name.
         """
+    cruising_course_psd_rad2s: float
+    cruising_probability: float
+    cruising_psd_m2s3: float
+    cruising_sojourn_s: float
     prior_turn_rate_std_rad_s: float
     restless_course_psd_rad2s: float
     restless_psd_m2s3: float
     restless_sojourn_s: float
+    settling_s: float
     steady_course_psd_rad2s: float
     steady_psd_m2s3: float
     steady_sojourn_s: float
