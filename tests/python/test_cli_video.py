@@ -339,8 +339,8 @@ def test_recordings_as_they_are(tmp_path, change):
     tracks = read_tracks(tmp_path / "tracks.csv")
     assert len(tracks.ids()) == len(SHIPS)
     assert (tracks.status == "confirmed").all()
-    for name in SHIPS:
-        assert track_of(tracks, name)[1][-3:].max() < 25.0
+    for name in SHIPS:  # a mirrored turn shows ships by up to a period of 2.5 s too early or late
+        assert track_of(tracks, name)[1][-3:].max() < 30.0
 
 
 def tracks_of(turns, folder, *options):
