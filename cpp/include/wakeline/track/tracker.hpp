@@ -605,10 +605,17 @@ class Tracker {
     return config_.initial_existence * config_.clutter_density_per_m2 / echo.density;
   }
 
+  /// With the covariance of nominal and wild errors together.
+  [[nodiscard]] Gaussian<2> as_it_may_err(const Gaussian<2>& plot) const noexcept {
+    const double w = config_.wild_probability;
+    return {plot.mean, (1.0 - w + w * config_.wild_variance()) * plot.covariance};
+  }
+
   void start_track(const FreePlot& earlier, const Echo& echo) noexcept {
     if (!has_room_for(existence_of_start(echo))) return;
     Gaussian<4> belief =
-        two_point<double>(earlier.position, echo.position, echo.time_s - earlier.time_s);
+        two_point<double>(as_it_may_err(earlier.position), as_it_may_err(echo.position),
+                          echo.time_s - earlier.time_s);
     if (config_.start_speed_factor > 0.0)
       belief = with_speed_prior(belief, std::sqrt(resting_velocity().covariance(0, 0)));
     TrackType* track = open_track(echo.time_s, belief, existence_of_start(echo));
