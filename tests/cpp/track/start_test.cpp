@@ -10,6 +10,7 @@
 
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
+#include "track/scene.hpp"
 #include "wakeline/track/radar.hpp"
 
 namespace wakeline {
@@ -103,6 +104,28 @@ TEST(RadarPlots, HaveTheErrorsThatTheirCovarianceSays) {
   }
   EXPECT_NEAR(nis, 2.0, 0.06);
   EXPECT_LT(mean.norm(), 2.0);
+}
+
+TEST(Start, IsAsDoubtfulAsPlotsThatMayBeWild) {
+  const test::Boat boat{{1500.0, 800.0}, {5.0, -3.0}};
+  const auto covariance_at_start = [&](double wild_probability) {
+    const TrackerConfig config{.wild_probability = wild_probability,
+                               .wild_scale = 4.0,
+                               .start_speed_factor = 0.0};
+    test::VesselTracker tracker(test::kTestRadar, config, vessel_imm(test::kTestRadar));
+    for (const double time_s : {0.0, 2.5}) {
+      const Plot plot = test::exact_plot(boat.at(time_s), time_s);
+      EXPECT_EQ(tracker.process(time_s, {&plot, 1}).status, Status::kOk);
+    }
+    EXPECT_EQ(tracker.size(), 1);
+    Mat<double, 4, 4> covariance = Mat<double, 4, 4>::Zero();
+    tracker.for_each(
+        [&](const test::VesselTrack& track) { covariance = track.kinematics.covariance; });
+    return covariance;
+  };
+  EXPECT_TRUE(matrices_near(covariance_at_start(0.2),
+                            Mat<double, 4, 4>((0.8 + 0.2 * 16.0) * covariance_at_start(0.0)),
+                            {.absolute = 0, .relative = 1e-9}));
 }
 
 }  // namespace
