@@ -169,10 +169,10 @@ class VesselModels:
         turn_rate_psd_rad2s3: float = 0.0003,
         prior_turn_rate_std_rad_s: float = 0.2,
         cruising_probability: float = 0.95,
-        cruising_sojourn_s: float = 1200.0,
+        cruising_sojourn_s: float = 1500.0,
         settling_s: float = 600.0,
         steady_sojourn_s: float = 300.0,
-        restless_sojourn_s: float = 90.0,
+        restless_sojourn_s: float = 100.0,
         turning_sojourn_s: float = 80.0,
     ) -> None: ...
     def as_dict(self) -> dict[str, float | int | str]:

@@ -14,7 +14,7 @@ namespace wakeline {
 /// turning. Their noise grows with the square of the speed, so that one set serves a drifting ferry
 /// and a boat at play.
 ///
-/// A vessel that cruises is a ship under way, which keeps course and speed for twenty minutes; the
+/// A vessel that cruises is a ship under way, which keeps course and speed for half an hour; the
 /// others are craft, which do anything at any time. Most vessels are taken for ships when they are
 /// first seen, and for craft as soon as they move like craft; one that goes steadily for long
 /// enough is taken for a ship again. `ships()` is another set, where ships alter course as ships
@@ -31,10 +31,10 @@ struct VesselModels {
   double turn_rate_psd_rad2s3 = 0.0003;    ///< wander of the rate of turn
   double prior_turn_rate_std_rad_s = 0.2;  ///< rate of turn before it is known, and in the long run
   double cruising_probability = 0.95;      ///< of a vessel that is seen for the first time
-  double cruising_sojourn_s = 1200.0;  ///< mean time until a cruising vessel does something else
+  double cruising_sojourn_s = 1500.0;  ///< mean time until a cruising vessel does something else
   double settling_s = 600.0;           ///< mean time until a steady vessel is taken to cruise
   double steady_sojourn_s = 300.0;     ///< mean time until it becomes restless or turns
-  double restless_sojourn_s = 90.0;    ///< mean time in each mode
+  double restless_sojourn_s = 100.0;   ///< mean time in each mode
   double turning_sojourn_s = 80.0;
 
   /// Of ships under way: straight for most of an hour, alterations of course within a minute. Three
