@@ -312,6 +312,12 @@ struct UsvCurrentMotion {
     return motion;
   }
 
+  /// Velocity through the water.
+  template <class Scalar>
+  static Vec<Scalar, 2> way_mps(const Vec<Scalar, kN>& x) noexcept {
+    return x[3] * body_to_north_east(x[2]).col(0);
+  }
+
   /// The current that is left of the velocity over ground of one state for the heading and the
   /// speed through the water of another.
   template <class Scalar>
@@ -346,12 +352,6 @@ struct UsvCurrentMotion {
   template <class Scalar>
   [[nodiscard]] Scalar turn_rate(const Vec<Scalar, kN>& x) const noexcept {
     return Scalar(input.imu.yaw_rate_rad_s) - Scalar(input.bias_share) * x[4];
-  }
-
-  /// Velocity through the water.
-  template <class Scalar>
-  static Vec<Scalar, 2> way_mps(const Vec<Scalar, kN>& x) noexcept {
-    return x[3] * body_to_north_east(x[2]).col(0);
   }
 
   /// Unit vector of the heading in the middle of the step.

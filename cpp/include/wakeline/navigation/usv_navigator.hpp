@@ -51,12 +51,13 @@ struct UsvLeg {
 /// - A reading outside the gate is rejected. When more than `rejections` of its kind in a row were,
 ///   it is the belief that is wrong: the states are widened by the likeliest error that would
 ///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
-/// - It is not, where a position was believed since the first of them, and no three in a row were
-///   rejected since: place and velocity over ground are then right. Velocities over ground stay
-///   rejected until one lies in the gate of 0.9. Compass and log move the current in place of them,
-///   and are rejected where it would be stronger than now and outside the gate of
-///   `current_std_mps`. Log and velocities that insist both, before more than three positions came,
-///   are believed. Likewise rates of turn stay rejected while headings are believed.
+/// - It is not, where positions refute the readings: they fit the belief, and where she would be had
+///   the readings been right since the first of them so much worse that the differences of NIS,
+///   summed up (CUSUM), are outside the gate of 0.9. Place and velocity over ground are then right.
+///   Velocities over ground stay rejected until one lies in that gate. Compass and log move the
+///   current in place of them, and are rejected where it would be stronger than now and outside the
+///   gate of `current_std_mps`. Three positions in a row that are rejected take it back. Likewise
+///   headings refute rates of turn.
 /// - An absurd reading, finite but more than a million standard deviations off (a thousand in
 ///   `float`) or so large that its last digit is more than one, says nothing of the belief: it is
 ///   rejected however often it comes, and not counted. A belief widened to it would have no digits
@@ -101,8 +102,9 @@ class UsvNavigator {
     const Status status = filter_.start(belief);
     if (status != Status::kOk) return status;
     rejected_ = {};
-    refuted_ = {};
-    told_ = {};
+    evidence_ = told_ = silent_s_ = {};
+    off_.setZero();
+    strayed_.setZero();
     wrap();
     return status;
   }
@@ -119,7 +121,10 @@ class UsvNavigator {
   Status predict(const Leg& leg) noexcept {
     filter_.set_motion(driven(leg));
     const Status status = filter_.predict(leg.dt_s);
-    if (status == Status::kOk) wrap();
+    if (status != Status::kOk) return status;
+    strayed_ += leg.dt_s * off_;
+    for (Scalar& silent_s : silent_s_) silent_s += leg.dt_s;
+    wrap();
     return status;
   }
 
@@ -135,12 +140,13 @@ class UsvNavigator {
     if (!reading) return reading;
     constexpr int kKind = kKindOf<Sensor>;
     const State before = estimate();
-    if constexpr (Sensor::kMeasurements == 1 && !kIsRate<Sensor>)
-      told_[kKind] = before.mean[kKind] + reading.innovation[0];
+    silent_s_[kKind] = Scalar(0);
+    if constexpr (kSplitsWay<Sensor>) told_[kKind] = before.mean[kKind] + reading.innovation[0];
     const bool fits = gate<Sensor>().contains(reading.nis);
     if (!fits && (rejected_[kKind] < rejections_ || !widen(sensor, reading.innovation))) {
       rejected_[kKind] = std::min(rejected_[kKind] + 1, rejections_);
-      judge_others(kKind);
+      off_.col(kKind) = off<Sensor>(reading.innovation);
+      if (rejected_[kKind] >= std::min(kFew, rejections_)) acquit_others<Sensor>();
       return rejected(reading);
     }
     reading.status = filter_.update(sensor, z).status;
@@ -150,8 +156,10 @@ class UsvNavigator {
       return reading;
     }
     rejected_[kKind] = 0;
-    refuted_[kKind] = 0;
-    judge_others(kKind);
+    evidence_[kKind] = Scalar(0);
+    off_.col(kKind).setZero();
+    strayed_.col(kKind).setZero();
+    if (fits) judge_others<Sensor>(before, reading);
     wrap();
     return reading;
   }
@@ -184,11 +192,15 @@ class UsvNavigator {
   void archive(Archive& fields) {
     filter_.archive(fields);
     fields(rejected_);
-    fields(refuted_);
+    fields(evidence_);
     fields(told_);
+    fields(silent_s_);
+    fields(off_);
+    fields(strayed_);
   }
 
  private:
+  static constexpr int kNorthRow = index_of(kComponents, Component::kNorth);
   static constexpr int kHeadingRow = index_of(kComponents, kHeading);
   static constexpr int kGyroBiasRow = index_of(kComponents, kGyroBias);
   static constexpr int kSpeedRow = index_of(kComponents, kSpeedThroughWater);
@@ -204,12 +216,25 @@ class UsvNavigator {
       Sensor::kReads[0] == Component::kVnorth || Sensor::kReads[0] == kCurrentNorth ||
       Sensor::kReads[0] == kGyroBias;
 
+  /// Whether a sensor tells a part of the velocity through the water, of which the current has the
+  /// rest: compass, log.
   template <class Sensor>
-  static constexpr bool kTellsSpeed =
-      Sensor::kReads[0] == kCurrentNorth || Sensor::kReads[0] == kSpeedThroughWater;
+  static constexpr bool kSplitsWay = kHasCurrent&& Sensor::kMeasurements == 1 &&
+                                     (kKindOf<Sensor> == kHeadingRow ||
+                                      kKindOf<Sensor> == kSpeedRow);
 
+  /// Whether readings of a sensor refute others: positions those of velocities, headings those of
+  /// rates of turn.
+  template <class Sensor>
+  static constexpr bool kIsJudge =
+      kKindOf<Sensor> == kNorthRow ? Sensor::kMeasurements == 2
+                                   : kKindOf<Sensor> == kHeadingRow&& Sensor::kMeasurements == 1;
+
+  using Pair = Vec<Scalar, 2>;
   static constexpr int kFew = 3;                   ///< misfits in a row that are no chance
-  static constexpr double kBackProbability = 0.9;  ///< of the gate of rates once refuted
+  static constexpr Scalar kMostEvidence = 40;      ///< so that a few misfits take it back
+  static constexpr double kTogether_s = 2.0;       ///< between readings of compass and log
+  static constexpr double kBackProbability = 0.9;  ///< of the gate of evidence, of rates refuted
   static constexpr Scalar kDigit = std::numeric_limits<Scalar>::epsilon();
   static constexpr Scalar kFarthestStds = kDigit < 1e-10F ? 1e6F : 1e3F;
 
@@ -228,7 +253,7 @@ class UsvNavigator {
     constexpr int kM = Sensor::kMeasurements;
     static_assert(kM == 1 || kM == 2,
                   "wakeline: the navigator takes readings of one or two numbers");
-    const std::size_t which = kIsRate<Sensor> && refuted_[kKindOf<Sensor>] > 0;
+    const std::size_t which = kIsRate<Sensor> && refuted(kKindOf<Sensor>);
     if constexpr (kM == 1)
       return gates1_[which];
     else
@@ -262,45 +287,76 @@ class UsvNavigator {
     (void)filter_.assign(belief);
   }
 
-  /// What readings of a kind say of other kinds that are being rejected: positions of all of them,
-  /// headings of the rate of turn. One that is believed refutes them, a few rejected in a row take
-  /// that back.
-  void judge_others(int kind) noexcept {
-    const int misfits = rejected_[static_cast<std::size_t>(kind)];
-    const bool is_position = kind == index_of(kComponents, Component::kNorth);
-    for (int other = 0; other < kStates; ++other) {
-      const bool is_judge = other == kGyroBiasRow ? kind == kHeadingRow : is_position;
-      const auto k = static_cast<std::size_t>(other);
-      if (!is_judge || other == kind) continue;
-      if (misfits == 0) refuted_[k] = rejected_[k] > 0 ? std::min(refuted_[k] + 1, 2 * kFew) : 0;
-      if (misfits >= kFew) refuted_[k] = 0;
+  /// By how much velocity over ground, or rate of turn in the first row, would differ from what is
+  /// believed if a reading was right.
+  template <class Sensor, int M>
+  [[nodiscard]] Pair off(const Vec<Scalar, M>& innovation) const noexcept {
+    Pair off = Pair::Zero();
+    if constexpr (kSplitsWay<Sensor>) {
+      auto told = estimate().mean;
+      told[kKindOf<Sensor>] += innovation[0];
+      off = Model::way_mps(told) - Model::way_mps(estimate().mean);
+    } else if constexpr (kIsRate<Sensor>) {
+      off.template head<M>() = innovation;
     }
+    return off;
+  }
+
+  /// Whether a sensor refutes readings of another kind.
+  template <class Sensor>
+  static constexpr bool judges(std::size_t other) noexcept {
+    return kIsJudge<Sensor> && (kKindOf<Sensor> == kHeadingRow) == (int(other) == kGyroBiasRow);
+  }
+
+  /// What a reading that is believed says of kinds that are being rejected: how much worse it would
+  /// fit had they been right, summed up as it goes (CUSUM). It draws the belief to itself.
+  template <class Sensor, int M>
+  void judge_others(const State& before, const Step<M, Scalar>& reading) noexcept {
+    if constexpr (kIsJudge<Sensor>) {
+      constexpr int kRow = kKindOf<Sensor>;
+      const Cholesky<M, Scalar> factor(reading.innovation_covariance);
+      const Mat<Scalar, M, M> covariance = before.covariance.template block<M, M>(kRow, kRow);
+      for (std::size_t other = 0; other < kStates; ++other) {
+        if (!judges<Sensor>(other) || rejected_[other] == 0) continue;
+        const Vec<Scalar, M> strayed = strayed_.col(int(other)).template head<M>();
+        Vec<Scalar, M> innovation = reading.innovation - strayed;
+        if constexpr (kRow == kHeadingRow) innovation[0] = wrap_angle(Scalar(innovation[0]));
+        const Scalar nis = factor.template whiten<1>(innovation).squaredNorm();
+        evidence_[other] =
+            std::clamp(evidence_[other] + nis - reading.nis, Scalar(0), kMostEvidence);
+        strayed_.col(int(other)).template head<M>() -=
+            covariance * factor.template solve<1>(strayed);
+      }
+    }
+  }
+
+  [[nodiscard]] bool refuted(int kind) const noexcept {
+    return !gates2_[1].contains(evidence_[static_cast<std::size_t>(kind)]);
+  }
+
+  /// Takes back what readings of a sensor said of others.
+  template <class Sensor>
+  void acquit_others() noexcept {
+    for (std::size_t other = 0; other < kStates; ++other)
+      if (judges<Sensor>(other)) evidence_[other] = Scalar(0);
   }
 
   /// Makes room in the belief for a reading that insists; false where it is refuted.
   template <class Sensor, int M>
   bool widen(const Sensor& sensor, const Vec<Scalar, M>& innovation) noexcept {
-    if (refuted_[kKindOf<Sensor>] > 0 && !(kTellsSpeed<Sensor> && speed_changed())) {
+    if (refuted(kKindOf<Sensor>)) {
       if constexpr (kIsRate<Sensor>) return false;
-      if constexpr (kHasCurrent && M == 1) return blame_current(kKindOf<Sensor>);
+      if constexpr (kSplitsWay<Sensor>) return blame_current(kKindOf<Sensor>);
     }
     doubt_all(sensor, innovation);
     return true;
   }
 
-  /// Whether log and velocities over ground insist both, at a rate at which few positions could
-  /// refute them.
-  [[nodiscard]] bool speed_changed() const noexcept {
-    if constexpr (kHasCurrent)
-      return std::min(rejected_[kSpeedRow], rejected_[kCurrentRow]) >= rejections_ &&
-             std::max(refuted_[kSpeedRow], refuted_[kCurrentRow]) <= kFew;
-    return false;
-  }
-
   /// Takes heading or speed through the water as they are read, or both where both insist.
   bool blame_current(int row) noexcept {
     const int other = row == kHeadingRow ? kSpeedRow : kHeadingRow;
-    const bool both = rejected_[static_cast<std::size_t>(other)] >= rejections_;
+    const auto k = static_cast<std::size_t>(other);
+    const bool both = rejected_[k] >= rejections_ && silent_s_[k] <= Scalar(kTogether_s);
     return blame_current(std::array{row}) || (both && blame_current(std::array{row, other}));
   }
 
@@ -355,11 +411,14 @@ class UsvNavigator {
   ImuNoise unmeasured_;
   int rejections_;
   std::array<EllipsoidalGate<1, Scalar>, 2> gates1_;  ///< the second for rates once refuted
-  std::array<EllipsoidalGate<2, Scalar>, 2> gates2_;
+  std::array<EllipsoidalGate<2, Scalar>, 2> gates2_;  ///< the second for evidence, too
   // By kind of sensor, which is the first state that it reads:
-  std::array<int, kStates> rejected_{};  ///< in a row, counted up to `rejections_`
-  std::array<int, kStates> refuted_{};   ///< by how many readings believed since, counted up to 6
-  std::array<Scalar, kStates> told_{};   ///< heading, speed: as they were last read
+  std::array<int, kStates> rejected_{};     ///< in a row, counted up to `rejections_`
+  std::array<Scalar, kStates> evidence_{};  ///< against those rejected, as a difference of NIS
+  std::array<Scalar, kStates> told_{};      ///< heading, speed: as they were last read
+  std::array<Scalar, kStates> silent_s_{};  ///< since the last reading
+  Mat<Scalar, 2, kStates> off_ = Mat<Scalar, 2, kStates>::Zero();  ///< rates rejected less believed
+  Mat<Scalar, 2, kStates> strayed_ = off_;  ///< from the belief, had the rejected been right
 };
 
 }  // namespace wakeline
