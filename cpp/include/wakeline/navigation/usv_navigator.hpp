@@ -51,13 +51,13 @@ struct UsvLeg {
 /// - A reading outside the gate is rejected. When more than `rejections` of its kind in a row were,
 ///   it is the belief that is wrong: the states are widened by the likeliest error that would
 ///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
-/// - It is not, where positions refute the readings: they fit the belief, and where she would be had
-///   the readings been right since the first of them so much worse that the differences of NIS,
-///   summed up (CUSUM), are outside the gate of 0.9. Place and velocity over ground are then right.
-///   Velocities over ground stay rejected until one lies in that gate. Compass and log move the
-///   current in place of them, and are rejected where it would be stronger than now and outside the
-///   gate of `current_std_mps`. Three positions in a row that are rejected take it back. Likewise
-///   headings refute rates of turn.
+/// - It is not, where positions refute the readings: they fit the belief, and where she would be
+///   had the readings been right since the first of them so much worse that the differences of
+///   NIS, summed up (CUSUM), are outside the gate of 0.9. Place and velocity over ground are then
+///   right. Velocities over ground stay rejected until one lies in that gate. Compass and log move
+///   the current in place of them, and are rejected where it would be stronger than now and outside
+///   the gate of `current_std_mps`. Three positions in a row that are rejected take it back.
+///   Likewise headings refute rates of turn.
 /// - An absurd reading, finite but more than a million standard deviations off (a thousand in
 ///   `float`) or so large that its last digit is more than one, says nothing of the belief: it is
 ///   rejected however often it comes, and not counted. A belief widened to it would have no digits

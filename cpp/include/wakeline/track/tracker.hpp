@@ -321,7 +321,12 @@ class Tracker {
     const double apart_s = echoes_.apart_s(track.time_s);
     const double moved = apart_s * track.velocity().cwiseAbs().maxCoeff();
     const Mat<double, 2, 2> velocity_covariance = track.velocity_covariance();
-    const double moved_m2 = apart_s * apart_s * velocity_covariance.trace();
+    const double unrest_m2s3 = apart_s > radar_.period_s ? unrest(track, apart_s) : 0.0;
+    const auto way_covariance = [&](double dt_s) -> Mat<double, 2, 2> {
+      const double changed_m2 = std::abs(dt_s * dt_s * dt_s) * unrest_m2s3;
+      return dt_s * dt_s * velocity_covariance + changed_m2 * Mat<double, 2, 2>::Identity();
+    };
+    const double moved_m2 = way_covariance(apart_s).trace();
     const auto reach_m = [&](double plot_m2) {
       const double wild_m2 = config_.wild_variance() * plot_m2 + moved_m2;
       // Generous: the widest mode of an estimator may be some times wider than the mixture.
@@ -335,7 +340,7 @@ class Tracker {
       const double dt_s = track.time_s - echoes_[index].time_s;
       Claim claim{.echo = index,
                   .z = position.mean + dt_s * track.velocity(),
-                  .moved_m2 = dt_s * dt_s * velocity_covariance};
+                  .moved_m2 = way_covariance(dt_s)};
       const Mat<double, 2, 2> wild_covariance =
           config_.wild_variance() * position.covariance + claim.moved_m2;
       if (!modes_.may_own(claim.z, wild_covariance, threshold)) return;
@@ -348,6 +353,17 @@ class Tracker {
       claim.nis = squared_distance(track.kinematics, claim.z, covariance);
       claims.add(claim);
     });
+  }
+
+  /// How fast a place gets less certain than by the velocity as it is known, for that may change:
+  /// m² of an axis over the cube of the time, m²/s³.
+  [[nodiscard]] double unrest(const TrackType& track, double dt_s) const noexcept {
+    Mat<double, 4, 4> straight = Mat<double, 4, 4>::Identity();
+    straight(0, 1) = straight(2, 3) = dt_s;
+    const Mat<double, 4, 4> covariance =
+        kinematics_at(track, track.time_s + dt_s).covariance -
+        straight * track.kinematics.covariance * straight.transpose();
+    return std::max(0.0, (covariance(0, 0) + covariance(2, 2)) / 2) / (dt_s * dt_s * dt_s);
   }
 
   /// What the track at hand thinks of a plot.
