@@ -64,9 +64,9 @@ def position_m(
     Raises
     ------
     ValueError
-        When there is no such model, a report is without course or speed, there are fewer than two
-        reports in the last minute, or a time lies before the last; when rows are of several tracks
-        or out of order.
+        When there is no such model, a report is without course or speed, the last minute has
+        reports of fewer than two times, or a time lies before the last; when rows are of several
+        tracks or out of order.
     """
     track = _reports(track)
     ahead_s = np.asarray(ahead_s, dtype=float)
@@ -76,8 +76,8 @@ def position_m(
         raise ValueError(f"ahead_s must be times (H,), none of them negative, got {ahead_s}")
     if not np.isfinite([track.course_rad, track.speed_mps]).all():
         raise ValueError("every report of the track must have a course and a speed")
-    if len(track) == 0 or len(_last(track, _LINE_OVER_S)) < 2:
-        raise ValueError("the track must have two reports or more in its last minute")
+    if len(track) == 0 or np.ptp(_last(track, _LINE_OVER_S).time_s) == 0.0:
+        raise ValueError("the track must have reports of two times or more in its last minute")
     return np.array([track.north_m[-1], track.east_m[-1]]) + _MODELS[model](track, ahead_s)
 
 

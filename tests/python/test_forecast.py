@@ -115,9 +115,10 @@ def test_the_rate_of_turn_is_that_of_the_course_through_north(rate_deg_s):
         (circling(0.0), [np.nan], "line_60s", "ahead_s must be times"),
         (circling(0.0), 60.0, "line_60s", "ahead_s must be times"),
         (circling(0.0, speed_mps=np.nan), [60.0], "last_report", "a course and a speed"),
-        (circling(0.0, count=1), [60.0], "line_60s", "two reports or more"),
-        (circling(0.0, count=0), [60.0], "last_report", "two reports or more"),
-        (circling(0.0, step_s=90.0), [60.0], "kalman_cv", "two reports or more"),
+        (circling(0.0, count=1), [60.0], "line_60s", "reports of two times or more"),
+        (circling(0.0, step_s=0.0), [60.0], "line_60s", "reports of two times or more"),
+        (circling(0.0, count=0), [60.0], "last_report", "reports of two times or more"),
+        (circling(0.0, step_s=90.0), [60.0], "kalman_cv", "reports of two times or more"),
     ],
 )
 def test_what_cannot_be_foretold_is_refused(track, ahead_s, model, wanted):

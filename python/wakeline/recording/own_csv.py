@@ -195,14 +195,15 @@ def _velocity_m2s2(table: Table) -> np.ndarray:
     """Covariances (n, 2, 2) of the velocity, NaN where a cell is empty."""
     north, cross, east = (table.numbers(column) for column in VELOCITY_COVARIANCE)
     for column, variance in zip(VELOCITY_COVARIANCE[::2], (north, east), strict=True):
-        table.check(column, ~(variance < 0.0), "a variance, not negative")
-    too_large = cross**2 > north * east * (1.0 + _ROUNDED)
+        sound = np.isnan(variance) | ((variance >= 0.0) & np.isfinite(variance))
+        table.check(column, sound, "a finite variance, not negative")
+    too_large = np.abs(cross) > np.sqrt(north) * np.sqrt(east) * (1.0 + _ROUNDED)
     table.check(VELOCITY_COVARIANCE[1], ~too_large, "a covariance within those of its variances")
     return np.stack([north, cross, cross, east], axis=1).reshape(-1, 2, 2)
 
 
 def _note_jumped(table: Table, notes: list[str]) -> None:
-    status = table.text("status") if "status" in table else []
+    status = [s.lower() for s in table.text("status")] if "status" in table else []
     if "jumped" in status:
         notes.append(
             f"{table.path.name}: own ship's place is in doubt in {status.count('jumped')} rows, of "

@@ -138,15 +138,17 @@ TEST(VesselModelSettings, NamesWhatItRefuses) {
   for (const auto& [name, field] : noises)
     for (const double value : {-1.0, kNan, kInf})
       expect(name, [=](VesselModels& models) { models.*field = value; });
-  const std::pair<const char*, double VesselModels::*> positive[] = {
-      {"prior_turn_rate_std_rad_s", &VesselModels::prior_turn_rate_std_rad_s},
+  for (const double value : {0.0, -1.0, kNan, kInf})
+    expect("prior_turn_rate_std_rad_s",
+           [=](VesselModels& models) { models.prior_turn_rate_std_rad_s = value; });
+  const std::pair<const char*, double VesselModels::*> times[] = {
       {"cruising_sojourn_s", &VesselModels::cruising_sojourn_s},
       {"settling_s", &VesselModels::settling_s},
       {"steady_sojourn_s", &VesselModels::steady_sojourn_s},
       {"restless_sojourn_s", &VesselModels::restless_sojourn_s},
       {"turning_sojourn_s", &VesselModels::turning_sojourn_s}};
-  for (const auto& [name, field] : positive)
-    for (const double value : {0.0, -1.0, kNan, kInf})
+  for (const auto& [name, field] : times)
+    for (const double value : {0.0, -1.0, 1e-300, 1e300, kNan, kInf})
       expect(name, [=](VesselModels& models) { models.*field = value; });
   for (const double value : {-0.1, 1.1, kNan})
     expect("cruising_probability",
