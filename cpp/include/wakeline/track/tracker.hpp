@@ -357,7 +357,7 @@ class Tracker {
 
   /// How fast a place gets less certain than by the velocity as it is known, for that may change:
   /// m² of an axis over the cube of the time, m²/s³.
-  [[nodiscard]] double unrest(const TrackType& track, double dt_s) const noexcept {
+  [[nodiscard, gnu::noinline]] double unrest(const TrackType& track, double dt_s) const noexcept {
     Mat<double, 4, 4> straight = Mat<double, 4, 4>::Identity();
     straight(0, 1) = straight(2, 3) = dt_s;
     const Mat<double, 4, 4> covariance =
