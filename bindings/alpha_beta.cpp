@@ -39,6 +39,7 @@ void require_order(int order) {
 /// Adds `gains` to the class of a schedule of so many states an axis.
 template <class Schedule, bool OfThree>
 void define_gains(py::class_<Schedule>& schedule) {
+  define_copies(schedule);
   schedule.def(
       "gains",
       [](const Schedule& s, int order, std::int64_t reading, double elapsed_s, double std_m,

@@ -72,7 +72,9 @@ ValueError
           "innovation_covariance",
           [](const PyStep& s) { return to_array(s.innovation_covariance); }, "(M, M)")
       .def_readonly("nis", &PyStep::nis, "normalised innovation squared")
-      .def_readonly("log_likelihood", &PyStep::log_likelihood);
+      .def_readonly("log_likelihood", &PyStep::log_likelihood)
+      .def(py::pickle([](const PyStep& s) { return fields_of(s); },
+                      [](const py::tuple& fields) { return step_of(fields); }));
 
   m.def("wrap_angle", py::vectorize([](double angle_rad) { return wrap_angle(angle_rad); }),
         py::arg("angle_rad"), "The same angle in [-pi, pi], rad.");

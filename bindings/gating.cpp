@@ -107,6 +107,7 @@ void define_contains(py::class_<Strobe>& strobe) {
 void define_strobes(py::module_& m) {
   py::class_<RadiusGate> circle(m, "RadiusGate",
                                 "A circle of fixed radius about the predicted position.");
+  define_copies(circle);
   circle
       .def(py::init([](double radius_m) {
              const RadiusGate gate{radius_m};
@@ -114,7 +115,10 @@ void define_strobes(py::module_& m) {
              return gate;
            }),
            py::kw_only(), py::arg("radius_m") = RadiusGate{}.radius_m)
-      .def_readonly("radius_m", &RadiusGate::radius_m);
+      .def_readonly("radius_m", &RadiusGate::radius_m)
+      .def("__repr__", [](const RadiusGate& gate) {
+        return CallText("RadiusGate").with("radius_m", gate.radius_m).text();
+      });
   define_contains(circle);
 
   py::class_<CovarianceStrobe> ellipse(m, "CovarianceStrobe",
@@ -148,6 +152,7 @@ ValueError
 
   py::class_<RangeBearingWindow> window(
       m, "RangeBearingWindow", "Ranges and bearings from the antenna near the predicted ones.");
+  define_copies(window);
   window
       .def(py::init([](double range_half_m, double bearing_half_rad) {
              const RangeBearingWindow strobe{range_half_m, bearing_half_rad};
@@ -157,7 +162,13 @@ ValueError
            py::kw_only(), py::arg("range_half_m") = RangeBearingWindow{}.range_half_m,
            py::arg("bearing_half_rad") = RangeBearingWindow{}.bearing_half_rad)
       .def_readonly("range_half_m", &RangeBearingWindow::range_half_m)
-      .def_readonly("bearing_half_rad", &RangeBearingWindow::bearing_half_rad);
+      .def_readonly("bearing_half_rad", &RangeBearingWindow::bearing_half_rad)
+      .def("__repr__", [](const RangeBearingWindow& strobe) {
+        return CallText("RangeBearingWindow")
+            .with("range_half_m", strobe.range_half_m)
+            .with("bearing_half_rad", strobe.bearing_half_rad)
+            .text();
+      });
   define_contains(window);
 }
 
@@ -241,9 +252,11 @@ detection".)");
 
 void define_gating(py::module_& parent) {
   py::module_ m = parent.def_submodule("gating", "Where to look for a target's plot.");
-  py::class_<ChiSquareGate>(
+  py::class_<ChiSquareGate> ellipsoid(
       m, "ChiSquareGate",
-      "The ellipsoid that holds the target's own plot with a given probability.")
+      "The ellipsoid that holds the target's own plot with a given probability.");
+  define_copies(ellipsoid);
+  ellipsoid
       .def(py::init([](double probability) {
              const ChiSquareGate gate{probability};
              gate.validate();

@@ -79,26 +79,31 @@ Motion checked(const Motion& motion) {
 void define_motion(py::module_& parent) {
   py::module_ m = parent.def_submodule("motion", "How a vessel moves.");
 
-  py::class_<WhiteAcceleration>(m, "WhiteAcceleration",
-                                "Continuous white acceleration per axis; Q is right for any dt.")
+  py::class_<WhiteAcceleration> white(
+      m, "WhiteAcceleration", "Continuous white acceleration per axis; Q is right for any dt.");
+  define_copies(white);
+  white
       .def(py::init([](double psd) { return WhiteAcceleration{psd}; }), py::kw_only(),
            py::arg("psd_m2s3") = WhiteAcceleration{}.psd_m2s3)
       .def_readonly("psd_m2s3", &WhiteAcceleration::psd_m2s3)
       .def("__repr__", [](const WhiteAcceleration& noise) {
         return CallText("WhiteAcceleration").with("psd_m2s3", noise.psd_m2s3).text();
       });
-  py::class_<PiecewiseAcceleration>(
+  py::class_<PiecewiseAcceleration> piecewise(
       m, "PiecewiseAcceleration",
-      "Acceleration drawn for each step, Q = G s² Gᵀ: the papers' form.")
+      "Acceleration drawn for each step, Q = G s² Gᵀ: the papers' form.");
+  define_copies(piecewise);
+  piecewise
       .def(py::init([](double std) { return PiecewiseAcceleration{std}; }), py::kw_only(),
            py::arg("std_mps2") = PiecewiseAcceleration{}.std_mps2)
       .def_readonly("std_mps2", &PiecewiseAcceleration::std_mps2)
       .def("__repr__", [](const PiecewiseAcceleration& noise) {
         return CallText("PiecewiseAcceleration").with("std_mps2", noise.std_mps2).text();
       });
-  py::class_<WhiteJerk>(m, "WhiteJerk",
-                        "Continuous white jerk per axis, for states that hold an acceleration.")
-      .def(py::init([](double psd) { return WhiteJerk{psd}; }), py::kw_only(),
+  py::class_<WhiteJerk> jerk(
+      m, "WhiteJerk", "Continuous white jerk per axis, for states that hold an acceleration.");
+  define_copies(jerk);
+  jerk.def(py::init([](double psd) { return WhiteJerk{psd}; }), py::kw_only(),
            py::arg("psd_m2s5") = WhiteJerk{}.psd_m2s5)
       .def_readonly("psd_m2s5", &WhiteJerk::psd_m2s5)
       .def("__repr__", [](const WhiteJerk& noise) {

@@ -339,7 +339,7 @@ X. R. Li, Y. Zhang, IEEE Trans. AES-36, 2000: the likely-model set.)");
 void define_multimodel(py::module_& parent) {
   py::module_ m = parent.def_submodule("multimodel", "Estimators with several motion models.");
 
-  py::class_<Chain>(
+  py::class_<Chain> chain(
       m, "ModeChain",
       R"(The Markov chain between modes: `matrix[i, j] = P(mode j now | mode i before)`.
 
@@ -354,8 +354,9 @@ period_s : float, optional
 Raises
 ------
 ValueError
-    When a row is no distribution, or no continuous-time chain has this matrix over the period.)")
-      .def(py::init(&make_chain), py::arg("matrix"), py::arg("period_s") = py::none())
+    When a row is no distribution, or no continuous-time chain has this matrix over the period.)");
+  define_copies(chain);
+  chain.def(py::init(&make_chain), py::arg("matrix"), py::arg("period_s") = py::none())
       .def_static(
           "from_sojourn_s",
           [](const DoubleArray& sojourn_s) {

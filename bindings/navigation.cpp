@@ -4,6 +4,7 @@
 #include <optional>
 #include <tuple>
 
+#include "call_text.hpp"
 #include "each.hpp"
 #include "types.hpp"
 #include "wakeline/navigation/dead_reckoning.hpp"
@@ -182,7 +183,15 @@ Raises
 ------
 ValueError
     When it is not on the earth.)");
+  define_copies(plane);
   plane
+      .def("__repr__",
+           [](const LocalPlane& p) {
+             return CallText("LocalPlane")
+                 .with("latitude_rad", p.reference().latitude_rad)
+                 .with("longitude_rad", p.reference().longitude_rad)
+                 .text();
+           })
       .def(py::init([](double latitude, double longitude) {
              return LocalPlane(GeoPoint{latitude, longitude});
            }),

@@ -44,6 +44,11 @@ struct Either {
   [[nodiscard]] double said(Say say) const {
     return started ? std::visit(say, smoother) : NAN;
   }
+
+  void archive(Archive& fields) {
+    fields(started);
+    std::visit([&](auto& one) { one.archive(fields); }, smoother);
+  }
 };
 
 /// Steps of readings (T,), which go forward.
@@ -116,6 +121,7 @@ Returns
 /// What all smoothers offer.
 template <class E>
 void define_reading(py::class_<E>& smoother) {
+  define_copies(smoother);
   smoother.def("__repr__", [](const E& e) { return e.call; })
       .def_property_readonly(
           "value", [](const E& e) { return e.said([](const auto& s) { return s.value(); }); },
@@ -334,6 +340,9 @@ class ScheduledSmoother {
   double forecast(double ahead_s) const noexcept {
     return of([&](const auto& s) { return s.forecast(ahead_s); });
   }
+  void archive(Archive& fields) {
+    std::visit([&](auto& s) { s.archive(fields); }, smoother_);
+  }
 
  private:
   template <class Ask>
@@ -344,14 +353,16 @@ class ScheduledSmoother {
 };
 
 void define_scheduled(py::module_& m) {
-  py::class_<RecentMemory>(
+  py::class_<RecentMemory> recent(
       m, "RecentMemory",
       R"(Gains that draw the least-squares line through all readings with weights 1, 2, 3, ...; (29).
 
 Parameters
 ----------
 max_plots : int
-    The gains stay those of so many; 0 for all.)")
+    The gains stay those of so many; 0 for all.)");
+  define_copies(recent);
+  recent
       .def(py::init([](int most) { return RecentMemory{most}; }), py::kw_only(),
            py::arg("max_plots") = 0)
       .def_readonly("max_plots", &RecentMemory::max_plots)

@@ -65,6 +65,7 @@ template <class Settings>
 class SettingsClass {
  public:
   SettingsClass(py::module_& m, const char* name, const char* doc) : class_(m, name, doc) {
+    define_copies(class_);
     class_.def(py::init([](const py::kwargs& values) {
       py::object settings = py::cast(Settings{});
       const py::object known = settings.attr("as_dict")();
@@ -576,18 +577,14 @@ FilterError
       .def(
           "save",
           [](const AnyTracker& tracker) {
-            const std::vector<std::byte> state =
-                tracker.visit([](const auto& one) { return one.save(); });
-            return py::bytes(reinterpret_cast<const char*>(state.data()), state.size());
+            return to_bytes(tracker.visit([](const auto& one) { return one.save(); }));
           },
           "The whole state as bytes, for a tracker with the same settings on the same kind of "
           "machine.")
       .def(
           "restore",
           [](AnyTracker& tracker, const py::bytes& state) {
-            const std::string_view text = state;
-            const std::span bytes(reinterpret_cast<const std::byte*>(text.data()), text.size());
-            if (!tracker.visit([&](auto& one) { return one.restore(bytes); }))
+            if (!tracker.visit([&](auto& one) { return one.restore(bytes_of(state)); }))
               throw py::value_error("state is not that of a tracker with the same settings");
           },
           py::arg("state"), "Goes on bit for bit where the saved tracker was.")

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "arrays.hpp"
+#include "copies.hpp"
 #include "wakeline/core/status.hpp"
 
 namespace wakeline::python {
@@ -22,15 +23,6 @@ class FilterError : public std::runtime_error {
 
 inline void require_ok(Status status, const char* what) {
   if (status != Status::kOk) throw FilterError(std::string(what) + ": " + to_string(status));
-}
-
-/// Adds what `copy.copy` and `copy.deepcopy` ask for.
-template <class Value, class... Options>
-void define_copies(py::class_<Value, Options...>& value) {
-  value.def("__copy__", [](const Value& one) { return Value(one); })
-      .def(
-          "__deepcopy__", [](const Value& one, const py::dict&) { return Value(one); },
-          py::arg("memo"));
 }
 
 /// A belief of any size.
@@ -52,6 +44,21 @@ struct PyStep {
   double nis;
   double log_likelihood;
 };
+
+/// A step as a tuple, and back.
+inline py::tuple fields_of(const PyStep& s) {
+  return py::make_tuple(s.status, to_array(s.innovation), to_array(s.innovation_covariance), s.nis,
+                        s.log_likelihood);
+}
+inline PyStep step_of(const py::tuple& fields) {
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto innovation = fields[1].cast<DoubleArray>();
+  const auto covariance = fields[2].cast<DoubleArray>();
+  const py::ssize_t size = innovation.size();
+  return {fields[0].cast<Status>(), Eigen::Map<const Eigen::VectorXd>(innovation.data(), size),
+          Eigen::Map<const Square>(covariance.data(), size, size), fields[3].cast<double>(),
+          fields[4].cast<double>()};
+}
 
 template <int M>
 PyStep to_step(const Step<M>& step) {

@@ -89,6 +89,10 @@ class PyNavigator {
 
   const std::string& call() const { return call_; }
 
+  void archive(Archive& fields) {
+    visit([&](auto& navigator) { navigator.archive(fields); });
+  }
+
   void start(const UsvStart& start) {
     validate(start);
     visit([&](auto& navigator) { require_ok(navigator.start(start), "start"); });
@@ -357,7 +361,13 @@ void define_usv_navigator(py::module_& m) {
   py::class_<PyReading, PyStep>(m, "UsvReading", "What a reading has done to the navigator.")
       .def_readonly("rejected", &PyReading::rejected, "outside the gate: the belief is as it was")
       .def_readonly("widened", &PyReading::widened,
-                    "outside the gate, but believed after too many rejections in a row");
+                    "outside the gate, but believed after too many rejections in a row")
+      .def(py::pickle(
+          [](const PyReading& r) { return py::make_tuple(fields_of(r), r.rejected, r.widened); },
+          [](const py::tuple& fields) {
+            return PyReading{step_of(fields[0].cast<py::tuple>()), fields[1].cast<bool>(),
+                             fields[2].cast<bool>()};
+          }));
 
   py::class_<UsvRun>(m, "UsvRun", "What `UsvNavigator.run` returns.")
       .def_readonly("mean", &UsvRun::mean, "(T, N)")
@@ -366,8 +376,9 @@ void define_usv_navigator(py::module_& m) {
                     "by sensor: (T,) normalised innovations squared, NaN without a reading")
       .def_readonly("rejected", &UsvRun::rejected, "by sensor: (T,) True for a rejected outlier");
 
-  py::class_<PyNavigator>(m, "UsvNavigator",
-                          R"(Own ship's position, motion and heading by IMU, GNSS, compass and log.
+  py::class_<PyNavigator> navigator(
+      m, "UsvNavigator",
+      R"(Own ship's position, motion and heading by IMU, GNSS, compass and log.
 
 States are [north, east, v_north, v_east, heading] for 5, the same with the biases [forward,
 starboard, gyro] behind for 8, and [north, east, heading, speed through water, gyro bias, current
@@ -408,7 +419,9 @@ alpha, beta, kappa : float
 Raises
 ------
 ValueError
-    When a parameter makes no sense.)")
+    When a parameter makes no sense.)");
+  define_copies(navigator);
+  navigator
       .def(py::init([](int states, const std::string& filter, double a_std, double w_std,
                        double blind_a_std, double blind_w_std, double a_bias, double w_bias,
                        double current, double speed_walk, double current_walk, double gate,

@@ -136,7 +136,7 @@ for _noun in (
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
 # They use the nouns above.
-from . import forecast, metrics, montecarlo, recording, scenario, study  # noqa: E402
+from . import _pickling, forecast, metrics, montecarlo, recording, scenario, study  # noqa: E402, F401
 
 try:
     __version__ = _version("wakeline")

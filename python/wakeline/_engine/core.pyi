@@ -68,6 +68,8 @@ class Step:
     """
     What one measurement update has found.
     """
+    def __getstate__(self) -> tuple[float, float]: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def innovation(self) -> NDArray[np.float64]:
         """

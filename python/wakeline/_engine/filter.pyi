@@ -123,6 +123,10 @@ class Filter:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -168,6 +172,10 @@ class Filter:
         FilterError
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def smooth(
         self,
@@ -228,6 +236,14 @@ class Kalman(Filter):
     def __init__(self, motion: CoordinatedTurn) -> None: ...
     @typing.overload
     def __init__(self, motion: Singer) -> None: ...
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
+        """
 
 class Ekf(Filter):
     """
@@ -247,6 +263,14 @@ class Ekf(Filter):
     def __init__(self, motion: Singer) -> None: ...
     @typing.overload
     def __init__(self, motion: WanderingCourse) -> None: ...
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
+        """
 
 class Ukf(Filter):
     """
@@ -288,6 +312,14 @@ class Ukf(Filter):
     def __init__(
         self, motion: WanderingCourse, *, alpha: float = 1.0, beta: float = 2.0, kappa: float = 0.0
     ) -> None: ...
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
+        """
 
 class SquareRootUkf(Filter):
     """
@@ -329,11 +361,21 @@ class SquareRootUkf(Filter):
     def __init__(
         self, motion: WanderingCourse, *, alpha: float = 1.0, beta: float = 2.0, kappa: float = 0.0
     ) -> None: ...
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
+        """
 
 class ConstantGains:
     """
     Gains that stay the same; gamma for an alpha-beta-gamma filter only. A filter refuses those that are not stable.
     """
+    def __copy__(self) -> ConstantGains: ...
+    def __deepcopy__(self, memo: dict) -> ConstantGains: ...
     def __init__(self, alpha: float, beta: float, gamma: float = 0.0) -> None: ...
     def gains(
         self,
@@ -367,6 +409,8 @@ class GrowingMemory:
     max_plots : int
         The gains stay those of so many; 0 for all.
     """
+    def __copy__(self) -> GrowingMemory: ...
+    def __deepcopy__(self, memo: dict) -> GrowingMemory: ...
     def __init__(self, *, plots_before: int = 0, max_plots: int = 0) -> None: ...
     def gains(
         self,
@@ -389,6 +433,8 @@ class BenedictBordner:
     """
     beta = alpha² / (2 - alpha): the least error after a change of velocity for the noise that an alpha lets through.
     """
+    def __copy__(self) -> BenedictBordner: ...
+    def __deepcopy__(self, memo: dict) -> BenedictBordner: ...
     def __init__(self, alpha: float) -> None: ...
     def gains(
         self,
@@ -409,6 +455,8 @@ class CriticallyDamped:
     """
     All poles at theta: the least-squares line or parabola with weights theta a reading back (fading memory).
     """
+    def __copy__(self) -> CriticallyDamped: ...
+    def __deepcopy__(self, memo: dict) -> CriticallyDamped: ...
     def __init__(self, theta: float) -> None: ...
     def gains(
         self,
@@ -442,6 +490,8 @@ class TrackingIndex:
     P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alpha-beta-gamma target trackers, IEEE Trans. AES-20,
     1984.
     """
+    def __copy__(self) -> TrackingIndex: ...
+    def __deepcopy__(self, memo: dict) -> TrackingIndex: ...
     def __init__(self, accel_std_mps2: float) -> None: ...
     def gains(
         self,
@@ -468,6 +518,8 @@ class RangeDependent:
     """
     Gains by the range alone, as a radar plotting aid has them: beyond `near_range_m` in inverse proportion to the range, down to those of `far`.
     """
+    def __copy__(self) -> RangeDependent: ...
+    def __deepcopy__(self, memo: dict) -> RangeDependent: ...
     def __init__(
         self,
         *,
@@ -540,6 +592,10 @@ class AlphaBeta:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -585,6 +641,10 @@ class AlphaBeta:
         FilterError
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -637,6 +697,10 @@ class AlphaBetaGamma:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -683,6 +747,10 @@ class AlphaBetaGamma:
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
         """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
+        """
     def start(self, belief: Gaussian) -> None:
         """
         Begins with a belief over the state of the estimate or over [x, vx, y, vy].
@@ -711,10 +779,16 @@ class ExponentialSmoother:
     wrapped : bool
         Readings are angles, radians: values are in -pi .. pi.
     """
+    def __copy__(self) -> ExponentialSmoother: ...
+    def __deepcopy__(self, memo: dict) -> ExponentialSmoother: ...
     def __init__(self, alpha: float = 0.5, *, wrapped: bool = False) -> None: ...
     def forecast(self, ahead_s: float) -> float:
         """
         The value `ahead_s` after the newest reading.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
@@ -735,6 +809,10 @@ class ExponentialSmoother:
         -------
         (value, rate, forecast)
             Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def update(self, dt_s: float, reading: float) -> None:
         """
@@ -765,10 +843,16 @@ class AdaptiveExponentialSmoother:
     wrapped : bool
         Readings are angles, radians: values are in -pi .. pi.
     """
+    def __copy__(self) -> AdaptiveExponentialSmoother: ...
+    def __deepcopy__(self, memo: dict) -> AdaptiveExponentialSmoother: ...
     def __init__(self, *, wrapped: bool = False) -> None: ...
     def forecast(self, ahead_s: float) -> float:
         """
         The value `ahead_s` after the newest reading.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
@@ -789,6 +873,10 @@ class AdaptiveExponentialSmoother:
         -------
         (value, rate, forecast)
             Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def update(self, dt_s: float, reading: float) -> None:
         """
@@ -821,10 +909,16 @@ class PrintedAdaptiveExponential:
     wrapped : bool
         Readings are angles, radians: values are in -pi .. pi.
     """
+    def __copy__(self) -> PrintedAdaptiveExponential: ...
+    def __deepcopy__(self, memo: dict) -> PrintedAdaptiveExponential: ...
     def __init__(self, first_alpha: float = 0.5, *, wrapped: bool = False) -> None: ...
     def forecast(self, ahead_s: float) -> float:
         """
         The value `ahead_s` after the newest reading.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
@@ -845,6 +939,10 @@ class PrintedAdaptiveExponential:
         -------
         (value, rate, forecast)
             Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def update(self, dt_s: float, reading: float) -> None:
         """
@@ -889,6 +987,8 @@ class ThreePointSmoother:
     ValueError
         When a weight is negative.
     """
+    def __copy__(self) -> ThreePointSmoother: ...
+    def __deepcopy__(self, memo: dict) -> ThreePointSmoother: ...
     def __init__(
         self,
         *,
@@ -901,6 +1001,10 @@ class ThreePointSmoother:
     def forecast(self, ahead_s: float) -> float:
         """
         The value `ahead_s` after the newest reading.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
@@ -921,6 +1025,10 @@ class ThreePointSmoother:
         -------
         (value, rate, forecast)
             Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def update(self, dt_s: float, reading: float) -> None:
         """
@@ -951,6 +1059,8 @@ class RecentMemory:
     max_plots : int
         The gains stay those of so many; 0 for all.
     """
+    def __copy__(self) -> RecentMemory: ...
+    def __deepcopy__(self, memo: dict) -> RecentMemory: ...
     def __init__(self, *, max_plots: int = 0) -> None: ...
     def gains(self, *, reading: int = 1) -> NDArray[np.float64]:
         """
@@ -977,6 +1087,8 @@ class AlphaBetaSmoother:
     ValueError
         When a parameter makes no sense or gains are not stable.
     """
+    def __copy__(self) -> AlphaBetaSmoother: ...
+    def __deepcopy__(self, memo: dict) -> AlphaBetaSmoother: ...
     def __init__(
         self,
         gains: ConstantGains
@@ -993,6 +1105,10 @@ class AlphaBetaSmoother:
     def forecast(self, ahead_s: float) -> float:
         """
         The value `ahead_s` after the newest reading.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0, range_m: float = 0.0
@@ -1013,6 +1129,10 @@ class AlphaBetaSmoother:
         -------
         (value, rate, forecast)
             Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def update(self, dt_s: float, reading: float, *, range_m: float = 0.0) -> None:
         """
@@ -1041,10 +1161,16 @@ class AdaptiveAlphaBeta:
     wrapped : bool
         Readings are angles, radians: values are in -pi .. pi.
     """
+    def __copy__(self) -> AdaptiveAlphaBeta: ...
+    def __deepcopy__(self, memo: dict) -> AdaptiveAlphaBeta: ...
     def __init__(self, *, wrapped: bool = False) -> None: ...
     def forecast(self, ahead_s: float) -> float:
         """
         The value `ahead_s` after the newest reading.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
@@ -1065,6 +1191,10 @@ class AdaptiveAlphaBeta:
         -------
         (value, rate, forecast)
             Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def update(self, dt_s: float, reading: float) -> None:
         """
@@ -1100,10 +1230,16 @@ class PrintedAdaptiveAlphaBeta:
     wrapped : bool
         Readings are angles, radians: values are in -pi .. pi.
     """
+    def __copy__(self) -> PrintedAdaptiveAlphaBeta: ...
+    def __deepcopy__(self, memo: dict) -> PrintedAdaptiveAlphaBeta: ...
     def __init__(self, *, wrapped: bool = False) -> None: ...
     def forecast(self, ahead_s: float) -> float:
         """
         The value `ahead_s` after the newest reading.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
@@ -1124,6 +1260,10 @@ class PrintedAdaptiveAlphaBeta:
         -------
         (value, rate, forecast)
             Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def update(self, dt_s: float, reading: float) -> None:
         """
@@ -1170,12 +1310,18 @@ class WindowBank:
     ValueError
         When a setting makes no sense.
     """
+    def __copy__(self) -> WindowBank: ...
+    def __deepcopy__(self, memo: dict) -> WindowBank: ...
     def __init__(
         self, *, max_readings: int = 32, memory: float = 0.92, wrapped: bool = False
     ) -> None: ...
     def forecast(self, ahead_s: float) -> float:
         """
         The value `ahead_s` after the newest reading.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
@@ -1196,6 +1342,10 @@ class WindowBank:
         -------
         (value, rate, forecast)
             Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def update(self, dt_s: float, reading: float) -> None:
         """

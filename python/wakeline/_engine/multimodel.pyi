@@ -51,6 +51,8 @@ class ModeChain:
         """
         The chain that stays in mode k for sojourn_s[k] seconds on average and leaves to each other mode alike.
         """
+    def __copy__(self) -> ModeChain: ...
+    def __deepcopy__(self, memo: dict) -> ModeChain: ...
     def __init__(self, matrix: ArrayLike, period_s: float | None = None) -> None: ...
     def transition(self, dt_s: float) -> NDArray[np.float64]:
         """
@@ -97,6 +99,10 @@ class Imm:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -142,6 +148,10 @@ class Imm:
         FilterError
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -244,6 +254,10 @@ class AdaptiveGridImm:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -289,6 +303,10 @@ class AdaptiveGridImm:
         FilterError
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -380,6 +398,10 @@ class SwitchingGridImm:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -425,6 +447,10 @@ class SwitchingGridImm:
         FilterError
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -515,6 +541,10 @@ class LikelyModelSetImm:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -560,6 +590,10 @@ class LikelyModelSetImm:
         FilterError
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -698,6 +732,10 @@ class ModeHistory:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -743,6 +781,10 @@ class ModeHistory:
         FilterError
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -824,6 +866,10 @@ class BayesianAlphaBeta:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -869,6 +915,10 @@ class BayesianAlphaBeta:
         FilterError
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def start(self, belief: Gaussian) -> None:
         """
@@ -998,6 +1048,10 @@ class FuzzyAlphaBeta:
         """
         Moves dt_s seconds on, under a known acceleration [north, east] where one is given; mode probabilities follow the chain.
         """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
     def run(
         self,
         z: ArrayLike,
@@ -1043,6 +1097,10 @@ class FuzzyAlphaBeta:
         FilterError
             When an estimator cannot start. A step that fails later is marked in `status`: a reading that
             cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def start(self, belief: Gaussian) -> None:
         """

@@ -69,6 +69,8 @@ class LocalPlane:
     ValueError
         When it is not on the earth.
     """
+    def __copy__(self) -> LocalPlane: ...
+    def __deepcopy__(self, memo: dict) -> LocalPlane: ...
     def __init__(self, latitude_rad: float, longitude_rad: float) -> None: ...
     def place(self, position_m: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """
@@ -369,6 +371,8 @@ class UsvReading(Step):
     """
     What a reading has done to the navigator.
     """
+    def __getstate__(self) -> tuple[tuple, bool, bool]: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def rejected(self) -> bool:
         """
@@ -450,6 +454,8 @@ class UsvNavigator:
     ValueError
         When a parameter makes no sense.
     """
+    def __copy__(self) -> UsvNavigator: ...
+    def __deepcopy__(self, memo: dict) -> UsvNavigator: ...
     def __init__(
         self,
         states: int = 8,
@@ -473,6 +479,10 @@ class UsvNavigator:
     def predict(self, dt_s: float, imu: ArrayLike | None = None) -> None:
         """
         A step under a reading of the IMU [forward m/s², starboard m/s², yaw rate rad/s], or without one.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self,
@@ -526,6 +536,10 @@ class UsvNavigator:
             When shapes do not fit, times decrease, or a sensor needs a state that is not there.
         FilterError
             When the navigator was not started, or a row makes a step fail; the navigator is as it was then.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     def start(
         self,

@@ -23,9 +23,7 @@ class Candidate:
 
     It is told of the control that the vessel is under, where there is such.
 
-    Each of them may be a function of the scenario that gives the thing itself. A function of a
-    module is also what can be sent to the workers of a cluster, where the engine's own objects
-    cannot.
+    Each of them may be a function of the scenario that gives the thing itself.
 
     Attributes
     ----------

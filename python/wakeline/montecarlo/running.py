@@ -67,9 +67,9 @@ def run(
         Default as many as there are processors; not together with `client`.
     client : object, optional
         A ``dask.distributed.Client``, the module ``ray`` after ``ray.init()``, or an executor with
-        ``submit``: does the work elsewhere. Candidates are then built by functions, as engine
-        objects cannot be sent. Tested with a cluster of Dask and with executors of threads and of
-        processes; Ray only by a stand-in with its two calls, ``remote`` and ``get``.
+        ``submit``: does the work elsewhere, with candidates that can be pickled, as all of the
+        engine can. Tested with a cluster of Dask and with executors of threads and of processes;
+        Ray only by a stand-in with its two calls, ``remote`` and ``get``.
     progress : bool or callable
         True draws a bar where stderr is a terminal; a callable is told chunks done and in all. What
         it raises ends the run: chunks that have not begun are called off.
@@ -177,11 +177,12 @@ def _check_can_be_sent(name: str, candidate: Any) -> None:
         if callable(part) or isinstance(part, str):
             continue
         try:
-            pickle.dumps(part)
+            pickler.dumps(part)
         except (TypeError, AttributeError, pickle.PicklingError) as error:
             raise ValueError(
-                f"candidate {name!r} cannot be sent to the workers of a client ({error}): give "
-                "functions of the scenario that build its estimator and sensor"
+                f"candidate {name!r} cannot be sent to the workers of a client ({error}): its "
+                "estimator and sensor, or functions of the scenario that build them, must be of a "
+                "kind that can be pickled"
             ) from None
 
 
