@@ -55,6 +55,10 @@ inline PyStep step_of(const py::tuple& fields) {
   const auto innovation = fields[1].cast<DoubleArray>();
   const auto covariance = fields[2].cast<DoubleArray>();
   const py::ssize_t size = innovation.size();
+  require_shape(innovation.ndim() == 1 && size <= PyStep::kMost, "innovation",
+                "(M,), M at most " + std::to_string(PyStep::kMost), innovation);
+  require_shape(shape_of(covariance) == std::vector{size, size}, "innovation_covariance",
+                shape_text({size, size}), covariance);
   return {fields[0].cast<Status>(), Eigen::Map<const Eigen::VectorXd>(innovation.data(), size),
           Eigen::Map<const Square>(covariance.data(), size, size), fields[3].cast<double>(),
           fields[4].cast<double>()};

@@ -5,7 +5,6 @@ That serves `pickle`, processes (`multiprocessing`, Dask) and `copy` alike.
 
 from __future__ import annotations
 
-import copyreg
 from types import ModuleType
 
 from . import _engine
@@ -31,10 +30,17 @@ def made_by(call: str, state: bytes | None = None) -> object:
     return made
 
 
-def _reduced(one: object) -> tuple[object, tuple[str, bytes | None]]:
+def _reduced(one: object, _protocol: int) -> tuple[object, tuple[str, bytes | None]]:
+    kind = type(one)
+    if kind not in _KINDS:
+        raise TypeError(f"{kind.__name__} is derived in Python: define __reduce_ex__")
     return made_by, (repr(one), one.save() if hasattr(one, "save") else None)
 
 
-for _kind in _NAMES.values():
-    if isinstance(_kind, type) and not vars(_kind).keys().isdisjoint({"__copy__", "save"}):
-        copyreg.pickle(_kind, _reduced)
+_KINDS = {
+    kind
+    for kind in _NAMES.values()
+    if isinstance(kind, type) and not vars(kind).keys().isdisjoint({"__copy__", "save"})
+}
+for _kind in _KINDS:
+    _kind.__reduce_ex__ = _reduced

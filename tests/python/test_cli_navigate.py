@@ -350,13 +350,13 @@ def test_an_instrument_that_good_fixes_refute_is_named_and_moves_nothing(
 def test_without_a_log_or_a_heading_fixes_refute_speeds_over_ground_as_well(tmp_path, missing):
     lines = voyage(10, **missing)
     true = navigated(tmp_path, lines)
-    stuck = [
-        sentence(re.sub(r"E,[0-9.]+,", "E,0.0,", line[1:-4]))
+    wrong = [
+        sentence(re.sub(r"E,[0-9.]+,", "E,25.0,", line[1:-4]))
         if line.startswith("$GPRMC") and 400 <= k // 2 < 430
         else line
         for k, line in enumerate(lines)
     ]
-    rows = navigated(tmp_path, stuck)
+    rows = navigated(tmp_path, wrong)
     off_m = [column(rows, name) - column(true, name) for name in ("north_m", "east_m")]
     assert np.hypot(*off_m).max() < 5.0
 

@@ -361,7 +361,7 @@ def test_a_radar_that_shows_a_sector_gives_a_scan_a_turn(tmp_path, sector_deg):
     tracks = tracks_of(radar.turns({"ship": target}, SCANS, seed=2), tmp_path)
     assert len(tracks.ids()) == 1
     assert np.diff(np.unique(tracks.time_s)) == pytest.approx(PERIOD_S, abs=0.1)
-    assert len(tracks) >= SCANS - 4
+    assert len(tracks) >= SCANS - 5
 
 
 def test_a_short_range_scale_leaves_no_blind_ring(tmp_path):

@@ -190,12 +190,49 @@ def test_a_state_that_is_of_another_is_refused_and_nothing_changes():
     follow(imm, z[:5])
     before = copy.copy(imm)
     history = copy.copy(OF_ALL_KINDS["ModeHistory"])
-    for state in (b"", imm.save()[:-1], imm.save() + b"\0", history.save()):
+    of_another_chain = OF_ALL_KINDS["Imm"].save()
+    for state in (b"", imm.save()[:-1], imm.save() + b"\0", history.save(), of_another_chain):
         with pytest.raises(ValueError, match="state is not that of one that is made alike"):
             imm.restore(state)
         assert_same(imm, before)
     imm.restore(before.save())
     assert_same(imm, before)
+
+
+def test_a_root_is_no_covariance():
+    ukf, root = (kind(MOTIONS["ConstantVelocity"]) for kind in (wl.Ukf, wl.SquareRootUkf))
+    ukf.start(START)
+    with pytest.raises(ValueError, match="made alike"):
+        root.restore(ukf.save())
+    assert not root.started
+
+
+@pytest.mark.parametrize(
+    ("innovation", "covariance", "name"),
+    [
+        (np.zeros(40), np.eye(40), "innovation must have shape"),
+        (np.zeros(2), np.eye(1), "innovation_covariance must have shape"),
+        (np.zeros((2, 2)), np.eye(4), "innovation must have shape"),
+    ],
+)
+def test_a_step_of_no_shape_is_refused(innovation, covariance, name):
+    step = wl.Step.__new__(wl.Step)
+    with pytest.raises(ValueError, match=name):
+        step.__setstate__((wl.Status.ok, innovation, covariance, 0.0, 0.0))
+
+
+class Mine(wl.Ekf):
+    pass
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_what_is_derived_in_python_says_itself_how(protocol):
+    mine = Mine(MOTIONS["ConstantVelocity"])
+    with pytest.raises(TypeError, match="Mine is derived in Python"):
+        pickle.dumps(mine, protocol)
+    for way in (copy.copy, copy.deepcopy):
+        with pytest.raises(TypeError, match="Mine is derived in Python"):
+            way(mine)
 
 
 def test_another_process_works_with_what_it_is_sent():

@@ -36,6 +36,10 @@ class Radar:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def __reduce_ex__(
+        one: typing.Any, _protocol: int
+    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> Radar: ...
     def __deepcopy__(self, memo: dict) -> Radar: ...
     def __eq__(self, other: object) -> bool: ...
@@ -70,6 +74,10 @@ class TrackerConfig:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def __reduce_ex__(
+        one: typing.Any, _protocol: int
+    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> TrackerConfig: ...
     def __deepcopy__(self, memo: dict) -> TrackerConfig: ...
     def __eq__(self, other: object) -> bool: ...
@@ -153,6 +161,10 @@ class VesselModels:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def __reduce_ex__(
+        one: typing.Any, _protocol: int
+    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     @staticmethod
     def ships() -> VesselModels:
         """
@@ -329,6 +341,10 @@ class Tracker:
     ValueError
         When a setting makes no sense.
     """
+    @staticmethod
+    def __reduce_ex__(
+        one: typing.Any, _protocol: int
+    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __init__(
         self,
         radar: Radar,

@@ -586,6 +586,62 @@ TEST(UsvNavigator, FollowsAVesselThatChangesHerSpeed) {
   }
 }
 
+// What fixes said of velocities means nothing when there were none for a while.
+TYPED_TEST(EveryUsvModel, BelievesVelocitiesThatWereRefutedBeforeAGapOfFixes) {
+  constexpr double kDt_s = 0.5;
+  UsvNavigator<TypeParam> navigator;
+  ASSERT_EQ(navigator.start({.velocity_mps = {5, 0}}), Status::kOk);
+  Draw draw(5);
+  Vec2 position(0, 0);
+  double heading = 0, farthest_m = 0;
+  for (int k = 1; k < 700; ++k) {
+    const double time_s = kDt_s * k;
+    const double turn = time_s > 166 && time_s <= 178 ? deg(5) * kDt_s : 0;
+    const Vec2 velocity = 5 * body_to_north_east(heading + turn / 2).col(0);
+    heading += turn;
+    position += kDt_s * velocity;
+    ASSERT_EQ(navigator.predict(kDt_s), Status::kOk);
+    const bool is_hidden = time_s > 165 && time_s < 300, is_stuck = time_s >= 140 && time_s < 170;
+    const Vec2 fix = position + 3 * draw.normals<2>();
+    if (k % 2 == 0 && !is_hidden)
+      (void)navigator.update(Fix{.covariance_m2 = 9 * Mat<double, 2, 2>::Identity()}, fix);
+    const Vec2 told = is_stuck ? Vec2(0, 0) : Vec2(velocity + 0.1 * draw.normals<2>());
+    if constexpr (kStatesOf<TypeParam> == 7)
+      (void)navigator.update(GroundVelocityInCurrent(), told);
+    else
+      (void)navigator.update(GroundVelocity(), told);
+    (void)navigator.update(Compass(), of(wrap_angle(heading + deg(1) * draw.normal())));
+    const Vec2 off = navigator.estimate().mean.template head<2>() - position;
+    if (time_s > 50) farthest_m = std::max(farthest_m, off.norm());
+  }
+  EXPECT_LT(farthest_m, 80);
+}
+
+// A fix that is believed though it did not fit moves the belief, and what would have been is void.
+TEST(UsvNavigator, BelievesVelocitiesThroughAGapAfterFixesThatInsisted) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    UsvNavigator<UsvMotion> navigator;
+    ASSERT_EQ(navigator.start({.velocity_mps = {5, 0}}), Status::kOk);
+    Draw draw(seed);
+    double north_m = 0, farthest_m = 0;
+    for (int k = 1; k < 1000; ++k) {
+      const double time_s = 0.2 * k;
+      const double speed_mps = 5 + std::clamp(time_s - 100, 0.0, 15.0);
+      north_m += 0.2 * speed_mps;
+      ASSERT_EQ(navigator.predict(0.2), Status::kOk);
+      if (time_s < 112)
+        (void)navigator.update(Fix{.covariance_m2 = 9 * Mat<double, 2, 2>::Identity()},
+                               Vec2(Vec2(north_m, 0) + 3 * draw.normals<2>()));
+      if (k % 5 == 0)
+        (void)navigator.update(GroundVelocity(),
+                               Vec2(Vec2(speed_mps, 0) + 0.1 * draw.normals<2>()));
+      const Vec2 off = navigator.estimate().mean.head<2>() - Vec2(north_m, 0);
+      if (time_s > 50) farthest_m = std::max(farthest_m, off.norm());
+    }
+    EXPECT_LT(farthest_m, 80) << seed;
+  }
+}
+
 TYPED_TEST(EveryUsvModel, IsNotMovedByVelocitiesThatGoodFixesRefute) {
   const std::vector<Instant> log = mission(20, kStatesOf<TypeParam> == 5 ? kNoBias : kBias);
   for (const Vec2& wrong : {Vec2(6, 0), Vec2(10, -10)}) {

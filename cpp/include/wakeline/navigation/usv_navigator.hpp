@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/rts_smoother.hpp"
@@ -53,10 +54,11 @@ struct UsvLeg {
 ///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
 /// - It is not, where positions refute the readings: they fit the belief, and where she would be
 ///   had the readings been right since the first of them so much worse that the differences of
-///   NIS, summed up (CUSUM), are outside the gate of 0.9. Place and velocity over ground are then
-///   right. Velocities over ground stay rejected until one lies in that gate. Compass and log move
+///   NIS, summed up (CUSUM), are outside the gate. Place and velocity over ground are then right.
+///   Velocities over ground stay rejected until one lies in the gate of 0.9. Compass and log move
 ///   the current in place of them, and are rejected where it would be stronger than now and outside
-///   the gate of `current_std_mps`. Three positions in a row that are rejected take it back.
+///   the gate of `current_std_mps`. Three positions in a row that are rejected take it back, one
+///   that is believed though it did not fit, and 15 s or three times the last pause without any.
 ///   Likewise headings refute rates of turn.
 /// - An absurd reading, finite but more than a million standard deviations off (a thousand in
 ///   `float`) or so large that its last digit is more than one, says nothing of the belief: it is
@@ -102,7 +104,7 @@ class UsvNavigator {
     const Status status = filter_.start(belief);
     if (status != Status::kOk) return status;
     rejected_ = {};
-    evidence_ = told_ = silent_s_ = {};
+    evidence_ = misread_ = silent_s_ = pause_s_ = {};
     off_.setZero();
     strayed_.setZero();
     wrap();
@@ -124,6 +126,7 @@ class UsvNavigator {
     if (status != Status::kOk) return status;
     strayed_ += leg.dt_s * off_;
     for (Scalar& silent_s : silent_s_) silent_s += leg.dt_s;
+    forget_silent();
     wrap();
     return status;
   }
@@ -140,8 +143,8 @@ class UsvNavigator {
     if (!reading) return reading;
     constexpr int kKind = kKindOf<Sensor>;
     const State before = estimate();
-    silent_s_[kKind] = Scalar(0);
-    if constexpr (kSplitsWay<Sensor>) told_[kKind] = before.mean[kKind] + reading.innovation[0];
+    pause_s_[kKind] = std::exchange(silent_s_[kKind], Scalar(0));
+    if constexpr (kSplitsWay<Sensor>) misread_[kKind] = reading.innovation[0];
     const bool fits = gate<Sensor>().contains(reading.nis);
     if (!fits && (rejected_[kKind] < rejections_ || !widen(sensor, reading.innovation))) {
       rejected_[kKind] = std::min(rejected_[kKind] + 1, rejections_);
@@ -156,10 +159,11 @@ class UsvNavigator {
       return reading;
     }
     rejected_[kKind] = 0;
-    evidence_[kKind] = Scalar(0);
-    off_.col(kKind).setZero();
-    strayed_.col(kKind).setZero();
-    if (fits) judge_others<Sensor>(before, reading);
+    acquit(kKind);
+    if (fits)
+      judge_others<Sensor>(before, reading);
+    else
+      acquit_others<Sensor>();
     wrap();
     return reading;
   }
@@ -193,8 +197,9 @@ class UsvNavigator {
     filter_.archive(fields);
     fields(rejected_);
     fields(evidence_);
-    fields(told_);
+    fields(misread_);
     fields(silent_s_);
+    fields(pause_s_);
     fields(off_);
     fields(strayed_);
   }
@@ -234,7 +239,8 @@ class UsvNavigator {
   static constexpr int kFew = 3;                   ///< misfits in a row that are no chance
   static constexpr Scalar kMostEvidence = 40;      ///< so that a few misfits take it back
   static constexpr double kTogether_s = 2.0;       ///< between readings of compass and log
-  static constexpr double kBackProbability = 0.9;  ///< of the gate of evidence, of rates refuted
+  static constexpr double kSilence_s = 15.0;       ///< that says nothing of others any more
+  static constexpr double kBackProbability = 0.9;  ///< of the gate of rates once refuted
   static constexpr Scalar kDigit = std::numeric_limits<Scalar>::epsilon();
   static constexpr Scalar kFarthestStds = kDigit < 1e-10F ? 1e6F : 1e3F;
 
@@ -331,14 +337,33 @@ class UsvNavigator {
   }
 
   [[nodiscard]] bool refuted(int kind) const noexcept {
-    return !gates2_[1].contains(evidence_[static_cast<std::size_t>(kind)]);
+    return !gates2_[0].contains(evidence_[static_cast<std::size_t>(kind)]);
   }
 
-  /// Takes back what readings of a sensor said of others.
+  /// Takes back what was said of a kind.
+  void acquit(std::size_t kind) noexcept {
+    evidence_[kind] = Scalar(0);
+    off_.col(int(kind)).setZero();
+    strayed_.col(int(kind)).setZero();
+  }
+
+  /// The same of all that readings of a sensor judge.
   template <class Sensor>
   void acquit_others() noexcept {
     for (std::size_t other = 0; other < kStates; ++other)
-      if (judges<Sensor>(other)) evidence_[other] = Scalar(0);
+      if (judges<Sensor>(other)) acquit(other);
+  }
+
+  /// Acquits kinds that are silent, or whose judge is: it cannot see when they are right again.
+  void forget_silent() noexcept {
+    for (std::size_t kind = 0; kind < kStates; ++kind) {
+      const int judge = int(kind) == kGyroBiasRow ? kHeadingRow : kNorthRow;
+      if (is_silent(kind) || is_silent(std::size_t(judge))) acquit(kind);
+    }
+  }
+
+  [[nodiscard]] bool is_silent(std::size_t kind) const noexcept {
+    return silent_s_[kind] > std::max(Scalar(kSilence_s), Scalar(kFew) * pause_s_[kind]);
   }
 
   /// Makes room in the belief for a reading that insists; false where it is refuted.
@@ -368,7 +393,7 @@ class UsvNavigator {
     const State now = estimate();
     State told = now;
     for (const int row : rows) {
-      told.mean[row] = told_[static_cast<std::size_t>(row)];
+      told.mean[row] += misread_[static_cast<std::size_t>(row)];
       told.covariance.row(row).setZero();
       told.covariance.col(row).setZero();
       told.covariance(row, row) = square(told.mean[row] - now.mean[row]);
@@ -411,12 +436,13 @@ class UsvNavigator {
   ImuNoise unmeasured_;
   int rejections_;
   std::array<EllipsoidalGate<1, Scalar>, 2> gates1_;  ///< the second for rates once refuted
-  std::array<EllipsoidalGate<2, Scalar>, 2> gates2_;  ///< the second for evidence, too
+  std::array<EllipsoidalGate<2, Scalar>, 2> gates2_;  ///< the first for evidence, too
   // By kind of sensor, which is the first state that it reads:
   std::array<int, kStates> rejected_{};     ///< in a row, counted up to `rejections_`
   std::array<Scalar, kStates> evidence_{};  ///< against those rejected, as a difference of NIS
-  std::array<Scalar, kStates> told_{};      ///< heading, speed: as they were last read
+  std::array<Scalar, kStates> misread_{};   ///< heading, speed: by how much, last
   std::array<Scalar, kStates> silent_s_{};  ///< since the last reading
+  std::array<Scalar, kStates> pause_s_{};   ///< between the last two
   Mat<Scalar, 2, kStates> off_ = Mat<Scalar, 2, kStates>::Zero();  ///< rates rejected less believed
   Mat<Scalar, 2, kStates> strayed_ = off_;  ///< from the belief, had the rejected been right
 };

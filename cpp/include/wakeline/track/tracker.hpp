@@ -323,7 +323,8 @@ class Tracker {
     const Mat<double, 2, 2> velocity_covariance = track.velocity_covariance();
     const double unrest_m2s3 = apart_s > radar_.period_s ? unrest(track, apart_s) : 0.0;
     const auto way_covariance = [&](double dt_s) -> Mat<double, 2, 2> {
-      const double changed_m2 = std::abs(dt_s * dt_s * dt_s) * unrest_m2s3;
+      const double late_s = std::abs(dt_s) > radar_.period_s ? std::abs(dt_s) : 0.0;
+      const double changed_m2 = late_s * late_s * late_s * unrest_m2s3;
       return dt_s * dt_s * velocity_covariance + changed_m2 * Mat<double, 2, 2>::Identity();
     };
     const double moved_m2 = way_covariance(apart_s).trace();
