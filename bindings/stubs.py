@@ -58,6 +58,7 @@ WORDS = [
     (r"(__hash__: typing\.ClassVar\[None\]) = None", r"\1  # type: ignore[assignment]"),
     (r"    @classmethod\n    def __new__\(cls, value\):\n        \.\.\.\n", ""),
     (r"    def __format__\(self, format_spec\):\n        \.\.\.\n", ""),
+    (r"    @staticmethod\n    def __reduce_ex__\(.*\) -> .*: ?\.*\n(?:        .*\n)*", ""),
     (r"    def __(repr|str)__\(self\) -> str:\n        \.\.\.\n", ""),
 ]
 # A property that can be set is an attribute.

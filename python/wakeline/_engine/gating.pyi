@@ -2,8 +2,6 @@
 Where to look for a target's plot.
 """
 
-import typing
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -24,10 +22,6 @@ class ChiSquareGate:
     """
     The ellipsoid that holds the target's own plot with a given probability.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> ChiSquareGate: ...
     def __deepcopy__(self, memo: dict) -> ChiSquareGate: ...
     def __init__(self, *, probability: float = 0.99) -> None: ...
@@ -42,10 +36,6 @@ class RadiusGate:
     """
     A circle of fixed radius about the predicted position.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> RadiusGate: ...
     def __deepcopy__(self, memo: dict) -> RadiusGate: ...
     def __init__(self, *, radius_m: float = 100.0) -> None: ...
@@ -92,10 +82,6 @@ class RangeBearingWindow:
     """
     Ranges and bearings from the antenna near the predicted ones.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> RangeBearingWindow: ...
     def __deepcopy__(self, memo: dict) -> RangeBearingWindow: ...
     def __init__(

@@ -23,10 +23,6 @@ class OwnShip:
     """
     Where the antenna is when it measures, and how well that is known.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> OwnShip: ...
     def __deepcopy__(self, memo: dict) -> OwnShip: ...
     def __init__(
@@ -66,10 +62,6 @@ class RangeBearing:
 
     measurements: typing.ClassVar[int] = 2
     own: OwnShip
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> RangeBearing: ...
     def __deepcopy__(self, memo: dict) -> RangeBearing: ...
     def __init__(
@@ -126,10 +118,6 @@ class ConvertedRangeBearing:
 
     measurements: typing.ClassVar[int] = 2
     own: OwnShip
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> ConvertedRangeBearing: ...
     def __deepcopy__(self, memo: dict) -> ConvertedRangeBearing: ...
     def __init__(
@@ -189,10 +177,6 @@ class RangeBearingDoppler:
 
     measurements: typing.ClassVar[int] = 3
     own: OwnShip
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> RangeBearingDoppler: ...
     def __deepcopy__(self, memo: dict) -> RangeBearingDoppler: ...
     def __init__(
@@ -238,10 +222,6 @@ class Position:
     """
 
     measurements: typing.ClassVar[int] = 2
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> Position: ...
     def __deepcopy__(self, memo: dict) -> Position: ...
     def __init__(self, *, position_std_m: float = 10.0) -> None: ...

@@ -2,7 +2,6 @@
 Estimators with several motion models.
 """
 
-import typing
 from collections.abc import Sequence
 
 import numpy as np
@@ -43,10 +42,6 @@ class ModeChain:
         When a row is no distribution, or no continuous-time chain has this matrix over the period.
     """
     @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
-    @staticmethod
     def from_generator(generator_per_s: ArrayLike) -> ModeChain:
         """
         The chain in continuous time that goes from mode i to mode j generator_per_s[i, j] times a second; rows sum to 0.
@@ -80,10 +75,6 @@ class Imm:
     initial_mode_probability : (K,) array, optional
         What a start begins with; uniform when left out.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> Imm: ...
     def __deepcopy__(self, memo: dict) -> Imm: ...
     def __init__(
@@ -228,10 +219,6 @@ class AdaptiveGridImm:
     ----------
     Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.1.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> AdaptiveGridImm: ...
     def __deepcopy__(self, memo: dict) -> AdaptiveGridImm: ...
     def __init__(
@@ -380,10 +367,6 @@ class SwitchingGridImm:
     ----------
     Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.2.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> SwitchingGridImm: ...
     def __deepcopy__(self, memo: dict) -> SwitchingGridImm: ...
     def __init__(
@@ -529,10 +512,6 @@ class LikelyModelSetImm:
     ----------
     X. R. Li, Y. Zhang, IEEE Trans. AES-36, 2000: the likely-model set.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> LikelyModelSetImm: ...
     def __deepcopy__(self, memo: dict) -> LikelyModelSetImm: ...
     def __init__(
@@ -688,10 +667,6 @@ class ModeHistory:
     G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait, Automatica 18, 1982; D. J. Salmond, Proc. SPIE
     1305, 1990.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     @staticmethod
     def pseudo_bayes(
         order: int,
@@ -867,10 +842,6 @@ class BayesianAlphaBeta:
     ValueError
         When a parameter makes no sense.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> BayesianAlphaBeta: ...
     def __deepcopy__(self, memo: dict) -> BayesianAlphaBeta: ...
     def __init__(
@@ -1048,10 +1019,6 @@ class FuzzyAlphaBeta:
     ----------
     V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuzzy criterion of maneuver detection.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> FuzzyAlphaBeta: ...
     def __deepcopy__(self, memo: dict) -> FuzzyAlphaBeta: ...
     def __init__(

@@ -36,10 +36,6 @@ class Radar:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> Radar: ...
     def __deepcopy__(self, memo: dict) -> Radar: ...
     def __eq__(self, other: object) -> bool: ...
@@ -74,10 +70,6 @@ class TrackerConfig:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __copy__(self) -> TrackerConfig: ...
     def __deepcopy__(self, memo: dict) -> TrackerConfig: ...
     def __eq__(self, other: object) -> bool: ...
@@ -161,10 +153,6 @@ class VesselModels:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     @staticmethod
     def ships() -> VesselModels:
         """
@@ -341,10 +329,6 @@ class Tracker:
     ValueError
         When a setting makes no sense.
     """
-    @staticmethod
-    def __reduce_ex__(
-        one: typing.Any, _protocol: int
-    ) -> tuple[typing.Any, tuple[str, bytes | None]]: ...
     def __init__(
         self,
         radar: Radar,
