@@ -236,11 +236,13 @@ def _input_lines(log: NavigationLog) -> str:
 
 def _hold_out(legs: Sequence[_Leg]) -> dict[str, dict[float, np.ndarray]]:
     """Errors without satellites over all legs, to magnetic offsets, too."""
-    seen = [navigating.without_hidden(leg.part, leg.readings) for leg in legs]
-    offset = navigating.magnetic_offset(seen) or navigating.ANY_OFFSET
+    of_legs = [leg.readings for leg in legs]
+    if any(navigating.wants_offset(leg.part) for leg in legs):
+        seen = [navigating.without_hidden(leg.part, leg.readings) for leg in legs]
+        offset = navigating.magnetic_offset(seen) or navigating.ANY_OFFSET
+        of_legs = [navigating.readings_of(g.part, offset, g.readings.plane) for g in legs]
     joined: dict[str, dict[float, list[np.ndarray]]] = {}
-    for leg in legs:
-        readings = navigating.readings_of(leg.part, offset, leg.readings.plane)
+    for readings in of_legs:
         for name, errors in navigating.hold_out(readings).items():
             for horizon_s, values in errors.items():
                 joined.setdefault(name, {}).setdefault(horizon_s, []).append(values)

@@ -119,7 +119,7 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
                   const BankType& bank)
       : Base(chain, bank, to_vector(validated(grid).initial())), grid_(grid) {
     const double side = (1.0 - grid.initial_centre_probability) / 2.0;
-    this->set_initial(
+    this->set_initial_mode_probability(
         to_vector({side, grid.initial_centre_probability, side}).template cast<Scalar>());
   }
 

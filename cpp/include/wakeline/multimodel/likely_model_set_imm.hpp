@@ -87,7 +87,7 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
     Probability initial = Probability::Constant(
         bank.size(), Scalar((1.0 - set.initial_straight_probability) / (bank.size() - 1)));
     initial[straight] = Scalar(set.initial_straight_probability);
-    this->set_initial(initial);
+    this->set_initial_mode_probability(initial);
   }
 
   /// Over filters like `prototype`, whose turn rate does not matter.

@@ -88,7 +88,7 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
     Probability initial =
         Probability::Constant(bank.size(), Scalar((1.0 - grid.initial_centre_probability) / 2.0));
     initial[1] = Scalar(grid.initial_centre_probability);
-    this->set_initial(initial);
+    this->set_initial_mode_probability(initial);
   }
 
   /// Over filters like `prototype`, whose turn rate does not matter.

@@ -70,12 +70,6 @@ class TurnGridImm : public Imm<BankType> {
     this->bank_.for_each([&](int k, auto& filter, auto&) { set_turn_rate(filter, rates_[k]); });
   }
 
-  /// What a start begins with, and what is told before it.
-  void set_initial(const Probability& probability) noexcept {
-    this->initial_ = probability;
-    this->probability_ = probability;
-  }
-
   /// `move(lanes)` where the grid may move, then a step of the Imm; `undo(lanes)` where that fails.
   template <class Move, class Undo, class... Known>
   StatusOf<Scalar> move_and_predict(Move&& move, Undo&& undo, Scalar dt_s,

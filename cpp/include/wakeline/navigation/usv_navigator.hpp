@@ -228,8 +228,7 @@ class UsvNavigator {
                                      (kKindOf<Sensor> == kHeadingRow ||
                                       kKindOf<Sensor> == kSpeedRow);
 
-  /// Whether readings of a sensor refute others: positions those of velocities, headings those of
-  /// rates of turn.
+  /// Whether readings of a sensor refute others: a position, or a heading.
   template <class Sensor>
   static constexpr bool kIsJudge =
       kKindOf<Sensor> == kNorthRow ? Sensor::kMeasurements == 2
@@ -308,10 +307,14 @@ class UsvNavigator {
     return off;
   }
 
-  /// Whether a sensor refutes readings of another kind.
+  /// The kind whose readings refute those of a kind: headings of rates of turn, else positions.
+  static constexpr int judge_of(std::size_t kind) noexcept {
+    return int(kind) == kGyroBiasRow ? kHeadingRow : kNorthRow;
+  }
+
   template <class Sensor>
   static constexpr bool judges(std::size_t other) noexcept {
-    return kIsJudge<Sensor> && (kKindOf<Sensor> == kHeadingRow) == (int(other) == kGyroBiasRow);
+    return kIsJudge<Sensor> && judge_of(other) == kKindOf<Sensor>;
   }
 
   /// What a reading that is believed says of kinds that are being rejected: how much worse it would
@@ -356,10 +359,8 @@ class UsvNavigator {
 
   /// Acquits kinds that are silent, or whose judge is: it cannot see when they are right again.
   void forget_silent() noexcept {
-    for (std::size_t kind = 0; kind < kStates; ++kind) {
-      const int judge = int(kind) == kGyroBiasRow ? kHeadingRow : kNorthRow;
-      if (is_silent(kind) || is_silent(std::size_t(judge))) acquit(kind);
-    }
+    for (std::size_t kind = 0; kind < kStates; ++kind)
+      if (is_silent(kind) || is_silent(std::size_t(judge_of(kind)))) acquit(kind);
   }
 
   [[nodiscard]] bool is_silent(std::size_t kind) const noexcept {
@@ -393,10 +394,11 @@ class UsvNavigator {
     const State now = estimate();
     State told = now;
     for (const int row : rows) {
-      told.mean[row] += misread_[static_cast<std::size_t>(row)];
+      const Scalar misread = misread_[static_cast<std::size_t>(row)];
+      told.mean[row] += misread;
       told.covariance.row(row).setZero();
       told.covariance.col(row).setZero();
-      told.covariance(row, row) = square(told.mean[row] - now.mean[row]);
+      told.covariance(row, row) = square(misread);
     }
     const Vec<Scalar, 2> current = Model::current_left(now.mean, told.mean);
     const Vec<Scalar, 2> before = now.mean.template tail<2>();

@@ -101,7 +101,7 @@ struct VesselModels {
   /// Who stops cruising is in the modes of craft as often as craft are; these go over to each other
   /// alike, and a steady vessel to cruising besides.
   [[nodiscard]] ModeChain<4> chain() const {
-    const Vec<double, 3> rate_per_s = craft_sojourn_s().inverse();
+    const Vec<double, 3> rate_per_s = 1.0 / craft_sojourn_s();
     Mat<double, 4, 4> generator_per_s = Mat<double, 4, 4>::Zero();
     generator_per_s.row(0).tail<3>() = share_of_craft().transpose() / cruising_sojourn_s;
     generator_per_s.bottomRightCorner<3, 3>().colwise() = 0.5 * rate_per_s;
