@@ -49,6 +49,8 @@ struct AnyBelief {
   [[nodiscard]] int states() const noexcept { return states_of(layout); }
 };
 
+inline void keep_lower(const AnyBelief& belief, AnyBelief& kept) noexcept { kept = belief; }
+inline void complete(AnyBelief&) noexcept {}
 AnyBelief zero_like(const AnyBelief& belief) noexcept;
 void add_mean(AnyBelief& sum, double weight, const AnyBelief& part, const AnyBelief& own) noexcept;
 void add_spread(AnyBelief& sum, double weight, const AnyBelief& part,

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include <optional>
-
 #include "lanes/lanes.hpp"
 #include "mode_history.hpp"
 #include "run.hpp"
@@ -38,29 +36,22 @@ const LaneKernels* load() {
 
 const LaneKernels* kernels = nullptr;
 
-std::optional<LaneModel> lane_model(const AnyFilter& filter) {
+LaneModel lane_model(const AnyFilter& filter) {
   return std::visit(
-      []<class Filter>(const Filter& one) -> std::optional<LaneModel> {
+      []<class Filter>(const Filter& one) {
         LaneModel model;
         if constexpr (std::same_as<typename Filter::Motion, ConstantVelocity>)
           model.motion = CoordinatedTurn{.turn_rate_rad_s = 0.0, .noise = one.motion().noise};
         else
           model.motion = one.motion();
-        if constexpr (requires { one.root(); }) return std::nullopt;  // square roots have branches
         if constexpr (requires { one.unscented(); }) {
-          model.unscented = true;
+          const bool keeps_root = requires { one.root(); };
+          model.filter = keeps_root ? LaneFilter::kSquareRoot : LaneFilter::kUnscented;
           model.transform = one.unscented();
         }
         return model;
       },
       filter.variant());
-}
-
-/// False where a filter is none for lanes.
-bool add_model(const AnyFilter& filter, LaneJob& job) {
-  const std::optional<LaneModel> model = lane_model(filter);
-  if (model) job.models.push_back(*model);
-  return model.has_value();
 }
 
 /// Runs the job of some models. False, and nothing done, where the sensor or the runs are none for
@@ -99,7 +90,7 @@ bool run_mixture(const Estimator& estimator, const Structure& structure, const A
   job.chain = &estimator.chain();
   job.structure = structure;
   for (int k = 0; k < estimator.bank().size(); ++k) {
-    if (!add_model(AnyFilter(estimator.bank().filter(k)), job)) return false;
+    job.models.push_back(lane_model(AnyFilter(estimator.bank().filter(k))));
     job.initial_mode_probability.push_back(estimator.initial_mode_probability()[k]);
   }
   return run(job, sensor, in, starts, out);
@@ -132,7 +123,8 @@ void define_batch(py::module_& parent) {
 bool run_lanes(const AnyFilter& filter, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
   LaneJob job;
-  return add_model(filter, job) && run(job, sensor, in, starts, out);
+  job.models.push_back(lane_model(filter));
+  return run(job, sensor, in, starts, out);
 }
 
 bool run_lanes(const AnyImm& imm, const AnySensor& sensor, const RunInput& in,

@@ -8,6 +8,7 @@
 
 #include "job.hpp"
 #include "wakeline/filter/ekf.hpp"
+#include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/imm.hpp"
@@ -58,7 +59,7 @@ bool run_few(const LaneJob& job, const RunInput& in, const RunOutput& out, int t
 template <class Motion>
 bool all_over(const LaneJob& job) {
   return std::ranges::all_of(job.models, [](const LaneModel& model) {
-    return !model.unscented && std::holds_alternative<Motion>(model.motion);
+    return model.filter == LaneFilter::kExtended && std::holds_alternative<Motion>(model.motion);
   });
 }
 
@@ -131,10 +132,17 @@ bool run(const LaneJob& job, const RunInput& in, const RunOutput& out, int threa
   return std::visit(
       [&]<class Motion>(const Motion& motion) {
         constexpr int kStates = kStatesOf<Motion>;
-        if (model.unscented)
-          return run_from<kStates>(Ukf<Motion, Lanes>(motion, model.transform), job, in, out,
-                                   threads);
-        return run_from<kStates>(Ekf<Motion, Lanes>(motion), job, in, out, threads);
+        const auto run_one = [&](const auto& filter) {
+          return run_from<kStates>(filter, job, in, out, threads);
+        };
+        switch (model.filter) {
+          case LaneFilter::kUnscented:
+            return run_one(Ukf<Motion, Lanes>(motion, model.transform));
+          case LaneFilter::kSquareRoot:
+            return run_one(SquareRootUkf<Motion, Lanes>(motion, model.transform));
+          default:
+            return run_one(Ekf<Motion, Lanes>(motion));
+        }
       },
       model.motion);
 }

@@ -6,6 +6,7 @@
 // another.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <variant>
@@ -29,12 +30,14 @@
 
 namespace wakeline::python {
 
+enum class LaneFilter : std::uint8_t { kExtended, kUnscented, kSquareRoot };
+
 /// One filter. Constant velocity is a turn at rate zero.
 struct LaneModel {
   std::variant<CoordinatedTurn, CoordinatedTurnRate, ConstantAcceleration, Singer, WanderingCourse>
       motion;
-  bool unscented = false;
-  Unscented transform = {};
+  LaneFilter filter = LaneFilter::kExtended;
+  Unscented transform = {};  ///< of all but the extended
 };
 
 /// A belief of up to six states, column by column.

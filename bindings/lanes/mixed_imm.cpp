@@ -6,6 +6,7 @@
 
 #include "job.hpp"
 #include "wakeline/filter/ekf.hpp"
+#include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/multimodel/variant_bank.hpp"
@@ -16,12 +17,19 @@ namespace {
 /// Models of a bank; more are run one recording after the other.
 constexpr int kMostModels = 6;
 
+template <class>
+inline constexpr LaneFilter kFilterOf = LaneFilter::kExtended;
+template <class Motion>
+inline constexpr LaneFilter kFilterOf<Ukf<Motion, Lanes>> = LaneFilter::kUnscented;
+template <class Motion>
+inline constexpr LaneFilter kFilterOf<SquareRootUkf<Motion, Lanes>> = LaneFilter::kSquareRoot;
+
 template <class Filter>
 Filter filter_of(const typename Filter::Motion& motion, const LaneModel& model) {
-  if constexpr (std::is_constructible_v<Filter, const typename Filter::Motion&, const Unscented&>)
-    return Filter(motion, model.transform);
-  else
+  if constexpr (kFilterOf<Filter> == LaneFilter::kExtended)
     return Filter(motion);
+  else
+    return Filter(motion, model.transform);
 }
 
 /// Runs the job over filters of these kinds; false where some are of none of them.
@@ -33,8 +41,7 @@ bool run_over(const LaneJob& job, const RunInput& in, const RunOutput& out, int 
   for (const LaneModel& model : job.models) {
     const auto add = [&]<class Filter>(std::type_identity<Filter>) {
       const auto* motion = std::get_if<typename Filter::Motion>(&model.motion);
-      constexpr bool unscented = !std::is_same_v<Filter, Ekf<typename Filter::Motion, Lanes>>;
-      if (motion != nullptr && unscented == model.unscented)
+      if (motion != nullptr && model.filter == kFilterOf<Filter>)
         filters.push_back(filter_of<Filter>(*motion, model));
     };
     (add(std::type_identity<Filters>{}), ...);
@@ -46,15 +53,16 @@ bool run_over(const LaneJob& job, const RunInput& in, const RunOutput& out, int 
 }  // namespace
 
 bool run_mixed_imm(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
-  return run_over<Ekf<CoordinatedTurnRate, Lanes>, Ukf<CoordinatedTurnRate, Lanes>>(job, in, out,
-                                                                                    threads) ||
-         run_over<Ekf<ConstantAcceleration, Lanes>, Ukf<ConstantAcceleration, Lanes>,
-                  Ekf<Singer, Lanes>, Ukf<Singer, Lanes>>(job, in, out, threads) ||
-         run_over<Ekf<CoordinatedTurn, Lanes>, Ekf<WanderingCourse, Lanes>,
-                  Ekf<CoordinatedTurnRate, Lanes>, Ekf<ConstantAcceleration, Lanes>,
-                  Ekf<Singer, Lanes>, Ukf<CoordinatedTurn, Lanes>, Ukf<WanderingCourse, Lanes>,
-                  Ukf<CoordinatedTurnRate, Lanes>, Ukf<ConstantAcceleration, Lanes>,
-                  Ukf<Singer, Lanes>>(job, in, out, threads);
+  const auto run_filters_over = [&]<class... Motions>(std::type_identity<Motions>...) {
+    return run_over<Ekf<Motions, Lanes>..., Ukf<Motions, Lanes>...,
+                    SquareRootUkf<Motions, Lanes>...>(job, in, out, threads);
+  };
+  constexpr std::type_identity<CoordinatedTurnRate> kTurnRate;
+  constexpr std::type_identity<ConstantAcceleration> kAcceleration;
+  constexpr std::type_identity<Singer> kSinger;
+  return run_filters_over(kTurnRate) || run_filters_over(kAcceleration, kSinger) ||
+         run_filters_over(std::type_identity<CoordinatedTurn>{},
+                          std::type_identity<WanderingCourse>{}, kTurnRate, kAcceleration, kSinger);
 }
 
 }  // namespace wakeline::python

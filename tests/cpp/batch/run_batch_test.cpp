@@ -14,6 +14,7 @@
 
 #include "wakeline/batch/run.hpp"
 #include "wakeline/filter/ekf.hpp"
+#include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
@@ -191,6 +192,21 @@ struct UkfTurnRate {
   static auto make() { return Ukf<CoordinatedTurnRate, Scalar>(CoordinatedTurnRate{}); }
 };
 
+template <class Scalar>
+struct SquareRootTurnRate {
+  static constexpr std::size_t kModels = 0;
+  static auto make() { return SquareRootUkf<CoordinatedTurnRate, Scalar>(CoordinatedTurnRate{}); }
+};
+
+template <class Scalar>
+struct SquareRootImm {
+  static constexpr std::size_t kModels = 2;
+  static auto make() {
+    return Imm{ModeChain<2>::staying(0.9), SquareRootUkf<CoordinatedTurnRate, Scalar>({}),
+               SquareRootUkf<Singer, Scalar>(Singer{})};
+  }
+};
+
 template <template <class> class Kind, class Scalar, class Sensor>
 Results run(const Sensor& sensor, const RunInput& in, int threads = 1) {
   const auto prototype = Kind<Scalar>::make();
@@ -243,7 +259,8 @@ struct Of {
   using Kind = KindType<Scalar>;
 };
 using Cases = ::testing::Types<Of<Imm3>, Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>,
-                               Of<Likely>, Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>>;
+                               Of<Likely>, Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>,
+                               Of<SquareRootTurnRate>, Of<SquareRootImm>>;
 TYPED_TEST_SUITE(Batch, Cases);
 
 TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
@@ -313,56 +330,31 @@ TYPED_TEST(Batch, ThreadsDoNotMatter) {
 
 template <class Scalar>
 void expect_numbers_in_place() {
-  for (const std::size_t states : {1, 4, 6, 12, 20}) {
-    const std::size_t scans = 19, runs = std::size_t(kLanesOf<Scalar>) - 1;
-    std::vector<double> mean(runs * scans * states, -1.0), covariance(mean.size() * states, -1.0),
-        innovation(runs * scans * 2, -1.0), nis(runs * scans, -1.0), log_likelihood(nis);
-    RunInput in;
-    in.runs = runs;
-    in.scans = scans;
-    RunOutput out;
-    out.states = states;
-    out.mean = mean.data();
-    out.covariance = covariance.data();
-    out.innovation = innovation.data();
-    out.nis = nis.data();
-    out.log_likelihood = log_likelihood.data();
-    const RunLanes<Scalar> lanes(in, 0);
-    RunWriter<Scalar> writer(lanes, out, 2, false);
-    const std::size_t row = states + states * states + 4;
-    const auto number = [&](std::size_t run, std::size_t scan, std::size_t k) {
-      return double((run * scans + scan) * row + k);
-    };
+  const std::size_t scans = 19, runs = std::size_t(kLanesOf<Scalar>) - 1;
+  RunInput in;
+  in.runs = runs;
+  in.scans = scans;
+  const RunLanes<Scalar> lanes(in, 0);
+  for (const std::size_t size : {1, 2, 3, 4, 5, 16, 25, 400}) {
+    std::vector<double> numbers(runs * scans * size, -1.0);
+    const RunColumn<Scalar> column(lanes, numbers.data(), size);
     for (std::size_t scan = 0; scan < scans; ++scan) {
-      std::size_t k = 0;
-      for (const std::size_t size : {states, states * states, std::size_t(2)}) {
-        Eigen::Matrix<Scalar, Eigen::Dynamic, 1, 0, 400, 1> column(Eigen::Index(size), 1);
-        for (std::size_t i = 0; i < size; ++i, ++k)
-          column[Eigen::Index(i)] =
-              Scalar::of([&](int lane) { return number(std::size_t(lane), scan, k); });
-        writer << column;
-      }
-      for (; k < row; ++k)
-        writer << Scalar::of([&](int lane) { return number(std::size_t(lane), scan, k); });
-      writer.next();
+      Eigen::Matrix<Scalar, Eigen::Dynamic, 1, 0, 400, 1> of_scan(Eigen::Index(size), 1);
+      for (std::size_t k = 0; k < size; ++k)
+        of_scan[Eigen::Index(k)] = Scalar::of(
+            [&](int lane) { return double((std::size_t(lane) * scans + scan) * size + k); });
+      if (size > 1)
+        column.write(scan, of_scan);
+      else
+        column.write(scan, of_scan[0]);
+      column.fetch(scan + 2);
     }
-    writer.flush();
-    for (std::size_t run = 0; run < runs; ++run)
-      for (std::size_t scan = 0; scan < scans; ++scan) {
-        const std::size_t at = run * scans + scan;
-        for (std::size_t k = 0; k < states; ++k)
-          ASSERT_EQ(mean[at * states + k], number(run, scan, k));
-        for (std::size_t k = 0; k < states * states; ++k)
-          ASSERT_EQ(covariance[at * states * states + k], number(run, scan, states + k));
-        ASSERT_EQ(innovation[2 * at + 1], number(run, scan, row - 3));
-        ASSERT_EQ(nis[at], number(run, scan, row - 2));
-        ASSERT_EQ(log_likelihood[at], number(run, scan, row - 1));
-      }
+    for (std::size_t k = 0; k < numbers.size(); ++k) ASSERT_EQ(numbers[k], double(k)) << size;
   }
 }
 
 // One lane is left over, and has other numbers than the last run.
-TEST(BatchWriter, PutsEveryNumberInItsPlaceWhateverTheSize) {
+TEST(BatchColumn, PutsEveryNumberInItsPlaceWhateverTheSize) {
   expect_numbers_in_place<Lanes>();
   expect_numbers_in_place<Pack<float, kNativeLanes<float>>>();
 }

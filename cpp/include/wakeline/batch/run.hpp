@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 
 #include "wakeline/batch/threads.hpp"
 #include "wakeline/core/pack_math.hpp"
@@ -97,118 +96,52 @@ class RunLanes {
       *place(to, 1, k, scan) = static_cast<std::uint8_t>(lane(status, k));
   }
 
-  /// Begins to fetch the memory that `size` numbers of a scan will be written to.
-  void fetch(const double* to, std::size_t size, std::size_t scan) const noexcept {
-    constexpr std::size_t kLine = 64 / sizeof(double);
-    for (std::size_t k = 0; k < size; k += kLine)
-      for (int lane = 0; lane < kLanes; ++lane)
-        __builtin_prefetch(place(to, size, lane, scan) + k, 1);
-  }
-
-  /// `size` numbers of each of `count` scans in a row: for each run one block of memory, which is
-  /// what memory is fast at.
-  void write(double* to, std::size_t size, std::size_t first_scan, std::size_t count,
-             const RealOf<Scalar>* from) const noexcept {
-    double* places[kLanes];
-    for (int lane = 0; lane < kLanes; ++lane) places[lane] = place(to, size, lane, first_scan);
-    std::size_t at = 0;
-    if constexpr (kLanes > 1) {
-      for (; at + kLanes <= count * size; at += kLanes, from += kLanes * kLanes) {
-        Scalar block[kLanes];
-        unroll<kLanes>([&](int i) { block[i] = Scalar::load(from + i * kLanes); });
-        store_columns(block, [&](int lane) { return places[lane] + at; });
-      }
-    }
-    for (; at < count * size; ++at, from += kLanes)
-      for (int lane = kLanes - 1; lane >= 0; --lane) places[lane][at] = double(from[lane]);
-  }
-
  private:
   std::size_t row_[kLanes];  ///< of the first scan of each lane's run, among all runs and scans
 };
 
-/// Collects what some runs side by side give, until each of them has a block to be written. There
-/// is room for estimators of up to 20 states.
+/// Where `size` numbers of each scan of some runs side by side go. There may be none.
 template <class Scalar>
-class RunWriter {
+class RunColumn {
  public:
-  RunWriter(const RunLanes<Scalar>& lanes, const RunOutput& out, std::size_t measurements,
-            bool turn_rates) noexcept
-      : lanes_(lanes) {
-    RealOf<Scalar>* free = numbers_;
-    const auto add = [&](double* to, std::size_t size) {
-      if (size == 0) return;
-      const std::size_t whole = kLanes / std::gcd(kLanes, size);
-      const std::size_t scans = whole * size <= kMost ? whole : 1;
-      column_[columns_++] = {to, size, scans, free};
-      free += scans * size * kLanes;
-      assert(free <= numbers_ + kCapacity * kLanes);
-    };
-    add(out.mean, out.states);
-    add(out.covariance, out.states * out.states);
-    add(out.mode_probability, out.models);
-    add(out.turn_rate_rad_s, turn_rates ? out.models : 0);
-    add(out.innovation, measurements);
-    add(out.nis, 1);
-    add(out.log_likelihood, 1);
+  RunColumn(const RunLanes<Scalar>& lanes, double* to, std::size_t size) noexcept : size_(size) {
+    for (int lane = 0; lane < kLanes; ++lane)
+      first_[lane] = size > 0 ? lanes.place(to, size, lane, 0) : nullptr;
   }
 
-  /// What a scan gives for the next column of `RunOutput`.
-  void operator<<(const Scalar& number) noexcept { store(number, next_column()); }
+  /// Begins to fetch the memory of a scan. To be called for each scan, though many share a line, so
+  /// that neither that nor its page is dropped.
+  [[gnu::always_inline]] void fetch(std::size_t scan) const noexcept {
+    constexpr std::size_t kLine = 64 / sizeof(double);
+    for (std::size_t k = 0; k < size_; k += kLine)
+      for (int lane = 0; lane < kLanes; ++lane)
+        __builtin_prefetch(first_[lane] + scan * size_ + k, 1);
+  }
+
+  void write(std::size_t scan, const Scalar& number) const noexcept { write(scan, &number, 1); }
+  /// Column by column; of a covariance that is row by row.
   template <class Matrix>
-  void operator<<(const Eigen::MatrixBase<Matrix>& numbers) noexcept {
-    RealOf<Scalar>* to = next_column();
-    for (Eigen::Index i = 0; i < numbers.rows(); ++i)
-      for (Eigen::Index j = 0; j < numbers.cols(); ++j, to += kLanes)
-        store(Scalar(numbers(i, j)), to);
-  }
-
-  /// To be called after each scan.
-  void next() noexcept {
-    ++scan_;
-    next_ = 0;
-    // Again and again the same line of a narrow column, so that neither it nor its page is dropped.
-    for (std::size_t c = 0; c < columns_; ++c)
-      lanes_.fetch(column_[c].to, column_[c].size, scan_ + 1);
-    for (std::size_t c = 0; c < columns_; ++c)
-      if (held(column_[c]) == 0) write(column_[c], column_[c].scans);
-  }
-
-  /// To be called after the last one.
-  void flush() noexcept {
-    for (std::size_t c = 0; c < columns_; ++c) write(column_[c], held(column_[c]));
+  void write(std::size_t scan, const Eigen::PlainObjectBase<Matrix>& numbers) const noexcept {
+    write(scan, numbers.data(), static_cast<std::size_t>(numbers.size()));
   }
 
  private:
-  static constexpr std::size_t kLanes = kLanesOf<Scalar>;
-  static constexpr std::size_t kMost = 400;  ///< numbers of a column: a covariance of 20 states
-  static constexpr std::size_t kCapacity = kMost + kLanes * (20 + 2 * 16 + 3 + 2);
+  static constexpr int kLanes = kLanesOf<Scalar>;
 
-  struct Column {
-    double* to;
-    std::size_t size;
-    std::size_t scans;  ///< of which so many, a power of two, make whole blocks
-    RealOf<Scalar>* numbers;
-  };
-
-  /// Scans that are held of a column.
-  std::size_t held(const Column& column) const noexcept { return scan_ & (column.scans - 1); }
-
-  RealOf<Scalar>* next_column() noexcept {
-    const Column& column = column_[next_++];
-    return column.numbers + held(column) * column.size * kLanes;
+  [[gnu::always_inline]] void write(std::size_t scan, const Scalar* numbers,
+                                    std::size_t count) const noexcept {
+    assert(count == size_);
+    const auto place = [&](int lane, std::size_t k) { return first_[lane] + scan * size_ + k; };
+    std::size_t k = 0;
+    if constexpr (kLanes > 1)
+      for (; k + 2 <= count; k += 2)
+        store_pairs(numbers[k], numbers[k + 1], [&](int lane) { return place(lane, k); });
+    for (; k < count; ++k)
+      for (int run = kLanes - 1; run >= 0; --run) *place(run, k) = double(lane(numbers[k], run));
   }
 
-  void write(const Column& column, std::size_t scans) const noexcept {
-    lanes_.write(column.to, column.size, scan_ - scans, scans, column.numbers);
-  }
-
-  RunLanes<Scalar> lanes_;
-  Column column_[7];
-  std::size_t columns_ = 0;
-  std::size_t next_ = 0;  ///< column that the next numbers are for
-  std::size_t scan_ = 0;
-  alignas(64) RealOf<Scalar> numbers_[kCapacity * kLanes];
+  double* first_[kLanes];  ///< place of the first scan of each lane's run
+  std::size_t size_;
 };
 
 /// North and east of an estimate in any layout of 4, 5 or 6 states.
@@ -229,7 +162,12 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
   constexpr int kM = Sensor::kMeasurements;
   const Scalar kNaN = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
   const RunLanes<Scalar> lanes(in, first);
-  RunWriter<Scalar> writer(lanes, out, kM, kHasTurnRates<Estimator>);
+  const RunColumn<Scalar> mean(lanes, out.mean, out.states),
+      covariance(lanes, out.covariance, out.states * out.states),
+      mode_probability(lanes, out.mode_probability, out.models),
+      turn_rates(lanes, out.turn_rate_rad_s, kHasTurnRates<Estimator> ? out.models : 0),
+      innovation(lanes, out.innovation, kM), nis(lanes, out.nis, 1),
+      log_likelihood(lanes, out.log_likelihood, 1);
   for (std::size_t scan = 0; scan < in.scans; ++scan) {
     const Scalar dt_s = in.dt_s[scan];
     StatusOf<Scalar> status = Status::kOk;
@@ -270,18 +208,19 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
 
     const auto belief = estimator.estimate();
     assert(static_cast<std::size_t>(belief.mean.size()) == out.states);
-    writer << belief.mean;
-    writer << belief.covariance;
+    mean.write(scan, belief.mean);
+    covariance.write(scan, belief.covariance);
     if constexpr (requires { estimator.mode_probability(); })
-      writer << estimator.mode_probability();
-    if constexpr (kHasTurnRates<Estimator>) writer << estimator.turn_rates_rad_s();
-    writer << step.innovation;
-    writer << step.nis;
-    writer << step.log_likelihood;
-    writer.next();
+      mode_probability.write(scan, estimator.mode_probability());
+    if constexpr (kHasTurnRates<Estimator>) turn_rates.write(scan, estimator.turn_rates_rad_s());
+    innovation.write(scan, step.innovation);
+    nis.write(scan, step.nis);
+    log_likelihood.write(scan, step.log_likelihood);
+    for (const RunColumn<Scalar>* column :
+         {&mean, &covariance, &mode_probability, &turn_rates, &innovation, &nis, &log_likelihood})
+      column->fetch(scan + 2);
     lanes.write(out.status, scan, status);
   }
-  writer.flush();
 }
 
 /// The same with every call inside compiled into one function, which is what lanes are fast in.

@@ -177,15 +177,16 @@ Mat<Scalar, N, N> semidefinite_root(const Mat<Scalar, N, N>& matrix) noexcept {
     Scalar pivot = matrix(column, column);
     for (int k = 0; k < column; ++k) pivot -= root(column, k) * root(column, k);
     const Scalar variance = matrix(column, column);
-    if (pivot <= Scalar(8) * std::numeric_limits<Scalar>::epsilon() * variance &&
-        variance <= std::numeric_limits<Scalar>::max())
-      continue;
-    const Scalar diagonal = sqrt(pivot);
-    root(column, column) = diagonal;
+    const MaskOf<Scalar> without =
+        pivot <= RealOf<Scalar>(8) * std::numeric_limits<RealOf<Scalar>>::epsilon() * variance &&
+        variance <= Scalar(std::numeric_limits<RealOf<Scalar>>::max());
+    if (all(without)) continue;
+    const Scalar diagonal = sqrt(select(without, Scalar(1), pivot));
+    root(column, column) = select(without, Scalar(0), diagonal);
     for (int row = column + 1; row < N; ++row) {
       Scalar sum = matrix(row, column);
       for (int k = 0; k < column; ++k) sum -= root(row, k) * root(column, k);
-      root(row, column) = sum / diagonal;
+      root(row, column) = select(without, Scalar(0), Scalar(sum / diagonal));
     }
   }
   return root;

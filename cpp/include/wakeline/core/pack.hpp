@@ -283,30 +283,34 @@ template <int... From, class Raw, class Integers>
 #endif
 }
 
-/// Swaps the blocks of `Size` x `Size` numbers off the diagonal of each block twice as large.
+/// Swaps the numbers of `upper` in every other block of `Size` lanes with those of `lower` in the
+/// blocks between.
 template <int Size, class Real, int Lanes, int... Lane>
-[[gnu::always_inline]] inline void swap_blocks(Pack<Real, Lanes>* rows,
+[[gnu::always_inline]] inline void swap_blocks(Pack<Real, Lanes>& upper, Pack<Real, Lanes>& lower,
                                                std::integer_sequence<int, Lane...>) noexcept {
   using Integers = typename PackMask<Real, Lanes>::Raw;
+  const auto a = upper.raw, b = lower.raw;
+  upper.raw = shuffled<((Lane & Size) ? Lanes + Lane - Size : Lane)...>(a, b, Integers{});
+  lower.raw = shuffled<((Lane & Size) ? Lanes + Lane : Lane + Size)...>(a, b, Integers{});
+}
+
+/// Of rows: the blocks of `Size` x `Size` numbers off the diagonal of each block twice as large.
+template <int Size, class Real, int Lanes>
+[[gnu::always_inline]] inline void swap_blocks(Pack<Real, Lanes> (&rows)[Lanes]) noexcept {
   unroll<Lanes>([&](auto row) {
-    if constexpr ((row.value & Size) == 0) {
-      auto& upper = rows[row.value].raw;
-      auto& lower = rows[row.value + Size].raw;
-      const auto a = upper, b = lower;
-      upper = shuffled<((Lane & Size) ? Lanes + Lane - Size : Lane)...>(a, b, Integers{});
-      lower = shuffled<((Lane & Size) ? Lanes + Lane : Lane + Size)...>(a, b, Integers{});
-    }
+    if constexpr ((row.value & Size) == 0)
+      swap_blocks<Size>(rows[row.value], rows[row.value + Size],
+                        std::make_integer_sequence<int, Lanes>{});
   });
 }
 
 /// As many rows as there are lanes become columns.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline void transpose(Pack<Real, Lanes> (&rows)[Lanes]) noexcept {
-  constexpr std::make_integer_sequence<int, Lanes> kLanes{};
-  swap_blocks<1>(rows, kLanes);
-  if constexpr (Lanes > 2) swap_blocks<2>(rows, kLanes);
-  if constexpr (Lanes > 4) swap_blocks<4>(rows, kLanes);
-  if constexpr (Lanes > 8) swap_blocks<8>(rows, kLanes);
+  swap_blocks<1>(rows);
+  if constexpr (Lanes > 2) swap_blocks<2>(rows);
+  if constexpr (Lanes > 4) swap_blocks<4>(rows);
+  if constexpr (Lanes > 8) swap_blocks<8>(rows);
   static_assert(Lanes <= 16);
 }
 
@@ -327,19 +331,19 @@ template <int First, class Real, int Lanes, class Number>
   std::memcpy(to, &numbers, sizeof numbers);
 }
 
-/// Writes as many rows as there are lanes as columns, that of a lane to `column(lane)`. Two numbers
-/// at a time: what is aligned to no more than that would, in whole registers, lie across two cache
-/// lines, and a store of such takes as long as six others. The last lane comes first. Shuffles the
-/// rows.
-template <class Real, int Lanes, class Column>
-[[gnu::always_inline]] inline void store_columns(Pack<Real, Lanes> (&rows)[Lanes],
-                                                 const Column& column) noexcept {
-  swap_blocks<1>(rows, std::make_integer_sequence<int, Lanes>{});
+/// Writes two numbers of each lane in a row, to `place(lane)`, from the last lane to the first.
+/// What is aligned to no more than that would, in whole registers, lie across two cache lines, and
+/// a store of such takes as long as six others.
+template <class Real, int Lanes, class Place>
+[[gnu::always_inline]] inline void store_pairs(Pack<Real, Lanes> first, Pack<Real, Lanes> second,
+                                               const Place& place) noexcept {
+  swap_blocks<1>(first, second, std::make_integer_sequence<int, Lanes>{});
   unroll<Lanes>([&](auto before) {
-    constexpr int kLane = Lanes - 1 - before.value, kOdd = kLane & 1;
-    unroll<Lanes / 2>([&](auto pair) {
-      store_pair<kLane - kOdd>(rows[2 * pair.value + kOdd], column(kLane) + 2 * pair.value);
-    });
+    constexpr int kLane = Lanes - 1 - before.value;
+    if constexpr ((kLane & 1) != 0)
+      store_pair<kLane - 1>(second, place(kLane));
+    else
+      store_pair<kLane>(first, place(kLane));
   });
 }
 

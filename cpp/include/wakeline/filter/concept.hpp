@@ -29,4 +29,24 @@ concept BeliefFilter = requires(Filter filter, const Filter& constant,
   constant.motion();
 };
 
+/// True of a filter whose own `predict_from(belief, dt_s)` is to be assigned the belief and to
+/// predict it, in one step. Not of what is derived from such a filter, as that may predict
+/// otherwise.
+template <class Filter>
+inline constexpr bool kPredictsInOneStep = false;
+
+/// Begins a filter anew with a belief, unchecked, and predicts it, under a known acceleration where
+/// one is told. Its own belief is lost where this fails.
+template <class Filter, class BeliefType, class... Known>
+[[gnu::always_inline]] inline StatusOf<typename Filter::Scalar> predict_from(
+    Filter& filter, const BeliefType& belief, typename Filter::Scalar dt_s,
+    const Known&... acceleration_mps2) noexcept {
+  if constexpr (kPredictsInOneStep<Filter> && sizeof...(Known) == 0) {
+    return filter.predict_from(belief, dt_s);
+  } else {
+    const auto begun = filter.assign(belief);
+    return first_failure(begun, filter.predict(dt_s, acceleration_mps2...));
+  }
+}
+
 }  // namespace wakeline

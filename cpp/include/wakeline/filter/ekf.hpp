@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "wakeline/filter/belief.hpp"
+#include "wakeline/filter/concept.hpp"
 #include "wakeline/motion/pattern.hpp"
 
 namespace wakeline {
@@ -31,19 +32,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
   /// x = f(x), P = F P Fᵀ + Q.
   [[gnu::flatten]] StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     if (!this->started_) return Status::kNotStarted;
-    const StatusOf<Scalar> forward = check_time_step(dt_s);
-    if (none(ok(forward))) return forward;
-    const Vec<Scalar, kStates>& x = this->belief_.mean;
-    if constexpr (LinearMotionModel<Motion>) {
-      prepare(dt_s);
-      const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.matrices.f};
-      return move(forward, f * x, f, kept_.matrices.q);
-    } else {
-      Mat<Scalar, kStates, kStates> jacobian = this->motion_.jacobian(x, dt_s);
-      return move(forward, this->motion_.transition(x, dt_s),
-                  Patterned<kPatternOf<Motion>, Scalar, kStates>{jacobian},
-                  this->motion_.process_noise(x, dt_s));
-    }
+    return predict_from(this->belief_, dt_s);
   }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
@@ -113,6 +102,30 @@ class Ekf : public Belief<MotionType, ScalarType> {
   }
 
  private:
+  template <class Filter, class BeliefType, class... Known>
+  friend StatusOf<typename Filter::Scalar> predict_from(Filter& filter, const BeliefType& belief,
+                                                        typename Filter::Scalar dt_s,
+                                                        const Known&... acceleration_mps2) noexcept;
+
+  /// Predicts a belief, unchecked, which it begins with. In lanes that fail it keeps its own.
+  [[gnu::always_inline]] StatusOf<Scalar> predict_from(const Gaussian<kStates, Scalar>& belief,
+                                                       Scalar dt_s) noexcept {
+    this->started_ = true;
+    const StatusOf<Scalar> forward = check_time_step(dt_s);
+    if (none(ok(forward))) return forward;
+    const Vec<Scalar, kStates>& x = belief.mean;
+    if constexpr (LinearMotionModel<Motion>) {
+      prepare(dt_s);
+      const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.matrices.f};
+      return move(forward, f * x, f, belief.covariance, kept_.matrices.q);
+    } else {
+      Mat<Scalar, kStates, kStates> jacobian = this->motion_.jacobian(x, dt_s);
+      return move(forward, this->motion_.transition(x, dt_s),
+                  Patterned<kPatternOf<Motion>, Scalar, kStates>{jacobian}, belief.covariance,
+                  this->motion_.process_noise(x, dt_s));
+    }
+  }
+
   /// A correction and what an update needs beside it. Locals of this type are not const: GCC keeps
   /// const ones in memory.
   template <class Sensor>
@@ -148,9 +161,9 @@ class Ekf : public Belief<MotionType, ScalarType> {
   [[gnu::always_inline]] StatusOf<Scalar> move(
       const StatusOf<Scalar>& forward, const Vec<Scalar, kStates>& x,
       const Patterned<kPatternOf<Motion>, Scalar, kStates>& f,
-      const Mat<Scalar, kStates, kStates>& q) noexcept {
+      const Mat<Scalar, kStates, kStates>& p, const Mat<Scalar, kStates, kStates>& q) noexcept {
     Gaussian<kStates, Scalar>& belief = this->belief_;
-    Mat<Scalar, kStates, kStates> fp = f.transposed_product(belief.covariance);
+    Mat<Scalar, kStates, kStates> fp = f.transposed_product(p);
     Gaussian<kStates, Scalar> next;
     unroll_lower<kStates>([&](auto row, auto column) {
       constexpr int i = row.value, j = column.value;
@@ -159,13 +172,13 @@ class Ekf : public Belief<MotionType, ScalarType> {
     unroll<kStates>([&](int i) { next.mean[i] = x[i]; });
     Scalar sum = Scalar(0);
     unroll<kStates>([&](int i) { sum += next.mean[i] + next.covariance(i, i); });
-    const StatusOf<Scalar> status =
-        first_failure(forward, ok_or(sum - sum == Scalar(0), Status::kNotFinite));
-    if (all(ok(status))) [[likely]]
+    const MaskOf<Scalar> finite = sum - sum == Scalar(0);
+    const MaskOf<Scalar> moved = ok(forward) && finite;
+    if (all(moved)) [[likely]]
       copy(next, belief);
     else
-      assign_where(ok(status), belief, next);
-    return status;
+      assign_where(moved, belief, next);
+    return first_failure(forward, ok_or(finite, Status::kNotFinite));
   }
 
   /// The posterior P - W Wᵀ of which some lanes are not taken, or in which it is lost. Works out
@@ -214,6 +227,9 @@ class Ekf : public Belief<MotionType, ScalarType> {
   [[no_unique_address]] std::conditional_t<LinearMotionModel<Motion>, Transition, Nothing> kept_;
 };
 
+template <class Motion, class Scalar>
+inline constexpr bool kPredictsInOneStep<Ekf<Motion, Scalar>> = true;
+
 /// The Kalman filter: an Ekf whose motion model and sensors are linear, so that nothing is
 /// approximated.
 template <class MotionType, class ScalarType = double>
@@ -235,5 +251,8 @@ class Kalman : public Ekf<MotionType, ScalarType> {
     return Ekf<MotionType, ScalarType>::update(sensor, z);
   }
 };
+
+template <class Motion, class Scalar>
+inline constexpr bool kPredictsInOneStep<Kalman<Motion, Scalar>> = true;
 
 }  // namespace wakeline

@@ -18,15 +18,17 @@ Mat<Scalar, N, N> lower_root(Mat<Scalar, N, Cols> a) noexcept {
     Scalar squares = Scalar(0);
     for (int k = row; k < Cols; ++k) squares += a(row, k) * a(row, k);
     const Scalar norm = sqrt(squares);
-    const bool negative = a(row, row) < Scalar(0);
-    const Scalar head = a(row, row) + (negative ? -norm : norm);
-    const Scalar scale = norm > Scalar(0) ? Scalar(1) / (norm * abs(head)) : Scalar(0);
+    const MaskOf<Scalar> negative = a(row, row) < Scalar(0);
+    const Scalar head = a(row, row) + select(negative, Scalar(-norm), norm);
+    const MaskOf<Scalar> empty = !(norm > Scalar(0));
+    const Scalar scale =
+        select(empty, Scalar(0), Scalar(1) / select(empty, Scalar(1), Scalar(norm * abs(head))));
     for (int other = row + 1; other < N; ++other) {
       Scalar dot = head * a(other, row);
       for (int k = row + 1; k < Cols; ++k) dot += a(row, k) * a(other, k);
       dot *= scale;
       const Scalar reflected = a(other, row) - dot * head;
-      a(other, row) = negative ? reflected : -reflected;
+      a(other, row) = select(negative, reflected, Scalar(-reflected));
       for (int k = row + 1; k < Cols; ++k) a(other, k) -= dot * a(row, k);
     }
     a(row, row) = norm;
@@ -62,25 +64,34 @@ class SquareRootUkf {
   }
 
   /// Begins with `belief`; refuses one whose covariance is not symmetric positive definite.
-  Status start(const Gaussian<kStates, Scalar>& belief) noexcept {
-    const Status status = check(belief);
-    return status == Status::kOk ? assign(belief) : status;
+  StatusOf<Scalar> start(const Gaussian<kStates, Scalar>& belief) noexcept {
+    const StatusOf<Scalar> status = check(belief);
+    if (none(ok(status))) return status;
+    assign_in(ok(status), belief);
+    started_ = true;
+    return status;
   }
 
   /// Begins with a belief over `[x, vx, y, vy]`; the other components get the model's prior.
-  Status start(const Gaussian<4, Scalar>& kinematics) noexcept
+  StatusOf<Scalar> start(const Gaussian<4, Scalar>& kinematics) noexcept
       requires(kStates != 4 && holds(kComponents, kKinematics)) {
     return start(lift(motion_, kinematics));
   }
 
   /// Replaces the belief.
-  Status assign(const Gaussian<kStates, Scalar>& belief) noexcept {
+  StatusOf<Scalar> assign(const Gaussian<kStates, Scalar>& belief) noexcept {
+    const MaskOf<Scalar> definite = assign_in(true, belief);
+    started_ = started_ || any(definite);
+    return ok_or(definite, Status::kNotPositiveDefinite);
+  }
+
+  /// Replaces the belief in some lanes, and tells in which of them it could.
+  MaskOf<Scalar> assign_in(const MaskOf<Scalar>& lanes,
+                           const Gaussian<kStates, Scalar>& belief) noexcept {
     const Cholesky<kStates, Scalar> root(belief.covariance);
-    if (!root.ok()) return Status::kNotPositiveDefinite;
-    mean_ = belief.mean;
-    root_ = root.lower();
-    started_ = true;
-    return Status::kOk;
+    const MaskOf<Scalar> replaced = lanes && root.ok();
+    replace(replaced, belief.mean, root.lower());
+    return replaced;
   }
 
   /// Replaces the motion model, unchecked; the belief stays.
@@ -106,26 +117,28 @@ class SquareRootUkf {
   [[nodiscard]] bool started() const noexcept { return started_; }
 
   /// The root of the array [sqrt(w) e_i, sqrt(beta - alpha²) d, Q^(1/2)].
-  Status predict(Scalar dt_s) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     using std::sqrt;
     if (!started_) return Status::kNotStarted;
-    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
+    const StatusOf<Scalar> forward = check_time_step(dt_s);
+    if (none(ok(forward))) return forward;
     const MovedPoints<Scalar, kStates> moved(motion_, dt_s, mean_, points());
     const Vec<Scalar, kStates> shift = weight() * moved.differences.rowwise().sum();
     Mat<Scalar, kStates, kPoints + 1 + kStates> array;
     array << sqrt(weight()) * moved.differences, centre_root() * shift,
         semidefinite_root<kStates, Scalar>(process_noise(motion_, mean_, dt_s));
-    if (!is_finite(moved.centre) || !is_finite(array)) return Status::kNotFinite;
     const Vec<Scalar, kStates> mean = moved.centre + shift;
     const Mat<Scalar, kStates, kStates> root = lower_root(array);
-    if (!has_finite_moments(mean, root)) return Status::kNotFinite;
-    mean_ = mean;
-    root_ = root;
-    return Status::kOk;
+    const StatusOf<Scalar> status = first_failure(
+        forward,
+        ok_or(is_finite(moved.centre) && is_finite(array) && has_finite_moments(mean, root),
+              Status::kNotFinite));
+    replace(ok(status), mean, root);
+    return status;
   }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
-  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return Control::predict(*this, dt_s, acceleration_mps2);
   }
 
@@ -173,28 +186,27 @@ class SquareRootUkf {
         sqrt(weight()) * (sigma.colwise() - mean_);
     const Vec<Scalar, kM> innovation =
         sensor.residual(reading.mean, Vec<Scalar, kM>(images.centre + shift));
-    if (!is_finite(array) || !is_finite(innovation))
-      return failed_correction<kM, Scalar>(Status::kNotFinite);
-    if ((reading.covariance.diagonal().array() < Scalar(0)).any())
-      return failed_correction<kM, Scalar>(Status::kNotPositiveDefinite);
-
     const Mat<Scalar, kM + kStates, kM + kStates> root = lower_root(array);
     const Mat<Scalar, kM, kM> s_root = root.template topLeftCorner<kM, kM>();
     Correction<kM, Scalar> correction;
     correction.innovation = innovation;
     correction.innovation_covariance = s_root * s_root.transpose();
     const Cholesky<kM, Scalar> factor(correction.innovation_covariance);
-    if (!factor.ok())
-      return failed_correction<kM, Scalar>(refusal<Scalar, kM>(correction.innovation_covariance));
     const Vec<Scalar, kM> whitened = factor.template whiten<1>(innovation);
     rate(correction, whitened, factor);
-    if (!correction) return correction;
     const Vec<Scalar, kStates> mean =
         mean_ + root.template bottomLeftCorner<kStates, kM>() * whitened;
     const Mat<Scalar, kStates, kStates> next = root.template bottomRightCorner<kStates, kStates>();
-    if (!has_finite_moments(mean, next)) return failed_correction<kM, Scalar>(Status::kNotFinite);
-    mean_ = mean;
-    root_ = next;
+
+    MaskOf<Scalar> variances = true;
+    for (int m = 0; m < kM; ++m) variances = variances && !(reading.covariance(m, m) < Scalar(0));
+    StatusOf<Scalar> status = ok_or(is_finite(array) && is_finite(innovation), Status::kNotFinite);
+    status = first_failure(status, ok_or(variances, Status::kNotPositiveDefinite));
+    status = first_failure(status, correction.status);
+    status = first_failure(status, ok_or(has_finite_moments(mean, next), Status::kNotFinite));
+    if (none(ok(status))) return failed_correction<kM, Scalar>(status);
+    correction.status = status;
+    replace(ok(status), mean, next);
     return correction;
   }
 
@@ -202,9 +214,16 @@ class SquareRootUkf {
   friend struct Control;
 
   /// Whether a mean and the squares of the rows of a root, the variances, are finite.
-  static bool has_finite_moments(const Vec<Scalar, kStates>& mean,
-                                 const Mat<Scalar, kStates, kStates>& root) noexcept {
-    return is_finite(mean) && std::isfinite(root.squaredNorm());
+  static MaskOf<Scalar> has_finite_moments(const Vec<Scalar, kStates>& mean,
+                                           const Mat<Scalar, kStates, kStates>& root) noexcept {
+    using std::isfinite;
+    return is_finite(mean) && isfinite(Scalar(root.squaredNorm()));
+  }
+
+  void replace(const MaskOf<Scalar>& lanes, const Vec<Scalar, kStates>& mean,
+               const Mat<Scalar, kStates, kStates>& root) noexcept {
+    assign_where(lanes, mean_, mean);
+    assign_where(lanes, root_, root);
   }
 
   Vec<Scalar, kStates>& mean() noexcept { return mean_; }

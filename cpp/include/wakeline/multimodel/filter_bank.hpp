@@ -42,6 +42,20 @@ StateBelief<Components, Scalar> zero_like(const StateBelief<Components, Scalar>&
   return zero;
 }
 
+/// Takes the mean and the lower triangle of a belief, which are what mixing reads.
+template <auto Components, class Scalar, int N>
+[[gnu::always_inline]] inline void keep_lower(const Gaussian<N, Scalar>& belief,
+                                              StateBelief<Components, Scalar>& kept) noexcept {
+  unroll<N>([&](int i) { kept.mean.data()[i] = belief.mean.data()[i]; });
+  unroll_lower<N>([&](int i, int j) { kept.covariance(i, j) = belief.covariance(i, j); });
+}
+
+/// Makes a belief of what `keep_lower` has taken.
+template <auto Components, class Scalar>
+void complete(StateBelief<Components, Scalar>& kept) noexcept {
+  mirror_lower<Scalar, kept.kStates>(kept.covariance);
+}
+
 /// What `part`, a StateBelief or BeliefView, says of the state of `own`: what only `own` holds is
 /// taken from it, without correlation to the rest.
 template <auto To, class Scalar, class Part>

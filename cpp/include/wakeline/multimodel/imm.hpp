@@ -232,10 +232,11 @@ class Imm {
     StatusOf<Scalar> status = check_time_step(dt_s);
     if (none(ok(status))) return status;
     Probability expected = weigh_transitions(dt_s);
-    bank_.for_each([](int, auto& filter, auto& before) { before = filter.estimate(); });
+    bank_.for_each([](int, auto& filter, auto& before) { keep_lower(filter.estimate(), before); });
     bank_.for_each([&](int mode, auto& filter, auto& before) {
-      status = first_failure(status, in_use(mode, filter.assign(mixed(mode, before))));
-      status = first_failure(status, in_use(mode, filter.predict(dt_s, acceleration_mps2...)));
+      const auto start = mixed(mode, before);
+      status = first_failure(status,
+                             in_use(mode, predict_from(filter, start, dt_s, acceleration_mps2...)));
     });
     for (int mode = 0; mode < bank_.size(); ++mode)
       probability_[mode] = select(ok(status), expected[mode], probability_[mode]);
@@ -246,7 +247,10 @@ class Imm {
 
   /// Gives every filter back what it was before the step, in the lanes told.
   [[gnu::cold, gnu::noinline]] void restore(const MaskOf<Scalar>& lanes) noexcept {
-    bank_.for_each([&](int, auto& filter, auto& before) { assign_in(lanes, filter, before); });
+    bank_.for_each([&](int, auto& filter, auto& before) {
+      complete(before);
+      assign_in(lanes, filter, before);
+    });
   }
 
   /// Replaces the belief of a filter in the lanes told, unchecked.

@@ -381,9 +381,9 @@ class ModeHistory {
   template <class... Known>
   Status move(Leaves& leaves, Scalar dt_s, const Known&... acceleration_mps2) noexcept {
     for (Row& row : leaves.all()) {
-      Filter& filter = filter_of(row);
-      const Status status = first_failure_of_lanes(
-          filter.predict(Lanes(dt_s), acceleration_mps2.template cast<Lanes>()...));
+      Filter& filter = bank_.filter(row.mode);
+      const Status status = first_failure_of_lanes(predict_from(
+          filter, row.beliefs(), Lanes(dt_s), acceleration_mps2.template cast<Lanes>()...));
       if (status != Status::kOk) return status;
       row.set_beliefs(filter.estimate());
     }
