@@ -17,8 +17,8 @@ namespace wakeline::python {
 
 namespace py = pybind11;
 
-/// Anything numpy can take for an array of numbers, row-major. Masked numbers are NaN, as a missed
-/// reading is.
+/// Anything numpy can take for an array of real numbers, row-major. Masked numbers are NaN, as a
+/// missed reading is. Times and complex numbers are a TypeError: numpy would take them for numbers.
 class DoubleArray : public py::array_t<double, py::array::c_style | py::array::forcecast> {
  public:
   using Base = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -40,9 +40,17 @@ class DoubleArray : public py::array_t<double, py::array::c_style | py::array::f
     const auto& numpy = py::detail::npy_api::get();
     const bool plain = Py_TYPE(numbers.ptr()) == numpy.PyArray_Type_;
     if (plain || !numpy.PyArray_Check_(numbers.ptr()) || !py::hasattr(numbers, "filled"))
-      return py::reinterpret_borrow<py::object>(numbers);
+      return real(py::array::ensure(numbers));
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     return numbers.attr("astype")(py::dtype::of<double>()).attr("filled")(kNaN);
+  }
+
+  static py::array real(py::array numbers) {
+    if (const char kind = numbers ? numbers.dtype().kind() : 'f';
+        kind == 'M' || kind == 'm' || kind == 'c')
+      throw py::type_error("an array must hold real numbers (times in seconds), got " +
+                           py::str(numbers.dtype()).cast<std::string>());
+    return numbers;
   }
 };
 

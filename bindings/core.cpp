@@ -63,7 +63,9 @@ ValueError
         return CallText("Gaussian").with("mean", g.mean).with("covariance", g.covariance).text();
       });
 
-  py::class_<PyStep>(m, "Step", "What one measurement update has found.")
+  py::class_<PyStep>(m, "Step",
+                     "What one measurement update has found; true where the reading was taken.")
+      .def("__bool__", [](const PyStep& s) { return s.status == Status::kOk; })
       .def_readonly("status", &PyStep::status)
       .def_property_readonly(
           "innovation", [](const PyStep& s) { return to_array(s.innovation); },

@@ -358,7 +358,8 @@ PyNavigator make(const Model& model, const std::string& filter, const UsvOutlier
 
 void define_usv_navigator(py::module_& m) {
   using Arrays = std::optional<DoubleArray>;
-  py::class_<PyReading, PyStep>(m, "UsvReading", "What a reading has done to the navigator.")
+  py::class_<PyReading, PyStep>(
+      m, "UsvReading", "What a reading has done to the navigator; true where it was taken.")
       .def_readonly("rejected", &PyReading::rejected, "outside the gate: the belief is as it was")
       .def_readonly("widened", &PyReading::widened,
                     "outside the gate, but believed after too many rejections in a row")
@@ -535,7 +536,9 @@ Parameters
 time_s : (T,) array
     Not decreasing.
 imu : (T, 3) array, optional
-    Row k is the mean from time k - 1 to time k of [forward m/s², starboard m/s², yaw rate rad/s].
+    Row k holds from time k - 1 to time k: [forward m/s², starboard m/s², yaw rate rad/s]. Models
+    of 5 and 8 states turn its acceleration by the heading at k - 1, as the paper does: where she
+    turns, velocities are off by half the turn between two rows, so give rows as often as there are.
 gnss, velocity : (T, 2) array, optional
     Position m and velocity over ground m/s, [north, east].
 compass, log, rate_of_turn : (T,) array, optional

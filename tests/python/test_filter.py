@@ -26,6 +26,7 @@ from cases import (
     readings,
     stepwise,
 )
+from wakeline.scenario import RadarSimulator, Scenario, Segment, Truth
 
 shapes = hnp.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=4)
 FIELDS = ("mean", "covariance", "innovation", "nis", "log_likelihood", "status")
@@ -249,6 +250,27 @@ def test_a_reading_outside_the_gate_is_a_missed_one(name):
     assert (gated.status == np.where(np.arange(len(z)) == 7, int(wl.Status.missed), 0)).all()
     for field in FIELDS:
         np.testing.assert_array_equal(getattr(gated, field), getattr(told, field))
+
+
+def test_a_step_is_true_where_its_reading_was_taken():
+    filtering = ekf()
+    filtering.start(START)
+    filtering.predict(DT_S)
+    assert filtering.update(RADAR, [1000.0, 0.5])
+    navigator = wl.UsvNavigator()
+    navigator.start([0, 0], [1, 0], 0.0)
+    navigator.predict(1.0)
+    assert navigator.update_position([1.0, 1.0])
+    assert not navigator.update_position([np.nan, 0.0])
+    assert not navigator.update_position([1e5, 0.0])
+
+
+@pytest.mark.parametrize("kind", ["timedelta64[s]", "datetime64[ns]", "complex128"])
+def test_times_and_complex_numbers_are_no_readings(kind):
+    steps = np.ones(3, dtype=int).astype(kind)
+    for dt_s in (steps, list(steps)):
+        with pytest.raises(TypeError, match="must hold real numbers"):
+            ekf().run(np.zeros((3, 2)), dt_s, RADAR, START)
 
 
 def test_a_row_of_nan_is_a_missed_scan():
@@ -602,6 +624,24 @@ def test_smoothing_knows_the_acceleration_that_the_filter_knew():
     mean, covariance = kalman.smooth(pushed.mean, pushed.covariance, DT_S, push)
     np.testing.assert_allclose(mean, expected + way, atol=1e-7)
     np.testing.assert_allclose(covariance, spread, rtol=1e-9)
+
+
+@pytest.mark.parametrize("kind", [wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_smoothing_comes_nearer_to_the_truth(kind):
+    truth, radar = Truth([4000, 6, 3000, -8], [Segment(300)]), RadarSimulator(30, 0.01, 3)
+    straight = Scenario("straight", truth, radar, scans=90, position_std_m=30, velocity_std_mps=2)
+    z, starts = straight.draw(10, 1), straight.draw_starts(10, 1)
+    filtering = kind(wl.CoordinatedTurnRate())
+    filtered = filtering.run(z, 3.0, straight.polar_sensor, starts)
+    smoothed = [
+        filtering.smooth(*beliefs, 3.0)[0]
+        for beliefs in zip(filtered.mean, filtered.covariance, strict=True)
+    ]
+    off_m, left_m = (
+        np.hypot(*(np.array(mean)[..., [0, 2]] - straight.truth_states[:, [0, 2]]).T).mean()
+        for mean in (filtered.mean, smoothed)
+    )
+    assert left_m < 0.6 * off_m
 
 
 def test_smoothing_of_nothing_is_nothing_and_backwards_an_error():

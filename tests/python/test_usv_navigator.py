@@ -70,6 +70,18 @@ def test_a_run_is_its_steps(states, filter):
     assert run.mean.shape == (50, states)
 
 
+@pytest.mark.parametrize("filter", ["ekf", "ukf", "augmented_ukf"])
+def test_smoothing_helps_where_the_heading_is_hardly_known(filter):
+    off_m = np.zeros(2)
+    for seed in range(4):
+        log = voyage(seed)
+        readings = sensors(log) | {"compass": None}
+        for k, smooth in enumerate((False, True)):
+            run = started(log, filter=filter).run(**readings, smooth=smooth)
+            off_m[k] += np.hypot(*(run.mean[:, :2] - log["position"]).T).mean()
+    assert off_m[1] < 0.7 * off_m[0]
+
+
 def test_biases_are_found_and_smoothing_helps():
     log = voyage()
     run = started(log).run(**sensors(log))

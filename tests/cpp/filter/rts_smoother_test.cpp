@@ -7,12 +7,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
 #include "wakeline/filter/ekf.hpp"
+#include "wakeline/filter/ukf.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
@@ -164,6 +166,100 @@ TEST(RtsSmoother, SmoothsANonlinearMotion) {
     smoothed_error += (beliefs[15].mean - truths[15])[4] * (beliefs[15].mean - truths[15])[4];
   }
   EXPECT_LT(smoothed_error, 0.6 * filtered_error) << "the turn rate, from both sides";
+}
+
+const CoordinatedTurnRate kTurning{.noise = WhiteAcceleration{0.05}, .turn_rate_psd_rad2s3 = 1e-4};
+
+/// Filtered beliefs of a vessel that turns, and where she was.
+struct Turning {
+  CoordinatedTurnRate motion = kTurning;
+  std::vector<Gaussian<5>> beliefs;
+  std::vector<Vec<double, 5>> truths;
+  std::vector<double> steps;
+
+  template <class Filter>
+  explicit Turning(std::uint64_t seed, Filter filter) {
+    const RangeBearing radar{.range_std_m = 30, .bearing_std_rad = deg(0.6)};
+    Draw draw(seed);
+    Gaussian<5> start;
+    start.mean << 4000, 8, 3000, -4, 0.03;
+    start.covariance = Vec<double, 5>(900, 4, 900, 4, 4e-4).asDiagonal();
+    Vec<double, 5> truth = draw.of(start);
+    EXPECT_EQ(filter.start(start), Status::kOk);
+    for (int scan = 0; scan < 60; ++scan) {
+      truth = (motion.transition(truth, 2.5) + draw.error(motion.process_noise(truth, 2.5))).eval();
+      EXPECT_EQ(filter.predict(2.5), Status::kOk);
+      const Vec<double, 2> exact = radar.measure(Vec<double, 2>(truth[0], truth[2]));
+      EXPECT_TRUE(filter.update(
+          radar, Vec<double, 2>(exact + draw.error(radar.observe(exact).covariance))));
+      beliefs.push_back(filter.estimate());
+      truths.push_back(truth);
+    }
+    steps.assign(beliefs.size() - 1, 2.5);
+  }
+};
+
+// Gains of the book, by sums over the sigma points: C = Σ w dx e^T, P+ = P + C Pp⁻¹ (Ps - Pp) Pp⁻¹
+// Cᵀ.
+TEST(RtsSmoother, OfAnUnscentedFilterIsThatOfTheBook) {
+  for (const Unscented unscented : {Unscented{}, Unscented{.alpha = 0.7, .kappa = 1.0}}) {
+    Turning run(7, Ukf(kTurning, unscented));
+    std::vector<Gaussian<5>> expected = run.beliefs;
+    const double n = 5.0, scale = unscented.alpha * unscented.alpha * (n + unscented.kappa);
+    for (std::size_t k = expected.size() - 1; k-- > 0;) {
+      const Gaussian<5>& filtered = run.beliefs[k];
+      const Mat<double, 5, 5> root = filtered.covariance.llt().matrixL();
+      Eigen::Matrix<double, 5, 11> points, images;
+      points.colwise() = filtered.mean;
+      points.middleCols<5>(1) += std::sqrt(scale) * root;
+      points.rightCols<5>() -= std::sqrt(scale) * root;
+      for (int i = 0; i < 11; ++i)
+        images.col(i) = run.motion.transition(Vec<double, 5>(points.col(i)), 2.5);
+      Eigen::Matrix<double, 11, 1> of_mean = Eigen::Matrix<double, 11, 1>::Constant(0.5 / scale);
+      of_mean[0] = 1.0 - n / scale;
+      Eigen::Matrix<double, 11, 1> of_spread = of_mean;
+      of_spread[0] += 1.0 - unscented.alpha * unscented.alpha + unscented.beta;
+      const Vec<double, 5> mean = images * of_mean;
+      const Eigen::Matrix<double, 5, 11> off = images.colwise() - mean;
+      const Mat<double, 5, 5> predicted = off * of_spread.asDiagonal() * off.transpose() +
+                                          run.motion.process_noise(filtered.mean, 2.5);
+      const Mat<double, 5, 5> gain = (points.colwise() - filtered.mean) * of_spread.asDiagonal() *
+                                     off.transpose() * predicted.inverse();
+      expected[k].mean = filtered.mean + gain * (expected[k + 1].mean - mean);
+      expected[k].covariance =
+          filtered.covariance + gain * (expected[k + 1].covariance - predicted) * gain.transpose();
+    }
+    ASSERT_EQ((smooth<CoordinatedTurnRate, double>(run.motion, unscented, run.beliefs, run.steps)),
+              Status::kOk);
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      EXPECT_TRUE(matrices_near(run.beliefs[k].mean, expected[k].mean,
+                                {.absolute = 1e-6, .relative = 1e-7}))
+          << k;
+      EXPECT_LT(test::covariance_difference(run.beliefs[k].covariance, expected[k].covariance),
+                1e-6)
+          << k;
+    }
+  }
+}
+
+TEST(RtsSmoother, BringsAnUnscentedFilterNearerToTheTruth) {
+  double filtered_m2 = 0.0, smoothed_m2 = 0.0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Turning run(seed, Ukf(kTurning));
+    const auto error_m2 = [&] {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < run.truths.size(); ++k)
+        for (const int row : {0, 2})
+          sum += std::pow(run.beliefs[k].mean[row] - run.truths[k][row], 2);
+      return sum;
+    };
+    filtered_m2 += error_m2();
+    ASSERT_EQ(
+        (smooth<CoordinatedTurnRate, double>(run.motion, Unscented{}, run.beliefs, run.steps)),
+        Status::kOk);
+    smoothed_m2 += error_m2();
+  }
+  EXPECT_LT(smoothed_m2, 0.5 * filtered_m2);
 }
 
 TEST(RtsSmoother, LeavesTheRestFilteredWhereItFails) {

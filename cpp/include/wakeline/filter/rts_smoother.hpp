@@ -7,21 +7,79 @@
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/filter/control.hpp"
+#include "wakeline/filter/unscented.hpp"
 #include "wakeline/motion/concept.hpp"
 
 namespace wakeline {
 
+/// A motion as a filter takes it about a belief x ~ N(m, P): to mean + F (x - m) and noise of
+/// covariance Q. `status` tells whether there is one.
+template <int N, class Scalar>
+struct LinearisedMotion {
+  Status status = Status::kOk;
+  Vec<Scalar, N> mean;
+  Mat<Scalar, N, N> f;
+  Mat<Scalar, N, N> q;
+};
+
+/// About the mean, by the Jacobian: as an extended filter takes it.
+template <MotionModel Motion, class Scalar>
+LinearisedMotion<kStatesOf<Motion>, Scalar> linearised(
+    const Motion& motion, const Gaussian<kStatesOf<Motion>, Scalar>& belief, Scalar dt_s) noexcept {
+  return {.mean = transition(motion, belief.mean, dt_s),
+          .f = transition_jacobian(motion, belief.mean, dt_s),
+          .q = process_noise(motion, belief.mean, dt_s)};
+}
+
+/// By the sigma points, as an unscented filter takes it: the line that fits their images best, and
+/// as noise what they are off it. With L the root of P, e+ and e- the images of a pair of points
+/// less that of the centre, s how far the points stand out and w their weight,
+///
+///     F L = (e+ - e-) / (2 s),   Q += w/2 Σ (e+ + e-) (e+ + e-)ᵀ + (beta - alpha²) d dᵀ,
+///
+/// whose moments are the filter's own. Source: S. Särkkä, IEEE Trans. AC-53, 2008; I. Arasaratnam,
+/// S. Haykin, R. J. Elliott, Proc. IEEE 95, 2007 (statistical linear regression).
+template <MotionModel Motion, class Scalar>
+LinearisedMotion<kStatesOf<Motion>, Scalar> linearised(
+    const Motion& motion, const Unscented& unscented,
+    const Gaussian<kStatesOf<Motion>, Scalar>& belief, Scalar dt_s) noexcept {
+  constexpr int kStates = kStatesOf<Motion>;
+  LinearisedMotion<kStates, Scalar> result;
+  const Cholesky<kStates, Scalar> root(belief.covariance);
+  if (!root.ok()) {
+    result.status = Status::kNotPositiveDefinite;
+    return result;
+  }
+  const auto spread = unscented.template spread<Scalar>(kStates);
+  const auto weight = unscented.template weight<Scalar>(kStates);
+  const MovedPoints<Scalar, kStates> moved(
+      motion, dt_s, belief.mean, sigma_points<Scalar, kStates>(belief.mean, root.lower(), spread));
+  Mat<Scalar, kStates, kStates> slope, bend;
+  for (int k = 0; k < kStates; ++k) {
+    const auto ahead = moved.differences.col(2 * k), behind = moved.differences.col(2 * k + 1);
+    slope.col(k) = (ahead - behind) / (2 * spread);
+    bend.col(k) = ahead + behind;
+  }
+  const Vec<Scalar, kStates> shift = weight * bend.rowwise().sum();
+  result.mean = moved.centre + shift;
+  result.f = root.template unwhiten_rows<kStates>(slope);
+  result.q = process_noise(motion, belief.mean, dt_s) + weight / 2 * bend * bend.transpose() +
+             unscented.template centre_correction<Scalar>() * shift * shift.transpose();
+  return result;
+}
+
 /// Rauch-Tung-Striebel smoother, in place: turns the filtered beliefs of T scans into smoothed
-/// ones.
+/// ones, by the motion as the filter took it.
 ///
 /// `dt_s[k]` leads from scan k to scan k + 1 (T - 1 of them), under `acceleration_mps2[k]` where
-/// the filter was told any; see `Control`. The covariance is kept in a form that stays positive
-/// definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q) Gᵀ. Returns the first failure, with that scan and
-/// everything before it left as filtered. Source: Bar-Shalom, Li, Kirubarajan, 8.6.
-template <MotionModel Motion, class Scalar>
-Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs,
-              std::span<const Scalar> dt_s,
-              std::span<const Vec<Scalar, 2>> acceleration_mps2 = {}) noexcept {
+/// the filter was told any; see `Control`. `linearise(belief, dt_s)` gives the motion. The
+/// covariance is kept in a form that stays positive definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q)
+/// Gᵀ. Returns the first failure, with that scan and everything before it left as filtered. Source:
+/// Bar-Shalom, Li, Kirubarajan, 8.6.
+template <MotionModel Motion, class Scalar, class Linearise>
+Status smooth_by(const Linearise& linearise, std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs,
+                 std::span<const Scalar> dt_s,
+                 std::span<const Vec<Scalar, 2>> acceleration_mps2) noexcept {
   constexpr int kStates = kStatesOf<Motion>;
   using Matrix = Mat<Scalar, kStates, kStates>;
   for (std::size_t k = beliefs.size(); k-- > 1;) {
@@ -29,25 +87,46 @@ Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar
     Gaussian<kStates, Scalar>& belief = beliefs[k - 1];
     const Scalar dt = dt_s[k - 1];
     if (const Status forward = check_time_step(dt); forward != Status::kOk) return forward;
-    Vec<Scalar, kStates> predicted = transition(motion, belief.mean, dt);
+    LinearisedMotion<kStates, Scalar> motion = linearise(belief, dt);
+    if (motion.status != Status::kOk) return motion.status;
     if (!acceleration_mps2.empty())
-      predicted += Control::shift(Motion::kComponents, dt, acceleration_mps2[k - 1]);
-    const Matrix f = transition_jacobian(motion, belief.mean, dt);
-    const Matrix q = process_noise(motion, belief.mean, dt);
-    const Matrix fp = f * belief.covariance;
-    const Cholesky<kStates, Scalar> factor(Matrix(fp * f.transpose() + q));
+      motion.mean += Control::shift(Motion::kComponents, dt, acceleration_mps2[k - 1]);
+    const Matrix fp = motion.f * belief.covariance;
+    const Cholesky<kStates, Scalar> factor(Matrix(fp * motion.f.transpose() + motion.q));
     if (!factor.ok()) return Status::kNotPositiveDefinite;
     const Matrix gain = factor.template solve<kStates>(fp).transpose();
-    const Matrix rest = Matrix::Identity() - gain * f;
+    const Matrix rest = Matrix::Identity() - gain * motion.f;
     Gaussian<kStates, Scalar> smoothed;
-    smoothed.mean = belief.mean + gain * (later.mean - predicted);
+    smoothed.mean = belief.mean + gain * (later.mean - motion.mean);
     smoothed.covariance = rest * belief.covariance * rest.transpose() +
-                          gain * (later.covariance + q) * gain.transpose();
+                          gain * (later.covariance + motion.q) * gain.transpose();
     mirror_lower<Scalar, kStates>(smoothed.covariance);
     if (!is_finite(smoothed.mean) || !is_finite(smoothed.covariance)) return Status::kNotFinite;
     belief = smoothed;
   }
   return Status::kOk;
+}
+
+/// Of an extended filter's beliefs.
+template <MotionModel Motion, class Scalar>
+Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs,
+              std::span<const Scalar> dt_s,
+              std::span<const Vec<Scalar, 2>> acceleration_mps2 = {}) noexcept {
+  return smooth_by<Motion, Scalar>(
+      [&](const auto& belief, Scalar dt) { return linearised<Motion, Scalar>(motion, belief, dt); },
+      beliefs, dt_s, acceleration_mps2);
+}
+
+/// Of an unscented filter's.
+template <MotionModel Motion, class Scalar>
+Status smooth(const Motion& motion, const Unscented& unscented,
+              std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs, std::span<const Scalar> dt_s,
+              std::span<const Vec<Scalar, 2>> acceleration_mps2 = {}) noexcept {
+  return smooth_by<Motion, Scalar>(
+      [&](const auto& belief, Scalar dt) {
+        return linearised<Motion, Scalar>(motion, unscented, belief, dt);
+      },
+      beliefs, dt_s, acceleration_mps2);
 }
 
 }  // namespace wakeline
