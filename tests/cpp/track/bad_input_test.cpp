@@ -102,6 +102,22 @@ TEST(BadTime, APlotWithAWildClockHarmsNoTrack) {
   }
 }
 
+TEST(BadTime, APlotAheadOfItsScanThrowsNoTrackIntoTheFuture) {
+  for (const double ahead_s : {5.0, 10.0, 20.0})
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      Sea sea(seed);
+      VesselTracker tracker = followed(sea);
+      for (int k = 21; k <= 30; ++k) {
+        Plot plot = sea.plot(kBoat.at(2.5 * k), 2.5 * k);
+        if (k == 21) plot.time_s += ahead_s;
+        (void)tracker.process(2.5 * k, {&plot, 1});
+        ASSERT_NE(tracker.find(1), nullptr);
+        EXPECT_EQ(tracker.find(1)->time_s, 2.5 * k);
+        EXPECT_LT((tracker.find(1)->position() - kBoat.at(2.5 * k)).norm(), 60.0) << ahead_s;
+      }
+    }
+}
+
 TEST(BadPlots, AreRefusedCountedAndLeaveNoTrace) {
   Sea sea(5);
   VesselTracker clean = followed(sea);

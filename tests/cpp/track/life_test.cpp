@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // From the first plots of a target to the end of its track.
+#include <random>
 #include <string>
 
 #include "track/scene.hpp"
@@ -47,6 +48,66 @@ TEST(Life, AStraightBoatIsConfirmedOnceAndKeepsItsNumber) {
             .norm(),
         6.0);
   }
+}
+
+// What the clutter map learns of her first plots must not speak against her own next ones.
+TEST(Life, AVesselAtAnchorThatIsSeenNowAndThenIsConfirmed) {
+  const Vec<double, 2> middle_of_a_cell(3075.0, 75.0);
+  int scans = 0;
+  constexpr int kRuns = 60;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    Sea sea(seed);
+    VesselTracker tracker = make_tracker();
+    int k = 0;
+    for (bool confirmed = false; !confirmed; ++scans) {
+      ASSERT_LE(++k, 60) << "seed " << seed;
+      const Plot plot = sea.plot(middle_of_a_cell, 2.5 * k);
+      const ScanReport report =
+          tracker.process(2.5 * k, {&plot, sea.draw.uniform(0.0, 1.0) < 0.8 ? 1u : 0u});
+      confirmed = !events_of(report, TrackEvent::kConfirmed).empty();
+    }
+  }
+  EXPECT_LT(scans, 9 * kRuns);
+}
+
+// The posterior odds of a target, given plots that are false, are on average the prior ones.
+TEST(Life, FalsePlotsAloneAreNoEvidenceOnAverage) {
+  constexpr double kDensity = 1e-4, kHalfSide_m = 500.0, kExistence = 0.999;
+  constexpr int kScans = 6000;
+  for (const double gate_probability : {0.5, 0.95})
+    for (const double wild_probability : {0.0, 0.2}) {
+      const TrackerConfig config{.gate_probability = gate_probability,
+                                 .clutter_density_per_m2 = kDensity,
+                                 .wild_probability = wild_probability,
+                                 .clutter_cell_m = 0.0,
+                                 .visible_time_s = 0.0,
+                                 .initial_existence = 0.0,
+                                 .survival_time_s = 1e12,
+                                 .drop_position_std_m = 1e9,
+                                 .drop_speed_factor = 1e6,
+                                 .max_tracks = 1};
+      Radar slow = kTestRadar;  // so that a gate holds no more plots than a track takes
+      slow.max_speed_mps = 3.0;
+      VesselTracker tracker = make_tracker(config, slow);
+      Draw draw(1);
+      std::poisson_distribution<int> count(kDensity * 4.0 * kHalfSide_m * kHalfSide_m);
+      std::mt19937_64 random(1);
+      double ratio = 0.0;
+      for (int k = 1; k <= kScans; ++k) {
+        const double time_s = 1e3 * k;
+        const std::int64_t id = tracker.designate(time_s, 1500.0, 1000.0, 10.0);
+        std::vector<Plot> plots(static_cast<std::size_t>(count(random)));
+        for (Plot& plot : plots)
+          plot = exact_plot({1500.0 + draw.uniform(-kHalfSide_m, kHalfSide_m),
+                             1000.0 + draw.uniform(-kHalfSide_m, kHalfSide_m)},
+                            time_s + 2.5);
+        (void)tracker.process(time_s + 2.5, plots);
+        const double existence = tracks_of(tracker, false).front()->existence;
+        ratio += existence / (1.0 - existence) * (1.0 - kExistence) / kExistence / kScans;
+        (void)tracker.drop(id);
+      }
+      EXPECT_NEAR(ratio, 1.0, 0.06) << gate_probability << ' ' << wild_probability;
+    }
 }
 
 /// The scan in which an errorless boat, seen as in the pattern, is confirmed; 0: never.

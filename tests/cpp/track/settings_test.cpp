@@ -55,10 +55,10 @@ TEST(TrackerConfig, NamesWhatItRefuses) {
   WAKELINE_EXPECT_REFUSED(wild_probability, -0.1, 1.0, kNan);
   WAKELINE_EXPECT_REFUSED(wild_scale, 0.9, kNan, kInf);
   WAKELINE_EXPECT_REFUSED(clutter_cell_m, -1.0, kNan, kInf);
-  WAKELINE_EXPECT_REFUSED(clutter_memory_s, 0.0, kNan);
+  WAKELINE_EXPECT_REFUSED(clutter_memory_s, 0.0, 1e-310, kNan);
   WAKELINE_EXPECT_REFUSED(clutter_weight, -1.0, kNan);
-  WAKELINE_EXPECT_REFUSED(visible_time_s, -1.0, kNan);
-  WAKELINE_EXPECT_REFUSED(hidden_time_s, 0.0, kNan);
+  WAKELINE_EXPECT_REFUSED(visible_time_s, -1.0, 1e-310, kNan);
+  WAKELINE_EXPECT_REFUSED(hidden_time_s, 0.0, 1e-310, kNan);
   WAKELINE_EXPECT_REFUSED(initial_existence, -0.1, 1.1, kNan);
   WAKELINE_EXPECT_REFUSED(free_plot, -0.1, 1.1, kNan);
   WAKELINE_EXPECT_REFUSED(start_gate_sigma, -1.0, kNan);

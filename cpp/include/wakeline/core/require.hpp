@@ -38,6 +38,11 @@ inline void require_positive(const char* name, double value) {
   require(value > 0.0 && std::isfinite(value), name, "finite and positive", value);
 }
 
+/// A mean time, whose rate and shares have digits left.
+inline void require_time(const char* name, double time_s) {
+  require(time_s >= 1e-3 && time_s <= 1e12, name, "0.001 s to 1e12 s", time_s);
+}
+
 inline void require_finite(const char* name, double value) {
   require(std::isfinite(value), name, "finite", value);
 }

@@ -40,6 +40,19 @@ class Fading {
 
 }  // namespace detail
 
+/// What a map has taken in of the plots of one target, as if all were where the last one was.
+struct LearnedPlots {
+  Vec<double, 2> position = Vec<double, 2>::Zero();
+  double plots = 0.0;  ///< as many as were left of them at `time_s`
+  double time_s = 0.0;
+
+  void archive(Archive& fields) {
+    fields(position);
+    fields(plots);
+    fields(time_s);
+  }
+};
+
 /// Where plots come from that belong to no target: the density of false plots over the plane,
 /// learned with a fading memory. Fixed echoes and shore grow dense and so stop to look like
 /// targets.
@@ -68,6 +81,25 @@ class ClutterMap {
     }
     const double per_scan = 1.0 - fading_.after(period_s);
     return plots * per_scan / (cell_m_ * cell_m_);
+  }
+
+  /// The part of that density that these plots are.
+  [[nodiscard]] double density_of(const LearnedPlots& learned, const Vec<double, 2>& position,
+                                  double time_s, double period_s) const noexcept {
+    if (!enabled() || learned.plots == 0.0) return 0.0;
+    double shares = 0.0;
+    for (const Corner& a : corners(position))
+      for (const Corner& b : corners(learned.position))
+        if (a.north == b.north && a.east == b.east) shares += a.share * b.share;
+    const double left = learned.plots * fading_.after(std::fabs(time_s - learned.time_s));
+    return shares * left * (1.0 - fading_.after(period_s)) / (cell_m_ * cell_m_);
+  }
+
+  /// Adds a plot that `add` takes in to those of its target.
+  void remember(const Vec<double, 2>& position, double time_s, double weight,
+                LearnedPlots& learned) const noexcept {
+    const double left = learned.plots * fading_.after(std::fabs(time_s - learned.time_s));
+    learned = {position, left + weight, time_s};
   }
 
   /// Takes in a plot that is false with probability `weight`.

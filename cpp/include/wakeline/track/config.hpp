@@ -70,9 +70,12 @@ struct TrackerConfig {
                           ///< or is not started
   int max_plots = 20000;  ///< plots of a scan beyond this are refused
 
-  /// PD PG: a visible target gives a plot, and that in its gate.
+  /// PD PG: a visible target gives a plot, and that in its gate. Where plots may err wildly the
+  /// gate is that of wild ones, and holds all others.
   [[nodiscard]] double detection() const noexcept {
-    return detection_probability * gate_probability;
+    const double w = wild_probability;
+    const double in_gate = w > 0.0 ? 1.0 - w + w * gate_probability : gate_probability;
+    return detection_probability * in_gate;
   }
 
   /// k², by which the covariance of a wild plot is larger; 1 where there are none.
@@ -110,10 +113,10 @@ struct TrackerConfig {
     require(wild_scale >= 1.0 && std::isfinite(wild_scale), "wild_scale", "finite and at least 1",
             wild_scale);
     require_not_negative("clutter_cell_m", clutter_cell_m);
-    require_positive("clutter_memory_s", clutter_memory_s);
+    require_time("clutter_memory_s", clutter_memory_s);
     require_not_negative("clutter_weight", clutter_weight);
-    require_not_negative("visible_time_s", visible_time_s);
-    require_positive("hidden_time_s", hidden_time_s);
+    if (visible_time_s != 0.0) require_time("visible_time_s", visible_time_s);
+    require_time("hidden_time_s", hidden_time_s);
     require_probability("initial_existence", initial_existence);
     require_probability("free_plot", free_plot);
     require_not_negative("start_gate_sigma", start_gate_sigma);
@@ -122,7 +125,7 @@ struct TrackerConfig {
     require(confirm_hits >= 1, "confirm_hits", "at least 1", confirm_hits);
     require(confirm_window >= confirm_hits && confirm_window <= 32, "confirm_window",
             "at least confirm_hits and at most 32", confirm_window);
-    require_positive("survival_time_s", survival_time_s);
+    require_time("survival_time_s", survival_time_s);
     require_probability("drop_existence", drop_existence);
     require(tentative_misses >= 0, "tentative_misses", "at least 0", tentative_misses);
     require_not_negative("coast_scans", coast_scans);

@@ -38,7 +38,7 @@ class Echoes {
 
   /// Converts the plots, at most as many as there is room for, and forgets those before. Plots that
   /// are not finite, behind the antenna, or farther than `slack_s` from the time of the scan are
-  /// left out.
+  /// left out; one that is ahead of it has a wrong clock, and counts as of its end.
   void take(const Radar& radar, std::span<const Plot> plots, double time_s,
             double slack_s) noexcept {
     echoes_.clear();
@@ -51,10 +51,10 @@ class Echoes {
       const bool usable = std::fabs(plot.time_s - time_s) <= slack_s && plot.range_m >= 0.0 &&
                           is_finite(position.mean) && Cholesky<2>(position.covariance).ok();
       if (!usable) continue;
+      const double plot_s = std::min(plot.time_s, time_s);
       index_.add(position.mean, position.covariance.trace(), size());
-      echoes_.push_back({.position = position, .time_s = plot.time_s, .plot = static_cast<int>(k)});
-      earliest_s_ = std::min(earliest_s_, plot.time_s);
-      latest_s_ = std::max(latest_s_, plot.time_s);
+      echoes_.push_back({.position = position, .time_s = plot_s, .plot = static_cast<int>(k)});
+      earliest_s_ = std::min(earliest_s_, plot_s);
     }
     index_.sort();
   }

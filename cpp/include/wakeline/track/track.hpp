@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "wakeline/core/archive.hpp"
+#include "wakeline/track/clutter_map.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/radar.hpp"
 
@@ -69,6 +70,8 @@ struct Track {
   int misses = 0;             ///< in a row
   std::uint32_t history = 0;  ///< bit k: seen k scans ago
   int duplicate_scans = 0;
+  LearnedPlots learned = {};  ///< of its own plots, what the clutter map has taken in
+  int best_echo = -1;    ///< in the last scan, the plot that it most likely owns; -1 without one
   double plot_m2 = 0.0;  ///< variance of its last plot, of an axis as the mean of both
 
   [[nodiscard]] bool confirmed() const noexcept { return status != TrackStatus::kTentative; }
@@ -171,6 +174,7 @@ struct Track {
     fields(history);
     fields(duplicate_scans);
     fields(plot_m2);
+    learned.archive(fields);
   }
 };
 

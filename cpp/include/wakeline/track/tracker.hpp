@@ -234,7 +234,7 @@ class Tracker {
   /// A plot that many periods from its scan has a wrong clock.
   static constexpr double kClockPeriods = 10.0;
   static constexpr int kStartScans = 2;  ///< so long apart the plots of a start may be at least
-  static constexpr std::uint32_t kArchiveVersion = 2;
+  static constexpr std::uint32_t kArchiveVersion = 3;
   static constexpr std::size_t kGroup = 32;  ///< tracks that take their steps together
 
   /// The plots of a track, each as two readings, and what share of it they have.
@@ -260,11 +260,11 @@ class Tracker {
     echoes_.take(radar_, plots.first(count), time_s_,
                  std::max(kClockPeriods * radar_.period_s, dt_s));
     // The map as it was when it had learned the scan before: a period later it has faded by one.
-    const double learned_s = time_s_ - std::min(dt_s, radar_.period_s);
+    learned_s_ = time_s_ - std::min(dt_s, radar_.period_s);
     for (Echo& echo : echoes_)
       echo.density =
           config_.clutter_density_per_m2 +
-          config_.clutter_weight * map_.density(echo.position.mean, learned_s, radar_.period_s);
+          config_.clutter_weight * map_.density(echo.position.mean, learned_s_, radar_.period_s);
     return static_cast<int>(plots.size()) - echoes_.size();
   }
 
@@ -386,10 +386,17 @@ class Tracker {
     }
   }
 
+  /// Density of false plots about an echo, but for those that are the target's own.
+  [[nodiscard]] double density(const Echo& echo, const LearnedPlots& own) const noexcept {
+    const double of_own = config_.clutter_weight *
+                          map_.density_of(own, echo.position.mean, learned_s_, radar_.period_s);
+    return std::max(echo.density - of_own, config_.clutter_density_per_m2);
+  }
+
   /// PD pv g / rho: how much likelier the plot is as the track's than as clutter.
   [[nodiscard]] double weight(const TrackType& track, const Claim& claim) const noexcept {
     return config_.detection_probability * track.visibility * claim.likelihood /
-           echoes_[claim.echo].density;
+           density(echoes_[claim.echo], track.learned);
   }
 
   /// Leaves each track at most one plot: confirmed tracks choose before tentative ones.
@@ -469,6 +476,7 @@ class Tracker {
   void settle(TrackType& track, int slot, const Claims& claims, const double* share) noexcept {
     double owned = 0.0;
     double best = 0.0;
+    track.best_echo = -1;
     track.nis = std::numeric_limits<double>::quiet_NaN();
     for (const Claim& claim : claims) {
       const double owns = share[0] + share[1];
@@ -476,6 +484,7 @@ class Tracker {
       owned += owns;
       if (owns > best) {
         best = owns;
+        track.best_echo = claim.echo;
         track.nis = claim.nis;
         track.plot_m2 = echoes_[claim.echo].position.covariance.trace() / 2;
       }
@@ -491,8 +500,8 @@ class Tracker {
     for (const Claim& claim : claims) {
       const Echo& echo = echoes_[claim.echo];
       const double claimed_by_others = std::max(echo.odds - claim.odds, 0.0);
-      const double weight =
-          config_.detection_probability * track.visibility / (echo.density + claimed_by_others);
+      const double weight = config_.detection_probability * track.visibility /
+                            (density(echo, track.learned) + claimed_by_others);
       const Mat<double, 2, 2>& nominal_m2 = echo.position.covariance;
       readings.fixes[count++] = {Fix{nominal_m2 + claim.moved_m2}, claim.z,
                                  (1.0 - config_.wild_probability) * weight};
@@ -590,9 +599,15 @@ class Tracker {
     }
   }
 
-  /// What not even a tentative track takes for its own is clutter.
+  /// What not even a tentative track takes for its own is clutter. Each remembers what was learned
+  /// of its own plots, so that they do not speak against it.
   void learn_clutter() noexcept {
     for (const Echo& echo : echoes_) map_.add(echo.position.mean, time_s_, echo.stray);
+    tracks_.for_each([&](TrackType& track) {
+      if (track.best_echo < 0) return;
+      const Echo& echo = echoes_[track.best_echo];
+      map_.remember(echo.position.mean, time_s_, echo.stray, track.learned);
+    });
   }
 
   /// A free plot and one of the scan before, near enough for the speed limit, start a tentative
@@ -618,8 +633,9 @@ class Tracker {
     return track.id < newest_before_;
   }
 
-  [[nodiscard]] double existence_of_start(const Echo& echo) const noexcept {
-    return config_.initial_existence * config_.clutter_density_per_m2 / echo.density;
+  [[nodiscard]] double existence_of_start(const Echo& echo,
+                                          const LearnedPlots& own = {}) const noexcept {
+    return config_.initial_existence * config_.clutter_density_per_m2 / density(echo, own);
   }
 
   /// With the covariance of nominal and wild errors together.
@@ -629,14 +645,18 @@ class Tracker {
   }
 
   void start_track(const FreePlot& earlier, const Echo& echo) noexcept {
-    if (!has_room_for(existence_of_start(echo))) return;
+    LearnedPlots own{earlier.position.mean, 1.0, earlier.time_s};
+    const double existence = existence_of_start(echo, own);
+    if (!has_room_for(existence)) return;
     Gaussian<4> belief =
         two_point<double>(as_it_may_err(earlier.position), as_it_may_err(echo.position),
                           echo.time_s - earlier.time_s);
     if (config_.start_speed_factor > 0.0)
       belief = with_speed_prior(belief, std::sqrt(resting_velocity().covariance(0, 0)));
-    TrackType* track = open_track(echo.time_s, belief, existence_of_start(echo));
+    TrackType* track = open_track(echo.time_s, belief, existence);
     if (track == nullptr) return;
+    map_.remember(echo.position.mean, time_s_, echo.stray, own);
+    track->learned = own;
     track->history = 3u;
   }
 
@@ -661,6 +681,8 @@ class Tracker {
     track.scans = track.hits = 2;
     track.misses = track.duplicate_scans = 0;
     track.history = 0;
+    track.learned = {};
+    track.best_echo = -1;
     if (weak_listed_) {
       weak_.push_back({existence, track.id, slot});
       std::push_heap(weak_.begin(), weak_.end(), stronger);
@@ -778,6 +800,7 @@ class Tracker {
   GlobalNearestNeighbour<double> global_;
   NearestNeighbour<double> nearest_;
   double time_s_ = 0.0;
+  double learned_s_ = 0.0;  ///< of the map, at this scan
   bool started_ = false;
   std::int64_t next_id_ = 1;
   std::int64_t next_tentative_id_ = -1;

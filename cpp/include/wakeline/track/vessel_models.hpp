@@ -70,11 +70,11 @@ struct VesselModels {
     require_not_negative("turn_rate_psd_rad2s3", turn_rate_psd_rad2s3);
     require_positive("prior_turn_rate_std_rad_s", prior_turn_rate_std_rad_s);
     require_probability("cruising_probability", cruising_probability);
-    require_sojourn("cruising_sojourn_s", cruising_sojourn_s);
-    require_sojourn("settling_s", settling_s);
-    require_sojourn("steady_sojourn_s", steady_sojourn_s);
-    require_sojourn("restless_sojourn_s", restless_sojourn_s);
-    require_sojourn("turning_sojourn_s", turning_sojourn_s);
+    require_time("cruising_sojourn_s", cruising_sojourn_s);
+    require_time("settling_s", settling_s);
+    require_time("steady_sojourn_s", steady_sojourn_s);
+    require_time("restless_sojourn_s", restless_sojourn_s);
+    require_time("turning_sojourn_s", turning_sojourn_s);
   }
 
   [[nodiscard]] WanderingCourse cruising(double max_speed_mps) const noexcept {
@@ -118,10 +118,6 @@ struct VesselModels {
   }
 
  private:
-  /// In a range whose rates and shares have digits left.
-  static void require_sojourn(const char* name, double time_s) {
-    require(time_s >= 1e-3 && time_s <= 1e12, name, "0.001 s to 1e12 s", time_s);
-  }
   [[nodiscard]] Eigen::Array3d craft_sojourn_s() const noexcept {
     return {steady_sojourn_s, restless_sojourn_s, turning_sojourn_s};
   }
