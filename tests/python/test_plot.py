@@ -13,7 +13,7 @@ from wakeline.recording import Episode, OwnShip, TargetTruth, Tracks
 pytest.importorskip("matplotlib")
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.quiver import Quiver, QuiverKey
 
 from wakeline import plot
@@ -324,6 +324,13 @@ def test_figures_are_written_even_of_nothing(tmp_path, make, episode, tracks):
     assert len(list(tmp_path.iterdir())) == 4
 
 
+@pytest.mark.parametrize("name", ["abc", "abc.", ".png", "abc.txt"])
+def test_a_figure_is_written_only_where_the_suffix_names_a_format(tmp_path, name):
+    with pytest.raises(ValueError, match=r"path must end in .*\.pdf, .*\.png, .*got '.*'"):
+        plot.save(plot.figure(), tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_wakeline_plot_is_imported_without_matplotlib():
     code = "import sys, wakeline.plot; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
@@ -394,6 +401,12 @@ def test_bands_stand_in_order_of_turn_rate_under_the_true_turn(ax):
     assert strip.get_facecolor().tolist() == [colors[1], colors[2], colors[0]]
 
 
+@pytest.mark.parametrize("shape", [(10, 3), (9, 2), (20,)])
+def test_every_rate_has_its_probability_at_every_time(ax, shape):
+    with pytest.raises(ValueError, match=r"probability must have shape \(10, 2\), got"):
+        plot.probability_panel(ax, TIME_S, np.zeros(shape), [0.0, 0.1])
+
+
 def test_turns_to_either_side_have_colours_of_their_own():
     colors = plot.turn_colors([-4, -2, 0, 2, 4])
     assert len(set(colors)) == 5
@@ -410,6 +423,47 @@ def test_a_ranking_may_be_logarithmic(ax):
     plot.ranking_panel(ax, ["a", "b"], {"m": [1.0, 50.0]}, xlabel="error (m)", log=True)
     assert ax.get_xscale() == "log"
     assert {1.0, 2.0, 5.0, 10.0, 20.0, 50.0} <= set(ax.get_xticks().round(6))
+
+
+@pytest.mark.parametrize("count", [1, 10, 11, 25])
+def test_every_circumstance_of_a_ranking_is_drawn_and_has_a_mark_of_its_own(ax, count):
+    values = {f"case {k}": [k, k + 1.0] for k in range(count)}
+    plot.ranking_panel(ax, ["a", "b"], values, xlabel="error (m)")
+    marks = [one for one in ax.collections if one.get_label() in values]
+    assert [one.get_offsets()[:, 0].min() for one in marks] == list(range(count))
+    looks = {
+        (to_hex(one.get_facecolor()[0]), one.get_paths()[0].vertices.tobytes()) for one in marks
+    }
+    assert len(looks) == count
+
+
+def test_no_two_curves_look_alike_and_those_of_a_given_colour_are_not_dashed(ax):
+    curves = {f"estimator {k}": TIME_S for k in range(20)}
+    plot.error_panel(ax, TIME_S, curves, colors={"estimator 19": "black"}, legend=False)
+    assert len({(line.get_color(), line.is_dashed()) for line in ax.lines}) == 20
+    assert [line.is_dashed() for line in ax.lines] == [False] * 10 + [True] * 9 + [False]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("columns", [1, 2, 3])
+@pytest.mark.parametrize("count", [1, 3, 8, 14, 20])
+def test_names_take_as_few_rows_as_leave_the_panels_their_width(count, columns):
+    fig = plot.figure(7.2, 6.0)
+    axes = fig.subplots(1, columns, squeeze=False)[0]
+    curves = {f"estimator {k}": TIME_S for k in range(count)}
+    modes = np.full((10, count), 1.0 / count)
+    for k, ax in enumerate(axes):
+        if k == 1:
+            plot.probability_panel(ax, TIME_S, modes, np.linspace(-0.1, 0.1, count))
+        else:
+            plot.error_panel(ax, TIME_S, curves)
+    FigureCanvasAgg(fig).draw()
+    for ax in axes:
+        room, legend = ax.get_window_extent(), ax.get_legend().get_window_extent()
+        assert room.width > 0.65 * fig.bbox.width / columns
+        assert legend.width < 1.1 * room.width
+        assert not legend.overlaps(room.translated(0.0, -1.0))
+        assert legend.width > 0.4 * room.width or count < 3
 
 
 def test_steps_are_named_and_their_ratios_are_alike_at_any_height(ax):

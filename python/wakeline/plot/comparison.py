@@ -7,7 +7,8 @@ states ``[north, vnorth, east, veast]``.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from itertools import cycle, product
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
 _TRUTH_DASHES = (0, (4, 2))
+_DASHES = ("-", (0, (3, 1)), (0, (1, 1)))
+_MARKS = "os^"
 _ROOM_ABOVE = 1.08
 _STRIP = (1.02, 0.06)
 _ROUND = (1.0, 2.0, 3.0, 5.0)
@@ -58,8 +61,8 @@ def paths_view(
     """
     if plots_m is not None:
         ax.scatter(*_km(plots_m), s=6, color=MUTED, alpha=0.6, linewidths=0, label="plot", zorder=2)
-    for name, color in _colored(tracks or {}, colors):
-        ax.plot(*_km(tracks[name][:, 0::2]), color=color, linewidth=1.3, label=name, zorder=3)
+    for name, look in _looks(tracks or {}, colors):
+        ax.plot(*_km(tracks[name][:, 0::2]), **look, linewidth=1.3, label=name, zorder=3)
     place = truth[:, 0::2]
     line = {"color": INK, "linewidth": 1.1, "linestyle": _TRUTH_DASHES if tracks else "-"}
     ax.plot(*_km(place), **line, label="truth", zorder=4)
@@ -109,8 +112,8 @@ def error_panel(
     if bound is not None:
         ax.fill_between(time_s, bound, color=GRID, linewidth=0, zorder=1.5)
         ax.plot(time_s, bound, color=MUTED, linewidth=1.1, label="bound", zorder=2)
-    for name, color in _colored(errors, colors):
-        ax.plot(time_s, errors[name], color=color, linewidth=1.4, label=name, zorder=3)
+    for name, look in _looks(errors, colors):
+        ax.plot(time_s, errors[name], **look, linewidth=1.4, label=name, zorder=3)
     ax.set_ylim(0.0, _ROOM_ABOVE * _highest(errors.values()) if top is None else top)
     return _over_time(ax, time_s, ylabel, legend)
 
@@ -143,9 +146,9 @@ def turn_rate_panel(
         Whether to name the lines.
     """
     ax.axhline(0.0, color=MUTED, linewidth=0.6)
-    for name, color in _colored(rates_rad_s, colors):
+    for name, look in _looks(rates_rad_s, colors):
         rate_deg_s = np.degrees(rates_rad_s[name])
-        ax.plot(time_s, rate_deg_s, color=color, linewidth=1.4, label=name, zorder=3)
+        ax.plot(time_s, rate_deg_s, **look, linewidth=1.4, label=name, zorder=3)
     true_deg_s = np.degrees(true_rate_rad_s)
     ax.step(
         time_s,
@@ -193,11 +196,14 @@ def probability_panel(
         Whether to name the bands.
     """
     rate_deg_s = np.degrees(np.asarray(turn_rate_rad_s, dtype=float))
+    probability, wanted = np.asarray(probability), (len(time_s), len(rate_deg_s))
+    if probability.shape != wanted:
+        raise ValueError(f"probability must have shape {wanted}, got {probability.shape}")
     order = np.argsort(rate_deg_s)
     names = [f"{rate:+.3g} °/s" if rate else "0 °/s" for rate in rate_deg_s[order]]
     true_deg_s = np.degrees(np.zeros(0) if true_rate_rad_s is None else true_rate_rad_s)
     colors = turn_colors(np.concatenate([rate_deg_s[order], true_deg_s]))
-    draw_bands(ax, time_s, np.asarray(probability)[:, order], names, colors[: len(order)])
+    draw_bands(ax, time_s, probability[:, order], names, colors[: len(order)])
     if not legend:
         ax.get_legend().remove()
     if len(true_deg_s):
@@ -239,8 +245,10 @@ def ranking_panel(
     rows = np.arange(len(order))
     low, high = np.min(list(table.values()), axis=0), np.max(list(table.values()), axis=0)
     ax.hlines(rows, low[order], high[order], color=GRID, linewidth=3, zorder=1)
-    for (key, row), color in zip(table.items(), PALETTE, strict=False):
-        ax.scatter(row[order], rows, s=34, color=color, linewidths=0, label=key, zorder=3)
+    looks = cycle(product(_MARKS, PALETTE))
+    for (key, row), (mark, color) in zip(table.items(), looks, strict=False):
+        look = {"marker": mark, "color": color, "s": 34, "linewidths": 0}
+        ax.scatter(row[order], rows, **look, label=key, zorder=3)
     ax.set_yticks(rows, [names[k] for k in order])
     ax.set_ylim(-0.6, len(order) - 0.4)
     if log:
@@ -282,8 +290,8 @@ def steps_panel(
         Whether to name the lines.
     """
     at = np.arange(len(steps))
-    for name, color in _colored(values, colors):
-        ax.plot(at, values[name], color=color, linewidth=1.4, marker="o", markersize=5, label=name)
+    for name, look in _looks(values, colors):
+        ax.plot(at, values[name], **look, linewidth=1.4, marker="o", markersize=5, label=name)
     ax.set_xticks(at, steps)
     ax.set_xlim(-0.3, len(steps) - 0.7)
     ax.set_yscale("log")
@@ -320,12 +328,16 @@ def turn_colors(turn_rate_deg_s: Sequence[float]) -> list[str]:
     return [color(rate) for rate in rates]
 
 
-def _colored(
+def _looks(
     named: Mapping[str, object], colors: Mapping[str, str] | None
-) -> list[tuple[str, str]]:
-    """Names with their colours; those without one take the palette in order."""
-    colors = colors or {}
-    return [(name, colors.get(name, PALETTE[k % len(PALETTE)])) for k, name in enumerate(named)]
+) -> list[tuple[str, dict[str, Any]]]:
+    """Names with colour and dashes; those without a colour take the palette in order."""
+    given = {name: {"color": color} for name, color in (colors or {}).items()}
+    looks = cycle(product(_DASHES, PALETTE))
+    return [
+        (name, given.get(name, {"color": color, "linestyle": dashes}))
+        for name, (dashes, color) in zip(named, looks, strict=False)
+    ]
 
 
 def _highest(curves: Iterable[np.ndarray]) -> float:

@@ -27,6 +27,7 @@ MUTED = "#8C959F"
 GRID = "#E4E7EB"
 TEXT_PT = 9
 _GAP_STEPS = 4.0
+_BESIDE_IN = 0.7  # of a column of panels: what stands left of the axes
 
 
 def figure(width_in: float = 7.2, height_in: float = 6.0) -> Figure:
@@ -45,7 +46,15 @@ def save(fig: Figure, path: str | Path) -> None:
         The figure.
     path : str or Path
         Its suffix names the format, such as ``.png`` or ``.pdf``.
+
+    Raises
+    ------
+    ValueError
+        When the suffix names no format that can be written.
     """
+    kinds = fig.canvas.get_supported_filetypes()
+    if Path(path).suffix[1:].lower() not in kinds:
+        raise ValueError(f"path must end in .{', .'.join(sorted(kinds))}, got {str(path)!r}")
     with replacing(path) as fresh:
         fig.savefig(fresh, bbox_inches="tight", pad_inches=0.1)
 
@@ -80,23 +89,42 @@ def halo(width: float = 2.0) -> list:
 
 
 def name_lines(ax: Axes, columns: int | None = None) -> Axes:
-    """A legend above the axes, where it covers nothing, in one row by default; returns `ax`."""
-    handles, labels = ax.get_legend_handles_labels()
-    if handles:
-        ax.legend(
-            handles,
-            labels,
-            loc="lower left",
-            bbox_to_anchor=(0.0, 1.0),
-            ncols=columns or len(handles),
-            fontsize=TEXT_PT,
-            frameon=False,
-            handlelength=1.8,
-            columnspacing=1.4,
-            borderaxespad=0.3,
-            labelcolor=INK,
-        )
+    """A legend above the axes, where it covers nothing, by default as of :func:`name_above`.
+
+    Returns `ax`.
+    """
+    return name_above(
+        ax,
+        columns,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        fontsize=TEXT_PT,
+        frameon=False,
+        handlelength=1.8,
+        columnspacing=1.4,
+        borderaxespad=0.3,
+        labelcolor=INK,
+    )
+
+
+def name_above(ax: Axes, columns: int | None = None, **look: object) -> Axes:
+    """A legend of that look, in as few rows as are no wider than the axes; returns `ax`."""
+    count = len(ax.get_legend_handles_labels()[1])
+    for rows in range(1, count + 1):
+        legend = ax.legend(ncols=columns or -(-count // rows), **look)
+        if columns or legend.get_window_extent().width <= _room_px(ax):
+            break
     return ax
+
+
+def _room_px(ax: Axes) -> float:
+    """About the width that the axes will have in the layout of their figure."""
+    spec = ax.get_subplotspec()
+    if spec is None:
+        return ax.get_window_extent().width
+    widths = spec.get_gridspec().get_width_ratios()
+    share = sum(widths[spec.colspan.start : spec.colspan.stop]) / sum(widths)
+    return share * ax.figure.bbox.width - _BESIDE_IN * ax.figure.dpi
 
 
 def track_colors(tracks: Tracks | None) -> dict[str, str]:

@@ -18,6 +18,7 @@ from .style import (
     dress,
     figure,
     halo,
+    name_above,
     name_lines,
     stretches,
     track_colors,
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
 
 _NIS_TOP = 16.0
 _MANY_TRACKS = 10
-_ONE_ROW = 5
-_LETTER_EM, _LINE_EM = 0.62, 4.0  # of a name in the legend: a letter; its line and the space around
-_PT_PER_IN, _PANEL_SHARE = 72.0, 0.88
 
 
 def time_view(
@@ -82,7 +80,8 @@ def time_view(
     for ax in axes[:-1]:
         ax.set_xlabel("")
     axes[0].margins(x=0.01)
-    _name_tracks(axes[0], tracks)
+    if tracks is not None and len(tracks):
+        name_lines(axes[0])
     if count > _MANY_TRACKS:
         shown = f"the {_MANY_TRACKS} longest of {count} tracks"
         axes[-1].set_xlabel(f"{axes[-1].get_xlabel()}, {shown}")
@@ -217,17 +216,16 @@ def draw_bands(
         ax.stackplot(when_s, bands.T, colors=colors, labels=names, linewidth=0)
         names = ()
     ax.set_ylim(0.0, 1.0)
-    ax.legend(
+    return name_above(
+        ax,
         loc="lower right",
         bbox_to_anchor=(1.0, 1.0),
-        ncols=modes,
         fontsize=TEXT_PT - 1,
         frameon=False,
         handlelength=1.0,
         columnspacing=1.2,
         borderaxespad=0.1,
     )
-    return ax
 
 
 _TRUTH_LINE = {"color": INK, "linewidth": 0.9, "linestyle": (0, (4, 2)), "zorder": 3}
@@ -273,14 +271,3 @@ def _finish(ax: Axes, ylabel: str) -> Axes:
     ax.set_xlabel("time from start (s)")
     ax.set_ylabel(ylabel)
     return dress(ax)
-
-
-def _name_tracks(ax: Axes, tracks: Tracks | None) -> None:
-    """Legend of the tracks above the first panel."""
-    ids = [] if tracks is None else tracks.ids()
-    if ids:
-        columns = (len(ids) + 2) // (1 + (len(ids) > _ONE_ROW))
-        name_em = _LETTER_EM * max(len(f"track {track_id}") for track_id in ids) + _LINE_EM
-        width_in = ax.figure.bbox.width / ax.figure.dpi
-        room_em = _PANEL_SHARE * width_in * _PT_PER_IN / TEXT_PT
-        name_lines(ax, columns=max(1, min(columns, int(room_em / name_em))))
