@@ -311,6 +311,35 @@ def test_scenarios_of_like_names_do_not_overwrite_each_others_pictures(tmp_path,
     assert sorted(path.name for path in out.glob("map*.png")) == ["map-a_b-4.png", "map.png"]
 
 
+@pytest.mark.parametrize("letter", ["a", "海"])
+def test_long_names_of_scenarios_are_cut_in_names_of_files(tmp_path, pictures, letter):
+    names = [300 * letter, 301 * letter]
+    rows = [(name, *row) for name in names for row in boat(2)]
+    plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")
+    out, result = tmp_path / "out", tmp_path / "track.json"
+    assert track(plots, "--out", out, "--json", result) == 0
+    assert [row["scenario"] for row in json.loads(result.read_text())["rows"]] == [*names, "all"]
+    assert len(list(out.glob("map-*.png"))) == 2
+    assert track(write_plots(tmp_path / "one.csv", boat(2)), "--out", out) == 0
+    assert [path.name for path in out.glob("map*.png")] == ["map.png"]
+
+
+def test_a_score_is_there_when_a_picture_fails(plots_csv, tmp_path, capsys, monkeypatch):
+    def fails(*arguments):
+        raise OSError("the disk is full")
+
+    monkeypatch.setattr(outputs, "can_draw", lambda: True)
+    monkeypatch.setattr(outputs, "write_pictures", fails)
+    truth = tmp_path / "truth.csv"
+    write_plots(truth, [(t, "A", n, e) for t, n, e in boat(40)], "time_s,target,north_m,east_m")
+    result = tmp_path / "track.json"
+    assert track(plots_csv, "--truth", truth, "--out", tmp_path, "--json", result) == 2
+    captured = capsys.readouterr()
+    assert captured.err == "wakeline: the disk is full\n"
+    assert "coverage" in captured.out
+    assert json.loads(result.read_text())["rows"][-1]["coverage"] == 1.0
+
+
 def test_files_of_an_earlier_run_that_this_one_does_not_write_are_removed(tmp_path):
     rows = [(name, *row) for name in ("run/1", "run 2") for row in boat(20)]
     plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")
@@ -357,7 +386,9 @@ def test_a_later_scenario_that_fails_leaves_what_was_there_and_what_was_done(
 
     monkeypatch.setattr(track_command, "track_episode", fails_on_the_second)
     assert track(plots, "--out", out) == 2
-    assert "the engine gives up" in capsys.readouterr().err
+    files, error = capsys.readouterr().err.splitlines()
+    assert files.startswith("of the scenarios before: tracks-partial.csv, ")
+    assert error == "wakeline: the engine gives up"
     assert (out / "tracks.csv").read_bytes() == before
     assert set(read_tracks(out / "tracks-partial.csv").scenario) == {"1"}
 
@@ -539,6 +570,39 @@ def test_a_json_that_cannot_be_written_is_told_before_the_work(place, plots_csv,
     assert not (tmp_path / "out").exists()
 
 
+TRACK = ["track", "plots.csv", "--own", "own.csv", "--truth", "truth.csv", "--config", "c.toml"]
+SCORE = ["score", "tracks.csv", "truth.csv", "--scans", "own.csv"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "file"),
+    [
+        *((TRACK, file) for file in ("plots.csv", "own.csv", "truth.csv", "c.toml")),
+        (["track", "plots.csv", "--radar", "c.toml"], "c.toml"),
+        *((SCORE, file) for file in ("tracks.csv", "truth.csv", "own.csv", "plots.csv")),
+    ],
+)
+def test_a_json_that_would_replace_an_input_is_refused(
+    tmp_path, capsys, monkeypatch, arguments, file
+):
+    monkeypatch.chdir(tmp_path)
+    for name in ("plots.csv", "own.csv", "truth.csv", "tracks.csv", "c.toml"):
+        Path(name).write_text("mine")
+    result = Path("..", tmp_path.name, file)
+    message = refused(capsys, *arguments, "--json", result)
+    assert message == f"wakeline: --json would replace the input {file}\n"
+    assert Path(file).read_text() == "mine"
+
+
+@pytest.mark.parametrize("name", ["tracks.csv", "plots_tracks.csv", "alarms-partial.csv"])
+def test_plots_that_the_output_would_replace_are_refused(tmp_path, capsys, name):
+    plots = write_plots(tmp_path / name, boat(2))
+    before = plots.read_bytes()
+    message = refused(capsys, "track", plots, "--out", tmp_path)
+    assert message == f"wakeline: --out would replace the input {plots}\n"
+    assert plots.read_bytes() == before
+
+
 @pytest.mark.parametrize(
     ("arguments", "wanted"),
     [
@@ -623,6 +687,16 @@ def test_an_interrupt_is_no_traceback(plots_csv, tmp_path, capsys, monkeypatch):
     assert capsys.readouterr().err == "wakeline: interrupted\n"
 
 
+@pytest.mark.parametrize("words", ["Unable to allocate 3 TiB", ""])
+def test_too_little_memory_is_no_traceback(plots_csv, tmp_path, capsys, monkeypatch, words):
+    def has_no_memory(*arguments, **options):
+        raise MemoryError(words)
+
+    monkeypatch.setattr(track_command, "track_episode", has_no_memory)
+    told = refused(capsys, "track", plots_csv, "--out", tmp_path)
+    assert told == f"wakeline: {words or 'not enough memory'}\n"
+
+
 def test_a_reader_that_leaves_and_a_silent_stderr():
     """Into a pipe: no progress bar, and no complaint when nobody reads to the end."""
     command = [sys.executable, "-m", cli.__name__, "track", "--print-config"]
@@ -661,3 +735,13 @@ def test_progress_is_drawn_on_a_terminal_only(monkeypatch, capsys):
     monkeypatch.setattr(progress, "_EVERY_S", -1.0)
     assert list(progress.progress(range(5), 5, "counting")) == list(range(5))
     assert "counting" in capsys.readouterr().err
+
+
+def test_scoring_of_scenarios_is_seen_on_a_terminal(demo, monkeypatch, capsys):
+    from wakeline import _progress as progress
+
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setattr(progress, "_EVERY_S", -1.0)
+    files = [str(demo / "autoferry" / "tracks.csv"), bundled("autoferry", "truth")]
+    assert main(["score", *files, "--scans", bundled("autoferry", "scans")]) == 0
+    assert re.search(r"scoring .* 4/5", capsys.readouterr().err)

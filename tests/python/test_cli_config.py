@@ -133,6 +133,8 @@ def test_a_radar_of_ones_own(tmp_path, head):
         (f"[radar]\nrange_std_m = 1{5000 * '0'}", "not TOML"),
         ("[models]\ncruising_probability = 2.0", "[models] cruising_probability = 2.0"),
         ("[radar\n", "not TOML"),
+        (f"a = {5000 * '['}", "not TOML"),
+        (f"[radar]\nrange_std_m{5000 * '.a'} = 1", "range_std_m must be a number, got {'a': "),
     ],
 )
 def test_what_is_wrong_is_named(tmp_path, capsys, text, wanted):

@@ -3,11 +3,14 @@
 import csv
 import json
 import re
+import sys
+import tracemalloc
 from importlib import resources
 
 import numpy as np
 import pytest
 
+from wakeline import _progress
 from wakeline.cli import main, navigating, outputs
 from wakeline.navigation import LocalPlane
 from wakeline.recording import read_nmea
@@ -414,6 +417,21 @@ def test_errors_are_those_at_hidden_fixes(tmp_path, every_s):
         ]
         for by_horizon in errors.values():
             assert len(by_horizon[horizon_s]) == len(compared)
+
+
+def test_what_is_hidden_takes_no_more_memory_than_the_log():
+    time_s = np.arange(0.0, 150_000.0, 5.0)
+    starts_s = np.arange(120.0, 149_000.0, navigating.HIDDEN_EVERY_S)
+    tracemalloc.start()
+    hidden = navigating._is_hidden(time_s, starts_s)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 10 * time_s.nbytes
+    since_s = (time_s - 120.0) % navigating.HIDDEN_EVERY_S
+    wanted = (since_s > 0.0) & (since_s <= navigating.HIDDEN_S)
+    wanted &= (time_s > 120.0) & (time_s <= starts_s[-1] + navigating.HIDDEN_S)
+    np.testing.assert_array_equal(hidden, wanted)
+    assert not navigating._is_hidden(time_s, starts_s[:0]).any()
 
 
 def moved_north(lines, seconds, way_m):
@@ -914,3 +932,23 @@ def test_pictures_are_drawn(tmp_path, pictures, capsys):
     assert "not drawn are 1 of 2 parts, of fewer than 10 fixes" in capsys.readouterr().out
     for name in ("own_map.png", "own_time.png"):
         assert (tmp_path / name).read_bytes()[:4] == b"\x89PNG"
+
+
+def test_long_work_is_seen_on_a_terminal(tmp_path, pictures, capsys, monkeypatch):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setattr(_progress, "_EVERY_S", -1.0)
+    navigated(tmp_path, voyage(6))
+    told = capsys.readouterr().err
+    for work in ("navigating", "writing own.csv", "drawing", "hiding satellites", "comparing"):
+        assert work in told
+
+
+@pytest.mark.parametrize("name", ["own.csv", "problems.csv"])
+def test_the_log_is_not_replaced_by_what_is_written(tmp_path, capsys, name):
+    log = tmp_path / name
+    log.write_text("mine")
+    assert main(["navigate", str(log), "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"wakeline: --out would replace the input {log}\n"
+    assert main(["navigate", str(log), "--out", str(tmp_path / "out"), "--json", str(log)]) == 2
+    assert capsys.readouterr().err == f"wakeline: --json would replace the input {log}\n"
+    assert log.read_text() == "mine"

@@ -210,6 +210,77 @@ def test_the_screen_shows_what_own_ship_sees(video, tmp_path, monkeypatch, pictu
             assert np.hypot(*(np.asarray(layer) - place_m).T).min() < 50.0
 
 
+def in_scenarios(path, names):
+    head, *rows = path.read_text().splitlines()
+    rows = [f"{row},{names[k % len(names)]}" for k, row in enumerate(rows)]
+    path.write_text("\n".join([f"{head},scenario", *rows]) + "\n")
+    return path
+
+
+def test_own_ship_of_one_scenario_is_own_ship(video, tmp_path):
+    own = in_scenarios(own_file(tmp_path / "own.csv"), ["harbour"])
+    named = tracked(video, tmp_path / "named", "--own", str(own))
+    own = own_file(tmp_path / "own.csv")
+    alone = tracked(video, tmp_path / "alone", "--own", str(own))
+    np.testing.assert_array_equal(named.state, alone.state)
+
+
+def test_own_ship_of_several_scenarios_is_refused(video, tmp_path, capsys):
+    own = in_scenarios(own_file(tmp_path / "own.csv"), ["b", "a", "c"])
+    assert main(["track", str(video), "--own", str(own), "--out", str(tmp_path)]) == 2
+    assert f"{own}, column scenario: " in (error := capsys.readouterr().err)
+    assert "got 3, such as 'a' and 'b'" in error
+
+
+# Clocks that are set back -------------------------------------------------------------------------
+
+
+def set_back(turns, k, sweep=0, by_s=3600.0):
+    """Turns whose clock is set back before a sweep of turn k."""
+    split = [*turns[:k], turns[k][:sweep], turns[k][sweep:], *turns[k + 1 :]]
+    parts = [part for part in split if len(part)]
+    late = len(parts) - (len(turns) - k)
+    return [
+        replace(part, time_s=part.time_s + 7200.0 - by_s * (number >= late))
+        for number, part in enumerate(parts)
+    ]
+
+
+@pytest.mark.parametrize("sweep", [0, 360])
+@pytest.mark.parametrize("by_s", [6.0, 3600.0])
+def test_after_a_clock_was_set_back_all_is_tracked_from_a_fresh_start(
+    tmp_path, capsys, sweep, by_s
+):
+    turns = list(simulator().turns(SHIPS, 2 * SCANS, seed=4))
+    tracks = tracks_of(set_back(turns, SCANS, sweep, by_s), tmp_path)
+    told = capsys.readouterr().out
+    assert "the clock is set back 1 time, first after 723" in told
+    assert "period 2.5 s" in told
+    assert "could not take" not in told
+    for name, begin_s in (("part-1", 7200.0), ("part-2", 7200.0 + SCANS * PERIOD_S - by_s)):
+        part = tracks.where(tracks.scenario == name)
+        assert len(part.ids()) == len(SHIPS)
+        assert part.time_s.min() > begin_s
+        assert part.time_s.max() == pytest.approx(begin_s + SCANS * PERIOD_S, abs=1.5 * PERIOD_S)
+        assert len(part) >= len(SHIPS) * (SCANS - 6)
+
+
+def test_two_turns_of_a_clock_set_back_have_no_period(tmp_path, capsys):
+    turns = list(simulator().turns(SHIPS, 2, seed=4))
+    assert len(tracks_of(set_back(turns, 1), tmp_path)) == 0
+    assert "period by default" in capsys.readouterr().out
+
+
+def test_the_screen_shows_the_last_part(tmp_path, monkeypatch, pictures):
+    drawn = {}
+    monkeypatch.setattr(plot, "ppi", lambda shown, axes, **kinds: drawn.update(kinds, video=shown))
+    monkeypatch.setattr(plot, "save", lambda figure, file: file.write_bytes(b""))
+    turns = list(simulator().turns(SHIPS, 2 * SCANS, seed=4))
+    tracks_of(set_back(turns, SCANS), tmp_path)
+    assert drawn["tracks"].time_s.max() == pytest.approx(drawn["video"].time_s[-1])
+    assert set(drawn["tracks"].scenario) == {"part-2"}
+
+
 # Recordings of all kinds --------------------------------------------------------------------------
 
 

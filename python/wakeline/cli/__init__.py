@@ -15,7 +15,7 @@ from typing import NoReturn, TextIO
 from wakeline import FilterError, __version__
 from wakeline.recording.files import check_writable
 
-from . import bench, demo, navigate, score, study, track
+from . import bench, demo, navigate, outputs, score, study, track
 
 _BAD_INPUT = 2
 _INTERRUPTED = 130
@@ -33,15 +33,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status: 0 on success, 2 after one line on stderr about bad input, 130 when interrupted,
-        141 when the reader of the output has gone.
+        Exit status: 0 on success, 2 after one line on stderr about bad input or too little memory,
+        130 when interrupted, 141 when the reader of the output has gone. Before that line, where a
+        scenario fails or is interrupted, another one names the files of those before it.
     """
     _degrade(sys.stdout)
     try:
         arguments = _parser().parse_args(argv)
         if arguments.json is not None:
-            arguments.json.parent.mkdir(parents=True, exist_ok=True)
-            check_writable(arguments.json)
+            _check_json(arguments)
         arguments.run(arguments)
         if sys.stdout is not None:
             sys.stdout.flush()
@@ -53,10 +53,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         _close_output()
         return _NOBODY_READS
-    except (ValueError, OSError, FilterError) as error:
+    except (ValueError, OSError, FilterError, MemoryError) as error:
         print(f"wakeline: {_one_line(error)}", file=sys.stderr)
         return _BAD_INPUT
     return 0
+
+
+def _check_json(arguments: argparse.Namespace) -> None:
+    """Fail before the work, not after it, where the JSON cannot or must not be written."""
+    if hasattr(arguments, "inputs"):
+        outputs.check_no_input("--json", [arguments.json], arguments.inputs(arguments))
+    arguments.json.parent.mkdir(parents=True, exist_ok=True)
+    check_writable(arguments.json)
 
 
 def _degrade(output: TextIO) -> None:
@@ -89,7 +97,10 @@ def _one_line(error: Exception) -> str:
     if isinstance(error, OSError) and error.strerror:
         place = f"{error.filename}: " if error.filename is not None else ""
         return f"{place}{error.strerror}"
-    return " ".join(str(error).split())
+    message = " ".join(str(error).split())
+    if isinstance(error, MemoryError):
+        return message or "not enough memory"
+    return message
 
 
 def _close_output() -> None:

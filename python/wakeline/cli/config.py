@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import reprlib
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -251,7 +252,7 @@ def _changed(settings: Settings, section: str, values: Any, path: Path) -> Setti
 def _check_type(path: Path, place: str, value: Any, wanted: type) -> None:
     good = (int, float) if wanted is float else wanted
     if isinstance(value, bool) or not isinstance(value, good):
-        raise ConfigError(f"{path}: {place} must be {_WHAT[wanted]}, got {value!r}")
+        raise ConfigError(f"{path}: {place} must be {_WHAT[wanted]}, got {reprlib.repr(value)}")
     below = _MANY if wanted is int else sys.float_info.max
     if isinstance(value, int) and not abs(value) < below:
         raise ConfigError(f"{path}: {place} must be below {below}, got {value}")
@@ -326,6 +327,8 @@ def _read_toml(path: Path) -> dict[str, Any]:
         raise ConfigError(f"{path}: not text in UTF-8") from None
     except ValueError as error:  # TOMLDecodeError, and whole numbers of thousands of digits
         raise ConfigError(f"{path}: not TOML: {error}") from None
+    except RecursionError:
+        raise ConfigError(f"{path}: not TOML that can be read: it is nested too deep") from None
 
 
 def _radars():

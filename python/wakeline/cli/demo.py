@@ -9,7 +9,7 @@ from wakeline import recording
 
 from . import outputs, report
 from .config import read_settings
-from .track import score_of, track_into
+from .track import draw_into, score_of, track_into
 
 _ABOUT = {
     "joyride": """\
@@ -51,3 +51,4 @@ def run(arguments: argparse.Namespace) -> None:
     print(f"\nThe tracks against the truth:\n\n{report.explained(score.overall)}")
     if arguments.json is not None:
         outputs.write_json(arguments.json, "demo", report.score_rows(score, name))
+    draw_into(arguments.out, parts)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wakeline import plot
+from wakeline._progress import progress
 from wakeline.navigation import LocalPlane
 from wakeline.recording import NavigationLog, RecordingError, read_nmea, replacing
 
@@ -23,6 +24,7 @@ _COLUMNS = (
     *("north_var_m2", "north_east_cov_m2", "east_var_m2"),
     *("vnorth_var_m2s2", "vnorth_veast_cov_m2s2", "veast_var_m2s2", "heading_std_deg", "status"),
 )
+_OWN, _PROBLEMS = "own.csv", "problems.csv"
 _SHOWN_ROWS = 5
 _LEAST_DRAWN_FIXES = 10
 _SMOOTHED = (
@@ -69,7 +71,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
     )
     parser.add_argument("--json", type=Path, metavar="F", help="errors without satellites")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, inputs=inputs)
 
 
 def _variation_deg(text: str) -> float:
@@ -90,12 +92,19 @@ class _Leg(NamedTuple):
     track: navigating.OwnTrack
 
 
+def inputs(arguments: argparse.Namespace) -> list[Path]:
+    """The file that the command line names to be read."""
+    return [arguments.log]
+
+
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
+    tables = (arguments.out / _OWN, arguments.out / _PROBLEMS)
+    outputs.check_no_input("--out", tables, inputs(arguments))
     log = read_nmea(arguments.log, variation_deg=arguments.variation)
     outputs.make_folder(arguments.out)
     print(_input_lines(log), flush=True)
-    problems = _write_problems(arguments.out / "problems.csv", log)
+    problems = _write_problems(arguments.out / _PROBLEMS, log)
     if len(log.fixes.sound()) == 0:
         raise RecordingError(
             arguments.log,
@@ -104,7 +113,7 @@ def run(arguments: argparse.Namespace) -> None:
             got=f"{len(log.fixes)} that are not sound",
         )
     legs = _legs(log, smooth=arguments.smooth)
-    files = [arguments.out / "own.csv", *problems]
+    files = [arguments.out / _OWN, *problems]
     _write_csv(files[0], legs)
     if outputs.can_draw():
         way = "own ship, smoothed" if arguments.smooth else "own ship"
@@ -127,7 +136,9 @@ def _legs(log: NavigationLog, *, smooth: bool) -> list[_Leg]:
     plane = navigating.plane_of(log.fixes.sound())
     for note in (*_unused_notes(parts), *_stuck_notes(parts)):
         print(note, flush=True)
-    legs = [_leg(part, offset, plane, smooth) for part in parts if len(part.fixes.sound())]
+    fixed = [part for part in parts if len(part.fixes.sound())]
+    watched = progress(fixed, len(fixed), "navigating")
+    legs = [_leg(part, offset, plane, smooth) for part in watched]
     for note in (*_doubt_notes(legs), *_order_notes(legs)):
         print(note, flush=True)
     return legs
@@ -242,7 +253,7 @@ def _hold_out(legs: Sequence[_Leg]) -> dict[str, dict[float, np.ndarray]]:
         offset = navigating.magnetic_offset(seen) or navigating.ANY_OFFSET
         of_legs = [navigating.readings_of(g.part, offset, g.readings.plane) for g in legs]
     joined: dict[str, dict[float, list[np.ndarray]]] = {}
-    for readings in of_legs:
+    for readings in progress(of_legs, len(of_legs), "hiding satellites"):
         for name, errors in navigating.hold_out(readings).items():
             for horizon_s, values in errors.items():
                 joined.setdefault(name, {}).setdefault(horizon_s, []).append(values)
@@ -299,8 +310,9 @@ def _write_csv(path: Path, legs: Sequence[_Leg]) -> None:
     with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(_COLUMNS)
-        for leg in legs:
-            writer.writerows(_csv_rows(leg.track))
+        rows = (row for leg in legs for row in _csv_rows(leg.track))
+        total = sum(len(leg.track.time_s) for leg in legs)
+        writer.writerows(progress(rows, total, f"writing {path.name}"))
 
 
 def _csv_rows(track: navigating.OwnTrack) -> Iterator[list[Any]]:
@@ -336,7 +348,8 @@ def _write_pictures(folder: Path, legs: Sequence[_Leg], way: str) -> list[Path]:
     if len(drawn) < len(legs):
         short = f"{len(legs) - len(drawn)} of {len(legs)} parts"
         print(f"note: not drawn are {short}, of fewer than {_LEAST_DRAWN_FIXES} fixes")
-    for number, (_, readings, track) in enumerate(drawn, start=1):
+    watched = progress(drawn, len(drawn), "drawing")
+    for number, (_, readings, track) in enumerate(watched, start=1):
         end = f"-{number}" if len(drawn) > 1 else ""
         files += [folder / f"own_map{end}.png", folder / f"own_time{end}.png"]
         has_fix = readings.has_fix

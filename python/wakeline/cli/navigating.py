@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 import wakeline as wl
+from wakeline._progress import progress
 from wakeline.recording import NavigationLog
 from wakeline.recording.nmea import BottomTrack, Fixes, WaterSpeed
 
@@ -370,9 +371,9 @@ def _hidden_from_s(readings: Readings) -> np.ndarray:
 
 
 def _is_hidden(time_s: np.ndarray, starts_s: np.ndarray) -> np.ndarray:
-    """Mask (T,) of times after a start, up to its end."""
-    since_s = np.subtract.outer(time_s, starts_s)
-    return ((since_s > 0.0) & (since_s <= HIDDEN_S)).any(axis=1)
+    """Mask (T,) of times after a start, up to its end; starts are sorted and farther apart."""
+    last = np.searchsorted(starts_s, time_s) - 1
+    return (last >= 0) & (time_s - np.append(starts_s, 0.0)[last] <= HIDDEN_S)
 
 
 def _run(states: int, readings: Readings, *, smooth: bool = False) -> wl.navigation.UsvRun:
@@ -634,7 +635,7 @@ def _errors(
     fixed = np.flatnonzero(readings.has_fix)
     times = readings.time_s[fixed]
     errors: dict[float, list[float]] = {horizon_s: [] for horizon_s in HORIZONS_S}
-    for start_s in starts_s:
+    for start_s in progress(starts_s, len(starts_s), "comparing with hidden fixes"):
         before = np.searchsorted(times, start_s, side="right") - 1
         if start_s - times[before] > _NEAR_S:
             continue

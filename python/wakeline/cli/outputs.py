@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import __version__, plot
+from wakeline._progress import progress
 from wakeline.recording import Tracks, replacing, write_tracks
 
 from .tracking import MODE_NAMES, TrackedEpisode
@@ -25,6 +26,7 @@ PARTIAL = "-partial"
 _TABLES = ("tracks", "events", "plots_tracks", "alarms")
 _OF_ALARM = ("track_id", "begin_s", "end_s", "cpa_m", "tcpa_s", "cpa_probability", "range_m")
 _PICTURES = ("map", "time")
+_MOST_OCTETS = 120  # of a scenario in the name of a file, which some disks end at 143
 
 
 def make_folder(folder: Path) -> None:
@@ -32,6 +34,15 @@ def make_folder(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     if not os.access(folder, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
+
+
+def check_no_input(option: str, outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
+    """Raise ValueError where what an option of the command names is a file that is read."""
+    inputs = list(inputs)
+    for output in outputs:
+        for file in inputs:
+            if _is_same(output, file):
+                raise ValueError(f"{option} would replace the input {file}")
 
 
 def of_tracking(folder: Path) -> set[Path]:
@@ -49,7 +60,8 @@ def of_tracking(folder: Path) -> set[Path]:
 def remove_stale(earlier: Iterable[Path], files: Iterable[Path]) -> None:
     """Remove files of an earlier run that this one has not written."""
     for file in set(earlier) - set(files):
-        file.unlink(missing_ok=True)
+        if os.path.lexists(file):  # False for a name that is too long for the disk
+            file.unlink(missing_ok=True)
 
 
 def write_results(folder: Path, parts: Sequence[TrackedEpisode], suffix: str = "") -> list[Path]:
@@ -91,7 +103,8 @@ def write_pictures(folder: Path, parts: Sequence[TrackedEpisode]) -> list[Path]:
         return []
     files = []
     names_of_files = _file_names(part.episode.name for part in parts)
-    for part, name in zip(parts, names_of_files, strict=True):
+    named = zip(parts, names_of_files, strict=True)
+    for part, name in progress(named, len(parts), "drawing"):
         end = f"-{name}" if len(parts) > 1 else ""
         modes = part.tracks.mode_probability.shape[1]
         names = MODE_NAMES if modes == len(MODE_NAMES) else None
@@ -121,6 +134,13 @@ def write_json(
     results = {"name": name, "version": __version__, "seed": seed, "runs": runs, "rows": rows}
     with replacing(path) as fresh:
         fresh.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _is_same(output: Path, file: Path) -> bool:
+    try:
+        return output.is_file() and output.samefile(file)  # a device replaces nothing
+    except (OSError, ValueError):  # one of them is not there
+        return False
 
 
 def _event_rows(part: TrackedEpisode) -> Iterable[list]:
@@ -168,13 +188,14 @@ def _scenarios_in(plots: Path) -> list[str]:
 
 
 def _file_names(scenarios: Iterable[str]) -> list[str]:
-    """Names of scenarios without what a file name cannot hold; one that is taken gets a number.
+    """Names of scenarios as file names can hold them, cut; one that is taken gets a number.
 
     Names that differ only in case are the same: on some disks their files are.
     """
     taken: dict[str, str] = {}
     for scenario in scenarios:
-        plain = re.sub(r"[^\w.+-]+", "_", scenario) or "unnamed"
+        sound = re.sub(r"[^\w.+-]+", "_", scenario) or "unnamed"
+        plain = sound.encode()[:_MOST_OCTETS].decode(errors="ignore")
         numbered = chain([plain], (f"{plain}-{number}" for number in count(2)))
         free = next(name for name in numbered if name.lower() not in taken)
         taken[free.lower()] = free

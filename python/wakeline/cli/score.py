@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 
 from wakeline import metrics
-from wakeline.recording import RecordingError, read_plots, read_tracks
+from wakeline._progress import progress
+from wakeline.recording import Episode, Recording, RecordingError, read_plots, read_tracks
 
 from . import outputs, report
 
@@ -33,20 +35,38 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "--gate", type=float, default=50.0, metavar="M", help="m, farthest match (default 50)"
     )
     parser.add_argument("--json", type=Path, metavar="F", help="write the score as JSON")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, inputs=inputs)
+
+
+class _Watched(Recording):
+    """A recording that shows which of its episodes is being scored."""
+
+    def __iter__(self) -> Iterator[Episode]:
+        return progress(self.episodes, len(self), "scoring")
+
+
+def inputs(arguments: argparse.Namespace) -> list[Path]:
+    """The files that the command line names to be read."""
+    files = [arguments.tracks, arguments.truth, arguments.scans, _plots(arguments)]
+    return [file for file in files if file is not None]
+
+
+def _plots(arguments: argparse.Namespace) -> Path | None:
+    """Radar plots, or those beside the scans, if there."""
+    beside = arguments.scans.with_name("plots.csv")
+    return arguments.plots or (beside if beside.exists() else None)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
-    beside = arguments.scans.with_name("plots.csv")
-    plots = arguments.plots or (beside if beside.exists() else None)
-    recording = read_plots(plots, arguments.scans, arguments.truth)
+    recording = read_plots(_plots(arguments), arguments.scans, arguments.truth)
     if not any(map(len, recording)):
         raise RecordingError(
             arguments.scans, "there are no scans", line=1, wanted="a column scan, or --plots"
         )
     tracks = read_tracks(arguments.tracks)
-    score = metrics.score(tracks, recording, gate_m=arguments.gate)
+    watched = _Watched(recording.name, recording.episodes, recording.notes)
+    score = metrics.score(tracks, watched, gate_m=arguments.gate)
     for note in recording.notes:
         print(f"note: {note}")
     print(report.score_table(score))

@@ -27,6 +27,7 @@ plots_tracks.csv and pictures; with --own also how close each track will come to
 own ship, and alarms.csv of those that come too close. Radar video is made plots
 of first, with thresholds and plot errors found in it, and its last turn is
 drawn as ppi.png; it has the time of day alone, and its day is that of --own.
+Where its clock is set back a scenario begins, part-2 and so on.
 
 Plots without a scan column, each with a time of its own, are grouped into turns
 of the antenna: of period_s, where the radar's settings tell it, else of what
@@ -95,7 +96,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--print-config", action="store_true", help="print every setting, explained, and end"
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, inputs=inputs)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -106,6 +107,7 @@ def run(arguments: argparse.Namespace) -> None:
         return
     if arguments.plots is None:
         raise ValueError("track needs a recording (see wakeline track --help)")
+    outputs.check_no_input("--out", outputs.of_tracking(arguments.out), inputs(arguments))
     if arguments.plots.is_file() and is_video(arguments.plots):
         track_video(arguments, settings)
         return
@@ -123,6 +125,15 @@ def run(arguments: argparse.Namespace) -> None:
         rows = [scored | row for scored, row in zip(scores, rows, strict=True)]
     if arguments.json is not None:
         outputs.write_json(arguments.json, "track", rows)
+    draw_into(arguments.out, parts)
+
+
+def inputs(arguments: argparse.Namespace) -> list[Path]:
+    """The files that the command line names to be read."""
+    files = [arguments.plots, arguments.own, arguments.truth, arguments.config]
+    if arguments.radar is not None and arguments.radar not in radar_names():
+        files.append(Path(arguments.radar))
+    return [file for file in files if file is not None]
 
 
 def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
@@ -137,12 +148,13 @@ def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
         settings, radar = measured, f"radar as its echoes are: {_std_text(film)}"
     danger = arguments.own is not None
     parts = track_into(arguments.out, film.recording, settings, radar, danger=danger)
-    if outputs.can_draw():
-        offset_rad = math.radians(settings.radar["bearing_offset_deg"])
-        file = video.draw_ppi(arguments.out, film, parts[0], offset_rad)
-        print(f"and {file.name}")
     if arguments.json is not None:
         outputs.write_json(arguments.json, "track", _rows(parts, arguments.plots.name))
+    draw_into(arguments.out, parts)
+    if outputs.can_draw():
+        offset_rad = math.radians(settings.radar["bearing_offset_deg"])
+        file = video.draw_ppi(arguments.out, film, parts[-1], offset_rad)
+        print(f"and {file.name}")
 
 
 def _radar_text(arguments: argparse.Namespace, settings: Settings) -> str:
@@ -161,9 +173,10 @@ def _std_text(film: video.VideoRecording) -> str:
 def track_into(
     folder: Path, recording: Recording, settings: Settings, radar: str, *, danger: bool = False
 ) -> list[TrackedEpisode]:
-    """Track every episode, write files and pictures into `folder`, and say so on the screen.
+    """Track every episode, write tables into `folder`, and say so on the screen.
 
-    With `danger`, the tracks are watched for those that come too close to own ship.
+    Pictures of an earlier run are removed. With `danger`, the tracks are watched for those that
+    come too close to own ship.
     """
     outputs.make_folder(folder)
     print(_input_lines(recording, settings, radar), flush=True)
@@ -172,22 +185,27 @@ def track_into(
         for episode in recording:
             named = has_names(recording)
             parts.append(track_episode(episode, settings, named=named, danger=danger))
-    except (ValueError, FilterError, KeyboardInterrupt):
+    except (ValueError, FilterError, MemoryError, KeyboardInterrupt):
         if parts:
             files = outputs.write_results(folder, parts, outputs.PARTIAL)
             print(f"of the scenarios before: {_listed(files)}", file=sys.stderr)
         raise
     earlier = outputs.of_tracking(folder)
     files = outputs.write_results(folder, parts)
+    outputs.remove_stale(earlier, files)
     print(_track_lines(parts))
     if danger:
         print(_alarm_lines(parts, settings))
-    files += outputs.write_pictures(folder, parts)
-    outputs.remove_stale(earlier, files)
-    print(f"written to {folder}: {_listed(files)}")
+    print(f"written to {folder}: {_listed(files)}", flush=True)
+    return parts
+
+
+def draw_into(folder: Path, parts: Sequence[TrackedEpisode]) -> None:
+    """Draw every episode, and say so on the screen; last, as it takes longest."""
     if not outputs.can_draw():
         print(outputs.HOW_TO_GET_PICTURES)
-    return parts
+        return
+    print(f"drawn in {folder}: {_listed(outputs.write_pictures(folder, parts))}")
 
 
 def score_of(recording: Recording, parts: Sequence[TrackedEpisode]) -> metrics.Score:

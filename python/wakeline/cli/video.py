@@ -12,6 +12,7 @@ import numpy as np
 
 import wakeline as wl
 from wakeline import plot
+from wakeline._brief import many
 from wakeline._progress import counted
 from wakeline.recording import (
     Episode,
@@ -58,7 +59,7 @@ class VideoRecording:
     Attributes
     ----------
     recording : Recording
-        One scan a turn.
+        One scan a turn, one episode as long as the clock goes on.
     last : RadarVideo
     plot_std : (float, float)
         What the echoes say of the errors of plots: range in metres and bearing in radians.
@@ -87,29 +88,32 @@ def read_plots_of_video(
     """Read radar video and take its echoes as plots, a turn of the antenna after the other.
 
     A turn that is only begun, at either end of the recording, is left out: the beam has not been
-    everywhere. Without `own_path` the radar stands at the origin. Video has the time of day alone;
-    its day is that on which own ship's track lies. Where it has none, `period_s` is the time of a
-    turn.
+    everywhere. What comes after a clock that was set back is an episode of its own. Without
+    `own_path` the radar stands at the origin. Video has the time of day alone; its day is that on
+    which own ship's track lies. Where it has none, `period_s` is the time of a turn.
 
     Raises
     ------
     RecordingError
-        When the file holds no radar video, or own ship is not known at one of its plots.
+        When the file holds no radar video, or own ship is not known at one of its plots, or is
+        that of several scenarios.
     """
     report = VideoReport()
     extraction = _Extraction()
-    turns: list[tuple[float, _Plots]] = []
+    parts: list[list[_Seen]] = []
     begun = 0
     blocks = read_video(path, period_s=period_s, report=report)
     for turn in counted(_judged(_turns(blocks)), "turns"):
-        if turn.whole:
-            turns.append((float(turn.blocks[-1].time_s[-1]), extraction.plots_of(turn)))
-            last = turn.longest
-        else:
+        if not turn.whole:
             begun += 1
-    end_s, plots = turns.pop()
-    turns.append((end_s, _joined([plots, extraction.finished()])))
-    variance = np.concatenate([plots.variance for _, plots in turns])
+            continue
+        if not parts or turn.begin_s < parts[-1][-1].end_s:
+            _finish(parts, extraction)
+            parts.append([])
+        parts[-1].append(_Seen(turn.end_s, extraction.plots_of(turn)))
+        last = turn.longest
+    _finish(parts, extraction)
+    variance = np.concatenate([seen.plots.variance for part in parts for seen in part])
     least = np.array([last.cell_m, last.azimuth_width_rad]) ** 2 / 12.0
     std = np.sqrt(np.maximum(np.median(variance, axis=0) if len(variance) else least, least))
     notes = [f"the sender says: {text}" for text in report.summaries]
@@ -119,14 +123,11 @@ def read_plots_of_video(
     ship = OwnShip.fixed()
     if own_path is not None:
         rows = _own_rows(own_path, notes)
-        turns = _on_the_day_of(rows, turns)
-        _check_covered(rows, turns, path)
+        days_s = _days_s(rows, parts)
+        parts = [[seen.later(days_s) for seen in part] for part in parts]
+        _check_covered(rows, parts, path)
         ship = rows.ship()
-    scans = [
-        Scan.of_plots(end_s, k, seen.time_s, seen.range_m, seen.bearing_rad, ship.position_at)
-        for k, (end_s, seen) in enumerate(turns)
-    ]
-    recording = Recording(path.stem, [Episode("", scans, ship)], notes=notes)
+    recording = Recording(path.stem, _episodes(parts, ship, notes), notes=notes)
     return VideoRecording(recording, last, (_UNSEEN * float(std[0]), _UNSEEN * float(std[1])))
 
 
@@ -185,6 +186,16 @@ class _Turn:
     whole: bool = True
 
     @property
+    def begin_s(self) -> float:
+        """Time of its first sweep."""
+        return float(self.blocks[0].time_s[0])
+
+    @property
+    def end_s(self) -> float:
+        """Time of its last sweep."""
+        return float(self.blocks[-1].time_s[-1])
+
+    @property
     def longest(self) -> RadarVideo:
         """The block of the most sweeps."""
         return max(self.blocks, key=len)
@@ -210,7 +221,7 @@ def _turns(blocks: Iterable[RadarVideo]) -> Iterator[_Turn]:
 
 
 def _pauses(before: RadarVideo, block: RadarVideo) -> bool:
-    return abs(block.time_s[0] - before.time_s[-1]) > _PAUSE_S
+    return not 0.0 <= block.time_s[0] - before.time_s[-1] <= _PAUSE_S
 
 
 def _judged(turns: Iterable[_Turn]) -> Iterator[_Turn]:
@@ -247,6 +258,46 @@ class _Plots(NamedTuple):
 
 def _joined(parts: Sequence[_Plots]) -> _Plots:
     return _Plots(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+class _Seen(NamedTuple):
+    """When a turn ended, and its plots."""
+
+    end_s: float
+    plots: _Plots
+
+    def later(self, by_s: float) -> _Seen:
+        """The same at another time."""
+        return _Seen(self.end_s + by_s, self.plots._replace(time_s=self.plots.time_s + by_s))
+
+
+def _finish(parts: Sequence[list[_Seen]], extraction: _Extraction) -> None:
+    """Give the echoes that are open to the last turn."""
+    if parts:
+        end_s, plots = parts[-1].pop()
+        parts[-1].append(_Seen(end_s, _joined([plots, extraction.finished()])))
+
+
+def _episodes(parts: Sequence[Sequence[_Seen]], ship: OwnShip, notes: list[str]) -> list[Episode]:
+    """One a part, with names where there are several, which is told."""
+    if len(parts) == 1:
+        return [Episode("", _scans(parts[0], ship), ship)]
+    notes.append(
+        f"the clock is set back {many(len(parts) - 1, 'time')}, first after "
+        f"{parts[0][-1].end_s:.1f} s: what follows is tracked from a fresh start, as scenario "
+        "part-2 and so on"
+    )
+    return [
+        Episode(f"part-{number}", _scans(part, ship), ship)
+        for number, part in enumerate(parts, start=1)
+    ]
+
+
+def _scans(part: Sequence[_Seen], ship: OwnShip) -> list[Scan]:
+    return [
+        Scan.of_plots(end_s, k, seen.time_s, seen.range_m, seen.bearing_rad, ship.position_at)
+        for k, (end_s, seen) in enumerate(part)
+    ]
 
 
 class _Kind(NamedTuple):
@@ -293,12 +344,13 @@ class _Extraction:
         return _joined(plots)
 
     def finished(self) -> _Plots:
-        """Plots of the echoes that are open."""
+        """Plots of the echoes that are open; after it the next turn stands alone."""
         if self._extractor is None:
             return _Plots(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros((0, 2)))
         plots = self._as_seen(self._extractor.finish())
         counts = self._extractor.counts
         self._refused += counts.too_long + counts.repeated + counts.invalid
+        self._extractor = self._kind = None
         return plots
 
     def notes(self) -> list[str]:
@@ -421,26 +473,30 @@ def _own_rows(path: Path, notes: list[str]) -> OwnRows:
             wanted="columns north_m and east_m",
             got="scans alone",
         )
-    return rows.part("").by_time()
+    scenarios = [] if rows.scenario is None else sorted(set(rows.scenario.tolist()))
+    if len(scenarios) > 1:
+        raise RecordingError(
+            path,
+            "own ship's track is not one",
+            column="scenario",
+            wanted="one scenario, as video has no names of them",
+            got=f"{len(scenarios)}, such as {scenarios[0]!r} and {scenarios[1]!r}",
+        )
+    return rows.by_time()
 
 
-def _on_the_day_of(
-    own: OwnRows, turns: Sequence[tuple[float, _Plots]]
-) -> list[tuple[float, _Plots]]:
-    """The turns so many days later that their middle comes nearest to that of own ship's track."""
+def _days_s(own: OwnRows, parts: Sequence[Sequence[_Seen]]) -> float:
+    """Whole days from the time of day to own ship's track, as their middles come nearest."""
     if len(own.time_s) == 0:
-        return list(turns)
-    middle_s = (turns[0][0] + turns[-1][0]) / 2.0
-    days = round(((own.time_s[0] + own.time_s[-1]) / 2.0 - middle_s) / _DAY_S)
-    return [
-        (end_s + days * _DAY_S, plots._replace(time_s=plots.time_s + days * _DAY_S))
-        for end_s, plots in turns
-    ]
+        return 0.0
+    middle_s = (parts[0][0].end_s + parts[-1][-1].end_s) / 2.0
+    return _DAY_S * round(((own.time_s[0] + own.time_s[-1]) / 2.0 - middle_s) / _DAY_S)
 
 
-def _check_covered(own: OwnRows, turns: Sequence[tuple[float, _Plots]], path: Path) -> None:
+def _check_covered(own: OwnRows, parts: Sequence[Sequence[_Seen]], path: Path) -> None:
     """Own ship must be known at each plot and at the end of each turn."""
-    time_s = np.sort(np.concatenate([np.append(plots.time_s, end_s) for end_s, plots in turns]))
+    turns = [np.append(seen.plots.time_s, seen.end_s) for part in parts for seen in part]
+    time_s = np.sort(np.concatenate(turns))
     lost = own.lacks(time_s, OWN_GAP_S)
     if lost is not None:
         k, got = lost
