@@ -58,6 +58,7 @@ TYPED_TEST(Angle, CompassAngleIsTheSameAngleFromZeroToATurn) {
   }
   EXPECT_EQ(compass_angle(Scalar(-1e-30)),
             Scalar(0));  // rounds to a whole turn, which is not shown
+  EXPECT_EQ(compass_angle(-std::numeric_limits<Scalar>::denorm_min()), Scalar(0));
 }
 
 TYPED_TEST(Angle, NotANumberStaysSo) {
@@ -65,6 +66,7 @@ TYPED_TEST(Angle, NotANumberStaysSo) {
   constexpr TypeParam kInfinity = std::numeric_limits<TypeParam>::infinity();
   EXPECT_TRUE(std::isnan(wrap_angle(kNan)));
   EXPECT_TRUE(std::isnan(wrap_angle(kInfinity)));
+  EXPECT_TRUE(std::isnan(compass_angle(kNan)));
 }
 
 // The first AngleMean of WPILib took the plain sum of unit vectors, whatever the weights.

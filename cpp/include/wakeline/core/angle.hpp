@@ -37,7 +37,8 @@ Scalar compass_angle(Scalar angle_rad) noexcept {
   using std::floor;
   const Scalar turn = RealOf<Scalar>(2) * kPi<RealOf<Scalar>>;
   const Scalar wrapped = angle_rad - turn * floor(angle_rad / turn);
-  return select(wrapped < turn, wrapped, Scalar(0));
+  // Rounding may leave it next to one end of the turn, outside.
+  return select(wrapped < Scalar(0) || wrapped >= turn, Scalar(0), wrapped);
 }
 
 /// Weighted circular mean of N angles: the direction of the sum of weighted unit vectors.
