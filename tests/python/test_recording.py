@@ -124,11 +124,26 @@ def test_north_and_east_win_over_range_and_bearing(file):
         "2021-05-04T09:54:53,5+02:00",
         "2021-05-04T07:24:53.5-0030",
         "2021-05-04T09:54:53.5+02",
+        "2021-05-05T07:53:53.5+23:59",
     ],
 )
 def test_times_are_utc_seconds_or_iso_text(file, text):
     path = file(f'time,north_m,east_m\n"{text}",1,2\n')
     assert only(read_plots(path)).time_s == pytest.approx([1620114893.5], abs=1e-6)
+
+
+@pytest.mark.parametrize("text", ["2016-12-31T23:59:60.25Z", "2017-01-01T05:29:60.25+05:30"])
+def test_a_leap_second_is_the_second_after_it(file, text):
+    path = file(f"time,north_m,east_m\n{text},1,2\n")
+    assert only(read_plots(path)).time_s == pytest.approx([1483228800.25], abs=1e-6)
+
+
+@pytest.mark.parametrize("zone", ["+99:99", "-23:75", "+24:00", "+2", "-9900"])
+def test_a_zone_that_does_not_exist_is_refused(file, zone):
+    path = file(f"time,north_m,east_m\n2021-05-04T07:54:53{zone},1,2\n")
+    with pytest.raises(RecordingError) as caught:
+        read_plots(path)
+    assert_says(caught, path, 2, "time", "ISO 8601", zone)
 
 
 def test_byte_order_mark_crlf_blank_lines_and_spaces_do_not_matter(file):
@@ -144,6 +159,17 @@ def test_byte_order_mark_crlf_blank_lines_and_spaces_do_not_matter(file):
 def test_spaces_before_quotes_do_not_matter(file):
     path = file('"time_s", "note", "north_m" ,"east_m"\n"1", "a, b", "2" ,"3"\n')
     assert places(only(read_plots(path))) == [[[2.0, 3.0]]]
+    path = file('note,time_s,north_m,east_m\n"a "" ,b" ,"1"\t, "2" ,3\n')
+    assert places(only(read_plots(path))) == [[[2.0, 3.0]]]
+
+
+@pytest.mark.parametrize("row", ['"1","2","31', '"1","2","3"4', '"1","2"5,"3"'])
+@pytest.mark.parametrize("before", ["", "0,1,2\n"])
+def test_a_quoted_cell_that_is_cut_or_goes_on_is_no_number(file, row, before):
+    path = file(f"time_s,north_m,east_m\n{before}{row}")
+    with pytest.raises(RecordingError) as caught:
+        read_plots(path)
+    assert_says(caught, path, 3 if before else 2, None, "a row is not CSV", "wanted cells with")
 
 
 @pytest.mark.parametrize("end", ["", '2,4,5,c"\n', '2,4,5,"c\n', '2,4,5,"c"\n'])
@@ -442,7 +468,12 @@ def test_bad_plots_are_told_by_file_line_and_column(file, text, line, column, pa
         ("scan,time_s,own_north_m,own_east_m\n", 1, None, ["no row follows the header"]),
         ("time_s,own_north_m\n0,1\n", 1, "east_m", ["missing", "own_east_m or east_m"]),
         ("time_s,speed\n0,1\n", 1, "north_m", ["missing"]),
-        ("scan,time_s,north_m,east_m\n0,0,0,0\n0,1,0,0\n", 3, "scan", ["each scan listed once"]),
+        (
+            "scan,time_s,north_m,east_m\n0,0,0,0\n0,1,0,0\n",
+            3,
+            "scan",
+            ["listed twice; wanted each"],
+        ),
         ("scan,time_s,north_m,east_m\n0,2,0,0\n1,1,0,0\n", 3, "time_s", ["do not grow", "scan 0"]),
         ("scan,time_s,north_m,east_m\n0,0,zero,0\n", 2, "north_m", ["a number", "'zero'"]),
     ],
@@ -480,7 +511,7 @@ def test_a_pipe_that_is_no_text_is_not_read_again(tmp_path):
     reader.start()
     pipe.write_bytes(b"\x1f\x8b")
     reader.join(timeout=10.0)
-    assert "not CSV text in UTF-8" in told[0]
+    assert "got a file packed by gzip, unpack it first" in told[0]
 
 
 def test_a_turned_scan_keeps_its_ranges_about_own_ship(file):
@@ -495,8 +526,20 @@ def test_a_turned_scan_keeps_its_ranges_about_own_ship(file):
 
 
 def test_files_that_are_no_text_or_not_there(file, tmp_path):
-    with pytest.raises(RecordingError, match="UTF-8"):
-        read_plots(file(b"time_s,north_m,east_m\n0,\xff\xfe,1\n"))
+    for end in (b"\n", b"\r\n", b"\r"):
+        begin = b"\xef\xbb\xbf" + end.join([b"time_s,north_m,east_m", *[b"0,1,1"] * 3000, b"0,"])
+        path = file(begin + b"\xff\xfe,1" + end)
+        with pytest.raises(RecordingError) as caught:
+            read_plots(path)
+        assert_says(caught, path, 3002, None, "wanted UTF-8, got the octet 0xff")
+        assert caught.value.offset == len(begin)
+    path = file("time_s,north_m,east_m\n0,1,1\n0,1," + "1" * 200_000)
+    with pytest.raises(RecordingError) as caught:
+        read_plots(path)
+    assert_says(caught, path, 3, None, "a row is not CSV", "field larger than field limit")
+    for encoding in ("utf-16", "utf-16-le", "utf-16-be"):
+        with pytest.raises(RecordingError, match="got text in UTF-16, save it as UTF-8 first"):
+            read_plots(file("time_s,north_m,east_m\n0,1,1\n".encode(encoding)))
     with pytest.raises(RecordingError, match=r"none\.csv: the file cannot be read"):
         read_plots(tmp_path / "none.csv")
     with pytest.raises(RecordingError, match="cannot be read"):

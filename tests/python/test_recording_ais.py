@@ -61,7 +61,15 @@ def test_other_programs_names_of_columns(tmp_path):
     assert np.isnan([*track.speed_mps, *track.course_rad, *track.vnorth_mps]).all()
 
 
-@pytest.mark.parametrize(("cog", "sog"), [("360", "5"), ("", "5"), ("90", "102.3"), ("90", "")])
+@pytest.mark.parametrize("name", ["timestamp_s", "datetime", "UTC", "BaseDateTime"])
+def test_the_time_goes_by_the_names_it_has_in_other_recordings(tmp_path, name):
+    path = written(tmp_path, "2026-05-01T12:00:00Z,211,54,10", head=f"{name},MMSI,LAT,LON")
+    assert list(read_ais(path).tracks) == ["211"]
+
+
+@pytest.mark.parametrize(
+    ("cog", "sog"), [("360", "5"), ("", "5"), ("90", "102.3"), ("90", "102.2"), ("90", "")]
+)
 def test_what_is_not_available_is_not_a_number(tmp_path, cog, sog):
     (track,) = read_ais(written(tmp_path, row(0, cog=cog, sog=sog))).tracks.values()
     assert np.isnan(track.vnorth_mps).all()

@@ -1,6 +1,7 @@
 """Logs of own ship's instruments: what is read, what is said about what is not, and times."""
 
 import datetime
+import gzip
 import math
 from functools import reduce
 from operator import xor
@@ -133,7 +134,7 @@ def test_gns_is_a_gga_of_several_systems_of_satellites(log):
 
 def test_a_gns_of_another_mode_is_told(log):
     read = log(rmc(10), gns(12, modes="AX"))
-    assert len(read.fixes) == 1
+    assert read.fixes.valid.tolist() == [True, False]
     assert "GNS field 6: wanted letters out of" in str(read.report.examples[0])
 
 
@@ -284,6 +285,43 @@ def test_a_vtg_belongs_to_the_fix_before_it(log):
     read = log(rmc(10), vtg, gga(12), vtg, gga(14))
     assert read.ground.sentence.tolist() == ["RMC", "VTG"]
     assert clock_s(read.ground) == [10, 12]
+
+
+def vtg(kn):
+    return sentence(f"VTG,91.5,T,,M,{kn:.2f},N,,K")
+
+
+def test_more_vtg_than_fixes_lie_between_them(log):
+    lines = [s for t in range(10) for s in (gga(10 + t), *(vtg(t + 0.2 * k) for k in range(5)))]
+    read = log(*lines)
+    assert len(read.ground) == 50
+    assert read.ground.speed_mps == pytest.approx(0.2 * KNOT_MPS * np.arange(50))
+    assert (np.diff(read.ground.time_s) > 0).all()
+    np.testing.assert_array_equal(read.ground.time_s[::5], read.fixes.time_s)
+    assert read.report.repeated == 0
+
+
+def test_speeds_go_on_where_fixes_are_damaged(log):
+    fixes = [gga(10 + t) for t in range(20)]
+    fixes[5:15] = [line.replace("GGA", "GGX") for line in fixes[5:15]]
+    read = log(*(line for t, fix in enumerate(fixes) for line in (fix, vtg(t))))
+    assert read.report.problems == {"checksum": 10}
+    assert len(read.ground) == 20
+    np.testing.assert_allclose(read.ground.time_s, 10 + np.arange(20), atol=0.6)
+
+
+def test_speeds_left_out_though_they_are_other_ones_are_told(log):
+    standing = [line for t in range(12, 15) for line in (rmc(10, kn=f"{t}.0"), gga(t))]
+    read = log(rmc(10), gga(10), *standing, reorder_s=10)
+    assert len(read.ground) == 1
+    assert read.report.other_speed_lines == [3, 5, 7]
+    told = (
+        "3 speeds over ground of times told before, but other ones, are left out (first in line 3)"
+    )
+    assert f"own.nmea: {told}" in read.notes
+    same = log(rmc(10, course=""), rmc(10, course=""), vtg(7.0), rmc(12))
+    assert same.report.repeated == 3
+    assert same.report.other_speed_lines == []
 
 
 # ------------------------------------------------------------------ times
@@ -667,17 +705,14 @@ def test_lines_that_cannot_be_used_are_counted_and_kept_by_kind(log):
     [
         ("RMC,126000,A,4630.0,N,00640.0,E,,,210508,,,A", "range", "field 1"),
         ("RMC,12000,A,4630.0,N,00640.0,E,,,210508,,,A", "field", "hhmmss"),
-        ("RMC,120000,X,4630.0,N,00640.0,E,,,210508,,,A", "field", "A V"),
         ("RMC,120000,A,9030.0,N,00640.0,E,,,210508,,,A", "range", "0 to 90"),
         ("RMC,120000,A,4660.0,N,00640.0,E,,,210508,,,A", "range", "minutes"),
         ("RMC,120000,A,463.0,N,00640.0,E,,,210508,,,A", "field", "ddmm.mm"),
         ("RMC,120000,A,4630.0,,00640.0,E,,,210508,,,A", "field", "N or S"),
         ("RMC,120000,A,4630.0,N,18000.1,E,,,210508,,,A", "range", "0 to 180"),
-        ("RMC,120000,A,4630.0,N,00640.0,E,,,310208,,,A", "range", "a date"),
-        ("RMC,120000,A,4630.0,N,00640.0,E,,,21052008,,,A", "field", "ddmmyy"),
-        ("GGA,120000,4630.0,N,00640.0,E,9,,,,,,,,", "range", "field 6"),
+        ("GGA,120000,4630.0,N,00660.0,E,1,,,,,,,,", "range", "minutes"),
         ("GLL,4630.0,N,nan,E,120000,A", "field", "dddmm.mm"),
-        ("ZDA,120000,32,05,2008,00,00", "range", "a date"),
+        ("ZDA,126000,21,05,2008,00,00", "range", "field 1"),
     ],
 )
 def test_without_time_or_place_a_sentence_is_left_out(log, body, kind, words):
@@ -686,6 +721,82 @@ def test_without_time_or_place_a_sentence_is_left_out(log, body, kind, words):
     (problem,) = read.report.examples
     assert (problem.line, problem.kind) == (2, kind)
     assert words in problem.reason
+
+
+@pytest.mark.parametrize(
+    ("body", "valid", "words"),
+    [
+        ("RMC,000011,A,4630.0,N,00640.0,E,5,90,000000,,,A", True, "a date"),
+        ("RMC,000011,A,4630.0,N,00640.0,E,5,90,310208,,,A", True, "a date"),
+        ("RMC,000011,A,4630.0,N,00640.0,E,5,90,21052008,,,A", True, "ddmmyy"),
+        ("RMC,000011,X,4630.0,N,00640.0,E,5,90,210508,,,A", False, "field 2: wanted one of A V"),
+        ("RMC,000011,A,4630.0,N,00640.0,E,5,90,210508,,,X", False, "field 12"),
+        ("GGA,000011,4630.0,N,00640.0,E,X,,,,,,,,", False, "field 6: wanted a number"),
+        ("GGA,000011,4630.0,N,00640.0,E,10,,,,,,,,", False, "field 6: wanted 0 to 9"),
+        ("GNS,000011,4630.0,N,00640.0,E,AX,,,,,,,", False, "field 6"),
+        ("GLL,4630.0,N,00640.0,E,000011,X,A", False, "field 6"),
+    ],
+)
+def test_a_bad_field_beside_them_costs_neither_time_nor_place(log, body, valid, words):
+    read = log(rmc(10), sentence(body), rmc(12))
+    assert clock_s(read.fixes) == [10, 11, 12]
+    assert read.fixes.latitude_deg == pytest.approx(46.5)
+    assert read.fixes.valid.tolist() == [True, valid, True]
+    if body.startswith("RMC"):
+        assert read.ground.speed_mps == pytest.approx(5.0 * KNOT_MPS)
+        assert read.ground.valid.tolist() == [True, valid, True]
+    (problem,) = read.report.examples
+    assert problem.line == 2
+    assert words in problem.reason
+
+
+@pytest.mark.parametrize(
+    ("body", "speed_mps", "course_deg", "valid"),
+    [
+        ("VTG,45,X,,M,,N,18,K", 5.0, math.nan, True),
+        ("VTG,45,T,,M,6.5,X,18,K", 5.0, 45.0, True),
+        ("VTG,45,T,,M,6.5,X,,K", math.nan, 45.0, True),
+        ("VTG,45,T,,M,,N,18,K,X", 5.0, 45.0, False),
+    ],
+)
+def test_a_bad_letter_of_a_vtg_costs_what_it_stands_for(log, body, speed_mps, course_deg, valid):
+    read = log(gga(10), sentence(body), gga(12))
+    np.testing.assert_allclose(read.ground.speed_mps, [speed_mps])
+    np.testing.assert_allclose(np.degrees(read.ground.course_rad), [course_deg])
+    assert read.ground.valid.tolist() == [valid]
+    assert read.report.problems == {"field": 1}
+
+
+def test_a_gga_of_quality_9_is_differential(log):
+    read = log(rmc(10), gga(12, quality="9"))
+    assert read.fixes.quality.tolist() == [1, 2]
+    assert read.fixes.valid.all()
+    assert read.report.problems == {}
+
+
+def test_dates_that_the_receiver_does_not_know_yet_leave_a_log_without_a_date(log):
+    read = log(*(rmc(10 + t, date="000000") for t in range(5)))
+    assert len(read.fixes) == len(read.ground) == 5
+    assert not read.dated
+    assert read.report.problems == {"range": 5}
+
+
+@pytest.mark.parametrize(
+    ("date", "words"),
+    [
+        ("21,05,08", "field 4: wanted 1980 to 9999, got '08'"),
+        ("21,05,1979", "wanted 1980 to 9999, got '1979'"),
+        ("21.5,05,2008", "field 2: wanted a whole number, got '21.5'"),
+        ("21,-5,2008", "field 3: wanted a whole number"),
+        ("32,05,2008", "a date"),
+    ],
+)
+def test_a_zda_with_a_bad_date_tells_the_time_alone(log, date, words):
+    read = log(sentence(f"ZDA,000010,{date},00,00"), gll(12))
+    assert not read.dated
+    assert read.fixes.time_s.tolist() == [12]
+    assert [p.line for p in read.report.examples] == [1]
+    assert words in str(read.report.examples[0])
 
 
 @pytest.mark.parametrize(
@@ -718,13 +829,13 @@ def test_without_checksums_what_is_cut_is_found_or_does_no_harm(log):
         bare = line.partition("*")[0]
         for cut in range(1, len(bare)):
             read = log(first, bare[:cut])
-            if read.report.problems.total() == 0:
+            if len(read.fixes) == 2:
                 assert read.fixes.latitude_deg[1] == pytest.approx(46.5001)
                 assert read.fixes.longitude_deg[1] == pytest.approx(6.7)
                 assert np.isclose(read.fixes.time_s[1] - MAY_21, 12)
                 assert read.ground.speed_mps == pytest.approx(5.0 * KNOT_MPS)
             else:
-                assert len(read.fixes) == 1
+                assert read.report.problems.total() > 0
 
 
 def test_fields_are_shown_as_they_are_written(log):
@@ -841,6 +952,34 @@ def test_a_file_without_readings_is_an_error(tmp_path, octets, words):
         read_nmea(path)
     for word in ("own.nmea", "wanted NMEA 0183 sentences", *words):
         assert word in str(caught.value)
+
+
+def test_a_file_that_is_packed_or_in_utf_16_is_named(tmp_path):
+    path = tmp_path / "own.nmea"
+    text = "\n".join(under_way(range(10)))
+    path.write_bytes(gzip.compress(text.encode()))
+    with pytest.raises(
+        RecordingError, match="the file is not text; wanted NMEA 0183 sentences, got a file packed"
+    ):
+        read_nmea(path)
+    for encoding in ("utf-16", "utf-16-le", "utf-16-be"):
+        path.write_bytes(text.encode(encoding))
+        with pytest.raises(RecordingError, match="got text in UTF-16, save it as UTF-8 first"):
+            read_nmea(path)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        (rmc(10).replace("E,5.0", "E,6.0"), "no sentence that tells the time could be read"),
+        (rmc(10, where="x,N,y,E"), "no sentence that tells the time could be read"),
+        (sentence("ZDA,120000,21,05,2008,00,00"), "nothing but times could be read"),
+    ],
+)
+def test_a_log_with_times_is_not_said_to_have_none(log, line, words):
+    with pytest.raises(RecordingError, match=words) as caught:
+        log(line)
+    assert "with a time" not in str(caught.value)
 
 
 def test_what_is_no_file_is_an_error(tmp_path):

@@ -1,6 +1,8 @@
 """Truth and tracks as files, and truth between its samples."""
 
 import csv
+import dataclasses
+import time
 
 import numpy as np
 import pytest
@@ -65,6 +67,7 @@ def test_truth_of_another_scenario_is_left_out_of_the_only_one(file):
         ("time_s,north_m,east_m\n0,1,1\n", "target", ["missing"]),
         ("time_s,target,north_m,east_m\n", None, ["no row follows the header"]),
         ("time_s,target,north_m,east_m\n0,1,a,1\n", "north_m", ["a number", "'a'"]),
+        ("time_s,target,north_m,east_m\n0,1,1,1\n1, ,1,1\n", "target", ["line 3", "empty cell"]),
     ],
 )
 def test_bad_truth_is_told(file, text, column, parts):
@@ -95,6 +98,21 @@ def test_no_truth_in_gaps_and_outside_the_record():
     truth = dense_truth(time_s, lambda t: (t, 2.0 * t))
     known = np.isfinite(truth.state_at([-1.0, 5.25, 30.0, 45.1, 61.0])).all(axis=1)
     assert known.tolist() == [False, True, False, True, False]
+
+
+def test_truth_is_the_same_in_a_longer_record():
+    """Whose other samples must not matter, nor cost time."""
+    time_s = np.cumsum(np.random.default_rng(1).uniform(0.05, 1.2, 400_000))
+    whole = dense_truth(time_s, lambda t: (100.0 * np.sin(t / 40.0), 100.0 * np.cos(t / 30.0)))
+    begin, end = 200_000, 200_400
+    part = TargetTruth(*(getattr(whole, f.name)[begin:end] for f in dataclasses.fields(whole)))
+    asked_s = np.linspace(time_s[begin] + 5.0, time_s[end - 1] - 5.0, 2000)
+    for window_s in (2.0, 0.1):
+        started = time.perf_counter()
+        states = whole.state_at(asked_s, window_s=window_s)
+        assert time.perf_counter() - started < 2.0
+        np.testing.assert_array_equal(states, part.state_at(asked_s, window_s=window_s))
+        assert np.isfinite(states).all()
 
 
 def test_recorded_velocity_is_taken_as_it_is():

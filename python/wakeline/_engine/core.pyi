@@ -66,8 +66,9 @@ class Gaussian:
 
 class Step:
     """
-    What one measurement update has found.
+    What one measurement update has found; true where the reading was taken.
     """
+    def __bool__(self) -> bool: ...
     def __getstate__(self) -> tuple[float, float]: ...
     def __setstate__(self, arg0: tuple) -> None: ...
     @property

@@ -369,7 +369,7 @@ class ClosestApproach:
 
 class UsvReading(Step):
     """
-    What a reading has done to the navigator.
+    What a reading has done to the navigator; true where it was taken.
     """
     def __getstate__(self) -> tuple[tuple, bool, bool]: ...
     def __setstate__(self, arg0: tuple) -> None: ...
@@ -510,7 +510,9 @@ class UsvNavigator:
         time_s : (T,) array
             Not decreasing.
         imu : (T, 3) array, optional
-            Row k is the mean from time k - 1 to time k of [forward m/s², starboard m/s², yaw rate rad/s].
+            Row k holds from time k - 1 to time k: [forward m/s², starboard m/s², yaw rate rad/s]. Models
+            of 5 and 8 states turn its acceleration by the heading at k - 1, as the paper does: where she
+            turns, velocities are off by half the turn between two rows, so give rows as often as there are.
         gnss, velocity : (T, 2) array, optional
             Position m and velocity over ground m/s, [north, east].
         compass, log, rate_of_turn : (T,) array, optional

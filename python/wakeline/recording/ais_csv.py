@@ -15,10 +15,10 @@ from wakeline._units import KNOT_MPS
 from .errors import RecordingError
 from .local_plane import LocalPlane
 from .reach import unreachable
-from .table import Table
+from .table import TIME_NAMES, Table
 
 COLUMNS = {
-    "time": ("time", "time_s", "time_utc", "timestamp", "basedatetime", "base_date_time", "utc"),
+    "time": (*TIME_NAMES, "basedatetime", "base_date_time"),
     "mmsi": ("mmsi",),
     "latitude": ("latitude_degrees", "latitude_deg", "latitude", "lat_deg", "lat"),
     "longitude": ("longitude_degrees", "longitude_deg", "longitude", "lon_deg", "lon"),
@@ -27,7 +27,7 @@ COLUMNS = {
 }
 
 _NO_LATITUDE_DEG, _NO_LONGITUDE_DEG = 91.0, 181.0
-_NO_COURSE_DEG, _NO_SPEED_KN = 360.0, 102.25
+_NO_COURSE_DEG, _NO_SPEED_KN = 360.0, 102.15  # 102.2 means as much or more
 _LARGEST_COURSE_DEG, _LARGEST_SPEED_KN = 410.0, 102.4  # that the fields of a message can hold
 
 
@@ -129,10 +129,10 @@ def read_ais(
     Columns, by these or like names: ``Time`` (UTC), ``MMSI``, ``Latitude_degrees``,
     ``Longitude_degrees`` (WGS84) and, where known, ``COG_degrees`` (true) and ``SOG_knots``. Rows
     need not be sorted. What AIS sends for "not available" (latitude 91, longitude 181, course 360,
-    speed 102.3) is taken as that, and so are courses and speeds that a message can hold but a
-    vessel cannot have: a report without position is left out. Left out are, too, of reports of a
-    vessel closer together than `min_step_s` the earlier ones, which came late, and positions that
-    it cannot have come to from those before at `max_speed_mps`.
+    speed 102.3, and 102.2 for "or higher") is taken as that, and so are courses and speeds that a
+    message can hold but a vessel cannot have: a report without position is left out. Left out are,
+    too, of reports of a vessel closer together than `min_step_s` the earlier ones, which came late,
+    and positions that it cannot have come to from those before at `max_speed_mps`.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ class RecordingError(ValueError):
     column : str, optional
         Name of the column as it stands in the file.
     offset : int, optional
-        Octets before the place at fault, in a file that is not text.
+        Octets before the place at fault, in a file that is not text in UTF-8.
     wanted, got : str, optional
         What a correct file holds there and what this file holds.
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from .errors import RecordingError
 from .model import OwnShip
-from .table import Table
+from .table import TIME_NAMES, Table
 
 OWN_GAP_S = 10.0  # longest step that is interpolated across, unless told otherwise
 _ROUNDED = 1e-4  # of covariances written to six digits
 
 VELOCITY_COVARIANCE = ("vnorth_var_m2s2", "vnorth_veast_cov_m2s2", "veast_var_m2s2")
 COLUMNS = {
-    "time_s": ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime"),
+    "time_s": TIME_NAMES,
     "scan": ("scan", "scan_number", "scan_id"),
     "scenario": ("scenario",),
     "north_m": ("own_north_m", "north_m"),
@@ -229,5 +229,7 @@ def _check_scans_once(rows: OwnRows) -> None:
     scenarios = rows.scenario if rows.scenario is not None else np.full(len(rows.scan), "")
     for row, key in enumerate(zip(scenarios.tolist(), rows.scan.tolist(), strict=True)):
         if key in seen:
-            raise rows.table.error(row, "scan", "each scan listed once")
+            raise rows.table.error(
+                row, "scan", "each scan listed once", problem="a scan is listed twice"
+            )
         seen.add(key)

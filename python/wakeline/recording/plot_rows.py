@@ -12,10 +12,10 @@ from wakeline._units import NAUTICAL_MILE_M
 
 from .errors import RecordingError
 from .scans import repeated
-from .table import Table
+from .table import TIME_NAMES, Table
 
 COLUMNS = {
-    "time_s": ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime"),
+    "time_s": TIME_NAMES,
     "scan": ("scan", "scan_number", "scan_id"),
     "scenario": ("scenario",),
     "north_m": ("north_m",),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import datetime
+import io
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -12,16 +13,21 @@ from pathlib import Path
 import numpy as np
 
 from .errors import RecordingError
+from .not_text import instead_of_text
 
+TIME_NAMES = ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime")
 TIME_WANTED = "UTC seconds or ISO 8601 text such as 2021-05-04T07:54:53.034Z"
 
-_PACKED = {b"\x1f\x8b": "gzip", b"PK": "zip", b"BZh": "bzip2", b"\xfd7zX": "xz", b"(\xb5/": "zstd"}
+_NOT_CSV = "the file is not CSV text in UTF-8"
 _LATEST_S = 1e11  # of the year 5138; what is later is in another unit
 
 _ISO_TIME = re.compile(
-    r"(\d{4}-\d{2}-\d{2})[T ](\d{2}:\d{2}(?::\d{2})?)(?:[.,](\d+))?\s*(Z|[+-]\d{2}(?::?\d{2})?)?",
+    r"(\d{4}-\d{2}-\d{2})[T ](\d{2}:\d{2})(?::([0-5]\d|60))?(?:[.,](\d+))?\s*"
+    r"(Z|[+-](?:[01]\d|2[0-3])(?::?[0-5]\d)?)?",
     re.IGNORECASE,
 )
+_LINE_END = re.compile(rb"\r\n|\r|\n")
+_CELL = re.compile(r'( *"(?:[^"]|"")*")[ \t]*(?=[,\r\n]|$)|([^,]+)')
 
 
 class Table:
@@ -42,8 +48,8 @@ class Table:
     ------
     RecordingError
         When the file cannot be read or is empty, when its columns are not separated by commas, when
-        two columns mean the same, when a quoted cell goes on in the next line, or when a row has
-        more or fewer cells than the header.
+        two columns mean the same, when a quoted cell goes on in the next line or after its closing
+        quote, or when a row has more or fewer cells than the header.
     """
 
     def __init__(self, path: str | Path, meanings: dict[str, Sequence[str]]) -> None:
@@ -189,34 +195,64 @@ class Table:
 
 def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
     """Line number and cells of each line that is not blank."""
+    octets = _octets(path)
+    text = io.TextIOWrapper(io.BytesIO(octets), encoding="utf-8-sig", newline="")
+    reader = csv.reader(map(_without_spaces_after_quotes, text), skipinitialspace=True, strict=True)
+    line = 0
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file, skipinitialspace=True)
-            for line, row in enumerate(reader, start=1):
-                if reader.line_num != line:
-                    raise RecordingError(
-                        path,
-                        "a quoted cell does not end in its line",
-                        line=line,
-                        wanted="a row on one line",
-                    )
-                if any(map(str.strip, row)):
-                    yield line, row
+        for line, row in enumerate(reader, start=1):
+            if reader.line_num != line:
+                raise _quote_left_open(path, line)
+            if any(map(str.strip, row)):
+                yield line, row
+    except UnicodeDecodeError as error:
+        raise _not_utf_8(path, octets) from error
+    except csv.Error as error:
+        if reader.line_num > line + 1:
+            raise _quote_left_open(path, line + 1) from error
+        raise RecordingError(
+            path,
+            "a row is not CSV",
+            line=line + 1,
+            wanted="cells with commas between, each in quotes as a whole or not at all",
+            got=str(error),
+        ) from error
+
+
+def _octets(path: Path) -> bytes:
+    try:
+        octets = path.read_bytes()
     except OSError as error:
         raise RecordingError(path, f"the file cannot be read ({error.strerror})") from error
-    except (UnicodeDecodeError, csv.Error) as error:
-        packed = _packed(path)
-        got = f"a file packed by {packed}, unpack it first" if packed else str(error)
-        raise RecordingError(path, "the file is not CSV text in UTF-8", got=got) from error
+    instead = instead_of_text(octets)
+    if instead:
+        raise RecordingError(path, _NOT_CSV, got=instead)
+    return octets
 
 
-def _packed(path: Path) -> str | None:
-    """The program that a file is packed by, of those that are common; a pipe cannot be reread."""
-    if not path.is_file():
-        return None
-    with path.open("rb") as file:
-        begin = file.read(4)
-    return next((name for magic, name in _PACKED.items() if begin.startswith(magic)), None)
+def _without_spaces_after_quotes(line: str) -> str:
+    return _CELL.sub(r"\1\2", line) if '"' in line else line
+
+
+def _quote_left_open(path: Path, line: int) -> RecordingError:
+    problem = "a quoted cell does not end in its line"
+    return RecordingError(path, problem, line=line, wanted="a row on one line")
+
+
+def _not_utf_8(path: Path, octets: bytes) -> RecordingError:
+    """The error that names the first octet that cannot be read."""
+    try:
+        octets.decode("utf-8")
+    except UnicodeDecodeError as error:
+        place = error.start
+    return RecordingError(
+        path,
+        _NOT_CSV,
+        line=1 + len(_LINE_END.findall(octets, 0, place)),
+        offset=place,
+        wanted="UTF-8",
+        got=f"the octet 0x{octets[place]:02x}",
+    )
 
 
 def _plain(name: str) -> str:
@@ -230,16 +266,20 @@ def _number(cell: str) -> float:
 
 
 def _time_s(cell: str) -> float:
-    """UTC seconds from a number or from ISO 8601 text; text without a zone is UTC."""
+    """UTC seconds from a number or from ISO 8601 text; text without a zone is UTC.
+
+    A leap second, 60, is the second after it.
+    """
     try:
         return _number(cell)
     except ValueError:
         match = _ISO_TIME.fullmatch(cell.strip())
     if match is None:
         raise ValueError(cell)
-    day, clock, fraction, zone = match.groups()
+    day, clock, second, fraction, zone = match.groups()
     moment = datetime.datetime.fromisoformat(f"{day}T{clock}").replace(tzinfo=datetime.timezone.utc)
-    return moment.timestamp() + float(f"0.{fraction or 0}") - _zone_offset_s(zone)
+    second_s = int(second or 0) + float(f"0.{fraction or 0}")
+    return moment.timestamp() + second_s - _zone_offset_s(zone)
 
 
 def _zone_offset_s(zone: str | None) -> float:

@@ -8,6 +8,8 @@ import numpy as np
 
 from wakeline._brief import brief, many, span
 
+from .scans import nearest
+
 _SAME_SAMPLE_S = 0.02
 _SAME_TIME_S = 1e-6
 _FIT_POINTS = 4
@@ -68,8 +70,8 @@ class TargetTruth:
         if len(self) == 0:
             return state
         recorded = np.column_stack([self.north_m, self.vnorth_mps, self.east_m, self.veast_mps])
-        for row, t in zip(state, time_s, strict=True):
-            near = int(np.argmin(np.abs(self.time_s - t)))
+        nearest_sample = nearest(self.time_s, time_s).tolist()
+        for row, t, near in zip(state, time_s, nearest_sample, strict=True):
             here = abs(self.time_s[near] - t) < _SAME_SAMPLE_S
             if here and np.isfinite(recorded[near, 1::2]).all():
                 row[:] = recorded[near]
@@ -82,9 +84,8 @@ class TargetTruth:
 
     def _position_at(self, t: float, near: int, max_gap_s: float) -> np.ndarray | None:
         """North and east at `t`, None where there is no truth; `near` is the nearest sample."""
-        position_m = np.array([self.north_m, self.east_m])
         if abs(self.time_s[near] - t) < _SAME_TIME_S:
-            return position_m[:, near]
+            return self._position_m(near)
         after = int(np.searchsorted(self.time_s, t))
         if not 0 < after < len(self):
             return None
@@ -92,18 +93,28 @@ class TargetTruth:
         if step_s > max_gap_s:
             return None
         weight = (t - self.time_s[after - 1]) / step_s
-        return (1 - weight) * position_m[:, after - 1] + weight * position_m[:, after]
+        return (1 - weight) * self._position_m(after - 1) + weight * self._position_m(after)
 
     def _fitted_velocity(self, t: float, window_s: float) -> np.ndarray:
         """Slope (2,) at `t` of the least-squares polynomial through the samples around it."""
-        away_s = np.abs(self.time_s - t)
-        chosen = away_s <= window_s
-        if np.count_nonzero(chosen) < _FIT_POINTS:
-            chosen = np.zeros(len(self), dtype=bool)
-            chosen[np.argsort(away_s)[:_FIT_POINTS]] = True
+        chosen = self._around(t, window_s)
         offset_s = self.time_s[chosen] - t
         both_sides = offset_s.min() < -_FIT_SIDE_S and offset_s.max() > _FIT_SIDE_S
         degree = 2 if both_sides and len(offset_s) >= _FIT_POINTS else 1
         basis = np.vander(offset_s, degree + 1, increasing=True)
-        position_m = np.column_stack([self.north_m[chosen], self.east_m[chosen]])
-        return np.linalg.lstsq(basis, position_m, rcond=None)[0][1]
+        return np.linalg.lstsq(basis, self._position_m(chosen), rcond=None)[0][1]
+
+    def _around(self, t: float, window_s: float) -> np.ndarray:
+        """Indices of the samples within the window around `t`, at least of the nearest four."""
+        begin, after, end = np.searchsorted(self.time_s, [t - window_s, t, t + window_s])
+        first = max(min(begin, after - _FIT_POINTS) - 1, 0)
+        near = np.arange(first, min(max(end, after + _FIT_POINTS) + 1, len(self)))
+        away_s = np.abs(self.time_s[near] - t)
+        inside = near[away_s <= window_s]
+        if len(inside) >= _FIT_POINTS:
+            return inside
+        return np.sort(near[np.argsort(away_s, kind="stable")[:_FIT_POINTS]])
+
+    def _position_m(self, which: int | np.ndarray) -> np.ndarray:
+        """North and east (..., 2) of one sample or of several."""
+        return np.stack([self.north_m[which], self.east_m[which]], axis=-1)

@@ -8,11 +8,11 @@ import numpy as np
 
 from .errors import RecordingError
 from .model import Recording
-from .table import Table
+from .table import TIME_NAMES, Table
 from .truth import TargetTruth
 
 COLUMNS = {
-    "time_s": ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime"),
+    "time_s": TIME_NAMES,
     "scenario": ("scenario",),
     "target": ("target", "target_id", "mmsi"),
     "north_m": ("north_m",),
@@ -58,6 +58,7 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
         [table.numbers(c) if c in table else np.full(len(table), np.nan) for c in _STATE]
     )
     target = np.array(table.text("target"))
+    table.check("target", np.char.str_len(target) > 0, "a name or number")
     scenario = np.array(table.text("scenario") if "scenario" in table else [""] * len(table))
     kept = _kept(table, state, scenario, recording)
     episode = recording.episode_of(scenario[kept], time_s[kept])

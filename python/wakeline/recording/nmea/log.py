@@ -74,9 +74,10 @@ class Fixes(Series):
     latitude_deg, longitude_deg : ndarray (n,)
         WGS84, positive north and east.
     quality : ndarray of int (n,)
-        As GGA counts: 0 none, 1 autonomous, 2 differential, 3 precise, 4 RTK, 5 RTK float,
-        6 estimated, 7 put in by hand, 8 simulated; -1 not said. `valid` is false for 0, 6 and 7 and
-        where the status is V. Of the modes of a GNS it is the best.
+        As GGA counts: 0 none, 1 autonomous, 2 differential (9 of a GGA, too), 3 precise, 4 RTK,
+        5 RTK float, 6 estimated, 7 put in by hand, 8 simulated; -1 not said. `valid` is false for
+        0, 6 and 7, where the status is V, and where either cannot be read. Of the modes of a GNS it
+        is the best.
     hdop : ndarray (n,)
         Horizontal dilution of precision, NaN where not said.
     frozen : ndarray of bool (n,)
@@ -243,6 +244,9 @@ class NmeaReport:
     displaced_lines : list of int
         Lines of valid fixes among them that were left out though at another place than the fix of
         that time, which another sentence of their kind had given.
+    other_speed_lines : list of int
+        Lines of valid ground speeds among them that were left out though other than that of their
+        time, which another sentence of their kind had given.
     max_examples : int
     """
 
@@ -252,6 +256,7 @@ class NmeaReport:
     examples: list[NmeaProblem] = field(default_factory=list)
     repeated: int = 0
     displaced_lines: list[int] = field(default_factory=list)
+    other_speed_lines: list[int] = field(default_factory=list)
     max_examples: int = 100_000
 
     def add(self, line: int, kind: str, reason: str) -> None:

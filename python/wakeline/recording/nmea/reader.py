@@ -13,6 +13,7 @@ import numpy as np
 from wakeline._units import KNOT_MPS
 
 from ..errors import RecordingError
+from ..not_text import instead_of_text
 from ..reach import jumps_m, unreachable
 from .clock import Clock
 from .log import (
@@ -35,7 +36,9 @@ _QUALITY = {"A": 1, "D": 2, "P": 3, "R": 4, "F": 5, "E": 6, "M": 7, "S": 8, "N":
 _BEST_MODE_FIRST = "RFPDASEMN"  # of the modes of several systems of satellites
 _NOT_MEASURED = (0, 6, 7)
 _NOT_SAID = -1
+_SBAS, _DIFFERENTIAL = 9, 2  # some receivers write 9, which GGA does not know, for 2
 
+_SENTENCES = "NMEA 0183 sentences"
 _MAX_SPEED_KN = 200.0
 _MAX_RATE_DEG_MIN = 10_000.0
 _STILL_MPS = 1.0 * KNOT_MPS  # below, a vessel at rest and one that moves look the same
@@ -73,8 +76,8 @@ def read_nmea(
       or the clock was set back. So it is with dates, of which only the date is left aside. Where
       all that is known of the day are dates of left out sentences, they are believed.
     - A reading without a time lies between the timed sentences around it, equally spaced by lines;
-      where the log itself had stopped between them, as many lines after the first as usual. A VTG
-      has the time of the timed sentence before it, whose fix it belongs to.
+      where the log itself had stopped between them, as many lines after the first as usual. Of
+      VTG the first after a timed sentence has its time, whose fix it belongs to.
 
     **Fixes** of one time are one fix: the valid one, of these GGA before GNS before RMC before GLL.
     Fixes are marked, never dropped: not `valid` (status V, quality 0); `frozen`, where the position
@@ -125,13 +128,13 @@ def read_nmea(
     if variation_deg is not None and not abs(variation_deg) <= 180:
         raise ValueError(f"variation_deg must be from -180 to 180, got {variation_deg}")
     first_day, path, report = _day(date), Path(path), NmeaReport()
-    rows = _Rows()
-    for sentence in sentences(_octets(path), report):
+    octets, rows = _octets(path), _Rows()
+    for sentence in sentences(octets, report):
         rows.read(sentence)
         for kind, reason in sentence.faults:
             report.add(sentence.line, kind, reason)
     if not rows.timed:
-        raise _nothing_read(path, report)
+        raise _nothing_read(path, octets, report, "no sentence that tells the time could be read")
     clock = Clock(*zip(*rows.timed, strict=True), first_day, reorder_s, report)
     report.examples.sort(key=_line)
     series = {name: _series(kind, rows.of[name], clock, report) for name, kind in SERIES.items()}
@@ -141,7 +144,7 @@ def read_nmea(
     series["fixes"] = _marked(series, clock, max_speed_mps)
     series["ground"] = _marked_ground(series, clock)
     if not any(map(len, series.values())):
-        raise _nothing_read(path, report)
+        raise _nothing_read(path, octets, report, "nothing but times could be read")
     notes: list[str] = []
     log = NavigationLog(
         path.stem,
@@ -172,7 +175,7 @@ def _octets(path: Path) -> bytes:
         raise RecordingError(
             path,
             f"the file cannot be read ({error.strerror})",
-            wanted="a log of NMEA 0183 sentences",
+            wanted=f"a log of {_SENTENCES}",
         ) from error
 
 
@@ -180,14 +183,17 @@ def _line(problem: NmeaProblem) -> int:
     return problem.line
 
 
-def _nothing_read(path: Path, report: NmeaReport) -> RecordingError:
+def _nothing_read(path: Path, octets: bytes, report: NmeaReport, problem: str) -> RecordingError:
+    instead = instead_of_text(octets)
+    if instead:
+        return RecordingError(path, "the file is not text", wanted=_SENTENCES, got=instead)
     found = [f"{count} {kind}" for kind, count in report.sentences.most_common(8)]
     found += [f"{count} of {kind!r}" for kind, count in report.problems.most_common()]
     first = min(report.examples, key=_line, default=None)
     return RecordingError(
         path,
-        "no reading with a time in the log" + (f" (first problem in {first})" if first else ""),
-        wanted="NMEA 0183 sentences, RMC, GGA, GNS, GLL or ZDA among them",
+        problem + (f" (first problem in {first})" if first else ""),
+        wanted=f"{_SENTENCES}, RMC, GGA, GNS, GLL or ZDA among them",
         got=f"{report.lines} lines: {', '.join(found) or 'no sentence'}",
     )
 
@@ -244,12 +250,12 @@ class _Rows:
 
 
 def _rmc(s: Sentence, rows: _Rows) -> None:
-    time_s, day, place, status = s.time_of_day_s(0), s.day(8), s.place_deg(2), s.letter(1, "AV")
+    time_s, place = s.time_of_day_s(0), s.place_deg(2)
     if s.faults:
         return
-    quality = _quality(s, 11)
-    valid = status == "A" and quality not in _NOT_MEASURED
-    stamp = rows.stamp(s, time_s, day)
+    status, quality = s.letter(1, "AV"), _quality(s, 11)
+    valid = not s.faults and status == "A" and quality not in _NOT_MEASURED
+    stamp = rows.stamp(s, time_s, s.day(8))
     _add_fix(rows, s, stamp, valid, place, quality)
     speed = _knots(s, 6), s.angle_rad(7)
     rows.add_where_known("ground", s, valid, *speed, stamp=stamp, marks=_UNMARKED_GROUND)
@@ -259,16 +265,19 @@ def _rmc(s: Sentence, rows: _Rows) -> None:
 
 
 def _gga(s: Sentence, rows: _Rows) -> None:
-    time_s, place, quality = s.time_of_day_s(0), s.place_deg(1), s.number(5, 0, 8)
+    time_s, place = s.time_of_day_s(0), s.place_deg(1)
     if s.faults:
         return
-    _add_fix_with_hdop(rows, s, time_s, place, _NOT_SAID if math.isnan(quality) else int(quality))
+    told = s.number(5, 0, _SBAS)
+    quality = _NOT_SAID if math.isnan(told) else int(told)
+    _add_fix_with_hdop(rows, s, time_s, place, _DIFFERENTIAL if quality == _SBAS else quality)
 
 
 def _gns(s: Sentence, rows: _Rows) -> None:
-    time_s, place, modes = s.time_of_day_s(0), s.place_deg(1), s.letters(5, _BEST_MODE_FIRST)
+    time_s, place = s.time_of_day_s(0), s.place_deg(1)
     if s.faults:
         return
+    modes = s.letters(5, _BEST_MODE_FIRST)
     quality = _QUALITY[min(modes, key=_BEST_MODE_FIRST.index)] if modes else _NOT_SAID
     _add_fix_with_hdop(rows, s, time_s, place, quality)
 
@@ -281,11 +290,11 @@ def _add_fix_with_hdop(
 
 
 def _gll(s: Sentence, rows: _Rows) -> None:
-    place, time_s, status = s.place_deg(0), s.time_of_day_s(4), s.letter(5, "AV")
+    place, time_s = s.place_deg(0), s.time_of_day_s(4)
     if s.faults:
         return
-    quality = _quality(s, 6)
-    valid = status != "V" and quality not in _NOT_MEASURED
+    status, quality = s.letter(5, "AV"), _quality(s, 6)
+    valid = not s.faults and status != "V" and quality not in _NOT_MEASURED
     _add_fix(rows, s, rows.stamp(s, time_s), valid, place, quality)
 
 
@@ -304,12 +313,11 @@ def _add_fix(
 
 
 def _vtg(s: Sentence, rows: _Rows) -> None:
-    s.letter(1, "T"), s.letter(5, "N")
-    if s.faults:
-        return
-    valid = _quality(s, 8) not in _NOT_MEASURED
-    speed = _speed_mps(s, 4), s.angle_rad(0)
-    rows.add_where_known("ground", s, valid, *speed, marks=_UNMARKED_GROUND)
+    quality = _quality(s, 8)
+    valid = not s.faults and quality not in _NOT_MEASURED
+    speed_mps = _speed_mps(s, 4) if s.says(5, "N") else _kmh(s, 6)
+    course_rad = s.angle_rad(0) if s.says(1, "T") else math.nan
+    rows.add_where_known("ground", s, valid, speed_mps, course_rad, marks=_UNMARKED_GROUND)
 
 
 def _hdt(s: Sentence, rows: _Rows) -> None:
@@ -350,9 +358,8 @@ def _rot(s: Sentence, rows: _Rows) -> None:
 
 
 def _zda(s: Sentence, rows: _Rows) -> None:
-    time_s, day = s.time_of_day_s(0), s.day_in_fields(1)
-    if not s.faults:
-        rows.stamp(s, time_s, day)
+    time_s = s.time_of_day_s(0)
+    rows.stamp(s, time_s, s.day_in_fields(1))
 
 
 _READERS = {
@@ -393,9 +400,11 @@ def _knots(s: Sentence, k: int) -> float:
 def _speed_mps(s: Sentence, k: int) -> float:
     """A speed given in knots, or else, two fields on, in km/h."""
     speed_mps = _knots(s, k)
-    if math.isnan(speed_mps):
-        return s.number(k + 2, -2 * _MAX_SPEED_KN, 2 * _MAX_SPEED_KN) / 3.6
-    return speed_mps
+    return _kmh(s, k + 2) if math.isnan(speed_mps) else speed_mps
+
+
+def _kmh(s: Sentence, k: int) -> float:
+    return s.number(k, -2 * _MAX_SPEED_KN, 2 * _MAX_SPEED_KN) / 3.6
 
 
 # ------------------------------------------------------------------ series
@@ -430,6 +439,8 @@ def _times(line: np.ndarray, sentence: np.ndarray, stamp: tuple, clock: Clock) -
     """Times (n,) of rows; NaN where that of the sentence is wrong."""
     own = np.array([-1 if k is None else k for k in stamp], dtype=np.int64)
     of_fix_s = np.where(sentence == "VTG", clock.last_timed(line), np.nan)
+    vtg = np.flatnonzero(sentence == "VTG")
+    of_fix_s[vtg[1:][of_fix_s[vtg[1:]] == of_fix_s[vtg[:-1]]]] = np.nan
     without_s = np.where(np.isnan(of_fix_s), clock.at_line(line), of_fix_s)
     return np.where(own >= 0, clock.time_s[own], without_s)
 
@@ -444,16 +455,21 @@ def _one_a_time(series: Series, clock: Clock, report: NmeaReport) -> Series:
     report.repeated += int(np.count_nonzero(again))
     first = np.append(True, ~again)[: len(series)]
     if isinstance(series, Fixes):
-        report.displaced_lines += _displaced_lines(series, first)
+        report.displaced_lines += _other_lines(series, first, "latitude_deg", "longitude_deg")
+    else:
+        report.other_speed_lines += _other_lines(series, first, "speed_mps", "course_rad")
     return series.rows(first)
 
 
-def _displaced_lines(fixes: Fixes, first: np.ndarray) -> list[int]:
-    """Lines of valid fixes at another place than the first of their time, of the same kind."""
-    kept = fixes.rows(np.maximum.accumulate(np.where(first, np.arange(len(fixes)), 0)))
-    north, east = fixes.latitude_deg - kept.latitude_deg, fixes.longitude_deg - kept.longitude_deg
-    same_kind = fixes.sentence == kept.sentence
-    return np.sort(fixes.line[fixes.valid & same_kind & ((north != 0) | (east != 0))]).tolist()
+def _other_lines(series: Series, first: np.ndarray, *names: str) -> list[int]:
+    """Lines of valid readings other than the first of their time, of the same kind."""
+    kept = series.rows(np.maximum.accumulate(np.where(first, np.arange(len(series)), 0)))
+    other = np.any([_differ(getattr(series, name), getattr(kept, name)) for name in names], axis=0)
+    return np.sort(series.line[series.valid & (series.sentence == kept.sentence) & other]).tolist()
+
+
+def _differ(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return (a != b) & ~(np.isnan(a) & np.isnan(b))
 
 
 # ------------------------------------------------------------------ headings
@@ -584,6 +600,12 @@ def _notes(log: NavigationLog) -> list[str]:
         notes.append(
             f"{len(displaced)} fixes of times told before, but at other places, are left out "
             f"(first in line {displaced[0]})"
+        )
+    other = report.other_speed_lines
+    if other:
+        notes.append(
+            f"{len(other)} speeds over ground of times told before, but other ones, are left out "
+            f"(first in line {other[0]})"
         )
     for series, mask, what in (
         (fixes, ~fixes.valid, "fixes that the receiver calls not valid"),

@@ -38,6 +38,7 @@ _LATITUDE = re.compile(r"(\d\d)(\d\d(?:\.\d*)?)").fullmatch
 _LONGITUDE = re.compile(r"(\d\d\d)(\d\d(?:\.\d*)?)").fullmatch
 _DATE = re.compile(r"(\d\d)(\d\d)(\d\d)").fullmatch
 _DAY_0 = datetime.date(1970, 1, 1).toordinal()
+_GPS_YEAR = 1980
 _FIRST_YEAR = 80  # two digits of a year from here on are of the last century
 
 
@@ -85,6 +86,10 @@ class Sentence:
             return ""
         return text
 
+    def says(self, k: int, letter: str) -> bool:
+        """Whether a field is `letter` or empty."""
+        return self.letter(k, letter) == self.text(k)
+
     def number(self, k: int, low: float, high: float) -> float:
         """A number from `low` to `high`."""
         text = self.text(k)
@@ -93,6 +98,13 @@ class Sentence:
         if not _NUMBER(text):
             return self._fault("field", k, "a number")
         return self._within(float(text), k, low, high)
+
+    def whole_number(self, k: int, low: int, high: int) -> float:
+        """A whole number from `low` to `high`, of digits only."""
+        text = self.text(k)
+        if text and not text.isdecimal():
+            return self._fault("field", k, "a whole number")
+        return self.number(k, low, high)
 
     def angle_rad(self, k: int) -> float:
         """An angle given in degrees from 0 to 360, as radians in [0, 2 pi)."""
@@ -133,8 +145,9 @@ class Sentence:
         return self._day(k, year + (1900 if year >= _FIRST_YEAR else 2000), month, day)
 
     def day_in_fields(self, k: int) -> float:
-        """Days since 1970 of day, month and year in three fields."""
-        day, month, year = (self.number(k + i, 0, 9999) for i in range(3))
+        """Days since 1970 of day, month and year of four digits in three fields."""
+        day, month = self.whole_number(k, 0, 99), self.whole_number(k + 1, 0, 99)
+        year = self.whole_number(k + 2, _GPS_YEAR, 9999)
         if math.isnan(day + month + year):
             return math.nan
         return self._day(k, int(year), int(month), int(day))
