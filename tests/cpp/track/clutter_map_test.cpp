@@ -47,6 +47,26 @@ TEST(ClutterMap, SharesAPlotBilinearly) {
   EXPECT_EQ(map.density({50.0, 150.0}, 0.0, kPeriod), 0.0);
 }
 
+// What a map has learned of one target alone is all that it holds.
+TEST(ClutterMap, KnowsThePartOfATargetsOwnPlots) {
+  for (const Place& place : {Place(50.0, 50.0), Place(-20.0, 190.0), Place(-730.0, 1234.5)}) {
+    ClutterMap map(kCell, kMemory);
+    LearnedPlots learned;
+    for (const double time_s : {0.0, 7.0, 30.0}) {
+      map.add(place, time_s, 0.7);
+      map.remember(place, time_s, 0.7, learned);
+    }
+    for (double off_m = -250.0; off_m <= 250.0; off_m += 12.5) {
+      const Place position = place + Place(off_m, 30.0 - off_m / 2);
+      const double density = map.density(position, 40.0, kPeriod);
+      EXPECT_NEAR(map.density_of(learned, position, 40.0, kPeriod), density, 1e-12 * density);
+    }
+    EXPECT_GT(map.density_of(learned, place, 40.0, kPeriod), 0.0);
+  }
+  EXPECT_EQ(ClutterMap(0.0, kMemory).density_of({Place(0, 0), 1.0, 0.0}, Place(0, 0), 0.0, kPeriod),
+            0.0);
+}
+
 TEST(ClutterMap, FadesWithItsMemory) {
   ClutterMap map(kCell, kMemory);
   map.add({50.0, 50.0}, 10.0, 1.0);

@@ -3,6 +3,7 @@
 //
 // Many targets: whose plot is whose, two tracks on one target, and what happens when room is short.
 #include <algorithm>
+#include <cmath>
 
 #include "track/scene.hpp"
 
@@ -280,13 +281,15 @@ double existence_of_a_start(double clutter_density_per_m2, double cell_m, double
   return existence;
 }
 
-TEST(Many, AFalsePlotInEveryScanIsADensityOfOnePerCell) {
+TEST(Many, AFalsePlotInEveryScanIsADensityOfOnePerCellButForTheStartsOwn) {
   constexpr double kCell = 40'000.0, kDensity = 1e-12;
-  const double expected =
-      TrackerConfig{}.initial_existence * kDensity / (kDensity + 1.0 / (kCell * kCell));
-  for (const double memory_s : {2.5, 10.0, 60.0})
+  for (const double memory_s : {2.5, 10.0, 60.0}) {
+    const double of_others = std::exp(-2.5 / memory_s);  // all but the plot before
+    const double expected =
+        TrackerConfig{}.initial_existence * kDensity / (kDensity + of_others / (kCell * kCell));
     EXPECT_NEAR(existence_of_a_start(kDensity, kCell, memory_s) / expected, 1.0, 0.03)
         << memory_s << " s";
+  }
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ struct Claim {
   Vec<double, 2> z;            ///< brought to the track's time
   Mat<double, 2, 2> moved_m2;  ///< covariance that this adds to the plot's own
   double likelihood = 0.0;     ///< under all modes, nominal and wild
+  double density = 0.0;        ///< of false plots about it, but for the track's own
   double odds = 0.0;           ///< that it is this track's
   double nis = 0.0;            ///< under the moment-matched prediction
 };

@@ -87,10 +87,8 @@ class ClutterMap {
   [[nodiscard]] double density_of(const LearnedPlots& learned, const Vec<double, 2>& position,
                                   double time_s, double period_s) const noexcept {
     if (!enabled() || learned.plots == 0.0) return 0.0;
-    double shares = 0.0;
-    for (const Corner& a : corners(position))
-      for (const Corner& b : corners(learned.position))
-        if (a.north == b.north && a.east == b.east) shares += a.share * b.share;
+    const double shares = shared(cells_along(position[0]), cells_along(learned.position[0])) *
+                          shared(cells_along(position[1]), cells_along(learned.position[1]));
     const double left = learned.plots * fading_.after(std::fabs(time_s - learned.time_s));
     return shares * left * (1.0 - fading_.after(period_s)) / (cell_m_ * cell_m_);
   }
@@ -143,11 +141,26 @@ class ClutterMap {
     return cell.plots > 0.0 ? cell.plots * fading_.after(std::fabs(time_s - cell.time_s)) : 0.0;
   }
 
+  /// Along one axis, from the centre of the cell at the origin, in cells.
+  [[nodiscard]] double cells_along(double m) const noexcept {
+    constexpr double kEdge = 1e9;  // cells beyond this index are one, and so is no number
+    return std::fmin(std::fmax(m / cell_m_ - 0.5, -kEdge), kEdge);
+  }
+
+  /// Sum over the cells of the shares that two places along one axis have in each, multiplied.
+  static double shared(double u, double v) noexcept {
+    const double i = std::floor(u), j = std::floor(v);
+    const double a = u - i, b = v - j;
+    return i == j       ? (1 - a) * (1 - b) + a * b
+           : i + 1 == j ? a * (1 - b)
+           : j + 1 == i ? (1 - a) * b
+                        : 0.0;
+  }
+
   /// The four cells whose centres surround a position, with their bilinear shares.
   [[nodiscard]] std::array<Corner, 4> corners(const Vec<double, 2>& position) const noexcept {
-    constexpr double kEdge = 1e9;  // cells beyond this index are one, and so is no number
-    const double u = std::fmin(std::fmax(position[0] / cell_m_ - 0.5, -kEdge), kEdge);
-    const double v = std::fmin(std::fmax(position[1] / cell_m_ - 0.5, -kEdge), kEdge);
+    const double u = cells_along(position[0]);
+    const double v = cells_along(position[1]);
     const auto i = static_cast<std::int32_t>(std::floor(u));
     const auto j = static_cast<std::int32_t>(std::floor(v));
     const double a = u - i;

@@ -351,6 +351,7 @@ class Tracker {
       const Evidence<double> nominal = evidence(track, claim.z, covariance);
       claim.likelihood = (1.0 - config_.wild_probability) * nominal.likelihood +
                          config_.wild_probability * wild.likelihood;
+      claim.density = density(echoes_[index], track.learned);
       claim.nis = squared_distance(track.kinematics, claim.z, covariance);
       claims.add(claim);
     });
@@ -395,8 +396,7 @@ class Tracker {
 
   /// PD pv g / rho: how much likelier the plot is as the track's than as clutter.
   [[nodiscard]] double weight(const TrackType& track, const Claim& claim) const noexcept {
-    return config_.detection_probability * track.visibility * claim.likelihood /
-           density(echoes_[claim.echo], track.learned);
+    return config_.detection_probability * track.visibility * claim.likelihood / claim.density;
   }
 
   /// Leaves each track at most one plot: confirmed tracks choose before tentative ones.
@@ -500,8 +500,8 @@ class Tracker {
     for (const Claim& claim : claims) {
       const Echo& echo = echoes_[claim.echo];
       const double claimed_by_others = std::max(echo.odds - claim.odds, 0.0);
-      const double weight = config_.detection_probability * track.visibility /
-                            (density(echo, track.learned) + claimed_by_others);
+      const double weight =
+          config_.detection_probability * track.visibility / (claim.density + claimed_by_others);
       const Mat<double, 2, 2>& nominal_m2 = echo.position.covariance;
       readings.fixes[count++] = {Fix{nominal_m2 + claim.moved_m2}, claim.z,
                                  (1.0 - config_.wild_probability) * weight};
