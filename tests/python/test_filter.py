@@ -334,7 +334,7 @@ def test_no_scans_and_no_runs(name):
 
 def test_a_long_run_lets_other_threads_work():
     z = np.tile(readings(), (300, 1, 1))
-    worker = Thread(target=lambda: [run(ESTIMATORS["Imm-mixed"](), z) for _ in range(5)])
+    worker = Thread(target=lambda: [run(ESTIMATORS["Imm-mixed"](), z) for _ in range(50)])
     turns = 0
     worker.start()
     while worker.is_alive():

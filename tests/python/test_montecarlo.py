@@ -7,6 +7,7 @@ import multiprocessing
 import pickle
 import sys
 import time
+import zipfile
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from threading import Lock
@@ -550,6 +551,12 @@ def test_files_that_hold_no_result(result, tmp_path):
     wrong = tmp_path / "wrong.npz"
     for content in (b"", b"time_s,north_m\n", whole.read_bytes()[:-100]):
         wrong.write_bytes(content)
+        with pytest.raises(ValueError, match=r"wrong\.npz: not a Monte Carlo result; wanted"):
+            Result.load(wrong)
+    for descr in ("f8,(2f8", "08f8", "<U999999999999"):
+        described = str({"descr": descr, "fortran_order": False, "shape": ()}).ljust(117) + "\n"
+        with zipfile.ZipFile(wrong, "w") as file:
+            file.writestr("header.npy", b"\x93NUMPY\x01\x00v\x00" + described.encode())
         with pytest.raises(ValueError, match=r"wrong\.npz: not a Monte Carlo result; wanted"):
             Result.load(wrong)
     content = whole.read_bytes()
