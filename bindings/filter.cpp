@@ -143,15 +143,10 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
           beliefs[k].mean = Eigen::Map<const Vec<double, kN>>(mean.data() + k * kN);
           beliefs[k].covariance = Eigen::Map<const RowMajor>(covariance.data() + k * kN * kN);
         }
-        const auto smooth_all = [&](const auto&... linearisation) {
-          return smooth<typename Filter::Motion, double>(
-              model.motion(), linearisation..., beliefs, std::span<const double>(steps).subspan(1),
-              std::span<const Vec<double, 2>>(known).subspan(known.empty() ? 0 : 1));
-        };
-        if constexpr (requires { model.unscented(); })
-          require_ok(smooth_all(model.unscented()), "smooth");
-        else
-          require_ok(smooth_all(), "smooth");
+        require_ok(
+            smooth_as(model, model.motion(), beliefs, std::span<const double>(steps).subspan(1),
+                      std::span<const Vec<double, 2>>(known).subspan(known.empty() ? 0 : 1)),
+            "smooth");
         for (std::size_t k = 0; k < beliefs.size(); ++k) {
           Eigen::Map<Vec<double, kN>>(smooth_mean.mutable_data() + k * kN) = beliefs[k].mean;
           Eigen::Map<RowMajor>(smooth_covariance.mutable_data() + k * kN * kN) =

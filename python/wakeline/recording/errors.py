@@ -68,3 +68,12 @@ class RecordingError(ValueError):
 
 def _rebuild(path: Path, problem: str, places: dict) -> RecordingError:
     return RecordingError(path, problem, **places)
+
+
+def octets_of(path: str | Path, wanted: str | None = None) -> bytes:
+    """All of a file; RecordingError, with what was wanted, where it cannot be read."""
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        problem = f"the file cannot be read ({error.strerror})"
+        raise RecordingError(path, problem, wanted=wanted) from error

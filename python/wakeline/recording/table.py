@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .errors import RecordingError
+from .errors import RecordingError, octets_of
 from .not_text import instead_of_text
 
 TIME_NAMES = ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime")
@@ -195,7 +195,10 @@ class Table:
 
 def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
     """Line number and cells of each line that is not blank."""
-    octets = _octets(path)
+    octets = octets_of(path)
+    instead = instead_of_text(octets)
+    if instead:
+        raise RecordingError(path, _NOT_CSV, got=instead)
     text = io.TextIOWrapper(io.BytesIO(octets), encoding="utf-8-sig", newline="")
     reader = csv.reader(map(_without_spaces_after_quotes, text), skipinitialspace=True, strict=True)
     line = 0
@@ -217,17 +220,6 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
             wanted="cells with commas between, each in quotes as a whole or not at all",
             got=str(error),
         ) from error
-
-
-def _octets(path: Path) -> bytes:
-    try:
-        octets = path.read_bytes()
-    except OSError as error:
-        raise RecordingError(path, f"the file cannot be read ({error.strerror})") from error
-    instead = instead_of_text(octets)
-    if instead:
-        raise RecordingError(path, _NOT_CSV, got=instead)
-    return octets
 
 
 def _without_spaces_after_quotes(line: str) -> str:

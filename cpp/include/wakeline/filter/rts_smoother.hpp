@@ -129,4 +129,17 @@ Status smooth(const Motion& motion, const Unscented& unscented,
       beliefs, dt_s, acceleration_mps2);
 }
 
+/// Of the beliefs of such a filter, whose motion was `motion`.
+template <class Filter, MotionModel Motion>
+Status smooth_as(const Filter& filter, const Motion& motion,
+                 std::span<Gaussian<Filter::kStates, typename Filter::Scalar>> beliefs,
+                 std::span<const typename Filter::Scalar> dt_s,
+                 std::span<const Vec<typename Filter::Scalar, 2>> acceleration_mps2 = {}) noexcept {
+  using Scalar = typename Filter::Scalar;
+  if constexpr (requires { filter.unscented(); })
+    return smooth<Motion, Scalar>(motion, filter.unscented(), beliefs, dt_s, acceleration_mps2);
+  else
+    return smooth<Motion, Scalar>(motion, beliefs, dt_s, acceleration_mps2);
+}
+
 }  // namespace wakeline

@@ -184,7 +184,7 @@ class UsvNavigator {
       const Scalar expected = motion.transition(pair[0].mean, leg.dt_s)[kHeadingRow];
       Scalar& heading = pair[1].mean[kHeadingRow];
       heading = expected + wrap_angle(Scalar(heading - expected));  // the same turn of the circle
-      const Status status = smooth_pair(motion, pair, leg.dt_s);
+      const Status status = smooth_as(filter_, motion, pair, std::span(&leg.dt_s, 1));
       if (status != Status::kOk) return status;
       pair[0].mean[kHeadingRow] = wrap_angle(pair[0].mean[kHeadingRow]);
       beliefs[k - 1] = pair[0];
@@ -211,15 +211,6 @@ class UsvNavigator {
   static constexpr int kSpeedRow = index_of(kComponents, kSpeedThroughWater);
   static constexpr int kCurrentRow = index_of(kComponents, kCurrentNorth);
   static constexpr bool kHasCurrent = kCurrentRow >= 0;
-
-  /// As the filter takes the motion.
-  Status smooth_pair(const Model& motion, std::span<State> pair, Scalar dt_s) const noexcept {
-    const std::span<const Scalar> step(&dt_s, 1);
-    if constexpr (requires { filter_.unscented(); })
-      return wakeline::smooth<Model, Scalar>(motion, filter_.unscented(), pair, step);
-    else
-      return wakeline::smooth<Model, Scalar>(motion, pair, step);
-  }
 
   template <class Sensor>
   static constexpr int kKindOf = rows_read<Sensor>(kComponents)[0];

@@ -79,8 +79,7 @@ class ClutterMap {
       if (cell.north == corner.north && cell.east == corner.east)
         plots += corner.share * faded(cell, time_s);
     }
-    const double per_scan = 1.0 - fading_.after(period_s);
-    return plots * per_scan / (cell_m_ * cell_m_);
+    return per_m2_and_scan(plots, period_s);
   }
 
   /// The part of that density that these plots are.
@@ -89,15 +88,13 @@ class ClutterMap {
     if (!enabled() || learned.plots == 0.0) return 0.0;
     const double shares = shared(cells_along(position[0]), cells_along(learned.position[0])) *
                           shared(cells_along(position[1]), cells_along(learned.position[1]));
-    const double left = learned.plots * fading_.after(std::fabs(time_s - learned.time_s));
-    return shares * left * (1.0 - fading_.after(period_s)) / (cell_m_ * cell_m_);
+    return per_m2_and_scan(shares * faded(learned, time_s), period_s);
   }
 
   /// Adds a plot that `add` takes in to those of its target.
   void remember(const Vec<double, 2>& position, double time_s, double weight,
                 LearnedPlots& learned) const noexcept {
-    const double left = learned.plots * fading_.after(std::fabs(time_s - learned.time_s));
-    learned = {position, left + weight, time_s};
+    learned = {position, faded(learned, time_s) + weight, time_s};
   }
 
   /// Takes in a plot that is false with probability `weight`.
@@ -137,8 +134,16 @@ class ClutterMap {
     double share;
   };
 
-  [[nodiscard]] double faded(const Cell& cell, double time_s) const noexcept {
-    return cell.plots > 0.0 ? cell.plots * fading_.after(std::fabs(time_s - cell.time_s)) : 0.0;
+  /// What is left of the plots that a cell or a target has.
+  template <class Holder>
+  [[nodiscard]] double faded(const Holder& of, double time_s) const noexcept {
+    return of.plots > 0.0 ? of.plots * fading_.after(std::fabs(time_s - of.time_s)) : 0.0;
+  }
+
+  /// The density that faded plots in one cell mean.
+  [[nodiscard]] double per_m2_and_scan(double plots, double period_s) const noexcept {
+    const double per_scan = 1.0 - fading_.after(period_s);
+    return plots * per_scan / (cell_m_ * cell_m_);
   }
 
   /// Along one axis, from the centre of the cell at the origin, in cells.

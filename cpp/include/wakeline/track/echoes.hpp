@@ -43,7 +43,7 @@ class Echoes {
             double slack_s) noexcept {
     echoes_.clear();
     index_.clear();
-    earliest_s_ = latest_s_ = time_s;
+    earliest_s_ = scan_s_ = time_s;
     const std::size_t count = std::min(plots.size(), echoes_.capacity());
     for (std::size_t k = 0; k < count; ++k) {
       const Plot& plot = plots[k];
@@ -82,14 +82,14 @@ class Echoes {
 
   /// No plot is farther from that time.
   [[nodiscard]] double apart_s(double time_s) const noexcept {
-    return std::max(latest_s_ - time_s, time_s - earliest_s_);
+    return std::max(scan_s_ - time_s, time_s - earliest_s_);
   }
 
  private:
   std::vector<Echo> echoes_;
   PlaceIndex index_;
   double earliest_s_ = 0.0;
-  double latest_s_ = 0.0;
+  double scan_s_ = 0.0;  ///< time of the scan, and of its latest plots
 };
 
 }  // namespace wakeline

@@ -12,7 +12,7 @@ import numpy as np
 
 from wakeline._units import KNOT_MPS
 
-from ..errors import RecordingError
+from ..errors import RecordingError, octets_of
 from ..not_text import instead_of_text
 from ..reach import jumps_m, unreachable
 from .clock import Clock
@@ -128,7 +128,7 @@ def read_nmea(
     if variation_deg is not None and not abs(variation_deg) <= 180:
         raise ValueError(f"variation_deg must be from -180 to 180, got {variation_deg}")
     first_day, path, report = _day(date), Path(path), NmeaReport()
-    octets, rows = _octets(path), _Rows()
+    octets, rows = octets_of(path, wanted=f"a log of {_SENTENCES}"), _Rows()
     for sentence in sentences(octets, report):
         rows.read(sentence)
         for kind, reason in sentence.faults:
@@ -166,17 +166,6 @@ def _day(date: datetime.date | None) -> float:
     if not isinstance(date, datetime.date):
         raise TypeError(f"date must be a datetime.date, got {date!r}")
     return float(date.toordinal() - datetime.date(1970, 1, 1).toordinal())
-
-
-def _octets(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise RecordingError(
-            path,
-            f"the file cannot be read ({error.strerror})",
-            wanted=f"a log of {_SENTENCES}",
-        ) from error
 
 
 def _line(problem: NmeaProblem) -> int:
