@@ -410,6 +410,9 @@ acceleration_bias_std_mps2, gyro_bias_std_rad_s, current_std_mps : float
     Of biases and current (per axis) at the start, which are zero with these deviations.
 speed_walk_mps, current_walk_mps : float
     What speed through water and current gain in 1 s, of 7 states.
+turned_at : float
+    Where in a step the heading is taken that turns its acceleration, of 5 and 8 states: 0.5 is its
+    middle, 0 its start, as in the paper.
 gate_probability : float
     That a good reading is inside the gate.
 rejections : int
@@ -425,8 +428,8 @@ ValueError
   navigator
       .def(py::init([](int states, const std::string& filter, double a_std, double w_std,
                        double blind_a_std, double blind_w_std, double a_bias, double w_bias,
-                       double current, double speed_walk, double current_walk, double gate,
-                       int rejections, double alpha, double beta, double kappa) {
+                       double current, double speed_walk, double current_walk, double turned_at,
+                       double gate, int rejections, double alpha, double beta, double kappa) {
              const UsvOutliers outliers{ChiSquareGate{gate}, rejections};
              const UsvInput input{{}, {a_std, w_std}, 1.0};
              const std::string call = CallText("UsvNavigator")
@@ -441,6 +444,7 @@ ValueError
                                           .with("current_std_mps", current)
                                           .with("speed_walk_mps", speed_walk)
                                           .with("current_walk_mps", current_walk)
+                                          .with("turned_at", turned_at)
                                           .with("gate_probability", gate)
                                           .with("rejections", rejections)
                                           .with("alpha", alpha)
@@ -452,10 +456,11 @@ ValueError
                return make(model, filter, outliers, {blind_a_std, blind_w_std},
                            {alpha, beta, kappa}, call);
              };
-             if (states == 5) return build(UsvMotion{});
+             if (states == 5) return build(UsvMotion{.turned_at = turned_at});
              if (states == 8)
                return build(UsvBiasMotion{.acceleration_bias_std_mps2 = a_bias,
-                                          .gyro_bias_std_rad_s = w_bias});
+                                          .gyro_bias_std_rad_s = w_bias,
+                                          .turned_at = turned_at});
              if (states == 7)
                return build(UsvCurrentMotion{.gyro_bias_std_rad_s = w_bias,
                                              .current_std_mps = current,
@@ -473,6 +478,7 @@ ValueError
            py::arg("current_std_mps") = UsvCurrentMotion{}.current_std_mps,
            py::arg("speed_walk_mps") = UsvCurrentMotion{}.speed_walk_mps,
            py::arg("current_walk_mps") = UsvCurrentMotion{}.current_walk_mps,
+           py::arg("turned_at") = UsvMotion{}.turned_at,
            py::arg("gate_probability") = UsvOutliers{}.gate.probability,
            py::arg("rejections") = UsvOutliers{}.rejections, py::arg("alpha") = Unscented{}.alpha,
            py::arg("beta") = Unscented{}.beta, py::arg("kappa") = Unscented{}.kappa)
@@ -536,9 +542,7 @@ Parameters
 time_s : (T,) array
     Not decreasing.
 imu : (T, 3) array, optional
-    Row k holds from time k - 1 to time k: [forward m/s², starboard m/s², yaw rate rad/s]. Models
-    of 5 and 8 states turn its acceleration by the heading at k - 1, as the paper does: where she
-    turns, velocities are off by half the turn between two rows, so give rows as often as there are.
+    Row k is the mean from time k - 1 to time k: [forward m/s², starboard m/s², yaw rate rad/s].
 gnss, velocity : (T, 2) array, optional
     Position m and velocity over ground m/s, [north, east].
 compass, log, rate_of_turn : (T,) array, optional

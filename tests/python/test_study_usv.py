@@ -78,7 +78,7 @@ def test_the_voyage_is_what_the_imu_feels(name):
     np.testing.assert_allclose(np.hypot(*through_water.T), mission.speed_mps)
     model_error = 0.0
     for k in range(1, len(truth.time_s)):
-        heading = truth.heading_rad[k - 1]
+        heading = truth.heading_rad[k - 1] + truth.imu[k, 2] / 2
         c, s = np.cos(heading), np.sin(heading)
         a = np.array([[c, -s], [s, c]]) @ truth.imu[k, :2]
         moved = truth.position_m[k - 1] + truth.velocity_mps[k - 1] + a / 2

@@ -22,7 +22,8 @@ def voyage(seed=1, steps=600, bias=BIAS, current=(0.0, 0.5)):
     middle = (velocity[1:] + velocity[:-1]) / 2
     position = np.vstack([[0.0, 0.0], np.cumsum(middle, 0)])
     change = np.diff(velocity, axis=0)
-    c, s = np.cos(heading[:-1]), np.sin(heading[:-1])
+    turned = (heading[1:] + heading[:-1]) / 2
+    c, s = np.cos(turned), np.sin(turned)
     body = np.stack([c * change[:, 0] + s * change[:, 1], -s * change[:, 0] + c * change[:, 1]], 1)
     imu = np.column_stack([np.vstack([[0, 0], body]), rate]) + bias
     imu += rng.normal(size=(steps, 3)) * [0.004, 0.004, 0.033 * DEG]
@@ -97,6 +98,39 @@ def test_biases_are_found_and_smoothing_helps():
     assert np.all(np.abs(wrapped(smooth.mean[:, 4] - log["heading"])) < 1 * DEG)
 
 
+def test_a_vessel_that_keeps_turning_is_known_as_well_as_believed():
+    """Rows of the IMU are means over a second in which she turns by 5 degrees."""
+    rng = np.random.default_rng(4)
+    time_s, speed, rate = np.arange(301.0), 5.0, 5 * DEG
+    heading = rate * time_s
+    place = speed / rate * np.array([np.sin(heading), 1.0 - np.cos(heading)])
+    velocity = speed * np.array([np.cos(heading), np.sin(heading)])
+    truth = np.column_stack([*place, *velocity, heading, np.tile(BIAS, (301, 1))])
+    noise = rng.normal(size=(301, 6)) * [0.004, 0.004, 0.033 * DEG, 8.0, 7.0, 1 * DEG]
+    readings = {
+        "imu": [0.0, speed * rate, rate] + BIAS + noise[:, :3],
+        "gnss": truth[:, :2] + noise[:, 3:5],
+        "compass": heading + noise[:, 5],
+    }
+
+    def nees(turned_at):
+        navigator = UsvNavigator(turned_at=turned_at)
+        navigator.start(truth[0, :2], truth[0, 2:4], 0.0)
+        run = navigator.run(time_s, **readings)
+        error = run.mean - truth
+        error[:, 4] = wrapped(error[:, 4])
+        return np.einsum("ti,tij,tj->t", error, np.linalg.inv(run.covariance), error)[50:].mean()
+
+    assert 3.0 < nees(0.5) < 14.0
+    assert nees(0.0) > 50.0
+
+
+@pytest.mark.parametrize("turned_at", [-0.1, 1.5, np.nan])
+def test_a_heading_outside_the_step_is_refused(turned_at):
+    with pytest.raises(ValueError, match="turned_at must be between 0 and 1, got"):
+        UsvNavigator(turned_at=turned_at)
+
+
 def test_smoothing_ends_where_the_belief_was_widened():
     log = voyage(steps=300)
     log["gnss"][150:] += [400.0, 0.0]
@@ -123,11 +157,11 @@ def test_filters_agree():
 
 
 def test_augmented_noise_is_additive_noise_at_points_as_far_out():
-    """The IMU's three errors enter the motion linearly, and widen the points like kappa = 3."""
-    log = voyage(steps=200)
-    augmented = started(log, 8, "augmented_ukf").run(**sensors(log))
-    additive = started(log, 8, "ukf", kappa=3.0).run(**sensors(log))
-    plain = started(log, 8, "ukf").run(**sensors(log))
+    """Turned at the start the IMU's errors enter linearly, and widen the points like kappa = 3."""
+    log, start = voyage(steps=200), {"turned_at": 0.0}
+    augmented = started(log, 8, "augmented_ukf", **start).run(**sensors(log))
+    additive = started(log, 8, "ukf", kappa=3.0, **start).run(**sensors(log))
+    plain = started(log, 8, "ukf", **start).run(**sensors(log))
     np.testing.assert_allclose(augmented.mean, additive.mean, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(augmented.covariance, additive.covariance, rtol=1e-8, atol=1e-12)
     assert np.any(augmented.mean != plain.mean)

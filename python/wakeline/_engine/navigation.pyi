@@ -442,6 +442,9 @@ class UsvNavigator:
         Of biases and current (per axis) at the start, which are zero with these deviations.
     speed_walk_mps, current_walk_mps : float
         What speed through water and current gain in 1 s, of 7 states.
+    turned_at : float
+        Where in a step the heading is taken that turns its acceleration, of 5 and 8 states: 0.5 is its
+        middle, 0 its start, as in the paper.
     gate_probability : float
         That a good reading is inside the gate.
     rejections : int
@@ -470,6 +473,7 @@ class UsvNavigator:
         current_std_mps: float = 0.5,
         speed_walk_mps: float = 0.03,
         current_walk_mps: float = 0.002,
+        turned_at: float = 0.5,
         gate_probability: float = 0.999,
         rejections: int = 10,
         alpha: float = 1.0,
@@ -510,9 +514,7 @@ class UsvNavigator:
         time_s : (T,) array
             Not decreasing.
         imu : (T, 3) array, optional
-            Row k holds from time k - 1 to time k: [forward m/s², starboard m/s², yaw rate rad/s]. Models
-            of 5 and 8 states turn its acceleration by the heading at k - 1, as the paper does: where she
-            turns, velocities are off by half the turn between two rows, so give rows as often as there are.
+            Row k is the mean from time k - 1 to time k: [forward m/s², starboard m/s², yaw rate rad/s].
         gnss, velocity : (T, 2) array, optional
             Position m and velocity over ground m/s, [north, east].
         compass, log, rate_of_turn : (T,) array, optional

@@ -164,7 +164,8 @@ class UsvMission:
                 heading = wl.wrap_angle(before + turn)
                 velocity = self._over_ground(heading)
                 position = position + self.period_s * (slow + velocity) / 2
-                felt = (velocity - slow) / self.period_s @ _body_to_north_east(before)
+                push = (velocity - slow) / self.period_s
+                felt = push @ _body_to_north_east(before + turn / 2)
                 states.append((*position, *velocity, heading))
                 readings.append(np.array([*felt, turn / self.period_s]))
                 if len(states) > _LONGEST_STEPS:

@@ -127,6 +127,7 @@ ESTIMATORS = {
 }
 IN_FULL = {
     "ukf5_printed_noise": Estimator(5, "ukf", _PRINTED, told_bias=True),
+    "ukf8_turned_at_start": Estimator(8, "ukf", {"turned_at": 0.0}),
     "augmented_ukf8": Estimator(8, "augmented_ukf"),
 }
 
@@ -281,16 +282,18 @@ def _step(
     heading: float, imu: np.ndarray, imu_std: tuple[float, float, float], dt_s: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """F and Q of a step under the true acceleration [forward, starboard] and rate of turn."""
-    c, s = np.cos(heading), np.sin(heading)
+    middle = heading + dt_s / 2 * imu[2]
+    c, s = np.cos(middle), np.sin(middle)
     turn = np.array([[c, -s], [s, c]])
     a = turn @ imu[:2]
     reach = np.array([dt_s**2 / 2, dt_s])  # of an acceleration, on position and velocity
+    by_heading = np.kron(reach, [-a[1], a[0]])
     by_imu = np.zeros((8, 3))
     by_imu[:4, :2] = np.kron(reach[:, None], turn)
-    by_imu[4, 2] = dt_s
+    by_imu[:5, 2] = [*(dt_s / 2 * by_heading), dt_s]
     f = np.eye(8)
     f[[0, 1], [2, 3]] = dt_s
-    f[:4, 4] = np.kron(reach, [-a[1], a[0]])
+    f[:4, 4] = by_heading
     f[:, 5:] -= by_imu
     q = (by_imu * np.square(imu_std)) @ by_imu.T
     q[[5, 6, 7], [5, 6, 7]] = dt_s * _BIAS_WALK**2
@@ -315,8 +318,8 @@ def run(
     runs, seed : int
         Of the Monte Carlo runs.
     full : bool
-        Also the paper's filter with its figures of the IMU read as variances, and ours with
-        augmented noise.
+        Also the paper's filter with its figures of the IMU read as variances, ours with its
+        accelerations turned by the heading at the start of a step, and with augmented noise.
     threads : int, optional
         Default as many as there are processors.
     progress : bool

@@ -92,10 +92,11 @@ TEST(AugmentedUkf, IsTheKalmanFilterOnALinearMotion) {
   }
 }
 
-// The IMU's errors enter the inertial motion linearly: three more inputs are three more of kappa.
+// The IMU's errors enter the inertial motion linearly where its acceleration is turned by the
+// heading at the start: three more inputs are three more of kappa.
 TEST(AugmentedUkf, IsAUkfOfPointsAsFarOutWhereErrorsEnterLinearly) {
   Draw draw(2);
-  UsvBiasMotion motion;
+  UsvBiasMotion motion{.turned_at = 0.0};
   motion.input = {{0.3, -0.2, 0.08}, {0.1, deg(2)}};
   AugmentedUkf<UsvBiasMotion> augmented(motion);
   Ukf<UsvBiasMotion> additive(motion, Unscented{.kappa = 3});

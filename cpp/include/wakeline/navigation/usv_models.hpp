@@ -80,9 +80,12 @@ Mat<Scalar, 2, 2> body_to_north_east(Scalar heading_rad) noexcept {
 /// Own ship driven by acceleration and rate of turn: state `[px, py, vx, vy, heading]`, and with
 /// biases `[..., forward bias, starboard bias, gyro bias]` behind.
 ///
-///     a = R(heading) (a_imu - b),   p += T v + T²/2 a,   v += T a,   heading += T (w_imu - b_w).
+///     w = w_imu - b_w,   a = R(heading + s T w) (a_imu - b),
+///     p += T v + T²/2 a,   v += T a,   heading += T w.
 ///
-/// The acceleration is held over a step and turned by the heading at its start (1)-(3).
+/// The acceleration is held over a step and turned by the heading in its middle, s = 1/2. In the
+/// paper, (1)-(6), it is that of its start, s = 0, which in a steady turn is wrong by half of each
+/// step's turn, always to the same side.
 template <bool Biases>
 struct UsvInertialMotion {
   static constexpr int kN = Biases ? 8 : 5;
@@ -100,34 +103,32 @@ struct UsvInertialMotion {
   double gyro_bias_std_rad_s = deg(0.5);      ///< of the bias at the start
   double acceleration_bias_walk_mps2 = 1e-6;  ///< std of what a bias gains in 1 s
   double gyro_bias_walk_rad_s = 1e-6;         ///< std of what the bias gains in 1 s
+  double turned_at = 0.5;                     ///< s: share of the step
   UsvInput input{};                           ///< of the present step
 
   /// f(x, dt).
   template <class Scalar>
   Vec<Scalar, kN> transition(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
-    const Vec<Scalar, 2> a = body_to_north_east(x[4]) * body_acceleration(x);
+    const Vec<Scalar, 2> a = body_axes(x, dt_s) * body_acceleration(x);
     Vec<Scalar, kN> moved = x;
     moved.template segment<2>(0) += dt_s * x.template segment<2>(2) + dt_s * dt_s / 2 * a;
     moved.template segment<2>(2) += dt_s * a;
-    moved[4] += dt_s * (Scalar(input.imu.yaw_rate_rad_s) - gyro_bias(x));
+    moved[4] += dt_s * turn_rate(x);
     return moved;
   }
 
   /// df/dx.
   template <class Scalar>
   Mat<Scalar, kN, kN> jacobian(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
-    const Mat<Scalar, 2, 2> turn = body_to_north_east(x[4]);
-    const Vec<Scalar, 2> a = turn * body_acceleration(x);
-    const Vec<Scalar, 2> a_by_heading(-a[1], a[0]);
+    const Mat<Scalar, 2, 2> axes = body_axes(x, dt_s);
     Mat<Scalar, kN, kN> f = Mat<Scalar, kN, kN>::Identity();
     f(0, 2) = f(1, 3) = dt_s;
-    f.template block<2, 1>(0, 4) = dt_s * dt_s / 2 * a_by_heading;
-    f.template block<2, 1>(2, 4) = dt_s * a_by_heading;
+    f.template block<4, 1>(0, 4) = by_heading(x, dt_s);
     if constexpr (Biases) {
       const Scalar share = Scalar(input.bias_share);
-      f.template block<2, 2>(0, 5) = -share * dt_s * dt_s / 2 * turn;
-      f.template block<2, 2>(2, 5) = -share * dt_s * turn;
-      f(4, 7) = -share * dt_s;
+      f.template block<2, 2>(0, 5) = -share * dt_s * dt_s / 2 * axes;
+      f.template block<2, 2>(2, 5) = -share * dt_s * axes;
+      f.template block<5, 1>(0, 7) = -share * by_yaw_rate(x, dt_s);
     }
     return f;
   }
@@ -144,7 +145,8 @@ struct UsvInertialMotion {
       q(axis, axis + 2) = q(axis + 2, axis) = g[0] * g[1];
       q(axis + 2, axis + 2) = g[1] * g[1];
     }
-    q(4, 4) = dt_s * w_std * (dt_s * w_std);
+    const Vec<Scalar, 5> by_gyro = w_std * by_yaw_rate(x, dt_s);
+    q.template topLeftCorner<5, 5>() += by_gyro * by_gyro.transpose();
     return q;
   }
 
@@ -195,10 +197,34 @@ struct UsvInertialMotion {
     require_positive("gyro_bias_std_rad_s", gyro_bias_std_rad_s);
     require_not_negative("acceleration_bias_walk_mps2", acceleration_bias_walk_mps2);
     require_not_negative("gyro_bias_walk_rad_s", gyro_bias_walk_rad_s);
+    require(turned_at >= 0.0 && turned_at <= 1.0, "turned_at", "between 0 and 1", turned_at);
     input.noise.validate();
   }
 
  private:
+  /// R of the heading that turns the acceleration.
+  template <class Scalar>
+  [[nodiscard]] Mat<Scalar, 2, 2> body_axes(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
+    return body_to_north_east(Scalar(x[4] + Scalar(turned_at) * dt_s * turn_rate(x)));
+  }
+
+  /// What position and velocity gain by that heading.
+  template <class Scalar>
+  [[nodiscard]] Vec<Scalar, 4> by_heading(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
+    const Vec<Scalar, 2> a = body_axes(x, dt_s) * body_acceleration(x), across(-a[1], a[0]);
+    Vec<Scalar, 4> gain;
+    gain << dt_s * dt_s / 2 * across, dt_s * across;
+    return gain;
+  }
+
+  /// What position, velocity and heading gain by the rate of turn.
+  template <class Scalar>
+  [[nodiscard]] Vec<Scalar, 5> by_yaw_rate(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
+    Vec<Scalar, 5> gain;
+    gain << Scalar(turned_at) * dt_s * by_heading(x, dt_s), dt_s;
+    return gain;
+  }
+
   template <class Scalar>
   [[nodiscard]] Vec<Scalar, 2> body_acceleration(const Vec<Scalar, kN>& x) const noexcept {
     Vec<Scalar, 2> a(Scalar(input.imu.forward_mps2), Scalar(input.imu.starboard_mps2));
@@ -207,11 +233,10 @@ struct UsvInertialMotion {
   }
 
   template <class Scalar>
-  [[nodiscard]] Scalar gyro_bias(const Vec<Scalar, kN>& x) const noexcept {
-    if constexpr (Biases)
-      return Scalar(input.bias_share) * x[7];
-    else
-      return Scalar(0);
+  [[nodiscard]] Scalar turn_rate(const Vec<Scalar, kN>& x) const noexcept {
+    Scalar rate = Scalar(input.imu.yaw_rate_rad_s);
+    if constexpr (Biases) rate -= Scalar(input.bias_share) * x[7];
+    return rate;
   }
 };
 
