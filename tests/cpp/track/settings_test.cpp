@@ -84,11 +84,10 @@ TEST(TrackerConfig, NamesWhatItRefuses) {
 TEST(TrackerConfig, SettingsListEveryField) {
   // Each field, changed alone, changes the settings: none is forgotten in what is saved and
   // compared.
-  const TrackerConfig defaults;
-  TrackerConfig config;
+  TrackerConfig defaults, config;
   std::apply([](auto&... field) { ((field = std::remove_reference_t<decltype(field)>{}), ...); },
              config.settings());
-  EXPECT_NE(config.settings(), defaults.settings());
+  EXPECT_NE(config, defaults);
   std::size_t bytes = 0;
   std::apply([&](const auto&... field) { bytes = (sizeof(field) + ...); }, defaults.settings());
   EXPECT_LE(sizeof(TrackerConfig) - bytes, 2 * alignof(TrackerConfig))

@@ -83,7 +83,7 @@ struct TrackerConfig {
     return wild_probability > 0.0 ? wild_scale * wild_scale : 1.0;
   }
 
-  /// All settings in order, to be compared and saved.
+  /// All settings in order, to be saved.
   [[nodiscard]] auto settings() noexcept {
     return std::tie(detection_probability, gate_probability, clutter_density_per_m2,
                     wild_probability, wild_scale, clutter_cell_m, clutter_memory_s, clutter_weight,
@@ -93,15 +93,8 @@ struct TrackerConfig {
                     coast_scans_per_hit, coast_scans_max, shown_scans, drop_position_std_m,
                     drop_speed_factor, duplicate_distance, duplicate_scans, max_tracks, max_plots);
   }
-  [[nodiscard]] auto settings() const noexcept {
-    return std::tie(detection_probability, gate_probability, clutter_density_per_m2,
-                    wild_probability, wild_scale, clutter_cell_m, clutter_memory_s, clutter_weight,
-                    visible_time_s, hidden_time_s, association, initial_existence, free_plot,
-                    start_gate_sigma, start_speed_factor, confirm_existence, confirm_hits,
-                    confirm_window, survival_time_s, drop_existence, tentative_misses, coast_scans,
-                    coast_scans_per_hit, coast_scans_max, shown_scans, drop_position_std_m,
-                    drop_speed_factor, duplicate_distance, duplicate_scans, max_tracks, max_plots);
-  }
+
+  friend bool operator==(const TrackerConfig&, const TrackerConfig&) = default;
 
   void validate() const {
     require_probability("detection_probability", detection_probability);

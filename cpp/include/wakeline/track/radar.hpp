@@ -26,15 +26,13 @@ struct Radar {
         .position(range_m, bearing_rad, true);
   }
 
-  /// All settings in order, to be compared and saved.
+  /// All settings in order, to be saved.
   [[nodiscard]] auto settings() noexcept {
     return std::tie(range_std_m, bearing_std_rad, extent_std_m, period_s, max_speed_mps,
                     bearing_offset_rad);
   }
-  [[nodiscard]] auto settings() const noexcept {
-    return std::tie(range_std_m, bearing_std_rad, extent_std_m, period_s, max_speed_mps,
-                    bearing_offset_rad);
-  }
+
+  friend bool operator==(const Radar&, const Radar&) = default;
 
   void validate() const {
     require_positive("range_std_m", range_std_m);

@@ -377,7 +377,7 @@ class Tracker {
   /// The odds with which a track claims each of its plots, and their sum for each plot. To the
   /// others a claimed plot is as good as denser clutter (linear multitarget).
   void stake(const TrackType& track, Claims& claims) noexcept {
-    double sum = 1.0 - config_.detection() * track.visibility;
+    double sum = missed(track);
     for (const Claim& claim : claims) sum += weight(track, claim);
     const double norm = 1.0 - track.existence + track.existence * sum;
     for (Claim& claim : claims) {
@@ -394,9 +394,19 @@ class Tracker {
     return std::max(echo.density - of_own, config_.clutter_density_per_m2);
   }
 
+  /// PD pv: that a target gives a plot.
+  [[nodiscard]] double detected(const TrackType& track) const noexcept {
+    return config_.detection_probability * track.visibility;
+  }
+
+  /// 1 - PD PG pv: that it gives none in its gate.
+  [[nodiscard]] double missed(const TrackType& track) const noexcept {
+    return 1.0 - config_.detection() * track.visibility;
+  }
+
   /// PD pv g / rho: how much likelier the plot is as the track's than as clutter.
   [[nodiscard]] double weight(const TrackType& track, const Claim& claim) const noexcept {
-    return config_.detection_probability * track.visibility * claim.likelihood / claim.density;
+    return detected(track) * claim.likelihood / claim.density;
   }
 
   /// Leaves each track at most one plot: confirmed tracks choose before tentative ones.
@@ -408,10 +418,9 @@ class Tracker {
         if (track.confirmed() != confirmed) return;
         row_slot_.push_back(slot);
         candidates_.start_row(0.0);
-        const double missed = 1.0 - config_.detection() * track.visibility;
         for (const Claim& claim : claims_of(slot))
           if (echoes_[claim.echo].free > 0.0)
-            candidates_.add(claim.echo, -std::log(weight(track, claim) / missed));
+            candidates_.add(claim.echo, -std::log(weight(track, claim) / missed(track)));
       });
       const Assignment<double>& assignment = solved();
       for (std::size_t row = 0; row < row_slot_.size(); ++row) {
@@ -469,7 +478,7 @@ class Tracker {
 
   /// What it weighs that none of its plots is the track's.
   [[nodiscard]] double none_of(const TrackType& track, const Claims& claims) const noexcept {
-    return claims.certain() ? 0.0 : 1.0 - config_.detection() * track.visibility;
+    return claims.certain() ? 0.0 : missed(track);
   }
 
   /// Tells the plots, and counts, how far they are a track's, by the shares of their readings.
@@ -500,8 +509,7 @@ class Tracker {
     for (const Claim& claim : claims) {
       const Echo& echo = echoes_[claim.echo];
       const double claimed_by_others = std::max(echo.odds - claim.odds, 0.0);
-      const double weight =
-          config_.detection_probability * track.visibility / (claim.density + claimed_by_others);
+      const double weight = detected(track) / (claim.density + claimed_by_others);
       const Mat<double, 2, 2>& nominal_m2 = echo.position.covariance;
       readings.fixes[count++] = {Fix{nominal_m2 + claim.moved_m2}, claim.z,
                                  (1.0 - config_.wild_probability) * weight};
@@ -764,9 +772,8 @@ class Tracker {
     fields(models);
     std::apply(each, radar.settings());
     std::apply(each, config.settings());
-    const bool same = version == kArchiveVersion && models == own_models &&
-                      radar.settings() == radar_.settings() &&
-                      config.settings() == config_.settings();
+    const bool same =
+        version == kArchiveVersion && models == own_models && radar == radar_ && config == config_;
     if (!same) fields.fail();
     if (!fields.ok()) return;
     fields(time_s_);
