@@ -191,6 +191,7 @@ class AnyFilterBank {
 
   [[nodiscard]] AnyBelief empty_estimate() const noexcept { return empty_; }
   [[nodiscard]] const AnyFilter& filter(std::size_t index) const { return slots_.at(index).filter; }
+  [[nodiscard]] AnyFilter& filter(std::size_t index) { return slots_.at(index).filter; }
 
  private:
   struct Slot {

@@ -6,6 +6,7 @@
 #include "any_turn_grids.hpp"
 #include "call_text.hpp"
 #include "face.hpp"
+#include "imm_smoother.hpp"
 #include "mode_history.hpp"
 #include "turn_grid.hpp"
 
@@ -398,6 +399,7 @@ initial_mode_probability : (K,) array, optional
           }),
           py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none());
   define_face(imm);
+  define_imm_smoother(imm);
   imm.def("__repr__", &imm_text);
 
   define_adaptive_grid(m);

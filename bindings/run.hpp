@@ -109,7 +109,19 @@ void require_own_velocity(const Sensor& sensor, const RunInput& in) {
   }
 }
 
-template <class Estimator>
+/// All runs of an estimator, the soonest way there is.
+struct RunSoonest {
+  template <class Estimator, class Sensor>
+  void operator()(const Estimator& prototype, const Sensor& sensor, const RunInput& in,
+                  const std::vector<AnyBelief>& starts, const RunOutput& out) const {
+    bool done = run_lanes(prototype, sensor, in, starts, out);
+    if constexpr (kOverAnyFilters<Estimator>)
+      done = done || run_turns(prototype, sensor, in, starts, out);
+    if (!done) run_all(prototype, sensor, in, starts, out);
+  }
+};
+
+template <class Estimator, class RunAll = RunSoonest>
 RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object& dt_s,
               const py::object& sensor, const py::object& start,
               const std::optional<DoubleArray>& own_position_m,
@@ -177,10 +189,7 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
     {
       const py::gil_scoped_release release;
       require_starts(prototype, starts);
-      bool done = run_lanes(prototype, model, in, starts, out);
-      if constexpr (kOverAnyFilters<Estimator>)
-        done = done || run_turns(prototype, model, in, starts, out);
-      if (!done) run_all(prototype, model, in, starts, out);
+      RunAll{}(prototype, model, in, starts, out);
     }
     return result;
   });

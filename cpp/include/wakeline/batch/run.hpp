@@ -151,12 +151,21 @@ auto position_of(const Belief& belief) noexcept {
   return Vec<Scalar, 2>(belief.mean[0], belief.mean[belief.mean.size() == 6 ? 3 : 2]);
 }
 
+/// Sees nothing of a run.
+struct Unwatched {
+  template <class Estimator>
+  void predicted(std::size_t, const Estimator&) const noexcept {}
+  template <class Estimator>
+  void updated(std::size_t, const Estimator&) const noexcept {}
+};
+
 /// Runs the recordings `first`, `first + 1`, ... through an estimator that has been started, one in
 /// each lane of its scalar. A step that fails is told in its status: a reading that cannot be taken
 /// leaves the prediction, a time that cannot leaves all as it was. No lane influences another.
-template <class Estimator, class Sensor>
+/// `watch` sees the estimator after each prediction and at the end of each scan.
+template <class Estimator, class Sensor, class Watch = Unwatched>
 void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput& in,
-                      std::size_t first, const RunOutput& out) noexcept {
+                      std::size_t first, const RunOutput& out, const Watch& watch = {}) noexcept {
   using Scalar = typename Estimator::Scalar;
   using Mask = MaskOf<Scalar>;
   constexpr int kM = Sensor::kMeasurements;
@@ -177,6 +186,7 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
     } else {
       status = estimator.predict(dt_s);
     }
+    watch.predicted(scan, estimator);
 
     Vec<Scalar, kM> z;
     Mask missed = true;
@@ -205,6 +215,7 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
       step.status = select(missed, step.status, taken.status);
     }
     status = first_failure(status, step.status);
+    watch.updated(scan, estimator);
 
     const auto belief = estimator.estimate();
     assert(static_cast<std::size_t>(belief.mean.size()) == out.states);

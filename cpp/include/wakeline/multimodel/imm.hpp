@@ -224,6 +224,8 @@ class Imm {
  protected:
   template <class>
   friend class Imm;
+  template <class>
+  friend class ImmSmoother;
 
   template <class... Known>
   [[gnu::flatten]] StatusOf<Scalar> mix_and_move(Scalar dt_s,

@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "wakeline/core/cholesky.hpp"
+#include "wakeline/filter/rts_smoother.hpp"
+#include "wakeline/multimodel/imm.hpp"
+
+namespace wakeline {
+
+/// One scan of a recording as an Imm has gone through it.
+template <class Bank>
+struct ImmScan {
+  Imm<Bank> predicted;           ///< after `predict`
+  Imm<Bank> updated;             ///< after what the scan has brought, or none of it
+  typename Bank::Scalar dt_s{};  ///< of the step to it
+};
+
+/// A belief that has learned what later readings say, and how well it foretold them.
+template <class BeliefType, class Scalar = double>
+struct Revised {
+  Status status = Status::kOk;
+  BeliefType belief = {};
+  Scalar log_evidence = Scalar(0);  ///< that of the belief which they were revised from is 0
+};
+
+/// What readings say that made of one belief another, said to a third one, `prior`: its product
+/// with
+///
+///     L(x) = after(x) / before(x) = exp(-λ u² / 2 + h u),   λ = 1 / w - 1,   h = m / w,
+///
+/// along each axis u in which `before` is N(0, 1) and `after` is N(m, w): readings tell of a place
+/// u = m / (1 - w). Where `after` is hardly narrower, or the wider one as joined beliefs may be,
+/// that is anywhere. A prior that is unlike `before` by a deviation or more is told of a place ten
+/// deviations off at most, or twice m.
+template <int N, class Scalar>
+Revised<Gaussian<N, Scalar>, Scalar> revised(const Gaussian<N, Scalar>& prior,
+                                             const Gaussian<N, Scalar>& before,
+                                             const Gaussian<N, Scalar>& after) noexcept {
+  using Vector = Vec<Scalar, N>;
+  using Matrix = Mat<Scalar, N, N>;
+  Revised<Gaussian<N, Scalar>, Scalar> result;
+  result.status = Status::kNotPositiveDefinite;
+  const Cholesky<N, Scalar> root(before.covariance);
+  if (!root.ok()) return result;
+  const auto whitened = [&](const Matrix& covariance) -> Matrix {
+    return root.template whiten<N>(Matrix(root.template whiten<N>(covariance).transpose()));
+  };
+  const Eigen::SelfAdjointEigenSolver<Matrix> axes(whitened(after.covariance));
+  if (axes.info() != Eigen::Success || !(axes.eigenvalues()[0] > Scalar(0))) return result;
+  const Matrix& turn = axes.eigenvectors();
+  const auto along_axes = [&](const Vector& mean) -> Vector {
+    return turn.transpose() * root.template whiten<1>(Vector(mean - before.mean));
+  };
+  const Vector m = along_axes(after.mean);
+  const Vector d = along_axes(prior.mean);
+  const Matrix c = turn.transpose() * whitened(prior.covariance) * turn;
+  const Cholesky<N, Scalar> prior_root(c);
+  if (!prior_root.ok()) return result;
+  const Vector unlike =
+      (d.cwiseAbs() + (c.diagonal() - Vector::Ones()).cwiseAbs()).cwiseMin(Scalar(1));
+  const Vector least_told = (m.cwiseAbs() / Scalar(10)).cwiseMin(Scalar(0.5));
+  const Vector w = axes.eigenvalues().cwiseMin(Vector::Ones() - least_told.cwiseProduct(unlike));
+  const Vector lambda = w.cwiseInverse() - Vector::Ones(), h = m.cwiseQuotient(w);
+
+  const Matrix& a = prior_root.lower();
+  const Cholesky<N, Scalar> told(
+      Matrix(Matrix::Identity() + a.transpose() * lambda.asDiagonal() * a));
+  if (!told.ok()) return result;
+  const Matrix posterior_root = told.template whiten_rows<N>(a);
+  const Vector pull = posterior_root.transpose() * (h - lambda.cwiseProduct(d));
+  const Matrix back = root.lower() * turn, spread = back * posterior_root;
+  result.belief.mean = before.mean + back * d + spread * pull;
+  result.belief.covariance = spread * spread.transpose();
+  mirror_lower<Scalar, N>(result.belief.covariance);
+  const Scalar of_prior = d.dot(h) - d.cwiseAbs2().dot(lambda) / 2 + pull.squaredNorm() / 2 -
+                          told.log_determinant() / 2;
+  const Scalar of_before = m.dot(h) / 2 + w.array().log().sum() / 2;
+  result.log_evidence = of_prior - of_before;
+  const bool finite = is_finite(result.belief.mean) && is_finite(result.belief.covariance) &&
+                      std::isfinite(result.log_evidence);
+  result.status = finite ? Status::kOk : Status::kNotFinite;
+  return result;
+}
+
+/// What a smoothed belief makes of the one that a filter predicted it from.
+template <class Filter, auto Components, class... Known>
+Status smooth_pair(const Filter& filter, StateBelief<Components, typename Filter::Scalar>& belief,
+                   const Gaussian<Filter::kStates, typename Filter::Scalar>& later,
+                   typename Filter::Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+  using Scalar = typename Filter::Scalar;
+  std::array<Gaussian<Filter::kStates, Scalar>, 2> pair{belief, later};
+  const std::array<Vec<Scalar, 2>, sizeof...(Known)> known{acceleration_mps2...};
+  const Status status = smooth_as(filter, filter.motion(), pair, std::span(&dt_s, 1), known);
+  belief = pair[0];
+  return status;
+}
+
+/// `own` as it is once `part` is what is believed of the components that both hold: the others
+/// follow them as `own` has it. Source: R. C. Jeffrey, The Logic of Decision (his rule).
+template <auto To, class Scalar, class Part>
+StateBelief<To, Scalar> carried_over(const StateBelief<To, Scalar>& own,
+                                     const Part& part) noexcept {
+  constexpr auto kRows = rows_of(Part::kComponents, To);
+  constexpr int kN = StateBelief<To, Scalar>::kStates;
+  constexpr int kShared = [&] {
+    int shared = 0;
+    for (int i = 0; i < kN; ++i) shared += kRows[i] >= 0;
+    return shared;
+  }();
+  Vec<Scalar, kShared> shift;
+  Mat<Scalar, kShared, kShared> before, change;
+  Mat<Scalar, kN, kShared> with_shared;
+  for (int i = 0, a = 0; i < kN; ++i) {
+    if (kRows[i] < 0) continue;
+    shift[a] = part.mean[kRows[i]] - own.mean[i];
+    with_shared.col(a) = own.covariance.col(i);
+    for (int j = 0, b = 0; j < kN; ++j) {
+      if (kRows[j] < 0) continue;
+      before(a, b) = own.covariance(i, j);
+      change(a, b) = part.covariance(kRows[i], kRows[j]) - before(a, b);
+      ++b;
+    }
+    ++a;
+  }
+  StateBelief<To, Scalar> result = own;
+  const Cholesky<kShared, Scalar> factor(before);
+  if (!factor.ok()) return result;
+  const Mat<Scalar, kN, kShared> gain = factor.unwhiten_rows(factor.whiten_rows(with_shared));
+  result.mean += gain * shift;
+  result.covariance += gain * change * gain.transpose();
+  mirror_lower<Scalar, kN>(result.covariance);
+  return result;
+}
+
+/// Of a belief over the same components, that.
+template <auto Components, class Scalar>
+StateBelief<Components, Scalar> carried_over(const StateBelief<Components, Scalar>&,
+                                             const BeliefView<Components, Scalar>& part) noexcept {
+  StateBelief<Components, Scalar> result;
+  result = Gaussian<StateBelief<Components, Scalar>::kStates, Scalar>{part.mean, part.covariance};
+  return result;
+}
+
+/// Smooths a recording that an Imm has gone through, from its end.
+///
+/// A mode i and the mode j after it are a way. Each way's prediction learns what later readings say
+/// of a vessel in mode j (`revised`), is carried back to its start by the filter's own smoother,
+/// and is as likely as it foretold them: what an Imm forgets by mixing, the turn that comes, tells
+/// which way it was. The ways from a mode are joined to its smoothed belief. What only one of two
+/// modes holds enters a way as it enters mixing, and goes back as `carried_over`. Costs K²
+/// predictions and smoothings a scan, and memory. Sources: R. E. Helmick, W. D. Blair, S. A.
+/// Hoffman, IEEE Trans. IT-41, 1995 (ways of two modes, weighed by both sides); N. Nadarajah, R.
+/// Tharmarasa, M. McDonald, T. Kirubarajan, IEEE Trans. AES-48, 2012 (by Rauch-Tung-Striebel
+/// smoothers).
+template <class BankType>
+class ImmSmoother {
+ public:
+  using Bank = BankType;
+  using Scalar = typename Bank::Scalar;
+
+  /// Gives the filters of `scans[k].updated` their smoothed beliefs, and it the smoothed mode
+  /// probabilities, from which `estimate()` follows. `acceleration_mps2` is empty, or has one for
+  /// each scan. Returns the first failure, with that scan and everything before it left as it was.
+  static Status smooth(std::span<ImmScan<Bank>> scans,
+                       std::span<const Vec<Scalar, 2>> acceleration_mps2 = {}) {
+    for (std::size_t k = scans.size(); k-- > 1;) {
+      const Status status = acceleration_mps2.empty()
+                                ? step(scans[k - 1].updated, scans[k])
+                                : step(scans[k - 1].updated, scans[k], acceleration_mps2[k]);
+      if (status != Status::kOk) return status;
+    }
+    return Status::kOk;
+  }
+
+ private:
+  using Estimator = Imm<Bank>;
+  using Matrix = ModeMatrix<Scalar, Bank::kModels>;
+
+  /// Calls `f(k)` for each mode, where filters are of different kinds with a constant.
+  template <class Function>
+  static void for_each_mode(const Bank& bank, const Function& function) {
+    if constexpr (requires { bank.filter(0); })
+      for (int k = 0; k < bank.size(); ++k) function(k);
+    else
+      unroll<Bank::kModels>([&](auto k) { function(k); });
+  }
+
+  template <class SomeBank, class Mode>
+  static auto& filter_of(SomeBank& bank, Mode k) {
+    if constexpr (requires { bank.filter(k); })
+      return bank.filter(k);
+    else
+      return bank.template get<Mode::value>();
+  }
+
+  /// The belief of a filter, which knows its components.
+  template <class Filter>
+  static auto belief_of(const Filter& filter) {
+    if constexpr (requires { Filter::kComponents; }) {
+      StateBelief<Filter::kComponents, Scalar> belief;
+      belief = filter.estimate();
+      return belief;
+    } else {
+      return filter.estimate();
+    }
+  }
+
+  template <class... Known>
+  static Status step(Estimator& now, const ImmScan<Bank>& next, const Known&... acceleration_mps2) {
+    const int modes = now.bank_.size();
+    std::vector<Estimator> ways(static_cast<std::size_t>(modes), now);
+    Matrix weight = now.chain_.transition(double(next.dt_s)).template cast<Scalar>();
+    for_each_mode(now.bank_, [&](auto from) {
+      const auto belief = belief_of(filter_of(now.bank_, from));
+      for_each_mode(now.bank_, [&](auto to) {
+        using std::log;
+        const int i = from, j = to;
+        const Scalar foretold = next.predicted.probability_[j];
+        const Scalar prior = now.probability_[i] * weight(i, j) * next.updated.probability_[j];
+        weight(i, j) = log(Scalar(0));
+        if (!(prior > Scalar(0)) || !(foretold > Scalar(0))) return;
+        auto& filter = filter_of(ways[static_cast<std::size_t>(i)].bank_, to);
+        const auto own = belief_of(filter);
+        auto start = zero_like(own);
+        add_mean(start, Scalar(1), belief, own);
+        add_spread(start, Scalar(1), belief, own);
+        if (predict_from(filter, start, next.dt_s, acceleration_mps2...) != Status::kOk) return;
+        const auto later =
+            revised(belief_of(filter), belief_of(filter_of(next.predicted.bank_, to)),
+                    belief_of(filter_of(next.updated.bank_, to)));
+        if (later.status != Status::kOk ||
+            smooth_pair(filter, start, later.belief, next.dt_s, acceleration_mps2...) !=
+                Status::kOk ||
+            filter.assign(start) != Status::kOk)
+          return;
+        weight(i, j) = log(prior / foretold) + later.log_evidence;
+      });
+    });
+    return join(now, ways, weight);
+  }
+
+  /// Gives each mode the ways from it, weighed by the logarithms of their weights.
+  static Status join(Estimator& now, const std::vector<Estimator>& ways, Matrix& weight) {
+    using std::exp;
+    const Scalar greatest = weight.maxCoeff();
+    if (!(greatest > -std::numeric_limits<Scalar>::infinity())) return Status::kNotFinite;
+    for (Scalar& each : weight.reshaped()) each = exp(each - greatest);
+    weight /= weight.sum();
+    for_each_mode(now.bank_, [&](auto from) {
+      const int i = from;
+      auto& filter = filter_of(now.bank_, from);
+      const Scalar total = weight.row(i).sum();
+      now.probability_[i] = total;
+      if (!(total > Scalar(0))) return;
+      const auto own = belief_of(filter);
+      auto joint = zero_like(own);
+      const Bank& bank = ways[static_cast<std::size_t>(i)].bank_;
+      bank.for_each_belief([&](int j, const auto& belief) {
+        if (weight(i, j) > Scalar(0))
+          add_mean(joint, Scalar(weight(i, j) / total), carried_over(own, belief), own);
+      });
+      bank.for_each_belief([&](int j, const auto& belief) {
+        if (weight(i, j) > Scalar(0))
+          add_spread(joint, Scalar(weight(i, j) / total), carried_over(own, belief), own);
+      });
+      (void)filter.assign(joint);
+    });
+    return Status::kOk;
+  }
+};
+
+}  // namespace wakeline
