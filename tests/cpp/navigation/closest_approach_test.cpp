@@ -180,6 +180,28 @@ TEST(ClosestApproach, OfShipsAtRelativeRestIsTheRangeNow) {
   EXPECT_EQ(together.probability(1), 1.0);
 }
 
+TEST(ClosestApproach, HasNoErrorWhereOnlyTheWayAlongIsUncertain) {
+  test::Draw draw(9);
+  for (int k = 0; k < 300; ++k) {
+    const Vec2 ahead = polar(1.0, draw.uniform(-4, 4));
+    const Vec2 position = polar(draw.uniform(100, 3000), draw.uniform(-4, 4));
+    const Vec4 error = state(30.0 * ahead, 0.5 * ahead);
+    const Vec4 mean = state(position, draw.uniform(2, 10) * ahead);
+    const ClosestApproach moving({mean, error * error.transpose()});
+    EXPECT_NEAR(moving.cpa_std_m(), 0.0, 1e-3);
+    EXPECT_GT(moving.tcpa_std_s(), 0.0);
+    const double p = moving.probability(500, 600);
+    const int draws = 2000;
+    int near = 0;
+    for (int i = 0; i < draws; ++i) near += least_distance(mean + draw.normal() * error, 600) < 500;
+    EXPECT_NEAR(p, near / double(draws), 0.1) << k;
+    const Vec4 aside = state(30.0 * Vec2(-position[1], position[0]) / position.norm(), {0, 0});
+    const ClosestApproach resting({state(position, {0, 0}), aside * aside.transpose()});
+    EXPECT_NEAR(resting.cpa_std_m(), 0.0, 1e-3);
+    EXPECT_EQ(resting.probability(position.norm() / 2), 0.0);
+  }
+}
+
 // Probability -------------------------------------------------------------------------------------
 
 /// How far the closed form is from the share of many draws that come closer than the limit.

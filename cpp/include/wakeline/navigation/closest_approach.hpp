@@ -69,6 +69,7 @@ class ClosestApproach {
     jacobian << n[0], tcpa_s_ * n[0], n[1], tcpa_s_ * n[1],  //
         tcpa_by_position[0], tcpa_by_velocity[0], tcpa_by_position[1], tcpa_by_velocity[1];
     covariance_ = jacobian * state_covariance_ * jacobian.transpose();
+    for (const int k : {0, 1}) covariance_(k, k) = rounded_up(covariance_(k, k));
     mirror_lower(covariance_);
   }
 
@@ -129,10 +130,13 @@ class ClosestApproach {
     return range == 0.0 ? Vec2(1.0, 0.0) : Vec2(position_m / range);
   }
 
+  /// A variance that is zero may come out below it by rounding.
+  static double rounded_up(double variance) noexcept { return std::max(variance, 0.0); }
+
   /// Variance of the position after a time, in a direction.
   [[nodiscard]] double variance_along(const Vec2& u, double after_s) const noexcept {
     const Vec<double, 4> row(u[0], u[0] * after_s, u[1], u[1] * after_s);
-    return row.dot(state_covariance_ * row);
+    return rounded_up(row.dot(state_covariance_ * row));
   }
 
   /// P(|p| < L); NaN where anything is.
@@ -140,9 +144,9 @@ class ClosestApproach {
     const double north2 = state_covariance_(0, 0), east2 = state_covariance_(2, 2);
     const double axis = std::atan2(2.0 * state_covariance_(2, 0), north2 - east2) / 2;
     const Vec2 along(std::cos(axis), std::sin(axis)), across(-along[1], along[0]);
-    const double along_std_m = std::sqrt(std::max(variance_along(along, 0.0), 0.0));
+    const double along_std_m = std::sqrt(variance_along(along, 0.0));
     const double across_m = position_m_.dot(across);
-    const double across_std_m = std::sqrt(std::max(variance_along(across, 0.0), 0.0));
+    const double across_std_m = std::sqrt(variance_along(across, 0.0));
     return within_disc(limit_m, position_m_.dot(along), along_std_m,
                        [&](double, double half_chord_m) {
                          return detail::probability_within(half_chord_m, across_m, across_std_m);
@@ -181,7 +185,7 @@ class ClosestApproach {
     const double common = distance.dot(error), variance_m2 = covariance_(0, 0);
     const double slope = variance_m2 > 0.0 ? common / variance_m2 : 0.0;
     return {speed * (tcpa_s_ - after_s), slope,
-            std::sqrt(std::max(way.dot(error) - slope * common, 0.0))};
+            std::sqrt(rounded_up(way.dot(error) - slope * common))};
   }
 
   /// ∫ P(x, half a chord there) p(x) dx over a disc of radius L, x Gaussian along a diameter.
