@@ -134,6 +134,27 @@ TEST(DriftWindow, OfErrorsOf4MetresAnAxisNeedsOneFixMore) {
   EXPECT_LT(twenty.rms_kn, 0.030);
 }
 
+TEST(DriftWindow, OfAFixThatSaysNothingIsThatOfTheOthers) {
+  for (const double std_m : {1e6, 1e9, 1e15}) {
+    DriftWindow<> with, without;
+    for (int k = 0; k < 6; ++k) {
+      if (k > 0) {
+        EXPECT_EQ(with.advance(10, 0, 0), Status::kOk);
+        EXPECT_EQ(without.advance(10, 0, 0), Status::kOk);
+      }
+      const bool blind = k == 2;
+      const Gaussian<2> fix{Vec2(3 * k, k * k), (blind ? std_m * std_m : 1e-4) * kIdentity};
+      EXPECT_EQ(with.add(fix), Status::kOk);
+      if (!blind) {
+        EXPECT_EQ(without.add(fix), Status::kOk);
+      }
+    }
+    const Gaussian<2> drift = with.drift(), expected = without.drift();
+    EXPECT_LT((drift.mean - expected.mean).norm(), 1e-9) << std_m;
+    EXPECT_LT(test::covariance_difference(drift.covariance, expected.covariance), 1e-9) << std_m;
+  }
+}
+
 TEST(DriftWindow, KnowsNothingBeforeTwoTimes) {
   DriftWindow<> window;
   EXPECT_FALSE(window.ready());

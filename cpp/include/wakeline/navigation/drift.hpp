@@ -168,28 +168,28 @@ class DriftWindow {
     const Mat<double, 2, 2> identity = Mat<double, 2, 2>::Identity();
     if (!ready()) return unknown();
     // Block elimination of the banded covariance of the steps: each less what the step before tells
-    // of the fix that both share.
+    // of the fix that both share. `rest` is that of a step but for the fix that it leads to.
     Mat<double, 2, 2> information = Mat<double, 2, 2>::Zero();
     Vec<double, 2> weighted = Vec<double, 2>::Zero();
+    Mat<double, 2, 2> rest = latest(size_ - 1).fix.covariance;
     Mat<double, 2, 2> time = Mat<double, 2, 2>::Zero();
     Vec<double, 2> off = Vec<double, 2>::Zero();
     Cholesky<2> before;
     for (int k = size_ - 2; k >= 0; --k) {
       const Fixed &from = latest(k + 1), &to = latest(k);
-      Mat<double, 2, 2> covariance =
-          from.fix.covariance + to.fix.covariance + to.reckoned_covariance_m2;
       Mat<double, 2, 2> t = to.gap_s * identity;
       Vec<double, 2> d = to.fix.mean - from.fix.mean - to.reckoned_m;
       if (k < size_ - 2) {
         const Mat<double, 2, 2> told = before.template solve<2>(from.fix.covariance).transpose();
-        covariance -= told * from.fix.covariance;
-        mirror_lower<double, 2>(covariance);
+        rest = told * rest;
+        mirror_lower<double, 2>(rest);
         t += told * time;
         d += told * off;
       }
+      rest += to.reckoned_covariance_m2;
       time = t;
       off = d;
-      before.compute(covariance);
+      before.compute(Mat<double, 2, 2>(rest + to.fix.covariance));
       information += time.transpose() * before.template solve<2>(time);
       weighted += time.transpose() * before.template solve<1>(off);
     }
