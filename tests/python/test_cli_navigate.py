@@ -267,6 +267,29 @@ def test_a_log_that_is_stuck_is_told_and_says_nothing_of_the_compass(tmp_path, c
     assert "are 0 while" not in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("speed", ["0.0", "0.023"])
+def test_at_rest_no_course_is_wanted(tmp_path, capsys, speed):
+    rng = np.random.default_rng(2)
+    clocks = [f"10{second // 60:02d}{second % 60:02d}" for second in range(600)]
+    north_min, east_min = 30.0 + 0.001 * rng.standard_normal((2, 600))
+    places = [f"50{n:08.5f},N,002{e:08.5f},E" for n, e in zip(north_min, east_min, strict=True)]
+    lines = [
+        sentence(f"GPRMC,{clock},A,{place},{speed},,010620,,")
+        for clock, place in zip(clocks, places, strict=True)
+    ]
+    rows = navigated(tmp_path, lines)[300:]
+    assert np.hypot(column(rows, "vnorth_mps"), column(rows, "veast_mps")).max() < 0.2
+    assert column(rows, "vnorth_var_m2s2").max() < 0.3**2 * 1.2
+    assert "not used" not in capsys.readouterr().out
+
+
+def test_a_speed_over_ground_that_lacks_its_course_is_told(tmp_path, capsys):
+    lines = changed(voyage(4), "RMC", range(100, 105), 8, "")
+    navigated(tmp_path, changed(lines, "RMC", [110], 7, ""))
+    told = "6 speeds over ground without a course, or courses without a speed are not used"
+    assert f"note: {told} (first in line 301)" in capsys.readouterr().out
+
+
 def test_without_velocities_over_ground_the_variation_may_be_any(tmp_path, capsys):
     lines = [
         sentence("HCHDG,0.0,,,,") if line.startswith("$HEHDT") else line

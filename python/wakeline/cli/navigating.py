@@ -18,7 +18,7 @@ import numpy as np
 import wakeline as wl
 from wakeline._progress import progress
 from wakeline.recording import NavigationLog
-from wakeline.recording.nmea import BottomTrack, Fixes, WaterSpeed
+from wakeline.recording.nmea import BottomTrack, Fixes, GroundSpeed, WaterSpeed
 
 FIX_STD_M = 3.0
 VELOCITY_STD_MPS = 0.3  # over ground: filtered by the receiver, or turned by the heading
@@ -190,11 +190,12 @@ def readings_of(
 
     heading_s, true_heading_rad = _headings(part, offset.offset_rad)
     headings = heading_s, true_heading_rad + lean_rad(heading_s)
-    course_rad = ground.course_rad + lean_rad(ground.time_s)
+    speed_mps, true_course_rad = _speed_course(ground)
+    course_rad = true_course_rad + lean_rad(ground.time_s)
     course = np.column_stack([np.cos(course_rad), np.sin(course_rad)])
     series = (
         (fixes.time_s, plane.position_m(latitude, longitude)),
-        (ground.time_s, ground.speed_mps[:, None] * course),
+        (ground.time_s, speed_mps[:, None] * course),
         headings,
         (water.time_s, water.ahead_mps),
         (bottom.time_s, _over_ground(bottom, *headings)),
@@ -224,15 +225,18 @@ def unused(part: NavigationLog) -> dict[str, np.ndarray]:
     fixed_s = part.fixes.sound().time_s
     first_s = fixed_s[0] if len(fixed_s) else np.inf
     early = [s.line[s.usable & (s.time_s < first_s)] for s in part.series.values()]
-    water, bottom, turn = (
-        s.rows(s.usable & (s.time_s >= first_s)) for s in (part.water, part.bottom, part.turn)
+    ground, water, bottom, turn = (
+        s.rows(s.usable & (s.time_s >= first_s))
+        for s in (part.ground, part.water, part.bottom, part.turn)
     )
+    known = np.isfinite(_speed_course(ground)).all(axis=0)
     headings = _headings(part, 0.0)
     over_ground = np.isfinite(_over_ground(bottom, *headings)).all(axis=1)
     nothing = np.zeros(0, dtype=np.int64)
     blind = len(headings[0]) == 0
     return {
         "readings with no fix before them": np.concatenate(early),
+        "speeds over ground without a course, or courses without a speed": ground.line[~known],
         "speeds through the water without a heading": water.line if blind else nothing,
         "speeds through the water across the hull alone": water.line[np.isnan(water.ahead_mps)],
         "speeds over ground by log that lack a heading or a side": bottom.line[~over_ground],
@@ -445,6 +449,12 @@ def _velocities(part: NavigationLog) -> tuple[np.ndarray, np.ndarray, np.ndarray
         speed_mps = _between(ground.time_s, water.time_s, water.ahead_mps) * (1.0 + 1j * sideways)
     over_ground = ground.speed_mps * np.exp(1j * ground.course_rad)
     return ground.time_s, speed_mps * np.exp(1j * heading), over_ground
+
+
+def _speed_course(ground: GroundSpeed) -> tuple[np.ndarray, np.ndarray]:
+    """Speeds and courses (n,) over ground; a speed within its error that has no course is rest."""
+    rest = np.isnan(ground.course_rad) & (ground.speed_mps <= VELOCITY_STD_MPS)
+    return np.where(rest, 0.0, ground.speed_mps), np.where(rest, 0.0, ground.course_rad)
 
 
 def _headings(part: NavigationLog, offset_rad: float) -> tuple[np.ndarray, np.ndarray]:
