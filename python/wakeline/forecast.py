@@ -111,8 +111,8 @@ def _kalman(track: AisTrack, ahead_s: np.ndarray) -> np.ndarray:
         np.diag([_POSITION_STD_M**2, _VELOCITY_STD_MPS**2] * 2),
     )
     done = wl.Kalman(wl.ConstantVelocity()).run(
-        way_m,
-        dt_s=np.diff(recent.time_s, prepend=recent.time_s[0]),
+        way_m[1:],
+        dt_s=np.diff(recent.time_s),
         sensor=wl.Position(position_std_m=_POSITION_STD_M),
         start=start,
     )

@@ -59,6 +59,18 @@ def test_smoothers_rest_from_the_noise_of_reports(model):
     assert np.mean(off_m[model]) < 0.95 * np.mean(off_m["last_report"])
 
 
+def test_the_kalman_filter_counts_each_position_once():
+    age_s = np.array([-30.0, 0.0])
+    track = AisTrack("1", age_s, np.array([0.0, 200.0]), np.zeros(2), np.zeros(2), np.full(2, 5.0))
+    move, noise = np.array([[1.0, 30.0], [0.0, 1.0]]), 0.1 * np.array([[9e3, 450.0], [450.0, 30.0]])
+    state = move @ [0.0, 5.0]
+    covariance = move @ np.diag([10.0**2, 1.0]) @ move.T + noise
+    gain = covariance[:, 0] / (covariance[0, 0] + 10.0**2)
+    state = state + gain * (200.0 - state[0])
+    place_m = forecast.position_m(track, [60.0], "kalman_cv")[0]
+    np.testing.assert_allclose(place_m, [state[0] + 60.0 * state[1], 0.0], atol=1e-9)
+
+
 def test_unless_told_otherwise_it_goes_on_as_last_reported():
     track = circling(np.deg2rad(1.0))
     place_m = forecast.position_m(track, [60.0])
