@@ -114,14 +114,31 @@ def test_errors_of_a_mission_say_what_is_wrong():
         UsvMission(speed_mps=0)
     with pytest.raises(ValueError, match="current_mps must be finite, zero or more, got -1"):
         UsvMission(current_mps=-1)
-    with pytest.raises(ValueError, match="radius must be positive"):
-        UsvMission(obstacles=(Obstacle(0.0, 0.0, -1.0),))
+    for obstacle in (Obstacle(0.0, 0.0, -1.0), Obstacle(np.nan, 0.0, 1.0)):
+        with pytest.raises(ValueError, match="an obstacle must be finite, its radius positive"):
+            UsvMission(obstacles=(obstacle,))
     with pytest.raises(ValueError, match="waypoints_m must be pairs of finite numbers"):
         UsvMission(waypoints_m=((0.0, np.nan),))
     with pytest.raises(ValueError, match="is not reached"):
         _ = UsvMission(current_mps=2.0).voyage
     with pytest.raises(ValueError, match="runs must be a whole number"):
         UsvMission().draw(-1)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "wanted"),
+    [
+        ("start_heading_rad", np.nan, r"finite and have shape \(\)"),
+        ("current_towards_rad", np.inf, r"finite and have shape \(\)"),
+        ("imu_bias", (0.0, np.nan, 0.0), r"finite and have shape \(3,\)"),
+        ("gnss_std_m", (8.0, 7.0, 7.0), r"finite and have shape \(2,\)"),
+        ("gnss_std_m", (8.0, -7.0), "zero or more"),
+        ("compass_std_rad", -0.1, "zero or more"),
+    ],
+)
+def test_numbers_of_a_mission_that_are_none_are_refused(name, value, wanted):
+    with pytest.raises(ValueError, match=f"{name} must be {wanted}"):
+        UsvMission(**{name: value})
 
 
 # What comes out -----------------------------------------------------------------------------------

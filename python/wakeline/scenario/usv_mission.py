@@ -18,6 +18,14 @@ import wakeline as wl
 from wakeline._checks import whole_number
 
 _LONGEST_STEPS = 5000
+_SHAPES = {
+    "current_towards_rad": (),
+    "start_heading_rad": (),
+    "imu_bias": (3,),
+    "imu_std": (3,),
+    "gnss_std_m": (2,),
+    "compass_std_rad": (),
+}
 
 
 class Obstacle(NamedTuple):
@@ -98,7 +106,8 @@ class UsvMission:
     Raises
     ------
     ValueError
-        When one that has to be positive is not, the current is negative, or a number not finite.
+        When one that has to be positive is not, the current or a deviation is negative, or a number
+        not finite.
     """
 
     current_mps: float = 0.5
@@ -132,12 +141,19 @@ class UsvMission:
                 raise ValueError(f"{name} must be finite and positive, got {value}")
         if not 0 <= self.current_mps < np.inf:
             raise ValueError(f"current_mps must be finite, zero or more, got {self.current_mps}")
+        for name, shape in _SHAPES.items():
+            told = getattr(self, name)
+            numbers = np.asarray(told, dtype=float)
+            if numbers.shape != shape or not np.isfinite(numbers).all():
+                raise ValueError(f"{name} must be finite and have shape {shape}, got {told}")
+            if "_std" in name and (numbers < 0).any():
+                raise ValueError(f"{name} must be zero or more, got {told}")
         ways = np.asarray(self.waypoints_m, dtype=float)
         if ways.ndim != 2 or ways.shape[1] != 2 or not np.isfinite(ways).all():
             raise ValueError(f"waypoints_m must be pairs of finite numbers, got {self.waypoints_m}")
         for obstacle in self.obstacles:
-            if not 0 < obstacle.radius_m < np.inf:
-                raise ValueError(f"an obstacle's radius must be positive, got {obstacle}")
+            if not (np.isfinite(obstacle).all() and obstacle.radius_m > 0):
+                raise ValueError(f"an obstacle must be finite, its radius positive, got {obstacle}")
 
     @property
     def current(self) -> np.ndarray:
