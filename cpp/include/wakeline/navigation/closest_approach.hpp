@@ -105,8 +105,8 @@ class ClosestApproach {
   /// are summed over 32 slices, of d and of the longer axis of the position's ellipse.
   ///
   /// Beside many draws it is nearly always within 0.03 while v errs per axis by a tenth of |v|, at
-  /// most some 0.07 off; at a fifth 0.2, and up to 0.3 when v errs by all of itself. Farthest off
-  /// it is for a target just outside the limit and a short horizon.
+  /// most some 0.07 off; at a fifth 0.2. Farthest off it is for a target just outside the limit:
+  /// too low by up to 0.5 when v errs by all of itself or more, as at rest.
   [[nodiscard]] double probability(double limit_m, double horizon_s = kForever_s) const noexcept {
     if (std::isnan(limit_m) || std::isnan(horizon_s))
       return std::numeric_limits<double>::quiet_NaN();

@@ -130,7 +130,9 @@ struct SpeedLog : DirectSensor<kSpeedThroughWater> {
 };
 
 /// A rate of turn indicator beside the gyro that drives the steps: what the gyro reads more than it
-/// is the gyro's bias. The noise of both instruments counts.
+/// is the gyro's bias. The noise of both instruments counts, as if the gyro's had not turned the
+/// heading, too: where it is the larger one, the bias errs by up to 1.4 of what is believed. Such
+/// an indicator had better drive the steps itself.
 struct RateOfTurn {
   static constexpr int kMeasurements = 1;
   static constexpr std::array kReads{kGyroBias};
