@@ -267,6 +267,32 @@ def test_a_log_that_is_stuck_is_told_and_says_nothing_of_the_compass(tmp_path, c
     assert "are 0 while" not in capsys.readouterr().out
 
 
+def expect_soon_right(rows, told):
+    """She makes 6 kn to 040 in her current for five minutes."""
+    early = (seconds(rows) > 20) & (seconds(rows) < 300)
+    heading = np.deg2rad(40.0)
+    off_mps = [
+        column(rows, "vnorth_mps") - (6.0 * np.cos(heading) + 0.8) * KN,
+        column(rows, "veast_mps") - (6.0 * np.sin(heading) - 0.5) * KN,
+    ]
+    assert np.hypot(*off_mps)[early].max() < 1.0
+    assert "rejected" not in told
+
+
+def test_a_compass_and_a_log_that_come_late_say_nothing_of_the_start(tmp_path, capsys):
+    lines = [line for k, line in enumerate(voyage(14)) if line[3:6] == "RMC" or k // 3 >= 660]
+    expect_soon_right(navigated(tmp_path, lines), capsys.readouterr().out)
+
+
+def test_velocities_over_ground_that_come_late_say_nothing_of_the_start(tmp_path, capsys):
+    lines = voyage(14, compass=None, water=False)
+    for k in range(0, 660, 10):
+        fields = lines[k][1:].partition("*")[0].split(",")
+        lines[k] = sentence(",".join([*fields[:7], "", "", *fields[9:]]))
+    lines = lines[:660:10] + lines[660:]
+    expect_soon_right(navigated(tmp_path, lines), capsys.readouterr().out)
+
+
 @pytest.mark.parametrize("speed", ["0.0", "0.023"])
 def test_at_rest_no_course_is_wanted(tmp_path, capsys, speed):
     rng = np.random.default_rng(2)

@@ -406,12 +406,15 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
         current_std_mps=CURRENT_STD_MPS,
         gate_probability=GATE_PROBABILITY,
     )
-    velocity = _first(readings.over_ground_mps, np.zeros(2))
-    knows_velocity = np.isfinite(readings.over_ground_mps).all(axis=1).any()
-    heading = _first(readings.way_rad, np.arctan2(velocity[1], velocity[0]))
+    soon = readings.time_s - readings.time_s[0] <= _NEAR_S
+    velocity = _first(readings.over_ground_mps[soon], np.full(2, np.nan))
+    knows_velocity = np.isfinite(velocity).all()
+    makes_way = np.hypot(*velocity) > _UNDER_WAY_MPS
+    course = np.arctan2(velocity[1], velocity[0]) if makes_way else _first(readings.way_rad, 0.0)
+    heading = _first(readings.way_rad[soon], course)
     navigator.start(
         _first(readings.fix_m, np.zeros(2)),
-        velocity,
+        velocity if knows_velocity else np.zeros(2),
         float(heading),
         position_std_m=[START_STD_M, START_STD_M],
         velocity_std_mps=START_SPEED_STD_MPS if knows_velocity else ANY_SPEED_STD_MPS,
@@ -526,7 +529,7 @@ def _at(time_s: np.ndarray, times: np.ndarray, values: np.ndarray) -> np.ndarray
     return spread
 
 
-def _first(values: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
+def _first(values: np.ndarray, otherwise: np.ndarray | float) -> np.ndarray | float:
     """The first row that is finite."""
     sound = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
     return values[sound.argmax()] if sound.any() else otherwise
