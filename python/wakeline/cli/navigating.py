@@ -409,8 +409,9 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
     soon = readings.time_s - readings.time_s[0] <= _NEAR_S
     velocity = _first(readings.over_ground_mps[soon], np.full(2, np.nan))
     knows_velocity = np.isfinite(velocity).all()
-    makes_way = np.hypot(*velocity) > _UNDER_WAY_MPS
-    course = np.arctan2(velocity[1], velocity[0]) if makes_way else _first(readings.way_rad, 0.0)
+    way = velocity if knows_velocity else _first(_made_good_mps(readings), velocity)
+    makes_way = np.hypot(*way) > _UNDER_WAY_MPS
+    course = np.arctan2(way[1], way[0]) if makes_way else _first(readings.way_rad, 0.0)
     heading = _first(readings.way_rad[soon], course)
     navigator.start(
         _first(readings.fix_m, np.zeros(2)),
