@@ -104,9 +104,9 @@ class ClosestApproach {
   /// each of the joint Gaussian with d, by errors of first order; at least P(|p| < L), of now. Both
   /// are summed over 32 slices, of d and of the longer axis of the position's ellipse.
   ///
-  /// Beside many draws it is nearly always within 0.03 while v errs per axis by a tenth of |v|, at
-  /// most some 0.07 off; at a fifth 0.2. Farthest off it is for a target just outside the limit:
-  /// too low by up to 0.5 when v errs by all of itself or more, as at rest.
+  /// Beside many draws it is nearly always within 0.03 while v errs per axis by a tenth of |v|.
+  /// Farthest off, and then too low, it is for a target just outside the limit: by up to 0.2 at a
+  /// tenth, 0.3 at a fifth, and 0.5 when v errs by all of itself or more, as at rest.
   [[nodiscard]] double probability(double limit_m, double horizon_s = kForever_s) const noexcept {
     if (std::isnan(limit_m) || std::isnan(horizon_s))
       return std::numeric_limits<double>::quiet_NaN();
