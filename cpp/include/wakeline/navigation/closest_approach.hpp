@@ -41,9 +41,10 @@ inline double probability_within(double limit, double mean, double std) noexcept
 ///     ∂tcpa/∂p = -v / |v|²,   ∂tcpa/∂v = -(d n + tcpa v) / |v|²,
 ///
 /// good while v errs little beside |v|: per axis by a tenth of it, the standard deviations are
-/// right within 3 %; by a fifth, that of tcpa is a tenth too small. A relative speed of 1 µm/s or
-/// less is rest: cpa is then the range, its error that along the line of sight, and tcpa zero
-/// without one, as nothing gets closer than it is.
+/// right within 4 %; by a fifth, that of tcpa is up to 15 % too small. That of d lacks the second
+/// order, d e² / sqrt(2), e the error of v across over |v|: it is most where a far target is at its
+/// closest. A relative speed of 1 µm/s or less is rest: cpa is then the range, its error that along
+/// the line of sight, and tcpa zero without one, as nothing gets closer than it is.
 class ClosestApproach {
  public:
   /// `relative` is target less own ship over [x, vx, y, vy] in the plane of north and east; its
