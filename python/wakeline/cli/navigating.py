@@ -399,6 +399,7 @@ def _run(states: int, readings: Readings, *, smooth: bool = False) -> wl.navigat
 
 
 def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
+    """Begun by what is read within seconds; failing a heading, by the course made good."""
     navigator = wl.UsvNavigator(
         states,
         speed_walk_mps=SPEED_WALK_MPS,
@@ -409,9 +410,9 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
     soon = readings.time_s - readings.time_s[0] <= _NEAR_S
     velocity = _first(readings.over_ground_mps[soon], np.full(2, np.nan))
     knows_velocity = np.isfinite(velocity).all()
-    way = velocity if knows_velocity else _first(_made_good_mps(readings), velocity)
-    makes_way = np.hypot(*way) > _UNDER_WAY_MPS
-    course = np.arctan2(way[1], way[0]) if makes_way else _first(readings.way_rad, 0.0)
+    made_good = velocity if knows_velocity else _first(_made_good_mps(readings), velocity)
+    under_way = np.hypot(*made_good) > _UNDER_WAY_MPS
+    course = np.arctan2(made_good[1], made_good[0]) if under_way else _first(readings.way_rad, 0.0)
     heading = _first(readings.way_rad[soon], course)
     navigator.start(
         _first(readings.fix_m, np.zeros(2)),
