@@ -356,6 +356,24 @@ TEST(Streaming, AnEchoAcrossTheSeamIsOfTheEndOfTheTurn) {
   EXPECT_NEAR(plots[0].time_s, 0.355, 0.02);
 }
 
+TEST(Streaming, ACircleIsNotClosedAcrossMissingSweeps) {
+  Picture<> picture{60, 40};
+  for (int cell = 20; cell < 23; ++cell) picture.at(21, cell) = picture.at(59, cell) = 100;
+  PlotExtractorSettings settings;
+  settings.gap_sweeps = 1;
+  settings.closed_circle = true;
+  PlotExtractor<> extractor(settings);
+  EXPECT_TRUE(feed(extractor, picture, 0, 1).empty());
+  auto plots = feed(extractor, picture, 21, 39);
+  const auto rest = finish(extractor);
+  plots.insert(plots.end(), rest.begin(), rest.end());
+  ASSERT_EQ(plots.size(), 2u);
+  EXPECT_NEAR(plots[0].bearing_rad, 21 * picture.step(), 1e-9);
+  EXPECT_TRUE(plots[0].cut);
+  EXPECT_NEAR(plots[1].bearing_rad, 59 * picture.step(), 1e-9);
+  EXPECT_FALSE(plots[1].cut);
+}
+
 TEST(Streaming, ClosesTheCircleOfEachTurn) {
   std::mt19937 random(8);
   const auto picture = test::speckle(60, 100, 0.2, random);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -96,9 +97,11 @@ class OpenEchoes {
     end_sweep(close);
   }
 
-  /// Sweeps are missing: closes all echoes but those that wait for the circle to be closed.
+  /// Sweeps are missing: closes all echoes but those that wait for the circle to be closed. What
+  /// follows is no longer its beginning.
   template <class Close>
   void interrupt(Close&& close) noexcept {
+    count_ = std::max(count_, static_cast<std::int64_t>(heads_.size()));
     for (std::size_t k = 1; k < recent_.size(); ++k) {
       for (const Run& run : sweep(k)) {
         Echo& echo = slot(run.echo);
