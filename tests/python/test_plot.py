@@ -115,6 +115,15 @@ def test_plots_out_of_sight_are_counted_and_shown_on_request(episode, tracks):
     assert not [text for text in texts(whole) if "outside" in text]
 
 
+@pytest.mark.parametrize("whole", [True, False])
+def test_own_ship_is_in_sight_whatever_else_is(episode, tracks, whole):
+    away = replace(episode, own=OwnShip.fixed(-20_000.0, 3_000.0), truth=None)
+    for shown in (tracks, None):
+        ax = plot.map_figure(away, shown, whole=whole).axes[0]
+        assert ax.get_ylim()[0] < -20_000.0 < ax.get_ylim()[1]
+        assert ax.get_xlim()[0] < 3_000.0 < ax.get_xlim()[1]
+
+
 def crowd(count, side_m, seed):
     """Tracks of five scans in a square, of which the first comes closest to own ship."""
     rng = np.random.default_rng(seed)
@@ -241,6 +250,32 @@ def test_course_lines_are_cut_at_north():
     steps = np.abs(np.diff(drawn))
     assert np.isnan(drawn).sum() == 2
     assert (steps[np.isfinite(steps)] < 180.0).all()
+
+
+def northerly(drawn):
+    """Whether a line shows all of a course that goes from 2 degrees one side of north to 2 the
+    other in every step, as far as 10."""
+    x, y = drawn.get_xdata(), drawn.get_ydata()
+    step = np.isfinite(np.diff(y))
+    return np.diff(x)[step].sum() == pytest.approx(9.0) and np.abs(np.diff(y)[step]).max() < 4.0
+
+
+def test_a_course_about_north_is_drawn_all_along():
+    course_deg = np.tile([358.0, 2.0], 5)
+    course = np.radians(course_deg)
+    state = np.column_stack([course * 0, np.cos(course), course * 0, np.sin(course)])
+    ax, own = plot.figure().subplots(2, 1)
+    plot.course_panel(ax, Tracks(["1"] * 10, np.arange(10.0), state))
+    plot.course_over_time(own, 60.0 * np.arange(10.0), course, -course)
+    assert [northerly(line) for line in (*ax.lines, *own.lines)] == [True] * 3
+    assert np.nanmin(ax.lines[0].get_ydata()) == 0.0
+    assert np.nanmax(ax.lines[0].get_ydata()) == 360.0
+
+
+def test_a_course_a_hair_west_of_north_is_north():
+    ax = plot.figure().add_subplot()
+    plot.course_over_time(ax, np.arange(3.0), np.array([0.0, -1e-20, 0.0]), np.zeros(3))
+    assert ax.lines[0].get_ydata().tolist() == [0.0, 0.0, 0.0]
 
 
 def test_nis_has_its_bound_and_hides_nothing(tracks):

@@ -8,7 +8,17 @@ import numpy as np
 
 from wakeline._units import KNOT_MPS
 
-from .style import INK, MUTED, PALETTE, TEXT_PT, dress, dress_map, name_lines, with_gaps
+from .style import (
+    INK,
+    MUTED,
+    PALETTE,
+    TEXT_PT,
+    dress,
+    dress_map,
+    name_lines,
+    through_north,
+    with_gaps,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -119,10 +129,8 @@ def course_over_time(
         (course_rad, PALETTE[0], "course over ground"),
         (heading_rad, PALETTE[1], "heading"),
     ):
-        degrees = np.degrees(values) % 360.0
-        jump = np.abs(np.diff(degrees, prepend=degrees[:1])) > 180.0
-        cut = np.where(jump, np.nan, degrees)
-        ax.plot((time_s - time_s[0]) / 60.0, cut, color=color, linewidth=1.2, label=name)
+        line = through_north((time_s - time_s[0]) / 60.0, np.degrees(values) % 360.0)
+        ax.plot(*line, color=color, linewidth=1.2, label=name)
     ax.set_ylim(0.0, 360.0)
     ax.set_yticks([0, 90, 180, 270, 360])
     return name_lines(_over_time(ax, "course (°)"))

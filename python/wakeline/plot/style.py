@@ -158,6 +158,20 @@ def stretches(time_s: np.ndarray, *columns: np.ndarray) -> Iterator[tuple[np.nda
     return zip(*(np.split(column, after) for column in (time_s, *columns)), strict=True)
 
 
+def through_north(time_s: np.ndarray, degrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The line (n,) of a compass angle, led out at 360 and in at 0, or the other way, where the
+    short way from one angle to the next passes north."""
+    degrees = degrees % 360.0  # what lies next below 0 has become 360
+    step = np.diff(degrees)
+    last = np.flatnonzero(np.abs(step) > 180.0)
+    way = step[last] - np.copysign(360.0, step[last])
+    out = np.where(way > 0.0, 360.0, 0.0)
+    passed_s = time_s[last] + (out - degrees[last]) / way * np.diff(time_s)[last]
+    seam = np.column_stack([out, np.full(len(last), np.nan), 360.0 - out])
+    at = np.repeat(last + 1, 3)
+    return np.insert(time_s, at, np.repeat(passed_s, 3)), np.insert(degrees, at, seam.ravel())
+
+
 def _after_gaps(time_s: np.ndarray) -> np.ndarray:
     """Rows that follow a gap."""
     step_s = np.diff(time_s)

@@ -21,6 +21,7 @@ from .style import (
     name_above,
     name_lines,
     stretches,
+    through_north,
     track_colors,
     with_gaps,
 )
@@ -132,13 +133,13 @@ def course_panel(
     start_s: float = 0.0,
     colors: Mapping[str, str] | None = None,
 ) -> Axes:
-    """Course over ground in degrees, lines cut where they pass through north; returns `ax`."""
+    """Course over ground in degrees, led from edge to edge where it passes north; returns `ax`."""
     for time_s, state in _true_states(episode):
         course_deg = np.degrees(np.arctan2(state[:, 3], state[:, 1])) % 360.0
-        ax.plot(*_cut_at_north(time_s - start_s, course_deg), **_TRUTH_LINE)
+        ax.plot(*through_north(time_s - start_s, course_deg), **_TRUTH_LINE)
     for _, color, track in _each(tracks, colors):
         time_s, course_deg = with_gaps(track.time_s, track.course_deg)
-        line = _cut_at_north(time_s - start_s, course_deg)
+        line = through_north(time_s - start_s, course_deg)
         ax.plot(*line, color=color, linewidth=1.5)
     ax.set_ylim(0.0, 360.0)
     ax.set_yticks([0, 90, 180, 270, 360])
@@ -259,12 +260,6 @@ def _true_states(episode: Episode | None):
         return
     for truth in (episode.truth or {}).values():
         yield episode.time_s, truth.state_at(episode.time_s)
-
-
-def _cut_at_north(time_s: np.ndarray, course_deg: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The line (n,) with NaN wherever the short way to the next course leads through north."""
-    passes = np.flatnonzero(np.abs(np.diff(course_deg)) > 180.0) + 1
-    return np.insert(time_s, passes, np.nan), np.insert(course_deg, passes, np.nan)
 
 
 def _finish(ax: Axes, ylabel: str) -> Axes:
