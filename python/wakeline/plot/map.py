@@ -61,8 +61,9 @@ def map_view(
     ellipse_every : int
         0 for no ellipses.
     whole : bool
-        True: show every plot. False: show the tracks, own ship and truth with some water around
-        them, and say how many plots lie outside; without tracks and truth every plot is shown.
+        True: show every plot, too. False: show the tracks, own ship and truth with some water
+        around them, and say how many plots lie outside; without tracks and truth every plot is
+        shown.
     legend : bool
         Whether to explain the marks.
     alarmed : ndarray of bool (n,), optional
@@ -278,7 +279,7 @@ def _set_window(ax: Axes, episode: Episode | None, tracks: Tracks | None, whole:
     seen = _tracked_positions(episode, tracks)
     if whole or len(seen) == 0:
         seen = np.concatenate([seen, plots])
-    elif episode is not None:
+    if episode is not None and len(seen):
         seen = np.concatenate([seen, np.column_stack(_own_way(episode)[1:])])
     seen = seen[np.isfinite(seen).all(axis=1)]
     if len(seen) == 0:
