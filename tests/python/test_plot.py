@@ -349,6 +349,15 @@ def test_times_with_fixes_are_named():
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["drift", "fixes"]
 
 
+def test_ids_are_shown_as_they_are(tmp_path, tracks):
+    odd = replace(tracks, track_id=np.full(len(tracks), r"$5 \frac$"))
+    first = np.arange(len(odd)) == 0
+    for k, fig in enumerate(
+        [plot.map_figure(None, odd, alarmed=first), plot.time_figure(None, odd)]
+    ):
+        plot.save(fig, tmp_path / f"{k}.svg")
+
+
 @pytest.mark.parametrize("make", [plot.map_figure, plot.time_figure])
 def test_figures_are_written_even_of_nothing(tmp_path, make, episode, tracks):
     nothing = Tracks([], [], np.zeros((0, 4)))

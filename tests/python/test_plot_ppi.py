@@ -307,3 +307,8 @@ def test_bad_arguments_are_named(screen):
         plot.echo(screen, around_m=(9000.0, 0.0))
     with pytest.raises(ValueError, match=r"around_m must be north and east, got \(1\.0,\)"):
         plot.echo(screen, around_m=(1.0,))
+
+
+def test_ids_of_tracks_are_shown_as_they_are(screen):
+    tracks = Tracks([r"$5 \frac$"] * 2, [0.0, 3.0], [[1500.0, 0.0, -800.0, 0.0]] * 2)
+    plot.ppi(screen, tracks=tracks).figure.draw_without_rendering()

@@ -18,6 +18,7 @@ from .style import (
     figure,
     halo,
     name_lines,
+    plain,
     track_colors,
     with_gaps,
 )
@@ -206,7 +207,7 @@ def _draw_track(ax: Axes, track: Tracks, track_id: str, color: str, label: str |
     ax.plot(*end, color=color, marker="o", markersize=4.5, zorder=6)
     ahead = np.deg2rad(track.course_deg[-1])
     ax.annotate(
-        track_id,
+        plain(track_id),
         end,
         xytext=(_ID_OFFSET_PT * np.sin(ahead), _ID_OFFSET_PT * np.cos(ahead)),
         textcoords="offset points",
@@ -242,7 +243,7 @@ def _draw_danger(ax: Axes, tracks: Tracks, alarmed: np.ndarray) -> None:
         place = (first.east_m[0], first.north_m[0])
         ax.plot(*place, color=DANGER, marker="o", **ring, zorder=6)
         text = ax.annotate(
-            _threat(first),
+            plain(_threat(first)),
             place,
             xytext=(0.0, 0.0),
             textcoords="offset points",

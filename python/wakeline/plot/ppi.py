@@ -14,7 +14,7 @@ from wakeline._engine.video import ScanImage
 from wakeline.recording import RadarVideo, Tracks
 
 from .map import ellipse_outline
-from .style import INK, MUTED, TEXT_PT, figure
+from .style import INK, MUTED, TEXT_PT, figure, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -481,7 +481,7 @@ def _draw_layers(
         ax.plot(track.east_m, track.north_m, color=color, linewidth=1.4, zorder=6)
         end = (track.east_m[-1], track.north_m[-1])
         ax.annotate(
-            track_id,
+            plain(track_id),
             end,
             xytext=(6, 5),
             textcoords="offset points",

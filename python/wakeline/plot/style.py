@@ -88,6 +88,11 @@ def halo(width: float = 2.0) -> list:
     return [patheffects.withStroke(linewidth=width, foreground="white")]
 
 
+def plain(text: str) -> str:
+    """Text that is shown as it is: no dollar in it begins a formula."""
+    return text.replace("$", r"\$")
+
+
 def name_lines(ax: Axes, columns: int | None = None) -> Axes:
     """A legend above the axes, where it covers nothing, by default as of :func:`name_above`.
 

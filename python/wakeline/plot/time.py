@@ -20,6 +20,7 @@ from .style import (
     halo,
     name_above,
     name_lines,
+    plain,
     stretches,
     through_north,
     track_colors,
@@ -120,7 +121,8 @@ def speed_panel(
         ax.plot(time_s - start_s, speed_mps, label=label, **_TRUTH_LINE)
     for track_id, color, track in _each(tracks, colors):
         time_s, speed_mps = with_gaps(track.time_s, track.speed_mps)
-        ax.plot(time_s - start_s, speed_mps, color=color, linewidth=1.5, label=f"track {track_id}")
+        label = plain(f"track {track_id}")
+        ax.plot(time_s - start_s, speed_mps, color=color, linewidth=1.5, label=label)
     ax.set_ylim(bottom=0.0)
     return _finish(ax, "speed (m/s)")
 
@@ -197,7 +199,7 @@ def mode_panel(
     if len(names) != modes:
         raise ValueError(f"mode_names must have {modes} names, got {len(names)}")
     draw_bands(ax, track.time_s - start_s, track.mode_probability, names)
-    return _finish(ax, f"mode probability\nof track {track_id}")
+    return _finish(ax, f"mode probability\nof track {plain(track_id)}")
 
 
 def draw_bands(
