@@ -195,6 +195,25 @@ TEST(StaticClutterMap, LearnsByTimeNotByTurns) {
   }
 }
 
+TEST(StaticClutterMap, LearnsWhereTheBeamNeverLeavesARow) {
+  // All round with a single row, and to and fro, in a sector of three sweeps, within one of four.
+  for (const int sweeps : {36, 3}) {
+    StaticClutterMap map(sweeps == 36 ? 1 : 4, 1, 30.0);
+    std::vector<std::uint8_t> threshold(1);
+    for (int k = 0; k < 50 * sweeps; ++k) {
+      const int sweep = k % sweeps;
+      const std::vector<std::uint8_t> amplitude{static_cast<std::uint8_t>(sweep == 1 ? 100 : 40)};
+      map.lift_and_learn<std::uint8_t>({.time_s = 3.0 * k / sweeps,
+                                        .azimuth_rad = deg(10) * sweep,
+                                        .azimuth_width_rad = deg(10),
+                                        .cell_m = 10.0,
+                                        .amplitude = amplitude},
+                                       threshold);
+    }
+    EXPECT_NEAR(map.mean()[0], 100 * (1 - std::exp(-49 * 3.0 / 30.0)), 0.1) << sweeps;
+  }
+}
+
 TEST(StaticClutterMap, ForgetsWhenTheGeometryChanges) {
   StaticClutterMap map(36, 10, 30.0);
   const std::vector<std::uint16_t> amplitude(12, 60000);

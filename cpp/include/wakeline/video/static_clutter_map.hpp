@@ -72,11 +72,15 @@ class StaticClutterMap {
       cell_m_ = sweep.cell_m;
     }
     const std::size_t row = detail::AzimuthRows(azimuths()).of(sweep.azimuth_rad);
-    const double step_rad = std::fabs(wrap_angle(sweep.azimuth_rad - azimuth_rad_));
-    const bool first = row != visited_ || step_rad < 0.5 * sweep.azimuth_width_rad;
+    const double half_rad = 0.5 * sweep.azimuth_width_rad;
+    const double step_rad = sweep.azimuth_rad - azimuth_rad_;
+    turned_rad_ += compass_angle(step_rad);
+    const bool first = row != visited_ || std::fabs(wrap_angle(step_rad)) < half_rad ||
+                       turned_rad_ > 2 * kPi<double> - half_rad;
     azimuth_rad_ = sweep.azimuth_rad;
     if (first) {
       visited_ = row;
+      turned_rad_ = 0.0;
       gain_ = gain_at(row, sweep.time_s);
     }
     constexpr auto kMost = static_cast<float>(std::numeric_limits<Amplitude>::max());
@@ -117,6 +121,7 @@ class StaticClutterMap {
   std::vector<float> mean_;
   std::size_t visited_ = kNone;   ///< the row of the last sweep
   double azimuth_rad_ = 0.0;      ///< of it
+  double turned_rad_ = 0.0;       ///< since the visit to that row began
   float gain_ = 0.0f;             ///< of the visit to that row
   std::vector<float> strongest_;  ///< of the visit, by cell
 };
