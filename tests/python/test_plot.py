@@ -278,6 +278,22 @@ def test_a_course_a_hair_west_of_north_is_north():
     assert ax.lines[0].get_ydata().tolist() == [0.0, 0.0, 0.0]
 
 
+def dots(line):
+    assert line.get_marker() == "."
+    return line.get_xydata()[line.get_markevery()].tolist()
+
+
+def test_rows_alone_between_gaps_are_seen():
+    when_s = np.array([0.0, 3.0, 6.0, 100.0, 200.0, 203.0])
+    states = np.column_stack([5.0 * when_s, np.full(6, 3.0), np.zeros(6), np.full(6, 4.0)])
+    for rows in (slice(None), slice(3, 4)):
+        track = Tracks(["1"] * len(when_s[rows]), when_s[rows], states[rows])
+        speed, course, place = plot.figure().subplots(3, 1)
+        assert dots(plot.speed_panel(speed, track).lines[0]) == [[100.0, 5.0]]
+        assert dots(plot.course_panel(course, track).lines[0])[0][0] == 100.0
+        assert dots(plot.map_view(place, None, track).lines[0]) == [[0.0, 500.0]]
+
+
 def test_nis_has_its_bound_and_hides_nothing(tracks):
     ax = plot.figure().add_subplot()
     plot.nis_panel(ax, tracks)

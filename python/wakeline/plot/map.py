@@ -14,6 +14,7 @@ from .style import (
     INK,
     MUTED,
     TEXT_PT,
+    dot_lone,
     dress,
     figure,
     halo,
@@ -193,7 +194,7 @@ def _draw_truth(
 
 def _draw_track(ax: Axes, track: Tracks, track_id: str, color: str, label: str | None) -> None:
     _, north_m, east_m = with_gaps(track.time_s, track.north_m, track.east_m)
-    ax.plot(east_m, north_m, color=color, linewidth=1.8, label=label, zorder=4)
+    dot_lone(*ax.plot(east_m, north_m, color=color, linewidth=1.8, label=label, zorder=4))
     ax.plot(
         track.east_m[:1],
         track.north_m[:1],

@@ -15,6 +15,7 @@ from wakeline.recording import Tracks, replacing
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 PALETTE = (
     *("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"),
@@ -175,6 +176,15 @@ def through_north(time_s: np.ndarray, degrees: np.ndarray) -> tuple[np.ndarray, 
     seam = np.column_stack([out, np.full(len(last), np.nan), 360.0 - out])
     at = np.repeat(last + 1, 3)
     return np.insert(time_s, at, np.repeat(passed_s, 3)), np.insert(degrees, at, seam.ravel())
+
+
+def dot_lone(line: Line2D) -> None:
+    """A dot on each point between two gaps of a line, which has no stroke to be seen by."""
+    known = np.isfinite(line.get_xydata()).all(axis=1)
+    stroke = known[1:] & known[:-1]
+    lone = known & ~np.append(False, stroke) & ~np.append(stroke, False)
+    if lone.any():
+        line.set(marker=".", markevery=np.flatnonzero(lone).tolist())
 
 
 def _after_gaps(time_s: np.ndarray) -> np.ndarray:

@@ -15,6 +15,7 @@ from .style import (
     MODE_PALETTE,
     TEXT_PT,
     by_length,
+    dot_lone,
     dress,
     figure,
     halo,
@@ -122,7 +123,8 @@ def speed_panel(
     for track_id, color, track in _each(tracks, colors):
         time_s, speed_mps = with_gaps(track.time_s, track.speed_mps)
         label = plain(f"track {track_id}")
-        ax.plot(time_s - start_s, speed_mps, color=color, linewidth=1.5, label=label)
+        line = ax.plot(time_s - start_s, speed_mps, color=color, linewidth=1.5, label=label)
+        dot_lone(*line)
     ax.set_ylim(bottom=0.0)
     return _finish(ax, "speed (m/s)")
 
@@ -142,7 +144,7 @@ def course_panel(
     for _, color, track in _each(tracks, colors):
         time_s, course_deg = with_gaps(track.time_s, track.course_deg)
         line = through_north(time_s - start_s, course_deg)
-        ax.plot(*line, color=color, linewidth=1.5)
+        dot_lone(*ax.plot(*line, color=color, linewidth=1.5))
     ax.set_ylim(0.0, 360.0)
     ax.set_yticks([0, 90, 180, 270, 360])
     return _finish(ax, "course (°)")
