@@ -225,6 +225,23 @@ TEST(BayesianAlphaBeta, BadInputChangesNothing) {
   }
 }
 
+TEST(BayesianAlphaBeta, APlotThatNoMixtureHoldsChangesNothing) {
+  const Position vague{1e5};
+  const Vec<double, 2> far(1e157, 0.0);
+  Bayesian bank = started();
+  for (int scan = 0; scan < 4; ++scan) {
+    ASSERT_EQ(bank.predict(kPeriod_s), Status::kOk);
+    ASSERT_TRUE(bank.update(vague, turning(kPeriod_s * scan)));
+  }
+  ASSERT_EQ(bank.predict(kPeriod_s), Status::kOk);
+  const auto before = bank.estimate();
+  const Eigen::VectorXd weights = bank.mode_probability();
+  EXPECT_EQ(bank.update(vague, far).status, Status::kNotFinite);
+  EXPECT_TRUE(beliefs_identical<4>(bank.estimate(), before));
+  EXPECT_EQ(bank.mode_probability(), weights);
+  EXPECT_TRUE(bank.update(vague, turning(12.0)));
+}
+
 TEST(BayesianAlphaBeta, RefusesWhatMakesNoSense) {
   EXPECT_THROW(Bayesian({.min_plots = 1}), std::invalid_argument);
   EXPECT_THROW(Bayesian({.min_plots = 5, .max_plots = 4}), std::invalid_argument);

@@ -58,7 +58,7 @@ class LineEstimator {
   Step<2, Scalar> update(const Sensor& sensor,
                          const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     const Step<2, Scalar> step = innovation(sensor, z);
-    if (step) take(sensor.position(z));
+    if (step && !take(sensor.position(z))) return failed_step<2, Scalar>(Status::kNotFinite);
     return step;
   }
 
@@ -118,8 +118,9 @@ class LineEstimator {
     const bool possible = total > Scalar(0) && std::isfinite(total);
     for (Scalar& part : share) part = possible ? part / total : Scalar(0);
     if (!possible) return Scalar(0);
-    if (owned > none) take(joined(readings, none / total, share));
-    return total;
+    if (owned <= none || take(joined(readings, none / total, share))) return total;
+    for (Scalar& part : share) part = Scalar(0);
+    return Scalar(0);
   }
 
   [[nodiscard]] const BeliefType& estimate() const noexcept { return belief_; }
@@ -174,19 +175,27 @@ class LineEstimator {
     Status status = Status::kOk;
     if (!ready()) status = first_.predict(dt_s, acceleration_mps2...);
     if (status == Status::kOk) refresh();
-    if (status == Status::kOk && !(is_finite(belief_.mean) && is_finite(belief_.covariance)))
-      status = Status::kNotFinite;
+    status = first_failure(status, ok_or(is_sound(), Status::kNotFinite));
     if (status != Status::kOk) derived() = before;
     return status;
   }
 
-  void take(const Gaussian<2, Scalar>& plot) noexcept {
+  /// False, and nothing is changed, where the belief would not be finite.
+  bool take(const Gaussian<2, Scalar>& plot) noexcept {
+    const Derived before = derived();
     if (ready())
       derived().judge(plot);
     else
       (void)first_.update(Fix{plot.covariance.template cast<double>()}, plot.mean);
     bank_.add(plot);
     refresh();
+    if (is_sound()) return true;
+    derived() = before;
+    return false;
+  }
+
+  [[nodiscard]] bool is_sound() const noexcept {
+    return is_finite(belief_.mean) && is_finite(belief_.covariance);
   }
 
   /// The position part of the belief.
