@@ -359,6 +359,12 @@ def test_parts_of_own_ships_way_that_are_in_doubt_are_drawn_and_named():
     assert [line.get_label() for line in ax.lines] == ["fixes", "own ship"]
 
 
+def test_a_single_row_in_doubt_is_seen():
+    ax = plot.figure().add_subplot()
+    plot.own_map(ax, 1e3 * np.eye(3)[:, :2], np.eye(3)[:, :2], coasting=np.arange(3) == 1)
+    assert dots(ax.lines[-1]) == [[1.0, 0.0]]
+
+
 def test_times_with_fixes_are_named():
     ax = plot.figure().add_subplot()
     plot.drift_over_time(ax, np.arange(9.0), np.ones((9, 2)), np.arange(5.0))

@@ -13,6 +13,7 @@ from .style import (
     MUTED,
     PALETTE,
     TEXT_PT,
+    dot_lone,
     dress,
     dress_map,
     name_lines,
@@ -56,14 +57,15 @@ def own_map(
     """
     ax.plot(fix_m[:, 1] / 1e3, fix_m[:, 0] / 1e3, ".", color=MUTED, markersize=3, label="fixes")
     way = position_m / 1e3
-    ax.plot(way[:, 1], way[:, 0], color=PALETTE[0], linewidth=1.5, label=name)
+    dot_lone(*ax.plot(way[:, 1], way[:, 0], color=PALETTE[0], linewidth=1.5, label=name))
     for where, color, doubt in (
         (coasting, PALETTE[1], "without fixes"),
         (jumped, PALETTE[3], "after a jump"),
     ):
         if where is not None and where.any():
             part = np.where(where[:, None], way, np.nan)
-            ax.plot(part[:, 1], part[:, 0], color=color, linewidth=2.0, label=doubt)
+            line = ax.plot(part[:, 1], part[:, 0], color=color, linewidth=2.0, label=doubt)
+            dot_lone(*line)
     if current_mps is not None and np.isfinite(current_mps).any():
         known = np.flatnonzero(np.isfinite(current_mps[:, 0]))
         at = known[np.linspace(0, len(known) - 1, min(_ARROWS, len(known))).astype(int)]
