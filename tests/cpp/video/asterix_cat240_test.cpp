@@ -319,7 +319,8 @@ TEST(Cat240, An_empty_file_has_nothing) {
 
 TEST(Cat240, A_length_out_of_place_loses_its_own_sweep_only) {
   const auto blocks = turn_of(12);
-  for (const int length : {0, 2, 3, 20, 74, 76, 200, 500, 65535}) {
+  const int own = static_cast<int>(blocks[4].size());
+  for (const int length : {0, 2, 3, 20, 74, 76, 200, 500, 65535, 2 * own, 5 * own, 8 * own}) {
     auto damaged = blocks;
     damaged[4][1] = static_cast<std::byte>(length >> 8);
     damaged[4][2] = static_cast<std::byte>(length & 0xFF);
@@ -329,6 +330,22 @@ TEST(Cat240, A_length_out_of_place_loses_its_own_sweep_only) {
     std::vector<std::int64_t> sequence = story.sequence;
     std::erase(sequence, 4);
     EXPECT_EQ(sequence, (std::vector<std::int64_t>{0, 1, 2, 3, 5, 6, 7, 8, 9, 10, 11}));
+  }
+}
+
+TEST(Cat240, Garbage_that_leads_past_video_is_no_block_of_another_category) {
+  const auto blocks = turn_of(12);
+  for (std::size_t to = 5; to <= blocks.size(); ++to) {
+    const Bytes passed = joined({blocks.begin() + 4, blocks.begin() + static_cast<int>(to)});
+    const int length = static_cast<int>(passed.size()) + 3;
+    auto damaged = blocks;
+    damaged[3] = damaged[3] + bytes({48, length >> 8, length & 0xFF});
+    const Story story = read(joined(damaged));
+    SCOPED_TRACE(to);
+    EXPECT_EQ(story.sequence.size(), blocks.size());
+    EXPECT_EQ(story.faults(), std::vector{Cat240Fault::kNoBlock});
+    EXPECT_EQ(story.other_blocks, 0u);
+    EXPECT_EQ(story.skipped, 3u);
   }
 }
 

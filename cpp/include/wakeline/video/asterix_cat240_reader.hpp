@@ -54,8 +54,9 @@ class DayClock {
 /// block where its own end cannot be told, if the length of the block leads to something sound: to
 /// a video block whose first record is whole, to the end of the data, or over blocks of other
 /// categories (128 KiB or 256 of them at most) to one of these. Otherwise the reader looks for a
-/// sound video block octet by octet. So nothing sound is lost behind damage, whether data or a
-/// length are damaged.
+/// sound video block octet by octet. The length of a block, of whatever category, that leads past
+/// two sound video blocks in a row is wrong. So next to nothing sound is lost behind damage,
+/// whether data or a length are damaged.
 class Cat240Reader {
  public:
   static constexpr std::size_t kPiece = 1 << 19;  ///< octets
@@ -140,7 +141,7 @@ class Cat240Reader {
   }
 
   Cat240Event pass_block(std::size_t end) noexcept {
-    const Sound sound = category(position_) == 0 ? Sound::kNo : leads_on(end);
+    const Sound sound = category(position_) == 0 ? Sound::kNo : leads_rightly_to(end);
     if (sound == Sound::kUnknown) return Cat240Event::kEnd;
     if (sound == Sound::kNo) return give_up(Cat240Fault::kNoBlock, 0, category(position_));
     ++other_blocks_;
@@ -168,7 +169,7 @@ class Cat240Reader {
 
   /// Trusts the length of the block, or looks for another from the record at fault on.
   Cat240Event leave_damage() noexcept {
-    const Sound sound = leads_on(block_end_);
+    const Sound sound = leads_rightly_to(block_end_);
     if (sound == Sound::kUnknown) return Cat240Event::kEnd;
     if (sound == Sound::kYes) skip_to(resume_);
     at_ = sound == Sound::kYes ? At::kRecord : At::kNowhere;
@@ -176,14 +177,9 @@ class Cat240Reader {
   }
 
   Cat240Event look_for_block() noexcept {
-    while (position_ < octets_.size()) {
-      const void* found = std::memchr(octets_.data() + position_, static_cast<int>(kMark),
-                                      octets_.size() - position_);
-      if (found == nullptr) {
-        skip_to(octets_.size());
-        break;
-      }
-      skip_to(static_cast<std::size_t>(static_cast<const std::byte*>(found) - octets_.data()));
+    for (;;) {
+      skip_to(find_mark(position_));
+      if (position_ == octets_.size()) return Cat240Event::kEnd;
       const Sound sound = sound_video(position_);
       if (sound == Sound::kUnknown) return Cat240Event::kEnd;
       if (sound == Sound::kYes) {
@@ -192,7 +188,34 @@ class Cat240Reader {
       }
       skip_to(position_ + 1);
     }
-    return Cat240Event::kEnd;
+  }
+
+  /// The first octet from there on that can begin a video block, or the end of these data.
+  [[nodiscard]] std::size_t find_mark(std::size_t at) const noexcept {
+    const Octets rest = octets_.subspan(at);
+    const void* found =
+        rest.empty() ? nullptr : std::memchr(rest.data(), static_cast<int>(kMark), rest.size());
+    if (found == nullptr) return octets_.size();
+    return static_cast<std::size_t>(static_cast<const std::byte*>(found) - octets_.data());
+  }
+
+  /// Whether a length that leads there from here is right: to something sound, and past no video.
+  [[nodiscard]] Sound leads_rightly_to(std::size_t end) const noexcept {
+    const Sound sound = leads_on(end);
+    if (sound != Sound::kYes) return sound;
+    const Sound passed = video_before(end);
+    return passed == Sound::kUnknown ? passed : passed == Sound::kYes ? Sound::kNo : Sound::kYes;
+  }
+
+  /// Whether two sound video blocks in a row, which no other data hold by chance, begin from here
+  /// on and before the end.
+  [[nodiscard]] Sound video_before(std::size_t end) const noexcept {
+    for (std::size_t at = find_mark(position_); at < end; at = find_mark(at + 1)) {
+      Sound sound = sound_video(at);
+      if (sound == Sound::kYes) sound = sound_video(at + block_length(at));
+      if (sound != Sound::kNo) return sound;
+    }
+    return Sound::kNo;
   }
 
   /// Whether what begins there leads to a sound video block or to the end of the data.
