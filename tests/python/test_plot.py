@@ -98,6 +98,18 @@ def test_the_map_shows_records_of_own_ship_and_truth_for_the_time_of_the_scans(e
     assert ax.get_ylim()[1] - ax.get_ylim()[0] < 2.0 * 5.0 * (end_s - start_s)
 
 
+def test_a_vessel_at_rest_is_seen_with_her_ellipse():
+    states = np.column_stack([np.linspace(500.0, 502.0, 10), *np.zeros((3, 10))])
+    covariance = np.broadcast_to(np.diag([100.0, 1.0, 400.0, 1.0]), (10, 4, 4))
+    for rows in (10, 1):
+        track = Tracks(["1"] * rows, np.arange(rows), states[:rows], covariance=covariance[:rows])
+        ax = plot.map_figure(None, track).axes[0]
+        (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
+        for ellipse in ax.collections[0].get_paths():
+            assert (ellipse.vertices > [west, south]).all()
+            assert (ellipse.vertices < [east, north]).all()
+
+
 def test_every_kind_of_mark_is_explained_once(episode, tracks):
     legend = plot.map_figure(episode, tracks).axes[0].get_legend()
     names = sorted(text.get_text() for text in legend.get_texts())

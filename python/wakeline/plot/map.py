@@ -287,12 +287,22 @@ def _set_window(ax: Axes, episode: Episode | None, tracks: Tracks | None, whole:
     if len(seen) == 0:
         return
     low, high = seen.min(axis=0), seen.max(axis=0)
-    side_m = np.maximum(high - low, 1.0) * (1.0 + 2.0 * _WATER_AROUND)
+    side_m = np.maximum(high - low, _least_side_m(tracks)) * (1.0 + 2.0 * _WATER_AROUND)
     side_m = np.maximum(side_m, _FLATTEST * side_m.max())
     low, high = (low + high - side_m) / 2.0, (low + high + side_m) / 2.0
     ax.set(ylim=(low[0], high[0]), xlim=(low[1], high[1]))
     _same_steps(ax, float(side_m.max()))
     _count_outside(ax, ~((low <= plots) & (plots <= high)).all(axis=1))
+
+
+def _least_side_m(tracks: Tracks | None) -> float:
+    """The usual 95 % ellipse fits into it, and it is at least a metre."""
+    if tracks is None or tracks.covariance is None:
+        return 1.0
+    variance = tracks.covariance[:, (0, 2), (0, 2)].max(axis=1)
+    known = variance[np.isfinite(variance)]
+    usual = float(np.median(known)) if len(known) else 0.0
+    return max(1.0, 2.0 * np.sqrt(CHI_SQUARE_95_2DOF * usual))
 
 
 def _same_steps(ax: Axes, side_m: float) -> None:
