@@ -86,6 +86,64 @@ TEST(MixedImm, OfOneKindEstimatesItsWholeState) {
   EXPECT_GT(imm.estimate().covariance(4, 4), 0.0);
 }
 
+/// `CoordinatedTurnRate` with positions first.
+struct PositionsFirst {
+  static constexpr std::array kComponents{Component::kNorth, Component::kEast, Component::kVnorth,
+                                          Component::kVeast, Component::kTurnRate};
+
+  CoordinatedTurnRate turn;
+
+  template <class Scalar>
+  Vec<Scalar, 5> transition(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
+    return swapped(turn.transition(swapped(x), dt_s));
+  }
+  template <class Scalar>
+  Mat<Scalar, 5, 5> jacobian(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
+    return of_swapped(turn.jacobian(swapped(x), dt_s));
+  }
+  template <class Scalar>
+  Mat<Scalar, 5, 5> process_noise(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
+    return of_swapped(turn.process_noise(swapped(x), dt_s));
+  }
+  double prior_variance(Component component) const noexcept {
+    return turn.prior_variance(component);
+  }
+
+ private:
+  template <class Scalar>
+  static Vec<Scalar, 5> swapped(const Vec<Scalar, 5>& x) noexcept {
+    return {x[0], x[2], x[1], x[3], x[4]};
+  }
+  template <class Scalar>
+  static Mat<Scalar, 5, 5> of_swapped(Mat<Scalar, 5, 5> matrix) noexcept {
+    matrix.row(1).swap(matrix.row(2));
+    matrix.col(1).swap(matrix.col(2));
+    return matrix;
+  }
+};
+
+TEST(MixedImm, TheOrderOfAStateDoesNotMatter) {
+  const auto chain = ModeChain<3>::from_sojourn_s({20.0, 10.0, 10.0});
+  const Ekf straight{ConstantVelocity{}};
+  const Ekf pushed{Singer{}};
+  Imm usual{chain, straight, Ekf{CoordinatedTurnRate{}}, pushed};
+  Imm own{chain, straight, Ekf{PositionsFirst{}}, pushed};
+  ASSERT_EQ(usual.start(test::five_km_off<double>()), Status::kOk);
+  ASSERT_EQ(own.start(test::five_km_off<double>()), Status::kOk);
+  for (int scan = 0; scan < 10; ++scan) {
+    const auto plot = test::plot_of<double>(3000 - 10 * scan, 4000 + 15 * scan);
+    ASSERT_EQ(usual.predict(2.5), Status::kOk);
+    ASSERT_EQ(own.predict(2.5), Status::kOk);
+    ASSERT_TRUE(usual.update(kRadar, plot));
+    ASSERT_TRUE(own.update(kRadar, plot));
+    ASSERT_TRUE(matrices_near(own.mode_probability(), usual.mode_probability()));
+    ASSERT_TRUE(matrices_near(own.estimate().mean, usual.estimate().mean));
+    ASSERT_LT((test::covariance_difference<double, 4>(own.estimate().covariance,
+                                                      usual.estimate().covariance)),
+              1e-9);
+  }
+}
+
 TEST(MixedImm, InFloat) {
   Imm imm{ModeChain<2>::from_sojourn_s({60.0, 30.0}),
           Ekf<ConstantVelocity, float>{ConstantVelocity{}},

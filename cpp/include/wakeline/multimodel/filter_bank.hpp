@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <tuple>
 #include <type_traits>
@@ -57,7 +58,8 @@ void complete(StateBelief<Components, Scalar>& kept) noexcept {
 }
 
 /// What `part`, a StateBelief or BeliefView, says of the state of `own`: what only `own` holds is
-/// taken from it, without correlation to the rest.
+/// taken from it, without correlation to the rest. Of `part` the lower triangle is read, in
+/// whatever order its rows are.
 template <auto To, class Scalar, class Part>
 decltype(auto) in_terms_of(const StateBelief<To, Scalar>& own, const Part& part) noexcept {
   constexpr auto kFrom = Part::kComponents;
@@ -70,7 +72,8 @@ decltype(auto) in_terms_of(const StateBelief<To, Scalar>& own, const Part& part)
       if (kRows[j] >= 0) said.mean[j] = part.mean[kRows[j]];
       for (int i = 0; i < own.kStates; ++i) {
         if (kRows[i] >= 0 && kRows[j] >= 0)
-          said.covariance(i, j) = part.covariance(kRows[i], kRows[j]);
+          said.covariance(i, j) =
+              part.covariance(std::max(kRows[i], kRows[j]), std::min(kRows[i], kRows[j]));
         else if (kRows[i] >= 0 || kRows[j] >= 0)
           said.covariance(i, j) = Scalar(0);
       }
