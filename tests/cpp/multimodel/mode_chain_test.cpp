@@ -164,6 +164,8 @@ TEST(ModeChain, WhatIsNoGeneratorIsRefused) {
   says(Two::Matrix{{-0.5, 0.4}, {0.25, -0.25}}, "sum of a row of the generator must be 0");
   says(Two::Matrix{{0.5, -0.5}, {0.25, -0.25}}, "every rate of the generator off its diagonal");
   says(Two::Matrix{{kNan, 0.5}, {0.25, -0.25}}, "sum of a row of the generator must be 0");
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  says(Two::Matrix{{-kInfinity, 0.5}, {0.25, -0.25}}, "generator of a mode chain must be finite");
   using Any = ModeChain<kRuntimeModes>;
   EXPECT_NE(complaint([] { Any::from_generator(Any::Matrix::Zero(2, 3)); }), "");
 }
@@ -174,6 +176,11 @@ TEST(ModeChain, SojournTimesThatAreNoneAreRefused) {
                 (void)Two::from_sojourn_s({10.0, bad});
               }).find("sojourn time"),
               std::string::npos);
+  EXPECT_NE(complaint([] {
+              (void)Two::from_sojourn_s({10.0, 1e-310});
+            }),
+            "")
+      << "leaves more often than a number can say";
 }
 
 TEST(ModeChain, TooFewOrTooManyModesAreRefused) {

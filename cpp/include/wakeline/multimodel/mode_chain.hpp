@@ -140,7 +140,9 @@ class ModeChain {
   struct Generator {
     Matrix matrix;
   };
-  explicit ModeChain(const Generator& generator) : matrix_(generator.matrix), continuous_(true) {}
+  explicit ModeChain(const Generator& generator) : matrix_(generator.matrix), continuous_(true) {
+    if (!matrix_.allFinite()) refuse("every rate of the generator of a mode chain must be finite");
+  }
 
   /// There must be K, or 1 to kMaxModes.
   static void require_modes(const std::string& what, Eigen::Index count) {
