@@ -54,6 +54,11 @@ namespace wakeline {
 /// heaviest).
 template <class FilterType, int K = kRuntimeModes, int Capacity = 256>
 class ModeHistory {
+  static_assert(
+      !requires(const FilterType& filter) { filter.memory(); },
+      "wakeline: a hypothesis of a ModeHistory is a belief alone; a filter that remembers "
+      "more (an alpha-beta filter, where its gains are) cannot be its model");
+
  public:
   using Filter = FilterType;
   using Lanes = typename Filter::Scalar;  ///< of hypotheses side by side, or a number of one
