@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,17 @@ def whole_number(name: str, value: Any, least: int) -> None:
     """ValueError unless the argument of that name is an integer, `least` or more."""
     if not isinstance(value, (int, np.integer)) or value < least:
         raise ValueError(f"{name} must be a whole number, at least {least}, got {value!r}")
+
+
+def entropy(seed: Any, purpose: str) -> list[int]:
+    """Numbers that a source of chance begins with: those of a seed, one or several, and a purpose.
+
+    ValueError unless those of the seed are whole numbers that are not negative.
+    """
+    seeds = list(seed) if np.ndim(seed) else [seed]
+    for number in seeds:
+        whole_number("seed", number, 0)
+    return [*map(int, seeds), zlib.crc32(purpose.encode())]
 
 
 def in_a_row(name: str, values: Any) -> np.ndarray:

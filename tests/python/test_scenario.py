@@ -106,6 +106,16 @@ def test_scenarios_of_other_truths_have_other_parameters():
     assert told[2]["type"] == "TrackTruth"
 
 
+def test_what_another_truth_calls_parameters_is_its_own():
+    class Known(TrackTruth):
+        parameters = np.zeros(3)
+
+    truth = Known([0.0, 60.0], [1000.0, 1300.0], [0.0, 0.0])
+    told = Scenario("one", truth, RadarSimulator(30.0, 0.01, 3.0), 20).parameters["truth"]
+    assert told["type"] == "Known"
+    assert len(told["states_sha256"]) == 64
+
+
 def test_truths_show_themselves_in_a_few_words():
     truth = Truth([0.0, 5.0, 0.0, 0.0], [Segment(60.0), Segment(30.0, 0.02)], start_time_s=10.0)
     assert repr(truth) == "<Truth: 2 segments, 10.0 to 100.0 s>"

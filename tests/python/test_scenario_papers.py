@@ -209,8 +209,9 @@ def test_draws_that_make_no_sense():
         case.draw(1.5)
     with pytest.raises(ValueError, match="first_run must be a whole number, at least 0, got -2"):
         case.draw(1, first_run=-2)
-    with pytest.raises(ValueError, match="non-negative"):
-        case.draw(1, -1)
+    for seed in (-1, 1.5, None, "x", [1, -1], [1.5]):
+        with pytest.raises(ValueError, match="seed must be a whole number, at least 0, got"):
+            case.draw(1, seed)
 
 
 # ------------------------------------------------------------------ random maneuvers

@@ -6,7 +6,6 @@ detection" (V. M. Grinyak, M. V. Trofimov): straight on, half a circle, straight
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -14,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wakeline import measurement
-from wakeline._checks import whole_number
+from wakeline._checks import entropy, whole_number
 
 from .radar import polar
 from .truth import Segment, Truth
@@ -117,10 +116,10 @@ class HardTurn:
         whole_number("runs", runs, 0)
         time_s = self.time_s
         name = f"hard turn {self.speed_mps} {self.radius_m}"
-        entropy = [*np.atleast_1d(seed).tolist(), zlib.crc32(name.encode())]
+        begin = entropy(seed, name)
         truth = np.empty((runs, len(time_s), 4))
         for run in range(runs):
-            rng = np.random.default_rng([*entropy, run])
+            rng = np.random.default_rng([*begin, run])
             truth[run] = self.truth(rng).state_at(time_s)
         z = polar(truth.reshape(-1, 4)).reshape(runs, len(time_s), 2)
         cells = np.array([self.range_cell_m, self.azimuth_cell_rad])

@@ -11,9 +11,10 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from wakeline import core, measurement
-from wakeline._checks import whole_number
+from wakeline._checks import entropy, whole_number
 
 from .radar import RadarSimulator, polar
+from .truth import Truth
 
 
 @runtime_checkable
@@ -140,10 +141,13 @@ class Scenario:
         """
         own = ("scans", "position_std_m", "velocity_std_mps", "start_time_s")
         numbers = asdict(self.radar) | {name: getattr(self, name) for name in own}
-        truth = getattr(self.truth, "parameters", None) or {
-            "type": type(self.truth).__name__,
-            "states_sha256": hashlib.sha256(self.truth_states.tobytes()).hexdigest(),
-        }
+        if isinstance(self.truth, Truth):
+            truth = self.truth.parameters
+        else:
+            truth = {
+                "type": type(self.truth).__name__,
+                "states_sha256": hashlib.sha256(self.truth_states.tobytes()).hexdigest(),
+            }
         return {name: float(value) for name, value in numbers.items()} | {"truth": truth}
 
     @property
@@ -220,8 +224,8 @@ class Scenario:
         """Source of chance of each run."""
         whole_number("runs", runs, 0)
         whole_number("first_run", first_run, 0)
-        entropy = [*np.atleast_1d(seed).tolist(), zlib.crc32(self.name.encode())]
-        return (np.random.default_rng([*entropy, first_run + run, *purpose]) for run in range(runs))
+        begin = entropy(seed, self.name)
+        return (np.random.default_rng([*begin, first_run + run, *purpose]) for run in range(runs))
 
     @property
     def polar_sensor(self) -> measurement.RangeBearing:

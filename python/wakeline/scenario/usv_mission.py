@@ -6,7 +6,6 @@ The simulator of "Sensor system information processing in unmanned navigation ap
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 import wakeline as wl
-from wakeline._checks import whole_number
+from wakeline._checks import entropy, whole_number
 
 _LONGEST_STEPS = 5000
 _SHAPES = {
@@ -205,10 +204,10 @@ class UsvMission:
         """
         whole_number("runs", runs, 0)
         truth = self.voyage
-        entropy = [*np.atleast_1d(seed).tolist(), zlib.crc32(b"usv mission")]
+        begin = entropy(seed, "usv mission")
         noise = np.empty((runs, len(truth.time_s), 6))
         for run in range(runs):
-            np.random.default_rng([*entropy, run]).standard_normal(out=noise[run])
+            np.random.default_rng([*begin, run]).standard_normal(out=noise[run])
         noise[:, 0] = np.nan
         return UsvLogs(
             imu=truth.imu + self.imu_bias + noise[..., :3] * self.imu_std,
