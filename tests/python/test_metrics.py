@@ -307,6 +307,15 @@ def test_sets_of_the_wrong_shape(metric):
 
 
 @pytest.mark.parametrize("metric", [metrics.gospa, metrics.ospa])
+@pytest.mark.parametrize("value", [np.inf, np.nan])
+def test_points_that_are_nowhere(metric, value):
+    point, nowhere = [[0.0, 0.0]], [[0.0, value]]
+    for sets in ((point, nowhere), (nowhere, point), (nowhere, nowhere)):
+        with pytest.raises(ValueError, match="truth_m and tracks_m must be finite"):
+            metric(*sets)
+
+
+@pytest.mark.parametrize("metric", [metrics.gospa, metrics.ospa])
 @pytest.mark.parametrize("value", [0.0, np.inf, np.nan])
 @pytest.mark.parametrize("name", ["cutoff_m", "p"])
 def test_cutoffs_and_orders_that_make_no_sense(metric, name, value):

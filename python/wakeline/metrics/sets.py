@@ -55,8 +55,9 @@ def gospa(
     Raises
     ------
     ValueError
-        On arrays of another shape, a cut-off that is not positive and finite or an order that is
-        not finite and at least 1, or so high that the cut-off to its power is no number.
+        On arrays of another shape or not finite, a cut-off that is not positive and finite or an
+        order that is not finite and at least 1, or so high that the cut-off to its power is no
+        number.
     """
     return gospa_of(_checked_distances(truth_m, tracks_m, cutoff_m, p), cutoff_m, p)
 
@@ -117,6 +118,8 @@ def _checked_distances(
             f"truth_m and tracks_m must have shapes (n, d) and (m, d), "
             f"got {truth_m.shape} and {tracks_m.shape}"
         )
+    if not (np.isfinite(truth_m).all() and np.isfinite(tracks_m).all()):
+        raise ValueError("truth_m and tracks_m must be finite")
     if not 0 < cutoff_m < np.inf:
         raise ValueError(f"cutoff_m must be positive and finite, got {cutoff_m}")
     if not 1 <= p < np.inf:
