@@ -364,6 +364,8 @@ def test_scenarios_of_different_lengths_are_not_taken_together(result):
     uneven = run([CASE, case("short", scans=20)], runs=2)
     with pytest.raises(ValueError, match=r"same number of scans, got \[20, 30\]"):
         uneven.merged("imm")
+    with pytest.raises(ValueError, match=r"same number of scans, got \[\]"):
+        uneven.merged("imm", [])
     with pytest.raises(KeyError, match=r"no outcome .*'imm7'.*; scenarios: case, seldom"):
         result.merged("imm7")
 

@@ -296,7 +296,8 @@ class Result:
         KeyError
             For a name that is not there.
         """
-        parts = [self[name, candidate] for name in scenarios or self.scenarios]
+        names = self.scenarios if scenarios is None else scenarios
+        parts = [self[name, candidate] for name in names]
         lengths = sorted({len(part.time_s) for part in parts})
         if len(lengths) != 1:
             raise ValueError(f"scenarios must have the same number of scans, got {lengths}")
