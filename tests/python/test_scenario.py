@@ -297,3 +297,11 @@ def test_radars_that_make_no_sense(arguments, name):
         RadarSimulator(
             **({"range_std_m": 1.0, "bearing_std_rad": 0.01, "period_s": 1.0} | arguments)
         )
+
+
+@pytest.mark.parametrize("scans", [-1, 2.5, None])
+def test_scans_are_counted_in_whole_numbers(scans):
+    radar, target = RadarSimulator(1.0, 0.01, 1.0), Truth(START)
+    for seen in (lambda: radar.observe(target, scans, 1), lambda: radar.record({}, scans, 1)):
+        with pytest.raises(ValueError, match="scans must be a whole number, at least 0, got"):
+            seen()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wakeline._checks import whole_number
 from wakeline.recording import Episode, OwnShip, Recording, Scan, TargetTruth
 
 from .truth import Truth
@@ -98,10 +99,15 @@ class RadarSimulator:
         z : ndarray (T, 2)
             Range in metres and bearing in [-pi, pi]; NaN rows where the target is missed or not
             looked at.
+
+        Raises
+        ------
+        ValueError
+            When scans is negative or no whole number.
         """
         rng = np.random.default_rng(rng)
         own = _at_rest() if own is None else own
-        begin_s = start_time_s + self.period_s * np.arange(scans)
+        begin_s = self._begins(scans, start_time_s)
         return self._rows(truth, own, begin_s, self._looks(truth, own, begin_s), rng)
 
     def readings(self, exact: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -153,10 +159,15 @@ class RadarSimulator:
             One episode. The time of a scan is that of its begin, or of its end for a rotating
             antenna; truth stands at those times, with velocities. Every look is in the scan in
             whose turn it lies.
+
+        Raises
+        ------
+        ValueError
+            As :meth:`observe`.
         """
         rng = np.random.default_rng(rng)
         own = _at_rest() if own is None else own
-        begin_s = start_time_s + self.period_s * np.arange(scans)
+        begin_s = self._begins(scans, start_time_s)
         scan_time_s = begin_s + (self.period_s if self.rotating else 0.0)
         looks = [(truth, self._looks(truth, own, begin_s)) for truth in truths.values()]
         rows = [self._rows(truth, own, begin_s, look, rng) for truth, look in looks]
@@ -188,6 +199,11 @@ class RadarSimulator:
         )
         known = {key: _sampled(truth, scan_time_s) for key, truth in truths.items()}
         return Recording(name, [Episode("", found, ship, known)])
+
+    def _begins(self, scans: int, start_time_s: float) -> np.ndarray:
+        """Times (T,) at which the scans begin."""
+        whole_number("scans", scans, 0)
+        return start_time_s + self.period_s * np.arange(scans)
 
     def _plots(
         self, truth: Truth, own: Truth, time_s: np.ndarray, rng: np.random.Generator
