@@ -183,6 +183,25 @@ TYPED_TEST(TurnOf, ARateThatReturnsForgetsItself) {
   }
 }
 
+TYPED_TEST(TurnOf, ARateThatReturnsTurnsByWhatItIsMeanwhile) {
+  using Scalar = TypeParam;
+  const CoordinatedTurnRate motion{.prior_turn_rate_rad_s = 0.01, .turn_rate_time_s = 20.0};
+  Vec<Scalar, 5> x;
+  x << Scalar(0), Scalar(6), Scalar(0), Scalar(8), Scalar(0.15);
+  for (const double dt : {0.01, 0.019, 0.021, 2.5, 30.0, 600.0}) {
+    Vec<Scalar, 5> in_steps = x;
+    for (int k = 0; k < 10; ++k) in_steps = motion.transition(in_steps, Scalar(dt / 10));
+    const Vec<Scalar, 5> at_once = motion.transition(x, Scalar(dt));
+    const double turned = 0.01 * dt - 0.14 * 20.0 * std::expm1(-dt / 20.0);
+    const double course = std::atan2(8.0, 6.0) + turned;
+    const double bound = 100 * this->kEpsilon * (1 + turned);
+    EXPECT_NEAR(at_once[1], 10 * std::cos(course), 10 * bound) << dt;
+    EXPECT_NEAR(at_once[3], 10 * std::sin(course), 10 * bound) << dt;
+    EXPECT_NEAR(in_steps[1], at_once[1], 10 * bound) << dt;
+    EXPECT_NEAR(in_steps[3], at_once[3], 10 * bound) << dt;
+  }
+}
+
 TYPED_TEST(TurnOf, WithoutNoiseOfTheRateIsTheNoiseOfTheTurn) {
   using Scalar = TypeParam;
   const CoordinatedTurnRate motion{.noise = WhiteAcceleration{0.4}, .turn_rate_psd_rad2s3 = 0.0};

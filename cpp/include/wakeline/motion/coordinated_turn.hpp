@@ -72,10 +72,10 @@ struct CoordinatedTurnRate {
   double prior_turn_rate_rad_s = 0.0;  ///< the rate that `prior_turn_rate_std_rad_s` is about
   double turn_rate_time_s = 0.0;       ///< correlation time in which omega returns to it; 0: never
 
-  /// f(x, dt).
+  /// f(x, dt): a turn by the mean of omega over the step.
   template <class Scalar>
   Vec<Scalar, 5> transition(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
-    const Turn<Scalar> turn(x[4], dt_s);
+    const Turn<Scalar> turn(mean_rate(x[4], dt_s), dt_s);
     Vec<Scalar, 5> next;
     next[0] = x[0] + turn.along_s * x[1] - turn.across_s * x[3];
     next[1] = turn.cosine * x[1] - turn.sine * x[3];
@@ -88,22 +88,24 @@ struct CoordinatedTurnRate {
   /// df/dx, 5 x 5.
   template <class Scalar>
   Mat<Scalar, 5, 5> jacobian(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
-    const Turn<Scalar> turn(x[4], dt_s);
-    const Vec<Scalar, 2> slope = turn.rate_derivatives();
+    const Turn<Scalar> turn(mean_rate(x[4], dt_s), dt_s);
+    const Scalar share = remembered_meanwhile(dt_s);
+    const Vec<Scalar, 2> slope = share * turn.rate_derivatives();
     const Scalar vx = x[1], vy = x[3];
     Mat<Scalar, 5, 5> f = Mat<Scalar, 5, 5>::Identity();
     f.template topLeftCorner<4, 4>() = turn.matrix();
     f(0, 4) = slope[0] * vx - slope[1] * vy;
-    f(1, 4) = dt_s * (-turn.sine * vx - turn.cosine * vy);
+    f(1, 4) = share * dt_s * (-turn.sine * vx - turn.cosine * vy);
     f(2, 4) = slope[1] * vx + slope[0] * vy;
-    f(3, 4) = dt_s * (turn.cosine * vx - turn.sine * vy);
+    f(3, 4) = share * dt_s * (turn.cosine * vx - turn.sine * vy);
     f(4, 4) = remembered(dt_s);
     return f;
   }
 
   /// Q(x, dt), 5 x 5: the acceleration noise of the turn, and white noise q on omega which reaches
   /// the velocity and the position through the acceleration omega x v, with v held at its value of
-  /// x: per axis the chain of integrators of white jerk q v², across the course.
+  /// x: per axis the chain of integrators of white jerk q v², across the course. That omega returns
+  /// meanwhile counts in omega alone.
   template <class Scalar>
   Mat<Scalar, 5, 5> process_noise(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
     // Position and velocity, to the north and to the east, are `across` times two of the chain's
@@ -112,7 +114,7 @@ struct CoordinatedTurnRate {
     constexpr int kIntegrator[5] = {0, 1, 0, 1, 2};
     Mat<Scalar, 3, 3> chain =
         ProcessNoise(WhiteJerk{turn_rate_psd_rad2s3}).of_acceleration_axis(dt_s);
-    Turn<Scalar> turn(x[4], dt_s);
+    Turn<Scalar> turn(mean_rate(x[4], dt_s), dt_s);
     Mat<Scalar, 4, 4> white =
         turn.noise(noise, course_wander_psd(course_psd_rad2s, max_speed_mps, x[1], x[3]));
     Mat<Scalar, 5, 5> q;
@@ -145,6 +147,25 @@ struct CoordinatedTurnRate {
   Scalar remembered(Scalar dt_s) const noexcept {
     using std::exp;
     return turn_rate_time_s > 0.0 ? exp(-dt_s / Scalar(turn_rate_time_s)) : Scalar(1);
+  }
+
+  /// The mean of that over the step: (1 - e^-u) / u, u = dt / turn_rate_time_s.
+  template <class Scalar>
+  Scalar remembered_meanwhile(Scalar dt_s) const noexcept {
+    if (!(turn_rate_time_s > 0.0)) return Scalar(1);
+    const Scalar u = dt_s / Scalar(turn_rate_time_s);
+    const auto is_short = u < Scalar(1e-3);
+    const Scalar divisor = select(is_short, Scalar(1), u);
+    return select(is_short, 1 - u / 2 * (1 - u / 3 * (1 - u / 4)),
+                  (1 - remembered(dt_s)) / divisor);
+  }
+
+  /// The mean of omega over a step that begins with it.
+  template <class Scalar>
+  Scalar mean_rate(Scalar rate_rad_s, Scalar dt_s) const noexcept {
+    if (!(turn_rate_time_s > 0.0)) return rate_rad_s;
+    const Scalar prior = Scalar(prior_turn_rate_rad_s);
+    return prior + remembered_meanwhile(dt_s) * (rate_rad_s - prior);
   }
 
   /// The standard deviation of omega that a step adds, over that without any return: the square
