@@ -393,6 +393,51 @@ TEST(BatchGate, OutsideIsMissed) {
             0);
 }
 
+/// Straight motion beside something of one's own, positions first.
+struct PositionsFirst {
+  static constexpr std::array kComponents{Component::kNorth, Component::kEast, Component::kVnorth,
+                                          Component::kVeast, Component::kUser};
+  static constexpr bool kForPacks = true;
+
+  template <class Scalar>
+  Mat<Scalar, 5, 5> matrix(Scalar dt_s) const noexcept {
+    Mat<Scalar, 5, 5> f = Mat<Scalar, 5, 5>::Identity();
+    f(0, 2) = f(1, 3) = dt_s;
+    return f;
+  }
+  template <class Scalar>
+  Mat<Scalar, 5, 5> process_noise(Scalar dt_s) const noexcept {
+    return Scalar(0.1) * dt_s * Mat<Scalar, 5, 5>::Identity();
+  }
+};
+
+template <class Scalar>
+struct Own {
+  static constexpr std::size_t kModels = 0;
+  static auto make() { return Ekf<PositionsFirst, Scalar>(PositionsFirst{}); }
+};
+
+template <class Scalar>
+struct ImmOfOwn {
+  static constexpr std::size_t kModels = 2;
+  static auto make() {
+    return Imm{ModeChain<2>::staying(0.9), Own<Scalar>::make(), Own<Scalar>::make()};
+  }
+};
+
+template <class Case>
+struct BatchGateOfOwn : ::testing::Test {};
+using OwnCases = ::testing::Types<Of<Own>, Of<ImmOfOwn>>;
+TYPED_TEST_SUITE(BatchGateOfOwn, OwnCases);
+
+TYPED_TEST(BatchGateOfOwn, IsWhereItsComponentsSay) {
+  Dense data(kRuns);
+  const Results free = run<TypeParam::template Kind, Lanes>(kRadar, data.in);
+  const RadiusGate gate{2000.0};  // of plots 3 km off and more
+  data.in.gate = &gate;
+  EXPECT_EQ((run<TypeParam::template Kind, Lanes>(kRadar, data.in).status), free.status);
+}
+
 TEST(BatchLinear, AWidePriorIsJosephsInItsLaneOnly) {
   // One lane begins with a prior in which P - W Wᵀ would cancel.
   using Filter = Ekf<CoordinatedTurn, Lanes>;

@@ -7,11 +7,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "wakeline/batch/threads.hpp"
+#include "wakeline/core/component.hpp"
 #include "wakeline/core/pack_math.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/gating/radius_gate.hpp"
+#include "wakeline/measurement/concept.hpp"
 
 namespace wakeline {
 
@@ -144,7 +147,7 @@ class RunColumn {
   std::size_t size_;
 };
 
-/// North and east of an estimate in any layout of 4, 5 or 6 states.
+/// North and east of an estimate in any of our layouts of 4, 5 or 6 states.
 template <class Belief>
 auto position_of(const Belief& belief) noexcept {
   using Scalar = typename std::decay_t<decltype(belief.mean)>::Scalar;
@@ -158,6 +161,28 @@ struct Unwatched {
   template <class Estimator>
   void updated(std::size_t, const Estimator&) const noexcept {}
 };
+
+/// The same in a layout of any order.
+template <auto Components, class Belief>
+auto position_in(const Belief& belief) noexcept {
+  using Scalar = typename std::decay_t<decltype(belief.mean)>::Scalar;
+  constexpr auto kRows = rows_of(Components, kPosition);
+  return Vec<Scalar, 2>(belief.mean[kRows[0]], belief.mean[kRows[1]]);
+}
+
+/// Where an estimator believes its target: by the components that it tells, or in one of our
+/// layouts.
+template <class Estimator>
+auto place_of(const Estimator& estimator) noexcept {
+  const auto& belief = estimator.estimate();
+  using Belief = std::decay_t<decltype(belief)>;
+  if constexpr (requires { Belief::kComponents; })
+    return position_in<Belief::kComponents>(belief);
+  else if constexpr (requires { Estimator::kComponents; })
+    return position_in<Estimator::kComponents>(belief);
+  else
+    return position_of(belief);
+}
 
 /// Runs the recordings `first`, `first + 1`, ... through an estimator that has been started, one in
 /// each lane of its scalar. A step that fails is told in its status: a reading that cannot be taken
@@ -196,8 +221,8 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
     }
     const Sensor seen = seen_from(sensor, in, scan);
     if (in.gate != nullptr)
-      missed = missed || !in.gate->template contains<Scalar>(position_of(estimator.estimate()),
-                                                             seen.position(z).mean);
+      missed =
+          missed || !in.gate->template contains<Scalar>(place_of(estimator), seen.position(z).mean);
     const Mask predicted = ok(status);
     Step<kM, Scalar> step = failed_step<kM, Scalar>(Status::kMissed);
     step.innovation.setConstant(kNaN);
