@@ -144,6 +144,16 @@ TEST(ModeChain, WhatIsNoChainInContinuousTimeIsRefused) {
   EXPECT_THROW(Two(Two::Matrix{{0.9, 0.1}, {0.1, 0.9}}, kNan), std::invalid_argument);
 }
 
+TEST(ModeChain, WhatHardlyStaysOverItsPeriodIsToldAsSuch) {
+  const Three round =
+      Three::from_generator(Three::Matrix{{-1.0, 1.0, 0.0}, {0.0, -1.0, 1.0}, {1.0, 0.0, -1.0}});
+  EXPECT_NO_THROW(Three(round.transition(1.0), 1.0));
+  for (const double period : {1.9, 10.0, 100.0}) {
+    const std::string message = complaint([&] { Three(round.transition(period), period); });
+    EXPECT_NE(message.find("or of one that hardly stays over it"), std::string::npos) << message;
+  }
+}
+
 TEST(ModeChain, ItsGeneratorMakesItAnew) {
   const Three chains[] = {Three::from_sojourn_s({60.0, 30.0, 7.0}), Three(kStaying, 2.5)};
   for (const Three& chain : chains) {

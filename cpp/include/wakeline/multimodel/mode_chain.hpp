@@ -55,7 +55,8 @@ class ModeChain {
   }
 
   /// The chain whose transition over `period_s` is the matrix. Throws also when no continuous-time
-  /// chain has it.
+  /// chain has it, or only one that hardly stays over it: where an eigenvalue is about 0, or 1 or
+  /// more away from 1.
   ModeChain(const Matrix& over_period, double period_s) : ModeChain(over_period) {
     require_positive("period_s", period_s);
     matrix_ = logarithm(over_period) / period_s;
@@ -213,9 +214,8 @@ class ModeChain {
     }
     if (!valid || !(transition(period_s) - over_period).isZero(1e-9))
       refuse(
-          "this matrix is not the transition of a continuous-time chain over its period; leave the "
-          "period out to apply "
-          "it once per prediction");
+          "this matrix is not the transition of a continuous-time chain over its period, or of one "
+          "that hardly stays over it; leave the period out to apply it once per prediction");
   }
 
   // Sums in loops, whose order does not depend on whether K is known at compile time.
