@@ -54,7 +54,7 @@ template <auto Components, class Scalar, int N>
 /// Makes a belief of what `keep_lower` has taken.
 template <auto Components, class Scalar>
 void complete(StateBelief<Components, Scalar>& kept) noexcept {
-  mirror_lower<Scalar, kept.kStates>(kept.covariance);
+  mirror_lower<Scalar, StateBelief<Components, Scalar>::kStates>(kept.covariance);
 }
 
 /// What `part`, a StateBelief or BeliefView, says of the state of `own`: what only `own` holds is
