@@ -154,14 +154,6 @@ auto position_of(const Belief& belief) noexcept {
   return Vec<Scalar, 2>(belief.mean[0], belief.mean[belief.mean.size() == 6 ? 3 : 2]);
 }
 
-/// Sees nothing of a run.
-struct Unwatched {
-  template <class Estimator>
-  void predicted(std::size_t, const Estimator&) const noexcept {}
-  template <class Estimator>
-  void updated(std::size_t, const Estimator&) const noexcept {}
-};
-
 /// The same in a layout of any order.
 template <auto Components, class Belief>
 auto position_in(const Belief& belief) noexcept {
@@ -183,6 +175,14 @@ auto place_of(const Estimator& estimator) noexcept {
   else
     return position_of(belief);
 }
+
+/// Sees nothing of a run.
+struct Unwatched {
+  template <class Estimator>
+  void predicted(std::size_t, const Estimator&) const noexcept {}
+  template <class Estimator>
+  void updated(std::size_t, const Estimator&) const noexcept {}
+};
 
 /// Runs the recordings `first`, `first + 1`, ... through an estimator that has been started, one in
 /// each lane of its scalar. A step that fails is told in its status: a reading that cannot be taken
