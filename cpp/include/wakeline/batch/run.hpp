@@ -165,7 +165,7 @@ auto position_in(const Belief& belief) noexcept {
 /// Where an estimator believes its target: by the components that it tells, or in one of our
 /// layouts.
 template <class Estimator>
-auto place_of(const Estimator& estimator) noexcept {
+auto estimated_position(const Estimator& estimator) noexcept {
   const auto& belief = estimator.estimate();
   using Belief = std::decay_t<decltype(belief)>;
   if constexpr (requires { Belief::kComponents; })
@@ -221,8 +221,8 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
     }
     const Sensor seen = seen_from(sensor, in, scan);
     if (in.gate != nullptr)
-      missed =
-          missed || !in.gate->template contains<Scalar>(place_of(estimator), seen.position(z).mean);
+      missed = missed || !in.gate->template contains<Scalar>(estimated_position(estimator),
+                                                             seen.position(z).mean);
     const Mask predicted = ok(status);
     Step<kM, Scalar> step = failed_step<kM, Scalar>(Status::kMissed);
     step.innovation.setConstant(kNaN);
