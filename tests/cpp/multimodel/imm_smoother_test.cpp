@@ -4,19 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
 #include "wakeline/filter/ekf.hpp"
-#include "wakeline/filter/square_root_ukf.hpp"
-#include "wakeline/filter/ukf.hpp"
 #include "wakeline/measurement/position.hpp"
-#include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/multimodel/uniform_bank.hpp"
 
@@ -43,9 +42,18 @@ Gaussian<4> start() {
   return belief;
 }
 
-template <int K>
-ModeChain<K> sticky() {
-  return ModeChain<K>::staying(0.9);
+using Turns = Imm<UniformBank<Ekf<CoordinatedTurn>>>;
+using TurnScan = ImmScan<Turns::Bank>;
+
+/// An Imm of turns, each of which goes on with a probability of 0.9.
+Turns turns(const std::vector<double>& rates_deg_s) {
+  std::vector<Ekf<CoordinatedTurn>> filters;
+  for (const double rate : rates_deg_s) filters.push_back(turning(rate));
+  const std::span<const Ekf<CoordinatedTurn>> models(filters);
+  const auto modes = static_cast<Eigen::Index>(filters.size());
+  return {modes == 1 ? ModeChain<kRuntimeModes>(Mat<double, 1, 1>::Ones())
+                     : ModeChain<kRuntimeModes>::staying(0.9, modes),
+          Turns::Bank(models)};
 }
 
 /// A voyage that goes straight, turns to starboard by 2°/s and goes straight again, and its plots.
@@ -65,31 +73,24 @@ struct Voyage {
   }
 };
 
-template <class Estimator>
-using BankOf = typename Estimator::Bank;
-
 /// Takes an Imm through plots.
-template <class Estimator>
-std::vector<ImmScan<BankOf<Estimator>>> recorded(Estimator imm,
-                                                 const std::vector<std::optional<Vec2>>& plots,
-                                                 double dt_s = kStep_s) {
-  std::vector<ImmScan<BankOf<Estimator>>> scans;
+std::vector<TurnScan> recorded(Turns imm, const std::vector<std::optional<Vec2>>& plots) {
+  std::vector<TurnScan> scans;
   EXPECT_EQ(imm.start(start()), Status::kOk);
   for (const auto& plot : plots) {
-    EXPECT_EQ(imm.predict(dt_s), Status::kOk);
-    const Estimator predicted = imm;
+    EXPECT_EQ(imm.predict(kStep_s), Status::kOk);
+    const Turns predicted = imm;
     if (plot) {
       EXPECT_TRUE(imm.update(kSensor, *plot));
     }
-    scans.push_back({predicted, imm, dt_s});
+    scans.push_back({predicted, imm, kStep_s});
   }
   return scans;
 }
 
-template <class Estimator>
-auto smoothed(const Estimator& imm, const std::vector<std::optional<Vec2>>& plots) {
+std::vector<TurnScan> smoothed(const Turns& imm, const std::vector<std::optional<Vec2>>& plots) {
   auto scans = recorded(imm, plots);
-  EXPECT_EQ(ImmSmoother<BankOf<Estimator>>::smooth(scans), Status::kOk);
+  EXPECT_EQ(ImmSmoother<Turns::Bank>::smooth(scans), Status::kOk);
   return scans;
 }
 
@@ -136,8 +137,7 @@ TEST(Revised, OfItsOwnPriorIsWhatCameOfIt) {
 }
 
 // Where all modes are one model there is nothing to choose: the smoother of Rauch, Tung, Striebel.
-template <class Bank>
-void expect_rts(const Imm<Bank>& imm, const Ekf<CoordinatedTurn>& filter) {
+void expect_rts(const Turns& imm, const Ekf<CoordinatedTurn>& filter) {
   Voyage voyage(2);
   voyage.plots[20] = voyage.plots[21] = std::nullopt;
   const auto scans = smoothed(imm, voyage.plots);
@@ -160,18 +160,15 @@ void expect_rts(const Imm<Bank>& imm, const Ekf<CoordinatedTurn>& filter) {
   }
 }
 
-TEST(ImmSmoother, OfOneModelIsThatOfItsFilter) {
-  expect_rts(Imm{ModeChain<1>(Mat<double, 1, 1>::Ones()), turning(1.0)}, turning(1.0));
-}
+TEST(ImmSmoother, OfOneModelIsThatOfItsFilter) { expect_rts(turns({1.0}), turning(1.0)); }
 
 TEST(ImmSmoother, OfEqualModelsIsThatOfTheirFilter) {
-  expect_rts(Imm{sticky<3>(), turning(0.0), turning(0.0), turning(0.0)}, turning(0.0));
-  expect_rts(Imm{sticky<2>(), UniformBank<Ekf<CoordinatedTurn>, 2>(turning(0.0))}, turning(0.0));
+  expect_rts(turns({0.0, 0.0, 0.0}), turning(0.0));
 }
 
 TEST(ImmSmoother, LeavesTheLastScanAsItWas) {
   const Voyage voyage(3);
-  const Imm imm{sticky<2>(), turning(0.0), turning(2.0)};
+  const Turns imm = turns({0.0, 2.0});
   const auto filtered = recorded(imm, voyage.plots), smooth = smoothed(imm, voyage.plots);
   EXPECT_EQ(smooth.back().updated.estimate().mean, filtered.back().updated.estimate().mean);
   EXPECT_EQ(smooth.back().updated.mode_probability(), filtered.back().updated.mode_probability());
@@ -224,7 +221,7 @@ struct Exact {
 
 TEST(ImmSmoother, ComesNearTheSumOverAllHistories) {
   const std::array rates_deg_s{0.0, 4.0};
-  const Imm imm{sticky<2>(), turning(rates_deg_s[0]), turning(rates_deg_s[1])};
+  const Turns imm = turns({rates_deg_s[0], rates_deg_s[1]});
   double off_m = 0.0, filtered_off_m = 0.0, off = 0.0, filtered_off = 0.0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Voyage voyage(seed, 10);
@@ -244,8 +241,7 @@ TEST(ImmSmoother, ComesNearTheSumOverAllHistories) {
 }
 
 /// Mean squared errors of position and velocity, filtered and smoothed.
-template <class Estimator>
-std::array<double, 4> errors(const Estimator& imm, int runs) {
+std::array<double, 4> errors(const Turns& imm, int runs) {
   std::array<double, 4> sums{};
   for (int run = 0; run < runs; ++run) {
     const Voyage voyage(std::uint64_t(100 + run));
@@ -263,24 +259,15 @@ std::array<double, 4> errors(const Estimator& imm, int runs) {
 }
 
 TEST(ImmSmoother, KnowsTurnsFarBetterThanTheFilter) {
-  const auto sums = errors(Imm{sticky<3>(), turning(-2.0), turning(0.0), turning(2.0)}, 20);
+  const auto sums = errors(turns({-2.0, 0.0, 2.0}), 20);
   EXPECT_LT(sums[2], 0.4 * sums[0]);
   EXPECT_LT(sums[3], 0.2 * sums[1]);
 }
 
-TEST(ImmSmoother, TakesFiltersOfOtherStates) {
-  const Imm imm{sticky<3>(), Ekf{ConstantVelocity{.noise = kNoise}},
-                Ukf{CoordinatedTurnRate{.noise = kNoise}},
-                SquareRootUkf{ConstantVelocity{.noise = PiecewiseAcceleration{0.5}}}};
-  const auto sums = errors(imm, 20);
-  EXPECT_LT(sums[2], 0.6 * sums[0]);
-  EXPECT_LT(sums[3], 0.5 * sums[1]);
-}
-
 TEST(ImmSmoother, DoesNotMindTheOrderOfModes) {
   const Voyage voyage(7);
-  const auto one = smoothed(Imm{sticky<2>(), turning(0.0), turning(2.0)}, voyage.plots);
-  const auto other = smoothed(Imm{sticky<2>(), turning(2.0), turning(0.0)}, voyage.plots);
+  const auto one = smoothed(turns({0.0, 2.0}), voyage.plots);
+  const auto other = smoothed(turns({2.0, 0.0}), voyage.plots);
   for (std::size_t k = 0; k < one.size(); ++k) {
     EXPECT_TRUE(matrices_near(one[k].updated.estimate().mean, other[k].updated.estimate().mean,
                               {1e-9, 1e-9}));
@@ -290,11 +277,11 @@ TEST(ImmSmoother, DoesNotMindTheOrderOfModes) {
 
 TEST(ImmSmoother, TellsAStepThatIsNone) {
   const Voyage voyage(8, 12);
-  const Imm imm{sticky<2>(), turning(0.0), turning(2.0)};
+  const Turns imm = turns({0.0, 2.0});
   const auto filtered = recorded(imm, voyage.plots);
   auto scans = filtered;
   scans[6].dt_s = -1.0;
-  EXPECT_NE(ImmSmoother<BankOf<decltype(imm)>>::smooth(scans), Status::kOk);
+  EXPECT_NE(ImmSmoother<Turns::Bank>::smooth(scans), Status::kOk);
   EXPECT_EQ(scans[5].updated.estimate().mean, filtered[5].updated.estimate().mean);
   EXPECT_NE(scans[6].updated.estimate().mean, filtered[6].updated.estimate().mean);
 }
