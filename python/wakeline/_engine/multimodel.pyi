@@ -153,6 +153,48 @@ class Imm:
         """
         What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
+    def smooth(
+        self,
+        z: ArrayLike,
+        dt_s: ArrayLike,
+        sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,
+        start: Gaussian | Sequence[Gaussian],
+        own_position_m: ArrayLike | None = None,
+        own_velocity_mps: ArrayLike | None = None,
+        acceleration_mps2: ArrayLike | None = None,
+        gate: RadiusGate | None = None,
+    ) -> RunResult:
+        """
+        Runs whole recordings and smooths them: what each scan tells knows the scans after it, too.
+
+        Each pair of modes of two scans is a way of its own: carried back by the Rauch-Tung-Striebel
+        smoother of its filter, and as likely as it foretold what came. For recordings that are over; takes
+        K² predictions and smoothings a scan, one recording after the other on each thread.
+
+        Parameters
+        ----------
+        z, dt_s, sensor, start, own_position_m, own_velocity_mps, acceleration_mps2, gate
+            As of `run`.
+
+        Returns
+        -------
+        RunResult
+            mean, covariance and mode_probability are smoothed, those of the last scan as filtered;
+            innovation, nis, log_likelihood and status are those of `run`.
+
+        Raises
+        ------
+        ValueError
+            As of `run`.
+        FilterError
+            When an estimator cannot start, or a recording cannot be smoothed: a step is below zero, or no
+            number.
+
+        References
+        ----------
+        R. E. Helmick, W. D. Blair, S. A. Hoffman, IEEE Trans. Information Theory 41, 1995; N. Nadarajah,
+        R. Tharmarasa, M. McDonald, T. Kirubarajan, IEEE Trans. AES 48, 2012.
+        """
     def start(self, belief: Gaussian) -> None:
         """
         Begins with a belief over the state of the estimate or over [x, vx, y, vy].

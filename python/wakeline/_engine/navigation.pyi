@@ -318,8 +318,9 @@ class ClosestApproach:
 
         d is signed_cpa_m, s = tcpa |v| the way to the closest point, of one joint Gaussian with d, and
         h² = L² - d²; at least the probability that they are so close now. Nearly always within 0.03 of the
-        truth while v errs per axis by a tenth of |v| (at most some 0.07), within 0.2 at a fifth; rough as it
-        errs by all of itself.
+        truth while v errs per axis by a tenth of |v|. Farthest off, and then too low, it is for a target
+        just outside the limit: by up to 0.2 at a tenth, 0.3 at a fifth, and 0.5 when v errs by all of itself
+        or more, as at rest.
 
         Parameters
         ----------
