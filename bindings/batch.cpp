@@ -147,6 +147,20 @@ bool run_lanes(const AnyLikelyModelSetImm& imm, const AnySensor& sensor, const R
   return run_mixture(imm, imm.grid(), sensor, in, starts, out);
 }
 
+bool run_lanes(const AnyBayesianAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  LaneJob job;
+  job.lines = lines.weighing();
+  return run(job, sensor, in, starts, out);
+}
+
+bool run_lanes(const AnyFuzzyAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  LaneJob job;
+  job.lines = lines.criterion();
+  return run(job, sensor, in, starts, out);
+}
+
 bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
   return std::visit(

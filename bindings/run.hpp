@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "any_lines.hpp"
 #include "any_turn_grids.hpp"
 #include "estimators.hpp"
 #include "thread_share.hpp"
@@ -73,6 +74,10 @@ bool run_lanes(const AnySwitchingGridImm& imm, const AnySensor& sensor, const Ru
 bool run_lanes(const AnyLikelyModelSetImm& imm, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 bool run_lanes(const AnyModeHistory& history, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyBayesianAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyFuzzyAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 template <class Estimator>
 bool run_lanes(const Estimator&, const AnySensor&, const RunInput&, const std::vector<AnyBelief>&,

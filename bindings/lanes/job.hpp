@@ -97,4 +97,7 @@ bool run_begun(Estimator estimator, const LaneJob& job, const RunInput& in, cons
 /// and velocity or all over the state of the estimate.
 bool run_mixed_imm(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads);
 
+/// An estimator that draws lines.
+bool run_lines(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads);
+
 }  // namespace wakeline::python

@@ -128,6 +128,7 @@ bool run_mixture(const LaneJob& job, const RunInput& in, const RunOutput& out, i
 
 bool run(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
   if (job.chain != nullptr) return run_mixture(job, in, out, threads);
+  if (job.models.empty()) return run_lines(job, in, out, threads);
   const LaneModel& model = job.models.front();
   return std::visit(
       [&]<class Motion>(const Motion& motion) {

@@ -22,6 +22,8 @@
 #include "wakeline/motion/singer.hpp"
 #include "wakeline/motion/wandering_course.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
+#include "wakeline/multimodel/bayesian_alpha_beta.hpp"
+#include "wakeline/multimodel/fuzzy_criterion.hpp"
 #include "wakeline/multimodel/history_tree.hpp"
 #include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
@@ -54,9 +56,10 @@ using Structure =
 
 /// An estimator, its sensor and where it starts.
 struct LaneJob {
-  std::vector<LaneModel> models;
+  std::vector<LaneModel> models;                    ///< none of an estimator that draws lines
   const ModeChain<kRuntimeModes>* chain = nullptr;  ///< between the models; none of one filter
   Structure structure = {};
+  std::variant<std::monostate, LineWeighing, FuzzyCriterion> lines = {};  ///< how it draws them
   std::vector<double> initial_mode_probability;
   std::variant<RangeBearing, ConvertedRangeBearing, Position> sensor;
   std::vector<LaneStart> starts;  ///< one for all runs, or one each

@@ -75,6 +75,7 @@ class BayesianAlphaBeta
   friend Base;
 
  public:
+  using typename Base::Mask;
   using typename Base::Probability;
   using typename Base::Scalar;
 
@@ -116,7 +117,7 @@ class BayesianAlphaBeta
  private:
   void begin() noexcept {
     weight_ = prior_;
-    probability_ = Probability::Unit(weighing_.members(), 0);
+    begin_probability();
   }
 
   void pass(Scalar dt_s) noexcept {
@@ -125,63 +126,74 @@ class BayesianAlphaBeta
     weight_ = stay * weight_ + (Scalar(1) - stay) * prior_;
   }
 
+  [[nodiscard]] const Probability& judgement() const noexcept { return weight_; }
+  void set_judgement(const Mask& lanes, const Probability& weight) noexcept {
+    for (Eigen::Index k = 0; k < weight_.size(); ++k)
+      weight_[k] = select(lanes, weight[k], weight_[k]);
+  }
+
   /// Bayes' rule over the members that foretold the plot, by N(v; 0, (1 + f) R) but for what all
   /// share; of the others nothing is known.
-  void judge(const Gaussian<2, Scalar>& plot) noexcept {
+  void judge(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
     const Cholesky<2, Scalar> factor(plot.covariance);
-    if (!factor.ok()) return;
     std::array<Likelihood<Scalar>, kMaxModes> likelihood;
-    const Probability before = weight_;
     Scalar foretold = Scalar(0);
-    for_each_member([&](int member, const Line<Scalar>& line) {
-      foretold += before[member];
+    for_each_member([&](int member, const Line<Scalar>& line, const Mask& exists) {
+      foretold += select(exists, weight_[member], Scalar(0));
       const Scalar spread = Scalar(1) + line.position_factor;
       const Vec<Scalar, 2> innovation = plot.mean - line.position_m;
-      likelihood[static_cast<std::size_t>(member)] = {Scalar(1) / spread,
+      likelihood[static_cast<std::size_t>(member)] = {select(exists, Scalar(1) / spread, Scalar(0)),
                                                       factor.squared_norm(innovation) / spread};
     });
+    Probability after = weight_;
     const auto count = static_cast<std::size_t>(weighing_.members());
-    if (reweigh<kMaxModes, Scalar>({weight_.data(), count}, [&](std::size_t member) {
-          return likelihood[member];
-        }) == kImpossible<Scalar>)
-      return;
-    weight_ *= foretold;
-    for (int member = 0; member < weighing_.members(); ++member)
-      if (weighing_.plots_of(member) > this->bank_.size()) weight_[member] = before[member];
+    const Scalar logarithm = reweigh<kMaxModes, Scalar>(
+        {after.data(), count}, [&](std::size_t member) { return likelihood[member]; });
+    const Mask judged = lanes && factor.ok() && logarithm != Scalar(kImpossible<Scalar>);
+    for_each_member([&](int member, const Line<Scalar>&, const Mask& exists) {
+      weight_[member] = select(judged && exists, after[member] * foretold, weight_[member]);
+    });
   }
 
   /// The mixture of the members that have their plots.
   void settle() noexcept {
-    probability_.setZero();
     Scalar total = Scalar(0);
-    for_each_member([&](int member, const Line<Scalar>&) { total += weight_[member]; });
-    std::array<Gaussian<4, Scalar>, kMaxModes> belief;
+    for_each_member([&](int member, const Line<Scalar>&, const Mask& exists) {
+      total += select(exists, weight_[member], Scalar(0));
+    });
     auto& mixture = this->belief_;
     mixture = zero_like(mixture);
-    for_each_member([&](int member, const Line<Scalar>& line) {
-      probability_[member] = weight_[member] / total;
-      belief[static_cast<std::size_t>(member)] =
-          line.belief(Scalar(weighing_.acceleration_std_mps2));
-      mixture.mean += probability_[member] * belief[static_cast<std::size_t>(member)].mean;
+    begin_probability();
+    for_each_member([&](int member, const Line<Scalar>& line, const Mask& exists) {
+      const Scalar share = select(exists, weight_[member] / total, Scalar(0));
+      mixture.mean += share * line.mean();
+      probability_[member] = select(this->ready(), share, probability_[member]);
     });
-    for_each_member([&](int member, const Line<Scalar>&) {
-      const auto& part = belief[static_cast<std::size_t>(member)];
-      const Vec<Scalar, 4> d = part.mean - mixture.mean;
-      mixture.covariance += probability_[member] * (part.covariance + d * d.transpose());
+    const auto acceleration_std_mps2 = Scalar(weighing_.acceleration_std_mps2);
+    for_each_member([&](int member, const Line<Scalar>& line, const Mask&) {
+      const Vec<Scalar, 4> d = line.mean() - mixture.mean;
+      line.for_each_covariance(acceleration_std_mps2, [&](int row, int column, Scalar element) {
+        mixture.covariance(row, column) += probability_[member] * (element + d[row] * d[column]);
+      });
     });
+    mirror_lower<Scalar, 4>(mixture.covariance);
   }
 
-  /// Calls `f(member, line)` for every member that has its plots, and parabolas as lines.
+  void begin_probability() noexcept { probability_ = Probability::Unit(weighing_.members(), 0); }
+
+  /// Calls `f(member, line, exists)` for every member that has its plots in some lane, and
+  /// parabolas as lines.
   template <class Function>
   void for_each_member(Function&& function) const noexcept {
     for (int member = 0; member < weighing_.members(); ++member) {
       const int plots = weighing_.plots_of(member);
       if (plots > this->bank_.size()) continue;
       const Line<Scalar>& line = this->lines_[static_cast<std::size_t>(plots - 2)];
+      const Mask exists = this->bank_.holds(plots);
       if (member < weighing_.lines())
-        function(member, line);
+        function(member, line, exists);
       else
-        function(member, line.parabola());
+        function(member, line.parabola(), exists);
     }
   }
 

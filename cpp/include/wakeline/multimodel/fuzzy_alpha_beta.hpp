@@ -34,6 +34,7 @@ class FuzzyAlphaBeta
   friend Base;
 
  public:
+  using typename Base::Mask;
   using typename Base::Probability;
   using typename Base::Scalar;
 
@@ -41,7 +42,7 @@ class FuzzyAlphaBeta
   explicit FuzzyAlphaBeta(const FuzzyCriterion& criterion = {})
       : Base(validated(criterion).max_plots, 2, criterion.acceleration_std_mps2),
         criterion_(criterion) {
-    choose(2);
+    choose(Scalar(2));
   }
 
   /// Saves or restores what is remembered; that of another criterion fails.
@@ -57,20 +58,23 @@ class FuzzyAlphaBeta
     fields(acceleration);
     const FuzzyCriterion saved{max_plots, steepness, threshold, clip, t_norm, hold, acceleration};
     loaded.archive_plots(fields);
-    fields(loaded.ratios_);
-    fields(loaded.strengths_);
-    fields(loaded.judged_);
-    fields(loaded.scans_);
-    fields(loaded.sigma_hat_m_);
-    fields(loaded.quality_);
-    fields(loaded.chosen_);
-    if (saved != criterion_ || loaded.judged_ < 0 || loaded.judged_ >= max_plots ||
-        loaded.scans_ < 0 || loaded.chosen_ < 2 ||
-        loaded.chosen_ > std::max(2, loaded.bank_.size()))
+    Judgement& last = loaded.judgement_;
+    fields(last.ratios);
+    fields(last.strengths);
+    fields(last.lines);
+    fields(last.scans);
+    fields(last.sigma_hat_m);
+    fields(last.quality);
+    fields(last.chosen);
+    const auto within = [](Scalar number, int least, int most) {
+      return number >= Scalar(least) && number <= Scalar(most) && number == std::floor(number);
+    };
+    if (saved != criterion_ || !within(last.lines, 0, max_plots - 1) ||
+        !(last.scans >= Scalar(0)) || !within(last.chosen, 2, std::max(2, loaded.bank_.size())))
       fields.fail();
     if (!fields.loading() || !fields.ok()) return;
     *this = loaded;
-    choose(chosen_);
+    choose(judgement_.chosen);
     this->refresh();
   }
 
@@ -79,74 +83,119 @@ class FuzzyAlphaBeta
   [[nodiscard]] const FuzzyCriterion& criterion() const noexcept { return criterion_; }
 
   /// Number of plots of the line chosen.
-  [[nodiscard]] int chosen() const noexcept { return chosen_; }
+  [[nodiscard]] int chosen() const noexcept requires(kLanesOf<Scalar> == 1) {
+    return static_cast<int>(judgement_.chosen);
+  }
   /// Output of the criterion at the last plot, before it is held and rounded; NaN without one.
-  [[nodiscard]] double quality() const noexcept { return quality_; }
+  [[nodiscard]] Scalar quality() const noexcept { return judgement_.quality; }
   /// Mean residual of the shortest line since the start, m; NaN before the first one.
-  [[nodiscard]] double sigma_hat_m() const noexcept { return sigma_hat_m_; }
+  [[nodiscard]] Scalar sigma_hat_m() const noexcept { return judgement_.sigma_hat_m; }
   /// Of each line that was judged at the last plot: its residual over `sigma_hat_m`, clipped.
-  [[nodiscard]] std::span<const double> residual_ratios() const noexcept {
-    return {ratios_.data(), static_cast<std::size_t>(judged_)};
+  [[nodiscard]] std::span<const Scalar> residual_ratios() const noexcept {
+    return {judgement_.ratios.data(), judged()};
   }
   /// Of each rule of that judgement.
-  [[nodiscard]] std::span<const double> rule_strengths() const noexcept {
-    return {strengths_.data(), static_cast<std::size_t>(judged_ > 0 ? judged_ + 1 : 0)};
+  [[nodiscard]] std::span<const Scalar> rule_strengths() const noexcept {
+    return {judgement_.strengths.data(), judged() > 0 ? judged() + 1 : 0};
   }
 
  private:
-  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  static constexpr auto kNone = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
+
+  /// What the criterion saw at the last plot, and what it said.
+  struct Judgement {
+    std::array<Scalar, FuzzyCriterion::kMaxPlots> ratios{};
+    std::array<Scalar, FuzzyCriterion::kMaxPlots> strengths{};
+    Scalar lines = Scalar(0);  ///< that were judged
+    Scalar scans = Scalar(0);  ///< that `sigma_hat_m` is the mean of
+    Scalar sigma_hat_m = Scalar(kNone);
+    Scalar quality = Scalar(kNone);
+    Scalar chosen = Scalar(2);
+  };
 
   void begin() noexcept {
-    judged_ = 0;
-    scans_ = 0;
-    sigma_hat_m_ = quality_ = kNone;
-    choose(2);
+    judgement_ = {};
+    choose(Scalar(2));
   }
 
   void pass(Scalar) noexcept {}
 
-  /// How well the lines foretold a plot, and which of them follows from it.
-  void judge(const Gaussian<2, Scalar>& plot) noexcept {
-    judged_ = this->bank_.lines();
-    for (int k = 0; k < judged_; ++k) {
-      const auto line = static_cast<std::size_t>(k);
-      const double residual_m = double((plot.mean - this->lines_[line].position_m).norm());
-      if (k == 0) {
-        if (scans_ == 0) sigma_hat_m_ = 0.0;
-        sigma_hat_m_ += (residual_m - sigma_hat_m_) / double(++scans_);
-      }
-      ratios_[line] = residual_m > 0.0 ? std::min(residual_m / sigma_hat_m_, criterion_.clip) : 0.0;
+  [[nodiscard]] const Judgement& judgement() const noexcept { return judgement_; }
+  void set_judgement(const Mask& lanes, const Judgement& other) noexcept {
+    const auto take = [&](Scalar& target, const Scalar& value) {
+      target = select(lanes, value, target);
+    };
+    for (std::size_t k = 0; k < other.ratios.size(); ++k) {
+      take(judgement_.ratios[k], other.ratios[k]);
+      take(judgement_.strengths[k], other.strengths[k]);
     }
-    const double before = quality_;
-    quality_ = criterion_.judge(residual_ratios(),
-                                {strengths_.data(), static_cast<std::size_t>(judged_ + 1)});
-    const double output = criterion_.hold && before > quality_ ? before : quality_;
-    chosen_ = static_cast<int>(std::nearbyint(output));
+    take(judgement_.lines, other.lines);
+    take(judgement_.scans, other.scans);
+    take(judgement_.sigma_hat_m, other.sigma_hat_m);
+    take(judgement_.quality, other.quality);
+    take(judgement_.chosen, other.chosen);
+  }
+
+  /// Lines that were judged at the last plot, in any lane.
+  [[nodiscard]] std::size_t judged() const noexcept {
+    return static_cast<std::size_t>(greatest_of_lanes(judgement_.lines));
+  }
+
+  /// How well the lines foretold a plot, and which of them follows from it.
+  void judge(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
+    using std::min, std::sqrt;
+    Judgement next = judgement_;
+    next.lines = this->bank_.lines_of_lanes();
+    const auto count = static_cast<std::size_t>(this->bank_.lines());
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec<Scalar, 2> residual = plot.mean - this->lines_[k].position_m;
+      const Scalar residual_m = sqrt(residual[0] * residual[0] + residual[1] * residual[1]);
+      if (k == 0) {
+        const Scalar before = select(next.scans == Scalar(0), Scalar(0), next.sigma_hat_m);
+        next.scans += Scalar(1);
+        next.sigma_hat_m = before + (residual_m - before) / next.scans;
+      }
+      const Scalar ratio = min(residual_m / next.sigma_hat_m, Scalar(criterion_.clip));
+      next.ratios[k] = select(residual_m > Scalar(0), ratio, Scalar(0));
+    }
+    const Scalar before = next.quality;
+    next.quality = criterion_.judge<Scalar>({next.ratios.data(), count},
+                                            {next.strengths.data(), count + 1}, next.lines);
+    const Mask holds = Mask(criterion_.hold) && before > next.quality;
+    next.chosen = rounded(select(holds, before, next.quality));
+    set_judgement(lanes, next);
+  }
+
+  /// The nearest whole number, halves to the even one.
+  static Scalar rounded(Scalar number) noexcept {
+    if constexpr (kLanesOf<Scalar> == 1)
+      return std::nearbyint(number);
+    else
+      return round_to_even(number);
   }
 
   /// Takes the line through so many plots, or the shortest.
-  void choose(int plots) noexcept {
-    chosen_ = std::clamp(plots, 2, std::max(2, this->bank_.size()));
-    probability_ = Probability::Zero(criterion_.max_plots - 1);
-    probability_[chosen_ - 2] = Scalar(1);
+  void choose(Scalar plots) noexcept {
+    using std::max, std::min;
+    const Scalar longest = this->bank_.lines_of_lanes() + Scalar(1);
+    judgement_.chosen = max(min(plots, longest), Scalar(2));
+    for (int k = 2; k <= criterion_.max_plots; ++k)
+      probability_[k - 2] = select(judgement_.chosen == Scalar(k), Scalar(1), Scalar(0));
   }
 
   /// The belief from the line chosen.
   void settle() noexcept {
-    choose(chosen_);
-    this->belief_ = this->lines_[static_cast<std::size_t>(chosen_ - 2)].belief(
-        Scalar(criterion_.acceleration_std_mps2));
+    choose(judgement_.chosen);
+    Line<Scalar> line = this->lines_[0];
+    for (std::size_t k = 1; k < static_cast<std::size_t>(this->bank_.lines()); ++k)
+      if (const Mask here = judgement_.chosen == Scalar(k + 2); any(here))
+        assign_where(here, line, this->lines_[k]);
+    this->belief_ = line.belief(Scalar(criterion_.acceleration_std_mps2));
   }
 
   FuzzyCriterion criterion_;
-  Probability probability_;
-  std::array<double, FuzzyCriterion::kMaxPlots> ratios_{};
-  std::array<double, FuzzyCriterion::kMaxPlots> strengths_{};
-  int judged_ = 0;          ///< lines at the last plot
-  std::int64_t scans_ = 0;  ///< that `sigma_hat_m_` is the mean of
-  double sigma_hat_m_ = kNone;
-  double quality_ = kNone;
-  int chosen_ = 2;
+  Probability probability_ = Probability::Zero(criterion_.max_plots - 1);
+  Judgement judgement_;
 };
 
 }  // namespace wakeline

@@ -8,8 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "wakeline/core/require.hpp"
+#include "wakeline/core/scalar.hpp"
 
 namespace wakeline {
 
@@ -37,42 +39,54 @@ struct FuzzyCriterion {
                                        ///< seen yet: widens the covariance, not used in the choice
 
   /// Degrees to which the quality of tracking is good and bad.
+  template <class Scalar>
   struct Degrees {
-    double good;
-    double bad;
+    Scalar good;
+    Scalar bad;
   };
 
-  [[nodiscard]] Degrees degrees(double ratio) const noexcept {
-    const double odds = std::exp(-steepness * (ratio - threshold));
-    return {odds / (1.0 + odds), 1.0 / (1.0 + odds)};
+  template <class Scalar>
+  [[nodiscard]] Degrees<Scalar> degrees(Scalar ratio) const noexcept {
+    using std::exp;
+    const Scalar odds = exp(-Scalar(steepness) * (ratio - Scalar(threshold)));
+    return {odds / (Scalar(1) + odds), Scalar(1) / (Scalar(1) + odds)};
   }
 
   /// Degree of all conditions together.
-  [[nodiscard]] double both(double a, double b) const noexcept {
-    return t_norm == TNorm::kProduct ? a * b : std::min(a, b);
+  template <class Scalar>
+  [[nodiscard]] Scalar both(Scalar a, Scalar b) const noexcept {
+    using std::min;
+    return t_norm == TNorm::kProduct ? a * b : min(a, b);
   }
 
   /// Output of the machine, 2 .. n + 1, for the ratios (n >= 1) of the lines through 2, 3, ... n +
   /// 1 plots: the mean of what the n + 1 rules say, weighted by their strengths, which are filled
   /// in. O(n).
   double judge(std::span<const double> ratios, std::span<double> strengths) const noexcept {
-    const std::size_t lines = ratios.size();
-    std::array<Degrees, kMaxPlots> degree;
-    double ahead = 1.0;  // how good the first p are together
-    for (std::size_t p = 0; p < lines; ++p) {
+    return judge<double>(ratios, strengths, double(ratios.size()));
+  }
+
+  /// The same of any scalar; each lane of a pack has the first `lines` of the ratios.
+  template <class Scalar>
+  Scalar judge(std::span<const Scalar> ratios, std::span<Scalar> strengths,
+               std::type_identity_t<Scalar> lines) const noexcept {
+    std::array<Degrees<Scalar>, kMaxPlots> degree;
+    Scalar ahead = Scalar(1);  // how good the first p are together
+    for (std::size_t p = 0; p < ratios.size(); ++p) {
       degree[p] = degrees(ratios[p]);
       strengths[p] = ahead;
-      ahead = both(ahead, degree[p].good);
+      ahead = select(Scalar(p) < lines, both(ahead, degree[p].good), ahead);
     }
-    strengths[lines] = ahead;
-    double behind = 1.0;  // how bad the rest are together
-    double total = strengths[lines];
-    double sum = total * double(lines + 1);
-    for (std::size_t p = lines; p-- > 0;) {
-      behind = both(behind, degree[p].bad);
-      strengths[p] = both(strengths[p], behind);
-      total += strengths[p];
-      sum += strengths[p] * double(std::max<std::size_t>(2, p + 1));
+    strengths[ratios.size()] = ahead;
+    Scalar behind = Scalar(1);  // how bad the rest are together
+    Scalar total = ahead;
+    Scalar sum = total * (lines + Scalar(1));
+    for (std::size_t p = ratios.size(); p-- > 0;) {
+      const auto judged = Scalar(p) < lines;
+      behind = select(judged, both(behind, degree[p].bad), behind);
+      strengths[p] = select(judged, both(strengths[p], behind), strengths[p]);
+      total += select(judged, strengths[p], Scalar(0));
+      sum += select(judged, strengths[p] * Scalar(std::max<std::size_t>(2, p + 1)), Scalar(0));
     }
     return sum / total;
   }

@@ -6,13 +6,14 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
-#include <utility>
 
 #include "wakeline/core/archive.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/types.hpp"
+#include "wakeline/core/unroll.hpp"
 
 namespace wakeline {
 
@@ -61,18 +62,54 @@ struct Line {
   /// this standard deviation per axis that began at the last plot but one.
   [[nodiscard]] Gaussian<4, Scalar> belief(Scalar acceleration_std_mps2) const noexcept {
     Gaussian<4, Scalar> belief;
-    Mat<Scalar, 2, 2> factors;
-    factors << position_factor, cross_factor, cross_factor, velocity_factor;
-    const Vec<Scalar, 2> lag = acceleration_std_mps2 * onset_lag;
-    for (int i = 0; i < 2; ++i) {
-      belief.mean[2 * i] = position_m[i];
-      belief.mean[2 * i + 1] = velocity_mps[i];
-      for (int j = 0; j < 2; ++j)
-        belief.covariance.template block<2, 2>(2 * i, 2 * j) = plot_covariance_m2(i, j) * factors;
-      belief.covariance.template block<2, 2>(2 * i, 2 * i) += lag * lag.transpose();
-    }
-    mirror_lower<Scalar, 4>(belief.covariance);
+    belief.mean = mean();
+    for_each_covariance(acceleration_std_mps2, [&](int row, int column, Scalar element) {
+      belief.covariance(row, column) = belief.covariance(column, row) = element;
+    });
     return belief;
+  }
+
+  /// Its mean.
+  [[nodiscard]] Vec<Scalar, 4> mean() const noexcept {
+    return {position_m[0], velocity_mps[0], position_m[1], velocity_mps[1]};
+  }
+
+  /// Calls `f(row, column, element)` for each element of the lower triangle of its covariance.
+  template <class Function>
+  void for_each_covariance(Scalar acceleration_std_mps2, const Function& function) const noexcept {
+    const Scalar factor[3] = {position_factor, cross_factor, velocity_factor};
+    const Scalar lag[2] = {acceleration_std_mps2 * onset_lag[0],
+                           acceleration_std_mps2 * onset_lag[1]};
+    unroll_lower<4>([&](auto row, auto column) {
+      constexpr int kRowAxis = row.value / 2, kColumnAxis = column.value / 2;
+      constexpr int kRow = row.value % 2, kColumn = column.value % 2;
+      Scalar element = plot_covariance_m2(kRowAxis, kColumnAxis) * factor[kRow + kColumn];
+      if constexpr (kRowAxis == kColumnAxis) element += lag[kRow] * lag[kColumn];
+      function(row, column, element);
+    });
+  }
+
+  /// Takes another line through as many plots where the condition holds, lane by lane.
+  friend void assign_where(const MaskOf<Scalar>& condition, Line& target,
+                           const Line& value) noexcept {
+    const auto take = [&](auto Line::*member) {
+      if constexpr (requires { (target.*member).data(); })
+        assign_where(condition, target.*member, value.*member);
+      else
+        target.*member = select(condition, value.*member, target.*member);
+    };
+    target.plots = value.plots;
+    take(&Line::position_m);
+    take(&Line::velocity_mps);
+    take(&Line::position_factor);
+    take(&Line::cross_factor);
+    take(&Line::velocity_factor);
+    take(&Line::plot_covariance_m2);
+    take(&Line::steady_lag);
+    take(&Line::onset_lag);
+    take(&Line::acceleration_mps2);
+    take(&Line::acceleration_factor);
+    take(&Line::onset_acceleration);
   }
 };
 
@@ -84,15 +121,38 @@ struct Line {
 /// missed scan is a gap. One that comes within `kSameTime_s` of the newest joins it: both become
 /// their mean. With a regular period T, before the next plot is taken, the position factor is
 /// 2(2n+1)/(n(n-1)) and the steady lag of the position -T²(n+1)(n+2)/12. Storage is in place, no
-/// heap.
+/// heap. Each lane of a pack has plots of its own, at times of its own, and as many as it has
+/// taken.
 template <int Capacity = 16, class ScalarType = double>
 class LineBank {
  public:
   static_assert(Capacity >= 2, "wakeline: a line needs two plots");
   using Scalar = ScalarType;
+  using Mask = MaskOf<Scalar>;
   static constexpr int kCapacity = Capacity;
   static constexpr double kSameTime_s = 1e-3;  ///< sooner than any radar looks again
   using Lines = std::array<Line<Scalar>, static_cast<std::size_t>(Capacity - 1)>;
+
+  /// A plot that is remembered.
+  struct Plot {
+    Vec<Scalar, 2> position_m = Vec<Scalar, 2>::Zero();
+    Mat<Scalar, 2, 2> covariance_m2 = Mat<Scalar, 2, 2>::Zero();
+    Scalar gap_s = Scalar(0);  ///< time since the plot before
+
+    friend void assign_where(const Mask& condition, Plot& target, const Plot& value) noexcept {
+      assign_where(condition, target.position_m, value.position_m);
+      assign_where(condition, target.covariance_m2, value.covariance_m2);
+      target.gap_s = select(condition, value.gap_s, target.gap_s);
+    }
+  };
+
+  /// What `advance`, but under an acceleration, and `add` change.
+  struct Latest {
+    Plot newest;
+    Scalar size;
+    Scalar elapsed_s;
+    Mask entered = false;  ///< what `add` has returned
+  };
 
   /// Remembers at most `max_plots`. Throws `std::invalid_argument` unless that is 2 to `Capacity`.
   explicit LineBank(int max_plots = Capacity) : max_plots_(max_plots) {
@@ -101,10 +161,7 @@ class LineBank {
   }
 
   /// Forgets all plots.
-  void clear() noexcept {
-    size_ = 0;
-    elapsed_s_ = Scalar(0);
-  }
+  void clear() noexcept { size_ = elapsed_s_ = Scalar(0); }
 
   /// Lets time pass.
   void advance(Scalar dt_s) noexcept { elapsed_s_ += dt_s; }
@@ -115,47 +172,69 @@ class LineBank {
   void advance(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     advance(dt_s);
     Scalar age = elapsed_s_;
-    for (int k = 0; k < size_; ++k) {
-      latest(k).position_m += dt_s * (dt_s / 2 - age) * acceleration_mps2;
-      age += latest(k).gap_s;
+    for (Plot& plot : remembered()) {
+      plot.position_m += dt_s * (dt_s / Scalar(2) - age) * acceleration_mps2;
+      age += plot.gap_s;
     }
   }
 
-  /// Remembers a plot of the present time.
-  void add(const Gaussian<2, Scalar>& plot) noexcept {
-    if (size_ > 0 && elapsed_s_ < Scalar(kSameTime_s)) {
-      Plot& newest = latest(0);
-      newest.position_m = (newest.position_m + plot.mean) / 2;
-      newest.covariance_m2 = (newest.covariance_m2 + plot.covariance) / 4;
-      return;
-    }
-    newest_ = (newest_ + 1) % max_plots_;
-    size_ = std::min(size_ + 1, max_plots_);
-    latest(0) = {plot.mean, plot.covariance, elapsed_s_};
-    elapsed_s_ = Scalar(0);
+  /// Remembers a plot of the present time, in the lanes told; true where it is no part of the
+  /// newest.
+  Mask add(const Gaussian<2, Scalar>& plot, const Mask& lanes = true) noexcept {
+    const Mask joins = lanes && holds(1) && elapsed_s_ < Scalar(kSameTime_s);
+    if (any(joins)) join(plot, joins);
+    const Mask enters = lanes && !joins;
+    if (any(enters)) enter(plot, enters);
+    return enters;
   }
 
-  /// Plots that are remembered.
-  [[nodiscard]] int size() const noexcept { return size_; }
+  /// What is needed to take back the next `add` or `advance`.
+  [[nodiscard]] Latest before_change() const noexcept { return {plots_[0], size_, elapsed_s_}; }
+  [[nodiscard]] LineBank before_change(const Vec<Scalar, 2>&) const noexcept { return *this; }
+
+  /// Goes back by that, in the lanes told.
+  void take_back(const Mask& lanes, const Latest& before) noexcept {
+    for (std::size_t k = 1; k < plots_.size(); ++k)
+      assign_where(lanes && before.entered, plots_[k - 1], plots_[k]);
+    assign_where(lanes, plots_[0], before.newest);
+    size_ = select(lanes, before.size, size_);
+    elapsed_s_ = select(lanes, before.elapsed_s, elapsed_s_);
+  }
+  void take_back(const Mask& lanes, const LineBank& before) noexcept {
+    for (std::size_t k = 0; k < plots_.size(); ++k)
+      assign_where(lanes, plots_[k], before.plots_[k]);
+    size_ = select(lanes, before.size_, size_);
+    elapsed_s_ = select(lanes, before.elapsed_s_, elapsed_s_);
+  }
+
+  /// Most plots that are remembered in any lane.
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(greatest_of_lanes(size_)); }
+  /// Whether so many plots are remembered, or more.
+  [[nodiscard]] Mask holds(int plots) const noexcept { return size_ >= Scalar(plots); }
   [[nodiscard]] int max_plots() const noexcept { return max_plots_; }
   /// Lines that there are: through the last 2, 3, ..., `size()` plots.
-  [[nodiscard]] int lines() const noexcept { return std::max(size_ - 1, 0); }
+  [[nodiscard]] int lines() const noexcept { return std::max(size() - 1, 0); }
+  /// Lines that there are in each lane.
+  [[nodiscard]] Scalar lines_of_lanes() const noexcept {
+    return at_least(size_ - Scalar(1), Scalar(0));
+  }
   /// Time since the newest plot.
   [[nodiscard]] Scalar elapsed_s() const noexcept { return elapsed_s_; }
 
   /// Fills `lines[0 .. lines() - 1]` with the lines through the last 2, 3, ... plots at present.
+  /// Where a lane lacks the plots, its line is zero.
   void fit(Lines& lines) const noexcept {
-    if (size_ == 0) return;
-    const Vec<Scalar, 2> origin = latest(0).position_m;  // small numbers: nothing cancels
+    const Vec<Scalar, 2> origin = plots_[0].position_m;  // small numbers: nothing cancels
     Sums sums;
     Scalar age = Scalar(0);
-    for (int k = 0; k < size_; ++k) {
-      const Plot& plot = latest(k);
+    for (const Plot& plot : remembered()) {
       sums.add(age, plot.position_m - origin, plot.covariance_m2);
-      if (k > 0) {
-        Line<Scalar>& line = lines[static_cast<std::size_t>(k - 1)];
-        line = sums.line(elapsed_s_, latest(0).gap_s);
+      if (sums.plots > 1) {
+        Line<Scalar>& line = lines[static_cast<std::size_t>(sums.plots - 2)];
+        sums.draw(elapsed_s_, plots_[0].gap_s, line);
         line.position_m += origin;
+        if (const Mask held = holds(sums.plots); !all(held))
+          assign_where(!held, line, Line<Scalar>{sums.plots});
       }
       age += plot.gap_s;
     }
@@ -164,14 +243,14 @@ class LineBank {
   /// Saves or restores the plots; a memory of another length, or of times that cannot be, fails.
   void archive(Archive& fields) {
     LineBank bank = *this;
+    int size = bank.size();
     fields(bank.max_plots_);
-    fields(bank.size_);
-    fields(bank.newest_);
+    fields(size);
     fields(bank.elapsed_s_);
-    const auto within = [&](int k, int least, int most) { return k >= least && k <= most; };
-    bool sound = bank.max_plots_ == max_plots_ && within(bank.size_, 0, max_plots_) &&
-                 within(bank.newest_, 0, max_plots_ - 1) && bank.elapsed_s_ >= Scalar(0);
-    for (Plot& plot : bank.plots_) {
+    bank.size_ = Scalar(size);
+    bool sound = bank.max_plots_ == max_plots_ && size >= 0 && size <= max_plots_ &&
+                 bank.elapsed_s_ >= Scalar(0);
+    for (Plot& plot : std::span(bank.plots_).template first<Capacity>()) {
       fields(plot.position_m);
       fields(plot.covariance_m2);
       fields(plot.gap_s);
@@ -182,12 +261,6 @@ class LineBank {
   }
 
  private:
-  struct Plot {
-    Vec<Scalar, 2> position_m = Vec<Scalar, 2>::Zero();
-    Mat<Scalar, 2, 2> covariance_m2 = Mat<Scalar, 2, 2>::Zero();
-    Scalar gap_s = Scalar(0);  ///< time since the plot before
-  };
-
   /// Means and centred sums over plots of ages a (s before the newest) at places p: what a line
   /// needs, whatever the time since then.
   struct Sums {
@@ -202,9 +275,13 @@ class LineBank {
     Scalar bow_bow = Scalar(0);
     Vec<Scalar, 2> bow_place = Vec<Scalar, 2>::Zero();
 
+    static Scalar one_over(int number) noexcept {
+      return RealOf<Scalar>(1) / RealOf<Scalar>(number);
+    }
+
     void add(Scalar a, const Vec<Scalar, 2>& p, const Mat<Scalar, 2, 2>& r) noexcept {
-      const Scalar b = a * a / 2;
-      const Scalar weight = Scalar(1) / Scalar(++plots);
+      const Scalar b = a * a / Scalar(2);
+      const Scalar weight = one_over(++plots);
       const Scalar away = a - age;
       const Scalar older = away - weight * away;  // away from the new mean
       age += weight * away;
@@ -220,48 +297,69 @@ class LineBank {
     }
 
     /// The line `elapsed` after the newest plot, which came `gap` after the one before it.
-    [[nodiscard]] Line<Scalar> line(Scalar elapsed, Scalar gap) const noexcept {
-      const Scalar inverse = Scalar(1) / age_age;
+    void draw(Scalar elapsed, Scalar gap, Line<Scalar>& line) const noexcept {
+      const Scalar share = one_over(plots);
+      const Scalar inverse = reciprocal(age_age);
       const Scalar mean_age = elapsed + age;  // at present
-      Line<Scalar> line;
       line.plots = plots;
       line.velocity_mps = -inverse * age_place;
       line.position_m = place + mean_age * line.velocity_mps;
       line.velocity_factor = inverse;
       line.cross_factor = mean_age * inverse;
-      line.position_factor = Scalar(1) / Scalar(plots) + mean_age * line.cross_factor;
+      line.position_factor = share + mean_age * line.cross_factor;
       line.plot_covariance_m2 = covariance;
       const Scalar slope = -inverse * age_bow;
       const Scalar bend = bow + age * slope;  // of the line at the newest plot
-      line.steady_lag = {bend + elapsed * (slope - elapsed / 2), slope - elapsed};
+      line.steady_lag = {bend + elapsed * (slope - elapsed / Scalar(2)), slope - elapsed};
       // Of an acceleration since the second plot, the newest one alone has felt anything.
       const Scalar second = elapsed + gap;
       const Scalar pull = age * inverse;  // of the newest plot on the slope
-      const Scalar felt = gap * gap / 2;
-      line.onset_lag = {(Scalar(1) / Scalar(plots) + mean_age * pull) * felt - second * second / 2,
+      const Scalar felt = gap * gap / Scalar(2);
+      line.onset_lag = {(share + mean_age * pull) * felt - second * second / Scalar(2),
                         pull * felt - second};
-      if (plots > 2) {
+      if (plots == 2) {
+        line.acceleration_mps2.setZero();
+        line.acceleration_factor = line.onset_acceleration = Scalar(0);
+      } else {
         // Beside a very long gap the bow of the other plots is lost in rounding.
-        const Scalar lost = 16 * std::numeric_limits<Scalar>::epsilon() * bow_bow;
-        line.acceleration_factor = Scalar(1) / std::max(bow_bow + slope * age_bow, lost);
+        const Scalar lost = 16 * std::numeric_limits<RealOf<Scalar>>::epsilon() * bow_bow;
+        line.acceleration_factor = reciprocal(at_least(bow_bow + slope * age_bow, lost));
         line.acceleration_mps2 = line.acceleration_factor * (bow_place + slope * age_place);
         line.onset_acceleration = -line.acceleration_factor * bend * felt;
       }
-      return line;
     }
   };
 
-  /// The k-th plot, counted back from the newest.
-  [[nodiscard]] const Plot& latest(int k) const noexcept {
-    const int slot = newest_ - k;
-    return plots_[static_cast<std::size_t>(slot < 0 ? slot + max_plots_ : slot)];
+  /// The newest plot and the other one become their mean.
+  void join(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
+    Plot& newest = plots_[0];
+    const Plot mean{(newest.position_m + plot.mean) / Scalar(2),
+                    (newest.covariance_m2 + plot.covariance) / Scalar(4), newest.gap_s};
+    assign_where(lanes, newest, mean);
   }
-  Plot& latest(int k) noexcept { return const_cast<Plot&>(std::as_const(*this).latest(k)); }
 
-  std::array<Plot, static_cast<std::size_t>(Capacity)> plots_{};
+  /// All plots become older by one. That for which there is no room stays behind the others, to be
+  /// taken back.
+  void enter(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
+    for (int k = size(); k > 0; --k)
+      assign_where(lanes, plots_[static_cast<std::size_t>(k)],
+                   plots_[static_cast<std::size_t>(k - 1)]);
+    assign_where(lanes, plots_[0], Plot{plot.mean, plot.covariance, elapsed_s_});
+    size_ = select(lanes && !holds(max_plots_), size_ + Scalar(1), size_);
+    elapsed_s_ = select(lanes, Scalar(0), elapsed_s_);
+  }
+
+  /// As many as the fullest lane has.
+  [[nodiscard]] std::span<const Plot> remembered() const noexcept {
+    return {plots_.data(), static_cast<std::size_t>(size())};
+  }
+  std::span<Plot> remembered() noexcept {
+    return {plots_.data(), static_cast<std::size_t>(size())};
+  }
+
+  std::array<Plot, static_cast<std::size_t>(Capacity + 1)> plots_{};  ///< the newest first
   int max_plots_;
-  int size_ = 0;
-  int newest_ = 0;
+  Scalar size_ = Scalar(0);       ///< plots that each lane remembers
   Scalar elapsed_s_ = Scalar(0);  ///< since the newest plot
 };
 

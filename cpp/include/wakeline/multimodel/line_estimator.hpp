@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <span>
+#include <type_traits>
+#include <utility>
 
 #include "wakeline/core/archive.hpp"
 #include "wakeline/filter/ekf.hpp"
@@ -23,13 +26,14 @@ namespace wakeline {
 /// alone count. Takes the position out of any sensor that fixes one, and measures innovations in
 /// north and east. Steps may be irregular. No heap.
 ///
-/// `Derived` has `begin()` for a start, `pass(dt_s)` for the time that passes, `judge(plot)` for a
-/// plot that the lines have foretold, before it is remembered, and `settle()`, which makes of the
-/// lines the belief.
+/// `Derived` has `begin()` for a start, `pass(dt_s)` for the time that passes, `judge(plot, lanes)`
+/// for a plot that the lines have foretold, before it is remembered, `settle()`, which makes of the
+/// lines the belief, and `judgement()`, what it remembers beside the plots.
 template <class Derived, int Capacity, class ScalarType>
 class LineEstimator {
  public:
   using Scalar = ScalarType;
+  using Mask = MaskOf<Scalar>;
   static constexpr int kModels = kRuntimeModes;
   static constexpr auto kComponents = kKinematics;
   using Probability = ModeVector<Scalar, kModels>;
@@ -37,19 +41,22 @@ class LineEstimator {
   using Bank = LineBank<Capacity, Scalar>;
 
   /// Begins with a belief over `[x, vx, y, vy]`. Where it is none nothing changes.
-  Status start(const Gaussian<4, Scalar>& belief) noexcept {
-    if (const Status status = first_.start(belief); status != Status::kOk) return status;
+  StatusOf<Scalar> start(const Gaussian<4, Scalar>& belief) noexcept {
+    const auto before = memory(bank_);
+    const StatusOf<Scalar> status = first_.start(belief);
+    if (none(ok(status))) return status;
     bank_.clear();
     derived().begin();
-    belief_ = first_.estimate();
-    return Status::kOk;
+    refresh();
+    if (!all(ok(status))) take_back(!ok(status), before);
+    return status;
   }
 
   /// Moves on along the lines.
-  Status predict(Scalar dt_s) noexcept { return move(dt_s); }
+  StatusOf<Scalar> predict(Scalar dt_s) noexcept { return move(dt_s); }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
-  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return move(dt_s, acceleration_mps2);
   }
 
@@ -58,8 +65,9 @@ class LineEstimator {
   Step<2, Scalar> update(const Sensor& sensor,
                          const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     const Step<2, Scalar> step = innovation(sensor, z);
-    if (step && !take(sensor.position(z))) return failed_step<2, Scalar>(Status::kNotFinite);
-    return step;
+    if (none(ok(step.status))) return step;
+    const Mask lost = ok(step.status) && !take(sensor.position(z), ok(step.status));
+    return any(lost) ? failed_where<2, Scalar>(lost, Status::kNotFinite, step) : step;
   }
 
   /// The innovation of a plot, north and east, and its likelihood, without taking it.
@@ -83,10 +91,7 @@ class LineEstimator {
     correction.innovation = plot.mean - ahead.mean;
     correction.innovation_covariance = ahead.covariance + plot.covariance;
     const Cholesky<2, Scalar> factor(correction.innovation_covariance);
-    if (factor.ok())
-      rate(correction, factor.template whiten<1>(correction.innovation), factor);
-    else
-      correction.status = refusal<Scalar, 2>(correction.innovation_covariance);
+    rate(correction, factor.template whiten<1>(correction.innovation), factor);
     return correction;
   }
 
@@ -105,7 +110,7 @@ class LineEstimator {
   /// line is drawn through predictions.
   template <class Sensor>
   Scalar update(std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
-                std::span<Scalar> share) noexcept {
+                std::span<Scalar> share) noexcept requires(kLanesOf<Scalar> == 1) {
     for (Scalar& part : share) part = Scalar(0);
     if (!started()) return Scalar(0);
     Scalar owned = Scalar(0);
@@ -118,7 +123,7 @@ class LineEstimator {
     const bool possible = total > Scalar(0) && std::isfinite(total);
     for (Scalar& part : share) part = possible ? part / total : Scalar(0);
     if (!possible) return Scalar(0);
-    if (owned <= none || take(joined(readings, none / total, share))) return total;
+    if (owned <= none || take(joined(readings, none / total, share), true)) return total;
     for (Scalar& part : share) part = Scalar(0);
     return Scalar(0);
   }
@@ -126,7 +131,7 @@ class LineEstimator {
   [[nodiscard]] const BeliefType& estimate() const noexcept { return belief_; }
   [[nodiscard]] bool started() const noexcept { return first_.started(); }
   /// True once there are the plots that it tracks with.
-  [[nodiscard]] bool ready() const noexcept { return bank_.size() >= least_plots_; }
+  [[nodiscard]] Mask ready() const noexcept { return bank_.holds(least_plots_); }
   /// The lines through the last 2, 3, ... plots, at present.
   [[nodiscard]] std::span<const Line<Scalar>> lines() const noexcept {
     return {lines_.data(), static_cast<std::size_t>(bank_.lines())};
@@ -149,10 +154,9 @@ class LineEstimator {
   /// The lines, and the belief that follows from them, at present.
   void refresh() noexcept {
     bank_.fit(lines_);
-    if (ready())
-      derived().settle();
-    else
-      belief_ = first_.estimate();
+    const Mask tracks = ready();
+    if (any(tracks)) derived().settle();
+    if (!all(tracks)) assign_where<Mask, 4, Scalar>(!tracks, belief_, first_.estimate());
   }
 
   Ekf<ConstantVelocity, Scalar> first_;  ///< the belief before there is a line
@@ -165,36 +169,67 @@ class LineEstimator {
 
   Derived& derived() noexcept { return static_cast<Derived&>(*this); }
 
+  /// What the belief follows from, of the plots those that a step changes.
+  template <class Plots>
+  struct Memory {
+    Gaussian<4, Scalar> first;
+    Plots plots;
+    std::remove_cvref_t<decltype(std::declval<const Derived&>().judgement())> judgement;
+  };
+
+  template <class Plots>
+  [[nodiscard]] Memory<Plots> memory(const Plots& plots) const noexcept {
+    return {first_.estimate(), plots, static_cast<const Derived&>(*this).judgement()};
+  }
+
+  /// Goes back to what was remembered, in the lanes told.
+  template <class Plots>
+  void take_back(const Mask& lanes, const Memory<Plots>& before) noexcept {
+    first_.assign_in(lanes, before.first);
+    bank_.take_back(lanes, before.plots);
+    derived().set_judgement(lanes, before.judgement);
+    refresh();
+  }
+
   template <class... Known>
-  Status move(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+  StatusOf<Scalar> move(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
     if (!started()) return Status::kNotStarted;
-    if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
-    const Derived before = derived();
+    StatusOf<Scalar> status = check_time_step(dt_s);
+    if (none(ok(status))) return status;
+    const auto before = memory(bank_.before_change(acceleration_mps2...));
     bank_.advance(dt_s, acceleration_mps2...);
     derived().pass(dt_s);
-    Status status = Status::kOk;
-    if (!ready()) status = first_.predict(dt_s, acceleration_mps2...);
-    if (status == Status::kOk) refresh();
+    if (const Mask tracks = ready(); !all(tracks)) {
+      const StatusOf<Scalar> moved = first_.predict(dt_s, acceleration_mps2...);
+      status = first_failure(status, select(tracks, StatusOf<Scalar>(Status::kOk), moved));
+    }
+    refresh();
     status = first_failure(status, ok_or(is_sound(), Status::kNotFinite));
-    if (status != Status::kOk) derived() = before;
+    if (!all(ok(status))) take_back(!ok(status), before);
     return status;
   }
 
-  /// False, and nothing is changed, where the belief would not be finite.
-  bool take(const Gaussian<2, Scalar>& plot) noexcept {
-    const Derived before = derived();
-    if (ready())
-      derived().judge(plot);
-    else
-      (void)first_.update(Fix{plot.covariance.template cast<double>()}, plot.mean);
-    bank_.add(plot);
+  /// Judges and remembers a plot, in the lanes told. False, and nothing is changed, where the
+  /// belief would not be finite.
+  Mask take(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
+    auto before = memory(bank_.before_change());
+    const Mask tracks = ready();
+    if (any(lanes && tracks)) derived().judge(plot, lanes && tracks);
+    if (any(lanes && !tracks)) {
+      Gaussian<2, Scalar> reading = plot;
+      constexpr auto kNone = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
+      for (int i = 0; i < 2; ++i)
+        reading.mean[i] = select(lanes && !tracks, plot.mean[i], Scalar(kNone));
+      (void)first_.correct(Fix{}, reading);
+    }
+    before.plots.entered = bank_.add(plot, lanes);
     refresh();
-    if (is_sound()) return true;
-    derived() = before;
-    return false;
+    const Mask sound = is_sound();
+    if (!all(sound)) take_back(!sound, before);
+    return sound;
   }
 
-  [[nodiscard]] bool is_sound() const noexcept {
+  [[nodiscard]] Mask is_sound() const noexcept {
     return is_finite(belief_.mean) && is_finite(belief_.covariance);
   }
 
