@@ -188,6 +188,48 @@ def test_histories_kept_apart_are_nearer_than_mixed_ones(name, rates):
     assert errors["tree"] < 0.9 * errors["imm"]
 
 
+def a_vessel_of_its_habits(rng, total_s):
+    """One that steers as a tree believes by default that vessels do."""
+    rates, straight, mode, segments = np.deg2rad(np.arange(-4.0, 5.0)), 4, 4, []
+    turns = [k for k in range(9) if k != straight]
+    if rng.random() < 0.1:
+        mode = rng.choice(turns)
+    while sum(segment.duration_s for segment in segments) < total_s:
+        duration_s = 6.0 + rng.exponential(55.0 if mode == straight else 75.0)
+        segments.append(scenario.Segment(duration_s, rates[mode]))
+        if mode != straight and rng.random() < 0.75:
+            mode = straight
+        else:
+            mode = rng.choice([k for k in turns if k != mode])
+    return segments
+
+
+def test_of_vessels_that_steer_by_its_habits_it_is_as_sure_as_it_may_be():
+    # NEES is 4 in the mean of the prior, whatever its tails, where nothing is cut or approximated.
+    rng = np.random.default_rng(5)
+    runs, scans = 300, 60
+    spread = np.diag([100.0, 1.0, 100.0, 1.0])
+    origin = np.array([3000.0, 7.7, 3000.0, 5.1])
+    starts = origin + rng.standard_normal((runs, 4)) * np.sqrt(np.diag(spread))
+    time_s = 3.0 * np.arange(1, scans + 1)
+    truth = np.stack(
+        [
+            scenario.Truth(start, a_vessel_of_its_habits(rng, time_s[-1])).state_at(time_s)
+            for start in starts
+        ]
+    )
+    radar = wl.RangeBearing(range_std_m=60.0, bearing_std_rad=np.deg2rad(0.5))
+    north_m, east_m = truth[..., 0], truth[..., 2]
+    z = np.stack([np.hypot(north_m, east_m), np.arctan2(east_m, north_m)], axis=-1)
+    z += rng.standard_normal(z.shape) * [radar.range_std_m, radar.bearing_std_rad]
+    filter = wl.Ekf(wl.CoordinatedTurn(noise=wl.PiecewiseAcceleration(std_mps2=0.003)))
+    tree = wl.ModeHistory(filter, switch_time_spread=1.0, max_hypotheses=180, max_branches=256)
+    result = tree.run(z, dt_s=3.0, sensor=radar, start=wl.Gaussian(origin, spread))
+    error = truth - result.mean
+    nees = np.einsum("rti,rtij,rtj->rt", error, np.linalg.inv(result.covariance), error)
+    assert 3.7 < nees.mean() < 4.3
+
+
 def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is_not():
     rates = np.deg2rad([-2.0, -1.0, 0.0, 1.0, 2.0])
     chain = wl.ModeChain(np.full((5, 5), 0.025) + 0.875 * np.eye(5))

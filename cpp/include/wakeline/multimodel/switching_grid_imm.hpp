@@ -167,11 +167,12 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
   /// Where a direction is not 0, gives each filter the belief of its neighbour in that direction,
   /// and the last one `entering`; returns the belief that none has any more.
   BeliefType shifted(const Place& direction, const BeliefType& entering) noexcept {
-    const auto moves = direction != Place(0);
+    const MaskOf<Scalar> goes[2] = {direction < Place(0), direction > Place(0)};
     BeliefType leaving = entering;
     this->bank_.for_each([&](int k, auto& filter, auto& before) {
       before = filter.estimate();
-      const auto leaves = moves && direction == Place(1 - k);
+      if (k == 1) return;
+      const auto leaves = goes[k == 0];
       if constexpr (kLanesOf<Scalar> == 1) {
         if (leaves) leaving = before;
       } else {
@@ -179,9 +180,9 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
       }
     });
     this->bank_.for_each([&](int k, auto& filter, auto&) {
-      this->assign_in(moves && direction == Place(k - 1), filter, entering);
+      if (k != 1) this->assign_in(goes[k == 2], filter, entering);
       this->bank_.for_each_before([&](int i, const auto& before) {
-        this->assign_in(moves && direction == Place(i - k), filter, before);
+        if (i - k == 1 || k - i == 1) this->assign_in(goes[i > k], filter, before);
       });
     });
     return leaving;
