@@ -163,6 +163,14 @@ def test_a_dask_cluster_gives_the_same_bits(result):
 
 
 @pytest.mark.slow
+def test_a_ray_cluster_gives_the_same_bits(result, monkeypatch):
+    monkeypatch.setenv("RAY_AUTH_MODE", "disabled")
+    ray = pytest.importorskip("ray")
+    with ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False):
+        assert_same_bits(run([CASE, SELDOM], BOTH, client=ray), result)
+
+
+@pytest.mark.slow
 def test_what_a_worker_of_dask_cannot_import_is_told(monkeypatch):
     distributed = pytest.importorskip("distributed")
     module = only_here()

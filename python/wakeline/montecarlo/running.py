@@ -68,9 +68,8 @@ def run(
     client : object, optional
         A ``dask.distributed.Client``, the module ``ray`` after ``ray.init()``, or an executor with
         ``submit``: does the work elsewhere, with candidates that can be pickled, as estimators,
-        motion models and sensors of the engine can. Tested with a cluster of Dask and with
-        executors of threads and of processes; Ray only by a stand-in with its two calls,
-        ``remote`` and ``get``.
+        motion models and sensors of the engine can. Tested with local clusters of Dask and of Ray
+        and with executors of threads and of processes.
     progress : bool or callable
         True draws a bar where stderr is a terminal; a callable is told chunks done and in all. What
         it raises ends the run: chunks that have not begun are called off.
