@@ -136,7 +136,7 @@ for _noun in (
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
 # They use the nouns above.
-from . import _pickling, forecast, metrics, montecarlo, recording, scenario, study  # noqa: E402, F401
+from . import _pickling, forecast, metrics, montecarlo, own_ship, recording, scenario, study  # noqa: E402, F401
 
 try:
     __version__ = _version("wakeline")
@@ -226,6 +226,7 @@ __all__ = [
     "metrics",
     "montecarlo",
     "one_point",
+    "own_ship",
     "recording",
     "rhumb_line",
     "scenario",

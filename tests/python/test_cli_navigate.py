@@ -10,9 +10,10 @@ from importlib import resources
 import numpy as np
 import pytest
 
-from wakeline import _progress
-from wakeline.cli import main, navigating, outputs
+from wakeline import _progress, own_ship
+from wakeline.cli import main, outputs
 from wakeline.navigation import LocalPlane
+from wakeline.own_ship import coasting, solution
 from wakeline.recording import read_nmea
 from wakeline.recording.own_csv import read_own
 
@@ -146,7 +147,7 @@ def test_the_bundled_log_coasts_better_than_on_a_straight(tmp_path, capsys):
 @pytest.mark.parametrize("water", [True, False])
 def test_the_first_fix_is_taken_once(tmp_path, water):
     first = navigated(tmp_path, voyage(minutes=1, water=water))[0]
-    np.testing.assert_allclose(float(first["north_var_m2"]), navigating.FIX_STD_M**2, rtol=0.01)
+    np.testing.assert_allclose(float(first["north_var_m2"]), solution.FIX_STD_M**2, rtol=0.01)
 
 
 def test_set_and_drift_come_out(tmp_path):
@@ -459,13 +460,13 @@ def test_errors_are_those_at_hidden_fixes(tmp_path, every_s):
     ]
     file.write_text("".join(kept))
     log = read_nmea(file)
-    readings = navigating.readings_of(log, navigating.NO_OFFSET, navigating.plane_of(log.fixes))
+    readings = own_ship.readings_of(log)
     fixed_s = readings.time_s[readings.has_fix]
     starts_s = np.arange(fixed_s[0] + 120.0, readings.time_s[-1] - 135.0, 150.0)
-    errors = navigating.hold_out(readings)
+    errors = own_ship.hold_out(readings)
     fresh = [s for s in starts_s if s - fixed_s[fixed_s <= s][-1] <= 3.0]
     assert fresh
-    for horizon_s in navigating.HORIZONS_S:
+    for horizon_s in own_ship.HORIZONS_S:
         end_s = 60.0 if horizon_s == 60.0 else np.inf
         compared = [
             start_s
@@ -478,17 +479,17 @@ def test_errors_are_those_at_hidden_fixes(tmp_path, every_s):
 
 def test_what_is_hidden_takes_no_more_memory_than_the_log():
     time_s = np.arange(0.0, 150_000.0, 5.0)
-    starts_s = np.arange(120.0, 149_000.0, navigating.HIDDEN_EVERY_S)
+    starts_s = np.arange(120.0, 149_000.0, coasting.HIDDEN_EVERY_S)
     tracemalloc.start()
-    hidden = navigating._is_hidden(time_s, starts_s)
+    hidden = coasting._is_hidden(time_s, starts_s)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert most < 10 * time_s.nbytes
-    since_s = (time_s - 120.0) % navigating.HIDDEN_EVERY_S
-    wanted = (since_s > 0.0) & (since_s <= navigating.HIDDEN_S)
-    wanted &= (time_s > 120.0) & (time_s <= starts_s[-1] + navigating.HIDDEN_S)
+    since_s = (time_s - 120.0) % coasting.HIDDEN_EVERY_S
+    wanted = (since_s > 0.0) & (since_s <= coasting.HIDDEN_S)
+    wanted &= (time_s > 120.0) & (time_s <= starts_s[-1] + coasting.HIDDEN_S)
     np.testing.assert_array_equal(hidden, wanted)
-    assert not navigating._is_hidden(time_s, starts_s[:0]).any()
+    assert not coasting._is_hidden(time_s, starts_s[:0]).any()
 
 
 def moved_north(lines, seconds, way_m):
@@ -726,9 +727,7 @@ def test_courses_of_the_solution_are_true(tmp_path):
     file = tmp_path / "some.nmea"
     file.write_text("".join(eastward(6)))
     log = read_nmea(file)
-    plane = navigating.plane_of(log.fixes)
-    readings = navigating.readings_of(log, navigating.NO_OFFSET, plane)
-    track = navigating.navigate(readings)
+    track = own_ship.navigate(own_ship.readings_of(log))
     assert np.degrees(track.course_rad) == pytest.approx(90.0, abs=0.3)
     assert np.degrees(track.lean_rad[-1]) == pytest.approx(-3.3, abs=0.1)
 

@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wakeline import plot
+from wakeline import own_ship, plot
 from wakeline._progress import progress
 from wakeline.navigation import LocalPlane
 from wakeline.recording import NavigationLog, RecordingError, read_nmea, replacing
 
-from . import navigating, outputs, report
+from . import outputs, report
 
 _COLUMNS = (
     *("time_s", "lat_deg", "lon_deg", "north_m", "east_m", "vnorth_mps", "veast_mps"),
@@ -88,8 +88,8 @@ class _Leg(NamedTuple):
     """A part of the log without a gap of a minute."""
 
     part: NavigationLog
-    readings: navigating.Readings
-    track: navigating.OwnTrack
+    readings: own_ship.Readings
+    track: own_ship.OwnTrack
 
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:
@@ -133,7 +133,7 @@ def run(arguments: argparse.Namespace) -> None:
 def _legs(log: NavigationLog, *, smooth: bool) -> list[_Leg]:
     parts = log.parts()
     offset = _magnetic_offset(log, parts)
-    plane = navigating.plane_of(log.fixes.sound())
+    plane = own_ship.plane_of(log.fixes.sound())
     for note in (*_unused_notes(parts), *_stuck_notes(parts)):
         print(note, flush=True)
     fixed = [part for part in parts if len(part.fixes.sound())]
@@ -144,14 +144,12 @@ def _legs(log: NavigationLog, *, smooth: bool) -> list[_Leg]:
     return legs
 
 
-def _magnetic_offset(
-    log: NavigationLog, parts: Sequence[NavigationLog]
-) -> navigating.MagneticOffset:
-    if not any(map(navigating.wants_offset, parts)):
-        return navigating.NO_OFFSET
-    offset = navigating.magnetic_offset(parts)
+def _magnetic_offset(log: NavigationLog, parts: Sequence[NavigationLog]) -> own_ship.MagneticOffset:
+    if not any(map(own_ship.wants_offset, parts)):
+        return own_ship.NO_OFFSET
+    offset = own_ship.magnetic_offset(parts)
     how = "for nothing is known" if offset is None else "as velocities over ground say"
-    offset = offset or navigating.ANY_OFFSET
+    offset = offset or own_ship.ANY_OFFSET
     degrees, std_deg = np.degrees(offset)
     added = f"{degrees:+.1f}° ± {std_deg:.1f}° are added to magnetic headings"
     print(f"note: {added} of unknown variation, {how}")
@@ -162,14 +160,14 @@ def _magnetic_offset(
 
 
 def _leg(
-    part: NavigationLog, offset: navigating.MagneticOffset, plane: LocalPlane, smooth: bool
+    part: NavigationLog, offset: own_ship.MagneticOffset, plane: LocalPlane, smooth: bool
 ) -> _Leg:
-    readings = navigating.readings_of(part, offset, plane)
-    return _Leg(part, readings, navigating.navigate(readings, smooth=smooth))
+    readings = own_ship.readings_of(part, offset, plane)
+    return _Leg(part, readings, own_ship.navigate(readings, smooth=smooth))
 
 
 def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
-    unused = [navigating.unused(part) for part in parts]
+    unused = [own_ship.unused(part) for part in parts]
     for what in unused[0]:
         lines = np.concatenate([of_part[what] for of_part in unused])
         if len(lines):
@@ -177,7 +175,7 @@ def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
 
 
 def _stuck_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
-    lines = np.concatenate([navigating.zero_speeds(part) for part in parts])
+    lines = np.concatenate([own_ship.zero_speeds(part) for part in parts])
     if len(lines):
         yield (
             f"note: {len(lines)} speeds through the water are 0 while the ship makes way over "
@@ -188,8 +186,8 @@ def _stuck_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
 def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
     """What the navigator did not believe, or did so only after a while."""
     jump_m = np.concatenate([leg.track.jump_m for leg in legs])
-    far_m, near_m = jump_m[jump_m > navigating.JUMP_M], jump_m[jump_m <= navigating.JUMP_M]
-    jumps = _fix_lines(legs, [leg.track.jump_m > navigating.JUMP_M for leg in legs])
+    far_m, near_m = jump_m[jump_m > own_ship.JUMP_M], jump_m[jump_m <= own_ship.JUMP_M]
+    jumps = _fix_lines(legs, [leg.track.jump_m > own_ship.JUMP_M for leg in legs])
     moves = np.count_nonzero(near_m)
     by = f"by up to {near_m.max(initial=0.0):.0f} m"
     for what, lines in _rejected_lines(legs).items():
@@ -209,7 +207,7 @@ def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
 
 def _rejected_lines(legs: Sequence[_Leg]) -> dict[str, np.ndarray]:
     """Lines of what was not believed, of the instruments of which something was not."""
-    rejected = [navigating.rejected_lines(leg.part, leg.track) for leg in legs]
+    rejected = [own_ship.rejected_lines(leg.part, leg.track) for leg in legs]
     kinds = dict.fromkeys(what for of_leg in rejected for what in of_leg)
     lines = {w: np.concatenate([r[w] for r in rejected if w in r]) for w in kinds}
     return {what: found for what, found in lines.items() if len(found)}
@@ -248,13 +246,13 @@ def _input_lines(log: NavigationLog) -> str:
 def _hold_out(legs: Sequence[_Leg]) -> dict[str, dict[float, np.ndarray]]:
     """Errors without satellites over all legs, to magnetic offsets, too."""
     of_legs = [leg.readings for leg in legs]
-    if any(navigating.wants_offset(leg.part) for leg in legs):
-        seen = [navigating.without_hidden(leg.part, leg.readings) for leg in legs]
-        offset = navigating.magnetic_offset(seen) or navigating.ANY_OFFSET
-        of_legs = [navigating.readings_of(g.part, offset, g.readings.plane) for g in legs]
+    if any(own_ship.wants_offset(leg.part) for leg in legs):
+        seen = [own_ship.without_hidden(leg.part, leg.readings) for leg in legs]
+        offset = own_ship.magnetic_offset(seen) or own_ship.ANY_OFFSET
+        of_legs = [own_ship.readings_of(g.part, offset, g.readings.plane) for g in legs]
     joined: dict[str, dict[float, list[np.ndarray]]] = {}
     for readings in progress(of_legs, len(of_legs), "hiding satellites"):
-        for name, errors in navigating.hold_out(readings).items():
+        for name, errors in own_ship.hold_out(readings).items():
             for horizon_s, values in errors.items():
                 joined.setdefault(name, {}).setdefault(horizon_s, []).append(values)
     return {
@@ -267,9 +265,9 @@ def _error_table(errors: dict[str, dict[float, np.ndarray]]) -> str:
     count = max(len(values) for by_horizon in errors.values() for values in by_horizon.values())
     if count == 0:
         return "too short to hide satellites from it and compare"
-    head = ["", *(f"{horizon_s:.0f} s" for horizon_s in navigating.HORIZONS_S)]
+    head = ["", *(f"{horizon_s:.0f} s" for horizon_s in own_ship.HORIZONS_S)]
     body = [
-        [_METHODS[name], *(f"{value:.1f}" for value in navigating.medians(errors[name]).values())]
+        [_METHODS[name], *(f"{value:.1f}" for value in own_ship.medians(errors[name]).values())]
         for name in _METHODS
         if name in errors
     ]
@@ -315,7 +313,7 @@ def _write_csv(path: Path, legs: Sequence[_Leg]) -> None:
         writer.writerows(progress(rows, total, f"writing {path.name}"))
 
 
-def _csv_rows(track: navigating.OwnTrack) -> Iterator[list[Any]]:
+def _csv_rows(track: own_ship.OwnTrack) -> Iterator[list[Any]]:
     place, speed = track.position_m2, track.velocity_m2s2
     numbers = np.column_stack(
         [
@@ -374,7 +372,7 @@ def _earlier_pictures(folder: Path) -> Iterator[Path]:
 
 
 def _time_figure(
-    readings: navigating.Readings, track: navigating.OwnTrack, fix_time_s: np.ndarray
+    readings: own_ship.Readings, track: own_ship.OwnTrack, fix_time_s: np.ndarray
 ) -> Any:
     figure = plot.figure(7.2, 6.8)
     speed, course, drift = figure.subplots(3, 1, sharex=True)

@@ -1,0 +1,135 @@
+"""All that a log tells of own ship, at the times at which it tells anything."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+import wakeline as wl
+from wakeline.recording import NavigationLog
+from wakeline.recording.nmea import Fixes
+
+from .instruments import leeway_rad, over_ground_mps, speed_and_course, true_headings
+from .magnetic import NO_OFFSET, MagneticOffset, wants_offset
+from .times import at
+
+_MADE_GOOD_S = 10.0
+
+
+class Readings(NamedTuple):
+    """Readings at all times (T,) at which there is one, NaN where there is none; a plane for them.
+
+    ``fix_m`` and ``velocity_mps`` (T, 2) north and east, ``heading_rad`` (T,), ``log_mps``
+    (T,) through the water ahead, ``leeway_rad`` (T,) from the heading to the way through the water,
+    0 where no log tells of it, ``bottom_mps`` (T, 2) north and east over ground by a log that
+    sees the bottom, ``turn_rate_rad_s`` (T,) to starboard. Directions are those on the plane, which
+    are ``lean_rad`` (T,) more than from true north. ``offset_std_rad`` is the error that all
+    headings share.
+    """
+
+    plane: wl.navigation.LocalPlane
+    time_s: np.ndarray
+    fix_m: np.ndarray
+    velocity_mps: np.ndarray
+    heading_rad: np.ndarray
+    log_mps: np.ndarray
+    leeway_rad: np.ndarray
+    bottom_mps: np.ndarray
+    turn_rate_rad_s: np.ndarray
+    lean_rad: np.ndarray
+    offset_std_rad: float
+
+    @property
+    def over_ground_mps(self) -> np.ndarray:
+        """Velocities (T, 2) by satellite, or else by the log."""
+        return np.where(np.isfinite(self.velocity_mps), self.velocity_mps, self.bottom_mps)
+
+    @property
+    def way_rad(self) -> np.ndarray:
+        """Directions (T,) of the way through the water."""
+        return self.heading_rad + self.leeway_rad
+
+    @property
+    def way_mps(self) -> np.ndarray:
+        """Speeds (T,) along it."""
+        return self.log_mps / np.cos(self.leeway_rad)
+
+    @property
+    def has_fix(self) -> np.ndarray:
+        """Mask (T,) of the times with a fix."""
+        return np.isfinite(self.fix_m[:, 0])
+
+    @property
+    def knows_water(self) -> bool:
+        """Whether there are heading and speed through water."""
+        return bool(np.isfinite(self.heading_rad).any() and np.isfinite(self.log_mps).any())
+
+
+def plane_of(fixes: Fixes) -> wl.navigation.LocalPlane:
+    """The plane that touches the Earth at the first fix."""
+    latitude_rad, longitude_rad = np.radians([fixes.latitude_deg[0], fixes.longitude_deg[0]])
+    return wl.navigation.LocalPlane(latitude_rad=latitude_rad, longitude_rad=longitude_rad)
+
+
+def readings_of(
+    part: NavigationLog,
+    offset: MagneticOffset = NO_OFFSET,
+    plane: wl.navigation.LocalPlane | None = None,
+) -> Readings:
+    """The readings of a log that has a fix, `offset` added to headings of unknown variation.
+
+    They are on the plane at the first fix unless told another.
+    """
+    fixes, ground, water = part.fixes.sound(), part.ground.sound(), part.water.sound()
+    plane = plane or plane_of(fixes)
+    bottom, turn = part.bottom.sound(), part.turn.sound()
+    latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
+    leans_rad = wl.wrap_angle(plane.plane_course_rad(np.zeros(len(fixes)), latitude, longitude))
+
+    def lean_rad(times: np.ndarray) -> np.ndarray:
+        """By how much directions on the plane are more than true ones where the last fix is."""
+        return leans_rad[np.maximum(np.searchsorted(fixes.time_s, times, side="right") - 1, 0)]
+
+    heading_s, true_heading_rad = true_headings(part, offset.offset_rad)
+    headings = heading_s, true_heading_rad + lean_rad(heading_s)
+    speed_mps, true_course_rad = speed_and_course(ground)
+    course_rad = true_course_rad + lean_rad(ground.time_s)
+    course = np.column_stack([np.cos(course_rad), np.sin(course_rad)])
+    series = (
+        (fixes.time_s, plane.position_m(latitude, longitude)),
+        (ground.time_s, speed_mps[:, None] * course),
+        headings,
+        (water.time_s, water.ahead_mps),
+        (bottom.time_s, over_ground_mps(bottom, *headings)),
+        (turn.time_s, turn.turn_rate_rad_s),
+    )
+    time_s = np.unique(np.concatenate([times for times, _ in series]))
+    time_s = time_s[time_s >= fixes.time_s[0]]
+    fix, velocity, heading, log, over_bottom, turn_rate = (at(time_s, *one) for one in series)
+    leeway = leeway_rad(water, time_s)
+    return Readings(
+        plane,
+        time_s,
+        fix_m=fix,
+        velocity_mps=velocity,
+        heading_rad=heading,
+        log_mps=log,
+        leeway_rad=leeway,
+        bottom_mps=over_bottom,
+        turn_rate_rad_s=turn_rate,
+        lean_rad=lean_rad(time_s),
+        offset_std_rad=offset.std_rad if wants_offset(part) else 0.0,
+    )
+
+
+def made_good_mps(seen: Readings) -> np.ndarray:
+    """Velocities (T, 2) at fixes since one ten seconds or more before; NaN elsewhere."""
+    fixed = np.flatnonzero(seen.has_fix)
+    time_s, fix_m = seen.time_s[fixed], seen.fix_m[fixed]
+    before = np.searchsorted(time_s, time_s - _MADE_GOOD_S, side="right") - 1
+    known = before >= 0
+    velocity = np.full(seen.fix_m.shape, np.nan)
+    since_s = time_s[known] - time_s[before[known]]
+    velocity[fixed[known]] = (fix_m[known] - fix_m[before[known]]) / since_s[:, None]
+    return velocity

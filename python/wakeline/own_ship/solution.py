@@ -1,0 +1,261 @@
+"""Where own ship was and how she moved, as a navigator finds it from her readings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+import wakeline as wl
+
+from .instruments import UNDER_WAY_MPS, VELOCITY_STD_MPS
+from .magnetic import CURRENT_STD_MPS
+from .readings import Readings, made_good_mps
+from .times import NEAR_S, between, first
+
+FIX_STD_M = 3.0
+COMPASS_STD_RAD = np.deg2rad(4.0)  # of a small craft in waves
+LOG_STD_MPS = 0.15
+START_STD_M = 100.0  # at the first fix, which is yet to be taken as any other
+START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over ground, and without
+# What is gained in one second, whatever the steps:
+VELOCITY_WALK_MPS, SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.4, 0.1, 0.02
+HEADING_WALK_RAD = np.deg2rad(10.0)  # where no rate of turn is told
+TURNED_WALK_RAD = np.deg2rad(2.0)  # beside what an indicator tells, which lags
+GATE_PROBABILITY = 0.999
+
+COASTING_S = 5.0
+JUMP_M, JUMPED_S = 50.0, 60.0
+
+
+@dataclass(frozen=True)
+class OwnTrack:
+    """Own ship's solution at times (T,).
+
+    Positions, velocities and currents are north and east on the plane of the log, which touches the
+    Earth at its first fix. Elsewhere its north leans against true north, and across the line to the
+    first fix it is stretched, by 4e-4 at 300 km and 4e-3 at 1000 km: by as much of the speed
+    velocity and current err there.
+
+    Attributes
+    ----------
+    time_s : ndarray (T,)
+    latitude_deg, longitude_deg : ndarray (T,)
+    position_m, velocity_mps : ndarray (T, 2)
+        Over ground.
+    heading_rad : ndarray (T,)
+        From true north; NaN where the log has no heading.
+    current_mps : ndarray (T, 2)
+        NaN where there is no heading or no speed through water.
+    lean_rad : ndarray (T,)
+        By how much directions on the plane are more than from true north.
+    position_m2, velocity_m2s2 : ndarray (T, 2, 2)
+        Covariances.
+    heading_std_rad : ndarray (T,)
+    drift_std_mps : ndarray (T,)
+        Of the current in the direction in which it is known least.
+    status : ndarray of str (T,)
+        ``ok``; ``coasting`` without a fix that was believed for more than five seconds; ``jumped``
+        from where fixes that went on though rejected have moved the position by more than 50 m,
+        until others move it back or all fixes have fitted for a minute; ``rejected`` where a fix
+        was not believed.
+    jump_m : ndarray (T,)
+        How far such fixes have moved the position, zero at other times.
+    rejected : dict of str to ndarray of bool (T,)
+        Where a reading was not believed, of ``gnss``, ``velocity``, ``compass`` and ``log``.
+    """
+
+    time_s: np.ndarray
+    latitude_deg: np.ndarray
+    longitude_deg: np.ndarray
+    position_m: np.ndarray
+    velocity_mps: np.ndarray
+    heading_rad: np.ndarray
+    current_mps: np.ndarray
+    lean_rad: np.ndarray
+    position_m2: np.ndarray
+    velocity_m2s2: np.ndarray
+    heading_std_rad: np.ndarray
+    drift_std_mps: np.ndarray
+    status: np.ndarray
+    jump_m: np.ndarray
+    rejected: Mapping[str, np.ndarray]
+
+    @property
+    def course_rad(self) -> np.ndarray:
+        """Course over ground (T,) from true north."""
+        return np.arctan2(self.velocity_mps[:, 1], self.velocity_mps[:, 0]) - self.lean_rad
+
+    @property
+    def set_rad(self) -> np.ndarray:
+        """Where the current goes (T,), from true north."""
+        return np.arctan2(self.current_mps[:, 1], self.current_mps[:, 0]) - self.lean_rad
+
+
+def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
+    """The solution at every reading from the first fix on.
+
+    Smoothed, it knows the readings after each time, too, up to one that was not believed until its
+    like went on. What was not believed is the same.
+    """
+    states = 7 if readings.knows_water else 5
+    done = _run(states, readings)
+    moved_m = _moved_m(readings, done, _velocity(done.mean, states)[0])
+    if smooth:
+        done = _run(states, readings, smooth=True)
+    mean, covariance = done.mean, done.covariance
+    at = 2 if states == 7 else 4
+    heading = wl.wrap_angle(mean[:, at] - readings.leeway_rad - readings.lean_rad)
+    velocity, slope = _velocity(mean, states)
+    latitude, longitude = readings.plane.place(mean[:, :2])
+    heading_std = np.sqrt(covariance[:, at, at] + readings.offset_std_rad**2)
+    known = np.isfinite(readings.heading_rad).any()
+    unknown = np.full(len(mean), np.nan)
+    return OwnTrack(
+        time_s=readings.time_s,
+        latitude_deg=np.degrees(latitude),
+        longitude_deg=np.degrees(longitude),
+        position_m=mean[:, :2],
+        velocity_mps=velocity,
+        heading_rad=heading if known else unknown,
+        current_mps=mean[:, 5:7] if states == 7 else np.full((len(mean), 2), np.nan),
+        lean_rad=readings.lean_rad,
+        position_m2=covariance[:, :2, :2],
+        velocity_m2s2=slope @ covariance @ np.swapaxes(slope, 1, 2),
+        heading_std_rad=heading_std if known else unknown,
+        drift_std_mps=_drift_std_mps(done, readings.offset_std_rad) if states == 7 else unknown,
+        status=_status(readings, done.rejected["gnss"], moved_m),
+        jump_m=np.hypot(*moved_m.T),
+        rejected=done.rejected,
+    )
+
+
+def _run(states: int, readings: Readings, *, smooth: bool = False) -> wl.navigation.UsvRun:
+    turning = _turning(readings)
+    return _navigator(states, readings).run(
+        readings.time_s,
+        imu=turning,
+        gnss=readings.fix_m,
+        compass=readings.way_rad,
+        velocity=readings.over_ground_mps,
+        log=readings.way_mps if states == 7 else None,
+        imu_std=_motion_std(readings.time_s, np.isfinite(turning[:, 2])),
+        gnss_std_m=[FIX_STD_M, FIX_STD_M],
+        compass_std_rad=COMPASS_STD_RAD,
+        velocity_std_mps=VELOCITY_STD_MPS,
+        log_std_mps=LOG_STD_MPS,
+        smooth=smooth,
+    )
+
+
+def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
+    """Begun by what is read within seconds; failing a heading, by the course made good."""
+    navigator = wl.UsvNavigator(
+        states,
+        speed_walk_mps=SPEED_WALK_MPS,
+        current_walk_mps=CURRENT_WALK_MPS,
+        current_std_mps=CURRENT_STD_MPS,
+        gate_probability=GATE_PROBABILITY,
+    )
+    soon = readings.time_s - readings.time_s[0] <= NEAR_S
+    velocity = first(readings.over_ground_mps[soon], np.full(2, np.nan))
+    knows_velocity = np.isfinite(velocity).all()
+    made_good = velocity if knows_velocity else first(made_good_mps(readings), velocity)
+    under_way = np.hypot(*made_good) > UNDER_WAY_MPS
+    course = np.arctan2(made_good[1], made_good[0]) if under_way else first(readings.way_rad, 0.0)
+    heading = first(readings.way_rad[soon], course)
+    navigator.start(
+        first(readings.fix_m, np.zeros(2)),
+        velocity if knows_velocity else np.zeros(2),
+        float(heading),
+        position_std_m=[START_STD_M, START_STD_M],
+        velocity_std_mps=START_SPEED_STD_MPS if knows_velocity else ANY_SPEED_STD_MPS,
+        heading_std_rad=np.deg2rad(10.0),
+    )
+    return navigator
+
+
+def _turning(readings: Readings) -> np.ndarray:
+    """What an IMU would say (T, 3) of rates of turn alone; NaN for steps without any."""
+    told = np.isfinite(readings.turn_rate_rad_s)
+    middle_s = readings.time_s - np.diff(readings.time_s, prepend=readings.time_s[:1]) / 2.0
+    rate = between(middle_s, readings.time_s[told], readings.turn_rate_rad_s[told])
+    return np.column_stack([np.zeros((len(rate), 2)), rate])
+
+
+def _motion_std(time_s: np.ndarray, told: np.ndarray) -> np.ndarray:
+    """Deviations (T, 2) of acceleration and rate of turn in each step that make up the walks.
+
+    `told` (T,) is whether an indicator tells of the turn.
+    """
+    heading_walk_rad = np.where(told, TURNED_WALK_RAD, HEADING_WALK_RAD)
+    walk = np.column_stack([np.full(len(time_s), VELOCITY_WALK_MPS), heading_walk_rad])
+    return walk / np.sqrt(np.diff(time_s, prepend=-np.inf))[:, None]
+
+
+def _velocity(mean: np.ndarray, states: int) -> tuple[np.ndarray, np.ndarray]:
+    """Velocity over ground (T, 2) and its slope in the state (T, 2, N)."""
+    slope = np.zeros((len(mean), 2, states))
+    if states == 5:
+        slope[:, [0, 1], [2, 3]] = 1.0
+        return mean[:, 2:4], slope
+    ahead = np.column_stack([np.cos(mean[:, 2]), np.sin(mean[:, 2])])
+    slope[:, 0, 2], slope[:, 1, 2] = -mean[:, 3] * ahead[:, 1], mean[:, 3] * ahead[:, 0]
+    slope[:, :, 3] = ahead
+    slope[:, [0, 1], [5, 6]] = 1.0
+    return mean[:, 3:4] * ahead + mean[:, 5:7], slope
+
+
+def _drift_std_mps(done: wl.navigation.UsvRun, offset_std_rad: float) -> np.ndarray:
+    """Deviations (T,) of the current of seven states, in the direction in which it is known least.
+
+    An error of all headings takes speed through the water for current.
+    """
+    way_rad, way_mps = done.mean[:, 2], done.mean[:, 3]
+    across = np.column_stack([-np.sin(way_rad), np.cos(way_rad)])
+    by_offset_mps = (offset_std_rad * way_mps)[:, None] * across
+    by_offset_m2s2 = by_offset_mps[:, :, None] * by_offset_mps[:, None, :]
+    return np.sqrt(np.linalg.eigvalsh(done.covariance[:, 5:7, 5:7] + by_offset_m2s2)[:, -1])
+
+
+def _moved_m(
+    readings: Readings, done: wl.navigation.UsvRun, velocity_mps: np.ndarray
+) -> np.ndarray:
+    """How far (T, 2) fixes outside the gate that were believed have moved the position."""
+    outside = done.nis["gnss"] > -2.0 * np.log(1.0 - GATE_PROBABILITY)
+    believed = np.flatnonzero(outside & ~done.rejected["gnss"])
+    step_s = readings.time_s[believed] - readings.time_s[believed - 1]
+    foretold_m = done.mean[believed - 1, :2] + velocity_mps[believed - 1] * step_s[:, None]
+    moved_m = np.zeros((len(readings.time_s), 2))
+    moved_m[believed] = readings.fix_m[believed] - foretold_m
+    return moved_m
+
+
+def _status(readings: Readings, rejected: np.ndarray, moved_m: np.ndarray) -> np.ndarray:
+    believed = readings.has_fix & ~rejected
+    last_s = np.maximum.accumulate(np.where(believed, readings.time_s, -np.inf))
+    status = np.where(readings.time_s - last_s > COASTING_S, "coasting", "ok")
+    status = np.where(_jumped(readings, rejected, moved_m), "jumped", status)
+    return np.where(rejected, "rejected", status)
+
+
+def _jumped(readings: Readings, rejected: np.ndarray, moved_m: np.ndarray) -> np.ndarray:
+    """Mask (T,) of the times at which the position is in doubt, for it is not where it would be."""
+    jumped = np.zeros(len(moved_m), dtype=bool)
+    moved = moved_m.any(axis=1)
+    ends = np.append(_fitted(readings, rejected | moved), len(moved))
+    away_m = np.zeros(2)
+    for k in np.flatnonzero(moved):
+        away_m = moved_m[k] + (away_m if jumped[k] else 0.0)
+        jumped[k : ends[np.searchsorted(ends, k)]] = np.hypot(*away_m) > JUMP_M
+    return jumped
+
+
+def _fitted(readings: Readings, misfit: np.ndarray) -> np.ndarray:
+    """Indices (n,) of the fixes up to which all have fitted for a minute, without a gap as long."""
+    fixed = np.flatnonzero(readings.has_fix)
+    time_s = readings.time_s[fixed]
+    again = misfit[fixed] | (np.diff(time_s, prepend=-np.inf) > JUMPED_S)
+    since_s = np.maximum.accumulate(np.where(again, time_s, -np.inf))
+    return fixed[time_s - since_s >= JUMPED_S]
