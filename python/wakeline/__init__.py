@@ -136,7 +136,17 @@ for _noun in (
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
 # They use the nouns above.
-from . import _pickling, forecast, metrics, montecarlo, own_ship, recording, scenario, study  # noqa: E402, F401
+from . import (  # noqa: E402, F401
+    _pickling,
+    extraction,
+    forecast,
+    metrics,
+    montecarlo,
+    own_ship,
+    recording,
+    scenario,
+    study,
+)
 
 try:
     __version__ = _version("wakeline")
@@ -220,6 +230,7 @@ __all__ = [
     "dead_reckon",
     "drift_forecast",
     "drift_particles",
+    "extraction",
     "forecast",
     "geodesic",
     "lanes",

@@ -8,7 +8,7 @@ import pytest
 
 from wakeline import plot, scenario
 from wakeline.cli import main, outputs
-from wakeline.cli.video import noise_of
+from wakeline.extraction import noise_of
 from wakeline.recording import read_tracks, write_video
 
 SCANS = 14

@@ -13,6 +13,7 @@ from typing import Any
 
 from wakeline import FilterError, metrics
 from wakeline._brief import many
+from wakeline.extraction import VideoRecording, read_plots_of_video
 from wakeline.recording import Recording, Tracks, is_video, read_plots
 
 from . import outputs, report, video
@@ -140,8 +141,8 @@ def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
     """Track radar video: as plots, and a picture of the screen besides."""
     if arguments.truth is not None:
         raise ValueError(f"--truth goes with a file of plots, {arguments.plots} is video")
-    film = video.read_plots_of_video(arguments.plots, arguments.own, period_s=settings.period_s)
-    measured = film.told_to(settings)
+    film = read_plots_of_video(arguments.plots, arguments.own, period_s=settings.period_s)
+    measured = video.told_to(settings, film)
     if measured is None:
         radar = _radar_text(arguments, settings)
     else:
@@ -165,7 +166,7 @@ def _radar_text(arguments: argparse.Namespace, settings: Settings) -> str:
     return "radar by default" if default else f"radar of {arguments.config.name}"
 
 
-def _std_text(film: video.VideoRecording) -> str:
+def _std_text(film: VideoRecording) -> str:
     range_std_m, bearing_std_rad = film.plot_std
     return f"{range_std_m:.1f} m, {math.degrees(bearing_std_rad):.2f}°"
 

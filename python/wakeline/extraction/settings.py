@@ -1,0 +1,82 @@
+"""Settings of a plot extractor that suit the video that it is given."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+import wakeline as wl
+from wakeline.recording import RadarVideo
+
+from .noise import Noise, noise_of
+
+_FALSE_ALARMS = 1e-5
+_TRAIN_M, _GUARD_M = 400.0, 150.0  # either side of a cell; ships are up to 300 m long
+_MOST_TRAIN_CELLS = 128
+_ALIKE = 0.25  # parts by which windows may differ before settings are found anew
+_WINDOW_SHARE = 8  # of a sweep, so that every cell has others to be compared with
+_LOGARITHMIC_BELOW = 0.2  # skewness of noise: 0.63 behind a linear receiver, -1.1 in decibels
+_RAYLEIGH_SPREAD_DB = 5.57  # standard deviation of noise in decibels
+_ABOVE_NOISE_DB = range(0, 40, 2)
+_MOST_PLOTS = 150  # of a turn
+_MOST_CELLS = 65536
+_WIDE_ECHO_RAD = np.deg2rad(20.0)
+_LONG_ECHO_M = 800.0  # a land mass, as consoles have it
+
+
+class Kind(NamedTuple):
+    """What the settings of an extractor depend on, beside the noise: bits and windows in cells."""
+
+    dtype: np.dtype
+    train_cells: int
+    guard_cells: int
+
+    @classmethod
+    def of(cls, video: RadarVideo) -> Kind:
+        most = max(video.amplitude.shape[1] // _WINDOW_SHARE, 1)
+        train = int(np.clip(_TRAIN_M / video.cell_m, 8, _MOST_TRAIN_CELLS))
+        return cls(video.amplitude.dtype, min(train, most), min(int(_GUARD_M / video.cell_m), most))
+
+    def fits(self, other: Kind) -> bool:
+        """Whether windows of one do for the other."""
+        windows = zip(self[1:], other[1:], strict=True)
+        return self.dtype == other.dtype and all(
+            abs(mine - its) <= _ALIKE * max(mine, its) for mine, its in windows
+        )
+
+
+def settings_for(turn: RadarVideo, kind: Kind) -> tuple[dict[str, float], int]:
+    """Settings for this picture, and how far its threshold lies above that of noise, in dB.
+
+    It is raised until the turn gives no more plots than an operator would bear: land and sea
+    clutter fluctuate more than noise.
+    """
+    noise = noise_of(turn.amplitude)
+    most = _MOST_PLOTS * min(len(turn) * turn.azimuth_width_rad / (2 * np.pi), 1.0)
+    for above_db in _ABOVE_NOISE_DB:
+        settings = _settings(kind, noise, above_db)
+        trial = wl.PlotExtractor(**settings)
+        if len(trial.process(turn)) + len(trial.finish()) <= most:
+            break
+    return settings, above_db
+
+
+def _settings(kind: Kind, noise: Noise | None, above_db: float) -> dict[str, float]:
+    """Settings for windows of this length and a receiver of this kind."""
+    if noise is not None and noise.skewness < _LOGARITHMIC_BELOW:
+        steps_per_db = noise.std / _RAYLEIGH_SPREAD_DB
+        offset_db = wl.video.threshold_offset_db(_FALSE_ALARMS) + above_db
+        threshold = {"threshold_factor": 1.0, "threshold_offset": int(steps_per_db * offset_db) + 1}
+    else:
+        factor = wl.video.threshold_factor(_FALSE_ALARMS, train_cells=kind.train_cells)
+        threshold = {"threshold_factor": min(factor * 10 ** (above_db / 20), 1000.0)}
+    return {
+        "max_sweep_cells": _MOST_CELLS,
+        "gap_sweeps": 1,  # azimuth is often counted as coarsely as sweeps come
+        "train_cells": kind.train_cells,
+        "guard_cells": kind.guard_cells,
+        "max_range_extent_m": _LONG_ECHO_M,
+        "max_bearing_extent_rad": _WIDE_ECHO_RAD,
+        **threshold,
+    }
