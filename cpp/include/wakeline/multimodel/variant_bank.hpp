@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
 #include "wakeline/core/require.hpp"
@@ -43,13 +42,11 @@ class VariantBank {
   static constexpr auto kComponents = FilterBank<Filters...>::kComponents;
 
   /// Throws `std::invalid_argument` unless there are 1 to `Capacity` filters.
-  explicit VariantBank(std::span<const Filter> filters)
-      : slots_(filled(filters.empty() ? (refuse("a bank needs filters, got none"), filters.front())
-                                      : filters.front())),
-        size_(static_cast<int>(filters.size())) {
-    if (size_ > Capacity)
+  explicit VariantBank(std::span<const Filter> filters) : size_(static_cast<int>(filters.size())) {
+    if (filters.empty()) refuse("a bank needs filters, got none");
+    if (filters.size() > kCapacity)
       refuse("a bank has room for " + std::to_string(Capacity) + " filters, got " +
-             std::to_string(size_));
+             std::to_string(filters.size()));
     for (std::size_t k = 0; k < filters.size(); ++k) slots_[k] = slot_of(filters[k]);
   }
 
@@ -107,19 +104,12 @@ class VariantBank {
     return {filter,
             std::visit([]<class Kind>(const Kind&) -> Before { return BeliefOf<Kind>{}; }, filter)};
   }
-  static std::array<Slot, kCapacity> filled(const Filter& prototype) {
-    return [&]<std::size_t... Index>(std::index_sequence<Index...>) {
-      return std::array<Slot, kCapacity>{((void)Index, slot_of(prototype))...};
-    }
-    (std::make_index_sequence<kCapacity>{});
-  }
-
-  Slot& slot(int k) noexcept { return slots_[static_cast<std::size_t>(k)]; }
+  Slot& slot(int k) noexcept { return *slots_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] const Slot& slot(int k) const noexcept {
-    return slots_[static_cast<std::size_t>(k)];
+    return *slots_[static_cast<std::size_t>(k)];
   }
 
-  std::array<Slot, kCapacity> slots_;
+  std::array<std::optional<Slot>, kCapacity> slots_;  ///< those left over are not copied
   int size_;
 };
 
