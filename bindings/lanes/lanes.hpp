@@ -17,6 +17,7 @@
 #include "wakeline/filter/unscented.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
+#include "wakeline/measurement/range_bearing_doppler.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/singer.hpp"
@@ -61,7 +62,7 @@ struct LaneJob {
   Structure structure = {};
   std::variant<std::monostate, LineWeighing, FuzzyCriterion> lines = {};  ///< how it draws them
   std::vector<double> initial_mode_probability;
-  std::variant<RangeBearing, ConvertedRangeBearing, Position> sensor;
+  std::variant<RangeBearing, ConvertedRangeBearing, Position, RangeBearingDoppler> sensor;
   std::vector<LaneStart> starts;  ///< one for all runs, or one each
 };
 

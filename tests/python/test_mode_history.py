@@ -39,14 +39,15 @@ def test_run_is_the_steps_one_by_one(kind):
     assert result.status[5] == int(wl.Status.missed)
 
 
-def test_runs_side_by_side_know_nothing_of_each_other():
+@pytest.mark.parametrize("kind", [wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_runs_side_by_side_know_nothing_of_each_other(kind):
     z = np.stack([readings(20, seed) for seed in range(3)])
-    together = tree().run(z, dt_s=DT_S, sensor=RADAR, start=START)
-    others = tree().run(z[::-1].copy(), dt_s=DT_S, sensor=RADAR, start=START)
+    together = tree(kind).run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    others = tree(kind).run(z[::-1].copy(), dt_s=DT_S, sensor=RADAR, start=START)
     for run, alone in enumerate(z):
         np.testing.assert_array_equal(together.mean[run], others.mean[2 - run])
         # A run alone takes one hypothesis after the other, many take some in lanes.
-        expected = tree().run(alone, dt_s=DT_S, sensor=RADAR, start=START)
+        expected = tree(kind).run(alone, dt_s=DT_S, sensor=RADAR, start=START)
         np.testing.assert_allclose(together.mean[run], expected.mean, rtol=1e-11)
         np.testing.assert_allclose(
             together.mode_probability[run], expected.mode_probability, rtol=0, atol=1e-11
@@ -72,9 +73,10 @@ def test_a_tree_that_learns_its_rates_runs_as_it_steps(kind):
     assert result.mean.shape == (12, 5)
 
 
-def test_a_tree_that_learns_its_rates_in_lanes_is_the_same():
+@pytest.mark.parametrize("kind", [wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_a_tree_that_learns_its_rates_in_lanes_is_the_same(kind):
     z = np.stack([readings(20, seed) for seed in range(3)])
-    learning = wl.ModeHistory(wl.Ekf(LEARNT), RATES)
+    learning = wl.ModeHistory(kind(LEARNT), RATES)
     together = learning.run(z, dt_s=DT_S, sensor=RADAR, start=START)
     for run, alone in enumerate(z):
         expected = learning.run(alone, dt_s=DT_S, sensor=RADAR, start=START)

@@ -110,17 +110,18 @@ def test_a_run_is_its_single_steps_bit_for_bit(build, kind, sensor):
 
 
 @pytest.mark.parametrize("build", BUILD.values(), ids=BUILD)
-def test_runs_do_not_know_of_each_other(build):
+@pytest.mark.parametrize("kind", [wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_runs_do_not_know_of_each_other(build, kind):
     z = np.stack([readings(40, seed) for seed in range(3)])
-    used = build()
+    used = build(kind)
     stepwise(used, z[2])
     arguments = {"dt_s": DT_S, "sensor": RADAR, "start": START}
     together = used.run(z, **arguments)
-    backwards = build().run(z[::-1], **arguments)
+    backwards = build(kind).run(z[::-1], **arguments)
     np.testing.assert_array_equal(together.mean, backwards.mean[::-1])
     np.testing.assert_array_equal(together.turn_rate_rad_s, backwards.turn_rate_rad_s[::-1])
     for k in range(3):  # alone not in lanes, which differ in rounding
-        alone = build().run(z[k], **arguments)
+        alone = build(kind).run(z[k], **arguments)
         np.testing.assert_allclose(together.mean[k], alone.mean, rtol=1e-9, atol=1e-9)
         np.testing.assert_allclose(
             together.turn_rate_rad_s[k], alone.turn_rate_rad_s, rtol=1e-9, atol=1e-12

@@ -17,6 +17,8 @@
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
 #include "wakeline/core/pack_math.hpp"
+#include "wakeline/filter/square_root_ukf.hpp"
+#include "wakeline/filter/ukf.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 
@@ -27,19 +29,19 @@ using test::Draw;
 using test::matrices_near;
 
 using Lanes = Pack<double, kNativeLanes<double>>;
-using One = ModeHistory<Ekf<CoordinatedTurn>>;
 using Many = ModeHistory<Ekf<CoordinatedTurn, Lanes>>;
 
 const RangeBearing kRadar{.range_std_m = 15, .bearing_std_rad = deg(0.5)};
 const test::Tolerance kRounding{.absolute = 1e-9, .relative = 1e-10};
 
-/// Both trees, to be stepped side by side.
-struct Pair {
-  One one;
-  Many many;
+/// Both trees over one kind of filter, to be stepped side by side.
+template <template <class, class> class Filter, class Motion>
+struct PairOver {
+  ModeHistory<Filter<Motion, double>> one;
+  ModeHistory<Filter<Motion, Lanes>> many;
 
-  explicit Pair(const HistoryTree& tree, int turns = 4)
-      : Pair(tree, TurnRateGrid::evenly(deg(4.0), turns), {}) {}
+  explicit PairOver(const HistoryTree& tree, int turns = 4)
+      : PairOver(tree, TurnRateGrid::evenly(deg(4.0), turns), {}) {}
 
   void start() {
     ASSERT_EQ(one.start(test::five_km_off<double>()), Status::kOk);
@@ -70,16 +72,18 @@ struct Pair {
     return histories;
   }
 
-  Pair(const HistoryTree& tree, const TurnRateGrid& grid, const CoordinatedTurn& motion)
-      : one(tree, grid, turning_chain(grid), Ekf<CoordinatedTurn>(motion)),
-        many(tree, grid, turning_chain(grid), Ekf<CoordinatedTurn, Lanes>(motion)) {}
+  PairOver(const HistoryTree& tree, const TurnRateGrid& grid, const Motion& motion)
+      : one(tree, grid, turning_chain(grid), Filter<Motion, double>(motion)),
+        many(tree, grid, turning_chain(grid), Filter<Motion, Lanes>(motion)) {}
 };
+using Pair = PairOver<Ekf, CoordinatedTurn>;
 
 Vec<double, 2> reading(Draw& draw) {
   return test::plot_of<double>(3000 + 40 * draw.normal(), 4000 + 40 * draw.normal());
 }
 
-void expect_equal_runs(Pair trees, int scans = 60) {
+template <class Trees>
+void expect_equal_runs(Trees trees, int scans = 60) {
   trees.start();
   Draw draw(41);
   for (int scan = 0; scan < scans; ++scan) {
@@ -108,6 +112,17 @@ void expect_equal_runs(Pair trees, int scans = 60) {
 }
 
 TEST(ModeHistoryInLanes, IsThatOfOneFilterAfterTheOther) { expect_equal_runs(Pair({})); }
+
+TEST(ModeHistoryInLanes, OfUnscentedFilters) {
+  expect_equal_runs(PairOver<Ukf, CoordinatedTurn>({}));
+  expect_equal_runs(PairOver<SquareRootUkf, CoordinatedTurn>({}));
+}
+
+TEST(ModeHistoryInLanes, OfFiltersThatLearnTheirTurnRate) {
+  expect_equal_runs(PairOver<Ekf, CoordinatedTurnRate>({}));
+  expect_equal_runs(PairOver<Ukf, CoordinatedTurnRate>({}));
+  expect_equal_runs(PairOver<SquareRootUkf, CoordinatedTurnRate>({}));
+}
 
 TEST(ModeHistoryInLanes, OfNothingJoinedFillsEveryRow) {
   const HistoryTree whole{.max_hypotheses = 250,

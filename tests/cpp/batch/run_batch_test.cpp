@@ -125,29 +125,51 @@ struct Imm3 {
   }
 };
 
+/// A filter of a turn whose rate may be another in each lane.
+template <template <class, class> class Filter, class Scalar>
+auto turn_filter() {
+  return Filter<KnownTurn<TurnRate<Scalar>>, Scalar>({.noise = WhiteAcceleration{0.01}});
+}
+
 /// Three turn models whose rates move.
 template <template <class> class Estimator, class Scalar, class Grid>
 auto turning(const Grid& grid) {
-  const Ekf<KnownTurn<TurnRate<Scalar>>, Scalar> filter({.noise = WhiteAcceleration{0.01}});
+  const auto filter = turn_filter<Ekf, Scalar>();
   const FilterBank bank(filter, filter, filter);
   return Estimator<std::decay_t<decltype(bank)>>(grid, ModeChain<3>::staying(0.9), bank);
 }
 
+const AdaptiveGrid kAdaptive{
+    .min_spacing_rad_s = deg(1.0), .kept_spacing_rad_s = deg(1.0), .centre_threshold = 0.99};
+const SwitchingGrid kSwitching{.grid_rad_s = TurnRateGrid::evenly(deg(2.0), 4)};
+const LikelyModelSet kLikely{.unlikely_threshold = 0.1, .likely_threshold = 0.3};
+
 template <class Scalar>
 struct Adaptive {
   static constexpr std::size_t kModels = 3;
+  static auto make() { return turning<AdaptiveGridImm, Scalar>(kAdaptive); }
+};
+
+template <class Scalar>
+struct AdaptiveOfUkfs {
+  static constexpr std::size_t kModels = 3;
   static auto make() {
-    return turning<AdaptiveGridImm, Scalar>(AdaptiveGrid{
-        .min_spacing_rad_s = deg(1.0), .kept_spacing_rad_s = deg(1.0), .centre_threshold = 0.99});
+    return AdaptiveGridImm(kAdaptive, ModeChain<3>::staying(0.9), turn_filter<Ukf, Scalar>());
   }
 };
 
 template <class Scalar>
 struct Switching {
   static constexpr std::size_t kModels = 3;
+  static auto make() { return turning<SwitchingGridImm, Scalar>(kSwitching); }
+};
+
+template <class Scalar>
+struct SwitchingOfRoots {
+  static constexpr std::size_t kModels = 3;
   static auto make() {
-    return turning<SwitchingGridImm, Scalar>(
-        SwitchingGrid{.grid_rad_s = TurnRateGrid::evenly(deg(2.0), 4)});
+    return SwitchingGridImm(kSwitching, ModeChain<3>::staying(0.9),
+                            turn_filter<SquareRootUkf, Scalar>());
   }
 };
 
@@ -163,16 +185,18 @@ struct LiteralSwitching {
 };
 
 /// Models that rest in some lanes and not in others.
-template <class Scalar>
-struct Likely {
+template <template <class, class> class Filter, class Scalar>
+struct LikelyOf {
   static constexpr std::size_t kModels = 5;
   static auto make() {
-    using Filter = Ekf<KnownTurn<TurnRate<Scalar>>, Scalar>;
-    return LikelyModelSetImm(LikelyModelSet{.unlikely_threshold = 0.1, .likely_threshold = 0.3},
-                             ModeChain<kRuntimeModes>::staying(0.9, 5),
-                             Filter({.noise = WhiteAcceleration{0.01}}));
+    return LikelyModelSetImm(kLikely, ModeChain<kRuntimeModes>::staying(0.9, 5),
+                             turn_filter<Filter, Scalar>());
   }
 };
+template <class Scalar>
+struct Likely : LikelyOf<Ekf, Scalar> {};
+template <class Scalar>
+struct LikelyUkfs : LikelyOf<Ukf, Scalar> {};
 
 template <class Scalar>
 struct EkfTurnRate {
@@ -258,9 +282,10 @@ struct Of {
   template <class Scalar>
   using Kind = KindType<Scalar>;
 };
-using Cases = ::testing::Types<Of<Imm3>, Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>,
-                               Of<Likely>, Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>,
-                               Of<SquareRootTurnRate>, Of<SquareRootImm>>;
+using Cases =
+    ::testing::Types<Of<Imm3>, Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>, Of<Likely>,
+                     Of<AdaptiveOfUkfs>, Of<SwitchingOfRoots>, Of<LikelyUkfs>, Of<EkfTurnRate>,
+                     Of<EkfSinger>, Of<UkfTurnRate>, Of<SquareRootTurnRate>, Of<SquareRootImm>>;
 TYPED_TEST_SUITE(Batch, Cases);
 
 TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
@@ -275,7 +300,8 @@ TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
 
 template <class Case>
 struct Grids : ::testing::Test {};
-using GridCases = ::testing::Types<Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>>;
+using GridCases = ::testing::Types<Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>,
+                                   Of<AdaptiveOfUkfs>, Of<SwitchingOfRoots>>;
 TYPED_TEST_SUITE(Grids, GridCases);
 
 // Not in every run: the printed rule of the switching grid loses a vessel now and then.

@@ -36,7 +36,7 @@ class HypothesisClusters {
   }
 
   /// Appends the clusters of a mode, in the order of their likeliest members.
-  void append_joined(int mode, Rows& to) noexcept {
+  [[gnu::flatten]] void append_joined(int mode, Rows& to) noexcept {
     const auto begin = static_cast<std::size_t>(rows_.begin(mode));
     const std::span<const Row> rows = rows_.of_mode(mode);
     if (by_distance())

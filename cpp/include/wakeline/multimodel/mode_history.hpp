@@ -169,10 +169,9 @@ class ModeHistory {
     Leaves& next = spare();
     next.clear();
     for (std::size_t r = 0; r < before.size(); ++r) {
-      Filter& filter = filter_of(before[r]);
-      ::new (corrections.place(r)) Correction<kM, Lanes>(filter.correct(sensor, reading));
+      ::new (corrections.place(r))
+          Correction<kM, Lanes>(correct(sensor, reading, before[r], next.append_pasts(before[r])));
       weights[r] = load<Lanes>(before[r].probability.data());
-      next.append_pasts(before[r]).set_beliefs(filter.estimate());
     }
     const std::span<const Correction<kM, Lanes>> taken = corrections.first(before.size());
     const std::span<Lanes> weighed(weights.data(), before.size());
@@ -382,9 +381,21 @@ class ModeHistory {
     return filter;
   }
 
+  /// Corrects the beliefs of a row, which become those of another.
+  template <class Sensor, int M>
+  [[gnu::flatten]] Correction<M, Lanes> correct(const Sensor& sensor,
+                                                const Gaussian<M, Lanes>& reading,
+                                                const Row& before, Row& after) noexcept {
+    Filter& filter = filter_of(before);
+    const Correction<M, Lanes> correction = filter.correct(sensor, reading);
+    after.set_beliefs(filter.estimate());
+    return correction;
+  }
+
   /// Predicts all hypotheses. Where one fails none is to be used.
   template <class... Known>
-  Status move(Leaves& leaves, Scalar dt_s, const Known&... acceleration_mps2) noexcept {
+  [[gnu::flatten]] Status move(Leaves& leaves, Scalar dt_s,
+                               const Known&... acceleration_mps2) noexcept {
     for (Row& row : leaves.all()) {
       Filter& filter = bank_.filter(row.mode);
       const Status status = first_failure_of_lanes(predict_from(
