@@ -103,6 +103,7 @@
 #include "wakeline/navigation/drift_forecast.hpp"
 #include "wakeline/navigation/geodesy.hpp"
 #include "wakeline/navigation/leeway.hpp"
+#include "wakeline/navigation/passing_probability.hpp"
 #include "wakeline/navigation/usv_models.hpp"
 #include "wakeline/navigation/usv_navigator.hpp"
 #include "wakeline/navigation/usv_sensors.hpp"
