@@ -274,9 +274,10 @@ std::string tracker_text(const AnyTracker& any) {
 PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
                  const DoubleArray& bearing_rad, const py::object& plot_time_s,
                  const py::object& own_north_m, const py::object& own_east_m,
-                 double heading_std_rad) {
+                 double heading_std_rad, double own_position_std_m) {
   require_shape(range_m.ndim() == 1, "range_m", "(n,)", range_m);
   require_not_negative("heading_std_rad", heading_std_rad);
+  require_not_negative("own_position_std_m", own_position_std_m);
   const py::ssize_t count = range_m.shape(0);
   const DoubleArray bearing = column("bearing_rad", bearing_rad, count);
   const DoubleArray time = column(
@@ -288,6 +289,7 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
     plots[k] = {time.data()[k], range_m.data()[k], bearing.data()[k],
                 OwnShip{.north_m = north.data()[k],
                         .east_m = east.data()[k],
+                        .position_std_m = own_position_std_m,
                         .heading_std_rad = heading_std_rad}};
   ScanReport report;
   {
@@ -515,7 +517,7 @@ ValueError
       .def("process", &process, py::arg("time_s"), py::kw_only(), py::arg("range_m"),
            py::arg("bearing_rad"), py::arg("plot_time_s") = py::none(),
            py::arg("own_north_m") = 0.0, py::arg("own_east_m") = 0.0,
-           py::arg("heading_std_rad") = 0.0,
+           py::arg("heading_std_rad") = 0.0, py::arg("own_position_std_m") = 0.0,
            R"(Takes in the plots of one scan.
 
 Parameters
@@ -527,6 +529,8 @@ plot_time_s, own_north_m, own_east_m : float or (n,) arrays
     When each plot was seen, and from where.
 heading_std_rad : float
     Error of own ship's heading.
+own_position_std_m : float
+    Error of own ship's position, per axis.
 
 Returns
 -------
@@ -535,7 +539,7 @@ ScanReport
 Raises
 ------
 ValueError
-    When a shape does not fit or the error of the heading is below zero.
+    When a shape does not fit or an error is below zero.
 FilterError
     When time runs backwards or is not finite; nothing changed.)")
       .def(
@@ -551,6 +555,12 @@ FilterError
           [](AnyTracker& tracker, double time_s, double north_m, double east_m,
              double position_std_m) {
             require_finite("time_s", time_s);
+            const double latest_s =
+                tracker.visit([](const auto& one) { return one.latest_designation_s(); });
+            require(time_s <= latest_s, "time_s",
+                    ("at most " + std::to_string(latest_s) + ", ten periods after the last scan")
+                        .c_str(),
+                    time_s);
             require_finite("north_m", north_m);
             require_finite("east_m", east_m);
             require_positive("position_std_m", position_std_m);
@@ -559,8 +569,23 @@ FilterError
           },
           py::arg("time_s"), py::arg("north_m"), py::arg("east_m"),
           py::arg("position_std_m") = 50.0,
-          "The operator says that there is a target; returns the track's number, or 0 when there "
-          "is no room.")
+          R"(The operator says that there is a target.
+
+Parameters
+----------
+time_s : float
+    At most ten periods of the antenna after the last scan; scans go on without plots, too.
+north_m, east_m, position_std_m : float
+
+Returns
+-------
+int
+    The track's number, or 0 when there is no room.
+
+Raises
+------
+ValueError
+    When the time is too far ahead, a number is not finite or the error not above zero.)")
       .def(
           "drop",
           [](AnyTracker& tracker, std::int64_t id) {

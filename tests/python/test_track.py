@@ -220,6 +220,35 @@ def test_a_designated_track_takes_the_plots_that_come():
     assert np.hypot(*(mean - truth.state_at(table.time_s[0])[0])[[0, 2]]) < 40.0
 
 
+def test_a_target_far_ahead_of_the_last_scan_is_not_designated():
+    tracker = wl.Tracker(RADAR)
+    no_plots = {"range_m": [], "bearing_rad": []}
+    tracker.process(100.0, **no_plots)
+    before = tracker.save()
+    with pytest.raises(ValueError, match=r"time_s must be at most 125\.0*, ten periods after"):
+        tracker.designate(126.0, 1000.0, 0.0)
+    assert tracker.save() == before
+    assert tracker.designate(125.0, 1000.0, 0.0) == 1
+    tracker.process(1000.0, **no_plots)
+    assert tracker.designate(1000.0, 1000.0, 0.0) == 2
+
+
+def test_an_error_of_own_ships_place_is_one_of_all_plots():
+    def variance(**own):
+        tracker = wl.Tracker(RADAR)
+        for k in range(30):
+            tracker.process(PERIOD_S * k, range_m=[2000.0], bearing_rad=[0.3], **own)
+        table = tracker.tracks()
+        assert len(table) == 1
+        return table.covariance[0][0, 0]
+
+    assert variance(own_position_std_m=0.0) == variance()
+    assert variance(own_position_std_m=40.0) > 2.0 * variance()
+    for wrong in (-1.0, np.nan, np.inf):
+        with pytest.raises(ValueError, match="own_position_std_m must be"):
+            variance(own_position_std_m=wrong)
+
+
 def test_names_are_the_operators():
     tracker = wl.Tracker(RADAR)
     track_id = tracker.designate(0.0, 1000.0, 0.0)

@@ -347,7 +347,23 @@ class Tracker:
         self, time_s: float, north_m: float, east_m: float, position_std_m: float = 50.0
     ) -> int:
         """
-        The operator says that there is a target; returns the track's number, or 0 when there is no room.
+        The operator says that there is a target.
+
+        Parameters
+        ----------
+        time_s : float
+            At most ten periods of the antenna after the last scan; scans go on without plots, too.
+        north_m, east_m, position_std_m : float
+
+        Returns
+        -------
+        int
+            The track's number, or 0 when there is no room.
+
+        Raises
+        ------
+        ValueError
+            When the time is too far ahead, a number is not finite or the error not above zero.
         """
     def drop(self, track_id: int) -> bool:
         """
@@ -363,6 +379,7 @@ class Tracker:
         own_north_m: ArrayLike = 0.0,
         own_east_m: ArrayLike = 0.0,
         heading_std_rad: float = 0.0,
+        own_position_std_m: float = 0.0,
     ) -> ScanReport:
         """
         Takes in the plots of one scan.
@@ -376,6 +393,8 @@ class Tracker:
             When each plot was seen, and from where.
         heading_std_rad : float
             Error of own ship's heading.
+        own_position_std_m : float
+            Error of own ship's position, per axis.
 
         Returns
         -------
@@ -384,7 +403,7 @@ class Tracker:
         Raises
         ------
         ValueError
-            When a shape does not fit or the error of the heading is below zero.
+            When a shape does not fit or an error is below zero.
         FilterError
             When time runs backwards or is not finite; nothing changed.
         """

@@ -49,6 +49,21 @@ TEST(Operator, DesignatingAheadOfTheClockHoldsUpNoScan) {
   EXPECT_NE(tracker.find(1), nullptr);
 }
 
+TEST(Operator, ATargetFarAheadOfTheClockIsNotDesignated) {
+  VesselTracker tracker = make_tracker();
+  EXPECT_EQ(tracker.designate(1.7e9, 500.0, 500.0, 20.0), 1) << "no clock yet";
+  (void)tracker.drop(1);
+  (void)tracker.process(100.0, {});
+  const double latest_s = tracker.latest_designation_s();
+  EXPECT_EQ(latest_s, 100.0 + 10 * tracker.radar().period_s);
+  const auto before = tracker.save();
+  for (const double time_s : {std::nextafter(latest_s, 1e9), 1e4, 1e300})
+    EXPECT_EQ(tracker.designate(time_s, 500.0, 500.0, 20.0), 0) << time_s;
+  EXPECT_EQ(tracker.save(), before);
+  EXPECT_EQ(tracker.designate(latest_s, 500.0, 500.0, 20.0), 2);
+  EXPECT_EQ(tracker.designate(20.0, 900.0, 500.0, 20.0), 3) << "before the scan";
+}
+
 TEST(Operator, ADesignatedTargetThatIsNotThereIsLost) {
   VesselTracker tracker = make_tracker();
   (void)tracker.process(0.0, {});

@@ -159,12 +159,20 @@ class Tracker {
     return {Vec<double, 4>::Constant(kNaN), Mat<double, 4, 4>::Constant(kNaN)};
   }
 
+  /// Until when a target can be designated: ten periods after the last scan, or ever before the
+  /// first one. A track that is further ahead would wait there, deaf to all plots.
+  [[nodiscard]] double latest_designation_s() const noexcept {
+    return started_ ? time_s_ + kClockPeriods * radar_.period_s
+                    : std::numeric_limits<double>::infinity();
+  }
+
   /// The operator says that there is a target: a confirmed track at rest. Returns its number, or 0
-  /// when there is no room or the position or time makes no sense. Where the tracker is full, the
-  /// weakest tentative track gives way, without an event.
+  /// when there is no room, the position makes no sense or the time is too far ahead. Where the
+  /// tracker is full, the weakest tentative track gives way, without an event.
   std::int64_t designate(double time_s, double north_m, double east_m,
                          double position_std_m) noexcept {
-    if (!std::isfinite(time_s) || !(position_std_m > 0.0)) return 0;
+    if (!std::isfinite(time_s) || time_s > latest_designation_s()) return 0;
+    if (!(position_std_m > 0.0)) return 0;
     const Gaussian<2> place{{north_m, east_m},
                             position_std_m * position_std_m * Mat<double, 2, 2>::Identity()};
     const Gaussian<4> belief =
