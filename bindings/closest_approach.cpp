@@ -85,6 +85,31 @@ ClosestApproaches closest_approaches(const DoubleArray& own, const DoubleArray& 
   return result;
 }
 
+/// Mean and covariance of the relative state of each pair, of which all else follows.
+auto relative_states_of(const ClosestApproaches& all) {
+  std::vector<py::ssize_t> vector = all.shape, matrix = all.shape;
+  vector.push_back(4);
+  matrix.insert(matrix.end(), {4, 4});
+  Array mean(vector), covariance(matrix);
+  for (std::size_t k = 0; k < all.approaches.size(); ++k) {
+    const Gaussian<4> relative = all.approaches[k].relative();
+    Eigen::Map<Vec<double, 4>>(mean.mutable_data() + 4 * k) = relative.mean;
+    Eigen::Map<Mat<double, 4, 4>>(covariance.mutable_data() + 16 * k) = relative.covariance;
+  }
+  return py::make_tuple(mean, covariance);
+}
+
+ClosestApproaches approaches_of(const py::tuple& fields) {
+  if (fields.size() != 2) throw py::value_error("state is not that of such a result");
+  const auto mean = fields[0].cast<DoubleArray>(), covariance = fields[1].cast<DoubleArray>();
+  require_tail("mean", mean, 1);
+  require_shape(covariance.size() == 4 * mean.size(), "covariance", "(..., 4, 4)", covariance);
+  ClosestApproaches all{leading(mean, 1).cast<std::vector<py::ssize_t>>(), {}};
+  for (py::ssize_t k = 0; k < mean.size() / 4; ++k)
+    all.approaches.emplace_back(belief_at(mean, covariance, k));
+  return all;
+}
+
 void require_not_below_zero(const char* name, double value) {
   if (!(value >= 0.0))
     throw py::value_error(std::string(name) + " must not be negative, got " +
@@ -139,6 +164,7 @@ void define_closest_approach(py::module_& m) {
             return covariance;
           },
           "(..., 2, 2) of [signed_cpa_m, tcpa_s].")
+      .def(py::pickle(&relative_states_of, &approaches_of))
       .def(
           "probability",
           [](const ClosestApproaches& all, double limit_m, double horizon_s) {

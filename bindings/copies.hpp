@@ -94,4 +94,18 @@ void define_copies(py::class_<Value, Options...>& value) {
             py::arg("state"), "Goes on bit for bit where the saved one was.");
 }
 
+/// Adds what `pickle` asks for, and so `copy`: of a plain result, its fields in order.
+template <class Value, class... Options, class... Field>
+void define_pickle(py::class_<Value, Options...>& value, Field Value::*... field) {
+  value.def(py::pickle([field...](const Value& one) { return py::make_tuple(one.*field...); },
+                       [field...](const py::tuple& fields) {
+                         if (fields.size() != sizeof...(field))
+                           throw py::value_error("state is not that of such a result");
+                         Value one;
+                         std::size_t k = 0;
+                         ((one.*field = fields[k++].cast<Field>()), ...);
+                         return one;
+                       }));
+}
+
 }  // namespace wakeline::python

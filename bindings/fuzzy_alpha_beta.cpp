@@ -101,11 +101,14 @@ FuzzyTrace trace_runs(AnyFuzzyAlphaBeta estimator, const DoubleArray& z, const p
 
 void define_fuzzy_alpha_beta(py::module_& m) {
   const FuzzyCriterion criterion;
-  py::class_<FuzzyTrace>(m, "FuzzyTrace",
-                         "What `FuzzyAlphaBeta.trace` returns: arrays over scans, and over runs "
-                         "where there are several; "
-                         "NaN where nothing was judged.")
-      .def_readonly("quality", &FuzzyTrace::quality, "(..., T) output of the machine")
+  py::class_<FuzzyTrace> trace(m, "FuzzyTrace",
+                               "What `FuzzyAlphaBeta.trace` returns: arrays over scans, and over "
+                               "runs where there are several; "
+                               "NaN where nothing was judged.");
+  define_pickle(trace, &FuzzyTrace::quality, &FuzzyTrace::sigma_hat_m, &FuzzyTrace::residual_ratios,
+                &FuzzyTrace::rule_strengths, &FuzzyTrace::prediction_m, &FuzzyTrace::innovation_m,
+                &FuzzyTrace::chosen);
+  trace.def_readonly("quality", &FuzzyTrace::quality, "(..., T) output of the machine")
       .def_readonly("chosen", &FuzzyTrace::chosen, "(..., T) plots of the line chosen")
       .def_readonly("sigma_hat_m", &FuzzyTrace::sigma_hat_m, "(..., T)")
       .def_readonly("residual_ratios", &FuzzyTrace::residual_ratios,

@@ -67,6 +67,19 @@ std::string policy_text(const ProcessNoise& noise) {
   return "";
 }
 
+/// The policy of a kind and its parameter.
+ProcessNoise policy_of(int kind, double parameter) {
+  switch (ProcessNoise::Kind(kind)) {
+    case ProcessNoise::Kind::kWhiteAcceleration:
+      return WhiteAcceleration{parameter};
+    case ProcessNoise::Kind::kPiecewiseAcceleration:
+      return PiecewiseAcceleration{parameter};
+    case ProcessNoise::Kind::kWhiteJerk:
+      return WhiteJerk{parameter};
+  }
+  throw py::value_error("state is not that of a process noise");
+}
+
 /// Builds a model and refuses parameters that make no sense.
 template <class Motion>
 Motion checked(const Motion& motion) {
@@ -113,6 +126,13 @@ void define_motion(py::module_& parent) {
       .def(py::init<WhiteAcceleration>())
       .def(py::init<PiecewiseAcceleration>())
       .def(py::init<WhiteJerk>())
+      .def(py::pickle(
+          [](const ProcessNoise& noise) {
+            return py::make_tuple(int(noise.kind()), noise.parameter());
+          },
+          [](const py::tuple& fields) {
+            return policy_of(fields[0].cast<int>(), fields[1].cast<double>());
+          }))
       .def("__repr__", &policy_text);
   py::implicitly_convertible<WhiteAcceleration, ProcessNoise>();
   py::implicitly_convertible<PiecewiseAcceleration, ProcessNoise>();

@@ -681,7 +681,16 @@ Raises
 ------
 ValueError
     When a setting makes no sense.)");
+  define_copies(window);
   window
+      .def("__repr__",
+           [](const DriftWindow<>& w) {
+             return CallText("DriftWindow")
+                 .with("max_fixes", w.settings().max_fixes)
+                 .with("log_std_mps", w.settings().log_std_mps)
+                 .with("heading_std_rad", w.settings().heading_std_rad)
+                 .text();
+           })
       .def(py::init([](int fixes, double log_std, double heading_std) {
              return DriftWindow<>({fixes, log_std, heading_std});
            }),
@@ -749,7 +758,19 @@ Raises
 ------
 ValueError
     When one is negative or not finite.)");
+  define_copies(model);
   model
+      .def("__repr__",
+           [](const DriftModel& one) {
+             return CallText("DriftModel")
+                 .with("leeway", one.leeway)
+                 .with("leeway_std", one.leeway_std)
+                 .with("wind_std_mps", one.wind_std_mps)
+                 .with("current_std_mps", one.current_std_mps)
+                 .with("residual_std_mps", one.residual_std_mps)
+                 .with("residual_time_s", one.residual_time_s)
+                 .text();
+           })
       .def(py::init([](double leeway, double leeway_std, double wind_std, double current_std,
                        double residual_std, double residual_time) {
              const DriftModel made{leeway,      leeway_std,   wind_std,

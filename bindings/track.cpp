@@ -453,6 +453,18 @@ void define_track(py::module_& parent) {
         "The estimator that a tracker uses for this radar unless told otherwise.");
 
   py::class_<Event>(m, "Event", "Something that became of a track in a scan.")
+      .def(py::pickle(
+          [](const Event& event) {
+            return py::make_tuple(int(event.kind), event.track_id, event.tentative_id,
+                                  event.time_s);
+          },
+          [](const py::tuple& fields) {
+            const auto kind = fields[0].cast<int>();
+            if (kind < int(TrackEvent::kStarted) || kind > int(TrackEvent::kLost))
+              throw py::value_error("state is not that of an event");
+            return Event{TrackEvent(kind), fields[1].cast<std::int64_t>(),
+                         fields[2].cast<std::int64_t>(), fields[3].cast<double>()};
+          }))
       .def_property_readonly(
           "kind", [](const Event& event) { return event_name(event.kind); },
           "started, confirmed, coasting or lost")
@@ -464,7 +476,9 @@ void define_track(py::module_& parent) {
         return "Event(kind=" + std::string(event_name(event.kind)) +
                ", track_id=" + std::to_string(event.track_id) + ")";
       });
-  py::class_<PyReport>(m, "ScanReport", "What a scan has brought.")
+  py::class_<PyReport> report(m, "ScanReport", "What a scan has brought.");
+  define_pickle(report, &PyReport::plot_track_id, &PyReport::events, &PyReport::refused_plots);
+  report
       .def_readonly("plot_track_id", &PyReport::plot_track_id,
                     "(n,) the track each plot most likely belongs to; negative for a tentative "
                     "one, 0 for none")
@@ -472,8 +486,12 @@ void define_track(py::module_& parent) {
       .def_readonly("refused_plots", &PyReport::refused_plots,
                     "plots not finite, behind the antenna, of another time than the scan, or "
                     "beyond max_plots");
-  py::class_<PyTracks>(m, "TrackTable", "Tracks as arrays, older ones first.")
-      .def_readonly("track_id", &PyTracks::track_id, "(k,)")
+  py::class_<PyTracks> table(m, "TrackTable", "Tracks as arrays, older ones first.");
+  define_pickle(table, &PyTracks::track_id, &PyTracks::status, &PyTracks::time_s, &PyTracks::mean,
+                &PyTracks::covariance, &PyTracks::mode_probability, &PyTracks::nis,
+                &PyTracks::existence, &PyTracks::visibility, &PyTracks::turn_rate_rad_s,
+                &PyTracks::hits, &PyTracks::misses, &PyTracks::name);
+  table.def_readonly("track_id", &PyTracks::track_id, "(k,)")
       .def_readonly("status", &PyTracks::status, "tentative, confirmed, coasting or held")
       .def_readonly("time_s", &PyTracks::time_s, "(k,) of the belief")
       .def_readonly("mean", &PyTracks::mean, "(k, 4) [x, vx, y, vy]")

@@ -370,8 +370,9 @@ void define_usv_navigator(py::module_& m) {
                              fields[2].cast<bool>()};
           }));
 
-  py::class_<UsvRun>(m, "UsvRun", "What `UsvNavigator.run` returns.")
-      .def_readonly("mean", &UsvRun::mean, "(T, N)")
+  py::class_<UsvRun> run(m, "UsvRun", "What `UsvNavigator.run` returns.");
+  define_pickle(run, &UsvRun::mean, &UsvRun::covariance, &UsvRun::nis, &UsvRun::rejected);
+  run.def_readonly("mean", &UsvRun::mean, "(T, N)")
       .def_readonly("covariance", &UsvRun::covariance, "(T, N, N)")
       .def_readonly("nis", &UsvRun::nis,
                     "by sensor: (T,) normalised innovations squared, NaN without a reading")

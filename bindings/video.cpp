@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "call_text.hpp"
 #include "types.hpp"
 #include "wakeline/video/cfar.hpp"
 #include "wakeline/video/land_mask.hpp"
@@ -484,8 +485,8 @@ corners_m : (k, 2) array
     North and east of the antenna, which may lie inside.)")
       .def("excludes", &LandMask::excludes, py::arg("azimuth_rad"), py::arg("range_m"),
            "Whether a place is excluded.");
-  py::class_<StaticClutterMap>(m, "StaticClutterMap",
-                               R"(What always stands there: the mean amplitude of each cell.
+  py::class_<StaticClutterMap> clutter(m, "StaticClutterMap",
+                                       R"(What always stands there: the mean amplitude of each cell.
 
 A cell must exceed `factor` times its mean over the last `time_constant_s`. Land and buoys vanish
 after ``time_constant_s * log(factor / (factor - 1))``, and so does a ship that stays as long.
@@ -499,7 +500,18 @@ cells : int
 time_constant_s : float
     Well above the time in which the slowest ship of interest moves by her own echo.
 factor : float
-    Of the mean amplitude that a cell must exceed.)")
+    Of the mean amplitude that a cell must exceed.)");
+  define_copies(clutter);
+  clutter
+      .def("__repr__",
+           [](const StaticClutterMap& map) {
+             return CallText("StaticClutterMap")
+                 .with("azimuths", map.azimuths())
+                 .with("cells", map.cells())
+                 .with("time_constant_s", map.time_constant_s())
+                 .with("factor", map.factor())
+                 .text();
+           })
       .def(py::init<int, int, double, double>(), py::arg("azimuths"), py::arg("cells"),
            py::arg("time_constant_s"), py::arg("factor") = 1.5)
       .def_property_readonly("azimuths", &StaticClutterMap::azimuths)

@@ -159,6 +159,11 @@ def test_a_tracker_goes_on_bit_for_bit(estimator):
         wl.Radar(period_s=3.0),
         wl.TrackerConfig(confirm_hits=4),
         wl.VesselModels.ships(),
+        wl.navigation.DriftModel(leeway=0.05, residual_time_s=900.0),
+        wl.navigation.DriftWindow(max_fixes=7, log_std_mps=0.1),
+        wl.motion.ProcessNoise(wl.WhiteJerk(psd_m2s5=0.1)),
+        wl.motion.ProcessNoise(wl.PiecewiseAcceleration(std_mps2=0.2)),
+        wl.video.StaticClutterMap(8, 16, 60.0, factor=1.25),
         START,
     ],
     ids=lambda thing: type(thing).__name__,
@@ -182,6 +187,111 @@ def test_a_step_and_the_results_of_a_run():
     np.testing.assert_array_equal(other.innovation_covariance, step.innovation_covariance)
     result = filter.run(z, dt_s=DT_S, sensor=RADAR, start=START)
     np.testing.assert_array_equal(WAYS["pickle"](result).covariance, result.covariance)
+
+
+def assert_equal_fields(one, other, names):
+    assert type(one) is type(other)
+    for name in names.split():
+        got, wanted = getattr(one, name), getattr(other, name)
+        if isinstance(wanted, dict):
+            assert got.keys() == wanted.keys()
+            for key in wanted:
+                np.testing.assert_array_equal(got[key], wanted[key])
+        elif wanted is not None:
+            np.testing.assert_array_equal(got, wanted)
+            assert np.asarray(got).dtype == np.asarray(wanted).dtype
+        else:
+            assert got is None
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_the_run_of_a_navigator(way):
+    navigator = wl.UsvNavigator(8)
+    navigator.start([0.0, 0.0], [5.0, 0.0], 0.0)
+    time_s = np.arange(9.0)
+    gnss = np.column_stack([5.0 * time_s, 0.0 * time_s])
+    gnss[5] = 900.0
+    run = navigator.run(time_s, imu=np.zeros((9, 3)), gnss=gnss)
+    assert run.rejected["gnss"][5]
+    assert_equal_fields(WAYS[way](run), run, "mean covariance nis rejected")
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_what_a_fuzzy_criterion_saw(way):
+    trace = wl.FuzzyAlphaBeta().trace(z, dt_s=DT_S, sensor=CONVERTED, start=START)
+    names = "quality chosen sigma_hat_m residual_ratios rule_strengths prediction_m innovation_m"
+    assert_equal_fields(WAYS[way](trace), trace, names)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_closest_approaches(way):
+    rng = np.random.default_rng(5)
+    target = rng.normal(scale=[2e3, 8, 2e3, 8], size=(3, 2, 4))
+    covariance = np.diag([900.0, 0.25, 400.0, 0.5])
+    for one in (
+        wl.navigation.closest_approach(np.zeros(4), target, None, covariance),
+        wl.navigation.closest_approach(np.zeros(4), target[0, 0]),
+        wl.navigation.closest_approach(np.zeros(4), np.zeros((0, 4))),
+    ):
+        other = WAYS[way](one)
+        assert_equal_fields(other, one, "cpa_m signed_cpa_m tcpa_s cpa_std_m tcpa_std_s covariance")
+        np.testing.assert_array_equal(
+            other.probability(500.0, 600.0), one.probability(500.0, 600.0)
+        )
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("estimator", [None, OF_ALL_KINDS["SwitchingGridImm"]])
+def test_what_a_tracker_tells(estimator, way):
+    tracker = wl.Tracker(wl.Radar(period_s=DT_S), estimator=estimator)
+    events = []
+    for k, row in enumerate(z[:12]):
+        range_m, bearing_rad = row[np.isfinite(row)].reshape(-1, 2).T
+        report = tracker.process(DT_S * k, range_m=range_m, bearing_rad=bearing_rad)
+        other = WAYS[way](report)
+        assert_equal_fields(other, report, "plot_track_id refused_plots")
+        assert_equal_fields_of_all(other.events, report.events)
+        events += report.events
+    assert {event.kind for event in events} >= {"started", "confirmed"}
+    table = tracker.tracks()
+    assert len(table) == 1
+    names = "track_id status time_s mean covariance mode_probability turn_rate_rad_s nis"
+    assert_equal_fields(WAYS[way](table), table, f"{names} existence visibility hits misses name")
+
+
+def assert_equal_fields_of_all(events, wanted):
+    assert len(events) == len(wanted)
+    for event, same in zip(events, wanted, strict=True):
+        assert_equal_fields(event, same, "kind track_id tentative_id time_s")
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_window_of_drift_goes_on_bit_for_bit(way):
+    window = wl.navigation.DriftWindow(max_fixes=5, log_std_mps=0.1, heading_std_rad=0.01)
+
+    def sail(one, first, last):
+        for k in range(first, last):
+            one.advance(10.0, 4.0, 0.3 + 0.01 * k)
+            if k % 2:
+                fix = [40.0 * k + np.sin(k), 12.0 * k + np.cos(k)]
+                one.add(wl.Gaussian(fix, 25.0 * np.eye(2)))
+        return one.drift()
+
+    sail(window, 0, 15)
+    other = WAYS[way](window)
+    got, wanted = sail(other, 15, 24), sail(window, 15, 24)
+    np.testing.assert_array_equal(got.mean, wanted.mean)
+    np.testing.assert_array_equal(got.covariance, wanted.covariance)
+    assert (other.size, other.ready) == (window.size, window.ready)
+    with pytest.raises(ValueError, match="made alike"):
+        wl.navigation.DriftWindow(max_fixes=6).restore(window.save())
+
+
+@pytest.mark.parametrize("state", [(), (1, 2, 3, 4, 5)])
+def test_a_result_of_no_such_fields_is_refused(state):
+    for kind in (wl.track.ScanReport, wl.track.TrackTable, wl.navigation.ClosestApproach):
+        with pytest.raises(ValueError, match="state is not that of such a result"):
+            kind.__new__(kind).__setstate__(state)
 
 
 def test_a_state_that_is_of_another_is_refused_and_nothing_changes():

@@ -1,6 +1,8 @@
 """Radar video to plots: CFAR, echoes, masks, pictures."""
 
+import copy
 import dataclasses
+import pickle
 
 import numpy as np
 import pytest
@@ -360,6 +362,26 @@ def test_what_always_stands_there_vanishes():
     assert mean[101, 60] > 130
     assert mean[0, 0] == 0
     assert clutter.mean.max() == 0  # the extractor has a copy
+
+
+def test_what_a_clutter_map_has_learned_is_pickled():
+    block = np.zeros((360, 200), np.uint8)
+    block[100:104, 60:62] = 200
+
+    def learn(clutter, turns):
+        extractor = wl.PlotExtractor(clutter=clutter, max_sweep_cells=200)
+        for k in turns:
+            extractor.process(video(block, first=360 * k, sweeps_a_turn=360, time_s=2.0 * k))
+        return extractor.clutter
+
+    clutter = learn(wl.StaticClutterMap(360, 200, time_constant_s=20.0), range(10))
+    for other in (pickle.loads(pickle.dumps(clutter)), copy.copy(clutter)):
+        np.testing.assert_array_equal(other.mean, clutter.mean)
+        later = learn(other, range(10, 14)).mean
+        np.testing.assert_array_equal(later, learn(clutter, range(10, 14)).mean)
+    assert clutter.mean.max() > 50
+    with pytest.raises(ValueError, match="made alike"):
+        wl.StaticClutterMap(360, 100, time_constant_s=20.0).restore(clutter.save())
 
 
 # The picture --------------------------------------------------------------------------------------

@@ -988,6 +988,18 @@ class FuzzyTrace:
     """
     What `FuzzyAlphaBeta.trace` returns: arrays over scans, and over runs where there are several; NaN where nothing was judged.
     """
+    def __getstate__(
+        self,
+    ) -> tuple[
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.int32],
+    ]: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def chosen(self) -> NDArray[np.int32]:
         """

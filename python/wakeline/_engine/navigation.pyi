@@ -188,6 +188,8 @@ class DriftWindow:
     ValueError
         When a setting makes no sense.
     """
+    def __copy__(self) -> DriftWindow: ...
+    def __deepcopy__(self, memo: dict) -> DriftWindow: ...
     def __init__(
         self, *, max_fixes: int = 20, log_std_mps: float = 0.0, heading_std_rad: float = 0.0
     ) -> None: ...
@@ -206,6 +208,10 @@ class DriftWindow:
     def drift(self) -> Gaussian:
         """
         [north, east] m/s; zero with an infinite covariance until `ready`.
+        """
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
         """
     def run(
         self,
@@ -231,6 +237,10 @@ class DriftWindow:
         -------
         (mean, covariance)
             (T, 2) and (T, 2, 2), as `drift`.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
         """
     @property
     def ready(self) -> bool:
@@ -266,6 +276,8 @@ class DriftModel:
         """
         With the leeway of a kind of object, the rest by default.
         """
+    def __copy__(self) -> DriftModel: ...
+    def __deepcopy__(self, memo: dict) -> DriftModel: ...
     def __init__(
         self,
         *,
@@ -310,6 +322,8 @@ class ClosestApproach:
     """
     Closest approaches of pairs of ships; every array has the shape (...) of the pairs.
     """
+    def __getstate__(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     def probability(self, limit_m: float, horizon_s: float = ...) -> NDArray[np.float64]:
         """
         Probability that the ships come closer than a limit L between now and a horizon H: that
@@ -386,6 +400,15 @@ class UsvRun:
     """
     What `UsvNavigator.run` returns.
     """
+    def __getstate__(
+        self,
+    ) -> tuple[
+        NDArray[np.float64],
+        NDArray[np.float64],
+        dict[str, NDArray[np.float64]],
+        dict[str, NDArray[np.bool_]],
+    ]: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def covariance(self) -> NDArray[np.float64]:
         """

@@ -206,6 +206,8 @@ class Event:
     """
     Something that became of a track in a scan.
     """
+    def __getstate__(self) -> tuple[int, int, int, float]: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def kind(self) -> str:
         """
@@ -225,6 +227,8 @@ class ScanReport:
     """
     What a scan has brought.
     """
+    def __getstate__(self) -> tuple[NDArray[np.int64], list[Event], int]: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def events(self) -> list[Event]: ...
     @property
@@ -242,7 +246,25 @@ class TrackTable:
     """
     Tracks as arrays, older ones first.
     """
+    def __getstate__(
+        self,
+    ) -> tuple[
+        NDArray[np.int64],
+        list[str],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        typing.Any,
+        NDArray[np.int64],
+        NDArray[np.int64],
+        list[str],
+    ]: ...
     def __len__(self) -> int: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def covariance(self) -> NDArray[np.float64]:
         """

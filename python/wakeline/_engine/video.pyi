@@ -80,9 +80,19 @@ class StaticClutterMap:
     factor : float
         Of the mean amplitude that a cell must exceed.
     """
+    def __copy__(self) -> StaticClutterMap: ...
+    def __deepcopy__(self, memo: dict) -> StaticClutterMap: ...
     def __init__(
         self, azimuths: int, cells: int, time_constant_s: float, factor: float = 1.5
     ) -> None: ...
+    def restore(self, state: bytes) -> None:
+        """
+        Goes on bit for bit where the saved one was.
+        """
+    def save(self) -> bytes:
+        """
+        What it knows as bytes, for one that is made alike, on the same kind of machine.
+        """
     @property
     def azimuths(self) -> int: ...
     @property

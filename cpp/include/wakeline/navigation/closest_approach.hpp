@@ -78,6 +78,9 @@ class ClosestApproach {
   /// Of [signed_cpa_m, tcpa_s].
   [[nodiscard]] const Mat<double, 2, 2>& covariance() const noexcept { return covariance_; }
 
+  /// Target less own ship, over [x, vx, y, vy].
+  [[nodiscard]] Gaussian<4> relative() const noexcept { return {mean_, state_covariance_}; }
+
   /// Whether the ships do not move relative to each other.
   [[nodiscard]] bool at_rest() const noexcept { return at_rest_; }
 

@@ -15,6 +15,7 @@
 #include <string>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/archive.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/status.hpp"
@@ -152,6 +153,16 @@ class DriftWindow {
     return Status::kOk;
   }
 
+  /// Saves or restores the fixes and what was reckoned since.
+  void archive(Archive& fields) {
+    for (Fixed& fixed : fixes_) fixed.archive(fields);
+    step_.archive(fields);
+    fields(size_);
+    fields(newest_);
+    const int most = settings_.max_fixes;
+    if (size_ < 0 || size_ > most || newest_ < 0 || newest_ >= most) fields.fail();
+  }
+
   /// Fixes that are remembered.
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
@@ -207,6 +218,14 @@ class DriftWindow {
     double gap_s = 0.0;
     Vec<double, 2> reckoned_m = Vec<double, 2>::Zero();
     Mat<double, 2, 2> reckoned_covariance_m2 = Mat<double, 2, 2>::Zero();
+
+    void archive(Archive& fields) {
+      fields(fix.mean);
+      fields(fix.covariance);
+      fields(gap_s);
+      fields(reckoned_m);
+      fields(reckoned_covariance_m2);
+    }
   };
 
   static Gaussian<2> unknown() noexcept {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/archive.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/video/azimuth_rows.hpp"
 #include "wakeline/video/sweep.hpp"
@@ -55,6 +56,25 @@ class StaticClutterMap {
 
   /// Mean amplitudes (azimuths, cells), row-major.
   [[nodiscard]] std::span<const float> mean() const noexcept { return mean_; }
+
+  [[nodiscard]] double time_constant_s() const noexcept { return time_constant_s_; }
+  [[nodiscard]] double factor() const noexcept { return double(factor_); }
+
+  /// Saves or restores what has been learned; of a map of the same sizes and settings.
+  void archive(Archive& fields) {
+    const std::size_t rows = seen_s_.size(), cells = mean_.size(), row_cells = strongest_.size();
+    fields(start_range_m_);
+    fields(cell_m_);
+    fields(seen_s_, rows);
+    fields(mean_, cells);
+    fields(visited_);
+    fields(azimuth_rad_);
+    fields(turned_rad_);
+    fields(gain_);
+    fields(strongest_, row_cells);
+    if (seen_s_.size() != rows || mean_.size() != cells || strongest_.size() != row_cells)
+      fields.fail();
+  }
 
   void clear() noexcept {
     std::ranges::fill(mean_, 0.0f);
