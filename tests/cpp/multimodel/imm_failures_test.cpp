@@ -4,6 +4,7 @@
 // What an Imm does where it, or one of its filters, cannot do a step.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "filter/cases.hpp"
@@ -99,6 +100,36 @@ TEST(ImmFailures, BadInputLeavesEverything) {
   expect_unmoved_by_bad_input(Imm{kChain, straight(), Ukf{CoordinatedTurnRate{}}});
   expect_unmoved_by_bad_input(
       Imm{kChain, SquareRootUkf{CoordinatedTurnRate{}}, SquareRootUkf{ConstantVelocity{}}});
+}
+
+// What modes of very different gains make of it differs by more than has a square.
+template <class Scalar>
+void expect_that_it_is_a_plot_or_leaves_the_prediction(Scalar far_m, Scalar std_m) {
+  const auto mode = [](double psd) {
+    return Ekf<ConstantVelocity, Scalar>{ConstantVelocity{.noise = WhiteAcceleration{psd}}};
+  };
+  Imm imm(kChain, mode(0.01), mode(1e8));
+  ASSERT_EQ(imm.start(test::five_km_off<Scalar>()), Status::kOk);
+  ASSERT_EQ(imm.predict(Scalar(1)), Status::kOk);
+  const Snapshot before(imm);
+  const Position sensor{std_m};
+  const auto step = imm.update(sensor, Vec<Scalar, 2>(far_m, far_m));
+  if (!step) {
+    EXPECT_EQ(step.status, Status::kNotFinite) << far_m;
+    EXPECT_TRUE(before.matches(imm)) << far_m;
+    EXPECT_EQ(imm.predict(Scalar(1)), Status::kOk);
+    EXPECT_TRUE(imm.update(sensor, Vec<Scalar, 2>(3000, 4000)));
+  }
+  EXPECT_TRUE(is_finite(imm.estimate().mean)) << far_m;
+  EXPECT_TRUE(is_finite(imm.estimate().covariance)) << far_m;
+}
+
+TEST(ImmFailures, APlotWithoutASquareLeavesThePrediction) {
+  for (int power = 140; power <= 308; ++power)
+    for (const double std_m : {10.0, 1e5})
+      expect_that_it_is_a_plot_or_leaves_the_prediction<double>(std::pow(10.0, power), std_m);
+  for (int power = 10; power <= 38; ++power)
+    expect_that_it_is_a_plot_or_leaves_the_prediction<float>(std::pow(10.0F, float(power)), 1e3F);
 }
 
 TEST(ImmFailures, NotStarted) {

@@ -25,7 +25,8 @@ namespace wakeline {
 /// missed scan is a `predict` without `update`. `update` weighs each mode by its likelihood, in the
 /// log domain. What a filter cannot know of another's state (the turn rate a straight model lacks)
 /// it keeps from itself in mixing. A filter whose update fails keeps its prediction and has no
-/// weight in that scan; where all fail nothing changes. Source: H. A. P. Blom, Y. Bar-Shalom, IEEE
+/// weight in that scan; where all fail nothing changes, nor by a reading so large that what two
+/// modes make of it could not be squared, `kNotFinite`. Source: H. A. P. Blom, Y. Bar-Shalom, IEEE
 /// Trans. AC-33, 1988; Bar-Shalom, Li, Kirubarajan, 11.6.6; paper A, (7)-(16).
 template <class BankType>
 class Imm {
@@ -93,6 +94,7 @@ class Imm {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
     Gaussian<kM, Scalar> reading = sensor.observe(z);
+    refuse_beyond_squares(reading.mean);
     InPlaceArray<Correction<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> each;
     if constexpr (kMayRest)
       for (int mode = 0; mode < bank_.size(); ++mode)

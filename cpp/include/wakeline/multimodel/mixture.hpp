@@ -76,6 +76,20 @@ Scalar part_of(Scalar part, Scalar total, Scalar scale) noexcept {
   return select(part == total, Scalar(1), part * scale);
 }
 
+/// Numbers above this, or what differs by as much and is then multiplied by a gain, have no square.
+template <class Scalar>
+inline constexpr RealOf<Scalar> kMostSquared = sizeof(RealOf<Scalar>) > 4 ? RealOf<Scalar>(0x1p492)
+                                                                          : RealOf<Scalar>(0x1p44);
+
+/// Makes a reading that is too large for a mixture one that is none.
+template <int M, class Scalar>
+[[gnu::always_inline]] inline void refuse_beyond_squares(Vec<Scalar, M>& reading) noexcept {
+  using std::abs;
+  constexpr auto kNone = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
+  for (int i = 0; i < M; ++i)
+    reading[i] = select(abs(reading[i]) < Scalar(kMostSquared<Scalar>), reading[i], Scalar(kNone));
+}
+
 /// Bayes' rule for the parts of a mixture: weights become weight times likelihood over their sum.
 /// Returns the logarithm of that sum; `kImpossible`, and nothing changed, where no part is
 /// possible. `likelihood_of(k)` gives that of a part, of which there are at most `Capacity`. Where
