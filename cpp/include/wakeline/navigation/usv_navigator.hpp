@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "wakeline/filter/ekf.hpp"
@@ -107,6 +108,7 @@ class UsvNavigator {
     evidence_ = misread_ = silent_s_ = pause_s_ = {};
     off_.setZero();
     strayed_.setZero();
+    by_gyro_.setZero();
     wrap();
     return status;
   }
@@ -121,9 +123,12 @@ class UsvNavigator {
   Status predict(Scalar dt_s) noexcept { return predict(leg(dt_s)); }
 
   Status predict(const Leg& leg) noexcept {
-    filter_.set_motion(driven(leg));
+    const Model motion = driven(leg);
+    const State before = estimate();
+    filter_.set_motion(motion);
     const Status status = filter_.predict(leg.dt_s);
     if (status != Status::kOk) return status;
+    note_gyro(leg, motion, before);
     strayed_ += leg.dt_s * off_;
     for (Scalar& silent_s : silent_s_) silent_s += leg.dt_s;
     forget_silent();
@@ -135,7 +140,7 @@ class UsvNavigator {
   template <class Sensor>
   UsvReading<Sensor::kMeasurements, Scalar> update(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
-    UsvReading<Sensor::kMeasurements, Scalar> reading{filter_.innovation(sensor, z)};
+    UsvReading<Sensor::kMeasurements, Scalar> reading{filter_.innovation(as_taken(sensor), z)};
     if (is_absurd(reading, z)) {
       reading.nis = std::numeric_limits<Scalar>::infinity();
       return rejected(reading);
@@ -152,12 +157,13 @@ class UsvNavigator {
       if (rejected_[kKind] >= std::min(kFew, rejections_)) acquit_others<Sensor>();
       return rejected(reading);
     }
-    reading.status = filter_.update(sensor, z).status;
+    reading.status = filter_.update(as_taken(sensor), z).status;
     reading.widened = !fits && bool(reading);
     if (!reading) {
       (void)filter_.assign(before);
       return reading;
     }
+    if constexpr (kErrsWithStep<Sensor>) by_gyro_.setZero();
     rejected_[kKind] = 0;
     acquit(kKind);
     if (fits)
@@ -175,7 +181,7 @@ class UsvNavigator {
   /// Rauch-Tung-Striebel smoother of a log, with additive noise, in place: `legs[k]` leads from
   /// belief k, as it was after all readings of its time, to belief k + 1. Returns the first
   /// failure, with that belief and all before it left as filtered. It knows nothing of a widening,
-  /// whose jump it spreads.
+  /// whose jump it spreads, nor of what a rate of turn told of the noise of the step before.
   Status smooth(std::span<State> beliefs, std::span<const Leg> legs) const noexcept {
     for (std::size_t k = beliefs.size(); k-- > 1;) {
       const Leg& leg = legs[k - 1];
@@ -202,6 +208,9 @@ class UsvNavigator {
     fields(pause_s_);
     fields(off_);
     fields(strayed_);
+    fields(by_gyro_);
+    fields(predicted_);
+    fields(gyro_rad_s_);
   }
 
  private:
@@ -234,6 +243,10 @@ class UsvNavigator {
       kKindOf<Sensor> == kNorthRow ? Sensor::kMeasurements == 2
                                    : kKindOf<Sensor> == kHeadingRow&& Sensor::kMeasurements == 1;
 
+  /// Whether the noise of a sensor has also driven the last step.
+  template <class Sensor>
+  static constexpr bool kErrsWithStep = std::is_same_v<Sensor, RateOfTurn>&& kGyroBiasRow >= 0;
+
   using Pair = Vec<Scalar, 2>;
   static constexpr int kFew = 3;                   ///< misfits in a row that are no chance
   static constexpr Scalar kMostEvidence = 40;      ///< so that a few misfits take it back
@@ -247,6 +260,41 @@ class UsvNavigator {
     Model model = model_;
     model.input = leg.input;
     return model;
+  }
+
+  /// Keeps what the noise of the gyro has done in a step: the covariance of the state's error with
+  /// it is that of its variance times df/d(rate of turn), which is what a bias of it does, less.
+  void note_gyro(const Leg& leg, const Model& motion, const State& before) noexcept {
+    by_gyro_.setZero();
+    if constexpr (kGyroBiasRow >= 0) {
+      if (leg.input.bias_share != 1.0) return;
+      const double std = leg.input.noise.yaw_rate_std_rad_s;
+      by_gyro_ = -Scalar(std * std) * motion.jacobian(before.mean, leg.dt_s).col(kGyroBiasRow);
+      by_gyro_[kGyroBiasRow] += Scalar(std * std);
+      predicted_ = estimate().covariance;
+      gyro_rad_s_ = leg.input.imu.yaw_rate_rad_s;
+    }
+  }
+
+  /// A sensor as the filter takes it. Readings since the step leave y = P⁻¹ C as it was, as they
+  /// shrink C = cov(x - x̂, v) and P alike.
+  template <class Sensor>
+  [[nodiscard]] auto as_taken(const Sensor& sensor) const noexcept {
+    if constexpr (kErrsWithStep<Sensor>) {
+      ErringTogether<Sensor, kComponents> taken{sensor, estimate().mean.template cast<double>(),
+                                                Vec<double, kStates>::Zero(), 0.0};
+      const Cholesky<kStates, Scalar> factor(predicted_);
+      if (by_gyro_.isZero(0) || sensor.gyro_rad_s != gyro_rad_s_ || !factor.ok()) return taken;
+      const double own = model_.input.noise.yaw_rate_std_rad_s;
+      const double share = std::min(1.0, sensor.gyro_std_rad_s / own);
+      const Vec<Scalar, kStates> weight =
+          Scalar(share * share) * factor.template solve<1>(by_gyro_);
+      taken.weight = weight.template cast<double>();
+      taken.common_variance = double(weight.dot(estimate().covariance * weight));
+      return taken;
+    } else {
+      return sensor;
+    }
   }
 
   static ChiSquareGate narrower(const ChiSquareGate& gate) noexcept {
@@ -408,6 +456,7 @@ class UsvNavigator {
     told.mean.template tail<2>() = current;
     told.covariance.template bottomRightCorner<2, 2>() +=
         (current - before) * (current - before).transpose();
+    by_gyro_.setZero();
     return filter_.assign(told) == Status::kOk;
   }
 
@@ -431,9 +480,13 @@ class UsvNavigator {
         factor.whiten_rows(ph) * factor.template whiten<1>(innovation);
     belief.covariance.diagonal() += error.cwiseAbs2();
     (void)filter_.assign(belief);
+    by_gyro_.setZero();
   }
 
   Filter filter_;
+  Vec<Scalar, kStates> by_gyro_ = Vec<Scalar, kStates>::Zero();  ///< cov(x - x̂, v) after the step
+  Mat<Scalar, kStates, kStates> predicted_ = Mat<Scalar, kStates, kStates>::Identity();
+  double gyro_rad_s_ = 0.0;  ///< that drove the last step
   Model model_;
   ImuNoise unmeasured_;
   int rejections_;

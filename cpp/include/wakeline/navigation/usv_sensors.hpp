@@ -130,9 +130,9 @@ struct SpeedLog : DirectSensor<kSpeedThroughWater> {
 };
 
 /// A rate of turn indicator beside the gyro that drives the steps: what the gyro reads more than it
-/// is the gyro's bias. The noise of both instruments counts, as if the gyro's had not turned the
-/// heading, too: where it is the larger one, the bias errs by up to 1.4 of what is believed. Such
-/// an indicator had better drive the steps itself.
+/// is the gyro's bias. The noise of both instruments counts. That of the gyro has turned the
+/// heading, too: where this is the reading that drove the last step, a `UsvNavigator` turns it back
+/// by what the indicator tells of it.
 struct RateOfTurn {
   static constexpr int kMeasurements = 1;
   static constexpr std::array kReads{kGyroBias};
@@ -166,6 +166,58 @@ struct RateOfTurn {
     require_positive("rate_std_rad_s", rate_std_rad_s);
     require_finite("gyro_rad_s", gyro_rad_s);
     require_not_negative("gyro_std_rad_s", gyro_std_rad_s);
+  }
+};
+
+/// A sensor of one number whose noise v errs together with the belief: cov(x - x̂, v) = P y. That is
+/// a sensor which reads y·(x - x̂) more, with an independent noise of variance R - yᵀ P y: its gain
+/// is (P Hᵀ + C) / S, S = H P Hᵀ + R + H C + Cᵀ Hᵀ, C = P y. Source: Bar-Shalom, Li, Kirubarajan,
+/// chapter 8 (correlated noises).
+template <class Sensor, auto Components>
+struct ErringTogether {
+  static constexpr int kStates = static_cast<int>(Components.size());
+  static constexpr int kMeasurements = 1;
+  static constexpr auto kReads = Components;
+
+  Sensor sensor;
+  Vec<double, kStates> believed;  ///< x̂
+  Vec<double, kStates> weight;    ///< y
+  double common_variance;         ///< yᵀ P y
+
+  template <class Scalar>
+  Gaussian<1, Scalar> observe(const Vec<Scalar, 1>& z) const noexcept {
+    Gaussian<1, Scalar> reading = sensor.observe(z);
+    reading.covariance(0, 0) -= Scalar(common_variance);
+    return reading;
+  }
+
+  template <class Scalar>
+  Vec<Scalar, 1> measure(const Vec<Scalar, kStates>& x) const noexcept {
+    const Vec<Scalar, kStates> error = x - believed.template cast<Scalar>();
+    return sensor.measure(read(x)) + Vec<Scalar, 1>(weight.template cast<Scalar>().dot(error));
+  }
+
+  template <class Scalar>
+  Mat<Scalar, 1, kStates> jacobian(const Vec<Scalar, kStates>& x) const noexcept {
+    Mat<Scalar, 1, kStates> h = weight.transpose().template cast<Scalar>();
+    const Mat<Scalar, 1, kReadsOf<Sensor>> own = sensor.jacobian(read(x));
+    for (int k = 0; k < kReadsOf<Sensor>; ++k) h[kRows[k]] += own[k];
+    return h;
+  }
+
+  template <class Scalar>
+  Vec<Scalar, 1> residual(const Vec<Scalar, 1>& a, const Vec<Scalar, 1>& b) const noexcept {
+    return sensor.residual(a, b);
+  }
+
+ private:
+  static constexpr auto kRows = rows_of(Components, Sensor::kReads);
+
+  template <class Scalar>
+  static Vec<Scalar, kReadsOf<Sensor>> read(const Vec<Scalar, kStates>& x) noexcept {
+    Vec<Scalar, kReadsOf<Sensor>> rows;
+    for (int k = 0; k < kReadsOf<Sensor>; ++k) rows[k] = x[kRows[k]];
+    return rows;
   }
 };
 
