@@ -6,6 +6,8 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
+#include "wakeline/core/pack_math.hpp"
+#include "wakeline/measurement/position.hpp"
 
 namespace wakeline {
 namespace {
@@ -79,6 +81,34 @@ TEST(KnownAcceleration, ThatCannotBeChangesNothing) {
   expect_unmoved_by_failure<Kalman<ConstantVelocity>>({});
   expect_unmoved_by_failure<Ukf<CoordinatedTurnRate>>({});
   expect_unmoved_by_failure<SquareRootUkf<CoordinatedTurnRate>>({});
+}
+
+template <template <class, class> class Filter>
+void expect_lane_unmoved_by_failure() {
+  using Lanes = Pack<double, 2>;
+  Filter<ConstantVelocity, Lanes> filter(ConstantVelocity{});
+  ASSERT_TRUE(all(ok(filter.start(test::five_km_off<Lanes>()))));
+  const Position fine{.position_std_m = 1e-3};
+  ASSERT_TRUE(all(ok(filter.predict(Lanes(3600.0)))));
+  ASSERT_TRUE(all(ok(filter.update(fine, Vec<Lanes, 2>(1e4, 2e4)).status)));
+  ASSERT_TRUE(all(ok(filter.predict(Lanes(3600.0)))));
+  const auto before = filter;
+  const Vec<Lanes, 2> push(Lanes::of([](int k) { return k == 0 ? 0.3 : kNan; }), Lanes(0.1));
+  const auto status = filter.predict(Lanes(3.0), push);
+  EXPECT_EQ(lane(status, 0), Status::kOk);
+  EXPECT_EQ(lane(status, 1), Status::kNotFinite);
+  const auto was = before.estimate(), is = filter.estimate();
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NE(is.mean[i][0], was.mean[i][0]);
+    EXPECT_EQ(is.mean[i][1], was.mean[i][1]);
+    for (int j = 0; j < 4; ++j) EXPECT_EQ(is.covariance(i, j)[1], was.covariance(i, j)[1]);
+  }
+}
+
+TEST(KnownAcceleration, ThatCannotBeInOneLaneChangesNothingThere) {
+  expect_lane_unmoved_by_failure<Ekf>();
+  expect_lane_unmoved_by_failure<Ukf>();
+  expect_lane_unmoved_by_failure<SquareRootUkf>();
 }
 
 TEST(KnownAcceleration, OfAShipThatThrustsIsItsPath) {

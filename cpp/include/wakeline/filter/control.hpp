@@ -15,6 +15,8 @@ void restore(Filter& filter, const Filter& before,
              const MaskOf<typename Filter::Scalar>& lanes) noexcept {
   if constexpr (kLanesOf<typename Filter::Scalar> == 1) {
     if (lanes) filter = before;
+  } else if constexpr (requires { filter.assign_in(lanes, before); }) {
+    filter.assign_in(lanes, before);
   } else {
     filter.assign_in(lanes, before.estimate());
   }

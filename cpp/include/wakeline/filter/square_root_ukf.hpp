@@ -94,6 +94,11 @@ class SquareRootUkf {
     return replaced;
   }
 
+  /// The same by that of another one, bit for bit.
+  void assign_in(const MaskOf<Scalar>& lanes, const SquareRootUkf& other) noexcept {
+    replace(lanes, other.mean_, other.root_);
+  }
+
   /// Replaces the motion model, unchecked; the belief stays.
   void set_motion(const Motion& motion) noexcept { motion_ = motion; }
 
