@@ -5,9 +5,11 @@
 // its sigma points.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "filter/cases.hpp"
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
 #include "wakeline/filter/ekf.hpp"
@@ -188,8 +190,31 @@ TEST(Unscented, WrongParametersAreNamed) {
   EXPECT_NE(complaint({.alpha = 0.0}).find("alpha"), std::string::npos);
   EXPECT_NE(complaint({.beta = std::nan("")}).find("beta"), std::string::npos);
   EXPECT_NE(complaint({.kappa = -4.0}).find("kappa"), std::string::npos);
+  for (const Unscented& far_or_near :
+       {Unscented{.alpha = 1e-6}, Unscented{.alpha = 1e-170}, Unscented{.kappa = -4 + 1e-12},
+        Unscented{.kappa = std::numeric_limits<double>::infinity()}, Unscented{.alpha = 1e5}})
+    EXPECT_NE(complaint(far_or_near).find("alpha sqrt(states + kappa)"), std::string::npos);
+  EXPECT_EQ(complaint({.alpha = 1e-4}), "");
+  EXPECT_THROW((Ukf<CoordinatedTurn, float>{kMotion, {.alpha = 1e-3}}), std::invalid_argument);
   EXPECT_THROW((SquareRootUkf{kMotion, Unscented{.alpha = 1.0, .beta = 0.5}}),
                std::invalid_argument);
+}
+
+/// The spread of the points matters little to a turn at a known rate, whatever is allowed.
+TEST(Unscented, NearPointsFindWhatFarOnesFind) {
+  const RangeBearing radar;
+  const auto north_m = [&](auto scalar, double alpha) {
+    using Scalar = decltype(scalar);
+    Ukf<CoordinatedTurn, Scalar> filter{kMotion, {.alpha = alpha}};
+    EXPECT_EQ(filter.start(test::five_km_off<Scalar>()), Status::kOk);
+    for (int scan = 0; scan < 10; ++scan) {
+      EXPECT_EQ(filter.predict(Scalar(3)), Status::kOk);
+      EXPECT_TRUE(filter.update(radar, test::plot_of<Scalar>(3000.0 - 5 * scan, 4000.0)));
+    }
+    return double(filter.estimate().mean[0]);
+  };
+  EXPECT_NEAR(north_m(0.0, 1e-4), north_m(0.0, 0.01), 0.01);
+  EXPECT_NEAR(north_m(0.0F, 0.06), north_m(0.0, 0.06), 2.0);
 }
 
 /// y = x² of a normal x has mean m² + s² and variance 4 m² s² + 2 s⁴: what the transform must find

@@ -58,7 +58,7 @@ class SquareRootUkf {
   explicit SquareRootUkf(const MotionType& motion, const Unscented& unscented = {})
       : motion_(validated(motion)), unscented_(unscented) {
     check_order<Motion>();
-    unscented.validate(kStates);
+    unscented.template validate<Scalar>(kStates);
     require(unscented.beta >= unscented.alpha * unscented.alpha, "beta", "at least alpha squared",
             unscented.beta);
   }

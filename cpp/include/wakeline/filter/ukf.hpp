@@ -26,7 +26,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
 
   explicit Ukf(const MotionType& motion, const Unscented& unscented = {})
       : Base(motion), unscented_(unscented) {
-    unscented.validate(kStates);
+    unscented.template validate<Scalar>(kStates);
   }
 
   [[nodiscard]] const Unscented& unscented() const noexcept { return unscented_; }

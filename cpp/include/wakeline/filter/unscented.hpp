@@ -17,7 +17,9 @@ namespace wakeline {
 ///
 ///     d = w Σ e_i,   mean = f(x) + d,   covariance = w Σ e_i e_iᵀ + (beta - alpha²) d dᵀ,
 ///
-/// in which no large weights cancel, and which is positive semidefinite for beta >= alpha².
+/// in which no large weights cancel, and which is positive semidefinite for beta >= alpha². The
+/// rounding of f weighs 1 / alpha² in the mean: points nearer than 1e-4 columns (`float`: 0.1) are
+/// refused, as are those beyond 1e4.
 /// Source: S. J. Julier, "The scaled unscented transformation", ACC 2002; E. A. Wan, R. van der
 /// Merwe, 2000.
 struct Unscented {
@@ -43,10 +45,15 @@ struct Unscented {
     return Scalar(beta - alpha * alpha);
   }
 
+  template <class Scalar = double>
   void validate(int states) const {
     require_positive("alpha", alpha);
     require_finite("beta", beta);
     require(states + kappa > 0.0, "kappa", "greater than minus the number of states", kappa);
+    constexpr bool kDouble = sizeof(RealOf<Scalar>) > 4;
+    const double reach = spread<double>(states);
+    require(reach >= (kDouble ? 1e-4 : 0.1) && reach <= 1e4, "alpha sqrt(states + kappa)",
+            kDouble ? "0.0001 to 10000" : "0.1 to 10000, in float", reach);
   }
 };
 
