@@ -351,6 +351,32 @@ def test_arrows_of_current_are_whole_and_have_a_scale():
     assert (key.U, key.text.get_text()) == (1.0, "current of 1 kn")
 
 
+def test_a_row_without_a_place_takes_no_arrows_from_the_others():
+    way_m = np.column_stack([np.zeros(50), np.linspace(0.0, 5000.0, 50)])
+    current_mps = np.full((50, 2), 0.3)
+    way_m[7], current_mps[9, 1] = np.nan, np.nan
+    ax = plot.figure().add_subplot()
+    plot.own_map(ax, way_m, way_m, current_mps)
+    (arrows,) = [one for one in ax.collections if isinstance(one, Quiver)]
+    assert np.isfinite(arrows.get_offsets()).all()
+    assert np.isfinite(arrows.scale)
+
+
+def test_no_line_over_time_is_drawn_across_a_gap_and_what_stands_alone_is_seen():
+    when_s = np.array([0.0, 60.0, 120.0, 6000.0, 12000.0, 12060.0])
+    ones = np.ones(6)
+    panels = plot.figure().subplots(3, 1)
+    plot.speed_over_time(panels[0], when_s, ones, ones)
+    plot.course_over_time(panels[1], when_s, ones, ones)
+    plot.drift_over_time(panels[2], when_s, np.ones((6, 2)), when_s[:0])
+    for line in [*panels[0].lines, *panels[1].lines, panels[2].lines[0]]:
+        minutes, values = line.get_xydata().T
+        steps_min = np.diff(minutes)[np.isfinite(np.diff(values))]
+        np.testing.assert_allclose(steps_min, 1.0)
+        ((alone_min, _),) = dots(line)
+        assert alone_min == 100.0
+
+
 @pytest.mark.parametrize("current_mps", [None, np.full((3, 2), np.nan), np.zeros((3, 2))])
 def test_a_map_without_a_current_has_no_arrows(current_mps):
     ax = plot.figure().add_subplot()

@@ -309,6 +309,17 @@ def test_bad_arguments_are_named(screen):
         plot.echo(screen, around_m=(1.0,))
 
 
+def test_tracks_are_not_drawn_across_gaps_and_a_row_alone_is_seen(screen):
+    when_s = np.array([0.0, 3.0, 6.0, 100.0, 200.0, 203.0])
+    state = np.column_stack([when_s, np.ones(6), -2.0 * when_s, np.full(6, -2.0)])
+    ax = plot.ppi(screen, tracks=Tracks(["1"] * 6, when_s, state), rings=False, pixels=100)
+    (line,) = ax.lines
+    east_m, north_m = line.get_xydata().T
+    np.testing.assert_array_equal(np.isnan(east_m), [0, 0, 0, 1, 0, 1, 0, 0])
+    assert line.get_marker() == "."
+    assert north_m[line.get_markevery()].tolist() == [100.0]
+
+
 def test_ids_of_tracks_are_shown_as_they_are(screen):
     tracks = Tracks([r"$5 \frac$"] * 2, [0.0, 3.0], [[1500.0, 0.0, -800.0, 0.0]] * 2)
     plot.ppi(screen, tracks=tracks).figure.draw_without_rendering()

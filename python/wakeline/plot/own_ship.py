@@ -66,10 +66,13 @@ def own_map(
             part = np.where(where[:, None], way, np.nan)
             line = ax.plot(part[:, 1], part[:, 0], color=color, linewidth=2.0, label=doubt)
             dot_lone(*line)
-    if current_mps is not None and np.isfinite(current_mps).any():
-        known = np.flatnonzero(np.isfinite(current_mps[:, 0]))
-        at = known[np.linspace(0, len(known) - 1, min(_ARROWS, len(known))).astype(int)]
-        _arrows(ax, way[at], current_mps[at] / KNOT_MPS, _LONGEST * max(np.ptp(way, axis=0)))
+    if current_mps is not None:
+        placed = np.isfinite(way).all(axis=1)
+        known = np.flatnonzero(placed & np.isfinite(current_mps).all(axis=1))
+        if len(known):
+            at = known[np.linspace(0, len(known) - 1, min(_ARROWS, len(known))).astype(int)]
+            across_km = np.ptp(way[placed], axis=0).max()
+            _arrows(ax, way[at], current_mps[at] / KNOT_MPS, _LONGEST * across_km)
     return name_lines(dress_map(ax))
 
 
@@ -119,7 +122,8 @@ def speed_over_time(
         (over_ground_mps, PALETTE[0], "over ground"),
         (through_water_mps, PALETTE[2], "through water"),
     ):
-        ax.plot(*_by_minute(time_s, values / KNOT_MPS), color=color, linewidth=1.2, label=name)
+        line = _by_minute(time_s, values / KNOT_MPS)
+        dot_lone(*ax.plot(*line, color=color, linewidth=1.2, label=name))
     return name_lines(_over_time(ax, "speed (kn)", at_least_0=True))
 
 
@@ -131,8 +135,8 @@ def course_over_time(
         (course_rad, PALETTE[0], "course over ground"),
         (heading_rad, PALETTE[1], "heading"),
     ):
-        line = through_north((time_s - time_s[0]) / 60.0, np.degrees(values) % 360.0)
-        ax.plot(*line, color=color, linewidth=1.2, label=name)
+        line = through_north(*_by_minute(time_s, np.degrees(values) % 360.0))
+        dot_lone(*ax.plot(*line, color=color, linewidth=1.2, label=name))
     ax.set_ylim(0.0, 360.0)
     ax.set_yticks([0, 90, 180, 270, 360])
     return name_lines(_over_time(ax, "course (°)"))
@@ -143,7 +147,8 @@ def drift_over_time(
 ) -> Axes:
     """Drift in knots over time, with the times of fixes marked below; returns `ax`."""
     drift_kn = np.hypot(current_mps[:, 0], current_mps[:, 1]) / KNOT_MPS
-    ax.plot(*_by_minute(time_s, drift_kn), color=PALETTE[2], linewidth=1.2, label="drift")
+    line = _by_minute(time_s, drift_kn)
+    dot_lone(*ax.plot(*line, color=PALETTE[2], linewidth=1.2, label="drift"))
     minutes = (fix_time_s - time_s[0]) / 60.0
     ax.plot(minutes, np.zeros(len(minutes)), "|", color=INK, markersize=4, label="fixes")
     return name_lines(_over_time(ax, "drift (kn)", at_least_0=True))

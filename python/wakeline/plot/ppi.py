@@ -14,7 +14,7 @@ from wakeline._engine.video import ScanImage
 from wakeline.recording import RadarVideo, Tracks
 
 from .map import ellipse_outline
-from .style import INK, MUTED, TEXT_PT, figure, plain
+from .style import INK, MUTED, TEXT_PT, dot_lone, figure, plain, with_gaps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -478,7 +478,8 @@ def _draw_layers(
     for k, track_id in enumerate(ids):
         color = TRACK_COLORS[k % len(TRACK_COLORS)]
         track = tracks.where(tracks.track_id == track_id)
-        ax.plot(track.east_m, track.north_m, color=color, linewidth=1.4, zorder=6)
+        _, east_m, north_m = with_gaps(track.time_s, track.east_m, track.north_m)
+        dot_lone(*ax.plot(east_m, north_m, color=color, linewidth=1.4, zorder=6))
         end = (track.east_m[-1], track.north_m[-1])
         ax.annotate(
             plain(track_id),
