@@ -139,8 +139,9 @@ def test_steady_are_the_scans_but_for_the_three_after_a_switch():
     assert metrics.steady_scans(TIME_S, SWITCHES_S, scans=0).all()
     assert not metrics.steady_scans(TIME_S, SWITCHES_S, scans=99)[5:].any()
     assert np.flatnonzero(~metrics.steady_scans(TIME_S, [57.0])).tolist() == [19]
-    with pytest.raises(ValueError, match="scans must not be negative, got -1"):
-        metrics.steady_scans(TIME_S, SWITCHES_S, scans=-1)
+    for scans in (-1, 2.5):
+        with pytest.raises(ValueError, match=f"scans must be a whole number.* got {scans}"):
+            metrics.steady_scans(TIME_S, SWITCHES_S, scans=scans)
 
 
 # ------------------------------------------------------------------ time of day
@@ -204,6 +205,11 @@ def test_a_model_at_rest_is_never_right():
     assert metrics.right_mode([[0.5, 0.5]], [[np.nan, np.nan]], [0.0]).tolist() == [False]
 
 
+def test_no_model_is_right_where_none_is_known_to_be_probable():
+    modes = np.array([[np.nan, np.nan], [np.nan, 1.0], [1.0, 0.0]])
+    assert metrics.right_mode(modes, [0.0, 0.1], np.zeros(3)).tolist() == [False, False, True]
+
+
 @pytest.mark.parametrize(
     ("modes", "rates", "truth", "message"),
     [
@@ -257,6 +263,12 @@ def test_scans_count_by_how_many_samples_they_have():
     curve, samples = [low, high, high + 1e-9, high + 1e-9, np.nan, 0.0], [50, 50, 50, 2, 50, 0]
     assert metrics.share_inside(curve, 2, samples) == pytest.approx(3 / 5)
     assert np.isnan(metrics.share_inside(curve, 2, 0))
+
+
+@pytest.mark.parametrize("samples", [[50, 50], 10.5, np.nan])
+def test_samples_that_are_no_counts_are_refused_by_name(samples):
+    with pytest.raises(ValueError, match=r"samples must be whole numbers of shape \(\) or \(3,\)"):
+        metrics.share_inside(np.ones(3), 2, samples)
 
 
 def test_confidences_that_make_no_sense():

@@ -99,8 +99,12 @@ def share_inside(
     ValueError
         When confidence or dof makes no sense or the shapes do not fit.
     """
-    curve = np.asarray(curve, dtype=float)
-    samples = np.broadcast_to(np.asarray(samples, dtype=int), curve.shape)
+    curve, samples = np.asarray(curve, dtype=float), np.asarray(samples)
+    if samples.shape not in ((), curve.shape) or not (samples == np.floor(samples)).all():
+        raise ValueError(
+            f"samples must be whole numbers of shape () or {curve.shape}, got {samples.tolist()}"
+        )
+    samples = np.broadcast_to(samples.astype(int), curve.shape)
     inside = np.zeros(curve.shape, dtype=bool)
     for count in np.unique(samples[samples > 0]).tolist():
         lower, upper = eval.consistency_bounds(confidence, dof, count)

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wakeline._checks import whole_number
+
 
 @dataclass(frozen=True)
 class SegmentFigures:
@@ -207,10 +209,9 @@ def steady_scans(time_s: np.ndarray, switch_times_s: np.ndarray, *, scans: int =
     Raises
     ------
     ValueError
-        When the times do not increase or `scans` is negative.
+        When the times do not increase or `scans` is negative or no whole number.
     """
-    if scans < 0:
-        raise ValueError(f"scans must not be negative, got {scans}")
+    whole_number("scans", scans, 0)
     time_s, _, switch_times_s = _checked(time_s, time_s, switch_times_s)
     steady = np.ones(len(time_s), dtype=bool)
     for part in _parts(time_s, switch_times_s)[1:]:

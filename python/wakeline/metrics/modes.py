@@ -24,7 +24,8 @@ def right_mode(
     Returns
     -------
     ndarray of bool (..., T)
-        Of models equally near each is right; of models equally probable the first counts.
+        Of models equally near each is right; of models equally probable the first counts. False
+        where a probability is NaN.
 
     Raises
     ------
@@ -47,4 +48,5 @@ def right_mode(
     distance = np.broadcast_to(np.where(np.isnan(distance), np.inf, distance), modes.shape)
     first = modes.argmax(axis=-1)[..., np.newaxis]
     chosen = np.take_along_axis(distance, first, axis=-1)[..., 0]
-    return np.isfinite(chosen) & (chosen <= distance.min(axis=-1) + _SAME_RATE_RAD_S)
+    told = ~np.isnan(modes).any(axis=-1) & np.isfinite(chosen)
+    return told & (chosen <= distance.min(axis=-1) + _SAME_RATE_RAD_S)
