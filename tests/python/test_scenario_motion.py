@@ -210,6 +210,16 @@ def test_under_a_disturbance_a_thrust_ends_when_it_has_taken_the_speed(rate, pus
 STOPPING = Truth([0.0, 10.0, 0.0, 0.0], [Segment(60.0), Segment(100.0, 0.0, -0.1), Segment(100.0)])
 
 
+@pytest.mark.parametrize("pieces_s", [[3.0], [1.0, 1.0, 1.0], [0.1] * 30])
+def test_a_vessel_that_brakes_to_a_stop_does_not_go_astern(pieces_s):
+    braking = [Segment(duration_s, 0.0, -0.1) for duration_s in pieces_s]
+    truth = Truth([0.0, 0.3, 0.0, 0.0], [*braking, Segment(10.0)])
+    state = truth.state_at([*np.cumsum(pieces_s), 5.0, 13.0])
+    assert state[:, 1].min() >= 0.0
+    np.testing.assert_array_equal(np.arctan2(state[:, 3], state[:, 1]), 0.0)
+    assert state[-1, 0] == pytest.approx(0.45)
+
+
 def test_a_vessel_that_brakes_to_a_stop_may_be_disturbed():
     time_s = np.linspace(0.0, 250.0, 51)
     for seed in range(30):

@@ -69,6 +69,8 @@ def test_steps_that_do_not_fit_are_refused(dt_s):
 def test_voyages_without_runs_are_refused():
     with pytest.raises(ValueError, match="runs must be a whole number, at least 1, got 0"):
         scenario.reckoning_voyage(10.0).read(runs=0)
+    with pytest.raises(ValueError, match="seed must be a whole number, at least 0, got -1"):
+        scenario.reckoning_voyage(10.0).read(runs=1, seed=-1)
 
 
 # What the study finds -----------------------------------------------------------------------------

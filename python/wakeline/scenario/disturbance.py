@@ -24,7 +24,9 @@ def disturbed(
     stays exact in closed form: scale times Student's t, per axis, drawn again where it exceeds the
     limit. One degree of freedom is the Cauchy law of paper A, equation (4), which has no variance
     and, untruncated, now and then throws a vessel to the moon. An order that brakes ends when the
-    vessel has lost its speed: it then drifts, and does not go astern.
+    vessel has lost its speed: it then drifts, and does not go astern. The helm answers to drift: in
+    each interval the thrust points along the velocity that it begins with, which a known
+    acceleration turns, too.
 
     Parameters
     ----------

@@ -306,9 +306,8 @@ class Truth:
             if end_mps < least_mps:
                 if not any(segment.disturbance_mps2):
                     raise ValueError(f"segment {leg - 1} brings the speed below zero")
-                braking_mps2 = -segment.acceleration_mps2
-                self._thrust_ends_s[leg] = max(self._speed_mps[leg], 0.0) / braking_mps2
-                end_mps = 0.0
+                self._thrust_ends_s[leg] = self._speed_mps[leg] / -segment.acceleration_mps2
+            end_mps = max(end_mps, 0.0)
             end_m, velocity_mps = self._motion(np.array([leg]), np.array([segment.duration_s]))
             end_rad = self._course_rad[leg] + segment.turn_rate_rad_s * segment.duration_s
             if segment.push_mps2 and velocity_mps[0]:
@@ -339,7 +338,7 @@ class Truth:
         place_m = self._place_m[leg] + since_s * (
             share * middle * (ahead + 1j * aside) + pushed_mps * pushed
         )
-        speed_mps = self._speed_mps[leg] + 2.0 * half_gain_mps
+        speed_mps = np.maximum(self._speed_mps[leg] + 2.0 * half_gain_mps, 0.0)
         return place_m, middle * swing * speed_mps + pushed_mps * swing * shrink
 
 

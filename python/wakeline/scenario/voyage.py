@@ -62,6 +62,7 @@ class Voyage:
             The first runs of a seed are the same, however many there are.
         """
         whole_number("runs", runs, least=1)
+        whole_number("seed", seed, least=0)
         noise = np.empty((4, runs, len(self.time_s)))
         for run in range(runs):
             rng = np.random.default_rng([seed, run])
