@@ -151,6 +151,26 @@ TYPED_TEST(EverySmoother, RefusesReadingsWhosePowersHaveNoRoomAndTakesThoseBelow
   }
 }
 
+TYPED_TEST(EverySmoother, StaysFiniteWhateverItTakes) {
+  using Scalar = typename TypeParam::Scalar;
+  constexpr bool kDouble = sizeof(Scalar) > 4;
+  const Scalar far[] = {Scalar(kDouble ? 1e74L : 1e8L), Scalar(kDouble ? -1e30L : -1e6L)};
+  const Scalar step_s[] = {Scalar(1e-6), Scalar(1e-3), Scalar(0), Scalar(1e6),
+                           std::numeric_limits<Scalar>::max() / 4};
+  Draw draw(9);
+  for (int run = 0; run < 200; ++run) {
+    typename TypeParam::OnLine smoother;
+    for (int k = 0; k < 20; ++k) {
+      const bool is_far = draw.uniform(0, 1) < 0.15, is_odd = draw.uniform(0, 1) < 0.4;
+      const Scalar reading = is_far ? far[int(draw.uniform(0, 2))] : Scalar(9 * draw.normal());
+      const Scalar dt_s = is_odd ? step_s[int(draw.uniform(0, 5))] : Scalar(draw.uniform(0.01, 9));
+      (void)smoother.update(dt_s, reading);
+      ASSERT_TRUE(std::isfinite(smoother.value())) << "run " << run << ", reading " << k;
+      ASSERT_TRUE(std::isfinite(smoother.rate())) << "run " << run << ", reading " << k;
+    }
+  }
+}
+
 TYPED_TEST(EverySmoother, NeedsNoHeapAndStaysFiniteWhenTimeStands) {
   using Scalar = typename TypeParam::Scalar;
   typename TypeParam::OnAngles smoother;

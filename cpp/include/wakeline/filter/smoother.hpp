@@ -64,14 +64,15 @@ concept Smoother = requires(T smoother, const T& view, typename T::Scalar x, Arc
 };
 
 /// `kOk` when a reading can be taken `dt_s` after the one before; the first one at any time. Beyond
-/// 1e75 (`float`: 1e9), times a step below a second, it counts as not finite: its fourth power, or
-/// that of a rate to it, would have no room in a number.
+/// 1e75 (`float`: 1e9), times a step below a second, it counts as not finite, and so does a step of
+/// as many seconds: its fourth power, or that of a rate to it, would have no room in a number.
 template <class Scalar>
 Status check_reading(bool first, Scalar dt_s, Scalar reading) noexcept {
   constexpr Scalar kLargest = sizeof(Scalar) > 4 ? Scalar(1e75L) : Scalar(1e9L);
   const Scalar within_s = !first && dt_s > Scalar(0) ? std::min(dt_s, Scalar(1)) : Scalar(1);
   if (!(std::abs(reading) <= kLargest * within_s)) return Status::kNotFinite;
-  return first ? Status::kOk : check_time_step(dt_s);
+  if (first) return Status::kOk;
+  return dt_s > kLargest ? Status::kNotFinite : check_time_step(dt_s);
 }
 
 /// The last readings, oldest first, each as an offset from the newest, so that an angle among them
@@ -84,12 +85,14 @@ class ReadingWindow {
   Status add(Scalar dt_s, Scalar reading) noexcept {
     if (const Status status = check_reading(size_ == 0, dt_s, reading); status != Status::kOk)
       return status;
+    const Scalar rise = size_ > 0 ? Residual::difference(reading, newest_) : Scalar(0);
+    if (const Status status = check_reading(size_ == 0, dt_s, rise / 2); status != Status::kOk)
+      return status;
     if (size_ == Capacity) {
       std::move(offset_.begin() + 1, offset_.end(), offset_.begin());
       std::move(gap_s_.begin() + 1, gap_s_.end(), gap_s_.begin());
       --size_;
     }
-    const Scalar rise = size_ > 0 ? Residual::difference(reading, newest_) : Scalar(0);
     for (int k = 0; k < size_; ++k) offset_[std::size_t(k)] -= rise;
     offset_[std::size_t(size_)] = Scalar(0);
     gap_s_[std::size_t(size_)] = size_ > 0 ? dt_s : Scalar(0);
@@ -176,13 +179,15 @@ struct AdaptiveGains {
     slope_squared += slope * slope;
   }
 
-  /// alpha = sum(dx e) / sum(e²); `otherwise` where nothing has erred.
+  /// alpha = sum(dx e) / sum(e²); `otherwise` where nothing has erred, or more than numbers hold.
   [[nodiscard]] Scalar alpha(Scalar otherwise) const noexcept {
-    return innovation_squared > Scalar(0) ? correction_innovation / innovation_squared : otherwise;
+    const Scalar ratio = correction_innovation / innovation_squared;
+    return std::isfinite(ratio) ? ratio : otherwise;
   }
   /// beta = sum(dv e/t) / sum((e/t)²).
   [[nodiscard]] Scalar beta(Scalar otherwise) const noexcept {
-    return slope_squared > Scalar(0) ? change_slope / slope_squared : otherwise;
+    const Scalar ratio = change_slope / slope_squared;
+    return std::isfinite(ratio) ? ratio : otherwise;
   }
 };
 

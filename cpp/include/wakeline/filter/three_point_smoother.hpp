@@ -155,7 +155,9 @@ class ThreePointSmoother {
       return Scalar(0);
     const Scalar p_before = (uy * ww - wy * uw) / determinant;
     const Scalar p_after = (wy * uu - uy * uw) / determinant;
-    return p_before * last.before / last.before_s + p_after * last.after / last.after_s;
+    const Scalar correction =
+        p_before * last.before / last.before_s + p_after * last.after / last.after_s;
+    return std::isfinite(correction) ? correction : Scalar(0);
   }
 
   ThreePointSettings settings_;
