@@ -3,15 +3,29 @@
 #include "wakeline/association/assign_dense.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "types.hpp"
+#include "wakeline/core/require.hpp"
 
 namespace wakeline::python {
 namespace {
 
-using IntArray = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+/// Throws ValueError on numbers that are not whole.
+void require_whole(const char* name, const DoubleArray& numbers) {
+  for (py::ssize_t k = 0; k < numbers.size(); ++k)
+    require(std::floor(numbers.data()[k]) == numbers.data()[k], name, "whole numbers",
+            numbers.data()[k]);
+}
+
+/// Throws ValueError unless a cost is a number or forbids its pair.
+void require_cost(const char* name, double cost) {
+  require(cost > -std::numeric_limits<double>::infinity(), name,
+          "numbers, or inf where a pair is forbidden", cost);
+}
 
 /// The pairs (row, column) of the rows that have a column.
 py::array_t<std::int64_t> pairs_of(std::span<const int> column_of_row, int count) {
@@ -29,9 +43,7 @@ py::array_t<std::int64_t> pairs_of(std::span<const int> column_of_row, int count
 py::array_t<std::int64_t> assign(const DoubleArray& cost) {
   require_shape(cost.ndim() == 2, "cost", "(rows, columns)", cost);
   const Eigen::MatrixXd matrix = to_matrix("cost", cost, cost.shape(0), cost.shape(1));
-  for (const double element : matrix.reshaped())
-    if (std::isnan(element))
-      throw py::value_error("cost must not hold NaN; forbid a pair with inf");
+  for (const double element : matrix.reshaped()) require_cost("cost", element);
   const std::vector<int> columns = matrix.size() > 0 ? assign_dense(matrix) : std::vector<int>{};
   const auto pairs = static_cast<int>(columns.size()) -
                      static_cast<int>(std::count(columns.begin(), columns.end(), kUnassigned));
@@ -39,32 +51,35 @@ py::array_t<std::int64_t> assign(const DoubleArray& cost) {
 }
 
 /// Fills candidates from compressed rows; throws where these are none.
-Candidates<double> to_candidates(const IntArray& indptr, const IntArray& indices,
+Candidates<double> to_candidates(const DoubleArray& indptr, const DoubleArray& indices,
                                  const DoubleArray& data, const DoubleArray& unassigned_cost,
                                  int columns) {
   const py::ssize_t rows = indptr.shape(0) - 1;
   Candidates<double> candidates(static_cast<int>(rows), static_cast<int>(data.shape(0)));
   candidates.clear(columns);
-  const std::int64_t* start = indptr.data();
-  if (start[0] != 0 || start[rows] != data.shape(0) || !std::is_sorted(start, start + rows + 1))
+  require_whole("indptr", indptr);
+  require_whole("indices", indices);
+  const double* start = indptr.data();
+  if (start[0] != 0.0 || start[rows] != static_cast<double>(data.shape(0)) ||
+      !std::is_sorted(start, start + rows + 1))
     throw py::value_error("indptr must rise from 0 to the number of costs");
   for (py::ssize_t row = 0; row < rows; ++row) {
     const double out = unassigned_cost.data()[unassigned_cost.ndim() == 0 ? 0 : row];
-    if (!candidates.start_row(out)) throw py::value_error("unassigned_cost must be finite");
-    for (std::int64_t k = start[row]; k < start[row + 1]; ++k) {
+    require_finite("unassigned_cost", out);
+    candidates.start_row(out);
+    for (auto k = static_cast<py::ssize_t>(start[row]);
+         k < static_cast<py::ssize_t>(start[row + 1]); ++k) {
       const double cost = data.data()[k];
-      if (std::isnan(cost))
-        throw py::value_error("data must not hold NaN; forbid a pair with inf or leave it out");
-      const std::int64_t column = indices.data()[k];
-      if (column < 0 || column >= columns)
-        throw py::value_error("indices must be 0 to columns - 1, got " + std::to_string(column));
+      require_cost("data", cost);
+      const double column = indices.data()[k];
+      require(column >= 0.0 && column < columns, "indices", "0 to columns - 1", column);
       if (std::isfinite(cost)) candidates.add(static_cast<int>(column), cost);
     }
   }
   return candidates;
 }
 
-py::array_t<std::int64_t> assign_sparse(const IntArray& indptr, const IntArray& indices,
+py::array_t<std::int64_t> assign_sparse(const DoubleArray& indptr, const DoubleArray& indices,
                                         const DoubleArray& data, const DoubleArray& unassigned_cost,
                                         int columns) {
   require_shape(indptr.ndim() == 1 && indptr.shape(0) > 0, "indptr", "(rows + 1,)", indptr);

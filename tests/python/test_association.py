@@ -66,9 +66,12 @@ def test_the_greedy_choice_is_not_the_best():
     np.testing.assert_array_equal(assign([[1.0, 2.0], [2.0, 100.0]]), [[0, 1], [1, 0]])
 
 
-def test_nan_is_an_error():
-    with pytest.raises(ValueError, match="NaN"):
-        assign([[1.0, np.nan]])
+@pytest.mark.parametrize("cost", [np.nan, -np.inf])
+def test_what_neither_costs_nor_forbids_is_an_error(cost):
+    with pytest.raises(ValueError, match=f"cost must be numbers.* got {cost}"):
+        assign([[1.0, cost]])
+    with pytest.raises(ValueError, match=f"data must be numbers.* got {cost}"):
+        assign_sparse([0, 1], [0], [cost], unassigned_cost=1.0, columns=1)
 
 
 @pytest.mark.parametrize("shape", [(3,), (2, 2, 2), ()])
@@ -111,8 +114,7 @@ def test_each_row_has_its_own_way_out():
         ({"indices": [0, 2]}, "indices .* got 2"),
         ({"indices": [0, -1]}, "indices .* got -1"),
         ({"indices": [0]}, "indices"),
-        ({"data": [0.0, np.nan]}, "NaN"),
-        ({"unassigned_cost": np.inf}, "unassigned_cost"),
+        ({"unassigned_cost": np.inf}, "unassigned_cost must be finite, got inf"),
         ({"unassigned_cost": [1.0]}, "unassigned_cost"),
         ({"columns": -1}, "columns"),
     ],
@@ -128,3 +130,24 @@ def test_what_is_no_sparse_matrix_is_refused(change, words):
     assert assign_sparse(**good).tolist() == [[0, 0], [1, 1]]
     with pytest.raises(ValueError, match=words):
         assign_sparse(**good | change)
+
+
+@pytest.mark.parametrize("name", ["indptr", "indices"])
+@pytest.mark.parametrize(
+    ("wrong", "error", "words"),
+    [
+        (0.9, ValueError, "got 0.9"),
+        (np.nan, ValueError, "got nan"),
+        (1j, TypeError, "real numbers"),
+    ],
+)
+def test_places_that_are_no_whole_numbers_are_refused(name, wrong, error, words):
+    places = {"indptr": [0, 1, 2], "indices": [0, 1]}
+    places[name][1] = wrong
+    with pytest.raises(error, match=words):
+        assign_sparse(**places, data=[1.0, 2.0], unassigned_cost=3.0, columns=2)
+
+
+def test_a_sparse_matrix_may_be_empty():
+    nothing = assign_sparse([0], [], [], unassigned_cost=1.0, columns=3)
+    assert nothing.shape == (0, 2)
