@@ -17,6 +17,15 @@ PyGaussian make_gaussian(const DoubleArray& mean, const DoubleArray& covariance)
   return belief;
 }
 
+/// A number for one angle, an array for several.
+py::object wrapped(const DoubleArray& angle_rad) {
+  if (angle_rad.ndim() == 0) return py::float_(wrap_angle(*angle_rad.data()));
+  py::array_t<double> result(shape_of(angle_rad));
+  for (py::ssize_t k = 0; k < angle_rad.size(); ++k)
+    result.mutable_data()[k] = wrap_angle(angle_rad.data()[k]);
+  return result;
+}
+
 }  // namespace
 
 void define_core(py::module_& parent) {
@@ -78,13 +87,14 @@ ValueError
       .def(py::pickle([](const PyStep& s) { return fields_of(s); },
                       [](const py::tuple& fields) { return step_of(fields); }));
 
-  m.def("wrap_angle", py::vectorize([](double angle_rad) { return wrap_angle(angle_rad); }),
-        py::arg("angle_rad"), "The same angle in [-pi, pi], rad.");
+  m.def("wrap_angle", &wrapped, py::arg("angle_rad"),
+        "The same angle in [-pi, pi], rad; of an array each.");
   m.def("chi_square_quantile", &chi_square_quantile, py::arg("probability"), py::arg("dof"),
         "The value that a chi-square variable of `dof` degrees of freedom stays below with "
-        "`probability`.");
+        "`probability`; NaN where there is none.");
   m.def("chi_square_probability", &chi_square_probability, py::arg("value"), py::arg("dof"),
-        "Probability that a chi-square variable of `dof` degrees of freedom stays below `value`.");
+        "Probability that a chi-square variable of `dof` degrees of freedom stays below `value`; "
+        "NaN where there is no such law.");
 }
 
 }  // namespace wakeline::python

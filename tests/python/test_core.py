@@ -85,6 +85,16 @@ def test_angles_wrap_by_element():
     )
 
 
+def test_an_angle_that_is_masked_is_none_and_times_are_no_angles():
+    wrapped = wl.wrap_angle(np.ma.array([7.0, 7.0], mask=[True, False]))
+    np.testing.assert_allclose(wrapped, [np.nan, 7.0 - 2 * np.pi])
+    with pytest.raises(TypeError, match="real numbers"):
+        wl.wrap_angle(np.array(["2026-01-01"], dtype="M8[D]"))
+    assert type(wl.wrap_angle(7)) is float
+    assert wl.wrap_angle(np.zeros((2, 0))).shape == (2, 0)
+    np.testing.assert_array_equal(wl.wrap_angle(np.arange(6.0)[::-2]), [5 - 2 * np.pi, 3.0, 1.0])
+
+
 # Abramowitz and Stegun, table 26.8 (upper tail probabilities).
 @pytest.mark.parametrize(
     ("probability", "dof", "value"),

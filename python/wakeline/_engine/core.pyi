@@ -93,15 +93,15 @@ class Step:
 
 def chi_square_probability(value: float, dof: float) -> float:
     """
-    Probability that a chi-square variable of `dof` degrees of freedom stays below `value`.
+    Probability that a chi-square variable of `dof` degrees of freedom stays below `value`; NaN where there is no such law.
     """
 
 def chi_square_quantile(probability: float, dof: float) -> float:
     """
-    The value that a chi-square variable of `dof` degrees of freedom stays below with `probability`.
+    The value that a chi-square variable of `dof` degrees of freedom stays below with `probability`; NaN where there is none.
     """
 
 def wrap_angle(angle_rad: ArrayLike) -> NDArray[np.float64]:
     """
-    The same angle in [-pi, pi], rad.
+    The same angle in [-pi, pi], rad; of an array each.
     """
