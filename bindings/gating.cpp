@@ -14,7 +14,12 @@
 namespace wakeline::python {
 namespace {
 
-using AnyStrobe = std::variant<RadiusGate, CovarianceStrobe, RangeBearingWindow>;
+/// Knows the gate that it was made with.
+struct PyCovarianceStrobe : CovarianceStrobe {
+  ChiSquareGate gate;
+};
+
+using AnyStrobe = std::variant<RadiusGate, PyCovarianceStrobe, RangeBearingWindow>;
 
 Vec<double, 2> to_position(const char* name, const DoubleArray& position) {
   return to_vector(name, position, 2);
@@ -121,8 +126,8 @@ void define_strobes(py::module_& m) {
       });
   define_contains(circle);
 
-  py::class_<CovarianceStrobe> ellipse(m, "CovarianceStrobe",
-                                       R"(The gate of an estimator about the predicted position.
+  py::class_<PyCovarianceStrobe> ellipse(m, "CovarianceStrobe",
+                                         R"(The gate of an estimator about the predicted position.
 
 Parameters
 ----------
@@ -135,19 +140,30 @@ Raises
 ------
 ValueError
     When the covariance is not symmetric positive definite.)");
+  define_copies(ellipse);
   ellipse
       .def(py::init([](const DoubleArray& covariance, const ChiSquareGate& gate) {
-             const CovarianceStrobe strobe{to_matrix("innovation_covariance_m2", covariance, 2, 2),
-                                           gate.threshold(2)};
+             const PyCovarianceStrobe strobe{
+                 {to_matrix("innovation_covariance_m2", covariance, 2, 2), gate.threshold(2)},
+                 gate};
              strobe.validate();
              return strobe;
            }),
-           py::arg("innovation_covariance_m2"), py::arg("gate") = ChiSquareGate{})
+           py::arg("innovation_covariance_m2"),
+           py::arg_v("gate", ChiSquareGate{}, "ChiSquareGate()"))
       .def_property_readonly(
           "innovation_covariance_m2",
-          [](const CovarianceStrobe& s) { return to_array(s.innovation_covariance_m2); }, "(2, 2)")
-      .def_readonly("threshold", &CovarianceStrobe::threshold,
-                    "largest normalised innovation squared inside");
+          [](const PyCovarianceStrobe& s) { return to_array(s.innovation_covariance_m2); },
+          "(2, 2)")
+      .def_property_readonly(
+          "threshold", [](const PyCovarianceStrobe& s) { return s.threshold; },
+          "largest normalised innovation squared inside")
+      .def("__repr__", [](const PyCovarianceStrobe& s) {
+        return CallText("CovarianceStrobe")
+            .with("innovation_covariance_m2", s.innovation_covariance_m2)
+            .with("gate", s.gate)
+            .text();
+      });
   define_contains(ellipse);
 
   py::class_<RangeBearingWindow> window(
@@ -265,7 +281,8 @@ void define_gating(py::module_& parent) {
            py::kw_only(), py::arg("probability") = ChiSquareGate{}.probability)
       .def_readonly("probability", &ChiSquareGate::probability)
       .def("threshold", &ChiSquareGate::threshold, py::arg("dof"),
-           "Largest normalised innovation squared inside, for `dof` measured quantities.")
+           "Largest normalised innovation squared inside, for `dof` measured quantities, at least "
+           "1; else NaN.")
       .def("__repr__", [](const ChiSquareGate& gate) {
         return CallText("ChiSquareGate").with("probability", gate.probability).text();
       });

@@ -155,6 +155,7 @@ def test_a_tracker_goes_on_bit_for_bit(estimator):
         wl.ChiSquareGate(probability=0.9),
         wl.RadiusGate(radius_m=300.0),
         wl.gating.RangeBearingWindow(range_half_m=40.0),
+        wl.CovarianceStrobe([[90.0, 1 / 3], [1 / 3, 7.0]], wl.ChiSquareGate(probability=0.7)),
         wl.navigation.LocalPlane(0.8, -0.1),
         wl.Radar(period_s=3.0),
         wl.TrackerConfig(confirm_hits=4),

@@ -27,7 +27,7 @@ class ChiSquareGate:
     def __init__(self, *, probability: float = 0.99) -> None: ...
     def threshold(self, dof: int) -> float:
         """
-        Largest normalised innovation squared inside, for `dof` measured quantities.
+        Largest normalised innovation squared inside, for `dof` measured quantities, at least 1; else NaN.
         """
     @property
     def probability(self) -> float: ...
@@ -62,6 +62,8 @@ class CovarianceStrobe:
     ValueError
         When the covariance is not symmetric positive definite.
     """
+    def __copy__(self) -> CovarianceStrobe: ...
+    def __deepcopy__(self, memo: dict) -> CovarianceStrobe: ...
     def __init__(self, innovation_covariance_m2: ArrayLike, gate: ChiSquareGate = ...) -> None: ...
     def contains(self, predicted_m: ArrayLike, plot_m: ArrayLike) -> bool:
         """
