@@ -116,7 +116,8 @@ ahead_s : float
 Returns
 -------
 (value, rate, forecast)
-    Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.)";
+    Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
+    time. NaN before the first reading.)";
 
 /// What all smoothers offer.
 template <class E>

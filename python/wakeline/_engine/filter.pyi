@@ -808,7 +808,8 @@ class ExponentialSmoother:
         Returns
         -------
         (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
+            time. NaN before the first reading.
         """
     def save(self) -> bytes:
         """
@@ -872,7 +873,8 @@ class AdaptiveExponentialSmoother:
         Returns
         -------
         (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
+            time. NaN before the first reading.
         """
     def save(self) -> bytes:
         """
@@ -938,7 +940,8 @@ class PrintedAdaptiveExponential:
         Returns
         -------
         (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
+            time. NaN before the first reading.
         """
     def save(self) -> bytes:
         """
@@ -1024,7 +1027,8 @@ class ThreePointSmoother:
         Returns
         -------
         (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
+            time. NaN before the first reading.
         """
     def save(self) -> bytes:
         """
@@ -1128,7 +1132,8 @@ class AlphaBetaSmoother:
         Returns
         -------
         (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
+            time. NaN before the first reading.
         """
     def save(self) -> bytes:
         """
@@ -1190,7 +1195,8 @@ class AdaptiveAlphaBeta:
         Returns
         -------
         (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
+            time. NaN before the first reading.
         """
     def save(self) -> bytes:
         """
@@ -1259,7 +1265,8 @@ class PrintedAdaptiveAlphaBeta:
         Returns
         -------
         (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
+            time. NaN before the first reading.
         """
     def save(self) -> bytes:
         """
@@ -1341,7 +1348,8 @@ class WindowBank:
         Returns
         -------
         (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later. NaN before the first reading.
+            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
+            time. NaN before the first reading.
         """
     def save(self) -> bytes:
         """
