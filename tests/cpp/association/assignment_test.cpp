@@ -446,6 +446,7 @@ TEST(AssignDense, TakesTheLargestNumbers) {
 
 TEST(AssignDense, TreatsEqualCostsAndForbiddenRows) {
   EXPECT_EQ(assign_dense(Eigen::MatrixXd::Constant(3, 3, 7.0)).size(), 3u);
+  EXPECT_EQ(assign_dense((Eigen::Matrix2i() << 9, 1, 1, 9).finished()), (std::vector{1, 0}));
   const auto forbidden = assign_dense(Eigen::MatrixXd::Constant(2, 3, kInfinity));
   EXPECT_EQ(forbidden, (std::vector<int>{kUnassigned, kUnassigned}));
   DenseAssignment<double> small(2, 2);

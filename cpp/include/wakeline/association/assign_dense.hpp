@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "wakeline/association/candidates.hpp"
@@ -23,6 +24,8 @@ namespace wakeline {
 /// rows x columns.
 template <class Scalar = double>
 class DenseAssignment {
+  static_assert(std::is_floating_point_v<Scalar>, "wakeline: costs are float or double");
+
  public:
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
@@ -84,11 +87,13 @@ class DenseAssignment {
 };
 
 /// The column of each row, or `kUnassigned`, by `DenseAssignment` with memory taken for this call.
+/// Whole numbers are taken as `double`.
 template <class Derived>
 [[nodiscard]] std::vector<int> assign_dense(const Eigen::MatrixBase<Derived>& cost) {
-  using Scalar = typename Derived::Scalar;
+  using Given = typename Derived::Scalar;
+  using Scalar = std::conditional_t<std::is_integral_v<Given>, double, Given>;
   DenseAssignment<Scalar> assignment(static_cast<int>(cost.rows()), static_cast<int>(cost.cols()));
-  const typename DenseAssignment<Scalar>::Matrix matrix = cost;
+  const typename DenseAssignment<Scalar>::Matrix matrix = cost.template cast<Scalar>();
   if (!assignment.solve(matrix)) return {};
   const auto columns = assignment.column_of_row();
   return {columns.begin(), columns.end()};
