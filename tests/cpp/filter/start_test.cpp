@@ -50,6 +50,16 @@ TEST(TwoPoint, ErrorsAreThoseItClaims) {
   EXPECT_LT(test::covariance_difference(scatter, claimed), 5 * std::sqrt(2.0 / kRuns));
 }
 
+TEST(Starts, TakeNumbersOfAnyKindForSpeedsAndSteps) {
+  const RangeBearing radar;
+  const Vec<double, 2> z(3000, 0.3);
+  EXPECT_EQ(one_point(radar, z, 5).covariance(1, 1), 25.0);
+  EXPECT_EQ(one_point(radar, z.cast<float>().eval(), 5.0).covariance(1, 1), 25.0F);
+  const Gaussian<2> fix = radar.position(z);
+  EXPECT_TRUE(
+      matrices_identical(two_point(fix, fix, 3).covariance, two_point(radar, z, z, 3).covariance));
+}
+
 TEST(TwoPoint, IsTheFormulaOfTwoFixes) {
   Draw draw(22);
   const Gaussian<2> first{draw.normals<2>(), draw.definite<2>()},

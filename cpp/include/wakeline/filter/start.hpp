@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <type_traits>
+
 #include "wakeline/measurement/concept.hpp"
 #include "wakeline/motion/concept.hpp"
 
@@ -30,7 +32,7 @@ Gaussian<4, Scalar> kinematics_from(const Gaussian<2, Scalar>& position,
 /// `speed_std_mps` per axis.
 template <PositionSensor Sensor, class Scalar>
 Gaussian<4, Scalar> one_point(const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z,
-                              Scalar speed_std_mps) noexcept {
+                              std::type_identity_t<Scalar> speed_std_mps) noexcept {
   const Gaussian<2, Scalar> velocity{Vec<Scalar, 2>::Zero(),
                                      speed_std_mps * speed_std_mps * Mat<Scalar, 2, 2>::Identity()};
   return kinematics_from<Scalar>(sensor.position(z), velocity, Mat<Scalar, 2, 2>::Zero());
@@ -41,7 +43,7 @@ Gaussian<4, Scalar> one_point(const Sensor& sensor, const Vec<Scalar, Sensor::kM
 /// Kirubarajan, 5.5.3.
 template <class Scalar>
 Gaussian<4, Scalar> two_point(const Gaussian<2, Scalar>& first, const Gaussian<2, Scalar>& second,
-                              Scalar dt_s) noexcept {
+                              std::type_identity_t<Scalar> dt_s) noexcept {
   const Gaussian<2, Scalar> velocity{(second.mean - first.mean) / dt_s,
                                      (first.covariance + second.covariance) / (dt_s * dt_s)};
   return kinematics_from<Scalar>(second, velocity, second.covariance / dt_s);
