@@ -542,6 +542,12 @@ TEST(WindowBank, OfOneWindowIsItsLine) {
     }
     last = reading;
   }
+  WindowBank<Linear, 2> small, same({.max_readings = 2});
+  for (const double reading : {1.0, 3.0, 4.0}) {
+    ASSERT_EQ(small.update(1.0, reading), Status::kOk);
+    ASSERT_EQ(same.update(1.0, reading), Status::kOk);
+    EXPECT_EQ(small.forecast(1.0), same.forecast(1.0));
+  }
   EXPECT_THROW((WindowBank<>({.max_readings = 1})), std::invalid_argument);
   EXPECT_THROW((WindowBank<>({.max_readings = 33})), std::invalid_argument);
   EXPECT_THROW((WindowBank<>({.memory = 1.1})), std::invalid_argument);

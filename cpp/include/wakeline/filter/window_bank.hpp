@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -29,8 +30,11 @@ class WindowBank {
   static_assert(Capacity >= 2, "wakeline: a line needs two readings");
   using Scalar = ScalarType;
 
-  /// Throws `std::invalid_argument` when a setting makes no sense.
-  explicit WindowBank(const WindowBankSettings& settings = {}) : settings_(settings) {
+  /// Throws `std::invalid_argument` when a setting makes no sense. By default windows are no longer
+  /// than there is room for.
+  explicit WindowBank(const WindowBankSettings& settings =
+                          {.max_readings = std::min(WindowBankSettings{}.max_readings, Capacity)})
+      : settings_(settings) {
     require(settings.max_readings >= 2 && settings.max_readings <= Capacity, "max_readings",
             ("2 to " + std::to_string(Capacity)).c_str(), settings.max_readings);
     require(settings.memory >= 0.0 && settings.memory <= 1.0, "memory", "from 0 to 1",
