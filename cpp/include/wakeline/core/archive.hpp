@@ -35,6 +35,16 @@ class Archive {
   template <class T>
   requires(std::is_trivially_copyable_v<T>) void operator()(T& value) { raw(&value, sizeof(T)); }
 
+  /// A truth; a byte that is none fails.
+  void operator()(bool& value) {
+    auto byte = static_cast<std::uint8_t>(value);
+    raw(&byte, 1);
+    if (byte > 1)
+      ok_ = false;
+    else
+      value = byte != 0;
+  }
+
   /// An Eigen vector or matrix, of fixed size or of the size it has.
   template <class Scalar, int Rows, int Cols, int Options, int MaxRows, int MaxCols>
   void operator()(Eigen::Matrix<Scalar, Rows, Cols, Options, MaxRows, MaxCols>& matrix) {
