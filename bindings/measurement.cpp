@@ -205,7 +205,8 @@ void define_measurement(py::module_& parent) {
 
   m.def("conversion_bias_ratio", py::vectorize(&conversion_bias_ratio), py::arg("range_m"),
         py::arg("range_std_m"), py::arg("bearing_std_rad"),
-        "r sb² / sr: how large the bias of the plain polar conversion is beside the range error.");
+        "r sb² / sr: twice the bias of the plain polar conversion, r sb² / 2, over the range "
+        "error.");
   m.def("conversion_bias_matters", py::vectorize(&conversion_bias_matters), py::arg("range_m"),
         py::arg("range_std_m"), py::arg("bearing_std_rad"),
         "True when the plain polar conversion is biased enough to matter: ratio above 0.4.");

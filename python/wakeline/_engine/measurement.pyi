@@ -255,5 +255,5 @@ def conversion_bias_ratio(
     range_m: ArrayLike, range_std_m: ArrayLike, bearing_std_rad: ArrayLike
 ) -> NDArray[np.float64]:
     """
-    r sb² / sr: how large the bias of the plain polar conversion is beside the range error.
+    r sb² / sr: twice the bias of the plain polar conversion, r sb² / 2, over the range error.
     """

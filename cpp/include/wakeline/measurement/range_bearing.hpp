@@ -23,7 +23,8 @@ struct RangeBearing {
   double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
   OwnShip own = {};
 
-  /// z and R = diag(sr² + se², sb² + (se / r)²).
+  /// z and R = diag(sr² + se², sb² + (se / r)²), the error of own ship's position in se, that of
+  /// her heading in sb.
   template <class Scalar>
   Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
     const PolarErrors e = errors();
