@@ -81,6 +81,9 @@ ESTIMATORS = {
     "likely": wl.LikelyModelSetImm(wl.Ekf(turning(0.0))),
     "mode_history": wl.ModeHistory(wl.Ekf(turning(0.0)), max_branches=100),
     "mode_history_rates": wl.ModeHistory(wl.Ekf(wl.CoordinatedTurnRate(noise=NOISE))),
+    "fuzzy": wl.FuzzyAlphaBeta(),
+    "fuzzy_of_six": wl.FuzzyAlphaBeta(max_plots=6, hold=False),
+    "bayesian": wl.BayesianAlphaBeta(),
     "imm_of_many_kinds": imm(
         wl.Ekf(wl.WanderingCourse()),
         wl.SquareRootUkf(wl.CoordinatedTurnRate(noise=NOISE)),
@@ -104,6 +107,7 @@ ESTIMATORS = {
     },
 }
 UNSCENTED_TURNS = [name for name in ESTIMATORS if name.endswith("ukf")]  # of either kind
+LINES = ["fuzzy", "bayesian"]
 DOPPLER_ESTIMATORS = [
     "ekf_cv",
     "ekf_ct",
@@ -116,6 +120,7 @@ DOPPLER_ESTIMATORS = [
     "imm2",
     "imm5",
     "imm_mixed",
+    *LINES,
 ]
 
 
@@ -216,7 +221,7 @@ def test_without_lanes_for_its_sensor_an_estimator_runs_one_by_one():
         np.testing.assert_array_equal(many.mean[4], one.mean)
 
 
-@pytest.mark.parametrize("name", ["imm3", "imm_of_many_kinds", *UNSCENTED_TURNS])
+@pytest.mark.parametrize("name", ["imm3", "imm_of_many_kinds", *UNSCENTED_TURNS, *LINES])
 def test_each_run_has_its_own_start(name):
     z = recordings()
     starts = [
@@ -228,7 +233,7 @@ def test_each_run_has_its_own_start(name):
         assert_near(many, run(ESTIMATORS[name], z[k], begin=starts[k]), k)
 
 
-@pytest.mark.parametrize("name", ["imm3", "imm_of_many_kinds", *UNSCENTED_TURNS])
+@pytest.mark.parametrize("name", ["imm3", "imm_of_many_kinds", *UNSCENTED_TURNS, *LINES])
 def test_plots_as_thin_as_a_line_are_taken_in_lanes(name):
     """Their covariances are all but singular, which magnifies rounding."""
     z = recordings()[:, :20]
@@ -237,7 +242,7 @@ def test_plots_as_thin_as_a_line_are_taken_in_lanes(name):
         assert_near(many, run(ESTIMATORS[name], z[k], THIN), k, relative=1e-6)
 
 
-@pytest.mark.parametrize("name", ["imm3", "imm_of_many_kinds", *UNSCENTED_TURNS])
+@pytest.mark.parametrize("name", ["imm3", "imm_of_many_kinds", *UNSCENTED_TURNS, *LINES])
 def test_a_reading_that_fails_does_so_in_its_run_only(name):
     z = recordings()
     sound = run(ESTIMATORS[name], z)
@@ -268,6 +273,7 @@ def test_a_start_that_is_none_is_named():
         "switching",
         "mode_history",
         *UNSCENTED_TURNS,
+        *LINES,
     ],
 )
 def test_results_do_not_depend_on_threads(name, restored_threads):
@@ -292,6 +298,7 @@ def test_results_do_not_depend_on_threads(name, restored_threads):
         "adaptive",
         "switching",
         *UNSCENTED_TURNS,
+        *LINES,
     ],
 )
 def test_runs_do_not_depend_on_their_neighbours(name):
@@ -303,7 +310,7 @@ def test_runs_do_not_depend_on_their_neighbours(name):
         np.testing.assert_array_equal(getattr(shuffled, array), getattr(plain, array)[order])
 
 
-@pytest.mark.parametrize("name", ["imm3", *UNSCENTED_TURNS])
+@pytest.mark.parametrize("name", ["imm3", *UNSCENTED_TURNS, *LINES])
 def test_own_ship_and_gate_and_control_hold_in_lanes(name):
     z = recordings()
     more = {
