@@ -575,10 +575,10 @@ FilterError
             require_finite("time_s", time_s);
             const double latest_s =
                 tracker.visit([](const auto& one) { return one.latest_designation_s(); });
-            require(time_s <= latest_s, "time_s",
-                    ("at most " + std::to_string(latest_s) + ", ten periods after the last scan")
-                        .c_str(),
-                    time_s);
+            require(
+                time_s <= latest_s, "time_s",
+                ("at most " + std::to_string(latest_s) + ", an hour after the last scan").c_str(),
+                time_s);
             require_finite("north_m", north_m);
             require_finite("east_m", east_m);
             require_positive("position_std_m", position_std_m);
@@ -592,7 +592,7 @@ FilterError
 Parameters
 ----------
 time_s : float
-    At most ten periods of the antenna after the last scan; scans go on without plots, too.
+    At most an hour after the last scan; scans go on without plots, too.
 north_m, east_m, position_std_m : float
 
 Returns

@@ -225,12 +225,12 @@ def test_a_target_far_ahead_of_the_last_scan_is_not_designated():
     no_plots = {"range_m": [], "bearing_rad": []}
     tracker.process(100.0, **no_plots)
     before = tracker.save()
-    with pytest.raises(ValueError, match=r"time_s must be at most 125\.0*, ten periods after"):
-        tracker.designate(126.0, 1000.0, 0.0)
+    with pytest.raises(ValueError, match=r"time_s must be at most 3700\.0*, an hour after"):
+        tracker.designate(3701.0, 1000.0, 0.0)
     assert tracker.save() == before
-    assert tracker.designate(125.0, 1000.0, 0.0) == 1
-    tracker.process(1000.0, **no_plots)
-    assert tracker.designate(1000.0, 1000.0, 0.0) == 2
+    assert tracker.designate(3700.0, 1000.0, 0.0) == 1
+    tracker.process(9000.0, **no_plots)
+    assert tracker.designate(9000.0, 1000.0, 0.0) == 2
 
 
 def test_an_error_of_own_ships_place_is_one_of_all_plots():

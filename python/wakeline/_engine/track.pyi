@@ -374,7 +374,7 @@ class Tracker:
         Parameters
         ----------
         time_s : float
-            At most ten periods of the antenna after the last scan; scans go on without plots, too.
+            At most an hour after the last scan; scans go on without plots, too.
         north_m, east_m, position_std_m : float
 
         Returns

@@ -159,11 +159,10 @@ class Tracker {
     return {Vec<double, 4>::Constant(kNaN), Mat<double, 4, 4>::Constant(kNaN)};
   }
 
-  /// Until when a target can be designated: ten periods after the last scan, or ever before the
-  /// first one. A track that is further ahead would wait there, deaf to all plots.
+  /// Until when a target can be designated: an hour after the last scan, or ever before the first
+  /// one. A time further ahead is of another clock: the track would wait there, deaf to all plots.
   [[nodiscard]] double latest_designation_s() const noexcept {
-    return started_ ? time_s_ + kClockPeriods * radar_.period_s
-                    : std::numeric_limits<double>::infinity();
+    return started_ ? time_s_ + kLongestSilence_s : std::numeric_limits<double>::infinity();
   }
 
   /// The operator says that there is a target: a confirmed track at rest. Returns its number, or 0
@@ -241,6 +240,7 @@ class Tracker {
   static constexpr double kDesignatedExistence = 0.999;
   /// A plot that many periods from its scan has a wrong clock.
   static constexpr double kClockPeriods = 10.0;
+  static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar, before a designation
   static constexpr int kStartScans = 2;  ///< so long apart the plots of a start may be at least
   static constexpr std::uint32_t kArchiveVersion = 3;
   static constexpr std::size_t kGroup = 32;  ///< tracks that take their steps together
