@@ -176,10 +176,10 @@ void define_closest_approach(py::module_& m) {
           py::arg("limit_m"), py::arg("horizon_s") = ClosestApproach::kForever_s,
           R"(Probability that the ships come closer than a limit L between now and a horizon H: that
 |p + v t| < L at some t, 0 <= t <= H, p and v of their joint Gaussian, near relative rest, too. Two
-ships that are known to be at rest are as close as they are now. Beside a million draws it is off by
+ships that are known to be at rest are as close as they are now. Beside many draws it is off by
 0.004 in the mean square, and by 0.02 at most where neither position nor velocity errs by 20 times
 more in one direction than in another. Where they do, or all errors are one, it may be off by 0.06;
-a target whose place is known, closer than a hundredth outside the limit, has up to 0.1 too little.
+a target whose place is known, closer than a hundredth outside the limit, has up to 0.15 too little.
 
 Parameters
 ----------
