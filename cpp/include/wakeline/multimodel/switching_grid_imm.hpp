@@ -167,12 +167,13 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
   /// Where a direction is not 0, gives each filter the belief of its neighbour in that direction,
   /// and the last one `entering`; returns the belief that none has any more.
   BeliefType shifted(const Place& direction, const BeliefType& entering) noexcept {
-    const MaskOf<Scalar> goes[2] = {direction < Place(0), direction > Place(0)};
+    const auto to_left = direction < Place(0);
+    const auto to_right = direction > Place(0);
     BeliefType leaving = entering;
     this->bank_.for_each([&](int k, auto& filter, auto& before) {
       before = filter.estimate();
       if (k == 1) return;
-      const auto leaves = goes[k == 0];
+      const auto leaves = k == 0 ? to_right : to_left;
       if constexpr (kLanesOf<Scalar> == 1) {
         if (leaves) leaving = before;
       } else {
@@ -180,9 +181,9 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
       }
     });
     this->bank_.for_each([&](int k, auto& filter, auto&) {
-      if (k != 1) this->assign_in(goes[k == 2], filter, entering);
+      if (k != 1) this->assign_in(k == 2 ? to_right : to_left, filter, entering);
       this->bank_.for_each_before([&](int i, const auto& before) {
-        if (i - k == 1 || k - i == 1) this->assign_in(goes[i > k], filter, before);
+        if (i - k == 1 || k - i == 1) this->assign_in(i > k ? to_right : to_left, filter, before);
       });
     });
     return leaving;
