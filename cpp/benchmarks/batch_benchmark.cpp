@@ -8,6 +8,8 @@
 //   kf_step                 Kalman filter, 4 states, a position
 //   ekf_polar_step          extended Kalman filter, 4 states, range and bearing
 //   ukf5_step               unscented Kalman filter, 5 states, range and bearing
+//   fuzzy_alpha_beta_step, bayesian_alpha_beta_step
+//                           lines through up to 10 plots, a position
 //   mode_history100_scan    a scan of a tree of 100 hypotheses, which stand in the lanes
 //   imm3_run                `run_batch` over 500 recordings of 250 scans, all results kept
 //   fma_peak                what the machine could do: independent multiplications and additions

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// The filters of one model and those that read range and bearing.
+// The filters of one model, those that read range and bearing, and the banks of lines.
 #include "batch_timing.hpp"
 
 namespace {
@@ -29,6 +29,14 @@ template <class Scalar>
 void imm5_polar(benchmark::State& state) {
   ours<Scalar>(state, imm<5, Scalar>(), kRadar, Work::kImm5Polar);
 }
+template <class Scalar>
+void fuzzy(benchmark::State& state) {
+  ours<Scalar>(state, FuzzyAlphaBeta<Scalar>(), kFix, Work::kFuzzy);
+}
+template <class Scalar>
+void bayesian(benchmark::State& state) {
+  ours<Scalar>(state, BayesianAlphaBeta<Scalar>(), kFix, Work::kBayesian);
+}
 
 }  // namespace
 
@@ -46,3 +54,9 @@ BENCHMARK(imm3_polar<double>)->Name("imm3_polar_step/scalar_double")->Apply(best
 BENCHMARK(imm3_polar<Lanes<float>>)->Name("imm3_polar_step/batch_float")->Apply(best_of);
 BENCHMARK(imm5_polar<Lanes<double>>)->Name("imm5_polar_step/batch_double")->Apply(best_of);
 BENCHMARK(imm5_polar<double>)->Name("imm5_polar_step/scalar_double")->Apply(best_of);
+BENCHMARK(fuzzy<Lanes<double>>)->Name("fuzzy_alpha_beta_step/batch_double")->Apply(best_of);
+BENCHMARK(fuzzy<double>)->Name("fuzzy_alpha_beta_step/scalar_double")->Apply(best_of);
+BENCHMARK(fuzzy<Lanes<float>>)->Name("fuzzy_alpha_beta_step/batch_float")->Apply(best_of);
+BENCHMARK(bayesian<Lanes<double>>)->Name("bayesian_alpha_beta_step/batch_double")->Apply(best_of);
+BENCHMARK(bayesian<double>)->Name("bayesian_alpha_beta_step/scalar_double")->Apply(best_of);
+BENCHMARK(bayesian<Lanes<float>>)->Name("bayesian_alpha_beta_step/batch_float")->Apply(best_of);

@@ -6,17 +6,20 @@
 namespace wakeline::bench {
 namespace {
 
-/// Of the second step: the first one computes F and Q, too.
+/// Of the step after some: the first one computes F and Q, too.
 template <class Estimator, class Sensor>
-FlopCount counted(Estimator estimator, const Sensor& sensor) {
+FlopCount counted(Estimator estimator, const Sensor& sensor, std::size_t after = 1) {
   const LaneCourse<Counted> course;
   (void)estimator.start(course.start);
-  (void)take(estimator, sensor, course.plots(sensor)[0]);
+  for (std::size_t scan = 0; scan < after; ++scan)
+    (void)take(estimator, sensor, course.plots(sensor)[scan]);
   Counted::count = {};
-  (void)take(estimator, sensor, course.plots(sensor)[1]);
+  (void)take(estimator, sensor, course.plots(sensor)[after]);
   (void)estimator.estimate();
   return Counted::count;
 }
+
+constexpr std::size_t kAllPlots = 20;  ///< scans until a line goes through as many as it may
 
 template <class Hand>
 FlopCount counted_by_hand() {
@@ -53,6 +56,10 @@ FlopCount arithmetic_of(Work work) {
       return counted(polar_ekf<Counted>(), kRadar);
     case Work::kUkf5:
       return counted(ukf<Counted>(), kRadar);
+    case Work::kFuzzy:
+      return counted(FuzzyAlphaBeta<Counted>(), kFix, kAllPlots);
+    case Work::kBayesian:
+      return counted(BayesianAlphaBeta<Counted>(), kFix, kAllPlots);
   }
   return {};
 }

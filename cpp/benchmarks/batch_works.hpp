@@ -15,6 +15,8 @@
 #include "wakeline/core/pack_math.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
+#include "wakeline/multimodel/bayesian_alpha_beta.hpp"
+#include "wakeline/multimodel/fuzzy_alpha_beta.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
 namespace wakeline::bench {
@@ -99,7 +101,9 @@ enum class Work {
   kImm5Polar,
   kKalman,
   kPolarEkf,
-  kUkf5
+  kUkf5,
+  kFuzzy,
+  kBayesian
 };
 
 /// Arithmetic of one step, by running it.

@@ -61,6 +61,7 @@ class Counted {
   friend auto operator<=>(Counted a, Counted b) noexcept { return a.value <=> b.value; }
 
   friend Counted abs(Counted a) noexcept { return Counted(std::abs(a.value)); }
+  friend Counted nearbyint(Counted a) noexcept { return Counted(std::nearbyint(a.value)); }
   friend Counted floor(Counted a) noexcept { return Counted(std::floor(a.value)); }
   friend bool isfinite(Counted a) noexcept { return std::isfinite(a.value); }
   friend Counted sqrt(Counted a) noexcept { return ++count.roots, Counted(std::sqrt(a.value)); }

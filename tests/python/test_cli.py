@@ -666,7 +666,10 @@ def test_bench_measures_every_work(tmp_path, monkeypatch, capsys):
     result = json.loads((tmp_path / "bench.json").read_text())
     assert result["name"] == "bench"
     rows = {(row["scenario"], row["estimator"]): row for row in result["rows"]}
-    for work in ("kf_step", "ekf_polar_step", "ukf5_step", "imm3_step", "imm5_step"):
+    for work in (
+        *("kf_step", "ekf_polar_step", "ukf5_step", "imm3_step", "imm5_step"),
+        *("fuzzy_alpha_beta_step", "bayesian_alpha_beta_step"),
+    ):
         assert rows[work, "scalar_double"]["ns_per_step"] > 0
         assert rows[work, "batch_double"]["times_scalar_double"] > 0
     assert rows["imm3_run_python", "scalar_double"]["ns_per_step"] > 0

@@ -149,6 +149,8 @@ def _step_works() -> Iterator[_Work]:
         ("ukf5_step", wl.Ukf(wl.CoordinatedTurnRate(noise=_noise())), polar),
         ("imm3_step", _imm(*_TURN_RATES_DEG_S), polar),
         ("imm5_step", _imm(0.0, 1.0, -1.0, 3.0, -3.0), polar),
+        ("fuzzy_alpha_beta_step", wl.FuzzyAlphaBeta(), polar),
+        ("bayesian_alpha_beta_step", wl.BayesianAlphaBeta(), polar),
     ):
         steps = z[..., 0].size
         yield _Work(name, OURS, "ns_per_step", _run_by_run(estimator, z, sensor), steps)

@@ -138,7 +138,7 @@ class FuzzyAlphaBeta
 
   /// Lines that were judged at the last plot, in any lane.
   [[nodiscard]] std::size_t judged() const noexcept {
-    return static_cast<std::size_t>(greatest_of_lanes(judgement_.lines));
+    return static_cast<std::size_t>(double(greatest_of_lanes(judgement_.lines)));
   }
 
   /// How well the lines foretold a plot, and which of them follows from it.
@@ -168,8 +168,9 @@ class FuzzyAlphaBeta
 
   /// The nearest whole number, halves to the even one.
   static Scalar rounded(Scalar number) noexcept {
+    using std::nearbyint;
     if constexpr (kLanesOf<Scalar> == 1)
-      return std::nearbyint(number);
+      return nearbyint(number);
     else
       return round_to_even(number);
   }

@@ -208,7 +208,9 @@ class LineBank {
   }
 
   /// Most plots that are remembered in any lane.
-  [[nodiscard]] int size() const noexcept { return static_cast<int>(greatest_of_lanes(size_)); }
+  [[nodiscard]] int size() const noexcept {
+    return static_cast<int>(double(greatest_of_lanes(size_)));
+  }
   /// Whether so many plots are remembered, or more.
   [[nodiscard]] Mask holds(int plots) const noexcept { return size_ >= Scalar(plots); }
   [[nodiscard]] int max_plots() const noexcept { return max_plots_; }
