@@ -70,7 +70,7 @@ template <class Navigator, class Model>
 void expect_consistent(const Model& model) {
   for (const int every : {0, 1, 5}) {
     test::Draw draw(7);
-    constexpr int kRuns = 600;
+    constexpr int kRuns = 250;
     double sum = 0.0;
     for (int run = 0; run < kRuns; ++run) sum += nees_after_a_minute<Navigator>(draw, model, every);
     EXPECT_GT(sum, chi_square_quantile(0.0005, 2 * kRuns)) << every;
