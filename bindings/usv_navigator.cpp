@@ -139,8 +139,9 @@ class PyNavigator {
   PyReading update_rate_of_turn(double rate_rad_s, double gyro_rad_s, double std) {
     return visit([&](auto& navigator) -> PyReading {
       if constexpr (kHas<decltype(navigator), RateOfTurn>)
-        return to_reading(
-            navigator.update(rate_of_turn(navigator, gyro_rad_s, std), Vec<double, 1>(rate_rad_s)));
+        return to_reading(navigator.update(
+            rate_of_turn(gyro_rad_s, navigator.model().input.noise.yaw_rate_std_rad_s, std),
+            Vec<double, 1>(rate_rad_s)));
       else
         throw no_such_state(navigator, "a rate of turn", "a gyro bias (states 7 or 8)");
     });
@@ -178,6 +179,8 @@ class PyNavigator {
         throw no_such_state(navigator, "log", "a speed through water (states 7)");
       if (rate_of_turn && !kHas<decltype(navigator), RateOfTurn>)
         throw no_such_state(navigator, "rate_of_turn", "a gyro bias (states 7 or 8)");
+      if (rate_of_turn && !imu)
+        throw py::value_error("rate_of_turn stands beside the gyro of imu, which is not given");
       UsvRun run = unread({{"gnss", gnss},
                            {"velocity", velocity},
                            {"compass", compass},
@@ -251,9 +254,8 @@ class PyNavigator {
       return navigator.update(GroundVelocityInCurrent(std), z);
   }
 
-  template <class Navigator>
-  static RateOfTurn rate_of_turn(const Navigator& navigator, double gyro_rad_s, double std) {
-    return validated(RateOfTurn{std, gyro_rad_s, navigator.model().input.noise.yaw_rate_std_rad_s});
+  static RateOfTurn rate_of_turn(double gyro_rad_s, double gyro_std, double std) {
+    return validated(RateOfTurn{std, gyro_rad_s, gyro_std});
   }
 
   /// The scores of the sensors given, of no reading yet.
@@ -316,11 +318,15 @@ class PyNavigator {
         return navigator.update(SpeedLog(std.log_mps), Vec<double, 1>(z[0]));
       });
     if constexpr (kHas<Navigator, RateOfTurn>)
-      if (const double* motion = readings.imu.at(k))
+      if (const double* motion = readings.imu.at(k)) {
+        const double* noise = readings.imu_std.at(k);
+        const double gyro_std =
+            noise ? noise[1] : navigator.model().input.noise.yaw_rate_std_rad_s;
         note("rate_of_turn", readings.rate_of_turn, [&](const double* z) {
-          return navigator.update(rate_of_turn(navigator, motion[2], std.rate_of_turn_rad_s),
+          return navigator.update(rate_of_turn(motion[2], gyro_std, std.rate_of_turn_rad_s),
                                   Vec<double, 1>(z[0]));
         });
+      }
     return widened;
   }
 
@@ -547,7 +553,8 @@ imu : (T, 3) array, optional
 gnss, velocity : (T, 2) array, optional
     Position m and velocity over ground m/s, [north, east].
 compass, log, rate_of_turn : (T,) array, optional
-    Heading rad, speed through water m/s (7 states), rate of turn rad/s (7 or 8 states).
+    Heading rad, speed through water m/s (7 states), rate of turn rad/s (7 or 8 states) beside the
+    gyro of `imu`, without whose row it is no reading.
 imu_std : (T, 2) array, optional
     Row k is the noise from time k - 1 to time k of [acceleration m/s², yaw rate rad/s], measured or
     not, in place of the navigator's.
@@ -566,7 +573,8 @@ UsvRun
 Raises
 ------
 ValueError
-    When shapes do not fit, times decrease, or a sensor needs a state that is not there.
+    When shapes do not fit, times decrease, a sensor needs a state that is not there, or
+    `rate_of_turn` comes without `imu`.
 FilterError
     When the navigator was not started, or a row makes a step fail; the navigator is as it was then.)");
 }

@@ -263,6 +263,18 @@ def test_log_velocity_and_rate_of_turn():
     np.testing.assert_allclose(run.mean[-1, 4], BIAS[2], atol=0.03 * DEG)
 
 
+@pytest.mark.parametrize("states", [7, 8])
+def test_beside_a_rate_of_turn_the_gyro_has_the_noise_that_is_told(states):
+    log = voyage(steps=200)
+    log["imu"][:, 2] += np.random.default_rng(3).normal(size=200) * DEG
+    log["rate_of_turn"] = log["imu"][:, 2] - BIAS[2]
+    readings = {name: log[name] for name in (*sensors(log), "rate_of_turn")}
+    plain = started(log, states, yaw_rate_std_rad_s=DEG).run(**readings)
+    told = started(log, states).run(**readings, imu_std=np.full((200, 2), [0.004, DEG]))
+    np.testing.assert_array_equal(told.mean, plain.mean)
+    np.testing.assert_array_equal(told.covariance, plain.covariance)
+
+
 def test_errors_name_what_is_wrong():
     log = voyage(steps=20)
     with pytest.raises(ValueError, match="states must be 5, 7 or 8, got 6"):
@@ -289,6 +301,8 @@ def test_errors_name_what_is_wrong():
         navigator.run(log["time_s"], log=np.ones(20))
     with pytest.raises(ValueError, match="a rate of turn needs a navigator with a gyro bias"):
         started(log, 5).update_rate_of_turn(0.0, 0.0)
+    with pytest.raises(ValueError, match="rate_of_turn stands beside the gyro of imu"):
+        navigator.run(log["time_s"], rate_of_turn=np.zeros(20))
     with pytest.raises(ValueError, match="compass_std_rad must be finite and positive, got 0"):
         navigator.run(log["time_s"], compass_std_rad=0)
     with pytest.raises(wl.FilterError, match="predict: negative time step"):

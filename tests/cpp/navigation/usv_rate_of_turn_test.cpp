@@ -46,7 +46,9 @@ double nees_after_a_minute(test::Draw& draw, const Model& model, int every) {
     heading += turn;
     Imu imu;
     imu.yaw_rate_rad_s = turn + bias + kGyroStd * draw.normal();
-    EXPECT_EQ(navigator.predict(1.0, imu), Status::kOk);
+    auto leg = navigator.leg(1.0, imu);
+    leg.input.noise.yaw_rate_std_rad_s = kGyroStd;
+    EXPECT_EQ(navigator.predict(leg), Status::kOk);
     if (k % 7 == 0) {
       EXPECT_TRUE(navigator.update(Compass(kCompassStd),
                                    of(wrap_angle(heading + kCompassStd * draw.normal()))));
@@ -89,6 +91,14 @@ TEST(RateOfTurnBesideTheGyro, LeavesHeadingAndBiasConsistentInAnAugmentedUkf) {
 }
 TEST(RateOfTurnBesideTheGyro, LeavesHeadingAndBiasConsistentInACurrent) {
   expect_consistent<UsvNavigator<UsvCurrentMotion>>(noisy_gyro<UsvCurrentMotion>());
+}
+
+TEST(RateOfTurnBesideTheGyro, LeavesHeadingAndBiasConsistentWhereAStepTellsItsOwnNoise) {
+  UsvBiasMotion quieter = noisy_gyro<UsvBiasMotion>(), louder = quieter;
+  quieter.input.noise.yaw_rate_std_rad_s = kGyroStd / 30;
+  louder.input.noise.yaw_rate_std_rad_s = kGyroStd * 30;
+  expect_consistent<UsvNavigator<UsvBiasMotion>>(quieter);
+  expect_consistent<UsvNavigator<UsvBiasMotion>>(louder);
 }
 
 }  // namespace

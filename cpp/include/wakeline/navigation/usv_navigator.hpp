@@ -211,6 +211,7 @@ class UsvNavigator {
     fields(by_gyro_);
     fields(predicted_);
     fields(gyro_rad_s_);
+    fields(gyro_std_rad_s_);
   }
 
  private:
@@ -273,6 +274,7 @@ class UsvNavigator {
       by_gyro_[kGyroBiasRow] += Scalar(std * std);
       predicted_ = estimate().covariance;
       gyro_rad_s_ = leg.input.imu.yaw_rate_rad_s;
+      gyro_std_rad_s_ = std;
     }
   }
 
@@ -285,8 +287,7 @@ class UsvNavigator {
                                                 Vec<double, kStates>::Zero(), 0.0};
       const Cholesky<kStates, Scalar> factor(predicted_);
       if (by_gyro_.isZero(0) || sensor.gyro_rad_s != gyro_rad_s_ || !factor.ok()) return taken;
-      const double own = model_.input.noise.yaw_rate_std_rad_s;
-      const double share = std::min(1.0, sensor.gyro_std_rad_s / own);
+      const double share = std::min(1.0, sensor.gyro_std_rad_s / gyro_std_rad_s_);
       const Vec<Scalar, kStates> weight =
           Scalar(share * share) * factor.template solve<1>(by_gyro_);
       taken.weight = weight.template cast<double>();
@@ -486,7 +487,8 @@ class UsvNavigator {
   Filter filter_;
   Vec<Scalar, kStates> by_gyro_ = Vec<Scalar, kStates>::Zero();  ///< cov(x - x̂, v) after the step
   Mat<Scalar, kStates, kStates> predicted_ = Mat<Scalar, kStates, kStates>::Identity();
-  double gyro_rad_s_ = 0.0;  ///< that drove the last step
+  double gyro_rad_s_ = 0.0;      ///< that drove the last step
+  double gyro_std_rad_s_ = 0.0;  ///< its noise then
   Model model_;
   ImuNoise unmeasured_;
   int rejections_;
