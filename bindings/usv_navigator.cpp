@@ -202,7 +202,8 @@ class PyNavigator {
               legs.back().input.noise = validated(ImuNoise{noise[0], noise[1]});
             require_ok_in(k, moved.predict(legs.back()), "predict");
           }
-          if (take(moved, readings, std, k, run)) widened.push_back(beliefs.size());
+          auto* leg = legs.empty() ? nullptr : &legs.back();
+          if (take(moved, readings, std, k, run, leg)) widened.push_back(beliefs.size());
           beliefs.push_back(moved.estimate());
         }
         if (smooth) smooth_between(widened, moved, beliefs, legs);
@@ -289,10 +290,10 @@ class PyNavigator {
     }
   }
 
-  /// All readings of row k; whether the belief was widened for one of them.
+  /// All readings of row k, to which `leg` has led; whether the belief was widened for one of them.
   template <class Navigator>
   static bool take(Navigator& navigator, const Readings& readings, const ReadingStd& std,
-                   py::ssize_t k, UsvRun& run) {
+                   py::ssize_t k, UsvRun& run, typename Navigator::Leg* leg) {
     bool widened = false;
     const auto note = [&](const char* name, const Column& column, auto update) {
       if (!column.values) return;
@@ -322,9 +323,12 @@ class PyNavigator {
         const double* noise = readings.imu_std.at(k);
         const double gyro_std =
             noise ? noise[1] : navigator.model().input.noise.yaw_rate_std_rad_s;
+        const RateOfTurn sensor = rate_of_turn(motion[2], gyro_std, std.rate_of_turn_rad_s);
         note("rate_of_turn", readings.rate_of_turn, [&](const double* z) {
-          return navigator.update(rate_of_turn(motion[2], gyro_std, std.rate_of_turn_rad_s),
-                                  Vec<double, 1>(z[0]));
+          const Vec<double, 1> rate(z[0]);
+          const auto reading = navigator.update(sensor, rate);
+          if (reading && leg) *leg = Navigator::turned_by(sensor, rate, *leg);
+          return reading;
         });
       }
     return widened;

@@ -275,6 +275,23 @@ def test_beside_a_rate_of_turn_the_gyro_has_the_noise_that_is_told(states):
     np.testing.assert_array_equal(told.covariance, plain.covariance)
 
 
+@pytest.mark.parametrize("states", [7, 8])
+def test_smoothing_goes_by_rates_of_turn_as_well(states):
+    at = 2 if states == 7 else 4
+    squared = {False: 0.0, True: 0.0}
+    for seed in range(10):
+        log, rng = voyage(seed, steps=200), np.random.default_rng(seed)
+        rate = np.diff(log["heading"], prepend=log["heading"][0]) + 0.1 * DEG * rng.normal(size=200)
+        log["imu"][:, 2] += rng.normal(size=200) * DEG
+        log["compass"][np.arange(200) % 7 > 0] = np.nan
+        for smooth in squared:
+            navigator = started(log, states, yaw_rate_std_rad_s=DEG)
+            run = navigator.run(**sensors(log), rate_of_turn=rate, smooth=smooth)
+            off = wrapped(run.mean[1:-1, at] - log["heading"][1:-1])
+            squared[smooth] += np.sum(off**2)
+    assert squared[True] < 0.8 * squared[False]
+
+
 def test_errors_name_what_is_wrong():
     log = voyage(steps=20)
     with pytest.raises(ValueError, match="states must be 5, 7 or 8, got 6"):

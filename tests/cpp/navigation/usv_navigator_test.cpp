@@ -288,6 +288,7 @@ TYPED_TEST(EveryUsvModel, HasTheJacobianOfItsTransition) {
   for (const double share : {1.0, 0.0}) {
     TypeParam model = turning<TypeParam>();
     model.input.bias_share = share;
+    model.input.gyro_share = 0.3;
     if constexpr (requires { model.turned_at; }) model.turned_at = share / 2;
     for (const double dt : {0.1, 1.0, 5.0}) {
       const StateOf<TypeParam> x = some_state<TypeParam>(draw);

@@ -54,6 +54,7 @@ struct UsvInput {
   Imu imu;
   ImuNoise noise;
   double bias_share = 1.0;
+  double gyro_share = 1.0;  ///< of the gyro in the rate of turn, whose rest has none of its bias
 };
 
 /// Where own ship begins, with standard deviations.
@@ -128,7 +129,7 @@ struct UsvInertialMotion {
       const Scalar share = Scalar(input.bias_share);
       f.template block<2, 2>(0, 5) = -share * dt_s * dt_s / 2 * axes;
       f.template block<2, 2>(2, 5) = -share * dt_s * axes;
-      f.template block<5, 1>(0, 7) = -share * by_yaw_rate(x, dt_s);
+      f.template block<5, 1>(0, 7) = -share * Scalar(input.gyro_share) * by_yaw_rate(x, dt_s);
     }
     return f;
   }
@@ -235,7 +236,7 @@ struct UsvInertialMotion {
   template <class Scalar>
   [[nodiscard]] Scalar turn_rate(const Vec<Scalar, kN>& x) const noexcept {
     Scalar rate = Scalar(input.imu.yaw_rate_rad_s);
-    if constexpr (Biases) rate -= Scalar(input.bias_share) * x[7];
+    if constexpr (Biases) rate -= Scalar(input.bias_share * input.gyro_share) * x[7];
     return rate;
   }
 };
@@ -281,7 +282,7 @@ struct UsvCurrentMotion {
   Mat<Scalar, kN, kN> jacobian(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     const Vec<Scalar, 2> u = ahead(x, dt_s);
     const Vec<Scalar, 2> p_by_heading = dt_s * x[3] * Vec<Scalar, 2>(-u[1], u[0]);
-    const Scalar share = Scalar(input.bias_share);
+    const Scalar share = Scalar(input.bias_share * input.gyro_share);
     Mat<Scalar, kN, kN> f = Mat<Scalar, kN, kN>::Identity();
     f.template block<2, 1>(0, 2) = p_by_heading;
     f.template block<2, 1>(0, 3) = dt_s * u;
@@ -376,7 +377,7 @@ struct UsvCurrentMotion {
  private:
   template <class Scalar>
   [[nodiscard]] Scalar turn_rate(const Vec<Scalar, kN>& x) const noexcept {
-    return Scalar(input.imu.yaw_rate_rad_s) - Scalar(input.bias_share) * x[4];
+    return Scalar(input.imu.yaw_rate_rad_s) - Scalar(input.bias_share * input.gyro_share) * x[4];
   }
 
   /// Unit vector of the heading in the middle of the step.

@@ -174,14 +174,28 @@ class UsvNavigator {
     return reading;
   }
 
+  /// A step as it is known with a rate of turn beside its gyro, z: turned by the mean of both, each
+  /// weighed by its information. What is left of the reading, gyro less indicator, tells of the
+  /// gyro's bias alone, by a noise that is independent of that of the mean.
+  [[nodiscard]] static Leg turned_by(const RateOfTurn& sensor, const Vec<Scalar, 1>& z,
+                                     Leg leg) noexcept {
+    double& gyro_std = leg.input.noise.yaw_rate_std_rad_s;
+    const double gyro = gyro_std * gyro_std, rate = sensor.rate_std_rad_s * sensor.rate_std_rad_s;
+    const double share = rate / (rate + gyro);
+    leg.input.imu.yaw_rate_rad_s += (1.0 - share) * (double(z[0]) - leg.input.imu.yaw_rate_rad_s);
+    leg.input.gyro_share = share;
+    gyro_std *= std::sqrt(share);
+    return leg;
+  }
+
   [[nodiscard]] const State& estimate() const noexcept { return filter_.estimate(); }
   [[nodiscard]] bool started() const noexcept { return filter_.started(); }
   [[nodiscard]] const Model& model() const noexcept { return model_; }
 
   /// Rauch-Tung-Striebel smoother of a log, with additive noise, in place: `legs[k]` leads from
-  /// belief k, as it was after all readings of its time, to belief k + 1. Returns the first
-  /// failure, with that belief and all before it left as filtered. It knows nothing of a widening,
-  /// whose jump it spreads, nor of what a rate of turn told of the noise of the step before.
+  /// belief k, as it was after all readings of its time, to belief k + 1, and is `turned_by` a rate
+  /// of turn that was taken there. Returns the first failure, with that belief and all before it
+  /// left as filtered. It knows nothing of a widening, whose jump it spreads.
   Status smooth(std::span<State> beliefs, std::span<const Leg> legs) const noexcept {
     for (std::size_t k = beliefs.size(); k-- > 1;) {
       const Leg& leg = legs[k - 1];
