@@ -491,6 +491,14 @@ def test_where_the_log_stopped_nothing_is_put_into_the_gap(log):
     assert [len(part.heading) for part in read.parts()] == [40, 40]
 
 
+def test_they_do_so_in_a_slow_log_of_many_days(log):
+    fixes_s = 600.7 * np.arange(1500)
+    lines = [line for t in fixes_s for line in (rmc(t, kn="0.0", date=""), *headings(3))]
+    heading = log(*lines, rmc(600.7 * 1500, kn="0.0", date="")).heading
+    expected_s = 600.7 * (heading.line - 1) / 4
+    np.testing.assert_allclose(heading.time_s, expected_s, atol=1e-3)
+
+
 def test_a_log_on_one_line(log):
     lines = [*headings(2), *(gll(t) for t in (*range(50, 56), *range(20, 26))), *headings(3)]
     for read in (log(*lines, end=""), log(*headings(1), "".join(lines))):
