@@ -64,18 +64,21 @@ def position_m(
     Raises
     ------
     ValueError
-        When there is no such model, a report is without course or speed, the last minute has
-        reports of fewer than two times, or a time lies before the last; when rows are of several
-        tracks or out of order.
+        When there is no such model, a report is without position, course or speed, the last minute
+        has reports of fewer than two times, or a time ahead is negative or not finite; when rows
+        are of several tracks or out of order.
     """
     track = _reports(track)
     ahead_s = np.asarray(ahead_s, dtype=float)
     if model not in _MODELS:
         raise ValueError(f"no model {model!r}; there are {', '.join(_MODELS)}")
-    if ahead_s.ndim != 1 or not (ahead_s >= 0.0).all():
-        raise ValueError(f"ahead_s must be times (H,), none of them negative, got {ahead_s}")
-    if not np.isfinite([track.course_rad, track.speed_mps]).all():
-        raise ValueError("every report of the track must have a course and a speed")
+    if ahead_s.ndim != 1 or not ((ahead_s >= 0.0) & np.isfinite(ahead_s)).all():
+        raise ValueError(f"ahead_s must be finite times (H,), none negative, got {ahead_s}")
+    columns = (track.north_m, track.east_m, track.course_rad, track.speed_mps)
+    if not np.isfinite(columns).all():
+        raise ValueError("every report of the track must have a position, a course and a speed")
+    if not (np.diff(track.time_s) >= 0).all():
+        raise ValueError("the reports of the track must be in order of time")
     if len(track) == 0 or np.ptp(_last(track, _LINE_OVER_S).time_s) == 0.0:
         raise ValueError("the track must have reports of two times or more in its last minute")
     return np.array([track.north_m[-1], track.east_m[-1]]) + _MODELS[model](track, ahead_s)

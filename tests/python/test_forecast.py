@@ -23,6 +23,13 @@ def circling(rate_rad_s, speed_mps=8.0, step_s=5.0, count=25):
     return AisTrack("1", 1000.0 + age_s, PLACE_M[0] + north, PLACE_M[1] + east, course, speed)
 
 
+def placed_at(north_m):
+    """A straight of which one report has another place."""
+    track = circling(0.0)
+    track.north_m[-3] = north_m
+    return track
+
+
 @pytest.mark.parametrize("model", forecast.names())
 def test_a_straight_is_foretold_exactly(model):
     place_m = forecast.position_m(circling(0.0), [0.0, 60.0, 360.0], model)
@@ -123,10 +130,13 @@ def test_the_rate_of_turn_is_that_of_the_course_through_north(rate_deg_s):
     ("track", "ahead_s", "model", "wanted"),
     [
         (circling(0.0), [60.0], "magic", "no model 'magic'; there are last_report"),
-        (circling(0.0), [-1.0], "line_60s", "ahead_s must be times"),
-        (circling(0.0), [np.nan], "line_60s", "ahead_s must be times"),
-        (circling(0.0), 60.0, "line_60s", "ahead_s must be times"),
+        (circling(0.0), [-1.0], "line_60s", "ahead_s must be finite times"),
+        (circling(0.0), [np.nan], "line_60s", "ahead_s must be finite times"),
+        (circling(0.0), [np.inf], "turning_on", "ahead_s must be finite times"),
+        (circling(0.0), 60.0, "line_60s", "ahead_s must be finite times"),
         (circling(0.0, speed_mps=np.nan), [60.0], "last_report", "a course and a speed"),
+        (placed_at(np.nan), [60.0], "line_60s", "a position, a course and a speed"),
+        (circling(0.0).rows([0, 2, 1, 3]), [60.0], "kalman_cv", "in order of time"),
         (circling(0.0, count=1), [60.0], "line_60s", "reports of two times or more"),
         (circling(0.0, step_s=0.0), [60.0], "line_60s", "reports of two times or more"),
         (circling(0.0, count=0), [60.0], "last_report", "reports of two times or more"),
