@@ -477,6 +477,22 @@ def test_errors_are_those_at_hidden_fixes(tmp_path, every_s):
             assert len(by_horizon[horizon_s]) == len(compared)
 
 
+@pytest.mark.parametrize(
+    ("every_s", "wanted"),
+    [
+        (20, r"navigator +- +- +\d"),
+        (40, "too short, or its fixes too seldom, to hide satellites"),
+    ],
+)
+def test_where_fixes_are_seldom_it_is_said_what_cannot_be_compared(
+    tmp_path, capsys, every_s, wanted
+):
+    navigated(tmp_path, [line for k, line in enumerate(voyage(30)) if k // 3 % every_s == 0])
+    told = capsys.readouterr().out
+    assert re.search(wanted, told)
+    assert "nan" not in told
+
+
 def test_what_is_hidden_takes_no_more_memory_than_the_log():
     time_s = np.arange(0.0, 150_000.0, 5.0)
     starts_s = np.arange(120.0, 149_000.0, coasting.HIDDEN_EVERY_S)

@@ -264,15 +264,19 @@ def _hold_out(legs: Sequence[_Leg]) -> dict[str, dict[float, np.ndarray]]:
 def _error_table(errors: dict[str, dict[float, np.ndarray]]) -> str:
     count = max(len(values) for by_horizon in errors.values() for values in by_horizon.values())
     if count == 0:
-        return "too short to hide satellites from it and compare"
+        return "too short, or its fixes too seldom, to hide satellites from it and compare"
     head = ["", *(f"{horizon_s:.0f} s" for horizon_s in own_ship.HORIZONS_S)]
     body = [
-        [_METHODS[name], *(f"{value:.1f}" for value in own_ship.medians(errors[name]).values())]
+        [_METHODS[name], *map(_metres, own_ship.medians(errors[name]).values())]
         for name in _METHODS
         if name in errors
     ]
     title = f"error in metres without satellites, median of {count} times:"
     return f"\n{title}\n{report.aligned([head, *body])}\n"
+
+
+def _metres(value: float) -> str:
+    return "-" if np.isnan(value) else f"{value:.1f}"
 
 
 def _rows(errors: dict[str, dict[float, np.ndarray]], file: str) -> list[dict[str, Any]]:
