@@ -125,7 +125,7 @@ class GroundSpeed(Series):
 
 @dataclass(frozen=True, repr=False)
 class TrueHeading(Series):
-    """Heading from true north (HDT, THS, VHW; from a magnetic compass where there is none).
+    """Heading from true north (HDT, THS, VHW; from a magnetic compass where these are silent).
 
     Attributes
     ----------

@@ -45,6 +45,7 @@ _STILL_MPS = 1.0 * KNOT_MPS  # below, a vessel at rest and one that moves look t
 _FROZEN_M = 50.0
 _AT_ZERO_DEG = 1e-4
 _BLIND_S = 60.0
+_SILENT_S = 10.0
 _UNMARKED_FIX = (False, False)  # frozen, suspect: found when all are read
 _UNMARKED_GROUND = (False,)  # frozen
 _EARTH_RADIUS_M = 6371e3
@@ -91,8 +92,8 @@ def read_nmea(
 
     **Headings**: magnetic ones (HDG with its deviation, HDM) are kept apart, with the variation of
     the sentence, else of the RMC before it (or else the first), else `variation_deg`. They are the
-    true headings too, where the variation is known and the log has neither HDT nor THS. Headings in
-    VHW count where the log has no others of their kind.
+    true headings too, where the variation is known and there is no true one within 10 s. Headings
+    in VHW count where the log has no others of their kind.
 
     Parameters
     ----------
@@ -140,7 +141,7 @@ def read_nmea(
     series = {name: _series(kind, rows.of[name], clock, report) for name, kind in SERIES.items()}
     invalid_notes = [*_empty_notes(rows.empty), *_invalid_notes(series)]
     series["compass"] = _with_variation(series["compass"], rows.variation, variation_deg)
-    series["heading"] = _true_headings(series["heading"], series["compass"])
+    series["heading"] = _true_headings(series["heading"], series["compass"], clock)
     series["fixes"] = _marked(series, clock, max_speed_mps)
     series["ground"] = _marked_ground(series, clock)
     if not any(map(len, series.values())):
@@ -480,11 +481,32 @@ def _with_variation(
     )
 
 
-def _true_headings(heading: TrueHeading, compass: MagneticHeading) -> TrueHeading:
+def _true_headings(heading: TrueHeading, compass: MagneticHeading, clock: Clock) -> TrueHeading:
+    """The true headings, and those of the compass where they are silent."""
+    heading = _others_than_vhw(heading)
     known = compass.rows(np.isfinite(compass.variation_rad))
-    if heading.valid.any() or not len(known):
-        return _others_than_vhw(heading)
-    return TrueHeading(known.time_s, known.valid, known.sentence, known.line, known.heading_rad)
+    if not heading.valid.any() and len(known):
+        heading = heading.rows(heading.valid)
+    own, other = clock.section(heading.line), clock.section(known.line)
+    silent = np.ones(len(known), dtype=bool)
+    for number in np.unique(other):
+        told_s = heading.time_s[heading.valid & (own == number)]
+        silent[other == number] = _far(known.time_s[other == number], told_s)
+    joined = _joined(heading, known.rows(silent))
+    return joined.rows(np.lexsort((joined.line, joined.time_s, clock.section(joined.line))))
+
+
+def _far(time_s: np.ndarray, told_s: np.ndarray) -> np.ndarray:
+    """Mask (n,) of the times that are farther than `_SILENT_S` from any of those told, sorted."""
+    around_s = np.concatenate([[-np.inf], told_s, [np.inf]])
+    after = np.searchsorted(around_s, time_s)
+    return np.minimum(time_s - around_s[after - 1], around_s[after] - time_s) > _SILENT_S
+
+
+def _joined(heading: TrueHeading, compass: MagneticHeading) -> TrueHeading:
+    names = [f.name for f in dataclasses.fields(TrueHeading)]
+    pairs = [(getattr(heading, name), getattr(compass, name)) for name in names]
+    return TrueHeading(*map(np.concatenate, pairs))
 
 
 def _others_than_vhw(series: Series) -> Series:
