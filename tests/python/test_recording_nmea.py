@@ -677,6 +677,16 @@ def test_speeds_that_stay_the_same_beside_frozen_fixes_are_frozen_too(log, speed
     assert len(told) == (not live)
 
 
+def test_a_vessel_that_lies_still_long_after_her_last_speed_is_not_frozen(log):
+    way = [gll(t, longitude_deg=6.7 + 3.35e-5 * t) for t in range(300)]
+    still = [gll(t, longitude_deg=6.71) for t in range(300, 900)]
+    speeds = [sentence("VTG,90,T,,M,5.0,N,,K,A")] * 120
+    told = [line for pair in zip(way, speeds, strict=False) for line in pair]
+    assert not log(*told, *way[120:], *still).fixes.frozen.any()
+    moving = [line for fix in still for line in (fix, sentence("VHW,,T,,M,5.0,N,,K"))]
+    assert log(*told, *way[120:], *moving).fixes.frozen.sum() == 599
+
+
 def test_a_vessel_at_rest_is_not_frozen(log):
     assert not log(*(rmc(t, kn="0.3") for t in range(0, 3600, 10))).fixes.frozen.any()
     assert not log(*(gll(t) for t in range(0, 3600, 10))).fixes.frozen.any()

@@ -82,8 +82,8 @@ def read_nmea(
 
     **Fixes** of one time are one fix: the valid one, of these GGA before GNS before RMC before GLL.
     Fixes are marked, never dropped: not `valid` (status V, quality 0); `frozen`, where the position
-    stays the same while the vessel, by her speed over ground or else through the water, moves over
-    50 m;
+    stays the same while the vessel, by her speed over ground or else through the water, told within
+    a minute of the fix, moves over 50 m;
     `suspect` at 0/0 and where she cannot have come at `max_speed_mps`, for as long as they stay
     there, if they come back to where she can have come meanwhile. Three or more that do not come
     back are believed, and a note tells of the jump. Positions in sentences with empty fields are no
@@ -491,16 +491,16 @@ def _true_headings(heading: TrueHeading, compass: MagneticHeading, clock: Clock)
     silent = np.ones(len(known), dtype=bool)
     for number in np.unique(other):
         told_s = heading.time_s[heading.valid & (own == number)]
-        silent[other == number] = _far(known.time_s[other == number], told_s)
+        silent[other == number] = _far(known.time_s[other == number], told_s, _SILENT_S)
     joined = _joined(heading, known.rows(silent))
     return joined.rows(np.lexsort((joined.line, joined.time_s, clock.section(joined.line))))
 
 
-def _far(time_s: np.ndarray, told_s: np.ndarray) -> np.ndarray:
-    """Mask (n,) of the times that are farther than `_SILENT_S` from any of those told, sorted."""
+def _far(time_s: np.ndarray, told_s: np.ndarray, by_s: float) -> np.ndarray:
+    """Mask (n,) of the times that are farther than `by_s` from any of those told, sorted."""
     around_s = np.concatenate([[-np.inf], told_s, [np.inf]])
     after = np.searchsorted(around_s, time_s)
-    return np.minimum(time_s - around_s[after - 1], around_s[after] - time_s) > _SILENT_S
+    return np.minimum(time_s - around_s[after - 1], around_s[after] - time_s) > by_s
 
 
 def _joined(heading: TrueHeading, compass: MagneticHeading) -> TrueHeading:
@@ -561,14 +561,15 @@ def _at_zero(fixes: Fixes) -> np.ndarray:
 
 
 def _speed_at(time_s: np.ndarray, series: dict[str, Series]) -> np.ndarray:
-    """Speeds (n,) over ground, or else through the water, or else zero."""
-    for name, values in (("ground", "speed_mps"), ("water", "ahead_mps")):
+    """Speeds (n,) over ground, or else through the water, or zero where neither is told."""
+    speed_mps = np.zeros(len(time_s))
+    for name, values in (("water", "ahead_mps"), ("ground", "speed_mps")):
         readings = series[name]
-        known = readings.valid & np.isfinite(getattr(readings, values))
-        if known.any():
-            speed_mps = np.abs(getattr(readings, values)[known])
-            return np.interp(time_s, readings.time_s[known], speed_mps)
-    return np.zeros(len(time_s))
+        readings = readings.rows(readings.valid & np.isfinite(getattr(readings, values)))
+        told = ~_far(time_s, readings.time_s, _BLIND_S)
+        told_mps = np.abs(getattr(readings, values))
+        speed_mps[told] = np.interp(time_s[told], readings.time_s, told_mps) if told.any() else 0.0
+    return speed_mps
 
 
 def _frozen(fixes: Fixes, speed_mps: np.ndarray) -> np.ndarray:
