@@ -142,10 +142,10 @@ class Clock:
 
 
 def _usual_step_s(clock_s: np.ndarray) -> float:
-    """What mostly lies between a time of day (n,) and the next other one, on either side of it."""
-    steps_s = np.abs(_wrapped(np.diff(clock_s)))
-    told = steps_s[steps_s > 0.0]
-    return float(np.median(told)) if len(told) else 0.0
+    """What mostly lies between times of day (n,), of any number of days, in whatever order."""
+    since_s = np.cumsum(_wrapped(np.diff(clock_s, prepend=clock_s[:1])))
+    steps_s = np.diff(np.unique(np.rint(1e3 * since_s))) / 1e3
+    return float(np.median(steps_s)) if len(steps_s) else 0.0
 
 
 def _unrolled_s(
