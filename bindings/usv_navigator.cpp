@@ -321,10 +321,9 @@ class PyNavigator {
     if constexpr (kHas<Navigator, RateOfTurn>)
       if (const double* motion = readings.imu.at(k)) {
         const double* noise = readings.imu_std.at(k);
-        const double gyro_std =
-            noise ? noise[1] : navigator.model().input.noise.yaw_rate_std_rad_s;
-        const RateOfTurn sensor = rate_of_turn(motion[2], gyro_std, std.rate_of_turn_rad_s);
+        const double gyro_std = noise ? noise[1] : navigator.model().input.noise.yaw_rate_std_rad_s;
         note("rate_of_turn", readings.rate_of_turn, [&](const double* z) {
+          const RateOfTurn sensor = rate_of_turn(motion[2], gyro_std, std.rate_of_turn_rad_s);
           const Vec<double, 1> rate(z[0]);
           const auto reading = navigator.update(sensor, rate);
           if (reading && leg) *leg = Navigator::turned_by(sensor, rate, *leg);

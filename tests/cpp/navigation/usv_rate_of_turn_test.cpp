@@ -103,8 +103,8 @@ TEST(RateOfTurnBesideTheGyro, LeavesHeadingAndBiasConsistentWhereAStepTellsItsOw
   expect_consistent<UsvNavigator<UsvBiasMotion>>(louder);
 }
 
-/// A minute as before, smoothed: sums of the NEES of heading and gyro bias, and of the squared error
-/// of the heading as it was filtered and as it is smoothed, of five times in between.
+/// A minute as before, smoothed: sums of the NEES of heading and gyro bias, and of the squared
+/// error of the heading as it was filtered and as it is smoothed, of five times in between.
 template <class Navigator, class Model>
 Vec<double, 3> smoothed(test::Draw& draw, const Model& model) {
   constexpr int kBias = index_of(Model::kComponents, kGyroBias);
