@@ -177,9 +177,9 @@ void define_closest_approach(py::module_& m) {
           R"(Probability that the ships come closer than a limit L between now and a horizon H: that
 |p + v t| < L at some t, 0 <= t <= H, p and v of their joint Gaussian, near relative rest, too. Two
 ships that are known to be at rest are as close as they are now. Beside many draws it is off by
-0.004 in the mean square, and by 0.02 at most where neither position nor velocity errs by 20 times
-more in one direction than in another. Where they do, or all errors are one, it may be off by 0.06;
-a target whose place is known, closer than a hundredth outside the limit, has up to 0.15 too little.
+0.004 in the mean square; by more than 0.02 seldom, but in one of thirty cases where the target is
+now within a tenth of the limit; by 0.08 at most, but that a target whose place is known, closer
+than a hundredth outside the limit, has up to 0.15 too little.
 
 Parameters
 ----------

@@ -329,9 +329,9 @@ class ClosestApproach:
         Probability that the ships come closer than a limit L between now and a horizon H: that
         |p + v t| < L at some t, 0 <= t <= H, p and v of their joint Gaussian, near relative rest, too. Two
         ships that are known to be at rest are as close as they are now. Beside many draws it is off by
-        0.004 in the mean square, and by 0.02 at most where neither position nor velocity errs by 20 times
-        more in one direction than in another. Where they do, or all errors are one, it may be off by 0.06;
-        a target whose place is known, closer than a hundredth outside the limit, has up to 0.15 too little.
+        0.004 in the mean square; by more than 0.02 seldom, but in one of thirty cases where the target is
+        now within a tenth of the limit; by 0.08 at most, but that a target whose place is known, closer
+        than a hundredth outside the limit, has up to 0.15 too little.
 
         Parameters
         ----------
@@ -539,7 +539,8 @@ class UsvNavigator:
         gnss, velocity : (T, 2) array, optional
             Position m and velocity over ground m/s, [north, east].
         compass, log, rate_of_turn : (T,) array, optional
-            Heading rad, speed through water m/s (7 states), rate of turn rad/s (7 or 8 states).
+            Heading rad, speed through water m/s (7 states), rate of turn rad/s (7 or 8 states) beside the
+            gyro of `imu`, without whose row it is no reading.
         imu_std : (T, 2) array, optional
             Row k is the noise from time k - 1 to time k of [acceleration m/s², yaw rate rad/s], measured or
             not, in place of the navigator's.
@@ -558,7 +559,8 @@ class UsvNavigator:
         Raises
         ------
         ValueError
-            When shapes do not fit, times decrease, or a sensor needs a state that is not there.
+            When shapes do not fit, times decrease, a sensor needs a state that is not there, or
+            `rate_of_turn` comes without `imu`.
         FilterError
             When the navigator was not started, or a row makes a step fail; the navigator is as it was then.
         """

@@ -90,10 +90,10 @@ class ClosestApproach {
   /// about each of which the errors of the way count by first order: so it holds near relative
   /// rest, too. Two ships that are known to be at rest are as close as they are now.
   ///
-  /// Beside many draws it is off by 0.004 in the mean square, and by 0.02 at most where
-  /// neither position nor velocity errs by 20 times more in one direction than in another. Where
-  /// they do, or all errors are one, it may be off by 0.06; a target whose place is known, closer
-  /// than a hundredth outside the limit, has up to 0.15 too little. It costs ten microseconds.
+  /// Beside many draws it is off by 0.004 in the mean square; by more than 0.02 seldom, but in one
+  /// of thirty cases where the target is now within a tenth of the limit; by 0.08 at most, but that
+  /// a target whose place is known, closer than a hundredth outside the limit, has up to 0.15 too
+  /// little. It costs ten microseconds.
   [[nodiscard]] double probability(double limit_m, double horizon_s = kForever_s) const noexcept {
     if (!is_finite(mean_) || !is_finite(state_covariance_) || std::isnan(limit_m) ||
         std::isnan(horizon_s))
