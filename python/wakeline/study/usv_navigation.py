@@ -424,7 +424,14 @@ def _draw_mission(ax: Axes, mission: UsvMission, logs: UsvLogs, beliefs: Any) ->
             Circle(place, obstacle.radius_m, color=plot.PALETTE[1], linewidth=0, label=name)
         )
     ways = np.vstack([np.zeros((1, 2)), mission.waypoints_m])
-    ax.plot(*ways[:, ::-1].T, color=plot.MUTED, linewidth=0.8, linestyle=":", marker="o")
+    ax.plot(
+        *ways[:, ::-1].T,
+        color=plot.MUTED,
+        linewidth=0.8,
+        linestyle=":",
+        marker="o",
+        label="waypoints",
+    )
     ax.plot(*beliefs.mean[:, 1::-1].T, color=_COLORS[DEFAULT], linewidth=1.6, label=DEFAULT)
     ax.plot(
         *truth.position_m[:, ::-1].T, color=plot.INK, linewidth=1.0, linestyle="--", label="truth"
