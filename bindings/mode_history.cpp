@@ -14,17 +14,35 @@ namespace wakeline::python {
 namespace {
 
 AnyModeHistory::Variant over_filter(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
+                                    const std::optional<TurnRateGrid::Rates>& grid_std_rad_s,
                                     const Chain& chain, const AnyFilter& filter) {
   return std::visit(
       [&]<class Filter>(const Filter& prototype) -> AnyModeHistory::Variant {
-        if constexpr (std::is_constructible_v<AnyModeHistory::Variant, ModeHistory<Filter>>)
-          return ModeHistory<Filter>(tree, grid_rad_s, chain, prototype);
-        else
+        if constexpr (std::is_constructible_v<AnyModeHistory::Variant, ModeHistory<Filter>>) {
+          if (!grid_std_rad_s) return ModeHistory<Filter>(tree, grid_rad_s, chain, prototype);
+          if constexpr (kLearnsTurnRate<Filter>)
+            return ModeHistory<Filter>(tree, grid_rad_s, *grid_std_rad_s, chain, prototype);
+          else
+            throw py::value_error(
+                "grid_std_rad_s is for a filter over CoordinatedTurnRate, which learns its turn "
+                "rate; this one knows it");
+        } else {
           throw py::value_error(
               "filter must be one over CoordinatedTurn, whose turn rate is known, or over "
               "CoordinatedTurnRate, which learns it");
+        }
       },
       filter.variant());
+}
+
+/// One number for each turn rate, where there are any.
+std::optional<TurnRateGrid::Rates> for_each_rate(const char* name,
+                                                 const std::optional<DoubleArray>& numbers,
+                                                 const TurnRateGrid& grid_rad_s) {
+  if (!numbers) return std::nullopt;
+  const Eigen::VectorXd vector = to_vector(name, *numbers);
+  grid_rad_s.require_for_each(name, vector.size());
+  return TurnRateGrid::Rates(vector);
 }
 
 TurnRateGrid grid_or_default(const std::optional<DoubleArray>& rates) {
@@ -65,6 +83,13 @@ void tell_tree(CallText& call, const HistoryTree& tree) {
       .with("negligible_probability", tree.negligible_probability);
 }
 
+template <class Bank>
+TurnRateGrid::Rates deviations(const Bank& bank) {
+  TurnRateGrid::Rates std_rad_s(bank.size());
+  bank.for_each([&](int k, const auto& filter) { std_rad_s[k] = turn_rate_std_rad_s(filter); });
+  return std_rad_s;
+}
+
 std::string history_text(const AnyModeHistory& any) {
   return std::visit(
       [&](const auto& history) {
@@ -72,10 +97,14 @@ std::string history_text(const AnyModeHistory& any) {
         const bool pseudo_bayes = tree.pseudo_bayes_order > 0;
         CallText call(pseudo_bayes ? "ModeHistory.pseudo_bayes" : "ModeHistory");
         if (pseudo_bayes) call.with("order", tree.pseudo_bayes_order);
-        auto filter = history.bank().filter(any.grid_rad_s().straightest() == 0 ? 1 : 0);
-        expect_turn_rate(filter, 0.0, 1.0);
+        const auto& bank = history.bank();
+        auto filter = bank.filter(any.grid_rad_s().straightest() == 0 ? 1 : 0);
+        expect_turn_rate(filter, 0.0, turn_rate_std_rad_s(filter));
         call.with("filter", AnyFilter(filter, any.linear()))
             .with("grid_rad_s", any.grid_rad_s().rates_rad_s());
+        const auto grid_std_rad_s = deviations(bank);
+        if (grid_std_rad_s != history.usual_deviations(any.grid_rad_s(), filter))
+          call.with("grid_std_rad_s", grid_std_rad_s);
         if (pseudo_bayes)
           call.with("chain", history.chain());
         else
@@ -90,8 +119,9 @@ std::string history_text(const AnyModeHistory& any) {
 }  // namespace
 
 AnyModeHistory::AnyModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
-                               const Chain& chain, const AnyFilter& filter)
-    : history_(over_filter(tree, grid_rad_s, chain, filter)),
+                               const Chain& chain, const AnyFilter& filter,
+                               const std::optional<TurnRateGrid::Rates>& grid_std_rad_s)
+    : history_(over_filter(tree, grid_rad_s, grid_std_rad_s, chain, filter)),
       grid_rad_s_(grid_rad_s),
       linear_(filter.linear()) {}
 
@@ -114,13 +144,19 @@ filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn, or Ekf, Ukf or 
     apart.
 grid_rad_s : (2 to 16,) array, optional
     Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
+grid_std_rad_s : (K,) array, optional
+    Of filters over CoordinatedTurnRate, how far the rate may be off each of the grid when a turn begins, instead of
+    `prior_turn_rate_std_rad_s` and a tenth of it. Next to none (1e-4 rad/s) at rates that vessels are known to turn at, and
+    more at some between them, which learn theirs, is nearly as good as either where either is right.
+grid_weight : (K,) array, optional
+    How usual each rate is among turns, as parts of their sum; that of the straightest does not matter. All alike when left out.
 straight_sojourn_s, turn_sojourn_s : float
     Mean time on a straight (the straightest rate of the grid) and in a turn, once it may end. The defaults suit small
     craft that turn often; ships go straight for minutes.
 straighten_probability : float
     That a turn ends in a straight; other turns are alike.
 chain : ModeChain, optional
-    Another chain, instead of those three.
+    Another chain, instead of those three and `grid_weight`.
 initial_mode_probability : (K,) array, optional
     What a start begins with; 0.9 for the straightest when left out.
 max_hypotheses : int
@@ -148,12 +184,16 @@ References
 G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait, Automatica 18, 1982; D. J. Salmond, Proc. SPIE
 1305, 1990.)");
   history.def(
-      py::init([](const AnyFilter& filter, const std::optional<DoubleArray>& rates, double straight,
-                  double turn, double straighten, const std::optional<Chain>& chain,
+      py::init([](const AnyFilter& filter, const std::optional<DoubleArray>& rates,
+                  const std::optional<DoubleArray>& deviation,
+                  const std::optional<DoubleArray>& weight, double straight, double turn,
+                  double straighten, const std::optional<Chain>& chain,
                   const std::optional<DoubleArray>& initial, int max_hypotheses, int max_branches,
                   double min_segment, double merge_distance, double sibling_distance, double spread,
                   double negligible) {
         const TurnRateGrid grid = grid_or_default(rates);
+        const TurnHabits habits{straight, turn, straighten};
+        const auto weights = for_each_rate("grid_weight", weight, grid);
         return with_initial(
             AnyModeHistory({.max_hypotheses = max_hypotheses,
                             .max_branches = max_branches,
@@ -162,11 +202,15 @@ G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait,
                             .sibling_distance = sibling_distance,
                             .switch_time_spread = spread,
                             .negligible_probability = negligible},
-                           grid, chain ? *chain : turning_chain(grid, {straight, turn, straighten}),
-                           filter),
+                           grid,
+                           chain     ? *chain
+                           : weights ? turning_chain(grid, habits, *weights)
+                                     : turning_chain(grid, habits),
+                           filter, for_each_rate("grid_std_rad_s", deviation, grid)),
             initial);
       }),
       py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
+      py::arg("grid_std_rad_s") = py::none(), py::arg("grid_weight") = py::none(),
       py::arg("straight_sojourn_s") = habits.straight_sojourn_s,
       py::arg("turn_sojourn_s") = habits.turn_sojourn_s,
       py::arg("straighten_probability") = habits.straighten_probability,

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <variant>
@@ -45,9 +46,11 @@ class AnyModeHistory {
                    ModeHistory<Ekf<CoordinatedTurnRate>>, ModeHistory<Ukf<CoordinatedTurnRate>>,
                    ModeHistory<SquareRootUkf<CoordinatedTurnRate>>>;
 
-  /// Throws as `ModeHistory` does, and where the filter has no turn rate.
+  /// Throws as `ModeHistory` does, and where the filter has no turn rate, or deviations are told of
+  /// one that knows its own.
   AnyModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
-                 const ModeChain<kRuntimeModes>& chain, const AnyFilter& filter);
+                 const ModeChain<kRuntimeModes>& chain, const AnyFilter& filter,
+                 const std::optional<TurnRateGrid::Rates>& grid_std_rad_s = {});
 
   void set_initial_mode_probability(const ModeVector<double, kRuntimeModes>& probability) {
     std::visit([&](auto& history) { history.set_initial_mode_probability(probability); },

@@ -95,6 +95,73 @@ def test_a_start_may_know_the_rate():
     np.testing.assert_allclose(one.estimate().mean[4], 0.0, atol=1e-15)
 
 
+@pytest.mark.parametrize("kind", [wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_deviations_and_weights_that_are_those_left_out_change_nothing(kind):
+    z = np.stack([readings(15, seed) for seed in range(2)])
+    std_rad_s = np.full(len(RATES), LEARNT.prior_turn_rate_std_rad_s)
+    std_rad_s[2] *= 0.1  # that of the straight
+    told = wl.ModeHistory(
+        kind(LEARNT), RATES, grid_std_rad_s=std_rad_s, grid_weight=np.full(len(RATES), 0.4)
+    )
+    left_out = wl.ModeHistory(kind(LEARNT), RATES)
+    for readings_of in (z, z[0]):
+        results = [
+            one.run(readings_of, dt_s=DT_S, sensor=RADAR, start=START) for one in (told, left_out)
+        ]
+        np.testing.assert_array_equal(results[0].mean, results[1].mean)
+
+
+@pytest.mark.parametrize("kind", [wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_each_rate_of_a_tree_in_lanes_has_its_own_deviation(kind):
+    z = np.stack([readings(20, seed) for seed in range(3)])
+    between = wl.ModeHistory(
+        kind(LEARNT),
+        RATES,
+        grid_std_rad_s=np.deg2rad([0.01, 0.5, 0.01, 0.5, 0.01]),
+        grid_weight=[1.0, 0.3, 1.0, 0.3, 1.0],
+    )
+    together = between.run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    for run, alone in enumerate(z):
+        expected = between.run(alone, dt_s=DT_S, sensor=RADAR, start=START)
+        np.testing.assert_allclose(together.mean[run], expected.mean, rtol=1e-9, atol=1e-9)
+
+
+def test_rates_that_are_learnt_between_known_ones_are_nearly_the_best_of_both():
+    known_deg_s, between_deg_s = np.arange(-4.0, 5.0), np.array([-3.5, -2.5, -1.5, 1.5, 2.5, 3.5])
+    rates_deg_s = np.sort(np.concatenate([known_deg_s, between_deg_s]))
+    learnt = np.isin(rates_deg_s, between_deg_s)
+    filter = wl.Ekf(
+        wl.CoordinatedTurnRate(
+            noise=wl.PiecewiseAcceleration(std_mps2=0.003),
+            turn_rate_psd_rad2s3=0.0,
+            prior_turn_rate_std_rad_s=np.deg2rad(0.2),
+        )
+    )
+    trees = {
+        "known": wl.ModeHistory(study_filter()),
+        "learnt": wl.ModeHistory(filter),
+        "both": wl.ModeHistory(
+            filter,
+            np.deg2rad(rates_deg_s),
+            grid_std_rad_s=np.deg2rad(np.where(learnt, 0.2, 0.005)),
+            grid_weight=np.where(learnt, 0.3, 1.0),
+        ),
+    }
+    on_the_grid = paired("example1", trees, runs=60)
+    assert on_the_grid["both"] < 1.04 * on_the_grid["known"]
+    assert on_the_grid["both"] < 0.96 * on_the_grid["learnt"]
+    candidates = {name: montecarlo.Candidate(tree) for name, tree in trees.items()}
+    off_the_grid = montecarlo.run(scenario.random_maneuvers(8, 3), candidates, 8, 7)
+    mean_m = {
+        name: np.mean(
+            [off_the_grid[one, name].summary()["mean_position_m"] for one in off_the_grid.scenarios]
+        )
+        for name in trees
+    }
+    assert mean_m["both"] < 0.97 * mean_m["known"]
+    assert mean_m["both"] < 1.04 * mean_m["learnt"]
+
+
 def test_a_filter_without_turn_rate_is_refused():
     with pytest.raises(ValueError, match=r"over CoordinatedTurn, .*CoordinatedTurnRate"):
         wl.ModeHistory(wl.Ekf(wl.ConstantVelocity()), RATES)
@@ -273,6 +340,17 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         (lambda: tree(straight_sojourn_s=0.0), "sojourn"),
         (lambda: tree(initial_mode_probability=np.ones(5)), "initial_mode_probability"),
         (lambda: tree(chain=wl.ModeChain(np.eye(3))), "modes"),
+        (lambda: tree(grid_weight=[1.0, 2.0]), "grid_weight must have one number for each of .* 5"),
+        (lambda: tree(grid_weight=[1.0, 1.0, 1.0, 0.0, 1.0]), "grid_weight must be positive"),
+        (lambda: tree(grid_std_rad_s=np.ones(5)), "grid_std_rad_s is for .*CoordinatedTurnRate"),
+        (
+            lambda: wl.ModeHistory(wl.Ekf(LEARNT), RATES, grid_std_rad_s=np.ones(4)),
+            "grid_std_rad_s must have one number for each of the 5 turn rates .* got 4",
+        ),
+        (
+            lambda: wl.ModeHistory(wl.Ekf(LEARNT), RATES, grid_std_rad_s=[1, 1, 0, 1, 1]),
+            "grid_std_rad_s must be positive",
+        ),
         (lambda: wl.ModeHistory.pseudo_bayes(0, wl.Ekf(TURN), RATES), "1 to 8"),
         (lambda: wl.ModeHistory.pseudo_bayes(4, wl.Ekf(TURN), RATES), "more than 256 filters"),
     ],

@@ -85,6 +85,12 @@ OF_ALL_KINDS = {
     "ModeHistory-rates": wl.ModeHistory(
         wl.Ekf(wl.CoordinatedTurnRate(prior_turn_rate_std_rad_s=0.01)), RATES
     ),
+    "ModeHistory-between": wl.ModeHistory(
+        wl.Ekf(wl.CoordinatedTurnRate()),
+        RATES,
+        grid_std_rad_s=np.linspace(1e-4, 2e-3, len(RATES)),
+        grid_weight=np.linspace(0.5, 1.0, len(RATES)),
+    ),
     "ModeHistory-one_side": wl.ModeHistory(
         wl.Ekf(wl.CoordinatedTurnRate(prior_turn_rate_std_rad_s=0.01)), [0.0, 0.05]
     ),

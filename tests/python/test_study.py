@@ -31,14 +31,15 @@ ESTIMATORS = {
     "imm": ["imm2", "imm3", "clairvoyant", "bound"],
     "variable-structure": [
         *("imm5", "imm9", "agmm", "sgmm", "likely_model_set", "mode_history"),
-        "mode_history_rates",
+        *("mode_history_known", "mode_history_rates"),
         *("agmm_printed", "sgmm_printed", "agmm_printed_converted", "sgmm_printed_converted"),
         *("imm5_converted", "agmm_converted", "sgmm_converted", "clairvoyant", "bound"),
     ],
     "solent": [
         *("kalman_cv", "wandering_course", "kalman_ca", "singer", "ekf_turn_rate"),
         *("ukf_turn_rate", "imm3", "imm5", "imm_turn_rate", "vessel_imm", "vessel_imm_ships"),
-        *("agmm", "sgmm", "likely_model_set", "mode_history", "mode_history_rates"),
+        *("agmm", "sgmm", "likely_model_set", "mode_history"),
+        *("mode_history_known", "mode_history_rates"),
     ],
 }
 

@@ -106,6 +106,44 @@ TEST(ModeHistoryOfRates, WithoutDoubtIsTheTreeOfKnownRates) {
   });
 }
 
+TEST(ModeHistoryOfRates, EachRateHasItsOwnDeviation) {
+  TurnRateGrid::Rates std_rad_s(3);
+  std_rad_s << deg(0.4), deg(0.05), 1e-4;
+  const Tree tree({}, kTriple, std_rad_s, turning_chain(kTriple), Learner(learning(deg(0.4))));
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(tree.bank().filter(k).motion().prior_turn_rate_rad_s, kTriple[k]);
+    EXPECT_EQ(tree.bank().filter(k).motion().prior_turn_rate_std_rad_s, std_rad_s[k]);
+  }
+  for (const double wrong : {0.0, -1.0, std::nan("")}) {
+    std_rad_s[2] = wrong;
+    EXPECT_THROW(
+        Tree({}, kTriple, std_rad_s, turning_chain(kTriple), Learner(learning(deg(0.4)))),
+        std::invalid_argument);
+  }
+}
+
+TEST(TurningChain, LeadsToEachTurnByItsWeight) {
+  const TurnRateGrid grid{deg(-2.0), deg(-1.0), 0.0, deg(1.0)};
+  ModeVector<double, kRuntimeModes> weight(4);
+  weight << 1.0, 3.0, 7.0, 4.0;
+  const TurnHabits habits{.straight_sojourn_s = 50, .turn_sojourn_s = 80,
+                          .straighten_probability = 0.6};
+  const auto g = *turning_chain(grid, habits, weight).generator_per_s();
+  EXPECT_TRUE(matrices_near(g.rowwise().sum().eval(), Vec<double, 4>::Zero(), {.absolute = 1e-15}));
+  EXPECT_NEAR(g(2, 0), 1.0 / 8 / 50, 1e-15);  // a straight: 1, 3 and 4 of 8
+  EXPECT_NEAR(g(2, 1), 3.0 / 8 / 50, 1e-15);
+  EXPECT_NEAR(g(0, 2), 0.6 / 80, 1e-15);
+  EXPECT_NEAR(g(0, 1), 0.4 * 3.0 / 7 / 80, 1e-15);  // a turn to another: 3 and 4 of 7
+  EXPECT_NEAR(g(0, 3), 0.4 * 4.0 / 7 / 80, 1e-15);
+  const auto alike = turning_chain(grid, habits, ModeVector<double, kRuntimeModes>::Ones(4));
+  EXPECT_EQ(*turning_chain(grid, habits).generator_per_s(), *alike.generator_per_s());
+  weight[1] = 0.0;
+  EXPECT_THROW(turning_chain(grid, habits, weight), std::invalid_argument);
+  weight[1] = 1.0;
+  weight[2] = 0.0;  // that of the straight does not matter
+  EXPECT_NO_THROW(turning_chain(grid, habits, weight));
+}
+
 TEST(ModeHistoryOfRates, OfOneModeIsItsFilterBitForBit) {
   const ModeChain<kRuntimeModes> one(ModeChain<kRuntimeModes>::Matrix::Ones(1, 1));
   Learner filter(learning(deg(1.0)));

@@ -110,11 +110,28 @@ class ModeHistory {
   /// it has a probability of 0.9.
   ModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s, const ModeChain<K>& chain,
               const Filter& prototype)
-      : ModeHistory(tree, chain, bank_about(grid_rad_s, prototype)) {
+      : ModeHistory(tree, grid_rad_s, usual_deviations(grid_rad_s, prototype), chain, prototype) {}
+
+  /// The same with a deviation for each rate (rad/s): next to none for rates that vessels are known
+  /// to turn at, more for those between them, which are learnt. Throws as above, and unless there
+  /// is one for each rate, positive where filters learn theirs.
+  ModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
+              const TurnRateGrid::Rates& grid_std_rad_s, const ModeChain<K>& chain,
+              const Filter& prototype)
+      : ModeHistory(tree, chain, bank_about(grid_rad_s, grid_std_rad_s, prototype)) {
     const int modes = grid_rad_s.size();
     initial_.setConstant(Scalar(0.1 / (modes - 1)));
     initial_[grid_rad_s.straightest()] = Scalar(0.9);
     probability_ = initial_;
+  }
+
+  /// How far off each rate of a grid may be when nothing else is said.
+  static TurnRateGrid::Rates usual_deviations(const TurnRateGrid& grid_rad_s,
+                                              const Filter& prototype) {
+    TurnRateGrid::Rates std_rad_s =
+        TurnRateGrid::Rates::Constant(grid_rad_s.size(), turn_rate_std_rad_s(prototype));
+    std_rad_s[grid_rad_s.straightest()] *= kStraightPart;
+    return std_rad_s;
   }
 
   /// Mode probabilities that a start begins with. Throws unless they sum to 1.
@@ -570,10 +587,14 @@ class ModeHistory {
            load<Lanes>(row.segment_s.data()) + Lanes(dt_s / 2) > Lanes(Scalar(tree_.min_segment_s));
   }
 
-  static Bank bank_about(const TurnRateGrid& grid_rad_s, const Filter& prototype) {
+  static Bank bank_about(const TurnRateGrid& grid_rad_s, const TurnRateGrid::Rates& grid_std_rad_s,
+                         const Filter& prototype) {
+    grid_rad_s.require_for_each("grid_std_rad_s", grid_std_rad_s.size());
     Bank bank(prototype, grid_rad_s.size());
     bank.for_each([&](int k, Filter& filter, auto&) {
-      expect_turn_rate(filter, grid_rad_s[k], k == grid_rad_s.straightest() ? kStraightPart : 1.0);
+      if constexpr (kLearnsTurnRate<Filter>)
+        require_positive("every deviation of grid_std_rad_s", grid_std_rad_s[k]);
+      expect_turn_rate(filter, grid_rad_s[k], grid_std_rad_s[k]);
     });
     return bank;
   }

@@ -42,6 +42,13 @@ class TurnRateGrid {
            " turn rates, got " + std::to_string(count));
   }
 
+  /// Throws `std::invalid_argument` unless there are as many of something as rates.
+  void require_for_each(const char* name, Eigen::Index count) const {
+    if (count != rates_.size())
+      refuse(std::string(name) + " must have one number for each of the " + std::to_string(size()) +
+             " turn rates of grid_rad_s, got " + std::to_string(count));
+  }
+
   /// i wmax / n for i = -n .. n: paper B, step 1.2. Throws as above.
   static TurnRateGrid evenly(double max_turn_rate_rad_s, int steps_each_side) {
     require_positive("max_turn_rate_rad_s", max_turn_rate_rad_s);
@@ -93,14 +100,29 @@ void set_turn_rate(Filter& filter, Rate turn_rate_rad_s) noexcept {
   filter.set_motion(motion);
 }
 
-/// Gives a filter the turn rate of a mode: the one that it knows, or the one around which it begins
-/// to learn its own, with so much of the deviation that it had.
+/// True for a filter that learns its turn rate from a prior.
 template <class Filter>
-void expect_turn_rate(Filter& filter, double turn_rate_rad_s, double of_deviation) noexcept {
-  if constexpr (requires { filter.motion().prior_turn_rate_rad_s; }) {
+inline constexpr bool kLearnsTurnRate = requires(const Filter& filter) {
+  filter.motion().prior_turn_rate_rad_s;
+};
+
+/// How far off the turn rate may be that a filter expects; 0 of one that knows it.
+template <class Filter>
+double turn_rate_std_rad_s(const Filter& filter) noexcept {
+  if constexpr (kLearnsTurnRate<Filter>)
+    return filter.motion().prior_turn_rate_std_rad_s;
+  else
+    return 0.0;
+}
+
+/// Gives a filter the turn rate of a mode: the one that it knows, or the one around which it begins
+/// to learn its own, which may be so far off.
+template <class Filter>
+void expect_turn_rate(Filter& filter, double turn_rate_rad_s, double std_rad_s) noexcept {
+  if constexpr (kLearnsTurnRate<Filter>) {
     auto motion = filter.motion();
     motion.prior_turn_rate_rad_s = turn_rate_rad_s;
-    motion.prior_turn_rate_std_rad_s *= of_deviation;
+    motion.prior_turn_rate_std_rad_s = std_rad_s;
     filter.set_motion(motion);
   } else {
     set_turn_rate(filter, turn_rate_rad_s);

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-
 #include "wakeline/multimodel/mode_chain.hpp"
 #include "wakeline/multimodel/turn_rate_grid.hpp"
 
@@ -16,27 +14,44 @@ struct TurnHabits {
   double straighten_probability = 0.75;  ///< that a turn ends in a straight, not in another turn
 };
 
-/// The chain between the turn rates of a grid, in continuous time: a straight leads to
-/// every turn with equal probability, a turn that does not straighten to every other turn. The
-/// straightest rate of the grid is the straight. Throws `std::invalid_argument` when a parameter
-/// makes no sense.
+/// The chain between the turn rates of a grid, in continuous time: a straight leads to a turn, a
+/// turn that does not straighten to another turn, each as often as its weight of all says. The
+/// straightest rate of the grid is the straight; its weight does not matter. Throws
+/// `std::invalid_argument` when a parameter makes no sense.
 inline ModeChain<kRuntimeModes> turning_chain(const TurnRateGrid& grid_rad_s,
-                                              const TurnHabits& habits = {}) {
+                                              const TurnHabits& habits,
+                                              const ModeVector<double, kRuntimeModes>& weight) {
   require_positive("straight_sojourn_s", habits.straight_sojourn_s);
   require_positive("turn_sojourn_s", habits.turn_sojourn_s);
   require_probability("straighten_probability", habits.straighten_probability);
+  grid_rad_s.require_for_each("grid_weight", weight.size());
   const int modes = grid_rad_s.size();
   const int straight = grid_rad_s.straightest();
+  for (int k = 0; k < modes; ++k)
+    if (k != straight) require_positive("every weight of a turn in grid_weight", weight[k]);
   const double straightens = modes > 2 ? habits.straighten_probability : 1.0;
   ModeVector<double, kRuntimeModes> sojourn_s =
       ModeVector<double, kRuntimeModes>::Constant(modes, habits.turn_sojourn_s);
   sojourn_s[straight] = habits.straight_sojourn_s;
-  ModeChain<kRuntimeModes>::Matrix next = ModeChain<kRuntimeModes>::Matrix::Constant(
-      modes, modes, (1.0 - straightens) / std::max(modes - 2, 1));
-  next.col(straight).setConstant(straightens);
-  next.row(straight).setConstant(1.0 / (modes - 1));
-  next.diagonal().setZero();
+  ModeChain<kRuntimeModes>::Matrix next = ModeChain<kRuntimeModes>::Matrix::Zero(modes, modes);
+  for (int from = 0; from < modes; ++from) {
+    const auto leads = [&](int to) { return to != straight && to != from; };
+    double all = 0.0;
+    for (int to = 0; to < modes; ++to)
+      if (leads(to)) all += weight[to];
+    const double turns = from == straight ? 1.0 : 1.0 - straightens;
+    for (int to = 0; to < modes; ++to)
+      if (leads(to)) next(from, to) = turns * weight[to] / all;
+    if (from != straight) next(from, straight) = straightens;
+  }
   return ModeChain<kRuntimeModes>::from_sojourn_s(sojourn_s, next);
+}
+
+/// The same where all turns are alike.
+inline ModeChain<kRuntimeModes> turning_chain(const TurnRateGrid& grid_rad_s,
+                                              const TurnHabits& habits = {}) {
+  return turning_chain(grid_rad_s, habits,
+                       ModeVector<double, kRuntimeModes>::Ones(grid_rad_s.size()));
 }
 
 }  // namespace wakeline

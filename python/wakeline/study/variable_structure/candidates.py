@@ -23,6 +23,7 @@ _PLAIN_LABELS = {
     "sgmm": "SGMM",
     "likely_model_set": "LMS",
     "imm9": "IMM9",
+    "mode_history_known": "histories, known rates",
     "mode_history_rates": "histories, own rates",
     "clairvoyant": "clairvoyant",
     "agmm_printed": "AGMM as printed",
@@ -44,6 +45,10 @@ _NOISE = {
 }
 _STAY = 0.9
 _NINE_DEG_S = range(-4, 5)
+# Of the histories: rates that vessels are known to turn at, and some between them, which are learnt.
+_BETWEEN_DEG_S = (-3.5, -2.5, -1.5, 1.5, 2.5, 3.5)
+_KNOWN_STD_DEG_S, _BETWEEN_STD_DEG_S = 0.005, 0.2
+_BETWEEN_WEIGHT = 0.3
 
 
 @dataclass(frozen=True)
@@ -119,13 +124,27 @@ def likely_model_set(setting: Setting, form: str) -> Candidate:
 
 
 def mode_history(setting: Setting, form: str) -> Candidate:
-    """A tree of mode histories over nine rates, at the library's defaults."""
+    """A tree of mode histories: nine rates are known, those between them are learnt."""
+    rates_deg_s = np.sort([*_NINE_DEG_S, *_BETWEEN_DEG_S])
+    between = np.isin(rates_deg_s, _BETWEEN_DEG_S)
+    rates_rad_s = np.deg2rad(rates_deg_s)
+    tree = wl.ModeHistory(
+        learning_filter(_NOISE[form]),
+        rates_rad_s,
+        grid_std_rad_s=np.deg2rad(np.where(between, _BETWEEN_STD_DEG_S, _KNOWN_STD_DEG_S)),
+        grid_weight=np.where(between, _BETWEEN_WEIGHT, 1.0),
+    )
+    return Candidate(tree, form, rates_rad_s)
+
+
+def mode_history_known(setting: Setting, form: str) -> Candidate:
+    """A tree of mode histories over the nine rates alone."""
     rates_rad_s = np.deg2rad(_NINE_DEG_S)
     return Candidate(wl.ModeHistory(_turning(form), rates_rad_s), form, rates_rad_s)
 
 
 def mode_history_rates(setting: Setting, form: str) -> Candidate:
-    """The same tree, whose histories begin a turn at one of the rates and learn their own."""
+    """The same, whose histories begin a turn at one of the rates and learn their own."""
     rates_rad_s = np.deg2rad(_NINE_DEG_S)
     return Candidate(wl.ModeHistory(learning_filter(_NOISE[form]), rates_rad_s), form, rates_rad_s)
 
@@ -178,6 +197,7 @@ _TABLE: dict[str, Callable[[Setting, str], Candidate]] = {
     "sgmm_printed": sgmm_printed,
     "likely_model_set": likely_model_set,
     "mode_history": mode_history,
+    "mode_history_known": mode_history_known,
     "mode_history_rates": mode_history_rates,
 }
 _CONVERTED = ("imm5", "agmm", "agmm_printed", "sgmm", "sgmm_printed")

@@ -38,7 +38,7 @@ _SHOWN = {
 }
 _IN_ROBUSTNESS = (
     *("imm5", "imm9", "agmm", "sgmm"),
-    *("mode_history", "mode_history_rates", "clairvoyant"),
+    *("mode_history", "mode_history_known", "mode_history_rates", "clairvoyant"),
 )
 
 
