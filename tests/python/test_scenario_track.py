@@ -112,6 +112,18 @@ def test_a_log_of_instruments_is_a_track():
     assert np.isfinite(yacht.draw(runs=1, seed=1)).all()
 
 
+def test_a_vessel_is_looked_at_from_where_its_track_begins():
+    vessels = {mmsi: TrackTruth.of(t) for mmsi, t in recording.load_ais().tracks.items()}
+    first = min(vessels.values(), key=lambda truth: truth.start_time_s)
+    assert first.start_time_s > 1e9
+    scene = Scenario("first", first, RADAR, scans=30)
+    assert scene.start_time_s == first.start_time_s
+    np.testing.assert_array_equal(scene.truth_states[0], first.state_at(scene.time_s[:1])[0])
+    assert RADAR.observe(first, 3, rng=0)[0][0] == first.start_time_s
+    seen = RADAR.record(vessels, 3, rng=0)
+    assert seen.episodes[0].time_s[0] == first.start_time_s
+
+
 def test_a_track_can_be_moved_in_front_of_a_radar():
     truth = TrackTruth.of(track_of(TURN, np.arange(0.0, 181.0, 5.0)))
     moved = truth.moved(1000.0, -400.0)
