@@ -10,7 +10,7 @@ import pytest
 
 from wakeline import metrics, recording
 from wakeline.recording import Episode, OwnShip, TargetTruth, Tracks
-from wakeline.scenario import RadarSimulator, Truth
+from wakeline.scenario import RadarSimulator, RadarVideoSimulator, Truth
 
 pytest.importorskip("matplotlib")
 
@@ -169,6 +169,26 @@ def test_labels_of_danger_cover_no_other_text_and_stay_within_the_axes(count, si
         assert window.x0 <= box.x0 < box.x1 <= window.x1
         assert window.y0 <= box.y0 < box.y1 <= window.y1
     assert "1: CPA 1 m in 1.5 min" in [text.get_text() for text in shown]
+
+
+@pytest.mark.parametrize("count", [1, 15, 60])
+@pytest.mark.parametrize("side_m", [0.0, 1000.0, 1e5])
+def test_ids_of_tracks_cover_none_of_longer_ones(count, side_m):
+    tracks = crowd(count, side_m, seed=1)
+    last = tracks.track_id == str(count)
+    tracks = tracks.where(last | (tracks.time_s > 0.0))  # the last is the longest
+    turn = RadarVideoSimulator(sweeps_per_turn=600, cells=100, cell_m=10.0).turn()
+    ppi = plot.figure().subplots()
+    plot.ppi(turn, ppi, tracks=tracks)
+    for ax in (plot.map_figure(None, tracks).axes[0], ppi):
+        ax.figure.draw_without_rendering()
+        ids = [text for text in ax.texts if text.get_text() in tracks.ids()]
+        assert len(ids) == count
+        shown = [text for text in ids if text.get_visible()]
+        boxes = [text.get_window_extent() for text in shown]
+        assert not any(box.count_overlaps(boxes[:k]) for k, box in enumerate(boxes))
+        assert str(count) in [text.get_text() for text in shown]
+        assert len(shown) == 1 if side_m == 0.0 and ax is ppi else len(shown) >= 1
 
 
 def test_a_dangerous_track_is_red_and_has_its_own_colour():
