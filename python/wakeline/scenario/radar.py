@@ -153,7 +153,7 @@ class RadarSimulator:
         scans, rng, own
             As for :meth:`observe`.
         start_time_s : float, optional
-            Time at which the first scan begins; default where the first of the truths begins.
+            Time at which the first scan begins; default where the last of the truths begins.
         name : str
             Name of the recording.
 
@@ -172,7 +172,7 @@ class RadarSimulator:
         rng = np.random.default_rng(rng)
         own = _at_rest() if own is None else own
         if start_time_s is None:
-            start_time_s = min(map(start_of, truths.values()), default=0.0)
+            start_time_s = max(map(start_of, truths.values()), default=0.0)
         begin_s = self._begins(scans, start_time_s)
         scan_time_s = begin_s + (self.period_s if self.rotating else 0.0)
         looks = [(truth, self._looks(truth, own, begin_s)) for truth in truths.values()]
