@@ -11,11 +11,13 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <fstream>
 #include <map>
 #include <new>
 #include <random>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -47,13 +49,21 @@ struct Scan {
 std::vector<std::vector<double>> read_columns(const std::string& path,
                                               const std::vector<std::string>& names) {
   std::ifstream file(path);
+  if (!file) throw std::runtime_error(path + " cannot be read");
   std::string line, field;
-  std::getline(file, line);
+  const auto next_line = [&] {
+    if (!std::getline(file, line)) return false;
+    if (line.ends_with('\r')) line.pop_back();
+    return true;
+  };
+  next_line();
   std::map<std::string, std::size_t> place;
   for (std::istringstream header(line); std::getline(header, field, ',');)
     place.emplace(field, place.size());
+  for (const std::string& name : names)
+    if (!place.contains(name)) throw std::runtime_error(path + " has no column " + name);
   std::vector<std::vector<double>> rows;
-  while (std::getline(file, line)) {
+  while (next_line()) {
     std::vector<std::string> fields;
     for (std::istringstream row(line); std::getline(row, field, ',');) fields.push_back(field);
     std::vector<double> numbers;
@@ -106,7 +116,7 @@ std::vector<Scan> made_up_scans() {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   const Radar radar{
       .range_std_m = 8.0, .bearing_std_rad = deg(0.6), .period_s = 2.5, .max_speed_mps = 25.0};
   const std::vector<Scan> scans = argc > 2 ? read_scans(argv[1], argv[2]) : made_up_scans();
@@ -134,4 +144,7 @@ int main(int argc, char** argv) {
   std::printf("%zu scans, %.1f us a scan, at worst %.1f us, %ld allocations\n", scans.size(),
               total_us / static_cast<double>(scans.size()), worst_us, allocations - before);
   return allocations == before ? 0 : 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "console_loop: %s\n", error.what());
+  return 2;
 }

@@ -748,3 +748,9 @@ def test_scoring_of_scenarios_is_seen_on_a_terminal(demo, monkeypatch, capsys):
     files = [str(demo / "autoferry" / "tracks.csv"), bundled("autoferry", "truth")]
     assert main(["score", *files, "--scans", bundled("autoferry", "scans")]) == 0
     assert re.search(r"scoring .* 4/5", capsys.readouterr().err)
+
+
+def test_the_package_runs_as_the_command():
+    command = [sys.executable, "-m", "wakeline", "--version"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout == f"wakeline {wl.__version__}\n"

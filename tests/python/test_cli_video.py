@@ -8,7 +8,7 @@ import pytest
 
 from wakeline import plot, scenario
 from wakeline.cli import main, outputs
-from wakeline.extraction import noise_of
+from wakeline.extraction import noise_of, read_plots_of_video
 from wakeline.recording import read_tracks, write_video
 
 SCANS = 14
@@ -83,6 +83,12 @@ def test_every_ship_has_a_track_from_strobe_to_velocity(video, tmp_path, capsys)
     told = capsys.readouterr().out
     assert "harbour" in told
     assert "as its echoes are" in told
+
+
+def test_a_file_may_be_named_by_text(video):
+    film = read_plots_of_video(str(video))
+    assert film.recording.name == "harbour"
+    assert len(film.recording.episodes[0]) in (SCANS, SCANS + 1)
 
 
 def test_the_screen_is_drawn(video, tmp_path, pictures):

@@ -754,6 +754,22 @@ def test_nothing_is_learnt_out_of_range():
     assert (np.diff(position_m) > 0).all()
 
 
+def test_the_bound_leaves_the_states_of_a_truth_alone():
+    scene = case(radar=RadarSimulator(30.0, 0.01, 3.0, max_range_m=2300.0))
+    kept = scene.truth_states
+    kept.flags.writeable = False
+
+    class Kept(SimpleNamespace):
+        def state_at(self, time_s):
+            return kept if np.shape(time_s) == (len(kept),) else CASE.truth.state_at(time_s)
+
+    theirs = Kept(turn_rate_at=CASE.truth.turn_rate_at, switch_times_s=CASE.truth.switch_times_s)
+    wanted = montecarlo.bound(scene)
+    np.testing.assert_array_equal(
+        montecarlo.bound(dataclasses.replace(scene, truth=theirs)), wanted
+    )
+
+
 def test_no_estimator_is_below_the_bound_and_the_right_one_is_on_it():
     turn = case(truth=Truth([2000.0, 8.0, 1000.0, -3.0], [Segment(90.0, 0.02)]))
     right = wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=0.02, noise=NO_NOISE))

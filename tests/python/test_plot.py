@@ -1,5 +1,6 @@
 """Figures: what is drawn is where and when it is, and the house rules of the axes hold."""
 
+import pickle
 import subprocess
 import sys
 from dataclasses import replace
@@ -9,6 +10,7 @@ import pytest
 
 from wakeline import metrics, recording
 from wakeline.recording import Episode, OwnShip, TargetTruth, Tracks
+from wakeline.scenario import RadarSimulator, RadarVideoSimulator, Truth
 
 pytest.importorskip("matplotlib")
 
@@ -167,6 +169,26 @@ def test_labels_of_danger_cover_no_other_text_and_stay_within_the_axes(count, si
         assert window.x0 <= box.x0 < box.x1 <= window.x1
         assert window.y0 <= box.y0 < box.y1 <= window.y1
     assert "1: CPA 1 m in 1.5 min" in [text.get_text() for text in shown]
+
+
+@pytest.mark.parametrize("count", [1, 15, 60])
+@pytest.mark.parametrize("side_m", [0.0, 1000.0, 1e5])
+def test_ids_of_tracks_cover_none_of_longer_ones(count, side_m):
+    tracks = crowd(count, side_m, seed=1)
+    last = tracks.track_id == str(count)
+    tracks = tracks.where(last | (tracks.time_s > 0.0))  # the last is the longest
+    turn = RadarVideoSimulator(sweeps_per_turn=600, cells=100, cell_m=10.0).turn()
+    ppi = plot.figure().subplots()
+    plot.ppi(turn, ppi, tracks=tracks)
+    for ax in (plot.map_figure(None, tracks).axes[0], ppi):
+        ax.figure.draw_without_rendering()
+        ids = [text for text in ax.texts if text.get_text() in tracks.ids()]
+        assert len(ids) == count
+        shown = [text for text in ids if text.get_visible()]
+        boxes = [text.get_window_extent() for text in shown]
+        assert not any(box.count_overlaps(boxes[:k]) for k, box in enumerate(boxes))
+        assert str(count) in [text.get_text() for text in shown]
+        assert len(shown) == 1 if side_m == 0.0 and ax is ppi else len(shown) >= 1
 
 
 def test_a_dangerous_track_is_red_and_has_its_own_colour():
@@ -568,6 +590,45 @@ def test_names_take_as_few_rows_as_leave_the_panels_their_width(count, columns):
         assert legend.width < 1.1 * room.width
         assert not legend.overlaps(room.translated(0.0, -1.0))
         assert legend.width > 0.4 * room.width or count < 3
+
+
+@pytest.mark.parametrize("names", [["a", "b"], ["bayesian_alpha_beta", "wandering_course"]])
+@pytest.mark.parametrize("columns", [1, 2])
+@pytest.mark.parametrize("count", [4, 5])
+def test_names_take_nothing_of_the_width_of_panels(names, columns, count):
+    values = {f"circumstance {k}": [1.0, 2.0] for k in range(count)}
+    widths, legends = [], []
+    for named in (False, True):
+        fig = plot.figure(6.0 * columns, 4.0)
+        axes = fig.subplots(1, columns, squeeze=False)[0]
+        for ax in axes:
+            plot.ranking_panel(ax, names, values, xlabel="error (m)")
+            if not named:
+                ax.get_legend().remove()
+        FigureCanvasAgg(fig).draw()
+        widths.append([ax.get_window_extent().width for ax in axes])
+        legends = [ax.get_legend().get_window_extent().width for ax in axes] if named else []
+    assert widths[1] == pytest.approx(widths[0], abs=1.0)
+    assert (np.array(legends) < np.array(widths[1]) + 5.0).all()
+    pickle.loads(pickle.dumps(fig))
+
+
+@pytest.mark.parametrize("name", ["1", "a vessel of a long name, " * 2])
+@pytest.mark.parametrize("way", [(1.0, 0.02), (0.02, 1.0)])
+def test_every_name_is_in_the_picture(name, way):
+    north, east = 1000.0 * np.outer(way, np.arange(9.0))
+    state = np.column_stack([north, np.full(9, 10.0 * way[0]), east, np.full(9, 10.0 * way[1])])
+    lone = Tracks(np.full(9, name), TIME_S[:9], state, np.array([np.eye(4)] * 9))
+    truth = TargetTruth(TIME_S[:9], north, east, *state[:, 1::2].T)
+    scans = RadarSimulator(5.0, 0.01, 1.0).record({"a": Truth(state[0])}, 9, rng=1).episodes[0]
+    told = replace(scans, truth={"a": truth})
+    for fig in (plot.map_figure(told, lone), plot.time_figure(told, lone)):
+        FigureCanvasAgg(fig).draw()
+        picture = fig.get_tightbbox().padded(0.1)
+        for legend in filter(None, (ax.get_legend() for ax in fig.axes)):
+            box = legend.get_window_extent()
+            assert picture.x0 * fig.dpi <= box.x0
+            assert box.x1 <= picture.x1 * fig.dpi
 
 
 def test_steps_are_named_and_their_ratios_are_alike_at_any_height(ax):

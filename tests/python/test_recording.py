@@ -1,5 +1,6 @@
 """Recordings: what a good file becomes, and what is said about each bad one."""
 
+import dataclasses
 import os
 import pickle
 import threading
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 from wakeline import recording
 from wakeline.recording import OwnShip, RecordingError, read_plots
 from wakeline.recording.scans import by_time
+from wakeline.scenario import RadarSimulator, Truth
 
 OWN = "scan,time_s,own_north_m,own_east_m\n0,0,0,0\n1,2,20,0\n2,4,40,0\n"
 
@@ -589,3 +591,62 @@ def test_what_holds_much_is_shown_in_a_few_words():
     log = recording.load_navigation()
     assert repr(log).startswith(f"<NavigationLog 'irene': fixes {len(log.fixes)}, ground ")
     assert repr(log.compass).startswith(f"<MagneticHeading: {len(log.compass)} readings, ")
+
+
+# ------------------------------------------------------------------ what is written
+
+
+def fields_of(thing):
+    return {name: np.asarray(value) for name, value in vars(thing).items() if value is not None}
+
+
+def assert_same(got, wanted, names=None):
+    for name in names or fields_of(wanted):
+        np.testing.assert_array_equal(fields_of(got)[name], fields_of(wanted)[name], name)
+
+
+@pytest.mark.parametrize("rotating", [False, True])
+def test_a_simulated_recording_is_read_back_to_the_last_bit(tmp_path, rotating):
+    radar = RadarSimulator(20.0, 0.01, 2.5, 0.5, 0.5, max_range_m=3000.0, rotating=rotating)
+    own = Truth([10.0, 3.0, -20.0, 1.0], start_time_s=1.7e9)
+    boats = {f'"{k}", east': Truth([900.0 - k, 5.0, 300.0, k], start_time_s=1.7e9) for k in (1, 2)}
+    made = radar.record(boats, 30, rng=1, own=own)
+    assert not all(map(len, only(made).scans))  # nor are scans without plots lost
+    files = [tmp_path / f"{kind}.csv" for kind in ("plots", "scans", "truth")]
+    recording.write_plots(files[0], made, *files[1:])
+    back = read_plots(*files)
+    assert back.notes == []
+    got, wanted = only(back), only(made)
+    assert_same(got.own, wanted.own)
+    assert list(got.truth) == list(wanted.truth)
+    for name, truth in wanted.truth.items():
+        assert_same(got.truth[name], truth)
+    assert len(got) == len(wanted)
+    for mine, its in zip(got.scans, wanted.scans, strict=True):
+        assert_same(mine, its)
+
+
+@pytest.mark.parametrize("name", ["joyride", "autoferry"])
+def test_recordings_that_ship_are_written_and_read_back(tmp_path, name):
+    real = recording.load(name)
+    files = [tmp_path / f"{kind}.csv" for kind in ("plots", "scans", "truth")]
+    recording.write_plots(files[0], real, *files[1:])
+    back = read_plots(*files)
+    assert [episode.name for episode in back] == [episode.name for episode in real]
+    for got, wanted in zip(back, real, strict=True):
+        assert_same(got.own, wanted.own)
+        assert list(got.truth) == list(wanted.truth)
+        for mine, its in zip(got.scans, wanted.scans, strict=True):
+            assert_same(mine, its, ("time_s", "number", "plot_time_s", "range_m", "bearing_rad"))
+            np.testing.assert_allclose(mine.position_m, its.position_m, atol=1e-9)
+
+
+def test_plots_alone_are_written_without_own_ship_and_truth(tmp_path):
+    made = RadarSimulator(20.0, 0.01, 2.5).record({"a": Truth([900.0, 5.0, 300.0, 1.0])}, 4, rng=1)
+    recording.write_plots(tmp_path / "plots.csv", made)
+    assert [path.name for path in tmp_path.iterdir()] == ["plots.csv"]
+    back = read_plots(tmp_path / "plots.csv")
+    assert places(only(back)) == places(only(made))
+    blind = dataclasses.replace(made, episodes=[dataclasses.replace(only(made), truth=None)])
+    with pytest.raises(ValueError, match="must have truth"):
+        recording.write_plots(tmp_path / "plots.csv", blind, truth_path=tmp_path / "truth.csv")

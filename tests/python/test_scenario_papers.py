@@ -131,6 +131,24 @@ def test_a_scenario_may_start_at_any_time():
     np.testing.assert_allclose(late.turn_rates_rad_s[[9, 10]], [0.0, 0.1])
 
 
+def test_a_scenario_starts_with_its_truth():
+    truth = Truth([0.0, 10.0, 500.0, 0.0], [Segment(50.0)], start_time_s=1000.0)
+    assert Scenario("with it", truth, RADAR, 30).time_s[0] == 1000.0 + RADAR.period_s
+    early = Scenario("early", truth, RADAR, 30, start_time_s=0.0)
+    assert early.time_s[0] == RADAR.period_s
+    assert Scenario("untold", SilentTruth(), RADAR, 30).start_time_s == 0.0
+
+
+class SilentTruth:
+    """A vessel at rest that does not tell when it begins."""
+
+    def state_at(self, time_s):
+        return np.zeros((np.size(time_s), 4))
+
+    def turn_rate_at(self, time_s):
+        return np.zeros(np.size(time_s))
+
+
 def test_a_truth_that_begins_after_the_scenario_may_switch_at_its_beginning():
     segments = [Segment(9.0, 0.1, control_mps2=(0.2, 0.0)), Segment(9.0, 0.1)]
     truth = Truth([0.0, 10.0, 500.0, 0.0], segments, start_time_s=11.0)

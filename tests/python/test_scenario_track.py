@@ -8,7 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from wakeline import montecarlo, recording
-from wakeline.scenario import RadarSimulator, Scenario, Segment, TrackTruth, Truth, smoothed
+from wakeline.scenario import (
+    RadarSimulator,
+    RadarVideoSimulator,
+    Scenario,
+    Segment,
+    TrackTruth,
+    Truth,
+    VideoTarget,
+    smoothed,
+)
 
 RADAR = RadarSimulator(30.0, 0.01, 2.0)
 TURN = Truth([0.0, 8.0, 500.0, 0.0], [Segment(60.0), Segment(60.0, 0.03), Segment(60.0)])
@@ -110,6 +119,25 @@ def test_a_log_of_instruments_is_a_track():
     ahead_m = yacht.truth.state_at(start_s + 60.0) - second.state_at(start_s + 60.0)
     assert np.hypot(*ahead_m[0, 0::2]) < 20.0
     assert np.isfinite(yacht.draw(runs=1, seed=1)).all()
+
+
+def test_a_vessel_is_looked_at_from_where_its_track_begins():
+    vessels = {mmsi: TrackTruth.of(t) for mmsi, t in recording.load_ais().tracks.items()}
+    first = min(vessels.values(), key=lambda truth: truth.start_time_s)
+    assert first.start_time_s > 1e9
+    scene = Scenario("first", first, RADAR, scans=30)
+    assert scene.start_time_s == first.start_time_s
+    np.testing.assert_array_equal(scene.truth_states[0], first.state_at(scene.time_s[:1])[0])
+    assert RADAR.observe(first, 3, rng=0)[0][0] == first.start_time_s
+    vessels["buoy"] = Truth([100.0, 0.0, 0.0, 0.0])
+    last_s = max(truth.start_time_s for truth in vessels.values())
+    assert RADAR.record(vessels, 3, rng=0).episodes[0].time_s[0] == last_s
+    targets = [VideoTarget(truth=truth, length_m=20.0, beam_m=5.0) for truth in vessels.values()]
+    video = RadarVideoSimulator(sweeps_per_turn=600, cells=50, period_s=2.0)
+    (first, second) = video.turns(targets, scans=2)
+    assert first.time_s.min() == pytest.approx(last_s, abs=0.01)
+    assert second.time_s.min() == pytest.approx(last_s + 2.0, abs=0.01)
+    np.testing.assert_array_equal(video.turn(targets, rng=0).time_s, first.time_s)
 
 
 def test_a_track_can_be_moved_in_front_of_a_radar():

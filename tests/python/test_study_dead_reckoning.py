@@ -96,6 +96,12 @@ def test_rows_are_those_of_the_design(report):
     assert report.row("forecast_4x3s", "combined")["course_rms_deg"] is None
 
 
+def test_the_table_has_figures_that_tell_estimators_apart(report):
+    head, *rows = report.table()
+    drift = [row[head.index("drift rms kn")] for row in rows]
+    assert all(len(cell.lstrip("0.")) >= 2 for cell in drift if cell not in ("", "-"))
+
+
 @pytest.mark.parametrize("name", ["window_bank", "kalman"])
 def test_forecasts_four_readings_ahead_are_as_good_as_asked_for(report, name):
     every_second, every_three = (report.row(case, name) for case in FORECASTS[:2])

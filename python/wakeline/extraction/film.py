@@ -49,7 +49,7 @@ class VideoRecording:
 
 
 def read_plots_of_video(
-    path: Path, own_path: Path | None = None, *, period_s: float | None = None
+    path: str | Path, own_path: str | Path | None = None, *, period_s: float | None = None
 ) -> VideoRecording:
     """Read radar video and take its echoes as plots, a turn of the antenna after the other.
 
@@ -64,6 +64,7 @@ def read_plots_of_video(
         When the file holds no radar video, or own ship is not known at one of its plots, or is
         that of several scenarios.
     """
+    path = Path(path)
     report = VideoReport()
     extraction = Extraction()
     parts: list[list[_Seen]] = []
@@ -137,7 +138,7 @@ def _scans(part: Sequence[_Seen], ship: OwnShip) -> list[Scan]:
     ]
 
 
-def _own_rows(path: Path, notes: list[str]) -> OwnRows:
+def _own_rows(path: str | Path, notes: list[str]) -> OwnRows:
     """Rows with a position, in order of time."""
     rows = read_own(path, notes)
     if not rows.has_position:

@@ -48,11 +48,11 @@ def bound(scenario: Scenario, noise: Any = None) -> np.ndarray:
             transition[piece.scan], process_noise[piece.scan] = moved, gained
             moved, gained = np.eye(4), np.zeros((4, 4))
     states = scenario.truth_states
-    states[np.hypot(states[:, 0], states[:, 2]) > scenario.radar.max_range_m] = np.nan
+    seen = np.hypot(states[:, 0], states[:, 2]) <= scenario.radar.max_range_m
     return eval.cramer_rao_bound(
         transition,
         process_noise,
-        states,
+        np.where(seen[:, np.newaxis], states, np.nan),
         sensor=scenario.polar_sensor,
         start_covariance=scenario.start.covariance,
         detection_probability=scenario.radar.detection_probability,

@@ -72,6 +72,31 @@ class ClearLabels(Artist):
         label.set(ha=_ACROSS[right], va=_UP[up], position=(right * away_pt, up * away_pt))
 
 
+class LoneLabels(Artist):
+    """Leaves out labels, whenever the axes are drawn, that would cover one before them.
+
+    Parameters
+    ----------
+    labels : sequence of Annotation
+        They stay where they are.
+    """
+
+    def __init__(self, labels: Sequence[Annotation]) -> None:
+        super().__init__()
+        self._labels = labels
+        self.set_in_layout(False)
+
+    def draw(self, renderer: RendererBase) -> None:
+        """Choose the labels; they are drawn after this, as texts of the axes."""
+        taken: list[Bbox] = []
+        for label in self._labels:
+            label.set_visible(True)
+            box = label.get_window_extent(renderer)
+            label.set_visible(not box.count_overlaps(taken))
+            if label.get_visible():
+                taken.append(box)
+
+
 def _around(label: Annotation, radius: float) -> Bbox:
     """The square about the place of a label, in pixels."""
     place = label.axes.transData.transform(label.xy)

@@ -14,6 +14,7 @@ from .style import (
     INK,
     MUTED,
     TEXT_PT,
+    by_length,
     dot_lone,
     dress,
     figure,
@@ -27,6 +28,7 @@ from .style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Annotation
 
 CHI_SQUARE_95_2DOF = -2.0 * float(np.log(0.05))
 _ID_OFFSET_PT = 11.0
@@ -58,8 +60,9 @@ def map_view(
         Its plots and, from its first scan to its last, own ship and, where it has it, truth are
         drawn.
     tracks : Tracks, optional
-        Tracks of that episode, each with its id at its end and, where it has a covariance, the
-        95 % ellipse of every `ellipse_every`-th row.
+        Tracks of that episode, each with its id at its end, where it does not cover that of a
+        longer one, and, where it has a covariance, the 95 % ellipse of every `ellipse_every`-th
+        row.
     ellipse_every : int
         0 for no ellipses.
     whole : bool
@@ -77,16 +80,21 @@ def map_view(
     matplotlib.axes.Axes
         `ax`.
     """
+    from .labels import LoneLabels
+
     if episode is not None:
         _draw_plots(ax, episode)
         _draw_own_ship(ax, *_own_way(episode))
         for k, truth in enumerate(_true_ways(episode)):
             _draw_truth(ax, *truth, "truth" if k == 0 else None)
+    ids = {}
     for k, (track_id, color) in enumerate(track_colors(tracks).items()):
         track = tracks.where(tracks.track_id == track_id)
         if ellipse_every > 0 and track.covariance is not None:
             _draw_ellipses(ax, track.where(slice(None, None, ellipse_every)), color, k == 0)
-        _draw_track(ax, track, track_id, color, "track" if k == 0 else None)
+        ids[track_id] = _draw_track(ax, track, track_id, color, "track" if k == 0 else None)
+    if tracks is not None:
+        ax.add_artist(LoneLabels([ids[track_id] for track_id in by_length(tracks)]))
     if tracks is not None and alarmed is not None:
         _draw_danger(ax, tracks, alarmed)
     ax.set_aspect("equal", adjustable="box")
@@ -192,7 +200,10 @@ def _draw_truth(
     ax.plot(east_m, north_m, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=label, zorder=5)
 
 
-def _draw_track(ax: Axes, track: Tracks, track_id: str, color: str, label: str | None) -> None:
+def _draw_track(
+    ax: Axes, track: Tracks, track_id: str, color: str, label: str | None
+) -> Annotation:
+    """The track; returns its id at its end."""
     _, north_m, east_m = with_gaps(track.time_s, track.north_m, track.east_m)
     dot_lone(*ax.plot(east_m, north_m, color=color, linewidth=1.8, label=label, zorder=4))
     ax.plot(
@@ -207,7 +218,7 @@ def _draw_track(ax: Axes, track: Tracks, track_id: str, color: str, label: str |
     end = (track.east_m[-1], track.north_m[-1])
     ax.plot(*end, color=color, marker="o", markersize=4.5, zorder=6)
     ahead = np.deg2rad(track.course_deg[-1])
-    ax.annotate(
+    return ax.annotate(
         plain(track_id),
         end,
         xytext=(_ID_OFFSET_PT * np.sin(ahead), _ID_OFFSET_PT * np.cos(ahead)),

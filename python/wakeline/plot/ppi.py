@@ -14,7 +14,7 @@ from wakeline._engine.video import ScanImage
 from wakeline.recording import RadarVideo, Tracks
 
 from .map import ellipse_outline
-from .style import INK, MUTED, TEXT_PT, dot_lone, figure, plain, with_gaps
+from .style import INK, MUTED, TEXT_PT, by_length, dot_lone, figure, plain, with_gaps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -474,14 +474,22 @@ def _draw_layers(
     if plots is not None:
         north_m, east_m = _places("plots", plots).T
         ax.plot(east_m, north_m, **_CROSS)
-    ids = [] if tracks is None else tracks.ids()
-    for k, track_id in enumerate(ids):
+    if tracks is not None:
+        _draw_tracks(ax, tracks)
+
+
+def _draw_tracks(ax: Axes, tracks: Tracks) -> None:
+    """Each with its id at its end, where it does not cover that of a longer one."""
+    from .labels import LoneLabels
+
+    ids = {}
+    for k, track_id in enumerate(tracks.ids()):
         color = TRACK_COLORS[k % len(TRACK_COLORS)]
         track = tracks.where(tracks.track_id == track_id)
         _, east_m, north_m = with_gaps(track.time_s, track.east_m, track.north_m)
         dot_lone(*ax.plot(east_m, north_m, color=color, linewidth=1.4, zorder=6))
         end = (track.east_m[-1], track.north_m[-1])
-        ax.annotate(
+        ids[track_id] = ax.annotate(
             plain(track_id),
             end,
             xytext=(6, 5),
@@ -493,6 +501,7 @@ def _draw_layers(
             annotation_clip=True,
             zorder=7,
         )
+    ax.add_artist(LoneLabels([ids[track_id] for track_id in by_length(tracks)]))
 
 
 def _places(name: str, places: ArrayLike) -> NDArray[np.float64]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from functools import partial
 from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,8 +15,11 @@ from wakeline.recording import Tracks, replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.backend_bases import RendererBase
     from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
     from matplotlib.lines import Line2D
+    from matplotlib.transforms import Bbox
 
 PALETTE = (
     *("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"),
@@ -28,7 +32,8 @@ MUTED = "#8C959F"
 GRID = "#E4E7EB"
 TEXT_PT = 9
 _GAP_STEPS = 4.0
-_BESIDE_IN = 0.7  # of a column of panels: what stands left of the axes
+_BESIDE_IN = 0.7  # of a column of panels: what stands left of the axes, at least
+_AROUND_IN = 0.09  # what the layout leaves free around it
 
 
 def figure(width_in: float = 7.2, height_in: float = 6.0) -> Figure:
@@ -115,12 +120,27 @@ def name_lines(ax: Axes, columns: int | None = None) -> Axes:
 
 def name_above(ax: Axes, columns: int | None = None, **look: object) -> Axes:
     """A legend of that look, in as few rows as are no wider than the axes; returns `ax`."""
-    count = len(ax.get_legend_handles_labels()[1])
+    count, room_px = len(ax.get_legend_handles_labels()[1]), _room_px(ax)
     for rows in range(1, count + 1):
         legend = ax.legend(ncols=columns or -(-count // rows), **look)
-        if columns or legend.get_window_extent().width <= _room_px(ax):
+        fits = legend.get_window_extent().width <= room_px
+        if fits and ax.get_aspect() == "auto":
+            legend.get_tightbbox = partial(_within_width, legend)
+        if fits or columns:
             break
     return ax
+
+
+def _within_width(legend: Legend, renderer: RendererBase | None = None) -> Bbox:
+    """The box of a legend above axes that are to be as wide: the layout takes no width for it.
+
+    It would shrink the axes for a legend wider than they are before they have their place.
+    """
+    from matplotlib.transforms import Bbox
+
+    room = legend.axes.get_window_extent(renderer)
+    box = type(legend).get_tightbbox(legend, renderer)
+    return Bbox.from_extents(max(box.x0, room.x0), box.y0, min(box.x1, room.x1), box.y1)
 
 
 def _room_px(ax: Axes) -> float:
@@ -130,7 +150,8 @@ def _room_px(ax: Axes) -> float:
         return ax.get_window_extent().width
     widths = spec.get_gridspec().get_width_ratios()
     share = sum(widths[spec.colspan.start : spec.colspan.stop]) / sum(widths)
-    return share * ax.figure.bbox.width - _BESIDE_IN * ax.figure.dpi
+    beside_px = ax.get_window_extent().x0 - ax.get_tightbbox().x0 + _AROUND_IN * ax.figure.dpi
+    return share * ax.figure.bbox.width - max(beside_px, _BESIDE_IN * ax.figure.dpi)
 
 
 def track_colors(tracks: Tracks | None) -> dict[str, str]:

@@ -18,6 +18,7 @@ from .local_plane import LocalPlane
 from .model import Episode, OwnShip, Recording, Scan
 from .nmea import NavigationLog, NmeaProblem, NmeaReport, read_nmea
 from .plots_csv import read_plots
+from .plots_writer import write_plots
 from .tracks_csv import Tracks, read_tracks, write_tracks
 from .truth import TargetTruth
 from .video import RadarVideo
@@ -49,6 +50,7 @@ __all__ = [
     "read_tracks",
     "read_video",
     "replacing",
+    "write_plots",
     "write_tracks",
     "write_video",
 ]

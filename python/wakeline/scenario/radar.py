@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -74,7 +75,7 @@ class RadarSimulator:
         rng: np.random.Generator | int,
         *,
         own: Truth | None = None,
-        start_time_s: float = 0.0,
+        start_time_s: float | None = None,
     ) -> tuple[np.ndarray, np.ndarray]:
         """Plots of one target, as estimators take them.
 
@@ -88,8 +89,9 @@ class RadarSimulator:
             Source of chance, or its seed.
         own : Truth, optional
             Own ship; default at rest at north 0, east 0.
-        start_time_s : float
-            Time at which the first scan begins.
+        start_time_s : float, optional
+            Time at which the first scan begins; default where the truth begins, 0 for a truth that
+            does not tell it.
 
         Returns
         -------
@@ -107,7 +109,7 @@ class RadarSimulator:
         """
         rng = np.random.default_rng(rng)
         own = _at_rest() if own is None else own
-        begin_s = self._begins(scans, start_time_s)
+        begin_s = self._begins(scans, start_of(truth) if start_time_s is None else start_time_s)
         return self._rows(truth, own, begin_s, self._looks(truth, own, begin_s), rng)
 
     def readings(self, exact: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -139,7 +141,7 @@ class RadarSimulator:
         rng: np.random.Generator | int,
         *,
         own: Truth | None = None,
-        start_time_s: float = 0.0,
+        start_time_s: float | None = None,
         name: str = "simulated",
     ) -> Recording:
         """A recording of several targets among clutter, with truth.
@@ -148,8 +150,10 @@ class RadarSimulator:
         ----------
         truths : mapping of str to Truth
             The targets by name.
-        scans, rng, own, start_time_s
+        scans, rng, own
             As for :meth:`observe`.
+        start_time_s : float, optional
+            Time at which the first scan begins; default where the last of the truths begins.
         name : str
             Name of the recording.
 
@@ -167,6 +171,8 @@ class RadarSimulator:
         """
         rng = np.random.default_rng(rng)
         own = _at_rest() if own is None else own
+        if start_time_s is None:
+            start_time_s = max(map(start_of, truths.values()), default=0.0)
         begin_s = self._begins(scans, start_time_s)
         scan_time_s = begin_s + (self.period_s if self.rotating else 0.0)
         looks = [(truth, self._looks(truth, own, begin_s)) for truth in truths.values()]
@@ -292,6 +298,11 @@ class RadarSimulator:
 
 def _at_rest() -> Truth:
     return Truth([0.0, 0.0, 0.0, 0.0])
+
+
+def start_of(truth: Any) -> float:
+    """Time at which a truth begins, 0 for one that does not tell it."""
+    return float(getattr(truth, "start_time_s", 0.0))
 
 
 def _bearing_at(truth: Truth, own: Truth, time_s: np.ndarray) -> np.ndarray:

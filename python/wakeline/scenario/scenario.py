@@ -13,7 +13,7 @@ import numpy as np
 from wakeline import core, measurement
 from wakeline._checks import entropy, whole_number
 
-from .radar import RadarSimulator, polar
+from .radar import RadarSimulator, polar, start_of
 from .truth import Truth
 
 
@@ -46,8 +46,8 @@ class Scenario:
         Number of readings, T.
     position_std_m, velocity_std_mps : float
         Prior of the start, per axis; positive.
-    start_time_s : float
-        Time of the start.
+    start_time_s : float, optional
+        Time of the start; default that of the truth, 0 for a truth that does not tell it.
 
     Raises
     ------
@@ -63,7 +63,7 @@ class Scenario:
     scans: int
     position_std_m: float = 10.0
     velocity_std_mps: float = 1.0
-    start_time_s: float = 0.0
+    start_time_s: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name:
@@ -74,6 +74,8 @@ class Scenario:
         for name in ("position_std_m", "velocity_std_mps"):
             if not 0 < getattr(self, name) < np.inf:
                 raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+        if self.start_time_s is None:
+            object.__setattr__(self, "start_time_s", start_of(self.truth))
         if not np.isfinite(self.start_time_s):
             raise ValueError(f"start_time_s must be finite, got {self.start_time_s}")
         if self.radar.rotating or self.radar.clutter_per_scan:

@@ -42,7 +42,7 @@ _HEADS = {
     "ns_per_step": "ns a step",
 }
 _UNITS = {"mps": "m/s", "deg": "°", "arcmin": "′"}
-_DIGITS = {"m": 1, "s": 0, "deg": 1, "deg2": 3, "step": 0, "arcmin": 4}
+_DIGITS = {"m": 1, "s": 0, "deg": 1, "deg2": 3, "step": 0, "arcmin": 4, "drift_rms_kn": 3}
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,8 @@ def figure_text(metric: str, value: float | None) -> str:
     """A figure with the digits that mean something."""
     if value is None or not np.isfinite(value):
         return "-"
-    return f"{value:.{_DIGITS.get(metric.split('_')[-1], 2)}f}"
+    digits = _DIGITS.get(metric, _DIGITS.get(metric.split("_")[-1], 2))
+    return f"{value:.{digits}f}"
 
 
 def finite(value: float | None) -> float | None:

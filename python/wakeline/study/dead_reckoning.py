@@ -540,9 +540,16 @@ def _draw_smoothed(ax: Axes, shown: _Shown, seed: int) -> Axes:
         value = drawn.foretold[name].value
         ax.plot(drawn.time_s, value, color=plot.PALETTE[color], linewidth=1.3, label=name)
     _within(ax, drawn, shown, drawn.truth, drawn.readings)
-    ax.set(xlabel="time (s)", ylabel=f"{shown.name} ({shown.unit})")
+    since = " from the start" if shown.metric in METRICS[2:] else ""
+    ax.set(xlabel="time (s)", ylabel=f"{shown.name}{since} ({shown.unit})")
+    if shown.metric == "course_rms_deg":
+        ax.yaxis.set_major_formatter(_compass)  # through north without a jump
     plot.dress(ax)
     return plot.name_lines(ax)
+
+
+def _compass(course_deg: float, _tick: int) -> str:
+    return f"{course_deg % 360.0:g}"
 
 
 def _draw_foretold(ax: Axes, shown: _Shown, seed: int) -> Axes:

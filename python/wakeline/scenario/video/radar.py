@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from wakeline._checks import whole_number
 from wakeline.recording import RadarVideo
 
+from ..radar import start_of
 from .checks import finite, not_negative, positive
 from .clutter import Land, SeaClutter, amplitude_of_db
 from .fields import GammaTexture, PatchyField, PolarGrid, Speckle, complex_normal
@@ -214,7 +215,7 @@ class RadarVideoSimulator:
     def turn(
         self,
         targets: Targets = (),
-        start_time_s: float = 0.0,
+        start_time_s: float | None = None,
         rng: np.random.Generator | int = 0,
     ) -> RadarVideo:
         """One turn of the antenna, or the sector of it.
@@ -222,8 +223,9 @@ class RadarVideoSimulator:
         Parameters
         ----------
         targets : sequence of VideoTarget, or mapping of names to them
-        start_time_s : float
-            Time at which the antenna points north.
+        start_time_s : float, optional
+            Time at which the antenna points north; default where the last of the targets' truths
+            begins.
         rng : numpy.random.Generator or int
             Source of chance, or its seed.
 
@@ -240,8 +242,7 @@ class RadarVideoSimulator:
             When a target is no VideoTarget.
         """
         targets = _listed(targets)
-        if not np.isfinite(start_time_s):
-            raise ValueError(f"start_time_s must be finite, got {start_time_s}")
+        start_time_s = _start_s(targets, start_time_s)
         return _Antenna(self, np.random.default_rng(rng)).turn(targets, start_time_s)
 
     def turns(
@@ -250,7 +251,7 @@ class RadarVideoSimulator:
         scans: int = 1,
         seed: np.random.Generator | int = 0,
         *,
-        start_time_s: float = 0.0,
+        start_time_s: float | None = None,
     ) -> Iterator[RadarVideo]:
         """Turn after turn; the patches of the sea live on, and the land stays as it is.
 
@@ -261,8 +262,8 @@ class RadarVideoSimulator:
             How many turns.
         seed : int or numpy.random.Generator
             Seed of chance, or its source.
-        start_time_s : float
-            Time at which the first turn begins.
+        start_time_s : float, optional
+            Time at which the first turn begins; default as of :meth:`turn`.
 
         Returns
         -------
@@ -278,8 +279,7 @@ class RadarVideoSimulator:
         """
         targets = _listed(targets)
         whole_number("scans", scans, 0)
-        if not np.isfinite(start_time_s):
-            raise ValueError(f"start_time_s must be finite, got {start_time_s}")
+        start_time_s = _start_s(targets, start_time_s)
         antenna = _Antenna(self, np.random.default_rng(seed))
         return (antenna.turn(targets, start_time_s + k * self.period_s) for k in range(scans))
 
@@ -502,6 +502,15 @@ def _patches(
     texture = GammaTexture(shape)
     gaussian_m = correlation_m / np.sqrt(-np.log(texture.gaussian_correlation))
     return texture, PatchyField(grid, float(gaussian_m))
+
+
+def _start_s(targets: Sequence[VideoTarget], start_time_s: float | None) -> float:
+    """The given time, by default that at which all truths have begun."""
+    if start_time_s is None:
+        return max((start_of(target.truth) for target in targets), default=0.0)
+    if not np.isfinite(start_time_s):
+        raise ValueError(f"start_time_s must be finite, got {start_time_s}")
+    return start_time_s
 
 
 def _listed(targets: Targets) -> list[VideoTarget]:

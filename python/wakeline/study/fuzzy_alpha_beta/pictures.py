@@ -206,7 +206,7 @@ def _draw_innovation(ax: Axes, trace: _Trace, situation: HardTurn) -> Axes:
 def _draw_chosen(ax: Axes, trace: _Trace, situation: HardTurn) -> Axes:
     for name, plots in trace.window.items():
         ax.plot(trace.time_s, plots, color=_COLORS[name], drawstyle="steps-post")
-    ax.set_ylabel("plots m")
+    ax.set_ylabel("plots in the line")
     ax.set_ylim(1.5, 10.5)
     return _mark_turn(ax, situation)
 

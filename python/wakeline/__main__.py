@@ -1,0 +1,7 @@
+"""``python -m wakeline`` is the ``wakeline`` command."""
+
+import sys
+
+from wakeline.cli import main
+
+sys.exit(main())

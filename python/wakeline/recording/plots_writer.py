@@ -1,0 +1,98 @@
+"""A recording as CSV: its plots, the scans with own ship, and the truth."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from .files import replacing
+from .model import Episode, Recording
+
+_PLOTS = ("scan", "time_s", "range_m", "bearing_rad", "own_north_m", "own_east_m")
+_SCANS = ("scan", "time_s", "own_north_m", "own_east_m")
+_VELOCITY = ("own_vnorth_mps", "own_veast_mps")
+_TRUTH = ("time_s", "target", "north_m", "east_m", "vnorth_mps", "veast_mps")
+
+
+def write_plots(
+    plots_path: str | Path,
+    recording: Recording,
+    own_path: str | Path | None = None,
+    truth_path: str | Path | None = None,
+) -> None:
+    """Write a recording, such as a simulated one, so that :func:`read_plots` reads it back.
+
+    Ranges, bearings, times and own ship beside each plot are read back to the last bit. What stood
+    at a path is replaced only when the new file is complete.
+
+    Parameters
+    ----------
+    plots_path : str or Path
+        A row a plot: ``scan, time_s, range_m, bearing_rad, own_north_m, own_east_m``.
+    recording : Recording
+        Where an episode has a name, every file has a last column ``scenario``.
+    own_path : str or Path, optional
+        A row a scan: ``scan, time_s, own_north_m, own_east_m`` and, where every episode has one
+        recorded, her velocity ``own_vnorth_mps, own_veast_mps``. Without this file scans without
+        plots are lost, and the time of a scan is that of its last plot.
+    truth_path : str or Path, optional
+        A row a target and time: ``time_s, target, north_m, east_m, vnorth_mps, veast_mps``.
+
+    Raises
+    ------
+    ValueError
+        When there is a path for the truth and an episode has none.
+    OSError
+        When a file cannot be written.
+    """
+    if truth_path is not None and any(episode.truth is None for episode in recording):
+        raise ValueError("every episode must have truth where there is a truth_path")
+    named = any(episode.name for episode in recording)
+    _write(plots_path, _PLOTS, named, ((e.name, _plot_rows(e)) for e in recording))
+    if own_path is not None:
+        velocity = all(episode.own.vnorth_mps is not None for episode in recording)
+        head = _SCANS + _VELOCITY * velocity
+        _write(own_path, head, named, ((e.name, _scan_rows(e, velocity)) for e in recording))
+    if truth_path is not None:
+        _write(truth_path, _TRUTH, named, ((e.name, _truth_rows(e)) for e in recording))
+
+
+def _plot_rows(episode: Episode) -> Iterator[list]:
+    for scan in episode.scans:
+        columns = (
+            *(scan.plot_time_s, scan.range_m, scan.bearing_rad),
+            *(scan.own_north_m, scan.own_east_m),
+        )
+        for row in zip(*(column.tolist() for column in columns), strict=True):
+            yield [scan.number, *row]
+
+
+def _scan_rows(episode: Episode, velocity: bool) -> Iterator[list]:
+    time_s = episode.time_s
+    columns = [time_s, *episode.own.position_at(time_s).T]
+    columns += [*episode.own.velocity_at(time_s).T] if velocity else []
+    numbers = [scan.number for scan in episode.scans]
+    return map(list, zip(numbers, *(column.tolist() for column in columns), strict=True))
+
+
+def _truth_rows(episode: Episode) -> Iterator[list]:
+    for target, truth in (episode.truth or {}).items():
+        columns = (truth.north_m, truth.east_m, truth.vnorth_mps, truth.veast_mps)
+        for time_s, *state in zip(
+            *(column.tolist() for column in (truth.time_s, *columns)), strict=True
+        ):
+            yield [time_s, target, *state]
+
+
+def _write(
+    path: str | Path,
+    head: Sequence[str],
+    named: bool,
+    episodes: Iterable[tuple[str, Iterable[list]]],
+) -> None:
+    with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*head, *["scenario"] * named])
+        for name, rows in episodes:
+            writer.writerows([*row, *[name] * named] for row in rows)
