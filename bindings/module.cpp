@@ -16,4 +16,5 @@ PYBIND11_MODULE(_engine, m) {
   wakeline::python::define_eval(m);
   wakeline::python::define_video(m);
   wakeline::python::define_batch(m);
+  wakeline::python::define_benchmark(m);
 }

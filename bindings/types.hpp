@@ -71,6 +71,7 @@ PyStep to_step(const Step<M>& step) {
 }
 
 void define_batch(py::module_& m);
+void define_benchmark(py::module_& m);
 void define_core(py::module_& m);
 void define_motion(py::module_& m);
 void define_measurement(py::module_& m);

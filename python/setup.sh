@@ -122,7 +122,7 @@ stamp=$root/build/venv/wakeline-$extra.stamp
 fingerprint=$(
   cd "$root"
   {
-    find CMakeLists.txt pyproject.toml README.md bindings cpp/cmake cpp/include python/wakeline \
+    find CMakeLists.txt pyproject.toml README.md bindings cpp/benchmarks cpp/cmake cpp/include python/wakeline \
       -type f ! -name '*.pyc' -print0 | LC_ALL=C sort -z | xargs -0 sha256sum
     "$python" --version
     "$CXX" --version

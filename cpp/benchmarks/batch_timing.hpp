@@ -10,6 +10,7 @@
 
 #include "batch_works.hpp"
 #include "fma_peak.hpp"
+#include "go_round.hpp"
 
 namespace wakeline::bench {
 

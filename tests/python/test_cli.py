@@ -660,16 +660,16 @@ def test_bench_measures_every_work(tmp_path, monkeypatch, capsys):
 
     for name, value in (("_REPEATS", 1), ("_RUNS", 10), ("_SCANS", 20), ("_LOOP_STEPS", 20)):
         monkeypatch.setattr(bench, name, value)
-    for name, value in (("_TRACKER_SCANS", 2), ("_SWEEPS", 64), ("_CELLS", 128)):
+    for name, value in (("_TRACKER_SCANS", 2), ("_SWEEPS", 64), ("_CELLS", 128), ("_ROUNDS", 1)):
         monkeypatch.setattr(bench, name, value)
     assert main(["bench", "--json", str(tmp_path / "bench.json")]) == 0
     result = json.loads((tmp_path / "bench.json").read_text())
     assert result["name"] == "bench"
     rows = {(row["scenario"], row["estimator"]): row for row in result["rows"]}
-    for work in (
-        *("kf_step", "ekf_polar_step", "ukf5_step", "imm3_step", "imm5_step"),
-        *("fuzzy_alpha_beta_step", "bayesian_alpha_beta_step"),
-    ):
+    beside_hand_loops = ("kf_step", "ekf_polar_step", "ukf5_step", "imm3_step", "imm5_step")
+    for work in beside_hand_loops:
+        assert rows[work, "hand_loop"]["times_scalar_double"] > 0
+    for work in (*beside_hand_loops, "fuzzy_alpha_beta_step", "bayesian_alpha_beta_step"):
         assert rows[work, "scalar_double"]["ns_per_step"] > 0
         assert rows[work, "batch_double"]["times_scalar_double"] > 0
     assert rows["imm3_run_python", "scalar_double"]["ns_per_step"] > 0

@@ -14,18 +14,21 @@ from typing import Any
 import numpy as np
 
 import wakeline as wl
+from wakeline._engine import benchmark
 from wakeline._progress import progress
 
 from . import outputs, report
 from ._peers import LinearImm, TakeScan, jax_imm, numba_imm, stonesoup_tracker
 
-OURS, LANES = "scalar_double", "batch_double"
+OURS, LANES, BY_HAND = "scalar_double", "batch_double", "hand_loop"
 
 _SEED = 0
 _REPEATS = 5
 _RUNS, _SCANS = 500, 250
 _DT_S = 3.0
 _LOOP_STEPS = 500
+_BESIDE_HAND_LOOPS = ("kf_step", "ekf_polar_step", "ukf5_step", "imm3_step", "imm5_step")
+_ROUNDS = 40
 _TURN_RATES_DEG_S = (0.0, 1.0, -1.0)
 _TRACKER_SETTLING, _TRACKER_SCANS, _PLOT_STD_M = 20, 10, 5.0
 _STONESOUP_SETTLING, _MOST_FOR_STONESOUP = 5, 200  # as its scans take seconds
@@ -153,7 +156,10 @@ def _step_works() -> Iterator[_Work]:
         ("bayesian_alpha_beta_step", wl.BayesianAlphaBeta(), polar),
     ):
         steps = z[..., 0].size
-        yield _Work(name, OURS, "ns_per_step", _run_by_run(estimator, z, sensor), steps)
+        if name in _BESIDE_HAND_LOOPS:
+            yield from _cpp_works(name)
+        else:
+            yield _Work(name, OURS, "ns_per_step", _run_by_run(estimator, z, sensor), steps)
         yield _Work(name, LANES, "ns_per_step", _all_runs(estimator, z, sensor), steps)
     few = z[: max(len(z) // 10, 1)]
     tree = wl.ModeHistory(wl.Ekf(wl.CoordinatedTurn(noise=_noise())), max_branches=100)
@@ -161,6 +167,13 @@ def _step_works() -> Iterator[_Work]:
     yield _Work("mode_history100_scan", OURS, "ms_per_scan", call, few[..., 0].size)
     call = _all_runs(tree, few, polar)
     yield _Work("mode_history100_scan", LANES, "ms_per_scan", call, few[..., 0].size)
+
+
+def _cpp_works(name: str) -> Iterator[_Work]:
+    """Steps one after the other in C++, ours and those written by hand; both keep nothing."""
+    for estimator, hand in ((OURS, False), (BY_HAND, True)):
+        call = partial(benchmark.steps, name, hand=hand, rounds=_ROUNDS)
+        yield _Work(name, estimator, "ns_per_step", call, count=call())
 
 
 def _imm_run_works() -> Iterator[_Work]:

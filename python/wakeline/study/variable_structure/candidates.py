@@ -45,7 +45,7 @@ _NOISE = {
 }
 _STAY = 0.9
 _NINE_DEG_S = range(-4, 5)
-# Of the histories: rates that vessels are known to turn at, and some between them, which are learnt.
+# Histories know the nine rates and learn those between them.
 _BETWEEN_DEG_S = (-3.5, -2.5, -1.5, 1.5, 2.5, 3.5)
 _KNOWN_STD_DEG_S, _BETWEEN_STD_DEG_S = 0.005, 0.2
 _BETWEEN_WEIGHT = 0.3
