@@ -119,6 +119,17 @@ class TurnGridImm : public Imm<BankType> {
     set_rates(next);
   }
 
+  /// Saves the rules by which turn rates change; fails where those that were saved are others.
+  template <class... Rules>
+  static void archive_rules(Archive& fields, const Rules&... own) {
+    const auto same = [&](auto rule) {
+      const auto before = rule;
+      fields(rule);
+      if (rule != before) fields.fail();
+    };
+    (same(own), ...);
+  }
+
   /// Saves or restores beliefs, mode probabilities and such turn rates.
   template <class Valid>
   void archive_if(Archive& fields, const Valid& valid) {
