@@ -340,6 +340,33 @@ def test_calls_from_many_threads_share_the_threads(restored_threads):
         np.testing.assert_array_equal(result.mean, expected.mean)
 
 
+def test_a_run_is_its_own_while_another_thread_steps_its_estimator():
+    estimator = wl.LikelyModelSetImm(
+        wl.Ukf(turning(0.0)), unlikely_threshold=0.1, likely_threshold=0.3
+    )
+    start = wl.Gaussian([4000.0, 6.0, 3000.0, -8.0], np.diag([2500.0, 4.0, 2500.0, 4.0]))
+    z = np.tile([5000.0, np.arctan2(3.0, 4.0), 0.0], (1500, 1, 1))
+    wanted = estimator.run(z, dt_s=DT_S, sensor=DOPPLER, start=start)
+    done = threading.Event()
+
+    def step():
+        while not done.is_set():
+            estimator.start(start)
+            for k in range(1, 6):
+                estimator.predict(DT_S)
+                estimator.update(CONVERTED, [5000.0, np.arctan2(3000 - 8 * k, 4000 + 6 * k)])
+
+    stepping = threading.Thread(target=step)
+    stepping.start()
+    try:
+        for _ in range(10):
+            got = estimator.run(z, dt_s=DT_S, sensor=DOPPLER, start=start)
+            np.testing.assert_array_equal(got.mean, wanted.mean)
+    finally:
+        done.set()
+        stepping.join()
+
+
 def test_the_number_of_threads_is_told_and_set(restored_threads):
     wl.set_threads(2)
     assert wl.threads() == 2
