@@ -375,6 +375,32 @@ def test_the_number_of_threads_is_told_and_set(restored_threads):
     assert wl.lanes() in (1, 2, 4, 8)
 
 
+FEW_THREADS = """
+import resource
+import numpy as np
+import wakeline as wl
+wl.set_threads(64)
+filters = [wl.Ekf(wl.ConstantVelocity()), wl.SquareRootUkf(wl.CoordinatedTurnRate())]
+imm = wl.Imm(filters, wl.ModeChain.from_sojourn_s([60.0, 30.0]))
+start = wl.Gaussian([9.0, 0.0, 1.0, 0.0], np.eye(4))
+z = np.tile([9.0, 0.1, 0.0], (400, 60, 1))
+run = lambda: imm.run(z, 3.0, wl.RangeBearingDoppler(), start)
+wanted = run().mean
+with open("/proc/self/statm") as file:
+    in_use = int(file.read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (in_use + 2**26, in_use + 2**26))
+print((run().mean == wanted).all())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits memory as Linux does")
+def test_where_there_are_no_more_threads_those_that_there_are_do_all():
+    done = subprocess.run(
+        [sys.executable, "-c", FEW_THREADS], check=False, capture_output=True, text=True
+    )
+    assert done.stdout == "True\n", done.stderr
+
+
 def test_the_environment_limits_the_threads():
     told = subprocess.run(
         [sys.executable, "-c", "import wakeline; print(wakeline.threads())"],
