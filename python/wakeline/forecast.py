@@ -65,15 +65,15 @@ def position_m(
     ------
     ValueError
         When there is no such model, a report is without course or speed, the last minute has
-        reports of fewer than two times, or a time lies before the last; when rows are of several
-        tracks or out of order.
+        reports of fewer than two times, or a time lies before the last or is not finite; when rows
+        are of several tracks or out of order.
     """
     track = _reports(track)
     ahead_s = np.asarray(ahead_s, dtype=float)
     if model not in _MODELS:
         raise ValueError(f"no model {model!r}; there are {', '.join(_MODELS)}")
-    if ahead_s.ndim != 1 or not (ahead_s >= 0.0).all():
-        raise ValueError(f"ahead_s must be times (H,), none of them negative, got {ahead_s}")
+    if ahead_s.ndim != 1 or not ((ahead_s >= 0.0) & (ahead_s < np.inf)).all():
+        raise ValueError(f"ahead_s must be times (H,), finite and not negative, got {ahead_s}")
     if not np.isfinite([track.course_rad, track.speed_mps]).all():
         raise ValueError("every report of the track must have a course and a speed")
     if len(track) == 0 or np.ptp(_last(track, _LINE_OVER_S).time_s) == 0.0:
@@ -82,10 +82,11 @@ def position_m(
 
 
 def turn_rate_rad_s(track: AisTrack | Tracks) -> float:
-    """Slope of the courses reported over the last half minute; zero of fewer than three."""
+    """Slope of the courses reported over the last half minute; zero of fewer than three, or where
+    all are of one time."""
     recent = _last(_reports(track), _RATE_OVER_S)
     recent = recent.rows(np.isfinite(recent.course_rad))
-    if len(recent) < 3:
+    if len(recent) < 3 or np.ptp(recent.time_s) == 0.0:
         return 0.0
     return float(np.polyfit(_age_s(recent), np.unwrap(recent.course_rad), 1)[0])
 
