@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// What `wakeline bench` times of one track: steps as C++ takes them, and as one writes them by hand.
+// What `wakeline bench` times of one track: steps as C++ takes them, and as one writes them by
+// hand.
 #include <string>
 
 #include "hand_loops.hpp"

@@ -51,9 +51,9 @@ void define_eval(py::module_& parent) {
   m.def(
       "consistency_bounds",
       [](double confidence, int dof, long samples) {
-        if (!(confidence > 0.0 && confidence < 1.0) || dof < 1 || samples < 1)
-          throw py::value_error(
-              "confidence must lie between 0 and 1, dof and samples must be at least 1");
+        require(confidence > 0.0 && confidence < 1.0, "confidence", "between 0 and 1", confidence);
+        require(dof >= 1, "dof", "at least 1", dof);
+        require(samples >= 1, "samples", "at least 1", static_cast<double>(samples));
         const ConsistencyBounds bounds = consistency_bounds(confidence, dof, samples);
         return py::make_tuple(bounds.lower, bounds.upper);
       },

@@ -143,10 +143,13 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
           beliefs[k].mean = Eigen::Map<const Vec<double, kN>>(mean.data() + k * kN);
           beliefs[k].covariance = Eigen::Map<const RowMajor>(covariance.data() + k * kN * kN);
         }
-        require_ok(
-            smooth_as(model, model.motion(), beliefs, std::span<const double>(steps).subspan(1),
-                      std::span<const Vec<double, 2>>(known).subspan(known.empty() ? 0 : 1)),
-            "smooth");
+        {
+          const py::gil_scoped_release release;
+          require_ok(
+              smooth_as(model, model.motion(), beliefs, std::span<const double>(steps).subspan(1),
+                        std::span<const Vec<double, 2>>(known).subspan(known.empty() ? 0 : 1)),
+              "smooth");
+        }
         for (std::size_t k = 0; k < beliefs.size(); ++k) {
           Eigen::Map<Vec<double, kN>>(smooth_mean.mutable_data() + k * kN) = beliefs[k].mean;
           Eigen::Map<RowMajor>(smooth_covariance.mutable_data() + k * kN * kN) =

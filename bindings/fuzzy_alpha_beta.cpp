@@ -88,10 +88,13 @@ FuzzyTrace trace_runs(AnyFuzzyAlphaBeta estimator, const DoubleArray& z, const p
     const std::vector<double> steps = parse_steps(dt_s, scans);
     const std::vector<AnyBelief> starts = parse_starts(start, runs, 4);
     FuzzyTrace trace = empty_trace(z, estimator.criterion().max_plots);
-    for (std::size_t r = 0; r < runs; ++r) {
-      require_ok(estimator.start(starts[starts.size() == 1 ? 0 : r]), "start");
-      for (std::size_t k = 0; k < scans; ++k)
-        trace_scan(estimator, model, z.data(), steps[k], r * scans + k, trace);
+    {
+      const py::gil_scoped_release release;
+      for (std::size_t r = 0; r < runs; ++r) {
+        require_ok(estimator.start(starts[starts.size() == 1 ? 0 : r]), "start");
+        for (std::size_t k = 0; k < scans; ++k)
+          trace_scan(estimator, model, z.data(), steps[k], r * scans + k, trace);
+      }
     }
     return trace;
   });

@@ -193,7 +193,8 @@ G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait,
                   double negligible) {
         const TurnRateGrid grid = grid_or_default(rates);
         const TurnHabits habits{straight, turn, straighten};
-        const auto weights = for_each_rate("grid_weight", weight, grid);
+        const TurnRateGrid::Rates weights = for_each_rate("grid_weight", weight, grid)
+                                                .value_or(TurnRateGrid::Rates::Ones(grid.size()));
         return with_initial(
             AnyModeHistory({.max_hypotheses = max_hypotheses,
                             .max_branches = max_branches,
@@ -202,11 +203,8 @@ G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait,
                             .sibling_distance = sibling_distance,
                             .switch_time_spread = spread,
                             .negligible_probability = negligible},
-                           grid,
-                           chain     ? *chain
-                           : weights ? turning_chain(grid, habits, *weights)
-                                     : turning_chain(grid, habits),
-                           filter, for_each_rate("grid_std_rad_s", deviation, grid)),
+                           grid, chain ? *chain : turning_chain(grid, habits, weights), filter,
+                           for_each_rate("grid_std_rad_s", deviation, grid)),
             initial);
       }),
       py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),

@@ -133,9 +133,11 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
               const std::optional<DoubleArray>& own_velocity_mps,
               const std::optional<DoubleArray>& acceleration_mps2,
               const std::optional<RadiusGate>& gate) {
-  return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
+  return visit_sensor(sensor, [&]<class Sensor>(const Sensor& given) {
     constexpr int kM = Sensor::kMeasurements;
     require_linear<Sensor>(prototype);
+    const Sensor model = given;  // as other threads may change both meanwhile
+    const Estimator estimator = prototype;
     const bool many = z.ndim() == 3;
     require_shape((z.ndim() == 2 || many) && z.shape(z.ndim() - 1) == kM, "z",
                   "(T, " + std::to_string(kM) + ") or (R, T, " + std::to_string(kM) + ")", z);
@@ -145,7 +147,7 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
     in.z = z.data();
     const std::vector<double> steps_s = parse_steps(dt_s, in.scans);
     in.dt_s = steps_s.data();
-    const std::vector<AnyBelief> starts = parse_starts(start, in.runs, states_of(prototype));
+    const std::vector<AnyBelief> starts = parse_starts(start, in.runs, states_of(estimator));
     in.gate = gate ? &*gate : nullptr;
     const auto of_own_ship = [&](const char* name, const std::optional<DoubleArray>& array) {
       if constexpr (!requires { model.own; })
@@ -193,8 +195,8 @@ RunResult run(const Estimator& prototype, const DoubleArray& z, const py::object
                         result.status.mutable_data()};
     {
       const py::gil_scoped_release release;
-      require_starts(prototype, starts);
-      RunAll{}(prototype, model, in, starts, out);
+      require_starts(estimator, starts);
+      RunAll{}(estimator, model, in, starts, out);
     }
     return result;
   });

@@ -72,7 +72,7 @@ class SettingsClass {
       for (const auto& [key, value] : values) {
         if (!known.contains(key))
           throw py::type_error("no setting is called " + py::str(key).cast<std::string>());
-        settings.attr(key) = value;
+        set(settings, key, value, known[key]);
       }
       const Settings result = settings.cast<Settings>();
       if constexpr (requires { result.validate(); }) result.validate();
@@ -117,6 +117,18 @@ class SettingsClass {
   py::class_<Settings>& python() { return class_; }
 
  private:
+  static void set(const py::object& settings, const py::handle& key, const py::handle& value,
+                  const py::object& known) {
+    try {
+      settings.attr(key) = value;
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_TypeError)) throw;
+      throw py::type_error(py::str("{} must be {}, got {!r}")
+                               .format(key, py::type::of(known).attr("__name__"), value)
+                               .cast<std::string>());
+    }
+  }
+
   py::class_<Settings> class_;
   std::vector<std::string> names_;
 };
@@ -219,7 +231,10 @@ struct PyTracks {
 
 /// A column given as one number for all plots or one for each.
 DoubleArray column(const char* name, const py::object& values, py::ssize_t plots) {
-  const DoubleArray array = values.cast<DoubleArray>();
+  const DoubleArray array = values.is_none() ? DoubleArray() : DoubleArray::ensure(values);
+  if (!array || values.is_none())
+    throw py::type_error(std::string(name) + " must be a number or an array, got " +
+                         py::repr(values).cast<std::string>());
   if (array.ndim() == 0) {
     DoubleArray filled(plots);
     std::fill_n(filled.mutable_data(), plots, *array.data());
@@ -322,7 +337,7 @@ py::array_t<double> turn_rates(const std::vector<const Track<Estimator>*>& track
 template <class Estimator>
 PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& time_s,
                 bool tentative) {
-  if (time_s && !std::isfinite(*time_s)) throw py::value_error("time_s must be finite");
+  if (time_s) require_finite("time_s", *time_s);
   std::vector<const Track<Estimator>*> wanted;
   tracker.for_each([&](const Track<Estimator>& track) {
     if (tentative || track.shown()) wanted.push_back(&track);

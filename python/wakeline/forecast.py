@@ -85,10 +85,11 @@ def position_m(
 
 
 def turn_rate_rad_s(track: AisTrack | Tracks) -> float:
-    """Slope of the courses reported over the last half minute; zero of fewer than three."""
+    """Slope of the courses reported over the last half minute; zero of fewer than three, or where
+    all are of one time."""
     recent = _last(_reports(track), _RATE_OVER_S)
     recent = recent.rows(np.isfinite(recent.course_rad))
-    if len(recent) < 3:
+    if len(recent) < 3 or np.ptp(recent.time_s) == 0.0:
         return 0.0
     return float(np.polyfit(_age_s(recent), np.unwrap(recent.course_rad), 1)[0])
 

@@ -340,12 +340,65 @@ def test_calls_from_many_threads_share_the_threads(restored_threads):
         np.testing.assert_array_equal(result.mean, expected.mean)
 
 
+def test_a_run_is_its_own_while_another_thread_steps_its_estimator():
+    estimator = wl.LikelyModelSetImm(
+        wl.Ukf(turning(0.0)), unlikely_threshold=0.1, likely_threshold=0.3
+    )
+    start = wl.Gaussian([4000.0, 6.0, 3000.0, -8.0], np.diag([2500.0, 4.0, 2500.0, 4.0]))
+    z = np.tile([5000.0, np.arctan2(3.0, 4.0), 0.0], (1500, 1, 1))
+    wanted = estimator.run(z, dt_s=DT_S, sensor=DOPPLER, start=start)
+    done = threading.Event()
+
+    def step():
+        while not done.is_set():
+            estimator.start(start)
+            for k in range(1, 6):
+                estimator.predict(DT_S)
+                estimator.update(CONVERTED, [5000.0, np.arctan2(3000 - 8 * k, 4000 + 6 * k)])
+
+    stepping = threading.Thread(target=step)
+    stepping.start()
+    try:
+        for _ in range(10):
+            got = estimator.run(z, dt_s=DT_S, sensor=DOPPLER, start=start)
+            np.testing.assert_array_equal(got.mean, wanted.mean)
+    finally:
+        done.set()
+        stepping.join()
+
+
 def test_the_number_of_threads_is_told_and_set(restored_threads):
     wl.set_threads(2)
     assert wl.threads() == 2
     with pytest.raises(ValueError, match="threads must be at least 1, got 0"):
         wl.set_threads(0)
     assert wl.lanes() in (1, 2, 4, 8)
+
+
+FEW_THREADS = """
+import resource
+import numpy as np
+import wakeline as wl
+wl.set_threads(64)
+filters = [wl.Ekf(wl.ConstantVelocity()), wl.SquareRootUkf(wl.CoordinatedTurnRate())]
+imm = wl.Imm(filters, wl.ModeChain.from_sojourn_s([60.0, 30.0]))
+start = wl.Gaussian([9.0, 0.0, 1.0, 0.0], np.eye(4))
+z = np.tile([9.0, 0.1, 0.0], (400, 60, 1))
+run = lambda: imm.run(z, 3.0, wl.RangeBearingDoppler(), start)
+wanted = run().mean
+with open("/proc/self/statm") as file:
+    in_use = int(file.read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (in_use + 2**26, in_use + 2**26))
+print((run().mean == wanted).all())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits memory as Linux does")
+def test_where_there_are_no_more_threads_those_that_there_are_do_all():
+    done = subprocess.run(
+        [sys.executable, "-c", FEW_THREADS], check=False, capture_output=True, text=True
+    )
+    assert done.stdout == "True\n", done.stderr
 
 
 def test_the_environment_limits_the_threads():

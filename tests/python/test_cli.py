@@ -518,6 +518,25 @@ def test_scans_without_plots_are_coasted_through(tmp_path):
     assert tracks.ids() == ["1"]
 
 
+def test_rows_are_at_the_times_of_scans_whose_plots_come_later(tmp_path):
+    rows = boat(41)
+    begin_s = rows[:, 0] - 2.0
+    scans = write_plots(
+        tmp_path / "scans.csv",
+        [(k, time_s, 0, 0) for k, time_s in enumerate(begin_s)],
+        "scan,time_s,own_north_m,own_east_m",
+    )
+    seen = np.column_stack([np.arange(40), rows[:40]])
+    plots = write_plots(tmp_path / "plots.csv", seen, "scan,time_s,north_m,east_m")
+    assert track(plots, "--own", scans, "--out", tmp_path / "out") == 0
+    tracks = read_tracks(tmp_path / "out" / "tracks.csv")
+    assert len(tracks) > 30
+    assert np.isin(tracks.time_s, begin_s).all()
+    after_s = tracks.time_s - 1000.0
+    true_m = np.column_stack([1000.0 + 6.0 * after_s, 500.0 + 8.0 * after_s])
+    assert np.hypot(*(tracks.state[:, 0::2] - true_m).T)[10:].max() < 8.0
+
+
 @pytest.mark.parametrize("pause_s", [0.0, 1e-6, 3600.0])
 def test_scans_no_time_apart_or_an_hour(tmp_path, pause_s):
     rows = boat(40)

@@ -32,10 +32,17 @@ def test_more_samples_narrow_the_bounds(dof, samples):
 
 
 @pytest.mark.parametrize(
-    "wrong", [(0.0, 1, 1), (1.0, 1, 1), (np.nan, 1, 1), (0.95, 0, 1), (0.95, 1, 0)]
+    ("wrong", "wanted"),
+    [
+        ((0.0, 1, 1), "confidence must be between 0 and 1, got 0"),
+        ((1.0, 1, 1), "confidence must be between 0 and 1, got 1"),
+        ((np.nan, 1, 1), "confidence must be between 0 and 1, got nan"),
+        ((0.95, 0, 1), "dof must be at least 1, got 0"),
+        ((0.95, 1, 0), "samples must be at least 1, got 0"),
+    ],
 )
-def test_what_makes_no_sense_is_refused(wrong):
-    with pytest.raises(ValueError, match="confidence must lie between 0 and 1"):
+def test_what_makes_no_sense_is_refused(wrong, wanted):
+    with pytest.raises(ValueError, match=wanted):
         wl.consistency_bounds(*wrong)
 
 

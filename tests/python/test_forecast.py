@@ -111,6 +111,15 @@ def test_the_rate_of_turn_is_that_of_the_courses_that_are_reported():
     assert forecast.turn_rate_rad_s(Tracks.joined([])) == 0.0
 
 
+def test_reports_of_one_time_tell_no_rate_of_turn():
+    seen = circling(np.deg2rad(1.0), step_s=40.0, count=3)
+    again = seen.rows(np.array([0, 1, 2, 2, 2]))  # heard by three stations
+    assert forecast.turn_rate_rad_s(again) == 0.0
+    for model in ("turning_on", "turn_that_ends"):
+        place_m = forecast.position_m(again, [60.0], model)
+        np.testing.assert_allclose(place_m, forecast.position_m(again, [60.0]), atol=1e-9)
+
+
 def test_of_several_tracks_none_is_foretold():
     one, other = rows_of(circling(0.0)), rows_of(circling(0.0), "8")
     with pytest.raises(ValueError, match="rows of one track, got 2"):

@@ -1,5 +1,8 @@
 """The fuzzy choice among lines: its laws are tested in C++; here what Python adds."""
 
+import time
+from threading import Thread
+
 import numpy as np
 import pytest
 
@@ -51,6 +54,17 @@ def test_trace_is_what_the_estimator_shows_step_by_step():
     assert len(fuzzy.rule_strengths) == 6
     assert fuzzy.plots_of_mode.tolist() == [2, 3, 4, 5, 6]
     assert np.flatnonzero(fuzzy.mode_probability()).tolist() == [fuzzy.chosen - 2]
+
+
+def test_a_long_trace_lets_other_threads_work():
+    z = np.tile(readings(), (1500, 1, 1))
+    worker = Thread(target=wl.FuzzyAlphaBeta().trace, args=(z, DT_S, RADAR, START))
+    turns = 0
+    worker.start()
+    while worker.is_alive():
+        time.sleep(1e-3)
+        turns += 1
+    assert turns > 10
 
 
 def test_traces_side_by_side_know_nothing_of_each_other():

@@ -110,7 +110,7 @@ def test_what_cannot_be_smoothed_is_told(example):
     estimator = imm(turning(0.0), turning(2.0))
     steps_s = np.full(20, DT_S)
     steps_s[10] = -1.0
-    with pytest.raises(wl.FilterError, match="smooth of run 0: "):
+    with pytest.raises(wl.FilterError, match="smooth of run 0: negative time step"):
         estimator.smooth(z[0, :20], dt_s=steps_s, sensor=SENSOR, start=start)
     with pytest.raises(ValueError, match=r"z must have shape \(T, 2\) or \(R, T, 2\)"):
         estimator.smooth(z[0, :20, :1], dt_s=DT_S, sensor=SENSOR, start=start)

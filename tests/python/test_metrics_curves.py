@@ -272,7 +272,7 @@ def test_samples_that_are_no_counts_are_refused_by_name(samples):
 
 
 def test_confidences_that_make_no_sense():
-    with pytest.raises(ValueError, match="confidence must lie between 0 and 1"):
+    with pytest.raises(ValueError, match="confidence must be between 0 and 1, got 1"):
         metrics.share_inside([1.0], 2, 1, confidence=1.0)
     with pytest.raises(ValueError, match="dof"):
         metrics.share_inside([1.0], 0, 1)

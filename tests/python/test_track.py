@@ -1,5 +1,6 @@
 """The tracker: the life of tracks, what it saves, what it refuses, and threads."""
 
+import re
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -476,6 +477,21 @@ def test_plots_of_wrong_shape_name_wanted_and_given(shape):
         assert f"got {shape}" in str(error.value)
 
 
+@pytest.mark.parametrize("name", ["plot_time_s", "own_north_m", "own_east_m"])
+@pytest.mark.parametrize("value", ["east", [[1.0], [2.0, 3.0]], None])
+def test_columns_that_are_no_numbers_are_refused_by_name(name, value):
+    if name == "plot_time_s" and value is None:
+        return  # the time of the scan
+    wanted = f"{name} must be a number or an array, got {re.escape(repr(value))}"
+    with pytest.raises(TypeError, match=wanted):
+        wl.Tracker(RADAR).process(0.0, range_m=[1e3], bearing_rad=[0.1], **{name: value})
+
+
+def test_tracks_at_no_time_are_refused():
+    with pytest.raises(ValueError, match="time_s must be finite, got nan"):
+        wl.Tracker(RADAR).tracks(time_s=np.nan)
+
+
 # --- settings ---------------------------------------------------------------------------------
 
 
@@ -532,7 +548,7 @@ def test_a_setting_that_makes_no_sense_is_refused_by_name(kind, name, value):
 
 @pytest.mark.parametrize("value", ["3", None, [1.0]])
 def test_a_setting_of_another_type_is_refused(value):
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match=f"period_s must be float, got {re.escape(repr(value))}"):
         wl.Radar(period_s=value)
 
 

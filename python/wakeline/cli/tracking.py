@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +17,7 @@ from .config import Settings
 from .danger import Danger, danger_of, with_closest_approach
 
 MODE_NAMES = ("cruising", "steady", "restless", "turning")
+_COLUMNS = ("track_id", "status", "time_s", "mean", "covariance", "mode_probability", "nis")
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,8 @@ class TrackedEpisode:
     episode : Episode
         With the offset of the radar taken off the bearings of its plots.
     tracks : Tracks
-        One row a shown track and scan, predicted to the time of the scan.
+        One row a shown track and scan, at the time of the scan: predicted to it, or carried back
+        from a later plot of the scan.
     events : list of wakeline.Event
     plot_track_id : list of ndarray of int
         For each scan the track of each plot: 0 none, negative a tentative one.
@@ -64,12 +66,12 @@ def track_episode(
         Whether to look, where own ship's velocity is known, for tracks that come too close.
     """
     tracker = settings.tracker_of(median_step_s(episode))
-    tables, events, plot_track_id, refused = [(None, tracker.tracks())], [], [], 0
+    tables, events, plot_track_id, refused = [_columns(tracker.tracks())], [], [], 0
     end_s, began_s = -np.inf, time.perf_counter()
     for scan in progress(episode.scans, len(episode), f"tracking {episode.name}".strip()):
         end_s = max(end_s, scan.time_s, scan.plot_time_s.max(initial=-np.inf))
         report = _process(tracker, end_s, scan)
-        tables.append((scan.time_s, tracker.tracks(time_s=scan.time_s)))
+        tables.append(_at(scan.time_s, _columns(tracker.tracks(time_s=scan.time_s))))
         events += report.events
         plot_track_id.append(report.plot_track_id)
         refused += report.refused_plots
@@ -112,20 +114,27 @@ def _process(tracker: wl.Tracker, end_s: float, scan: Scan):
     )
 
 
-def _joined(tables: Iterable, scenario: str | None) -> Tracks:
-    """Tables of tracks, each with the time of its scan, as rows."""
-    column = {
-        name: np.concatenate([np.asarray(getattr(table, name)) for _, table in tables])
-        for name in (
-            "track_id",
-            "status",
-            "time_s",
-            "mean",
-            "covariance",
-            "mode_probability",
-            "nis",
-        )
+def _columns(table: wl.track.TrackTable) -> dict[str, np.ndarray]:
+    return {name: np.asarray(getattr(table, name)) for name in _COLUMNS}
+
+
+def _at(time_s: float, column: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The columns of tracks at a time; those of a later one go straight back to it."""
+    back_s = np.minimum(time_s - column["time_s"], 0.0)
+    if not back_s.any():
+        return column
+    step = np.tile(np.eye(4), (len(back_s), 1, 1))
+    step[:, 0, 1] = step[:, 2, 3] = back_s
+    return column | {
+        "time_s": np.minimum(column["time_s"], time_s),
+        "mean": np.einsum("kij,kj->ki", step, column["mean"]),
+        "covariance": step @ column["covariance"] @ step.swapaxes(1, 2),
     }
+
+
+def _joined(tables: Sequence[dict[str, np.ndarray]], scenario: str | None) -> Tracks:
+    """Columns of tracks as the rows of one table."""
+    column = {name: np.concatenate([table[name] for table in tables]) for name in _COLUMNS}
     return Tracks(
         track_id=column["track_id"].astype(str),
         time_s=column["time_s"],

@@ -116,9 +116,8 @@ TEST(ModeHistoryOfRates, EachRateHasItsOwnDeviation) {
   }
   for (const double wrong : {0.0, -1.0, std::nan("")}) {
     std_rad_s[2] = wrong;
-    EXPECT_THROW(
-        Tree({}, kTriple, std_rad_s, turning_chain(kTriple), Learner(learning(deg(0.4)))),
-        std::invalid_argument);
+    EXPECT_THROW(Tree({}, kTriple, std_rad_s, turning_chain(kTriple), Learner(learning(deg(0.4)))),
+                 std::invalid_argument);
   }
 }
 
@@ -126,8 +125,8 @@ TEST(TurningChain, LeadsToEachTurnByItsWeight) {
   const TurnRateGrid grid{deg(-2.0), deg(-1.0), 0.0, deg(1.0)};
   ModeVector<double, kRuntimeModes> weight(4);
   weight << 1.0, 3.0, 7.0, 4.0;
-  const TurnHabits habits{.straight_sojourn_s = 50, .turn_sojourn_s = 80,
-                          .straighten_probability = 0.6};
+  const TurnHabits habits{
+      .straight_sojourn_s = 50, .turn_sojourn_s = 80, .straighten_probability = 0.6};
   const auto g = *turning_chain(grid, habits, weight).generator_per_s();
   EXPECT_TRUE(matrices_near(g.rowwise().sum().eval(), Vec<double, 4>::Zero(), {.absolute = 1e-15}));
   EXPECT_NEAR(g(2, 0), 1.0 / 8 / 50, 1e-15);  // a straight: 1, 3 and 4 of 8

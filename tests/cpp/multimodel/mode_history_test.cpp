@@ -483,6 +483,24 @@ TEST(ModeHistory, ADamagedArchiveChangesNothing) {
   }
 }
 
+TEST(ModeHistory, AnArchiveOfATreeOfOtherRulesIsRefused) {
+  Tree tree({}, kTriple, turning_chain(kTriple), turning());
+  ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
+  Archive writing;
+  tree.archive(writing);
+  for (const HistoryTree& rules :
+       {HistoryTree{.max_hypotheses = 70}, HistoryTree{.max_branches = 95},
+        HistoryTree{.min_segment_s = 6.6}, HistoryTree{.merge_distance = 1.8},
+        HistoryTree{.sibling_distance = 11.0}, HistoryTree{.switch_time_spread = 0.2},
+        HistoryTree{.negligible_probability = 3e-7}}) {
+    Tree other(rules, kTriple, turning_chain(kTriple), turning());
+    Archive reading(writing.bytes());
+    other.archive(reading);
+    EXPECT_FALSE(reading.ok());
+    EXPECT_FALSE(other.started());
+  }
+}
+
 TEST(ModeHistory, GoesOnFromItsArchiveWithTheSameBits) {
   Tree tree({}, kTriple, turning_chain(kTriple), turning());
   ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);

@@ -4,8 +4,11 @@
 // Laws of the estimators whose turn models change.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <random>
+#include <span>
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
@@ -197,6 +200,39 @@ TEST(LikelyModelSet, RestsTheUnlikely) {
   EXPECT_TRUE(to_starboard && to_port);
 }
 
+template <class A, class B>
+void expect_same_filters(const A& a, const B& b) {
+  for (int k = 0; k < 5; ++k) {
+    const auto& x = a.bank().filter(k).estimate();
+    const auto& y = b.bank().filter(k).estimate();
+    EXPECT_TRUE(matrices_identical(x.mean, y.mean)) << "model " << k;
+    EXPECT_TRUE(matrices_identical(x.covariance, y.covariance)) << "model " << k;
+  }
+}
+
+TEST(LikelyModelSet, KeepsWhatModelsWentToRestWith) {
+  auto estimator = likely({.unlikely_threshold = 0.1, .likely_threshold = 0.3});
+  ASSERT_EQ(estimator.start(beginning()), Status::kOk);
+  int joined = 0;
+  for (const auto& z : plots()) {
+    const auto before = estimator;
+    EXPECT_EQ(estimator.predict(3.0, {kNan, 0.0}), Status::kNotFinite);
+    expect_same_filters(estimator, before);
+
+    Archive saved;
+    estimator.archive(saved);
+    auto restored = likely({.unlikely_threshold = 0.1, .likely_threshold = 0.3});
+    Archive loading(saved.bytes());
+    restored.archive(loading);
+    expect_same_filters(restored, estimator);
+
+    run(estimator, {&z, 1});
+    for (int k = 0; k < 5; ++k)
+      joined += std::isnan(before.turn_rates_rad_s()[k]) && estimator.bank().active(k);
+  }
+  EXPECT_GT(joined, 3);
+}
+
 TEST(LikelyModelSet, KeepsTheMostProbableAndItsNeighbours) {
   const LikelyModelSet set{.unlikely_threshold = 0.5, .likely_threshold = 1.0};
   const Rates all = set.grid_rad_s.rates_rad_s();
@@ -329,12 +365,42 @@ TYPED_TEST(TurnGrids, AnArchiveGoesOnWithTheSameBits) {
     ASSERT_TRUE(same_bits(restored, on)) << "scan " << k;
 
     auto bytes = saved.bytes();
-    std::fill_n(bytes.begin(), 5 * sizeof(double), std::byte{0x7f});  // no turn rates
+    const Rates rates = estimator.turn_rates_rad_s();
+    const auto of_rates = std::as_bytes(std::span(rates.data(), std::size_t(rates.size())));
+    const auto place = std::search(bytes.begin(), bytes.end(), of_rates.begin(), of_rates.end());
+    ASSERT_NE(place, bytes.end());
+    std::fill_n(place, of_rates.size(), std::byte{0x7f});  // no turn rates
     Archive spoilt(bytes);
     auto refused = TypeParam::build();
     refused.archive(spoilt);
     EXPECT_FALSE(spoilt.ok());
   }
+}
+
+TEST(TurnGrid, AnArchiveIsOfItsRules) {
+  const auto expect_refused = [](auto estimator, auto... others) {
+    ASSERT_EQ(estimator.start(beginning()), Status::kOk);
+    Archive saved;
+    estimator.archive(saved);
+    const auto restores = [&](auto other) {
+      Archive loading(saved.bytes());
+      other.archive(loading);
+      return loading.ok() && loading.at_end();
+    };
+    EXPECT_TRUE(restores(estimator));
+    EXPECT_FALSE((restores(others) || ...));
+  };
+  expect_refused(adaptive(), adaptive({.max_turn_rate_rad_s = deg(5.5)}),
+                 adaptive({.min_spacing_rad_s = deg(2.1)}),
+                 adaptive({.kept_spacing_rad_s = deg(3.1)}), adaptive({.least_move_rad_s = 0.0}),
+                 adaptive({.centre_threshold = 0.7}), adaptive({.centre_gain = 0.4}),
+                 adaptive({.unlikely_threshold = 0.2}), adaptive({.likely_threshold = 0.8}));
+  expect_refused(switching(), switching({.threshold = 0.7}),
+                 switching({.rule = SwitchRule::kLiteral}),
+                 switching({.carry = SwitchCarry::kSlot}),
+                 switching({.grid_rad_s = TurnRateGrid::evenly(deg(5.0), 3), .initial_centre = 2}));
+  expect_refused(likely(), likely({.unlikely_threshold = 0.04}), likely({.likely_threshold = 0.2}),
+                 likely({.grid_rad_s = TurnRateGrid::evenly(deg(4.1), 2)}));
 }
 
 TYPED_TEST(TurnGrids, AStartForgets) {

@@ -49,6 +49,28 @@ TEST(Operator, DesignatingAheadOfTheClockHoldsUpNoScan) {
   EXPECT_NE(tracker.find(1), nullptr);
 }
 
+TEST(Operator, ATargetMissesNoScanBeforeItsTime) {
+  VesselTracker tracker = make_tracker();
+  (void)tracker.process(0.0, {});
+  const double begin_s = 150.0;
+  ASSERT_EQ(tracker.designate(begin_s, 500.0, 500.0, 20.0), 1);
+  int coasting = 0, lost = 0;
+  for (int k = 1; k < 90; ++k) {
+    const double time_s = 2.5 * k;
+    for (const Event& event : tracker.process(time_s, {}).events) {
+      EXPECT_GE(time_s, begin_s);
+      (event.kind == TrackEvent::kCoasting ? coasting : lost) += 1;
+    }
+  }
+  EXPECT_EQ(coasting, 1);
+  EXPECT_EQ(lost, 1);
+
+  VesselTracker early = make_tracker();
+  ASSERT_EQ(early.designate(1e9, 500.0, 500.0, 20.0), 1);
+  for (int k = 1; k < 30; ++k) (void)early.process(2.5 * k, {});
+  EXPECT_EQ(early.size(), 0) << "it was of another clock";
+}
+
 TEST(Operator, ATargetFarAheadOfTheClockIsNotDesignated) {
   VesselTracker tracker = make_tracker();
   EXPECT_EQ(tracker.designate(1.7e9, 500.0, 500.0, 20.0), 1) << "no clock yet";

@@ -212,10 +212,9 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
       log_likelihood(lanes, out.log_likelihood, 1);
   for (std::size_t scan = 0; scan < in.scans; ++scan) {
     const Scalar dt_s = in.dt_s[scan];
-    StatusOf<Scalar> status =
-        in.acceleration_mps2 != nullptr
-            ? predict_pushed(estimator, dt_s, in.acceleration_mps2 + 2 * scan)
-            : estimator.predict(dt_s);
+    StatusOf<Scalar> status = in.acceleration_mps2 != nullptr
+                                  ? predict_pushed(estimator, dt_s, in.acceleration_mps2 + 2 * scan)
+                                  : estimator.predict(dt_s);
     watch.predicted(scan, estimator);
 
     Vec<Scalar, kM> z;

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <exception>
 #include <thread>
 #include <vector>
 
 namespace wakeline {
 
-/// Threads that share the work of one call: this one, and others that live as long as it.
+/// Threads that share the work of one call: this one, and others that live as long as it, as many
+/// as the system has of those wanted.
 ///
 /// What `run_batch` asks of a host's own pool is the same: `pool(count, work)` calls `work(k)` once
 /// for each k from 0 to count - 1, in any order and on any thread, and returns when all are done.
@@ -29,9 +31,26 @@ struct Threads {
                                 1;
     std::vector<std::thread> others;
     others.reserve(helpers);
-    for (std::size_t k = 0; k < helpers; ++k) others.emplace_back(go_on);
+    while (others.size() < helpers)
+      if (!start(others, go_on)) break;
     go_on();
     for (std::thread& other : others) other.join();
+  }
+
+ private:
+  /// Adds a thread that does some work; false where the system has no more of them.
+  template <class Work>
+  static bool start(std::vector<std::thread>& threads, const Work& work) {
+#if defined(__cpp_exceptions)
+    try {
+      threads.emplace_back(work);
+    } catch (const std::exception&) {
+      return false;
+    }
+#else
+    threads.emplace_back(work);
+#endif
+    return true;
   }
 };
 

@@ -67,6 +67,17 @@ class Archive {
     raw(values.data(), sizeof(T) * values.size());
   }
 
+  /// Rules that an object goes by, whose state is that of no other: reading others fails.
+  template <class... Rules>
+  void rules(const Rules&... own) {
+    const auto same = [&](auto rule) {
+      const auto before = rule;
+      (*this)(rule);
+      if (rule != before) fail();
+    };
+    (same(own), ...);
+  }
+
   /// Marks what was read as unusable.
   void fail() noexcept { ok_ = false; }
 

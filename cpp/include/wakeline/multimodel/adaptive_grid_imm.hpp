@@ -138,8 +138,11 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
 
   [[nodiscard]] const AdaptiveGrid& grid() const noexcept { return grid_; }
 
-  /// Saves or restores beliefs, mode probabilities and turn rates.
+  /// Saves or restores beliefs, mode probabilities and turn rates; those of another grid fail.
   void archive(Archive& fields) {
+    fields.rules(grid_.max_turn_rate_rad_s, grid_.initial(), grid_.min_spacing_rad_s,
+                 grid_.kept_spacing_rad_s, grid_.least_move_rad_s, grid_.centre_threshold,
+                 grid_.centre_gain, grid_.unlikely_threshold, grid_.likely_threshold);
     Base::archive_if(fields, [&](const typename Base::Rates& rates) {
       return rates.allFinite() && rates.cwiseAbs().maxCoeff() <= grid_.max_turn_rate_rad_s;
     });

@@ -217,6 +217,7 @@ class ImmSmoother {
 
   template <class... Known>
   static Status step(Estimator& now, const ImmScan<Bank>& next, const Known&... acceleration_mps2) {
+    if (const Status status = check_time_step(next.dt_s); status != Status::kOk) return status;
     const int modes = now.bank_.size();
     std::vector<Estimator> ways(static_cast<std::size_t>(modes), now);
     Matrix weight = now.chain_.transition(double(next.dt_s)).template cast<Scalar>();

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <new>
 #include <type_traits>
+#include <utility>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/in_place_array.hpp"
 #include "wakeline/multimodel/turn_grid_imm.hpp"
 
 namespace wakeline {
@@ -105,8 +108,11 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
 
   [[nodiscard]] const LikelyModelSet& grid() const noexcept { return set_; }
 
-  /// Saves or restores beliefs, mode probabilities and which models are active.
+  /// Saves or restores beliefs, those of models at rest too, mode probabilities and which models
+  /// are active; those of another set fail.
   void archive(Archive& fields) {
+    fields.rules(set_.grid_rad_s.size(), set_.grid_rad_s.rates_rad_s(), set_.unlikely_threshold,
+                 set_.likely_threshold);
     Base::archive_if(fields, [&](const Rates& rates) {
       bool any = false;
       for (Eigen::Index k = 0; k < rates.size(); ++k) {
@@ -116,24 +122,43 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
       }
       return any;
     });
+    const Rates& rates = this->turn_rates_rad_s();
+    for (int k = 0; k < this->bank_.size(); ++k)
+      if (std::isnan(rates[k])) this->bank_.filter(k).archive(fields);
   }
 
  private:
+  using BeliefType = std::decay_t<decltype(std::declval<const BankType&>().empty_estimate())>;
+
+  /// What the models were before some of them joined, and what these went to rest with.
+  struct Before {
+    Rates rates;
+    InPlaceArray<BeliefType, static_cast<std::size_t>(kModeCapacity<kModels>)> rested;
+  };
+
   template <class... Known>
   StatusOf<Scalar> step(Scalar dt_s, const Known&... acceleration_mps2) noexcept {
-    return Base::move_and_predict([&](const MaskOf<Scalar>& lanes) { choose(lanes); },
-                                  [](const MaskOf<Scalar>&) {}, dt_s, acceleration_mps2...);
+    Before before;
+    const auto undo = [&](const MaskOf<Scalar>& lanes) {
+      for_each_joined(before.rates, [&](int k, auto& filter, const MaskOf<Scalar>& joined) {
+        const auto count = static_cast<std::size_t>(k) + 1;
+        this->assign_in(lanes && joined, filter, before.rested.first(count).back());
+      });
+    };
+    return Base::move_and_predict([&](const MaskOf<Scalar>& lanes) { choose(lanes, before); }, undo,
+                                  dt_s, acceleration_mps2...);
   }
 
-  void choose(const MaskOf<Scalar>& lanes) noexcept {
+  void choose(const MaskOf<Scalar>& lanes, Before& before) noexcept {
     using std::isnan;
-    const Rates before = this->turn_rates_rad_s();
-    const auto joined = this->estimate();
-    this->set_rates(lanes, set_.chosen(before, this->probability_));
-    const Rates& now = this->turn_rates_rad_s();
-    this->bank_.for_each([&](int k, auto& filter, auto&) {
-      this->assign_in(isnan(before[k]) && !isnan(now[k]), filter, joined);
+    before.rates = this->turn_rates_rad_s();
+    const auto joint = this->estimate();
+    this->set_rates(lanes, set_.chosen(before.rates, this->probability_));
+    for_each_joined(before.rates, [&](int k, auto& filter, const MaskOf<Scalar>& joined) {
+      *::new (before.rested.place(k)) BeliefType = filter.estimate();
+      this->assign_in(joined, filter, joint);
     });
+    const Rates& now = this->turn_rates_rad_s();
     Probability& mu = this->probability_;
     Scalar total = Scalar(0);
     Scalar left = Scalar(0);
@@ -143,6 +168,18 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
     }
     for (Eigen::Index k = 0; k < now.size(); ++k)
       mu[k] = select(left > Scalar(0), select(isnan(now[k]), Scalar(0), mu[k] / total), mu[k]);
+  }
+
+  /// Calls `f(k, filter, joined)` for each model that was at rest before and is no more, in the
+  /// lanes `joined`.
+  template <class Function>
+  void for_each_joined(const Rates& before, const Function& function) noexcept {
+    using std::isnan;
+    const Rates& now = this->turn_rates_rad_s();
+    this->bank_.for_each([&](int k, auto& filter, auto&) {
+      const MaskOf<Scalar> joined = isnan(before[k]) && !isnan(now[k]);
+      if (any(joined)) function(k, filter, joined);
+    });
   }
 
   LikelyModelSet set_;

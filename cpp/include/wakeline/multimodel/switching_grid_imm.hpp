@@ -116,8 +116,10 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
   [[nodiscard]] Place centre() const noexcept { return centre_; }
   [[nodiscard]] const SwitchingGrid& grid() const noexcept { return grid_; }
 
-  /// Saves or restores beliefs, mode probabilities and the window.
+  /// Saves or restores beliefs, mode probabilities and the window; those of another grid fail.
   void archive(Archive& fields) {
+    fields.rules(grid_.grid_rad_s.size(), grid_.grid_rad_s.rates_rad_s(), grid_.threshold,
+                 grid_.rule, grid_.carry, grid_.initial());
     int centre = centre_;
     fields(centre);
     if (centre < 1 || centre > grid_.grid_rad_s.size() - 2) fields.fail();

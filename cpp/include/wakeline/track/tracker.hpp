@@ -479,7 +479,8 @@ class Tracker {
         track.kinematics = step_of[k]->kinematics;
         if (step_of[k]->total > 0.0) total = step_of[k]->total;
       }
-      if (total > 0.0) track.weigh(config_, total, none, claims.certain());
+      if (total > 0.0 && !(claims.empty() && awaited(track)))
+        track.weigh(config_, total, none, claims.certain());
       settle(track, slots[k], claims, readings_[k].share.data());
     }
   }
@@ -507,7 +508,13 @@ class Tracker {
       }
       settle(track, slot, echoes_[claim.echo], std::min(owns, 1.0));
     }
-    track.count(owned > 0.5);
+    if (owned > 0.5 || !awaited(track)) track.count(owned > 0.5);
+  }
+
+  /// Whether a track was designated for a time to which the scans have not come yet: until then it
+  /// misses none.
+  [[nodiscard]] bool awaited(const TrackType& track) const noexcept {
+    return track.time_s > time_s_ && track.time_s <= latest_designation_s();
   }
 
   /// Each plot as two readings, of the nominal and of the wild error.
