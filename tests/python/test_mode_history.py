@@ -54,8 +54,9 @@ def test_runs_side_by_side_know_nothing_of_each_other(kind):
         )
 
 
+LEARNT_STD_RAD_S = np.deg2rad(0.5)
 LEARNT = wl.CoordinatedTurnRate(
-    noise=SMALL_NOISE, turn_rate_psd_rad2s3=0.0, prior_turn_rate_std_rad_s=np.deg2rad(0.5)
+    noise=SMALL_NOISE, turn_rate_psd_rad2s3=0.0, prior_turn_rate_std_rad_s=LEARNT_STD_RAD_S
 )
 
 
@@ -98,7 +99,7 @@ def test_a_start_may_know_the_rate():
 @pytest.mark.parametrize("kind", [wl.Ekf, wl.Ukf, wl.SquareRootUkf])
 def test_deviations_and_weights_that_are_those_left_out_change_nothing(kind):
     z = np.stack([readings(15, seed) for seed in range(2)])
-    std_rad_s = np.full(len(RATES), LEARNT.prior_turn_rate_std_rad_s)
+    std_rad_s = np.full(len(RATES), LEARNT_STD_RAD_S)
     std_rad_s[2] *= 0.1  # that of the straight
     told = wl.ModeHistory(
         kind(LEARNT), RATES, grid_std_rad_s=std_rad_s, grid_weight=np.full(len(RATES), 0.4)
@@ -341,7 +342,7 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         (lambda: tree(initial_mode_probability=np.ones(5)), "initial_mode_probability"),
         (lambda: tree(chain=wl.ModeChain(np.eye(3))), "modes"),
         (lambda: tree(grid_weight=[1.0, 2.0]), "grid_weight must have one number for each of .* 5"),
-        (lambda: tree(grid_weight=[1.0, 1.0, 1.0, 0.0, 1.0]), "grid_weight must be positive"),
+        (lambda: tree(grid_weight=[1.0, 1.0, 1.0, 0.0, 1.0]), "of a turn in grid_weight must be finite and positive, got 0"),
         (lambda: tree(grid_std_rad_s=np.ones(5)), "grid_std_rad_s is for .*CoordinatedTurnRate"),
         (
             lambda: wl.ModeHistory(wl.Ekf(LEARNT), RATES, grid_std_rad_s=np.ones(4)),
@@ -349,7 +350,7 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         ),
         (
             lambda: wl.ModeHistory(wl.Ekf(LEARNT), RATES, grid_std_rad_s=[1, 1, 0, 1, 1]),
-            "grid_std_rad_s must be positive",
+            "deviation of grid_std_rad_s must be finite and positive, got 0",
         ),
         (lambda: wl.ModeHistory.pseudo_bayes(0, wl.Ekf(TURN), RATES), "1 to 8"),
         (lambda: wl.ModeHistory.pseudo_bayes(4, wl.Ekf(TURN), RATES), "more than 256 filters"),

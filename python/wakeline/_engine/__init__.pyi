@@ -3,6 +3,7 @@
 from . import (
     association,
     batch,
+    benchmark,
     core,
     eval,
     filter,
@@ -18,6 +19,7 @@ from . import (
 __all__ = [
     "association",
     "batch",
+    "benchmark",
     "core",
     "eval",
     "filter",

@@ -675,13 +675,19 @@ class ModeHistory:
         apart.
     grid_rad_s : (2 to 16,) array, optional
         Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
+    grid_std_rad_s : (K,) array, optional
+        Of filters over CoordinatedTurnRate, how far the rate may be off each of the grid when a turn begins, instead of
+        `prior_turn_rate_std_rad_s` and a tenth of it. Next to none (1e-4 rad/s) at rates that vessels are known to turn at, and
+        more at some between them, which learn theirs, is nearly as good as either where either is right.
+    grid_weight : (K,) array, optional
+        How usual each rate is among turns, as parts of their sum; that of the straightest does not matter. All alike when left out.
     straight_sojourn_s, turn_sojourn_s : float
         Mean time on a straight (the straightest rate of the grid) and in a turn, once it may end. The defaults suit small
         craft that turn often; ships go straight for minutes.
     straighten_probability : float
         That a turn ends in a straight; other turns are alike.
     chain : ModeChain, optional
-        Another chain, instead of those three.
+        Another chain, instead of those three and `grid_weight`.
     initial_mode_probability : (K,) array, optional
         What a start begins with; 0.9 for the straightest when left out.
     max_hypotheses : int
@@ -749,6 +755,8 @@ class ModeHistory:
         filter: Filter,
         grid_rad_s: ArrayLike | None = None,
         *,
+        grid_std_rad_s: ArrayLike | None = None,
+        grid_weight: ArrayLike | None = None,
         straight_sojourn_s: float = 55.0,
         turn_sojourn_s: float = 75.0,
         straighten_probability: float = 0.75,

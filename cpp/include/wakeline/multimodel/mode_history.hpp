@@ -594,12 +594,12 @@ class ModeHistory {
   static Bank bank_about(const TurnRateGrid& grid_rad_s, const TurnRateGrid::Rates& grid_std_rad_s,
                          const Filter& prototype) {
     grid_rad_s.require_for_each("grid_std_rad_s", grid_std_rad_s.size());
+    if constexpr (kLearnsTurnRate<Filter>)
+      for (const double std_rad_s : grid_std_rad_s)
+        require_positive("every deviation of grid_std_rad_s", std_rad_s);
     Bank bank(prototype, grid_rad_s.size());
-    bank.for_each([&](int k, Filter& filter, auto&) {
-      if constexpr (kLearnsTurnRate<Filter>)
-        require_positive("every deviation of grid_std_rad_s", grid_std_rad_s[k]);
-      expect_turn_rate(filter, grid_rad_s[k], grid_std_rad_s[k]);
-    });
+    for (int k = 0; k < bank.size(); ++k)
+      expect_turn_rate(bank.filter(k), grid_rad_s[k], grid_std_rad_s[k]);
     return bank;
   }
 
