@@ -342,7 +342,10 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         (lambda: tree(initial_mode_probability=np.ones(5)), "initial_mode_probability"),
         (lambda: tree(chain=wl.ModeChain(np.eye(3))), "modes"),
         (lambda: tree(grid_weight=[1.0, 2.0]), "grid_weight must have one number for each of .* 5"),
-        (lambda: tree(grid_weight=[1.0, 1.0, 1.0, 0.0, 1.0]), "of a turn in grid_weight must be finite and positive, got 0"),
+        (
+            lambda: tree(grid_weight=[1.0, 1.0, 1.0, 0.0, 1.0]),
+            "of a turn in grid_weight must be finite and positive, got 0",
+        ),
         (lambda: tree(grid_std_rad_s=np.ones(5)), "grid_std_rad_s is for .*CoordinatedTurnRate"),
         (
             lambda: wl.ModeHistory(wl.Ekf(LEARNT), RATES, grid_std_rad_s=np.ones(4)),

@@ -134,7 +134,7 @@ def test_the_text_is_of_the_parameters_not_of_the_belief(name):
 
 
 TOLD_AS_A_CHAIN = {
-    *("chain", "stay_probability"),
+    *("chain", "stay_probability", "grid_weight"),
     *("straight_sojourn_s", "turn_sojourn_s", "straighten_probability"),
 }
 
@@ -145,6 +145,7 @@ def test_the_text_tells_every_argument(thing):
     signature = type(thing).__init__.__doc__.split("->")[0]
     arguments = set(re.findall(r"(\w+):", signature)) - {"self"}
     untold = {name for name in arguments if f"{name}=" not in text}
+    untold.discard("grid_std_rad_s")  # those of the filter are its own
     if untold & TOLD_AS_A_CHAIN:
         assert "chain=" in text or "sojourn_s=" in text
     assert arguments
@@ -174,6 +175,7 @@ def test_what_the_text_of_a_mode_history_says_of_its_chain():
     assert "straight_sojourn_s=300.0, turn_sojourn_s=41.7, straighten_probability=0.6" in text
     assert "sibling_distance=float('inf')" in text
     assert "chain=ModeChain.from_generator(" in repr(OF_ALL_KINDS["ModeHistory-chain"])
+    assert "grid_std_rad_s=[0.0001, " in repr(OF_ALL_KINDS["ModeHistory-between"])
     assert repr(OF_ALL_KINDS["ModeHistory-pseudo_bayes"]).startswith(
         "ModeHistory.pseudo_bayes(order=2, filter=Ekf("
     )

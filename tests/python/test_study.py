@@ -38,8 +38,7 @@ ESTIMATORS = {
     "solent": [
         *("kalman_cv", "wandering_course", "kalman_ca", "singer", "ekf_turn_rate"),
         *("ukf_turn_rate", "imm3", "imm5", "imm_turn_rate", "vessel_imm", "vessel_imm_ships"),
-        *("agmm", "sgmm", "likely_model_set", "mode_history"),
-        *("mode_history_known", "mode_history_rates"),
+        *("agmm", "sgmm", "likely_model_set", "mode_history", "mode_history_rates"),
     ],
 }
 
