@@ -38,19 +38,21 @@ std::size_t go_round(const Filter& started, const Plots& plots, int rounds, cons
 
 template <class Hand>
 std::size_t by_hand(const Hand& started, const Plots& plots, int rounds) {
-  return go_round(started, plots, rounds,
-                  [](Hand& hand, const auto& z) __attribute__((flatten)) { hand.step(z); });
+  return go_round(
+      started, plots, rounds,
+      [](Hand & hand, const auto& z) __attribute__((flatten)) { hand.step(z); });
 }
 
 template <class Sensor, class Filter>
 std::size_t by_us(Filter filter, const Gaussian<4>& start, const Sensor& sensor, const Plots& plots,
                   int rounds) {
   (void)filter.start(start);
-  return go_round(filter, plots, rounds, [&](Filter& at, const auto& z) __attribute__((flatten)) {
-    use(at.predict(kStep_s));
-    use(at.update(sensor, z));
-    use(at.estimate());
-  });
+  return go_round(
+      filter, plots, rounds, [&](Filter & at, const auto& z) __attribute__((flatten)) {
+        use(at.predict(kStep_s));
+        use(at.update(sensor, z));
+        use(at.estimate());
+      });
 }
 
 template <int... Modes>
