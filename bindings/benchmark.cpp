@@ -7,9 +7,7 @@
 
 #include "hand_loops.hpp"
 #include "types.hpp"
-#include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
-#include "wakeline/multimodel/imm.hpp"
 
 namespace wakeline::python {
 namespace {
@@ -55,18 +53,10 @@ std::size_t by_us(Filter filter, const Gaussian<4>& start, const Sensor& sensor,
       });
 }
 
-template <int... Modes>
-auto imm_of(std::integer_sequence<int, Modes...>) {
-  constexpr int kModes = sizeof...(Modes);
-  return Imm{ModeChain<kModes>(bench::transition<kModes>()),
-             Ekf<CoordinatedTurn>(bench::turning(Modes))...};
-}
-
 template <int Modes>
 std::size_t imm_steps(const bench::Course<double>& course, bool hand, int rounds) {
   if (hand) return by_hand(bench::HandImm<Modes, double>(course.start), course.polar, rounds);
-  return by_us(imm_of(std::make_integer_sequence<int, Modes>{}), course.start, bench::kRadar,
-               course.polar, rounds);
+  return by_us(bench::imm<Modes, double>(), course.start, bench::kRadar, course.polar, rounds);
 }
 
 std::size_t ukf_steps(const bench::Course<double>& course, bool hand, int rounds) {

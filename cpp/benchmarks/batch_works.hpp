@@ -13,25 +13,14 @@
 #include "flop_count.hpp"
 #include "models.hpp"
 #include "wakeline/core/pack_math.hpp"
-#include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/multimodel/bayesian_alpha_beta.hpp"
 #include "wakeline/multimodel/fuzzy_alpha_beta.hpp"
-#include "wakeline/multimodel/imm.hpp"
 
 namespace wakeline::bench {
 
 template <class Real>
 using Lanes = Pack<Real, kNativeLanes<Real>>;
-
-/// An IMM of K turns.
-template <int K, class Scalar>
-auto imm() {
-  return []<int... Mode>(std::integer_sequence<int, Mode...>) {
-    return Imm{ModeChain<K>(transition<K>()), Ekf<CoordinatedTurn, Scalar>(turning(Mode))...};
-  }
-  (std::make_integer_sequence<int, K>{});
-}
 
 template <class Scalar>
 auto kalman() {

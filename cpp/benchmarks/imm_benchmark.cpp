@@ -22,18 +22,11 @@ namespace {
 using namespace wakeline;
 using namespace wakeline::bench;
 
-template <class Scalar, int... Modes>
-auto make_imm(std::integer_sequence<int, Modes...>) {
-  constexpr int kModes = sizeof...(Modes);
-  return Imm{ModeChain<kModes>(transition<kModes>()),
-             Ekf<CoordinatedTurn, Scalar>(turning(Modes))...};
-}
-
 template <class Scalar, int K>
 auto started_imm(const Course<Scalar>& course) {
-  auto imm = make_imm<Scalar>(std::make_integer_sequence<int, K>{});
-  (void)imm.start(course.start);
-  return imm;
+  auto started = imm<K, Scalar>();
+  (void)started.start(course.start);
+  return started;
 }
 
 /// Ours, and what the loop gives after the same steps: they must not differ by more than rounding.

@@ -1,17 +1,20 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Motion models and sensors that the benchmarks share.
+// Motion models, sensors and the IMM that the benchmarks share.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "course.hpp"
+#include "wakeline/filter/ekf.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
+#include "wakeline/multimodel/imm.hpp"
 
 namespace wakeline::bench {
 
@@ -32,6 +35,15 @@ Mat<double, K, K> transition() {
   Mat<double, K, K> chain = Mat<double, K, K>::Constant(0.06 / (K - 1));
   chain.diagonal().setConstant(0.94);
   return chain;
+}
+
+/// An IMM of K turns.
+template <int K, class Scalar>
+auto imm() {
+  return []<int... Mode>(std::integer_sequence<int, Mode...>) {
+    return Imm{ModeChain<K>(transition<K>()), Ekf<CoordinatedTurn, Scalar>(turning(Mode))...};
+  }
+  (std::make_integer_sequence<int, K>{});
 }
 
 }  // namespace wakeline::bench
