@@ -2,7 +2,7 @@
 #
 #   source setup.sh demo     a compiler, CMake, Eigen and the Python package with its plots
 #   source setup.sh tests    the same, the C++ test libraries and the Python test tools
-#   source setup.sh clang    as tests, and clang 14
+#   source setup.sh sanitize as tests, and clang 14 with its sanitizers
 #
 # Installs with apt what is missing and nothing else, keeps everything of its own in build/, and leaves in the
 # environment: root (the checkout), python and bin (of the virtual environment), CXX (the C++ compiler) and jobs.
@@ -21,7 +21,7 @@ fail() { say "$*"; exit 1; }
 has_cmake() { cmake --version >/dev/null 2>&1; }
 has_make() { ninja --version >/dev/null 2>&1 || make --version >/dev/null 2>&1; }
 has_header() { [[ -e /usr/include/$1 || -e /usr/local/include/$1 ]]; }
-has_clang() { clang++-14 --version >/dev/null 2>&1; }
+has_sanitizers() { clang++-14 -fsanitize=address,undefined -x c++ -o /dev/null - <<<'int main() {}' >/dev/null 2>&1; }
 
 # A C++20 compiler: $CXX when set, else g++ 12 or newer.
 find_compiler() {
@@ -67,7 +67,7 @@ missing_packages() {
     has_header benchmark/benchmark.h || echo libbenchmark-dev
     has_header nlohmann/json.hpp || echo nlohmann-json3-dev
   fi
-  if [[ $purpose == clang ]]; then has_clang || echo clang-14; fi
+  if [[ $purpose == sanitize ]]; then has_sanitizers || echo clang-14 libclang-rt-14-dev; fi
 }
 
 # The distribution's own g++ when it is new enough; Ubuntu 22.04 has g++-12 beside an older one.

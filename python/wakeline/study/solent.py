@@ -361,6 +361,7 @@ def _pictures(rows: Rows, seed: int) -> tuple[Picture, ...]:
             "solent-map",
             "Vessels off Portsmouth, 12 January 2016, seen from Gilkicker Point",
             (_draw_map,),
+            size_in=(6.4, 8.8),
             shared=False,
         ),
         Picture(
@@ -390,10 +391,21 @@ def _pictures(rows: Rows, seed: int) -> tuple[Picture, ...]:
 
 def _draw_map(ax: Axes) -> Axes:
     colors = dict(zip(dict.fromkeys(map(_vessel, vessels())), plot.PALETTE, strict=False))
+    named = set()
     for name, truth in vessels().items():
+        vessel = _vessel(name)
         place_m = truth.state_at(np.arange(0.0, truth.end_time_s, 2.0))[:, 0::2]
-        ax.plot(place_m[:, 1] / 1e3, place_m[:, 0] / 1e3, color=colors[_vessel(name)])
-        ax.plot(*place_m[0, ::-1] / 1e3, color=colors[_vessel(name)], marker="o", markersize=4)
+        ax.plot(
+            place_m[:, 1] / 1e3,
+            place_m[:, 0] / 1e3,
+            color=colors[vessel],
+            marker="o",
+            markersize=4,
+            markevery=[0],
+            label=None if vessel in named else vessel,
+        )
+        named.add(vessel)
+    ax.plot([], [], color=plot.INK, marker="o", markersize=4, linestyle="", label="start")
     ax.plot(0, 0, color=plot.INK, marker="^", markersize=7, linestyle="", label="radar")
     return plot.name_lines(plot.dress_map(ax))
 

@@ -361,7 +361,7 @@ void expect_numbers_in_place() {
   in.runs = runs;
   in.scans = scans;
   const RunLanes<Scalar> lanes(in, 0);
-  for (const std::size_t size : {1, 2, 3, 4, 5, 16, 25, 400}) {
+  for (const std::size_t size : {1U, 2U, 3U, 4U, 5U, 16U, 25U, 400U}) {
     std::vector<double> numbers(runs * scans * size, -1.0);
     const RunColumn<Scalar> column(lanes, numbers.data(), size);
     for (std::size_t scan = 0; scan < scans; ++scan) {
@@ -423,7 +423,7 @@ TEST(BatchGate, OutsideIsMissed) {
 struct PositionsFirst {
   static constexpr std::array kComponents{Component::kNorth, Component::kEast, Component::kVnorth,
                                           Component::kVeast, Component::kUser};
-  static constexpr bool kForPacks = true;
+  [[maybe_unused]] static constexpr bool kForPacks = true;
 
   template <class Scalar>
   Mat<Scalar, 5, 5> matrix(Scalar dt_s) const noexcept {

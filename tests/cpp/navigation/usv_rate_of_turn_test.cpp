@@ -136,7 +136,7 @@ Vec<double, 3> smoothed(test::Draw& draw, const Model& model) {
   const auto filtered = beliefs;
   EXPECT_EQ(navigator.smooth(beliefs, legs), Status::kOk);
   Vec<double, 3> sums = Vec<double, 3>::Zero();
-  for (const std::size_t k : {5, 18, 30, 39, 53}) {
+  for (const std::size_t k : {5U, 18U, 30U, 39U, 53U}) {
     const auto off = [&](const auto& belief) {
       return Vec2(wrap_angle(belief.mean[kHeadingAt] - heading[k]), belief.mean[kBias] - bias);
     };

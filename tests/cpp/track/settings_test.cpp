@@ -136,7 +136,7 @@ TEST(VesselModelSettings, NamesWhatItRefuses) {
       {"turn_rate_psd_rad2s3", &VesselModels::turn_rate_psd_rad2s3}};
   for (const auto& [name, field] : noises)
     for (const double value : {-1.0, kNan, kInf})
-      expect(name, [=](VesselModels& models) { models.*field = value; });
+      expect(name, [field = field, value](VesselModels& models) { models.*field = value; });
   for (const double value : {0.0, -1.0, kNan, kInf})
     expect("prior_turn_rate_std_rad_s",
            [=](VesselModels& models) { models.prior_turn_rate_std_rad_s = value; });
@@ -148,7 +148,7 @@ TEST(VesselModelSettings, NamesWhatItRefuses) {
       {"turning_sojourn_s", &VesselModels::turning_sojourn_s}};
   for (const auto& [name, field] : times)
     for (const double value : {0.0, -1.0, 1e-300, 1e300, kNan, kInf})
-      expect(name, [=](VesselModels& models) { models.*field = value; });
+      expect(name, [field = field, value](VesselModels& models) { models.*field = value; });
   for (const double value : {-0.1, 1.1, kNan})
     expect("cruising_probability",
            [=](VesselModels& models) { models.cruising_probability = value; });

@@ -70,7 +70,7 @@ TYPED_TEST(CfarOf, IsItsDefinition) {
       for (const int guard : {0, 3})
         for (const auto& [factor, offset] :
              {std::pair{0.7, 0}, {3.3, 0}, {60.0, 0}, {1000.0, 0}, {1.0, 5}, {1.0, 60}, {3.3, 999}})
-          for (const std::size_t cells : {1, 2, 7, 40, 300}) {
+          for (const std::size_t cells : {1U, 2U, 7U, 40U, 300U}) {
             const CfarSettings settings{.kind = kind,
                                         .train_cells = train,
                                         .guard_cells = guard,

@@ -86,7 +86,7 @@ class StrobeLabels {
   }
 
   /// The first row keeps its place, all others take turns.
-  Row& runs(int row) noexcept { return rows_[row == 0 ? 0 : 1 + row % 2]; }
+  Row& runs(int row) noexcept { return rows_[row == 0 ? 0U : 1U + std::size_t(row) % 2U]; }
 
   Echo& at(int echo) noexcept { return echoes_[static_cast<std::size_t>(echo)]; }
   [[nodiscard]] const Echo& at(int echo) const noexcept {
