@@ -65,6 +65,7 @@ void expect_unmoved_by_failure(const typename Filter::Motion& motion) {
   EXPECT_EQ(filter.predict(3.0, {kNan, 0.0}), Status::kNotFinite);
   EXPECT_EQ(filter.predict(3.0, {0.0, std::numeric_limits<double>::infinity()}),
             Status::kNotFinite);
+  EXPECT_EQ(filter.predict(3.0, {0.0, -1e300}), Status::kNotFinite);
   EXPECT_TRUE(beliefs_identical<Filter::kStates>(filter.estimate(), before));
 }
 

@@ -132,6 +132,20 @@ TEST(ImmFailures, APlotWithoutASquareLeavesThePrediction) {
     expect_that_it_is_a_plot_or_leaves_the_prediction<float>(std::pow(10.0F, float(power)), 1e3F);
 }
 
+TEST(ImmFailures, AnAccelerationWithoutASquareLeavesEverything) {
+  Imm imm{kChain, Ekf<CoordinatedTurn>{CoordinatedTurn{.turn_rate_rad_s = 0.02}},
+          Ekf<CoordinatedTurn>{CoordinatedTurn{.turn_rate_rad_s = -0.02}}};
+  ASSERT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);
+  const Snapshot before(imm);
+  for (const double push_mps2 : {1e300, -1e300, 1e150, kNan, kInfinity})
+    EXPECT_EQ(imm.predict(3.0, {push_mps2, 0.0}), Status::kNotFinite) << push_mps2;
+  EXPECT_TRUE(before.matches(imm));
+  for (int scan = 0; scan < 10; ++scan) {
+    ASSERT_EQ(imm.predict(3.0, {1e147, -1e147}), Status::kOk);
+    ASSERT_TRUE(imm.estimate().covariance.allFinite()) << scan;
+  }
+}
+
 TEST(ImmFailures, NotStarted) {
   Imm imm{kChain, straight(), straight()};
   EXPECT_FALSE(imm.started());

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
+
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/component.hpp"
 #include "wakeline/core/status.hpp"
@@ -43,7 +45,8 @@ struct Control {
     return shift;
   }
 
-  /// `filter.predict(dt_s)` under the acceleration; where that is not finite nothing changes.
+  /// `filter.predict(dt_s)` under the acceleration; where that moves the state by what has no
+  /// square, or is not finite, nothing changes.
   template <class Filter>
   static auto predict(Filter& filter, typename Filter::Scalar dt_s,
                       const Vec<typename Filter::Scalar, 2>& acceleration_mps2) noexcept {
@@ -54,7 +57,10 @@ struct Control {
     if (none(ok(status))) return status;
     const decltype(pushed) moved = filter.mean() + pushed;
     assign_where(ok(status), filter.mean(), moved);
-    status = first_failure(status, ok_or(is_finite(moved), Status::kNotFinite));
+    using std::abs;
+    MaskOf<Scalar> squared = is_finite(moved);
+    for (const Scalar& part : pushed) squared = squared && abs(part) < Scalar(kMostSquared<Scalar>);
+    status = first_failure(status, ok_or(squared, Status::kNotFinite));
     if (!all(ok(status))) restore(filter, before, !ok(status));
     return status;
   }

@@ -76,11 +76,6 @@ Scalar part_of(Scalar part, Scalar total, Scalar scale) noexcept {
   return select(part == total, Scalar(1), part * scale);
 }
 
-/// Numbers above this, or what differs by as much and is then multiplied by a gain, have no square.
-template <class Scalar>
-inline constexpr RealOf<Scalar> kMostSquared = sizeof(RealOf<Scalar>) > 4 ? RealOf<Scalar>(0x1p492)
-                                                                          : RealOf<Scalar>(0x1p44);
-
 /// Makes a reading that is too large for a mixture one that is none.
 template <int M, class Scalar>
 [[gnu::always_inline]] inline void refuse_beyond_squares(Vec<Scalar, M>& reading) noexcept {
