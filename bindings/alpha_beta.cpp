@@ -1,35 +1,11 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "wakeline/filter/alpha_beta.hpp"
-
+#include "any_alpha_beta.hpp"
 #include "call_text.hpp"
 #include "face.hpp"
 
 namespace wakeline::python {
 namespace {
-
-/// The filter itself, with beliefs of any layout.
-template <int Order>
-class AnyAlphaBeta : public AlphaBetaFilter<Order> {
-  using Filter = AlphaBetaFilter<Order>;
-
- public:
-  using Filter::Filter;
-
-  Status start(const AnyBelief& belief) noexcept {
-    if (belief.mean.size() == 4) return Filter::start(Gaussian<4>{belief.mean, belief.covariance});
-    return Filter::start(Gaussian<2 * Order>{belief.mean, belief.covariance});
-  }
-
-  [[nodiscard]] AnyBelief estimate() const noexcept {
-    const auto& belief = Filter::estimate();
-    return {Order == 2 ? StateLayout::kKinematics : StateLayout::kAcceleration, belief.mean,
-            belief.covariance};
-  }
-
-  /// It takes the position out of any sensor.
-  [[nodiscard]] bool linear() const noexcept { return false; }
-};
 
 void require_order(int order) {
   if (order != 2 && order != 3)
@@ -49,7 +25,8 @@ void define_gains(py::class_<Schedule>& schedule) {
         require_not_negative("elapsed_s", elapsed_s);
         require_positive("std_m", std_m);
         require_not_negative("range_m", range_m);
-        const GainOccasion<double> occasion{reading, elapsed_s, std_m, range_m};
+        const GainOccasion<double> occasion{static_cast<double>(reading), elapsed_s, std_m,
+                                            range_m};
         if constexpr (OfThree) {
           if (order == 3) {
             s.template validate<3>();

@@ -96,6 +96,14 @@ bool run_mixture(const Estimator& estimator, const Structure& structure, const A
   return run(job, sensor, in, starts, out);
 }
 
+template <int Order>
+bool run_alpha_beta(const AnyAlphaBeta<Order>& filter, const AnySensor& sensor, const RunInput& in,
+                    const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  LaneJob job;
+  job.lines = LaneAlphaBeta<Order>{filter.schedule(), filter.motion()};
+  return run(job, sensor, in, starts, out);
+}
+
 }  // namespace
 
 const LaneKernels* lane_kernels() noexcept { return kernels; }
@@ -159,6 +167,16 @@ bool run_lanes(const AnyFuzzyAlphaBeta& lines, const AnySensor& sensor, const Ru
   LaneJob job;
   job.lines = lines.criterion();
   return run(job, sensor, in, starts, out);
+}
+
+bool run_lanes(const AnyAlphaBeta<2>& filter, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  return run_alpha_beta(filter, sensor, in, starts, out);
+}
+
+bool run_lanes(const AnyAlphaBeta<3>& filter, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+  return run_alpha_beta(filter, sensor, in, starts, out);
 }
 
 bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInput& in,

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "any_alpha_beta.hpp"
 #include "any_lines.hpp"
 #include "any_turn_grids.hpp"
 #include "estimators.hpp"
@@ -78,6 +79,10 @@ bool run_lanes(const AnyModeHistory& history, const AnySensor& sensor, const Run
 bool run_lanes(const AnyBayesianAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 bool run_lanes(const AnyFuzzyAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyAlphaBeta<2>& filter, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyAlphaBeta<3>& filter, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 template <class Estimator>
 bool run_lanes(const Estimator&, const AnySensor&, const RunInput&, const std::vector<AnyBelief>&,

@@ -117,8 +117,9 @@ if ! "$python" -m pip --version >/dev/null 2>&1; then
   "$system_python" -m venv "$root/build/venv"
 fi
 
-if [[ $purpose == demo ]]; then extra=plot; else extra=dev; fi
-stamp=$root/build/venv/wakeline-$extra.stamp
+# A package for tests has all that the demo needs; that of the demo has lanes for this machine's processor alone, which is a
+# third less to compile.
+if [[ $purpose == demo ]]; then extra=plot lanes=native; else extra=dev lanes=all; fi
 fingerprint=$(
   cd "$root"
   {
@@ -128,13 +129,33 @@ fingerprint=$(
     "$CXX" --version
   } | sha256sum
 )
-if [[ ! -e $stamp || $(<"$stamp") != "$fingerprint" ]]; then
-  say "building and installing the Python package (extra: $extra)"
+stamp_of() { echo "$root/build/venv/wakeline-$1.stamp"; }
+is_installed() { [[ -e $(stamp_of "$1") && $(<"$(stamp_of "$1")") == "$fingerprint" ]]; }
+
+# Of what a build prints, how far it is.
+show_progress() {
+  local line of='' said=''
+  while IFS= read -r line; do
+    if [[ $line =~ ^\ *\[\ *([0-9]+)(/[0-9]+|%)\] ]]; then
+      of="${BASH_REMATCH[1]}${BASH_REMATCH[2]/\// of }"
+      if [[ -t 2 ]]; then printf '\rwakeline: compiled %s ' "$of" >&2; fi
+      said=yes
+    fi
+  done
+  if [[ -t 2 && -n $said ]]; then printf '\n' >&2; fi
+}
+
+if ! is_installed dev && ! is_installed "$extra"; then
+  say "building and installing the Python package (extra: $extra), which takes ten minutes or more"
+  rm -f "$(stamp_of dev)" "$(stamp_of plot)"
   # Without build isolation and with a build folder that stays, so that the next build compiles only what changed.
   "$python" -m pip install -q --disable-pip-version-check "scikit-build-core>=0.10" "pybind11>=3.0"
   if ninja --version >/dev/null 2>&1; then generator=Ninja; else generator="Unix Makefiles"; fi
-  SKBUILD_BUILD_DIR="$root/build/wheel/$generator" CMAKE_GENERATOR=$generator CMAKE_BUILD_PARALLEL_LEVEL=$jobs \
-    "$python" -m pip install -q --disable-pip-version-check --no-build-isolation "$root[$extra]"
-  printf '%s' "$fingerprint" >"$stamp"
+  log=$root/build/wheel.log
+  SKBUILD_BUILD_DIR="$root/build/wheel/$generator" SKBUILD_CMAKE_DEFINE="WAKELINE_LANES=$lanes" \
+    CMAKE_GENERATOR=$generator CMAKE_BUILD_PARALLEL_LEVEL=$jobs \
+    "$python" -m pip install -v --disable-pip-version-check --no-build-isolation "$root[$extra]" 2>&1 |
+    tee "$log" | show_progress || { tail -n 40 "$log" >&2; fail "the package could not be built; all of it is in $log"; }
+  printf '%s' "$fingerprint" >"$(stamp_of "$extra")"
 fi
 exec 9>&-

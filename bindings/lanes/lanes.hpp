@@ -14,6 +14,7 @@
 
 #include "wakeline/batch/run.hpp"
 #include "wakeline/batch/side_by_side.hpp"
+#include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/filter/unscented.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
@@ -43,6 +44,17 @@ struct LaneModel {
   Unscented transform = {};  ///< of all but the extended
 };
 
+/// An alpha-beta filter of 2 or 3 states an axis.
+template <int Order>
+struct LaneAlphaBeta {
+  GainSchedule<Order> gains;
+  typename AlphaBetaFilter<Order>::Motion motion;
+};
+
+/// What draws lines through plots, one or several.
+using LaneLines =
+    std::variant<std::monostate, LineWeighing, FuzzyCriterion, LaneAlphaBeta<2>, LaneAlphaBeta<3>>;
+
 /// A belief of up to six states, column by column.
 struct LaneStart {
   int states = 4;
@@ -60,7 +72,7 @@ struct LaneJob {
   std::vector<LaneModel> models;                    ///< none of an estimator that draws lines
   const ModeChain<kRuntimeModes>* chain = nullptr;  ///< between the models; none of one filter
   Structure structure = {};
-  std::variant<std::monostate, LineWeighing, FuzzyCriterion> lines = {};  ///< how it draws them
+  LaneLines lines = {};
   std::vector<double> initial_mode_probability;
   std::variant<RangeBearing, ConvertedRangeBearing, Position, RangeBearingDoppler> sensor;
   std::vector<LaneStart> starts;  ///< one for all runs, or one each

@@ -7,13 +7,28 @@
 namespace wakeline::python {
 namespace {
 
+auto estimator_of(const FuzzyCriterion& criterion) { return FuzzyAlphaBeta<Lanes>(criterion); }
+
+auto estimator_of(const LineWeighing& weighing) { return BayesianAlphaBeta<Lanes>(weighing); }
+
+template <int Order>
+auto estimator_of(const LaneAlphaBeta<Order>& filter) {
+  return AlphaBetaFilter<Order, Lanes>(filter.gains, filter.motion);
+}
+
 template <class Sensors>
 bool run_for(const LaneJob& job, const RunInput& in, const RunOutput& out, int threads) {
-  if (const auto* criterion = std::get_if<FuzzyCriterion>(&job.lines))
-    return run_from<4, Sensors>(FuzzyAlphaBeta<Lanes>(*criterion), job, in, out, threads);
-  const auto* weighing = std::get_if<LineWeighing>(&job.lines);
-  return weighing != nullptr &&
-         run_from<4, Sensors>(BayesianAlphaBeta<Lanes>(*weighing), job, in, out, threads);
+  return std::visit(
+      [&]<class Lines>(const Lines& lines) {
+        if constexpr (std::is_same_v<Lines, std::monostate>) {
+          return false;
+        } else {
+          const auto estimator = estimator_of(lines);
+          constexpr int kStates = decltype(estimator.estimate().mean)::RowsAtCompileTime;
+          return run_from<kStates, Sensors>(estimator, job, in, out, threads);
+        }
+      },
+      job.lines);
 }
 
 }  // namespace

@@ -84,6 +84,8 @@ ESTIMATORS = {
     "fuzzy": wl.FuzzyAlphaBeta(),
     "fuzzy_of_six": wl.FuzzyAlphaBeta(max_plots=6, hold=False),
     "bayesian": wl.BayesianAlphaBeta(),
+    "alpha_beta": wl.AlphaBeta(wl.RangeDependent(near_range_m=6e3)),
+    "alpha_beta_gamma": wl.AlphaBetaGamma(wl.TrackingIndex(0.5)),
     "imm_of_many_kinds": imm(
         wl.Ekf(wl.WanderingCourse()),
         wl.SquareRootUkf(wl.CoordinatedTurnRate(noise=NOISE)),
@@ -107,7 +109,7 @@ ESTIMATORS = {
     },
 }
 UNSCENTED_TURNS = [name for name in ESTIMATORS if name.endswith("ukf")]  # of either kind
-LINES = ["fuzzy", "bayesian"]
+LINES = ["fuzzy", "bayesian", "alpha_beta", "alpha_beta_gamma"]
 DOPPLER_ESTIMATORS = [
     "ekf_cv",
     "ekf_ct",

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "wakeline/batch/run.hpp"
+#include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/filter/ukf.hpp"
@@ -231,6 +232,12 @@ struct SquareRootImm {
   }
 };
 
+template <class Scalar>
+struct GammaOfIndex {
+  static constexpr std::size_t kModels = 0;
+  static auto make() { return AlphaBetaGamma<Scalar>(TrackingIndex{0.3}); }
+};
+
 template <template <class> class Kind, class Scalar, class Sensor>
 Results run(const Sensor& sensor, const RunInput& in, int threads = 1) {
   const auto prototype = Kind<Scalar>::make();
@@ -282,10 +289,10 @@ struct Of {
   template <class Scalar>
   using Kind = KindType<Scalar>;
 };
-using Cases =
-    ::testing::Types<Of<Imm3>, Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>, Of<Likely>,
-                     Of<AdaptiveOfUkfs>, Of<SwitchingOfRoots>, Of<LikelyUkfs>, Of<EkfTurnRate>,
-                     Of<EkfSinger>, Of<UkfTurnRate>, Of<SquareRootTurnRate>, Of<SquareRootImm>>;
+using Cases = ::testing::Types<Of<Imm3>, Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>,
+                               Of<Likely>, Of<AdaptiveOfUkfs>, Of<SwitchingOfRoots>, Of<LikelyUkfs>,
+                               Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>,
+                               Of<SquareRootTurnRate>, Of<SquareRootImm>, Of<GammaOfIndex>>;
 TYPED_TEST_SUITE(Batch, Cases);
 
 TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {

@@ -79,7 +79,7 @@ TEST(GrowingMemory, IsTheLeastSquaresLine) { expect_polynomial<2>(); }
 TEST(GrowingMemory, IsTheLeastSquaresParabola) { expect_polynomial<3>(); }
 
 TEST(GrowingMemory, CountsThePlotsOfTheStartAndForgetsThoseBeyondTheMost) {
-  const auto gains = [](const GrowingMemory& memory, int reading) {
+  const auto gains = [](const GrowingMemory& memory, double reading) {
     return memory.gains<2>(GainOccasion<double>{.reading = reading});
   };
   for (int k = 1; k < 10; ++k) {  // of k updates after a start of one plot

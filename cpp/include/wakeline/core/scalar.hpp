@@ -122,6 +122,13 @@ template <class Scalar>
 inline constexpr RealOf<Scalar> kMostSquared = sizeof(RealOf<Scalar>) > 4 ? RealOf<Scalar>(0x1p492)
                                                                           : RealOf<Scalar>(0x1p44);
 
+/// Whether a number is not beyond those.
+template <class Scalar>
+MaskOf<Scalar> has_square(Scalar x) noexcept {
+  using std::abs;
+  return abs(x) < Scalar(kMostSquared<Scalar>);
+}
+
 /// Over the lanes of a mask, of which a `bool` has one.
 constexpr bool all(bool mask) noexcept { return mask; }
 constexpr bool any(bool mask) noexcept { return mask; }

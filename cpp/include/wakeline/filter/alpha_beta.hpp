@@ -53,16 +53,16 @@ class AlphaBetaFilter
 
   /// Begins with a belief over the state or over `[x, vx, y, vy]`, and the schedule anew.
   template <class BeliefType>
-  Status start(const BeliefType& belief) noexcept {
-    const Status status = Base::start(belief);
-    if (status == Status::kOk) occasion_ = {};
+  StatusOf<Scalar> start(const BeliefType& belief) noexcept {
+    const StatusOf<Scalar> status = Base::start(belief);
+    assign_where(ok(status), occasion_, Occasion{});
     return status;
   }
 
-  Status predict(Scalar dt_s) noexcept { return count(Base::predict(dt_s), dt_s); }
+  StatusOf<Scalar> predict(Scalar dt_s) noexcept { return count(Base::predict(dt_s), dt_s); }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
-  Status predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
+  StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return count(Base::predict(dt_s, acceleration_mps2), dt_s);
   }
 
@@ -105,7 +105,7 @@ class AlphaBetaFilter
     fields(occasion.reading);
     fields(occasion.elapsed_s);
     fields(occasion.taken);
-    if (occasion.reading < 1 || !(occasion.elapsed_s >= Scalar(0))) fields.fail();
+    if (!(occasion.reading >= Scalar(1)) || !(occasion.elapsed_s >= Scalar(0))) fields.fail();
     if (fields.loading() && fields.ok()) *this = loaded;
   }
 
@@ -114,9 +114,16 @@ class AlphaBetaFilter
   /// Where the schedule is: which reading is due, the time since the one before, and whether it has
   /// come. To be kept and given back where an update is only tried.
   struct Occasion {
-    std::int64_t reading = 1;
+    Scalar reading = Scalar(1);
     Scalar elapsed_s = Scalar(0);
-    bool taken = false;  ///< the reading has come; the next time step begins another one
+    MaskOf<Scalar> taken = false;  ///< the reading has come; the next time step begins another one
+
+    friend void assign_where(const MaskOf<Scalar>& condition, Occasion& target,
+                             const Occasion& value) noexcept {
+      target.reading = select(condition, value.reading, target.reading);
+      target.elapsed_s = select(condition, value.elapsed_s, target.elapsed_s);
+      target.taken = (condition && value.taken) || (!condition && target.taken);
+    }
   };
   [[nodiscard]] const Occasion& memory() const noexcept { return occasion_; }
   void recall(const Occasion& occasion) noexcept { occasion_ = occasion; }
@@ -137,10 +144,10 @@ class AlphaBetaFilter
     return motion;
   }
 
-  Status count(Status status, Scalar dt_s) noexcept {
-    if (status != Status::kOk || dt_s == Scalar(0)) return status;
-    if (occasion_.taken) occasion_ = {occasion_.reading + 1, Scalar(0), false};
-    occasion_.elapsed_s += dt_s;
+  StatusOf<Scalar> count(const StatusOf<Scalar>& status, Scalar dt_s) noexcept {
+    const MaskOf<Scalar> goes_on = ok(status) && dt_s != Scalar(0);
+    assign_where(goes_on && occasion_.taken, occasion_, {occasion_.reading + 1});
+    occasion_.elapsed_s += select(goes_on, dt_s, Scalar(0));
     return status;
   }
 
@@ -163,20 +170,36 @@ class AlphaBetaFilter
   template <class Sensor>
   Correction<2, Scalar> take(const Sensor& sensor, const Gaussian<2, Scalar>& plot) noexcept {
     Correction<2, Scalar> correction = Base::compare(Fix{}, plot);
-    if (correction.status != Status::kOk) return correction;
+    if (none(ok(correction.status))) return correction;
     const Gain k = gain(plot.covariance, range(sensor, plot.mean));
-    Mat<Scalar, kStates, kStates> rest = Mat<Scalar, kStates, kStates>::Identity();
-    for (int axis = 0; axis < 2; ++axis) rest.col(Order * axis) -= k.col(axis);
-    const Vec<Scalar, kStates> mean = this->belief_.mean + k * correction.innovation;
-    Mat<Scalar, kStates, kStates> covariance =
-        rest * this->belief_.covariance * rest.transpose() + k * plot.covariance * k.transpose();
-    if (!is_finite(mean) || !is_finite(covariance))
-      return failed_correction<2, Scalar>(Status::kNotFinite);
-    mirror_lower<Scalar, kStates>(covariance);
-    this->belief_.mean = mean;
-    this->belief_.covariance = covariance;
-    occasion_.taken = true;
+    Gaussian<kStates, Scalar> next = this->belief_;
+    shift(next.mean, k, correction.innovation);
+    spread(next.covariance, k, plot.covariance);
+    correction.status = first_failure(
+        correction.status,
+        ok_or(is_finite(next.mean) && is_finite(next.covariance), Status::kNotFinite));
+    const MaskOf<Scalar> taken = ok(correction.status);
+    assign_where(taken, this->belief_, next);
+    occasion_.taken = occasion_.taken || taken;
     return correction;
+  }
+
+  /// P becomes (I - K H) P (I - K H)ᵀ + K R Kᵀ = A + (K R - A Hᵀ) Kᵀ, with A = P - K H P.
+  static void spread(Mat<Scalar, kStates, kStates>& p, const Gain& k,
+                     const Mat<Scalar, 2, 2>& r) noexcept {
+    Mat<Scalar, kStates, kStates> a = p;
+    unroll<kStates * kStates>([&](auto at) {
+      constexpr int i = at.value % kStates, j = at.value / kStates;
+      a(i, j) -= k(i, 0) * p(0, j) + k(i, 1) * p(Order, j);
+    });
+    Gain across;
+    unroll<kStates>([&](int i) {
+      across(i, 0) = k(i, 0) * r(0, 0) + k(i, 1) * r(1, 0) - a(i, 0);
+      across(i, 1) = k(i, 0) * r(1, 0) + k(i, 1) * r(1, 1) - a(i, Order);
+    });
+    unroll_lower<kStates>([&](int i, int j) {
+      p(i, j) = p(j, i) = a(i, j) + across(i, 0) * k(j, 0) + across(i, 1) * k(j, 1);
+    });
   }
 
   template <class Sensor>
@@ -194,8 +217,9 @@ class AlphaBetaFilter
     AxisGain gain = std::visit(
         [&](const auto& schedule) -> AxisGain { return schedule.template gains<Order>(occasion); },
         schedule_);
+    const auto later = occasion.elapsed_s > Scalar(0);
     const Scalar per_s =
-        occasion.elapsed_s > Scalar(0) ? Scalar(1) / occasion.elapsed_s : Scalar(0);
+        select(later, Scalar(1) / select(later, occasion.elapsed_s, Scalar(1)), Scalar(0));
     gain[1] *= per_s;
     if constexpr (Order == 3) gain[2] *= per_s * per_s / 2;
     return gain;
@@ -209,13 +233,15 @@ class AlphaBetaFilter
     const Scalar spread = sqrt(half_difference * half_difference + r(1, 0) * r(1, 0));
     const Scalar longest = half_sum + spread;  // variances along the axes of R
     const Scalar product = r(0, 0) * r(1, 1) - r(1, 0) * r(1, 0);
-    const Scalar shortest = product > Scalar(0) ? product / longest : Scalar(0);
+    const Scalar shortest = select(product > Scalar(0), product / longest, Scalar(0));
     const AxisGain along = axis_gain(sqrt(shortest), range_m);
+    const auto uneven = spread > Scalar(0);
     Mat<Scalar, 2, 2> onto_long = Mat<Scalar, 2, 2>::Zero();  // projection on the long axis
     AxisGain more = AxisGain::Zero();
-    if (spread > Scalar(0)) {
-      onto_long << half_sum + spread - r(1, 1), r(1, 0), r(1, 0), half_sum + spread - r(0, 0);
-      onto_long /= 2 * spread;
+    if (any(uneven)) {
+      const Scalar scale = Scalar(1) / select(uneven, 2 * spread, Scalar(1));
+      const auto onto = [&](Scalar part) { return select(uneven, part * scale, Scalar(0)); };
+      onto_long << onto(longest - r(1, 1)), onto(r(1, 0)), onto(r(1, 0)), onto(longest - r(0, 0));
       more = axis_gain(sqrt(longest), range_m) - along;
     }
     Gain k;

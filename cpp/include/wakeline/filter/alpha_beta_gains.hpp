@@ -8,9 +8,7 @@
 // reading before. The gains are a vector [alpha, beta] or [alpha, beta, gamma], without unit.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -33,7 +31,7 @@ constexpr bool stable_gains(double alpha, double beta, double gamma) noexcept {
 /// What a schedule may choose gains by.
 template <class Scalar = double>
 struct GainOccasion {
-  std::int64_t reading = 1;      ///< 1 for the first one after the start
+  Scalar reading = Scalar(1);    ///< 1 for the first one after the start
   Scalar elapsed_s = Scalar(1);  ///< since the reading before, or the start
   Scalar std_m = Scalar(1);      ///< error of the reading along the axis
   Scalar range_m = Scalar(0);    ///< from the sensor
@@ -78,19 +76,20 @@ struct GrowingMemory {
 
   template <int Order, class Scalar>
   Vec<Scalar, Order> gains(const GainOccasion<Scalar>& at) const noexcept {
-    const std::int64_t plots = at.reading + plots_before;
-    const Scalar n = Scalar(max_plots > 0 ? std::min<std::int64_t>(plots, max_plots) : plots);
-    Vec<Scalar, Order> gains = Vec<Scalar, Order>::Zero();
+    const Scalar plots = at.reading + Scalar(plots_before);
+    const Scalar most = Scalar(max_plots);
+    const Scalar n = max_plots > 0 ? select(plots < most, plots, most) : plots;
+    // Fewer plots than a line or parabola needs give it through them, and what it starts with.
+    const auto one = n < Scalar(2), two = n < Scalar(3);
     if constexpr (Order == 2) {
-      gains = {2 * (2 * n - 1) / (n * (n + 1)), 6 / (n * (n + 1))};
+      const Scalar product = n * (n + 1);
+      return {2 * (2 * n - 1) / product, select(one, Scalar(0), 6 / product)};
     } else {
       const Scalar product = n * (n + 1) * (n + 2);
-      gains = {3 * (3 * n * n - 3 * n + 2) / product, 18 * (2 * n - 1) / product, 120 / product};
+      const Scalar beta = select(two, Scalar(1), 18 * (2 * n - 1) / product);
+      return {3 * (3 * n * n - 3 * n + 2) / product, select(one, Scalar(0), beta),
+              select(two, Scalar(0), 120 / product)};
     }
-    // Fewer plots than a line or parabola needs give it through them, and what it starts with.
-    if (n < Scalar(Order)) gains.tail(Order - int(n)).setZero();
-    if (Order == 3 && n == Scalar(2)) gains[1] = Scalar(1);
-    return gains;
   }
 
   template <int Order>
@@ -211,18 +210,20 @@ struct TrackingIndex {
 
   template <int Order, class Scalar>
   static Root<Scalar> root(Scalar index) noexcept {
-    using std::cbrt, std::sqrt;
-    if (!(index > Scalar(0))) return {Scalar(1), Scalar(0)};
+    using std::exp, std::log, std::sqrt;
+    const auto moves = index > Scalar(0);
+    const Scalar i = select(moves, index, Scalar(1));
     if constexpr (Order == 2) {
-      const Scalar s = sqrt(index * (index + 8));
-      return {4 / (index + 4 + s), (index + s) / (index + 4 + s)};
+      const Scalar s = sqrt(i * (i + 8));
+      return {select(moves, 4 / (i + 4 + s), Scalar(1)),
+              select(moves, (i + s) / (i + 4 + s), Scalar(0))};
     } else {
       // Newton's iteration on 2 w³ = index (1 - w)(2 - w), which has one solution in 0 .. 1.
-      const Scalar start = cbrt(index);
+      const Scalar start = exp(log(i) / 3);
       Scalar w = start / (1 + start);
       for (int k = 0; k < 8; ++k)
-        w -= (2 * w * w * w - index * (1 - w) * (2 - w)) / (6 * w * w + index * (3 - 2 * w));
-      return {2 * w * w * w / (index * (2 - w)), w};
+        w -= (2 * w * w * w - i * (1 - w) * (2 - w)) / (6 * w * w + i * (3 - 2 * w));
+      return {select(moves, 2 * w * w * w / (i * (2 - w)), Scalar(1)), select(moves, w, Scalar(0))};
     }
   }
 };
@@ -242,9 +243,9 @@ struct RangeDependent {
 
   template <int Order, class Scalar>
   Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
-    const Scalar nearness = Scalar(near_range_m) / std::max(at.range_m, Scalar(near_range_m));
-    return {std::max(Scalar(near_alpha) * nearness, Scalar(far_alpha)),
-            std::max(Scalar(near_beta) * nearness, Scalar(far_beta))};
+    const Scalar nearness = Scalar(near_range_m) / at_least(at.range_m, Scalar(near_range_m));
+    return {at_least(Scalar(near_alpha) * nearness, Scalar(far_alpha)),
+            at_least(Scalar(near_beta) * nearness, Scalar(far_beta))};
   }
 
   template <int Order>

@@ -57,9 +57,8 @@ struct Control {
     if (none(ok(status))) return status;
     const decltype(pushed) moved = filter.mean() + pushed;
     assign_where(ok(status), filter.mean(), moved);
-    using std::abs;
     MaskOf<Scalar> squared = is_finite(moved);
-    for (const Scalar& part : pushed) squared = squared && abs(part) < Scalar(kMostSquared<Scalar>);
+    for (const Scalar& part : pushed) squared = squared && has_square(part);
     status = first_failure(status, ok_or(squared, Status::kNotFinite));
     if (!all(ok(status))) restore(filter, before, !ok(status));
     return status;

@@ -79,10 +79,9 @@ Scalar part_of(Scalar part, Scalar total, Scalar scale) noexcept {
 /// Makes a reading that is too large for a mixture one that is none.
 template <int M, class Scalar>
 [[gnu::always_inline]] inline void refuse_beyond_squares(Vec<Scalar, M>& reading) noexcept {
-  using std::abs;
   constexpr auto kNone = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
   for (int i = 0; i < M; ++i)
-    reading[i] = select(abs(reading[i]) < Scalar(kMostSquared<Scalar>), reading[i], Scalar(kNone));
+    reading[i] = select(has_square(reading[i]), reading[i], Scalar(kNone));
 }
 
 /// Bayes' rule for the parts of a mixture: weights become weight times likelihood over their sum.
@@ -168,12 +167,16 @@ StatusOf<Scalar> failure_of(std::span<const Correction<M, Scalar>> parts) noexce
 
 /// What a filter remembers beside its belief: where its gains are in their schedule. Of most
 /// filters nothing.
+struct NoMemory {};
+template <class Mask>
+void assign_where(const Mask&, NoMemory&, const NoMemory&) noexcept {}
+
 template <class Filter>
 auto memory_of(const Filter& filter) noexcept {
   if constexpr (requires { filter.memory(); })
     return filter.memory();
   else
-    return std::true_type{};
+    return NoMemory{};
 }
 
 template <class Filter, class Memory>
@@ -211,7 +214,7 @@ Part absorb(Filter& filter, const BeliefType& before,
       BeliefType after;
       after = filter.estimate();
       add(weight, after);
-      memory = memory_of(filter);
+      assign_where(weight > Part(0), memory, memory_of(filter));
     }
     (void)filter.assign(before);
     recall(filter, memory_before);
