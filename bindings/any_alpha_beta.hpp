@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "any_filter.hpp"
 #include "types.hpp"
 #include "wakeline/filter/alpha_beta.hpp"
 

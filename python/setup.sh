@@ -132,11 +132,11 @@ fingerprint=$(
 stamp_of() { echo "$root/build/venv/wakeline-$1.stamp"; }
 is_installed() { [[ -e $(stamp_of "$1") && $(<"$(stamp_of "$1")") == "$fingerprint" ]]; }
 
-# Of what a build prints, how far it is.
+# Tells of what a build prints how far it is.
 show_progress() {
   local line of='' said=''
   while IFS= read -r line; do
-    if [[ $line =~ ^\ *\[\ *([0-9]+)(/[0-9]+|%)\] ]]; then
+    if [[ $line =~ ^\ *\[\ *([1-9][0-9]*)(/[0-9]+|%)\] ]]; then
       of="${BASH_REMATCH[1]}${BASH_REMATCH[2]/\// of }"
       if [[ -t 2 ]]; then printf '\rwakeline: compiled %s ' "$of" >&2; fi
       said=yes
@@ -146,7 +146,7 @@ show_progress() {
 }
 
 if ! is_installed dev && ! is_installed "$extra"; then
-  say "building and installing the Python package (extra: $extra), which takes ten minutes or more"
+  say "building and installing the Python package (extra: $extra), which may take ten minutes or more"
   rm -f "$(stamp_of dev)" "$(stamp_of plot)"
   # Without build isolation and with a build folder that stays, so that the next build compiles only what changed.
   "$python" -m pip install -q --disable-pip-version-check "scikit-build-core>=0.10" "pybind11>=3.0"
