@@ -505,5 +505,26 @@ TEST(AlphaBetaFilter, IsOfFloatToo) {
   }
 }
 
+/// The covariance after the first plot of a prior all but without bound.
+template <class Scalar>
+Mat<Scalar, 4, 4> after_first_plot() {
+  AlphaBeta<Scalar> filter(TrackingIndex{10.0});
+  Gaussian<4, Scalar> belief;
+  belief.mean.setZero();
+  belief.covariance = Scalar(1e10) * Mat<Scalar, 4, 4>::Identity();
+  EXPECT_EQ(filter.start(belief), Status::kOk);
+  EXPECT_EQ(filter.predict(Scalar(60)), Status::kOk);
+  EXPECT_TRUE(filter.update(kSensor, Vec<Scalar, 2>(Scalar(30), Scalar(40))));
+  return filter.estimate().covariance;
+}
+
+// The difference P - K H P would be all rounding.
+TEST(AlphaBetaFilter, HoldsWhatThePlotKnowsOfAWidePriorInFloatToo) {
+  const Mat<float, 4, 4> p = after_first_plot<float>();
+  const Mat<double, 4, 4> wanted = after_first_plot<double>();
+  for (const int row : {0, 2}) EXPECT_NEAR(p(row, row), wanted(row, row), 0.01 * wanted(row, row));
+  EXPECT_TRUE(test::is_covariance(p));
+}
+
 }  // namespace
 }  // namespace wakeline

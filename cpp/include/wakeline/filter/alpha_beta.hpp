@@ -174,7 +174,7 @@ class AlphaBetaFilter
     const Gain k = gain(plot.covariance, range(sensor, plot.mean));
     Gaussian<kStates, Scalar> next = this->belief_;
     shift(next.mean, k, correction.innovation);
-    spread(next.covariance, k, plot.covariance);
+    correct_covariance(next.covariance, k, plot.covariance);
     correction.status = first_failure(
         correction.status,
         ok_or(is_finite(next.mean) && is_finite(next.covariance), Status::kNotFinite));
@@ -184,21 +184,24 @@ class AlphaBetaFilter
     return correction;
   }
 
-  /// P becomes (I - K H) P (I - K H)ᵀ + K R Kᵀ = A + (K R - A Hᵀ) Kᵀ, with A = P - K H P.
-  static void spread(Mat<Scalar, kStates, kStates>& p, const Gain& k,
-                     const Mat<Scalar, 2, 2>& r) noexcept {
-    Mat<Scalar, kStates, kStates> a = p;
+  /// P becomes (I - K H) P (I - K H)ᵀ + K R Kᵀ.
+  static void correct_covariance(Mat<Scalar, kStates, kStates>& p, const Gain& k,
+                                 const Mat<Scalar, 2, 2>& r) noexcept {
+    Gain rest = -k;  // columns 0 and Order of I - K H, whose others are those of I
+    rest(0, 0) += Scalar(1);
+    rest(Order, 1) += Scalar(1);
+    Mat<Scalar, kStates, kStates> a;  // (I - K H) P
     unroll<kStates * kStates>([&](auto at) {
       constexpr int i = at.value % kStates, j = at.value / kStates;
-      a(i, j) -= k(i, 0) * p(0, j) + k(i, 1) * p(Order, j);
+      const Scalar sum = rest(i, 0) * p(0, j) + rest(i, 1) * p(Order, j);
+      a(i, j) = i % Order == 0 ? sum : sum + p(i, j);
     });
-    Gain across;
-    unroll<kStates>([&](int i) {
-      across(i, 0) = k(i, 0) * r(0, 0) + k(i, 1) * r(1, 0) - a(i, 0);
-      across(i, 1) = k(i, 0) * r(1, 0) + k(i, 1) * r(1, 1) - a(i, Order);
-    });
-    unroll_lower<kStates>([&](int i, int j) {
-      p(i, j) = p(j, i) = a(i, j) + across(i, 0) * k(j, 0) + across(i, 1) * k(j, 1);
+    unroll_lower<kStates>([&](auto row, auto column) {
+      constexpr int i = row.value, j = column.value;
+      const Scalar sum = a(i, 0) * rest(j, 0) + a(i, Order) * rest(j, 1) +
+                         (k(i, 0) * r(0, 0) + k(i, 1) * r(1, 0)) * k(j, 0) +
+                         (k(i, 0) * r(1, 0) + k(i, 1) * r(1, 1)) * k(j, 1);
+      p(i, j) = p(j, i) = j % Order == 0 ? sum : sum + a(i, j);
     });
   }
 
