@@ -196,7 +196,7 @@ def test_a_bar_is_drawn_on_a_terminal_and_nothing_in_a_pipe(monkeypatch, capsys)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr("wakeline._progress._EVERY_S", 0.0)
     run(progress=True)
-    assert "runs" in capsys.readouterr().err
+    assert "running" in capsys.readouterr().err
 
 
 def test_the_first_failure_calls_the_others_off():

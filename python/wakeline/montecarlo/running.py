@@ -19,7 +19,7 @@ except ImportError:
     pickler = pickle
 
 from wakeline import _progress
-from wakeline._checks import whole_number
+from wakeline._checks import run_numbers
 from wakeline.scenario import Scenario
 
 from .candidate import Candidate, told
@@ -158,10 +158,7 @@ def _check(
             raise TypeError(
                 f"candidate {name!r} must be a Candidate or callable, got {type(candidate)}"
             )
-    whole_number("runs", runs, 1)
-    whole_number("seed", seed, 0)
-    if threads is not None:
-        whole_number("threads", threads, 1)
+    run_numbers(runs, seed, threads)
     if not lost_beyond_m > 0:
         raise ValueError(f"lost_beyond_m must be positive, got {lost_beyond_m}")
     if client is not None and threads is not None:
@@ -230,7 +227,7 @@ def _told(
 ) -> Iterator[Sums]:
     """Hand on, telling how far the work has come."""
     if not callable(progress):
-        yield from _progress.progress(sums, total, "runs") if progress else sums
+        yield from _progress.progress(sums, total, "running") if progress else sums
         return
     for done, item in enumerate(sums, start=1):
         progress(done, total)
