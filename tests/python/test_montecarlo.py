@@ -310,6 +310,30 @@ def test_a_delay_begins_where_another_model_becomes_the_right_one():
     assert outcome.summary()["detection_delay_scans"] >= 1
 
 
+@pytest.mark.parametrize("late_scans", [0, 1, 5])
+@pytest.mark.parametrize("switch_s", [1.0, 1.5, 30.0, 31.4, 31.5, 31.6, 33.0])
+def test_a_delay_is_the_same_wherever_in_a_scan_the_vessel_begins_to_turn(switch_s, late_scans):
+    segments = [Segment(switch_s), Segment(100.0, np.deg2rad(1.0))]
+    scene = case(truth=Truth([2000.0, 8.0, 1000.0, -3.0], segments))
+    first = int(np.argmax(scene.turn_rates_rad_s > 0.0))
+
+    def late(scene, z):
+        done = IMM(scene, z)
+        turns = np.arange(scene.scans) >= first + late_scans
+        modes = np.broadcast_to(np.column_stack([~turns, turns]), (*z.shape[:2], 2))
+        return SimpleNamespace(
+            mean=done.mean,
+            covariance=done.covariance,
+            nis=done.nis,
+            status=done.status,
+            mode_probability=modes,
+            turn_rate_rad_s=np.broadcast_to(np.deg2rad([0.0, 1.0]), modes.shape),
+        )
+
+    outcome = run(scene, {"late": late}, runs=2)["case", "late"]
+    assert outcome.summary()["detection_delay_scans"] == late_scans
+
+
 @pytest.mark.parametrize("start_s", [-100.0, 1000.0, 1.7e9])
 def test_the_time_of_day_changes_no_summary(start_s):
     segments = [Segment(1.0), Segment(44.0, np.deg2rad(1.0)), Segment(45.0, np.deg2rad(-1.0))]
