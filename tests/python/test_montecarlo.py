@@ -5,6 +5,7 @@ import dataclasses
 import json
 import multiprocessing
 import pickle
+import re
 import sys
 import time
 import zipfile
@@ -679,6 +680,14 @@ def controlled(control):
     return case("controlled", truth=Truth([2000.0, 8.0, 1000.0, -3.0], segments))
 
 
+@pytest.mark.parametrize("change", [lambda z: z[0], lambda z: z[:, :10], lambda z: z[:, [0] * 40]])
+def test_clairvoyant_is_told_all_readings_and_no_others(change):
+    z = change(CASE.draw(2))
+    wanted = rf"z must have shape \(R, 30, 2\), got {re.escape(str(z.shape))}"
+    with pytest.raises(ValueError, match=wanted):
+        montecarlo.clairvoyant(CASE, z)
+
+
 def test_control_is_told_where_there_is_such():
     scene = controlled((0.1, -0.05))
     np.testing.assert_array_equal(scene.control_mps2[:10], 0.0)
@@ -958,6 +967,7 @@ LOCKED = SimpleNamespace(run=print, lock=Lock())
         ({"scenarios": [CASE, case()]}, ValueError, r"names that differ, got \['case', 'case'\]"),
         ({"scenarios": ["case"]}, TypeError, "scenarios must be of type Scenario, got 'case'"),
         ({"candidates": [IMM]}, TypeError, "candidates must be a mapping by name, got .*list"),
+        ({"candidates": {("x", 1): IMM}}, TypeError, r"names that are text, got \('x', 1\)"),
         ({"candidates": {"x": 3}}, TypeError, "candidate 'x' must be a Candidate or callable"),
         ({"runs": 0}, ValueError, "runs must be a whole number, at least 1, got 0"),
         ({"runs": 2.5}, ValueError, r"runs must be a whole number, at least 1, got 2\.5"),

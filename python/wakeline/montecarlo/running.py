@@ -154,6 +154,8 @@ def _check(
     if not isinstance(candidates, Mapping):
         raise TypeError(f"candidates must be a mapping by name, got {type(candidates)}")
     for name, candidate in candidates.items():
+        if not isinstance(name, str):
+            raise TypeError(f"candidates must have names that are text, got {name!r}")
         if not callable(candidate):
             raise TypeError(
                 f"candidate {name!r} must be a Candidate or callable, got {type(candidate)}"
