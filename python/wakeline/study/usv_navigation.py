@@ -475,7 +475,7 @@ def _draw_bias(ax: Axes, mission: UsvMission, beliefs: Any, axis: int) -> Axes:
     ax.plot(time_s, mean, color=_COLORS[DEFAULT], linewidth=1.4, label=DEFAULT)
     ax.axhline(true, color=plot.INK, linewidth=1.0, linestyle="--", label="truth")
     ax.set_xlim(time_s[0], time_s[-1])
-    ax.set_ylim(true - prior, true + prior)
+    ax.set_ylim(min(true - prior, mean.min()), max(true + prior, mean.max()))
     ax.set(xlabel="time (s)", ylabel=name)
     plot.dress(ax)
     return plot.name_lines(ax) if axis == 0 else ax
