@@ -511,6 +511,12 @@ def test_the_axis_of_errors_reaches_to_the_highest_that_is_known(ax, names):
     assert highest < ax.get_ylim()[1] < 1.2 * highest
 
 
+def test_a_bound_above_all_errors_is_seen_whole(ax):
+    bound = np.linspace(7.0, 2.0, 10)
+    plot.error_panel(ax, TIME_S, {"one": np.linspace(1.0, 3.0, 10)}, bound=bound)
+    assert ax.get_ylim()[1] > bound.max()
+
+
 def test_bands_stand_in_order_of_turn_rate_under_the_true_turn(ax):
     probability = np.tile([0.5, 0.2, 0.3], (10, 1))
     plot.probability_panel(

@@ -109,12 +109,14 @@ def error_panel(
         Whether to name the lines.
     """
     mark_switches(ax, switch_s)
+    curves = list(errors.values())
     if bound is not None:
+        curves.append(bound)
         ax.fill_between(time_s, bound, color=GRID, linewidth=0, zorder=1.5)
         ax.plot(time_s, bound, color=MUTED, linewidth=1.1, label="bound", zorder=2)
     for name, look in _looks(errors, colors):
         ax.plot(time_s, errors[name], **look, linewidth=1.4, label=name, zorder=3)
-    ax.set_ylim(0.0, _ROOM_ABOVE * _highest(errors.values()) if top is None else top)
+    ax.set_ylim(0.0, _ROOM_ABOVE * _highest(curves) if top is None else top)
     return _over_time(ax, time_s, ylabel, legend)
 
 
