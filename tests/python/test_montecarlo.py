@@ -928,6 +928,29 @@ def test_estimates_that_are_not_finite_are_failed_runs():
         assert np.isfinite(outcome.position_rmse_m).all()
 
 
+@pytest.mark.parametrize("failed", [0.4, 0.8])
+def test_a_step_takes_the_same_whatever_share_of_the_runs_fails(failed):
+    def slow(scene, z, share):
+        until_s = time.thread_time() + 0.001 * len(z)
+        done = IMM(scene, z)
+        while time.thread_time() < until_s:
+            pass
+        mean = done.mean.copy()
+        mean[: round(share * len(z))] = np.nan
+        return SimpleNamespace(
+            mean=mean,
+            covariance=done.covariance,
+            nis=done.nis,
+            status=done.status,
+            mode_probability=None,
+        )
+
+    some = {str(share): partial(slow, share=share) for share in (0.0, failed)}
+    whole, rest = (run(CASE, some, runs=50)["case", name].summary() for name in some)
+    assert rest["failed_runs"] == pytest.approx(50 * failed)
+    assert rest["ns_per_step"] == pytest.approx(whole["ns_per_step"], rel=0.3)
+
+
 def test_runs_that_end_far_off_are_lost_but_count():
     count = int(even(CASE.draw(RUNS, 0)).sum())
     far = partial(spoilt, what="mean", value=1e5)

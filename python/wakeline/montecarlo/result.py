@@ -56,8 +56,8 @@ class Outcome:
         Share of the runs whose most probable model is, of those not at rest, the one nearest to the
         true turn rate.
     cpu_s : float
-        CPU time of the estimator over all runs that could start: that of the calling threads, and
-        so all of it only after ``wakeline.set_threads(1)``.
+        CPU time of the estimator over the runs that the curves are over: that of the calling
+        threads, and so all of it only after ``wakeline.set_threads(1)``.
     estimator : str or None
         The call that makes the candidate's estimator anew, with all of its parameters, such as
         ``Imm(filters=[Ekf(motion=...), ...], chain=..., initial_mode_probability=[...])``; of

@@ -41,7 +41,7 @@ class Sums:
     right_mode : ndarray (T,) or None
         Runs whose most probable model is the right one.
     cpu_s : float
-        Time the estimator took.
+        Time the estimator took for the runs that the curves hold, all runs taking the same.
     """
 
     runs: int
@@ -140,7 +140,7 @@ def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> 
         mode_probability=None if modes is None else modes.sum(axis=0),
         turn_rate_rad_s=None if estimated_rate is None else estimated_rate.sum(axis=0),
         right_mode=_right_mode(chunk.scenario, modes, rates),
-        cpu_s=cpu_s,
+        cpu_s=cpu_s * float(np.mean(usable)),
     )
 
 
