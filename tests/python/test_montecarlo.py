@@ -147,12 +147,24 @@ def test_what_a_worker_cannot_import_is_told(monkeypatch):
         run([CASE], {"lost": module.candidate}, client=pool)
 
 
-def test_a_client_in_the_manner_of_ray_gives_the_same_bits(result):
-    ray = SimpleNamespace(
+def in_the_manner_of_ray(called_off):
+    return SimpleNamespace(
         remote=lambda function: SimpleNamespace(remote=partial(partial, function)),
         get=lambda task: pickle.loads(pickle.dumps(task())),
+        cancel=called_off.append,
     )
-    assert_same_bits(run([CASE, SELDOM], BOTH, client=ray), result)
+
+
+def test_a_client_in_the_manner_of_ray_gives_the_same_bits(result):
+    assert_same_bits(run([CASE, SELDOM], BOTH, client=in_the_manner_of_ray([])), result)
+
+
+def test_a_client_in_the_manner_of_ray_is_told_what_is_called_off():
+    called_off = []
+    with pytest.raises(KeyboardInterrupt):
+        run(client=in_the_manner_of_ray(called_off), runs=250, progress=told_to_stop)
+    first_runs = {task.args[0].first_run for task in called_off}
+    assert first_runs.issuperset(range(25, 250, 25))
 
 
 @pytest.mark.slow

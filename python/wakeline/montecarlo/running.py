@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import pickle
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from functools import reduce
-from operator import add
+from operator import add, methodcaller
 from typing import Any
 
 import numpy as np
@@ -198,7 +198,7 @@ def _worked_off(chunks: list[Chunk], threads: int | None, client: Any) -> Iterat
     elif hasattr(client, "remote") and hasattr(client, "get"):
         remote = client.remote(sums_of)
         waiting = [remote.remote(chunk) for chunk in chunks]
-        yield from map(client.get, waiting)
+        yield from _gathered(waiting, client.get, client.cancel)
     else:
         raise TypeError(
             "client must be a dask.distributed.Client, the module ray or an executor, "
@@ -214,14 +214,17 @@ def sums_of_packed(chunk: bytes) -> Sums:
     return sums_of(pickle.loads(chunk))
 
 
-def _gathered(futures: list[Future]) -> Iterator[Sums]:
+def _gathered(
+    tasks: list[Any],
+    result: Callable[[Any], Sums] = methodcaller("result"),
+    cancel: Callable[[Any], Any] = methodcaller("cancel"),
+) -> Iterator[Sums]:
     """Results in order; the first failure, or an early end, calls off what has not begun."""
     try:
-        for future in futures:
-            yield future.result()
+        yield from map(result, tasks)
     finally:
-        for future in futures:
-            future.cancel()
+        for task in tasks:
+            cancel(task)
 
 
 def _told(
