@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import gc
 import json
 import multiprocessing
 import pickle
@@ -23,6 +24,7 @@ import wakeline as wl
 from cases import MOTIONS, made_by, turning_imm
 from wakeline import metrics, montecarlo, scenario
 from wakeline.montecarlo import Candidate, Result, running
+from wakeline.montecarlo.sums import Sums
 from wakeline.scenario import RadarSimulator, Scenario, Segment, Truth
 
 RATES_DEG_S = (0.0, 1.0, -1.0)
@@ -210,6 +212,27 @@ def test_a_bar_is_drawn_on_a_terminal_and_nothing_in_a_pipe(monkeypatch, capsys)
     monkeypatch.setattr("wakeline._progress._EVERY_S", 0.0)
     run(progress=True)
     assert "running" in capsys.readouterr().err
+
+
+class InTurn:
+    """An executor that does the work when it is asked for the result."""
+
+    def submit(self, function, *given):
+        task = SimpleNamespace(cancel=lambda: None)
+        task.result = lambda: vars(task).setdefault("kept", function(*given))
+        return task
+
+
+def test_what_has_been_added_up_is_kept_no_longer():
+    kept = []
+
+    def count(done, total):
+        gc.collect()
+        kept.append(sum(isinstance(one, Sums) for one in gc.get_objects()))
+
+    run([CASE, SELDOM], BOTH, runs=250, client=InTurn(), progress=count)
+    assert len(kept) == 40
+    assert max(kept) < 8
 
 
 def test_the_first_failure_calls_the_others_off():

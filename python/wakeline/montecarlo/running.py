@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from functools import reduce
+from itertools import islice
 from operator import add, methodcaller
 from typing import Any
 
@@ -119,7 +120,7 @@ def run(
             (scenario.name, name): Outcome.of(
                 scenario,
                 name,
-                reduce(add, [next(done) for _ in firsts]),
+                reduce(add, islice(done, len(firsts))),
                 **texts[scenario.name, name],
             )
             for scenario, name in pairs
@@ -219,9 +220,16 @@ def _gathered(
     result: Callable[[Any], Sums] = methodcaller("result"),
     cancel: Callable[[Any], Any] = methodcaller("cancel"),
 ) -> Iterator[Sums]:
-    """Results in order; the first failure, or an early end, calls off what has not begun."""
+    """Results in order; the first failure, or an early end, calls off what has not begun.
+
+    No task is kept, and with it its result, once that has come.
+    """
+    tasks.reverse()
     try:
-        yield from map(result, tasks)
+        while tasks:
+            sums = result(tasks[-1])
+            tasks.pop()
+            yield sums
     finally:
         for task in tasks:
             cancel(task)
