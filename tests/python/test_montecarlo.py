@@ -1053,6 +1053,12 @@ def test_a_sensor_that_is_no_word_of_ours(sensor):
             run(CASE, {"x": candidate}, runs=1)
 
 
+def test_who_refuses_its_readings_is_named():
+    nonlinear = Candidate(wl.Kalman(wl.ConstantVelocity()), "polar")
+    with pytest.raises(ValueError, match="candidate 'line' on 'case': sensor must be linear"):
+        run(CASE, {"imm": IMM, "line": nonlinear}, runs=1)
+
+
 class Built:
     """An estimator that is built for a scenario."""
 

@@ -113,7 +113,11 @@ def _summed_one(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None)
 def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> Sums:
     told = {} if starts is None else {"start": starts}
     began_s = time.thread_time()
-    result = chunk.candidate(chunk.scenario, z, **told)
+    try:
+        result = chunk.candidate(chunk.scenario, z, **told)
+    except ValueError as error:
+        which = f"candidate {chunk.candidate_name!r} on {chunk.scenario.name!r}"
+        raise ValueError(f"{which}: {error}") from error
     cpu_s = time.thread_time() - began_s
     mean, covariance = _kinematics(chunk, result, len(z))
     usable = np.isfinite(mean).all(axis=(1, 2))
