@@ -14,6 +14,14 @@ def whole_number(name: str, value: Any, least: int) -> None:
         raise ValueError(f"{name} must be a whole number, at least {least}, got {value!r}")
 
 
+def run_numbers(runs: Any, seed: Any, threads: Any) -> None:
+    """ValueError unless runs can be done with these arguments; threads may be None."""
+    whole_number("runs", runs, 1)
+    whole_number("seed", seed, 0)
+    if threads is not None:
+        whole_number("threads", threads, 1)
+
+
 def entropy(seed: Any, purpose: str) -> list[int]:
     """Numbers that a source of chance begins with: those of a seed, one or several, and a purpose.
 

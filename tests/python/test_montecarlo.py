@@ -2,9 +2,11 @@
 
 import contextlib
 import dataclasses
+import gc
 import json
 import multiprocessing
 import pickle
+import re
 import sys
 import time
 import zipfile
@@ -22,6 +24,7 @@ import wakeline as wl
 from cases import MOTIONS, made_by, turning_imm
 from wakeline import metrics, montecarlo, scenario
 from wakeline.montecarlo import Candidate, Result, running
+from wakeline.montecarlo.sums import Sums
 from wakeline.scenario import RadarSimulator, Scenario, Segment, Truth
 
 RATES_DEG_S = (0.0, 1.0, -1.0)
@@ -146,12 +149,24 @@ def test_what_a_worker_cannot_import_is_told(monkeypatch):
         run([CASE], {"lost": module.candidate}, client=pool)
 
 
-def test_a_client_in_the_manner_of_ray_gives_the_same_bits(result):
-    ray = SimpleNamespace(
+def in_the_manner_of_ray(called_off):
+    return SimpleNamespace(
         remote=lambda function: SimpleNamespace(remote=partial(partial, function)),
         get=lambda task: pickle.loads(pickle.dumps(task())),
+        cancel=called_off.append,
     )
-    assert_same_bits(run([CASE, SELDOM], BOTH, client=ray), result)
+
+
+def test_a_client_in_the_manner_of_ray_gives_the_same_bits(result):
+    assert_same_bits(run([CASE, SELDOM], BOTH, client=in_the_manner_of_ray([])), result)
+
+
+def test_a_client_in_the_manner_of_ray_is_told_what_is_called_off():
+    called_off = []
+    with pytest.raises(KeyboardInterrupt):
+        run(client=in_the_manner_of_ray(called_off), runs=250, progress=told_to_stop)
+    first_runs = {task.args[0].first_run for task in called_off}
+    assert first_runs.issuperset(range(25, 250, 25))
 
 
 @pytest.mark.slow
@@ -196,7 +211,28 @@ def test_a_bar_is_drawn_on_a_terminal_and_nothing_in_a_pipe(monkeypatch, capsys)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr("wakeline._progress._EVERY_S", 0.0)
     run(progress=True)
-    assert "runs" in capsys.readouterr().err
+    assert "running" in capsys.readouterr().err
+
+
+class InTurn:
+    """An executor that does the work when it is asked for the result."""
+
+    def submit(self, function, *given):
+        task = SimpleNamespace(cancel=lambda: None)
+        task.result = lambda: vars(task).setdefault("kept", function(*given))
+        return task
+
+
+def test_what_has_been_added_up_is_kept_no_longer():
+    kept = []
+
+    def count(done, total):
+        gc.collect()
+        kept.append(sum(isinstance(one, Sums) for one in gc.get_objects()))
+
+    run([CASE, SELDOM], BOTH, runs=250, client=InTurn(), progress=count)
+    assert len(kept) == 40
+    assert max(kept) < 8
 
 
 def test_the_first_failure_calls_the_others_off():
@@ -308,6 +344,30 @@ def test_a_delay_begins_where_another_model_becomes_the_right_one():
     assert outcome.right_mode_share[10] > 0.5, "at 33 s the old model still counts"
     assert outcome.right_mode_share[11] < 0.5
     assert outcome.summary()["detection_delay_scans"] >= 1
+
+
+@pytest.mark.parametrize("late_scans", [0, 1, 5])
+@pytest.mark.parametrize("switch_s", [1.0, 1.5, 30.0, 31.4, 31.5, 31.6, 33.0])
+def test_a_delay_is_the_same_wherever_in_a_scan_the_vessel_begins_to_turn(switch_s, late_scans):
+    segments = [Segment(switch_s), Segment(100.0, np.deg2rad(1.0))]
+    scene = case(truth=Truth([2000.0, 8.0, 1000.0, -3.0], segments))
+    first = int(np.argmax(scene.turn_rates_rad_s > 0.0))
+
+    def late(scene, z):
+        done = IMM(scene, z)
+        turns = np.arange(scene.scans) >= first + late_scans
+        modes = np.broadcast_to(np.column_stack([~turns, turns]), (*z.shape[:2], 2))
+        return SimpleNamespace(
+            mean=done.mean,
+            covariance=done.covariance,
+            nis=done.nis,
+            status=done.status,
+            mode_probability=modes,
+            turn_rate_rad_s=np.broadcast_to(np.deg2rad([0.0, 1.0]), modes.shape),
+        )
+
+    outcome = run(scene, {"late": late}, runs=2)["case", "late"]
+    assert outcome.summary()["detection_delay_scans"] == late_scans
 
 
 @pytest.mark.parametrize("start_s", [-100.0, 1000.0, 1.7e9])
@@ -655,6 +715,14 @@ def controlled(control):
     return case("controlled", truth=Truth([2000.0, 8.0, 1000.0, -3.0], segments))
 
 
+@pytest.mark.parametrize("change", [lambda z: z[0], lambda z: z[:, :10], lambda z: z[:, [0] * 40]])
+def test_clairvoyant_is_told_all_readings_and_no_others(change):
+    z = change(CASE.draw(2))
+    wanted = rf"z must have shape \(R, 30, 2\), got {re.escape(str(z.shape))}"
+    with pytest.raises(ValueError, match=wanted):
+        montecarlo.clairvoyant(CASE, z)
+
+
 def test_control_is_told_where_there_is_such():
     scene = controlled((0.1, -0.05))
     np.testing.assert_array_equal(scene.control_mps2[:10], 0.0)
@@ -895,6 +963,29 @@ def test_estimates_that_are_not_finite_are_failed_runs():
         assert np.isfinite(outcome.position_rmse_m).all()
 
 
+@pytest.mark.parametrize("failed", [0.4, 0.8])
+def test_a_step_takes_the_same_whatever_share_of_the_runs_fails(failed):
+    def slow(scene, z, share):
+        until_s = time.thread_time() + 0.001 * len(z)
+        done = IMM(scene, z)
+        while time.thread_time() < until_s:
+            pass
+        mean = done.mean.copy()
+        mean[: round(share * len(z))] = np.nan
+        return SimpleNamespace(
+            mean=mean,
+            covariance=done.covariance,
+            nis=done.nis,
+            status=done.status,
+            mode_probability=None,
+        )
+
+    some = {str(share): partial(slow, share=share) for share in (0.0, failed)}
+    whole, rest = (run(CASE, some, runs=50)["case", name].summary() for name in some)
+    assert rest["failed_runs"] == pytest.approx(50 * failed)
+    assert rest["ns_per_step"] == pytest.approx(whole["ns_per_step"], rel=0.3)
+
+
 def test_runs_that_end_far_off_are_lost_but_count():
     count = int(even(CASE.draw(RUNS, 0)).sum())
     far = partial(spoilt, what="mean", value=1e5)
@@ -934,6 +1025,7 @@ LOCKED = SimpleNamespace(run=print, lock=Lock())
         ({"scenarios": [CASE, case()]}, ValueError, r"names that differ, got \['case', 'case'\]"),
         ({"scenarios": ["case"]}, TypeError, "scenarios must be of type Scenario, got 'case'"),
         ({"candidates": [IMM]}, TypeError, "candidates must be a mapping by name, got .*list"),
+        ({"candidates": {("x", 1): IMM}}, TypeError, r"names that are text, got \('x', 1\)"),
         ({"candidates": {"x": 3}}, TypeError, "candidate 'x' must be a Candidate or callable"),
         ({"runs": 0}, ValueError, "runs must be a whole number, at least 1, got 0"),
         ({"runs": 2.5}, ValueError, r"runs must be a whole number, at least 1, got 2\.5"),
@@ -959,6 +1051,12 @@ def test_a_sensor_that_is_no_word_of_ours(sensor):
     ):
         with pytest.raises(ValueError, match=f'"polar" or "converted" where text, got {sensor!r}'):
             run(CASE, {"x": candidate}, runs=1)
+
+
+def test_who_refuses_its_readings_is_named():
+    nonlinear = Candidate(wl.Kalman(wl.ConstantVelocity()), "polar")
+    with pytest.raises(ValueError, match="candidate 'line' on 'case': sensor must be linear"):
+        run(CASE, {"imm": IMM, "line": nonlinear}, runs=1)
 
 
 class Built:

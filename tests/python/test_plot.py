@@ -503,12 +503,76 @@ def test_errors_start_at_nothing_and_their_lines_are_named(ax):
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["bound", "one"]
 
 
+NINE = np.zeros(9)
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (lambda ax: plot.paths_view(ax, np.zeros((3, 2))), r"truth .* \(n, 4\), got \(3, 2\)"),
+        (
+            lambda ax: plot.paths_view(ax, np.zeros((3, 4)), {"imm": np.zeros((3, 6))}),
+            r"track 'imm' .* \(n, 4\), got \(3, 6\)",
+        ),
+        (
+            lambda ax: plot.paths_view(ax, np.zeros((3, 4)), plots_m=np.zeros(2)),
+            r"plots_m .* \(n, 2\), got \(2,\)",
+        ),
+        (
+            lambda ax: plot.error_panel(ax, TIME_S, {"imm": NINE}),
+            r"errors of 'imm' .* \(10,\), got \(9,\)",
+        ),
+        (
+            lambda ax: plot.error_panel(ax, TIME_S, {}, bound=NINE),
+            r"bound .* \(10,\), got \(9,\)",
+        ),
+        (lambda ax: plot.error_panel(ax, [], {}), "time_s must have a time"),
+        (
+            lambda ax: plot.turn_rate_panel(ax, TIME_S, NINE, {}),
+            r"true_rate_rad_s .* \(10,\), got \(9,\)",
+        ),
+        (
+            lambda ax: plot.turn_rate_panel(ax, TIME_S, TIME_S, {"imm": NINE}),
+            r"rates_rad_s of 'imm' .* \(10,\), got \(9,\)",
+        ),
+        (
+            lambda ax: plot.probability_panel(
+                ax, TIME_S, np.ones((10, 1)), [0.0], true_rate_rad_s=NINE
+            ),
+            r"true_rate_rad_s .* \(10,\), got \(9,\)",
+        ),
+        (
+            lambda ax: plot.ranking_panel(ax, ["a", "b"], {"easy": [1.0]}, xlabel="m"),
+            r"values of 'easy' .* \(2,\), got \(1,\)",
+        ),
+        (
+            lambda ax: plot.ranking_panel(ax, ["a"], {"easy": [1.0]}, xlabel="", best_first="hard"),
+            r"values must have hard, got \['easy'\]",
+        ),
+        (lambda ax: plot.ranking_panel(ax, [], {}, xlabel=""), "values must have a circumstance"),
+        (
+            lambda ax: plot.steps_panel(ax, ["a", "b"], {"imm": [1.0]}, xlabel="", ylabel=""),
+            r"values of 'imm' .* \(2,\), got \(1,\)",
+        ),
+    ],
+)
+def test_what_does_not_fit_is_refused_by_name(ax, draw, message):
+    with pytest.raises(ValueError, match=message):
+        draw(ax)
+
+
 @pytest.mark.parametrize("names", [["failed", "one"], ["one", "failed"], ["failed"], []])
 def test_the_axis_of_errors_reaches_to_the_highest_that_is_known(ax, names):
     curves = {"one": np.linspace(1, 9, 10), "failed": np.array([np.nan] * 9 + [np.inf])}
     plot.error_panel(ax, TIME_S, {name: curves[name] for name in names}, bound=np.ones(10))
     highest = 9.0 if "one" in names else 1.0
     assert highest < ax.get_ylim()[1] < 1.2 * highest
+
+
+def test_a_bound_above_all_errors_is_seen_whole(ax):
+    bound = np.linspace(7.0, 2.0, 10)
+    plot.error_panel(ax, TIME_S, {"one": np.linspace(1.0, 3.0, 10)}, bound=bound)
+    assert ax.get_ylim()[1] > bound.max()
 
 
 def test_bands_stand_in_order_of_turn_rate_under_the_true_turn(ax):

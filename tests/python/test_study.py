@@ -2,6 +2,9 @@
 
 import json
 import math
+import os
+import sys
+import time
 
 import numpy as np
 import pytest
@@ -9,7 +12,7 @@ import pytest
 import wakeline as wl
 from wakeline import montecarlo, scenario, study
 from wakeline.cli import main, outputs
-from wakeline.study import curves, estimators
+from wakeline.study import base, curves, estimators
 
 PNG = b"\x89PNG"
 RUNS = 6
@@ -353,6 +356,87 @@ def test_a_study_that_makes_no_sense(capsys, arguments, wanted):
     assert message.startswith("wakeline: ")
     assert message.count("\n") == 1
     assert wanted in message
+
+
+@pytest.mark.parametrize("name", [name for name in study.names() if name != "ais-forecast"])
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"runs": 0}, "runs must be a whole number, at least 1, got 0"),
+        ({"runs": -3}, "runs must be a whole number, at least 1, got -3"),
+        ({"runs": 2.5}, r"runs must be a whole number, at least 1, got 2\.5"),
+        ({"runs": "3"}, "runs must be a whole number, at least 1, got '3'"),
+        ({"seed": -1}, "seed must be a whole number, at least 0, got -1"),
+        ({"seed": None}, "seed must be a whole number, at least 0, got None"),
+        ({"threads": 0}, "threads must be a whole number, at least 1, got 0"),
+        ({"threads": 1.5}, r"threads must be a whole number, at least 1, got 1\.5"),
+    ],
+)
+def test_numbers_that_make_no_sense_are_refused_by_name(name, change, message):
+    with pytest.raises(ValueError, match=message):
+        study.load(name).run(**({"runs": 1} | change))
+
+
+def test_numbers_of_runs_on_video_that_make_no_sense_are_refused_by_name():
+    for value in (-1, 1.5):
+        with pytest.raises(ValueError, match=f"video_runs must be .* at least 0, got {value}"):
+            study.fuzzy_alpha_beta.run(runs=1, video_runs=value)
+
+
+# How the work is done -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("threads", [1, 3, None])
+def test_jobs_keep_their_order_and_have_the_threads_they_are_told(threads):
+    running, most = [], []
+
+    def job(number):
+        running.append(number)
+        most.append(len(running))
+        time.sleep(0.01)
+        running.remove(number)
+        return -number
+
+    jobs = {number: lambda number=number: job(number) for number in range(20)}
+    assert list(base.worked_off(jobs, threads, False).items()) == [(k, -k) for k in range(20)]
+    assert max(most) <= (threads or os.cpu_count())
+
+
+@pytest.mark.parametrize("where", ["job", "bar"])
+def test_what_stops_the_work_calls_off_what_has_not_begun(monkeypatch, where):
+    begun = []
+
+    def job(number):
+        begun.append(number)
+        time.sleep(0.01)
+        if where == "job":
+            raise KeyboardInterrupt
+
+    def stop(items, total, label):
+        next(items)
+        raise KeyboardInterrupt
+        yield
+
+    monkeypatch.setattr(base, "told", stop)
+    jobs = {number: lambda number=number: job(number) for number in range(300)}
+    with pytest.raises(KeyboardInterrupt) as caught:
+        base.worked_off(jobs, 1, where == "bar")
+    assert caught.tb is not None, "it holds on to whatever raised"
+    assert len(begun) < 150
+
+
+def test_a_terminal_sees_the_drawing_and_no_count_of_runs_that_is_none(
+    monkeypatch, tmp_path, capsys
+):
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setattr("wakeline._progress._EVERY_S", -1.0)
+    for name, runs in (("imm", 30), ("a823", 1)):
+        assert run("run", name, "--runs", runs, "--out", tmp_path) == 0
+        seen = capsys.readouterr().err
+        assert "running █" in seen
+        assert "drawing █" in seen
+        assert "runs" not in seen
 
 
 def test_an_output_folder_that_is_a_file(tmp_path, capsys):

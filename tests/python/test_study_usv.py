@@ -252,6 +252,17 @@ def test_pictures_are_drawn(small, tmp_path):
     assert all(f.read_bytes().startswith(b"\x89PNG") for f in files)
 
 
+@pytest.mark.parametrize("seed", [0, 3])
+def test_what_is_found_of_a_bias_is_seen_all_the_time(seed):
+    pytest.importorskip("matplotlib")
+    (picture,) = (one for one in usv.run(1, seed).pictures if one.name == "usv-biases")
+    for ax in picture.draw().axes:
+        low, high = ax.get_ylim()
+        found = ax.lines[0].get_ydata()
+        assert low <= found.min()
+        assert found.max() <= high
+
+
 def test_the_command_writes_the_rows(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(outputs, "can_draw", lambda: False)
     file = tmp_path / "usv.json"

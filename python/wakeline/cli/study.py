@@ -77,7 +77,7 @@ def run_study(arguments: argparse.Namespace) -> None:
     if not outputs.can_draw():
         print(f"\n{outputs.HOW_TO_GET_PICTURES}")
         return
-    files = done.save_pictures(arguments.out)
+    files = done.save_pictures(arguments.out, progress=True)
     print(f"\nwritten to {arguments.out}: {', '.join(file.name for file in files)}")
 
 

@@ -100,9 +100,11 @@ def share_inside(
         When confidence or dof makes no sense or the shapes do not fit.
     """
     curve, samples = np.asarray(curve, dtype=float), np.asarray(samples)
-    if samples.shape not in ((), curve.shape) or not (samples == np.floor(samples)).all():
+    counts = (samples == np.floor(samples)) & (samples >= 0)
+    if samples.shape not in ((), curve.shape) or not counts.all():
         raise ValueError(
-            f"samples must be whole numbers of shape () or {curve.shape}, got {samples.tolist()}"
+            f"samples must be whole numbers, none negative, of shape () or {curve.shape}, "
+            f"got {samples.tolist()}"
         )
     samples = np.broadcast_to(samples.astype(int), curve.shape)
     inside = np.zeros(curve.shape, dtype=bool)

@@ -123,7 +123,12 @@ def clairvoyant(
     ------
     FilterError
         When the filter cannot start.
+    ValueError
+        When the readings have another shape.
     """
+    z = np.asarray(z, dtype=float)
+    if z.ndim != 3 or z.shape[1] != scenario.scans:
+        raise ValueError(f"z must have shape (R, {scenario.scans}, 2), got {z.shape}")
     sensor = _sensor(sensor, scenario)
     noise = motion.PiecewiseAcceleration(std_mps2=0.0) if noise is None else noise
     starts = scenario.start if start is None else start

@@ -56,8 +56,8 @@ class Outcome:
         Share of the runs whose most probable model is, of those not at rest, the one nearest to the
         true turn rate.
     cpu_s : float
-        CPU time of the estimator over all runs that could start: that of the calling threads, and
-        so all of it only after ``wakeline.set_threads(1)``.
+        CPU time of the estimator over the runs that the curves are over: that of the calling
+        threads, and so all of it only after ``wakeline.set_threads(1)``.
     estimator : str or None
         The call that makes the candidate's estimator anew, with all of its parameters, such as
         ``Imm(filters=[Ekf(motion=...), ...], chain=..., initial_mode_probability=[...])``; of
@@ -153,11 +153,10 @@ class Outcome:
             switches. ``runs``, ``failed_runs``, ``lost_runs``, ``failed_steps``: counts.
         """
         time_s, switch_s, right = self.time_s, self.switch_times_s, self.right_mode_share
-        # The right model of a reading is that of half a scan before.
-        half_before_s = _half_a_scan_before(time_s)
-        delays = (
-            [] if right is None else metrics.detection_delays_scans(half_before_s, right, switch_s)
-        )
+        # The right model of a reading is that in force half a scan before, at a switch the new one.
+        new = np.unique(np.searchsorted(_half_a_scan_before(time_s), switch_s))
+        scans = np.arange(len(time_s))
+        delays = [] if right is None else metrics.detection_delays_scans(scans, right, new - 0.5)
         settling_s = metrics.settling_times_s(time_s, self.position_rmse_m, switch_s)
         steps = self.runs * len(time_s)
         every = np.ones(len(time_s), dtype=bool)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import pickle
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from functools import reduce
-from operator import add
+from itertools import islice
+from operator import add, methodcaller
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ except ImportError:
     pickler = pickle
 
 from wakeline import _progress
-from wakeline._checks import whole_number
+from wakeline._checks import run_numbers
 from wakeline.scenario import Scenario
 
 from .candidate import Candidate, told
@@ -119,7 +120,7 @@ def run(
             (scenario.name, name): Outcome.of(
                 scenario,
                 name,
-                reduce(add, [next(done) for _ in firsts]),
+                reduce(add, islice(done, len(firsts))),
                 **texts[scenario.name, name],
             )
             for scenario, name in pairs
@@ -154,14 +155,13 @@ def _check(
     if not isinstance(candidates, Mapping):
         raise TypeError(f"candidates must be a mapping by name, got {type(candidates)}")
     for name, candidate in candidates.items():
+        if not isinstance(name, str):
+            raise TypeError(f"candidates must have names that are text, got {name!r}")
         if not callable(candidate):
             raise TypeError(
                 f"candidate {name!r} must be a Candidate or callable, got {type(candidate)}"
             )
-    whole_number("runs", runs, 1)
-    whole_number("seed", seed, 0)
-    if threads is not None:
-        whole_number("threads", threads, 1)
+    run_numbers(runs, seed, threads)
     if not lost_beyond_m > 0:
         raise ValueError(f"lost_beyond_m must be positive, got {lost_beyond_m}")
     if client is not None and threads is not None:
@@ -199,7 +199,7 @@ def _worked_off(chunks: list[Chunk], threads: int | None, client: Any) -> Iterat
     elif hasattr(client, "remote") and hasattr(client, "get"):
         remote = client.remote(sums_of)
         waiting = [remote.remote(chunk) for chunk in chunks]
-        yield from map(client.get, waiting)
+        yield from _gathered(waiting, client.get, client.cancel)
     else:
         raise TypeError(
             "client must be a dask.distributed.Client, the module ray or an executor, "
@@ -215,14 +215,24 @@ def sums_of_packed(chunk: bytes) -> Sums:
     return sums_of(pickle.loads(chunk))
 
 
-def _gathered(futures: list[Future]) -> Iterator[Sums]:
-    """Results in order; the first failure, or an early end, calls off what has not begun."""
+def _gathered(
+    tasks: list[Any],
+    result: Callable[[Any], Sums] = methodcaller("result"),
+    cancel: Callable[[Any], Any] = methodcaller("cancel"),
+) -> Iterator[Sums]:
+    """Results in order; the first failure, or an early end, calls off what has not begun.
+
+    No task is kept, and with it its result, once that has come.
+    """
+    tasks.reverse()
     try:
-        for future in futures:
-            yield future.result()
+        while tasks:
+            sums = result(tasks[-1])
+            tasks.pop()
+            yield sums
     finally:
-        for future in futures:
-            future.cancel()
+        for task in tasks:
+            cancel(task)
 
 
 def _told(
@@ -230,7 +240,7 @@ def _told(
 ) -> Iterator[Sums]:
     """Hand on, telling how far the work has come."""
     if not callable(progress):
-        yield from _progress.progress(sums, total, "runs") if progress else sums
+        yield from _progress.progress(sums, total, "running") if progress else sums
         return
     for done, item in enumerate(sums, start=1):
         progress(done, total)

@@ -41,7 +41,7 @@ class Sums:
     right_mode : ndarray (T,) or None
         Runs whose most probable model is the right one.
     cpu_s : float
-        Time the estimator took.
+        Time the estimator took for the runs that the curves hold, all runs taking the same.
     """
 
     runs: int
@@ -113,7 +113,11 @@ def _summed_one(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None)
 def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> Sums:
     told = {} if starts is None else {"start": starts}
     began_s = time.thread_time()
-    result = chunk.candidate(chunk.scenario, z, **told)
+    try:
+        result = chunk.candidate(chunk.scenario, z, **told)
+    except ValueError as error:
+        which = f"candidate {chunk.candidate_name!r} on {chunk.scenario.name!r}"
+        raise ValueError(f"{which}: {error}") from error
     cpu_s = time.thread_time() - began_s
     mean, covariance = _kinematics(chunk, result, len(z))
     usable = np.isfinite(mean).all(axis=(1, 2))
@@ -140,7 +144,7 @@ def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> 
         mode_probability=None if modes is None else modes.sum(axis=0),
         turn_rate_rad_s=None if estimated_rate is None else estimated_rate.sum(axis=0),
         right_mode=_right_mode(chunk.scenario, modes, rates),
-        cpu_s=cpu_s,
+        cpu_s=cpu_s * float(np.mean(usable)),
     )
 
 

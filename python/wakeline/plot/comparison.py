@@ -1,7 +1,7 @@
 """Several estimators on one scenario: their paths, errors, turn rates and mode probabilities.
 
 Every function draws into `ax` and returns it. Times are seconds from the start of the scenario,
-states ``[north, vnorth, east, veast]``.
+states ``[north, vnorth, east, veast]``. Arrays that do not fit raise ValueError, which names them.
 """
 
 from __future__ import annotations
@@ -59,9 +59,12 @@ def paths_view(
     colors : mapping of str to str, optional
         Colour of each track.
     """
+    truth = _shaped("truth", truth, None, 4)
+    tracks = {name: _shaped(f"track {name!r}", of, None, 4) for name, of in (tracks or {}).items()}
     if plots_m is not None:
+        plots_m = _shaped("plots_m", plots_m, None, 2)
         ax.scatter(*_km(plots_m), s=6, color=MUTED, alpha=0.6, linewidths=0, label="plot", zorder=2)
-    for name, look in _looks(tracks or {}, colors):
+    for name, look in _looks(tracks, colors):
         ax.plot(*_km(tracks[name][:, 0::2]), **look, linewidth=1.3, label=name, zorder=3)
     place = truth[:, 0::2]
     line = {"color": INK, "linewidth": 1.1, "linestyle": _TRUTH_DASHES if tracks else "-"}
@@ -108,13 +111,17 @@ def error_panel(
     legend : bool
         Whether to name the lines.
     """
+    time_s = _times(time_s)
+    errors = _by_name("errors", errors, len(time_s))
     mark_switches(ax, switch_s)
+    curves = list(errors.values())
     if bound is not None:
+        curves.append(_shaped("bound", bound, len(time_s)))
         ax.fill_between(time_s, bound, color=GRID, linewidth=0, zorder=1.5)
         ax.plot(time_s, bound, color=MUTED, linewidth=1.1, label="bound", zorder=2)
     for name, look in _looks(errors, colors):
         ax.plot(time_s, errors[name], **look, linewidth=1.4, label=name, zorder=3)
-    ax.set_ylim(0.0, _ROOM_ABOVE * _highest(errors.values()) if top is None else top)
+    ax.set_ylim(0.0, _ROOM_ABOVE * _highest(curves) if top is None else top)
     return _over_time(ax, time_s, ylabel, legend)
 
 
@@ -145,6 +152,9 @@ def turn_rate_panel(
     legend : bool
         Whether to name the lines.
     """
+    time_s = _times(time_s)
+    rates_rad_s = _by_name("rates_rad_s", rates_rad_s, len(time_s))
+    true_rate_rad_s = _shaped("true_rate_rad_s", true_rate_rad_s, len(time_s))
     ax.axhline(0.0, color=MUTED, linewidth=0.6)
     for name, look in _looks(rates_rad_s, colors):
         rate_deg_s = np.degrees(rates_rad_s[name])
@@ -196,12 +206,13 @@ def probability_panel(
         Whether to name the bands.
     """
     rate_deg_s = np.degrees(np.asarray(turn_rate_rad_s, dtype=float))
-    probability, wanted = np.asarray(probability), (len(time_s), len(rate_deg_s))
-    if probability.shape != wanted:
-        raise ValueError(f"probability must have shape {wanted}, got {probability.shape}")
+    time_s = _times(time_s)
+    probability = _shaped("probability", probability, len(time_s), len(rate_deg_s))
     order = np.argsort(rate_deg_s)
     names = [f"{rate:+.3g} °/s" if rate else "0 °/s" for rate in rate_deg_s[order]]
-    true_deg_s = np.degrees(np.zeros(0) if true_rate_rad_s is None else true_rate_rad_s)
+    true_deg_s = np.zeros(0)
+    if true_rate_rad_s is not None:
+        true_deg_s = np.degrees(_shaped("true_rate_rad_s", true_rate_rad_s, len(time_s)))
     colors = turn_colors(np.concatenate([rate_deg_s[order], true_deg_s]))
     draw_bands(ax, time_s, probability[:, order], names, colors[: len(order)])
     if not legend:
@@ -239,7 +250,9 @@ def ranking_panel(
     log : bool
         Whether the axis is logarithmic; else it begins at 0.
     """
-    table = {key: np.asarray(row, dtype=float) for key, row in values.items()}
+    table = _by_name("values", values, len(names))
+    if not table or best_first not in (None, *table):
+        raise ValueError(f"values must have {best_first or 'a circumstance'}, got {list(table)}")
     by = table[best_first if best_first is not None else list(table)[-1]]
     order = np.argsort(by)[::-1]
     rows = np.arange(len(order))
@@ -289,7 +302,7 @@ def steps_panel(
     legend : bool
         Whether to name the lines.
     """
-    at = np.arange(len(steps))
+    at, values = np.arange(len(steps)), _by_name("values", values, len(steps))
     for name, look in _looks(values, colors):
         ax.plot(at, values[name], **look, linewidth=1.4, marker="o", markersize=5, label=name)
     ax.set_xticks(at, steps)
@@ -326,6 +339,29 @@ def turn_colors(turn_rate_deg_s: Sequence[float]) -> list[str]:
         return to_hex((port if rate < 0 else starboard)(depth))
 
     return [color(rate) for rate in rates]
+
+
+def _times(time_s: np.ndarray) -> np.ndarray:
+    """Times (T,), one at least."""
+    time_s = _shaped("time_s", time_s, None)
+    if not len(time_s):
+        raise ValueError("time_s must have a time")
+    return time_s
+
+
+def _by_name(what: str, rows: Mapping[str, Sequence[float]], count: int) -> dict[str, np.ndarray]:
+    """Rows of so many numbers."""
+    return {name: _shaped(f"{what} of {name!r}", row, count) for name, row in rows.items()}
+
+
+def _shaped(what: str, values: Any, *shape: int | None) -> np.ndarray:
+    """An array of that shape, None standing for any length."""
+    values = np.asarray(values, dtype=float)
+    lengths = zip(shape, values.shape, strict=False)
+    if values.ndim != len(shape) or any(wanted not in (None, got) for wanted, got in lengths):
+        text = str(shape).replace("None", "n")
+        raise ValueError(f"{what} must have shape {text}, got {values.shape}")
+    return values
 
 
 def _looks(

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -22,11 +21,11 @@ import numpy as np
 
 import wakeline as wl
 from wakeline import WhiteAcceleration, plot
-from wakeline._progress import progress as told
+from wakeline._checks import run_numbers
 from wakeline._units import KNOT_MPS, NAUTICAL_MILE_M
 from wakeline.scenario import Segment, Truth
 
-from .base import Picture, Published, Report, Rows
+from .base import Picture, Published, Report, Rows, worked_off
 from .estimators import peaked, turn_filter, turn_imm
 
 if TYPE_CHECKING:
@@ -377,6 +376,7 @@ def run(
         ``_target_turn`` before the minutes where a ship has turned before, ``_no_glint`` where the
         echo does not wander along the hull.
     """
+    run_numbers(runs, seed, threads)
     jobs: dict[tuple[str, str], Callable[[], dict[str, np.ndarray]]] = {}
     for number, maneuver, after_s, glint_std_m in _cases():
         ships, radar = passage(number, maneuver, after_s), sensor(glint_std_m)
@@ -385,10 +385,7 @@ def run(
         case = case_name(number, maneuver, after_s, glint_std_m)
         for name, estimator in estimators().items():
             jobs[case, name] = partial(errors, estimator, ships, seen, radar)
-    with ThreadPoolExecutor(threads) as pool:
-        found = pool.map(lambda job: job(), jobs.values())
-        results = told(found, len(jobs), "estimators") if progress else found
-        done = dict(zip(jobs, results, strict=True))
+    done = worked_off(jobs, threads, progress)
     rows = [
         {"scenario": case, "estimator": name}
         | {

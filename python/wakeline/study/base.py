@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from wakeline import plot
 from wakeline._brief import brief, many
+from wakeline._progress import progress as told
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,6 +22,7 @@ if TYPE_CHECKING:
 
 Panel = Callable[["Axes"], "Axes"]
 Rows = list[dict[str, Any]]
+Key, Found = TypeVar("Key"), TypeVar("Found")
 
 _HEADS = {
     "mean_position_m": "mean m",
@@ -138,11 +143,15 @@ class Report:
                 return row
         raise KeyError(f"no row of {estimator} on {scenario}")
 
-    def save_pictures(self, folder: str | Path) -> list[Path]:
-        """Draw every picture into `folder`, made if need be, as ``NAME.png``; returns the files."""
+    def save_pictures(self, folder: str | Path, *, progress: bool = False) -> list[Path]:
+        """Draw every picture into `folder`, made if need be, as ``NAME.png``; returns the files.
+
+        With `progress` a bar is drawn where stderr is a terminal.
+        """
         Path(folder).mkdir(parents=True, exist_ok=True)
         files = []
-        for picture in self.pictures:
+        count = len(self.pictures)
+        for picture in told(self.pictures, count, "drawing") if progress else self.pictures:
             files.append(Path(folder) / f"{picture.name}.png")
             plot.save(picture.draw(), files[-1])
         return files
@@ -187,6 +196,21 @@ class Published:
             return None
         value = row[self.metrics.index(metric)]
         return None if np.isnan(value) else value
+
+
+def worked_off(
+    jobs: Mapping[Key, Callable[[], Found]], threads: int | None, progress: bool
+) -> dict[Key, Found]:
+    """What every job gives, by default on as many threads as there are processors.
+
+    What stops it calls off the jobs that have not begun.
+    """
+    with (
+        ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool,
+        closing(pool.map(lambda job: job(), jobs.values())) as found,
+    ):
+        watched = told(found, len(jobs), "running") if progress else found
+        return dict(zip(jobs, watched, strict=True))
 
 
 def label(metric: str) -> str:

@@ -10,7 +10,6 @@ positions or from rates.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,11 +20,11 @@ import wakeline as wl
 from wakeline import filter as wf
 from wakeline import navigation as nav
 from wakeline import plot
-from wakeline._progress import progress as told
+from wakeline._checks import run_numbers
 from wakeline._units import KNOT_MPS
 from wakeline.scenario import voyage as sea
 
-from .base import Picture, Published, Report, Rows
+from .base import Picture, Published, Report, Rows, worked_off
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -346,15 +345,13 @@ def run(
         Scenarios ``forecast_4x1s`` to ``forecast_4x10s``, four readings ahead on the voyage, and
         ``drift_20``, ``drift_5``, so many fixes after the first.
     """
+    run_numbers(runs, seed, threads)
     jobs: dict[tuple[str, str], Callable[[], dict[str, np.ndarray]]] = {}
     for case, dt_s in STEPS_S.items():
         read = sea.reckoning_voyage(dt_s).read(runs, seed)
         for name in (*smoothers(), "combined"):
             jobs[case, name] = partial(judge, dt_s, read, name)
-    with ThreadPoolExecutor(threads) as pool:
-        found = pool.map(lambda job: job(), jobs.values())
-        results = told(found, len(jobs), "estimators") if progress else found
-        done = dict(zip(jobs, results, strict=True))
+    done = worked_off(jobs, threads, progress)
     drifts = {fixes: drift_errors(runs, seed, fixes) for fixes in FIXES.values()}
     for case, fixes in FIXES.items():
         for name, off in drifts[fixes].items():

@@ -13,7 +13,6 @@ minutes and is heard at a median interval under 7 s, without a gap over 25 s.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
@@ -23,12 +22,12 @@ import numpy as np
 import wakeline as wl
 from wakeline import WhiteAcceleration, plot, recording
 from wakeline._brief import many
-from wakeline._progress import progress as told
+from wakeline._checks import run_numbers
 from wakeline.recording import AisTrack
 from wakeline.scenario import RadarSimulator, Scenario, TrackTruth
 
 from . import curves
-from .base import Picture, Report, Rows
+from .base import Picture, Report, Rows, worked_off
 from .estimators import learning_filter, peaked, turn_filter, turn_imm
 
 if TYPE_CHECKING:
@@ -284,17 +283,18 @@ def run(
         30 s after the start on; those that begin with ``after_turn_`` are over the scans of
         :func:`after_turn`.
     """
-    if runs < 1:
-        raise ValueError(f"runs must be at least 1, got {runs}")
+    run_numbers(runs, seed, threads)
     each = -(-runs // len(vessels()))
     built = estimators() | (variants() if full else {})
-    jobs = [(radar, name, scene) for radar in RADARS for name in built for scene in scenes(radar)]
+    jobs = {
+        (radar, name, scene.name): partial(_score, scene, estimator, each, seed)
+        for radar in RADARS
+        for name, estimator in built.items()
+        for scene in scenes(radar)
+    }
     totals: dict[tuple[str, str], _Sums] = {}
-    with ThreadPoolExecutor(threads) as pool:
-        found = pool.map(lambda job: _score(job[2], built[job[1]], each, seed), jobs)
-        bar = told(found, len(jobs), "runs") if progress else found
-        for (*key, _), sums in zip(jobs, bar, strict=True):
-            totals[tuple(key)] = totals.get(tuple(key), _NOTHING) + sums
+    for (radar, name, _), sums in worked_off(jobs, threads, progress).items():
+        totals[radar, name] = totals.get((radar, name), _NOTHING) + sums
     rows = [
         {"scenario": radar, "estimator": name} | sums.figures()
         for (radar, name), sums in totals.items()

@@ -9,7 +9,6 @@ errors that any estimator can have.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -18,10 +17,10 @@ import numpy as np
 
 import wakeline as wl
 from wakeline import plot
-from wakeline._progress import progress as told
+from wakeline._checks import run_numbers
 from wakeline.scenario import UsvLogs, UsvMission, UsvVoyage
 
-from .base import Picture, Published, Report, Rows
+from .base import Picture, Published, Report, Rows, worked_off
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -330,6 +329,7 @@ def run(
     Report
         Scenarios ``current_0.5`` and so on, in m/s.
     """
+    run_numbers(runs, seed, threads)
     chosen = ESTIMATORS | (IN_FULL if full else {})
     jobs: dict[tuple[str, str], Callable[[], Outcome]] = {}
     bounds: dict[str, Bound] = {}
@@ -341,10 +341,7 @@ def run(
             jobs[scene, name] = partial(evaluate, estimator, mission, logs)
         jobs[scene, "bound8"] = bounds[scene].outcome
         jobs[scene, "smoother_bound8"] = partial(bounds[scene].outcome, smoothed=True)
-    with ThreadPoolExecutor(threads) as pool:
-        found = pool.map(lambda job: job(), jobs.values())
-        results = told(found, len(jobs), "estimators") if progress else found
-        done = dict(zip(jobs, results, strict=True))
+    done = worked_off(jobs, threads, progress)
     rows: Rows = [
         {"scenario": scene, "estimator": name} | outcome.figures()
         for (scene, name), outcome in done.items()
@@ -478,7 +475,7 @@ def _draw_bias(ax: Axes, mission: UsvMission, beliefs: Any, axis: int) -> Axes:
     ax.plot(time_s, mean, color=_COLORS[DEFAULT], linewidth=1.4, label=DEFAULT)
     ax.axhline(true, color=plot.INK, linewidth=1.0, linestyle="--", label="truth")
     ax.set_xlim(time_s[0], time_s[-1])
-    ax.set_ylim(true - prior, true + prior)
+    ax.set_ylim(min(true - prior, mean.min()), max(true + prior, mean.max()))
     ax.set(xlabel="time (s)", ylabel=name)
     plot.dress(ax)
     return plot.name_lines(ax) if axis == 0 else ax

@@ -8,7 +8,6 @@ through a turn of 300 m radius, and finds about 22 m at 10 m/s and 27 m at 20 m/
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -16,10 +15,10 @@ from typing import Any
 import numpy as np
 
 import wakeline as wl
-from wakeline._progress import progress as told
+from wakeline._checks import run_numbers, whole_number
 from wakeline.scenario import HardTurn, HardTurnRuns, hard_turns
 from wakeline.study import curves
-from wakeline.study.base import Published, Report, Rows, finite
+from wakeline.study.base import Published, Report, Rows, finite, worked_off
 
 from . import on_video, pictures
 from .estimators import LABELS, estimators, window_lengths
@@ -158,6 +157,9 @@ def run(
         Scenarios by name, and with ``_video`` after it; ``result`` holds, by scenario and
         estimator, an :class:`Outcome`.
     """
+    run_numbers(runs, seed, threads)
+    if video_runs is not None:
+        whole_number("video_runs", video_runs, 0)
     scenarios = hard_turns()
     drawn = {name: scenario.draw(runs, seed) for name, scenario in scenarios.items()}
     seen = min(-(-runs // 50), 10) if video_runs is None else video_runs
@@ -176,7 +178,7 @@ def run(
             jobs[number, case, "video"] = partial(
                 on_video.follow, scenario, GATES_M[case], seed * _CURVE_RUNS + number
             )
-    done = _worked(jobs, threads, progress)
+    done = worked_off(jobs, threads, progress)
     outcomes = {(case, name): done["free", case, name] for case in scenarios for name in LABELS}
     losses = {of: np.array([done[(gate_m, *of)] for gate_m in _CURVE_GATES_M]) for of in outcomes}
     films = {case: [done[number, case, "video"] for number in range(seen)] for case in scenarios}
@@ -259,11 +261,3 @@ the craft is not lost."""
 
 def _median_worst(error_m: np.ndarray) -> float:
     return float(np.median(error_m[:, SETTLED:].max(axis=1)))
-
-
-def _worked(
-    jobs: dict[tuple, Callable[[], Any]], threads: int | None, progress: bool
-) -> dict[tuple, Any]:
-    with ThreadPoolExecutor(threads) as pool:
-        found = pool.map(lambda job: job(), jobs.values())
-        return dict(zip(jobs, told(found, len(jobs), "runs") if progress else found, strict=True))

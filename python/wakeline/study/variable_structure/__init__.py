@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from wakeline import montecarlo, scenario
+from wakeline._checks import run_numbers
 from wakeline.scenario import Scenario
 
 from .. import curves
@@ -60,6 +61,7 @@ def run(
     Report
         Scenarios ``example1``, ``example2`` and ``random``, whose `result` is a mapping by these.
     """
+    run_numbers(runs, seed, threads)
 
     def monte_carlo(
         scenarios: Sequence[Scenario], candidates: Mapping[str, Any], share: int = 1
