@@ -9,6 +9,7 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
+#include "wakeline/measurement/position.hpp"
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 
@@ -420,6 +421,40 @@ TEST(ModeHistory, AStepThatFailsChangesNothing) {
   double share = 1.0;
   EXPECT_EQ(tree.update<RangeBearing>(std::span(&bad, 1), 0.0, std::span<double>(&share, 1)), 0.0);
   expect_unchanged("an impossible association");
+}
+
+// What histories of other gains make of it differs by more than has a square.
+template <class Model, class Sensor>
+void expect_that_it_is_a_plot_or_leaves_the_prediction(const Model& model, const Sensor& sensor,
+                                                       const Vec<double, 2>& far) {
+  ModeHistory<Ekf<Model>> tree({}, kTriple, turning_chain(kTriple), Ekf{model});
+  ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
+  for (int scan = 0; scan < 4; ++scan) ASSERT_EQ(tree.predict(3.0), Status::kOk);
+  const auto before = tree.estimate();
+  if (const auto step = tree.update(sensor, far); !step) {
+    EXPECT_EQ(step.status, Status::kNotFinite) << far;
+    EXPECT_TRUE(beliefs_identical<Model::kComponents.size()>(tree.estimate(), before)) << far;
+  }
+  for (int scan = 0; scan < 8; ++scan) {
+    EXPECT_TRUE(is_finite(tree.estimate().mean)) << far;
+    EXPECT_TRUE(is_finite(tree.estimate().covariance)) << far;
+    EXPECT_EQ(tree.predict(3.0), Status::kOk) << far;
+    if (scan > 3) (void)tree.update(Position{10.0}, Vec<double, 2>(3000.0, 4000.0));
+  }
+}
+
+TEST(ModeHistory, APlotWithoutASquareLeavesThePrediction) {
+  const Position position{.position_std_m = 10.0};
+  for (int power = 140; power <= 308; ++power) {
+    const double far_m = std::pow(10.0, power);
+    for (const Vec<double, 2>& z : {Vec<double, 2>(far_m, 0.0), Vec<double, 2>(far_m, far_m)}) {
+      expect_that_it_is_a_plot_or_leaves_the_prediction(CoordinatedTurn{}, position, z);
+      expect_that_it_is_a_plot_or_leaves_the_prediction(CoordinatedTurnRate{}, position, z);
+    }
+    const Vec<double, 2> ahead(far_m, std::atan2(4.0, 3.0));
+    expect_that_it_is_a_plot_or_leaves_the_prediction(CoordinatedTurn{}, kRadar, ahead);
+    expect_that_it_is_a_plot_or_leaves_the_prediction(CoordinatedTurnRate{}, kRadar, ahead);
+  }
 }
 
 TEST(ModeHistory, KeepsTheLikeliestHoweverUnlikely) {
