@@ -457,6 +457,25 @@ TEST(ModeHistory, APlotWithoutASquareLeavesThePrediction) {
   }
 }
 
+TEST(ModeHistory, HistoriesNearTheLeastNumberSpoilNoneThatIsLikely) {
+  // Of what one plot far off leaves to some of them a reciprocal is beyond numbers.
+  const Position sensor{.position_std_m = 2.0};
+  for (double away_m = 500.0; away_m < 1000.0; away_m += 20.0) {
+    Tree tree(HistoryTree::pseudo_bayes(6, 2), kPair, Chain(Chain::Matrix{{0.9, 0.1}, {0.1, 0.9}}),
+              turning());
+    Gaussian<4> start;
+    start.mean << 0.0, 10.0, 0.0, 0.0;
+    ASSERT_EQ(tree.start(start), Status::kOk);
+    for (int scan = 1; scan <= 8; ++scan) {
+      ASSERT_EQ(tree.predict(3.0), Status::kOk) << away_m;
+      const Vec<double, 2> z(30.0 * scan, scan == 5 ? away_m : 0.0);
+      ASSERT_EQ(tree.update(sensor, z).status, Status::kOk) << away_m;
+      ASSERT_TRUE(is_finite(tree.estimate().mean)) << away_m;
+      ASSERT_TRUE(is_finite(tree.estimate().covariance)) << away_m;
+    }
+  }
+}
+
 TEST(ModeHistory, KeepsTheLikeliestHoweverUnlikely) {
   const auto grid = TurnRateGrid::evenly(deg(3.5), 7);
   HistoryTree settings = whole();
