@@ -78,7 +78,8 @@ void trace_scan(AnyFuzzyAlphaBeta& estimator, const Sensor& sensor, const double
 
 FuzzyTrace trace_runs(AnyFuzzyAlphaBeta estimator, const DoubleArray& z, const py::object& dt_s,
                       const py::object& sensor, const py::object& start) {
-  return visit_sensor(sensor, [&]<class Sensor>(const Sensor& model) {
+  return visit_sensor(sensor, [&]<class Sensor>(const Sensor& given) {
+    const Sensor model = given;  // as another thread may change it meanwhile
     constexpr int kM = Sensor::kMeasurements;
     const bool many = z.ndim() == 3;
     require_shape((z.ndim() == 2 || many) && z.shape(z.ndim() - 1) == kM, "z",

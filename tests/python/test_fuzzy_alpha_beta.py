@@ -1,7 +1,7 @@
 """The fuzzy choice among lines: its laws are tested in C++; here what Python adds."""
 
 import time
-from threading import Thread
+from threading import Event, Thread
 
 import numpy as np
 import pytest
@@ -65,6 +65,27 @@ def test_a_long_trace_lets_other_threads_work():
         time.sleep(1e-3)
         turns += 1
     assert turns > 10
+
+
+def test_a_trace_is_its_own_while_another_thread_moves_its_sensor():
+    radar = wl.RangeBearing(range_std_m=30.0, bearing_std_rad=np.deg2rad(0.5))
+    z = np.tile(readings(), (1500, 1, 1))
+    done = Event()
+
+    def move():
+        while not done.is_set():
+            radar.own = wl.OwnShip(north_m=100.0 - radar.own.north_m)
+
+    mover = Thread(target=move)
+    mover.start()
+    try:
+        for _ in range(5):
+            trace = wl.FuzzyAlphaBeta().trace(z, DT_S, radar, START)
+            first = trace.prediction_m[:1]
+            np.testing.assert_array_equal(trace.prediction_m, first.repeat(len(z), axis=0))
+    finally:
+        done.set()
+        mover.join()
 
 
 def test_traces_side_by_side_know_nothing_of_each_other():

@@ -187,8 +187,9 @@ class Imm:
         ValueError
             As of `run`.
         FilterError
-            When an estimator cannot start, or a recording cannot be smoothed: a step is below zero, or no
-            number.
+            When an estimator cannot start, or a recording cannot be smoothed: a step between two scans is
+            below zero, no number, or so long that nothing can be carried back over it (days, of
+            `PiecewiseAcceleration`).
 
         References
         ----------

@@ -368,6 +368,20 @@ TEST(FuzzyAlphaBeta, BadInputChangesNothing) {
   }
 }
 
+TEST(FuzzyAlphaBeta, APlotWithoutASquareChangesNothing) {
+  for (int power = 140; power <= 308; ++power) {
+    Fuzzy fuzzy = on_a_straight(12);
+    const Fuzzy before = fuzzy;
+    if (const auto step = fuzzy.update(kSensor, Vec<double, 2>(std::pow(10.0, power), 0)); !step) {
+      EXPECT_EQ(step.status, Status::kNotFinite) << power;
+      EXPECT_TRUE(beliefs_identical<4>(fuzzy.estimate(), before.estimate())) << power;
+      EXPECT_EQ(fuzzy.sigma_hat_m(), before.sigma_hat_m()) << power;
+    }
+    EXPECT_TRUE(std::isfinite(fuzzy.sigma_hat_m())) << power;
+    EXPECT_EQ(fuzzy.mode_probability().sum(), 1.0) << power;
+  }
+}
+
 TEST(FuzzyAlphaBeta, ArchiveBringsEverythingBackAndRefusesWhatItIsNot) {
   for (const int scans : {0, 1, 3, 25}) {
     Fuzzy fuzzy = on_a_straight(scans), restored;

@@ -45,6 +45,11 @@ TEST(ModeChain, RowsThatDoNotSumToOneAreNamed) {
       << message;
   EXPECT_NE(message.find("rows: mode before"), std::string::npos) << message;
   EXPECT_NE(complaint([] { Two(Two::Matrix{{0.9, 0.4}, {0.1, 0.6}}); }), "") << "transposed";
+  // As of 32 bits.
+  const std::string near = complaint([] { Two(Two::Matrix{{0.9 + 2e-8, 0.1}, {0.2, 0.8}}); });
+  EXPECT_NE(near.find("row 0 of the mode chain must sum to 1, sums to 1.00000002"),
+            std::string::npos)
+      << near;
 }
 
 TEST(ModeChain, ElementsThatAreNoProbabilitiesAreRefused) {
@@ -180,11 +185,16 @@ TEST(ModeChain, WhatIsNoGeneratorIsRefused) {
   EXPECT_NE(complaint([] { Any::from_generator(Any::Matrix::Zero(2, 3)); }), "");
 }
 
+TEST(ModeChain, TellsANumberFromOneThatWouldDo) {
+  EXPECT_EQ(complaint([] { (void)Two::staying(1.0 + 2e-8); }),
+            "stay_probability must be a probability between 0 and 1, got 1.00000002");
+}
+
 TEST(ModeChain, SojournTimesThatAreNoneAreRefused) {
   for (const double bad : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()})
     EXPECT_NE(complaint([&] {
                 (void)Two::from_sojourn_s({10.0, bad});
-              }).find("sojourn time"),
+              }).find("every time of sojourn_s must be finite and positive"),
               std::string::npos);
   EXPECT_NE(complaint([] {
               (void)Two::from_sojourn_s({10.0, 1e-310});

@@ -9,6 +9,7 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
+#include "wakeline/measurement/position.hpp"
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 
@@ -420,6 +421,59 @@ TEST(ModeHistory, AStepThatFailsChangesNothing) {
   double share = 1.0;
   EXPECT_EQ(tree.update<RangeBearing>(std::span(&bad, 1), 0.0, std::span<double>(&share, 1)), 0.0);
   expect_unchanged("an impossible association");
+}
+
+// What histories of other gains make of it differs by more than has a square.
+template <class Model, class Sensor>
+void expect_that_it_is_a_plot_or_leaves_the_prediction(const Model& model, const Sensor& sensor,
+                                                       const Vec<double, 2>& far) {
+  ModeHistory<Ekf<Model>> tree({}, kTriple, turning_chain(kTriple), Ekf{model});
+  ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
+  for (int scan = 0; scan < 4; ++scan) ASSERT_EQ(tree.predict(3.0), Status::kOk);
+  const auto before = tree.estimate();
+  if (const auto step = tree.update(sensor, far); !step) {
+    EXPECT_EQ(step.status, Status::kNotFinite) << far;
+    EXPECT_TRUE(beliefs_identical<Model::kComponents.size()>(tree.estimate(), before)) << far;
+  }
+  for (int scan = 0; scan < 8; ++scan) {
+    EXPECT_TRUE(is_finite(tree.estimate().mean)) << far;
+    EXPECT_TRUE(is_finite(tree.estimate().covariance)) << far;
+    EXPECT_EQ(tree.predict(3.0), Status::kOk) << far;
+    if (scan > 3) (void)tree.update(Position{10.0}, Vec<double, 2>(3000.0, 4000.0));
+  }
+}
+
+TEST(ModeHistory, APlotWithoutASquareLeavesThePrediction) {
+  const Position position{.position_std_m = 10.0};
+  for (int power = 140; power <= 308; ++power) {
+    const double far_m = std::pow(10.0, power);
+    for (const Vec<double, 2>& z : {Vec<double, 2>(far_m, 0.0), Vec<double, 2>(far_m, far_m)}) {
+      expect_that_it_is_a_plot_or_leaves_the_prediction(CoordinatedTurn{}, position, z);
+      expect_that_it_is_a_plot_or_leaves_the_prediction(CoordinatedTurnRate{}, position, z);
+    }
+    const Vec<double, 2> ahead(far_m, std::atan2(4.0, 3.0));
+    expect_that_it_is_a_plot_or_leaves_the_prediction(CoordinatedTurn{}, kRadar, ahead);
+    expect_that_it_is_a_plot_or_leaves_the_prediction(CoordinatedTurnRate{}, kRadar, ahead);
+  }
+}
+
+TEST(ModeHistory, HistoriesNearTheLeastNumberSpoilNoneThatIsLikely) {
+  // Of what one plot far off leaves to some of them a reciprocal is beyond numbers.
+  const Position sensor{.position_std_m = 2.0};
+  for (double away_m = 500.0; away_m < 1000.0; away_m += 20.0) {
+    Tree tree(HistoryTree::pseudo_bayes(6, 2), kPair, Chain(Chain::Matrix{{0.9, 0.1}, {0.1, 0.9}}),
+              turning());
+    Gaussian<4> start;
+    start.mean << 0.0, 10.0, 0.0, 0.0;
+    ASSERT_EQ(tree.start(start), Status::kOk);
+    for (int scan = 1; scan <= 8; ++scan) {
+      ASSERT_EQ(tree.predict(3.0), Status::kOk) << away_m;
+      const Vec<double, 2> z(30.0 * scan, scan == 5 ? away_m : 0.0);
+      ASSERT_EQ(tree.update(sensor, z).status, Status::kOk) << away_m;
+      ASSERT_TRUE(is_finite(tree.estimate().mean)) << away_m;
+      ASSERT_TRUE(is_finite(tree.estimate().covariance)) << away_m;
+    }
+  }
 }
 
 TEST(ModeHistory, KeepsTheLikeliestHoweverUnlikely) {

@@ -22,10 +22,14 @@ namespace wakeline {
 #endif
 }
 
+/// Digits of a number in such a message: enough to tell it from one that would do.
+inline constexpr int kMessageDigits = 12;
+
 /// Refuses in words what was wanted and what came, unless the condition holds.
 inline void require(bool condition, const char* name, const char* wanted, double value) {
   if (condition) return;
   std::ostringstream message;
+  message.precision(kMessageDigits);
   message << name << " must be " << wanted << ", got " << value;
   refuse(message.str());
 }

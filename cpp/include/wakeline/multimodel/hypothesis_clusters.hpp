@@ -13,12 +13,13 @@
 #include "wakeline/multimodel/history_tree.hpp"
 #include "wakeline/multimodel/hypothesis_rows.hpp"
 #include "wakeline/multimodel/likeliest.hpp"
+#include "wakeline/multimodel/mixture.hpp"
 
 namespace wakeline {
 
 /// Joins the hypotheses of each mode that are so alike that one can stand for them: around the
-/// likeliest that is in no cluster yet, by moment matching. What is negligible is left out, but
-/// never all. Source: D. J. Salmond, SPIE 1305, 1990.
+/// likeliest that is in no cluster yet, by moment matching. What is negligible is left out, in any
+/// case what is next to nothing, but never all. Source: D. J. Salmond, SPIE 1305, 1990.
 template <class Rows>
 class HypothesisClusters {
  public:
@@ -28,7 +29,8 @@ class HypothesisClusters {
     Lanes likeliest = Lanes(0);
     for (const Row& row : all) likeliest = at_least(load<Lanes>(row.probability.data()), likeliest);
     const Lanes dropped =
-        std::min(Scalar(limits.negligible_probability), greatest_of_lanes(likeliest) / 2);
+        std::max(std::min(Scalar(limits.negligible_probability), greatest_of_lanes(likeliest) / 2),
+                 kLeastWeight<Scalar>);
     for (std::size_t r = 0; r < all.size(); ++r) {
       const Lanes probability = load<Lanes>(all[r].probability.data());
       free_[r] = select(probability > dropped, probability, Lanes(0));

@@ -86,7 +86,8 @@ class LineEstimator {
                   "-> Gaussian<2>; see cpp/docs/concepts.md");
     Correction<2, Scalar> correction;
     if (!started()) return correction;
-    const Gaussian<2, Scalar> plot = sensor.position(z);
+    Gaussian<2, Scalar> plot = sensor.position(z);
+    refuse_beyond_squares(plot.mean);
     const Gaussian<2, Scalar> ahead = position();
     correction.innovation = plot.mean - ahead.mean;
     correction.innovation_covariance = ahead.covariance + plot.covariance;

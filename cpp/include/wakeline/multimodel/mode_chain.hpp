@@ -85,7 +85,7 @@ class ModeChain {
     if (modes > 1) require_stochastic(next);
     Matrix generator = Matrix::Zero(modes, modes);
     for (Eigen::Index i = 0; i < modes; ++i) {
-      require_positive("a mean sojourn time", sojourn_s[i]);
+      require_positive("every time of sojourn_s", sojourn_s[i]);
       require(modes == 1 || next(i, i) == 0.0, "the diagonal of `next`", "zero", next(i, i));
       for (Eigen::Index j = 0; j < modes && modes > 1; ++j)
         generator(i, j) = (i == j ? -1.0 : next(i, j)) / sojourn_s[i];
@@ -110,12 +110,12 @@ class ModeChain {
 
   /// The chain that stays with the given probability per prediction and leaves to each other mode
   /// alike: the papers' 0.9 and 0.1 / (K - 1).
-  static ModeChain staying(double probability, Eigen::Index modes = K) {
-    require_probability("the probability to stay", probability);
+  static ModeChain staying(double stay_probability, Eigen::Index modes = K) {
+    require_probability("stay_probability", stay_probability);
     require(modes >= 2 && modes <= kModeCapacity<K>, "modes", "2 to 16", double(modes));
     Matrix matrix =
-        Matrix::Constant(modes, modes, (1.0 - probability) / static_cast<double>(modes - 1));
-    matrix.diagonal().setConstant(probability);
+        Matrix::Constant(modes, modes, (1.0 - stay_probability) / static_cast<double>(modes - 1));
+    matrix.diagonal().setConstant(stay_probability);
     return ModeChain(matrix);
   }
 
@@ -168,6 +168,7 @@ class ModeChain {
         require_probability("every element of the mode chain", matrix(i, j));
       if (const double sum = matrix.row(i).sum(); !(std::abs(sum - 1.0) <= 1e-9)) {
         std::ostringstream message;
+        message.precision(kMessageDigits);
         message << "row " << i << " of the mode chain must sum to 1, sums to " << sum
                 << " (rows: mode before; columns: mode now)";
         refuse(message.str());
