@@ -297,6 +297,12 @@ def test_noise_alone_gives_no_track(tmp_path):
     assert len(read_tracks(tmp_path / "tracks.csv")) == 0
 
 
+@pytest.mark.parametrize("pieces", range(1, 12))
+def test_small_pictures_have_noise_too(pieces):
+    amplitude = np.random.default_rng(pieces).rayleigh(20.0, (pieces, 32)).astype(np.uint8)
+    assert 5.0 < noise_of(amplitude).std < 30.0
+
+
 @pytest.mark.parametrize("receiver", ["linear", "logarithmic"])
 def test_the_kind_of_receiver_is_seen_in_the_noise(tmp_path, receiver):
     radar = simulator(receiver=receiver, noise_rms=12.0 if receiver == "linear" else 40.0)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from wakeline import own_ship, recording
+from wakeline.navigation import LocalPlane
 
 
 def longest_part(**options):
@@ -34,3 +35,39 @@ def test_smoothed_it_is_surer_of_the_same_voyage():
         return np.trace(track.position_m2, axis1=1, axis2=2)
 
     assert np.median(variance_m2(smoothed) / variance_m2(as_it_went)) < 0.6
+
+
+def fixes_alone(time_s, fix_m):
+    """Readings of a receiver that tells no velocity, aboard a ship without other instruments."""
+    none, pairs = np.full(len(time_s), np.nan), np.full((len(time_s), 2), np.nan)
+    return own_ship.Readings(
+        plane=LocalPlane(latitude_rad=0.9, longitude_rad=0.1),
+        time_s=time_s,
+        fix_m=fix_m,
+        velocity_mps=pairs,
+        heading_rad=none,
+        log_mps=none,
+        leeway_rad=np.zeros(len(time_s)),
+        bottom_mps=pairs,
+        turn_rate_rad_s=none,
+        lean_rad=np.zeros(len(time_s)),
+        offset_std_rad=0.0,
+    )
+
+
+def test_seldom_fixes_tell_as_much_of_the_velocity_whatever_times_lie_between():
+    time_s = np.arange(0.0, 1200.0, 40.0)
+    course_rad = np.pi / 2 * (time_s > 600.0)
+    velocity_mps = 5.0 * np.column_stack([np.cos(course_rad), np.sin(course_rad)])
+    fix_m = np.cumsum(40.0 * velocity_mps, axis=0)
+    often_s = np.arange(0.0, time_s[-1] + 1.0)
+    often_m = np.full((len(often_s), 2), np.nan)
+    often_m[::40] = fix_m
+    seldom = own_ship.navigate(fixes_alone(time_s, fix_m))
+    often = own_ship.navigate(fixes_alone(often_s, often_m))
+    between = {"atol": 0.2, "rtol": 0.05}
+    np.testing.assert_allclose(seldom.velocity_mps, often.velocity_mps[::40], **between)
+    np.testing.assert_allclose(seldom.velocity_m2s2, often.velocity_m2s2[::40], **between)
+    misfit = seldom.velocity_mps - velocity_mps
+    nees = np.einsum("ti,tij,tj->t", misfit, np.linalg.inv(seldom.velocity_m2s2), misfit)
+    assert nees.max() < 13.8  # within 99.9 % of what it claims

@@ -234,7 +234,7 @@ def test_a_lone_sweep_far_from_its_neighbours_is_left_out(path):
     kept = np.delete(np.arange(200), [50, 120])
     assert len(videos) == 1
     assert np.array_equal(videos[0].amplitude, shown.amplitude[kept])
-    assert report.notes == ["2 sweeps far from their neighbours in azimuth or time left out"]
+    assert report.notes == ["2 sweeps far from their neighbours in azimuth, time or count left out"]
 
 
 def test_sweeps_are_as_wide_as_they_come_apart(path):
@@ -322,6 +322,16 @@ def test_one_radar_is_read_of_several(path):
     (second,), report = read(path, source=(1, 1))
     assert (len(second), report.source, report.other_source) == (5, (1, 1), 5)
     assert second.azimuth_rad[0] > first.azimuth_rad[0]
+    (second,), report = read(path, source=[1, 1])
+    assert (len(second), report.other_source) == (5, 5)
+
+
+def test_a_radar_that_is_not_in_the_file_is_an_error_that_names_those_that_are(path):
+    octets_of(path, video(6), source=(25, 7))
+    with pytest.raises(RecordingError) as caught:
+        read(path, source=(25, 8))
+    assert caught.value.wanted == "sweeps of source (25, 8)"
+    assert caught.value.got == "6 of others, first of (25, 7)"
 
 
 def test_other_categories_are_passed_over(path):
@@ -336,7 +346,7 @@ def test_other_categories_are_passed_over(path):
 
 def test_missing_repeated_and_late_sweeps(path):
     blocks = blocks_of(octets_of(path, video(12)))
-    order = [0, 1, 1, 2, 5, 4, 6, 6, 6, 9, 10, 11]
+    order = [0, 1, 1, 2, 5, 6, 6, 6, 4, 9, 10, 11]
     (block,), report = read(path, b"".join(blocks[k] for k in order))
     assert np.array_equal(block.amplitude, video(12).amplitude[[0, 1, 2, 5, 6, 9, 10, 11]])
     assert (report.missing, report.repeated, report.late) == (4, 3, 1)
@@ -345,6 +355,20 @@ def test_missing_repeated_and_late_sweeps(path):
         "3 sweeps that repeat the one before left out",
         "1 sweeps that come late left out",
     ]
+
+
+@given(bit=st.integers(0, 31), hit=st.integers(1, 198))
+def test_a_damaged_count_costs_no_other_sweep(tmp_path_factory, bit, hit):
+    path = tmp_path_factory.mktemp("video") / "radar.cat240"
+    whole = video(200, 1)
+    blocks = [bytearray(block) for block in blocks_of(octets_of(path, whole))]
+    blocks[hit][11 - bit // 8] ^= 1 << bit % 8
+    videos, _ = read(path, b"".join(blocks))
+    left = np.delete(np.arange(200), hit)
+    azimuth = np.concatenate([v.azimuth_rad for v in videos])
+    sweeps = np.round(azimuth / whole.azimuth_width_rad)
+    assert np.isin(left, sweeps).all()
+    assert (np.diff(sweeps) > 0).all()
 
 
 def test_a_sender_that_begins_anew_is_followed(path):
@@ -454,10 +478,18 @@ def test_what_a_reader_and_a_writer_are_told_must_make_sense(path):
         recording.write_video(path, [], summary="Ærø")
     with pytest.raises(ValueError, match="source must be two numbers from 0 to 255"):
         recording.write_video(path, [], source=(0, 256))
+    with pytest.raises(ValueError, match="source must be two numbers from 0 to 255"):
+        recording.write_video(path, [], source=(0,))
+    with pytest.raises(ValueError, match="source must be two numbers from 0 to 255"):
+        recording.read_video(path, source=(0, 1, 2))
     with pytest.raises(ValueError, match="too many cells"):
         recording.write_video(path, video(1, 65025))
-    with pytest.raises(ValueError, match="sweep 1 cannot be written: not a sweep"):
-        recording.write_video(path, video(2, azimuth_rad=[0, np.nan]))
+    azimuth_rad = np.arange(400) * 2 * np.pi / 512
+    azimuth_rad[399] = np.nan
+    with pytest.raises(ValueError, match=r"sweep 399 cannot .* azimuth_rad .* got nan"):
+        recording.write_video(path, video(400, azimuth_rad=azimuth_rad))
+    with pytest.raises(ValueError, match=r"cell_m must be finite and below 1e\+06, got 2"):
+        recording.write_video(path, [video(1), video(1, cell_m=2e6)])
     assert not path.exists()  # what could not be written leaves no file
     assert list(path.parent.iterdir()) == []
 

@@ -28,7 +28,7 @@ def noise_of(amplitude: np.ndarray) -> Noise | None:
     lit = np.flatnonzero(mean > 1.0)
     if len(lit) == 0:
         return None
-    low, high = np.quantile(mean[lit], [0.05, 0.25])
+    low, high = np.quantile(mean[lit], [0.05, 0.25], method="nearest")  # of few pieces, too
     quiet = lit[(mean[lit] >= low) & (mean[lit] <= high)]
     away = pieces[quiet] - mean[quiet, None]
     std = float(np.sqrt(np.mean(away**2)))

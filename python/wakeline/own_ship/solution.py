@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +13,7 @@ import wakeline as wl
 from .instruments import UNDER_WAY_MPS, VELOCITY_STD_MPS
 from .magnetic import CURRENT_STD_MPS
 from .readings import Readings, made_good_mps
-from .times import NEAR_S, between, first
+from .times import NEAR_S, at, between, first
 
 FIX_STD_M = 3.0
 COMPASS_STD_RAD = np.deg2rad(4.0)  # of a small craft in waves
@@ -23,6 +24,7 @@ START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over groun
 VELOCITY_WALK_MPS, SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.4, 0.1, 0.02
 HEADING_WALK_RAD = np.deg2rad(10.0)  # where no rate of turn is told
 TURNED_WALK_RAD = np.deg2rad(2.0)  # beside what an indicator tells, which lags
+LONGEST_STEP_S = 2.0
 GATE_PROBABILITY = 0.999
 
 COASTING_S = 5.0
@@ -105,11 +107,11 @@ def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
     if smooth:
         done = _run(states, readings, smooth=True)
     mean, covariance = done.mean, done.covariance
-    at = 2 if states == 7 else 4
-    heading = wl.wrap_angle(mean[:, at] - readings.leeway_rad - readings.lean_rad)
+    row = 2 if states == 7 else 4
+    heading = wl.wrap_angle(mean[:, row] - readings.leeway_rad - readings.lean_rad)
     velocity, slope = _velocity(mean, states)
     latitude, longitude = readings.plane.place(mean[:, :2])
-    heading_std = np.sqrt(covariance[:, at, at] + readings.offset_std_rad**2)
+    heading_std = np.sqrt(covariance[:, row, row] + readings.offset_std_rad**2)
     known = np.isfinite(readings.heading_rad).any()
     unknown = np.full(len(mean), np.nan)
     return OwnTrack(
@@ -131,22 +133,51 @@ def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
     )
 
 
-def _run(states: int, readings: Readings, *, smooth: bool = False) -> wl.navigation.UsvRun:
-    turning = _turning(readings)
-    return _navigator(states, readings).run(
-        readings.time_s,
+class _Solved(NamedTuple):
+    """What `UsvRun` has, at the times of the readings."""
+
+    mean: np.ndarray
+    covariance: np.ndarray
+    nis: Mapping[str, np.ndarray]
+    rejected: Mapping[str, np.ndarray]
+
+
+def _run(states: int, readings: Readings, *, smooth: bool = False) -> _Solved:
+    rows, time_s = _in_short_steps(readings.time_s)
+
+    def spread(values: np.ndarray) -> np.ndarray:
+        return at(time_s, readings.time_s, values)
+
+    turning = _turning(readings, time_s)
+    done = _navigator(states, readings).run(
+        time_s,
         imu=turning,
-        gnss=readings.fix_m,
-        compass=readings.way_rad,
-        velocity=readings.over_ground_mps,
-        log=readings.way_mps if states == 7 else None,
-        imu_std=_motion_std(readings.time_s, np.isfinite(turning[:, 2])),
+        gnss=spread(readings.fix_m),
+        compass=spread(readings.way_rad),
+        velocity=spread(readings.over_ground_mps),
+        log=spread(readings.way_mps) if states == 7 else None,
+        imu_std=_motion_std(time_s, np.isfinite(turning[:, 2])),
         gnss_std_m=[FIX_STD_M, FIX_STD_M],
         compass_std_rad=COMPASS_STD_RAD,
         velocity_std_mps=VELOCITY_STD_MPS,
         log_std_mps=LOG_STD_MPS,
         smooth=smooth,
     )
+    nis, rejected = (
+        {name: values[rows] for name, values in by_sensor.items()}
+        for by_sensor in (done.nis, done.rejected)
+    )
+    return _Solved(done.mean[rows], done.covariance[rows], nis, rejected)
+
+
+def _in_short_steps(time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Times with others between them where they are far apart, and the rows of the given ones.
+
+    What drives a walk is held over a step: after a long one the place would tell the velocity.
+    """
+    steps = np.ceil(np.diff(time_s) / LONGEST_STEP_S).astype(int)
+    rows = np.append(0, np.cumsum(steps))
+    return rows, np.interp(np.arange(rows[-1] + 1), rows, time_s)
 
 
 def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
@@ -176,10 +207,10 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
     return navigator
 
 
-def _turning(readings: Readings) -> np.ndarray:
+def _turning(readings: Readings, time_s: np.ndarray) -> np.ndarray:
     """What an IMU would say (T, 3) of rates of turn alone; NaN for steps without any."""
     told = np.isfinite(readings.turn_rate_rad_s)
-    middle_s = readings.time_s - np.diff(readings.time_s, prepend=readings.time_s[:1]) / 2.0
+    middle_s = time_s - np.diff(time_s, prepend=time_s[:1]) / 2.0
     rate = between(middle_s, readings.time_s[told], readings.turn_rate_rad_s[told])
     return np.column_stack([np.zeros((len(rate), 2)), rate])
 
@@ -207,7 +238,7 @@ def _velocity(mean: np.ndarray, states: int) -> tuple[np.ndarray, np.ndarray]:
     return mean[:, 3:4] * ahead + mean[:, 5:7], slope
 
 
-def _drift_std_mps(done: wl.navigation.UsvRun, offset_std_rad: float) -> np.ndarray:
+def _drift_std_mps(done: _Solved, offset_std_rad: float) -> np.ndarray:
     """Deviations (T,) of the current of seven states, in the direction in which it is known least.
 
     An error of all headings takes speed through the water for current.
@@ -219,9 +250,7 @@ def _drift_std_mps(done: wl.navigation.UsvRun, offset_std_rad: float) -> np.ndar
     return np.sqrt(np.linalg.eigvalsh(done.covariance[:, 5:7, 5:7] + by_offset_m2s2)[:, -1])
 
 
-def _moved_m(
-    readings: Readings, done: wl.navigation.UsvRun, velocity_mps: np.ndarray
-) -> np.ndarray:
+def _moved_m(readings: Readings, done: _Solved, velocity_mps: np.ndarray) -> np.ndarray:
     """How far (T, 2) fixes outside the gate that were believed have moved the position."""
     outside = done.nis["gnss"] > -2.0 * np.log(1.0 - GATE_PROBABILITY)
     believed = np.flatnonzero(outside & ~done.rejected["gnss"])

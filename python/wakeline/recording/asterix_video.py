@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
@@ -27,6 +27,7 @@ _SEQUENCES = 1 << 32
 _HELD_S = 1.0
 _PAUSE_S = 60.0
 _ASTRAY_RAD = 0.2
+_BELOW = {"azimuth_rad": 1e6, "time_s": 1e15, "start_range_m": 1e9, "cell_m": 1e6}  # to be written
 _ABUT = 1.5  # sweeps further apart, or nearer, by this factor are not as wide as is told
 
 
@@ -66,7 +67,7 @@ class VideoReport:
         Changes of the way the antenna turns.
     astray : int
         Sweeps left out whose azimuth or time is far from those of the sweeps before and after,
-        which agree.
+        which agree, or whose count runs ahead of theirs.
     """
 
     sweeps: int = 0
@@ -100,7 +101,7 @@ class VideoReport:
             (self.held, "sweeps whose time goes back, put to the time before"),
             (self.time_jumps, "jumps of time"),
             (self.reversals, "reversals of the antenna"),
-            (self.astray, "sweeps far from their neighbours in azimuth or time left out"),
+            (self.astray, "sweeps far from their neighbours in azimuth, time or count left out"),
         ]
         return [f"{count} {what}" for count, what in words if count]
 
@@ -168,14 +169,16 @@ def read_video(
         When the file cannot be opened or has not one sweep to give; with `strict`, at the first
         fault. It names the file, the octet, what was wanted and what came.
     ValueError
-        When `period_s` is not positive or `midnight_s` is not finite.
+        When `period_s` is not positive, `midnight_s` is not finite or `source` is not two octets.
     """
     if period_s is not None and not (period_s > 0 and math.isfinite(period_s)):
         raise ValueError(f"period_s must be positive, got {period_s}")
     if not math.isfinite(midnight_s):
         raise ValueError(f"midnight_s must be finite, got {midnight_s}")
+    if source is not None:
+        _check_source(source)
     report = VideoReport() if report is None else report
-    report.source = source
+    report.source = None if source is None else tuple(source)
     order = _Order(report, midnight_s, period_s)
     return _blocks(Path(path), order, strict)
 
@@ -212,13 +215,13 @@ def write_video(
     """
     if not summary.isascii():
         raise ValueError(f"summary must be ASCII, got {summary!r}")
-    if not all(0 <= code <= 255 for code in source):
-        raise ValueError(f"source must be two numbers from 0 to 255, got {source}")
+    _check_source(source)
     encoder = Cat240Encoder(*source)
     with replacing(path) as fresh, fresh.open("wb") as file:
         if summary:
             file.write(encoder.encode_summary(summary))
         for video in [videos] if isinstance(videos, RadarVideo) else videos:
+            _check_writable(video)
             for first in range(0, len(video), 256):
                 part = video[first : first + 256]
                 file.write(
@@ -233,6 +236,24 @@ def write_video(
                 )
 
 
+def _check_source(source: tuple[int, int]) -> None:
+    codes = range(256)
+    if len(source) != 2 or not all(code in codes for code in source):
+        raise ValueError(f"source must be two numbers from 0 to 255, got {source!r}")
+
+
+def _check_writable(video: RadarVideo) -> None:
+    """Refuse by name what a radar's sweep cannot have; the encoder knows what the format has."""
+    for name, most in _BELOW.items():
+        values = np.atleast_1d(getattr(video, name))
+        wrong = np.flatnonzero(~(np.abs(values) < most))
+        if len(wrong):
+            raise ValueError(
+                f"sweep {wrong[0]} cannot be written: {name} must be finite and below {most:g}, "
+                f"got {values[wrong[0]]}"
+            )
+
+
 def _blocks(path: Path, order: _Order, strict: bool) -> Iterator[RadarVideo]:
     report = order.report
     block = _Block()
@@ -244,13 +265,18 @@ def _blocks(path: Path, order: _Order, strict: bool) -> Iterator[RadarVideo]:
         block.add(sweep)
     yield from block.videos()
     if report.sweeps == 0:
-        raise _nothing(path, report)
+        raise _nothing(path, order)
 
 
-def _nothing(path: Path, report: VideoReport) -> RecordingError:
+def _nothing(path: Path, order: _Order) -> RecordingError:
+    report = order.report
     if report.untimed:
         wanted, got = "I240/140, or period_s told", f"{report.untimed} sweeps without"
         return RecordingError(path, "no sweep has a time of day", wanted=wanted, got=got)
+    if order.other is not None:
+        got = f"{report.other_source} of others, first of {order.other}"
+        wanted = f"sweeps of source {report.source}"
+        return RecordingError(path, "no video of this radar", wanted=wanted, got=got)
     got = "nothing" if report.first_problem is None else f"this: {report.first_problem}"
     return RecordingError(path, "no radar video", wanted="sweeps of ASTERIX category 240", got=got)
 
@@ -315,6 +341,15 @@ class _Sweep(NamedTuple):
             then.dtype,
         )
 
+    def counts_from(self, before: _Sweep) -> int:
+        """Messages from another sweep on, below zero where the sender's count goes back."""
+        half = _SEQUENCES // 2
+        return (self.sequence - before.sequence + half) % _SEQUENCES - half
+
+    def counts_ahead(self, before: _Sweep, after: _Sweep) -> bool:
+        """Whether its count makes some late that go on from the one before."""
+        return -_LATE < after.counts_from(self) < 0 and after.counts_from(before) > 0
+
     def strays(self, before: _Sweep, after: _Sweep) -> bool:
         """Whether it is far, in azimuth or time, from two that are not far from each other."""
         return any(
@@ -354,6 +389,7 @@ class _Order:
 
     def __init__(self, report: VideoReport, midnight_s: float, period_s: float | None) -> None:
         self.report = report
+        self.other: tuple[int, int] | None = None  # the first radar that is not ours
         self._midnight_s = midnight_s
         self._period_s = period_s
         self._before: _Sweep | None = None
@@ -363,7 +399,8 @@ class _Order:
     def kept(self, sweeps: Iterable[_Sweep]) -> Iterator[tuple[_Sweep, bool]]:
         """The sweeps to keep, with their absolute time, and whether a block begins with each."""
         begins = False
-        for sweep in self._steady(filter(self._is_wanted, sweeps)):
+        ours = self._steady(filter(self._is_ours, sweeps), _Sweep.counts_ahead)
+        for sweep in self._steady(filter(self._is_next, ours), _Sweep.strays):
             begins |= self._beam.begins_turn(sweep.azimuth_rad)
             self.report.reversals = self._beam.reversals
             time_s = self._time_of(sweep)
@@ -375,11 +412,13 @@ class _Order:
             yield sweep._replace(time_s=time_s), begins or jump
             begins = False
 
-    def _steady(self, sweeps: Iterable[_Sweep]) -> Iterator[_Sweep]:
+    def _steady(
+        self, sweeps: Iterable[_Sweep], strays: Callable[[_Sweep, _Sweep, _Sweep], bool]
+    ) -> Iterator[_Sweep]:
         """The sweeps, but those that stand alone where their neighbours do not."""
         before = held = None
         for sweep in sweeps:
-            if held is not None and before is not None and held.strays(before, sweep):
+            if held is not None and before is not None and strays(held, before, sweep):
                 self.report.astray += 1
             elif held is not None:
                 yield held
@@ -388,34 +427,29 @@ class _Order:
         if held is not None:
             yield held
 
-    def _is_wanted(self, sweep: _Sweep) -> bool:
-        wanted = self._is_ours(sweep) and self._is_next(sweep)
-        if wanted:
-            self._before = sweep
-        return wanted
-
     def _is_ours(self, sweep: _Sweep) -> bool:
         source = divmod(sweep.source, 256)
         if self.report.source is None:
             self.report.source = source
         ours = self.report.source == source
-        self.report.other_source += not ours
+        if not ours:
+            self.report.other_source += 1
+            self.other = self.other or source
         return ours
 
     def _is_next(self, sweep: _Sweep) -> bool:
         """Whether the sender's count, where there is one, goes on."""
         before = self._before
-        if before is None or sweep.sequence < 0 or before.sequence < 0:
-            return True
-        half = _SEQUENCES // 2
-        step = (sweep.sequence - before.sequence + half) % _SEQUENCES - half
-        if step == 0 and sweep.azimuth_rad == before.azimuth_rad and _same(sweep, before):
-            self.report.repeated += 1
-            return False
-        if -_LATE < step < 0:
-            self.report.late += 1
-            return False
-        self.report.missing += max(step - 1, 0)
+        if before is not None and sweep.sequence >= 0 and before.sequence >= 0:
+            step = sweep.counts_from(before)
+            if step == 0 and sweep.azimuth_rad == before.azimuth_rad and _same(sweep, before):
+                self.report.repeated += 1
+                return False
+            if -_LATE < step < 0:
+                self.report.late += 1
+                return False
+            self.report.missing += max(step - 1, 0)
+        self._before = sweep
         return True
 
     def _time_of(self, sweep: _Sweep) -> float:

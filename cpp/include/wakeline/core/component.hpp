@@ -57,4 +57,12 @@ constexpr bool holds(const std::array<Component, N>& components,
   return true;
 }
 
+/// True when no component stands there twice.
+template <std::size_t N>
+constexpr bool differ(const std::array<Component, N>& components) noexcept {
+  for (std::size_t k = 0; k < N; ++k)
+    if (index_of(components, components[k]) != static_cast<int>(k)) return false;
+  return true;
+}
+
 }  // namespace wakeline

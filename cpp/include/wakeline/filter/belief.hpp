@@ -47,7 +47,7 @@ class Belief {
   static constexpr int kStates = kStatesOf<Motion>;
 
   /// Throws `std::invalid_argument` when a parameter of the model makes no sense.
-  explicit Belief(const Motion& motion) : motion_(validated(motion)) { check_order<Motion>(); }
+  explicit Belief(const Motion& motion) : motion_(validated(motion)) { check_components<Motion>(); }
 
   /// Begins with `belief`; refuses one whose covariance is not symmetric positive definite.
   StatusOf<Scalar> start(const Gaussian<kStates, Scalar>& belief) noexcept {

@@ -57,7 +57,7 @@ class SquareRootUkf {
   /// Throws `std::invalid_argument` on parameters that make no sense.
   explicit SquareRootUkf(const MotionType& motion, const Unscented& unscented = {})
       : motion_(validated(motion)), unscented_(unscented) {
-    check_order<Motion>();
+    check_components<Motion>();
     unscented.template validate<Scalar>(kStates);
     require(unscented.beta >= unscented.alpha * unscented.alpha, "beta", "at least alpha squared",
             unscented.beta);

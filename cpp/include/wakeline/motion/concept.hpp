@@ -99,11 +99,15 @@ StepMatrices<kStatesOf<Motion>, Scalar> step_matrices(const Motion& motion, Scal
     return {motion.matrix(dt_s), motion.process_noise(dt_s)};
 }
 
-/// Refuses a state of position and velocity alone in another order than `[x, vx, y, vy]`: nothing
-/// could tell a start over the one from a start over the other.
+/// Refuses a state that holds a component twice, of which nothing would find the second, and one of
+/// position and velocity alone in another order than `[x, vx, y, vy]`: nothing could tell a start
+/// over the one from a start over the other.
 template <class Motion>
-constexpr void check_order() noexcept {
+constexpr void check_components() noexcept {
   constexpr auto kComponents = Motion::kComponents;
+  static_assert(differ(kComponents),
+                "wakeline: the kComponents of this motion model name a component twice; those of "
+                "your own are numbered from kUser on; see cpp/docs/concepts.md");
   static_assert(kComponents.size() != 4 || !holds(kComponents, kKinematics) ||
                     std::equal(kComponents.begin(), kComponents.end(), kKinematics.begin()),
                 "wakeline: a state of position and velocity alone has the order [x, vx, y, vy] "

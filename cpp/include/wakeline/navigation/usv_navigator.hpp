@@ -49,7 +49,8 @@ struct UsvLeg {
 /// step up to its time.
 ///
 /// - Without readings it coasts and the covariance grows; without the IMU too, a step assumes no
-///   acceleration and no turn, with the noise `unmeasured`.
+///   acceleration and no turn, with the noise `unmeasured`, which is held over the step: a long
+///   time goes in several, or the next place tells the velocity all too well.
 /// - A reading outside the gate is rejected. When more than `rejections` of its kind in a row were,
 ///   it is the belief that is wrong: the states are widened by the likeliest error that would
 ///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
