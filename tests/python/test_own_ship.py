@@ -71,3 +71,13 @@ def test_seldom_fixes_tell_as_much_of_the_velocity_whatever_times_lie_between():
     misfit = seldom.velocity_mps - velocity_mps
     nees = np.einsum("ti,tij,tj->t", misfit, np.linalg.inv(seldom.velocity_m2s2), misfit)
     assert nees.max() < 13.8  # within 99.9 % of what it claims
+
+
+def test_a_pause_of_a_month_is_not_a_month_of_short_steps():
+    fix_m = np.array([[0.0, 0.0], [10.0, 0.0], [5e4, 2e4], [5e4, 2e4]])
+    time_s = np.array([0.0, 10.0, 2.6e6, 2.6e6 + 10.0])
+    rows, steps_s = own_ship.solution._in_short_steps(time_s)
+    np.testing.assert_array_equal(steps_s[rows], time_s)
+    assert len(steps_s) < 150
+    track = own_ship.navigate(fixes_alone(time_s, fix_m))
+    np.testing.assert_allclose(track.position_m[2:], fix_m[2:], atol=20.0)

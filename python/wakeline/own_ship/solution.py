@@ -24,7 +24,7 @@ START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over groun
 VELOCITY_WALK_MPS, SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.4, 0.1, 0.02
 HEADING_WALK_RAD = np.deg2rad(10.0)  # where no rate of turn is told
 TURNED_WALK_RAD = np.deg2rad(2.0)  # beside what an indicator tells, which lags
-LONGEST_STEP_S = 2.0
+LONGEST_STEP_S, MOST_STEPS = 2.0, 100  # between two readings, however far apart
 GATE_PROBABILITY = 0.999
 
 COASTING_S = 5.0
@@ -175,7 +175,7 @@ def _in_short_steps(time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     What drives a walk is held over a step: after a long one the place would tell the velocity.
     """
-    steps = np.ceil(np.diff(time_s) / LONGEST_STEP_S).astype(int)
+    steps = np.ceil(np.minimum(np.diff(time_s) / LONGEST_STEP_S, MOST_STEPS)).astype(int)
     rows = np.append(0, np.cumsum(steps))
     return rows, np.interp(np.arange(rows[-1] + 1), rows, time_s)
 
