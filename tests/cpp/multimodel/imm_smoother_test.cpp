@@ -286,5 +286,32 @@ TEST(ImmSmoother, TellsAStepThatIsNone) {
   EXPECT_NE(scans[6].updated.estimate().mean, filtered[6].updated.estimate().mean);
 }
 
+TEST(ImmSmoother, TellsWhyNothingGoesBackOverAStep) {
+  // Behind a gap of months a belief may be too wide and too flat to have a factor.
+  int hindered = 0;
+  for (double gap_s = 1e6; gap_s < 1e9; gap_s *= 1.5) {
+    Turns imm = turns({0.0, 2.0});
+    ASSERT_EQ(imm.start(start()), Status::kOk);
+    std::vector<TurnScan> scans;
+    for (int k = 0; k < 8; ++k) {
+      const double dt_s = k == 4 ? gap_s : kStep_s;
+      ASSERT_EQ(imm.predict(dt_s), Status::kOk);
+      scans.push_back({imm, imm, dt_s});
+      if (imm.update(kSensor, Vec2(24.0 * k, 9.0 * k))) scans.back().updated = imm;
+    }
+    const Status status = ImmSmoother<Turns::Bank>::smooth(scans);
+    if (status == Status::kOk) continue;
+    EXPECT_EQ(status, Status::kNotPositiveDefinite) << gap_s;
+    ++hindered;
+  }
+  EXPECT_GT(hindered, 0);
+}
+
+TEST(ImmSmoother, TellsAnAccelerationThatIsNone) {
+  auto scans = recorded(turns({0.0, 2.0}), Voyage(8, 2).plots);
+  const std::array<Vec2, 2> acceleration_mps2{Vec2(0, 0), Vec2(NAN, 0)};
+  EXPECT_EQ(ImmSmoother<Turns::Bank>::smooth(scans, acceleration_mps2), Status::kNotFinite);
+}
+
 }  // namespace
 }  // namespace wakeline

@@ -496,12 +496,13 @@ TEST(TurnGrid, SaysWhatWasWantedAndWhatCame) {
               return switching({.grid_rad_s = {0.0, 0.1}});
             }),
             "grid_rad_s must have 3 to 16 turn rates, got 2");
-  EXPECT_EQ(refusal_of([] {
-              return adaptive({.max_turn_rate_rad_s = 0.1,
-                               .initial_turn_rates_rad_s = AdaptiveGrid::Rates{-0.2, 0.0, 0.1}});
-            }),
-            "every rate of initial_turn_rates_rad_s must be within max_turn_rate_rad_s, 0.1 to "
-            "either side, got -0.2");
+  EXPECT_EQ(
+      refusal_of([] {
+        return adaptive({.max_turn_rate_rad_s = 0.10000001,
+                         .initial_turn_rates_rad_s = AdaptiveGrid::Rates{-0.10000002, 0.0, 0.1}});
+      }),
+      "every rate of initial_turn_rates_rad_s must be within max_turn_rate_rad_s, "
+      "0.10000001 to either side, got -0.10000002");
   EXPECT_EQ(refusal_of([] {
               return LikelyModelSetImm<UniformBank<Filter>>(
                   {}, ModeChain<kRuntimeModes>::staying(0.9, 3), turn());

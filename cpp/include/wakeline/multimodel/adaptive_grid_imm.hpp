@@ -80,6 +80,7 @@ struct AdaptiveGrid {
   void validate() const {
     require_positive("max_turn_rate_rad_s", max_turn_rate_rad_s);
     std::ostringstream within;
+    within.precision(kMessageDigits);
     within << "within max_turn_rate_rad_s, " << max_turn_rate_rad_s << " to either side";
     double before = -max_turn_rate_rad_s;
     for (const double rate : initial()) {

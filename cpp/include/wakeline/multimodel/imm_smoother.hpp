@@ -221,6 +221,11 @@ class ImmSmoother {
     const int modes = now.bank_.size();
     std::vector<Estimator> ways(static_cast<std::size_t>(modes), now);
     Matrix weight = now.chain_.transition(double(next.dt_s)).template cast<Scalar>();
+    Status hindered = Status::kOk;
+    const auto done = [&](Status status) {
+      hindered = first_failure(hindered, status);
+      return status == Status::kOk;
+    };
     for_each_mode(now.bank_, [&](auto from) {
       const auto belief = belief_of(filter_of(now.bank_, from));
       for_each_mode(now.bank_, [&](auto to) {
@@ -235,26 +240,25 @@ class ImmSmoother {
         auto start = zero_like(own);
         add_mean(start, Scalar(1), belief, own);
         add_spread(start, Scalar(1), belief, own);
-        if (predict_from(filter, start, next.dt_s, acceleration_mps2...) != Status::kOk) return;
+        if (!done(predict_from(filter, start, next.dt_s, acceleration_mps2...))) return;
         const auto later =
             revised(belief_of(filter), belief_of(filter_of(next.predicted.bank_, to)),
                     belief_of(filter_of(next.updated.bank_, to)));
-        if (later.status != Status::kOk ||
-            smooth_pair(filter, start, later.belief, next.dt_s, acceleration_mps2...) !=
-                Status::kOk ||
-            filter.assign(start) != Status::kOk)
-          return;
-        weight(i, j) = log(prior / foretold) + later.log_evidence;
+        if (done(later.status) &&
+            done(smooth_pair(filter, start, later.belief, next.dt_s, acceleration_mps2...)) &&
+            done(filter.assign(start)))
+          weight(i, j) = log(prior / foretold) + later.log_evidence;
       });
     });
-    return join(now, ways, weight);
+    return join(now, ways, weight) ? Status::kOk : first_failure(hindered, Status::kNotFinite);
   }
 
-  /// Gives each mode the ways from it, weighed by the logarithms of their weights.
-  static Status join(Estimator& now, const std::vector<Estimator>& ways, Matrix& weight) {
+  /// Gives each mode the ways from it, weighed by the logarithms of their weights. False where
+  /// there is none.
+  static bool join(Estimator& now, const std::vector<Estimator>& ways, Matrix& weight) {
     using std::exp;
     const Scalar greatest = weight.maxCoeff();
-    if (!(greatest > -std::numeric_limits<Scalar>::infinity())) return Status::kNotFinite;
+    if (!(greatest > -std::numeric_limits<Scalar>::infinity())) return false;
     for (Scalar& each : weight.reshaped()) each = exp(each - greatest);
     weight /= weight.sum();
     for_each_mode(now.bank_, [&](auto from) {
@@ -276,7 +280,7 @@ class ImmSmoother {
       });
       (void)filter.assign(joint);
     });
-    return Status::kOk;
+    return true;
   }
 };
 
