@@ -550,11 +550,12 @@ std::tuple<Array, Array> run_window(const DriftWindow<>& settings, const DoubleA
   Array mean({scans, py::ssize_t(2)}), covariance({scans, py::ssize_t(2), py::ssize_t(2)});
   for (py::ssize_t k = 0; k < scans; ++k) {
     const auto at = std::size_t(k);
-    if (k > 0) require_ok(window.advance(steps[at], speeds[at], headings[at]), "advance");
+    if (k > 0) require_ok_in(k, window.advance(steps[at], speeds[at], headings[at]), "advance");
     const Vec2 fix(fix_m.data()[2 * k], fix_m.data()[2 * k + 1]);
     if (!std::isnan(fix[0]) && !std::isnan(fix[1])) {
       require_positive("fix_std_m", stds[at]);
-      require_ok(window.add({fix, stds[at] * stds[at] * Mat<double, 2, 2>::Identity()}), "add");
+      require_ok_in(k, window.add({fix, stds[at] * stds[at] * Mat<double, 2, 2>::Identity()}),
+                    "add");
     }
     copy_belief(window.drift(), k, mean, covariance);
   }
@@ -806,7 +807,7 @@ ValueError
         Array mean({scans, py::ssize_t(2)}), covariance({scans, py::ssize_t(2), py::ssize_t(2)});
         for (py::ssize_t k = 0; k < scans; ++k) {
           const auto at = std::size_t(k);
-          require_ok(forecast.advance(steps[at], winds[at], currents[at]), "drift_forecast");
+          require_ok_in(k, forecast.advance(steps[at], winds[at], currents[at]), "drift_forecast");
           copy_belief(forecast.position(), k, mean, covariance);
         }
         return {mean, covariance};
@@ -843,8 +844,10 @@ Returns
         const auto scans = py::ssize_t(steps.size());
         const std::vector<Vec2> winds = per_scan_vectors("wind_mps", wind, scans);
         const std::vector<Vec2> currents = per_scan_vectors("current_mps", current, scans);
-        for (std::size_t k = 0; k < steps.size(); ++k)
-          require_ok(forecast.advance(steps[k], winds[k], currents[k]), "drift_particles");
+        for (py::ssize_t k = 0; k < scans; ++k) {
+          const auto at = std::size_t(k);
+          require_ok_in(k, forecast.advance(steps[at], winds[at], currents[at]), "drift_particles");
+        }
         Array position({scans, count, py::ssize_t(2)});
         double* out = position.mutable_data();
         const py::gil_scoped_release no_python;

@@ -25,6 +25,12 @@ inline void require_ok(Status status, const char* what) {
   if (status != Status::kOk) throw FilterError(std::string(what) + ": " + to_string(status));
 }
 
+/// The same of one row of many.
+inline void require_ok_in(py::ssize_t row, Status status, const char* what) {
+  if (status != Status::kOk)
+    require_ok(status, (std::string(what) + " in row " + std::to_string(row)).c_str());
+}
+
 /// A belief of any size.
 struct PyGaussian {
   Eigen::VectorXd mean;

@@ -225,11 +225,6 @@ class PyNavigator {
                            std::to_string(Navigator::kStates) + " states");
   }
 
-  static void require_ok_in(py::ssize_t row, Status status, const char* what) {
-    if (status != Status::kOk)
-      require_ok(status, (std::string(what) + " in row " + std::to_string(row)).c_str());
-  }
-
   static Vec<double, 2> pair(const char* name, const DoubleArray& array) {
     return to_vector(name, array, 2);
   }

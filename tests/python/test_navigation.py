@@ -318,10 +318,19 @@ def test_bad_windows_are_refused():
         window.add(wl.Gaussian([0.0, 0.0], -np.eye(2)))
     with pytest.raises(ValueError, match=r"fix must be over \[north, east\], got 4 states"):
         window.add(wl.Gaussian(np.zeros(4), np.eye(4)))
+    with pytest.raises(wl.FilterError, match="advance in row 2: not finite"):
+        window.run(1.0, [5.0, 5.0, np.nan], 0.0, np.zeros((3, 2)), 1.0)
     with pytest.raises(ValueError, match=r"speed_mps must have shape \(\) or \(3,\), got \(2,\)"):
         window.run(30.0, [1.0, 2.0], 0.0, np.zeros((3, 2)), 4.0)
     with pytest.raises(ValueError, match="fix_std_m"):
         window.run(30.0, 1.0, 0.0, np.zeros((3, 2)), 0.0)
+
+
+@pytest.mark.parametrize("forecast", [nav.drift_forecast, nav.drift_particles])
+def test_the_step_that_a_drift_cannot_take_is_named(forecast):
+    start = wl.Gaussian(np.zeros(2), np.eye(2))
+    with pytest.raises(wl.FilterError, match="in row 1: negative time step"):
+        forecast(nav.DriftModel(), start, [60.0, -60.0], [5.0, 0.0], [0.0, 0.0])
 
 
 def test_marks_give_the_ground_velocity_and_the_drift():
