@@ -622,6 +622,15 @@ def test_plots_that_the_output_would_replace_are_refused(tmp_path, capsys, name)
     assert plots.read_bytes() == before
 
 
+@pytest.mark.parametrize("name", ["tracks.csv", "MAP.PNG"])
+def test_a_json_does_not_take_the_place_of_a_result(tmp_path, capsys, name):
+    result = tmp_path / ".." / tmp_path.name / name
+    message = refused(capsys, "demo", "--out", tmp_path, "--json", result)
+    wanted = f"--json must not have the name of a table or picture in {tmp_path}, got {name}"
+    assert message == f"wakeline: {wanted}\n"
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize(
     ("arguments", "wanted"),
     [

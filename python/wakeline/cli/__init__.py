@@ -63,6 +63,8 @@ def _check_json(arguments: argparse.Namespace) -> None:
     """Fail before the work, not after it, where the JSON cannot or must not be written."""
     if hasattr(arguments, "inputs"):
         outputs.check_no_input("--json", [arguments.json], arguments.inputs(arguments))
+    if hasattr(arguments, "out"):
+        outputs.check_no_result("--json", arguments.json, arguments.out)
     arguments.json.parent.mkdir(parents=True, exist_ok=True)
     check_writable(arguments.json)
 

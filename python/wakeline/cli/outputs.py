@@ -45,6 +45,14 @@ def check_no_input(option: str, outputs: Iterable[Path], inputs: Iterable[Path])
                 raise ValueError(f"{option} would replace the input {file}")
 
 
+def check_no_result(option: str, output: Path, folder: Path) -> None:
+    """Raise ValueError where what an option names may be one of the results in the folder."""
+    if output.suffix.lower() in (".csv", ".png") and output.parent.resolve() == folder.resolve():
+        raise ValueError(
+            f"{option} must not have the name of a table or picture in {folder}, got {output.name}"
+        )
+
+
 def of_tracking(folder: Path) -> set[Path]:
     """The files that a run of tracking before this one may have left in `folder`.
 
