@@ -441,7 +441,7 @@ TEST(AlphaBetaSmoother, OfRecentMemoryIsTheLineWithWeightsThatGrow) {
 
 TEST(AlphaBetaSmoother, HasTheSchedulesOfThePaper) {
   const auto gains = [](const auto& schedule, std::int64_t reading, double range_m = 0) {
-    return schedule.template gains<2, double>({.reading = reading, .range_m = range_m});
+    return schedule.template gains<2, double>({.reading = double(reading), .range_m = range_m});
   };
   for (std::int64_t i = 2; i < 50; ++i) {
     const double n = double(i);

@@ -13,7 +13,7 @@ namespace wakeline {
 /// [alpha, beta] of (27) for the n-th reading.
 template <class Scalar>
 Vec<Scalar, 2> growing_memory_gains(std::int64_t n) noexcept {
-  return GrowingMemory{}.gains<2>(GainOccasion<Scalar>{.reading = n});
+  return GrowingMemory{}.gains<2>(GainOccasion<Scalar>{.reading = Scalar(n)});
 }
 
 /// The adaptive alpha-beta filter (33), in two passes over a sliding window of the last readings:

@@ -37,6 +37,13 @@ struct GainOccasion {
   Scalar range_m = Scalar(0);    ///< from the sensor
 };
 
+/// How many plots count, of which there may be a most; 0 for all.
+template <class Scalar>
+Scalar counted(Scalar plots, int max_plots) noexcept {
+  const Scalar most = Scalar(max_plots);
+  return max_plots > 0 ? select(plots < most, plots, most) : plots;
+}
+
 /// Gains that stay the same.
 struct ConstantGains {
   double alpha = 0.5;
@@ -76,9 +83,7 @@ struct GrowingMemory {
 
   template <int Order, class Scalar>
   Vec<Scalar, Order> gains(const GainOccasion<Scalar>& at) const noexcept {
-    const Scalar plots = at.reading + Scalar(plots_before);
-    const Scalar most = Scalar(max_plots);
-    const Scalar n = max_plots > 0 ? select(plots < most, plots, most) : plots;
+    const Scalar n = counted(at.reading + Scalar(plots_before), max_plots);
     // Fewer plots than a line or parabola needs give it through them, and what it starts with.
     const auto one = n < Scalar(2), two = n < Scalar(3);
     if constexpr (Order == 2) {

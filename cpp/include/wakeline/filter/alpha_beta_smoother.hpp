@@ -19,10 +19,8 @@ struct RecentMemory {
 
   template <int Order, class Scalar>
   Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
-    const std::int64_t plots =
-        max_plots > 0 ? std::min<std::int64_t>(at.reading, max_plots) : at.reading;
-    const Scalar n = Scalar(plots);
-    if (plots < 2) return {Scalar(1), Scalar(0)};
+    const Scalar n = counted(at.reading, max_plots);
+    if (n < Scalar(2)) return {Scalar(1), Scalar(0)};
     return {6 * n / ((n + 1) * (n + 2)), 12 / ((n + 1) * (n + 2))};
   }
 
@@ -58,7 +56,7 @@ class AlphaBetaSmoother {
       line_.value = Residual::normal(reading);
       return Status::kOk;
     }
-    const GainOccasion<Scalar> occasion{readings_, dt_s, Scalar(reading_std_), range_m};
+    const GainOccasion<Scalar> occasion{Scalar(readings_), dt_s, Scalar(reading_std_), range_m};
     const Vec<Scalar, 2> gains = schedule_.template gains<2>(occasion);
     line_.template step<Residual>(dt_s, reading, gains[0], gains[1]);
     line_.value = Residual::normal(line_.value);
