@@ -96,11 +96,11 @@ bool run_mixture(const Estimator& estimator, const Structure& structure, const A
   return run(job, sensor, in, starts, out);
 }
 
-template <int Order>
-bool run_alpha_beta(const AnyAlphaBeta<Order>& filter, const AnySensor& sensor, const RunInput& in,
-                    const std::vector<AnyBelief>& starts, const RunOutput& out) {
+/// The same of what draws lines.
+bool run_lines(const LaneLines& lines, const AnySensor& sensor, const RunInput& in,
+               const std::vector<AnyBelief>& starts, const RunOutput& out) {
   LaneJob job;
-  job.lines = LaneAlphaBeta<Order>{filter.schedule(), filter.motion()};
+  job.lines = lines;
   return run(job, sensor, in, starts, out);
 }
 
@@ -157,27 +157,24 @@ bool run_lanes(const AnyLikelyModelSetImm& imm, const AnySensor& sensor, const R
 
 bool run_lanes(const AnyBayesianAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  LaneJob job;
-  job.lines = lines.weighing();
-  return run(job, sensor, in, starts, out);
+  return run_lines(lines.weighing(), sensor, in, starts, out);
 }
 
 bool run_lanes(const AnyFuzzyAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  LaneJob job;
-  job.lines = lines.criterion();
-  return run(job, sensor, in, starts, out);
+  return run_lines(lines.criterion(), sensor, in, starts, out);
 }
 
-bool run_lanes(const AnyAlphaBeta<2>& filter, const AnySensor& sensor, const RunInput& in,
+template <int Order>
+bool run_lanes(const AnyAlphaBeta<Order>& filter, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return run_alpha_beta(filter, sensor, in, starts, out);
+  return run_lines(LaneAlphaBeta<Order>{filter.schedule(), filter.motion()}, sensor, in, starts,
+                   out);
 }
-
-bool run_lanes(const AnyAlphaBeta<3>& filter, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return run_alpha_beta(filter, sensor, in, starts, out);
-}
+template bool run_lanes(const AnyAlphaBeta<2>&, const AnySensor&, const RunInput&,
+                        const std::vector<AnyBelief>&, const RunOutput&);
+template bool run_lanes(const AnyAlphaBeta<3>&, const AnySensor&, const RunInput&,
+                        const std::vector<AnyBelief>&, const RunOutput&);
 
 bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out) {

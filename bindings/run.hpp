@@ -80,9 +80,8 @@ bool run_lanes(const AnyBayesianAlphaBeta& lines, const AnySensor& sensor, const
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 bool run_lanes(const AnyFuzzyAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
-bool run_lanes(const AnyAlphaBeta<2>& filter, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
-bool run_lanes(const AnyAlphaBeta<3>& filter, const AnySensor& sensor, const RunInput& in,
+template <int Order>
+bool run_lanes(const AnyAlphaBeta<Order>& filter, const AnySensor& sensor, const RunInput& in,
                const std::vector<AnyBelief>& starts, const RunOutput& out);
 template <class Estimator>
 bool run_lanes(const Estimator&, const AnySensor&, const RunInput&, const std::vector<AnyBelief>&,

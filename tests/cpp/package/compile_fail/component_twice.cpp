@@ -3,29 +3,18 @@
 //
 // A motion model that names the velocity to the north twice, and that to the east not at all.
 #include "wakeline/filter/ekf.hpp"
+#include "wakeline/motion/constant_velocity.hpp"
 
 using wakeline::Component;
-using wakeline::Mat;
 
-struct Drifting {
+struct Drifting : wakeline::ConstantVelocity {
 #ifdef WAKELINE_COMPILE_FAIL
-  static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
-                                          Component::kVnorth};
+  static constexpr Component kFourth = Component::kVnorth;
 #else
-  static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
-                                          Component::kVeast};
+  static constexpr Component kFourth = Component::kVeast;
 #endif
-
-  template <class Scalar>
-  Mat<Scalar, 4, 4> matrix(Scalar dt_s) const noexcept {
-    Mat<Scalar, 4, 4> f = Mat<Scalar, 4, 4>::Identity();
-    f(0, 1) = f(2, 3) = dt_s;
-    return f;
-  }
-  template <class Scalar>
-  Mat<Scalar, 4, 4> process_noise(Scalar dt_s) const noexcept {
-    return dt_s * Mat<Scalar, 4, 4>::Identity();
-  }
+  static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
+                                          kFourth};
 };
 
 int main() {
