@@ -5,12 +5,26 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "any_filter.hpp"
 #include "types.hpp"
 
 namespace wakeline::python {
+
+/// Filters from a sequence of them.
+inline std::vector<AnyFilter> to_filters(const py::sequence& sequence) {
+  std::vector<AnyFilter> filters;
+  for (const py::handle item : sequence) {
+    if (!py::isinstance<AnyFilter>(item))
+      throw py::type_error("filters must be Kalman, Ekf, Ukf or SquareRootUkf, got " +
+                           py::str(py::type::of(item).attr("__name__")).cast<std::string>());
+    filters.push_back(item.cast<const AnyFilter&>());
+  }
+  return filters;
+}
 
 inline PyGaussian to_gaussian(const AnyBelief& belief) { return {belief.mean, belief.covariance}; }
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "call_text.hpp"
+#include "estimators.hpp"
 #include "face.hpp"
 #include "turn_grid.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
@@ -33,6 +35,33 @@ AnyModeHistory::Variant over_filter(const HistoryTree& tree, const TurnRateGrid&
         }
       },
       filter.variant());
+}
+
+AnyModeHistory::Variant over_filters(const HistoryTree& tree, const Chain& chain,
+                                     const std::vector<AnyFilter>& filters) {
+  if (filters.empty() || filters.size() > kMaxModes)
+    throw py::value_error("filters must be 1 to " + std::to_string(kMaxModes) + " filters, got " +
+                          std::to_string(filters.size()));
+  return std::visit(
+      [&]<class Filter>(const Filter&) -> AnyModeHistory::Variant {
+        if constexpr (std::is_constructible_v<AnyModeHistory::Variant, ModeHistory<Filter>>) {
+          std::vector<Filter> bank;
+          for (const AnyFilter& any : filters) {
+            const auto* const filter = std::get_if<Filter>(&any.variant());
+            if (filter == nullptr || any.linear() != filters.front().linear())
+              throw py::value_error("filters must be of one kind over one motion model, got " +
+                                    text_of(filters.front()) + " and " + text_of(any));
+            bank.push_back(*filter);
+          }
+          return ModeHistory<Filter>(tree, chain,
+                                     UniformBank<Filter>(std::span<const Filter>(bank)));
+        } else {
+          throw py::value_error(
+              "filters must be over CoordinatedTurn or CoordinatedTurnRate, got " +
+              text_of(filters.front()));
+        }
+      },
+      filters.front().variant());
 }
 
 /// One number for each turn rate, where there are any.
@@ -83,6 +112,19 @@ void tell_tree(CallText& call, const HistoryTree& tree) {
       .with("negligible_probability", tree.negligible_probability);
 }
 
+/// The turn rate that each filter knows, or begins to learn its own about.
+template <class Bank>
+TurnRateGrid::Rates turn_rates(const Bank& bank) {
+  TurnRateGrid::Rates rates_rad_s(bank.size());
+  bank.for_each([&]<class Filter>(int k, const Filter& filter) {
+    if constexpr (kLearnsTurnRate<Filter>)
+      rates_rad_s[k] = filter.motion().prior_turn_rate_rad_s;
+    else
+      rates_rad_s[k] = filter.motion().turn_rate_rad_s;
+  });
+  return rates_rad_s;
+}
+
 template <class Bank>
 TurnRateGrid::Rates deviations(const Bank& bank) {
   TurnRateGrid::Rates std_rad_s(bank.size());
@@ -90,7 +132,23 @@ TurnRateGrid::Rates deviations(const Bank& bank) {
   return std_rad_s;
 }
 
-std::string history_text(const AnyModeHistory& any) {
+std::string text_over_filters(const AnyModeHistory& any) {
+  return std::visit(
+      [&](const auto& history) {
+        std::vector<AnyFilter> filters;
+        history.bank().for_each(
+            [&](int, const auto& filter) { filters.emplace_back(filter, any.linear()); });
+        CallText call("ModeHistory.of");
+        call.with("filters", filters)
+            .with("chain", history.chain())
+            .with("initial_mode_probability", history.initial_mode_probability());
+        tell_tree(call, history.tree());
+        return call.text();
+      },
+      any.variant());
+}
+
+std::string text_over_grid(const AnyModeHistory& any, const TurnRateGrid& grid_rad_s) {
   return std::visit(
       [&](const auto& history) {
         const HistoryTree& tree = history.tree();
@@ -98,22 +156,38 @@ std::string history_text(const AnyModeHistory& any) {
         CallText call(pseudo_bayes ? "ModeHistory.pseudo_bayes" : "ModeHistory");
         if (pseudo_bayes) call.with("order", tree.pseudo_bayes_order);
         const auto& bank = history.bank();
-        auto filter = bank.filter(any.grid_rad_s().straightest() == 0 ? 1 : 0);
+        auto filter = bank.filter(grid_rad_s.straightest() == 0 ? 1 : 0);
         expect_turn_rate(filter, 0.0, turn_rate_std_rad_s(filter));
         call.with("filter", AnyFilter(filter, any.linear()))
-            .with("grid_rad_s", any.grid_rad_s().rates_rad_s());
+            .with("grid_rad_s", grid_rad_s.rates_rad_s());
         const auto grid_std_rad_s = deviations(bank);
-        if (grid_std_rad_s != history.usual_deviations(any.grid_rad_s(), filter))
+        if (grid_std_rad_s != history.usual_deviations(grid_rad_s, filter))
           call.with("grid_std_rad_s", grid_std_rad_s);
         if (pseudo_bayes)
           call.with("chain", history.chain());
         else
-          tell_chain(call, history.chain(), any.grid_rad_s());
+          tell_chain(call, history.chain(), grid_rad_s);
         call.with("initial_mode_probability", history.initial_mode_probability());
         if (!pseudo_bayes) tell_tree(call, tree);
         return call.text();
       },
       any.variant());
+}
+
+std::string history_text(const AnyModeHistory& any) {
+  return any.grid_rad_s() ? text_over_grid(any, *any.grid_rad_s()) : text_over_filters(any);
+}
+
+HistoryTree tree_of(int max_hypotheses, int max_branches, double min_segment_s,
+                    double merge_distance, double sibling_distance, double switch_time_spread,
+                    double negligible_probability) {
+  return {.max_hypotheses = max_hypotheses,
+          .max_branches = max_branches,
+          .min_segment_s = min_segment_s,
+          .merge_distance = merge_distance,
+          .sibling_distance = sibling_distance,
+          .switch_time_spread = switch_time_spread,
+          .negligible_probability = negligible_probability};
 }
 
 }  // namespace
@@ -125,9 +199,20 @@ AnyModeHistory::AnyModeHistory(const HistoryTree& tree, const TurnRateGrid& grid
       grid_rad_s_(grid_rad_s),
       linear_(filter.linear()) {}
 
+AnyModeHistory::AnyModeHistory(const HistoryTree& tree, const Chain& chain,
+                               const std::vector<AnyFilter>& filters)
+    : history_(over_filters(tree, chain, filters)), linear_(filters.front().linear()) {}
+
 void define_mode_history(py::module_& m) {
   const HistoryTree tree;
   const TurnHabits habits;
+  const auto tree_arguments = std::tuple(
+      py::arg("max_hypotheses") = tree.max_hypotheses, py::arg("max_branches") = tree.max_branches,
+      py::arg("min_segment_s") = tree.min_segment_s,
+      py::arg("merge_distance") = tree.merge_distance,
+      py::arg("sibling_distance") = tree.sibling_distance,
+      py::arg("switch_time_spread") = tree.switch_time_spread,
+      py::arg("negligible_probability") = tree.negligible_probability);
   py::class_<AnyModeHistory> history(m, "ModeHistory",
                                      R"(A tree of histories of turn rates, not mixed.
 
@@ -183,42 +268,71 @@ References
 ----------
 G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait, Automatica 18, 1982; D. J. Salmond, Proc. SPIE
 1305, 1990.)");
-  history.def(
-      py::init([](const AnyFilter& filter, const std::optional<DoubleArray>& rates,
-                  const std::optional<DoubleArray>& deviation,
-                  const std::optional<DoubleArray>& weight, double straight, double turn,
-                  double straighten, const std::optional<Chain>& chain,
-                  const std::optional<DoubleArray>& initial, int max_hypotheses, int max_branches,
-                  double min_segment, double merge_distance, double sibling_distance, double spread,
-                  double negligible) {
-        const TurnRateGrid grid = grid_or_default(rates);
-        const TurnHabits habits{straight, turn, straighten};
-        const TurnRateGrid::Rates weights = for_each_rate("grid_weight", weight, grid)
-                                                .value_or(TurnRateGrid::Rates::Ones(grid.size()));
-        return with_initial(
-            AnyModeHistory({.max_hypotheses = max_hypotheses,
-                            .max_branches = max_branches,
-                            .min_segment_s = min_segment,
-                            .merge_distance = merge_distance,
-                            .sibling_distance = sibling_distance,
-                            .switch_time_spread = spread,
-                            .negligible_probability = negligible},
-                           grid, chain ? *chain : turning_chain(grid, habits, weights), filter,
-                           for_each_rate("grid_std_rad_s", deviation, grid)),
-            initial);
-      }),
-      py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
-      py::arg("grid_std_rad_s") = py::none(), py::arg("grid_weight") = py::none(),
-      py::arg("straight_sojourn_s") = habits.straight_sojourn_s,
-      py::arg("turn_sojourn_s") = habits.turn_sojourn_s,
-      py::arg("straighten_probability") = habits.straighten_probability,
-      py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none(),
-      py::arg("max_hypotheses") = tree.max_hypotheses, py::arg("max_branches") = tree.max_branches,
-      py::arg("min_segment_s") = tree.min_segment_s,
-      py::arg("merge_distance") = tree.merge_distance,
-      py::arg("sibling_distance") = tree.sibling_distance,
-      py::arg("switch_time_spread") = tree.switch_time_spread,
-      py::arg("negligible_probability") = tree.negligible_probability);
+  std::apply(
+      [&](const auto&... of_the_tree) {
+        history.def(
+            py::init([](const AnyFilter& filter, const std::optional<DoubleArray>& rates,
+                        const std::optional<DoubleArray>& deviation,
+                        const std::optional<DoubleArray>& weight, double straight, double turn,
+                        double straighten, const std::optional<Chain>& chain,
+                        const std::optional<DoubleArray>& initial, int max_hypotheses,
+                        int max_branches, double min_segment, double merge_distance,
+                        double sibling_distance, double spread, double negligible) {
+              const TurnRateGrid grid = grid_or_default(rates);
+              const TurnHabits habits{straight, turn, straighten};
+              const TurnRateGrid::Rates weights =
+                  for_each_rate("grid_weight", weight, grid)
+                      .value_or(TurnRateGrid::Rates::Ones(grid.size()));
+              return with_initial(
+                  AnyModeHistory(tree_of(max_hypotheses, max_branches, min_segment, merge_distance,
+                                         sibling_distance, spread, negligible),
+                                 grid, chain ? *chain : turning_chain(grid, habits, weights),
+                                 filter, for_each_rate("grid_std_rad_s", deviation, grid)),
+                  initial);
+            }),
+            py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
+            py::arg("grid_std_rad_s") = py::none(), py::arg("grid_weight") = py::none(),
+            py::arg("straight_sojourn_s") = habits.straight_sojourn_s,
+            py::arg("turn_sojourn_s") = habits.turn_sojourn_s,
+            py::arg("straighten_probability") = habits.straighten_probability,
+            py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none(),
+            of_the_tree...);
+        history.def_static(
+            "of",
+            [](const py::sequence& filters, const Chain& chain,
+               const std::optional<DoubleArray>& initial, int max_hypotheses, int max_branches,
+               double min_segment, double merge_distance, double sibling_distance, double spread,
+               double negligible) {
+              return with_initial(
+                  AnyModeHistory(tree_of(max_hypotheses, max_branches, min_segment, merge_distance,
+                                         sibling_distance, spread, negligible),
+                                 chain, to_filters(filters)),
+                  initial);
+            },
+            py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none(),
+            py::kw_only(), of_the_tree...,
+            R"(A tree whose modes differ in more than their turn rate: in their noise, too.
+
+Parameters
+----------
+filters : sequence of 1 to 16 filters
+    One for each mode, of one kind (Kalman, Ekf, Ukf or SquareRootUkf), all over CoordinatedTurn or all over
+    CoordinatedTurnRate. Of these, a straight is one about 0 whose `prior_turn_rate_std_rad_s` is next to none and whose
+    `turn_rate_psd_rad2s3` is 0; a hypothesis takes the rate of a mode up when it comes into it, unless the one that it leaves
+    had the same prior.
+chain : ModeChain
+    Of as many modes.
+initial_mode_probability : (K,) array, optional
+    What a start begins with; all alike when left out.
+max_hypotheses, max_branches, min_segment_s, merge_distance, sibling_distance, switch_time_spread, negligible_probability
+    As of the class.
+
+Raises
+------
+ValueError
+    When the filters are not alike, or a parameter makes no sense.)");
+      },
+      tree_arguments);
   history.def_static(
       "pseudo_bayes",
       [](int order, const AnyFilter& filter, const std::optional<DoubleArray>& rates, double stay,
@@ -260,8 +374,11 @@ Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Naviga
   history.def("__repr__", &history_text);
   history.def(
       "turn_rates_rad_s",
-      [](const AnyModeHistory& one) { return to_array(one.grid_rad_s().rates_rad_s()); },
-      "(K,) turn rates of the grid, positive to starboard. Those learnt are in the state.");
+      [](const AnyModeHistory& one) {
+        return std::visit([](const auto& history) { return to_array(turn_rates(history.bank())); },
+                          one.variant());
+      },
+      "(K,) turn rates of the modes, positive to starboard. Those learnt are in the state.");
   history.def_property_readonly("hypothesis_count", &AnyModeHistory::hypotheses,
                                 "How many there are at present.");
 }

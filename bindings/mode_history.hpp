@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "any_filter.hpp"
 #include "types.hpp"
@@ -51,6 +52,10 @@ class AnyModeHistory {
   AnyModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
                  const ModeChain<kRuntimeModes>& chain, const AnyFilter& filter,
                  const std::optional<TurnRateGrid::Rates>& grid_std_rad_s = {});
+
+  /// Throws as `ModeHistory` does, and where the filters are not of one kind that has a turn rate.
+  AnyModeHistory(const HistoryTree& tree, const ModeChain<kRuntimeModes>& chain,
+                 const std::vector<AnyFilter>& filters);
 
   void set_initial_mode_probability(const ModeVector<double, kRuntimeModes>& probability) {
     std::visit([&](auto& history) { history.set_initial_mode_probability(probability); },
@@ -118,7 +123,10 @@ class AnyModeHistory {
   }
 
   [[nodiscard]] const Variant& variant() const noexcept { return *history_; }
-  [[nodiscard]] const TurnRateGrid& grid_rad_s() const noexcept { return grid_rad_s_; }
+  /// None of one over filters that differ in more than their turn rates.
+  [[nodiscard]] const std::optional<TurnRateGrid>& grid_rad_s() const noexcept {
+    return grid_rad_s_;
+  }
 
   [[nodiscard]] std::size_t hypotheses() const noexcept {
     return std::visit([](const auto& history) { return history.hypotheses().size(); }, *history_);
@@ -133,7 +141,7 @@ class AnyModeHistory {
 
  private:
   Apart<Variant> history_;
-  TurnRateGrid grid_rad_s_;
+  std::optional<TurnRateGrid> grid_rad_s_;
   bool linear_;
 };
 

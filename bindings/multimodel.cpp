@@ -107,17 +107,6 @@ AnyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
   return imm;
 }
 
-std::vector<AnyFilter> to_filters(const py::sequence& sequence) {
-  std::vector<AnyFilter> filters;
-  for (const py::handle item : sequence) {
-    if (!py::isinstance<AnyFilter>(item))
-      throw py::type_error("filters must be Kalman, Ekf, Ukf or SquareRootUkf, got " +
-                           py::str(py::type::of(item).attr("__name__")).cast<std::string>());
-    filters.push_back(item.cast<const AnyFilter&>());
-  }
-  return filters;
-}
-
 /// One of the words of an option.
 template <class Option>
 Option to_option(const char* name, const std::string& word,

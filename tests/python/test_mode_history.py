@@ -127,6 +127,87 @@ def test_each_rate_of_a_tree_in_lanes_has_its_own_deviation(kind):
         np.testing.assert_allclose(together.mean[run], expected.mean, rtol=1e-9, atol=1e-9)
 
 
+def kinds_of_way(kind=wl.Ekf):
+    """Filters that differ in their noise: two straights, and turns either way that are learnt."""
+    none, some = np.deg2rad([0.01, 0.5])
+    return [
+        kind(
+            wl.CoordinatedTurnRate(
+                noise=wl.WhiteAcceleration(psd_m2s3=psd),
+                turn_rate_psd_rad2s3=0.0,
+                prior_turn_rate_rad_s=rate,
+                prior_turn_rate_std_rad_s=std,
+            )
+        )
+        for psd, rate, std in (
+            (1e-4, 0.0, none),
+            (0.05, 0.0, none),
+            (0.01, -0.03, some),
+            (0.01, 0.03, some),
+        )
+    ]
+
+
+WAYS = wl.ModeChain.from_sojourn_s([200.0, 100.0, 20.0, 20.0])
+
+
+@pytest.mark.parametrize("kind", [wl.Kalman, wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_a_tree_of_the_filters_of_a_grid_is_that_over_the_grid(kind):
+    sensor = CONVERTED if kind is wl.Kalman else RADAR
+    z = readings(20, seed=5)
+    chain, initial = wl.ModeChain.from_sojourn_s([60.0] * 5), np.full(5, 0.2)
+    filters = [kind(wl.CoordinatedTurn(turn_rate_rad_s=rate, noise=SMALL_NOISE)) for rate in RATES]
+    grid = tree(kind, chain=chain, initial_mode_probability=initial)
+    for of in (
+        wl.ModeHistory.of(filters, chain),
+        wl.ModeHistory.of(filters, chain, initial_mode_probability=initial),
+    ):
+        expected, found = (one.run(z, dt_s=DT_S, sensor=sensor, start=START) for one in (grid, of))
+        np.testing.assert_array_equal(found.mean, expected.mean)
+        np.testing.assert_array_equal(found.mode_probability, expected.mode_probability)
+        np.testing.assert_array_equal(of.turn_rates_rad_s(), RATES)
+
+
+def test_a_tree_of_one_mode_is_its_filter():
+    z = readings(20, seed=6)
+    (filter,) = kinds_of_way()[2:3]
+    expected = filter.run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    found = wl.ModeHistory.of([filter], wl.ModeChain([[1.0]])).run(
+        z, dt_s=DT_S, sensor=RADAR, start=START
+    )
+    np.testing.assert_allclose(found.mean, expected.mean, rtol=1e-12)
+    np.testing.assert_allclose(found.covariance, expected.covariance, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(found.log_likelihood, expected.log_likelihood, rtol=1e-12)
+
+
+@pytest.mark.parametrize("kind", [wl.Ekf, wl.Ukf, wl.SquareRootUkf])
+def test_a_tree_of_other_noises_in_lanes_is_the_same(kind):
+    z = np.stack([readings(20, seed) for seed in range(3)])
+    ways = wl.ModeHistory.of(kinds_of_way(kind), WAYS)
+    together = ways.run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    for run, alone in enumerate(z):
+        expected = ways.run(alone, dt_s=DT_S, sensor=RADAR, start=START)
+        np.testing.assert_allclose(together.mean[run], expected.mean, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(
+            together.mode_probability[run], expected.mode_probability, rtol=0, atol=1e-9
+        )
+
+
+def test_a_vessel_that_goes_straight_is_taken_for_the_quieter_of_two_straights():
+    scene = scenario.Scenario(
+        "straight",
+        scenario.Truth([4000.0, 6.0, 3000.0, -8.0], [scenario.Segment(600.0)]),
+        scenario.RadarSimulator(30.0, np.deg2rad(0.5), period_s=DT_S),
+        scans=200,
+    )
+    z = scene.draw(20, 0)
+    found = wl.ModeHistory.of(kinds_of_way(), WAYS).run(z, dt_s=DT_S, sensor=RADAR, start=START)
+    quiet, restless, *turns = found.mode_probability[:, -1].mean(axis=0)
+    assert quiet > 0.5
+    assert quiet > 2.0 * restless
+    assert max(turns) < 0.1
+
+
 def test_rates_that_are_learnt_between_known_ones_are_nearly_the_best_of_both():
     known_deg_s, between_deg_s = np.arange(-4.0, 5.0), np.array([-3.5, -2.5, -1.5, 1.5, 2.5, 3.5])
     rates_deg_s = np.sort(np.concatenate([known_deg_s, between_deg_s]))
@@ -354,6 +435,33 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         (
             lambda: wl.ModeHistory(wl.Ekf(LEARNT), RATES, grid_std_rad_s=[1, 1, 0, 1, 1]),
             "deviation of grid_std_rad_s must be finite and positive, got 0",
+        ),
+        (lambda: wl.ModeHistory.of([], WAYS), "filters must be 1 to 16 filters, got 0"),
+        (lambda: wl.ModeHistory.of([wl.Ekf(TURN)] * 17, WAYS), "1 to 16 filters, got 17"),
+        (
+            lambda: wl.ModeHistory.of([wl.Ekf(TURN), wl.Ukf(TURN)], WAYS),
+            r"filters must be of one kind .* got Ekf\(.* and Ukf\(",
+        ),
+        (
+            lambda: wl.ModeHistory.of([wl.Ekf(TURN), wl.Kalman(TURN)], WAYS),
+            r"filters must be of one kind .* got Ekf\(.* and Kalman\(",
+        ),
+        (
+            lambda: wl.ModeHistory.of([wl.Ekf(TURN), wl.Ekf(LEARNT)], WAYS),
+            "filters must be of one kind over one motion model",
+        ),
+        (
+            lambda: wl.ModeHistory.of([wl.Kalman(MOTIONS["ConstantVelocity"])], WAYS),
+            r"filters must be over CoordinatedTurn or CoordinatedTurnRate, got Kalman\(",
+        ),
+        (lambda: wl.ModeHistory.of(kinds_of_way()[:3], WAYS), "got 4 modes and 3 filters"),
+        (
+            lambda: wl.ModeHistory.of(kinds_of_way(), WAYS, max_hypotheses=3),
+            "max_hypotheses must be at least the number of modes",
+        ),
+        (
+            lambda: wl.ModeHistory.of(kinds_of_way(), WAYS, [0.5, 0.5]),
+            "initial_mode_probability",
         ),
         (lambda: wl.ModeHistory.pseudo_bayes(0, wl.Ekf(TURN), RATES), "1 to 8"),
         (lambda: wl.ModeHistory.pseudo_bayes(4, wl.Ekf(TURN), RATES), "more than 256 filters"),

@@ -95,6 +95,15 @@ OF_ALL_KINDS = {
         wl.Ekf(wl.CoordinatedTurnRate(prior_turn_rate_std_rad_s=0.01)), [0.0, 0.05]
     ),
     "ModeHistory-pseudo_bayes": wl.ModeHistory.pseudo_bayes(2, TURN, RATES, stay_probability=0.8),
+    "ModeHistory-of": wl.ModeHistory.of(
+        [
+            wl.Ekf(wl.CoordinatedTurnRate(prior_turn_rate_std_rad_s=1e-4)),
+            wl.Ekf(wl.CoordinatedTurnRate(noise=SMALL_NOISE, prior_turn_rate_rad_s=0.04)),
+        ],
+        wl.ModeChain.from_sojourn_s([120.0, 15.0]),
+        [0.75, 0.25],
+        max_hypotheses=20,
+    ),
     "FuzzyAlphaBeta": wl.FuzzyAlphaBeta(max_plots=6, threshold=1.2, t_norm="minimum", hold=False),
     "BayesianAlphaBeta": wl.BayesianAlphaBeta(max_plots=7, parabolas=False, sojourn_s=20.0),
 }
@@ -149,7 +158,8 @@ def test_the_text_tells_every_argument(thing):
     if untold & TOLD_AS_A_CHAIN:
         assert "chain=" in text or "sojourn_s=" in text
     assert arguments
-    assert not untold - TOLD_AS_A_CHAIN or ".pseudo_bayes(" in text
+    other_ways_to_make_one = (".pseudo_bayes(", ".of(")
+    assert not untold - TOLD_AS_A_CHAIN or any(way in text for way in other_ways_to_make_one)
 
 
 def test_the_text_of_an_imm():

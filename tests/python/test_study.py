@@ -42,6 +42,7 @@ ESTIMATORS = {
         *("kalman_cv", "wandering_course", "kalman_ca", "singer", "ekf_turn_rate"),
         *("ukf_turn_rate", "imm3", "imm5", "imm_turn_rate", "vessel_imm", "vessel_imm_ships"),
         *("agmm", "sgmm", "likely_model_set", "mode_history", "mode_history_rates"),
+        "mode_history_vessels",
     ],
 }
 
@@ -220,6 +221,17 @@ def test_the_models_of_a_tracker_stand_beside_those_made_for_these_vessels(repor
     for name, factor in (("vessel_imm", 1.3), ("vessel_imm_ships", 1.05)):
         row = report.row(radar, name)
         assert all(row[metric] < factor * made[metric] for metric in ERRORS)
+
+
+@pytest.mark.parametrize("radar", SCENARIOS["solent"])
+def test_histories_told_of_vessels_have_less_error_than_any_imm(reports, radar):
+    report = reports["solent"]
+    histories = report.row(radar, "mode_history_vessels")
+    for metric in METRICS["solent"]:
+        least = min(
+            report.row(radar, name)[metric] for name in ESTIMATORS["solent"] if "imm" in name
+        )
+        assert histories[metric] < 1.02 * least, metric
 
 
 def test_every_stretch_is_under_way_and_in_sight():

@@ -717,6 +717,42 @@ class ModeHistory:
     1305, 1990.
     """
     @staticmethod
+    def of(
+        filters: Sequence[Filter],
+        chain: ModeChain,
+        initial_mode_probability: ArrayLike | None = None,
+        *,
+        max_hypotheses: int = 75,
+        max_branches: int = 100,
+        min_segment_s: float = 6.0,
+        merge_distance: float = 1.9,
+        sibling_distance: float = 12.0,
+        switch_time_spread: float = 0.15,
+        negligible_probability: float = 1e-07,
+    ) -> ModeHistory:
+        """
+        A tree whose modes differ in more than their turn rate: in their noise, too.
+
+        Parameters
+        ----------
+        filters : sequence of 1 to 16 filters
+            One for each mode, of one kind (Kalman, Ekf, Ukf or SquareRootUkf), all over CoordinatedTurn or all over
+            CoordinatedTurnRate. Of these, a straight is one about 0 whose `prior_turn_rate_std_rad_s` is next to none and whose
+            `turn_rate_psd_rad2s3` is 0; a hypothesis takes the rate of a mode up when it comes into it, unless the one that it leaves
+            had the same prior.
+        chain : ModeChain
+            Of as many modes.
+        initial_mode_probability : (K,) array, optional
+            What a start begins with; all alike when left out.
+        max_hypotheses, max_branches, min_segment_s, merge_distance, sibling_distance, switch_time_spread, negligible_probability
+            As of the class.
+
+        Raises
+        ------
+        ValueError
+            When the filters are not alike, or a parameter makes no sense.
+        """
+    @staticmethod
     def pseudo_bayes(
         order: int,
         filter: Filter,
@@ -843,7 +879,7 @@ class ModeHistory:
         """
     def turn_rates_rad_s(self) -> NDArray[np.float64]:
         """
-        (K,) turn rates of the grid, positive to starboard. Those learnt are in the state.
+        (K,) turn rates of the modes, positive to starboard. Those learnt are in the state.
         """
     def update(
         self,

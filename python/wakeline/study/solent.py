@@ -57,6 +57,31 @@ _STRAIGHT_S, _TURN_S = 200.0, 20.0
 _LEAST_S = 6.0  # of a history's segments; the times beyond it are those of its chain
 _THREE_DEG_S = (0, 2, -2)
 _WANDERING_M2S3, _COURSE_PSD_RAD2S = 0.001, 0.0015
+_STRAIGHTS = (  # white acceleration in m²/s³, wander of the course in rad²/s, mean time in s
+    (5e-5, 1e-5, 150.0),
+    (0.001, 0.001, 100.0),
+    (0.05, 0.003, 70.0),
+)
+_TURNS = (1e-4, 5e-4, 6.0)
+_TURN_RATES_DEG_S, _TURN_STD_DEG_S, _NO_TURN_DEG_S = (-4, -2, 2, 4), 0.2, 0.01
+_TOLD = wl.VesselModels(
+    cruising_psd_m2s3=4e-4,
+    cruising_course_psd_rad2s=3e-5,
+    steady_psd_m2s3=4e-4,
+    steady_course_psd_rad2s=0.0016,
+    restless_psd_m2s3=0.25,
+    restless_course_psd_rad2s=0.003,
+    turning_psd_m2s3=0.002,
+    turning_course_psd_rad2s=7e-4,
+    turn_rate_psd_rad2s3=7e-6,
+    prior_turn_rate_std_rad_s=np.deg2rad(0.8),
+    cruising_probability=0.25,
+    cruising_sojourn_s=180.0,
+    settling_s=140.0,
+    steady_sojourn_s=150.0,
+    restless_sojourn_s=50.0,
+    turning_sojourn_s=80.0,
+)
 _OTHER_NOISES_M2S3 = (0.003, 0.01, 0.3)
 _SHOWN = ("kalman_ca", "kalman_cv", "mode_history")
 _SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
@@ -145,7 +170,7 @@ def estimators() -> dict[str, Any]:
 
 
 def variants() -> dict[str, Any]:
-    """What tuning is worth: other process noise, and turns as often as in papers."""
+    """What tuning is worth: other process noise, turns as often as in papers, these vessels."""
     noises = {psd: WhiteAcceleration(psd_m2s3=psd) for psd in _OTHER_NOISES_M2S3}
     return (
         {
@@ -157,6 +182,7 @@ def variants() -> dict[str, Any]:
             "imm3_restless": turn_imm(_THREE_DEG_S, _NOISE, stay=0.95),
             "mode_history_restless": wl.ModeHistory(turn_filter(0.0, _NOISE)),
             "imm_turn_rate_wandering": _imm_wandering(),
+            "vessel_imm_told": wl.vessel_imm(wl.Radar(), _TOLD),
         }
     )
 
@@ -200,6 +226,32 @@ def _histories(filter: wl.Ekf) -> wl.ModeHistory:
     )
 
 
+def _vessel_histories() -> wl.ModeHistory:
+    """Straights of three restlessnesses, and turns whose rates are guessed, then learnt."""
+    straights = [_kept(psd, course, 0.0, _NO_TURN_DEG_S) for psd, course, _ in _STRAIGHTS]
+    turns = [_kept(*_TURNS[:2], rate, _TURN_STD_DEG_S) for rate in _TURN_RATES_DEG_S]
+    return wl.ModeHistory.of(
+        straights + turns,
+        wl.ModeChain.from_sojourn_s(
+            [mean_s for *_, mean_s in _STRAIGHTS] + [_TURNS[2]] * len(turns)
+        ),
+        min_segment_s=_LEAST_S,
+    )
+
+
+def _kept(psd_m2s3: float, course_psd_rad2s: float, rate_deg_s: float, std_deg_s: float) -> wl.Ekf:
+    """The filter of a rate that is kept once it is known."""
+    return wl.Ekf(
+        wl.CoordinatedTurnRate(
+            noise=WhiteAcceleration(psd_m2s3=psd_m2s3),
+            course_psd_rad2s=course_psd_rad2s,
+            turn_rate_psd_rad2s3=0.0,
+            prior_turn_rate_rad_s=np.deg2rad(rate_deg_s),
+            prior_turn_rate_std_rad_s=np.deg2rad(std_deg_s),
+        )
+    )
+
+
 _TABLE: dict[str, Callable[[], Any]] = {
     "kalman_cv": lambda: wl.Ekf(wl.ConstantVelocity()),
     "wandering_course": lambda: wl.Ekf(wl.WanderingCourse()),
@@ -221,6 +273,7 @@ _TABLE: dict[str, Callable[[], Any]] = {
             WhiteAcceleration(psd_m2s3=_WANDERING_M2S3), course_psd_rad2s=_COURSE_PSD_RAD2S
         )
     ),
+    "mode_history_vessels": _vessel_histories,
 }
 
 
