@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
 #include "support/numeric_jacobian.hpp"
+#include "wakeline/core/pack_math.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 
@@ -40,10 +42,44 @@ TYPED_TEST(TurnOf, AtZeroRateIsConstantVelocity) {
   }
 }
 
+TYPED_TEST(TurnOf, StumpffsFunctionsAreWhatTheyAreCalled) {
+  using Scalar = TypeParam;
+  const double bound = 8 * this->kEpsilon;
+  for (const double angle : {0.1, 0.3, 0.799, 0.801, 1.5, 3.0, 6.0, 40.0})
+    for (const double sign : {-1.0, 1.0}) {
+      const Stumpff<Scalar> c{Scalar(sign * angle)};
+      const long double theta = Scalar(sign * angle), half_sine = std::sin(theta / 2);
+      const long double sinc = std::sin(theta) / theta, versine = 2 * half_sine * half_sine;
+      EXPECT_NEAR(c.c0, double(std::cos(theta)), bound);
+      EXPECT_NEAR(c.c1, double(sinc), bound);
+      EXPECT_NEAR(double(c.c2 * theta * theta), double(versine), bound);
+      EXPECT_NEAR(double(c.c3 * theta * theta), double(1 - sinc), bound);
+    }
+  const Stumpff<Scalar> none(Scalar(0));
+  EXPECT_EQ(none.c0, Scalar(1));
+  EXPECT_EQ(none.c1, Scalar(1));
+  EXPECT_EQ(none.c2, Scalar(1.0 / 2));
+  EXPECT_EQ(none.c3, Scalar(1.0 / 6));
+}
+
+TEST(Stumpff, OfALaneDoNotKnowItsNeighbours) {
+  using Lanes = Pack<double, 2>;
+  for (const double angle : {0.1, -0.79, 0.81, -3.0}) {
+    const Stumpff<Lanes> alone{Lanes(angle)};
+    for (const double neighbour : {0.0, 0.5, 1.0, 1e9}) {
+      const Stumpff<Lanes> c(lanes_of<Lanes>([&](int k) { return k == 0 ? angle : neighbour; }));
+      EXPECT_EQ(c.c0[0], alone.c0[0]);
+      EXPECT_EQ(c.c1[0], alone.c1[0]);
+      EXPECT_EQ(c.c2[0], alone.c2[0]);
+      EXPECT_EQ(c.c3[0], alone.c3[0]);
+    }
+  }
+}
+
 TYPED_TEST(TurnOf, PassesThroughZeroRateWithoutAStep) {
   using Scalar = TypeParam;
-  // Neighbouring rates, across every threshold at which the formulas change.
-  for (const double threshold : {1e-12, 0.02, 0.3})
+  // Neighbouring rates, across the threshold at which the formulas change, too.
+  for (const double threshold : {1e-12, 0.02, 0.8})
     for (const double sign : {-1.0, 1.0}) {
       const double rate = sign * threshold / 2.0;  // the angle of a step of 2 s
       const Turn<Scalar> below(Scalar(rate * (1 - 1e-6)), Scalar(2));
@@ -99,8 +135,8 @@ TEST(CoordinatedTurn, PiecewiseNoiseIsThePapersWhateverTheTurn) {
 }
 
 // The rates include zero, both sides of the thresholds of the series, and a half turn a step.
-constexpr double kRates[] = {0.0,    1e-300,  1e-13, 1e-7,  -1e-7, 1e-4, 7.9e-3,
-                             8.1e-3, -8.1e-3, 0.05,  0.119, 0.121, -0.3, 1.2};
+constexpr double kRates[] = {0.0,    1e-300,  1e-13, 1e-7,  -1e-7, 1e-4, 7.9e-2,
+                             8.1e-2, -8.1e-2, 0.05,  0.319, 0.321, -0.3, 1.2};
 
 TEST(CoordinatedTurnRate, JacobianIsTheDerivative) {
   for (const CoordinatedTurnRate& motion :

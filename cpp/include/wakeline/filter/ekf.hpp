@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <new>
 #include <type_traits>
 
 #include "wakeline/filter/belief.hpp"
@@ -116,8 +115,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
     const Vec<Scalar, kStates>& x = belief.mean;
     if constexpr (LinearMotionModel<Motion>) {
       prepare(dt_s);
-      const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.matrices.f};
-      return move(forward, f * x, f, belief.covariance, kept_.matrices.q);
+      const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.f};
+      return move(forward, f * x, f, belief.covariance, kept_.q);
     } else {
       Mat<Scalar, kStates, kStates> jacobian = this->motion_.jacobian(x, dt_s);
       return move(forward, this->motion_.transition(x, dt_s),
@@ -210,18 +209,22 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return p;
   }
 
-  [[gnu::cold, gnu::noinline]] void keep(Scalar dt_s) noexcept {
+  /// Of F what its pattern leaves open, of Q the lower triangle: nothing else is read.
+  [[gnu::noinline, gnu::flatten]] void keep(Scalar dt_s) noexcept {
+    StepMatrices<kStates, Scalar> matrices = step_matrices(this->motion_, dt_s);
+    unroll<kStates * kStates>([&](auto k) {
+      constexpr int i = k.value % kStates, j = k.value / kStates;
+      if constexpr (kPatternOf<Motion>.element[i][j] == 'x') kept_.f(i, j) = matrices.f(i, j);
+    });
+    unroll_lower<kStates>([&](int i, int j) { kept_.q(i, j) = matrices.q(i, j); });
     kept_.step_s = dt_s;
-    ::new (&kept_.matrices) Matrices(step_matrices(this->motion_, dt_s));  // made where they stay
   }
-
-  using Matrices = StepMatrices<kStates, Scalar>;
 
   /// F and Q of the last step.
   struct Transition {
     Scalar step_s = Scalar(-1);
-    Matrices matrices = {Mat<Scalar, kStates, kStates>::Zero(),
-                         Mat<Scalar, kStates, kStates>::Zero()};
+    Mat<Scalar, kStates, kStates> f = Mat<Scalar, kStates, kStates>::Zero();
+    Mat<Scalar, kStates, kStates> q = Mat<Scalar, kStates, kStates>::Zero();
   };
   struct Nothing {};
   [[no_unique_address]] std::conditional_t<LinearMotionModel<Motion>, Transition, Nothing> kept_;

@@ -2,37 +2,101 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "wakeline/core/scalar.hpp"
 #include "wakeline/core/types.hpp"
+#include "wakeline/core/unroll.hpp"
 #include "wakeline/motion/process_noise.hpp"
 
 namespace wakeline {
 
-/// The trigonometry of a steady turn by theta = omega dt, with exact limits at zero rate.
-/// Source: Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
+/// Stumpff's functions of an angle: c0 is its cosine, c1 = sin(theta) / theta,
+/// c2 = (1 - cos(theta)) / theta² and c3 = (theta - sin(theta)) / theta³, of which zero is no
+/// special case. Source: Battin, An Introduction to the Mathematics and Methods of
+/// Astrodynamics, 4.5.
+template <class Scalar>
+struct Stumpff {
+  Scalar c0, c1, c2, c3;
+
+  [[gnu::always_inline]] explicit Stumpff(Scalar angle) noexcept {
+    const Scalar square = angle * angle;
+    c2 = series<2>(square);
+    c3 = series<3>(square);
+    c1 = 1 - square * c3;
+    c0 = 1 - square * c2;
+    if (const auto wide = square > Scalar(kWidest); any(wide)) [[unlikely]] {
+      const std::array closed = closed_forms(select(wide, angle, Scalar(1)));
+      c0 = select(wide, closed[0], c0);
+      c1 = select(wide, closed[1], c1);
+      c2 = select(wide, closed[2], c2);
+      c3 = select(wide, closed[3], c3);
+    }
+  }
+
+ private:
+  /// The sum over n of (-square)^n / (2 n + First)!, to the last bit up to kWidest: terms of even
+  /// and of odd n side by side.
+  template <int First>
+  [[gnu::always_inline]] static Scalar series(Scalar square) noexcept {
+    constexpr std::array kTerm = inverse_factorials<First>();
+    const Scalar fourth = square * square;
+    Scalar even = Scalar(kTerm[kTerms - 2]), odd = Scalar(kTerm[kTerms - 1]);
+    unroll<kTerms / 2 - 1>([&](auto n) {
+      constexpr std::size_t k = kTerms - 4 - 2 * n.value;
+      even = Scalar(kTerm[k]) + fourth * even;
+      odd = Scalar(kTerm[k + 1]) + fourth * odd;
+    });
+    return even - square * odd;
+  }
+
+  /// 1 / First!, 1 / (First + 2)!, ...
+  template <int First>
+  static constexpr auto inverse_factorials() noexcept {
+    std::array<RealOf<Scalar>, kTerms> inverse{};
+    double factorial = 1.0;
+    for (int n = 2; n < First + 2 * kTerms; ++n) {
+      factorial *= n;
+      if (n >= First && (n - First) % 2 == 0)
+        inverse[std::size_t((n - First) / 2)] = RealOf<Scalar>(1.0 / factorial);
+    }
+    return inverse;
+  }
+
+  [[gnu::cold, gnu::noinline]] static std::array<Scalar, 4> closed_forms(Scalar angle) noexcept {
+    using std::cos, std::sin;
+    const Scalar half_sine = sin(angle / 2);
+    const Scalar versine = 2 * half_sine * half_sine;
+    const Scalar sinc = 2 * half_sine * Scalar(cos(angle / 2)) / angle;
+    return {1 - versine, sinc, versine / angle / angle, (1 - sinc) / angle / angle};
+  }
+
+  static constexpr int kTerms = sizeof(RealOf<Scalar>) > 4 ? 8 : 6;  ///< an even number
+  static constexpr double kWidest = 0.64;                            ///< of the squares
+};
+
+/// The trigonometry of a steady turn by theta = omega dt. Source: Bar-Shalom, Li, Kirubarajan,
+/// 11.7.1; paper A, equation (3).
 template <class Scalar>
 struct Turn {
-  Scalar angle;          ///< theta
-  Scalar sine;           ///< sin theta
-  Scalar cosine;         ///< cos theta
-  Scalar along_s;        ///< sin(theta) / omega, s: how far a unit speed goes ahead
-  Scalar across_s;       ///< (1 - cos(theta)) / omega, s: how far it goes to starboard
-  Scalar inverse_angle;  ///< 1 / theta; of no turn 1
+  Scalar angle;  ///< theta
+  Stumpff<Scalar> c;
+  Scalar sine;      ///< sin theta
+  Scalar cosine;    ///< cos theta
+  Scalar along_s;   ///< sin(theta) / omega, s: how far a unit speed goes ahead
+  Scalar across_s;  ///< (1 - cos(theta)) / omega, s: how far it goes to starboard
   Scalar dt_s;
 
-  Turn(Scalar turn_rate_rad_s, Scalar dt) noexcept : angle(turn_rate_rad_s * dt), dt_s(dt) {
-    using std::abs, std::cos, std::sin;
-    const Scalar half_sine = sin(angle / 2);
-    const Scalar half_cosine = cos(angle / 2);
-    sine = 2 * half_sine * half_cosine;
-    cosine = 1 - 2 * half_sine * half_sine;
-    const auto straight = abs(angle) < Scalar(kTiny);
-    inverse_angle = reciprocal(select(straight, Scalar(1), angle));
-    along_s = select(straight, dt, sine * inverse_angle * dt);
-    across_s = dt * select(straight, angle / 2, 2 * half_sine * half_sine * inverse_angle);
-  }
+  [[gnu::always_inline]] Turn(Scalar turn_rate_rad_s, Scalar dt) noexcept
+      : angle(turn_rate_rad_s * dt),
+        c(angle),
+        sine(angle * c.c1),
+        cosine(c.c0),
+        along_s(dt * c.c1),
+        across_s(dt * angle * c.c2),
+        dt_s(dt) {}
 
   /// F of `[x, vx, y, vy]`.
   Mat<Scalar, 4, 4> matrix() const noexcept {
@@ -48,23 +112,13 @@ struct Turn {
 
   /// d along / d omega and d across / d omega, s².
   Vec<Scalar, 2> rate_derivatives() const noexcept {
-    using std::abs;
-    const Scalar a2 = angle * angle;
-    const auto nearly_straight = abs(angle) < Scalar(kSeries);
-    const Scalar divisor = select(nearly_straight, Scalar(1), angle);
-    const Scalar along = select(nearly_straight, -angle * (1 - a2 / 10 * (1 - a2 / 28)) / 3,
-                                (cosine - along_s / dt_s) / divisor);
-    const Scalar across = select(nearly_straight, (1 - a2 / 4 * (1 - a2 / 18 * (1 - a2 / 40))) / 2,
-                                 (sine - across_s / dt_s) / divisor);
-    return dt_s * dt_s * Vec<Scalar, 2>(along, across);
+    return dt_s * dt_s * Vec<Scalar, 2>(angle * (c.c3 - c.c2), c.c1 - c.c2);
   }
 
   /// Q of `[x, vx, y, vy]` under the piecewise policy, whatever the turn.
   static Mat<Scalar, 4, 4> piecewise_noise(const ProcessNoise& policy, Scalar dt_s) noexcept {
-    Mat<Scalar, 4, 4> q = Mat<Scalar, 4, 4>::Zero();
-    q.template topLeftCorner<2, 2>() = q.template bottomRightCorner<2, 2>() =
-        policy.of_velocity_axis(dt_s);
-    return q;
+    const Mat<Scalar, 2, 2> axis = policy.of_velocity_axis(dt_s);
+    return noise_of(axis(0, 0), axis(1, 0), axis(1, 1), Scalar(0));
   }
 
   /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn. White
@@ -86,21 +140,15 @@ struct Turn {
  private:
   /// That of white acceleration.
   Mat<Scalar, 4, 4> white_noise(Scalar density) const noexcept {
-    using std::abs;
-    Mat<Scalar, 4, 4> q;
-    const Scalar a2 = angle * angle;
-    const auto nearly_straight = abs(angle) < Scalar(kSeries);
-    // 2 (theta - sin theta) / theta³
-    const Scalar spread =
-        select(nearly_straight, Scalar(1.0 / 3) - a2 * (Scalar(1.0 / 60) - a2 * Scalar(1.0 / 2520)),
-               2 * (angle - sine) * inverse_angle * inverse_angle * inverse_angle);
-    // dt (1 - cos theta) / theta²
-    const auto straight = abs(angle) < Scalar(kTiny);
-    const Scalar coupling_s = select(straight, dt_s / 2, across_s * inverse_angle);
     const Scalar velocity = density * dt_s;
-    const Scalar position = velocity * dt_s * dt_s * spread;
-    const Scalar ahead = velocity * coupling_s;
-    const Scalar aside = velocity * dt_s * angle * spread / 2;
+    return noise_of(velocity * dt_s * dt_s * (2 * c.c3), velocity * dt_s * c.c2, velocity,
+                    velocity * dt_s * angle * c.c3);
+  }
+
+  /// The same in every direction; `aside` is what a turn brings from one axis to the other.
+  static Mat<Scalar, 4, 4> noise_of(Scalar position, Scalar ahead, Scalar velocity,
+                                    Scalar aside) noexcept {
+    Mat<Scalar, 4, 4> q;
     // clang-format off
     q << position,  ahead,    0,        aside,
          ahead,     velocity, -aside,   0,
@@ -109,9 +157,6 @@ struct Turn {
     // clang-format on
     return q;
   }
-
-  static constexpr double kTiny = 1e-12;
-  static constexpr double kSeries = sizeof(RealOf<Scalar>) > 4 ? 0.02 : 0.3;
 };
 
 }  // namespace wakeline

@@ -69,10 +69,11 @@ struct AdaptiveGrid {
     wanted[0] = clipped(next - spacing(centre - left, mu_left, left_leads));
     wanted[1] = clipped(next);
     wanted[2] = clipped(next + spacing(right - centre, mu_right, right_leads));
-    Number farthest = 0.0;
-    for (int k = 0; k < 3; ++k) farthest = at_least(Number(abs(wanted[k] - rates[k])), farthest);
-    const auto stays = farthest < Number(least_move_rad_s);
-    for (int k = 0; k < 3; ++k) wanted[k] = select(stays, rates[k], wanted[k]);
+    const auto is_far = [&](int k) {
+      return Number(abs(wanted[k] - rates[k])) >= Number(least_move_rad_s);
+    };
+    const auto moves = is_far(0) || is_far(1) || is_far(2);
+    for (int k = 0; k < 3; ++k) wanted[k] = select(moves, wanted[k], rates[k]);
     return wanted;
   }
 

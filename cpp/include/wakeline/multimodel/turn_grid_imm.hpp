@@ -98,7 +98,8 @@ class TurnGridImm : public Imm<BankType> {
   void set_rates(const Rates& rates) noexcept {
     using std::isnan;
     if constexpr (requires { this->bank_.set_active(0, true); }) {
-      for (int k = 0; k < this->bank_.size(); ++k) {
+      const bool some_rest = any(isnan(rates.sum() + rates_.sum()));
+      for (int k = 0; some_rest && k < this->bank_.size(); ++k) {
         const MaskOf<Scalar> rests = isnan(rates[k]), rested = isnan(rates_[k]);
         if (none((rests && !rested) || (rested && !rests))) continue;
         this->bank_.set_active(k, !rests);
