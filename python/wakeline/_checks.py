@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+MOST_RUNS = 10**7
+
 
 def whole_number(name: str, value: Any, least: int) -> None:
     """ValueError unless the argument of that name is an integer, `least` or more."""
@@ -17,6 +19,8 @@ def whole_number(name: str, value: Any, least: int) -> None:
 def run_numbers(runs: Any, seed: Any, threads: Any) -> None:
     """ValueError unless runs can be done with these arguments; threads may be None."""
     whole_number("runs", runs, 1)
+    if runs > MOST_RUNS:
+        raise ValueError(f"runs must be at most {MOST_RUNS}, got {runs}")
     whole_number("seed", seed, 0)
     if threads is not None:
         whole_number("threads", threads, 1)

@@ -377,6 +377,7 @@ def test_a_study_that_makes_no_sense(capsys, arguments, wanted):
         ({"runs": 0}, "runs must be a whole number, at least 1, got 0"),
         ({"runs": -3}, "runs must be a whole number, at least 1, got -3"),
         ({"runs": 2.5}, r"runs must be a whole number, at least 1, got 2\.5"),
+        ({"runs": 10**20}, "runs must be at most 10000000, got 100000000000000000000"),
         ({"runs": "3"}, "runs must be a whole number, at least 1, got '3'"),
         ({"seed": -1}, "seed must be a whole number, at least 0, got -1"),
         ({"seed": None}, "seed must be a whole number, at least 0, got None"),
