@@ -26,7 +26,11 @@ class Ekf : public Belief<MotionType, ScalarType> {
   using typename Base::Motion;
   using typename Base::Scalar;
 
-  explicit Ekf(const MotionType& motion) : Base(motion) {}
+  /// Throws `std::invalid_argument` when a parameter of the motion makes no sense.
+  explicit Ekf(const MotionType& motion) : Base(motion) {
+    if constexpr (requires { Motion::kPattern; } && LinearMotionModel<Motion>)
+      require_pattern<Scalar>(motion);
+  }
 
   /// x = f(x), P = F P Fᵀ + Q.
   [[gnu::flatten]] StatusOf<Scalar> predict(Scalar dt_s) noexcept {
@@ -37,13 +41,6 @@ class Ekf : public Belief<MotionType, ScalarType> {
   /// The same under a known acceleration, [north, east]; see `Control`.
   StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     return Control::predict(*this, dt_s, acceleration_mps2);
-  }
-
-  /// Works out F and Q of a linear model, which a prediction by this step, unchecked here, then
-  /// finds.
-  void prepare(Scalar dt_s) noexcept requires(LinearMotionModel<Motion>) {
-    if (any(dt_s != kept_.step_s)) [[unlikely]]
-      keep(dt_s);
   }
 
   /// Replaces the motion model, unchecked; the belief stays.
@@ -114,7 +111,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
     if (none(ok(forward))) return forward;
     const Vec<Scalar, kStates>& x = belief.mean;
     if constexpr (LinearMotionModel<Motion>) {
-      prepare(dt_s);
+      if (any(dt_s != kept_.step_s)) [[unlikely]]
+        keep(dt_s);
       const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.f};
       return move(forward, f * x, f, belief.covariance, kept_.q);
     } else {
@@ -209,7 +207,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return p;
   }
 
-  /// Of F what its pattern leaves open, of Q the lower triangle: nothing else is read.
+  /// Works out F and Q of a linear model: of F what its pattern leaves open, of Q the lower
+  /// triangle, as nothing else counts.
   [[gnu::noinline, gnu::flatten]] void keep(Scalar dt_s) noexcept {
     StepMatrices<kStates, Scalar> matrices = step_matrices(this->motion_, dt_s);
     unroll<kStates * kStates>([&](auto k) {

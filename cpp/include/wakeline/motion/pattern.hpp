@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <sstream>
+
+#include "wakeline/core/require.hpp"
 #include "wakeline/motion/concept.hpp"
 
 namespace wakeline {
@@ -15,6 +18,14 @@ struct Pattern {
   constexpr Pattern(const char (&rows)[N * (N + 1)]) {
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) element[i][j] = rows[i * (N + 1) + j];
+  }
+
+  /// Whether nothing but those three is in it.
+  [[nodiscard]] constexpr bool is_valid() const noexcept {
+    for (const auto& row : element)
+      for (const char one : row)
+        if (one != '0' && one != '1' && one != 'x') return false;
+    return true;
   }
 
   /// Nothing is known.
@@ -31,9 +42,37 @@ template <class Motion>
 requires requires { Motion::kPattern; }
 inline constexpr Pattern<kStatesOf<Motion>> kPatternOf<Motion> = Motion::kPattern;
 
+[[noreturn]] inline void refuse_pattern(int row, int column, double wanted, double got) {
+  std::ostringstream message;
+  message.precision(kMessageDigits);
+  message << "the kPattern of this motion model must be true: it says " << wanted << " of element ("
+          << row << ", " << column << ") of the matrix, which for a step of 1 s is " << got;
+  refuse(message.str());
+}
+
+/// Throws `std::invalid_argument` unless the matrix of a linear model for a step of 1 s is as its
+/// pattern says: one that a model has inherited may not be.
+template <class Scalar, class Motion>
+void require_pattern(const Motion& motion) {
+  constexpr int kN = kStatesOf<Motion>;
+  const Mat<Scalar, kN, kN> f = motion.template matrix<Scalar>(Scalar(1));
+  for (int i = 0; i < kN; ++i)
+    for (int j = 0; j < kN; ++j) {
+      const char said = kPatternOf<Motion>.element[i][j];
+      const double wanted = said == '1';
+      if (said != 'x' && any(f(i, j) != Scalar(wanted)))
+        refuse_pattern(i, j, wanted, double(lane(f(i, j), 0)));
+    }
+}
+
 /// Products with a transition matrix, without the terms that its pattern says are zero.
 template <auto kPattern, class Scalar, int N>
 struct Patterned {
+  static_assert(
+      kPattern.is_valid(),
+      "wakeline: the kPattern of this motion model holds something beside 0, 1 and x; see "
+      "cpp/docs/concepts.md");
+
   const Mat<Scalar, N, N>& f;
 
   /// F v.

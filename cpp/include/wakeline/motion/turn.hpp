@@ -37,8 +37,8 @@ struct Stumpff {
   }
 
  private:
-  /// The sum over n of (-square)^n / (2 n + First)!, to the last bit up to kWidest: terms of even
-  /// and of odd n side by side.
+  /// The sum over n of (-square)^n / (2 n + First)!, to the last bit or two up to kWidest: terms of
+  /// even and of odd n side by side.
   template <int First>
   [[gnu::always_inline]] static Scalar series(Scalar square) noexcept {
     constexpr std::array kTerm = inverse_factorials<First>();

@@ -77,13 +77,7 @@ class TurnGridImm : public Imm<BankType> {
     const MaskOf<Scalar> moves = seen_ && ok(check_time_step(dt_s)) && this->started_;
     const Rates rates = rates_;
     const Probability probability = this->probability_;
-    if (any(moves)) {
-      move(moves);
-      // One model after the other, as one alone waits for its own trigonometry.
-      this->bank_.for_each([&](int, auto& filter, auto&) {
-        if constexpr (requires { filter.prepare(dt_s); }) filter.prepare(dt_s);
-      });
-    }
+    if (any(moves)) move(moves);
     const StatusOf<Scalar> status = Base::mix_and_move(dt_s, acceleration_mps2...);
     seen_ = seen_ && !ok(status);
     if (const auto failed = moves && !ok(status); any(failed)) [[unlikely]] {

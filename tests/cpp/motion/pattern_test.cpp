@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/motion/pattern.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "support/matrix_assert.hpp"
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/motion/constant_velocity.hpp"
+
+namespace wakeline {
+namespace {
+
+using test::matrices_near;
+
+/// Velocities that die away, by a matrix of its own under a pattern that is not.
+struct Damped : ConstantVelocity {
+  template <class Scalar>
+  Mat<Scalar, 4, 4> matrix(Scalar dt_s) const noexcept {
+    Mat<Scalar, 4, 4> f = ConstantVelocity::matrix(dt_s);
+    f(1, 1) = f(3, 3) = Scalar(0.5);
+    return f;
+  }
+};
+
+/// The same under its own.
+struct DampedAsItSays : Damped {
+  static constexpr Pattern<4> kPattern{"1x00 0x00 001x 000x"};
+};
+
+/// The same of which nothing is told.
+struct DampedUntold : Damped {
+  static constexpr Pattern<4> kPattern{};
+};
+
+TEST(Pattern, ThatIsNotTrueIsRefusedWithItsElement) {
+  try {
+    const Ekf filter{Damped{}};
+    FAIL() << "taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("it says 1 of element (1, 1) of the matrix, which for a "
+                        "step of 1 s is 0.5"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Pattern, LeavesNothingOutThatCounts) {
+  Ekf told{DampedAsItSays{}};
+  Ekf untold{DampedUntold{}};
+  Gaussian<4, double> belief;
+  belief.mean << 100, 5, 200, -3;
+  belief.covariance = Vec<double, 4>(25, 4, 36, 9).asDiagonal();
+  ASSERT_TRUE(ok(told.start(belief)));
+  ASSERT_TRUE(ok(untold.start(belief)));
+  for (const double dt_s : {1.0, 2.0, 2.0, 0.5}) {
+    const Mat<double, 4, 4> f = Damped{}.matrix(dt_s), q = Damped{}.process_noise(dt_s);
+    belief = {f * belief.mean, f * belief.covariance * f.transpose() + q};
+    ASSERT_TRUE(ok(told.predict(dt_s)));
+    ASSERT_TRUE(ok(untold.predict(dt_s)));
+    EXPECT_TRUE(matrices_near(told.estimate().mean, belief.mean, {0, 1e-14}));
+    EXPECT_TRUE(matrices_near(untold.estimate().mean, belief.mean, {0, 1e-14}));
+    EXPECT_TRUE(matrices_near(told.estimate().covariance, belief.covariance, {1e-13, 1e-13}));
+    EXPECT_TRUE(matrices_near(untold.estimate().covariance, belief.covariance, {1e-13, 1e-13}));
+  }
+}
+
+}  // namespace
+}  // namespace wakeline
