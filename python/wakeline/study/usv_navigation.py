@@ -388,7 +388,7 @@ def _pictures(done: Mapping[tuple[str, str], Outcome], seed: int) -> tuple[Pictu
         ),
         Picture(
             "usv-errors",
-            "RMSE, and the least of any filter that does not know the biases",
+            "RMSE, and the bound of ukf8",
             tuple(
                 partial(_draw_errors, mission=mission, outcomes=outcomes, axis=axis)
                 for axis in range(len(_UNITS))
