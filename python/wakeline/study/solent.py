@@ -57,7 +57,7 @@ _STRAIGHT_S, _TURN_S = 200.0, 20.0
 _LEAST_S = 6.0  # of a history's segments; the times beyond it are those of its chain
 _THREE_DEG_S = (0, 2, -2)
 _WANDERING_M2S3, _COURSE_PSD_RAD2S = 0.001, 0.0015
-_STRAIGHTS = (  # white acceleration in m²/s³, wander of the course in rad²/s, mean time in s
+_STRAIGHTS = (  # white acceleration m²/s³, wander of the course rad²/s, mean time s, as above
     (5e-5, 1e-5, 150.0),
     (0.001, 0.001, 100.0),
     (0.05, 0.003, 70.0),
@@ -164,7 +164,8 @@ def estimators() -> dict[str, Any]:
 
     Models of one filter have the defaults of the library. Those of turns have a white acceleration
     of 0.06 m²/s³; a straight goes on for 200 s and a turn for 20 s in the mean where a model is
-    either of them for good. What else there is stands at its default.
+    either of them for good. What else there is stands at its default, but for the noises and times
+    of `mode_history_rates` and `mode_history_vessels`.
     """
     return {name: build() for name, build in _TABLE.items()}
 
