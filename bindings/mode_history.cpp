@@ -329,6 +329,8 @@ max_hypotheses, max_branches, min_segment_s, merge_distance, sibling_distance, s
 
 Raises
 ------
+TypeError
+    When `filters` is no sequence, or one of them is no filter.
 ValueError
     When the filters are not alike, or a parameter makes no sense.)");
       },

@@ -749,6 +749,8 @@ class ModeHistory:
 
         Raises
         ------
+        TypeError
+            When `filters` is no sequence, or one of them is no filter.
         ValueError
             When the filters are not alike, or a parameter makes no sense.
         """
