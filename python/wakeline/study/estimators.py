@@ -16,13 +16,16 @@ def turn_filter(rate_deg_s: float, noise: Any) -> wl.Ekf:
     return wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=np.deg2rad(rate_deg_s), noise=noise))
 
 
-def learning_filter(noise: Any, *, course_psd_rad2s: float = 0.0) -> wl.Ekf:
+def learning_filter(
+    noise: Any, rate_deg_s: float = 0.0, *, std_deg_s: float = 0.2, course_psd_rad2s: float = 0.0
+) -> wl.Ekf:
     """The filter of a turn whose rate is guessed, then learnt, and does not change."""
     return wl.Ekf(
         wl.CoordinatedTurnRate(
             noise=noise,
             turn_rate_psd_rad2s3=0.0,
-            prior_turn_rate_std_rad_s=np.deg2rad(0.2),
+            prior_turn_rate_rad_s=np.deg2rad(rate_deg_s),
+            prior_turn_rate_std_rad_s=np.deg2rad(std_deg_s),
             course_psd_rad2s=course_psd_rad2s,
         )
     )

@@ -62,7 +62,7 @@ _STRAIGHTS = (  # white acceleration m²/s³, wander of the course rad²/s, mean
     (0.001, 0.001, 100.0),
     (0.05, 0.003, 70.0),
 )
-_TURNS = (1e-4, 5e-4, 6.0)
+_TURNS = (1e-4, 5e-4, 6.0)  # of the same
 _TURN_RATES_DEG_S, _TURN_STD_DEG_S, _NO_TURN_DEG_S = (-4, -2, 2, 4), 0.2, 0.01
 _TOLD = wl.VesselModels(
     cruising_psd_m2s3=4e-4,
@@ -229,28 +229,19 @@ def _histories(filter: wl.Ekf) -> wl.ModeHistory:
 
 def _vessel_histories() -> wl.ModeHistory:
     """Straights of three restlessnesses, and turns whose rates are guessed, then learnt."""
-    straights = [_kept(psd, course, 0.0, _NO_TURN_DEG_S) for psd, course, _ in _STRAIGHTS]
-    turns = [_kept(*_TURNS[:2], rate, _TURN_STD_DEG_S) for rate in _TURN_RATES_DEG_S]
-    return wl.ModeHistory.of(
-        straights + turns,
-        wl.ModeChain.from_sojourn_s(
-            [mean_s for *_, mean_s in _STRAIGHTS] + [_TURNS[2]] * len(turns)
-        ),
-        min_segment_s=_LEAST_S,
-    )
-
-
-def _kept(psd_m2s3: float, course_psd_rad2s: float, rate_deg_s: float, std_deg_s: float) -> wl.Ekf:
-    """The filter of a rate that is kept once it is known."""
-    return wl.Ekf(
-        wl.CoordinatedTurnRate(
-            noise=WhiteAcceleration(psd_m2s3=psd_m2s3),
-            course_psd_rad2s=course_psd_rad2s,
-            turn_rate_psd_rad2s3=0.0,
-            prior_turn_rate_rad_s=np.deg2rad(rate_deg_s),
-            prior_turn_rate_std_rad_s=np.deg2rad(std_deg_s),
+    modes = [(*straight, 0.0, _NO_TURN_DEG_S) for straight in _STRAIGHTS]
+    modes += [(*_TURNS, rate_deg_s, _TURN_STD_DEG_S) for rate_deg_s in _TURN_RATES_DEG_S]
+    filters = [
+        learning_filter(
+            WhiteAcceleration(psd_m2s3=psd),
+            rate_deg_s,
+            std_deg_s=std_deg_s,
+            course_psd_rad2s=course_psd,
         )
-    )
+        for psd, course_psd, _, rate_deg_s, std_deg_s in modes
+    ]
+    chain = wl.ModeChain.from_sojourn_s([mean_s for _, _, mean_s, *_ in modes])
+    return wl.ModeHistory.of(filters, chain, min_segment_s=_LEAST_S)
 
 
 _TABLE: dict[str, Callable[[], Any]] = {
