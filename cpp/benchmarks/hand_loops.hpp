@@ -147,6 +147,8 @@ class HandImm {
 
   explicit HandImm(const Gaussian<4, Scalar>& start)
       : probability(Vec<Scalar, K>::Constant(Scalar(1) / K)),
+        mean(start.mean),
+        covariance(start.covariance),
         chain_(transition<K>().template cast<Scalar>()) {
     for (int j = 0; j < K; ++j) {
       f_[j] = turning(j).matrix(Scalar(kStep_s));
