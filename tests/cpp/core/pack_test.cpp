@@ -231,6 +231,18 @@ TYPED_TEST(PackOf, SumAndExtremesAreOfAllLanes) {
   }
 }
 
+TYPED_TEST(PackOf, MasksGoToBitsAndBack) {
+  constexpr int kLanes = kLanesOf<TypeParam>;
+  for (unsigned bits = 0; bits < 1u << kLanes; ++bits) {
+    const auto mask = mask_of_bits<TypeParam>(bits);
+    EXPECT_EQ(bits_of(mask), bits);
+    for (int k = 0; k < kLanes; ++k)
+      EXPECT_EQ(lane(select(mask, TypeParam(1), TypeParam(0)), k) == 1, (bits >> k & 1u) != 0);
+  }
+  EXPECT_TRUE(mask_of_bits<double>(1));
+  EXPECT_FALSE(mask_of_bits<double>(0));
+}
+
 TYPED_TEST(PackOf, RowsBecomeColumns) {
   using Real = RealOf<TypeParam>;
   constexpr int kLanes = kLanesOf<TypeParam>;

@@ -60,6 +60,13 @@ class PackMask {
   // NOLINTNEXTLINE(google-explicit-constructor): a truth about all lanes.
   PackMask(bool everywhere) noexcept : raw(Integer(everywhere ? -1 : 0) - Raw{}) {}
 
+  /// Lane k is bit k.
+  static PackMask of_bits(unsigned bits) noexcept {
+    Raw bit_of_lane;
+    for (int k = 0; k < Lanes; ++k) bit_of_lane[k] = Integer(1) << k;
+    return PackMask(Raw((bit_of_lane & Integer(bits)) != 0));
+  }
+
   [[nodiscard]] bool operator[](int lane) const noexcept { return raw[lane] != 0; }
   void set(int lane, bool truth) noexcept { raw[lane] = truth ? -1 : 0; }
 

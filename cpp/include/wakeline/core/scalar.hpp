@@ -135,6 +135,15 @@ constexpr bool any(bool mask) noexcept { return mask; }
 constexpr bool none(bool mask) noexcept { return !mask; }
 constexpr unsigned bits_of(bool mask) noexcept { return mask; }  ///< bit k is lane k
 
+/// The mask of a scalar whose lane k is bit k.
+template <class Scalar>
+MaskOf<Scalar> mask_of_bits(unsigned bits) noexcept {
+  if constexpr (kLanesOf<Scalar> == 1)
+    return bits != 0;
+  else
+    return MaskOf<Scalar>::of_bits(bits);
+}
+
 /// Writes a number, or as many as there are lanes in a row.
 template <class Scalar>
 void store(Scalar value, Scalar* to) noexcept {

@@ -13,7 +13,7 @@ namespace wakeline {
 struct HistoryTree {
   int max_hypotheses = 75;         ///< kept after an update; the number of modes or more
   int max_branches = 100;          ///< filtered in a scan: what was kept and the switches from it
-  double min_segment_s = 6.0;      ///< a mode that is younger does not end
+  double min_segment_s = 12.0;     ///< a mode that is younger does not end
   double merge_distance = 1.9;     ///< hypotheses of one mode that are nearer join: Mahalanobis, in
                                    ///< the covariance of the heavier one; 0 joins none
   double sibling_distance = 12.0;  ///< the same for those that came into the mode in one scan

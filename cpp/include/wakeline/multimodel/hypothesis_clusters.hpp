@@ -33,7 +33,9 @@ class HypothesisClusters {
                  kLeastWeight<Scalar>);
     for (std::size_t r = 0; r < all.size(); ++r) {
       const Lanes probability = load<Lanes>(all[r].probability.data());
-      free_[r] = select(probability > dropped, probability, Lanes(0));
+      const auto kept = probability > dropped;
+      weights_[r] = select(kept, probability, Lanes(0));
+      free_[r] = bits_of(kept);
     }
   }
 
@@ -45,12 +47,12 @@ class HypothesisClusters {
       for (std::size_t r = 0; r < rows.size(); ++r)
         factors_[r].compute(rows[r].beliefs().covariance);
     std::array<int, Rows::kCapacity> places;
-    const int candidates = weightiest_first<Lanes>(std::span(free_).subspan(begin, rows.size()),
+    const int candidates = weightiest_first<Lanes>(std::span(weights_).subspan(begin, rows.size()),
                                                    rows_.begin(mode), places);
     for (int k = 0; k < candidates; ++k) {
       const int place = places[static_cast<std::size_t>(k)];
-      if (lane(free_[static_cast<std::size_t>(Rows::row_number(place))], Rows::lane_of(place)) >
-          Scalar(0))
+      if ((free_[static_cast<std::size_t>(Rows::row_number(place))] >> Rows::lane_of(place) & 1u) !=
+          0)
         append_around(place, to);
     }
   }
@@ -78,8 +80,8 @@ class HypothesisClusters {
       row.set_belief(Rows::lane_of(next), own.belief(Rows::lane_of(place)));
   }
 
-  /// Takes the hypothesis of a place and what is like it out of what is free; `taken_` has their
-  /// probabilities then, else zeros. Returns how many they are.
+  /// Takes the hypothesis of a place and what is like it out of what is free; they are `taken_`
+  /// then. Returns how many they are.
   int take_alike(int place) noexcept {
     const auto own_lane = static_cast<std::size_t>(Rows::lane_of(place));
     const Row& own = rows_.row_of(place);
@@ -89,14 +91,17 @@ class HypothesisClusters {
     const bool joins = by_distance() && (bits_of(factors_[own_row].ok()) >> own_lane & 1u) != 0;
     int members = 0;
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      auto alike = lane_number_ == Lanes(r == own_row ? Scalar(own_lane) : Scalar(-1));
-      if (by_past())
-        alike = alike || same_past(own.modes[own_lane], rows[r]);
-      else if (joins)
-        alike = alike || near(own, own_lane, rows[r], factors_[own_row]);
-      taken_[r] = select(alike, free_[first + r], Lanes(0));
-      free_[first + r] = select(alike, Lanes(0), free_[first + r]);
-      members += std::popcount(bits_of(taken_[r] > Lanes(0)));
+      unsigned& free = free_[first + r];
+      unsigned alike = r == own_row ? 1u << own_lane : 0u;
+      if (free != alike) {
+        if (by_past())
+          alike |= free & bits_of(same_past(own.modes[own_lane], rows[r]));
+        else if (joins)
+          alike |= free & bits_of(near(own, own_lane, rows[r], factors_[own_row]));
+      }
+      taken_[r] = alike;
+      free &= ~alike;
+      members += std::popcount(alike);
     }
     return members;
   }
@@ -106,17 +111,19 @@ class HypothesisClusters {
     const Row& own = rows_.row_of(place);
     const auto own_lane = static_cast<std::size_t>(Rows::lane_of(place));
     const std::span<const Row> rows = rows_.of_mode(own.mode);
+    const auto first = static_cast<std::size_t>(rows_.begin(own.mode));
     constexpr int kSums = 1 + kStates + kStates * (kStates + 1) / 2;
     Lanes sums[kSums];
     unroll<kSums>([&](int k) { sums[k] = Lanes(0); });
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      if (none(taken_[r] > Lanes(0))) continue;
+      if (taken_[r] == 0) continue;
+      const Lanes weight = select(mask_of_bits<Lanes>(taken_[r]), weights_[first + r], Lanes(0));
       const Vec<Lanes, kStates> d = away(rows[r], own, own_lane);
-      sums[0] += taken_[r];
-      unroll<kStates>([&](int i) { sums[1 + i] += taken_[r] * d[i]; });
+      sums[0] += weight;
+      unroll<kStates>([&](int i) { sums[1 + i] += weight * d[i]; });
       int k = 1 + kStates;
       unroll_lower<kStates>([&](int i, int j) {
-        sums[k++] += taken_[r] * (rows[r].covariance_lanes(i, j) + d[i] * d[j]);
+        sums[k++] += weight * (rows[r].covariance_lanes(i, j) + d[i] * d[j]);
       });
     }
     alignas(Lanes) std::array<Scalar, kSums + kLanesOf<Lanes> - 1> sum;
@@ -167,10 +174,10 @@ class HypothesisClusters {
       Scalar(limits_.sibling_distance) * Scalar(limits_.sibling_distance);
   const Lanes squared_merge_distance_ =
       Scalar(limits_.merge_distance) * Scalar(limits_.merge_distance);
-  const Lanes lane_number_ = lanes_of<Lanes>([](int k) { return Scalar(k); });
-  std::array<Lanes, Rows::kMostRows> free_;  ///< probability of what is in no cluster yet, else 0
+  std::array<Lanes, Rows::kMostRows> weights_;  ///< probability of what is not left out, else 0
+  std::array<unsigned, Rows::kMostRows> free_;  ///< what is in no cluster yet, by lanes
   // Of the rows of one mode:
-  std::array<Lanes, Rows::kMostRows> taken_;  ///< probability of what is in the cluster, else 0
+  std::array<unsigned, Rows::kMostRows> taken_;  ///< what is in the cluster, by lanes
   std::array<Cholesky<kStates, Lanes>, Rows::kMostRows> factors_;  ///< of the covariances
 };
 

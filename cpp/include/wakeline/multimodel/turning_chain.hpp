@@ -9,9 +9,9 @@ namespace wakeline {
 
 /// How a vessel goes from one turn rate to another.
 struct TurnHabits {
-  double straight_sojourn_s = 55.0;      ///< mean time on a straight
-  double turn_sojourn_s = 75.0;          ///< mean time in a turn
-  double straighten_probability = 0.75;  ///< that a turn ends in a straight, not in another turn
+  double straight_sojourn_s = 40.0;      ///< mean time on a straight
+  double turn_sojourn_s = 70.0;          ///< mean time in a turn
+  double straighten_probability = 0.85;  ///< that a turn ends in a straight, not in another turn
 };
 
 /// The chain between the turn rates of a grid, in continuous time: a straight leads to a turn, a
