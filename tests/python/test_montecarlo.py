@@ -271,6 +271,54 @@ def test_who_stops_the_run_calls_the_others_off(monkeypatch, who):
     assert len(calls) < 30
 
 
+def refusing(scene, z, begun, from_call):
+    """Divides by zero from a call on."""
+    begun.append(len(z))
+    if len(begun) >= from_call:
+        raise ZeroDivisionError
+    return IMM(scene, z)
+
+
+def test_who_refuses_everything_does_so_before_the_others_have_done_their_work():
+    calls = []
+
+    def counted(scene, z):
+        calls.append(len(z))
+        return IMM(scene, z)
+
+    last = partial(refusing, begun=[], from_call=1)
+    with pytest.raises(ZeroDivisionError) as caught:
+        run([CASE, SELDOM], {"imm": counted, "last": last}, runs=2500, threads=1)
+    assert len(calls) < 50
+    assert not caught.value.result.outcomes
+
+
+def test_who_fails_late_takes_nothing_from_those_that_are_done(result, tmp_path):
+    late = partial(refusing, begun=[], from_call=3)
+    with pytest.raises(ZeroDivisionError) as caught:
+        run([CASE, SELDOM], {"imm": IMM, "late": late})
+    kept = caught.value.result
+    assert_same_bits(kept, SimpleNamespace(outcomes={("case", "imm"): result["case", "imm"]}))
+    kept.save(tmp_path / "kept.npz")
+    assert_same_bits(Result.load(tmp_path / "kept.npz"), kept)
+
+
+def test_who_stops_the_run_has_what_is_done(result):
+    def stop(done, total):
+        if done == 9:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        run([CASE, SELDOM], BOTH, progress=stop)
+    kept = caught.value.result
+    whole = {("case", name): result["case", name] for name in BOTH}
+    assert_same_bits(kept, SimpleNamespace(outcomes=whole))
+    assert list(kept.summary()) == ["case"]
+    with pytest.raises(KeyboardInterrupt) as caught:
+        run([CASE, SELDOM], BOTH, runs=25, progress=lambda done, _: stop(3 * done, 0))
+    assert list(caught.value.result.outcomes) == [("case", "imm"), ("case", "told")]
+
+
 # Figures ------------------------------------------------------------------------------------------
 
 
