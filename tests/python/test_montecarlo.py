@@ -1107,6 +1107,30 @@ def test_who_refuses_its_readings_is_named():
         run(CASE, {"imm": IMM, "line": nonlinear}, runs=1)
 
 
+def without_options(z):
+    raise AssertionError
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "message"),
+    [
+        ({"sensor": 3}, TypeError, "sensor must be RangeBearing.*, got int"),
+        ({"turn_rates_rad_s": "ab"}, ValueError, "could not convert string to float: 'ab'"),
+        ({"estimator": SimpleNamespace(run=without_options)}, TypeError, "unexpected keyword"),
+        ({"estimator": 3}, TypeError, "estimator must have run, or .* that gives what has, got 3"),
+        ({"estimator": lambda scene: None}, TypeError, "estimator must have run, .* got None"),
+        (
+            {"estimator": lambda scene: wl.Ekf(wl.Singer(maneuver_time_s=-scene.scans))},
+            ValueError,
+            "maneuver_time_s must be finite and positive, got -30",
+        ),
+    ],
+)
+def test_who_refuses_anything_is_named(change, error, message):
+    with pytest.raises(error, match=f"^candidate 'x' on 'case': .*{message}"):
+        run(CASE, {"imm": IMM, "x": dataclasses.replace(IMM, **change)}, runs=1)
+
+
 class Built:
     """An estimator that is built for a scenario."""
 
@@ -1136,6 +1160,9 @@ def test_a_sensor_may_be_given_or_built():
         ("nis", np.zeros(3), r"'x' must give nis \(R, T\) with R = 3 and T = \d+, got \(3,\)"),
         ("nis", np.zeros((3, 1)), r"must give nis \(R, T\) .*got \(3, 1\)"),
         ("nis", None, "'x' must give a result with nis, got SimpleNamespace without"),
+        ("nis", 1j * np.ones((3, 30)), "'x' must give nis of real numbers: got complex128"),
+        ("status", [["ok"] * 30] * 3, "'x' must give status of real numbers: could not convert"),
+        ("mean", [[1, 2], [3]], "'x' must give mean of real numbers: setting an array element"),
         ("status", np.zeros(()), r"must give status \(R, T\) .*got \(\)"),
         ("status", np.zeros(3), r"must give status \(R, T\) .*got \(3,\)"),
         ("mode_probability", np.zeros((3, 2)), r"must give mode_probability \(R, T, K\)"),
@@ -1153,6 +1180,22 @@ def test_what_a_candidate_gives_must_have_the_shapes_that_are_told(name, value, 
 
     with pytest.raises(ValueError, match=message):
         run(CASE, {"x": candidate}, runs=3)
+
+
+@pytest.mark.parametrize("whole_chunks", [True, False])
+def test_all_runs_must_have_the_same_models(whole_chunks):
+    def candidate(scene, z):
+        if not whole_chunks and len(z) > 1:
+            raise wl.FilterError("one by one")
+        found = IMM(scene, z)
+        given = {field: getattr(found, field) for field in ("mean", "covariance", "nis", "status")}
+        last = len(z) < 25 if whole_chunks else even(z)[0]
+        modes = found.mode_probability[..., : 1 if last else 3]
+        return SimpleNamespace(**given, mode_probability=modes)
+
+    wanted = r"'x' on 'case': mode_probability must have the same shape in all runs, got \(30, [13]"
+    with pytest.raises(ValueError, match=wanted):
+        run(CASE, {"x": candidate})
 
 
 def test_turn_rates_that_are_not_those_of_the_models():

@@ -21,7 +21,7 @@ from wakeline import _progress
 from wakeline._checks import run_numbers
 from wakeline.scenario import Scenario
 
-from .candidate import Candidate, told
+from .candidate import Candidate, named, told
 from .result import Outcome, Result
 from .sums import Chunk, Sums, sums_of
 
@@ -115,7 +115,10 @@ def run(
         for first in firsts
     ]
     chunks.sort(key=lambda chunk: chunk.first_run > 0)  # who refuses its input does so at once
-    texts = {(scenario.name, name): told(candidates[name], scenario) for scenario, name in pairs}
+    texts = {}
+    for scenario, name in pairs:
+        with named(name, scenario):
+            texts[scenario.name, name] = told(candidates[name], scenario)
     parameters = {
         "chunk_runs": CHUNK_RUNS,
         "lost_beyond_m": float(lost_beyond_m),
@@ -145,7 +148,8 @@ def _complete(
     totals: dict[tuple[str, str], Sums] = {}
     for chunk, sums in zip(chunks, done, strict=True):
         names = chunk.scenario.name, chunk.candidate_name
-        totals[names] = totals[names] + sums if names in totals else sums
+        with named(chunk.candidate_name, chunk.scenario):
+            totals[names] = totals[names] + sums if names in totals else sums
         if chunk.first_run == last:
             yield chunk.scenario, chunk.candidate_name, totals.pop(names)
 
