@@ -119,7 +119,8 @@ def clairvoyant(
 
     Without thrust and disturbance, of which it is not told, no candidate can beat it. It is told of
     the control. Where the rate or the control switches between two scans it moves in two pieces.
-    Bind options by ``functools.partial``.
+    On a recorded track, whose speed changes too, it goes astray without `noise`. Bind options by
+    ``functools.partial``.
 
     Parameters
     ----------
