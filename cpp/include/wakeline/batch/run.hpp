@@ -27,7 +27,7 @@ struct RunInput {
   const double* own_m = nullptr;              ///< (T, 2) north and east of own ship, or null
   const double* own_mps = nullptr;            ///< (T, 2) velocity of own ship, or null
   const double* acceleration_mps2 = nullptr;  ///< (T, 2) known acceleration, or null
-  const RadiusGate* gate = nullptr;           ///< a reading outside is missed; or null
+  const RadiusGate* gate = nullptr;           ///< a `PositionSensor`'s reading outside is missed; or null
 };
 
 /// Where the results of N states and K models go.
@@ -224,9 +224,10 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
       missed = missed && z[m] != z[m];
     }
     const Sensor seen = seen_from(sensor, in, scan);
-    if (in.gate != nullptr)
-      missed = missed || !in.gate->template contains<Scalar>(estimated_position(estimator),
-                                                             seen.position(z).mean);
+    if constexpr (PositionSensor<Sensor>)
+      if (in.gate != nullptr)
+        missed = missed || !in.gate->template contains<Scalar>(estimated_position(estimator),
+                                                               seen.position(z).mean);
     const Mask predicted = ok(status);
     Step<kM, Scalar> step = failed_step<kM, Scalar>(Status::kMissed);
     step.innovation.setConstant(kNaN);
