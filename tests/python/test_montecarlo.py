@@ -1081,6 +1081,7 @@ LOCKED = SimpleNamespace(run=print, lock=Lock())
         ({"threads": 0}, ValueError, "threads must be a whole number, at least 1, got 0"),
         ({"lost_beyond_m": 0.0}, ValueError, r"lost_beyond_m must be positive, got 0\.0"),
         ({"lost_beyond_m": np.nan}, ValueError, "lost_beyond_m must be positive, got nan"),
+        ({"lost_beyond_m": None}, ValueError, "lost_beyond_m must be positive, got None"),
         ({"client": 7, "threads": 2}, ValueError, "threads must be left out together with client"),
         ({"client": 7}, TypeError, "client must be a dask.distributed.Client"),
         ({"client": 7, "candidates": {"x": Candidate(LOCKED)}}, ValueError, "'x' cannot be sent"),

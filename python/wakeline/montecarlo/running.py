@@ -7,6 +7,7 @@ import pickle
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from numbers import Real
 from operator import methodcaller
 from typing import Any
 
@@ -181,8 +182,8 @@ def _check(
                 f"candidate {name!r} must be a Candidate or callable, got {type(candidate)}"
             )
     run_numbers(runs, seed, threads)
-    if not lost_beyond_m > 0:
-        raise ValueError(f"lost_beyond_m must be positive, got {lost_beyond_m}")
+    if not (isinstance(lost_beyond_m, Real) and lost_beyond_m > 0):
+        raise ValueError(f"lost_beyond_m must be positive, got {lost_beyond_m!r}")
     if client is not None and threads is not None:
         raise ValueError("threads must be left out together with client")
     if client is not None and not isinstance(client, ThreadPoolExecutor):
