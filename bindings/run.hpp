@@ -229,8 +229,9 @@ gate : RadiusGate, optional
 Returns
 -------
 RunResult
-    mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-    innovation (..., T, M), nis, log_likelihood and status (..., T).
+    mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+    status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+    of models that change theirs, else None.
 
 Raises
 ------

@@ -265,7 +265,7 @@ def test_scans_count_by_how_many_samples_they_have():
     assert np.isnan(metrics.share_inside(curve, 2, 0))
 
 
-@pytest.mark.parametrize("samples", [[50, 50], 10.5, np.nan, -3, [50, -1, 50]])
+@pytest.mark.parametrize("samples", [[50, 50], 10.5, np.nan, np.inf, -3, [50, -1, 50]])
 def test_samples_that_are_no_counts_are_refused_by_name(samples):
     with pytest.raises(
         ValueError, match=r"samples must be whole numbers, .* of shape \(\) or \(3,\)"

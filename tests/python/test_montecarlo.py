@@ -271,6 +271,54 @@ def test_who_stops_the_run_calls_the_others_off(monkeypatch, who):
     assert len(calls) < 30
 
 
+def refusing(scene, z, begun, from_call):
+    """Divides by zero from a call on."""
+    begun.append(len(z))
+    if len(begun) >= from_call:
+        raise ZeroDivisionError
+    return IMM(scene, z)
+
+
+def test_who_refuses_everything_does_so_before_the_others_have_done_their_work():
+    calls = []
+
+    def counted(scene, z):
+        calls.append(len(z))
+        return IMM(scene, z)
+
+    last = partial(refusing, begun=[], from_call=1)
+    with pytest.raises(ZeroDivisionError) as caught:
+        run([CASE, SELDOM], {"imm": counted, "last": last}, runs=2500, threads=1)
+    assert len(calls) < 50
+    assert not caught.value.result.outcomes
+
+
+def test_who_fails_late_takes_nothing_from_those_that_are_done(result, tmp_path):
+    late = partial(refusing, begun=[], from_call=3)
+    with pytest.raises(ZeroDivisionError) as caught:
+        run([CASE, SELDOM], {"imm": IMM, "late": late})
+    kept = caught.value.result
+    assert_same_bits(kept, SimpleNamespace(outcomes={("case", "imm"): result["case", "imm"]}))
+    kept.save(tmp_path / "kept.npz")
+    assert_same_bits(Result.load(tmp_path / "kept.npz"), kept)
+
+
+def test_who_stops_the_run_has_what_is_done(result):
+    def stop(done, total):
+        if done == 9:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        run([CASE, SELDOM], BOTH, progress=stop)
+    kept = caught.value.result
+    whole = {("case", name): result["case", name] for name in BOTH}
+    assert_same_bits(kept, SimpleNamespace(outcomes=whole))
+    assert list(kept.summary()) == ["case"]
+    with pytest.raises(KeyboardInterrupt) as caught:
+        run([CASE, SELDOM], BOTH, runs=25, progress=lambda done, _: stop(3 * done, 0))
+    assert list(caught.value.result.outcomes) == [("case", "imm"), ("case", "told")]
+
+
 # Figures ------------------------------------------------------------------------------------------
 
 
@@ -1033,6 +1081,7 @@ LOCKED = SimpleNamespace(run=print, lock=Lock())
         ({"threads": 0}, ValueError, "threads must be a whole number, at least 1, got 0"),
         ({"lost_beyond_m": 0.0}, ValueError, r"lost_beyond_m must be positive, got 0\.0"),
         ({"lost_beyond_m": np.nan}, ValueError, "lost_beyond_m must be positive, got nan"),
+        ({"lost_beyond_m": None}, ValueError, "lost_beyond_m must be positive, got None"),
         ({"client": 7, "threads": 2}, ValueError, "threads must be left out together with client"),
         ({"client": 7}, TypeError, "client must be a dask.distributed.Client"),
         ({"client": 7, "candidates": {"x": Candidate(LOCKED)}}, ValueError, "'x' cannot be sent"),
@@ -1057,6 +1106,30 @@ def test_who_refuses_its_readings_is_named():
     nonlinear = Candidate(wl.Kalman(wl.ConstantVelocity()), "polar")
     with pytest.raises(ValueError, match="candidate 'line' on 'case': sensor must be linear"):
         run(CASE, {"imm": IMM, "line": nonlinear}, runs=1)
+
+
+def without_options(z):
+    raise AssertionError
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "message"),
+    [
+        ({"sensor": 3}, TypeError, "sensor must be RangeBearing.*, got int"),
+        ({"turn_rates_rad_s": "ab"}, ValueError, "could not convert string to float: 'ab'"),
+        ({"estimator": SimpleNamespace(run=without_options)}, TypeError, "unexpected keyword"),
+        ({"estimator": 3}, TypeError, "estimator must have run, or .* that gives what has, got 3"),
+        ({"estimator": lambda scene: None}, TypeError, "estimator must have run, .* got None"),
+        (
+            {"estimator": lambda scene: wl.Ekf(wl.Singer(maneuver_time_s=-scene.scans))},
+            ValueError,
+            "maneuver_time_s must be finite and positive, got -30",
+        ),
+    ],
+)
+def test_who_refuses_anything_is_named(change, error, message):
+    with pytest.raises(error, match=f"^candidate 'x' on 'case': .*{message}"):
+        run(CASE, {"imm": IMM, "x": dataclasses.replace(IMM, **change)}, runs=1)
 
 
 class Built:
@@ -1088,6 +1161,9 @@ def test_a_sensor_may_be_given_or_built():
         ("nis", np.zeros(3), r"'x' must give nis \(R, T\) with R = 3 and T = \d+, got \(3,\)"),
         ("nis", np.zeros((3, 1)), r"must give nis \(R, T\) .*got \(3, 1\)"),
         ("nis", None, "'x' must give a result with nis, got SimpleNamespace without"),
+        ("nis", 1j * np.ones((3, 30)), "'x' must give nis of real numbers: got complex128"),
+        ("status", [["ok"] * 30] * 3, "'x' must give status of real numbers: could not convert"),
+        ("mean", [[1, 2], [3]], "'x' must give mean of real numbers: setting an array element"),
         ("status", np.zeros(()), r"must give status \(R, T\) .*got \(\)"),
         ("status", np.zeros(3), r"must give status \(R, T\) .*got \(3,\)"),
         ("mode_probability", np.zeros((3, 2)), r"must give mode_probability \(R, T, K\)"),
@@ -1105,6 +1181,22 @@ def test_what_a_candidate_gives_must_have_the_shapes_that_are_told(name, value, 
 
     with pytest.raises(ValueError, match=message):
         run(CASE, {"x": candidate}, runs=3)
+
+
+@pytest.mark.parametrize("whole_chunks", [True, False])
+def test_all_runs_must_have_the_same_models(whole_chunks):
+    def candidate(scene, z):
+        if not whole_chunks and len(z) > 1:
+            raise wl.FilterError("one by one")
+        found = IMM(scene, z)
+        given = {field: getattr(found, field) for field in ("mean", "covariance", "nis", "status")}
+        last = len(z) < 25 if whole_chunks else even(z)[0]
+        modes = found.mode_probability[..., : 1 if last else 3]
+        return SimpleNamespace(**given, mode_probability=modes)
+
+    wanted = r"'x' on 'case': mode_probability must have the same shape in all runs, got \(30, [13]"
+    with pytest.raises(ValueError, match=wanted):
+        run(CASE, {"x": candidate})
 
 
 def test_turn_rates_that_are_not_those_of_the_models():

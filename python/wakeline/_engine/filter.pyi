@@ -162,8 +162,9 @@ class Filter:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------
@@ -631,8 +632,9 @@ class AlphaBeta:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------
@@ -736,8 +738,9 @@ class AlphaBetaGamma:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------

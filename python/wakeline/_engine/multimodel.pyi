@@ -138,8 +138,9 @@ class Imm:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------
@@ -336,8 +337,9 @@ class AdaptiveGridImm:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------
@@ -480,8 +482,9 @@ class SwitchingGridImm:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------
@@ -623,8 +626,9 @@ class LikelyModelSetImm:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------
@@ -860,8 +864,9 @@ class ModeHistory:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------
@@ -994,8 +999,9 @@ class BayesianAlphaBeta:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------
@@ -1188,8 +1194,9 @@ class FuzzyAlphaBeta:
         Returns
         -------
         RunResult
-            mean (..., T, N), covariance (..., T, N, N), mode_probability and turn_rate_rad_s (..., T, K),
-            innovation (..., T, M), nis, log_likelihood and status (..., T).
+            mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
+            status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
+            of models that change theirs, else None.
 
         Raises
         ------

@@ -100,7 +100,7 @@ def share_inside(
         When confidence or dof makes no sense or the shapes do not fit.
     """
     curve, samples = np.asarray(curve, dtype=float), np.asarray(samples)
-    counts = (samples == np.floor(samples)) & (samples >= 0)
+    counts = (samples == np.floor(samples)) & (samples >= 0) & (samples < np.inf)
     if samples.shape not in ((), curve.shape) or not counts.all():
         raise ValueError(
             f"samples must be whole numbers, none negative, of shape () or {curve.shape}, "

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from types import SimpleNamespace
@@ -77,7 +78,26 @@ class Candidate:
 
     def _built(self, scenario: Scenario) -> Any:
         ready = hasattr(self.estimator, "run") and not isinstance(self.estimator, type)
-        return self.estimator if ready else self.estimator(scenario)
+        built = self.estimator
+        if callable(built) and not ready:
+            built = built(scenario)
+        if not hasattr(built, "run"):
+            raise TypeError(
+                "estimator must have run, or be a function of the scenario that gives what has, "
+                f"got {built!r}"
+            )
+        return built
+
+
+@contextmanager
+def named(candidate_name: str, scenario: Scenario) -> Iterator[None]:
+    """Who refuses something, and on which scenario, is told with it."""
+    try:
+        yield
+    except (TypeError, ValueError) as error:
+        refusal = TypeError if isinstance(error, TypeError) else ValueError
+        which = f"candidate {candidate_name!r} on {scenario.name!r}"
+        raise refusal(f"{which}: {error}") from error
 
 
 def told(candidate: Candidate | Callable[..., Any], scenario: Scenario) -> dict[str, str]:
@@ -99,7 +119,8 @@ def clairvoyant(
 
     Without thrust and disturbance, of which it is not told, no candidate can beat it. It is told of
     the control. Where the rate or the control switches between two scans it moves in two pieces.
-    Bind options by ``functools.partial``.
+    On a recorded track, whose speed changes too, it goes astray without `noise`. Bind options by
+    ``functools.partial``.
 
     Parameters
     ----------

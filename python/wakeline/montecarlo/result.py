@@ -220,7 +220,8 @@ class Result:
     Attributes
     ----------
     outcomes : mapping of (str, str) to Outcome
-        By names of scenario and candidate, in the order in which they were given.
+        By names of scenario and candidate, in the order in which they were given; some are not
+        there where the run ended early.
     runs, seed : int
         As given to :func:`wakeline.montecarlo.run`.
     parameters : mapping
@@ -262,10 +263,10 @@ class Result:
 
     def summary(self) -> dict[str, dict[str, dict[str, float | None]]]:
         """Figures by scenario, then candidate: see :meth:`Outcome.summary`."""
-        return {
-            scenario: {name: self[scenario, name].summary() for name in self.candidates}
-            for scenario in self.scenarios
-        }
+        figures: dict[str, dict[str, dict[str, float | None]]] = {}
+        for (scenario, candidate), outcome in self.outcomes.items():
+            figures.setdefault(scenario, {})[candidate] = outcome.summary()
+        return figures
 
     def merged(
         self, candidate: str, scenarios: Sequence[str] | None = None

@@ -7,9 +7,8 @@ import pickle
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
-from functools import reduce
-from itertools import islice
-from operator import add, methodcaller
+from numbers import Real
+from operator import methodcaller
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from wakeline import _progress
 from wakeline._checks import run_numbers
 from wakeline.scenario import Scenario
 
-from .candidate import Candidate, told
+from .candidate import Candidate, named, told
 from .result import Outcome, Result
 from .sums import Chunk, Sums, sums_of
 
@@ -47,6 +46,11 @@ def run(
 
     Results are the same bits for any number of threads or workers, the CPU time aside; those of a
     candidate on a scenario do not depend on what else is run.
+
+    Every candidate does its first runs of every scenario before the rest is done, so that one that
+    refuses what it is given does so soon. What ends the run early, an interrupt from the keyboard,
+    too, has the attribute ``result``: a :class:`Result` of those candidates on those scenarios of
+    which all runs were done.
 
     Parameters
     ----------
@@ -111,28 +115,44 @@ def run(
         for scenario, name in pairs
         for first in firsts
     ]
-    texts = {(scenario.name, name): told(candidates[name], scenario) for scenario, name in pairs}
-    with (
-        closing(_worked_off(chunks, threads, client)) as sums,
-        closing(_told(sums, len(chunks), progress)) as done,
-    ):
-        outcomes = {
-            (scenario.name, name): Outcome.of(
-                scenario,
-                name,
-                reduce(add, islice(done, len(firsts))),
-                **texts[scenario.name, name],
-            )
-            for scenario, name in pairs
-        }
-        next(done, None)
+    chunks.sort(key=lambda chunk: chunk.first_run > 0)  # who refuses its input does so at once
+    texts = {}
+    for scenario, name in pairs:
+        with named(name, scenario):
+            texts[scenario.name, name] = told(candidates[name], scenario)
     parameters = {
         "chunk_runs": CHUNK_RUNS,
         "lost_beyond_m": float(lost_beyond_m),
         "draw_start": bool(draw_start),
         "scenarios": {scenario.name: scenario.parameters for scenario in scenarios},
     }
-    return Result(outcomes, runs, seed, parameters)
+    outcomes: dict[tuple[str, str], Outcome] = {}
+    result = Result(outcomes, runs, seed, parameters)
+    try:
+        with (
+            closing(_worked_off(chunks, threads, client)) as sums,
+            closing(_told(sums, len(chunks), progress)) as done,
+        ):
+            for scenario, name, total in _complete(chunks, done, last=firsts[-1]):
+                names = scenario.name, name
+                outcomes[names] = Outcome.of(scenario, name, total, **texts[names])
+    except BaseException as error:
+        error.result = result
+        raise
+    return result
+
+
+def _complete(
+    chunks: Iterable[Chunk], done: Iterable[Sums], last: int
+) -> Iterator[tuple[Scenario, str, Sums]]:
+    """Sums over all runs of each candidate on each scenario, as soon as its last chunk is done."""
+    totals: dict[tuple[str, str], Sums] = {}
+    for chunk, sums in zip(chunks, done, strict=True):
+        names = chunk.scenario.name, chunk.candidate_name
+        with named(chunk.candidate_name, chunk.scenario):
+            totals[names] = totals[names] + sums if names in totals else sums
+        if chunk.first_run == last:
+            yield chunk.scenario, chunk.candidate_name, totals.pop(names)
 
 
 def _check(
@@ -162,8 +182,8 @@ def _check(
                 f"candidate {name!r} must be a Candidate or callable, got {type(candidate)}"
             )
     run_numbers(runs, seed, threads)
-    if not lost_beyond_m > 0:
-        raise ValueError(f"lost_beyond_m must be positive, got {lost_beyond_m}")
+    if not (isinstance(lost_beyond_m, Real) and lost_beyond_m > 0):
+        raise ValueError(f"lost_beyond_m must be positive, got {lost_beyond_m!r}")
     if client is not None and threads is not None:
         raise ValueError("threads must be left out together with client")
     if client is not None and not isinstance(client, ThreadPoolExecutor):

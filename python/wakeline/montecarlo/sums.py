@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, fields, replace
 from functools import reduce
 from operator import add
@@ -14,7 +15,7 @@ from wakeline import core, eval
 from wakeline.metrics import right_mode, squared_distance
 from wakeline.scenario import Scenario
 
-from .candidate import Candidate
+from .candidate import Candidate, named
 
 _KINEMATICS = {4: slice(4), 5: slice(4), 6: [0, 1, 3, 4]}
 _NEES_BAND = eval.consistency_bounds(0.95, 4, 1)
@@ -71,6 +72,10 @@ def _added(a: Sums, b: Sums, name: str) -> Any:
     mine, its = getattr(a, name), getattr(b, name)
     if mine is None or its is None:
         return its if a.runs == 0 else mine if b.runs == 0 else None
+    if np.shape(mine) != np.shape(its):
+        raise ValueError(
+            f"{name} must have the same shape in all runs, got {np.shape(mine)} and {np.shape(its)}"
+        )
     return mine + its
 
 
@@ -98,7 +103,13 @@ def sums_of(chunk: Chunk) -> Sums:
     except core.FilterError:
         own = [None if starts is None else starts[k : k + 1] for k in range(chunk.runs)]
         ones = [_summed_one(chunk, z[k : k + 1], own[k]) for k in range(chunk.runs)]
-        return reduce(add, ones)
+        with _named(chunk):
+            return reduce(add, ones)
+
+
+def _named(chunk: Chunk) -> AbstractContextManager[None]:
+    """Refusals within name the candidate and the scenario."""
+    return named(chunk.candidate_name, chunk.scenario)
 
 
 def _summed_one(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> Sums:
@@ -113,11 +124,8 @@ def _summed_one(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None)
 def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> Sums:
     told = {} if starts is None else {"start": starts}
     began_s = time.thread_time()
-    try:
+    with _named(chunk):
         result = chunk.candidate(chunk.scenario, z, **told)
-    except ValueError as error:
-        which = f"candidate {chunk.candidate_name!r} on {chunk.scenario.name!r}"
-        raise ValueError(f"{which}: {error}") from error
     cpu_s = time.thread_time() - began_s
     mean, covariance = _kinematics(chunk, result, len(z))
     usable = np.isfinite(mean).all(axis=(1, 2))
@@ -156,7 +164,15 @@ def _told(chunk: Chunk, result: Any, name: str) -> np.ndarray:
             f"candidate {chunk.candidate_name!r} must give a result with {name}, "
             f"got {type(result).__name__} without"
         )
-    return np.asarray(value, dtype=float)
+    try:
+        numbers = np.asarray(value)
+        if np.iscomplexobj(numbers):
+            raise TypeError(f"got {numbers.dtype}")
+        return numbers.astype(float, copy=False)
+    except (TypeError, ValueError) as error:
+        raise ValueError(
+            f"candidate {chunk.candidate_name!r} must give {name} of real numbers: {error}"
+        ) from error
 
 
 def _of_each_scan(chunk: Chunk, result: Any, name: str, runs: int, axes: str) -> np.ndarray:
@@ -200,9 +216,10 @@ def _rates(
         if modes is not None:
             _require_rates(chunk, modes, told.shape == modes.shape, told.shape)
         return told, None if modes is None else _mean_rate(modes, told)
-    rates = (
-        chunk.candidate.rates(chunk.scenario) if isinstance(chunk.candidate, Candidate) else None
-    )
+    rates = None
+    if isinstance(chunk.candidate, Candidate):
+        with _named(chunk):
+            rates = chunk.candidate.rates(chunk.scenario)
     if mean.shape[-1] == 5:
         return rates, mean[usable, :, 4]
     if rates is None or modes is None:

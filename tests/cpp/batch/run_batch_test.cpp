@@ -471,6 +471,48 @@ TYPED_TEST(BatchGateOfOwn, IsWhereItsComponentsSay) {
   EXPECT_EQ((run<TypeParam::template Kind, Lanes>(kRadar, data.in).status), free.status);
 }
 
+/// Hears where a vessel is, and not how far off.
+struct Bearings {
+  static constexpr int kMeasurements = 1;
+  static constexpr auto kReads = kPosition;
+
+  template <class Scalar>
+  Gaussian<1, Scalar> observe(const Vec<Scalar, 1>& z) const noexcept {
+    return {z, Mat<Scalar, 1, 1>::Constant(Scalar(1e-4))};
+  }
+  template <class Scalar>
+  Vec<Scalar, 1> measure(const Vec<Scalar, 2>& position) const noexcept {
+    return Vec<Scalar, 1>(kRadar.measure(position)[1]);
+  }
+  template <class Scalar>
+  Mat<Scalar, 1, 2> jacobian(const Vec<Scalar, 2>& position) const noexcept {
+    return kRadar.jacobian(position).row(1);
+  }
+  template <class Scalar>
+  Vec<Scalar, 1> residual(const Vec<Scalar, 1>& a, const Vec<Scalar, 1>& b) const noexcept {
+    return Vec<Scalar, 1>(wrap_angle<Scalar>(a[0] - b[0]));
+  }
+};
+
+TEST(BatchOwnSensor, NeedNotFixAPosition) {
+  const Dense data(kRuns);
+  std::vector<double> bearings;
+  for (std::size_t k = 1; k < data.z.size(); k += 2) bearings.push_back(data.z[k]);
+  RunInput in = data.in;
+  in.z = bearings.data();
+  const Results lanes = run<Own, Lanes>(Bearings{}, in);
+  Ekf filter{PositionsFirst{}};
+  ASSERT_EQ(filter.start(start<double>()), Status::kOk);
+  for (std::size_t scan = 0; scan < kScans; ++scan) {
+    ASSERT_EQ(filter.predict(data.dt_s[scan]), Status::kOk);
+    if (!std::isnan(bearings[scan])) {
+      ASSERT_TRUE(filter.update(Bearings{}, Vec<double, 1>(bearings[scan])));
+    }
+    for (std::size_t i = 0; i < 5; ++i)
+      EXPECT_NEAR(lanes.mean[5 * scan + i], filter.estimate().mean[Eigen::Index(i)], 1e-6);
+  }
+}
+
 TEST(BatchLinear, AWidePriorIsJosephsInItsLaneOnly) {
   // One lane begins with a prior in which P - W Wᵀ would cancel.
   using Filter = Ekf<CoordinatedTurn, Lanes>;

@@ -56,6 +56,31 @@ TEST(ChiSquare, EvenDofIsAFinitePoissonSum) {
     }
 }
 
+TEST(ChiSquare, ManyDofAreNearlyNormal) {
+  // Cornish and Fisher: normal quantiles z, sqrt(2 dof) z + 2/3 (z² - 1) above dof.
+  constexpr double kNormal[][2] = {{0.025, -1.959963984540054}, {0.5, 0.0}, {0.999, 3.090232306}};
+  for (const double dof : {1e10, 1e12, 1.9e12, 2.1e12, 1e14, 1e16, 1e20, 1e100, 1e300})
+    for (const auto& [probability, z] : kNormal) {
+      const double above = std::sqrt(2.0 * dof) * z + 2.0 / 3.0 * (z * z - 1.0);
+      EXPECT_NEAR(chi_square_quantile(probability, dof) - dof, above,
+                  1e-4 + 1e-15 * dof + 1e-8 * std::abs(above))
+          << probability << " of " << dof;
+    }
+  // On both sides of where the form changes.
+  for (const double sigmas : {-7.0, -3.0, -0.5, 0.0, 0.5, 3.0, 7.0}) {
+    const auto at = [&](auto probability, double dof) {
+      return probability(dof + sigmas * std::sqrt(2.0 * dof), dof);
+    };
+    const double below = std::nextafter(2e12, 0.0);
+    EXPECT_NEAR(at(chi_square_tail, 2e12) / at(chi_square_tail, below), 1.0, 1e-8) << sigmas;
+    EXPECT_NEAR(at(chi_square_probability, 2e12) / at(chi_square_probability, below), 1.0, 1e-8)
+        << sigmas;
+  }
+  EXPECT_EQ(chi_square_probability(1e308, 1e20), 1.0);
+  EXPECT_EQ(chi_square_tail(1e308, 1e20), 0.0);
+  EXPECT_EQ(chi_square_probability(1.0, 1e20), 0.0);
+}
+
 TEST(ChiSquare, TwoDofMatchesTheGeneralForm) {
   const double beside = std::nextafter(2.0, 3.0);
   for (const double probability : kProbabilities)

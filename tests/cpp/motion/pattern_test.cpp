@@ -8,8 +8,11 @@
 #include <string>
 
 #include "support/matrix_assert.hpp"
+#include "wakeline/core/pack_math.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
+#include "wakeline/motion/coordinated_turn.hpp"
+#include "wakeline/motion/wandering_course.hpp"
 
 namespace wakeline {
 namespace {
@@ -47,6 +50,38 @@ TEST(Pattern, ThatIsNotTrueIsRefusedWithItsElement) {
               std::string::npos)
         << error.what();
   }
+}
+
+/// A current that grows to the east, in a Jacobian of its own under a pattern that is not.
+struct Sheared : CoordinatedTurnRate {
+  template <class Scalar>
+  Mat<Scalar, 5, 5> jacobian(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
+    Mat<Scalar, 5, 5> f = CoordinatedTurnRate::jacobian(x, dt_s);
+    f(0, 2) = Scalar(0.01) * x[2] * dt_s;
+    return f;
+  }
+};
+
+/// The same under its own.
+struct ShearedAsItSays : Sheared {
+  static constexpr Pattern<5> kPattern{"1xxxx 0x0xx 0x1xx 0x0xx 0000x"};
+};
+
+TEST(Pattern, OfAJacobianThatIsNotTrueIsRefusedWithItsElement) {
+  try {
+    const Ekf filter{Sheared{}};
+    FAIL() << "taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("it says 0 of element (0, 2) of the Jacobian, which at [1, 2, ...] for a "
+                        "step of 1 s is 0.03"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_NO_THROW(Ekf{ShearedAsItSays{}});
+  EXPECT_NO_THROW(Ekf{CoordinatedTurnRate{}});
+  EXPECT_NO_THROW((Ekf<CoordinatedTurnRate, Pack<double, 2>>{CoordinatedTurnRate{}}));
+  EXPECT_NO_THROW(Ekf{WanderingCourse{}});
 }
 
 TEST(Pattern, LeavesNothingOutThatCounts) {

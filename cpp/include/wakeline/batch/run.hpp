@@ -13,6 +13,7 @@
 #include "wakeline/core/component.hpp"
 #include "wakeline/core/pack_math.hpp"
 #include "wakeline/core/status.hpp"
+#include "wakeline/filter/concept.hpp"
 #include "wakeline/gating/radius_gate.hpp"
 #include "wakeline/measurement/concept.hpp"
 
@@ -27,7 +28,7 @@ struct RunInput {
   const double* own_m = nullptr;              ///< (T, 2) north and east of own ship, or null
   const double* own_mps = nullptr;            ///< (T, 2) velocity of own ship, or null
   const double* acceleration_mps2 = nullptr;  ///< (T, 2) known acceleration, or null
-  const RadiusGate* gate = nullptr;           ///< a reading outside is missed; or null
+  const RadiusGate* gate = nullptr;           ///< of a `PositionSensor`, outside is missed; or null
 };
 
 /// Where the results of N states and K models go.
@@ -189,6 +190,7 @@ struct Unwatched {
 template <class Estimator, class Scalar>
 [[gnu::flatten, gnu::noinline]] StatusOf<Scalar> predict_pushed(Estimator& estimator, Scalar dt_s,
                                                                 const double* push_mps2) noexcept {
+  check_takes_acceleration<Estimator>();
   return estimator.predict(dt_s, Vec<Scalar, 2>(push_mps2[0], push_mps2[1]));
 }
 
@@ -224,9 +226,10 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
       missed = missed && z[m] != z[m];
     }
     const Sensor seen = seen_from(sensor, in, scan);
-    if (in.gate != nullptr)
-      missed = missed || !in.gate->template contains<Scalar>(estimated_position(estimator),
-                                                             seen.position(z).mean);
+    if constexpr (PositionSensor<Sensor>)
+      if (in.gate != nullptr)
+        missed = missed || !in.gate->template contains<Scalar>(estimated_position(estimator),
+                                                               seen.position(z).mean);
     const Mask predicted = ok(status);
     Step<kM, Scalar> step = failed_step<kM, Scalar>(Status::kMissed);
     step.innovation.setConstant(kNaN);

@@ -51,11 +51,27 @@ struct GammaTails {
   double poisson_term;  ///< x^a e^-x / Γ(a + 1); the density at x is this times a / x
 };
 
+/// The same for a shape of 1e12 and more, for which the series below would need millions of terms
+/// and from 1e16 on never end: nearly a normal distribution.
+/// Source: N. M. Temme, SIAM J. Math. Anal. 10, 1979: the uniform expansion's first term.
+inline GammaTails nearly_normal_tails(double a, double x) noexcept {
+  const double u = (x - a) / a;
+  const double deviance = std::abs(u) < 1e-3
+                              ? u * u * (1.0 / 2.0 - u * (1.0 / 3.0 - u * (1.0 / 4.0 - u / 5.0)))
+                              : u - std::log1p(u);
+  const double eta = std::copysign(std::sqrt(2.0 * deviance), u);
+  const double z = eta * std::sqrt(0.5 * a);
+  const double scale = std::exp(-z * z) / (std::sqrt(2.0 * kPi<double>) * std::sqrt(a));
+  const double skew = scale > 0.0 ? scale * (1.0 / 3.0 - eta / 12.0) : 0.0;
+  return {0.5 * std::erfc(-z) + skew, 0.5 * std::erfc(z) - skew, scale};
+}
+
 /// P and Q for a > 0, 0 < x < inf: the series below x = a + 1, the continued fraction (modified
 /// Lentz) above it, so that the smaller of the two is computed without cancellation.
 /// Source: Abramowitz and Stegun, 6.5.29 and 6.5.31.
 inline GammaTails gamma_tails(double a, double x) noexcept {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  if (a >= 1e12) return nearly_normal_tails(a, x);
   const double scale = poisson_term(a, x);
   if (x < a + 1.0) {
     double term = 1.0;

@@ -35,6 +35,16 @@ concept BeliefFilter = requires(Filter filter, const Filter& constant,
 template <class Filter>
 inline constexpr bool kPredictsInOneStep = false;
 
+/// Refuses what cannot be predicted under a known acceleration.
+template <class Filter>
+constexpr void check_takes_acceleration() noexcept {
+  using Scalar = typename Filter::Scalar;
+  static_assert(requires(Filter & filter, Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) {
+    filter.predict(dt_s, acceleration_mps2);
+  }, "wakeline: known accelerations and run_batch need predict(dt_s, acceleration_mps2) of each "
+     "filter; see cpp/docs/concepts.md");
+}
+
 /// Begins a filter anew with a belief, unchecked, and predicts it, under a known acceleration where
 /// one is told. Its own belief is lost where this fails.
 template <class Filter, class BeliefType, class... Known>
@@ -44,6 +54,7 @@ template <class Filter, class BeliefType, class... Known>
   if constexpr (kPredictsInOneStep<Filter> && sizeof...(Known) == 0) {
     return filter.predict_from(belief, dt_s);
   } else {
+    if constexpr (sizeof...(Known) > 0) check_takes_acceleration<Filter>();
     const auto begun = filter.assign(belief);
     return first_failure(begun, filter.predict(dt_s, acceleration_mps2...));
   }

@@ -28,8 +28,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
 
   /// Throws `std::invalid_argument` when a parameter of the motion makes no sense.
   explicit Ekf(const MotionType& motion) : Base(motion) {
-    if constexpr (requires { Motion::kPattern; } && LinearMotionModel<Motion>)
-      require_pattern<Scalar>(motion);
+    if constexpr (requires { Motion::kPattern; }) require_pattern<Scalar>(motion);
   }
 
   /// x = f(x), P = F P Fᵀ + Q.

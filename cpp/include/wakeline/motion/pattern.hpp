@@ -42,26 +42,31 @@ template <class Motion>
 requires requires { Motion::kPattern; }
 inline constexpr Pattern<kStatesOf<Motion>> kPatternOf<Motion> = Motion::kPattern;
 
-[[noreturn]] inline void refuse_pattern(int row, int column, double wanted, double got) {
+[[noreturn]] inline void refuse_pattern(int row, int column, double wanted, double got,
+                                        const char* where) {
   std::ostringstream message;
   message.precision(kMessageDigits);
   message << "the kPattern of this motion model must be true: it says " << wanted << " of element ("
-          << row << ", " << column << ") of the matrix, which for a step of 1 s is " << got;
+          << row << ", " << column << ") of the " << where << " for a step of 1 s is " << got;
   refuse(message.str());
 }
 
-/// Throws `std::invalid_argument` unless the matrix of a linear model for a step of 1 s is as its
-/// pattern says: one that a model has inherited may not be.
+/// Throws `std::invalid_argument` unless the matrix of a linear model, or the Jacobian at [1, 2, …]
+/// of another, for a step of 1 s is as its pattern says: one that a model has inherited may not be.
 template <class Scalar, class Motion>
 void require_pattern(const Motion& motion) {
   constexpr int kN = kStatesOf<Motion>;
-  const Mat<Scalar, kN, kN> f = motion.template matrix<Scalar>(Scalar(1));
+  const char* const where =
+      LinearMotionModel<Motion> ? "matrix, which" : "Jacobian, which at [1, 2, ...]";
+  Vec<Scalar, kN> x;
+  for (int i = 0; i < kN; ++i) x[i] = Scalar(i + 1);
+  const Mat<Scalar, kN, kN> f = transition_jacobian(motion, x, Scalar(1));
   for (int i = 0; i < kN; ++i)
     for (int j = 0; j < kN; ++j) {
       const char said = kPatternOf<Motion>.element[i][j];
       const double wanted = said == '1';
       if (said != 'x' && any(f(i, j) != Scalar(wanted)))
-        refuse_pattern(i, j, wanted, double(lane(f(i, j), 0)));
+        refuse_pattern(i, j, wanted, double(lane(f(i, j), 0)), where);
     }
 }
 
