@@ -259,6 +259,33 @@ def test_a_turning_antenna_is_found_from_times_and_bearings(file, period_s, targ
     assert all(f"turns of {period_s:.2g} s" in note for note in read.notes)
 
 
+@pytest.mark.parametrize("cartesian", [False, True])
+@pytest.mark.parametrize("told", [{}, {"period_s": 2.5}, {"period_s": 2.6}])
+@pytest.mark.parametrize(("plots", "begin_deg"), [(30, 0.0), (300, 0.0), (300, 200.0)])
+def test_of_many_plots_a_turn_each_turn_is_a_scan(file, plots, begin_deg, told, cartesian):
+    """A scan shorter than a turn would miss, time and again, what is seen in every turn."""
+    rng = np.random.default_rng(6)
+    turn = np.repeat(np.arange(60), plots)
+    bearing_deg = begin_deg + np.sort(rng.uniform(0.0, 360.0, (60, plots))).ravel()
+    time_s = 2.5 * (turn + (bearing_deg - begin_deg) / 360.0)
+    text = polar(time_s, bearing_deg)
+    if cartesian:
+        place_m = 4000.0 * np.exp(1j * np.deg2rad(bearing_deg))
+        rows = zip(time_s, place_m.real, place_m.imag, strict=True)
+        text = "time_s,north_m,east_m\n" + "".join(f"{t:.3f},{n},{e}\n" for t, n, e in rows)
+    sizes = [len(scan) for scan in only(read_plots(file(text), **told)).scans]
+    assert len(sizes) in (60, 61)
+    assert np.abs(np.array(sizes[1:-1]) - plots).max() <= 0.1 * plots + 3
+
+
+def test_plots_of_one_time_are_in_one_scan_of_an_antenna_that_turns(file):
+    time_s = np.round(np.arange(400) / 7.0 * 3.0, 1)
+    bearing_deg = np.arange(400) / 7.0 * 360.0
+    scans = only(read_plots(file(polar(time_s, bearing_deg)), period_s=3.0)).scans
+    ends_s = np.array([scan.plot_time_s[-1] for scan in scans[:-1]])
+    assert (ends_s < [scan.plot_time_s[0] for scan in scans[1:]]).all()
+
+
 def test_plots_that_tell_of_no_turn_are_told_and_left_as_they_are(file):
     rng = np.random.default_rng(5)
     time_s = np.cumsum(rng.uniform(0.1, 2.0, 300))
