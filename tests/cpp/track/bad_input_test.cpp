@@ -172,10 +172,28 @@ TEST(BadPlots, AtTheRadarItselfAreTaken) {
 TEST(BadPlots, ManyOnOneSpotAreOneTarget) {
   Sea sea(6);
   VesselTracker tracker = make_tracker();
-  for (int k = 0; k < 30; ++k) {
+  for (int k = 0; k < 20; ++k) {
+    const std::vector<Plot> plots(3, sea.plot(kBoat.at(2.5 * k), 2.5 * k));
+    EXPECT_EQ(tracker.process(2.5 * k, plots).status, Status::kOk);
+    expect_sound(tracker);
+  }
+  int confirmed = 0;
+  tracker.for_each([&](const VesselTrack& track) { confirmed += track.confirmed(); });
+  EXPECT_EQ(confirmed, 1);
+  ASSERT_NE(tracker.find(1), nullptr);
+  EXPECT_LT((tracker.find(1)->position() - kBoat.at(47.5)).norm(), 60.0);
+}
+
+TEST(BadPlots, ACrowdOnOneSpotTakesNoMoreTracksThanThereAre) {
+  Sea sea(6);
+  TrackerConfig config;
+  config.max_tracks = 60;
+  VesselTracker tracker = make_tracker(config);
+  for (int k = 0; k < 10; ++k) {
     const std::vector<Plot> plots(50, sea.plot(kBoat.at(2.5 * k), 2.5 * k));
     EXPECT_EQ(tracker.process(2.5 * k, plots).status, Status::kOk);
     expect_sound(tracker);
+    EXPECT_EQ(tracker.size(), k == 0 ? 0 : 60);
   }
 }
 

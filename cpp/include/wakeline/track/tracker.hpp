@@ -360,6 +360,7 @@ class Tracker {
       const Evidence<double> nominal = evidence(track, claim.z, covariance);
       claim.likelihood = (1.0 - config_.wild_probability) * nominal.likelihood +
                          config_.wild_probability * wild.likelihood;
+      if (!claims.takes(claim.likelihood)) return;
       claim.density = density(echoes_[index], track.learned);
       claim.nis = squared_distance(track.kinematics, claim.z, covariance);
       claims.add(claim);
