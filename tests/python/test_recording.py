@@ -215,6 +215,20 @@ def test_scans_can_be_read_without_plots(file):
         read_plots(None)
 
 
+@pytest.mark.parametrize("head", ["range_m,bearing_deg", "range_nm,bearing_deg", "north_m,east_m"])
+def test_a_place_beyond_all_radars_is_told_by_its_cell(file, head):
+    plots = file(f"time_s,{head}\n0,1,1\n3,1e308,1\n")
+    column = head.split(",")[0]
+    with pytest.raises(RecordingError, match=f"line 3, column {column}: .*at most 1e9 m"):
+        read_plots(plots)
+
+
+def test_own_ship_beyond_the_earth_is_told_by_its_cell(file):
+    own = file("time_s,north_m,east_m\n0,0,0\n3,0,-1e200\n", "own.csv")
+    with pytest.raises(RecordingError, match=r"line 3, column east_m: .*at most 1e9 m"):
+        read_plots(file("time_s,north_m,east_m\n0,1,1\n"), own)
+
+
 def test_equal_times_make_a_scan(file):
     text = "time_s,north_m,east_m\n0,1,1\n0,2,2\n3,3,3\n"
     assert [len(s) for s in only(read_plots(file(text))).scans] == [2, 1]
