@@ -2,9 +2,14 @@
 
 import re
 import runpy
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+
+from wakeline import metrics, recording
+from wakeline.cli.config import read_settings
+from wakeline.cli.tracking import track_episode
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "cpp/docs").rglob("*.md"))]
@@ -30,3 +35,54 @@ def test_links_lead_somewhere(page):
 def test_files_that_are_named_exist(page):
     for name in re.findall(r"`((?:cpp|bindings|python|tests)/[\w./-]+)`", page.read_text()):
         assert (ROOT / name).exists(), name
+
+
+WITHOUT = {
+    "the wild error": ("tracker", {"wild_probability": 0.0}),
+    "the clutter map": ("tracker", {"clutter_cell_m": 0.0}),
+    "noise that grows with speed": (
+        "models",
+        {
+            f"{mode}_course_psd_rad2s": 1e-12
+            for mode in ("cruising", "steady", "restless", "turning")
+        },
+    ),
+    "visibility": ("tracker", {"visible_time_s": 0.0}),
+    "showing coasting tracks": ("tracker", {"shown_scans": 0}),
+    "probabilistic association (GNN instead)": ("tracker", {"association": "global_nearest"}),
+}
+BOATS = {"fast boat": "joyride", "close boats": "autoferry"}
+FIGURES = {
+    "coverage": ("coverage", 100.0),
+    "ids": ("ids", 1.0),
+    "switches": ("switches", 1.0),
+    "breaks": ("breaks", 1.0),
+    "velocity": ("velocity_rmse_mps", 1.0),
+    "course": ("course_rms_deg", 1.0),
+    "position": ("position_rmse_debiased_m", 1.0),
+    "false tracks a scan": ("false_track_scans_per_scan", 1.0),
+}
+
+
+def figures_of(name, section="tracker", changes=()):
+    settings = read_settings(radar=name)
+    changed = replace(settings, **{section: getattr(settings, section) | dict(changes)})
+    recorded = recording.load(name)
+    parts = [track_episode(episode, changed, named=len(recorded) > 1) for episode in recorded]
+    tracks = recording.Tracks.joined([part.tracks for part in parts])
+    return metrics.score(tracks, recorded).overall.as_dict()
+
+
+@pytest.mark.parametrize("part", WITHOUT)
+def test_what_each_part_of_the_tracker_is_worth(part):
+    page = (ROOT / "cpp/docs/tracking.md").read_text()
+    (row,) = re.findall(rf"^\| {re.escape(part)} \| (.*) \|$", page, flags=re.MULTILINE)
+    for boats, text in re.findall(r"(fast boat|close boats): ([^;]*)", row):
+        scores = figures_of(BOATS[boats]), figures_of(BOATS[boats], *WITHOUT[part])
+        told = re.findall(rf"({'|'.join(FIGURES)}) ([\d.]+) → ([\d.]+)", text)
+        assert len(told) == text.count("→")
+        for figure, *numbers in told:
+            key, scale = FIGURES[figure]
+            for score, number in zip(scores, numbers, strict=True):
+                last_digit = 10.0 ** -len(number.partition(".")[2])
+                assert abs(scale * score[key] - float(number)) < 0.6 * last_digit, (boats, figure)

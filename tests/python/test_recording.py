@@ -215,6 +215,20 @@ def test_scans_can_be_read_without_plots(file):
         read_plots(None)
 
 
+@pytest.mark.parametrize("head", ["range_m,bearing_deg", "range_nm,bearing_deg", "north_m,east_m"])
+def test_a_place_beyond_all_radars_is_told_by_its_cell(file, head):
+    plots = file(f"time_s,{head}\n0,1,1\n3,1e308,1\n")
+    column = head.split(",")[0]
+    with pytest.raises(RecordingError, match=f"line 3, column {column}: .*at most 1e9 m"):
+        read_plots(plots)
+
+
+def test_own_ship_beyond_the_earth_is_told_by_its_cell(file):
+    own = file("time_s,north_m,east_m\n0,0,0\n3,0,-1e200\n", "own.csv")
+    with pytest.raises(RecordingError, match=r"line 3, column east_m: .*at most 1e9 m"):
+        read_plots(file("time_s,north_m,east_m\n0,1,1\n"), own)
+
+
 def test_equal_times_make_a_scan(file):
     text = "time_s,north_m,east_m\n0,1,1\n0,2,2\n3,3,3\n"
     assert [len(s) for s in only(read_plots(file(text))).scans] == [2, 1]
@@ -257,6 +271,33 @@ def test_a_turning_antenna_is_found_from_times_and_bearings(file, period_s, targ
     assert abs(len(only(read)) - len(given)) <= 1
     assert len(read.notes) == (targets > 1)
     assert all(f"turns of {period_s:.2g} s" in note for note in read.notes)
+
+
+@pytest.mark.parametrize("cartesian", [False, True])
+@pytest.mark.parametrize("told", [{}, {"period_s": 2.5}, {"period_s": 2.6}])
+@pytest.mark.parametrize(("plots", "begin_deg"), [(30, 0.0), (300, 0.0), (300, 200.0)])
+def test_of_many_plots_a_turn_each_turn_is_a_scan(file, plots, begin_deg, told, cartesian):
+    """A scan shorter than a turn would miss, time and again, what is seen in every turn."""
+    rng = np.random.default_rng(6)
+    turn = np.repeat(np.arange(60), plots)
+    bearing_deg = begin_deg + np.sort(rng.uniform(0.0, 360.0, (60, plots))).ravel()
+    time_s = 2.5 * (turn + (bearing_deg - begin_deg) / 360.0)
+    text = polar(time_s, bearing_deg)
+    if cartesian:
+        place_m = 4000.0 * np.exp(1j * np.deg2rad(bearing_deg))
+        rows = zip(time_s, place_m.real, place_m.imag, strict=True)
+        text = "time_s,north_m,east_m\n" + "".join(f"{t:.3f},{n},{e}\n" for t, n, e in rows)
+    sizes = [len(scan) for scan in only(read_plots(file(text), **told)).scans]
+    assert len(sizes) in (60, 61)
+    assert np.abs(np.array(sizes[1:-1]) - plots).max() <= 0.1 * plots + 3
+
+
+def test_plots_of_one_time_are_in_one_scan_of_an_antenna_that_turns(file):
+    time_s = np.round(np.arange(400) / 7.0 * 3.0, 1)
+    bearing_deg = np.arange(400) / 7.0 * 360.0
+    scans = only(read_plots(file(polar(time_s, bearing_deg)), period_s=3.0)).scans
+    ends_s = np.array([scan.plot_time_s[-1] for scan in scans[:-1]])
+    assert (ends_s < [scan.plot_time_s[0] for scan in scans[1:]]).all()
 
 
 def test_plots_that_tell_of_no_turn_are_told_and_left_as_they_are(file):

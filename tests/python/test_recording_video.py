@@ -215,6 +215,23 @@ def test_a_period_stands_in_for_times_of_a_sector(path, sector_deg):
     assert report.held == 0
 
 
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("before_end", [1, 2, 10, 11, 30])
+def test_a_period_stands_in_wherever_in_a_sector_the_file_begins(path, before_end, sense):
+    sector_deg = np.arange(100, 141)[::sense]
+    azimuth_deg = np.tile(sector_deg, 4)[41 - before_end :]
+    turn = np.cumsum(np.diff(azimuth_deg, prepend=azimuth_deg[0]) * sense < 0)
+    octets = b"".join(
+        record(azimuth=(int(k), int(k) + 182)) for k in np.deg2rad(azimuth_deg) / STEP
+    )
+    videos, report = read(path, octets, period_s=24.0)
+    time_s = np.concatenate([v.time_s for v in videos])
+    way = turn + sense * (azimuth_deg - azimuth_deg[0]) / 360.0
+    assert time_s[2:] == pytest.approx(24.0 * way[2:], abs=0.01)
+    assert np.diff(time_s).min() >= 0.0
+    assert report.notes == []
+
+
 def test_a_turn_that_begins_with_a_sweep_without_a_time_is_a_turn(path):
     octets = b"".join(
         record(azimuth=(256 * k, 256 * k + 256), sequence=k, ticks=None if k % 256 == 0 else k)

@@ -239,7 +239,7 @@ class ScanReport:
     @property
     def refused_plots(self) -> int:
         """
-        plots not finite, behind the antenna, of another time than the scan, or beyond max_plots
+        plots not finite, behind the antenna, of so many turns that the bearing is lost, of another time than the scan, or beyond max_plots
         """
 
 class TrackTable:

@@ -51,7 +51,9 @@ def build_episode(
     """
     own = None if own is None else own.part(scenario)
     listed = _listed_scans(own)
-    plots, number = _numbered(plots.where(plots.scenario == scenario), listed, period_s)
+    plots = plots.where(plots.scenario == scenario)
+    plots = plots.where(np.argsort(plots.time_s, kind="stable"))
+    plots, number = _numbered(plots, listed, _bearing_rad(plots, own, fixed), period_s)
     scans = _all_scans(listed, plots, number)
     _check_plot_times(plots, number)
     _check_scan_times(scans, plots, number, own)
@@ -68,18 +70,34 @@ def _listed_scans(own: OwnRows | None) -> _ScanList:
 
 
 def _numbered(
-    plots: PlotRows, listed: _ScanList, period_s: float | None
+    plots: PlotRows, listed: _ScanList, bearing_rad: np.ndarray, period_s: float | None
 ) -> tuple[PlotRows, np.ndarray]:
-    """Plots sorted by scan and, within it, by time; and the scan number (n,) of each."""
-    plots = plots.where(np.argsort(plots.time_s, kind="stable"))
+    """Plots, sorted by time, by scan and, within it, by time; and the scan number (n,) of each."""
     if plots.scan is not None:
         number = plots.scan
     elif len(listed.number):
         number = grouping.by_list(plots.time_s, listed.time_s, listed.number)
     else:
-        number = grouping.by_time(plots.time_s, period_s)
+        number = grouping.by_turns(plots.time_s, bearing_rad, period_s)
     order = np.argsort(number, kind="stable")
     return plots.where(order), number[order]
+
+
+def _bearing_rad(plots: PlotRows, own: OwnRows | None, fixed: OwnShip) -> np.ndarray:
+    """Bearing (n,) of each plot from own ship, NaN where its place is not known."""
+    if plots.polar:
+        return plots.place[:, 1]
+    known = own is not None and own.has_position
+    own_m = plots.own_m
+    if own_m is None:
+        own_m = (_track(own.by_time(), fixed) if known else fixed).position_at(plots.time_s)
+    north_m, east_m = (plots.place - own_m).T
+    return np.arctan2(east_m, north_m)
+
+
+def _track(rows: OwnRows, fixed: OwnShip) -> OwnShip:
+    """Own ship's track by rows with a position, sorted by time; fixed where there is none."""
+    return rows.ship() if len(rows.row) else fixed
 
 
 def _all_scans(listed: _ScanList, plots: PlotRows, number: np.ndarray) -> _ScanList:
@@ -134,7 +152,7 @@ def _own_ship(
     if own is not None and own.has_position:
         rows = own.by_time()
         _check_covered(plots, rows, own_gap_s)
-        ship = rows.ship() if len(rows.row) else fixed
+        ship = _track(rows, fixed)
         return ship.position_at(plots.time_s) if plots.own_m is None else plots.own_m, ship
     if plots.own_m is not None and len(plots):
         time_s, first = np.unique(plots.time_s, return_index=True)

@@ -173,7 +173,7 @@ def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
         notes.append(f"{table.path.name}: no own-ship position, so the radar stands still")
         return {}
     table.require("north_m", "east_m")
-    motion = {"north_m": table.numbers("north_m"), "east_m": table.numbers("east_m")}
+    motion = {"north_m": table.ways_m("north_m"), "east_m": table.ways_m("east_m")}
     lost = ~(np.isfinite(motion["north_m"]) & np.isfinite(motion["east_m"]))
     if lost.any():
         first = table.line(int(np.argmax(lost)))

@@ -157,7 +157,7 @@ def _places(table: Table, notes: list[str]) -> tuple[np.ndarray, bool]:
     if cartesian and polar:
         notes.append(f"{table.path.name}: north and east are used, range and bearing are not")
     if cartesian:
-        columns = [table.numbers("north_m"), table.numbers("east_m")]
+        columns = [table.ways_m("north_m"), table.ways_m("east_m")]
     elif polar:
         columns = [_ranges_m(table), _bearings_rad(table)]
     else:
@@ -188,9 +188,9 @@ def _at_most_one(table: Table, columns: Sequence[str]) -> None:
 
 def _ranges_m(table: Table) -> np.ndarray:
     column = "range_m" if "range_m" in table else "range_nm"
-    values = table.numbers(column)
-    table.check(column, ~(values < 0), "a range of 0 or more")
-    return values if column == "range_m" else values * NAUTICAL_MILE_M
+    range_m = table.ways_m(column, 1.0 if column == "range_m" else NAUTICAL_MILE_M)
+    table.check(column, ~(range_m < 0), "a range of 0 or more")
+    return range_m
 
 
 def _bearings_rad(table: Table) -> np.ndarray:

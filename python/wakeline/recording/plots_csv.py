@@ -39,11 +39,12 @@ def read_plots(
     ``scan_id``), ``scenario``, ``own_north_m`` and ``own_east_m``. Other columns are left alone.
 
     **Scans** are told apart by the ``scan`` column. Without one, a plot goes to the scan nearest in
-    time of those the own-ship file lists; without a list, a scan begins at a plot more than half a
-    period after the plot before it or 95 % of a period or more after its scan's first plot. The
-    period is `period_s`; where it is not given but the bearings grow with the times of the plots as
-    under an antenna that turns clockwise, it is found from them, which leaves a note. Where they
-    do not, plots of equal time are one scan. Every scan the own-ship file lists is in the
+    time of those the own-ship file lists; without a list, a scan is a turn of the antenna, of
+    `period_s`. Where that is not given but the bearings grow with the times of the plots as under
+    an antenna that turns clockwise, it is found from them, which leaves a note. Bearings that grow
+    so tell where a turn ends; where they do not, a scan begins at a plot more than half a period
+    after the plot before it or 95 % of a period or more after its scan's first plot, and without a
+    period plots of equal time are one scan. Every scan the own-ship file lists is in the
     recording, with or without plots. Within a scan plots are sorted by time; scans are in the order
     of their numbers and their times must grow.
 

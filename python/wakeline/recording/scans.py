@@ -12,6 +12,60 @@ _LEAST_PLOTS, _STARTS, _LEAST_SHARE = 20, 256, 0.1
 _LAGS = 0.5 + 2.5 * (np.arange(8 * _STARTS).reshape(_STARTS, 8) * 0.618034 % 1.0)  # of no rhythm
 _MOST_TURNS = 3.5
 _TURNING, _PEAK = 0.9, 16
+_NEAR_PERIOD = np.linspace(0.95, 1.05, 11)
+_SEAM_RAD = np.deg2rad(18.0)
+
+
+def by_turns(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float | None) -> np.ndarray:
+    """Scan number of each plot, counted from 0: turns of the antenna where plots tell of them.
+
+    Where bearings grow with times as under an antenna that turns clockwise in about `period_s`, a
+    scan begins where the beam passes the middle of the widest sector without plots of the 18
+    degrees before the first plot; elsewhere as `by_time` says. Plots of equal time are in one scan.
+
+    Parameters
+    ----------
+    time_s : ndarray (n,)
+        Times of the plots, sorted.
+    bearing_rad : ndarray (n,)
+        Clockwise from north; NaN where there is none.
+    period_s : float or None
+        Time of one antenna turn, right to 5 %.
+
+    Returns
+    -------
+    ndarray of int (n,)
+    """
+    seen = np.isfinite(bearing_rad)
+    seen_s, seen_rad = time_s[seen], bearing_rad[seen]
+    turn = None if period_s is None else _turn_near(seen_s, seen_rad, period_s)
+    if turn is None:
+        return by_time(time_s, period_s)
+    even_rad = 2.0 * np.pi * (time_s - time_s[0]) / turn
+    ahead_rad = np.unwrap(seen_rad - even_rad[seen])
+    turned_rad = even_rad + np.interp(time_s, seen_s, ahead_rad)
+    turned_rad[seen] = even_rad[seen] + ahead_rad
+    turns = np.floor((turned_rad - _seam_rad(seen_rad)) / (2.0 * np.pi))
+    turns = turns[np.searchsorted(time_s, time_s)]
+    return np.unique(np.maximum.accumulate(turns), return_inverse=True)[1]
+
+
+def _turn_near(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float) -> float | None:
+    """Time of a turn near `period_s`, None where plots tell of none."""
+    if len(time_s) < _LEAST_PLOTS:
+        return None
+    likeness = [_likeness(time_s, bearing_rad, turn) for turn in period_s * _NEAR_PERIOD]
+    best = int(np.argmax(likeness))
+    return float(period_s * _NEAR_PERIOD[best]) if likeness[best] > _TURNING else None
+
+
+def _seam_rad(bearing_rad: np.ndarray) -> float:
+    """Where turns begin: the middle of the widest sector without plots shortly before the first."""
+    behind_rad = (bearing_rad[0] - bearing_rad) % (2.0 * np.pi)
+    edges_rad = np.append(np.sort(behind_rad[behind_rad < _SEAM_RAD]), _SEAM_RAD)
+    gap_rad = np.diff(edges_rad)
+    widest = int(np.argmax(gap_rad))
+    return float(bearing_rad[0] - edges_rad[widest] - gap_rad[widest] / 2.0)
 
 
 def by_time(time_s: np.ndarray, period_s: float | None) -> np.ndarray:

@@ -19,6 +19,7 @@ TIME_NAMES = ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "
 TIME_WANTED = "UTC seconds or ISO 8601 text such as 2021-05-04T07:54:53.034Z"
 
 _NOT_CSV = "the file is not CSV text in UTF-8"
+_FARTHEST_M = 1e9
 _LATEST_S = 1e11  # of the year 5138; what is later is in another unit
 
 _ISO_TIME = re.compile(
@@ -106,6 +107,13 @@ class Table:
     def numbers(self, column: str) -> np.ndarray:
         """Cells of a column as floats (n,); an empty cell is NaN."""
         return self._parsed(column, _number, "a number")
+
+    def ways_m(self, column: str, metres: float = 1.0) -> np.ndarray:
+        """Cells of a column, in units of so many metres, as metres (n,); an empty cell is NaN."""
+        values = self.numbers(column)
+        far = np.isfinite(values) & (np.abs(values) > _FARTHEST_M / metres)
+        self.check(column, ~far, "at most 1e9 m")
+        return metres * values
 
     def finite(self, column: str) -> np.ndarray:
         """Cells of a column as finite floats (n,)."""

@@ -111,21 +111,24 @@ class Beam:
 
     Attributes
     ----------
-    turned_rad : float
-        Way in all, whichever way the antenna turns; what is not sent of a turn counts.
     reversals : int
         Steps against the step before.
     """
 
     def __init__(self) -> None:
-        self.turned_rad = 0.0
         self.reversals = 0
+        self._way_rad = 0.0  # clockwise until it is known which way the antenna turns
         self._azimuth_rad: float | None = None
         self._step_rad = 0.0  # the last that was not zero
         self._seen_rad = 0.0  # way until it is known which way the antenna turns
         self._sense = 0.0
         self._goes_round = False
         self._begin(0.0, from_north=True)
+
+    @property
+    def turned_rad(self) -> float:
+        """Way in all, whichever way the antenna turns; what is not sent of a turn counts."""
+        return self._way_rad if self._sense else abs(self._way_rad)
 
     def begins_turn(self, azimuth_rad: float) -> bool:
         """Whether a turn begins with the next sweep, which looks there."""
@@ -135,14 +138,14 @@ class Beam:
             self._begin(azimuth_rad, from_north=True)
             return False
         step_rad = (azimuth_rad - before_rad + math.pi) % _TURN - math.pi
-        back = -step_rad * self._sense > self._most_back_rad
+        back = -step_rad * self._likely_sense > self._most_back_rad
         if back:
-            step_rad += self._sense * _TURN
-        elif step_rad:
+            step_rad += self._likely_sense * _TURN
+        elif step_rad and (self._likely_sense or abs(step_rad) <= _BACK_RAD):
             self.reversals += step_rad * self._step_rad < 0
             self._step_rad = step_rad
         self._learn_sense(step_rad)
-        self.turned_rad += step_rad * (self._sense or 1.0)
+        self._way_rad += step_rad * (self._sense or 1.0)
         if back and not self._goes_round:
             self._begin(azimuth_rad, from_north=False)
             return True
@@ -151,6 +154,11 @@ class Beam:
         turns = round((self._place_rad + step_rad - azimuth_rad) / _TURN)
         self._place_rad = azimuth_rad + turns * _TURN  # exact, as a sum of steps is not
         return self._turns_back(step_rad) or self._completes()
+
+    @property
+    def _likely_sense(self) -> float:
+        """The way the antenna turns, as far as the steps until now tell; 0 where none does."""
+        return self._sense or float(np.sign(self._seen_rad))
 
     @property
     def _most_back_rad(self) -> float:
@@ -166,9 +174,12 @@ class Beam:
         if self._sense or abs(step_rad) > _BACK_RAD:
             return
         self._seen_rad += step_rad
+        sense = self._likely_sense
+        if -self._way_rad * sense > _BACK_RAD:  # it went back before any step told the sense
+            self._way_rad += sense * _TURN
         if abs(self._seen_rad) > _BACK_RAD:
-            self._sense = math.copysign(1.0, self._seen_rad)
-            self.turned_rad *= self._sense
+            self._sense = sense
+            self._way_rad *= sense
 
     def _turns_back(self, step_rad: float) -> bool:
         steps_back = step_rad * self._sense < -_BACK_RAD
@@ -186,7 +197,7 @@ class Beam:
             return False
         if reverses:
             self._sense = -self._sense
-            self.turned_rad += 2.0 * back_rad
+            self._way_rad += 2.0 * back_rad
         self._goes_round = False
         self._begin(self._place_rad % _TURN, from_north=False)
         return True

@@ -123,7 +123,7 @@ TEST(BadPlots, AreRefusedCountedAndLeaveNoTrace) {
   VesselTracker clean = followed(sea);
   Sea same(5);
   VesselTracker tracker = followed(same);
-  std::vector<Plot> bad(16, exact_plot(kBoat.at(52.5), 52.5));
+  std::vector<Plot> bad(18, exact_plot(kBoat.at(52.5), 52.5));
   bad[0].range_m = kNan;
   bad[1].range_m = kInf;
   bad[2].range_m = -1.0;
@@ -140,6 +140,8 @@ TEST(BadPlots, AreRefusedCountedAndLeaveNoTrace) {
   bad[13].own.position_std_m = kInf;
   bad[14].own.heading_std_rad = kInf;
   bad[15].range_m = std::numeric_limits<double>::max();
+  bad[16].bearing_rad = 1e300;
+  bad[17].bearing_rad = -1e15;
   for (int k = 21; k <= 30; ++k) {
     std::vector<Plot> plots = bad;
     for (Plot& plot : plots)
@@ -148,9 +150,9 @@ TEST(BadPlots, AreRefusedCountedAndLeaveNoTrace) {
     plots.insert(plots.begin() + 7, good);
     const ScanReport report = tracker.process(2.5 * k, plots);
     EXPECT_EQ(report.status, Status::kOk);
-    EXPECT_EQ(report.refused_plots, 16);
-    ASSERT_EQ(report.plot_track_id.size(), 17u);
-    for (std::size_t n = 0; n < 17; ++n) EXPECT_EQ(report.plot_track_id[n], n == 7 ? 1 : 0);
+    EXPECT_EQ(report.refused_plots, 18);
+    ASSERT_EQ(report.plot_track_id.size(), 19u);
+    for (std::size_t n = 0; n < 19; ++n) EXPECT_EQ(report.plot_track_id[n], n == 7 ? 1 : 0);
     (void)clean.process(2.5 * k, {&good, 1});
     EXPECT_EQ(tracker.save(), clean.save());
   }
@@ -170,10 +172,28 @@ TEST(BadPlots, AtTheRadarItselfAreTaken) {
 TEST(BadPlots, ManyOnOneSpotAreOneTarget) {
   Sea sea(6);
   VesselTracker tracker = make_tracker();
-  for (int k = 0; k < 30; ++k) {
+  for (int k = 0; k < 20; ++k) {
+    const std::vector<Plot> plots(3, sea.plot(kBoat.at(2.5 * k), 2.5 * k));
+    EXPECT_EQ(tracker.process(2.5 * k, plots).status, Status::kOk);
+    expect_sound(tracker);
+  }
+  int confirmed = 0;
+  tracker.for_each([&](const VesselTrack& track) { confirmed += track.confirmed(); });
+  EXPECT_EQ(confirmed, 1);
+  ASSERT_NE(tracker.find(1), nullptr);
+  EXPECT_LT((tracker.find(1)->position() - kBoat.at(47.5)).norm(), 60.0);
+}
+
+TEST(BadPlots, ACrowdOnOneSpotTakesNoMoreTracksThanThereAre) {
+  Sea sea(6);
+  TrackerConfig config;
+  config.max_tracks = 60;
+  VesselTracker tracker = make_tracker(config);
+  for (int k = 0; k < 10; ++k) {
     const std::vector<Plot> plots(50, sea.plot(kBoat.at(2.5 * k), 2.5 * k));
     EXPECT_EQ(tracker.process(2.5 * k, plots).status, Status::kOk);
     expect_sound(tracker);
+    EXPECT_EQ(tracker.size(), k == 0 ? 0 : 60);
   }
 }
 

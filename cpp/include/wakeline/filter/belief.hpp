@@ -119,9 +119,10 @@ constexpr void check_sensor() noexcept {
       MeasurementModel<Sensor>,
       "wakeline: this sensor needs kReads, kMeasurements, observe(z), measure(x), jacobian(x) and "
       "residual(a, b), of the sizes that the first two tell; see cpp/docs/concepts.md");
-  static_assert(
-      holds(Filter::kComponents, Sensor::kReads),
-      "wakeline: this sensor reads a component that the state of the motion model does not hold");
+  if constexpr (MeasurementModel<Sensor>)
+    static_assert(
+        holds(Filter::kComponents, Sensor::kReads),
+        "wakeline: this sensor reads a component that the state of the motion model does not hold");
 }
 
 /// P Hᵀ of a sensor that reads `kRows` of the state, and S = H P Hᵀ + R in place of R.

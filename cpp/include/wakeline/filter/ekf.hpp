@@ -126,6 +126,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
   /// const ones in memory.
   template <class Sensor>
   struct Innovation : Correction<Sensor::kMeasurements, Scalar> {
+    static_assert((check_sensor<Sensor, Ekf>(), true));
     static constexpr int kM = Sensor::kMeasurements;
     static constexpr int kReads = kReadsOf<Sensor>;
     static constexpr auto kRows = rows_read<Sensor>(kComponents);
@@ -137,7 +138,6 @@ class Ekf : public Belief<MotionType, ScalarType> {
 
     Innovation(const Ekf& filter, const Sensor& sensor,
                const Gaussian<kM, Scalar>& reading) noexcept {
-      check_sensor<Sensor, Ekf>();
       const Gaussian<kStates, Scalar>& belief = filter.belief_;
       Vec<Scalar, kReads> read;
       unroll<kReads>([&](int k) { read[k] = belief.mean[kRows[k]]; });

@@ -13,6 +13,13 @@ namespace wakeline {
 template <class Sensor>
 inline constexpr int kReadsOf = static_cast<int>(Sensor::kReads.size());
 
+/// A sensor that tells how much it reads and reports.
+template <class Sensor>
+concept TellsSizes = requires {
+  Sensor::kReads.size();
+  Sensor::kMeasurements;
+};
+
 /// A sensor that reports z = h(x_r) + v, v ~ N(0, R), of those state components `kReads` that it
 /// reads.
 ///
@@ -23,9 +30,9 @@ inline constexpr int kReadsOf = static_cast<int>(Sensor::kReads.size());
 /// - `residual(a, b) -> Vec<M>`: a - b, angles wrapped;
 /// all of them templated on the scalar.
 template <class Sensor>
-concept MeasurementModel = requires(const Sensor& sensor,
-                                    const Vec<double, Sensor::kMeasurements>& z,
-                                    const Vec<double, kReadsOf<Sensor>>& x) {
+concept MeasurementModel = TellsSizes<Sensor> &&
+    requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z,
+             const Vec<double, kReadsOf<Sensor>>& x) {
   { sensor.observe(z) } -> std::convertible_to<Gaussian<Sensor::kMeasurements>>;
   { sensor.measure(x) } -> SameSize<Vec<double, Sensor::kMeasurements>>;
   { sensor.jacobian(x) } -> SameSize<Mat<double, Sensor::kMeasurements, kReadsOf<Sensor>>>;

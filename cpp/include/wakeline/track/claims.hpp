@@ -32,9 +32,14 @@ class Claims {
     certain_ = false;
   }
 
+  /// Whether a claim of that likelihood is among the likeliest.
+  [[nodiscard]] bool takes(double likelihood) const noexcept {
+    return count_ < kMost || likelihood > claims_.back().likelihood;
+  }
+
   /// Takes a claim in if it is among the likeliest.
   void add(const Claim& claim) noexcept {
-    if (count_ == kMost && !(claim.likelihood > claims_.back().likelihood)) return;
+    if (!takes(claim.likelihood)) return;
     auto place = std::min(static_cast<std::size_t>(count_), claims_.size() - 1);
     for (; place > 0 && claim.likelihood > claims_[place - 1].likelihood; --place)
       claims_[place] = claims_[place - 1];

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -37,18 +38,21 @@ class Echoes {
   }
 
   /// Converts the plots, at most as many as there is room for, and forgets those before. Plots that
-  /// are not finite, behind the antenna, or farther than `slack_s` from the time of the scan are
-  /// left out; one that is ahead of it has a wrong clock, and counts as of its end.
+  /// are not finite, behind the antenna, of a bearing so large that it is rounded by more than the
+  /// radar errs, or farther than `slack_s` from the time of the scan are left out; one that is ahead
+  /// of it has a wrong clock, and counts as of its end.
   void take(const Radar& radar, std::span<const Plot> plots, double time_s,
             double slack_s) noexcept {
     echoes_.clear();
     index_.clear();
     earliest_s_ = scan_s_ = time_s;
+    constexpr double kRounding = std::numeric_limits<double>::epsilon();
     const std::size_t count = std::min(plots.size(), echoes_.capacity());
     for (std::size_t k = 0; k < count; ++k) {
       const Plot& plot = plots[k];
       const Gaussian<2> position = radar.position(plot.range_m, plot.bearing_rad, plot.own);
       const bool usable = std::fabs(plot.time_s - time_s) <= slack_s && plot.range_m >= 0.0 &&
+                          kRounding * std::fabs(plot.bearing_rad) <= radar.bearing_std_rad &&
                           is_finite(position.mean) && Cholesky<2>(position.covariance).ok();
       if (!usable) continue;
       const double plot_s = std::min(plot.time_s, time_s);

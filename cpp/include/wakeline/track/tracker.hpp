@@ -42,8 +42,9 @@ struct ScanReport {
   std::span<const std::int64_t>
       plot_track_id;  ///< of each plot up to `max_plots` the track it belongs to, or 0
   std::span<const Event> events;
-  int refused_plots =
-      0;  ///< not finite, behind the antenna, of another time than the scan, or beyond `max_plots`
+  /// Not finite, behind the antenna, of so many turns that the bearing is lost, of another time than
+  /// the scan, or beyond `max_plots`.
+  int refused_plots = 0;
 };
 
 /// What a track can be: an estimator of `double` with the whole face of `Imm`. An `Imm` of one
@@ -359,6 +360,7 @@ class Tracker {
       const Evidence<double> nominal = evidence(track, claim.z, covariance);
       claim.likelihood = (1.0 - config_.wild_probability) * nominal.likelihood +
                          config_.wild_probability * wild.likelihood;
+      if (!claims.takes(claim.likelihood)) return;
       claim.density = density(echoes_[index], track.learned);
       claim.nis = squared_distance(track.kinematics, claim.z, covariance);
       claims.add(claim);
