@@ -1006,6 +1006,18 @@ def test_pictures_are_drawn(tmp_path, pictures, capsys):
         assert (tmp_path / name).read_bytes()[:4] == b"\x89PNG"
 
 
+@pytest.mark.parametrize("water", [True, False])
+def test_there_is_no_panel_of_a_drift_that_is_not_known(tmp_path, pictures, monkeypatch, water):
+    from wakeline import plot
+
+    labels = {}
+    monkeypatch.setattr(
+        plot, "save", lambda figure, path: labels.update({path.name: figure.axes[-1].get_ylabel()})
+    )
+    navigated(tmp_path, voyage(4, water=water))
+    assert labels["own_time.png"] == ("drift (kn)" if water else "course (°)")
+
+
 def test_long_work_is_seen_on_a_terminal(tmp_path, pictures, capsys, monkeypatch):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(_progress, "_EVERY_S", -1.0)

@@ -378,15 +378,19 @@ def _earlier_pictures(folder: Path) -> Iterator[Path]:
 def _time_figure(
     readings: own_ship.Readings, track: own_ship.OwnTrack, fix_time_s: np.ndarray
 ) -> Any:
-    figure = plot.figure(7.2, 6.8)
-    speed, course, drift = figure.subplots(3, 1, sharex=True)
+    """Speed and course over time, and the drift where anything is known of the current."""
+    knows_drift = bool(np.isfinite(track.current_mps).any())
+    figure = plot.figure(7.2, 6.8 if knows_drift else 4.6)
+    speed, course, *drift = figure.subplots(2 + knows_drift, 1, sharex=True)
     over_ground = track.velocity_mps
     plot.speed_over_time(
         speed, track.time_s, np.hypot(over_ground[:, 0], over_ground[:, 1]), readings.log_mps
     )
     plot.course_over_time(course, track.time_s, track.course_rad, track.heading_rad)
-    plot.drift_over_time(drift, track.time_s, track.current_mps, fix_time_s)
-    for ax in (speed, course):
+    for ax in drift:
+        plot.drift_over_time(ax, track.time_s, track.current_mps, fix_time_s)
+    panels = [speed, course, *drift]
+    for ax in panels[:-1]:
         ax.set_xlabel("")
-    figure.align_ylabels([speed, course, drift])
+    figure.align_ylabels(panels)
     return figure
