@@ -376,7 +376,7 @@ max_plots : int
           [](const RecentMemory& schedule, std::int64_t reading) {
             schedule.validate<2>();
             require(reading >= 1, "reading", "1 or more", static_cast<double>(reading));
-            return to_array(schedule.gains<2, double>({.reading = reading}));
+            return to_array(schedule.gains<2, double>({.reading = static_cast<double>(reading)}));
           },
           py::kw_only(), py::arg("reading") = 1, "[alpha, beta] for the reading-th reading.");
 
