@@ -447,6 +447,16 @@ def test_lines_of_what_is_not_known_are_not_named():
     assert named == [["over ground"], ["course over ground"], ["fixes"]]
 
 
+def test_panels_of_own_ship_are_drawn_even_of_nothing():
+    none, pairs = np.zeros(0), np.zeros((0, 2))
+    speed, course, drift, way = plot.figure().subplots(4, 1)
+    plot.speed_over_time(speed, none, none, none)
+    plot.course_over_time(course, none, none, none)
+    plot.drift_over_time(drift, none, pairs, none)
+    plot.own_map(way, pairs, pairs, pairs)
+    assert [ax.get_ylim()[0] for ax in (speed, course, drift)] == [0.0, 0.0, 0.0]
+
+
 def test_times_with_fixes_are_named():
     ax = plot.figure().add_subplot()
     plot.drift_over_time(ax, np.arange(9.0), np.ones((9, 2)), np.arange(5.0))

@@ -148,7 +148,7 @@ def drift_over_time(
     """Drift in knots over time, with the times of fixes marked below; returns `ax`."""
     drift_kn = np.hypot(current_mps[:, 0], current_mps[:, 1]) / KNOT_MPS
     _draw(ax, _by_minute(time_s, drift_kn), PALETTE[2], "drift")
-    minutes = (fix_time_s - time_s[0]) / 60.0
+    minutes = (fix_time_s - (time_s[0] if len(time_s) else 0.0)) / 60.0
     ax.plot(minutes, np.zeros(len(minutes)), "|", color=INK, markersize=4, label="fixes")
     return name_lines(_over_time(from_zero(ax), "drift (kn)"))
 
