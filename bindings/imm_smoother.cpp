@@ -110,7 +110,9 @@ void define_imm_smoother(py::class_<AnyImm>& imm) {
 
 Each pair of modes of two scans is a way of its own: carried back by the Rauch-Tung-Striebel
 smoother of its filter, and as likely as it foretold what came. For recordings that are over; takes
-K² predictions and smoothings a scan, one recording after the other on each thread.
+K² predictions and smoothings a scan, one recording after the other on each thread. Where a step is
+so long that nothing can be carried back over it (weeks, of `PiecewiseAcceleration`), what was
+before is smoothed by itself.
 
 Parameters
 ----------
@@ -129,8 +131,7 @@ ValueError
     As of `run`.
 FilterError
     When an estimator cannot start, or a recording cannot be smoothed: a step between two scans is
-    below zero, no number, or so long that nothing can be carried back over it (days, of
-    `PiecewiseAcceleration`).
+    below zero or no number.
 
 References
 ----------

@@ -376,7 +376,7 @@ max_plots : int
           [](const RecentMemory& schedule, std::int64_t reading) {
             schedule.validate<2>();
             require(reading >= 1, "reading", "1 or more", static_cast<double>(reading));
-            return to_array(schedule.gains<2, double>({.reading = reading}));
+            return to_array(schedule.gains<2, double>({.reading = static_cast<double>(reading)}));
           },
           py::kw_only(), py::arg("reading") = 1, "[alpha, beta] for the reading-th reading.");
 
@@ -433,7 +433,7 @@ void define_adaptive(py::module_& m) {
       R"(The adaptive alpha-beta filter, in two passes over the last five readings; (33).
 
 The first pass has the gains of a growing memory, the second those that ``alpha = sum((x^ - x~) e) / sum(e²)`` and
-``beta = sum(dv e/t) / sum((e/t)²)`` make of it.
+``beta = sum(dv e/t) / sum((e/t)²)`` make of it. A reading of the time of the one before joins it: both become their mean.
 
 Parameters
 ----------
@@ -468,6 +468,7 @@ wrapped : bool
       R"(The least-squares lines through the last 2, 3, ... readings, of which that one speaks that has foretold the readings best.
 
 Short windows follow a maneuver, long ones rest in between; nothing has to be tuned to the noise or to the maneuvers.
+A reading of the time of the one before joins it, and judges no line: both become their mean.
 
 Parameters
 ----------

@@ -739,6 +739,22 @@ def test_far_from_the_first_fix_headings_and_set_are_true_and_the_current_is_the
     assert column(late, "set_deg") == pytest.approx(90.0, abs=3.0)
 
 
+@pytest.mark.parametrize(
+    ("longitude_deg", "told"),
+    [("012", ""), ("032", "1572 km from the first one, whose plane is stretched by 1.02 %")],
+)
+def test_fixes_too_far_for_one_plane_are_told(tmp_path, capsys, longitude_deg, told):
+    times_s = range(0, 1200, 20)
+    lines = [
+        sentence(f"GPRMC,10{s // 60:02d}{s % 60:02d},A,5000.0,N,{place}00.0,E,0.0,0.0,010620,,")
+        for s, place in zip(times_s, 30 * ["010"] + 30 * [longitude_deg], strict=True)
+    ]
+    navigated(tmp_path, lines)
+    notes = [n for n in capsys.readouterr().out.splitlines() if "km from the first one" in n]
+    assert len(notes) == bool(told)
+    assert all(told in note for note in notes)
+
+
 def test_courses_of_the_solution_are_true(tmp_path):
     file = tmp_path / "some.nmea"
     file.write_text("".join(eastward(6)))
@@ -1004,6 +1020,18 @@ def test_pictures_are_drawn(tmp_path, pictures, capsys):
     assert "not drawn are 1 of 2 parts, of fewer than 10 fixes" in capsys.readouterr().out
     for name in ("own_map.png", "own_time.png"):
         assert (tmp_path / name).read_bytes()[:4] == b"\x89PNG"
+
+
+@pytest.mark.parametrize("water", [True, False])
+def test_there_is_no_panel_of_a_drift_that_is_not_known(tmp_path, pictures, monkeypatch, water):
+    from wakeline import plot
+
+    labels = {}
+    monkeypatch.setattr(
+        plot, "save", lambda figure, path: labels.update({path.name: figure.axes[-1].get_ylabel()})
+    )
+    navigated(tmp_path, voyage(4, water=water))
+    assert labels["own_time.png"] == ("drift (kn)" if water else "course (°)")
 
 
 def test_long_work_is_seen_on_a_terminal(tmp_path, pictures, capsys, monkeypatch):

@@ -105,6 +105,20 @@ def test_models_of_other_states(example):
     assert rms(smooth, truth, [1, 3]) < 0.6 * rms(filtered, truth, [1, 3])
 
 
+def test_a_pause_of_months_costs_no_recording(example):
+    z, _, start = example
+    estimator = imm(turning(0.0), turning(2.0))
+    steps_s = np.full(20, DT_S)
+    steps_s[12] = 1e8
+    told = {"sensor": SENSOR, "start": start}
+    filtered = estimator.run(z[:, :20], dt_s=steps_s, **told)
+    smooth = estimator.smooth(z[:, :20], dt_s=steps_s, **told)
+    before = estimator.smooth(z[:, :12], dt_s=DT_S, **told)
+    assert (smooth.mean[:, :12] == before.mean).all((1, 2)).any()
+    assert (smooth.mean[:, 12:-1] != filtered.mean[:, 12:-1]).all()
+    assert np.isfinite(smooth.covariance).all()
+
+
 def test_what_cannot_be_smoothed_is_told(example):
     z, _, start = example
     estimator = imm(turning(0.0), turning(2.0))

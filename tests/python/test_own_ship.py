@@ -1,6 +1,9 @@
 """Own ship's solution from Python; what it is worth is in the tests of the command."""
 
+import dataclasses
+
 import numpy as np
+import pytest
 
 from wakeline import own_ship, recording
 from wakeline.navigation import LocalPlane
@@ -35,6 +38,17 @@ def test_smoothed_it_is_surer_of_the_same_voyage():
         return np.trace(track.position_m2, axis1=1, axis2=2)
 
     assert np.median(variance_m2(smoothed) / variance_m2(as_it_went)) < 0.6
+
+
+def test_a_log_that_cannot_be_navigated_as_a_whole_is_refused_in_words():
+    part = longest_part()
+    unfixed = dataclasses.replace(part, fixes=part.fixes.rows(slice(0)))
+    with pytest.raises(ValueError, match="irene: readings want a sound fix, got none"):
+        own_ship.readings_of(unfixed)
+    again = dataclasses.replace(part, set_back_lines=part.fixes.line[500:501])
+    with pytest.raises(ValueError, match=r"irene: the clock was set back.* each of parts"):
+        own_ship.readings_of(again)
+    assert own_ship.magnetic_offset([]) is None
 
 
 def fixes_alone(time_s, fix_m):

@@ -425,6 +425,38 @@ def test_a_single_row_in_doubt_is_seen():
     assert dots(ax.lines[-1]) == [[1.0, 0.0]]
 
 
+def test_a_steady_speed_lies_clear_of_the_edge():
+    when_s = np.arange(60.0)
+    wobble = 1e-4 * np.sin(when_s)
+    states = np.column_stack([6.0 * when_s, 6.0 + wobble, np.zeros(60), np.zeros(60)])
+    panel, own = plot.figure().subplots(2, 1)
+    plot.speed_panel(panel, Tracks(["1"] * 60, when_s, states))
+    plot.speed_over_time(own, when_s, (6.0 + wobble) * KNOT_MPS, np.full(60, np.nan))
+    for ax in (panel, own):
+        assert ax.get_ylim()[0] == 0.0
+        assert 6.3 < ax.get_ylim()[1] < 7.0
+
+
+def test_lines_of_what_is_not_known_are_not_named():
+    speed, course, drift = plot.figure().subplots(3, 1)
+    when_s, unknown = np.arange(3.0), np.full(3, np.nan)
+    plot.speed_over_time(speed, when_s, np.ones(3), unknown)
+    plot.course_over_time(course, when_s, np.ones(3), unknown)
+    plot.drift_over_time(drift, when_s, np.full((3, 2), np.nan), when_s)
+    named = [[text.get_text() for text in ax.get_legend().get_texts()] for ax in drift.figure.axes]
+    assert named == [["over ground"], ["course over ground"], ["fixes"]]
+
+
+def test_panels_of_own_ship_are_drawn_even_of_nothing():
+    none, pairs = np.zeros(0), np.zeros((0, 2))
+    speed, course, drift, way = plot.figure().subplots(4, 1)
+    plot.speed_over_time(speed, none, none, none)
+    plot.course_over_time(course, none, none, none)
+    plot.drift_over_time(drift, none, pairs, none)
+    plot.own_map(way, pairs, pairs, pairs)
+    assert [ax.get_ylim()[0] for ax in (speed, course, drift)] == [0.0, 0.0, 0.0]
+
+
 def test_times_with_fixes_are_named():
     ax = plot.figure().add_subplot()
     plot.drift_over_time(ax, np.arange(9.0), np.ones((9, 2)), np.arange(5.0))

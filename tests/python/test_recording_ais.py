@@ -133,6 +133,23 @@ def test_what_is_left_out_is_said(tmp_path):
     assert [note.split("line ")[1] for note in ais.notes] == ["3)", "5)", "6)"]
 
 
+def test_reports_too_far_off_for_one_plane_are_told(tmp_path):
+    hawaii = [row(second, "1", 21.0, -157.0 + second * 5e-5, 90.0, 10.1) for second in (0, 30)]
+    rows = [row(0, "2", 19.0, -111.0), *hawaii]
+    ais = read_ais(written(tmp_path, *rows), origin_deg=(19.0, -111.0))
+    track = ais.tracks["1"]
+    way_m = np.hypot(np.diff(track.north_m)[0], np.diff(track.east_m)[0])
+    short = 100.0 * (1.0 - way_m / (30 * 5e-5 * 111_320.0 * np.cos(np.deg2rad(21.0))))
+    (note,) = ais.notes
+    assert "2 reports lie more than 300 km from the origin of the plane (first in line 3)" in note
+    told = float(note.partition("too short, by ")[2].partition(" %")[0])
+    assert told == pytest.approx(short, abs=1.0)
+    assert "% at 4795 km: cut the file to one area" in note
+    near = read_ais(written(tmp_path, row(0, "1", 54.0), row(0, "2", 56.6)), origin_deg=(54.0, 10))
+    assert near.notes == []
+    assert near.plane.angle_rad(54.0, 10.0) == 0.0
+
+
 def test_three_reports_in_a_row_are_believed_though_they_are_far(tmp_path):
     far = [row(s, latitude=54.5 + s * SECOND_DEG) for s in (12, 15, 18)]
     (track,) = read_ais(written(tmp_path, *northbound([0, 3, 6, 9]), *far)).tracks.values()

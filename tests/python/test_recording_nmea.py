@@ -549,13 +549,16 @@ def test_where_true_headings_are_silent_those_of_the_compass_go_on(log, variatio
     for t, fix in enumerate(under_way(range(120))):
         lines += [fix, sentence(f"HDG,37.0,,,{variation}")]
         lines += [] if 40 < t <= 100 else [sentence("HDT,40.5,T")]
-    heading = log(*lines).heading
+    read = log(*lines)
+    heading = read.heading
     assert np.count_nonzero(heading.sentence == "HDT") == 60
     compass = heading.rows(heading.sentence == "HDG")
     assert len(compass) == pytest.approx(taken, abs=1)
     np.testing.assert_allclose(np.degrees(compass.heading_rad), 40.0)
     assert ((compass.time_s > MAY_21 + 50) & (compass.time_s < MAY_21 + 92)).all()
     assert (np.diff(heading.time_s) > 0).all()
+    found = "magnetic headings where the true ones are silent want a variation (first in line 145)"
+    assert [found in note for note in read.notes if "variation" in note] == [True] * (taken == 0)
 
 
 # ------------------------------------------------------------------ fixes to doubt

@@ -51,6 +51,15 @@ def test_angles_go_through_north(kind, start, rate, seed):
     assert np.abs(wrapped(on_angles[2] - on_line[2])).max() < 1e-6
 
 
+@pytest.mark.parametrize("kind", ["adaptive three points", "(33)", "bank"])
+def test_readings_that_are_told_twice_count_once(kind):
+    rng = np.random.default_rng(4)
+    dt_s, reading = rng.uniform(0.5, 3.0, 60), np.cumsum(rng.standard_normal(60))
+    twice = np.column_stack([dt_s, np.zeros(60)]).ravel(), np.repeat(reading, 2)
+    for said, once in zip(KINDS[kind]().run(*twice), KINDS[kind]().run(dt_s, reading), strict=True):
+        np.testing.assert_array_equal(said[1::2], once)
+
+
 @every
 def test_359_to_1_is_2_degrees(kind):
     smoother = kind(wrapped=True)

@@ -1162,7 +1162,7 @@ class AdaptiveAlphaBeta:
     The adaptive alpha-beta filter, in two passes over the last five readings; (33).
 
     The first pass has the gains of a growing memory, the second those that ``alpha = sum((x^ - x~) e) / sum(e²)`` and
-    ``beta = sum(dv e/t) / sum((e/t)²)`` make of it.
+    ``beta = sum(dv e/t) / sum((e/t)²)`` make of it. A reading of the time of the one before joins it: both become their mean.
 
     Parameters
     ----------
@@ -1305,6 +1305,7 @@ class WindowBank:
     The least-squares lines through the last 2, 3, ... readings, of which that one speaks that has foretold the readings best.
 
     Short windows follow a maneuver, long ones rest in between; nothing has to be tuned to the noise or to the maneuvers.
+    A reading of the time of the one before joins it, and judges no line: both become their mean.
 
     Parameters
     ----------

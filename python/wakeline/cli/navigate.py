@@ -27,6 +27,7 @@ _COLUMNS = (
 _OWN, _PROBLEMS = "own.csv", "problems.csv"
 _SHOWN_ROWS = 5
 _LEAST_DRAWN_FIXES = 10
+_FAR_M, _EARTH_RADIUS_M = 1000e3, 6371e3
 _SMOOTHED = (
     "smoothed: own.csv and pictures know at each time the readings after it, too, up to a gap or "
     "to what was not believed until it went on"
@@ -134,7 +135,7 @@ def _legs(log: NavigationLog, *, smooth: bool) -> list[_Leg]:
     parts = log.parts()
     offset = _magnetic_offset(log, parts)
     plane = own_ship.plane_of(log.fixes.sound())
-    for note in (*_unused_notes(parts), *_stuck_notes(parts)):
+    for note in (*_unused_notes(parts), *_stuck_notes(parts), *_far_notes(log, plane)):
         print(note, flush=True)
     fixed = [part for part in parts if len(part.fixes.sound())]
     watched = progress(fixed, len(fixed), "navigating")
@@ -180,6 +181,21 @@ def _stuck_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
         yield (
             f"note: {len(lines)} speeds through the water are 0 while the ship makes way over "
             f"ground (first in line {lines.min()}): if the log is stuck, set and drift are wrong"
+        )
+
+
+def _far_notes(log: NavigationLog, plane: LocalPlane) -> Iterator[str]:
+    """What the plane of the first fix does to places far from it."""
+    fixes = log.fixes.sound()
+    position_m = plane.position_m(np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg))
+    far_m = np.hypot(*position_m.T).max()
+    if far_m > _FAR_M:
+        angle = far_m / _EARTH_RADIUS_M
+        percent = 100.0 * (angle / np.sin(angle) - 1.0)
+        yield (
+            f"note: fixes lie up to {far_m / 1e3:.0f} km from the first one, whose plane is "
+            f"stretched by {percent:.3g} % across the line to them, and speeds and drift with it: "
+            "cut the log before there"
         )
 
 
@@ -378,15 +394,19 @@ def _earlier_pictures(folder: Path) -> Iterator[Path]:
 def _time_figure(
     readings: own_ship.Readings, track: own_ship.OwnTrack, fix_time_s: np.ndarray
 ) -> Any:
-    figure = plot.figure(7.2, 6.8)
-    speed, course, drift = figure.subplots(3, 1, sharex=True)
+    """Speed and course over time, and the drift where anything is known of the current."""
+    knows_drift = bool(np.isfinite(track.current_mps).any())
+    figure = plot.figure(7.2, 6.8 if knows_drift else 4.6)
+    speed, course, *drift = figure.subplots(2 + knows_drift, 1, sharex=True)
     over_ground = track.velocity_mps
     plot.speed_over_time(
         speed, track.time_s, np.hypot(over_ground[:, 0], over_ground[:, 1]), readings.log_mps
     )
     plot.course_over_time(course, track.time_s, track.course_rad, track.heading_rad)
-    plot.drift_over_time(drift, track.time_s, track.current_mps, fix_time_s)
-    for ax in (speed, course):
+    for ax in drift:
+        plot.drift_over_time(ax, track.time_s, track.current_mps, fix_time_s)
+    panels = [speed, course, *drift]
+    for ax in panels[:-1]:
         ax.set_xlabel("")
-    figure.align_ylabels([speed, course, drift])
+    figure.align_ylabels(panels)
     return figure

@@ -43,6 +43,8 @@ def magnetic_offset(parts: Sequence[NavigationLog]) -> MagneticOffset | None:
     stand for those through the water, and nothing does. None where there is nothing to find it
     from, or the log reads nothing but 0.
     """
+    if len(parts) == 0:
+        return None
     time_s, water, ground = _by_minute(parts)
     if len(time_s) == 0:
         return None

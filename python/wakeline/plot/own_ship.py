@@ -16,6 +16,7 @@ from .style import (
     dot_lone,
     dress,
     dress_map,
+    from_zero,
     name_lines,
     through_north,
     with_gaps,
@@ -117,26 +118,25 @@ def _round_below(value: float) -> float:
 def speed_over_time(
     ax: Axes, time_s: np.ndarray, over_ground_mps: np.ndarray, through_water_mps: np.ndarray
 ) -> Axes:
-    """Speeds in knots over time in minutes; returns `ax`."""
+    """Speeds in knots over time in minutes, those that are known; returns `ax`."""
     for values, color, name in (
         (over_ground_mps, PALETTE[0], "over ground"),
         (through_water_mps, PALETTE[2], "through water"),
     ):
-        line = _by_minute(time_s, values / KNOT_MPS)
-        dot_lone(*ax.plot(*line, color=color, linewidth=1.2, label=name))
-    return name_lines(_over_time(ax, "speed (kn)", at_least_0=True))
+        _draw(ax, _by_minute(time_s, values / KNOT_MPS), color, name)
+    return name_lines(_over_time(from_zero(ax), "speed (kn)"))
 
 
 def course_over_time(
     ax: Axes, time_s: np.ndarray, course_rad: np.ndarray, heading_rad: np.ndarray
 ) -> Axes:
-    """Course over ground and heading in degrees over time; returns `ax`."""
+    """Course over ground and heading in degrees over time, where known; returns `ax`."""
     for values, color, name in (
         (course_rad, PALETTE[0], "course over ground"),
         (heading_rad, PALETTE[1], "heading"),
     ):
         line = through_north(*_by_minute(time_s, np.degrees(values) % 360.0))
-        dot_lone(*ax.plot(*line, color=color, linewidth=1.2, label=name))
+        _draw(ax, line, color, name)
     ax.set_ylim(0.0, 360.0)
     ax.set_yticks([0, 90, 180, 270, 360])
     return name_lines(_over_time(ax, "course (°)"))
@@ -147,11 +147,15 @@ def drift_over_time(
 ) -> Axes:
     """Drift in knots over time, with the times of fixes marked below; returns `ax`."""
     drift_kn = np.hypot(current_mps[:, 0], current_mps[:, 1]) / KNOT_MPS
-    line = _by_minute(time_s, drift_kn)
-    dot_lone(*ax.plot(*line, color=PALETTE[2], linewidth=1.2, label="drift"))
-    minutes = (fix_time_s - time_s[0]) / 60.0
+    _draw(ax, _by_minute(time_s, drift_kn), PALETTE[2], "drift")
+    minutes = (fix_time_s - (time_s[0] if len(time_s) else 0.0)) / 60.0
     ax.plot(minutes, np.zeros(len(minutes)), "|", color=INK, markersize=4, label="fixes")
-    return name_lines(_over_time(ax, "drift (kn)", at_least_0=True))
+    return name_lines(_over_time(from_zero(ax), "drift (kn)"))
+
+
+def _draw(ax: Axes, line: tuple[np.ndarray, np.ndarray], color: str, name: str) -> None:
+    if len(line[0]):
+        dot_lone(*ax.plot(*line, color=color, linewidth=1.2, label=name))
 
 
 def _by_minute(time_s: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -162,8 +166,6 @@ def _by_minute(time_s: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.n
     return (times - time_s[0]) / 60.0, drawn
 
 
-def _over_time(ax: Axes, ylabel: str, *, at_least_0: bool = False) -> Axes:
+def _over_time(ax: Axes, ylabel: str) -> Axes:
     ax.set(xlabel="time (min)", ylabel=ylabel)
-    if at_least_0:
-        ax.set_ylim(bottom=0.0)
     return dress(ax)

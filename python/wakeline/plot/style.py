@@ -31,6 +31,7 @@ INK = "#1F2328"
 MUTED = "#8C959F"
 GRID = "#E4E7EB"
 TEXT_PT = 9
+_ROOM_ABOVE = 1.08
 _GAP_STEPS = 4.0
 _BESIDE_IN = 0.7  # of a column of panels: what stands left of the axes, at least
 _AROUND_IN = 0.09  # what the layout leaves free around it
@@ -76,6 +77,13 @@ def dress(ax: Axes) -> Axes:
     for label in (ax.xaxis.label, ax.yaxis.label):
         label.set_size(TEXT_PT)
         label.set_color(INK)
+    return ax
+
+
+def from_zero(ax: Axes) -> Axes:
+    """Begins the upright axis at zero, with room above the highest line; returns `ax`."""
+    highest = ax.dataLim.y1
+    ax.set_ylim(0.0, _ROOM_ABOVE * highest if 0.0 < highest < np.inf else None)
     return ax
 
 

@@ -18,6 +18,7 @@ from .style import (
     dot_lone,
     dress,
     figure,
+    from_zero,
     halo,
     name_above,
     name_lines,
@@ -125,8 +126,7 @@ def speed_panel(
         label = plain(f"track {track_id}")
         line = ax.plot(time_s - start_s, speed_mps, color=color, linewidth=1.5, label=label)
         dot_lone(*line)
-    ax.set_ylim(bottom=0.0)
-    return _finish(ax, "speed (m/s)")
+    return _finish(from_zero(ax), "speed (m/s)")
 
 
 def course_panel(

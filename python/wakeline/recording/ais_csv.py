@@ -26,6 +26,8 @@ COLUMNS = {
     "sog": ("sog_knots", "sog_kn", "sog", "speed_over_ground"),
 }
 
+_FAR_M, _EARTH_RADIUS_M = 300e3, 6371e3  # where the plane shortens ways by a thousandth
+
 _NO_LATITUDE_DEG, _NO_LONGITUDE_DEG = 91.0, 181.0
 _NO_COURSE_DEG, _NO_SPEED_KN = 360.0, 102.15  # 102.2 means as much or more
 _LARGEST_COURSE_DEG, _LARGEST_SPEED_KN = 410.0, 102.4  # that the fields of a message can hold
@@ -134,6 +136,9 @@ def read_ais(
     too, of reports of a vessel closer together than `min_step_s` the earlier ones, which came late,
     and positions that it cannot have come to from those before at `max_speed_mps`.
 
+    The plane is that of one area: a note tells of reports more than 300 km from its origin, and by
+    how much ways are too short there.
+
     Parameters
     ----------
     path : str or Path
@@ -178,6 +183,7 @@ def read_ais(
     if origin_deg is None:
         origin_deg = _middle_deg(latitude_deg[placed], longitude_deg[placed])
     plane = LocalPlane(*origin_deg)
+    _note_far(notes, table, plane.angle_rad(latitude_deg, longitude_deg))
     north_m, east_m = plane.position_m(latitude_deg, longitude_deg)
     course_rad = plane.course_rad(np.radians(cog_deg), latitude_deg, longitude_deg)
     tracks: dict[str, AisTrack] = {}
@@ -259,4 +265,18 @@ def _note(notes: list[str], table: Table, rows: np.ndarray, what: str) -> None:
         notes.append(
             f"{table.path.name}: {np.count_nonzero(rows)} {what} left out "
             f"(first in line {table.line(int(np.argmax(rows)))})"
+        )
+
+
+def _note_far(notes: list[str], table: Table, angle_rad: np.ndarray) -> None:
+    """Tell of reports (n,) so far from the origin that the plane is none of theirs."""
+    far = np.nan_to_num(angle_rad) * _EARTH_RADIUS_M > _FAR_M
+    if far.any():
+        farthest_rad = float(angle_rad[far].max())
+        short = 100.0 * min(1.0 - np.cos(farthest_rad), 1.0)
+        notes.append(
+            f"{table.path.name}: {np.count_nonzero(far)} reports lie more than "
+            f"{_FAR_M / 1e3:.0f} km from the origin of the plane (first in line "
+            f"{table.line(int(np.argmax(far)))}), where ways are too short, by {short:.1f} % at "
+            f"{farthest_rad * _EARTH_RADIUS_M / 1e3:.0f} km: cut the file to one area"
         )

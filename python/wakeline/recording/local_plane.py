@@ -58,6 +58,15 @@ class LocalPlane:
         away_deg = (np.asarray(longitude_deg) - self.longitude_deg + 180.0) % 360.0 - 180.0
         return true_course_rad - np.radians(away_deg) * np.sin(np.radians(latitude_deg))
 
+    def angle_rad(self, latitude_deg: np.ndarray, longitude_deg: np.ndarray) -> np.ndarray:
+        """Angles (n,) between the verticals of points in degrees (n,) and that of the origin.
+
+        A way along the line to the origin is shortened by one less the cosine.
+        """
+        up = _up(np.radians(latitude_deg), np.radians(longitude_deg))
+        own = _up(*np.radians([self.latitude_deg, self.longitude_deg]))
+        return 2.0 * np.arcsin(np.minimum(np.linalg.norm(up - own, axis=-1) / 2.0, 1.0))
+
     def _frame(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The origin (3,) in earth-centred metres, and unit vectors (3,) north and east."""
         latitude, longitude = np.radians([self.latitude_deg, self.longitude_deg])
@@ -70,6 +79,13 @@ class LocalPlane:
         )
         east = np.array([-np.sin(longitude), np.cos(longitude), 0.0])
         return _cartesian(latitude, longitude), north, east
+
+
+def _up(latitude_rad: np.ndarray, longitude_rad: np.ndarray) -> np.ndarray:
+    """Unit vectors (..., 3) of verticals."""
+    across = np.cos(latitude_rad)
+    directions = [across * np.cos(longitude_rad), across * np.sin(longitude_rad)]
+    return np.stack([*directions, np.sin(latitude_rad)], axis=-1)
 
 
 def _cartesian(latitude_rad: np.ndarray, longitude_rad: np.ndarray) -> np.ndarray:

@@ -289,6 +289,27 @@ TYPED_TEST(SmootherOfLines, FollowsALineAtUnevenSteps) {
   }
 }
 
+TYPED_TEST(SmootherOfLines, IsTheSameWhereEachReadingIsToldTwice) {
+  typename TypeParam::OnLine twice, once;
+  Draw draw(14);
+  for (int k = 0; k < 100; ++k) {
+    const double dt = 1 + k % 3, reading = (k > 50 ? 3.0 * k : 0.0) + draw.normal();
+    for (const double step : {dt, 0.0, 0.0}) ASSERT_EQ(twice.update(step, reading), Status::kOk);
+    ASSERT_EQ(once.update(dt, reading), Status::kOk);
+    EXPECT_EQ(twice.value(), once.value());
+    EXPECT_EQ(twice.rate(), once.rate());
+  }
+}
+
+TYPED_TEST(SmootherOfLines, RefusesAReadingOfOneTimeThatLeavesNoRoom) {
+  typename TypeParam::OnLine smoother;
+  ASSERT_EQ(smoother.update(0, 0.0), Status::kOk);
+  ASSERT_EQ(smoother.update(1e-300, 0.0), Status::kOk);
+  EXPECT_EQ(smoother.update(0, 1e74), Status::kNotFinite);
+  EXPECT_EQ(smoother.value(), 0.0);
+  EXPECT_EQ(smoother.rate(), 0.0);
+}
+
 // Each of them
 // -------------------------------------------------------------------------------------
 
@@ -485,6 +506,19 @@ TEST(AdaptiveAlphaBeta, GoesThroughAManeuverFasterThanAtRest) {
   }
   EXPECT_LT(rest, 0.65);
   EXPECT_GT(turn, 0.7);
+}
+
+TEST(AdaptiveAlphaBeta, TwoReadingsOfOneTimeAreTheirMean) {
+  AdaptiveAlphaBeta<Wrapped> twice, once;
+  Draw draw(13);
+  for (int k = 0; k < 20; ++k) {
+    const double reading = 3.0 + 0.1 * k + 0.1 * draw.normal(), dt = 1.0 + k % 3;
+    ASSERT_EQ(twice.update(dt, wrap_angle(reading - 0.05)), Status::kOk);
+    ASSERT_EQ(twice.update(0, wrap_angle(reading + 0.05)), Status::kOk);
+    ASSERT_EQ(once.update(dt, wrap_angle(reading)), Status::kOk);
+    EXPECT_NEAR(wrap_angle(twice.value() - once.value()), 0, 1e-9);
+    EXPECT_NEAR(twice.rate(), once.rate(), 1e-9);
+  }
 }
 
 TEST(AdaptiveAlphaBeta, AsPrintedNeverAdapts) {

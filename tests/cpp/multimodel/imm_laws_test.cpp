@@ -303,6 +303,16 @@ TEST(Imm, ProbabilitiesSumToOneOverALongRun) {
   }
 }
 
+TEST(Imm, InitialProbabilitiesOfFewDigitsMoveNoPlace) {
+  Imm imm{ModeChain<2>(kAsymmetric), turning(0.0), turning(3.0)};
+  imm.set_initial_mode_probability(Vec<double, 2>(0.3333333, 0.6666666));
+  EXPECT_EQ(imm.initial_mode_probability().sum(), 1.0);
+  Gaussian<4> far = test::five_km_off<double>();
+  far.mean[0] = 5e6;
+  ASSERT_EQ(imm.start(far), Status::kOk);
+  EXPECT_NEAR(imm.estimate().mean[0], 5e6, 1e-6);
+}
+
 TEST(Imm, InitialProbabilitiesThatAreNoneAreRefused) {
   Imm imm{ModeChain<2>(kAsymmetric), turning(0.0), turning(3.0)};
   EXPECT_THROW(imm.set_initial_mode_probability(Vec<double, 2>(0.5, 0.6)), std::invalid_argument);

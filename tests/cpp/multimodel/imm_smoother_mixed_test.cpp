@@ -4,6 +4,8 @@
 // The smoother over filters of different kinds and states.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "support/draw.hpp"
@@ -14,6 +16,7 @@
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/multimodel/imm_smoother.hpp"
+#include "wakeline/multimodel/variant_bank.hpp"
 
 namespace wakeline {
 namespace {
@@ -93,6 +96,46 @@ TEST(ImmSmoother, TakesFiltersOfOtherStates) {
     }
   }
   EXPECT_LT(smoothed, 0.6 * filtered);
+}
+
+/// A recording of 40 plots of a vessel that goes straight.
+template <class Estimator>
+std::vector<ImmScan<typename Estimator::Bank>> recorded(Estimator imm) {
+  std::vector<ImmScan<typename Estimator::Bank>> scans;
+  Draw draw(3);
+  EXPECT_EQ(imm.start(Gaussian<4>{Vec<double, 4>(0, 8, 0, 3),
+                                  Vec<double, 4>(900, 4, 900, 4).asDiagonal()}),
+            Status::kOk);
+  for (int k = 1; k <= 40; ++k) {
+    EXPECT_EQ(imm.predict(3.0), Status::kOk);
+    scans.push_back({imm, imm, 3.0});
+    EXPECT_TRUE(imm.update(Position{.position_std_m = 30.0},
+                           Vec<double, 2>(24.0 * k, 9.0 * k) + 30.0 * draw.normals<2>()));
+    scans.back().updated = imm;
+  }
+  return scans;
+}
+
+TEST(ImmSmoother, OfABankComposedAtRunTimeGivesTheBitsOfAFilterBank) {
+  using Straight = Ekf<ConstantVelocity>;
+  using Turning = Ukf<CoordinatedTurnRate>;
+  using AtRunTime = VariantBank<4, Straight, Turning>;
+  const PiecewiseAcceleration noise{0.05};
+  const Straight straight{ConstantVelocity{.noise = noise}};
+  const Turning turn{CoordinatedTurnRate{.noise = noise}};
+  const auto chain = ModeChain<2>::staying(0.9);
+  const std::array<AtRunTime::Filter, 2> filters{straight, turn};
+  auto expected = recorded(Imm<Bank>{chain, Bank{straight, turn}});
+  auto scans = recorded(Imm<AtRunTime>{ModeChain<kRuntimeModes>(chain), AtRunTime(filters)});
+  const Vec<double, 4> filtered = scans[0].updated.estimate().mean;
+  ASSERT_EQ(ImmSmoother<Bank>::smooth(expected), Status::kOk);
+  ASSERT_EQ(ImmSmoother<AtRunTime>::smooth(scans), Status::kOk);
+  EXPECT_NE(scans[0].updated.estimate().mean, filtered);
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    const auto one = scans[k].updated.estimate(), other = expected[k].updated.estimate();
+    EXPECT_TRUE(test::matrices_identical(one.mean, other.mean)) << k;
+    EXPECT_TRUE(test::matrices_identical(one.covariance, other.covariance)) << k;
+  }
 }
 
 }  // namespace

@@ -24,9 +24,25 @@ struct KeepScans {
   void updated(std::size_t scan, const Imm<Bank>& imm) const noexcept { scans[scan].updated = imm; }
 };
 
+/// Smooths the scans of a recording from its end. Where a step is so long that a covariance beyond
+/// it has no factor, nothing goes back over it: what was before is smoothed by itself. Returns what
+/// else hinders that, with the scans before it as they were.
+template <class Bank>
+Status smooth_stretches(std::span<ImmScan<Bank>> scans,
+                        std::span<const Vec<typename Bank::Scalar, 2>> acceleration_mps2) {
+  for (std::size_t k = scans.size(); k-- > 1;) {
+    const auto known =
+        acceleration_mps2.empty() ? acceleration_mps2 : acceleration_mps2.subspan(k - 1, 2);
+    const Status status = ImmSmoother<Bank>::smooth(scans.subspan(k - 1, 2), known);
+    if (status != Status::kOk && status != Status::kNotPositiveDefinite) return status;
+  }
+  return Status::kOk;
+}
+
 /// Runs a recording through an Imm that has been started, and smooths it: mean, covariance and mode
-/// probability of each scan know the readings after it, too. Returns what hinders that, with the
-/// scans before it as they were filtered.
+/// probability of each scan know the readings after it, too, up to a step over which nothing goes
+/// back (`smooth_stretches`). Returns what hinders that, with the scans before it as they were
+/// filtered.
 template <class Bank, class Sensor>
 Status run_smoothed(Imm<Bank> imm, const Sensor& sensor, const RunInput& in, std::size_t run,
                     const RunOutput& out) {
@@ -37,7 +53,7 @@ Status run_smoothed(Imm<Bank> imm, const Sensor& sensor, const RunInput& in, std
   if (in.acceleration_mps2 != nullptr)
     for (std::size_t k = 0; k < in.scans; ++k)
       known.emplace_back(in.acceleration_mps2[2 * k], in.acceleration_mps2[2 * k + 1]);
-  const Status status = ImmSmoother<Bank>::smooth(scans, known);
+  const Status status = smooth_stretches<Bank>(scans, known);
 
   const RunLanes<Scalar> lanes(in, run);
   const RunColumn<Scalar> mean(lanes, out.mean, out.states),

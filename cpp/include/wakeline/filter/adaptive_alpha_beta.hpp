@@ -27,8 +27,9 @@ class AdaptiveAlphaBeta {
   static_assert(Window >= 3, "wakeline: gains need three readings");
   using Scalar = ScalarType;
 
+  /// Takes a reading; one of the time of the reading before joins it: both become their mean.
   Status update(Scalar dt_s, Scalar reading) noexcept {
-    const Status status = readings_.add(dt_s, reading);
+    const Status status = readings_.take(dt_s, reading);
     if (status != Status::kOk) return status;
     gains_ = Vec<Scalar, 2>::Ones();
     if (readings_.size() > 2) {

@@ -82,6 +82,16 @@ class ReadingWindow {
  public:
   using Scalar = ScalarType;
 
+  /// Takes a reading; one of the time of the newest, after which a step tells nothing, joins it:
+  /// both become their mean.
+  Status take(Scalar dt_s, Scalar reading) noexcept {
+    return is_of_newest_time(dt_s) ? join(reading) : add(dt_s, reading);
+  }
+
+  [[nodiscard]] bool is_of_newest_time(Scalar dt_s) const noexcept {
+    return size_ > 0 && dt_s == Scalar(0);
+  }
+
   Status add(Scalar dt_s, Scalar reading) noexcept {
     if (const Status status = check_reading(size_ == 0, dt_s, reading); status != Status::kOk)
       return status;
@@ -106,6 +116,12 @@ class ReadingWindow {
     if (const Status status = check_reading(false, Scalar(0), reading); status != Status::kOk)
       return status;
     const Scalar half = Residual::difference(reading, newest_) / 2;
+    if (size_ > 1) {
+      const Scalar rise = half - offset_[std::size_t(size_ - 2)];
+      const Scalar gap_s = gap_s_[std::size_t(size_ - 1)];
+      if (const Status status = check_reading(false, gap_s, rise / 2); status != Status::kOk)
+        return status;
+    }
     for (int k = 0; k + 1 < size_; ++k) offset_[std::size_t(k)] -= half;
     newest_ += half;
     return Status::kOk;

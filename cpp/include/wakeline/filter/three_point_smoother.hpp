@@ -72,8 +72,7 @@ class ThreePointSmoother {
   /// Takes a reading; one of the time of the reading before has no step to weigh by and joins it:
   /// both become their mean.
   Status update(Scalar dt_s, Scalar reading) noexcept {
-    const bool same_time = readings_.size() > 0 && dt_s == Scalar(0);
-    const Status status = same_time ? readings_.join(reading) : readings_.add(dt_s, reading);
+    const Status status = readings_.take(dt_s, reading);
     if (status != Status::kOk) return status;
     const int n = readings_.size();
     correction_ = rate_ = Scalar(0);

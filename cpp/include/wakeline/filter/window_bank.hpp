@@ -41,12 +41,14 @@ class WindowBank {
             settings.memory);
   }
 
+  /// Takes a reading; one of the time of the reading before joins it: both become their mean, and
+  /// no line is judged by it, which may be the same reading told twice.
   Status update(Scalar dt_s, Scalar reading) noexcept {
-    const bool first = readings_.size() == 0;
+    const bool judges = readings_.size() > 0 && !readings_.is_of_newest_time(dt_s);
     const Scalar before = readings_.newest();
-    const Status status = readings_.add(dt_s, reading);
+    const Status status = readings_.take(dt_s, reading);
     if (status != Status::kOk) return status;
-    if (!first) weigh(dt_s, Residual::difference(reading, before));
+    if (judges) weigh(dt_s, Residual::difference(reading, before));
     fit();
     return status;
   }

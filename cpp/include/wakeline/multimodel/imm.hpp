@@ -57,8 +57,8 @@ class Imm {
   /// Mode probabilities that a start begins with (uniform unless set). Throws unless they sum to 1.
   void set_initial_mode_probability(const Probability& probability) {
     require_distribution("initial_mode_probability", probability, bank_.size());
-    initial_ = probability;
-    if (!started_) probability_ = probability;
+    initial_ = made_distribution(probability);
+    if (!started_) probability_ = initial_;
   }
 
   /// Begins every filter with the belief, over their own state or over `[x, vx, y, vy]`. Where one

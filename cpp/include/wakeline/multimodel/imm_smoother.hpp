@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "wakeline/core/cholesky.hpp"
@@ -186,10 +187,22 @@ class ImmSmoother {
   using Estimator = Imm<Bank>;
   using Matrix = ModeMatrix<Scalar, Bank::kModels>;
 
-  /// Calls `f(k)` for each mode, where filters are of different kinds with a constant.
+  /// A mode whose filter is of a kind that is chosen at run time.
+  template <class Filter>
+  struct ModeOf {
+    int k;
+    operator int() const noexcept { return k; }
+  };
+
+  /// Calls `f(k)` for each mode, where filters are of different kinds with a constant, or with a
+  /// `ModeOf` its kind.
   template <class Function>
   static void for_each_mode(const Bank& bank, const Function& function) {
-    if constexpr (requires { bank.filter(0); })
+    if constexpr (requires { bank.filter(0).index(); })
+      for (int k = 0; k < bank.size(); ++k)
+        std::visit([&]<class Filter>(const Filter&) { function(ModeOf<Filter>{k}); },
+                   bank.filter(k));
+    else if constexpr (requires { bank.filter(0); })
       for (int k = 0; k < bank.size(); ++k) function(k);
     else
       unroll<Bank::kModels>([&](auto k) { function(k); });
@@ -201,6 +214,11 @@ class ImmSmoother {
       return bank.filter(k);
     else
       return bank.template get<Mode::value>();
+  }
+
+  template <class SomeBank, class Filter>
+  static auto& filter_of(SomeBank& bank, ModeOf<Filter> k) {
+    return std::get<Filter>(bank.filter(k));
   }
 
   /// The belief of a filter, which knows its components.

@@ -137,7 +137,7 @@ class ModeHistory {
   /// Mode probabilities that a start begins with. Throws unless they sum to 1.
   void set_initial_mode_probability(const Probability& probability) {
     require_distribution("initial_mode_probability", probability, bank_.size());
-    initial_ = probability;
+    initial_ = made_distribution(probability);
     if (!started_) probability_ = initial_;
   }
 

@@ -89,6 +89,7 @@ class VariantBank {
   }
 
   [[nodiscard]] const Filter& filter(int k) const noexcept { return slot(k).filter; }
+  [[nodiscard]] Filter& filter(int k) noexcept { return slot(k).filter; }
 
  private:
   template <class Kind>

@@ -639,6 +639,12 @@ def _notes(log: NavigationLog) -> list[str]:
             f"{len(blind_s)} stretches of more than {_BLIND_S:g} s without a heading, the longest "
             f"{blind_s.max():.0f} s"
         )
+    lines = _unknown_where_silent(log)
+    if len(lines):
+        notes.append(
+            f"{len(lines)} magnetic headings where the true ones are silent want a variation "
+            f"(first in line {lines.min()})"
+        )
     unknown = np.count_nonzero(np.isnan(log.compass.variation_rad))
     if not log.heading.valid.any():
         also = f"; {unknown} magnetic ones want a variation" if unknown else ""
@@ -656,6 +662,17 @@ def _blind_s(log: NavigationLog) -> np.ndarray:
             stretches_s.append(np.diff([heard_s.min(), *told_s, heard_s.max()]))
     blind_s = np.concatenate(stretches_s)
     return blind_s[blind_s > _BLIND_S]
+
+
+def _unknown_where_silent(log: NavigationLog) -> np.ndarray:
+    """Lines (n,) of magnetic headings of unknown variation that would stand in for true ones."""
+    lines = [np.zeros(0, dtype=np.int64)]
+    for part in log.parts():
+        told_s, compass = part.heading.sound().time_s, part.compass.sound()
+        if len(told_s):
+            unknown = np.isnan(compass.variation_rad)
+            lines.append(compass.line[unknown & _far(compass.time_s, told_s, _SILENT_S)])
+    return np.concatenate(lines)
 
 
 def _empty_notes(empty: dict[str, list[int]]) -> Iterator[str]:

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Recordings that are smoothed by themselves, over pauses of any length.
+#include "wakeline/batch/run_smoothed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "support/draw.hpp"
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/measurement/position.hpp"
+#include "wakeline/motion/coordinated_turn.hpp"
+
+namespace wakeline {
+namespace {
+
+using Filter = Ekf<CoordinatedTurn>;
+using Bank = FilterBank<Filter, Filter>;
+
+constexpr std::size_t kScans = 20, kPause = 12;
+constexpr Position kSensor{.position_std_m = 30.0};
+
+Imm<Bank> started() {
+  const auto turning = [](double rate_deg_s) {
+    return Filter{
+        CoordinatedTurn{.turn_rate_rad_s = deg(rate_deg_s), .noise = PiecewiseAcceleration{0.05}}};
+  };
+  Imm<Bank> imm{ModeChain<2>::staying(0.9), turning(0.0), turning(2.0)};
+  Gaussian<4> start;
+  start.mean << 0, 8, 0, 3;
+  start.covariance = Vec<double, 4>(900, 4, 900, 4).asDiagonal();
+  EXPECT_EQ(imm.start(start), Status::kOk);
+  return imm;
+}
+
+/// Plots three seconds apart, but for a pause before one of them, and what is known of the scans.
+struct Recording {
+  std::vector<double> z, dt_s, mean, covariance, modes, innovation, nis, log_likelihood;
+  std::vector<std::uint8_t> scan_status;
+  Status status = Status::kOk;
+
+  Recording(std::size_t scans, double pause_s)
+      : z(2 * scans),
+        dt_s(scans, 3.0),
+        mean(4 * scans),
+        covariance(16 * scans),
+        modes(2 * scans),
+        innovation(2 * scans),
+        nis(scans),
+        log_likelihood(scans),
+        scan_status(scans) {
+    test::Draw draw(15);
+    for (std::size_t k = 0; k < scans; ++k) {
+      z[2 * k] = 24.0 * double(k) + 30.0 * draw.normal();
+      z[2 * k + 1] = 9.0 * double(k) + 30.0 * draw.normal();
+    }
+    if (scans > kPause) dt_s[kPause] = pause_s;
+    const RunInput in{.runs = 1, .scans = scans, .z = z.data(), .dt_s = dt_s.data()};
+    const RunOutput out{.states = 4,
+                        .models = 2,
+                        .mean = mean.data(),
+                        .covariance = covariance.data(),
+                        .mode_probability = modes.data(),
+                        .innovation = innovation.data(),
+                        .nis = nis.data(),
+                        .log_likelihood = log_likelihood.data(),
+                        .status = scan_status.data()};
+    status = run_smoothed(started(), kSensor, in, 0, out);
+  }
+};
+
+TEST(RunSmoothed, BeforeAPauseOverWhichNothingGoesBackIsSmoothedByItself) {
+  const Recording before(kPause, 3.0);
+  int by_itself = 0;
+  for (double pause_s = 3.0; pause_s < 1e10; pause_s *= 3.0) {
+    const Recording whole(kScans, pause_s);
+    ASSERT_EQ(whole.status, Status::kOk) << pause_s;
+    const auto& mean = before.mean;
+    by_itself += std::equal(mean.begin(), mean.end(), whole.mean.begin());
+    for (const double number : whole.mean) EXPECT_TRUE(std::isfinite(number)) << pause_s;
+  }
+  EXPECT_GT(by_itself, 0);
+}
+
+TEST(RunSmoothed, TellsAStepThatIsNone) {
+  EXPECT_EQ(Recording(kScans, -1.0).status, Status::kNegativeTimeStep);
+}
+
+}  // namespace
+}  // namespace wakeline
