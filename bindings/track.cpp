@@ -498,9 +498,10 @@ void define_track(py::module_& parent) {
                     "(n,) the track each plot most likely belongs to; negative for a tentative "
                     "one, 0 for none")
       .def_readonly("events", &PyReport::events)
-      .def_readonly("refused_plots", &PyReport::refused_plots,
-                    "plots not finite, behind the antenna, of so many turns that the bearing is lost, "
-                    "of another time than the scan, or beyond max_plots");
+      .def_readonly(
+          "refused_plots", &PyReport::refused_plots,
+          "plots not finite, behind the antenna, of so many turns that the bearing is lost, "
+          "of another time than the scan, or beyond max_plots");
   py::class_<PyTracks> table(m, "TrackTable", "Tracks as arrays, older ones first.");
   define_pickle(table, &PyTracks::track_id, &PyTracks::status, &PyTracks::time_s, &PyTracks::mean,
                 &PyTracks::covariance, &PyTracks::mode_probability, &PyTracks::nis,

@@ -39,10 +39,12 @@ inline constexpr bool kPredictsInOneStep = false;
 template <class Filter>
 constexpr void check_takes_acceleration() noexcept {
   using Scalar = typename Filter::Scalar;
-  static_assert(requires(Filter & filter, Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) {
-    filter.predict(dt_s, acceleration_mps2);
-  }, "wakeline: known accelerations and run_batch need predict(dt_s, acceleration_mps2) of each "
-     "filter; see cpp/docs/concepts.md");
+  static_assert(
+      requires(Filter & filter, Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) {
+        filter.predict(dt_s, acceleration_mps2);
+      },
+      "wakeline: known accelerations and run_batch need predict(dt_s, acceleration_mps2) of each "
+      "filter; see cpp/docs/concepts.md");
 }
 
 /// Begins a filter anew with a belief, unchecked, and predicts it, under a known acceleration where

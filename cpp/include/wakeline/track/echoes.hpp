@@ -39,8 +39,8 @@ class Echoes {
 
   /// Converts the plots, at most as many as there is room for, and forgets those before. Plots that
   /// are not finite, behind the antenna, of a bearing so large that it is rounded by more than the
-  /// radar errs, or farther than `slack_s` from the time of the scan are left out; one that is ahead
-  /// of it has a wrong clock, and counts as of its end.
+  /// radar errs, or farther than `slack_s` from the time of the scan are left out; one that is
+  /// ahead of it has a wrong clock, and counts as of its end.
   void take(const Radar& radar, std::span<const Plot> plots, double time_s,
             double slack_s) noexcept {
     echoes_.clear();

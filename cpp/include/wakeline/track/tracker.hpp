@@ -42,8 +42,8 @@ struct ScanReport {
   std::span<const std::int64_t>
       plot_track_id;  ///< of each plot up to `max_plots` the track it belongs to, or 0
   std::span<const Event> events;
-  /// Not finite, behind the antenna, of so many turns that the bearing is lost, of another time than
-  /// the scan, or beyond `max_plots`.
+  /// Not finite, behind the antenna, of so many turns that the bearing is lost, of another time
+  /// than the scan, or beyond `max_plots`.
   int refused_plots = 0;
 };
 
