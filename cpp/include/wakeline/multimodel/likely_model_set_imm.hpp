@@ -73,6 +73,10 @@ struct LikelyModelSet {
 template <class BankType>
 class LikelyModelSetImm : public TurnGridImm<BankType> {
   using Base = TurnGridImm<BankType>;
+  static_assert(
+      requires(BankType & bank) { bank.set_active(0, true); },
+      "wakeline: the models of a LikelyModelSetImm come and go, so that its bank must be one whose "
+      "filters may rest, such as a UniformBank of a number of filters that is told at run time");
 
  public:
   using typename Base::Bank;

@@ -12,8 +12,8 @@
 namespace wakeline {
 
 /// Filters of one kind: the face of `FilterBank`, with a number of filters that may be known at run
-/// time only (K = kRuntimeModes, at most kMaxModes), and filters that may rest. A filter at rest
-/// (in all lanes) is left out of every `for_each`. Storage is in place: no heap.
+/// time only (K = kRuntimeModes, at most kMaxModes); then filters may rest. A filter at rest (in
+/// all lanes) is left out of every `for_each`. Storage is in place: no heap.
 template <class Filter, int K = kRuntimeModes>
 class UniformBank {
   static_assert(
@@ -29,6 +29,7 @@ class UniformBank {
   /// `size` filters like `prototype`. Throws `std::invalid_argument` unless there is room for them.
   explicit UniformBank(const Filter& prototype, int size = K)
       : slots_(filled(prototype)), size_(size) {
+    active_.fill(true);
     check_size();
   }
 
@@ -37,24 +38,34 @@ class UniformBank {
       : slots_(filled(filters.empty() ? (refuse("a bank needs filters, got none"), filters.front())
                                       : filters.front())),
         size_(static_cast<int>(filters.size())) {
+    active_.fill(true);
     check_size();
     for (std::size_t k = 0; k < filters.size(); ++k) slots_[k].filter = filters[k];
   }
 
-  [[nodiscard]] int size() const noexcept { return size_; }
-  [[nodiscard]] MaskOf<Scalar> active(int k) const noexcept { return slot(k).active; }
-  void set_active(int k, const MaskOf<Scalar>& active) noexcept { slot(k).active = active; }
+  [[nodiscard]] int size() const noexcept {
+    if constexpr (kMayRest)
+      return size_;
+    else
+      return K;
+  }
+  [[nodiscard]] MaskOf<Scalar> active(int k) const noexcept requires(K == kRuntimeModes) {
+    return active_[static_cast<std::size_t>(k)];
+  }
+  void set_active(int k, const MaskOf<Scalar>& active) noexcept requires(K == kRuntimeModes) {
+    active_[static_cast<std::size_t>(k)] = active;
+  }
 
   template <class Function>
   void for_each(Function&& function) noexcept {
-    for (int k = 0; k < size_; ++k)
-      if (Slot& s = slot(k); any(s.active)) function(k, s.filter, s.before);
+    for (int k = 0; k < size(); ++k)
+      if (Slot& s = slot(k); in_use(k)) function(k, s.filter, s.before);
   }
 
   template <class Function>
   void for_each(Function&& function) const noexcept {
-    for (int k = 0; k < size_; ++k)
-      if (const Slot& s = slot(k); any(s.active)) function(k, s.filter);
+    for (int k = 0; k < size(); ++k)
+      if (const Slot& s = slot(k); in_use(k)) function(k, s.filter);
   }
 
   /// Calls `f(k, belief)` with the present belief of each filter.
@@ -68,8 +79,8 @@ class UniformBank {
 
   template <class Function>
   void for_each_before(Function&& function) const noexcept {
-    for (int k = 0; k < size_; ++k)
-      if (const Slot& s = slot(k); any(s.active)) function(k, s.before);
+    for (int k = 0; k < size(); ++k)
+      if (const Slot& s = slot(k); in_use(k)) function(k, s.before);
   }
 
   /// A zero belief over the components of the combined estimate.
@@ -88,8 +99,8 @@ class UniformBank {
   struct Slot {
     Filter filter;
     StateBelief<kComponents, Scalar> before = {};
-    MaskOf<Scalar> active = true;
   };
+  static constexpr bool kMayRest = K == kRuntimeModes;
   static constexpr std::size_t kCapacity = static_cast<std::size_t>(kModeCapacity<K>);
 
   static std::array<Slot, kCapacity> filled(const Filter& prototype) {
@@ -106,10 +117,18 @@ class UniformBank {
              " filters, got " + std::to_string(size_));
   }
 
+  [[nodiscard]] bool in_use(int k) const noexcept {
+    if constexpr (kMayRest)
+      return any(active(k));
+    else
+      return true;
+  }
+
   Slot& slot(int k) noexcept { return slots_[static_cast<std::size_t>(k)]; }
   const Slot& slot(int k) const noexcept { return slots_[static_cast<std::size_t>(k)]; }
 
   std::array<Slot, kCapacity> slots_;
+  std::array<MaskOf<Scalar>, kMayRest ? kCapacity : 0> active_;
   int size_;
 };
 
