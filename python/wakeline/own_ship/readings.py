@@ -86,14 +86,8 @@ def readings_of(
     ValueError
         When there is no sound fix, or the clock was set back.
     """
-    fixes, ground, water = part.fixes.sound(), part.ground.sound(), part.water.sound()
-    if len(fixes) == 0:
-        raise ValueError(f"{part.name}: readings want a sound fix, got none")
-    if len(part.set_back_lines):
-        raise ValueError(
-            f"{part.name}: the clock was set back, so that times do not grow: "
-            "take the readings of each of parts()"
-        )
+    fixes = part.fixes_in_order("readings")
+    ground, water = part.ground.sound(), part.water.sound()
     plane = plane or plane_of(fixes)
     bottom, turn = part.bottom.sound(), part.turn.sound()
     latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)

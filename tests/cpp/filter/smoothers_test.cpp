@@ -389,19 +389,26 @@ TEST(ThreePointSmoother, IsTheWeightedMeanOfNeighbours) {
   EXPECT_THROW((ThreePointSmoother<>({.weight_before_s = -1})), std::invalid_argument);
 }
 
+/// Two readings of each time are as their mean, of angles that pass through pi, to a smoother
+/// of a kind that is given twice.
+template <class Smoother>
+void expect_mean_of_two(Smoother twice, Smoother once) {
+  Draw draw(12);
+  for (int k = 0; k < 20; ++k) {
+    const double reading = 3.0 + 0.1 * k + 0.1 * draw.normal(), dt = 1.0 + k % 3;
+    ASSERT_EQ(twice.update(dt, wrap_angle(reading - 0.05)), Status::kOk);
+    ASSERT_EQ(twice.update(0, wrap_angle(reading + 0.05)), Status::kOk);
+    ASSERT_EQ(once.update(dt, wrap_angle(reading)), Status::kOk);
+    EXPECT_NEAR(wrap_angle(twice.value() - once.value()), 0, 1e-9);
+    EXPECT_NEAR(twice.rate(), once.rate(), 1e-9);
+    EXPECT_EQ(twice.update(0, NAN), Status::kNotFinite);
+  }
+}
+
 TEST(ThreePointSmoother, TwoReadingsOfOneTimeAreTheirMean) {
   for (const bool adaptive : {false, true}) {
-    ThreePointSmoother<Wrapped> twice({.adaptive = adaptive}), once({.adaptive = adaptive});
-    Draw draw(12);
-    for (int k = 0; k < 20; ++k) {
-      const double reading = 3.0 + 0.1 * k + 0.1 * draw.normal(), dt = 1.0 + k % 3;
-      ASSERT_EQ(twice.update(dt, wrap_angle(reading - 0.05)), Status::kOk);
-      ASSERT_EQ(twice.update(0, wrap_angle(reading + 0.05)), Status::kOk);
-      ASSERT_EQ(once.update(dt, wrap_angle(reading)), Status::kOk);
-      EXPECT_NEAR(wrap_angle(twice.value() - once.value()), 0, 1e-9);
-      EXPECT_NEAR(twice.rate(), once.rate(), 1e-9);
-      EXPECT_EQ(twice.update(0, NAN), Status::kNotFinite);
-    }
+    const ThreePointSmoother<Wrapped> fresh({.adaptive = adaptive});
+    expect_mean_of_two(fresh, fresh);
   }
 }
 
@@ -509,16 +516,7 @@ TEST(AdaptiveAlphaBeta, GoesThroughAManeuverFasterThanAtRest) {
 }
 
 TEST(AdaptiveAlphaBeta, TwoReadingsOfOneTimeAreTheirMean) {
-  AdaptiveAlphaBeta<Wrapped> twice, once;
-  Draw draw(13);
-  for (int k = 0; k < 20; ++k) {
-    const double reading = 3.0 + 0.1 * k + 0.1 * draw.normal(), dt = 1.0 + k % 3;
-    ASSERT_EQ(twice.update(dt, wrap_angle(reading - 0.05)), Status::kOk);
-    ASSERT_EQ(twice.update(0, wrap_angle(reading + 0.05)), Status::kOk);
-    ASSERT_EQ(once.update(dt, wrap_angle(reading)), Status::kOk);
-    EXPECT_NEAR(wrap_angle(twice.value() - once.value()), 0, 1e-9);
-    EXPECT_NEAR(twice.rate(), once.rate(), 1e-9);
-  }
+  expect_mean_of_two(AdaptiveAlphaBeta<Wrapped>(), AdaptiveAlphaBeta<Wrapped>());
 }
 
 TEST(AdaptiveAlphaBeta, AsPrintedNeverAdapts) {
