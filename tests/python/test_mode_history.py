@@ -102,7 +102,7 @@ def test_deviations_and_weights_that_are_those_left_out_change_nothing(kind):
     std_rad_s = np.full(len(RATES), LEARNT_STD_RAD_S)
     std_rad_s[2] *= 0.1  # that of the straight
     told = wl.ModeHistory(
-        kind(LEARNT), RATES, grid_std_rad_s=std_rad_s, grid_weight=np.full(len(RATES), 0.4)
+        kind(LEARNT), RATES, grid_std_rad_s=std_rad_s, grid_weight=np.full(len(RATES), 0.5)
     )
     left_out = wl.ModeHistory(kind(LEARNT), RATES)
     for readings_of in (z, z[0]):
@@ -345,10 +345,12 @@ def a_vessel_of_its_habits(rng, total_s):
     turns = [k for k in range(9) if k != straight]
     if rng.random() < 0.1:
         mode = rng.choice(turns)
+    least_s = 0.0  # of the first, which had begun before
     while sum(segment.duration_s for segment in segments) < total_s:
-        duration_s = 6.0 + rng.exponential(55.0 if mode == straight else 75.0)
+        duration_s = least_s + rng.exponential(40.0 if mode == straight else 70.0)
         segments.append(scenario.Segment(duration_s, rates[mode]))
-        if mode != straight and rng.random() < 0.75:
+        least_s = 12.0
+        if mode != straight and rng.random() < 0.85:
             mode = straight
         else:
             mode = rng.choice([k for k in turns if k != mode])

@@ -178,7 +178,7 @@ def test_the_text_of_an_imm():
 
 
 def test_what_the_text_of_a_mode_history_says_of_its_chain():
-    assert "straight_sojourn_s=55.0, turn_sojourn_s=75.0, straighten_probability=0.75" in repr(
+    assert "straight_sojourn_s=40.0, turn_sojourn_s=70.0, straighten_probability=0.85" in repr(
         wl.ModeHistory(TURN)
     )
     text = repr(OF_ALL_KINDS["ModeHistory-habits"])
