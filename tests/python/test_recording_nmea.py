@@ -434,7 +434,7 @@ def test_the_track_of_a_log_is_where_its_sound_fixes_are(log):
 
 
 def test_a_log_without_a_track_says_why(log):
-    with pytest.raises(ValueError, match="own: a track must have a sound fix, got none"):
+    with pytest.raises(ValueError, match="own: a track wants a sound fix, got none"):
         log(rmc(10, status="V")).track()
     with pytest.raises(ValueError, match=r"own: the clock was set back.*parts\(\)"):
         log(*[rmc(t) for t in range(5000, 5020)], *[rmc(t) for t in range(1000, 1020)]).track()

@@ -15,6 +15,7 @@ from wakeline import own_ship, plot
 from wakeline._progress import progress
 from wakeline.navigation import LocalPlane
 from wakeline.recording import NavigationLog, RecordingError, read_nmea, replacing
+from wakeline.recording.local_plane import EARTH_RADIUS_M
 
 from . import outputs, report
 
@@ -27,7 +28,7 @@ _COLUMNS = (
 _OWN, _PROBLEMS = "own.csv", "problems.csv"
 _SHOWN_ROWS = 5
 _LEAST_DRAWN_FIXES = 10
-_FAR_M, _EARTH_RADIUS_M = 1000e3, 6371e3
+_FAR_M = 1000e3
 _SMOOTHED = (
     "smoothed: own.csv and pictures know at each time the readings after it, too, up to a gap or "
     "to what was not believed until it went on"
@@ -190,7 +191,7 @@ def _far_notes(log: NavigationLog, plane: LocalPlane) -> Iterator[str]:
     position_m = plane.position_m(np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg))
     far_m = np.hypot(*position_m.T).max()
     if far_m > _FAR_M:
-        angle = far_m / _EARTH_RADIUS_M
+        angle = far_m / EARTH_RADIUS_M
         percent = 100.0 * (angle / np.sin(angle) - 1.0)
         yield (
             f"note: fixes lie up to {far_m / 1e3:.0f} km from the first one, whose plane is "

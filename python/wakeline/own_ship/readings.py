@@ -86,7 +86,7 @@ def readings_of(
     ValueError
         When there is no sound fix, or the clock was set back.
     """
-    fixes = part.fixes_in_order("readings")
+    fixes = part.fixes_in_order("set of readings")
     ground, water = part.ground.sound(), part.water.sound()
     plane = plane or plane_of(fixes)
     bottom, turn = part.bottom.sound(), part.turn.sound()

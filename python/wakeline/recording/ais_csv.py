@@ -13,7 +13,7 @@ from wakeline._brief import brief, many, span
 from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
-from .local_plane import LocalPlane
+from .local_plane import EARTH_RADIUS_M, LocalPlane
 from .reach import unreachable
 from .table import TIME_NAMES, Table
 
@@ -26,7 +26,7 @@ COLUMNS = {
     "sog": ("sog_knots", "sog_kn", "sog", "speed_over_ground"),
 }
 
-_FAR_M, _EARTH_RADIUS_M = 300e3, 6371e3  # where the plane shortens ways by a thousandth
+_FAR_M = 300e3  # where the plane shortens ways by a thousandth
 
 _NO_LATITUDE_DEG, _NO_LONGITUDE_DEG = 91.0, 181.0
 _NO_COURSE_DEG, _NO_SPEED_KN = 360.0, 102.15  # 102.2 means as much or more
@@ -270,7 +270,7 @@ def _note(notes: list[str], table: Table, rows: np.ndarray, what: str) -> None:
 
 def _note_far(notes: list[str], table: Table, angle_rad: np.ndarray) -> None:
     """Tell of reports (n,) so far from the origin that the plane is none of theirs."""
-    far = np.nan_to_num(angle_rad) * _EARTH_RADIUS_M > _FAR_M
+    far = np.nan_to_num(angle_rad) * EARTH_RADIUS_M > _FAR_M
     if far.any():
         farthest_rad = float(angle_rad[far].max())
         short = 100.0 * min(1.0 - np.cos(farthest_rad), 1.0)
@@ -278,5 +278,5 @@ def _note_far(notes: list[str], table: Table, angle_rad: np.ndarray) -> None:
             f"{table.path.name}: {np.count_nonzero(far)} reports lie more than "
             f"{_FAR_M / 1e3:.0f} km from the origin of the plane (first in line "
             f"{table.line(int(np.argmax(far)))}), where ways are too short, by {short:.1f} % at "
-            f"{farthest_rad * _EARTH_RADIUS_M / 1e3:.0f} km: cut the file to one area"
+            f"{farthest_rad * EARTH_RADIUS_M / 1e3:.0f} km: cut the file to one area"
         )

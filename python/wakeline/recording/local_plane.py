@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+EARTH_RADIUS_M = 6371e3
+"""Of a sphere, where that is near enough."""
+
 _EQUATOR_M = 6378137.0
 _FLATTENING = 1.0 / 298.257223563
 _ECCENTRICITY_2 = _FLATTENING * (2.0 - _FLATTENING)
@@ -63,8 +66,8 @@ class LocalPlane:
 
         A way along the line to the origin is shortened by one less the cosine.
         """
-        up = _up(np.radians(latitude_deg), np.radians(longitude_deg))
-        own = _up(*np.radians([self.latitude_deg, self.longitude_deg]))
+        up = verticals(np.radians(latitude_deg), np.radians(longitude_deg))
+        own = verticals(*np.radians([self.latitude_deg, self.longitude_deg]))
         return 2.0 * np.arcsin(np.minimum(np.linalg.norm(up - own, axis=-1) / 2.0, 1.0))
 
     def _frame(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -81,7 +84,7 @@ class LocalPlane:
         return _cartesian(latitude, longitude), north, east
 
 
-def _up(latitude_rad: np.ndarray, longitude_rad: np.ndarray) -> np.ndarray:
+def verticals(latitude_rad: np.ndarray, longitude_rad: np.ndarray) -> np.ndarray:
     """Unit vectors (..., 3) of verticals."""
     across = np.cos(latitude_rad)
     directions = [across * np.cos(longitude_rad), across * np.sin(longitude_rad)]

@@ -319,21 +319,21 @@ class NavigationLog:
         wide = np.flatnonzero(np.diff(fixes.time_s) > longer_than_s)
         return np.column_stack([fixes.time_s[wide], fixes.time_s[wide + 1]])
 
-    def fixes_in_order(self, wanted_for: str) -> Fixes:
+    def fixes_in_order(self, what: str) -> Fixes:
         """Sound fixes, of which there is one at least, under a clock that was never set back.
 
         Raises
         ------
         ValueError
-            When it is not so; says what they are wanted for.
+            When it is not so; says what wants them.
         """
         fixes = self.fixes.sound()
         if len(fixes) == 0:
-            raise ValueError(f"{self.name}: {wanted_for} must have a sound fix, got none")
+            raise ValueError(f"{self.name}: a {what} wants a sound fix, got none")
         if len(self.set_back_lines):
             raise ValueError(
                 f"{self.name}: the clock was set back, so that times do not grow: "
-                f"take {wanted_for} of each of parts()"
+                f"take the {what} of each of parts()"
             )
         return fixes
 
@@ -358,7 +358,7 @@ class NavigationLog:
         ValueError
             When there is no sound fix, or the clock was set back.
         """
-        fixes, ground = self.fixes_in_order("a track"), self.ground.sound()
+        fixes, ground = self.fixes_in_order("track"), self.ground.sound()
         place_deg = fixes.latitude_deg, fixes.longitude_deg
         plane = plane or LocalPlane(fixes.latitude_deg[0], fixes.longitude_deg[0])
         speed_mps, course_rad = np.full((2, len(fixes)), np.nan)

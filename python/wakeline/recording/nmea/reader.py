@@ -13,6 +13,7 @@ import numpy as np
 from wakeline._units import KNOT_MPS
 
 from ..errors import RecordingError, octets_of
+from ..local_plane import EARTH_RADIUS_M, verticals
 from ..not_text import instead_of_text
 from ..reach import jumps_m, unreachable
 from .clock import Clock
@@ -48,7 +49,6 @@ _BLIND_S = 60.0
 _SILENT_S = 10.0
 _UNMARKED_FIX = (False, False)  # frozen, suspect: found when all are read
 _UNMARKED_GROUND = (False,)  # frozen
-_EARTH_RADIUS_M = 6371e3
 
 
 def read_nmea(
@@ -591,9 +591,7 @@ def _repeats(*columns: np.ndarray) -> np.ndarray:
 def _earth_centred_m(fixes: Fixes) -> np.ndarray:
     """Positions (n, 3) on a sphere."""
     latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
-    across = np.cos(latitude)
-    directions = [across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude)]
-    return _EARTH_RADIUS_M * np.column_stack(directions)
+    return EARTH_RADIUS_M * verticals(latitude, longitude)
 
 
 # ------------------------------------------------------------------ notes
