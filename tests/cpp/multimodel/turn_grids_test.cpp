@@ -12,6 +12,7 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
+#include "support/refusal.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
@@ -21,6 +22,7 @@ namespace {
 
 using test::matrices_identical;
 using test::matrices_near;
+using test::refusal_of;
 
 using Filter = Ekf<CoordinatedTurn>;
 using Rates = ModeVector<double, kRuntimeModes>;
@@ -477,16 +479,6 @@ TEST(TurnGrid, RefusesWhatIsNoGrid) {
   EXPECT_THROW(TurnRateGrid(std::span<const double>(forty)), std::invalid_argument);
   EXPECT_THROW(TurnRateGrid::evenly(0.0, 2), std::invalid_argument);
   EXPECT_THROW(TurnRateGrid::evenly(1.0, 8), std::invalid_argument);
-}
-
-template <class Build>
-std::string refusal_of(Build&& build) {
-  try {
-    (void)build();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "none";
 }
 
 TEST(TurnGrid, SaysWhatWasWantedAndWhatCame) {

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace wakeline::test {
+
+/// What `build` is refused with, or "none".
+template <class Build>
+std::string refusal_of(Build&& build) {
+  try {
+    (void)build();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+}  // namespace wakeline::test
