@@ -289,6 +289,45 @@ def test_drift_over_a_window_is_found_and_its_covariance_is_true():
     assert np.mean(nees, axis=0) == pytest.approx(2.0, abs=0.3)
 
 
+def test_drift_over_a_window_is_the_best_line_through_differences_that_err_together():
+    """Generalised least squares over positions and slope, of the fixes that are remembered."""
+    rng = np.random.default_rng(5)
+    log_std, heading_std, eye = 0.2, 0.01, np.eye(2)
+    window = nav.DriftWindow(max_fixes=7, log_std_mps=log_std, heading_std_rad=heading_std)
+    time_s, reckoned, summed, told = 0.0, np.zeros(2), np.zeros((2, 2)), []
+    for _ in range(20):
+        for dt in rng.choice([0.0, 1.0, 7.0], 3):
+            speed, heading = rng.uniform(0, 8), rng.uniform(-np.pi, np.pi)
+            window.advance(dt, speed, heading)
+            ahead, abeam = (
+                nav.velocity_mps(1.0, heading),
+                nav.velocity_mps(1.0, heading + np.pi / 2),
+            )
+            time_s += dt
+            reckoned = reckoned + dt * speed * ahead
+            summed = summed + (dt * log_std) ** 2 * np.outer(ahead, ahead)
+            summed += (dt * speed * heading_std) ** 2 * np.outer(abeam, abeam)
+        half = rng.standard_normal((2, 2))
+        fix = wl.Gaussian(reckoned + 3.0 * rng.standard_normal(2), 9.0 * half @ half.T + eye)
+        window.add(fix)
+        told = [*told, (time_s, fix.mean - reckoned, fix.covariance, summed)][-7:]
+        if not window.ready:
+            continue
+        times, off, of_fix, of_log = zip(*told, strict=True)
+        covariance = np.block(
+            [
+                [of_log[min(i, j)] - of_log[0] + (i == j) * of_fix[i] for j in range(len(told))]
+                for i in range(len(told))
+            ]
+        )
+        design = np.vstack([np.hstack([eye, (t - times[0]) * eye]) for t in times])
+        weighted = np.linalg.solve(covariance, design).T
+        best = np.linalg.inv(weighted @ design)
+        slope = (best @ weighted @ np.concatenate(off))[2:]
+        np.testing.assert_allclose(window.drift().mean, slope, rtol=1e-8, atol=1e-10)
+        np.testing.assert_allclose(window.drift().covariance, best[2:, 2:], rtol=1e-8, atol=1e-12)
+
+
 def test_a_window_step_by_step_is_its_run_and_bridges_missing_fixes():
     rng = np.random.default_rng(4)
     speed, heading, fix, _ = reckoned_voyage(rng, 12)

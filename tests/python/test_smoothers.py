@@ -180,3 +180,98 @@ def test_a_bank_foretells_a_voyage_four_steps_ahead(dt_s, speed_kn, course_deg):
     course_error = np.degrees(wrapped(forecast[:, :-4] - truth.course_rad[4:]))
     assert np.sqrt(np.mean(speed_error**2)) < speed_kn
     assert np.sqrt(np.mean(course_error**2)) < course_deg
+
+
+# --- equations --------------------------------------------------------------------------------
+
+
+def passed(dt_s, reading, gains):
+    """(26) over a window: value, rate, and of each step x^ - x~, e, dV, t and the rise of x^."""
+    value, rate, steps = reading[0], 0.0, []
+    for n in range(1, len(reading)):
+        alpha, beta = gains(n + 1)
+        foretold = value + rate * dt_s[n]
+        error = reading[n] - foretold
+        before, value = value, foretold + alpha * error
+        rate += beta * error / dt_s[n]
+        steps.append([alpha * error, error, beta * error / dt_s[n], dt_s[n], value - before])
+    return value, rate, np.array(steps)
+
+
+def gains_27(n):
+    return 2 * (2 * n - 1) / (n * (n + 1)), 6 / (n * (n + 1))
+
+
+def by_33(dt_s, reading):
+    """Two passes, the second with the gains of the first."""
+    alpha = beta = 1.0
+    if len(reading) > 2:
+        correction, error, change, t, _ = passed(dt_s, reading, gains_27)[2].T
+        alpha = (correction @ error) / (error @ error)
+        beta = (change @ (error / t)) / ((error / t) @ (error / t))
+    return passed(dt_s, reading, lambda _: (alpha, beta))[:2]
+
+
+def alpha_23(dt_s, reading):
+    rise = passed(dt_s, reading, gains_27)[2][:, 4]
+    jump = reading[1:] - (reading[0] + np.cumsum(np.append(0.0, rise[:-1])))
+    return np.clip((rise @ jump) / (jump @ jump), 0.0, 1.0)
+
+
+def by_24(dt_s, reading):
+    """The last reading but one, smoothed by the weights that bring three to the line of five."""
+    t = np.append(0.0, np.cumsum(dt_s[1:]))
+    off = np.polyval(np.polyfit(t, reading, 1), t)[1:-1] - reading[1:-1]
+    beside = np.column_stack([-np.diff(reading)[:-1] / dt_s[1:-1], np.diff(reading)[1:] / dt_s[2:]])
+    weights = np.linalg.lstsq(beside, off, rcond=None)[0]
+    return reading[-2] + beside[-1] @ weights
+
+
+def uneven_voyage(seed):
+    """Steps and readings of something that wanders."""
+    rng = np.random.default_rng(seed)
+    dt_s = rng.uniform(0.5, 5.0, 50)
+    return dt_s, np.cumsum(0.1 * dt_s * rng.standard_normal(50)) + 0.1 * rng.standard_normal(50)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_windows_of_five_are_their_equations(seed):
+    dt_s, reading = uneven_voyage(seed)
+    adaptive, exponential = wf.AdaptiveAlphaBeta(), wf.AdaptiveExponentialSmoother()
+    three = wf.ThreePointSmoother(adaptive=True)
+    for k in range(50):
+        before = exponential.value
+        for smoother in (adaptive, exponential, three):
+            smoother.update(dt_s[k], reading[k])
+        window = slice(max(k - 4, 0), k + 1)
+        if k == 0:
+            continue
+        assert [adaptive.value, adaptive.rate] == pytest.approx(
+            by_33(dt_s[window], reading[window])
+        )
+        alpha = alpha_23(dt_s[window], reading[window])
+        assert exponential.value == pytest.approx(before + alpha * (reading[k] - before))
+        if k >= 4:
+            assert three.value == pytest.approx(by_24(dt_s[window], reading[window]))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_bank_is_the_line_whose_innovations_have_the_least_energy(seed):
+    dt_s, reading = uneven_voyage(seed)
+    time_s = np.cumsum(dt_s)
+
+    def line(n, k):
+        """Through the last n readings before the k-th, or as many as there are."""
+        last = slice(max(k - n, 0), k)
+        return np.polyfit(time_s[last], reading[last], min(k - 1, 1))
+
+    bank = wf.WindowBank(max_readings=9, memory=0.9)
+    bank.update(dt_s[0], reading[0])
+    energy = np.zeros(8)
+    for k in range(1, 50):
+        bank.update(dt_s[k], reading[k])
+        foretold = np.array([np.polyval(line(n, k), time_s[k]) for n in range(2, 10)])
+        energy = 0.9 * energy + (reading[k] - foretold) ** 2
+        best = line(int(np.argmin(energy)) + 2, k + 1)
+        assert bank.window == min(int(np.argmin(energy)) + 2, k + 1)
+        assert [bank.value, bank.rate] == pytest.approx([np.polyval(best, time_s[k]), best[0]])

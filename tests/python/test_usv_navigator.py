@@ -147,6 +147,69 @@ def test_smoothing_ends_where_the_belief_was_widened():
     assert np.all(variance <= filtered * (1.0 + 1e-9))
 
 
+def unscented(mean, covariance, function, alpha, beta):
+    """(13)-(18), kappa 0: mean and covariance of a function of what is known by these."""
+    n = len(mean)
+    root = np.linalg.cholesky(alpha**2 * n * covariance).T
+    points = np.array([function(x) for x in (mean, *(mean + root), *(mean - root))])
+    weights = np.full(2 * n + 1, 1 / (2 * alpha**2 * n))
+    weights[0] = 1 - 1 / alpha**2
+    average = weights @ points
+    weights[0] += 1 - alpha**2 + beta
+    off = points - average
+    return average, (weights[:, None] * off).T @ off
+
+
+def by_the_paper(log, alpha, beta):
+    """(1)-(25): five states, accelerations turned by the heading at the start of a step."""
+    heading = log["heading"][0]
+    mean = np.array([0.0, 0.0, np.cos(heading), np.sin(heading), heading])
+    covariance = np.diag([8.0, 7.0, 0.5, 0.5, DEG]) ** 2
+    means, covariances = [], []
+    steps = np.diff(log["time_s"], prepend=log["time_s"][0])
+    for dt, imu, gnss, compass in zip(steps, log["imu"], log["gnss"], log["compass"], strict=True):
+        g = np.vstack([dt**2 / 2 * np.eye(2), dt * np.eye(2)])
+
+        def moved(x, dt=dt, imu=imu, g=g):
+            c, s = np.cos(x[4]), np.sin(x[4])
+            push = g @ [c * imu[0] - s * imu[1], s * imu[0] + c * imu[1]]
+            return x + [*push, dt * imu[2]] + dt * np.array([x[2], x[3], 0, 0, 0])
+
+        mean, covariance = unscented(mean, covariance, moved, alpha, beta)
+        covariance[:4, :4] += 0.004**2 * g @ g.T
+        covariance[4, 4] += (0.033 * DEG * dt) ** 2
+        for z, rows, std in ((gnss, [0, 1], [8, 7]), ([compass], [4], [DEG])):
+            if np.isnan(z[0]):
+                continue
+            off = z - mean[rows]
+            if rows == [4]:
+                off = (off + np.pi) % (2 * np.pi) - np.pi
+            s = covariance[np.ix_(rows, rows)] + np.diag(np.square(std))
+            gain = covariance[:, rows] @ np.linalg.inv(s)
+            mean, covariance = mean + gain @ off, covariance - gain @ s @ gain.T
+        means.append(mean)
+        covariances.append(covariance)
+    return np.array(means), np.array(covariances)
+
+
+def test_five_states_are_the_equations_of_the_paper():
+    """At uneven steps, through silent sensors and headings that go round."""
+    log = voyage(seed=3, bias=np.zeros(3))
+    turns = np.abs(log["imu"][:, 2]) > DEG
+    kept = turns | (np.arange(600) == 0) | (np.random.default_rng(3).random(600) < 0.7)
+    log = {name: value[kept] for name, value in log.items()}
+    log["gnss"][::3] = np.nan
+    log["compass"][1::4] = np.nan
+    navigator = started(
+        log, 5, "ukf", turned_at=0.0, alpha=0.5, rejections=0, gate_probability=1 - 1e-12
+    )
+    run = navigator.run(**sensors(log))
+    mean, covariance = by_the_paper(log, alpha=0.5, beta=2.0)
+    mean[:, 4] = (mean[:, 4] + np.pi) % (2 * np.pi) - np.pi
+    np.testing.assert_allclose(run.mean, mean, atol=1e-8)
+    np.testing.assert_allclose(run.covariance, covariance, rtol=1e-7, atol=1e-9)
+
+
 def test_filters_agree():
     log = voyage()
     ekf, *others = (

@@ -179,6 +179,28 @@ TEST(FuzzyAlphaBeta, IsTheMethodInPlainWords) {
   }
 }
 
+TEST(FuzzyAlphaBeta, PlotsThatAreToldTwiceAreJudgedOnce) {
+  Draw draw(35);
+  Fuzzy once, twice;
+  ASSERT_EQ(once.start(test::five_km_off<double>()), Status::kOk);
+  ASSERT_EQ(twice.start(test::five_km_off<double>()), Status::kOk);
+  for (int scan = 1; scan < 80; ++scan) {
+    const Vec<double, 2> z = weaving(3.0 * scan) + 5.0 * draw.normals<2>();
+    for (Fuzzy* fuzzy : {&once, &twice}) {
+      ASSERT_EQ(fuzzy->predict(3.0), Status::kOk);
+      ASSERT_TRUE(fuzzy->update(kSensor, z));
+    }
+    ASSERT_EQ(twice.predict(0.0), Status::kOk);
+    ASSERT_TRUE(twice.update(kSensor, z));
+    if (scan < 2) continue;
+    EXPECT_EQ(twice.chosen(), once.chosen()) << scan;
+    EXPECT_TRUE(test::matrices_identical(twice.estimate().mean, once.estimate().mean)) << scan;
+    if (scan < 3) continue;
+    EXPECT_EQ(twice.quality(), once.quality()) << scan;
+    EXPECT_EQ(twice.sigma_hat_m(), once.sigma_hat_m()) << scan;
+  }
+}
+
 TEST(FuzzyAlphaBeta, IsLongOnAStraightAndShortInATurn) {
   Draw draw(32);
   Fuzzy fuzzy;

@@ -25,7 +25,8 @@ namespace wakeline {
 /// prediction. As long as there are fewer plots those lines are judged that exist.
 ///
 /// The covariance is that of the line's noise, and of an acceleration that began at the last plot
-/// but one. In a missed scan nothing is judged. One mode for each line. No matrix is inverted;
+/// but one. In a missed scan nothing is judged, nor is by a plot of the time of the newest, which
+/// joins it and which no line has foretold. One mode for each line. No matrix is inverted;
 /// O(max_plots) a scan. Source: as `FuzzyCriterion`.
 template <class ScalarType = double>
 class FuzzyAlphaBeta
@@ -144,6 +145,8 @@ class FuzzyAlphaBeta
   /// How well the lines foretold a plot, and which of them follows from it.
   void judge(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
     using std::min, std::sqrt;
+    const Mask foretold = lanes && !this->bank_.joins();
+    if (none(foretold)) return;
     Judgement next = judgement_;
     next.lines = this->bank_.lines_of_lanes();
     const auto count = static_cast<std::size_t>(this->bank_.lines());
@@ -163,7 +166,7 @@ class FuzzyAlphaBeta
                                             {next.strengths.data(), count + 1}, next.lines);
     const Mask holds = Mask(criterion_.hold) && before > next.quality;
     next.chosen = rounded(select(holds, before, next.quality));
-    set_judgement(lanes, next);
+    set_judgement(foretold, next);
   }
 
   /// The nearest whole number, halves to the even one.

@@ -181,9 +181,9 @@ class LineBank {
   /// Remembers a plot of the present time, in the lanes told; true where it is no part of the
   /// newest.
   Mask add(const Gaussian<2, Scalar>& plot, const Mask& lanes = true) noexcept {
-    const Mask joins = lanes && holds(1) && elapsed_s_ < Scalar(kSameTime_s);
-    if (any(joins)) join(plot, joins);
-    const Mask enters = lanes && !joins;
+    const Mask joining = lanes && joins();
+    if (any(joining)) join(plot, joining);
+    const Mask enters = lanes && !joining;
     if (any(enters)) enter(plot, enters);
     return enters;
   }
@@ -213,6 +213,8 @@ class LineBank {
   }
   /// Whether so many plots are remembered, or more.
   [[nodiscard]] Mask holds(int plots) const noexcept { return size_ >= Scalar(plots); }
+  /// Whether a plot of the present time is of that of the newest, too, and joins it.
+  [[nodiscard]] Mask joins() const noexcept { return holds(1) && elapsed_s_ < Scalar(kSameTime_s); }
   [[nodiscard]] int max_plots() const noexcept { return max_plots_; }
   /// Lines that there are: through the last 2, 3, ..., `size()` plots.
   [[nodiscard]] int lines() const noexcept { return std::max(size() - 1, 0); }
