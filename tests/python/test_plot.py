@@ -124,7 +124,7 @@ def test_plots_out_of_sight_are_counted_and_shown_on_request(episode, tracks):
     (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
     places = np.concatenate([scan.position_m for scan in episode.scans])
     inside = (places >= [south, west]).all(axis=1) & (places <= [north, east]).all(axis=1)
-    assert note == f"{np.count_nonzero(~inside)} of {len(places)} plots lie outside"
+    assert note == f"{np.count_nonzero(~inside)} of {len(places)} plots outside"
     whole = plot.map_figure(episode, tracks, whole=True).axes[0]
     assert not [text for text in texts(whole) if "outside" in text]
 

@@ -384,7 +384,7 @@ def test_plots_without_a_finite_place_are_left_out_and_counted(file, cell):
 def test_times_that_go_back_are_told_where_no_scans_are_numbered(file):
     rows = "86399.5,1,1\n86399,2,2\n0.5,3,3\n3,4,4\n"
     (note,) = read_plots(file("time_s,north_m,east_m\n" + rows)).notes
-    assert "plots.csv: 1 plots put in order that are more than a minute earlier" in note
+    assert "plots.csv: 1 plot put in order that is more than a minute earlier" in note
     assert "line 4" in note
     rows = "a,900,1,1\na,902,1,1\nb,0,1,1\nb,2,1,1\n"
     assert read_plots(file("scenario,time_s,north_m,east_m\n" + rows)).notes == []
@@ -440,7 +440,7 @@ def test_a_plot_inside_an_own_ship_gap_is_an_error(file):
         read_plots(plots, own)
     assert_says(caught, plots, 3, "time_s", "own.csv", "a gap of 29 s after its line 3")
     read = read_plots(plots, own, own_gap_s=30.0)
-    assert "1 rows without a finite own-ship position" in read.notes[0]
+    assert "1 row without a finite own-ship position" in read.notes[0]
 
 
 def test_a_scan_list_without_positions_is_a_radar_at_rest(file):

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import core, eval
+from wakeline._brief import many
 from wakeline.metrics import right_mode, squared_distance
 from wakeline.scenario import Scenario
 
@@ -237,7 +238,7 @@ def _require_rates(chunk: Chunk, modes: np.ndarray, fit: bool, shape: tuple[int,
     if not fit:
         raise ValueError(
             f"candidate {chunk.candidate_name!r} must have one turn rate for each of its "
-            f"{modes.shape[-1]} models, got {shape}"
+            f"{many(modes.shape[-1], 'model')}, got {shape}"
         )
 
 

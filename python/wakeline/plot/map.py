@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wakeline._brief import many
 from wakeline.recording import Episode, Tracks
 
 from .style import (
@@ -341,7 +342,7 @@ def _count_outside(ax: Axes, outside: np.ndarray) -> None:
     if not outside.any():
         return
     ax.annotate(
-        f"{np.count_nonzero(outside)} of {len(outside)} plots lie outside",
+        f"{np.count_nonzero(outside)} of {many(len(outside), 'plot')} outside",
         (1.0, 0.0),
         xycoords="axes fraction",
         xytext=(-4, 5),
