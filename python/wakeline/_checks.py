@@ -37,9 +37,33 @@ def entropy(seed: Any, purpose: str) -> list[int]:
     return [*map(int, seeds), zlib.crc32(purpose.encode())]
 
 
+def real_numbers(name: str, values: Any) -> np.ndarray:
+    """The argument of that name as the engine takes arrays: masked numbers are NaN.
+
+    TypeError for text, times and complex numbers, ValueError for what is no array.
+    """
+    masked = isinstance(values, np.ma.MaskedArray)
+    try:
+        numbers = np.asarray(values)
+        _refuse_others(numbers)
+        return values.astype(float).filled(np.nan) if masked else numbers.astype(float, copy=False)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{name} must hold real numbers: {error}") from None
+
+
+def _refuse_others(numbers: np.ndarray) -> None:
+    kind = numbers.dtype.kind
+    if kind in "Mmc":
+        raise TypeError(f"got {numbers.dtype}")
+    text = (one for one in numbers.flat if isinstance(one, (str, bytes)))
+    example = next(text, None) if kind in "USO" else None
+    if example is not None:
+        raise TypeError(f"got text such as {str(example)!r}")
+
+
 def in_a_row(name: str, values: Any) -> np.ndarray:
     """Numbers (T,), one of a single number; ValueError where the argument has more axes."""
-    row = np.atleast_1d(np.asarray(values, dtype=float))
+    row = np.atleast_1d(real_numbers(name, values))
     if row.ndim != 1:
         raise ValueError(f"{name} must be a number or have shape (T,), got {row.shape}")
     return row

@@ -1116,7 +1116,7 @@ def without_options(z):
     ("change", "error", "message"),
     [
         ({"sensor": 3}, TypeError, "sensor must be RangeBearing.*, got int"),
-        ({"turn_rates_rad_s": "ab"}, ValueError, "could not convert string to float: 'ab'"),
+        ({"turn_rates_rad_s": "ab"}, TypeError, "rates_rad_s must hold .*: got text such as 'ab'"),
         ({"estimator": SimpleNamespace(run=without_options)}, TypeError, "unexpected keyword"),
         ({"estimator": 3}, TypeError, "estimator must have run, or .* that gives what has, got 3"),
         ({"estimator": lambda scene: None}, TypeError, "estimator must have run, .* got None"),

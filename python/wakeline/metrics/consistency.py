@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from wakeline import eval
+from wakeline._checks import real_numbers
 
 
 def squared_distance(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
@@ -27,7 +28,7 @@ def squared_distance(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
     ValueError
         When the shapes do not fit.
     """
-    error, covariance = np.asarray(error, dtype=float), np.asarray(covariance, dtype=float)
+    error, covariance = real_numbers("error", error), real_numbers("covariance", covariance)
     if error.ndim == 0 or covariance.shape != (*error.shape, error.shape[-1]):
         wanted = (*error.shape, *error.shape[-1:])
         raise ValueError(f"covariance must have shape {wanted}, got {covariance.shape}")
@@ -99,7 +100,7 @@ def share_inside(
     ValueError
         When confidence or dof makes no sense or the shapes do not fit.
     """
-    curve, samples = np.asarray(curve, dtype=float), np.asarray(samples)
+    curve, samples = real_numbers("curve", curve), real_numbers("samples", samples)
     counts = (samples == np.floor(samples)) & (samples >= 0) & (samples < np.inf)
     if samples.shape not in ((), curve.shape) or not counts.all():
         raise ValueError(

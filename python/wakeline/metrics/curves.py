@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wakeline._checks import whole_number
+from wakeline._checks import real_numbers, whole_number
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def rmse_curve(error: np.ndarray) -> np.ndarray:
     ValueError
         When the shape is another or there is no run.
     """
-    error = np.asarray(error, dtype=float)
+    error = real_numbers("error", error)
     if error.ndim != 3 or not len(error):
         raise ValueError(f"error must have shape (R, T, d) with R at least 1, got {error.shape}")
     return np.sqrt(np.mean(np.sum(error**2, axis=-1), axis=0))
@@ -234,8 +234,8 @@ def _parts(time_s: np.ndarray, switch_times_s: np.ndarray) -> list[slice]:
 def _checked(
     time_s: np.ndarray, curve: np.ndarray, switch_times_s: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    time_s, curve = np.asarray(time_s, dtype=float), np.asarray(curve, dtype=float)
-    switch_times_s = np.asarray(switch_times_s, dtype=float)
+    time_s, curve = real_numbers("time_s", time_s), real_numbers("curve", curve)
+    switch_times_s = real_numbers("switch_times_s", switch_times_s)
     if time_s.ndim != 1 or not len(time_s) or curve.shape != time_s.shape:
         raise ValueError(
             f"time_s and curve must have the same shape (T,), T at least 1, "

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from wakeline._brief import brief, many, span
+from wakeline._checks import in_a_row
 from wakeline._engine.core import wrap_angle
 
 from .truth import TargetTruth
@@ -139,7 +140,7 @@ class OwnShip:
 
         Before the first and after the last row the ship goes on straight at the speed it has there.
         """
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        time_s = in_a_row("time_s", time_s)
         position_m = np.column_stack([self.north_m, self.east_m])
         if len(self) == 1:
             return np.repeat(position_m, len(time_s), axis=0)
@@ -160,7 +161,7 @@ class OwnShip:
         the mean over the last 20 s of `position_at`, which errs by the error of a position over
         14 s and lags by 10 s in a turn.
         """
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        time_s = in_a_row("time_s", time_s)
         recorded = self._recorded_velocity()
         if recorded is not None:
             known_s, *velocities_mps = recorded
@@ -175,7 +176,7 @@ class OwnShip:
         known = np.isfinite(self.velocity_m2s2).all(axis=(1, 2))
         if not known.any():
             return None
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        time_s = in_a_row("time_s", time_s)
         entries = self.velocity_m2s2[known].reshape(-1, 4).T
         at = [np.interp(time_s, self.time_s[known], entry) for entry in entries]
         return np.column_stack(at).reshape(-1, 2, 2)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import in_a_row
+from wakeline._checks import in_a_row, real_numbers
 
 _SERIES_BELOW_RAD = 0.3
 _SAME_COURSE_RAD = 1e-9
@@ -186,7 +186,7 @@ class Truth:
         start_time_s: float = 0.0,
         start_course_rad: float | None = None,
     ) -> None:
-        start = np.asarray(start, dtype=float)
+        start = real_numbers("start", start)
         if start.shape != (4,) or not np.isfinite(start).all():
             raise ValueError(f"start must be 4 finite numbers, got {start.tolist()}")
         for name, value in (
