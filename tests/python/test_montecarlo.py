@@ -1147,6 +1147,12 @@ def test_an_estimator_may_be_built_by_its_class():
     np.testing.assert_array_equal(built["case", "imm"].nees, run()["case", "imm"].nees)
 
 
+def test_an_imm_of_known_turns_tells_their_rates(result):
+    found = run(CASE, {"imm": dataclasses.replace(IMM, turn_rates_rad_s=None)})
+    whole = SimpleNamespace(outcomes={("case", "imm"): result["case", "imm"]})
+    assert_same_bits(found, whole)
+
+
 def test_a_sensor_may_be_given_or_built():
     given_one = dataclasses.replace(IMM, sensor=CASE.polar_sensor)
     built = dataclasses.replace(IMM, sensor=lambda scene: scene.polar_sensor)
