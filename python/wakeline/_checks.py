@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,14 @@ def whole_number(name: str, value: Any, least: int) -> None:
     """ValueError unless the argument of that name is an integer, `least` or more."""
     if not isinstance(value, (int, np.integer)) or value < least:
         raise ValueError(f"{name} must be a whole number, at least {least}, got {value!r}")
+
+
+def plain_numbers(**values: Any) -> None:
+    """TypeError unless each argument is one real number."""
+    for name, value in values.items():
+        single = isinstance(value, np.ndarray) and value.shape == () and value.dtype.kind in "buif"
+        if not (single or isinstance(value, Real)):
+            raise TypeError(f"{name} must be a number, got {value!r}")
 
 
 def run_numbers(runs: Any, seed: Any, threads: Any) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from wakeline import eval
-from wakeline._checks import real_numbers
+from wakeline._checks import plain_numbers, real_numbers, whole_number
 
 
 def squared_distance(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
@@ -101,6 +101,10 @@ def share_inside(
         When confidence or dof makes no sense or the shapes do not fit.
     """
     curve, samples = real_numbers("curve", curve), real_numbers("samples", samples)
+    plain_numbers(confidence=confidence)
+    whole_number("dof", dof, 1)
+    if curve.ndim != 1:
+        raise ValueError(f"curve must have shape (T,), got {curve.shape}")
     counts = (samples == np.floor(samples)) & (samples >= 0) & (samples < np.inf)
     if samples.shape not in ((), curve.shape) or not counts.all():
         raise ValueError(

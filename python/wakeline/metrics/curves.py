@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wakeline._checks import real_numbers, whole_number
+from wakeline._checks import plain_numbers, real_numbers, whole_number
 
 
 @dataclass(frozen=True)
@@ -130,6 +130,7 @@ def settling_times_s(
     ValueError
         As :func:`by_segment`, and when the factor is below 1.
     """
+    plain_numbers(factor=factor)
     if not factor >= 1:
         raise ValueError(f"factor must be at least 1, got {factor}")
     time_s, curve, switch_times_s = _checked(time_s, curve, switch_times_s)
@@ -176,6 +177,7 @@ def detection_delays_scans(
     ValueError
         As :func:`by_segment`, and when `share` is not within (0, 1].
     """
+    plain_numbers(share=share)
     if not 0 < share <= 1:
         raise ValueError(f"share must be above 0 and at most 1, got {share}")
     time_s, right, switch_times_s = _checked(time_s, right_mode_share, switch_times_s)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wakeline import association
-from wakeline._checks import real_numbers
+from wakeline._checks import plain_numbers, real_numbers
 
 
 @dataclass(frozen=True)
@@ -121,6 +121,7 @@ def _checked_distances(
         )
     if not (np.isfinite(truth_m).all() and np.isfinite(tracks_m).all()):
         raise ValueError("truth_m and tracks_m must be finite")
+    plain_numbers(cutoff_m=cutoff_m, p=p)
     if not 0 < cutoff_m < np.inf:
         raise ValueError(f"cutoff_m must be positive and finite, got {cutoff_m}")
     if not 1 <= p < np.inf:

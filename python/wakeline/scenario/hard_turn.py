@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wakeline import measurement
-from wakeline._checks import entropy, whole_number
+from wakeline._checks import entropy, plain_numbers, whole_number
 
 from .radar import polar
 from .truth import Segment, Truth
@@ -64,6 +64,7 @@ class HardTurn:
     period_s: float = 3.0
 
     def __post_init__(self) -> None:
+        plain_numbers(**vars(self))
         for name, value in vars(self).items():
             if not 0 < value < np.inf:
                 raise ValueError(f"{name} must be finite and positive, got {value}")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import in_a_row, real_numbers
+from wakeline._checks import in_a_row, plain_numbers, real_numbers
 
 _SERIES_BELOW_RAD = 0.3
 _SAME_COURSE_RAD = 1e-9
@@ -49,12 +49,14 @@ class Segment:
 
     def __post_init__(self) -> None:
         for name in ("control_mps2", "disturbance_mps2"):
-            pair = tuple(np.asarray(getattr(self, name), dtype=float).ravel().tolist())
+            pair = tuple(real_numbers(name, getattr(self, name)).ravel().tolist())
             if len(pair) != 2:
                 raise ValueError(f"{name} must be two numbers, north and east, got {pair}")
             object.__setattr__(self, name, pair)
-        values = (self.duration_s, self.turn_rate_rad_s, self.acceleration_mps2)
-        if not np.isfinite([*values, *self.control_mps2, *self.disturbance_mps2]).all():
+        names = ("duration_s", "turn_rate_rad_s", "acceleration_mps2")
+        values = {name: getattr(self, name) for name in names}
+        plain_numbers(**values)
+        if not np.isfinite([*values.values(), *self.control_mps2, *self.disturbance_mps2]).all():
             raise ValueError(f"a segment must be finite, got {self}")
         if self.duration_s <= 0:
             raise ValueError(f"duration_s must be positive, got {self.duration_s}")
@@ -193,6 +195,7 @@ class Truth:
             ("start_time_s", start_time_s),
             ("start_course_rad", 0.0 if start_course_rad is None else start_course_rad),
         ):
+            plain_numbers(**{name: value})
             if not np.isfinite(value):
                 raise ValueError(f"{name} must be finite, got {value}")
         north_m, vnorth_mps, east_m, veast_mps = start

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 import wakeline as wl
-from wakeline._checks import entropy, whole_number
+from wakeline._checks import entropy, plain_numbers, real_numbers, whole_number
 
 _LONGEST_STEPS = 5000
 _SHAPES = {
@@ -134,6 +134,7 @@ class UsvMission:
 
     def __post_init__(self) -> None:
         positive = ("clearance_m", "accept_m", "speed_mps", "turn_rate_rad_s", "period_s")
+        plain_numbers(**{name: getattr(self, name) for name in (*positive, "current_mps")})
         for name in positive:
             value = getattr(self, name)
             if not 0 < value < np.inf:
@@ -142,12 +143,12 @@ class UsvMission:
             raise ValueError(f"current_mps must be finite, zero or more, got {self.current_mps}")
         for name, shape in _SHAPES.items():
             told = getattr(self, name)
-            numbers = np.asarray(told, dtype=float)
+            numbers = real_numbers(name, told)
             if numbers.shape != shape or not np.isfinite(numbers).all():
                 raise ValueError(f"{name} must be finite and have shape {shape}, got {told}")
             if "_std" in name and (numbers < 0).any():
                 raise ValueError(f"{name} must be zero or more, got {told}")
-        ways = np.asarray(self.waypoints_m, dtype=float)
+        ways = real_numbers("waypoints_m", self.waypoints_m)
         if ways.ndim != 2 or ways.shape[1] != 2 or not np.isfinite(ways).all():
             raise ValueError(f"waypoints_m must be pairs of finite numbers, got {self.waypoints_m}")
         for obstacle in self.obstacles:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wakeline import navigation as nav
-from wakeline._checks import whole_number
+from wakeline._checks import plain_numbers, whole_number
 from wakeline._units import KNOT_MPS
 
 START_RAD = np.deg2rad([46.5, 30.8])
@@ -84,6 +84,7 @@ def reckoning_voyage(dt_s: float) -> Voyage:
     ValueError
         When `dt_s` is not a positive multiple of 0.1 s, at most 600 s.
     """
+    plain_numbers(dt_s=dt_s)
     each = round(dt_s / _FINE_S) if 0.0 < dt_s <= 600.0 else 0
     if each < 1 or abs(each * _FINE_S - dt_s) > 1e-9:
         raise ValueError(f"dt_s must be a multiple of 0.1 s up to 600 s, got {dt_s}")
