@@ -30,7 +30,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     one = actions.add_parser(
         "run",
         help="run a study",
-        description="Runs a study, prints its table, and draws its figures.",
+        description="Runs a study, prints its table, and draws its figures. When it ends early "
+        "the rows that were done are printed, and written with -partial in the name of the JSON.",
     )
     one.add_argument("name", choices=study.names(), metavar="NAME", help=", ".join(study.names()))
     one.add_argument(

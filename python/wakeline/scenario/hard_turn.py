@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wakeline import measurement
+from wakeline._brief import brief, many, span
 from wakeline._checks import entropy, plain_numbers, whole_number
 
 from .radar import polar
@@ -27,6 +28,10 @@ class HardTurnRuns(NamedTuple):
     time_s: np.ndarray
     truth: np.ndarray
     z: np.ndarray
+
+    def __repr__(self) -> str:
+        runs, scans = self.z.shape[:2]
+        return brief(self, many(runs, "run"), many(scans, "scan"), span(self.time_s))
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 import wakeline as wl
+from wakeline._brief import brief, many, span
 from wakeline._checks import entropy, plain_numbers, real_numbers, whole_number
 
 _LONGEST_STEPS = 5000
@@ -55,6 +56,9 @@ class UsvVoyage(NamedTuple):
     heading_rad: np.ndarray
     imu: np.ndarray
 
+    def __repr__(self) -> str:
+        return brief(self, many(len(self.time_s), "state"), span(self.time_s))
+
 
 class UsvLogs(NamedTuple):
     """What the sensors say in R runs of T times; NaN in the first row of each.
@@ -70,6 +74,10 @@ class UsvLogs(NamedTuple):
     imu: np.ndarray
     gnss: np.ndarray
     compass: np.ndarray
+
+    def __repr__(self) -> str:
+        runs, times = np.atleast_2d(self.compass).shape
+        return brief(self, many(runs, "run"), many(times, "time"))
 
 
 @dataclass(frozen=True)

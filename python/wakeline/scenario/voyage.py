@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wakeline import navigation as nav
+from wakeline._brief import brief, many, span
 from wakeline._checks import plain_numbers, whole_number
 from wakeline._units import KNOT_MPS
 
@@ -35,6 +36,10 @@ class VoyageReadings(NamedTuple):
     latitude_rad: np.ndarray
     longitude_rad: np.ndarray
 
+    def __repr__(self) -> str:
+        runs, times = np.atleast_2d(self.speed_mps).shape
+        return brief(self, many(runs, "run"), many(times, "reading"))
+
 
 @dataclass(frozen=True)
 class Voyage:
@@ -52,6 +57,9 @@ class Voyage:
     course_rad: np.ndarray
     latitude_rad: np.ndarray
     longitude_rad: np.ndarray
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self.time_s), "state"), span(self.time_s))
 
     def read(self, runs: int, seed: int = 0) -> VoyageReadings:
         """Readings of independent runs: log 0.1 kn, gyro 0.3 degrees, fixes 4 m per axis.
