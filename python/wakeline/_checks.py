@@ -60,6 +60,16 @@ def real_numbers(name: str, values: Any) -> np.ndarray:
         raise type(error)(f"{name} must hold real numbers: {error}") from None
 
 
+def shaped(name: str, values: Any, *shape: int | None) -> np.ndarray:
+    """Real numbers of that shape, None standing for any length; ValueError for another."""
+    numbers = real_numbers(name, values)
+    lengths = zip(shape, numbers.shape, strict=False)
+    if numbers.ndim != len(shape) or any(wanted not in (None, got) for wanted, got in lengths):
+        text = str(shape).replace("None", "n")
+        raise ValueError(f"{name} must have shape {text}, got {numbers.shape}")
+    return numbers
+
+
 def _refuse_others(numbers: np.ndarray) -> None:
     kind = numbers.dtype.kind
     if kind in "Mmc":
