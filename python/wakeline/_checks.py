@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Sequence
 from numbers import Real
 from typing import Any
 
@@ -23,6 +24,14 @@ def plain_numbers(**values: Any) -> None:
         single = isinstance(value, np.ndarray) and value.shape == () and value.dtype.kind in "buif"
         if not (single or isinstance(value, Real)):
             raise TypeError(f"{name} must be a number, got {value!r}")
+
+
+def listed(name: str, sequence: Any, of_what: str) -> list[Any]:
+    """The argument of that name as a list; TypeError where it is no sequence."""
+    try:
+        return list(sequence)
+    except TypeError:
+        raise TypeError(f"{name} must be a sequence of {of_what}, got {sequence!r}") from None
 
 
 def run_numbers(runs: Any, seed: Any, threads: Any) -> None:
@@ -68,6 +77,19 @@ def shaped(name: str, values: Any, *shape: int | None) -> np.ndarray:
         text = str(shape).replace("None", "n")
         raise ValueError(f"{name} must have shape {text}, got {numbers.shape}")
     return numbers
+
+
+def columns(table: Any, time: str, *names: str, optional: Sequence[str] = ()) -> None:
+    """Make fields of a frozen dataclass numbers (n,), one for each time of the field `time`.
+
+    ValueError where they are not as many or the times are not in order; optional ones may be None.
+    """
+    time_s = shaped(time, getattr(table, time), None)
+    if not (np.isfinite(time_s).all() and (np.diff(time_s) >= 0).all()):
+        raise ValueError(f"{time} must be finite and in order, got {time_s}")
+    given = [name for name in optional if getattr(table, name) is not None]
+    for name in (time, *names, *given):
+        object.__setattr__(table, name, shaped(name, getattr(table, name), len(time_s)))
 
 
 def _refuse_others(numbers: np.ndarray) -> None:

@@ -172,6 +172,8 @@ def _reports(track: AisTrack | Tracks) -> AisTrack:
     """Each row of a track as a report of where the vessel was and how she went."""
     if isinstance(track, AisTrack):
         return track
+    if not isinstance(track, Tracks):
+        raise TypeError(f"track must be an AisTrack or Tracks, got {type(track).__name__}")
     if len(track.ids()) > 1:
         raise ValueError(f"track must be rows of one track, got {len(track.ids())} tracks")
     if not (np.diff(track.time_s) > 0).all():

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wakeline import recording
+from wakeline import forecast, metrics, montecarlo, recording
 from wakeline.recording import OwnShip, RecordingError, read_plots
 from wakeline.recording.scans import by_time
 from wakeline.scenario import RadarSimulator, Truth
@@ -691,3 +691,41 @@ def test_plots_alone_are_written_without_own_ship_and_truth(tmp_path):
     blind = dataclasses.replace(made, episodes=[dataclasses.replace(only(made), truth=None)])
     with pytest.raises(ValueError, match="must have truth"):
         recording.write_plots(tmp_path / "plots.csv", blind, truth_path=tmp_path / "truth.csv")
+
+
+def own_ship(**change):
+    rows = np.arange(3.0)
+    return recording.OwnShip(**{"time_s": rows, "north_m": rows, "east_m": rows} | change)
+
+
+def truth(**change):
+    names = ("time_s", "north_m", "east_m", "vnorth_mps", "veast_mps")
+    return recording.TargetTruth(**dict.fromkeys(names, np.arange(3.0)) | change)
+
+
+@pytest.mark.parametrize("made", [own_ship, truth])
+def test_what_is_made_of_columns_takes_lists_and_refuses_what_does_not_fit(made):
+    listed = made(time_s=[0.0, 1.0, 2.0], north_m=[0.0, 1.0, 2.0])
+    np.testing.assert_array_equal(listed.north_m, made().north_m)
+    for wrong in (np.zeros(2), 0.0, None):
+        with pytest.raises(ValueError, match=r"north_m must have shape \(3,\), got \("):
+            made(north_m=wrong)
+    with pytest.raises(TypeError, match="east_m must hold real numbers: got text"):
+        made(east_m=["0", "1", "2"])
+    for wrong in ([0.0, 2.0, 1.0], [0.0, np.nan, 1.0]):
+        with pytest.raises(ValueError, match="time_s must be finite and in order, got"):
+            made(time_s=wrong)
+
+
+def test_scores_forecasts_and_bounds_name_what_is_none():
+    joyride = recording.load("joyride")
+    with pytest.raises(TypeError, match="tracks must be of type Tracks, got NoneType"):
+        metrics.score(None, joyride)
+    with pytest.raises(TypeError, match="recording must be a Recording or Episode, got dict"):
+        metrics.score(recording.Tracks.joined([]), {})
+    with pytest.raises(TypeError, match="track must be an AisTrack or Tracks, got str"):
+        forecast.position_m("3", [60.0])
+    with pytest.raises(TypeError, match="scenario must be of type Scenario, got str"):
+        montecarlo.bound("example1")
+    with pytest.raises(TypeError, match="scenarios must be a sequence of Scenario, got None"):
+        montecarlo.run(None, {}, 1)

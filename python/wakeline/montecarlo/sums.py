@@ -142,7 +142,7 @@ def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> 
     return Sums(
         runs=int(np.count_nonzero(usable)),
         failed_runs=int(np.count_nonzero(~usable)),
-        lost_runs=int(np.count_nonzero(position_m2[:, -1] > chunk.lost_beyond_m**2)),
+        lost_runs=int(np.count_nonzero(np.sqrt(position_m2[:, -1]) > chunk.lost_beyond_m)),
         failed_steps=int(np.count_nonzero(~np.isin(status, _FINE))),
         position_m2=position_m2.sum(axis=0),
         velocity_m2s2=(error[..., 1] ** 2 + error[..., 3] ** 2).sum(axis=0),

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import in_a_row
+from wakeline._checks import columns, in_a_row, shaped
 from wakeline._engine.core import wrap_angle
 
 from .truth import TargetTruth
@@ -46,6 +46,10 @@ class Scan:
     bearing_rad: np.ndarray
     own_north_m: np.ndarray
     own_east_m: np.ndarray
+
+    def __post_init__(self) -> None:
+        places = ("north_m", "east_m", "range_m", "bearing_rad", "own_north_m", "own_east_m")
+        columns(self, "plot_time_s", *places)
 
     @classmethod
     def of_plots(
@@ -123,6 +127,13 @@ class OwnShip:
     veast_mps: np.ndarray | None = None
     heading_rad: np.ndarray | None = None
     velocity_m2s2: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        motion = ("vnorth_mps", "veast_mps", "heading_rad")
+        columns(self, "time_s", "north_m", "east_m", optional=motion)
+        if self.velocity_m2s2 is not None:
+            covariances = shaped("velocity_m2s2", self.velocity_m2s2, len(self), 2, 2)
+            object.__setattr__(self, "velocity_m2s2", covariances)
 
     def __len__(self) -> int:
         return len(self.time_s)

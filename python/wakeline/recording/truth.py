@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import in_a_row
+from wakeline._checks import columns, in_a_row
 
 from .scans import nearest
 
@@ -34,6 +34,9 @@ class TargetTruth:
     east_m: np.ndarray
     vnorth_mps: np.ndarray
     veast_mps: np.ndarray
+
+    def __post_init__(self) -> None:
+        columns(self, "time_s", "north_m", "east_m", "vnorth_mps", "veast_mps")
 
     def __len__(self) -> int:
         return len(self.time_s)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import in_a_row, plain_numbers, real_numbers
+from wakeline._checks import in_a_row, listed, plain_numbers, real_numbers
 
 _SERIES_BELOW_RAD = 0.3
 _SAME_COURSE_RAD = 1e-9
@@ -94,7 +94,7 @@ def segments_from_table(
     """
     if max_turn_rate_rad_s is not None and not max_turn_rate_rad_s >= 0:
         raise ValueError(f"max_turn_rate_rad_s must not be negative, got {max_turn_rate_rad_s}")
-    rows = _listed("rows", rows, "(begin_s, end_s, turn_rate_rad_s)")
+    rows = listed("rows", rows, "(begin_s, end_s, turn_rate_rad_s)")
     if not rows:
         raise ValueError("a table of segments must have at least one row")
     segments = []
@@ -116,13 +116,6 @@ def segments_from_table(
         segments.append(Segment(end_s - begin_s, rate_rad_s))
         last_end_s = end_s
     return tuple(segments)
-
-
-def _listed(name: str, sequence: Any, of_what: str) -> list[Any]:
-    try:
-        return list(sequence)
-    except TypeError:
-        raise TypeError(f"{name} must be a sequence of {of_what}, got {sequence!r}") from None
 
 
 def _three_numbers(number: int, row: Any) -> list[float]:
@@ -208,7 +201,7 @@ class Truth:
                 f"start_course_rad must be the course of the velocity, {course_rad}, where the "
                 f"vessel does not start at rest, got {start_course_rad}"
             )
-        self.segments = tuple(_listed("segments", segments, "Segment"))
+        self.segments = tuple(listed("segments", segments, "Segment"))
         for segment in self.segments:
             if not isinstance(segment, Segment):
                 raise TypeError(f"segments must be of type Segment, got {segment!r}")
