@@ -491,6 +491,7 @@ def assert_says(caught, path, line, column, *parts):
         ("time_s,utc,north_m,east_m\n0,0,1,1\n", 1, "utc", ["repeated", "time_s and utc"]),
         ("time_s,range_m,range_nm,bearing_deg\n0,1,1,1\n", 1, "range_nm", ["range_m and range_nm"]),
         ("time_s,north_m,east_m\n0,1\n", 2, None, ["wanted 3 cells, got 2"]),
+        ("time_s\n0\n0,1\n", 3, None, ["wanted 1 cell, got 2"]),
         ("time_s,north_m,east_m\n0,1,1\n\n0,1,1,1\n", 4, None, ["wanted 3 cells, got 4"]),
         ("scan,time_s,north_m,east_m\n0,5,1,1\n1,4,1,1\n", 3, "time_s", ["go back", "scan 0"]),
         ("scan,time_s,north_m,east_m\n0,5,1,1\n1,5,1,1\n", 3, "time_s", ["do not grow", "scan 0"]),
