@@ -730,3 +730,13 @@ def test_scores_forecasts_and_bounds_name_what_is_none():
         montecarlo.bound("example1")
     with pytest.raises(TypeError, match="scenarios must be a sequence of Scenario, got None"):
         montecarlo.run(None, {}, 1)
+
+
+def test_tracks_and_video_of_numbers_written_as_text_are_refused():
+    state = np.zeros((2, 4))
+    with pytest.raises(TypeError, match="time_s must hold real numbers: got text such as '1'"):
+        recording.Tracks(track_id=["1", "1"], time_s=["1", "2"], state=state)
+    video = {"amplitude": np.zeros((2, 3), np.uint8), "azimuth_width_rad": 0.1}
+    video |= {"start_range_m": 0.0, "cell_m": 5.0}
+    with pytest.raises(TypeError, match="azimuth_rad must hold real numbers: got text such as '0'"):
+        recording.RadarVideo(azimuth_rad=["0", "1"], time_s=[0.0, 1.0], **video)
