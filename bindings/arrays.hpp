@@ -18,7 +18,8 @@ namespace wakeline::python {
 namespace py = pybind11;
 
 /// Anything numpy can take for an array of real numbers, row-major. Masked numbers are NaN, as a
-/// missed reading is. Times and complex numbers are a TypeError: numpy would take them for numbers.
+/// missed reading is. Times, complex numbers and text are a TypeError: numpy would take them for
+/// numbers.
 class DoubleArray : public py::array_t<double, py::array::c_style | py::array::forcecast> {
  public:
   using Base = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -29,6 +30,15 @@ class DoubleArray : public py::array_t<double, py::array::c_style | py::array::f
   /// Null, and no error set, for what is no array of numbers.
   static DoubleArray ensure(py::handle numbers) {
     try {
+      return argument(numbers);
+    } catch (const Text&) {
+      return py::reinterpret_steal<DoubleArray>(py::handle());
+    }
+  }
+
+  /// The same, but for text, which is a TypeError that says so.
+  static DoubleArray argument(py::handle numbers) {
+    try {
       return py::reinterpret_steal<DoubleArray>(Base::ensure(filled(numbers)).release());
     } catch (const py::error_already_set&) {  // masked, but no numbers
       return py::reinterpret_steal<DoubleArray>(py::handle());
@@ -36,21 +46,34 @@ class DoubleArray : public py::array_t<double, py::array::c_style | py::array::f
   }
 
  private:
+  struct Text : py::type_error {
+    using type_error::type_error;
+  };
+
   static py::object filled(py::handle numbers) {
     const auto& numpy = py::detail::npy_api::get();
     const bool plain = Py_TYPE(numbers.ptr()) == numpy.PyArray_Type_;
     if (plain || !numpy.PyArray_Check_(numbers.ptr()) || !py::hasattr(numbers, "filled"))
       return real(py::array::ensure(numbers));
+    real(py::reinterpret_borrow<py::array>(numbers));
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     return numbers.attr("astype")(py::dtype::of<double>()).attr("filled")(kNaN);
   }
 
   static py::array real(py::array numbers) {
-    if (const char kind = numbers ? numbers.dtype().kind() : 'f';
-        kind == 'M' || kind == 'm' || kind == 'c')
+    const char kind = numbers ? numbers.dtype().kind() : 'f';
+    if (kind == 'M' || kind == 'm' || kind == 'c')
       throw py::type_error("an array must hold real numbers (times in seconds), got " +
                            py::str(numbers.dtype()).cast<std::string>());
+    if (kind == 'U' || kind == 'S' || kind == 'O') refuse_text(numbers);
     return numbers;
+  }
+
+  static void refuse_text(const py::array& numbers) {
+    for (const py::handle one : numbers.attr("flat"))
+      if (py::isinstance<py::str>(one) || py::isinstance<py::bytes>(one))
+        throw Text("an array must hold real numbers, got text such as " +
+                   py::repr(py::str(one)).cast<std::string>());
   }
 };
 
@@ -128,7 +151,7 @@ struct pyobject_caster<wakeline::python::DoubleArray> {
 
   bool load(handle numbers, bool convert) {
     if (!convert && !type::check_(numbers)) return false;
-    value = type::ensure(numbers);
+    value = type::argument(numbers);
     return static_cast<bool>(value);
   }
   static handle cast(const handle& array, return_value_policy, handle) { return array.inc_ref(); }

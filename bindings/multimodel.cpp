@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <optional>
+#include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "any_lines.hpp"
 #include "any_turn_grids.hpp"
@@ -60,6 +64,22 @@ std::string imm_text(const AnyImm& imm) {
       .with("chain", imm.chain())
       .with("initial_mode_probability", imm.initial_mode_probability())
       .text();
+}
+
+/// Turn rates of the models, none where the rate of one is not known.
+std::optional<py::array_t<double>> known_turn_rates(const AnyImm& imm) {
+  std::vector<double> rates;
+  for (int k = 0; k < imm.bank().size(); ++k)
+    std::visit(
+        [&]<class Filter>(const Filter& filter) {
+          if constexpr (std::is_same_v<typename Filter::Motion, ConstantVelocity>)
+            rates.push_back(0.0);
+          else if constexpr (requires { filter.motion().turn_rate_rad_s; })
+            rates.push_back(filter.motion().turn_rate_rad_s);
+        },
+        imm.bank().filter(static_cast<std::size_t>(k)).variant());
+  if (rates.size() != static_cast<std::size_t>(imm.bank().size())) return std::nullopt;
+  return py::array_t<double>(static_cast<py::ssize_t>(rates.size()), rates.data());
 }
 
 std::string adaptive_grid_text(const AnyAdaptiveGridImm& imm) {
@@ -389,6 +409,8 @@ initial_mode_probability : (K,) array, optional
           py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none());
   define_face(imm);
   define_imm_smoother(imm);
+  imm.def("turn_rates_rad_s", &known_turn_rates,
+          "(K,) turn rates of the models, positive to starboard; None where one is not known.");
   imm.def("__repr__", &imm_text);
 
   define_adaptive_grid(m);

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any
+
+_EITHER = re.compile(r"\[([^][|]*)\|([^][|]*)\]")
 
 
 def brief(thing: Any, *facts: str, name: str = "") -> str:
@@ -15,6 +18,16 @@ def brief(thing: Any, *facts: str, name: str = "") -> str:
 def many(count: int, noun: str) -> str:
     """A count with its noun, such as "1 scan" and "2 scans"."""
     return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def counted(count: int, what: str) -> str:
+    """A count with what it counts, of ``[one|more]`` in it the part that fits.
+
+    >>> counted(1, "[row|rows] that [repeats|repeat] another")
+    '1 row that repeats another'
+    """
+    fits = 1 if count == 1 else 2
+    return f"{count} {_EITHER.sub(lambda either: either[fits], what)}"
 
 
 def span(*times_s: Sequence[float]) -> str:

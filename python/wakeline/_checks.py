@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Sequence
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,22 @@ def whole_number(name: str, value: Any, least: int) -> None:
     """ValueError unless the argument of that name is an integer, `least` or more."""
     if not isinstance(value, (int, np.integer)) or value < least:
         raise ValueError(f"{name} must be a whole number, at least {least}, got {value!r}")
+
+
+def plain_numbers(**values: Any) -> None:
+    """TypeError unless each argument is one real number."""
+    for name, value in values.items():
+        single = isinstance(value, np.ndarray) and value.shape == () and value.dtype.kind in "buif"
+        if not (single or isinstance(value, Real)):
+            raise TypeError(f"{name} must be a number, got {value!r}")
+
+
+def listed(name: str, sequence: Any, of_what: str) -> list[Any]:
+    """The argument of that name as a list; TypeError where it is no sequence."""
+    try:
+        return list(sequence)
+    except TypeError:
+        raise TypeError(f"{name} must be a sequence of {of_what}, got {sequence!r}") from None
 
 
 def run_numbers(runs: Any, seed: Any, threads: Any) -> None:
@@ -37,9 +55,56 @@ def entropy(seed: Any, purpose: str) -> list[int]:
     return [*map(int, seeds), zlib.crc32(purpose.encode())]
 
 
+def real_numbers(name: str, values: Any) -> np.ndarray:
+    """The argument of that name as the engine takes arrays: masked numbers are NaN.
+
+    TypeError for text, times and complex numbers, ValueError for what is no array.
+    """
+    masked = isinstance(values, np.ma.MaskedArray)
+    try:
+        numbers = np.asarray(values)
+        _refuse_others(numbers)
+        return values.astype(float).filled(np.nan) if masked else numbers.astype(float, copy=False)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{name} must hold real numbers: {error}") from None
+
+
+def shaped(name: str, values: Any, *shape: int | None) -> np.ndarray:
+    """Real numbers of that shape, None standing for any length; ValueError for another."""
+    numbers = real_numbers(name, values)
+    lengths = zip(shape, numbers.shape, strict=False)
+    if numbers.ndim != len(shape) or any(wanted not in (None, got) for wanted, got in lengths):
+        text = str(shape).replace("None", "n")
+        raise ValueError(f"{name} must have shape {text}, got {numbers.shape}")
+    return numbers
+
+
+def columns(table: Any, time: str, *names: str, optional: Sequence[str] = ()) -> None:
+    """Make fields of a frozen dataclass numbers (n,), one for each time of the field `time`.
+
+    ValueError where they are not as many or the times are not in order; optional ones may be None.
+    """
+    time_s = shaped(time, getattr(table, time), None)
+    if not (np.isfinite(time_s).all() and (np.diff(time_s) >= 0).all()):
+        raise ValueError(f"{time} must be finite and in order, got {time_s}")
+    given = [name for name in optional if getattr(table, name) is not None]
+    for name in (time, *names, *given):
+        object.__setattr__(table, name, shaped(name, getattr(table, name), len(time_s)))
+
+
+def _refuse_others(numbers: np.ndarray) -> None:
+    kind = numbers.dtype.kind
+    if kind in "Mmc":
+        raise TypeError(f"got {numbers.dtype}")
+    text = (one for one in numbers.flat if isinstance(one, (str, bytes)))
+    example = next(text, None) if kind in "USO" else None
+    if example is not None:
+        raise TypeError(f"got text such as {str(example)!r}")
+
+
 def in_a_row(name: str, values: Any) -> np.ndarray:
     """Numbers (T,), one of a single number; ValueError where the argument has more axes."""
-    row = np.atleast_1d(np.asarray(values, dtype=float))
+    row = np.atleast_1d(real_numbers(name, values))
     if row.ndim != 1:
         raise ValueError(f"{name} must be a number or have shape (T,), got {row.shape}")
     return row

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import wakeline as wl
 from wakeline import filter as wf
+from wakeline._checks import real_numbers
 from wakeline.recording import AisTrack, Tracks
 
 __all__ = ["names", "position_m", "turn_rate_rad_s"]
@@ -69,7 +70,7 @@ def position_m(
         are of several tracks or out of order.
     """
     track = _reports(track)
-    ahead_s = np.asarray(ahead_s, dtype=float)
+    ahead_s = real_numbers("ahead_s", ahead_s)
     if model not in _MODELS:
         raise ValueError(f"no model {model!r}; there are {', '.join(_MODELS)}")
     if ahead_s.ndim != 1 or not ((ahead_s >= 0.0) & np.isfinite(ahead_s)).all():
@@ -171,6 +172,8 @@ def _reports(track: AisTrack | Tracks) -> AisTrack:
     """Each row of a track as a report of where the vessel was and how she went."""
     if isinstance(track, AisTrack):
         return track
+    if not isinstance(track, Tracks):
+        raise TypeError(f"track must be an AisTrack or Tracks, got {type(track).__name__}")
     if len(track.ids()) > 1:
         raise ValueError(f"track must be rows of one track, got {len(track.ids())} tracks")
     if not (np.diff(track.time_s) > 0).all():

@@ -262,7 +262,9 @@ def test_a_log_that_is_stuck_is_told_and_says_nothing_of_the_compass(tmp_path, c
     navigated(tmp_path, stuck)
     told = capsys.readouterr().out
     assert added_deg(told) == (0.0, 15.0)
-    assert "360 speeds through the water are 0 while the ship makes way" in told
+    assert (
+        "speeds through the water are 0 while the ship makes way over ground: 360 (first in" in told
+    )
     assert "(first in line 3)" in told
     navigated(tmp_path, voyage(6))
     assert "are 0 while" not in capsys.readouterr().out
@@ -321,7 +323,7 @@ def test_at_rest_no_course_is_wanted(tmp_path, capsys, speed):
 def test_a_speed_over_ground_that_lacks_its_course_is_told(tmp_path, capsys):
     lines = changed(voyage(4), "RMC", range(100, 105), 8, "")
     navigated(tmp_path, changed(lines, "RMC", [110], 7, ""))
-    told = "6 speeds over ground without a course, or courses without a speed are not used"
+    told = "speeds over ground without a course, or courses without a speed are not used: 6"
     assert f"note: {told} (first in line 301)" in capsys.readouterr().out
 
 
@@ -396,7 +398,7 @@ def test_an_instrument_that_good_fixes_refute_is_named_and_moves_nothing(
     line = 3 * begins_s + 1 + ("RMC", "HDT", "VHW").index(kind)
     (told,) = [line for line in capsys.readouterr().out.splitlines() if "rejected" in line]
     assert told == (
-        f"note: {lasts_s} {what} that do not fit the other readings are rejected "
+        f"note: {what} that do not fit the other readings are rejected: {lasts_s} "
         f"(first in line {line})"
     )
     off_m = [column(rows, name) - column(true, name) for name in ("north_m", "east_m")]
@@ -539,7 +541,7 @@ def test_a_position_that_jumped_is_in_doubt_until_it_comes_back(tmp_path, capsys
     capsys.readouterr()
     rows = navigated(tmp_path, moved_north(lines, range(400, 460), 150.0))
     told = capsys.readouterr().out
-    assert "20 fixes that do not fit the other readings are rejected (first in line 1201)" in told
+    assert "fixes that do not fit the other readings are rejected: 20 (first in line 1201)" in told
     assert "the position jumps 2 times" in told
     status = np.array([row["status"] for row in rows])
     off = np.abs(north_off_m(rows, true)) > 75.0
@@ -569,7 +571,7 @@ def test_a_position_that_jumped_is_in_doubt_until_fixes_have_fitted_for_a_minute
         assert set(status[3 * 410 : 3 * until_s]) - {"rejected"} == {"jumped"}
         assert set(status[3 * until_s :]) == {"ok"}
     told = capsys.readouterr().out
-    assert "the position jumps 1 times, to fixes that went on though rejected" in told
+    assert "the position jumps 1 time, to fixes that went on though rejected" in told
     if way_m > 1000.0:
         assert "first by 50 km in line 1201, where 320 fixes go on" in told
 
@@ -577,8 +579,8 @@ def test_a_position_that_jumped_is_in_doubt_until_fixes_have_fitted_for_a_minute
 def test_fixes_that_were_rejected_and_moved_the_position_a_little_are_told(tmp_path, capsys):
     rows = navigated(tmp_path, moved_north(voyage(10), range(400, 600), 35.0))
     told = re.search(
-        r"(\d+) fixes that do not fit the other readings are rejected \(first in line 1201\); "
-        r"1 times they went on and moved the position by up to (\d+) m",
+        r"fixes that do not fit the other readings are rejected: (\d+) \(first in line 1201\); "
+        r"1 time they went on and moved the position by up to (\d+) m",
         capsys.readouterr().out,
     )
     assert int(told[1]) == sum(row["status"] == "rejected" for row in rows)
@@ -683,15 +685,15 @@ def test_what_no_state_is_there_for_is_told(tmp_path, capsys):
     navigated(tmp_path, lines)
     out = capsys.readouterr().out
     for told in (
-        "182 speeds through the water without a heading are not used (first in line 2)",
-        "1 speeds through the water across the hull alone are not used (first in line 721)",
-        "181 speeds over ground by log that lack a heading or a side are not used (first in line",
-        "180 rates of turn without a heading are not used (first in line 4)",
+        "speeds through the water without a heading are not used: 182 (first in line 2)",
+        "speeds through the water across the hull alone are not used: 1 (first in line 721)",
+        "speeds over ground by log that lack a heading or a side are not used: 181 (first in",
+        "rates of turn without a heading are not used: 180 (first in line 4)",
     ):
         assert f"note: {told}" in out
     navigated(tmp_path, [*voyage(3, bottom=True, turn=True), sentence("VDVBW,,,V,6.0,,A")])
     (told,) = [line for line in capsys.readouterr().out.splitlines() if "not used" in line]
-    assert "1 speeds over ground by log that lack a heading or a side" in told
+    assert "speeds over ground by log that lack a heading or a side are not used: 1 " in told
 
 
 def test_short_parts_are_navigated_too(tmp_path, capsys):
@@ -794,14 +796,14 @@ def test_a_clock_set_back_is_told_where_it_puts_own_ship_at_two_places_at_a_time
     ]
     rows = navigated(tmp_path, lines[:900] + again)
     (k,) = np.flatnonzero(np.diff(column(rows, "time_s")) < 0)
-    assert f"own.csv go back 1 times, where the clock was set back (line {k + 3})" in (
+    assert f"own.csv go back 1 time, where the clock was set back (line {k + 3})" in (
         capsys.readouterr().out
     )
     notes = []
     own = read_own(tmp_path / "own.csv", notes)
     assert len(own.time_s) == len(rows)
     (told,) = notes
-    assert f"times go back 1 times (first in line {k + 3})" in told
+    assert f"times go back 1 time (first in line {k + 3})" in told
     navigated(tmp_path, lines)
     assert "go back" not in capsys.readouterr().out
     notes.clear()
@@ -918,7 +920,7 @@ def test_readings_without_a_fix_before_them_are_told(tmp_path, capsys):
     early = [line for line in lines[:30] if not line.startswith("$GPRMC")]
     late = [sentence("GPZDA,101100,01,06,2020,00,00"), *lines[3 * 660 + 1 : 3 * 660 + 3]]
     rows = navigated(tmp_path, [*early, *lines[30:900], *late])
-    assert "note: 22 readings with no fix before them are not used (first in line 1)" in (
+    assert "note: readings with no fix before them are not used: 22 (first in line 1)" in (
         capsys.readouterr().out
     )
     assert len(rows) == 870

@@ -273,6 +273,16 @@ def test_times_and_complex_numbers_are_no_readings(kind):
             ekf().run(np.zeros((3, 2)), dt_s, RADAR, START)
 
 
+@pytest.mark.parametrize("kind", ["U9", "S9", object])
+def test_numbers_written_as_text_are_no_readings(kind):
+    z = np.array([["5000", "0.5"], ["4980", "0.506"]], dtype=kind)
+    for told in (z, z.tolist(), np.ma.array(z)):
+        with pytest.raises(TypeError, match=r"must hold real numbers, got text such as .*5000"):
+            ekf().run(told, 3.0, RADAR, START)
+    with pytest.raises(TypeError, match="dt_s must be a number or an array, got '3'"):
+        ekf().run(np.zeros((2, 2)), "3", RADAR, START)
+
+
 def test_a_row_of_nan_is_a_missed_scan():
     z = readings(miss=(3,))
     result = run(ekf(), z)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wakeline import metrics, recording
+from wakeline import metrics, recording, scenario
 from wakeline.recording import Episode, Scan, TargetTruth, Tracks
 
 SCANS, PERIOD_S = 60, 2.0
@@ -352,3 +352,34 @@ def test_nees_says_what_is_wrong():
         metrics.nees(np.zeros((3, 2)), np.eye(2))
     with pytest.raises(ValueError, match="positive definite"):
         metrics.nees(np.zeros(2), np.diag([1.0, -1.0]))
+
+
+TAKES = {
+    "error": metrics.rmse,
+    "time_s": lambda values: metrics.steady_scans(values, [1.0]),
+    "curve": lambda values: metrics.share_inside(values, 4, 10),
+    "truth_m": lambda values: metrics.gospa([values], [[1.0, 2.0]]),
+    "covariance": lambda values: metrics.squared_distance(3.0, values),
+    "turn_rates_rad_s": lambda values: metrics.right_mode(np.ones((1, 2)), values, [0.0]),
+    "start": scenario.Truth,
+}
+
+
+@pytest.mark.parametrize("name", TAKES)
+@pytest.mark.parametrize(
+    ("values", "error", "words"),
+    [
+        (["12.5", "3"], TypeError, "got text such as '12.5'"),
+        (np.array(["12.5", 3.0], dtype=object), TypeError, "got text such as '12.5'"),
+        ([1j, 2.0], TypeError, "got complex128"),
+        ([[1.0], [2.0, 3.0]], ValueError, "inhomogeneous"),
+    ],
+)
+def test_what_is_no_number_is_refused_by_name(name, values, error, words):
+    with pytest.raises(error, match=f"{name} must hold real numbers: .*{words}"):
+        TAKES[name](values)
+
+
+def test_a_masked_error_is_none():
+    assert np.isnan(metrics.rmse(np.ma.array([3.0, 4.0], mask=[True, False])))
+    assert metrics.rmse(np.ma.array([3, 4], mask=False)) == np.sqrt(12.5)

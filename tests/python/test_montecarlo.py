@@ -1116,7 +1116,7 @@ def without_options(z):
     ("change", "error", "message"),
     [
         ({"sensor": 3}, TypeError, "sensor must be RangeBearing.*, got int"),
-        ({"turn_rates_rad_s": "ab"}, ValueError, "could not convert string to float: 'ab'"),
+        ({"turn_rates_rad_s": "ab"}, TypeError, "rates_rad_s must hold .*: got text such as 'ab'"),
         ({"estimator": SimpleNamespace(run=without_options)}, TypeError, "unexpected keyword"),
         ({"estimator": 3}, TypeError, "estimator must have run, or .* that gives what has, got 3"),
         ({"estimator": lambda scene: None}, TypeError, "estimator must have run, .* got None"),
@@ -1145,6 +1145,12 @@ class Built:
 def test_an_estimator_may_be_built_by_its_class():
     built = run(CASE, {"imm": Candidate(Built, turn_rates_rad_s=np.deg2rad(RATES_DEG_S))})
     np.testing.assert_array_equal(built["case", "imm"].nees, run()["case", "imm"].nees)
+
+
+def test_an_imm_of_known_turns_tells_their_rates(result):
+    found = run(CASE, {"imm": dataclasses.replace(IMM, turn_rates_rad_s=None)})
+    whole = SimpleNamespace(outcomes={("case", "imm"): result["case", "imm"]})
+    assert_same_bits(found, whole)
 
 
 def test_a_sensor_may_be_given_or_built():

@@ -360,6 +360,19 @@ def test_what_is_no_filter_is_refused_by_name(what):
         wl.Imm([what], wl.ModeChain([[1.0]]))
 
 
+def test_known_turn_rates_are_told():
+    def imm(*motions):
+        chain = wl.ModeChain.from_sojourn_s([60.0] * len(motions))
+        return wl.Imm([wl.Ukf(motion) for motion in motions], chain)
+
+    straight = wl.ConstantVelocity()
+    turns = [wl.CoordinatedTurn(turn_rate_rad_s=rate) for rate in (0.0, 0.02, -0.01)]
+    np.testing.assert_array_equal(imm(*turns).turn_rates_rad_s(), [0.0, 0.02, -0.01])
+    np.testing.assert_array_equal(imm(straight, turns[1]).turn_rates_rad_s(), [0.0, 0.02])
+    for unknown in (wl.CoordinatedTurnRate(), wl.WanderingCourse(), wl.Singer()):
+        assert imm(*turns, unknown).turn_rates_rad_s() is None
+
+
 def test_a_bare_matrix_is_no_chain():
     with pytest.raises(TypeError):
         wl.Imm([one_filter()] * 2, np.full((2, 2), 0.5))

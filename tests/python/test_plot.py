@@ -124,7 +124,7 @@ def test_plots_out_of_sight_are_counted_and_shown_on_request(episode, tracks):
     (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
     places = np.concatenate([scan.position_m for scan in episode.scans])
     inside = (places >= [south, west]).all(axis=1) & (places <= [north, east]).all(axis=1)
-    assert note == f"{np.count_nonzero(~inside)} of {len(places)} plots lie outside"
+    assert note == f"{np.count_nonzero(~inside)} of {len(places)} plots outside"
     whole = plot.map_figure(episode, tracks, whole=True).axes[0]
     assert not [text for text in texts(whole) if "outside" in text]
 
@@ -544,7 +544,7 @@ NINE = np.zeros(9)
         (lambda ax: plot.paths_view(ax, np.zeros((3, 2))), r"truth .* \(n, 4\), got \(3, 2\)"),
         (
             lambda ax: plot.paths_view(ax, np.zeros((3, 4)), {"imm": np.zeros((3, 6))}),
-            r"track 'imm' .* \(n, 4\), got \(3, 6\)",
+            r"tracks of 'imm' .* \(n, 4\), got \(3, 6\)",
         ),
         (
             lambda ax: plot.paths_view(ax, np.zeros((3, 4)), plots_m=np.zeros(2)),
@@ -735,3 +735,41 @@ def test_steps_are_named_and_their_ratios_are_alike_at_any_height(ax):
     to_screen = ax.transData.transform
     rise = [to_screen((1, high))[1] - to_screen((0, low))[1] for low, high in ((1, 2), (10, 20))]
     assert rise[0] == pytest.approx(rise[1])
+
+
+def own_ship_panel(name):
+    """Draws a panel of own ship's, with changes of what it draws."""
+    rows, vectors = [0.0, 1.0, 2.0], [[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]]
+    told = {
+        "own_map": {"position_m": vectors, "fix_m": vectors[:2], "current_mps": vectors},
+        "speed_over_time": {"time_s": rows, "over_ground_mps": rows, "through_water_mps": rows},
+        "course_over_time": {"time_s": rows, "course_rad": rows, "heading_rad": rows},
+        "drift_over_time": {"time_s": rows, "current_mps": vectors, "fix_time_s": rows[:2]},
+    }[name]
+
+    def draw(**change):
+        return getattr(plot, name)(plot.figure().subplots(), **told | change)
+
+    return told, draw
+
+
+@pytest.mark.parametrize(
+    "name", ["own_map", "speed_over_time", "course_over_time", "drift_over_time"]
+)
+def test_panels_of_own_ship_take_lists_and_refuse_what_does_not_fit_by_name(name):
+    told, draw = own_ship_panel(name)
+    assert draw().lines
+    for argument in told:
+        with pytest.raises(ValueError, match=rf"{argument} must have shape \(.*\), got \(3, 3\)"):
+            draw(**{argument: np.zeros((3, 3))})
+        with pytest.raises(TypeError, match=f"{argument} must hold real numbers: got text"):
+            draw(**{argument: ["1", "2", "3"]})
+    if name == "own_map":
+        for argument in ("coasting", "jumped"):
+            with pytest.raises(ValueError, match=rf"{argument} must have shape \(3,\), got \(2,\)"):
+                draw(**{argument: np.ones(2, bool)})
+
+
+def test_curves_that_have_no_names_are_refused():
+    with pytest.raises(TypeError, match="errors must be a mapping by name, got list"):
+        plot.error_panel(plot.figure().subplots(), [0.0, 1.0], [1.0, 2.0])

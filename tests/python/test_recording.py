@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wakeline import recording
+from wakeline import forecast, metrics, montecarlo, recording
 from wakeline.recording import OwnShip, RecordingError, read_plots
 from wakeline.recording.scans import by_time
 from wakeline.scenario import RadarSimulator, Truth
@@ -384,7 +384,7 @@ def test_plots_without_a_finite_place_are_left_out_and_counted(file, cell):
 def test_times_that_go_back_are_told_where_no_scans_are_numbered(file):
     rows = "86399.5,1,1\n86399,2,2\n0.5,3,3\n3,4,4\n"
     (note,) = read_plots(file("time_s,north_m,east_m\n" + rows)).notes
-    assert "plots.csv: 1 plots put in order that are more than a minute earlier" in note
+    assert "plots.csv: 1 plot put in order that is more than a minute earlier" in note
     assert "line 4" in note
     rows = "a,900,1,1\na,902,1,1\nb,0,1,1\nb,2,1,1\n"
     assert read_plots(file("scenario,time_s,north_m,east_m\n" + rows)).notes == []
@@ -440,7 +440,7 @@ def test_a_plot_inside_an_own_ship_gap_is_an_error(file):
         read_plots(plots, own)
     assert_says(caught, plots, 3, "time_s", "own.csv", "a gap of 29 s after its line 3")
     read = read_plots(plots, own, own_gap_s=30.0)
-    assert "1 rows without a finite own-ship position" in read.notes[0]
+    assert "1 row without a finite own-ship position" in read.notes[0]
 
 
 def test_a_scan_list_without_positions_is_a_radar_at_rest(file):
@@ -491,6 +491,7 @@ def assert_says(caught, path, line, column, *parts):
         ("time_s,utc,north_m,east_m\n0,0,1,1\n", 1, "utc", ["repeated", "time_s and utc"]),
         ("time_s,range_m,range_nm,bearing_deg\n0,1,1,1\n", 1, "range_nm", ["range_m and range_nm"]),
         ("time_s,north_m,east_m\n0,1\n", 2, None, ["wanted 3 cells, got 2"]),
+        ("time_s\n0\n0,1\n", 3, None, ["wanted 1 cell, got 2"]),
         ("time_s,north_m,east_m\n0,1,1\n\n0,1,1,1\n", 4, None, ["wanted 3 cells, got 4"]),
         ("scan,time_s,north_m,east_m\n0,5,1,1\n1,4,1,1\n", 3, "time_s", ["go back", "scan 0"]),
         ("scan,time_s,north_m,east_m\n0,5,1,1\n1,5,1,1\n", 3, "time_s", ["do not grow", "scan 0"]),
@@ -691,3 +692,51 @@ def test_plots_alone_are_written_without_own_ship_and_truth(tmp_path):
     blind = dataclasses.replace(made, episodes=[dataclasses.replace(only(made), truth=None)])
     with pytest.raises(ValueError, match="must have truth"):
         recording.write_plots(tmp_path / "plots.csv", blind, truth_path=tmp_path / "truth.csv")
+
+
+def own_ship(**change):
+    rows = np.arange(3.0)
+    return recording.OwnShip(**{"time_s": rows, "north_m": rows, "east_m": rows} | change)
+
+
+def truth(**change):
+    names = ("time_s", "north_m", "east_m", "vnorth_mps", "veast_mps")
+    return recording.TargetTruth(**dict.fromkeys(names, np.arange(3.0)) | change)
+
+
+@pytest.mark.parametrize("made", [own_ship, truth])
+def test_what_is_made_of_columns_takes_lists_and_refuses_what_does_not_fit(made):
+    listed = made(time_s=[0.0, 1.0, 2.0], north_m=[0.0, 1.0, 2.0])
+    np.testing.assert_array_equal(listed.north_m, made().north_m)
+    for wrong in (np.zeros(2), 0.0, None):
+        with pytest.raises(ValueError, match=r"north_m must have shape \(3,\), got \("):
+            made(north_m=wrong)
+    with pytest.raises(TypeError, match="east_m must hold real numbers: got text"):
+        made(east_m=["0", "1", "2"])
+    for wrong in ([0.0, 2.0, 1.0], [0.0, np.nan, 1.0]):
+        with pytest.raises(ValueError, match="time_s must be finite and in order, got"):
+            made(time_s=wrong)
+
+
+def test_scores_forecasts_and_bounds_name_what_is_none():
+    joyride = recording.load("joyride")
+    with pytest.raises(TypeError, match="tracks must be of type Tracks, got NoneType"):
+        metrics.score(None, joyride)
+    with pytest.raises(TypeError, match="recording must be a Recording or Episode, got dict"):
+        metrics.score(recording.Tracks.joined([]), {})
+    with pytest.raises(TypeError, match="track must be an AisTrack or Tracks, got str"):
+        forecast.position_m("3", [60.0])
+    with pytest.raises(TypeError, match="scenario must be of type Scenario, got str"):
+        montecarlo.bound("example1")
+    with pytest.raises(TypeError, match="scenarios must be a sequence of Scenario, got None"):
+        montecarlo.run(None, {}, 1)
+
+
+def test_tracks_and_video_of_numbers_written_as_text_are_refused():
+    state = np.zeros((2, 4))
+    with pytest.raises(TypeError, match="time_s must hold real numbers: got text such as '1'"):
+        recording.Tracks(track_id=["1", "1"], time_s=["1", "2"], state=state)
+    video = {"amplitude": np.zeros((2, 3), np.uint8), "azimuth_width_rad": 0.1}
+    video |= {"start_range_m": 0.0, "cell_m": 5.0}
+    with pytest.raises(TypeError, match="azimuth_rad must hold real numbers: got text such as '0'"):
+        recording.RadarVideo(azimuth_rad=["0", "1"], time_s=[0.0, 1.0], **video)

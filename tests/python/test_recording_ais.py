@@ -83,7 +83,7 @@ def test_what_a_message_can_hold_but_no_vessel_can_do_is_left_out_and_said(tmp_p
     assert np.isnan(track.vnorth_mps).tolist() == [False, True, False]
     assert np.isfinite(track.north_m).all()
     (note,) = ais.notes
-    assert "1 values of" in note
+    assert "1 value of" in note
     assert "that no vessel has left out (first in line 3)" in note
 
 
@@ -126,9 +126,9 @@ def test_what_is_left_out_is_said(tmp_path):
     (track,) = ais.tracks.values()
     np.testing.assert_allclose(track.time_s - track.time_s[0], [0.0, 3.0, 6.4, 9.0])
     assert [note.split("left out")[0] for note in ais.notes] == [
-        "ais.csv: 1 reports without a position ",
-        "ais.csv: 1 reports less than 1 s before the next of the vessel ",
-        "ais.csv: 1 reports farther off than a vessel gets at 40 m/s ",
+        "ais.csv: 1 report without a position ",
+        "ais.csv: 1 report less than 1 s before the next of the vessel ",
+        "ais.csv: 1 report farther off than a vessel gets at 40 m/s ",
     ]
     assert [note.split("line ")[1] for note in ais.notes] == ["3)", "5)", "6)"]
 

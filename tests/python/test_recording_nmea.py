@@ -228,7 +228,7 @@ def test_a_fix_that_the_receiver_does_not_call_valid_is_kept_and_marked(log, sta
     read = log(rmc(10), rmc(12, status=status, mode=mode), rmc(14))
     assert read.fixes.valid.tolist() == read.fixes.usable.tolist() == [True, False, True]
     assert read.ground.valid.tolist() == [True, False, True]
-    assert "1 fixes that the receiver calls not valid (first in line 2)" in read.notes[0]
+    assert "1 fix that the receiver calls not valid (first in line 2)" in read.notes[0]
 
 
 # ------------------------------------------------------------------ one fix a time
@@ -408,7 +408,7 @@ def test_a_clock_that_was_set_back_begins_a_part(log, back_s):
     assert read.report.problems == {}
     assert read.set_back_lines.tolist() == [21]
     assert clock_s(read.fixes) == [*first, *second]
-    assert "the clock was set back 1 times (line 21)" in "".join(read.notes)
+    assert "the clock was set back 1 time (line 21)" in "".join(read.notes)
     parts = read.parts()
     assert [clock_s(part.fixes) for part in parts] == [list(first), list(second)]
 
@@ -614,7 +614,7 @@ def test_fixes_that_jump_and_stay_are_believed_and_told(log):
     read = log(*jumping((slice(100, 300), 0.5), (slice(150, 154), -0.4)))
     assert np.flatnonzero(read.fixes.suspect).tolist() == [150, 151, 152, 153]
     (told,) = [note for note in read.notes if "jumps" in note]
-    assert "1 times farther than the vessel can have come, first by 55.6 km in line 101" in told
+    assert "1 time farther than the vessel can have come, first by 55.6 km in line 101" in told
     assert "196 fixes go on" in told
     silent = log(*(rmc(t + 3000 * (t > 50), 46.5 + 0.5 * (t > 50)) for t in range(100)))
     assert not silent.fixes.suspect.any()
@@ -649,7 +649,7 @@ def test_a_heading_that_is_lost_for_long_is_told(log, kind, lost, longest_s):
         assert told == []
     else:
         (note,) = told
-        assert "1 stretches of more than 60 s without a heading" in note
+        assert "1 stretch of more than 60 s without a heading" in note
         assert float(note.split()[-2]) == pytest.approx(longest_s, abs=1.0)
 
 
@@ -702,10 +702,10 @@ def test_readings_that_their_instrument_calls_not_valid_are_told(log):
     read = log(rmc(10), *map(sentence, bad), sentence("HDG,89.0,,,1.0,E"), rmc(12))
     assert read.heading.sentence.tolist() == ["HDG"]
     for told in (
-        "1 headings that the instrument calls not valid (first in line 5)",
-        "1 speeds through the water that the instrument calls not valid (first in line 2)",
+        "1 heading that the instrument calls not valid (first in line 5)",
+        "1 speed through the water that the instrument calls not valid (first in line 2)",
         "2 speeds over ground by log that the instrument calls not valid (first in line 2)",
-        "1 rates of turn that the instrument calls not valid (first in line 4)",
+        "1 rate of turn that the instrument calls not valid (first in line 4)",
     ):
         assert f"own.nmea: {told}" in read.notes
     good = ["VBW,5.0,0.1,A,5.1,0.2,A", "VBW,,,V,,,V", "ROT,3.0,A", "THS,90.0,A"]
@@ -884,9 +884,9 @@ def test_sentences_without_what_they_are_there_for_are_told(log):
     notes = log(rmc(10), sentence("HDT,40.0,T"), *map(sentence, empty), rmc(12)).notes
     for told in (
         "2 HDT sentences tell no heading (first in line 3)",
-        "1 ROT sentences tell no rate of turn (first in line 5)",
-        "1 RMC sentences tell no place (first in line 6)",
-        "1 VHW sentences tell no heading or speed (first in line 7)",
+        "1 ROT sentence tells no rate of turn (first in line 5)",
+        "1 RMC sentence tells no place (first in line 6)",
+        "1 VHW sentence tells no heading or speed (first in line 7)",
     ):
         assert f"own.nmea: {told}" in notes
 

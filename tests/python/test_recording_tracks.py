@@ -46,7 +46,7 @@ def test_truth_is_read_by_target_and_time(file):
     targets = read.episodes[0].truth
     assert list(targets) == ["2", "10"]
     assert targets["10"].north_m.tolist() == [0.0, 2.0, 4.0]
-    assert "1 rows without a finite position" in read.notes[0]
+    assert "1 row without a finite position" in read.notes[0]
 
 
 def test_truth_of_another_scenario_is_left_out_of_the_only_one(file):
@@ -56,7 +56,7 @@ def test_truth_of_another_scenario_is_left_out_of_the_only_one(file):
     named = file("scenario,time_s,north_m,east_m\na,0,1,1\na,2,1,1\n", "named.csv")
     read = read_plots(named, truth_path=truth)
     assert read.episodes[0].truth["1"].north_m.tolist() == [0.0, 4.0]
-    assert read.notes == ["truth.csv: 1 rows of scenarios without scans left out (first in line 3)"]
+    assert read.notes == ["truth.csv: 1 row of scenarios without scans left out (first in line 3)"]
     nameless = read_plots(file(PLOTS, "plots.csv"), truth_path=truth)
     assert nameless.episodes[0].truth["1"].north_m.tolist() == [0.0, 900.0, 4.0]
 

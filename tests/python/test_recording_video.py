@@ -1,6 +1,7 @@
 """Recorded radar video: what is written comes back, and what is said about each bad file."""
 
 import pickle
+import re
 import struct
 from pathlib import Path
 
@@ -128,7 +129,7 @@ def test_a_change_of_the_radar_begins_a_block(path):
     videos, report = read(path)
     assert [v.amplitude.shape for v in videos] == [p.amplitude.shape for p in parts]
     assert [v.cell_m for v in videos] == pytest.approx([p.cell_m for p in parts], abs=1e-7)
-    assert report.notes == ["1 jumps of time"]
+    assert report.notes == ["1 jump of time"]
 
 
 def test_a_file_of_many_pieces_is_the_same(path, monkeypatch):
@@ -370,7 +371,7 @@ def test_missing_repeated_and_late_sweeps(path):
     assert report.notes == [
         "4 sweeps missing",
         "3 sweeps that repeat the one before left out",
-        "1 sweeps that come late left out",
+        "1 sweep that comes late left out",
     ]
 
 
@@ -402,7 +403,7 @@ def test_times_that_step_back_a_little_are_held(path):
     )
     (block,), report = read(path, octets)
     assert (block.time_s * 128).tolist() == [100, 101, 101, 102]
-    assert report.notes == ["1 sweeps whose time goes back, put to the time before"]
+    assert report.notes == ["1 sweep whose time goes back, put to the time before"]
 
 
 @pytest.mark.parametrize(
@@ -421,7 +422,7 @@ def test_what_cannot_be_read_is_named_and_the_rest_is_read(path, bad, words):
     octets = good[0] + record(**{"sequence": 1, "ticks": 1} | bad) + good[2]
     (block,), report = read(path, octets)
     assert (len(block), report.problems) == (2, 1)
-    assert report.notes[0].startswith("1 records cannot be read (first: ")
+    assert report.notes[0].startswith("1 record cannot be read (first: ")
     with pytest.raises(RecordingError, match=words) as caught:
         read(path, strict=True)
     assert caught.value.offset == len(good[0]) + 3
@@ -601,3 +602,14 @@ def test_we_read_what_another_implementation_writes(path, oracle):
     assert block.time_s.tolist() == [1 + k / 128 for k in range(4)]
     assert block.cell_m == pytest.approx(14.9896229, abs=1e-9)
     assert block.start_range_m == pytest.approx(149.896229, abs=1e-8)
+
+
+def test_what_happened_once_is_told_in_the_singular():
+    counts = ("skipped_octets", "other_source", "missing", "repeated", "late", "untimed", "held")
+    counts += ("time_jumps", "reversals", "astray")
+    once = VideoReport(**dict.fromkeys(counts, 1)).notes
+    twice = VideoReport(**dict.fromkeys(counts, 2)).notes
+    assert once[0] == "1 octet passed over because of damage"
+    assert once[-1] == "1 sweep far from its neighbours in azimuth, time or count left out"
+    assert not [note for note in once if re.match(r"1 \w+s\b", note)]
+    assert all(re.match(r"2 \w+s\b", note) for note in twice)

@@ -23,6 +23,7 @@ from cases import (
     readings,
     turning_imm,
 )
+from wakeline import own_ship, recording, scenario
 
 TURN = wl.Ekf(wl.CoordinatedTurn(turn_rate_rad_s=0.03, noise=SMALL_NOISE))
 RATES = np.deg2rad([-3.0, -1.0, 0.5, 2.0])
@@ -393,3 +394,23 @@ def test_the_tracker(estimator):
     np.testing.assert_array_equal(other.tracks().mean, tracker.tracks().mean)
     assert len(tracker.tracks()) == 1
     assert repr(tracker) == repr(other)
+
+
+def test_what_holds_many_numbers_shows_itself_in_a_few_words():
+    mission = scenario.UsvMission()
+    voyage = scenario.voyage.reckoning_voyage(600.0)
+    part = recording.load_navigation().parts()[0]
+    readings = own_ship.readings_of(part)
+    for shown, wanted in (
+        (voyage, "<Voyage: 5 states, 0.0 to 2400.0 s>"),
+        (voyage.read(1), "<VoyageReadings: 1 run, 5 readings>"),
+        (mission.voyage, "<UsvVoyage: 1017 states, 0.0 to 1016.0 s>"),
+        (mission.draw(2), "<UsvLogs: 2 runs, 1017 times>"),
+        (
+            scenario.hard_turns()["10mps_r300"].draw(2),
+            "<HardTurnRuns: 2 runs, 92 scans, 0.0 to 273.0 s>",
+        ),
+        (readings, "<Readings: 1051 times, 1211388180.0 to .*>"),
+        (own_ship.navigate(readings), "<OwnTrack: 1051 states, 1211388180.0 to .*>"),
+    ):
+        assert re.fullmatch(wanted, repr(shown)), repr(shown)

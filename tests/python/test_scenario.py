@@ -1,11 +1,14 @@
 """Scenarios: truth obeys its equations of motion, the radar has the errors it says."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wakeline.scenario import RadarSimulator, Scenario, Segment, TrackTruth, Truth
+from wakeline import metrics
+from wakeline.scenario import RadarSimulator, Scenario, Segment, TrackTruth, Truth, UsvMission
 
 rates = st.floats(-0.3, 0.3)
 accelerations = st.floats(0.0, 0.5)
@@ -305,3 +308,39 @@ def test_scans_are_counted_in_whole_numbers(scans):
     for seen in (lambda: radar.observe(target, scans, 1), lambda: radar.record({}, scans, 1)):
         with pytest.raises(ValueError, match="scans must be a whole number, at least 0, got"):
             seen()
+
+
+WITH_A_NUMBER = {
+    "duration_s": Segment,
+    "turn_rate_rad_s": lambda value: Segment(1.0, value),
+    "start_time_s": lambda value: Truth(START, start_time_s=value),
+    "range_std_m": lambda value: RadarSimulator(value, 0.01, 3.0),
+    "max_range_m": lambda value: RadarSimulator(60.0, 0.01, 3.0, max_range_m=value),
+    "velocity_std_mps": lambda value: Scenario(
+        "one", Truth(START), RadarSimulator(60.0, 0.01, 3.0), 5, velocity_std_mps=value
+    ),
+    "cutoff_m": lambda value: metrics.ospa([[0.0, 0.0]], [[0.0, 0.0]], value),
+    "p": lambda value: metrics.gospa([[0.0, 0.0]], [[0.0, 0.0]], p=value),
+    "factor": lambda value: metrics.settling_times_s([0.0], [0.0], [], factor=value),
+    "share": lambda value: metrics.detection_delays_scans([0.0], [0.0], [], share=value),
+    "confidence": lambda value: metrics.share_inside([1.0], 2, 1, confidence=value),
+    "current_mps": lambda value: UsvMission(current_mps=value),
+}
+
+
+@pytest.mark.parametrize("name", WITH_A_NUMBER)
+@pytest.mark.parametrize("wrong", ["3", {}, np.ones(2), 1j])
+def test_what_is_no_number_is_refused_by_name(name, wrong):
+    with pytest.raises(TypeError, match=f"^{name} must be a number, got {re.escape(repr(wrong))}"):
+        WITH_A_NUMBER[name](wrong)
+
+
+def test_a_radar_that_is_none_and_a_scan_at_no_time_are_refused_by_name():
+    radar, truth = RadarSimulator(60.0, 0.01, 3.0), Truth(START)
+    with pytest.raises(TypeError, match="radar must be a RadarSimulator, got None"):
+        Scenario("one", truth, None, 5)
+    for start_time_s in (np.nan, np.inf):
+        with pytest.raises(ValueError, match=f"start_time_s must be finite, got {start_time_s}"):
+            radar.observe(truth, 3, 1, start_time_s=start_time_s)
+    with pytest.raises(ValueError, match=r"curve must have shape \(T,\), got \(3, 3\)"):
+        metrics.share_inside(np.ones((3, 3)), 4, 10)

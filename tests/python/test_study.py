@@ -438,6 +438,77 @@ def test_what_stops_the_work_calls_off_what_has_not_begun(monkeypatch, where):
     assert len(begun) < 150
 
 
+def test_what_stops_the_work_has_what_was_done():
+    def job(number):
+        if number == 2:
+            raise ZeroDivisionError
+        return -number
+
+    jobs = {number: lambda number=number: job(number) for number in range(300)}
+    with pytest.raises(ZeroDivisionError) as caught:
+        base.worked_off(jobs, 1, False)
+    assert list(caught.value.result.items())[:2] == [(0, 0), (1, -1)]
+    assert 2 not in caught.value.result
+
+
+@pytest.fixture
+def stopped(monkeypatch):
+    """Studies are stopped when so much of their work is done."""
+
+    def stop_after(count):
+        def stop(items, total, label):
+            for done, item in enumerate(items, start=1):
+                yield item
+                if done == count:
+                    raise KeyboardInterrupt
+
+        monkeypatch.setattr(base, "told", stop)
+        monkeypatch.setattr("wakeline._progress.progress", stop)
+
+    return stop_after
+
+
+@pytest.mark.parametrize("name", [name for name in study.names() if name != "ais-forecast"])
+def test_a_study_that_is_stopped_has_the_rows_that_were_done(name, stopped):
+    whole = study.load(name).run(1, 3)
+    stopped(60 if name in ("fuzzy-alpha-beta", "solent") else 4)
+    with pytest.raises(KeyboardInterrupt) as caught:
+        study.load(name).run(1, 3, threads=1, progress=True)
+    kept = caught.value.result
+    assert (kept.name, kept.runs, kept.seed) == (name, whole.runs, 3)
+    assert 0 < len(kept.rows) < len(whole.rows)
+    assert not kept.pictures
+    for row in kept.rows:
+        same = whole.row(row["scenario"], row["estimator"])
+        assert row | {"ns_per_step": None} == same | {"ns_per_step": None}
+    assert len(kept.table()) > len(kept.rows)
+
+
+def test_a_study_that_is_stopped_tells_what_was_done(stopped, tmp_path, capsys):
+    stopped(3)
+    file = tmp_path / "imm.json"
+    assert run("run", "imm", "--runs", RUNS, "--json", file, "--out", tmp_path) == 130
+    told = capsys.readouterr()
+    assert told.out.endswith("\nnot all was done: the table has what was\n")
+    assert told.err == "wakeline: interrupted\n"
+    assert not file.exists()
+    rows = json.loads((tmp_path / "imm-partial.json").read_text())["rows"]
+    assert [row["estimator"] for row in rows] == ["imm2", "imm3", "clairvoyant", "bound"]
+
+
+def test_a_study_that_is_stopped_at_once_has_nothing_to_tell(monkeypatch, tmp_path, capsys):
+    def stop(runs, seed, **told):
+        if seed:
+            raise KeyboardInterrupt
+        with base.kept(lambda done: study.Report("imm", seed, runs, rows=done), nothing=[]):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(study.imm, "run", stop)
+    for seed in (0, 1):
+        assert run("run", "imm", "--seed", seed, "--out", tmp_path) == 130
+        assert capsys.readouterr().out == ""
+
+
 def test_a_terminal_sees_the_drawing_and_no_count_of_runs_that_is_none(
     monkeypatch, tmp_path, capsys
 ):

@@ -202,6 +202,10 @@ class Imm:
         """
         Begins with a belief over the state of the estimate or over [x, vx, y, vy].
         """
+    def turn_rates_rad_s(self) -> NDArray[np.float64] | None:
+        """
+        (K,) turn rates of the models, positive to starboard; None where one is not known.
+        """
     def update(
         self,
         sensor: RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position,

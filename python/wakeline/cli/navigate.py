@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wakeline import own_ship, plot
+from wakeline._brief import counted, many
 from wakeline._progress import progress
 from wakeline.navigation import LocalPlane
 from wakeline.recording import NavigationLog, RecordingError, read_nmea, replacing
@@ -173,15 +174,19 @@ def _unused_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
     for what in unused[0]:
         lines = np.concatenate([of_part[what] for of_part in unused])
         if len(lines):
-            yield f"note: {len(lines)} {what} are not used (first in line {lines.min()})"
+            yield f"note: {what} are not used: {_lines(lines)}"
+
+
+def _lines(lines: np.ndarray) -> str:
+    return f"{len(lines)} (first in line {lines.min()})"
 
 
 def _stuck_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
     lines = np.concatenate([own_ship.zero_speeds(part) for part in parts])
     if len(lines):
         yield (
-            f"note: {len(lines)} speeds through the water are 0 while the ship makes way over "
-            f"ground (first in line {lines.min()}): if the log is stuck, set and drift are wrong"
+            f"note: speeds through the water are 0 while the ship makes way over ground: "
+            f"{_lines(lines)}; if the log is stuck, set and drift are wrong"
         )
 
 
@@ -209,16 +214,16 @@ def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
     by = f"by up to {near_m.max(initial=0.0):.0f} m"
     for what, lines in _rejected_lines(legs).items():
         went_on = moves and what == "fixes"
-        moved = f"; {moves} times they went on and moved the position {by}" if went_on else ""
+        times = many(moves, "time")
+        moved = f"; {times} they went on and moved the position {by}" if went_on else ""
         yield (
-            f"note: {len(lines)} {what} that do not fit the other readings are rejected "
-            f"(first in line {lines[0]}){moved}"
+            f"note: {what} that do not fit the other readings are rejected: {_lines(lines)}{moved}"
         )
     if len(jumps):
         yield (
-            f"note: the position jumps {len(jumps)} times, to fixes that went on though rejected, "
-            f"first by {far_m[0]:.0f} m in line {jumps[0]}; from there the status is jumped, "
-            "until it comes back or all fixes have fitted for a minute"
+            f"note: the position jumps {many(len(jumps), 'time')}, to fixes that went on though "
+            f"rejected, first by {far_m[0]:.0f} m in line {jumps[0]}; from there the status is "
+            "jumped, until it comes back or all fixes have fitted for a minute"
         )
 
 
@@ -236,8 +241,8 @@ def _order_notes(legs: Sequence[_Leg]) -> Iterator[str]:
     if len(back):
         rows = ", ".join(f"{k + 3}" for k in back[:_SHOWN_ROWS])
         yield (
-            f"note: the times of own.csv go back {len(back)} times, where the clock was set back "
-            f"(line {rows}): cut it there before it is used as an own-ship file"
+            f"note: the times of own.csv go back {many(len(back), 'time')}, where the clock was "
+            f"set back (line {rows}): cut it there before it is used as an own-ship file"
         )
 
 
@@ -255,7 +260,8 @@ def _fix_lines(legs: Sequence[_Leg], masks: Sequence[np.ndarray]) -> np.ndarray:
 def _input_lines(log: NavigationLog) -> str:
     fixes = log.fixes.sound()
     hours = np.ptp(fixes.time_s) / 3600.0 if len(fixes) else 0.0
-    lines = [f"{log.name}: {log.report.lines} lines, {len(fixes)} fixes in {hours:.2f} h"]
+    read, fixed = many(log.report.lines, "line"), counted(len(fixes), "[fix|fixes]")
+    lines = [f"{log.name}: {read}, {fixed} in {hours:.2f} h"]
     lines += [f"note: {note}" for note in log.notes]
     return "\n".join(lines)
 
@@ -288,7 +294,7 @@ def _error_table(errors: dict[str, dict[float, np.ndarray]]) -> str:
         for name in _METHODS
         if name in errors
     ]
-    title = f"error in metres without satellites, median of {count} times:"
+    title = f"error in metres without satellites, median of {many(count, 'time')}:"
     return f"\n{title}\n{report.aligned([head, *body])}\n"
 
 
@@ -320,7 +326,8 @@ def _write_problems(path: Path, log: NavigationLog) -> list[Path]:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("line", "kind", "reason"))
         writer.writerows((problem.line, problem.kind, problem.reason) for problem in problems)
-    which = "all problems" if len(problems) == count else f"the first {len(problems)} problems"
+    whole = len(problems) == count
+    which = "all problems" if whole else f"the first {many(len(problems), 'problem')}"
     print(f"note: {which} are listed in {path.name}", flush=True)
     return [path]
 
@@ -365,7 +372,7 @@ def _write_pictures(folder: Path, legs: Sequence[_Leg], way: str) -> list[Path]:
     files = []
     drawn = [leg for leg in legs if leg.readings.has_fix.sum() >= _LEAST_DRAWN_FIXES]
     if len(drawn) < len(legs):
-        short = f"{len(legs) - len(drawn)} of {len(legs)} parts"
+        short = f"{len(legs) - len(drawn)} of {many(len(legs), 'part')}"
         print(f"note: not drawn are {short}, of fewer than {_LEAST_DRAWN_FIXES} fixes")
     watched = progress(drawn, len(drawn), "drawing")
     for number, (_, readings, track) in enumerate(watched, start=1):

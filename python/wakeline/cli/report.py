@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from wakeline._brief import many
 from wakeline.metrics import Score, Summary, TargetScore
 
 ALL = "all"
@@ -147,5 +148,5 @@ def _tail(score: Score) -> str:
         )
     left_out = sum(episode.unmatched_rows for episode in score.episodes)
     if left_out:
-        tail += f"\n{left_out} rows of tracks at no scan's time, or not finite, left out"
+        tail += f"\n{many(left_out, 'row')} of tracks at no scan's time, or not finite, left out"
     return tail

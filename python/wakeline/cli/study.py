@@ -30,7 +30,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     one = actions.add_parser(
         "run",
         help="run a study",
-        description="Runs a study, prints its table, and draws its figures.",
+        description="Runs a study, prints its table, and draws its figures. When it ends early "
+        "the rows that were done are printed, and written with -partial in the name of the JSON.",
     )
     one.add_argument("name", choices=study.names(), metavar="NAME", help=", ".join(study.names()))
     one.add_argument(
@@ -64,21 +65,37 @@ def list_studies(arguments: argparse.Namespace) -> None:
 def run_study(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
     outputs.make_folder(arguments.out)
-    done = study.load(arguments.name).run(
-        arguments.runs, arguments.seed, full=arguments.full, progress=True
-    )
-    drawn = "nothing drawn at random" if done.seed is None else f"seed {done.seed}"
-    print(f"{done.name}: {many(done.runs, 'run')}, {drawn}\n")
-    print(report.aligned(done.table(), left=2))
-    for note in done.notes:
-        print(f"\n{note}")
-    if arguments.json is not None:
-        outputs.write_json(arguments.json, done.name, done.rows, seed=done.seed, runs=done.runs)
+    try:
+        done = study.load(arguments.name).run(
+            arguments.runs, arguments.seed, full=arguments.full, progress=True
+        )
+    except BaseException as error:
+        found = getattr(error, "result", None)
+        if found is not None and found.rows:
+            _tell(found, arguments.json and _partial(arguments.json))
+            print("\nnot all was done: the table has what was", flush=True)
+        raise
+    _tell(done, arguments.json)
     if not outputs.can_draw():
         print(f"\n{outputs.HOW_TO_GET_PICTURES}")
         return
     files = done.save_pictures(arguments.out, progress=True)
     print(f"\nwritten to {arguments.out}: {', '.join(file.name for file in files)}")
+
+
+def _tell(done: study.Report, json: Path | None) -> None:
+    """Print the table and the notes, and write the JSON where it is asked for."""
+    drawn = "nothing drawn at random" if done.seed is None else f"seed {done.seed}"
+    print(f"{done.name}: {many(done.runs, 'run')}, {drawn}\n")
+    print(report.aligned(done.table(), left=2))
+    for note in done.notes:
+        print(f"\n{note}")
+    if json is not None:
+        outputs.write_json(json, done.name, done.rows, seed=done.seed, runs=done.runs)
+
+
+def _partial(file: Path) -> Path:
+    return file.with_name(f"{file.stem}{outputs.PARTIAL}{file.suffix}")
 
 
 def _runs(text: str) -> int:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 import wakeline as wl
+from wakeline._brief import counted
 from wakeline.recording import RadarVideo
 
 from .settings import Kind, settings_for
@@ -72,7 +73,8 @@ class Extraction:
         if self._mirrored:
             notes.append("the antenna turns anticlockwise")
         if self._refused:
-            notes.append(f"{self._refused} sweeps that make no sense left out")
+            what = "[sweep that makes|sweeps that make] no sense left out"
+            notes.append(counted(self._refused, what))
         return notes
 
     def _begin(self, turn: Turn, kind: Kind, block: RadarVideo) -> None:

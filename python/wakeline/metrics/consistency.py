@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from wakeline import eval
+from wakeline._checks import plain_numbers, real_numbers, whole_number
 
 
 def squared_distance(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
@@ -27,7 +28,7 @@ def squared_distance(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
     ValueError
         When the shapes do not fit.
     """
-    error, covariance = np.asarray(error, dtype=float), np.asarray(covariance, dtype=float)
+    error, covariance = real_numbers("error", error), real_numbers("covariance", covariance)
     if error.ndim == 0 or covariance.shape != (*error.shape, error.shape[-1]):
         wanted = (*error.shape, *error.shape[-1:])
         raise ValueError(f"covariance must have shape {wanted}, got {covariance.shape}")
@@ -99,7 +100,11 @@ def share_inside(
     ValueError
         When confidence or dof makes no sense or the shapes do not fit.
     """
-    curve, samples = np.asarray(curve, dtype=float), np.asarray(samples)
+    curve, samples = real_numbers("curve", curve), real_numbers("samples", samples)
+    plain_numbers(confidence=confidence)
+    whole_number("dof", dof, 1)
+    if curve.ndim != 1:
+        raise ValueError(f"curve must have shape (T,), got {curve.shape}")
     counts = (samples == np.floor(samples)) & (samples >= 0) & (samples < np.inf)
     if samples.shape not in ((), curve.shape) or not counts.all():
         raise ValueError(

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wakeline._checks import whole_number
+from wakeline._checks import plain_numbers, real_numbers, whole_number
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def rmse_curve(error: np.ndarray) -> np.ndarray:
     ValueError
         When the shape is another or there is no run.
     """
-    error = np.asarray(error, dtype=float)
+    error = real_numbers("error", error)
     if error.ndim != 3 or not len(error):
         raise ValueError(f"error must have shape (R, T, d) with R at least 1, got {error.shape}")
     return np.sqrt(np.mean(np.sum(error**2, axis=-1), axis=0))
@@ -130,6 +130,7 @@ def settling_times_s(
     ValueError
         As :func:`by_segment`, and when the factor is below 1.
     """
+    plain_numbers(factor=factor)
     if not factor >= 1:
         raise ValueError(f"factor must be at least 1, got {factor}")
     time_s, curve, switch_times_s = _checked(time_s, curve, switch_times_s)
@@ -176,6 +177,7 @@ def detection_delays_scans(
     ValueError
         As :func:`by_segment`, and when `share` is not within (0, 1].
     """
+    plain_numbers(share=share)
     if not 0 < share <= 1:
         raise ValueError(f"share must be above 0 and at most 1, got {share}")
     time_s, right, switch_times_s = _checked(time_s, right_mode_share, switch_times_s)
@@ -234,8 +236,8 @@ def _parts(time_s: np.ndarray, switch_times_s: np.ndarray) -> list[slice]:
 def _checked(
     time_s: np.ndarray, curve: np.ndarray, switch_times_s: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    time_s, curve = np.asarray(time_s, dtype=float), np.asarray(curve, dtype=float)
-    switch_times_s = np.asarray(switch_times_s, dtype=float)
+    time_s, curve = real_numbers("time_s", time_s), real_numbers("curve", curve)
+    switch_times_s = real_numbers("switch_times_s", switch_times_s)
     if time_s.ndim != 1 or not len(time_s) or curve.shape != time_s.shape:
         raise ValueError(
             f"time_s and curve must have the same shape (T,), T at least 1, "

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from wakeline._checks import real_numbers
+
 _SAME_RATE_RAD_S = 1e-12
 
 
@@ -32,9 +34,9 @@ def right_mode(
     ValueError
         When the shapes do not fit.
     """
-    modes = np.asarray(mode_probability, dtype=float)
-    rates = np.asarray(turn_rates_rad_s, dtype=float)
-    truth = np.asarray(true_turn_rate_rad_s, dtype=float)
+    modes = real_numbers("mode_probability", mode_probability)
+    rates = real_numbers("turn_rates_rad_s", turn_rates_rad_s)
+    truth = real_numbers("true_turn_rate_rad_s", true_turn_rate_rad_s)
     if modes.ndim < 2 or modes.shape[-1] == 0 or truth.shape != modes.shape[-2:-1]:
         raise ValueError(
             "mode_probability must have shape (..., T, K) and true_turn_rate_rad_s (T,), "

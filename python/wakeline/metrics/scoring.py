@@ -6,6 +6,7 @@ import itertools
 
 import numpy as np
 
+from wakeline._checks import plain_numbers
 from wakeline.recording import Episode, Recording, Tracks
 from wakeline.recording.scans import nearest
 
@@ -51,6 +52,11 @@ def score(
         When tracks name a scenario that the recording does not have, or a parameter is not
         positive and finite (the bonus may be zero).
     """
+    if not isinstance(tracks, Tracks):
+        raise TypeError(f"tracks must be of type Tracks, got {type(tracks).__name__}")
+    if not isinstance(recording, (Recording, Episode)):
+        raise TypeError(f"recording must be a Recording or Episode, got {type(recording).__name__}")
+    plain_numbers(gate_m=gate_m, bonus_m=bonus_m, warmup_scans=warmup_scans)
     if not 0 < gate_m < np.inf:
         raise ValueError(f"gate_m must be positive and finite, got {gate_m}")
     if not 0 <= bonus_m < np.inf:

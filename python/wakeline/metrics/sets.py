@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wakeline import association
+from wakeline._checks import plain_numbers, real_numbers
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,7 @@ def _checked_distances(
     truth_m: np.ndarray, tracks_m: np.ndarray, cutoff_m: float, p: float
 ) -> np.ndarray:
     """Distances (n, m) between points (n, d) and (m, d) after looking at the arguments."""
-    truth_m, tracks_m = np.asarray(truth_m, dtype=float), np.asarray(tracks_m, dtype=float)
+    truth_m, tracks_m = real_numbers("truth_m", truth_m), real_numbers("tracks_m", tracks_m)
     if truth_m.ndim != 2 or tracks_m.ndim != 2 or truth_m.shape[1] != tracks_m.shape[1]:
         raise ValueError(
             f"truth_m and tracks_m must have shapes (n, d) and (m, d), "
@@ -120,6 +121,7 @@ def _checked_distances(
         )
     if not (np.isfinite(truth_m).all() and np.isfinite(tracks_m).all()):
         raise ValueError("truth_m and tracks_m must be finite")
+    plain_numbers(cutoff_m=cutoff_m, p=p)
     if not 0 < cutoff_m < np.inf:
         raise ValueError(f"cutoff_m must be positive and finite, got {cutoff_m}")
     if not 1 <= p < np.inf:

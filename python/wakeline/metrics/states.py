@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wakeline._checks import real_numbers
+
 _COURSE_MIN_SPEED_MPS = 2.0
 
 
 def rmse(error: np.ndarray, axis: int | tuple[int, ...] | None = None) -> np.ndarray | float:
     """Root mean square of errors over `axis`, over all of them by default."""
-    return np.sqrt(np.mean(np.square(np.asarray(error, dtype=float)), axis=axis))
+    return np.sqrt(np.mean(np.square(real_numbers("error", error)), axis=axis))
 
 
 @dataclass(frozen=True)

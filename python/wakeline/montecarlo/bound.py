@@ -36,6 +36,8 @@ def bound(scenario: Scenario, noise: Any = None) -> np.ndarray:
     FilterError
         When a bound is not positive definite.
     """
+    if not isinstance(scenario, Scenario):
+        raise TypeError(f"scenario must be of type Scenario, got {type(scenario).__name__}")
     noise = motion.PiecewiseAcceleration(std_mps2=0.0) if noise is None else noise
     transition = np.empty((scenario.scans, 4, 4))
     process_noise = np.empty((scenario.scans, 4, 4))

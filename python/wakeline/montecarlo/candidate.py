@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import core, filter, motion
+from wakeline._checks import real_numbers
 from wakeline.scenario import Scenario
 
 from .pieces import stretches
@@ -64,7 +65,7 @@ class Candidate:
             rates = rates(scenario)
         if rates is None:
             rates = getattr(self._built(scenario), "turn_rates_rad_s", lambda: None)()
-        return None if rates is None else np.asarray(rates, dtype=float)
+        return None if rates is None else real_numbers("turn_rates_rad_s", rates)
 
     def told(self, scenario: Scenario) -> dict[str, str]:
         """The text of ``estimator`` and of ``sensor``, as they are on a scenario.
@@ -147,7 +148,7 @@ def clairvoyant(
     ValueError
         When the readings have another shape.
     """
-    z = np.asarray(z, dtype=float)
+    z = real_numbers("z", z)
     if z.ndim != 3 or z.shape[1] != scenario.scans:
         raise ValueError(f"z must have shape (R, {scenario.scans}, 2), got {z.shape}")
     sensor = _sensor(sensor, scenario)

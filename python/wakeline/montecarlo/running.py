@@ -19,7 +19,7 @@ except ImportError:
     pickler = pickle
 
 from wakeline import _progress
-from wakeline._checks import run_numbers
+from wakeline._checks import listed, run_numbers
 from wakeline.scenario import Scenario
 
 from .candidate import Candidate, named, told
@@ -97,7 +97,9 @@ def run(
     TypeError
         When a candidate or the client is of a kind that does not fit.
     """
-    scenarios = [scenarios] if isinstance(scenarios, Scenario) else list(scenarios)
+    if isinstance(scenarios, Scenario):
+        scenarios = [scenarios]
+    scenarios = listed("scenarios", scenarios, "Scenario")
     _check(scenarios, candidates, runs, seed, threads, client, lost_beyond_m)
     pairs = [(scenario, name) for scenario in scenarios for name in candidates]
     firsts = range(0, runs, CHUNK_RUNS)

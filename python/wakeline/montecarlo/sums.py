@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import core, eval
+from wakeline._brief import many
 from wakeline.metrics import right_mode, squared_distance
 from wakeline.scenario import Scenario
 
@@ -141,7 +142,7 @@ def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> 
     return Sums(
         runs=int(np.count_nonzero(usable)),
         failed_runs=int(np.count_nonzero(~usable)),
-        lost_runs=int(np.count_nonzero(position_m2[:, -1] > chunk.lost_beyond_m**2)),
+        lost_runs=int(np.count_nonzero(np.sqrt(position_m2[:, -1]) > chunk.lost_beyond_m)),
         failed_steps=int(np.count_nonzero(~np.isin(status, _FINE))),
         position_m2=position_m2.sum(axis=0),
         velocity_m2s2=(error[..., 1] ** 2 + error[..., 3] ** 2).sum(axis=0),
@@ -237,7 +238,7 @@ def _require_rates(chunk: Chunk, modes: np.ndarray, fit: bool, shape: tuple[int,
     if not fit:
         raise ValueError(
             f"candidate {chunk.candidate_name!r} must have one turn rate for each of its "
-            f"{modes.shape[-1]} models, got {shape}"
+            f"{many(modes.shape[-1], 'model')}, got {shape}"
         )
 
 

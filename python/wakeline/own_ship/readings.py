@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 import wakeline as wl
+from wakeline._brief import brief, many, span
 from wakeline.recording import NavigationLog
 from wakeline.recording.nmea import Fixes
 
@@ -39,6 +40,9 @@ class Readings(NamedTuple):
     turn_rate_rad_s: np.ndarray
     lean_rad: np.ndarray
     offset_std_rad: float
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self.time_s), "time"), span(self.time_s))
 
     @property
     def over_ground_mps(self) -> np.ndarray:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 import wakeline as wl
+from wakeline._brief import brief, many, span
 
 from .instruments import UNDER_WAY_MPS, VELOCITY_STD_MPS
 from .magnetic import CURRENT_STD_MPS
@@ -83,6 +84,9 @@ class OwnTrack:
     status: np.ndarray
     jump_m: np.ndarray
     rejected: Mapping[str, np.ndarray]
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self.time_s), "state"), span(self.time_s))
 
     @property
     def course_rad(self) -> np.ndarray:

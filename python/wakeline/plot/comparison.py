@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wakeline._checks import shaped
+
 from .style import GRID, INK, MUTED, PALETTE, dress, dress_map, name_lines
 from .time import draw_bands
 
@@ -59,10 +61,10 @@ def paths_view(
     colors : mapping of str to str, optional
         Colour of each track.
     """
-    truth = _shaped("truth", truth, None, 4)
-    tracks = {name: _shaped(f"track {name!r}", of, None, 4) for name, of in (tracks or {}).items()}
+    truth = shaped("truth", truth, None, 4)
+    tracks = _by_name("tracks", {} if tracks is None else tracks, None, 4)
     if plots_m is not None:
-        plots_m = _shaped("plots_m", plots_m, None, 2)
+        plots_m = shaped("plots_m", plots_m, None, 2)
         ax.scatter(*_km(plots_m), s=6, color=MUTED, alpha=0.6, linewidths=0, label="plot", zorder=2)
     for name, look in _looks(tracks, colors):
         ax.plot(*_km(tracks[name][:, 0::2]), **look, linewidth=1.3, label=name, zorder=3)
@@ -116,7 +118,7 @@ def error_panel(
     mark_switches(ax, switch_s)
     curves = list(errors.values())
     if bound is not None:
-        curves.append(_shaped("bound", bound, len(time_s)))
+        curves.append(shaped("bound", bound, len(time_s)))
         ax.fill_between(time_s, bound, color=GRID, linewidth=0, zorder=1.5)
         ax.plot(time_s, bound, color=MUTED, linewidth=1.1, label="bound", zorder=2)
     for name, look in _looks(errors, colors):
@@ -154,7 +156,7 @@ def turn_rate_panel(
     """
     time_s = _times(time_s)
     rates_rad_s = _by_name("rates_rad_s", rates_rad_s, len(time_s))
-    true_rate_rad_s = _shaped("true_rate_rad_s", true_rate_rad_s, len(time_s))
+    true_rate_rad_s = shaped("true_rate_rad_s", true_rate_rad_s, len(time_s))
     ax.axhline(0.0, color=MUTED, linewidth=0.6)
     for name, look in _looks(rates_rad_s, colors):
         rate_deg_s = np.degrees(rates_rad_s[name])
@@ -205,14 +207,14 @@ def probability_panel(
     legend : bool
         Whether to name the bands.
     """
-    rate_deg_s = np.degrees(np.asarray(turn_rate_rad_s, dtype=float))
+    rate_deg_s = np.degrees(shaped("turn_rate_rad_s", turn_rate_rad_s, None))
     time_s = _times(time_s)
-    probability = _shaped("probability", probability, len(time_s), len(rate_deg_s))
+    probability = shaped("probability", probability, len(time_s), len(rate_deg_s))
     order = np.argsort(rate_deg_s)
     names = [f"{rate:+.3g} °/s" if rate else "0 °/s" for rate in rate_deg_s[order]]
     true_deg_s = np.zeros(0)
     if true_rate_rad_s is not None:
-        true_deg_s = np.degrees(_shaped("true_rate_rad_s", true_rate_rad_s, len(time_s)))
+        true_deg_s = np.degrees(shaped("true_rate_rad_s", true_rate_rad_s, len(time_s)))
     colors = turn_colors(np.concatenate([rate_deg_s[order], true_deg_s]))
     draw_bands(ax, time_s, probability[:, order], names, colors[: len(order)])
     if not legend:
@@ -343,25 +345,17 @@ def turn_colors(turn_rate_deg_s: Sequence[float]) -> list[str]:
 
 def _times(time_s: np.ndarray) -> np.ndarray:
     """Times (T,), one at least."""
-    time_s = _shaped("time_s", time_s, None)
+    time_s = shaped("time_s", time_s, None)
     if not len(time_s):
         raise ValueError("time_s must have a time")
     return time_s
 
 
-def _by_name(what: str, rows: Mapping[str, Sequence[float]], count: int) -> dict[str, np.ndarray]:
-    """Rows of so many numbers."""
-    return {name: _shaped(f"{what} of {name!r}", row, count) for name, row in rows.items()}
-
-
-def _shaped(what: str, values: Any, *shape: int | None) -> np.ndarray:
-    """An array of that shape, None standing for any length."""
-    values = np.asarray(values, dtype=float)
-    lengths = zip(shape, values.shape, strict=False)
-    if values.ndim != len(shape) or any(wanted not in (None, got) for wanted, got in lengths):
-        text = str(shape).replace("None", "n")
-        raise ValueError(f"{what} must have shape {text}, got {values.shape}")
-    return values
+def _by_name(what: str, rows: Mapping[str, Any], *shape: int | None) -> dict[str, np.ndarray]:
+    """Arrays of that shape."""
+    if not isinstance(rows, Mapping):
+        raise TypeError(f"{what} must be a mapping by name, got {type(rows).__name__}")
+    return {name: shaped(f"{what} of {name!r}", row, *shape) for name, row in rows.items()}
 
 
 def _looks(

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wakeline._brief import many
+from wakeline._checks import real_numbers
 from wakeline.recording import Episode, Tracks
 
 from .style import (
@@ -142,11 +144,11 @@ def ellipse_outline(
     -------
     ndarray (points, 2)
     """
-    variance, axes = np.linalg.eigh(np.asarray(covariance, dtype=float))
+    variance, axes = np.linalg.eigh(real_numbers("covariance", covariance))
     around = np.linspace(0.0, 2.0 * np.pi, points)
     circle = np.column_stack([np.cos(around), np.sin(around)])
     half_axes = np.sqrt(quantile * np.maximum(variance, 0.0))
-    return np.asarray(mean, dtype=float) + (circle * half_axes) @ axes.T
+    return real_numbers("mean", mean) + (circle * half_axes) @ axes.T
 
 
 def _draw_plots(ax: Axes, episode: Episode) -> None:
@@ -341,7 +343,7 @@ def _count_outside(ax: Axes, outside: np.ndarray) -> None:
     if not outside.any():
         return
     ax.annotate(
-        f"{np.count_nonzero(outside)} of {len(outside)} plots lie outside",
+        f"{np.count_nonzero(outside)} of {many(len(outside), 'plot')} outside",
         (1.0, 0.0),
         xycoords="axes fraction",
         xytext=(-4, 5),

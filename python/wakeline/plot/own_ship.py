@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wakeline._checks import shaped
 from wakeline._units import KNOT_MPS
 
 from .style import (
@@ -56,18 +57,21 @@ def own_map(
     name : str
         What the way is called.
     """
+    position_m, fix_m = shaped("position_m", position_m, None, 2), shaped("fix_m", fix_m, None, 2)
     ax.plot(fix_m[:, 1] / 1e3, fix_m[:, 0] / 1e3, ".", color=MUTED, markersize=3, label="fixes")
     way = position_m / 1e3
     dot_lone(*ax.plot(way[:, 1], way[:, 0], color=PALETTE[0], linewidth=1.5, label=name))
-    for where, color, doubt in (
-        (coasting, PALETTE[1], "without fixes"),
-        (jumped, PALETTE[3], "after a jump"),
+    for what, where, color, doubt in (
+        ("coasting", coasting, PALETTE[1], "without fixes"),
+        ("jumped", jumped, PALETTE[3], "after a jump"),
     ):
-        if where is not None and where.any():
-            part = np.where(where[:, None], way, np.nan)
+        marked = where is not None and shaped(what, where, len(way)).astype(bool)
+        if np.any(marked):
+            part = np.where(marked[:, None], way, np.nan)
             line = ax.plot(part[:, 1], part[:, 0], color=color, linewidth=2.0, label=doubt)
             dot_lone(*line)
     if current_mps is not None:
+        current_mps = shaped("current_mps", current_mps, len(way), 2)
         placed = np.isfinite(way).all(axis=1)
         known = np.flatnonzero(placed & np.isfinite(current_mps).all(axis=1))
         if len(known):
@@ -119,6 +123,9 @@ def speed_over_time(
     ax: Axes, time_s: np.ndarray, over_ground_mps: np.ndarray, through_water_mps: np.ndarray
 ) -> Axes:
     """Speeds in knots over time in minutes, those that are known; returns `ax`."""
+    time_s = shaped("time_s", time_s, None)
+    over_ground_mps = shaped("over_ground_mps", over_ground_mps, len(time_s))
+    through_water_mps = shaped("through_water_mps", through_water_mps, len(time_s))
     for values, color, name in (
         (over_ground_mps, PALETTE[0], "over ground"),
         (through_water_mps, PALETTE[2], "through water"),
@@ -131,6 +138,9 @@ def course_over_time(
     ax: Axes, time_s: np.ndarray, course_rad: np.ndarray, heading_rad: np.ndarray
 ) -> Axes:
     """Course over ground and heading in degrees over time, where known; returns `ax`."""
+    time_s = shaped("time_s", time_s, None)
+    course_rad = shaped("course_rad", course_rad, len(time_s))
+    heading_rad = shaped("heading_rad", heading_rad, len(time_s))
     for values, color, name in (
         (course_rad, PALETTE[0], "course over ground"),
         (heading_rad, PALETTE[1], "heading"),
@@ -146,6 +156,8 @@ def drift_over_time(
     ax: Axes, time_s: np.ndarray, current_mps: np.ndarray, fix_time_s: np.ndarray
 ) -> Axes:
     """Drift in knots over time, with the times of fixes marked below; returns `ax`."""
+    time_s, fix_time_s = shaped("time_s", time_s, None), shaped("fix_time_s", fix_time_s, None)
+    current_mps = shaped("current_mps", current_mps, len(time_s), 2)
     drift_kn = np.hypot(current_mps[:, 0], current_mps[:, 1]) / KNOT_MPS
     _draw(ax, _by_minute(time_s, drift_kn), PALETTE[2], "drift")
     minutes = (fix_time_s - (time_s[0] if len(time_s) else 0.0)) / 60.0

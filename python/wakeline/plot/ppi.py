@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wakeline._checks import whole_number
+from wakeline._checks import real_numbers, whole_number
 from wakeline._engine.video import ScanImage
 from wakeline.recording import RadarVideo, Tracks
 
@@ -341,7 +341,7 @@ def _middle(video: RadarVideo, around_m: tuple[float, float] | None) -> tuple[fl
     if around_m is not None:
         if np.shape(around_m) != (2,):
             raise ValueError(f"around_m must be north and east, got {around_m}")
-        north_m, east_m = np.asarray(around_m, dtype=float)
+        north_m, east_m = real_numbers("around_m", around_m)
         return float(np.arctan2(east_m, north_m) % _TURN_RAD), float(np.hypot(north_m, east_m))
     if len(video) == 0:
         raise ValueError("video must have a sweep, got none")
@@ -505,7 +505,7 @@ def _draw_tracks(ax: Axes, tracks: Tracks) -> None:
 
 
 def _places(name: str, places: ArrayLike) -> NDArray[np.float64]:
-    array = np.asarray(places, dtype=float)
+    array = real_numbers(name, places)
     if array.size == 0:
         return np.zeros((0, 2))
     if array.ndim != 2 or array.shape[1] != 2:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wakeline._brief import many
 from wakeline.recording import Episode, Tracks
 
 from .map import CHI_SQUARE_95_2DOF
@@ -199,7 +200,7 @@ def mode_panel(
     modes = track.mode_probability.shape[1]
     names = mode_names or [f"mode {k}" for k in range(1, modes + 1)]
     if len(names) != modes:
-        raise ValueError(f"mode_names must have {modes} names, got {len(names)}")
+        raise ValueError(f"mode_names must have {many(modes, 'name')}, got {len(names)}")
     draw_bands(ax, track.time_s - start_s, track.mode_probability, names)
     return _finish(ax, f"mode probability\nof track {plain(track_id)}")
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wakeline._brief import brief, many, span
+from wakeline._brief import brief, counted, many, span
 from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
@@ -179,7 +179,7 @@ def read_ais(
     placed = np.isfinite(latitude_deg) & np.isfinite(longitude_deg)
     if not placed.any():
         raise RecordingError(table.path, "no report has a position", wanted="at least one")
-    _note(notes, table, ~placed, "reports without a position")
+    _note(notes, table, ~placed, "report", "without a position")
     if origin_deg is None:
         origin_deg = _middle_deg(latitude_deg[placed], longitude_deg[placed])
     plane = LocalPlane(*origin_deg)
@@ -198,8 +198,9 @@ def read_ais(
         tracks[number] = AisTrack(
             number, time_s[row], north_m[row], east_m[row], course_rad[row], sog_kn[row] * KNOT_MPS
         )
-    _note(notes, table, late, f"reports less than {min_step_s:g} s before the next of the vessel")
-    _note(notes, table, jumped, f"reports farther off than a vessel gets at {max_speed_mps:g} m/s")
+    _note(notes, table, late, "report", f"less than {min_step_s:g} s before the next of the vessel")
+    way = f"farther off than a vessel gets at {max_speed_mps:g} m/s"
+    _note(notes, table, jumped, "report", way)
     return AisRecording(plane, tracks, notes)
 
 
@@ -233,7 +234,7 @@ def _over_ground(
     good = np.isnan(values) | (np.abs(values) <= largest)
     table.check(column, good, f"a number from 0 to {largest:g}")
     odd = (values < 0.0) | (values > _NO_COURSE_DEG)
-    _note(notes, table, odd, f"values of {table.name(column)} that no vessel has")
+    _note(notes, table, odd, "value", f"of {table.name(column)} that no vessel has")
     return np.where((values < 0.0) | (values >= missing), np.nan, values)
 
 
@@ -260,10 +261,10 @@ def _too_soon(time_s: np.ndarray, min_step_s: float) -> np.ndarray:
     return soon
 
 
-def _note(notes: list[str], table: Table, rows: np.ndarray, what: str) -> None:
+def _note(notes: list[str], table: Table, rows: np.ndarray, noun: str, what: str) -> None:
     if rows.any():
         notes.append(
-            f"{table.path.name}: {np.count_nonzero(rows)} {what} left out "
+            f"{table.path.name}: {many(np.count_nonzero(rows), noun)} {what} left out "
             f"(first in line {table.line(int(np.argmax(rows)))})"
         )
 
@@ -275,8 +276,8 @@ def _note_far(notes: list[str], table: Table, angle_rad: np.ndarray) -> None:
         farthest_rad = float(angle_rad[far].max())
         short = 100.0 * min(1.0 - np.cos(farthest_rad), 1.0)
         notes.append(
-            f"{table.path.name}: {np.count_nonzero(far)} reports lie more than "
-            f"{_FAR_M / 1e3:.0f} km from the origin of the plane (first in line "
+            f"{table.path.name}: {counted(np.count_nonzero(far), '[report lies|reports lie]')} "
+            f"more than {_FAR_M / 1e3:.0f} km from the origin of the plane (first in line "
             f"{table.line(int(np.argmax(far)))}), where ways are too short, by {short:.1f} % at "
             f"{farthest_rad * EARTH_RADIUS_M / 1e3:.0f} km: cut the file to one area"
         )

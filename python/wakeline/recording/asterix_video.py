@@ -11,6 +11,7 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from wakeline._brief import counted, many
 from wakeline._engine.video import Cat240Decoder, Cat240Encoder, Cat240Sweeps
 
 from .errors import RecordingError
@@ -29,6 +30,9 @@ _PAUSE_S = 60.0
 _ASTRAY_RAD = 0.2
 _BELOW = {"azimuth_rad": 1e6, "time_s": 1e15, "start_range_m": 1e9, "cell_m": 1e6}  # to be written
 _ABUT = 1.5  # sweeps further apart, or nearer, by this factor are not as wide as is told
+
+
+_ASTRAY = "neighbours in azimuth, time or count"
 
 
 @dataclass
@@ -91,19 +95,22 @@ class VideoReport:
     def notes(self) -> list[str]:
         """What a user should know, a sentence each."""
         words = [
-            (self.problems, f"records cannot be read (first: {self.first_problem})"),
-            (self.skipped_octets, "octets passed over because of damage"),
-            (self.other_source, "sweeps of other radars left out"),
-            (self.missing, "sweeps missing"),
-            (self.repeated, "sweeps that repeat the one before left out"),
-            (self.late, "sweeps that come late left out"),
-            (self.untimed, "sweeps without a time of day left out"),
-            (self.held, "sweeps whose time goes back, put to the time before"),
-            (self.time_jumps, "jumps of time"),
-            (self.reversals, "reversals of the antenna"),
-            (self.astray, "sweeps far from their neighbours in azimuth, time or count left out"),
+            (self.problems, "[record|records] cannot be read"),
+            (self.skipped_octets, "[octet|octets] passed over because of damage"),
+            (self.other_source, "[sweep|sweeps] of other radars left out"),
+            (self.missing, "[sweep|sweeps] missing"),
+            (self.repeated, "[sweep that repeats|sweeps that repeat] the one before left out"),
+            (self.late, "[sweep that comes|sweeps that come] late left out"),
+            (self.untimed, "[sweep|sweeps] without a time of day left out"),
+            (self.held, "[sweep|sweeps] whose time goes back, put to the time before"),
+            (self.time_jumps, "[jump|jumps] of time"),
+            (self.reversals, "[reversal|reversals] of the antenna"),
+            (self.astray, f"[sweep far from its|sweeps far from their] {_ASTRAY} left out"),
         ]
-        return [f"{count} {what}" for count, what in words if count]
+        notes = [counted(count, what) for count, what in words if count]
+        if self.problems:
+            notes[0] += f" (first: {self.first_problem})"
+        return notes
 
 
 def is_video(path: str | Path) -> bool:
@@ -271,7 +278,7 @@ def _blocks(path: Path, order: _Order, strict: bool) -> Iterator[RadarVideo]:
 def _nothing(path: Path, order: _Order) -> RecordingError:
     report = order.report
     if report.untimed:
-        wanted, got = "I240/140, or period_s told", f"{report.untimed} sweeps without"
+        wanted, got = "I240/140, or period_s told", f"{many(report.untimed, 'sweep')} without"
         return RecordingError(path, "no sweep has a time of day", wanted=wanted, got=got)
     if order.other is not None:
         got = f"{report.other_source} of others, first of {order.other}"

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from wakeline._brief import brief, many, span
+from wakeline._checks import columns, in_a_row, shaped
 from wakeline._engine.core import wrap_angle
 
 from .truth import TargetTruth
@@ -45,6 +46,10 @@ class Scan:
     bearing_rad: np.ndarray
     own_north_m: np.ndarray
     own_east_m: np.ndarray
+
+    def __post_init__(self) -> None:
+        places = ("north_m", "east_m", "range_m", "bearing_rad", "own_north_m", "own_east_m")
+        columns(self, "plot_time_s", *places)
 
     @classmethod
     def of_plots(
@@ -123,6 +128,13 @@ class OwnShip:
     heading_rad: np.ndarray | None = None
     velocity_m2s2: np.ndarray | None = None
 
+    def __post_init__(self) -> None:
+        motion = ("vnorth_mps", "veast_mps", "heading_rad")
+        columns(self, "time_s", "north_m", "east_m", optional=motion)
+        if self.velocity_m2s2 is not None:
+            covariances = shaped("velocity_m2s2", self.velocity_m2s2, len(self), 2, 2)
+            object.__setattr__(self, "velocity_m2s2", covariances)
+
     def __len__(self) -> int:
         return len(self.time_s)
 
@@ -139,7 +151,7 @@ class OwnShip:
 
         Before the first and after the last row the ship goes on straight at the speed it has there.
         """
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        time_s = in_a_row("time_s", time_s)
         position_m = np.column_stack([self.north_m, self.east_m])
         if len(self) == 1:
             return np.repeat(position_m, len(time_s), axis=0)
@@ -160,7 +172,7 @@ class OwnShip:
         the mean over the last 20 s of `position_at`, which errs by the error of a position over
         14 s and lags by 10 s in a turn.
         """
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        time_s = in_a_row("time_s", time_s)
         recorded = self._recorded_velocity()
         if recorded is not None:
             known_s, *velocities_mps = recorded
@@ -175,7 +187,7 @@ class OwnShip:
         known = np.isfinite(self.velocity_m2s2).all(axis=(1, 2))
         if not known.any():
             return None
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        time_s = in_a_row("time_s", time_s)
         entries = self.velocity_m2s2[known].reshape(-1, 4).T
         at = [np.interp(time_s, self.time_s[known], entry) for entry in entries]
         return np.column_stack(at).reshape(-1, 2, 2)

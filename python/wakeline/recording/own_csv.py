@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._brief import many
+
 from .errors import RecordingError
 from .model import OwnShip
 from .table import TIME_NAMES, Table
@@ -177,8 +179,9 @@ def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
     lost = ~(np.isfinite(motion["north_m"]) & np.isfinite(motion["east_m"]))
     if lost.any():
         first = table.line(int(np.argmax(lost)))
+        rows = many(np.count_nonzero(lost), "row")
         notes.append(
-            f"{table.path.name}: {np.count_nonzero(lost)} rows without a finite own-ship position "
+            f"{table.path.name}: {rows} without a finite own-ship position "
             f"left out (first in line {first})"
         )
     motion |= {c: table.numbers(c) for c in ("vnorth_mps", "veast_mps") if c in table}
@@ -205,8 +208,9 @@ def _velocity_m2s2(table: Table) -> np.ndarray:
 def _note_jumped(table: Table, notes: list[str]) -> None:
     status = [s.lower() for s in table.text("status")] if "status" in table else []
     if "jumped" in status:
+        rows = many(status.count("jumped"), "row")
         notes.append(
-            f"{table.path.name}: own ship's place is in doubt in {status.count('jumped')} rows, of "
+            f"{table.path.name}: own ship's place is in doubt in {rows}, of "
             f"status jumped (first in line {table.line(status.index('jumped'))})"
         )
 
@@ -216,7 +220,7 @@ def _note_order(rows: OwnRows, notes: list[str]) -> None:
     back = np.concatenate([part.row[1:][np.diff(part.time_s) < 0] for part in parts])
     if len(back):
         notes.append(
-            f"{rows.table.path.name}: times go back {len(back)} times (first in line "
+            f"{rows.table.path.name}: times go back {many(len(back), 'time')} (first in line "
             f"{rows.table.line(int(back.min()))}), and rows are put in order: if a clock was set "
             "back, own ship is at two places at a time, so cut the file there"
         )

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._brief import counted
 from wakeline._units import NAUTICAL_MILE_M
 
 from .errors import RecordingError
@@ -35,7 +36,7 @@ _MEASUREMENT_WANTED = (
 
 _BACK_S = 60.0
 _PUT_IN_ORDER = (
-    "put in order that are more than a minute earlier than the row above them: where a clock was "
+    "put in order that [is|are] more than a minute earlier than the row above: where a clock was "
     "set back, or a day of seconds ended, cut the file"
 )
 
@@ -143,7 +144,8 @@ def remark(rows: PlotRows, chosen: np.ndarray, what: str, notes: list[str]) -> N
     if chosen.any():
         first = rows.table.line(int(rows.row[np.argmax(chosen)]))
         count = np.count_nonzero(chosen)
-        notes.append(f"{rows.table.path.name}: {count} plots {what} (first in line {first})")
+        told = counted(int(count), f"[plot|plots] {what}")
+        notes.append(f"{rows.table.path.name}: {told} (first in line {first})")
 
 
 def _places(table: Table, notes: list[str]) -> tuple[np.ndarray, bool]:
@@ -223,5 +225,5 @@ def _without_repeats(rows: PlotRows, notes: list[str]) -> PlotRows:
     _, scenario = np.unique(rows.scenario, return_inverse=True)
     scan = rows.scan if rows.scan is not None else np.zeros(len(rows), dtype=int)
     again = repeated(scenario, scan, rows.time_s, *rows.place.T)
-    remark(rows, again, "that repeat an earlier row left out", notes)
+    remark(rows, again, "that [repeats|repeat] an earlier row left out", notes)
     return rows.where(~again)

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._brief import many
+
 from .errors import RecordingError, octets_of
 from .not_text import instead_of_text
 
@@ -185,7 +187,7 @@ class Table:
                     self.path,
                     "a row does not fit the header",
                     line=line,
-                    wanted=f"{width} cells",
+                    wanted=many(width, "cell"),
                     got=str(len(row)),
                 )
             lines.append(line)

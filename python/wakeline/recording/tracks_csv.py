@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wakeline._brief import brief, many, span
+from wakeline._checks import real_numbers
 
 from .errors import RecordingError
 from .files import replacing
@@ -94,12 +95,13 @@ class Tracks:
         optional |= dict.fromkeys(APPROACH_COLUMNS, (n,))
         wanted |= {k: shape for k, shape in optional.items() if getattr(self, k) is not None}
         for name, shape in wanted.items():
-            kind = str if name in ("track_id", "status", "scenario") else float
-            array = np.asarray(getattr(self, name), dtype=kind)
+            is_text = name in ("track_id", "status", "scenario")
+            given = getattr(self, name)
+            array = np.asarray(given, dtype=str) if is_text else real_numbers(name, given)
             _check_shape(name, array.shape, shape)
             object.__setattr__(self, name, array)
         if self.mode_probability is not None:
-            modes = np.asarray(self.mode_probability, dtype=float)
+            modes = real_numbers("mode_probability", self.mode_probability)
             object.__setattr__(self, "mode_probability", modes)
             _check_shape("mode_probability", modes.shape, (n, modes.shape[-1] if modes.ndim else 0))
 

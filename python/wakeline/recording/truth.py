@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wakeline._brief import brief, many, span
+from wakeline._checks import columns, in_a_row
 
 from .scans import nearest
 
@@ -33,6 +34,9 @@ class TargetTruth:
     east_m: np.ndarray
     vnorth_mps: np.ndarray
     veast_mps: np.ndarray
+
+    def __post_init__(self) -> None:
+        columns(self, "time_s", "north_m", "east_m", "vnorth_mps", "veast_mps")
 
     def __len__(self) -> int:
         return len(self.time_s)
@@ -65,7 +69,7 @@ class TargetTruth:
         ndarray (T, 4)
             NaN rows outside the record and inside longer gaps. Metres and metres per second.
         """
-        time_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+        time_s = in_a_row("time_s", time_s)
         state = np.full((len(time_s), 4), np.nan)
         if len(self) == 0:
             return state

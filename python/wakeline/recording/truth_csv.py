@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._brief import many
+
 from .errors import RecordingError
 from .model import Recording
 from .table import TIME_NAMES, Table
@@ -81,7 +83,7 @@ def _kept(
         if not good.all():
             first = table.line(int(np.argmin(good)))
             recording.notes.append(
-                f"{table.path.name}: {np.count_nonzero(~good)} rows {what} left out "
+                f"{table.path.name}: {many(np.count_nonzero(~good), 'row')} {what} left out "
                 f"(first in line {first})"
             )
     return finite & known

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wakeline._brief import brief, many, span
+from wakeline._checks import real_numbers
 
 _TURN = 2 * math.pi
 _BACK_RAD = 0.2  # of steps against the way the antenna turns: more than any jitter
@@ -55,7 +56,7 @@ class RadarVideo:
             raise ValueError(f"amplitude must have shape (N, C), got {amplitude.shape}")
         object.__setattr__(self, "amplitude", amplitude)
         for name in ("azimuth_rad", "time_s"):
-            values = np.ascontiguousarray(getattr(self, name), dtype=float)
+            values = np.ascontiguousarray(real_numbers(name, getattr(self, name)))
             if values.shape != (len(amplitude),):
                 raise ValueError(f"{name} must have shape ({len(amplitude)},), got {values.shape}")
             object.__setattr__(self, name, values)

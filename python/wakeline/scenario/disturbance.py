@@ -6,6 +6,8 @@ import itertools
 
 import numpy as np
 
+from wakeline._checks import plain_numbers
+
 from .truth import Segment, Truth
 
 
@@ -55,7 +57,11 @@ def disturbed(
         When a parameter is not positive and finite (degrees of freedom may be infinite), the
         limit is below the scale, or the truth has no segments.
     """
+    plain_numbers(
+        scale_mps2=scale_mps2, interval_s=interval_s, degrees_of_freedom=degrees_of_freedom
+    )
     limit_mps2 = 20.0 * scale_mps2 if limit_mps2 is None else limit_mps2
+    plain_numbers(limit_mps2=limit_mps2)
     finite = 0 < scale_mps2 < np.inf and 0 < interval_s < np.inf
     if not (finite and degrees_of_freedom > 0):
         raise ValueError(

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from wakeline import measurement
-from wakeline._checks import entropy, whole_number
+from wakeline._brief import brief, many, span
+from wakeline._checks import entropy, plain_numbers, whole_number
 
 from .radar import polar
 from .truth import Segment, Truth
@@ -27,6 +28,10 @@ class HardTurnRuns(NamedTuple):
     time_s: np.ndarray
     truth: np.ndarray
     z: np.ndarray
+
+    def __repr__(self) -> str:
+        runs, scans = self.z.shape[:2]
+        return brief(self, many(runs, "run"), many(scans, "scan"), span(self.time_s))
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,7 @@ class HardTurn:
     period_s: float = 3.0
 
     def __post_init__(self) -> None:
+        plain_numbers(**vars(self))
         for name, value in vars(self).items():
             if not 0 < value < np.inf:
                 raise ValueError(f"{name} must be finite and positive, got {value}")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from wakeline._checks import whole_number
+from wakeline._checks import plain_numbers, whole_number
 from wakeline.recording import Episode, OwnShip, Recording, Scan, TargetTruth
 
 from .truth import Truth
@@ -54,6 +54,7 @@ class RadarSimulator:
     rotating: bool = False
 
     def __post_init__(self) -> None:
+        plain_numbers(**{name: value for name, value in vars(self).items() if name != "rotating"})
         for name in ("range_std_m", "bearing_std_rad", "clutter_per_scan"):
             if not 0 <= getattr(self, name) < np.inf:
                 raise ValueError(f"{name} must not be negative, got {getattr(self, name)}")
@@ -209,6 +210,9 @@ class RadarSimulator:
     def _begins(self, scans: int, start_time_s: float) -> np.ndarray:
         """Times (T,) at which the scans begin."""
         whole_number("scans", scans, 0)
+        plain_numbers(start_time_s=start_time_s)
+        if not np.isfinite(start_time_s):
+            raise ValueError(f"start_time_s must be finite, got {start_time_s}")
         return start_time_s + self.period_s * np.arange(scans)
 
     def _plots(

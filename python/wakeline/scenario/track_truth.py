@@ -8,7 +8,7 @@ import numpy as np
 
 from wakeline import filter, motion
 from wakeline._brief import brief, many, span
-from wakeline._checks import in_a_row
+from wakeline._checks import in_a_row, real_numbers
 from wakeline.recording import NavigationLog
 
 _TURNING_ABOVE_MPS = 0.5
@@ -44,7 +44,7 @@ class TrackTruth:
         vnorth_mps: np.ndarray | None = None,
         veast_mps: np.ndarray | None = None,
     ) -> None:
-        self._time_s = np.asarray(time_s, dtype=float)
+        self._time_s = real_numbers("time_s", time_s)
         if self._time_s.ndim != 1 or len(self._time_s) < 2:
             raise ValueError(f"time_s must have shape (n,), n at least 2, got {self._time_s.shape}")
         if not (np.isfinite(self._time_s).all() and (np.diff(self._time_s) > 0).all()):
@@ -147,7 +147,7 @@ class TrackTruth:
         return place_m, velocity_mps, acceleration_mps2
 
     def _column(self, name: str, values: np.ndarray) -> np.ndarray:
-        values = np.asarray(values, dtype=float)
+        values = real_numbers(name, values)
         if values.shape != self._time_s.shape:
             raise ValueError(f"{name} must have shape {self._time_s.shape}, got {values.shape}")
         return values

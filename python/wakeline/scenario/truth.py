@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import in_a_row
+from wakeline._checks import in_a_row, listed, plain_numbers, real_numbers
 
 _SERIES_BELOW_RAD = 0.3
 _SAME_COURSE_RAD = 1e-9
@@ -49,12 +49,14 @@ class Segment:
 
     def __post_init__(self) -> None:
         for name in ("control_mps2", "disturbance_mps2"):
-            pair = tuple(np.asarray(getattr(self, name), dtype=float).ravel().tolist())
+            pair = tuple(real_numbers(name, getattr(self, name)).ravel().tolist())
             if len(pair) != 2:
                 raise ValueError(f"{name} must be two numbers, north and east, got {pair}")
             object.__setattr__(self, name, pair)
-        values = (self.duration_s, self.turn_rate_rad_s, self.acceleration_mps2)
-        if not np.isfinite([*values, *self.control_mps2, *self.disturbance_mps2]).all():
+        names = ("duration_s", "turn_rate_rad_s", "acceleration_mps2")
+        values = {name: getattr(self, name) for name in names}
+        plain_numbers(**values)
+        if not np.isfinite([*values.values(), *self.control_mps2, *self.disturbance_mps2]).all():
             raise ValueError(f"a segment must be finite, got {self}")
         if self.duration_s <= 0:
             raise ValueError(f"duration_s must be positive, got {self.duration_s}")
@@ -92,7 +94,7 @@ def segments_from_table(
     """
     if max_turn_rate_rad_s is not None and not max_turn_rate_rad_s >= 0:
         raise ValueError(f"max_turn_rate_rad_s must not be negative, got {max_turn_rate_rad_s}")
-    rows = _listed("rows", rows, "(begin_s, end_s, turn_rate_rad_s)")
+    rows = listed("rows", rows, "(begin_s, end_s, turn_rate_rad_s)")
     if not rows:
         raise ValueError("a table of segments must have at least one row")
     segments = []
@@ -114,13 +116,6 @@ def segments_from_table(
         segments.append(Segment(end_s - begin_s, rate_rad_s))
         last_end_s = end_s
     return tuple(segments)
-
-
-def _listed(name: str, sequence: Any, of_what: str) -> list[Any]:
-    try:
-        return list(sequence)
-    except TypeError:
-        raise TypeError(f"{name} must be a sequence of {of_what}, got {sequence!r}") from None
 
 
 def _three_numbers(number: int, row: Any) -> list[float]:
@@ -186,13 +181,14 @@ class Truth:
         start_time_s: float = 0.0,
         start_course_rad: float | None = None,
     ) -> None:
-        start = np.asarray(start, dtype=float)
+        start = real_numbers("start", start)
         if start.shape != (4,) or not np.isfinite(start).all():
             raise ValueError(f"start must be 4 finite numbers, got {start.tolist()}")
         for name, value in (
             ("start_time_s", start_time_s),
             ("start_course_rad", 0.0 if start_course_rad is None else start_course_rad),
         ):
+            plain_numbers(**{name: value})
             if not np.isfinite(value):
                 raise ValueError(f"{name} must be finite, got {value}")
         north_m, vnorth_mps, east_m, veast_mps = start
@@ -205,7 +201,7 @@ class Truth:
                 f"start_course_rad must be the course of the velocity, {course_rad}, where the "
                 f"vessel does not start at rest, got {start_course_rad}"
             )
-        self.segments = tuple(_listed("segments", segments, "Segment"))
+        self.segments = tuple(listed("segments", segments, "Segment"))
         for segment in self.segments:
             if not isinstance(segment, Segment):
                 raise TypeError(f"segments must be of type Segment, got {segment!r}")

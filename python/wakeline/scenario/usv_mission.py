@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 import wakeline as wl
-from wakeline._checks import entropy, whole_number
+from wakeline._brief import brief, many, span
+from wakeline._checks import entropy, plain_numbers, real_numbers, whole_number
 
 _LONGEST_STEPS = 5000
 _SHAPES = {
@@ -55,6 +56,9 @@ class UsvVoyage(NamedTuple):
     heading_rad: np.ndarray
     imu: np.ndarray
 
+    def __repr__(self) -> str:
+        return brief(self, many(len(self.time_s), "state"), span(self.time_s))
+
 
 class UsvLogs(NamedTuple):
     """What the sensors say in R runs of T times; NaN in the first row of each.
@@ -70,6 +74,10 @@ class UsvLogs(NamedTuple):
     imu: np.ndarray
     gnss: np.ndarray
     compass: np.ndarray
+
+    def __repr__(self) -> str:
+        runs, times = np.atleast_2d(self.compass).shape
+        return brief(self, many(runs, "run"), many(times, "time"))
 
 
 @dataclass(frozen=True)
@@ -134,6 +142,7 @@ class UsvMission:
 
     def __post_init__(self) -> None:
         positive = ("clearance_m", "accept_m", "speed_mps", "turn_rate_rad_s", "period_s")
+        plain_numbers(**{name: getattr(self, name) for name in (*positive, "current_mps")})
         for name in positive:
             value = getattr(self, name)
             if not 0 < value < np.inf:
@@ -142,12 +151,12 @@ class UsvMission:
             raise ValueError(f"current_mps must be finite, zero or more, got {self.current_mps}")
         for name, shape in _SHAPES.items():
             told = getattr(self, name)
-            numbers = np.asarray(told, dtype=float)
+            numbers = real_numbers(name, told)
             if numbers.shape != shape or not np.isfinite(numbers).all():
                 raise ValueError(f"{name} must be finite and have shape {shape}, got {told}")
             if "_std" in name and (numbers < 0).any():
                 raise ValueError(f"{name} must be zero or more, got {told}")
-        ways = np.asarray(self.waypoints_m, dtype=float)
+        ways = real_numbers("waypoints_m", self.waypoints_m)
         if ways.ndim != 2 or ways.shape[1] != 2 or not np.isfinite(ways).all():
             raise ValueError(f"waypoints_m must be pairs of finite numbers, got {self.waypoints_m}")
         for obstacle in self.obstacles:

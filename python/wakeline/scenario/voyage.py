@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from wakeline import navigation as nav
-from wakeline._checks import whole_number
+from wakeline._brief import brief, many, span
+from wakeline._checks import plain_numbers, whole_number
 from wakeline._units import KNOT_MPS
 
 START_RAD = np.deg2rad([46.5, 30.8])
@@ -35,6 +36,10 @@ class VoyageReadings(NamedTuple):
     latitude_rad: np.ndarray
     longitude_rad: np.ndarray
 
+    def __repr__(self) -> str:
+        runs, times = np.atleast_2d(self.speed_mps).shape
+        return brief(self, many(runs, "run"), many(times, "reading"))
+
 
 @dataclass(frozen=True)
 class Voyage:
@@ -52,6 +57,9 @@ class Voyage:
     course_rad: np.ndarray
     latitude_rad: np.ndarray
     longitude_rad: np.ndarray
+
+    def __repr__(self) -> str:
+        return brief(self, many(len(self.time_s), "state"), span(self.time_s))
 
     def read(self, runs: int, seed: int = 0) -> VoyageReadings:
         """Readings of independent runs: log 0.1 kn, gyro 0.3 degrees, fixes 4 m per axis.
@@ -84,6 +92,7 @@ def reckoning_voyage(dt_s: float) -> Voyage:
     ValueError
         When `dt_s` is not a positive multiple of 0.1 s, at most 600 s.
     """
+    plain_numbers(dt_s=dt_s)
     each = round(dt_s / _FINE_S) if 0.0 < dt_s <= 600.0 else 0
     if each < 1 or abs(each * _FINE_S - dt_s) > 1e-9:
         raise ValueError(f"dt_s must be a multiple of 0.1 s up to 600 s, got {dt_s}")

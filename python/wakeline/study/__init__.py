@@ -6,7 +6,9 @@
 True
 
 A study is a module with a ``SUMMARY`` of one line and a function
-``run(runs, seed, *, full=False, threads=None, progress=False) -> Report``.
+``run(runs, seed, *, full=False, threads=None, progress=False) -> Report``. What ends its work
+early, an interrupt from the keyboard, too, has the attribute ``result``: a :class:`Report` of what
+was done, without pictures.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -25,7 +25,7 @@ from wakeline._checks import run_numbers
 from wakeline._units import KNOT_MPS, NAUTICAL_MILE_M
 from wakeline.scenario import Segment, Truth
 
-from .base import Picture, Published, Report, Rows, worked_off
+from .base import Picture, Published, Report, Rows, kept, worked_off
 from .estimators import peaked, turn_filter, turn_imm
 
 if TYPE_CHECKING:
@@ -385,8 +385,17 @@ def run(
         case = case_name(number, maneuver, after_s, glint_std_m)
         for name, estimator in estimators().items():
             jobs[case, name] = partial(errors, estimator, ships, seen, radar)
-    done = worked_off(jobs, threads, progress)
-    rows = [
+    report = Report(name="a823", seed=seed, runs=runs, rows=[], published={"standard": STANDARD})
+    with kept(lambda done: replace(report, rows=_rows(done), result=done)):
+        done = worked_off(jobs, threads, progress)
+    rows = _rows(done) + _bound_rows()
+    return replace(
+        report, rows=rows, result=done, pictures=_pictures(rows), notes=(_share_note(rows),)
+    )
+
+
+def _rows(done: Mapping[tuple[str, str], dict[str, np.ndarray]]) -> Rows:
+    return [
         {"scenario": case, "estimator": name}
         | {
             metric: float(np.percentile(values, 95))
@@ -394,6 +403,10 @@ def run(
         }
         for (case, name), found in done.items()
     ]
+
+
+def _bound_rows() -> Rows:
+    rows = []
     for case in _cases():
         if case.maneuver == "steady":
             least = bound(passage(*case[:3]), case.glint_std_m)
@@ -402,16 +415,7 @@ def run(
                 {"scenario": case_name(*case), "estimator": "bound"}
                 | dict(zip(METRICS, figures, strict=True))
             )
-    return Report(
-        name="a823",
-        seed=seed,
-        runs=runs,
-        rows=rows,
-        result=done,
-        pictures=_pictures(rows),
-        published={"standard": STANDARD},
-        notes=(_share_note(rows),),
-    )
+    return rows
 
 
 class _Case(NamedTuple):

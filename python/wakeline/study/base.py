@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -203,14 +203,47 @@ def worked_off(
 ) -> dict[Key, Found]:
     """What every job gives, by default on as many threads as there are processors.
 
-    What stops it calls off the jobs that have not begun.
+    What stops it calls off the jobs that have not begun, and has the attribute ``result``: what
+    those gave that were done.
     """
-    with (
-        ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool,
-        closing(pool.map(lambda job: job(), jobs.values())) as found,
-    ):
-        watched = told(found, len(jobs), "running") if progress else found
-        return dict(zip(jobs, watched, strict=True))
+    done: dict[Key, Found] = {}
+
+    def work_off(key: Key) -> None:
+        done[key] = jobs[key]()
+
+    try:
+        with (
+            ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool,
+            closing(pool.map(work_off, jobs)) as ends,
+        ):
+            for _ in told(ends, len(jobs), "running") if progress else ends:
+                pass
+    except BaseException as error:
+        error.result = _in_order(done, jobs)
+        raise
+    return _in_order(done, jobs)
+
+
+def _in_order(done: Mapping[Key, Found], jobs: Mapping[Key, Any]) -> dict[Key, Found]:
+    return {key: done[key] for key in jobs if key in done}
+
+
+@contextmanager
+def kept(report_of: Callable[[Any], Report], nothing: Any = None) -> Iterator[None]:
+    """What ends the work early has the attribute ``result``: the report of what was done.
+
+    Parameters
+    ----------
+    report_of : callable
+        The report of what the work left in that attribute.
+    nothing : object
+        What it is given where the work left nothing there.
+    """
+    try:
+        yield
+    except BaseException as error:
+        error.result = report_of(getattr(error, "result", nothing))
+        raise
 
 
 def label(metric: str) -> str:

@@ -25,21 +25,27 @@ _SAME_RATE_RAD_S = 1e-9
 
 
 def rows(result: montecarlo.Result, name: str, scenario: Scenario) -> Rows:
-    """A row of each candidate on a scenario, which goes by `name`, and one of the bound."""
+    """A row of each candidate on a scenario, which goes by `name`, and one of the bound.
+
+    Of a result that ended early the candidates that are not there have none.
+    """
     found = [
-        _row(name, candidate, result[scenario.name, candidate].summary())
-        for candidate in result.candidates
+        _row(name, candidate, outcome.summary())
+        for (scene, candidate), outcome in result.outcomes.items()
+        if scene == scenario.name
     ]
-    return [*found, _row(name, BOUND, bound_figures([scenario]))]
+    return [*found, _row(name, BOUND, bound_figures([scenario]))] if found else []
 
 
 def merged_rows(result: montecarlo.Result, name: str, scenarios: Sequence[Scenario]) -> Rows:
     """The same over several scenarios of one length, their curves averaged."""
     names = [scenario.name for scenario in scenarios]
     found = [
-        _row(name, candidate, result.merged(candidate, names)) for candidate in result.candidates
+        _row(name, candidate, result.merged(candidate, names))
+        for candidate in result.candidates
+        if all((scene, candidate) in result.outcomes for scene in names)
     ]
-    return [*found, _row(name, BOUND, bound_figures(scenarios))]
+    return [*found, _row(name, BOUND, bound_figures(scenarios))] if found else []
 
 
 def figures(rows: Rows, metric: str) -> dict[tuple[str, str], float]:

@@ -10,6 +10,7 @@ positions or from rates.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -24,7 +25,7 @@ from wakeline._checks import run_numbers
 from wakeline._units import KNOT_MPS
 from wakeline.scenario import voyage as sea
 
-from .base import Picture, Published, Report, Rows, worked_off
+from .base import Picture, Published, Report, Rows, kept, worked_off
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -351,26 +352,35 @@ def run(
         read = sea.reckoning_voyage(dt_s).read(runs, seed)
         for name in (*smoothers(), "combined"):
             jobs[case, name] = partial(judge, dt_s, read, name)
-    done = worked_off(jobs, threads, progress)
+    report = Report(
+        name="dead-reckoning",
+        seed=seed,
+        runs=runs,
+        rows=[],
+        published={"paper": _PAPER, "reference": _REFERENCE},
+    )
+    with kept(lambda done: replace(report, rows=_rows(done), result=done)):
+        done = worked_off(jobs, threads, progress)
     drifts = {fixes: drift_errors(runs, seed, fixes) for fixes in FIXES.values()}
     for case, fixes in FIXES.items():
         for name, off in drifts[fixes].items():
             done[case, name] = {"drift_rms_kn": off[:, -1]}
-    rows: Rows = [
+    rows = _rows(done)
+    return replace(
+        report,
+        rows=rows,
+        result=done,
+        pictures=_pictures(rows, drifts[max(FIXES.values())], seed),
+        notes=(_claim_note(rows),),
+    )
+
+
+def _rows(done: Mapping[tuple[str, str], dict[str, np.ndarray]]) -> Rows:
+    return [
         {"scenario": case, "estimator": name}
         | {m: float(_rms(of_runs[m])) if m in of_runs else None for m in METRICS}
         for (case, name), of_runs in done.items()
     ]
-    return Report(
-        name="dead-reckoning",
-        seed=seed,
-        runs=runs,
-        rows=rows,
-        result=done,
-        pictures=_pictures(rows, drifts[max(FIXES.values())], seed),
-        published={"paper": _PAPER, "reference": _REFERENCE},
-        notes=(_claim_note(rows),),
-    )
 
 
 def _claim_note(rows: Rows) -> str:

@@ -7,6 +7,7 @@ in each segment, the error peaks at the switches, IMM3 is better than IMM2.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -17,7 +18,7 @@ from wakeline._brief import many
 from wakeline.scenario import Scenario, papers
 
 from . import curves
-from .base import Picture, Published, Report
+from .base import Picture, Published, Report, Rows, kept
 from .estimators import turn_candidate
 
 SUMMARY = "IMM of two and three models, paper A: turns at 1 deg/s either way"
@@ -71,22 +72,27 @@ def run(
         Scenarios ``scans`` and ``seconds``, the two readings of the paper's table of turns.
     """
     scenarios = {reading: papers.imm(reading) for reading in _READINGS}
-    result = montecarlo.run(
-        list(scenarios.values()), estimators(), runs, seed, threads=threads, progress=progress
-    )
-    rows = []
-    for reading, scenario in scenarios.items():
-        rows += curves.rows(result, reading, scenario)
-    return Report(
-        name="imm",
-        seed=seed,
-        runs=runs,
-        rows=rows,
+    report = Report(name="imm", seed=seed, runs=runs, rows=[], published={"reference": REFERENCE})
+    nothing = montecarlo.Result({}, runs, seed)
+    with kept(lambda done: replace(report, rows=_rows(scenarios, done), result=done), nothing):
+        result = montecarlo.run(
+            list(scenarios.values()), estimators(), runs, seed, threads=threads, progress=progress
+        )
+    return replace(
+        report,
+        rows=_rows(scenarios, result),
         result=result,
         pictures=tuple(_pictures(result, scenarios, seed)),
-        published={"reference": REFERENCE},
         notes=(_wins(result, scenarios),),
     )
+
+
+def _rows(scenarios: dict[str, Scenario], result: montecarlo.Result) -> Rows:
+    return [
+        row
+        for reading, scenario in scenarios.items()
+        for row in curves.rows(result, reading, scenario)
+    ]
 
 
 def _pictures(

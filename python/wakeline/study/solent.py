@@ -13,7 +13,7 @@ minutes and is heard at a median interval under 7 s, without a gap over 25 s.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +27,7 @@ from wakeline.recording import AisTrack
 from wakeline.scenario import RadarSimulator, Scenario, TrackTruth
 
 from . import curves
-from .base import Picture, Report, Rows, worked_off
+from .base import Picture, Report, Rows, kept, worked_off
 from .estimators import learning_filter, peaked, turn_filter, turn_imm
 
 if TYPE_CHECKING:
@@ -337,21 +337,27 @@ def run(
         for name, estimator in built.items()
         for scene in scenes(radar)
     }
-    totals: dict[tuple[str, str], _Sums] = {}
-    for (radar, name, _), sums in worked_off(jobs, threads, progress).items():
-        totals[radar, name] = totals.get((radar, name), _NOTHING) + sums
-    rows = [
+    report = Report(name="solent", seed=seed, runs=each * len(vessels()), rows=[])
+    with kept(lambda done: replace(report, rows=_rows(_totals(done)))):
+        done = worked_off(jobs, threads, progress)
+    totals = _totals(done)
+    rows = _rows(totals)
+    return replace(report, rows=rows, pictures=_pictures(rows, seed), notes=(_note(totals, each),))
+
+
+def _totals(done: Mapping[tuple[str, str, str], _Sums]) -> dict[tuple[str, str], _Sums]:
+    """Sums over all stretches of each estimator under each radar, of which all are done."""
+    parts: dict[tuple[str, str], list[_Sums]] = {}
+    for (radar, name, _), sums in done.items():
+        parts.setdefault((radar, name), []).append(sums)
+    return {of: sum(each, _NOTHING) for of, each in parts.items() if len(each) == len(vessels())}
+
+
+def _rows(totals: Mapping[tuple[str, str], _Sums]) -> Rows:
+    return [
         {"scenario": radar, "estimator": name} | sums.figures()
         for (radar, name), sums in totals.items()
     ]
-    return Report(
-        name="solent",
-        seed=seed,
-        runs=each * len(vessels()),
-        rows=rows,
-        pictures=_pictures(rows, seed),
-        notes=(_note(totals, each),),
-    )
 
 
 def track(scene: Scenario, estimator: Any, z: np.ndarray) -> np.ndarray:

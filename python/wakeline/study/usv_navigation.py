@@ -9,7 +9,7 @@ errors that any estimator can have.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,7 +20,7 @@ from wakeline import plot
 from wakeline._checks import run_numbers
 from wakeline.scenario import UsvLogs, UsvMission, UsvVoyage
 
-from .base import Picture, Published, Report, Rows, worked_off
+from .base import Picture, Published, Report, Rows, kept, worked_off
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -341,21 +341,24 @@ def run(
             jobs[scene, name] = partial(evaluate, estimator, mission, logs)
         jobs[scene, "bound8"] = bounds[scene].outcome
         jobs[scene, "smoother_bound8"] = partial(bounds[scene].outcome, smoothed=True)
-    done = worked_off(jobs, threads, progress)
-    rows: Rows = [
-        {"scenario": scene, "estimator": name} | outcome.figures()
-        for (scene, name), outcome in done.items()
-    ]
-    return Report(
+    report = Report(
         name="usv-navigation",
         seed=seed,
         runs=runs,
-        rows=rows,
-        result=done,
-        pictures=_pictures(done, seed),
+        rows=[],
         published={"paper": PAPER, "reference": REFERENCE},
         notes=(NOTE,),
     )
+    with kept(lambda done: replace(report, rows=_rows(done), result=done)):
+        done = worked_off(jobs, threads, progress)
+    return replace(report, rows=_rows(done), result=done, pictures=_pictures(done, seed))
+
+
+def _rows(done: Mapping[tuple[str, str], Outcome]) -> Rows:
+    return [
+        {"scenario": scene, "estimator": name} | outcome.figures()
+        for (scene, name), outcome in done.items()
+    ]
 
 
 # Pictures -----------------------------------------------------------------------------------------

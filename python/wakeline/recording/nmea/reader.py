@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._brief import counted, many
 from wakeline._units import KNOT_MPS
 
 from ..errors import RecordingError, octets_of
@@ -184,7 +185,7 @@ def _nothing_read(path: Path, octets: bytes, report: NmeaReport, problem: str) -
         path,
         problem + (f" (first problem in {first})" if first else ""),
         wanted=f"{_SENTENCES}, RMC, GGA, GNS, GLL or ZDA among them",
-        got=f"{report.lines} lines: {', '.join(found) or 'no sentence'}",
+        got=f"{many(report.lines, 'line')}: {', '.join(found) or 'no sentence'}",
     )
 
 
@@ -604,48 +605,46 @@ def _notes(log: NavigationLog) -> list[str]:
         notes.append("no sentence has a date, so times count from the midnight before the first")
     if len(log.set_back_lines):
         where = ", ".join(map(str, log.set_back_lines[:5].tolist()))
-        notes.append(f"the clock was set back {len(log.set_back_lines)} times (line {where})")
+        times = many(len(log.set_back_lines), "time")
+        notes.append(f"the clock was set back {times} (line {where})")
     displaced = report.displaced_lines
     if displaced:
-        notes.append(
-            f"{len(displaced)} fixes of times told before, but at other places, are left out "
-            f"(first in line {displaced[0]})"
-        )
+        what = "[fix|fixes] of times told before, but at other places, [is|are] left out"
+        notes.append(f"{counted(len(displaced), what)} (first in line {displaced[0]})")
     other = report.other_speed_lines
     if other:
-        notes.append(
-            f"{len(other)} speeds over ground of times told before, but other ones, are left out "
-            f"(first in line {other[0]})"
-        )
+        what = "[speed|speeds] over ground of times told before, but other ones, [is|are] left out"
+        notes.append(f"{counted(len(other), what)} (first in line {other[0]})")
+    still = ground.frozen & ground.valid
     for series, mask, what in (
-        (fixes, ~fixes.valid, "fixes that the receiver calls not valid"),
-        (fixes, fixes.frozen, "fixes frozen while the vessel moves"),
-        (fixes, fixes.suspect, "fixes at 0/0 or where the vessel cannot have come"),
-        (ground, ground.frozen & ground.valid, "speeds over ground repeated with such a fix"),
+        (fixes, ~fixes.valid, "[fix|fixes] that the receiver calls not valid"),
+        (fixes, fixes.frozen, "[fix|fixes] frozen while the vessel moves"),
+        (fixes, fixes.suspect, "[fix|fixes] at 0/0 or where the vessel cannot have come"),
+        (ground, still, "[speed|speeds] over ground repeated with such a fix"),
     ):
         if mask.any():
             first = int(series.line[mask][0])
-            notes.append(f"{np.count_nonzero(mask)} {what} (first in line {first})")
+            notes.append(f"{counted(np.count_nonzero(mask), what)} (first in line {first})")
     gaps_s = np.diff(log.gaps_s()).ravel()
     if len(gaps_s):
         notes.append(
-            f"{len(gaps_s)} gaps of more than 10 s between fixes, the longest {gaps_s.max():g} s"
+            f"{many(len(gaps_s), 'gap')} of more than 10 s between fixes, the longest "
+            f"{gaps_s.max():g} s"
         )
     blind_s = _blind_s(log)
     if len(blind_s):
         notes.append(
-            f"{len(blind_s)} stretches of more than {_BLIND_S:g} s without a heading, the longest "
-            f"{blind_s.max():.0f} s"
+            counted(len(blind_s), "[stretch|stretches] of more than ")
+            + f"{_BLIND_S:g} s without a heading, the longest {blind_s.max():.0f} s"
         )
     lines = _unknown_where_silent(log)
     if len(lines):
-        notes.append(
-            f"{len(lines)} magnetic headings where the true ones are silent want a variation "
-            f"(first in line {lines.min()})"
-        )
+        what = "magnetic [heading|headings] where the true ones are silent [wants|want] a variation"
+        notes.append(f"{counted(len(lines), what)} (first in line {lines.min()})")
     unknown = np.count_nonzero(np.isnan(log.compass.variation_rad))
     if not log.heading.valid.any():
-        also = f"; {unknown} magnetic ones want a variation" if unknown else ""
+        what = "magnetic [one wants|ones want] a variation"
+        also = f"; {counted(unknown, what)}" if unknown else ""
         notes.append(f"no true heading{also}")
     return notes
 
@@ -676,20 +675,21 @@ def _unknown_where_silent(log: NavigationLog) -> np.ndarray:
 def _empty_notes(empty: dict[str, list[int]]) -> Iterator[str]:
     for kind, lines in empty.items():
         _, what = _IS_FOR[kind]
-        yield f"{len(lines)} {kind} sentences tell no {what} (first in line {lines[0]})"
+        told = counted(len(lines), f"{kind} [sentence tells|sentences tell] no {what}")
+        yield f"{told} (first in line {lines[0]})"
 
 
 def _invalid_notes(series: dict[str, Series]) -> Iterator[str]:
     for name, what in (
-        ("heading", "headings"),
-        ("water", "speeds through the water"),
-        ("bottom", "speeds over ground by log"),
-        ("turn", "rates of turn"),
+        ("heading", "[heading|headings]"),
+        ("water", "[speed|speeds] through the water"),
+        ("bottom", "[speed|speeds] over ground by log"),
+        ("turn", "[rate|rates] of turn"),
     ):
         line = series[name].line[~series[name].valid]
         if len(line):
-            first = line.min()
-            yield f"{len(line)} {what} that the instrument calls not valid (first in line {first})"
+            told = counted(len(line), f"{what} that the instrument calls not valid")
+            yield f"{told} (first in line {line.min()})"
 
 
 def _jump_notes(log: NavigationLog, max_speed_mps: float) -> Iterator[str]:
@@ -700,12 +700,12 @@ def _jump_notes(log: NavigationLog, max_speed_mps: float) -> Iterator[str]:
         if len(at):
             count = np.append(at, len(fixes))[1] - at[0]
             yield (
-                f"the position jumps {len(at)} times farther than the vessel can have come, first "
-                f"by {jump_m[at[0]] / 1e3:.3g} km in line {fixes.line[at[0]]}, where {count} fixes "
-                "go on"
+                f"the position jumps {many(len(at), 'time')} farther than the vessel can have "
+                f"come, first by {jump_m[at[0]] / 1e3:.3g} km in line {fixes.line[at[0]]}, where "
+                + counted(count, "[fix goes|fixes go] on")
             )
 
 
 def _problem_note(report: NmeaReport, kind: str, count: int) -> str:
     first = next((str(p) for p in report.examples if p.kind == kind), None)
-    return f"{count} problems of kind {kind!r}" + (f" (first in {first})" if first else "")
+    return f"{many(count, 'problem')} of kind {kind!r}" + (f" (first in {first})" if first else "")

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from wakeline._checks import real_numbers
+
 from .checks import at_least, finite, fraction, positive
 from .fields import PolarGrid
 
@@ -162,7 +164,7 @@ def amplitude_of_db(power_db: ArrayLike) -> NDArray[np.float64]:
 
 
 def _outline(number: int, outline: ArrayLike) -> NDArray[np.float64]:
-    corners = np.asarray(outline, dtype=float)
+    corners = real_numbers(f"outline {number} of where", outline)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
         raise ValueError(
             f"outline {number} of where must have shape (n, 2), n at least 3, got {corners.shape}"

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wakeline._checks import whole_number
+from wakeline._checks import real_numbers, whole_number
 from wakeline.recording import RadarVideo
 
 from ..radar import start_of
@@ -188,7 +188,7 @@ class RadarVideoSimulator:
         ValueError
             When the places have another shape, the margin is negative or the antenna is among them.
         """
-        places = np.asarray(places_m, dtype=float)
+        places = real_numbers("places_m", places_m)
         if places.ndim != 2 or places.shape[1] != 2 or not len(places):
             raise ValueError(f"places_m must have shape (n, 2), got {places.shape}")
         if not (np.isfinite(places).all() and 0 <= margin_m < np.inf):
@@ -525,7 +525,7 @@ def _listed(targets: Targets) -> list[VideoTarget]:
 
 def _sector(sector_rad: ArrayLike) -> tuple[float, float]:
     """Begin as it was given, end after it by at most a turn."""
-    edges = np.asarray(sector_rad, dtype=float)
+    edges = real_numbers("sector_rad", sector_rad)
     if edges.shape != (2,) or not np.isfinite(edges).all():
         raise ValueError(f"sector_rad must be two finite azimuths, got {sector_rad}")
     begin, end = (float(edge) for edge in edges)

@@ -8,7 +8,7 @@ through a turn of 300 m radius, and finds about 22 m at 10 m/s and 27 m at 20 m/
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -18,7 +18,7 @@ import wakeline as wl
 from wakeline._checks import run_numbers, whole_number
 from wakeline.scenario import HardTurn, HardTurnRuns, hard_turns
 from wakeline.study import curves
-from wakeline.study.base import Published, Report, Rows, finite, worked_off
+from wakeline.study.base import Published, Report, Rows, finite, kept, worked_off
 
 from . import on_video, pictures
 from .estimators import LABELS, estimators, window_lengths
@@ -178,19 +178,25 @@ def run(
             jobs[number, case, "video"] = partial(
                 on_video.follow, scenario, GATES_M[case], seed * _CURVE_RUNS + number
             )
-    done = worked_off(jobs, threads, progress)
-    outcomes = {(case, name): done["free", case, name] for case in scenarios for name in LABELS}
-    losses = {of: np.array([done[(gate_m, *of)] for gate_m in _CURVE_GATES_M]) for of in outcomes}
-    films = {case: [done[number, case, "video"] for number in range(seen)] for case in scenarios}
-    return Report(
+    report = Report(
         name="fuzzy-alpha-beta",
         seed=seed,
         runs=runs,
-        rows=_rows(scenarios, drawn, outcomes, done) + _video_rows(scenarios, films),
-        result=outcomes,
-        pictures=pictures.pictures(scenarios, drawn, outcomes, _CURVE_GATES_M, losses, films),
+        rows=[],
         published={"paper": PAPER, "reference": REFERENCE},
         notes=(NOTE, _video_note(seen)),
+    )
+    rows = partial(_rows, scenarios, drawn)
+    with kept(lambda done: replace(report, rows=rows(done), result=_outcomes(done))):
+        done = worked_off(jobs, threads, progress)
+    outcomes = _outcomes(done)
+    losses = {of: np.array([done[(gate_m, *of)] for gate_m in _CURVE_GATES_M]) for of in outcomes}
+    films = {case: [done[number, case, "video"] for number in range(seen)] for case in scenarios}
+    return replace(
+        report,
+        rows=rows(done) + _video_rows(scenarios, films),
+        result=outcomes,
+        pictures=pictures.pictures(scenarios, drawn, outcomes, _CURVE_GATES_M, losses, films),
     )
 
 
@@ -202,14 +208,19 @@ def _start(plot_m: np.ndarray) -> wl.Gaussian:
     )
 
 
+def _outcomes(done: dict[tuple, Any]) -> dict[tuple[str, str], Outcome]:
+    return {(case, name): found for (how, case, name), found in done.items() if how == "free"}
+
+
 def _rows(
     scenarios: dict[str, HardTurn],
     drawn: dict[str, HardTurnRuns],
-    outcomes: dict[tuple[str, str], Outcome],
     done: dict[tuple, Any],
 ) -> Rows:
     rows = []
-    for (case, name), outcome in outcomes.items():
+    for (case, name), outcome in _outcomes(done).items():
+        if ("closed", case, name) not in done:
+            continue
         begin_s, end_s = scenarios[case].turn_s
         time_s = drawn[case].time_s
         straight = (np.arange(len(time_s)) >= SETTLED) & (time_s <= begin_s)

@@ -6,7 +6,9 @@ structure multiple model algorithm", J. Russian Universities. Radioelectronics, 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from wakeline import montecarlo, scenario
@@ -14,7 +16,7 @@ from wakeline._checks import run_numbers
 from wakeline.scenario import Scenario
 
 from .. import curves
-from ..base import Report
+from ..base import Report, Rows, kept
 from . import covariances
 from .candidates import SETTINGS, estimators
 from .pictures import pictures_of, robustness_picture
@@ -62,36 +64,47 @@ def run(
         Scenarios ``example1``, ``example2`` and ``random``, whose `result` is a mapping by these.
     """
     run_numbers(runs, seed, threads)
-
-    def monte_carlo(
-        scenarios: Sequence[Scenario], candidates: Mapping[str, Any], share: int = 1
-    ) -> montecarlo.Result:
-        return montecarlo.run(
-            scenarios, candidates, -(-runs // share), seed, threads=threads, progress=progress
-        )
-
-    results, rows = {}, []
-    for name in ("example1", "example2"):
-        example = scenario.named(name)
-        results[name] = monte_carlo([example], estimators(SETTINGS[name]))
-        rows += curves.rows(results[name], name, example)
-    wanderers = scenario.random_maneuvers(RANDOM_SCENARIOS)
-    results["random"] = monte_carlo(wanderers, estimators(SETTINGS["random"]), len(wanderers))
-    rows += curves.merged_rows(results["random"], "random", wanderers)
-    for example, candidates in swept() if full else ():
-        result = monte_carlo([example], candidates)
-        rows += curves.rows(result, example.name, example)
-    notes = [NOTE, covariances.note(results)]
-    if full:
-        notes += [moves(runs, seed), survey(-(-runs // 5), seed, threads)]
-    drawn = [*pictures_of(results, rows, seed), *([robustness_picture(rows)] if full else [])]
-    return Report(
+    report = Report(
         name="variable-structure",
         seed=seed,
         runs=runs,
-        rows=rows,
-        result=results,
-        pictures=tuple(drawn),
+        rows=[],
         published={"paper": PAPER, "reference": REFERENCE},
-        notes=tuple(notes),
     )
+    results: dict[str, montecarlo.Result] = {}
+    rows: Rows = []
+
+    def monte_carlo(
+        name: str,
+        scenarios: Sequence[Scenario],
+        candidates: Mapping[str, Any],
+        rows_of: Callable[[montecarlo.Result], Rows],
+        share: int = 1,
+    ) -> montecarlo.Result:
+        def until_now(done: montecarlo.Result) -> Report:
+            return replace(report, rows=rows + rows_of(done), result=results | {name: done})
+
+        with kept(until_now, montecarlo.Result({}, runs, seed)):
+            result = montecarlo.run(
+                scenarios, candidates, -(-runs // share), seed, threads=threads, progress=progress
+            )
+        rows.extend(rows_of(result))
+        return result
+
+    for name in ("example1", "example2"):
+        example = scenario.named(name)
+        rows_of = partial(curves.rows, name=name, scenario=example)
+        results[name] = monte_carlo(name, [example], estimators(SETTINGS[name]), rows_of)
+    wanderers = scenario.random_maneuvers(RANDOM_SCENARIOS)
+    rows_of = partial(curves.merged_rows, name="random", scenarios=wanderers)
+    wandering = estimators(SETTINGS["random"])
+    results["random"] = monte_carlo("random", wanderers, wandering, rows_of, len(wanderers))
+    for example, candidates in swept() if full else ():
+        rows_of = partial(curves.rows, name=example.name, scenario=example)
+        monte_carlo(example.name, [example], candidates, rows_of)
+    notes = [NOTE, covariances.note(results)]
+    if full:
+        with kept(lambda _: replace(report, rows=rows, result=results)):
+            notes += [moves(runs, seed), survey(-(-runs // 5), seed, threads)]
+    drawn = [*pictures_of(results, rows, seed), *([robustness_picture(rows)] if full else [])]
+    return replace(report, rows=rows, result=results, pictures=tuple(drawn), notes=tuple(notes))
