@@ -113,7 +113,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
     const Vec<Scalar, kStates>& x = belief.mean;
     if constexpr (LinearMotionModel<Motion>) {
       if (any(dt_s != kept_.step_s)) [[unlikely]]
-        keep(dt_s);
+        keep(this->motion_, dt_s);
       const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.f};
       return move(forward, f * x, f, belief.covariance, kept_.q);
     } else {
@@ -214,8 +214,9 @@ class Ekf : public Belief<MotionType, ScalarType> {
 
   /// Works out F and Q of a linear model: of F what its pattern leaves open, of Q the lower
   /// triangle, as nothing else counts.
-  [[gnu::noinline, gnu::flatten]] void keep(Scalar dt_s) noexcept {
-    StepMatrices<kStates, Scalar> matrices = step_matrices(this->motion_, dt_s);
+  template <LinearMotionModel Linear>
+  [[gnu::noinline, gnu::flatten]] void keep(const Linear& motion, Scalar dt_s) noexcept {
+    StepMatrices<kStates, Scalar> matrices = step_matrices(motion, dt_s);
     unroll<kStates * kStates>([&](auto k) {
       constexpr int i = k.value % kStates, j = k.value / kStates;
       if constexpr (kPatternOf<Motion>.element[i][j] == 'x') kept_.f(i, j) = matrices.f(i, j);
