@@ -170,6 +170,11 @@ TEST(DriftWindow, KnowsNothingBeforeTwoTimes) {
   EXPECT_FALSE(window.ready());
 }
 
+TEST(DriftWindow, ThatIsSmallRemembersAsManyFixesAsItHolds) {
+  EXPECT_EQ(DriftWindow<8>().settings().max_fixes, 8);
+  EXPECT_EQ(DriftWindow<32>().settings().max_fixes, DriftWindowSettings{}.max_fixes);
+}
+
 TEST(DriftWindow, RefusesWhatMakesNoSenseAndStaysAsItWas) {
   DriftWindow<> window({.log_std_mps = 0.05});
   EXPECT_EQ(window.add({Vec2(0, 0), kIdentity}), Status::kOk);

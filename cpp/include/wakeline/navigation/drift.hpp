@@ -116,8 +116,11 @@ class DriftWindow {
   static constexpr int kCapacity = Capacity;
   using Settings = DriftWindowSettings;
 
-  /// Throws `std::invalid_argument` when a setting makes no sense.
-  explicit DriftWindow(const Settings& settings = {}) : settings_(settings) {
+  /// Throws `std::invalid_argument` when a setting makes no sense. By default no more fixes are
+  /// remembered than there is room for.
+  explicit DriftWindow(
+      const Settings& settings = {.max_fixes = std::min(DriftWindowSettings{}.max_fixes, Capacity)})
+      : settings_(settings) {
     require(settings.max_fixes >= 2 && settings.max_fixes <= Capacity, "max_fixes",
             ("2 to " + std::to_string(Capacity)).c_str(), settings.max_fixes);
     require_not_negative("log_std_mps", settings.log_std_mps);
