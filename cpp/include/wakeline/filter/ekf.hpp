@@ -244,19 +244,47 @@ template <class MotionType, class ScalarType = double>
 class Kalman : public Ekf<MotionType, ScalarType> {
   static_assert(!MotionModel<MotionType> || LinearMotionModel<MotionType>,
                 "wakeline: Kalman needs a linear motion model (matrix(dt_s)); use Ekf or Ukf");
+  using Base = Ekf<MotionType, ScalarType>;
 
  public:
   using Scalar = ScalarType;
 
-  explicit Kalman(const MotionType& motion) : Ekf<MotionType, ScalarType>(motion) {}
+  explicit Kalman(const MotionType& motion) : Base(motion) {}
+
+  template <class Sensor>
+  Step<Sensor::kMeasurements, Scalar> innovation(
+      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
+    check_linear<Sensor>();
+    return Base::innovation(sensor, z);
+  }
+
+  template <class Sensor>
+  [[gnu::always_inline]] Correction<Sensor::kMeasurements, Scalar> compare(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
+    check_linear<Sensor>();
+    return Base::compare(sensor, reading);
+  }
 
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    check_linear<Sensor>();
+    return Base::update(sensor, z);
+  }
+
+  template <class Sensor>
+  [[gnu::always_inline]] Correction<Sensor::kMeasurements, Scalar> correct(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
+    check_linear<Sensor>();
+    return Base::correct(sensor, reading);
+  }
+
+ private:
+  template <class Sensor>
+  static constexpr void check_linear() noexcept {
     static_assert(LinearMeasurementModel<Sensor>,
                   "wakeline: Kalman needs a linear sensor (kLinear = true); use "
                   "ConvertedRangeBearing, or Ekf or Ukf");
-    return Ekf<MotionType, ScalarType>::update(sensor, z);
   }
 };
 
