@@ -27,6 +27,14 @@ TYPED_TEST(NeesOf, IsTheSquaredDistanceInSigmas) {
   EXPECT_TRUE(std::isnan(nees<2, TypeParam>(Vector(2, 5), covariance)));
 }
 
+TYPED_TEST(NeesOf, IsNoNumberOfAnErrorThatIsNone) {
+  using Scalar = TypeParam;
+  const Mat<Scalar, 2, 2> covariance = Mat<Scalar, 2, 2>::Identity();
+  for (const Scalar bad :
+       {std::numeric_limits<Scalar>::infinity(), std::numeric_limits<Scalar>::quiet_NaN()})
+    EXPECT_TRUE(std::isnan(nees<2>(Vec<Scalar, 2>(Scalar(0), bad), covariance))) << bad;
+}
+
 TEST(Nees, DoesNotChangeUnderALinearChangeOfCoordinates) {
   Mat<double, 3, 3> covariance;
   covariance << 4, 1, 0.5, 1, 3, -1, 0.5, -1, 6;

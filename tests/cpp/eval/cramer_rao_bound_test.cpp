@@ -131,6 +131,10 @@ TEST(CramerRaoBound, WhatCannotBeDoneChangesNothing) {
   const Mat<double, 2, 4> jacobian = Mat<double, 2, 4>::Identity();
   EXPECT_EQ(bound.predict(nan * Matrix::Identity(), kPrior), Status::kNotFinite);
   EXPECT_EQ(bound.predict(Matrix::Zero(), Matrix::Zero()), Status::kNotPositiveDefinite);
+  const ConstantVelocity motion{.noise = PiecewiseAcceleration{0.1}};
+  const Vec<double, 4> truth(4000, -6, 3000, 8);
+  EXPECT_EQ(bound.predict(motion, truth, -1.0), Status::kNegativeTimeStep);
+  EXPECT_EQ(bound.predict(motion, truth, nan), Status::kNotFinite);
   EXPECT_EQ(bound.update<2>(nan * jacobian, noise), Status::kNotFinite);
   EXPECT_EQ(bound.update<2>(jacobian, -noise), Status::kNotPositiveDefinite);
   EXPECT_EQ(bound.update<2>(jacobian, nan * noise), Status::kNotPositiveDefinite);

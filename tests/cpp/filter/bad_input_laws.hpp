@@ -169,9 +169,20 @@ TYPED_TEST_P(BadInput, SensorsThatAreNone) {
   EXPECT_TRUE(test::beliefs_identical<TypeParam::kStates>(this->filter.estimate(), this->before));
 }
 
+TYPED_TEST_P(BadInput, AVarianceThatWouldBeNegative) {
+  using Scalar = typename TypeParam::Scalar;
+  auto wide = this->before;
+  wide.covariance.diagonal() *= Scalar(10);
+  ASSERT_EQ(this->filter.start(wide), Status::kOk);
+  const auto started = this->filter.estimate();
+  EXPECT_EQ(this->filter.update(Broken{.variance = -100}, Vec<Scalar, 2>(3000, 4000)).status,
+            Status::kNotPositiveDefinite);
+  EXPECT_TRUE(test::beliefs_identical<TypeParam::kStates>(this->filter.estimate(), started));
+}
+
 REGISTER_TYPED_TEST_SUITE_P(BadInput, NotStarted, StepsOfTimeThatAreNone,
                             AnErrorThatGrowsBeyondAllNumbers, NoTimeChangesNothing,
                             PlotsThatAreNone, InnovationIsTheStepOfTheUpdateNotTaken,
-                            StartsThatAreNone, SensorsThatAreNone);
+                            StartsThatAreNone, SensorsThatAreNone, AVarianceThatWouldBeNegative);
 
 }  // namespace wakeline

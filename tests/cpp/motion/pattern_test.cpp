@@ -47,6 +47,18 @@ TEST(Pattern, ThatIsNotTrueIsRefusedWithItsElement) {
       << refusal;
 }
 
+/// Steady motion under a pattern that takes the step for 1.
+struct OfOneSecond : ConstantVelocity {
+  static constexpr Pattern<4> kPattern{"1100 0100 001x 0001"};
+};
+
+TEST(Pattern, OfAnElementThatIsTheStepIsRefused) {
+  const std::string refusal = test::refusal_of([] { return Ekf{OfOneSecond{}}; });
+  EXPECT_NE(refusal.find("it says 1 of element (0, 1) of the matrix, which for a step of 2 s is 2"),
+            std::string::npos)
+      << refusal;
+}
+
 /// A current that grows to the east, in a Jacobian of its own under a pattern that is not.
 struct Sheared : CoordinatedTurnRate {
   template <class Scalar>

@@ -170,6 +170,11 @@ TEST(DriftWindow, KnowsNothingBeforeTwoTimes) {
   EXPECT_FALSE(window.ready());
 }
 
+TEST(DriftWindow, ThatIsSmallRemembersAsManyFixesAsItHolds) {
+  EXPECT_EQ(DriftWindow<8>().settings().max_fixes, 8);
+  EXPECT_EQ(DriftWindow<32>().settings().max_fixes, DriftWindowSettings{}.max_fixes);
+}
+
 TEST(DriftWindow, RefusesWhatMakesNoSenseAndStaysAsItWas) {
   DriftWindow<> window({.log_std_mps = 0.05});
   EXPECT_EQ(window.add({Vec2(0, 0), kIdentity}), Status::kOk);
@@ -185,6 +190,32 @@ TEST(DriftWindow, RefusesWhatMakesNoSenseAndStaysAsItWas) {
   EXPECT_THROW(DriftWindow<>({.max_fixes = 1}), std::invalid_argument);
   EXPECT_THROW(DriftWindow<>({.max_fixes = 33}), std::invalid_argument);
   EXPECT_THROW(DriftWindow<>({.log_std_mps = -1}), std::invalid_argument);
+}
+
+TEST(DriftWindow, IsNotSpoiltByNumbersThatHaveNoSquare) {
+  DriftWindow<> window({.log_std_mps = 0.05});
+  const auto go_on = [&] {
+    EXPECT_EQ(window.advance(10, 5, 1), Status::kOk);
+    EXPECT_EQ(window.add({Vec2(30, 40), kIdentity}), Status::kOk);
+  };
+  go_on();
+  go_on();
+  const Gaussian<2> before = window.drift();
+  EXPECT_EQ(window.advance(1e308, 0, 1), Status::kNotFinite);
+  EXPECT_EQ(window.advance(1e100, 1e100, 1), Status::kNotFinite);
+  EXPECT_EQ(window.add({Vec2(1e308, 0), kIdentity}), Status::kNotFinite);
+  EXPECT_EQ(window.drift().mean, before.mean);
+  go_on();
+  EXPECT_TRUE(is_finite(window.drift().mean) && is_finite(window.drift().covariance));
+}
+
+TEST(DriftWindow, KnowsNothingOfTimesTooNearEachOther) {
+  DriftWindow<> window;
+  EXPECT_EQ(window.add({Vec2(0, 0), kIdentity}), Status::kOk);
+  EXPECT_EQ(window.advance(1e-200, 5, 1), Status::kOk);
+  EXPECT_EQ(window.add({Vec2(30, 40), kIdentity}), Status::kOk);
+  EXPECT_EQ(window.drift().mean, Vec2(0, 0));
+  EXPECT_TRUE(std::isinf(window.drift().covariance(0, 0)));
 }
 
 TEST(DriftWindow, NeedsNoHeap) {

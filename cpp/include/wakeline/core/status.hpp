@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -98,6 +99,14 @@ LaneStatus<Pack<Real, Lanes>> ok_or(const PackMask<Real, Lanes>& condition,
 /// `Status`, or one for each lane.
 template <class Scalar>
 using StatusOf = std::conditional_t<kLanesOf<Scalar> == 1, Status, LaneStatus<Scalar>>;
+
+/// `kOk` when time goes forward by a finite step.
+template <class Scalar>
+StatusOf<Scalar> check_time_step(Scalar dt_s) noexcept {
+  using std::isfinite;
+  return first_failure(ok_or(isfinite(dt_s), Status::kNotFinite),
+                       ok_or(!(dt_s < Scalar(0)), Status::kNegativeTimeStep));
+}
 
 /// What one measurement update has found; converts to true when it succeeded.
 template <int M, class Scalar = double>

@@ -20,7 +20,7 @@ template <int N, class Scalar>
 [[nodiscard]] Scalar nees(const Vec<Scalar, N>& error,
                           const Mat<Scalar, N, N>& covariance) noexcept {
   const Cholesky<N, Scalar> cholesky(covariance);
-  if (!cholesky.ok()) return std::numeric_limits<Scalar>::quiet_NaN();
+  if (!cholesky.ok() || !is_finite(error)) return std::numeric_limits<Scalar>::quiet_NaN();
   return cholesky.template whiten<1>(error).squaredNorm();
 }
 

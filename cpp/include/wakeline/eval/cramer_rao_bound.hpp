@@ -56,6 +56,7 @@ class CramerRaoBound {
   [[nodiscard]] Status predict(const Motion& motion, const StateOf<Motion, Scalar>& truth,
                                Scalar dt_s) noexcept {
     static_assert(kStatesOf<Motion> == N, "the motion must have the N states of the bound");
+    if (const Status forward = check_time_step(dt_s); forward != Status::kOk) return forward;
     return predict(transition_jacobian(motion, truth, dt_s), process_noise(motion, truth, dt_s));
   }
 

@@ -23,14 +23,6 @@ const Model& validated(const Model& model) {
   return model;
 }
 
-/// `kOk` when time goes forward by a finite step.
-template <class Scalar>
-StatusOf<Scalar> check_time_step(Scalar dt_s) noexcept {
-  using std::isfinite;
-  return first_failure(ok_or(isfinite(dt_s), Status::kNotFinite),
-                       ok_or(!(dt_s < Scalar(0)), Status::kNegativeTimeStep));
-}
-
 /// What every filter over one motion model shares: the model, the belief and its start.
 template <class MotionType, class ScalarType>
 class Belief {

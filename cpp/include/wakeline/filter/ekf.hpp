@@ -14,7 +14,8 @@ namespace wakeline {
 ///
 /// Covariances are updated as P - Wᵀ W with the whitened gain, which keeps them symmetric, and in
 /// Joseph form where a prior so much wider than the plot (after an hour without one) would make
-/// that difference cancel. F and Q of a linear model are kept as long as the step stays the same.
+/// that difference cancel; a variance that comes out negative all the same is refused. F and Q of a
+/// linear model are kept as long as the step stays the same.
 /// Source: Bar-Shalom, Li, Kirubarajan, 5.2.3 (linear) and 10.3.3 (extended).
 template <class MotionType, class ScalarType = double>
 class Ekf : public Belief<MotionType, ScalarType> {
@@ -91,7 +92,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
       copy(next, belief);
     } else {
       Gaussian<kStates, Scalar> posterior = next;  // so that the other one stays in registers
-      take_with_care(posterior, sensor, reading, taken, lost);
+      correction.status =
+          first_failure(correction.status, take_with_care(posterior, sensor, reading, taken, lost));
     }
     return correction;
   }
@@ -111,7 +113,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
     const Vec<Scalar, kStates>& x = belief.mean;
     if constexpr (LinearMotionModel<Motion>) {
       if (any(dt_s != kept_.step_s)) [[unlikely]]
-        keep(dt_s);
+        keep(this->motion_, dt_s);
       const Patterned<kPatternOf<Motion>, Scalar, kStates> f{kept_.f};
       return move(forward, f * x, f, belief.covariance, kept_.q);
     } else {
@@ -177,10 +179,11 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return first_failure(forward, ok_or(finite, Status::kNotFinite));
   }
 
-  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which it is lost. Works out
-  /// the innovation anew, so that the hot one stays in registers.
+  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which it is lost: refused
+  /// where a variance comes out negative all the same. Works out the innovation anew, so that the
+  /// hot one stays in registers.
   template <class Sensor>
-  [[gnu::cold, gnu::noinline]] void take_with_care(
+  [[gnu::cold, gnu::noinline]] StatusOf<Scalar> take_with_care(
       Gaussian<kStates, Scalar>& posterior, const Sensor& sensor,
       const Gaussian<Sensor::kMeasurements, Scalar>& reading, const MaskOf<Scalar>& taken,
       const MaskOf<Scalar>& lost) noexcept {
@@ -188,7 +191,10 @@ class Ekf : public Belief<MotionType, ScalarType> {
       const Innovation<Sensor> innovation(*this, sensor, reading);
       assign_where(lost, posterior.covariance, joseph(innovation, reading.covariance));
     }
-    assign_where(taken, this->belief_, posterior);
+    MaskOf<Scalar> sound = true;
+    for (int i = 0; i < kStates; ++i) sound = sound && posterior.covariance(i, i) >= Scalar(0);
+    assign_where(taken && sound, this->belief_, posterior);
+    return ok_or(sound, Status::kNotPositiveDefinite);
   }
 
   /// (I - K H) P (I - K H)ᵀ + K R Kᵀ.
@@ -208,8 +214,9 @@ class Ekf : public Belief<MotionType, ScalarType> {
 
   /// Works out F and Q of a linear model: of F what its pattern leaves open, of Q the lower
   /// triangle, as nothing else counts.
-  [[gnu::noinline, gnu::flatten]] void keep(Scalar dt_s) noexcept {
-    StepMatrices<kStates, Scalar> matrices = step_matrices(this->motion_, dt_s);
+  template <LinearMotionModel Linear>
+  [[gnu::noinline, gnu::flatten]] void keep(const Linear& motion, Scalar dt_s) noexcept {
+    StepMatrices<kStates, Scalar> matrices = step_matrices(motion, dt_s);
     unroll<kStates * kStates>([&](auto k) {
       constexpr int i = k.value % kStates, j = k.value / kStates;
       if constexpr (kPatternOf<Motion>.element[i][j] == 'x') kept_.f(i, j) = matrices.f(i, j);
@@ -237,19 +244,47 @@ template <class MotionType, class ScalarType = double>
 class Kalman : public Ekf<MotionType, ScalarType> {
   static_assert(!MotionModel<MotionType> || LinearMotionModel<MotionType>,
                 "wakeline: Kalman needs a linear motion model (matrix(dt_s)); use Ekf or Ukf");
+  using Base = Ekf<MotionType, ScalarType>;
 
  public:
   using Scalar = ScalarType;
 
-  explicit Kalman(const MotionType& motion) : Ekf<MotionType, ScalarType>(motion) {}
+  explicit Kalman(const MotionType& motion) : Base(motion) {}
+
+  template <class Sensor>
+  Step<Sensor::kMeasurements, Scalar> innovation(
+      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
+    check_linear<Sensor>();
+    return Base::innovation(sensor, z);
+  }
+
+  template <class Sensor>
+  [[gnu::always_inline]] Correction<Sensor::kMeasurements, Scalar> compare(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
+    check_linear<Sensor>();
+    return Base::compare(sensor, reading);
+  }
 
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+    check_linear<Sensor>();
+    return Base::update(sensor, z);
+  }
+
+  template <class Sensor>
+  [[gnu::always_inline]] Correction<Sensor::kMeasurements, Scalar> correct(
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
+    check_linear<Sensor>();
+    return Base::correct(sensor, reading);
+  }
+
+ private:
+  template <class Sensor>
+  static constexpr void check_linear() noexcept {
     static_assert(LinearMeasurementModel<Sensor>,
                   "wakeline: Kalman needs a linear sensor (kLinear = true); use "
                   "ConvertedRangeBearing, or Ekf or Ukf");
-    return Ekf<MotionType, ScalarType>::update(sensor, z);
   }
 };
 

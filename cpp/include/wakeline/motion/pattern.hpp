@@ -43,16 +43,18 @@ requires requires { Motion::kPattern; }
 inline constexpr Pattern<kStatesOf<Motion>> kPatternOf<Motion> = Motion::kPattern;
 
 [[noreturn]] inline void refuse_pattern(int row, int column, double wanted, double got,
-                                        const char* where) {
+                                        const char* where, double step_s) {
   std::ostringstream message;
   message.precision(kMessageDigits);
   message << "the kPattern of this motion model must be true: it says " << wanted << " of element ("
-          << row << ", " << column << ") of the " << where << " for a step of 1 s is " << got;
+          << row << ", " << column << ") of the " << where << " for a step of " << step_s
+          << " s is " << got;
   refuse(message.str());
 }
 
 /// Throws `std::invalid_argument` unless the matrix of a linear model, or the Jacobian at [1, 2, …]
-/// of another, for a step of 1 s is as its pattern says: one that a model has inherited may not be.
+/// of another, is as its pattern says: one that a model has inherited may not be. For steps of 1 s
+/// and of 2 s, as for the first an element that is the step looks like 1.
 template <class Scalar, class Motion>
 void require_pattern(const Motion& motion) {
   constexpr int kN = kStatesOf<Motion>;
@@ -60,14 +62,16 @@ void require_pattern(const Motion& motion) {
       LinearMotionModel<Motion> ? "matrix, which" : "Jacobian, which at [1, 2, ...]";
   Vec<Scalar, kN> x;
   for (int i = 0; i < kN; ++i) x[i] = Scalar(i + 1);
-  const Mat<Scalar, kN, kN> f = transition_jacobian(motion, x, Scalar(1));
-  for (int i = 0; i < kN; ++i)
-    for (int j = 0; j < kN; ++j) {
-      const char said = kPatternOf<Motion>.element[i][j];
-      const double wanted = said == '1';
-      if (said != 'x' && any(f(i, j) != Scalar(wanted)))
-        refuse_pattern(i, j, wanted, double(lane(f(i, j), 0)), where);
-    }
+  for (const double step_s : {1.0, 2.0}) {
+    const Mat<Scalar, kN, kN> f = transition_jacobian(motion, x, Scalar(step_s));
+    for (int i = 0; i < kN; ++i)
+      for (int j = 0; j < kN; ++j) {
+        const char said = kPatternOf<Motion>.element[i][j];
+        const double wanted = said == '1';
+        if (said != 'x' && any(f(i, j) != Scalar(wanted)))
+          refuse_pattern(i, j, wanted, double(lane(f(i, j), 0)), where, step_s);
+      }
+  }
 }
 
 /// Products with a transition matrix, without the terms that its pattern says are zero.

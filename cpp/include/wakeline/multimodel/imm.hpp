@@ -289,12 +289,13 @@ class Imm {
 
   /// Leaves out the modes at rest: each row stays with the same probability, and where it leaves it
   /// goes to an active one.
-  void leave_out_resting() noexcept {
-    for (int i = 0; i < bank_.size(); ++i) {
+  template <class RestingBank>
+  void leave_out_resting(const RestingBank& bank) noexcept {
+    for (int i = 0; i < bank.size(); ++i) {
       Scalar resting = Scalar(0);
       Scalar leaving = Scalar(0);
-      for (int j = 0; j < bank_.size(); ++j) {
-        const auto rests = !bank_.active(j);
+      for (int j = 0; j < bank.size(); ++j) {
+        const auto rests = !bank.active(j);
         resting += select(rests, transition_(i, j), Scalar(0));
         transition_(i, j) = select(rests, Scalar(0), transition_(i, j));
         if (j != i) leaving += transition_(i, j);
@@ -303,7 +304,7 @@ class Imm {
       const auto leaves = leaving > Scalar(0);
       transition_(i, i) += select(leaves, Scalar(0), resting);
       const Scalar scale = (leaving + resting) / select(leaves, leaving, Scalar(1));
-      for (int j = 0; j < bank_.size(); ++j)
+      for (int j = 0; j < bank.size(); ++j)
         if (j != i)
           transition_(i, j) = select(leaves, transition_(i, j) * scale, transition_(i, j));
     }
@@ -333,7 +334,7 @@ class Imm {
   Probability weigh_transitions(Scalar dt_s) noexcept {
     if (any(dt_s != transition_step_s_)) [[unlikely]] {
       read_transition(dt_s);
-      if constexpr (kMayRest) leave_out_resting();
+      if constexpr (kMayRest) leave_out_resting(bank_);
       transition_step_s_ = dt_s;
     }
     Probability expected = Probability::Zero(bank_.size());

@@ -116,8 +116,11 @@ class DriftWindow {
   static constexpr int kCapacity = Capacity;
   using Settings = DriftWindowSettings;
 
-  /// Throws `std::invalid_argument` when a setting makes no sense.
-  explicit DriftWindow(const Settings& settings = {}) : settings_(settings) {
+  /// Throws `std::invalid_argument` when a setting makes no sense. By default no more fixes are
+  /// remembered than there is room for.
+  explicit DriftWindow(
+      const Settings& settings = {.max_fixes = std::min(DriftWindowSettings{}.max_fixes, Capacity)})
+      : settings_(settings) {
     require(settings.max_fixes >= 2 && settings.max_fixes <= Capacity, "max_fixes",
             ("2 to " + std::to_string(Capacity)).c_str(), settings.max_fixes);
     require_not_negative("log_std_mps", settings.log_std_mps);
@@ -130,21 +133,29 @@ class DriftWindow {
     step_ = {};
   }
 
-  /// Lets time pass at a speed through the water and a heading.
+  /// Lets time pass at a speed through the water and a heading. A time or a run since the last fix
+  /// that could not be squared is refused as not finite.
   Status advance(double dt_s, double speed_mps, double heading_rad) noexcept {
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
     if (!std::isfinite(speed_mps) || !std::isfinite(heading_rad)) return Status::kNotFinite;
     const Gaussian<2> water =
         water_velocity(speed_mps, heading_rad, settings_.log_std_mps, settings_.heading_std_rad);
-    step_.gap_s += dt_s;
-    step_.reckoned_m += dt_s * water.mean;
-    step_.reckoned_covariance_m2 += dt_s * dt_s * water.covariance;
+    Fixed next = step_;
+    next.gap_s += dt_s;
+    next.reckoned_m += dt_s * water.mean;
+    next.reckoned_covariance_m2 += dt_s * dt_s * water.covariance;
+    if (!has_square(next.gap_s) || !has_squares(next.reckoned_m) ||
+        !is_finite(next.reckoned_covariance_m2))
+      return Status::kNotFinite;
+    step_ = next;
     return Status::kOk;
   }
 
-  /// Takes a fix of the present time, [north, east] m on a plane.
+  /// Takes a fix of the present time, [north, east] m on a plane; one too far off to be squared is
+  /// refused as not finite.
   Status add(const Gaussian<2>& fix) noexcept {
     if (const Status status = check(fix); status != Status::kOk) return status;
+    if (!has_squares(fix.mean)) return Status::kNotFinite;
     newest_ = (newest_ + 1) % settings_.max_fixes;
     size_ = std::min(size_ + 1, settings_.max_fixes);
     step_.fix = fix;
@@ -174,7 +185,8 @@ class DriftWindow {
     return span_s > 0.0;
   }
 
-  /// The drift, [north, east] m/s; zero with an infinite covariance until `ready()`.
+  /// The drift, [north, east] m/s; zero with an infinite covariance until `ready()`, and while the
+  /// times are too near each other to tell.
   [[nodiscard]] Gaussian<2> drift() const noexcept {
     const Mat<double, 2, 2> identity = Mat<double, 2, 2>::Identity();
     if (!ready()) return unknown();
@@ -206,6 +218,7 @@ class DriftWindow {
     }
     mirror_lower<double, 2>(information);
     const Cholesky<2> factor(information);
+    if (!factor.ok()) return unknown();
     Gaussian<2> drift{factor.template solve<1>(weighted), factor.template solve<2>(identity)};
     mirror_lower<double, 2>(drift.covariance);
     return drift;
@@ -227,6 +240,10 @@ class DriftWindow {
       fields(reckoned_covariance_m2);
     }
   };
+
+  static bool has_squares(const Vec<double, 2>& v) noexcept {
+    return has_square(v[0]) && has_square(v[1]);
+  }
 
   static Gaussian<2> unknown() noexcept {
     Gaussian<2> drift{Vec<double, 2>::Zero(), Mat<double, 2, 2>::Zero()};

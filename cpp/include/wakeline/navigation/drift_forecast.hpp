@@ -82,15 +82,21 @@ class DriftForecast {
             p(0, 0) * p(1, 1) - p(1, 0) * p(0, 1));
   }
 
-  /// Lets time pass under a wind and a current, [north, east] m/s. Of a step that cannot be done
-  /// nothing is kept.
+  /// Lets time pass under a wind and a current, [north, east] m/s. Of a step that cannot be done,
+  /// as it leads to what has no square, nothing is kept.
   Status advance(double dt_s, const Vec<double, 2>& wind_mps,
                  const Vec<double, 2>& current_mps) noexcept {
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
     if (!is_finite(wind_mps) || !is_finite(current_mps)) return Status::kNotFinite;
-    elapsed_s_ += dt_s;
-    wind_run_m_ += dt_s * wind_mps;
-    current_run_m_ += dt_s * current_mps;
+    const double elapsed_s = elapsed_s_ + dt_s;
+    const Vec<double, 2> wind_run_m = wind_run_m_ + dt_s * wind_mps;
+    const Vec<double, 2> current_run_m = current_run_m_ + dt_s * current_mps;
+    for (const double far :
+         {elapsed_s, wind_run_m[0], wind_run_m[1], current_run_m[0], current_run_m[1]})
+      if (!has_square(far)) return Status::kNotFinite;
+    elapsed_s_ = elapsed_s;
+    wind_run_m_ = wind_run_m;
+    current_run_m_ = current_run_m;
     return Status::kOk;
   }
 
