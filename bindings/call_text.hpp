@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// How objects show themselves: by the call in Python that makes an equal one.
+// How objects show themselves: by the call in Python that makes an equal one, results by what they
+// hold.
 #pragma once
 
 #include <cmath>
@@ -44,5 +45,10 @@ class CallText {
   std::string text_;
   const char* between_ = "";
 };
+
+/// "1 run", "3 runs".
+inline std::string many(py::ssize_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
 
 }  // namespace wakeline::python

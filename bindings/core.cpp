@@ -85,7 +85,11 @@ ValueError
       .def_readonly("nis", &PyStep::nis, "normalised innovation squared")
       .def_readonly("log_likelihood", &PyStep::log_likelihood)
       .def(py::pickle([](const PyStep& s) { return fields_of(s); },
-                      [](const py::tuple& fields) { return step_of(fields); }));
+                      [](const py::tuple& fields) { return step_of(fields); }))
+      .def("__repr__", [](const PyStep& s) {
+        const std::string found = ok(s.status) ? ", nis=" + text_of(s.nis) : "";
+        return "<Step: " + std::string(to_string(s.status)) + found + ">";
+      });
 
   m.def("wrap_angle", &wrapped, py::arg("angle_rad"),
         "The same angle in [-pi, pi], rad; of an array each.");

@@ -160,6 +160,19 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
   return py::make_tuple(smooth_mean, smooth_covariance);
 }
 
+/// "<RunResult: 500 runs of 250 scans, 4 states, 3 models>".
+std::string result_text(const RunResult& result) {
+  const auto extent = [](const py::array& array, int from_the_end) {
+    return array.shape(array.ndim() - from_the_end);
+  };
+  std::string text = "<RunResult: ";
+  if (result.mean.ndim() == 3) text += many(result.mean.shape(0), "run") + " of ";
+  text += many(extent(result.mean, 2), "scan") + ", " + many(extent(result.mean, 1), "state");
+  if (!result.mode_probability.is_none())
+    text += ", " + many(extent(py::array(result.mode_probability), 1), "model");
+  return text + ">";
+}
+
 }  // namespace
 
 void define_filter(py::module_& parent) {
@@ -195,7 +208,8 @@ void define_filter(py::module_& parent) {
                              fields[5].cast<Array>(),
                              fields[6].cast<Array>(),
                              fields[7].cast<py::array_t<std::uint8_t>>()};
-          }));
+          }))
+      .def("__repr__", &result_text);
 
   py::class_<AnyFilter> filter(m, "Filter", "What Kalman, Ekf, Ukf and SquareRootUkf share.");
   define_face(filter);

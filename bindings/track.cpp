@@ -501,7 +501,12 @@ void define_track(py::module_& parent) {
       .def_readonly(
           "refused_plots", &PyReport::refused_plots,
           "plots not finite, behind the antenna, of so many turns that the bearing is lost, "
-          "of another time than the scan, or beyond max_plots");
+          "of another time than the scan, or beyond max_plots")
+      .def("__repr__", [](const PyReport& r) {
+        return "<ScanReport: " + many(r.plot_track_id.size(), "plot") + ", " +
+               std::to_string(r.refused_plots) + " refused, " +
+               many(static_cast<py::ssize_t>(r.events.size()), "event") + ">";
+      });
   py::class_<PyTracks> table(m, "TrackTable", "Tracks as arrays, older ones first.");
   define_pickle(table, &PyTracks::track_id, &PyTracks::status, &PyTracks::time_s, &PyTracks::mean,
                 &PyTracks::covariance, &PyTracks::mode_probability, &PyTracks::nis,
@@ -522,7 +527,10 @@ void define_track(py::module_& parent) {
       .def_readonly("hits", &PyTracks::hits, "(k,)")
       .def_readonly("misses", &PyTracks::misses, "(k,) scans in a row without a plot")
       .def_readonly("name", &PyTracks::name, "given by the operator")
-      .def("__len__", [](const PyTracks& table) { return table.track_id.size(); });
+      .def("__len__", [](const PyTracks& table) { return table.track_id.size(); })
+      .def("__repr__", [](const PyTracks& table) {
+        return "<TrackTable: " + many(table.track_id.size(), "track") + ">";
+      });
 
   py::class_<AnyTracker>(m, "Tracker", R"(Keeps tracks of all vessels a radar sees, scan by scan.
 

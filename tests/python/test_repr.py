@@ -414,3 +414,24 @@ def test_what_holds_many_numbers_shows_itself_in_a_few_words():
         (own_ship.navigate(readings), "<OwnTrack: 1051 states, 1211388180.0 to .*>"),
     ):
         assert re.fullmatch(wanted, repr(shown)), repr(shown)
+
+
+def test_results_show_what_they_hold():
+    """A bare run, several of an Imm, a reading that was taken and one that was missed."""
+    z = readings(RADAR, 5)
+    assert repr(TURN.run(z, DT_S, RADAR, START)) == "<RunResult: 5 scans, 4 states>"
+    imm = turning_imm()
+    several = imm.run(np.stack([z, z]), DT_S, RADAR, START)
+    models = several.mode_probability.shape[-1]
+    assert repr(several) == f"<RunResult: 2 runs of 5 scans, 4 states, {models} models>"
+    imm.start(START)
+    step = imm.update(RADAR, z[0])
+    assert repr(step) == f"<Step: ok, nis={step.nis!r}>"
+    assert repr(imm.update(RADAR, np.full(2, np.nan))) == "<Step: missed: no measurement>"
+
+
+def test_a_scan_shows_what_it_has_brought():
+    tracker = wl.Tracker(wl.Radar())
+    report = tracker.process(3.0, range_m=[5000.0, np.nan], bearing_rad=[0.5, 0.5])
+    assert repr(report) == "<ScanReport: 2 plots, 1 refused, 0 events>"
+    assert repr(tracker.tracks(tentative=True)) == "<TrackTable: 0 tracks>"
