@@ -257,7 +257,7 @@ def test_who_stops_the_run_calls_the_others_off(monkeypatch, who):
 
     def slow(scene, z):
         calls.append(len(z))
-        time.sleep(0.01)
+        time.sleep(0.05)
         return IMM(scene, z)
 
     if who == "outcome":
@@ -295,8 +295,8 @@ def test_who_refuses_everything_does_so_before_the_others_have_done_their_work()
 
 def test_who_fails_late_takes_nothing_from_those_that_are_done(result, tmp_path):
     late = partial(refusing, begun=[], from_call=3)
-    with pytest.raises(ZeroDivisionError) as caught:
-        run([CASE, SELDOM], {"imm": IMM, "late": late})
+    with pytest.raises(ZeroDivisionError) as caught:  # on one thread calls have an order
+        run([CASE, SELDOM], {"imm": IMM, "late": late}, threads=1)
     kept = caught.value.result
     assert_same_bits(kept, SimpleNamespace(outcomes={("case", "imm"): result["case", "imm"]}))
     kept.save(tmp_path / "kept.npz")
