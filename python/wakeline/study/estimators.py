@@ -67,6 +67,4 @@ def turn_candidate(
     rates_deg_s: Sequence[float], noise: Any, sensor: str, *, stay: float = 0.9
 ) -> Candidate:
     """A candidate for a Monte Carlo run that is a :func:`turn_imm`."""
-    return Candidate(
-        turn_imm(rates_deg_s, noise, stay=stay), sensor, np.deg2rad(np.asarray(rates_deg_s))
-    )
+    return Candidate(turn_imm(rates_deg_s, noise, stay=stay), sensor)

@@ -127,26 +127,24 @@ def mode_history(setting: Setting, form: str) -> Candidate:
     """A tree of mode histories: nine rates are known, those between them are learnt."""
     rates_deg_s = np.sort([*_NINE_DEG_S, *_BETWEEN_DEG_S])
     between = np.isin(rates_deg_s, _BETWEEN_DEG_S)
-    rates_rad_s = np.deg2rad(rates_deg_s)
     tree = wl.ModeHistory(
         learning_filter(_NOISE[form]),
-        rates_rad_s,
+        np.deg2rad(rates_deg_s),
         grid_std_rad_s=np.deg2rad(np.where(between, _BETWEEN_STD_DEG_S, _KNOWN_STD_DEG_S)),
         grid_weight=np.where(between, _BETWEEN_WEIGHT, 1.0),
     )
-    return Candidate(tree, form, rates_rad_s)
+    return Candidate(tree, form)
 
 
 def mode_history_known(setting: Setting, form: str) -> Candidate:
     """A tree of mode histories over the nine rates alone."""
-    rates_rad_s = np.deg2rad(_NINE_DEG_S)
-    return Candidate(wl.ModeHistory(_turning(form), rates_rad_s), form, rates_rad_s)
+    return Candidate(wl.ModeHistory(_turning(form), np.deg2rad(_NINE_DEG_S)), form)
 
 
 def mode_history_rates(setting: Setting, form: str) -> Candidate:
     """The same, whose histories begin a turn at one of the rates and learn their own."""
-    rates_rad_s = np.deg2rad(_NINE_DEG_S)
-    return Candidate(wl.ModeHistory(learning_filter(_NOISE[form]), rates_rad_s), form, rates_rad_s)
+    tree = wl.ModeHistory(learning_filter(_NOISE[form]), np.deg2rad(_NINE_DEG_S))
+    return Candidate(tree, form)
 
 
 def unmixed(setting: Setting, form: str) -> dict[str, Candidate]:
@@ -168,7 +166,7 @@ def unmixed(setting: Setting, form: str) -> dict[str, Candidate]:
         "histories_apart": apart(merge_distance=0.0, sibling_distance=0.0),
     }
     return {"imm5": imm5(setting, form)} | {
-        name: Candidate(estimator, form, rates_rad_s) for name, estimator in built.items()
+        name: Candidate(estimator, form) for name, estimator in built.items()
     }
 
 
