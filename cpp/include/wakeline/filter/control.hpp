@@ -57,8 +57,7 @@ struct Control {
     if (none(ok(status))) return status;
     const decltype(pushed) moved = filter.mean() + pushed;
     assign_where(ok(status), filter.mean(), moved);
-    MaskOf<Scalar> squared = is_finite(moved);
-    for (const Scalar& part : pushed) squared = squared && has_square(part);
+    const MaskOf<Scalar> squared = is_finite(moved) && has_squares(pushed);
     status = first_failure(status, ok_or(squared, Status::kNotFinite));
     if (!all(ok(status))) restore(filter, before, !ok(status));
     return status;

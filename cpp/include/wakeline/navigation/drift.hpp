@@ -241,10 +241,6 @@ class DriftWindow {
     }
   };
 
-  static bool has_squares(const Vec<double, 2>& v) noexcept {
-    return has_square(v[0]) && has_square(v[1]);
-  }
-
   static Gaussian<2> unknown() noexcept {
     Gaussian<2> drift{Vec<double, 2>::Zero(), Mat<double, 2, 2>::Zero()};
     drift.covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());

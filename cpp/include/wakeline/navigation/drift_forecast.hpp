@@ -91,9 +91,8 @@ class DriftForecast {
     const double elapsed_s = elapsed_s_ + dt_s;
     const Vec<double, 2> wind_run_m = wind_run_m_ + dt_s * wind_mps;
     const Vec<double, 2> current_run_m = current_run_m_ + dt_s * current_mps;
-    for (const double far :
-         {elapsed_s, wind_run_m[0], wind_run_m[1], current_run_m[0], current_run_m[1]})
-      if (!has_square(far)) return Status::kNotFinite;
+    if (!has_square(elapsed_s) || !has_squares(wind_run_m) || !has_squares(current_run_m))
+      return Status::kNotFinite;
     elapsed_s_ = elapsed_s;
     wind_run_m_ = wind_run_m;
     current_run_m_ = current_run_m;
