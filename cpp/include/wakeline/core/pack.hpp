@@ -14,6 +14,8 @@
 
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 #include "wakeline/core/scalar.hpp"
@@ -76,8 +78,8 @@ class PackMask {
 
   /// Bit k is lane k.
   friend unsigned bits_of(PackMask mask) noexcept {
-    constexpr int kBytes = int(sizeof(Raw));
-    constexpr bool kDouble = sizeof(Real) == 8;
+    [[maybe_unused]] constexpr int kBytes = int(sizeof(Raw));
+    [[maybe_unused]] constexpr bool kDouble = sizeof(Real) == 8;
 #if defined(__AVX512DQ__)
     if constexpr (kBytes == 64 && kDouble) return _mm512_movepi64_mask((__m512i)mask.raw);
     if constexpr (kBytes == 64 && !kDouble) return _mm512_movepi32_mask((__m512i)mask.raw);
@@ -249,8 +251,8 @@ class Pack {
   }
 
   static Raw square_root(Raw a) noexcept {
-    constexpr bool kDouble = std::same_as<Real, double>;
-    constexpr int kBytes = int(sizeof(Raw));
+    [[maybe_unused]] constexpr bool kDouble = std::same_as<Real, double>;
+    [[maybe_unused]] constexpr int kBytes = int(sizeof(Raw));
 #if defined(__AVX512F__)
     if constexpr (kBytes == 64) {
       if constexpr (kDouble)
@@ -273,6 +275,13 @@ class Pack {
         return (Raw)_mm_sqrt_pd((__m128d)a);
       else
         return (Raw)_mm_sqrt_ps((__m128)a);
+    }
+#elif defined(__aarch64__)
+    if constexpr (kBytes == 16) {
+      if constexpr (kDouble)
+        return (Raw)vsqrtq_f64((float64x2_t)a);
+      else
+        return (Raw)vsqrtq_f32((float32x4_t)a);
     }
 #endif
     Raw root;
