@@ -130,7 +130,7 @@ its residual to `sigma_hat_m`, the mean residual of the shortest line since the 
 (ratio - threshold)))`` and ``good = 1 - bad``. Rule p of a zero-order Sugeno machine says: where the first p lines are good and
 the rest bad, track with ``max(2, p + 1)`` plots. The estimate is the line through as many plots as the rules say on average.
 Until there are two plots it is the belief at the start, as a Kalman filter keeps it.
-A plot of the time of the one before joins it and judges nothing.
+A plot of about the time of the one before, within a sixteenth of a step, joins it and judges nothing.
 
 Has the face of `Imm`, with one mode for each line. Takes the position out of any sensor, and measures innovations in north and
 east.

@@ -435,6 +435,7 @@ void define_track(py::module_& parent) {
       .field("drop_position_std_m", &TrackerConfig::drop_position_std_m)
       .field("drop_speed_factor", &TrackerConfig::drop_speed_factor)
       .field("duplicate_distance", &TrackerConfig::duplicate_distance)
+      .field("vessel_length_m", &TrackerConfig::vessel_length_m)
       .field("duplicate_scans", &TrackerConfig::duplicate_scans)
       .field("max_tracks", &TrackerConfig::max_tracks)
       .field("max_plots", &TrackerConfig::max_plots)

@@ -99,13 +99,15 @@ int main() {
   std::vector<std::uint8_t> cells(4096);
   std::vector<Plot> plots;
   const OwnShip own;  // at anchor; else where she is at the time of each plot
-  double last_azimuth_rad = 0.0, time_s = 0.0;
+  double last_azimuth_rad = 0.0, turned_rad = 0.0, time_s = 0.0;
 
   const auto take = [&](const Cat240Video& video) {
     Sweep<> sweep = video.unpack<std::uint8_t>(cells);
     if (sweep.azimuth_width_rad == 0.0) sweep.azimuth_width_rad = kWidth_rad;  // some tell none
     if (std::isnan(sweep.time_s)) sweep.time_s = time_s;  // nor a time: that of reception will do
-    if (sweep.azimuth_rad < last_azimuth_rad) {           // past north: a turn is over
+    turned_rad += wrap_angle(sweep.azimuth_rad - last_azimuth_rad);  // less where it steps back
+    if (turned_rad >= 2 * kPi<double>) {                             // past north: a turn is over
+      turned_rad -= 2 * kPi<double>;
       if (const ScanReport scan = tracker.process(sweep.time_s, plots); scan.status != Status::kOk)
         std::printf("scan at %.1f s: %s\n", sweep.time_s, to_string(scan.status));
       plots.clear();

@@ -558,8 +558,9 @@ class AlphaBeta:
     The alpha-beta filter over [x, vx, y, vy], its gains by a schedule.
 
     ``x += alpha e`` and ``vx += beta e / T`` per axis, e the innovation in north and east and T the time since the reading before,
-    missed scans included. Covariance, NIS and likelihood are those of such gains where plots and motion are as the models say, so that
-    it may be compared with a Kalman filter. Takes the position out of any sensor.
+    missed scans included; readings within an eighth of a step are of one time and have one T. Covariance, NIS and likelihood are those
+    of such gains where plots and motion are as the models say, so that it may be compared with a Kalman filter. Takes the position out
+    of any sensor.
 
     Parameters
     ----------

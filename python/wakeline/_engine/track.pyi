@@ -103,6 +103,7 @@ class TrackerConfig:
         drop_position_std_m: float = 100.0,
         drop_speed_factor: float = 1.0,
         duplicate_distance: float = 0.5,
+        vessel_length_m: float = 0.0,
         duplicate_scans: int = 3,
         max_tracks: int = 500,
         max_plots: int = 20000,
@@ -143,6 +144,7 @@ class TrackerConfig:
     start_speed_factor: float
     survival_time_s: float
     tentative_misses: int
+    vessel_length_m: float
     visible_time_s: float
     wild_probability: float
     wild_scale: float

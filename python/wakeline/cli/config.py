@@ -70,6 +70,7 @@ _TRACKER = {
     "drop_position_std_m": "m, a track that knows its place worse than this is dropped",
     "drop_speed_factor": "a track faster than this times the radar's speed limit is dropped",
     "duplicate_distance": "squared sigmas, two tracks nearer than this are one",
+    "vessel_length_m": "m, an echo nearer to a shown track is of its vessel; 0: of another one",
     "duplicate_scans": "scans, once they have been so for so many",
     "max_tracks": "tracks at a time; when full a new one replaces the weakest tentative one",
     "max_plots": "plots of a scan; those beyond are refused",

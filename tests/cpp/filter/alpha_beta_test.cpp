@@ -303,6 +303,24 @@ TEST(AlphaBetaFilter, ReadingsOfOneTimeHaveOneStepBetweenThem) {
   EXPECT_EQ(at_once.estimate().mean[1], test::five_km_off<double>().mean[1]);
 }
 
+// Two radars of one period, the second so much behind the first.
+TEST(AlphaBetaFilter, ForgetsItsErrorsHoweverTwoRadarsAreOutOfStep) {
+  constexpr double kPeriod_s = 2.5;
+  for (const auto& schedule : every_schedule<2>())
+    for (const double behind_s : {1e-9, 0.001, 0.005, 0.05, 0.2, 0.3, 0.5, 1.25}) {
+      auto filter = started(AlphaBeta<>(schedule));
+      const Vec<double, 2> at_rest(3000, 4000);
+      for (int k = 0; k < 200; ++k)
+        for (const double dt_s : {behind_s, kPeriod_s - behind_s}) {
+          ASSERT_EQ(filter.predict(dt_s), Status::kOk);
+          ASSERT_TRUE(filter.update(kSensor, at_rest));
+        }
+      const auto& mean = filter.estimate().mean;
+      EXPECT_LT(std::hypot(mean[0] - 3000, mean[2] - 4000), 5.0) << schedule.index() << behind_s;
+      EXPECT_LT(std::hypot(mean[1], mean[3]), 1.0) << schedule.index() << ", " << behind_s;
+    }
+}
+
 TEST(AlphaBetaFilter, KeepsADefiniteCovarianceWhateverComes) {
   Draw draw(91);
   for (const auto& schedule : every_schedule<3>()) {

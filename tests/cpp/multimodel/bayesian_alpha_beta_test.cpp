@@ -155,6 +155,35 @@ TEST(BayesianAlphaBeta, LengthensOnAStraightAndBendsInATurn) {
   EXPECT_GT(bent, 0.6);
 }
 
+/// Root mean square of what a radar's plots are off their forecasts; a second radar sees the boat
+/// so much later, or none does where that is 0.
+double forecast_error_m(double behind_s) {
+  Draw draw(7);
+  double squared = 0.0;
+  int count = 0;
+  for (int run = 0; run < 100; ++run) {
+    Bayesian bank = started();
+    for (int scan = 1; scan <= 32; ++scan) {
+      const double time_s = kPeriod_s * scan;
+      EXPECT_EQ(bank.predict(scan > 1 ? kPeriod_s - behind_s : kPeriod_s), Status::kOk);
+      const auto step = bank.update(kSensor, turning(time_s) + 5.0 * draw.normals<2>());
+      EXPECT_TRUE(step);
+      if (scan > 5) squared += step.innovation.squaredNorm();
+      count += scan > 5;
+      if (behind_s == 0.0) continue;
+      EXPECT_EQ(bank.predict(behind_s), Status::kOk);
+      EXPECT_TRUE(bank.update(kSensor, turning(time_s + behind_s) + 5.0 * draw.normals<2>()));
+    }
+  }
+  return std::sqrt(squared / count);
+}
+
+TEST(BayesianAlphaBeta, ForetellsWithTwoRadarsOutOfStepAtLeastAsWellAsWithOne) {
+  const double alone_m = forecast_error_m(0.0);
+  for (const double behind_s : {0.0005, 0.002, 0.005, 0.02, 0.05, 0.15})
+    EXPECT_LT(forecast_error_m(behind_s), alone_m) << behind_s << " s behind";
+}
+
 TEST(BayesianAlphaBeta, MissedScansRelaxTheProbabilitiesAlongTheChain) {
   Draw draw(6);
   Bayesian bank = started();

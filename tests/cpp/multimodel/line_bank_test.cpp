@@ -187,6 +187,25 @@ TEST(LineBank, PlotsOfOneTimeBecomeTheirMean) {
   EXPECT_TRUE(matrices_near(lines[0].velocity_mps, Vec<double, 2>(32, 6) / 3.0));
 }
 
+TEST(LineBank, PlotsOfTwoRadarsOutOfStepBecomeTheirMeanAtTheMeanOfTheirTimes) {
+  Bank bank;
+  Bank::Lines lines;
+  const Vec<double, 2> velocity(20.0, -10.0);
+  double time_s = 0.0;
+  for (int scan = 1; scan <= 5; ++scan)
+    for (const double dt_s : {2.9, 0.1}) {
+      bank.advance(dt_s);
+      time_s += dt_s;
+      bank.add({time_s * velocity, kPlot});
+    }
+  EXPECT_EQ(bank.size(), 5);
+  bank.fit(lines);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_TRUE(matrices_near(lines[k].position_m, time_s * velocity, {.absolute = 1e-9}));
+    EXPECT_TRUE(matrices_near(lines[k].velocity_mps, velocity, {.absolute = 1e-9}));
+  }
+}
+
 TEST(LineBank, ArchiveBringsEverythingBackAndRefusesWhatItIsNot) {
   Draw draw(9);
   Bank bank(7);

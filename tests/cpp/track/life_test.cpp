@@ -71,6 +71,29 @@ TEST(Life, AVesselAtAnchorThatIsSeenNowAndThenIsConfirmed) {
 }
 
 // The posterior odds of a target, given plots that are false, are on average the prior ones.
+TEST(Life, HoweverSureTheRadarIsATargetThatIsNotSeenIsVisibleWithAProbability) {
+  TrackerConfig config;
+  config.detection_probability = 1.0;
+  config.gate_probability = 1.0 - 1e-15;
+  const Plot plot = exact_plot({900.0, 400.0}, 0.0);
+  VesselTracker tracker = make_tracker(config);
+  (void)tracker.designate(0.0, 900.0, 400.0, 20.0);
+  for (int k = 0; k < 40; ++k) {
+    // Five looks without time between them for one plot.
+    (void)tracker.process(2.5 * (k / 5), {&plot, k % 5 == 0 && k < 20 ? 1u : 0u});
+    expect_sound(tracker);
+  }
+  VesselTrack track{.estimator = vessel_imm(kTestRadar)};
+  for (const double visibility : {1e-20, 0.0})
+    for (const bool certain : {false, true})
+      for (const double total : {1.0 - 1e-16, 1.0, 0.0}) {
+        track.visibility = visibility;
+        track.existence = 0.5;
+        track.weigh(config, total, certain ? 0.0 : 1.0, certain);
+        EXPECT_TRUE(track.visibility >= 0.0 && track.visibility <= 1.0) << track.visibility;
+      }
+}
+
 TEST(Life, FalsePlotsAloneAreNoEvidenceOnAverage) {
   constexpr double kDensity = 1e-4, kHalfSide_m = 300.0, kExistence = 0.999;
   constexpr int kScans = 2000;

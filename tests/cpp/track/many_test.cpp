@@ -62,6 +62,43 @@ TEST(Many, CloseParallelTargetsDoNotShareANumber) {
   expect_each_keeps_its_number({{1000.0, -600.0}, {0.0, 8.0}}, {{1120.0, -600.0}, {0.0, 8.0}}, 60);
 }
 
+/// Scans of a ship of 80 m, seen at bow and stern, and of a boat that crosses 60 m ahead of her.
+std::vector<std::vector<Plot>> ship_and_boat(std::uint64_t seed) {
+  Sea sea(seed);
+  const Boat bow{{1000.0, -400.0}, {0.0, 7.0}}, stern{{1000.0, -480.0}, {0.0, 7.0}};
+  const Boat boat{{400.0, 80.0}, {10.0, 0.0}};
+  std::vector<std::vector<Plot>> scans;
+  for (int k = 0; k < 60; ++k) {
+    std::vector<Plot> plots;
+    for (const Boat& echo : {bow, stern, boat})
+      if (sea.draw.uniform(0, 1) < 0.9) plots.push_back(sea.plot(echo.at(2.5 * k), 2.5 * k));
+    scans.push_back(plots);
+  }
+  return scans;
+}
+
+TEST(Many, AShipThatGivesTwoPlotsHasOneTrackOfATrackerThatKnowsHerLength) {
+  for (const double length_m : {0.0, 120.0})
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      TrackerConfig config;
+      config.vessel_length_m = length_m;
+      VesselTracker tracker = make_tracker(config);
+      std::set<std::int64_t> numbers;
+      double time_s = 0.0;
+      for (const std::vector<Plot>& plots : ship_and_boat(seed)) {
+        (void)tracker.process(time_s, plots);
+        time_s += 2.5;
+        for (const VesselTrack* track : tracks_of(tracker, true)) numbers.insert(track->id);
+      }
+      EXPECT_EQ(numbers.size(), length_m > 0.0 ? 2u : 3u) << "seed " << seed;
+      EXPECT_EQ(tracks_of(tracker, true).size(), numbers.size());
+      const VesselTrack* ship = track_at(tracker, {1000.0, -440.0 + 7.0 * (time_s - 2.5)}, 60.0);
+      ASSERT_NE(ship, nullptr);
+      EXPECT_NEAR(ship->velocity()[1], 7.0, 1.5);
+      EXPECT_NE(track_at(tracker, {400.0 + 10.0 * (time_s - 2.5), 80.0}, 40.0), nullptr);
+    }
+}
+
 TEST(Many, OfTwoTracksOnOneTargetTheOlderNumberStays) {
   const Boat boat{{1200.0, 500.0}, {3.0, -2.0}};
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {

@@ -76,6 +76,7 @@ TEST(TrackerConfig, NamesWhatItRefuses) {
   WAKELINE_EXPECT_REFUSED(drop_position_std_m, 0.0, kNan);
   WAKELINE_EXPECT_REFUSED(drop_speed_factor, 0.0, kNan);
   WAKELINE_EXPECT_REFUSED(duplicate_distance, -1.0, kNan);
+  WAKELINE_EXPECT_REFUSED(vessel_length_m, -1.0, kNan, kInf);
   WAKELINE_EXPECT_REFUSED_COUNT(duplicate_scans, 0);
   WAKELINE_EXPECT_REFUSED_COUNT(max_tracks, 0, -1, 1'000'000'000);
   WAKELINE_EXPECT_REFUSED_COUNT(max_plots, 0, -1, 1'000'000'000);

@@ -21,8 +21,10 @@ namespace wakeline {
 ///
 /// per axis, e the innovation in north and east and T the time since the reading before, missed
 /// scans included. Where the plot is better along the bearing than across, a schedule that depends
-/// on its error has other gains along than across. Readings of one time have one T between them;
-/// one of the time of the start corrects the position alone.
+/// on its error has other gains along than across. Readings of about one time, within an eighth of
+/// a step of the first of them, have one T between them: over the short time between two radars
+/// that are not in step beta / T would be so large that errors grow from turn to turn, whatever the
+/// gains. One of the time of the start corrects the position alone.
 ///
 /// The covariance is the true one of such gains when plots and motion are as the models say:
 /// (I - K H) P (I - K H)ᵀ + K R Kᵀ after an update, F P Fᵀ + Q ahead. NIS and likelihood follow
@@ -104,8 +106,11 @@ class AlphaBetaFilter
     static_cast<Base&>(loaded).archive(fields);
     fields(occasion.reading);
     fields(occasion.elapsed_s);
+    fields(occasion.since_s);
     fields(occasion.taken);
-    if (!(occasion.reading >= Scalar(1)) || !(occasion.elapsed_s >= Scalar(0))) fields.fail();
+    if (!(occasion.reading >= Scalar(1)) || !(occasion.elapsed_s >= Scalar(0)) ||
+        !(occasion.since_s >= Scalar(0)))
+      fields.fail();
     if (fields.loading() && fields.ok()) *this = loaded;
   }
 
@@ -116,12 +121,14 @@ class AlphaBetaFilter
   struct Occasion {
     Scalar reading = Scalar(1);
     Scalar elapsed_s = Scalar(0);
-    MaskOf<Scalar> taken = false;  ///< the reading has come; the next time step begins another one
+    Scalar since_s = Scalar(0);    ///< since it was taken
+    MaskOf<Scalar> taken = false;  ///< the reading has come; one much later is another one
 
     friend void assign_where(const MaskOf<Scalar>& condition, Occasion& target,
                              const Occasion& value) noexcept {
       target.reading = select(condition, value.reading, target.reading);
       target.elapsed_s = select(condition, value.elapsed_s, target.elapsed_s);
+      target.since_s = select(condition, value.since_s, target.since_s);
       target.taken = (condition && value.taken) || (!condition && target.taken);
     }
   };
@@ -131,6 +138,10 @@ class AlphaBetaFilter
  private:
   using Gain = Mat<Scalar, kStates, 2>;
   using AxisGain = Vec<Scalar, Order>;
+
+  /// Part of a step within which readings are of one time: small steps between larger ones make
+  /// the gains of a stable filter, `stable_gains`, grow errors from about a twelfth on.
+  static constexpr double kOneTime = 1.0 / 8;
 
   static const Schedule& checked(const Schedule& schedule) {
     std::visit([](const auto& gains) { gains.template validate<Order>(); }, schedule);
@@ -145,10 +156,16 @@ class AlphaBetaFilter
   }
 
   StatusOf<Scalar> count(const StatusOf<Scalar>& status, Scalar dt_s) noexcept {
-    const MaskOf<Scalar> goes_on = ok(status) && dt_s != Scalar(0);
-    assign_where(goes_on && occasion_.taken, occasion_, {occasion_.reading + 1});
-    occasion_.elapsed_s += select(goes_on, dt_s, Scalar(0));
+    const Scalar passed_s = select(ok(status), dt_s, Scalar(0));
+    occasion_.elapsed_s += select(occasion_.taken, Scalar(0), passed_s);
+    occasion_.since_s += select(occasion_.taken, passed_s, Scalar(0));
     return status;
+  }
+
+  /// A reading comes: where it is later than those before it is another one.
+  void begin() noexcept {
+    const auto later = occasion_.since_s > Scalar(kOneTime) * occasion_.elapsed_s;
+    assign_where(occasion_.taken && later, occasion_, {occasion_.reading + 1, occasion_.since_s});
   }
 
   template <class Sensor>
@@ -171,6 +188,7 @@ class AlphaBetaFilter
   Correction<2, Scalar> take(const Sensor& sensor, const Gaussian<2, Scalar>& plot) noexcept {
     Correction<2, Scalar> correction = Base::compare(Fix{}, plot);
     if (none(ok(correction.status))) return correction;
+    begin();
     const Gain k = gain(plot.covariance, range(sensor, plot.mean));
     Gaussian<kStates, Scalar> next = this->belief_;
     shift(next.mean, k, correction.innovation);

@@ -118,11 +118,13 @@ struct Line {
 ///
 /// The pass goes from the newest plot to the oldest with running means, so that every line costs
 /// the same few operations. Plots count with the times they have: steps may be irregular, and a
-/// missed scan is a gap. One that comes within `kSameTime_s` of the newest joins it: both become
-/// their mean. With a regular period T, before the next plot is taken, the position factor is
-/// 2(2n+1)/(n(n-1)) and the steady lag of the position -T²(n+1)(n+2)/12. Storage is in place, no
-/// heap. Each lane of a pack has plots of its own, at times of its own, and as many as it has
-/// taken.
+/// missed scan is a gap. One that comes within a sixteenth of the step that led to the newest, as
+/// of two radars that are not in step, or within a millisecond, joins it: both become their mean,
+/// at the mean of their times, for the line through two such plots says next to nothing of a
+/// velocity and yet may be kilometres off at the next one. With a regular period T, before the next
+/// plot is taken, the position factor is 2(2n+1)/(n(n-1)) and the steady lag of the position
+/// -T²(n+1)(n+2)/12. Storage is in place, no heap. Each lane of a pack has plots of its own, at
+/// times of its own, and as many as it has taken.
 template <int Capacity = 16, class ScalarType = double>
 class LineBank {
  public:
@@ -130,7 +132,8 @@ class LineBank {
   using Scalar = ScalarType;
   using Mask = MaskOf<Scalar>;
   static constexpr int kCapacity = Capacity;
-  static constexpr double kSameTime_s = 1e-3;  ///< sooner than any radar looks again
+  static constexpr double kSameTime_s = 1e-3;    ///< sooner than any radar looks again
+  static constexpr double kSameStep = 1.0 / 16;  ///< part of a step; more than missed scans make
   using Lines = std::array<Line<Scalar>, static_cast<std::size_t>(Capacity - 1)>;
 
   /// A plot that is remembered.
@@ -214,7 +217,10 @@ class LineBank {
   /// Whether so many plots are remembered, or more.
   [[nodiscard]] Mask holds(int plots) const noexcept { return size_ >= Scalar(plots); }
   /// Whether a plot of the present time is of that of the newest, too, and joins it.
-  [[nodiscard]] Mask joins() const noexcept { return holds(1) && elapsed_s_ < Scalar(kSameTime_s); }
+  [[nodiscard]] Mask joins() const noexcept {
+    const Scalar apart_s = at_least(Scalar(kSameStep) * plots_[0].gap_s, Scalar(kSameTime_s));
+    return holds(1) && elapsed_s_ < apart_s;
+  }
   [[nodiscard]] int max_plots() const noexcept { return max_plots_; }
   /// Lines that there are: through the last 2, 3, ..., `size()` plots.
   [[nodiscard]] int lines() const noexcept { return std::max(size() - 1, 0); }
@@ -337,9 +343,11 @@ class LineBank {
   /// The newest plot and the other one become their mean.
   void join(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
     Plot& newest = plots_[0];
+    const Scalar later_s = elapsed_s_ / Scalar(2);
     const Plot mean{(newest.position_m + plot.mean) / Scalar(2),
-                    (newest.covariance_m2 + plot.covariance) / Scalar(4), newest.gap_s};
+                    (newest.covariance_m2 + plot.covariance) / Scalar(4), newest.gap_s + later_s};
     assign_where(lanes, newest, mean);
+    elapsed_s_ = select(lanes, later_s, elapsed_s_);
   }
 
   /// All plots become older by one. That for which there is no room stays behind the others, to be

@@ -63,6 +63,9 @@ struct TrackerConfig {
   // Duplicates
   double duplicate_distance =
       0.5;  ///< two tracks nearer than this, in squared sigmas of their difference, are one
+  double vessel_length_m =
+      0.0;  ///< so is one nearer than this to a shown one, at the same velocity: another echo
+            ///< of the same vessel; 0: each vessel has one echo
   int duplicate_scans = 3;  ///< once they have been so for this many scans
 
   // Room
@@ -91,7 +94,8 @@ struct TrackerConfig {
                     start_gate_sigma, start_speed_factor, confirm_existence, confirm_hits,
                     confirm_window, survival_time_s, drop_existence, tentative_misses, coast_scans,
                     coast_scans_per_hit, coast_scans_max, shown_scans, drop_position_std_m,
-                    drop_speed_factor, duplicate_distance, duplicate_scans, max_tracks, max_plots);
+                    drop_speed_factor, duplicate_distance, vessel_length_m, duplicate_scans,
+                    max_tracks, max_plots);
   }
 
   friend bool operator==(const TrackerConfig&, const TrackerConfig&) = default;
@@ -128,6 +132,7 @@ struct TrackerConfig {
     require_positive("drop_position_std_m", drop_position_std_m);
     require_positive("drop_speed_factor", drop_speed_factor);
     require_not_negative("duplicate_distance", duplicate_distance);
+    require_not_negative("vessel_length_m", vessel_length_m);
     require(duplicate_scans >= 1, "duplicate_scans", "at least 1", duplicate_scans);
     require(max_tracks >= 1 && max_tracks <= 1'000'000, "max_tracks", "1 to 1000000", max_tracks);
     require(max_plots >= 1 && max_plots <= 10'000'000, "max_plots", "1 to 10000000", max_plots);

@@ -37,4 +37,18 @@ inline bool same_target(const Gaussian<4>& a, const Gaussian<4>& b, double limit
   return sum < limit;
 }
 
+/// Whether another track may be of the same vessel as a known one that is shown, by another of her
+/// echoes: nearer to it than her length, m, at a velocity whose squared distance, in standard
+/// deviations of the difference, is at most the limit. That of a tentative track is of two plots,
+/// each of which may be another echo, and tells nothing.
+template <class Estimator>
+bool same_vessel(const Track<Estimator>& known, const Track<Estimator>& other, double length_m,
+                 double limit) noexcept {
+  if (!known.shown()) return false;
+  if (!((known.position() - other.position()).squaredNorm() < length_m * length_m)) return false;
+  if (!other.confirmed()) return true;
+  const Cholesky<2> factor(known.velocity_covariance() + other.velocity_covariance());
+  return factor.ok() && factor.squared_norm(known.velocity() - other.velocity()) <= limit;
+}
+
 }  // namespace wakeline

@@ -110,11 +110,10 @@ struct Track {
   /// `certain` track was given its plot and cannot have none.
   void weigh(const TrackerConfig& config, double total, double none, bool certain) noexcept {
     if (config.visible_time_s > 0.0) {
-      const double fit = (total - none) / visibility;
-      const double if_visible = certain ? fit : 1.0 - config.detection() + fit;
-      const double if_hidden = certain ? 0.0 : 1.0;
-      const double visible = visibility * if_visible;
-      visibility = visible / (visible + (1.0 - visibility) * if_hidden);
+      const double seen = std::max(total - none, 0.0);  // their sum is rounded
+      const double visible = certain ? seen : visibility * (1.0 - config.detection()) + seen;
+      const double either = certain ? visible : visible + (1.0 - visibility);
+      if (either > 0.0) visibility = visible / either;
     }
     const double exists = existence * total;
     existence = std::min(exists / (1.0 - existence + exists), 0.99999);

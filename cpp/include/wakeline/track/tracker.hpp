@@ -243,7 +243,7 @@ class Tracker {
   static constexpr double kClockPeriods = 10.0;
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar, before a designation
   static constexpr int kStartScans = 2;  ///< so long apart the plots of a start may be at least
-  static constexpr std::uint32_t kArchiveVersion = 3;
+  static constexpr std::uint32_t kArchiveVersion = 4;
   static constexpr std::size_t kGroup = 32;  ///< tracks that take their steps together
 
   /// The plots of a track, each as two readings, and what share of it they have.
@@ -592,14 +592,16 @@ class Tracker {
   [[nodiscard]] bool has_senior(const TrackType& track) const noexcept {
     // No farther apart can two tracks be that `same_target` calls one; a little more for rounding.
     const auto reach_m = [&](double other_m2) {
-      return 1.001 * std::sqrt(config_.duplicate_distance * (widest_m2(track) + other_m2));
+      const double alike_m = std::sqrt(config_.duplicate_distance * (widest_m2(track) + other_m2));
+      return 1.001 * std::max(alike_m, config_.vessel_length_m);
     };
     bool found = false;
     places_.for_each_near(track.position(), reach_m, [&](int slot) {
       const TrackType& other = tracks_.at(slot);
       found =
           found || (&other != &track && !tracks_.ended(other) && senior(other, track) &&
-                    same_target(other.kinematics, track.kinematics, config_.duplicate_distance));
+                    (same_target(other.kinematics, track.kinematics, config_.duplicate_distance) ||
+                     same_vessel(other, track, config_.vessel_length_m, gate_.threshold())));
     });
     return found;
   }
