@@ -704,7 +704,12 @@ def truth(**change):
     return recording.TargetTruth(**dict.fromkeys(names, np.arange(3.0)) | change)
 
 
-@pytest.mark.parametrize("made", [own_ship, truth])
+def ais_track(**change):
+    names = ("time_s", "north_m", "east_m", "course_rad", "speed_mps")
+    return recording.AisTrack("1", **dict.fromkeys(names, np.arange(3.0)) | change)
+
+
+@pytest.mark.parametrize("made", [own_ship, truth, ais_track])
 def test_what_is_made_of_columns_takes_lists_and_refuses_what_does_not_fit(made):
     listed = made(time_s=[0.0, 1.0, 2.0], north_m=[0.0, 1.0, 2.0])
     np.testing.assert_array_equal(listed.north_m, made().north_m)

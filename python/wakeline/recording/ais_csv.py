@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wakeline._brief import brief, counted, many, span
+from wakeline._checks import columns
 from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
@@ -42,11 +43,19 @@ class AisTrack:
     mmsi : str
         Its number.
     time_s : ndarray (n,)
-        UTC seconds, increasing: of reception, which is at times a second or two after sending.
+        UTC seconds, in order: of reception, which is at times a second or two after sending.
     north_m, east_m : ndarray (n,)
         In the local plane.
     course_rad, speed_mps : ndarray (n,)
         Over ground, in the local plane; NaN where not reported.
+
+    Raises
+    ------
+    ValueError
+        When a column has not as many numbers as there are times, or the times are not finite and in
+        order.
+    TypeError
+        When a column holds text.
     """
 
     mmsi: str
@@ -55,6 +64,9 @@ class AisTrack:
     east_m: np.ndarray
     course_rad: np.ndarray
     speed_mps: np.ndarray
+
+    def __post_init__(self) -> None:
+        columns(self, "time_s", "north_m", "east_m", "course_rad", "speed_mps")
 
     def __len__(self) -> int:
         return len(self.time_s)
