@@ -633,6 +633,8 @@ def test_turns_to_either_side_have_colours_of_their_own():
     colors = plot.turn_colors([-4, -2, 0, 2, 4])
     assert len(set(colors)) == 5
     assert plot.turn_colors([0.0]) == [colors[2]]
+    with pytest.raises(TypeError, match="turn_rate_deg_s must hold real numbers: got text"):
+        plot.turn_colors(["-4", "2"])
 
 
 def test_the_best_estimator_stands_on_top(ax):

@@ -347,6 +347,8 @@ def test_scenarios_become_episodes(file):
     assert read.episode_of(["", "", "a"], [0.4, 9.2, 9.2]).tolist() == [1, 0, 1]
     with pytest.raises(ValueError, match="'c'"):
         read.episode_of(["c"], [0.0])
+    with pytest.raises(TypeError, match="time_s must hold real numbers: got text"):
+        read.episode_of(["", ""], ["0.4", "9.2"])
 
 
 def test_a_long_recording_is_read_in_reasonable_time(file):

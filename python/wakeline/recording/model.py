@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import columns, in_a_row, shaped
+from wakeline._checks import columns, in_a_row, real_numbers, shaped
 from wakeline._engine.core import wrap_angle
 
 from .truth import TargetTruth
@@ -292,7 +292,7 @@ class Recording:
         scenario = np.asarray(scenario, dtype=str)
         if len(self.episodes) == 1:
             return np.zeros(len(scenario), dtype=int)
-        index = self._episode_by_time(np.asarray(time_s, dtype=float))
+        index = self._episode_by_time(real_numbers("time_s", time_s))
         known = {episode.name: k for k, episode in enumerate(self.episodes)}
         for name in np.unique(scenario[scenario != ""]):
             if name not in known:
