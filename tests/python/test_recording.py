@@ -223,10 +223,30 @@ def test_a_place_beyond_all_radars_is_told_by_its_cell(file, head):
         read_plots(plots)
 
 
-def test_own_ship_beyond_the_earth_is_told_by_its_cell(file):
-    own = file("time_s,north_m,east_m\n0,0,0\n3,0,-1e200\n", "own.csv")
-    with pytest.raises(RecordingError, match=r"line 3, column east_m: .*at most 1e9 m"):
-        read_plots(file("time_s,north_m,east_m\n0,1,1\n"), own)
+@pytest.mark.parametrize(
+    ("column", "wanted"), [("north_m", "1e9 m"), ("east_m", "1e9 m"), ("veast_mps", "1e6 m/s")]
+)
+def test_what_is_beyond_the_earth_is_told_by_its_cell_in_every_file(file, column, wanted):
+    def far(head, name):
+        row = dict.fromkeys(head.split(","), "0") | {"time_s": "3", column: "-1e200"}
+        return file(f"{head}\n{','.join(row.values())}\n", name)
+
+    plots = file("time_s,north_m,east_m\n0,1,1\n3,1,1\n")
+    state = "time_s,north_m,east_m,vnorth_mps,veast_mps"
+    readers = [
+        lambda: read_plots(plots, far(state, "own.csv")),
+        lambda: read_plots(plots, truth_path=far(f"{state},target", "truth.csv")),
+        lambda: recording.read_tracks(far(f"{state},track_id", "tracks.csv")),
+    ]
+    for read in readers:
+        with pytest.raises(RecordingError, match=f"line 2, column {column}: .*at most {wanted}"):
+            read()
+
+
+def test_own_ship_beside_a_plot_is_on_the_earth(file):
+    plots = file("time_s,range_m,bearing_rad,own_north_m,own_east_m\n0,1,1,0,1e200\n")
+    with pytest.raises(RecordingError, match=r"line 2, column own_east_m: .*at most 1e9 m"):
+        read_plots(plots)
 
 
 def test_equal_times_make_a_scan(file):
