@@ -745,6 +745,23 @@ def test_what_is_made_of_columns_takes_lists_and_refuses_what_does_not_fit(made)
             made(time_s=wrong)
 
 
+@pytest.mark.parametrize("time_s", [[], [0.0, 0.0], [0.0, 5.0, 5.0]])
+def test_own_ship_is_at_one_place_at_a_time(time_s):
+    with pytest.raises(ValueError, match="time_s must have one time or more, each once, got"):
+        OwnShip(time_s, np.zeros(len(time_s)), np.zeros(len(time_s)))
+
+
+@pytest.mark.parametrize("nowhere", [np.nan, np.inf])
+def test_own_ship_is_somewhere(file, nowhere):
+    plots = file("time_s,north_m,east_m\n0,1,1\n")
+    with pytest.raises(ValueError, match=r"north_m must be finite, got \["):
+        read_plots(plots, own=(nowhere, 0.0))
+    with pytest.raises(ValueError, match=r"east_m must be finite, got \["):
+        OwnShip([0.0, 1.0], [0.0, 0.0], [0.0, nowhere])
+    with pytest.raises(TypeError, match="east_m must hold real numbers: got text such as '5'"):
+        OwnShip.fixed(0.0, "5")
+
+
 def test_scores_forecasts_and_bounds_name_what_is_none():
     joyride = recording.load("joyride")
     with pytest.raises(TypeError, match="tracks must be of type Tracks, got NoneType"):
