@@ -772,6 +772,20 @@ def test_panels_of_own_ship_take_lists_and_refuse_what_does_not_fit_by_name(name
                 draw(**{argument: np.ones(2, bool)})
 
 
+def test_maps_have_a_mark_of_danger_for_each_row():
+    tracks = Tracks(["1", "1"], [0.0, 1.0], np.zeros((2, 4)))
+    with pytest.raises(ValueError, match=r"alarmed must have shape \(2,\), got \(3,\)"):
+        plot.map_figure(tracks=tracks, alarmed=np.ones(3, bool))
+    assert plot.map_figure(tracks=tracks, alarmed=[True, False]).axes
+
+
+def test_an_ellipse_is_of_two_axes():
+    with pytest.raises(ValueError, match=r"covariance must have shape \(2, 2\), got \(3, 3\)"):
+        plot.ellipse_outline([0.0, 0.0], np.eye(3))
+    with pytest.raises(ValueError, match=r"mean must have shape \(2,\), got \(3,\)"):
+        plot.ellipse_outline([0.0, 0.0, 0.0], np.eye(2))
+
+
 def test_curves_that_have_no_names_are_refused():
     with pytest.raises(TypeError, match="errors must be a mapping by name, got list"):
         plot.error_panel(plot.figure().subplots(), [0.0, 1.0], [1.0, 2.0])

@@ -3,6 +3,7 @@
 import dataclasses
 import os
 import pickle
+import re
 import threading
 import time
 
@@ -760,6 +761,40 @@ def test_own_ship_is_somewhere(file, nowhere):
         OwnShip([0.0, 1.0], [0.0, 0.0], [0.0, nowhere])
     with pytest.raises(TypeError, match="east_m must hold real numbers: got text such as '5'"):
         OwnShip.fixed(0.0, "5")
+
+
+NOWHERE = "there/is/no/such/file"
+WITH_A_NUMBER = {
+    "period_s": lambda value: read_plots(NOWHERE, period_s=value),
+    "own_gap_s": lambda value: read_plots(NOWHERE, own_gap_s=value),
+    "min_step_s": lambda value: recording.read_ais(NOWHERE, min_step_s=value),
+    "latitude_deg": lambda value: recording.LocalPlane(value, 0.0),
+    "reorder_s": lambda value: recording.read_nmea(NOWHERE, reorder_s=value),
+    "variation_deg": lambda value: recording.read_nmea(NOWHERE, variation_deg=value),
+    "midnight_s": lambda value: recording.read_video(NOWHERE, midnight_s=value),
+    "max_gap_s": lambda value: ais_track().parts(value),
+    "min_reports": lambda value: ais_track().parts(min_reports=value),
+    "longer_than_s": lambda value: recording.load_navigation().gaps_s(value),
+    "window_s": lambda value: truth().state_at([0.5], window_s=value),
+}
+
+
+@pytest.mark.parametrize("name", WITH_A_NUMBER)
+@pytest.mark.parametrize("wrong", ["3", [1.0]])
+def test_readers_and_recordings_name_what_is_no_number(name, wrong):
+    with pytest.raises(TypeError, match=f"^{name} must be a number, got {re.escape(repr(wrong))}"):
+        WITH_A_NUMBER[name](wrong)
+
+
+@pytest.mark.parametrize("name", ["max_gap_s", "min_reports", "longer_than_s", "window_s"])
+@pytest.mark.parametrize("wrong", [-1.0, np.nan])
+def test_spans_and_counts_below_zero_are_refused(name, wrong):
+    with pytest.raises(ValueError, match=f"^{name} must not be negative, got {wrong}"):
+        WITH_A_NUMBER[name](wrong)
+    with pytest.raises(ValueError, match="max_gap_s must not be negative"):
+        recording.load_navigation().parts(-1.0)
+    with pytest.raises(ValueError, match="max_gap_s must not be negative"):
+        truth().state_at([0.5], max_gap_s=-1.0)
 
 
 def test_scores_forecasts_and_bounds_name_what_is_none():

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wakeline._brief import brief, counted, many, span
-from wakeline._checks import columns
+from wakeline._checks import columns, not_negative, plain_numbers
 from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
@@ -92,7 +92,13 @@ class AisTrack:
         max_gap_s : float
         min_reports : int
             Shorter parts are left out.
+
+        Raises
+        ------
+        ValueError
+            When a parameter is negative.
         """
+        not_negative(max_gap_s=max_gap_s, min_reports=min_reports)
         cuts = np.flatnonzero(np.diff(self.time_s) > max_gap_s) + 1
         edges = [0, *cuts.tolist(), len(self)]
         parts = [self.rows(slice(a, b)) for a, b in itertools.pairwise(edges)]
@@ -174,6 +180,7 @@ def read_ais(
     ValueError
         When a parameter is not positive or the origin is not on the earth.
     """
+    plain_numbers(min_step_s=min_step_s, max_speed_mps=max_speed_mps)
     if not (min_step_s > 0 and max_speed_mps > 0):
         raise ValueError(
             f"min_step_s and max_speed_mps must be positive, got {min_step_s} and {max_speed_mps}"

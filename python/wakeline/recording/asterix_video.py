@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wakeline._brief import counted, many
+from wakeline._checks import plain_numbers
 from wakeline._engine.video import Cat240Decoder, Cat240Encoder, Cat240Sweeps
 
 from .errors import RecordingError
@@ -178,6 +179,7 @@ def read_video(
     ValueError
         When `period_s` is not positive, `midnight_s` is not finite or `source` is not two octets.
     """
+    plain_numbers(midnight_s=midnight_s, period_s=1.0 if period_s is None else period_s)
     if period_s is not None and not (period_s > 0 and math.isfinite(period_s)):
         raise ValueError(f"period_s must be positive, got {period_s}")
     if not math.isfinite(midnight_s):

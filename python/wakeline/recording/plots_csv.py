@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._checks import plain_numbers
+
 from .episodes import build_episode
 from .model import Episode, OwnShip, Recording
 from .own_csv import OWN_GAP_S, OwnRows, read_own
@@ -90,7 +92,10 @@ def read_plots(
     if plots_path is None and own_path is None:
         raise ValueError("a plots file or an own-ship file is needed")
     for label, value in (("period_s", period_s), ("own_gap_s", own_gap_s)):
-        if value is not None and not value > 0:
+        if value is None:
+            continue
+        plain_numbers(**{label: value})
+        if not value > 0:
             raise ValueError(f"{label} must be positive, got {value}")
     notes: list[str] = []
     plots = PlotRows.none() if plots_path is None else read_plot_rows(plots_path, notes)
