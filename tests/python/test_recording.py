@@ -706,6 +706,26 @@ def test_recordings_that_ship_are_written_and_read_back(tmp_path, name):
             np.testing.assert_allclose(mine.position_m, its.position_m, atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("episodes", "target", "wanted"),
+    [
+        (["a", "a"], "1", "each episode must have a name of its own, got 'a' 2 times"),
+        ([" a"], "1", "names of episodes must be one line without spaces around it, got ' a'"),
+        (["a\nb"], "1", r"names of episodes must be one line .*, got 'a\\nb'"),
+        (["a"], "1 ", "names of targets must be one line without spaces around it, got '1 '"),
+        (["a"], "", "a target must have a name, got ''"),
+    ],
+)
+def test_names_that_would_not_be_read_back_are_not_written(tmp_path, episodes, target, wanted):
+    (scene,) = RadarSimulator(5.0, 0.01, 3.0).record({target: Truth([900.0, 1.0, 0.0, 0.0])}, 3, 1)
+    parts = [dataclasses.replace(scene, name=name) for name in episodes]
+    with pytest.raises(ValueError, match=wanted):
+        recording.write_plots(
+            tmp_path / "p.csv", recording.Recording("r", parts), None, tmp_path / "t.csv"
+        )
+    assert not list(tmp_path.iterdir())
+
+
 def test_plots_alone_are_written_without_own_ship_and_truth(tmp_path):
     made = RadarSimulator(20.0, 0.01, 2.5).record({"a": Truth([900.0, 5.0, 300.0, 1.0])}, 4, rng=1)
     recording.write_plots(tmp_path / "plots.csv", made)
