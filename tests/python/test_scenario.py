@@ -310,6 +310,13 @@ def test_radars_that_make_no_sense(arguments, name):
         )
 
 
+def test_a_recording_of_no_scans_knows_where_own_ship_is():
+    radar, own = RadarSimulator(1.0, 0.01, 1.0), Truth(START)
+    (episode,) = radar.record({"a": Truth(START)}, 0, 1, own=own, start_time_s=5.0)
+    assert len(episode) == 0
+    np.testing.assert_array_equal(episode.own.position_at([5.0]), own.state_at([5.0])[:, 0::2])
+
+
 @pytest.mark.parametrize("scans", [-1, 2.5, None])
 def test_scans_are_counted_in_whole_numbers(scans):
     radar, target = RadarSimulator(1.0, 0.01, 1.0), Truth(START)
