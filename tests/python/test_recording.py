@@ -244,6 +244,14 @@ def test_what_is_beyond_the_earth_is_told_by_its_cell_in_every_file(file, column
             read()
 
 
+def test_plots_in_a_grid_without_own_ship_in_it_are_told(file):
+    rows = [f"{k},{5.6e6 + 10 * k},4e5" for k in range(5)]
+    plots = file("\n".join(["time_s,north_m,east_m", *rows]) + "\n")
+    (note,) = read_plots(plots).notes
+    assert note.startswith("plots are 5614 km from own ship, farther than a radar at sea sees; ")
+    assert read_plots(plots, own=(5.6e6, 4.02e5)).notes == []
+
+
 def test_own_ship_beside_a_plot_is_on_the_earth(file):
     plots = file("time_s,range_m,bearing_rad,own_north_m,own_east_m\n0,1,1,0,1e200\n")
     with pytest.raises(RecordingError, match=r"line 2, column own_east_m: .*at most 1e9 m"):
