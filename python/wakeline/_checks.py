@@ -26,6 +26,14 @@ def plain_numbers(**values: Any) -> None:
             raise TypeError(f"{name} must be a number, got {value!r}")
 
 
+def not_negative(**values: Any) -> None:
+    """TypeError unless each argument is one real number, ValueError where it is below zero."""
+    plain_numbers(**values)
+    for name, value in values.items():
+        if not value >= 0:
+            raise ValueError(f"{name} must not be negative, got {value}")
+
+
 def listed(name: str, sequence: Any, of_what: str) -> list[Any]:
     """The argument of that name as a list; TypeError where it is no sequence."""
     try:

@@ -78,8 +78,6 @@ def position_m(
     columns = (track.north_m, track.east_m, track.course_rad, track.speed_mps)
     if not np.isfinite(columns).all():
         raise ValueError("every report of the track must have a position, a course and a speed")
-    if not (np.diff(track.time_s) >= 0).all():
-        raise ValueError("the reports of the track must be in order of time")
     if len(track) == 0 or np.ptp(_last(track, _LINE_OVER_S).time_s) == 0.0:
         raise ValueError("the track must have reports of two times or more in its last minute")
     return np.array([track.north_m[-1], track.east_m[-1]]) + _MODELS[model](track, ahead_s)

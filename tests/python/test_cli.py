@@ -1,6 +1,7 @@
 """The command: files in, files out, one clear line on bad input."""
 
 import csv
+import dataclasses
 import json
 import os
 import re
@@ -170,6 +171,18 @@ def test_a_score_of_no_scans_says_why(tmp_path, capsys):
     assert track(plots, "--truth", truth, "--out", tmp_path) == 0
     told = "no scan counts: of 40 truth of a target is known in at most 4,"
     assert told in capsys.readouterr().out
+
+
+def test_tracks_of_a_scenario_without_scans_are_told_by_their_file(demo, tmp_path, capsys):
+    found = read_tracks(demo / "autoferry" / "tracks.csv")
+    lost = dataclasses.replace(
+        found, scenario=np.where(found.scenario == "3", "none", found.scenario)
+    )
+    recording.write_tracks(tmp_path / "t.csv", lost)
+    files = [tmp_path / "t.csv", bundled("autoferry", "truth")]
+    message = refused(capsys, "score", *files, "--scans", bundled("autoferry", "scans"))
+    assert f"{tmp_path / 't.csv'}, column scenario: a track is of a scenario without" in message
+    assert "wanted '2' or '3' or '4' or '5' or '6', got 'none'" in message
 
 
 def test_score_with_another_gate(demo, tmp_path):
@@ -650,7 +663,9 @@ def test_a_gate_that_makes_no_sense(demo, capsys):
     files = [demo / "joyride" / "tracks.csv", bundled("joyride", "truth")]
     scans = ["--scans", bundled("joyride", "scans")]
     capsys.readouterr()
-    assert "gate_m must be positive" in refused(capsys, "score", *files, *scans, "--gate", -1)
+    for gate in (-1, 1e-200, 1e300):
+        message = refused(capsys, "score", *files, *scans, "--gate", gate)
+        assert f"gate_m must be positive and finite, from 1e-9 to 1e9, got {float(gate)}" in message
 
 
 # The program --------------------------------------------------------------------------------------

@@ -145,7 +145,6 @@ def test_the_rate_of_turn_is_that_of_the_course_through_north(rate_deg_s):
         (circling(0.0), 60.0, "line_60s", "ahead_s must be finite times"),
         (circling(0.0, speed_mps=np.nan), [60.0], "last_report", "a course and a speed"),
         (placed_at(np.nan), [60.0], "line_60s", "a position, a course and a speed"),
-        (circling(0.0).rows([0, 2, 1, 3]), [60.0], "kalman_cv", "in order of time"),
         (circling(0.0, count=1), [60.0], "line_60s", "reports of two times or more"),
         (circling(0.0, step_s=0.0), [60.0], "line_60s", "reports of two times or more"),
         (circling(0.0, count=0), [60.0], "last_report", "reports of two times or more"),

@@ -633,6 +633,8 @@ def test_turns_to_either_side_have_colours_of_their_own():
     colors = plot.turn_colors([-4, -2, 0, 2, 4])
     assert len(set(colors)) == 5
     assert plot.turn_colors([0.0]) == [colors[2]]
+    with pytest.raises(TypeError, match="turn_rate_deg_s must hold real numbers: got text"):
+        plot.turn_colors(["-4", "2"])
 
 
 def test_the_best_estimator_stands_on_top(ax):
@@ -768,6 +770,20 @@ def test_panels_of_own_ship_take_lists_and_refuse_what_does_not_fit_by_name(name
         for argument in ("coasting", "jumped"):
             with pytest.raises(ValueError, match=rf"{argument} must have shape \(3,\), got \(2,\)"):
                 draw(**{argument: np.ones(2, bool)})
+
+
+def test_maps_have_a_mark_of_danger_for_each_row():
+    tracks = Tracks(["1", "1"], [0.0, 1.0], np.zeros((2, 4)))
+    with pytest.raises(ValueError, match=r"alarmed must have shape \(2,\), got \(3,\)"):
+        plot.map_figure(tracks=tracks, alarmed=np.ones(3, bool))
+    assert plot.map_figure(tracks=tracks, alarmed=[True, False]).axes
+
+
+def test_an_ellipse_is_of_two_axes():
+    with pytest.raises(ValueError, match=r"covariance must have shape \(2, 2\), got \(3, 3\)"):
+        plot.ellipse_outline([0.0, 0.0], np.eye(3))
+    with pytest.raises(ValueError, match=r"mean must have shape \(2,\), got \(3,\)"):
+        plot.ellipse_outline([0.0, 0.0, 0.0], np.eye(2))
 
 
 def test_curves_that_have_no_names_are_refused():

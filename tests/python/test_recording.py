@@ -3,6 +3,7 @@
 import dataclasses
 import os
 import pickle
+import re
 import threading
 import time
 
@@ -223,10 +224,38 @@ def test_a_place_beyond_all_radars_is_told_by_its_cell(file, head):
         read_plots(plots)
 
 
-def test_own_ship_beyond_the_earth_is_told_by_its_cell(file):
-    own = file("time_s,north_m,east_m\n0,0,0\n3,0,-1e200\n", "own.csv")
-    with pytest.raises(RecordingError, match=r"line 3, column east_m: .*at most 1e9 m"):
-        read_plots(file("time_s,north_m,east_m\n0,1,1\n"), own)
+@pytest.mark.parametrize(
+    ("column", "wanted"), [("north_m", "1e9 m"), ("east_m", "1e9 m"), ("veast_mps", "1e6 m/s")]
+)
+def test_what_is_beyond_the_earth_is_told_by_its_cell_in_every_file(file, column, wanted):
+    def far(head, name):
+        row = dict.fromkeys(head.split(","), "0") | {"time_s": "3", column: "-1e200"}
+        return file(f"{head}\n{','.join(row.values())}\n", name)
+
+    plots = file("time_s,north_m,east_m\n0,1,1\n3,1,1\n")
+    state = "time_s,north_m,east_m,vnorth_mps,veast_mps"
+    readers = [
+        lambda: read_plots(plots, far(state, "own.csv")),
+        lambda: read_plots(plots, truth_path=far(f"{state},target", "truth.csv")),
+        lambda: recording.read_tracks(far(f"{state},track_id", "tracks.csv")),
+    ]
+    for read in readers:
+        with pytest.raises(RecordingError, match=f"line 2, column {column}: .*at most {wanted}"):
+            read()
+
+
+def test_plots_in_a_grid_without_own_ship_in_it_are_told(file):
+    rows = [f"{k},{5.6e6 + 10 * k},4e5" for k in range(5)]
+    plots = file("\n".join(["time_s,north_m,east_m", *rows]) + "\n")
+    (note,) = read_plots(plots).notes
+    assert note.startswith("plots are 5614 km from own ship, farther than a radar at sea sees; ")
+    assert read_plots(plots, own=(5.6e6, 4.02e5)).notes == []
+
+
+def test_own_ship_beside_a_plot_is_on_the_earth(file):
+    plots = file("time_s,range_m,bearing_rad,own_north_m,own_east_m\n0,1,1,0,1e200\n")
+    with pytest.raises(RecordingError, match=r"line 2, column own_east_m: .*at most 1e9 m"):
+        read_plots(plots)
 
 
 def test_equal_times_make_a_scan(file):
@@ -347,6 +376,8 @@ def test_scenarios_become_episodes(file):
     assert read.episode_of(["", "", "a"], [0.4, 9.2, 9.2]).tolist() == [1, 0, 1]
     with pytest.raises(ValueError, match="'c'"):
         read.episode_of(["c"], [0.0])
+    with pytest.raises(TypeError, match="time_s must hold real numbers: got text"):
+        read.episode_of(["", ""], ["0.4", "9.2"])
 
 
 def test_a_long_recording_is_read_in_reasonable_time(file):
@@ -683,6 +714,26 @@ def test_recordings_that_ship_are_written_and_read_back(tmp_path, name):
             np.testing.assert_allclose(mine.position_m, its.position_m, atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("episodes", "target", "wanted"),
+    [
+        (["a", "a"], "1", "each episode must have a name of its own, got 'a' 2 times"),
+        ([" a"], "1", "names of episodes must be one line without spaces around it, got ' a'"),
+        (["a\nb"], "1", r"names of episodes must be one line .*, got 'a\\nb'"),
+        (["a"], "1 ", "names of targets must be one line without spaces around it, got '1 '"),
+        (["a"], "", "a target must have a name, got ''"),
+    ],
+)
+def test_names_that_would_not_be_read_back_are_not_written(tmp_path, episodes, target, wanted):
+    (scene,) = RadarSimulator(5.0, 0.01, 3.0).record({target: Truth([900.0, 1.0, 0.0, 0.0])}, 3, 1)
+    parts = [dataclasses.replace(scene, name=name) for name in episodes]
+    with pytest.raises(ValueError, match=wanted):
+        recording.write_plots(
+            tmp_path / "p.csv", recording.Recording("r", parts), None, tmp_path / "t.csv"
+        )
+    assert not list(tmp_path.iterdir())
+
+
 def test_plots_alone_are_written_without_own_ship_and_truth(tmp_path):
     made = RadarSimulator(20.0, 0.01, 2.5).record({"a": Truth([900.0, 5.0, 300.0, 1.0])}, 4, rng=1)
     recording.write_plots(tmp_path / "plots.csv", made)
@@ -704,7 +755,12 @@ def truth(**change):
     return recording.TargetTruth(**dict.fromkeys(names, np.arange(3.0)) | change)
 
 
-@pytest.mark.parametrize("made", [own_ship, truth])
+def ais_track(**change):
+    names = ("time_s", "north_m", "east_m", "course_rad", "speed_mps")
+    return recording.AisTrack("1", **dict.fromkeys(names, np.arange(3.0)) | change)
+
+
+@pytest.mark.parametrize("made", [own_ship, truth, ais_track])
 def test_what_is_made_of_columns_takes_lists_and_refuses_what_does_not_fit(made):
     listed = made(time_s=[0.0, 1.0, 2.0], north_m=[0.0, 1.0, 2.0])
     np.testing.assert_array_equal(listed.north_m, made().north_m)
@@ -716,6 +772,57 @@ def test_what_is_made_of_columns_takes_lists_and_refuses_what_does_not_fit(made)
     for wrong in ([0.0, 2.0, 1.0], [0.0, np.nan, 1.0]):
         with pytest.raises(ValueError, match="time_s must be finite and in order, got"):
             made(time_s=wrong)
+
+
+@pytest.mark.parametrize("time_s", [[], [0.0, 0.0], [0.0, 5.0, 5.0]])
+def test_own_ship_is_at_one_place_at_a_time(time_s):
+    with pytest.raises(ValueError, match="time_s must have one time or more, each once, got"):
+        OwnShip(time_s, np.zeros(len(time_s)), np.zeros(len(time_s)))
+
+
+@pytest.mark.parametrize("nowhere", [np.nan, np.inf])
+def test_own_ship_is_somewhere(file, nowhere):
+    plots = file("time_s,north_m,east_m\n0,1,1\n")
+    with pytest.raises(ValueError, match=r"north_m must be finite, got \["):
+        read_plots(plots, own=(nowhere, 0.0))
+    with pytest.raises(ValueError, match=r"east_m must be finite, got \["):
+        OwnShip([0.0, 1.0], [0.0, 0.0], [0.0, nowhere])
+    with pytest.raises(TypeError, match="east_m must hold real numbers: got text such as '5'"):
+        OwnShip.fixed(0.0, "5")
+
+
+NOWHERE = "there/is/no/such/file"
+WITH_A_NUMBER = {
+    "period_s": lambda value: read_plots(NOWHERE, period_s=value),
+    "own_gap_s": lambda value: read_plots(NOWHERE, own_gap_s=value),
+    "min_step_s": lambda value: recording.read_ais(NOWHERE, min_step_s=value),
+    "latitude_deg": lambda value: recording.LocalPlane(value, 0.0),
+    "reorder_s": lambda value: recording.read_nmea(NOWHERE, reorder_s=value),
+    "variation_deg": lambda value: recording.read_nmea(NOWHERE, variation_deg=value),
+    "midnight_s": lambda value: recording.read_video(NOWHERE, midnight_s=value),
+    "max_gap_s": lambda value: ais_track().parts(value),
+    "min_reports": lambda value: ais_track().parts(min_reports=value),
+    "longer_than_s": lambda value: recording.load_navigation().gaps_s(value),
+    "window_s": lambda value: truth().state_at([0.5], window_s=value),
+}
+
+
+@pytest.mark.parametrize("name", WITH_A_NUMBER)
+@pytest.mark.parametrize("wrong", ["3", [1.0]])
+def test_readers_and_recordings_name_what_is_no_number(name, wrong):
+    with pytest.raises(TypeError, match=f"^{name} must be a number, got {re.escape(repr(wrong))}"):
+        WITH_A_NUMBER[name](wrong)
+
+
+@pytest.mark.parametrize("name", ["max_gap_s", "min_reports", "longer_than_s", "window_s"])
+@pytest.mark.parametrize("wrong", [-1.0, np.nan])
+def test_spans_and_counts_below_zero_are_refused(name, wrong):
+    with pytest.raises(ValueError, match=f"^{name} must not be negative, got {wrong}"):
+        WITH_A_NUMBER[name](wrong)
+    with pytest.raises(ValueError, match="max_gap_s must not be negative"):
+        recording.load_navigation().parts(-1.0)
+    with pytest.raises(ValueError, match="max_gap_s must not be negative"):
+        truth().state_at([0.5], max_gap_s=-1.0)
 
 
 def test_scores_forecasts_and_bounds_name_what_is_none():

@@ -50,9 +50,22 @@ def test_rows_need_no_order_and_vessels_are_told_apart(tmp_path):
         assert (np.diff(track.north_m) > 0).all()
 
 
-def test_the_origin_is_the_middle_where_none_is_given(tmp_path):
+def test_the_origin_is_the_median_where_none_is_given(tmp_path):
     ais = read_ais(written(tmp_path, row(0, latitude=54.0), row(5, "9", 54.2, 10.4)))
     assert (ais.plane.latitude_deg, ais.plane.longitude_deg) == pytest.approx((54.1, 10.2))
+
+
+@pytest.mark.parametrize("longitudes", [(10.0, 10.0), (179.9999, -179.9999)])
+def test_a_wild_report_does_not_move_the_plane(tmp_path, longitudes):
+    there = [row(s, longitude=longitudes[s % 2], latitude=54.0 + s * SECOND_DEG) for s in range(9)]
+    alone = read_ais(written(tmp_path, *there))
+    beside = read_ais(written(tmp_path, row(4, "8", -20.0, 40.0), *there))
+    place_m = beside.plane.position_m(alone.plane.latitude_deg, alone.plane.longitude_deg)
+    assert np.hypot(*place_m) < 20.0
+    (note,) = beside.notes
+    assert "1 report lies more than 300 km from the origin of the plane (first in line 2)" in note
+    (note,) = read_ais(written(tmp_path, row(10, latitude=-20.0), *there)).notes
+    assert "1 report farther off than a vessel gets at 40 m/s left out (first in line 2)" in note
 
 
 def test_other_programs_names_of_columns(tmp_path):

@@ -480,6 +480,14 @@ def test_a_file_without_video_is_an_error(path, octets, got):
     assert got in str(caught.value)
 
 
+def test_packed_video_is_named_and_no_video(path):
+    like_a_summary = b"\xf0\x00\x11\xd0\x01\x02\x01\tby chance"
+    packed = b"\x1f\x8b" + bytes(9) + like_a_summary + bytes(50)
+    with pytest.raises(RecordingError, match="got a file packed by gzip, unpack it first"):
+        read(path, packed)
+    assert not recording.is_video(path)
+
+
 def test_a_file_that_is_not_there_is_an_error(path):
     with pytest.raises(RecordingError, match="cannot be read"):
         read(path)

@@ -119,6 +119,14 @@ def test_what_another_truth_calls_parameters_is_its_own():
     assert len(told["states_sha256"]) == 64
 
 
+@pytest.mark.parametrize("name", ["switch_times_s", "control_switch_times_s"])
+def test_what_another_truth_tells_of_its_switches_are_numbers(name):
+    told = type("Told", (TrackTruth,), {name: ["10", "20"]})
+    truth = told([0.0, 60.0], [1000.0, 1300.0], [0.0, 0.0])
+    with pytest.raises(TypeError, match=f"^{name} must hold real numbers: got text such as '10'"):
+        getattr(Scenario("one", truth, RadarSimulator(30.0, 0.01, 3.0), 20), name)
+
+
 def test_truths_show_themselves_in_a_few_words():
     truth = Truth([0.0, 5.0, 0.0, 0.0], [Segment(60.0), Segment(30.0, 0.02)], start_time_s=10.0)
     assert repr(truth) == "<Truth: 2 segments, 10.0 to 100.0 s>"
@@ -300,6 +308,13 @@ def test_radars_that_make_no_sense(arguments, name):
         RadarSimulator(
             **({"range_std_m": 1.0, "bearing_std_rad": 0.01, "period_s": 1.0} | arguments)
         )
+
+
+def test_a_recording_of_no_scans_knows_where_own_ship_is():
+    radar, own = RadarSimulator(1.0, 0.01, 1.0), Truth(START)
+    (episode,) = radar.record({"a": Truth(START)}, 0, 1, own=own, start_time_s=5.0)
+    assert len(episode) == 0
+    np.testing.assert_array_equal(episode.own.position_at([5.0]), own.state_at([5.0])[:, 0::2])
 
 
 @pytest.mark.parametrize("scans", [-1, 2.5, None])

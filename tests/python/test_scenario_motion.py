@@ -128,6 +128,7 @@ def test_a_table_of_segments():
         ([(0, 10)], "row 0 must be three finite numbers"),
         ([0, 10, 0], "row 0 must be three finite numbers"),
         ([("a", "b", "c")], r"row 0 must be three finite numbers, .*got \('a', 'b', 'c'\)"),
+        ([("0", "10", "0.1")], "row 0 must be three finite numbers"),
         ([(0, 10, 0), None], "row 1 must be three finite numbers, .*got None"),
         ([(0, 10, 0), (10, (20, 30), 0)], "row 1 must be three finite numbers"),
         ([(0, 10, 0), (10, np.nan, 0)], "row 1 must be three finite numbers"),

@@ -6,9 +6,18 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from wakeline import metrics
 from wakeline._progress import progress
-from wakeline.recording import Episode, Recording, RecordingError, read_plots, read_tracks
+from wakeline.recording import (
+    Episode,
+    Recording,
+    RecordingError,
+    Tracks,
+    read_plots,
+    read_tracks,
+)
 
 from . import outputs, report
 
@@ -38,6 +47,22 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     parser.set_defaults(run=run, inputs=inputs)
 
 
+def _check_scenarios(file: Path, tracks: Tracks, recording: Recording) -> None:
+    """RecordingError where a track is of a scenario that a recording of several does not have."""
+    known = [episode.name for episode in recording]
+    if tracks.scenario is None or len(known) == 1:
+        return
+    lost = tracks.scenario[~np.isin(tracks.scenario, ["", *known])]
+    if len(lost):
+        raise RecordingError(
+            file,
+            "a track is of a scenario without scans",
+            column="scenario",
+            wanted=" or ".join(map(repr, known)),
+            got=repr(str(lost[0])),
+        )
+
+
 class _Watched(Recording):
     """A recording that shows which of its episodes is being scored."""
 
@@ -65,6 +90,7 @@ def run(arguments: argparse.Namespace) -> None:
             arguments.scans, "there are no scans", line=1, wanted="a column scan, or --plots"
         )
     tracks = read_tracks(arguments.tracks)
+    _check_scenarios(arguments.tracks, tracks, recording)
     watched = _Watched(recording.name, recording.episodes, recording.notes)
     score = metrics.score(tracks, watched, gate_m=arguments.gate)
     for note in recording.notes:

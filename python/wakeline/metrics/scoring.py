@@ -37,6 +37,7 @@ def score(
         supported by plots.
     gate_m : float
         Farthest that a track may be from the target it is matched to; also the cut-off of GOSPA.
+        From 1e-9 to 1e9, as its square counts.
     bonus_m : float
         How much nearer another track must be before a target leaves the one it was matched to.
     warmup_scans : int
@@ -50,15 +51,15 @@ def score(
     ------
     ValueError
         When tracks name a scenario that the recording does not have, or a parameter is not
-        positive and finite (the bonus may be zero).
+        positive and finite (the bonus may be zero) or the gate out of its range.
     """
     if not isinstance(tracks, Tracks):
         raise TypeError(f"tracks must be of type Tracks, got {type(tracks).__name__}")
     if not isinstance(recording, (Recording, Episode)):
         raise TypeError(f"recording must be a Recording or Episode, got {type(recording).__name__}")
     plain_numbers(gate_m=gate_m, bonus_m=bonus_m, warmup_scans=warmup_scans)
-    if not 0 < gate_m < np.inf:
-        raise ValueError(f"gate_m must be positive and finite, got {gate_m}")
+    if not 1e-9 <= gate_m <= 1e9:
+        raise ValueError(f"gate_m must be positive and finite, from 1e-9 to 1e9, got {gate_m}")
     if not 0 <= bonus_m < np.inf:
         raise ValueError(f"bonus_m must be finite and not negative, got {bonus_m}")
     if not 1 <= warmup_scans < np.inf:

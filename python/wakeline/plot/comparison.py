@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wakeline._checks import shaped
+from wakeline._checks import real_numbers, shaped
 
 from .style import GRID, INK, MUTED, PALETTE, dress, dress_map, name_lines
 from .time import draw_bands
@@ -328,7 +328,7 @@ def turn_colors(turn_rate_deg_s: Sequence[float]) -> list[str]:
     """Colours of turn rates: grey straight on, red to port, blue to starboard, dark when hard."""
     from matplotlib.colors import LinearSegmentedColormap, to_hex
 
-    rates = np.asarray(turn_rate_deg_s, dtype=float)
+    rates = real_numbers("turn_rate_deg_s", turn_rate_deg_s)
     hardest = max(np.abs(rates).max(initial=0.0), 1e-12)
     port = LinearSegmentedColormap.from_list("port", _PORT)
     starboard = LinearSegmentedColormap.from_list("starboard", _STARBOARD)

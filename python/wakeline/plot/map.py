@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wakeline._brief import many
-from wakeline._checks import real_numbers
+from wakeline._checks import shaped
 from wakeline.recording import Episode, Tracks
 
 from .style import (
@@ -81,9 +81,16 @@ def map_view(
     -------
     matplotlib.axes.Axes
         `ax`.
+
+    Raises
+    ------
+    ValueError
+        When `alarmed` does not have a mark for each row.
     """
     from .labels import LoneLabels
 
+    if tracks is not None and alarmed is not None:
+        alarmed = shaped("alarmed", alarmed, len(tracks)).astype(bool)
     if episode is not None:
         _draw_plots(ax, episode)
         _draw_own_ship(ax, *_own_way(episode))
@@ -143,12 +150,17 @@ def ellipse_outline(
     Returns
     -------
     ndarray (points, 2)
+
+    Raises
+    ------
+    ValueError
+        When the shapes are others.
     """
-    variance, axes = np.linalg.eigh(real_numbers("covariance", covariance))
+    variance, axes = np.linalg.eigh(shaped("covariance", covariance, 2, 2))
     around = np.linspace(0.0, 2.0 * np.pi, points)
     circle = np.column_stack([np.cos(around), np.sin(around)])
     half_axes = np.sqrt(quantile * np.maximum(variance, 0.0))
-    return real_numbers("mean", mean) + (circle * half_axes) @ axes.T
+    return shaped("mean", mean, 2) + (circle * half_axes) @ axes.T
 
 
 def _draw_plots(ax: Axes, episode: Episode) -> None:

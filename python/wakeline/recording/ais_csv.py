@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wakeline._brief import brief, counted, many, span
+from wakeline._checks import columns, not_negative, plain_numbers
 from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
@@ -42,11 +43,19 @@ class AisTrack:
     mmsi : str
         Its number.
     time_s : ndarray (n,)
-        UTC seconds, increasing: of reception, which is at times a second or two after sending.
+        UTC seconds, in order: of reception, which is at times a second or two after sending.
     north_m, east_m : ndarray (n,)
         In the local plane.
     course_rad, speed_mps : ndarray (n,)
         Over ground, in the local plane; NaN where not reported.
+
+    Raises
+    ------
+    ValueError
+        When a column has not as many numbers as there are times, or the times are not finite and in
+        order.
+    TypeError
+        When a column holds text.
     """
 
     mmsi: str
@@ -55,6 +64,9 @@ class AisTrack:
     east_m: np.ndarray
     course_rad: np.ndarray
     speed_mps: np.ndarray
+
+    def __post_init__(self) -> None:
+        columns(self, "time_s", "north_m", "east_m", "course_rad", "speed_mps")
 
     def __len__(self) -> int:
         return len(self.time_s)
@@ -80,7 +92,13 @@ class AisTrack:
         max_gap_s : float
         min_reports : int
             Shorter parts are left out.
+
+        Raises
+        ------
+        ValueError
+            When a parameter is negative.
         """
+        not_negative(max_gap_s=max_gap_s, min_reports=min_reports)
         cuts = np.flatnonzero(np.diff(self.time_s) > max_gap_s) + 1
         edges = [0, *cuts.tolist(), len(self)]
         parts = [self.rows(slice(a, b)) for a, b in itertools.pairwise(edges)]
@@ -144,7 +162,8 @@ def read_ais(
     path : str or Path
         The file.
     origin_deg : (float, float), optional
-        Latitude and longitude of the origin of the plane; default the middle of the positions.
+        Latitude and longitude of the origin of the plane; default the medians of the positions,
+        which a few wild ones do not move.
     min_step_s : float
         Least time between reports of a vessel: of more frequent ones as many are kept as fit.
     max_speed_mps : float
@@ -162,6 +181,7 @@ def read_ais(
     ValueError
         When a parameter is not positive or the origin is not on the earth.
     """
+    plain_numbers(min_step_s=min_step_s, max_speed_mps=max_speed_mps)
     if not (min_step_s > 0 and max_speed_mps > 0):
         raise ValueError(
             f"min_step_s and max_speed_mps must be positive, got {min_step_s} and {max_speed_mps}"
@@ -181,9 +201,8 @@ def read_ais(
         raise RecordingError(table.path, "no report has a position", wanted="at least one")
     _note(notes, table, ~placed, "report", "without a position")
     if origin_deg is None:
-        origin_deg = _middle_deg(latitude_deg[placed], longitude_deg[placed])
+        origin_deg = _median_deg(latitude_deg[placed], longitude_deg[placed])
     plane = LocalPlane(*origin_deg)
-    _note_far(notes, table, plane.angle_rad(latitude_deg, longitude_deg))
     north_m, east_m = plane.position_m(latitude_deg, longitude_deg)
     course_rad = plane.course_rad(np.radians(cog_deg), latitude_deg, longitude_deg)
     tracks: dict[str, AisTrack] = {}
@@ -198,6 +217,8 @@ def read_ais(
         tracks[number] = AisTrack(
             number, time_s[row], north_m[row], east_m[row], course_rad[row], sog_kn[row] * KNOT_MPS
         )
+    angle_rad = plane.angle_rad(latitude_deg, longitude_deg)
+    _note_far(notes, table, np.where(late | jumped, 0.0, angle_rad))
     _note(notes, table, late, "report", f"less than {min_step_s:g} s before the next of the vessel")
     way = f"farther off than a vessel gets at {max_speed_mps:g} m/s"
     _note(notes, table, jumped, "report", way)
@@ -238,14 +259,12 @@ def _over_ground(
     return np.where((values < 0.0) | (values >= missing), np.nan, values)
 
 
-def _middle_deg(latitude_deg: np.ndarray, longitude_deg: np.ndarray) -> tuple[float, float]:
-    """The middle of the latitudes and of the longitudes, on whichever side of 180 degrees."""
-    east_deg = (longitude_deg - longitude_deg[0] + 180.0) % 360.0 - 180.0
-    middle_deg = longitude_deg[0] + (east_deg.min() + east_deg.max()) / 2.0
-    return (
-        float((latitude_deg.min() + latitude_deg.max()) / 2.0),
-        float((middle_deg + 180.0) % 360.0 - 180.0),
-    )
+def _median_deg(latitude_deg: np.ndarray, longitude_deg: np.ndarray) -> tuple[float, float]:
+    """Medians of the latitudes and of the longitudes, on whichever side of 180 degrees."""
+    mean_deg = np.degrees(np.angle(np.exp(1j * np.radians(longitude_deg)).sum()))
+    east_deg = (longitude_deg - mean_deg + 180.0) % 360.0 - 180.0
+    median_deg = mean_deg + np.median(east_deg)
+    return float(np.median(latitude_deg)), float((median_deg + 180.0) % 360.0 - 180.0)
 
 
 def _too_soon(time_s: np.ndarray, min_step_s: float) -> np.ndarray:

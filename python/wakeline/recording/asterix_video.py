@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wakeline._brief import counted, many
+from wakeline._checks import plain_numbers
 from wakeline._engine.video import Cat240Decoder, Cat240Encoder, Cat240Sweeps
 
 from .errors import RecordingError
 from .files import replacing
+from .not_text import packed
 from .video import Beam, RadarVideo
 
 _PIECE = 1 << 22  # octets read at once
@@ -116,16 +118,22 @@ class VideoReport:
 def is_video(path: str | Path) -> bool:
     """Whether a file begins as ASTERIX radar video or has some in its first 512 KiB.
 
+    Summaries alone do not count in a packed file, where chance makes octets that look like them.
+
     Raises
     ------
     OSError
         When the file cannot be opened.
     """
-    with Path(path).open("rb") as file:
-        head = file.read(_HEAD)
+    head = _head(path)
     begins = len(head) > 3 and head[0] == 240 and head[1:3] > b"\x00\x04" and head[3] >= 0xC0
     found = Cat240Decoder().decode(head, last=len(head) < _HEAD)
-    return bool(begins or len(found.offset) or found.summaries)
+    return bool(begins or len(found.offset) or (found.summaries and not packed(head)))
+
+
+def _head(path: str | Path) -> bytes:
+    with Path(path).open("rb") as file:
+        return file.read(_HEAD)
 
 
 def read_video(
@@ -178,6 +186,7 @@ def read_video(
     ValueError
         When `period_s` is not positive, `midnight_s` is not finite or `source` is not two octets.
     """
+    plain_numbers(midnight_s=midnight_s, period_s=1.0 if period_s is None else period_s)
     if period_s is not None and not (period_s > 0 and math.isfinite(period_s)):
         raise ValueError(f"period_s must be positive, got {period_s}")
     if not math.isfinite(midnight_s):
@@ -285,6 +294,8 @@ def _nothing(path: Path, order: _Order) -> RecordingError:
         wanted = f"sweeps of source {report.source}"
         return RecordingError(path, "no video of this radar", wanted=wanted, got=got)
     got = "nothing" if report.first_problem is None else f"this: {report.first_problem}"
+    if path.is_file():  # a pipe is not read again
+        got = packed(_head(path)) or got
     return RecordingError(path, "no radar video", wanted="sweeps of ASTERIX category 240", got=got)
 
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wakeline._checks import plain_numbers
+
 EARTH_RADIUS_M = 6371e3
 """Of a sphere, where that is near enough."""
 
@@ -36,6 +38,7 @@ class LocalPlane:
     longitude_deg: float
 
     def __post_init__(self) -> None:
+        plain_numbers(latitude_deg=self.latitude_deg, longitude_deg=self.longitude_deg)
         if not (abs(self.latitude_deg) <= 90 and abs(self.longitude_deg) <= 180):
             raise ValueError(
                 "latitude_deg must be from -90 to 90 and longitude_deg from -180 to 180, "

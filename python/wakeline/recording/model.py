@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import columns, in_a_row, shaped
+from wakeline._checks import columns, in_a_row, real_numbers, shaped
 from wakeline._engine.core import wrap_angle
 
 from .truth import TargetTruth
@@ -106,18 +106,26 @@ class Scan:
 
 @dataclass(frozen=True)
 class OwnShip:
-    """Where the radar was, sorted by time; one row is a radar that does not move.
+    """Where the radar was, sorted by time, each time once; one row is a radar that does not move.
 
     Attributes
     ----------
     time_s, north_m, east_m : ndarray (n,)
-        Positions of the radar, at least one.
+        Positions of the radar, at least one, finite.
     vnorth_mps, veast_mps : ndarray (n,) or None
         Velocity over ground, where recorded.
     heading_rad : ndarray (n,) or None
         Heading, clockwise from north, where recorded.
     velocity_m2s2 : ndarray (n, 2, 2) or None
         Covariance of the velocity, NaN where not known.
+
+    Raises
+    ------
+    ValueError
+        When there is no time, a time twice or out of order, a position that is not finite, or a
+        column of another length.
+    TypeError
+        When a column holds text.
     """
 
     time_s: np.ndarray
@@ -131,6 +139,11 @@ class OwnShip:
     def __post_init__(self) -> None:
         motion = ("vnorth_mps", "veast_mps", "heading_rad")
         columns(self, "time_s", "north_m", "east_m", optional=motion)
+        if len(self) == 0 or (np.diff(self.time_s) == 0).any():
+            raise ValueError(f"time_s must have one time or more, each once, got {self.time_s}")
+        for name in ("north_m", "east_m"):
+            if not np.isfinite(getattr(self, name)).all():
+                raise ValueError(f"{name} must be finite, got {getattr(self, name)}")
         if self.velocity_m2s2 is not None:
             covariances = shaped("velocity_m2s2", self.velocity_m2s2, len(self), 2, 2)
             object.__setattr__(self, "velocity_m2s2", covariances)
@@ -144,7 +157,7 @@ class OwnShip:
     @classmethod
     def fixed(cls, north_m: float = 0.0, east_m: float = 0.0) -> OwnShip:
         """A radar that does not move."""
-        return cls(np.zeros(1), np.array([float(north_m)]), np.array([float(east_m)]))
+        return cls(np.zeros(1), np.array([north_m]), np.array([east_m]))
 
     def position_at(self, time_s: np.ndarray) -> np.ndarray:
         """Positions (T, 2), north and east, by linear interpolation.
@@ -292,7 +305,7 @@ class Recording:
         scenario = np.asarray(scenario, dtype=str)
         if len(self.episodes) == 1:
             return np.zeros(len(scenario), dtype=int)
-        index = self._episode_by_time(np.asarray(time_s, dtype=float))
+        index = self._episode_by_time(real_numbers("time_s", time_s))
         known = {episode.name: k for k, episode in enumerate(self.episodes)}
         for name in np.unique(scenario[scenario != ""]):
             if name not in known:

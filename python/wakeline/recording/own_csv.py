@@ -184,7 +184,7 @@ def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
             f"{table.path.name}: {rows} without a finite own-ship position "
             f"left out (first in line {first})"
         )
-    motion |= {c: table.numbers(c) for c in ("vnorth_mps", "veast_mps") if c in table}
+    motion |= {c: table.speeds_mps(c) for c in ("vnorth_mps", "veast_mps") if c in table}
     if "heading_deg" in table:
         motion["heading_rad"] = np.deg2rad(table.numbers("heading_deg"))
     elif "heading_rad" in table:

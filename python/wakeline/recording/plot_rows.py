@@ -210,8 +210,12 @@ def _bearings_rad(table: Table) -> np.ndarray:
 def _own_beside(table: Table) -> np.ndarray | None:
     if "own_north_m" not in table and "own_east_m" not in table:
         return None
-    table.require("own_north_m", "own_east_m")
-    return np.column_stack([table.finite("own_north_m"), table.finite("own_east_m")])
+    names = ("own_north_m", "own_east_m")
+    table.require(*names)
+    own_m = np.column_stack([table.ways_m(name) for name in names])
+    for name, way_m in zip(names, own_m.T, strict=True):
+        table.check(name, np.isfinite(way_m), "a finite number")
+    return own_m
 
 
 def _set_back(rows: PlotRows) -> np.ndarray:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from wakeline._checks import plain_numbers
+
 from .episodes import build_episode
 from .model import Episode, OwnShip, Recording
 from .own_csv import OWN_GAP_S, OwnRows, read_own
@@ -16,6 +18,7 @@ from .scans import turn_s
 from .truth_csv import read_truth
 
 _MANY, _NEARLY_ALL = 20, 0.9
+_FAR_M = 300e3
 
 
 def read_plots(
@@ -53,8 +56,9 @@ def read_plots(
     the own-ship file outside its record.
 
     **Left out with a note**: plots without a finite place (the scan stays) and repeated rows. Where
-    no scans are numbered a note tells, too, of times that go back by more than a minute. A file
-    with a header only has no plots, which is no error.
+    no scans are numbered a note tells, too, of times that go back by more than a minute. A note
+    tells of plots that mostly lie more than 300 km from own ship, as in a grid of a country without
+    her place in it. A file with a header only has no plots, which is no error.
 
     Parameters
     ----------
@@ -90,7 +94,10 @@ def read_plots(
     if plots_path is None and own_path is None:
         raise ValueError("a plots file or an own-ship file is needed")
     for label, value in (("period_s", period_s), ("own_gap_s", own_gap_s)):
-        if value is not None and not value > 0:
+        if value is None:
+            continue
+        plain_numbers(**{label: value})
+        if not value > 0:
             raise ValueError(f"{label} must be positive, got {value}")
     notes: list[str] = []
     plots = PlotRows.none() if plots_path is None else read_plot_rows(plots_path, notes)
@@ -107,8 +114,20 @@ def read_plots(
     episodes = episodes_of(period_s)
     if period_s is None and plots.scan is None and (own_rows is None or own_rows.scan is None):
         episodes = _in_turns(episodes, episodes_of, notes)
+    _note_far(episodes, notes)
     recording = Recording(name or Path(plots_path or own_path).stem, episodes, notes)
     return recording if truth_path is None else _with_truth(recording, truth_path)
+
+
+def _note_far(episodes: list[Episode], notes: list[str]) -> None:
+    """Tell of plots that no radar of a ship sees from where she is taken to be."""
+    range_m = [scan.range_m for episode in episodes for scan in episode.scans if len(scan)]
+    usual_m = float(np.median(np.concatenate(range_m))) if range_m else 0.0
+    if usual_m > _FAR_M:
+        notes.append(
+            f"plots are {usual_m / 1e3:.0f} km from own ship, farther than a radar at sea sees; "
+            "she stands at the origin where no file says otherwise"
+        )
 
 
 def _in_turns(

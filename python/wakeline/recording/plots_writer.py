@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
@@ -42,12 +43,20 @@ def write_plots(
     Raises
     ------
     ValueError
-        When there is a path for the truth and an episode has none.
+        When there is a path for the truth and an episode has none; when two episodes have the same
+        name, a target has none, or a name would not be read back: with spaces around it or of
+        several lines.
     OSError
         When a file cannot be written.
     """
     if truth_path is not None and any(episode.truth is None for episode in recording):
         raise ValueError("every episode must have truth where there is a truth_path")
+    _check_names("episode", [episode.name for episode in recording])
+    if truth_path is not None:
+        for episode in recording:
+            _check_names("target", [*map(str, episode.truth)])
+            if "" in episode.truth:
+                raise ValueError("a target must have a name, got ''")
     named = any(episode.name for episode in recording)
     _write(plots_path, _PLOTS, named, ((e.name, _plot_rows(e)) for e in recording))
     if own_path is not None:
@@ -56,6 +65,17 @@ def write_plots(
         _write(own_path, head, named, ((e.name, _scan_rows(e, velocity)) for e in recording))
     if truth_path is not None:
         _write(truth_path, _TRUTH, named, ((e.name, _truth_rows(e)) for e in recording))
+
+
+def _check_names(what: str, names: list[str]) -> None:
+    """ValueError unless each name stands once and is read back from a cell as it is."""
+    for name, times in Counter(names).items():
+        if times > 1:
+            raise ValueError(f"each {what} must have a name of its own, got {name!r} {times} times")
+        if name != name.strip() or {"\n", "\r"} & set(name):
+            raise ValueError(
+                f"names of {what}s must be one line without spaces around it, got {name!r}"
+            )
 
 
 def _plot_rows(episode: Episode) -> Iterator[list]:

@@ -22,6 +22,7 @@ TIME_WANTED = "UTC seconds or ISO 8601 text such as 2021-05-04T07:54:53.034Z"
 
 _NOT_CSV = "the file is not CSV text in UTF-8"
 _FARTHEST_M = 1e9
+_FASTEST_MPS = 1e6
 _LATEST_S = 1e11  # of the year 5138; what is later is in another unit
 
 _ISO_TIME = re.compile(
@@ -112,16 +113,11 @@ class Table:
 
     def ways_m(self, column: str, metres: float = 1.0) -> np.ndarray:
         """Cells of a column, in units of so many metres, as metres (n,); an empty cell is NaN."""
-        values = self.numbers(column)
-        far = np.isfinite(values) & (np.abs(values) > _FARTHEST_M / metres)
-        self.check(column, ~far, "at most 1e9 m")
-        return metres * values
+        return metres * self._at_most(_FARTHEST_M / metres, column, "at most 1e9 m")
 
-    def finite(self, column: str) -> np.ndarray:
-        """Cells of a column as finite floats (n,)."""
-        values = self.numbers(column)
-        self.check(column, np.isfinite(values), "a finite number")
-        return values
+    def speeds_mps(self, column: str) -> np.ndarray:
+        """Cells of a column as metres a second (n,); an empty cell is NaN."""
+        return self._at_most(_FASTEST_MPS, column, "at most 1e6 m/s")
 
     def whole_numbers(self, column: str) -> np.ndarray:
         """Cells of a column as integers (n,)."""
@@ -156,6 +152,12 @@ class Table:
             wanted=wanted,
             got=repr(cell) if cell else "an empty cell",
         )
+
+    def _at_most(self, most: float, column: str, wanted: str) -> np.ndarray:
+        """Cells of a column as floats (n,), none that is finite larger than `most` either way."""
+        values = self.numbers(column)
+        self.check(column, ~(np.isfinite(values) & (np.abs(values) > most)), wanted)
+        return values
 
     def _recognise(self, header: list[str]) -> dict[str, int]:
         """Where each known column stands."""

@@ -17,7 +17,6 @@ from .files import replacing
 from .table import Table
 
 _FIRST = ("time_s", "north_m", "east_m", "vnorth_mps", "veast_mps")
-_STATE = ("north_m", "vnorth_mps", "east_m", "veast_mps")
 COVARIANCE_COLUMNS = (
     "var_north_m2",
     "cov_north_vnorth_m2ps",
@@ -175,7 +174,7 @@ def read_tracks(path: str | Path) -> Tracks:
     return Tracks(
         track_id=np.array(table.text("track_id"), dtype=str),
         time_s=table.times("time_s"),
-        state=np.column_stack([number(name) for name in _STATE]),
+        state=_state(table),
         covariance=_covariance(table),
         mode_probability=_modes(table),
         status=np.array(table.text("status"), dtype=str) if "status" in table else None,
@@ -230,6 +229,12 @@ def _columns(tracks: Tracks) -> dict[str, list]:
         if getattr(tracks, name) is not None:
             columns[name] = getattr(tracks, name)
     return {name: values.tolist() for name, values in columns.items()}
+
+
+def _state(table: Table) -> np.ndarray:
+    way_m, speed_mps = table.ways_m, table.speeds_mps
+    north = [way_m("north_m"), speed_mps("vnorth_mps")]
+    return np.column_stack([*north, way_m("east_m"), speed_mps("veast_mps")])
 
 
 def _covariance(table: Table) -> np.ndarray | None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import columns, in_a_row
+from wakeline._checks import columns, in_a_row, not_negative
 
 from .scans import nearest
 
@@ -68,7 +68,13 @@ class TargetTruth:
         -------
         ndarray (T, 4)
             NaN rows outside the record and inside longer gaps. Metres and metres per second.
+
+        Raises
+        ------
+        ValueError
+            When a parameter is negative.
         """
+        not_negative(max_gap_s=max_gap_s, window_s=window_s)
         time_s = in_a_row("time_s", time_s)
         state = np.full((len(time_s), 4), np.nan)
         if len(self) == 0:

@@ -22,7 +22,7 @@ COLUMNS = {
     "vnorth_mps": ("vnorth_mps",),
     "veast_mps": ("veast_mps",),
 }
-_STATE = ("north_m", "east_m", "vnorth_mps", "veast_mps")
+_VELOCITY = ("vnorth_mps", "veast_mps")
 
 
 def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetTruth]]:
@@ -56,9 +56,9 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
     if len(table) == 0:
         raise RecordingError(table.path, "no row follows the header", line=1, wanted="truth rows")
     time_s = table.times("time_s")
-    state = np.column_stack(
-        [table.numbers(c) if c in table else np.full(len(table), np.nan) for c in _STATE]
-    )
+    unknown = np.full(len(table), np.nan)
+    velocity = [table.speeds_mps(c) if c in table else unknown for c in _VELOCITY]
+    state = np.column_stack([table.ways_m("north_m"), table.ways_m("east_m"), *velocity])
     target = np.array(table.text("target"))
     table.check("target", np.char.str_len(target) > 0, "a name or number")
     scenario = np.array(table.text("scenario") if "scenario" in table else [""] * len(table))

@@ -196,9 +196,10 @@ class RadarSimulator:
             found.append(
                 Scan.of_plots(float(scan_time_s[k]), k, time_s[seen], *z[seen].T, own_position_m)
             )
-        own_state = own.state_at(scan_time_s)
+        own_s = scan_time_s if scans else np.array([float(start_time_s)])
+        own_state = own.state_at(own_s)
         ship = OwnShip(
-            time_s=scan_time_s,
+            time_s=own_s,
             north_m=own_state[:, 0],
             east_m=own_state[:, 2],
             vnorth_mps=own_state[:, 1],

@@ -11,7 +11,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from wakeline import core, measurement
-from wakeline._checks import entropy, plain_numbers, whole_number
+from wakeline._checks import entropy, plain_numbers, real_numbers, whole_number
 
 from .radar import RadarSimulator, polar, start_of
 from .truth import Truth
@@ -123,7 +123,7 @@ class Scenario:
 
         Empty for a truth that does not tell ``switch_times_s``, as a recorded track.
         """
-        return self._within(getattr(self.truth, "switch_times_s", ()))
+        return self._within("switch_times_s")
 
     @property
     def control_switch_times_s(self) -> np.ndarray:
@@ -131,11 +131,11 @@ class Scenario:
 
         Empty for a truth that does not tell ``control_switch_times_s``.
         """
-        return self._within(getattr(self.truth, "control_switch_times_s", ()))
+        return self._within("control_switch_times_s")
 
-    def _within(self, time_s: Sequence[float]) -> np.ndarray:
-        """Those of the times that lie after the start and before the last reading."""
-        time_s = np.asarray(time_s, dtype=float)
+    def _within(self, name: str) -> np.ndarray:
+        """Those of the truth's times of that name after the start and before the last reading."""
+        time_s = real_numbers(name, getattr(self.truth, name, ()))
         return time_s[(time_s > self.start_time_s) & (time_s < self.time_s[-1])]
 
     @property

@@ -121,7 +121,7 @@ def segments_from_table(
 def _three_numbers(number: int, row: Any) -> list[float]:
     """Those of a row of a table."""
     try:
-        values = np.asarray(row, dtype=float)
+        values = real_numbers("row", row)
     except (TypeError, ValueError):
         values = np.array(np.nan)
     if values.shape != (3,) or not np.isfinite(values).all():

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wakeline._brief import brief, many, span
+from wakeline._checks import not_negative
 
 from ..local_plane import LocalPlane
 from ..model import OwnShip
@@ -314,7 +315,11 @@ class NavigationLog:
         return {name: getattr(self, name) for name in SERIES}
 
     def gaps_s(self, longer_than_s: float = 10.0) -> np.ndarray:
-        """Times (k, 2) of usable fixes before and after each gap longer than `longer_than_s`."""
+        """Times (k, 2) of usable fixes before and after each gap longer than `longer_than_s`.
+
+        ValueError when that is negative.
+        """
+        not_negative(longer_than_s=longer_than_s)
         fixes = self.fixes.sound()
         wide = np.flatnonzero(np.diff(fixes.time_s) > longer_than_s)
         return np.column_stack([fixes.time_s[wide], fixes.time_s[wide + 1]])
@@ -383,7 +388,13 @@ class NavigationLog:
         Parameters
         ----------
         max_gap_s : float
+
+        Raises
+        ------
+        ValueError
+            When it is negative.
         """
+        not_negative(max_gap_s=max_gap_s)
         all_series = self.series.values()
         time_s = np.concatenate([s.time_s for s in all_series])
         section = self._section(np.concatenate([s.line for s in all_series]))

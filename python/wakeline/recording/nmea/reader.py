@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from wakeline._brief import counted, many
+from wakeline._checks import plain_numbers
 from wakeline._units import KNOT_MPS
 
 from ..errors import RecordingError, octets_of
@@ -118,17 +119,20 @@ def read_nmea(
     RecordingError
         When the file cannot be read, or holds no sentence with a time, or none of a reading.
     TypeError
-        When `date` is no date.
+        When `date` is no date or another parameter no number.
     ValueError
         When a parameter makes no sense.
     """
+    plain_numbers(reorder_s=reorder_s, max_speed_mps=max_speed_mps)
     if not (reorder_s >= 0 and max_speed_mps > 0):
         raise ValueError(
             "reorder_s must not be negative and max_speed_mps must be positive, "
             f"got {reorder_s} and {max_speed_mps}"
         )
-    if variation_deg is not None and not abs(variation_deg) <= 180:
-        raise ValueError(f"variation_deg must be from -180 to 180, got {variation_deg}")
+    if variation_deg is not None:
+        plain_numbers(variation_deg=variation_deg)
+        if not abs(variation_deg) <= 180:
+            raise ValueError(f"variation_deg must be from -180 to 180, got {variation_deg}")
     first_day, path, report = _day(date), Path(path), NmeaReport()
     octets, rows = octets_of(path, wanted=f"a log of {_SENTENCES}"), _Rows()
     for sentence in sentences(octets, report):
