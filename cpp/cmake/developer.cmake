@@ -1,4 +1,5 @@
 # wakeline_developer: how our own tests, examples, benchmarks and bindings are compiled. Never linked by users.
+set(CMAKE_CXX_SCAN_FOR_MODULES OFF)  # there are none, and newer CMake would read each file twice
 add_library(wakeline_developer INTERFACE)
 target_link_libraries(wakeline_developer INTERFACE wakeline::wakeline)
 
