@@ -11,7 +11,7 @@ import pytest
 
 import wakeline as wl
 from wakeline import montecarlo, scenario, study
-from wakeline.cli import main, outputs
+from wakeline.cli import main
 from wakeline.study import base, curves, estimators
 
 PNG = b"\x89PNG"
@@ -50,11 +50,6 @@ ESTIMATORS = {
 @pytest.fixture(scope="module")
 def reports():
     return {name: study.load(name).run(RUNS, 3) for name in SCENARIOS}
-
-
-@pytest.fixture
-def no_pictures(monkeypatch):
-    monkeypatch.setattr(outputs, "can_draw", lambda: False)
 
 
 def run(*arguments):
