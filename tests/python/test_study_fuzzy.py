@@ -59,6 +59,12 @@ def test_what_does_better_needs_a_narrower_gate(report, name, most):
             assert row["straight_rms_m"] < 2.2
 
 
+def test_95_percent_of_the_runs_are_held_by_the_wider_gate(report):
+    for (case, name), outcome in report.result.items():
+        held = outcome.gate_m() <= report.row(case, name)["gate_p95_m"]
+        assert held.mean() == pytest.approx(0.95, abs=0.005)
+
+
 def test_a_closed_loop_loses_what_the_gate_does_not_hold(report):
     lost = {case: report.row(case, "fuzzy")["loss_probability"] for case in hard_turns()}
     assert min(lost.values()) > 0.7
