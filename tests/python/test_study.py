@@ -5,6 +5,7 @@ import math
 import os
 import sys
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -237,14 +238,45 @@ def test_every_stretch_is_under_way_and_in_sight():
         assert scene.time_s[-1] > 175.0
 
 
-def test_after_a_turn_are_the_scans_of_it_and_of_half_a_minute_more():
+@pytest.fixture
+def bend():
+    """A straight, a turn and a straight under the coarser radar."""
     straight, turn = scenario.Segment(120.0), scenario.Segment(60.0, np.deg2rad(3.0))
     truth = scenario.Truth([4000.0, 5.0, 0.0, 0.0], [straight, turn, straight])
-    scene = scenario.Scenario("bend", truth, study.solent.RADARS["coastal_60m"], scans=99)
-    after_s = scene.time_s[study.solent.after_turn(scene)]
+    return scenario.Scenario("bend", truth, study.solent.RADARS["coastal_60m"], scans=99)
+
+
+def test_after_a_turn_are_the_scans_of_it_and_of_half_a_minute_more(bend):
+    after_s = bend.time_s[study.solent.after_turn(bend)]
     assert abs(after_s[0] - 120.0) <= 5.0
     assert abs(after_s[-1] - 210.0) <= 5.0
     assert len(after_s) == round((after_s[-1] - after_s[0]) / 3.0) + 1
+
+
+def test_errors_count_from_half_a_minute_on_and_those_after_a_turn_once_more(bend):
+    settled, turned = bend.time_s[1:] > 30.0, study.solent.after_turn(bend)[1:]
+    off_m = np.where(turned, 50.0, np.where(settled, 5.0, 1e3))
+
+    class Off:
+        """Too far north, and a tenth too fast."""
+
+        def run(self, z, **told):
+            states = bend.truth_states[1:] * [1.0, 1.1, 1.0, 1.1]
+            states[:, 0] += off_m
+            return SimpleNamespace(mean=np.broadcast_to(states, (len(z), *states.shape)))
+
+    figures = study.solent._score(bend, Off(), 3, 0).figures()
+    assert figures == pytest.approx(
+        {
+            "position_rmse_m": np.sqrt(np.mean(off_m[settled] ** 2)),
+            "speed_rmse_mps": 0.5,
+            "course_rms_deg": 0.0,
+            "after_turn_position_rmse_m": 50.0,
+            "after_turn_speed_rmse_mps": 0.5,
+            "after_turn_course_rms_deg": 0.0,
+        },
+        abs=1e-9,
+    )
 
 
 # The table ----------------------------------------------------------------------------------------
