@@ -5,6 +5,7 @@ import math
 import os
 import sys
 import time
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -158,6 +159,16 @@ def test_what_covariances_are_worth_is_what_the_rows_say(reports):
             assert found.below + found.above + inside == pytest.approx(1.0)
             assert found.soon <= found.above
             assert str(found) in line
+
+
+def test_an_error_within_ten_scans_after_a_switch_is_one_that_comes_soon(reports):
+    outcome = reports["imm"].result["imm-scans", "imm2"]
+    nees = np.full(len(outcome.time_s), 4.0)
+    switch = int(np.searchsorted(outcome.time_s, outcome.switch_times_s[0], side="right"))
+    nees[switch + 3 : switch + 15] = 100.0
+    found = study.variable_structure.covariances.worth([replace(outcome, nees=nees)])
+    steady = len(nees) - 3 * len(outcome.switch_times_s)
+    assert (found.below, found.above, found.soon) == pytest.approx((0.0, 12 / steady, 7 / steady))
 
 
 def test_the_window_forgets_its_first_probabilities_and_the_moving_grid_does_not():
