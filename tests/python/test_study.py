@@ -123,6 +123,10 @@ def test_the_right_model_leads_where_there_is_one(reports):
     assert leads[0].delay_scans == 0
     assert 5 <= leads[1].delay_scans <= 20
     assert leads[2][1:] == (None, None)
+    begin = int(np.flatnonzero(np.diff(outcome.true_turn_rate_rad_s))[0]) + 1
+    share = 0.1 * (np.arange(len(outcome.time_s)) - begin)
+    leads = curves.leads_by_segment(replace(outcome, right_mode_share=share), np.deg2rad([0, 1]))
+    assert leads[1].delay_scans == 5  # half of the runs
 
 
 def test_windows_and_centres_move_the_more_the_lower_their_threshold_asks():
