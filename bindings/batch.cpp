@@ -56,9 +56,8 @@ LaneModel lane_model(const AnyFilter& filter) {
 
 /// Runs the job of some models. False, and nothing done, where the sensor or the runs are none for
 /// lanes.
-bool run(LaneJob& job, const AnySensor& sensor, const RunInput& in,
-         const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  if (kernels == nullptr || in.runs < 2) return false;
+bool run(LaneJob& job, const Runs& runs) {
+  if (kernels == nullptr || runs.in.runs < 2) return false;
   const bool known = std::visit(
       [&]<class Sensor>(const Sensor& one) {
         if constexpr (std::is_constructible_v<decltype(job.sensor), Sensor>) {
@@ -67,9 +66,9 @@ bool run(LaneJob& job, const AnySensor& sensor, const RunInput& in,
         }
         return false;
       },
-      sensor);
+      runs.sensor);
   if (!known) return false;
-  for (const AnyBelief& start : starts) {
+  for (const AnyBelief& start : runs.starts) {
     LaneStart& lane = job.starts.emplace_back();
     lane.states = start.states();
     for (int i = 0; i < lane.states; ++i) {
@@ -78,14 +77,14 @@ bool run(LaneJob& job, const AnySensor& sensor, const RunInput& in,
         lane.covariance[j * lane.states + i] = start.covariance(i, j);
     }
   }
-  const ThreadShare threads(in.runs * in.scans / static_cast<std::size_t>(kernels->lanes));
-  return kernels->run(job, in, out, threads.count());
+  const ThreadShare threads(runs.in.runs * runs.in.scans /
+                            static_cast<std::size_t>(kernels->lanes));
+  return kernels->run(job, runs.in, runs.out, threads.count());
 }
 
 /// The same of an estimator of several models and what it has beside its chain.
 template <class Estimator>
-bool run_mixture(const Estimator& estimator, const Structure& structure, const AnySensor& sensor,
-                 const RunInput& in, const std::vector<AnyBelief>& starts, const RunOutput& out) {
+bool run_mixture(const Estimator& estimator, const Structure& structure, const Runs& runs) {
   LaneJob job;
   job.chain = &estimator.chain();
   job.structure = structure;
@@ -93,15 +92,14 @@ bool run_mixture(const Estimator& estimator, const Structure& structure, const A
     job.models.push_back(lane_model(AnyFilter(estimator.bank().filter(k))));
     job.initial_mode_probability.push_back(estimator.initial_mode_probability()[k]);
   }
-  return run(job, sensor, in, starts, out);
+  return run(job, runs);
 }
 
 /// The same of what draws lines.
-bool run_lines(const LaneLines& lines, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+bool run_lines(const LaneLines& lines, const Runs& runs) {
   LaneJob job;
   job.lines = lines;
-  return run(job, sensor, in, starts, out);
+  return run(job, runs);
 }
 
 }  // namespace
@@ -128,61 +126,44 @@ void define_batch(py::module_& parent) {
       "Sets how many threads all calls at one time use together. Results do not depend on it.");
 }
 
-bool run_lanes(const AnyFilter& filter, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+bool run_lanes(const AnyFilter& filter, const Runs& runs) {
   LaneJob job;
   job.models.push_back(lane_model(filter));
-  return run(job, sensor, in, starts, out);
+  return run(job, runs);
 }
 
-bool run_lanes(const AnyImm& imm, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return run_mixture(imm, {}, sensor, in, starts, out);
+bool run_lanes(const AnyImm& imm, const Runs& runs) { return run_mixture(imm, {}, runs); }
+
+bool run_lanes(const AnyAdaptiveGridImm& imm, const Runs& runs) {
+  return run_mixture(imm, imm.grid(), runs);
 }
 
-bool run_lanes(const AnyAdaptiveGridImm& imm, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return run_mixture(imm, imm.grid(), sensor, in, starts, out);
+bool run_lanes(const AnySwitchingGridImm& imm, const Runs& runs) {
+  return run_mixture(imm, imm.grid(), runs);
 }
 
-bool run_lanes(const AnySwitchingGridImm& imm, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return run_mixture(imm, imm.grid(), sensor, in, starts, out);
+bool run_lanes(const AnyLikelyModelSetImm& imm, const Runs& runs) {
+  return run_mixture(imm, imm.grid(), runs);
 }
 
-bool run_lanes(const AnyLikelyModelSetImm& imm, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return run_mixture(imm, imm.grid(), sensor, in, starts, out);
+bool run_lanes(const AnyBayesianAlphaBeta& lines, const Runs& runs) {
+  return run_lines(lines.weighing(), runs);
 }
 
-bool run_lanes(const AnyBayesianAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return run_lines(lines.weighing(), sensor, in, starts, out);
-}
-
-bool run_lanes(const AnyFuzzyAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return run_lines(lines.criterion(), sensor, in, starts, out);
+bool run_lanes(const AnyFuzzyAlphaBeta& lines, const Runs& runs) {
+  return run_lines(lines.criterion(), runs);
 }
 
 template <int Order>
-bool run_lanes(const AnyAlphaBeta<Order>& filter, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return run_lines(LaneAlphaBeta<Order>{filter.schedule(), filter.motion()}, sensor, in, starts,
-                   out);
+bool run_lanes(const AnyAlphaBeta<Order>& filter, const Runs& runs) {
+  return run_lines(LaneAlphaBeta<Order>{filter.schedule(), filter.motion()}, runs);
 }
-template bool run_lanes(const AnyAlphaBeta<2>&, const AnySensor&, const RunInput&,
-                        const std::vector<AnyBelief>&, const RunOutput&);
-template bool run_lanes(const AnyAlphaBeta<3>&, const AnySensor&, const RunInput&,
-                        const std::vector<AnyBelief>&, const RunOutput&);
+template bool run_lanes(const AnyAlphaBeta<2>&, const Runs&);
+template bool run_lanes(const AnyAlphaBeta<3>&, const Runs&);
 
-bool run_lanes(const AnyModeHistory& any, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
-  return std::visit(
-      [&](const auto& history) {
-        return run_mixture(history, history.tree(), sensor, in, starts, out);
-      },
-      any.variant());
+bool run_lanes(const AnyModeHistory& any, const Runs& runs) {
+  return std::visit([&](const auto& history) { return run_mixture(history, history.tree(), runs); },
+                    any.variant());
 }
 
 }  // namespace wakeline::python

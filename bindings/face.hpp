@@ -31,8 +31,7 @@ void define_face(py::class_<Estimator, Options...>& face) {
           },
           py::arg("dt_s"), py::arg("acceleration_mps2") = py::none(),
           "Moves dt_s seconds on, under a known acceleration [north, east] where one is given; "
-          "mode "
-          "probabilities follow the chain.")
+          "mode probabilities follow the chain.")
       .def(
           "update",
           [](Estimator& estimator, const py::object& sensor, const DoubleArray& z) {

@@ -7,17 +7,14 @@
 #include "any_lines.hpp"
 #include "call_text.hpp"
 #include "face.hpp"
+#include "option.hpp"
 
 namespace wakeline::python {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-TNorm to_t_norm(const std::string& word) {
-  if (word == "product") return TNorm::kProduct;
-  if (word == "minimum") return TNorm::kMinimum;
-  throw py::value_error("t_norm must be 'product' or 'minimum', got '" + word + "'");
-}
+constexpr Word<TNorm> kTNorms[] = {{"product", TNorm::kProduct}, {"minimum", TNorm::kMinimum}};
 
 py::array_t<double> to_array(std::span<const double> values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
@@ -164,7 +161,7 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
                                         .steepness = steepness,
                                         .threshold = threshold,
                                         .clip = clip,
-                                        .t_norm = to_t_norm(t_norm),
+                                        .t_norm = to_option("t_norm", t_norm, kTNorms),
                                         .hold = hold,
                                         .acceleration_std_mps2 = acceleration});
             }),
@@ -181,7 +178,7 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
         .with("steepness", rules.steepness)
         .with("threshold", rules.threshold)
         .with("clip", rules.clip)
-        .with("t_norm", rules.t_norm == TNorm::kProduct ? "product" : "minimum")
+        .with("t_norm", word_of(rules.t_norm, kTNorms))
         .with("hold", rules.hold)
         .with("acceleration_std_mps2", rules.acceleration_std_mps2)
         .text();

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "call_text.hpp"
+#include "option.hpp"
 #include "wakeline/core/angle.hpp"
 #include "wakeline/gating/chi_square_gate.hpp"
 #include "wakeline/gating/radius_gate.hpp"
@@ -70,17 +71,14 @@ AmplitudeImage<Amplitude> to_image(const py::object& video, const py::array& amp
 
 // Strobes -----------------------------------------------------------------------------------------
 
-EchoChoice to_choice(const std::string& several) {
-  if (several == "all") return EchoChoice::kAll;
-  if (several == "nearest") return EchoChoice::kNearest;
-  if (several == "strongest") return EchoChoice::kStrongest;
-  throw py::value_error("several must be 'all', 'nearest' or 'strongest', got '" + several + "'");
-}
+constexpr Word<EchoChoice> kChoices[] = {{"all", EchoChoice::kAll},
+                                         {"nearest", EchoChoice::kNearest},
+                                         {"strongest", EchoChoice::kStrongest}};
 
 StrobeEcho lay_strobe(const py::object& video, const AnyStrobe& strobe,
                       const DoubleArray& predicted_m, int least_amplitude, int pedestal,
                       const std::string& several) {
-  const StrobeSettings settings{least_amplitude, pedestal, to_choice(several)};
+  const StrobeSettings settings{least_amplitude, pedestal, to_option("several", several, kChoices)};
   settings.validate();
   const Vec<double, 2> predicted = to_position("predicted_m", predicted_m);
   const auto is_a = [&](const char* module, const char* name) {

@@ -1,18 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "call_text.hpp"
+#include "wakeline/filter/belief.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/measurement/range_bearing_doppler.hpp"
 
 namespace wakeline::python {
 namespace {
-
-template <class Sensor>
-Sensor checked(const Sensor& sensor) {
-  sensor.validate();
-  return sensor;
-}
 
 /// The call that made a radar, up to what is its own.
 template <class Sensor>
@@ -65,7 +60,7 @@ void define_number(py::class_<OwnShip>& own_ship, const char* name, double OwnSh
       [number](OwnShip& own, double value) {
         OwnShip changed = own;
         changed.*number = value;
-        own = checked(changed);
+        own = validated(changed);
       });
 }
 
@@ -100,7 +95,7 @@ void define_measurement(py::module_& parent) {
   own_ship
       .def(py::init([](double north, double east, double vnorth, double veast, double position,
                        double velocity, double heading) {
-             return checked(OwnShip{north, east, vnorth, veast, position, velocity, heading});
+             return validated(OwnShip{north, east, vnorth, veast, position, velocity, heading});
            }),
            py::kw_only(), py::arg("north_m") = 0.0, py::arg("east_m") = 0.0,
            py::arg("vnorth_mps") = 0.0, py::arg("veast_mps") = 0.0, py::arg("position_std_m") = 0.0,
@@ -123,7 +118,7 @@ void define_measurement(py::module_& parent) {
   range_bearing
       .def(py::init(
                [](double range, double bearing, double extent, double offset, const OwnShip& own) {
-                 return checked(RangeBearing{range, bearing, extent, offset, own});
+                 return validated(RangeBearing{range, bearing, extent, offset, own});
                }),
            py::kw_only(), py::arg("range_std_m") = RangeBearing{}.range_std_m,
            py::arg("bearing_std_rad") = RangeBearing{}.bearing_std_rad,
@@ -148,7 +143,7 @@ void define_measurement(py::module_& parent) {
   converted_range_bearing
       .def(py::init([](double range, double bearing, bool unbiased, double extent, double offset,
                        const OwnShip& own) {
-             return checked(ConvertedRangeBearing{range, bearing, unbiased, extent, offset, own});
+             return validated(ConvertedRangeBearing{range, bearing, unbiased, extent, offset, own});
            }),
            py::kw_only(), py::arg("range_std_m") = ConvertedRangeBearing{}.range_std_m,
            py::arg("bearing_std_rad") = ConvertedRangeBearing{}.bearing_std_rad,
@@ -172,7 +167,7 @@ void define_measurement(py::module_& parent) {
   range_bearing_doppler
       .def(py::init([](double range, double bearing, double rate, double extent, double offset,
                        const OwnShip& own) {
-             return checked(RangeBearingDoppler{range, bearing, rate, extent, offset, own});
+             return validated(RangeBearingDoppler{range, bearing, rate, extent, offset, own});
            }),
            py::kw_only(), py::arg("range_std_m") = RangeBearingDoppler{}.range_std_m,
            py::arg("bearing_std_rad") = RangeBearingDoppler{}.bearing_std_rad,
@@ -195,7 +190,7 @@ void define_measurement(py::module_& parent) {
   py::class_<Position> position(
       m, "Position", "A position [north m, east m] with equal error in every direction.");
   position
-      .def(py::init([](double std) { return checked(Position{std}); }), py::kw_only(),
+      .def(py::init([](double std) { return validated(Position{std}); }), py::kw_only(),
            py::arg("position_std_m") = Position{}.position_std_m)
       .def_readonly("position_std_m", &Position::position_std_m)
       .def("__repr__", [](const Position& sensor) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "call_text.hpp"
+#include "wakeline/filter/belief.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
@@ -80,13 +81,6 @@ ProcessNoise policy_of(int kind, double parameter) {
   throw py::value_error("state is not that of a process noise");
 }
 
-/// Builds a model and refuses parameters that make no sense.
-template <class Motion>
-Motion checked(const Motion& motion) {
-  motion.validate();
-  return motion;
-}
-
 }  // namespace
 
 void define_motion(py::module_& parent) {
@@ -140,7 +134,7 @@ void define_motion(py::module_& parent) {
 
   py::class_<ConstantVelocity> cv(m, "ConstantVelocity",
                                   "Straight and steady: state [x, vx, y, vy] (m, m/s).");
-  cv.def(py::init([](const ProcessNoise& noise) { return checked(ConstantVelocity{noise}); }),
+  cv.def(py::init([](const ProcessNoise& noise) { return validated(ConstantVelocity{noise}); }),
          py::kw_only(),
          py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
   cv.def("__repr__", [](const ConstantVelocity& motion) {
@@ -152,7 +146,7 @@ void define_motion(py::module_& parent) {
                                         "Straight and nearly steady, with an acceleration that "
                                         "grows with the speed: state [x, vx, y, vy].");
   wandering.def(py::init([](double psd, double course_psd, double max_speed) {
-                  return checked(WanderingCourse{psd, course_psd, max_speed});
+                  return validated(WanderingCourse{psd, course_psd, max_speed});
                 }),
                 py::kw_only(), py::arg("psd_m2s3") = WanderingCourse{}.psd_m2s3,
                 py::arg("course_psd_rad2s") = WanderingCourse{}.course_psd_rad2s,
@@ -170,7 +164,7 @@ void define_motion(py::module_& parent) {
       m, "ConstantAcceleration",
       "Acceleration that stays: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).");
   ca.def(py::init([](const ProcessNoise& noise, double prior) {
-           return checked(ConstantAcceleration{noise, prior});
+           return validated(ConstantAcceleration{noise, prior});
          }),
          py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteJerk{}), "WhiteJerk()"),
          py::arg("prior_accel_std_mps2") = ConstantAcceleration{}.prior_accel_std_mps2);
@@ -186,7 +180,7 @@ void define_motion(py::module_& parent) {
       m, "CoordinatedTurn",
       "A steady turn at a known rate, positive to starboard: state [x, vx, y, vy].");
   ct.def(py::init([](double rate, const ProcessNoise& noise) {
-           return checked(CoordinatedTurn{rate, noise});
+           return validated(CoordinatedTurn{rate, noise});
          }),
          py::kw_only(), py::arg("turn_rate_rad_s") = 0.0,
          py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
@@ -206,7 +200,7 @@ void define_motion(py::module_& parent) {
   ctr.def(
       py::init([](const ProcessNoise& noise, double psd, double prior, double course_psd,
                   double max_speed, double rate, double time) {
-        return checked(CoordinatedTurnRate{noise, psd, prior, course_psd, max_speed, rate, time});
+        return validated(CoordinatedTurnRate{noise, psd, prior, course_psd, max_speed, rate, time});
       }),
       py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"),
       py::arg("turn_rate_psd_rad2s3") = CoordinatedTurnRate{}.turn_rate_psd_rad2s3,
@@ -231,7 +225,7 @@ void define_motion(py::module_& parent) {
   py::class_<Singer> singer(
       m, "Singer", "Singer's maneuvering target: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).");
   singer.def(py::init([](double time, double std) {
-               return checked(Singer{time, std});
+               return validated(Singer{time, std});
              }),
              py::kw_only(), py::arg("maneuver_time_s") = Singer{}.maneuver_time_s,
              py::arg("accel_std_mps2") = Singer{}.accel_std_mps2);

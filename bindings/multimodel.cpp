@@ -12,10 +12,16 @@
 #include "face.hpp"
 #include "imm_smoother.hpp"
 #include "mode_history.hpp"
+#include "option.hpp"
 #include "turn_grid.hpp"
 
 namespace wakeline::python {
 namespace {
+
+constexpr Word<SwitchRule> kRules[] = {{"symmetric", SwitchRule::kSymmetric},
+                                       {"literal", SwitchRule::kLiteral}};
+constexpr Word<SwitchCarry> kCarries[] = {{"slot", SwitchCarry::kSlot},
+                                          {"identity", SwitchCarry::kIdentity}};
 
 Chain make_chain(const DoubleArray& matrix, const std::optional<double>& period_s) {
   require_shape(matrix.ndim() == 2 && matrix.shape(0) == matrix.shape(1) && matrix.shape(0) > 0 &&
@@ -103,8 +109,8 @@ std::string switching_grid_text(const AnySwitchingGridImm& imm) {
   return grid_call("SwitchingGridImm", imm)
       .with("grid_rad_s", grid.grid_rad_s.rates_rad_s())
       .with("threshold", grid.threshold)
-      .with("rule", grid.rule == SwitchRule::kSymmetric ? "symmetric" : "literal")
-      .with("carry", grid.carry == SwitchCarry::kSlot ? "slot" : "identity")
+      .with("rule", word_of(grid.rule, kRules))
+      .with("carry", word_of(grid.carry, kCarries))
       .with("initial_centre", grid.initial())
       .text();
 }
@@ -125,18 +131,6 @@ AnyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
     imm.set_initial_mode_probability(
         to_vector("initial_mode_probability", *initial, static_cast<py::ssize_t>(filters.size())));
   return imm;
-}
-
-/// One of the words of an option.
-template <class Option>
-Option to_option(const char* name, const std::string& word,
-                 const std::vector<std::pair<std::string, Option>>& words) {
-  std::string wanted;
-  for (const auto& [known, option] : words) {
-    if (word == known) return option;
-    wanted += (wanted.empty() ? "'" : " or '") + known + "'";
-  }
-  throw py::value_error(std::string(name) + " must be " + wanted + ", got '" + word + "'");
 }
 
 void define_adaptive_grid(py::module_& m) {
@@ -266,17 +260,12 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
                   double threshold, const std::string& rule, const std::string& carry,
                   const std::optional<int>& centre, double stay, const std::optional<Chain>& chain,
                   const std::optional<DoubleArray>& initial) {
-        const SwitchingGrid grid{
-            .grid_rad_s =
-                rates ? to_grid(*rates, SwitchingGrid::kLeastRates) : SwitchingGrid{}.grid_rad_s,
-            .threshold = threshold,
-            .rule = to_option<SwitchRule>(
-                "rule", rule,
-                {{"symmetric", SwitchRule::kSymmetric}, {"literal", SwitchRule::kLiteral}}),
-            .carry = to_option<SwitchCarry>(
-                "carry", carry,
-                {{"slot", SwitchCarry::kSlot}, {"identity", SwitchCarry::kIdentity}}),
-            .initial_centre = centre};
+        const SwitchingGrid grid{.grid_rad_s = rates ? to_grid(*rates, SwitchingGrid::kLeastRates)
+                                                     : SwitchingGrid{}.grid_rad_s,
+                                 .threshold = threshold,
+                                 .rule = to_option("rule", rule, kRules),
+                                 .carry = to_option("carry", carry, kCarries),
+                                 .initial_centre = centre};
         return with_initial(
             AnySwitchingGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial);
       }),

@@ -149,8 +149,7 @@ T. Vincenty, Direct and inverse solutions of geodesics on the ellipsoid, Survey 
       py::arg("latitude_rad"), py::arg("longitude_rad"), py::arg("to_latitude_rad"),
       py::arg("to_longitude_rad"),
       "(distance_m, course_rad) of lines of constant course on the ellipsoid, the shorter way "
-      "round; "
-      "to or from a pole along the meridian.");
+      "round; to or from a pole along the meridian.");
 
   m.def(
       "rhumb_destination",
@@ -236,8 +235,7 @@ ValueError
           },
           py::arg("true_course_rad"), py::arg("latitude_rad"), py::arg("longitude_rad"),
           "Directions on the plane of courses from true north at places: meridians lean towards "
-          "each "
-          "other.")
+          "each other.")
       .def(
           "true_course_rad",
           [](const LocalPlane& p, const DoubleArray& course, const DoubleArray& latitude,
@@ -455,7 +453,7 @@ latitude_rad, longitude_rad, speed_mps, course_rad, dt_s, drift_speed_mps, drift
 Returns
 -------
 (latitude_rad, longitude_rad)
-    In mid-latitude with the radii of the ellipsoid: within 1 m of the rhumb line over 20 km up to
+    In mid-latitude with the radii of the ellipsoid: within 0.1 m of the rhumb line over 20 km up to
     70 degrees. NaN beyond a pole.)");
 }
 

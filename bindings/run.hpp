@@ -62,38 +62,35 @@ void require_starts(Estimator estimator, const std::vector<AnyBelief>& starts) {
       throw FilterError("start of run " + std::to_string(run) + ": " + to_string(started));
 }
 
+/// All runs: by what sensor, of what readings, from where, and where the results go.
+struct Runs {
+  AnySensor sensor;
+  const RunInput& in;
+  const std::vector<AnyBelief>& starts;
+  const RunOutput& out;
+};
+
 /// The runs in lanes of the widest instruction set of the processor. False, and nothing done, where
 /// there is but one run or the estimator is not one that lanes are compiled for.
-bool run_lanes(const AnyFilter& filter, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
-bool run_lanes(const AnyImm& imm, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
-bool run_lanes(const AnyAdaptiveGridImm& imm, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
-bool run_lanes(const AnySwitchingGridImm& imm, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
-bool run_lanes(const AnyLikelyModelSetImm& imm, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
-bool run_lanes(const AnyModeHistory& history, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
-bool run_lanes(const AnyBayesianAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
-bool run_lanes(const AnyFuzzyAlphaBeta& lines, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyFilter& filter, const Runs& runs);
+bool run_lanes(const AnyImm& imm, const Runs& runs);
+bool run_lanes(const AnyAdaptiveGridImm& imm, const Runs& runs);
+bool run_lanes(const AnySwitchingGridImm& imm, const Runs& runs);
+bool run_lanes(const AnyLikelyModelSetImm& imm, const Runs& runs);
+bool run_lanes(const AnyModeHistory& history, const Runs& runs);
+bool run_lanes(const AnyBayesianAlphaBeta& lines, const Runs& runs);
+bool run_lanes(const AnyFuzzyAlphaBeta& lines, const Runs& runs);
 template <int Order>
-bool run_lanes(const AnyAlphaBeta<Order>& filter, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_lanes(const AnyAlphaBeta<Order>& filter, const Runs& runs);
 template <class Estimator>
-bool run_lanes(const Estimator&, const AnySensor&, const RunInput&, const std::vector<AnyBelief>&,
-               const RunOutput&) {
+bool run_lanes(const Estimator&, const Runs&) {
   return false;
 }
 
 /// `run_all` of an estimator whose filters are all extended Kalman filters of known turn rates,
 /// composed anew at compile time: the same bits, sooner. False, and nothing done, for any other.
 template <class Estimator>
-bool run_turns(const Estimator& prototype, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out);
+bool run_turns(const Estimator& prototype, const Runs& runs);
 
 /// The beliefs that `start` means: one Gaussian for all runs or a sequence of R.
 std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs, int states);
@@ -123,9 +120,9 @@ struct RunSoonest {
   template <class Estimator, class Sensor>
   void operator()(const Estimator& prototype, const Sensor& sensor, const RunInput& in,
                   const std::vector<AnyBelief>& starts, const RunOutput& out) const {
-    bool done = run_lanes(prototype, sensor, in, starts, out);
-    if constexpr (kOverAnyFilters<Estimator>)
-      done = done || run_turns(prototype, sensor, in, starts, out);
+    const Runs runs{sensor, in, starts, out};
+    bool done = run_lanes(prototype, runs);
+    if constexpr (kOverAnyFilters<Estimator>) done = done || run_turns(prototype, runs);
     if (!done) run_all(prototype, sensor, in, starts, out);
   }
 };

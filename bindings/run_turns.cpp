@@ -37,26 +37,24 @@ Estimator<TurnBank> over(const TurnBank& bank, const Estimator<AnyFilterBank>& a
 }  // namespace
 
 template <class Estimator>
-bool run_turns(const Estimator& prototype, const AnySensor& sensor, const RunInput& in,
-               const std::vector<AnyBelief>& starts, const RunOutput& out) {
+bool run_turns(const Estimator& prototype, const Runs& runs) {
   const std::vector<TurnFilter> filters = turn_filters(prototype.bank());
   if (filters.empty()) return false;
   const auto estimator = over(TurnBank(std::span<const TurnFilter>(filters)), prototype);
   const auto to_fixed = [](const AnyBelief& belief) {
     return Gaussian<4>{belief.mean, belief.covariance};
   };
-  std::visit([&](const auto& model) { run_all(estimator, model, in, starts, out, to_fixed); },
-             sensor);
+  std::visit(
+      [&](const auto& sensor) {
+        run_all(estimator, sensor, runs.in, runs.starts, runs.out, to_fixed);
+      },
+      runs.sensor);
   return true;
 }
 
-template bool run_turns(const AnyImm&, const AnySensor&, const RunInput&,
-                        const std::vector<AnyBelief>&, const RunOutput&);
-template bool run_turns(const AnyAdaptiveGridImm&, const AnySensor&, const RunInput&,
-                        const std::vector<AnyBelief>&, const RunOutput&);
-template bool run_turns(const AnySwitchingGridImm&, const AnySensor&, const RunInput&,
-                        const std::vector<AnyBelief>&, const RunOutput&);
-template bool run_turns(const AnyLikelyModelSetImm&, const AnySensor&, const RunInput&,
-                        const std::vector<AnyBelief>&, const RunOutput&);
+template bool run_turns(const AnyImm&, const Runs&);
+template bool run_turns(const AnyAdaptiveGridImm&, const Runs&);
+template bool run_turns(const AnySwitchingGridImm&, const Runs&);
+template bool run_turns(const AnyLikelyModelSetImm&, const Runs&);
 
 }  // namespace wakeline::python

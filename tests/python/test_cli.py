@@ -19,6 +19,8 @@ from wakeline.cli import config, main, outputs
 from wakeline.cli import track as track_command
 from wakeline.recording import own_csv, plot_rows, read_tracks, truth_csv
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 PNG = b"\x89PNG"
 BUNDLED = resources.files("wakeline.recording") / "data"
 PERIOD_S = 2.5
@@ -33,18 +35,6 @@ METRICS = (
     *("velocity_rmse_mps", "course_rms_deg", "speed_rmse_mps", "false_tracks"),
     *("false_track_scans_per_scan", "gospa_m"),
 )
-
-
-@pytest.fixture(autouse=True)
-def no_pictures(request, monkeypatch):
-    """Pictures take most of the time; they are drawn where a test asks for `pictures`."""
-    if "pictures" not in request.fixturenames:
-        monkeypatch.setattr(outputs, "can_draw", lambda: False)
-
-
-@pytest.fixture
-def pictures():
-    pytest.importorskip("matplotlib")
 
 
 @pytest.fixture(scope="module")

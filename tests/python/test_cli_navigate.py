@@ -11,26 +11,17 @@ import numpy as np
 import pytest
 
 from wakeline import _progress, own_ship
-from wakeline.cli import main, outputs
+from wakeline.cli import main
 from wakeline.navigation import LocalPlane
 from wakeline.own_ship import coasting, solution
 from wakeline.recording import read_nmea
 from wakeline.recording.own_csv import read_own
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 BUNDLED = resources.files("wakeline.recording") / "data" / "irene"
 KN = 1852.0 / 3600.0
 NORTH_M, EAST_M = 111_239.0, 70_949.0  # of a degree at 50.5 degrees north
-
-
-@pytest.fixture(autouse=True)
-def no_pictures(request, monkeypatch):
-    if "pictures" not in request.fixturenames:
-        monkeypatch.setattr(outputs, "can_draw", lambda: False)
-
-
-@pytest.fixture
-def pictures():
-    pytest.importorskip("matplotlib")
 
 
 def sentence(body):

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from wakeline import plot, scenario
-from wakeline.cli import main, outputs
+from wakeline.cli import main
 from wakeline.extraction import noise_of, read_plots_of_video
 from wakeline.recording import read_tracks, write_video
+
+pytestmark = pytest.mark.usefixtures("no_pictures")
 
 SCANS = 14
 PERIOD_S = 2.5
@@ -44,17 +46,6 @@ def video(tmp_path_factory):
     path = tmp_path_factory.mktemp("video") / "harbour.cat240"
     write_video(path, simulator().turns(SHIPS, SCANS, seed=1))
     return path
-
-
-@pytest.fixture(autouse=True)
-def no_pictures(request, monkeypatch):
-    if "pictures" not in request.fixturenames:
-        monkeypatch.setattr(outputs, "can_draw", lambda: False)
-
-
-@pytest.fixture
-def pictures():
-    pytest.importorskip("matplotlib")
 
 
 def track_of(tracks, name):

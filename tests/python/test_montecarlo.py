@@ -472,6 +472,14 @@ def test_scenarios_taken_together_average_their_squares(result):
         np.mean([one["mean_velocity_mps"] for one in own])
     )
     assert merged["runs"] == 2 * RUNS
+    counted = {
+        (part.scenario, "imm"): dataclasses.replace(
+            part, failed_runs=k, lost_runs=2 * k, failed_steps=3 * k
+        )
+        for k, part in enumerate(parts, start=1)
+    }
+    merged = dataclasses.replace(result, outcomes=counted).merged("imm")
+    assert [merged[name] for name in ("failed_runs", "lost_runs", "failed_steps")] == [3, 6, 9]
     alone = result.merged("imm", ["case"])
     assert {name: alone[name] for name in own[0]} == pytest.approx(own[0])
 

@@ -193,8 +193,12 @@ def test_smoothing_evens_out_reports_that_came_late():
     straight = Truth([0.0, 15.0, 0.0, 0.0])
     heard = track_of(straight, time_s)
     heard.north_m = heard.north_m - 15.0 * np.random.default_rng(1).uniform(0, 2, len(time_s))
-    error_m = smoothed(heard).state_at(time_s)[:, 0] - straight.state_at(time_s)[:, 0]
-    assert error_m.std() < 0.5 * (heard.north_m - 15.0 * time_s).std()
+    told, untold = (
+        smoothed(heard, delay_std_s=delay_s).state_at(time_s)[:, 0] - 15.0 * time_s
+        for delay_s in (1.0, 0.0)
+    )
+    assert told.std() < 0.1 * (heard.north_m - 15.0 * time_s).std()
+    assert told.std() < 0.6 * untold.std()
 
 
 def test_smoothing_manages_with_positions_alone():

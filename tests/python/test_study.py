@@ -5,13 +5,15 @@ import math
 import os
 import sys
 import time
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import wakeline as wl
 from wakeline import montecarlo, scenario, study
-from wakeline.cli import main, outputs
+from wakeline.cli import main
 from wakeline.study import base, curves, estimators
 
 PNG = b"\x89PNG"
@@ -50,11 +52,6 @@ ESTIMATORS = {
 @pytest.fixture(scope="module")
 def reports():
     return {name: study.load(name).run(RUNS, 3) for name in SCENARIOS}
-
-
-@pytest.fixture
-def no_pictures(monkeypatch):
-    monkeypatch.setattr(outputs, "can_draw", lambda: False)
 
 
 def run(*arguments):
@@ -126,6 +123,10 @@ def test_the_right_model_leads_where_there_is_one(reports):
     assert leads[0].delay_scans == 0
     assert 5 <= leads[1].delay_scans <= 20
     assert leads[2][1:] == (None, None)
+    begin = int(np.flatnonzero(np.diff(outcome.true_turn_rate_rad_s))[0]) + 1
+    share = 0.1 * (np.arange(len(outcome.time_s)) - begin)
+    leads = curves.leads_by_segment(replace(outcome, right_mode_share=share), np.deg2rad([0, 1]))
+    assert leads[1].delay_scans == 5  # half of the runs
 
 
 def test_windows_and_centres_move_the_more_the_lower_their_threshold_asks():
@@ -162,6 +163,16 @@ def test_what_covariances_are_worth_is_what_the_rows_say(reports):
             assert found.below + found.above + inside == pytest.approx(1.0)
             assert found.soon <= found.above
             assert str(found) in line
+
+
+def test_an_error_within_ten_scans_after_a_switch_is_one_that_comes_soon(reports):
+    outcome = reports["imm"].result["imm-scans", "imm2"]
+    nees = np.full(len(outcome.time_s), 4.0)
+    switch = int(np.searchsorted(outcome.time_s, outcome.switch_times_s[0], side="right"))
+    nees[switch + 3 : switch + 15] = 100.0
+    found = study.variable_structure.covariances.worth([replace(outcome, nees=nees)])
+    steady = len(nees) - 3 * len(outcome.switch_times_s)
+    assert (found.below, found.above, found.soon) == pytest.approx((0.0, 12 / steady, 7 / steady))
 
 
 def test_the_window_forgets_its_first_probabilities_and_the_moving_grid_does_not():
@@ -242,14 +253,45 @@ def test_every_stretch_is_under_way_and_in_sight():
         assert scene.time_s[-1] > 175.0
 
 
-def test_after_a_turn_are_the_scans_of_it_and_of_half_a_minute_more():
+@pytest.fixture
+def bend():
+    """A straight, a turn and a straight under the coarser radar."""
     straight, turn = scenario.Segment(120.0), scenario.Segment(60.0, np.deg2rad(3.0))
     truth = scenario.Truth([4000.0, 5.0, 0.0, 0.0], [straight, turn, straight])
-    scene = scenario.Scenario("bend", truth, study.solent.RADARS["coastal_60m"], scans=99)
-    after_s = scene.time_s[study.solent.after_turn(scene)]
+    return scenario.Scenario("bend", truth, study.solent.RADARS["coastal_60m"], scans=99)
+
+
+def test_after_a_turn_are_the_scans_of_it_and_of_half_a_minute_more(bend):
+    after_s = bend.time_s[study.solent.after_turn(bend)]
     assert abs(after_s[0] - 120.0) <= 5.0
     assert abs(after_s[-1] - 210.0) <= 5.0
     assert len(after_s) == round((after_s[-1] - after_s[0]) / 3.0) + 1
+
+
+def test_errors_count_from_half_a_minute_on_and_those_after_a_turn_once_more(bend):
+    settled, turned = bend.time_s[1:] > 30.0, study.solent.after_turn(bend)[1:]
+    off_m = np.where(turned, 50.0, np.where(settled, 5.0, 1e3))
+
+    class Off:
+        """Too far north, and a tenth too fast."""
+
+        def run(self, z, **told):
+            states = bend.truth_states[1:] * [1.0, 1.1, 1.0, 1.1]
+            states[:, 0] += off_m
+            return SimpleNamespace(mean=np.broadcast_to(states, (len(z), *states.shape)))
+
+    figures = study.solent._score(bend, Off(), 3, 0).figures()
+    assert figures == pytest.approx(
+        {
+            "position_rmse_m": np.sqrt(np.mean(off_m[settled] ** 2)),
+            "speed_rmse_mps": 0.5,
+            "course_rms_deg": 0.0,
+            "after_turn_position_rmse_m": 50.0,
+            "after_turn_speed_rmse_mps": 0.5,
+            "after_turn_course_rms_deg": 0.0,
+        },
+        abs=1e-9,
+    )
 
 
 # The table ----------------------------------------------------------------------------------------

@@ -47,6 +47,26 @@ def test_the_geometry_is_that_of_the_resolution_when_it_is_told(number, maneuver
         np.testing.assert_allclose(steps, a823.PERIOD_S)
 
 
+@pytest.mark.parametrize("number", a823.ENCOUNTERS)
+def test_what_an_operator_is_told_of_the_truth_is_what_the_resolution_prints(number):
+    ships, encounter = a823.passage(number, "steady", 60.0), a823.ENCOUNTERS[number]
+    told = a823._operators_view(
+        np.concatenate([ships.target[-1] - ships.own[-1], ships.target[-1]])
+    )
+    course, speed, cpa, tcpa = DERIVED[number]
+    relative = encounter.relative_course_deg, encounter.relative_speed_kn
+    off = a823._off(told, dict(zip(told, (*relative, cpa, tcpa, course, speed), strict=True)))
+    np.testing.assert_allclose(list(off.values()), 0.0, atol=0.06)
+
+
+def test_the_bound_of_a_speed_right_ahead_is_that_of_a_line_through_ranges():
+    ships = a823.passage(1, "steady", 60.0)
+    std_m = np.sqrt(20.0**2 + (0.01 * NM) ** 2 / 3 + 30.0**2)
+    known_s2m2 = np.sum((ships.time_s - ships.time_s.mean()) ** 2) / std_m**2
+    std_mps = 1.0 / np.sqrt(known_s2m2 + 10.0**-2)
+    assert a823.bound(ships)["relative_speed_kn"] == pytest.approx(1.96 * std_mps / KN, rel=1e-5)
+
+
 def test_ships_that_turn_do_so_by_45_degrees_before():
     ships = a823.passage(3, "target_turn", 60.0)
     course = np.unwrap(np.arctan2(ships.target[:, 3], ships.target[:, 1]))
@@ -72,6 +92,13 @@ def test_sensors_err_as_the_budget_says():
     bearing = np.degrees(wl.wrap_angle(np.array([one.z[:, 1] for one in seen]) - gyro))
     random = np.sqrt(0.05**2 + (0.05**2 + 0.1**2) / 3 + 0.03**2)
     assert bearing.std() == pytest.approx(random, rel=0.05)
+
+
+def test_95_percent_of_the_runs_err_by_no_more_than_the_figures(report):
+    for (case, name), found in report.result.items():
+        row = report.row(case, name)
+        for metric, errors in zip(a823.METRICS, found.values(), strict=True):
+            assert np.mean(errors <= row[metric]) == pytest.approx(0.95, abs=0.005)
 
 
 @pytest.mark.parametrize("number", [1, 3, 4])

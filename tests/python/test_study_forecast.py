@@ -1,14 +1,30 @@
 """The study on forecasts of vessels from their AIS."""
 
+import re
+from pathlib import Path
+
 import pytest
 
 from wakeline import forecast, study
 from wakeline.study import ais_forecast
 
+PAGE = (Path(__file__).parents[2] / "cpp/docs/theory/ais_forecast.md").read_text()
+
 
 @pytest.fixture(scope="module")
 def report():
     return ais_forecast.run()
+
+
+@pytest.mark.parametrize("name", forecast.names())
+def test_the_figures_are_those_of_the_page(report, name):
+    (cells,) = re.findall(rf"^\| `{name}` \| ([\d, |]+) \|$", PAGE, flags=re.MULTILINE)
+    cases = [f"after_{s:.0f}s{end}" for end in ("", "_turning") for s in ais_forecast.HORIZONS_S]
+    for case, cell in zip(cases, cells.split(" | "), strict=True):
+        row = report.row(case, name)
+        found = row["position_median_m"], row["position_p90_m"]
+        assert found == pytest.approx([float(number) for number in cell.split(", ")], abs=0.6)
+    assert f"{report.notes[0].split(' forecasts')[0]} forecasts." in PAGE
 
 
 def test_errors_grow_with_time_and_turns_are_harder(report):

@@ -1,13 +1,16 @@
 """The study of the narrow strobe: what it finds, and what it says of it."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import wakeline as wl
 from wakeline import study
 from wakeline.scenario import HardTurn, hard_turns
 from wakeline.study import fuzzy_alpha_beta
+from wakeline.study.fuzzy_alpha_beta import on_video
 
 RUNS = 200
 
@@ -59,6 +62,12 @@ def test_what_does_better_needs_a_narrower_gate(report, name, most):
             assert row["straight_rms_m"] < 2.2
 
 
+def test_95_percent_of_the_runs_are_held_by_the_wider_gate(report):
+    for (case, name), outcome in report.result.items():
+        held = outcome.gate_m() <= report.row(case, name)["gate_p95_m"]
+        assert held.mean() == pytest.approx(0.95, abs=0.005)
+
+
 def test_a_closed_loop_loses_what_the_gate_does_not_hold(report):
     lost = {case: report.row(case, "fuzzy")["loss_probability"] for case in hard_turns()}
     assert min(lost.values()) > 0.7
@@ -98,6 +107,21 @@ def test_video_rows_follow_the_craft(report):
         assert row["loss_probability"] == 0.0
         assert row["estimate_error_median_m"] < 15.0
         assert row["straight_rms_m"] < 6.0
+
+
+def test_three_misses_in_a_row_lose_the_craft_for_good():
+    situation = HardTurn(10.0, 300.0)
+    turn = next(iter(on_video.video_scene(situation, seed=1).turns(1, seed=1)))
+    dark = replace(turn, amplitude=np.zeros_like(turn.amplitude))
+    loop = on_video.Loop(fuzzy_alpha_beta.estimators()["imm"], gate_m=18.0)
+    loop.estimator.start(wl.Gaussian([on_video.RANGE_M, 0.0, 0.0, 10.0], np.eye(4)))
+    for _ in range(3):
+        assert not loop.lost
+        loop.take(dark, situation.period_s)
+    assert loop.lost
+    loop.take(turn, situation.period_s)
+    np.testing.assert_array_equal(np.isnan(loop.estimate_m), [[False] * 2] * 3 + [[True] * 2])
+    assert np.isnan(loop.measured_m).all()
 
 
 def test_a_hard_turn_is_what_it_says():

@@ -8,7 +8,7 @@ import pytest
 
 import wakeline as wl
 from wakeline import study
-from wakeline.cli import main, outputs
+from wakeline.cli import main
 from wakeline.scenario import Obstacle, UsvMission
 from wakeline.study import usv_navigation as usv
 
@@ -263,8 +263,7 @@ def test_what_is_found_of_a_bias_is_seen_all_the_time(seed):
         assert found.max() <= high
 
 
-def test_the_command_writes_the_rows(monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr(outputs, "can_draw", lambda: False)
+def test_the_command_writes_the_rows(no_pictures, tmp_path, capsys):
     file = tmp_path / "usv.json"
     assert main(["study", "run", "usv-navigation", "--runs", "1", "--json", str(file)]) == 0
     found = json.loads(file.read_text())

@@ -667,7 +667,7 @@ def dead_reckon(
     Returns
     -------
     (latitude_rad, longitude_rad)
-        In mid-latitude with the radii of the ellipsoid: within 1 m of the rhumb line over 20 km up to
+        In mid-latitude with the radii of the ellipsoid: within 0.1 m of the rhumb line over 20 km up to
         70 degrees. NaN beyond a pole.
     """
 

@@ -25,6 +25,7 @@ from wakeline._checks import run_numbers
 from wakeline._units import KNOT_MPS, NAUTICAL_MILE_M
 from wakeline.scenario import Segment, Truth
 
+from . import curves
 from .base import Picture, Published, Report, Rows, kept, worked_off
 from .estimators import peaked, turn_filter, turn_imm
 
@@ -290,8 +291,7 @@ def _told(estimator: Any, seen: Seen, radar: wl.RangeBearing) -> np.ndarray:
     done = estimator.run(
         seen.z[1:], dt_s=PERIOD_S, sensor=radar, start=start, own_position_m=own_m[1:]
     )
-    rows = [0, 1, 2, 3] if done.mean.shape[-1] < 6 else [0, 1, 3, 4]
-    state = done.mean[-1][rows]
+    state = curves.kinematics(done.mean[-1])
     speed_mps, course = seen.log_mps[-_OWN_SCANS:].mean(), seen.gyro_rad[-_OWN_SCANS:].mean()
     own = [own_m[-1, 0], speed_mps * np.cos(course), own_m[-1, 1], speed_mps * np.sin(course)]
     return np.concatenate([state - own, state])

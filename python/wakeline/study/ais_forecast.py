@@ -16,6 +16,7 @@ import numpy as np
 from wakeline import forecast, plot, recording
 from wakeline.recording import AisTrack
 
+from . import under_way
 from .base import Picture, Report, Rows
 
 if TYPE_CHECKING:
@@ -38,8 +39,6 @@ LABELS = {
 
 _NOTE = "{count} forecasts, {share:.0%} of them from a turn of more than half a degree a second on"
 _EVERY_S = 15.0
-_MAX_GAP_S = 25.0
-_LEAST_SPEED_MPS = 2.0
 _HISTORY_S = 60.0
 _CURVE_S = np.arange(20.0, 361.0, 20.0)
 
@@ -91,16 +90,10 @@ def run(
 
 @lru_cache(maxsize=1)
 def _tracks() -> tuple[AisTrack, ...]:
-    """Gapless stretches of vessels under way, long enough for a forecast."""
-    stretches = []
-    for track in recording.load_ais().tracks.values():
-        for part in track.parts(_MAX_GAP_S):
-            way = (part.speed_mps > _LEAST_SPEED_MPS) & np.isfinite(part.course_rad)
-            rows = np.flatnonzero(way)
-            for one in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
-                if len(one) and np.ptp(part.time_s[one]) > _HISTORY_S + max(HORIZONS_S):
-                    stretches.append(part.rows(one))
-    return tuple(stretches)
+    """Stretches of vessels under way that are long enough for a forecast."""
+    tracks = recording.load_ais().tracks.values()
+    parts = (part for track in tracks for part in under_way.stretches(track))
+    return tuple(part for part in parts if np.ptp(part.time_s) > _HISTORY_S + max(HORIZONS_S))
 
 
 def _cases(ahead_s: np.ndarray) -> Iterator[tuple[AisTrack, np.ndarray]]:

@@ -23,8 +23,10 @@ from wakeline import navigation as nav
 from wakeline import plot
 from wakeline._checks import run_numbers
 from wakeline._units import KNOT_MPS
+from wakeline.metrics import rmse
 from wakeline.scenario import voyage as sea
 
+from . import curves
 from .base import Picture, Published, Report, Rows, kept, worked_off
 
 if TYPE_CHECKING:
@@ -242,18 +244,14 @@ def judge(dt_s: float, read: sea.VoyageReadings, name: str) -> dict[str, np.ndar
     if name != "combined":
         smooth = smoothers()[name]
         foretold = {m: smooth(m, dt_s, column).forecast for m, column in readings.items()}
-        return {m: _rms(forecast_errors(m, foretold[m], true[m])) for m in foretold}
+        return {m: rmse(forecast_errors(m, foretold[m], true[m]), axis=-1) for m in foretold}
     latitude, longitude, *rates = combined(dt_s, read)
     drift = nav.velocity_from_rates_mps(*rates, truth.latitude_rad)
     off = drift - nav.velocity_mps(sea.CURRENT_MPS, sea.CURRENT_RAD)
     return {
-        m: _rms(forecast_errors(m, ahead, true[m]))
+        m: rmse(forecast_errors(m, ahead, true[m]), axis=-1)
         for m, ahead in zip(METRICS[2:4], (latitude, longitude), strict=True)
-    } | {"drift_rms_kn": _rms(np.hypot(off[..., 0], off[..., 1]) / KNOT_MPS)}
-
-
-def _rms(off: np.ndarray) -> np.ndarray:
-    return np.sqrt(np.mean(np.square(off), axis=-1))
+    } | {"drift_rms_kn": rmse(np.hypot(off[..., 0], off[..., 1]) / KNOT_MPS, axis=-1)}
 
 
 def drift_errors(runs: int, seed: int, fixes: int) -> dict[str, np.ndarray]:
@@ -378,7 +376,7 @@ def run(
 def _rows(done: Mapping[tuple[str, str], dict[str, np.ndarray]]) -> Rows:
     return [
         {"scenario": case, "estimator": name}
-        | {m: float(_rms(of_runs[m])) if m in of_runs else None for m in METRICS}
+        | {m: float(rmse(of_runs[m])) if m in of_runs else None for m in METRICS}
         for (case, name), of_runs in done.items()
     ]
 
@@ -586,7 +584,7 @@ def _draw_rate(ax: Axes, shown: _Shown, seed: int) -> Axes:
 
 
 def _draw_ranking(ax: Axes, rows: Rows, metric: str) -> Axes:
-    figures = {(row["scenario"], row["estimator"]): row[metric] for row in rows}
+    figures = curves.figures(rows, metric)
     names = list(smoothers()) + ([] if metric in METRICS[:2] else ["combined"])
     values = {
         f"every {dt_s:.0f} s": [figures[case, name] for name in names]
@@ -606,7 +604,7 @@ def _draw_ranking(ax: Axes, rows: Rows, metric: str) -> Axes:
 
 def _draw_drift(ax: Axes, drifts: Mapping[str, np.ndarray]) -> Axes:
     for (name, off), color in zip(drifts.items(), plot.PALETTE, strict=False):
-        rms_kn = np.sqrt(np.mean(np.square(off), axis=0))
+        rms_kn = rmse(off, axis=0)
         fixes = np.arange(1, len(rms_kn) + 1)
         ax.plot(fixes, rms_kn, color=color, linewidth=1.4, marker="o", markersize=4, label=name)
     ax.plot([5, 20], [0.10, 0.03], "x", color=plot.INK, markersize=7, label="reference")

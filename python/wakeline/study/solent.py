@@ -12,7 +12,7 @@ minutes and is heard at a median interval under 7 s, without a gap over 25 s.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
@@ -26,7 +26,7 @@ from wakeline._checks import run_numbers
 from wakeline.recording import AisTrack
 from wakeline.scenario import RadarSimulator, Scenario, TrackTruth
 
-from . import curves
+from . import curves, under_way
 from .base import Picture, Report, Rows, kept, worked_off
 from .estimators import learning_filter, peaked, turn_filter, turn_imm
 
@@ -47,8 +47,7 @@ AFTER = "after_turn_"
 
 _WINDOW_S = 10.0
 _SETTLE_S = 30.0
-_MIN_SPEED_MPS = 2.0
-_MIN_STEP_S, _MAX_STEP_S, _MAX_GAP_S = 0.5, 7.0, 25.0
+_MIN_STEP_S, _MAX_STEP_S = 0.5, 7.0
 _MIN_DURATION_S = 180.0
 _COVERAGE_M = 10e3
 _START_SPEED_STD_MPS = 10.0
@@ -99,19 +98,14 @@ def vessels() -> dict[str, TrackTruth]:
     ]
     found = {}
     for mmsi, track in ais.tracks.items():
-        stretches = [part for gapless in track.parts(_MAX_GAP_S) for part in _under_way(gapless)]
-        for k, truth in enumerate(filter(None, map(_retimed, stretches))):
+        often = filter(_heard_often, under_way.stretches(track))
+        for k, truth in enumerate(filter(None, map(_retimed, often))):
             found[f"{mmsi}-{k}"] = truth.moved(-radar_m[0], -radar_m[1])
     return {name: truth for name, truth in found.items() if _covered(truth)}
 
 
-def _under_way(track: AisTrack) -> Iterator[AisTrack]:
-    """The parts of a track in which the vessel makes way."""
-    moving = (track.speed_mps > _MIN_SPEED_MPS) & np.isfinite(track.course_rad)
-    rows = np.flatnonzero(moving)
-    for part in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
-        if len(part) > 1 and np.median(np.diff(track.time_s[part])) < _MAX_STEP_S:
-            yield track.rows(part)
+def _heard_often(track: AisTrack) -> bool:
+    return bool(np.median(np.diff(track.time_s)) < _MAX_STEP_S)
 
 
 def _retimed(track: AisTrack) -> TrackTruth | None:

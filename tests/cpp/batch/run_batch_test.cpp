@@ -12,6 +12,7 @@
 #include <random>
 #include <vector>
 
+#include "support/run_results.hpp"
 #include "wakeline/batch/run.hpp"
 #include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/filter/ekf.hpp"
@@ -28,6 +29,7 @@
 namespace wakeline {
 namespace {
 
+using Results = test::RunResults;
 using Lanes = Pack<double, kNativeLanes<double>>;
 
 constexpr std::size_t kRuns = 2 * std::size_t(kNativeLanes<double>) + 1;
@@ -35,38 +37,6 @@ constexpr std::size_t kScans = 120;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr RangeBearing kRadar{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)};
-
-/// What a batch gives, and the memory of it.
-struct Results {
-  std::vector<double> mean, covariance, modes, rates, innovation, nis, log_likelihood;
-  std::vector<std::uint8_t> status;
-  RunOutput out;
-
-  Results(std::size_t runs, std::size_t states, std::size_t models, bool turn_rates)
-      : mean(runs * kScans * states),
-        covariance(runs * kScans * states * states),
-        modes(runs * kScans * models),
-        rates(turn_rates ? runs * kScans * models : 0),
-        innovation(runs * kScans * 2),
-        nis(runs * kScans),
-        log_likelihood(runs * kScans),
-        status(runs * kScans) {
-    out = {states,
-           models,
-           mean.data(),
-           covariance.data(),
-           modes.data(),
-           rates.data(),
-           innovation.data(),
-           nis.data(),
-           log_likelihood.data(),
-           status.data()};
-  }
-
-  [[nodiscard]] std::array<const std::vector<double>*, 7> numbers() const {
-    return {&mean, &covariance, &modes, &rates, &innovation, &nis, &log_likelihood};
-  }
-};
 
 /// Vessels that steer here and there, some of their scans missed.
 std::vector<double> recordings(std::size_t runs) {
@@ -241,15 +211,14 @@ struct GammaOfIndex {
 template <template <class> class Kind, class Scalar, class Sensor>
 Results run(const Sensor& sensor, const RunInput& in, int threads = 1) {
   const auto prototype = Kind<Scalar>::make();
-  Results results(in.runs, std::size_t(prototype.estimate().mean.size()), Kind<Scalar>::kModels,
-                  kHasTurnRates<decltype(prototype)>);
+  Results results(in, std::size_t(prototype.estimate().mean.size()), Kind<Scalar>::kModels);
   run_batch(
       [&](std::size_t) {
         auto estimator = prototype;
         EXPECT_TRUE(all(ok(estimator.start(start<Scalar>()))));
         return estimator;
       },
-      sensor, in, results.out, Threads{threads});
+      sensor, in, results.out(), Threads{threads});
   return results;
 }
 

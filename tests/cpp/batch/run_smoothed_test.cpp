@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "support/draw.hpp"
+#include "support/run_results.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
@@ -40,56 +40,39 @@ Imm<Bank> started() {
 }
 
 /// Plots three seconds apart, but for a pause before one of them, and what is known of the scans.
-struct Recording {
-  std::vector<double> z, dt_s, mean, covariance, modes, innovation, nis, log_likelihood;
-  std::vector<std::uint8_t> scan_status;
-  Status status = Status::kOk;
-
-  Recording(std::size_t scans, double pause_s)
-      : z(2 * scans),
-        dt_s(scans, 3.0),
-        mean(4 * scans),
-        covariance(16 * scans),
-        modes(2 * scans),
-        innovation(2 * scans),
-        nis(scans),
-        log_likelihood(scans),
-        scan_status(scans) {
-    test::Draw draw(15);
-    for (std::size_t k = 0; k < scans; ++k) {
-      z[2 * k] = 24.0 * double(k) + 30.0 * draw.normal();
-      z[2 * k + 1] = 9.0 * double(k) + 30.0 * draw.normal();
-    }
-    if (scans > kPause) dt_s[kPause] = pause_s;
-    const RunInput in{.runs = 1, .scans = scans, .z = z.data(), .dt_s = dt_s.data()};
-    const RunOutput out{.states = 4,
-                        .models = 2,
-                        .mean = mean.data(),
-                        .covariance = covariance.data(),
-                        .mode_probability = modes.data(),
-                        .innovation = innovation.data(),
-                        .nis = nis.data(),
-                        .log_likelihood = log_likelihood.data(),
-                        .status = scan_status.data()};
-    status = run_smoothed(started(), kSensor, in, 0, out);
-  }
+struct Smoothed {
+  test::RunResults results;
+  Status status;
 };
 
+Smoothed smoothed(std::size_t scans, double pause_s) {
+  std::vector<double> z, dt_s(scans, 3.0);
+  test::Draw draw(15);
+  for (std::size_t k = 0; k < scans; ++k) {
+    z.push_back(24.0 * double(k) + 30.0 * draw.normal());
+    z.push_back(9.0 * double(k) + 30.0 * draw.normal());
+  }
+  if (scans > kPause) dt_s[kPause] = pause_s;
+  const RunInput in{.runs = 1, .scans = scans, .z = z.data(), .dt_s = dt_s.data()};
+  Smoothed all{test::RunResults(in, 4, 2), Status::kOk};
+  all.status = run_smoothed(started(), kSensor, in, 0, all.results.out());
+  return all;
+}
+
 TEST(RunSmoothed, BeforeAPauseOverWhichNothingGoesBackIsSmoothedByItself) {
-  const Recording before(kPause, 3.0);
+  const std::vector<double> before = smoothed(kPause, 3.0).results.mean;
   int by_itself = 0;
   for (double pause_s = 3.0; pause_s < 1e10; pause_s *= 3.0) {
-    const Recording whole(kScans, pause_s);
-    ASSERT_EQ(whole.status, Status::kOk) << pause_s;
-    const auto& mean = before.mean;
-    by_itself += std::equal(mean.begin(), mean.end(), whole.mean.begin());
-    for (const double number : whole.mean) EXPECT_TRUE(std::isfinite(number)) << pause_s;
+    const auto [results, status] = smoothed(kScans, pause_s);
+    ASSERT_EQ(status, Status::kOk) << pause_s;
+    by_itself += std::equal(before.begin(), before.end(), results.mean.begin());
+    for (const double number : results.mean) EXPECT_TRUE(std::isfinite(number)) << pause_s;
   }
   EXPECT_GT(by_itself, 0);
 }
 
 TEST(RunSmoothed, TellsAStepThatIsNone) {
-  EXPECT_EQ(Recording(kScans, -1.0).status, Status::kNegativeTimeStep);
+  EXPECT_EQ(smoothed(kScans, -1.0).status, Status::kNegativeTimeStep);
 }
 
 }  // namespace

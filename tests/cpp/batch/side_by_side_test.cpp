@@ -187,6 +187,7 @@ TYPED_TEST(SideBySideOf, TakesNoHeap) {
   const test::NoHeap fence;
   side_by_side.predict(predictions);
   side_by_side.update(updates);
+  EXPECT_EQ(fence.allocations(), 0);
 }
 
 }  // namespace

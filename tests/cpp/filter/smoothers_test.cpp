@@ -8,6 +8,7 @@
 #include <span>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "support/draw.hpp"
@@ -339,6 +340,18 @@ TEST(AdaptiveExponentialSmoother, FollowsAJumpAndRestsInNoise) {
   }
   EXPECT_LT(at_rest, 0.8);
   EXPECT_GT(in_motion, at_rest + 0.15);
+}
+
+// The line of two readings rises by 1, and meets 5/6 of what a third one is off by. To 3 it goes by
+// 11/6 of 2, to 1.5 by 7/12 of 0.5: (1 + 11/3) / 5 and (1 + 7/24) / 1.25 of all that was read.
+TEST(AdaptiveExponentialSmoother, GoesAsFarAsTheLineButNotBeyondAReading) {
+  for (const auto& [third, alpha] : {std::pair{3.0, 14.0 / 15.0}, std::pair{1.5, 1.0}}) {
+    AdaptiveExponentialSmoother<> smoother;
+    for (const double reading : {0.0, 1.0, third})
+      ASSERT_EQ(smoother.update(1, reading), Status::kOk);
+    EXPECT_NEAR(smoother.alpha(), alpha, 1e-12);
+    EXPECT_NEAR(smoother.value(), 1.0 + alpha * (third - 1.0), 1e-12);
+  }
 }
 
 TEST(AdaptiveExponentialSmoother, AsPrintedNeverAdapts) {

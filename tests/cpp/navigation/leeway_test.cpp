@@ -29,7 +29,20 @@ TEST(Leeway, OfEveryObjectGoesDownwind) {
     const Vec2 drift = wind_drift_mps(wind, k.middle());
     EXPECT_NEAR(drift.norm() / knots(1), 1.944 * k.middle() * 10, 1e-3);
     EXPECT_NEAR(drift[0] * wind[1], drift[1] * wind[0], 1e-12);
+    EXPECT_GT(drift.dot(wind), 0.0);
   }
+}
+
+TEST(Leeway, IsTheTableOfThePaper) {
+  const auto expect = [](FloatingObject object, double least, double greatest) {
+    EXPECT_EQ(leeway_factor(object).least, least);
+    EXPECT_EQ(leeway_factor(object).greatest, greatest);
+  };
+  expect(FloatingObject::kBuoy, 0.012, 0.015);
+  expect(FloatingObject::kDinghy, 0.032, 0.045);
+  expect(FloatingObject::kLaunch, 0.065, 0.065);
+  expect(FloatingObject::kShip, 0.056, 0.062);
+  EXPECT_NEAR(leeway_factor(FloatingObject::kDinghy).std(), 0.003753, 1e-6);
 }
 
 TEST(WindCurrent, HasThePublishedSpeeds) {
@@ -54,6 +67,7 @@ TEST(WindCurrent, TurnsWithTheHemisphere) {
 TEST(WindCurrent, HasNoLawNearTheEquator) {
   for (const double latitude : {0.0, deg(19.99), deg(-19.99), 1.6, double(NAN)})
     EXPECT_THROW((WindCurrent(latitude)), std::invalid_argument);
+  EXPECT_THROW(WindCurrent(deg(50.0), -0.01), std::invalid_argument);
   EXPECT_NO_THROW((WindCurrent(deg(-20.0))));
   try {
     const WindCurrent near(0.1);

@@ -92,15 +92,9 @@ class BayesianAlphaBeta
 
   /// Saves or restores what is remembered; that of another weighing fails.
   void archive(Archive& fields) {
+    fields.rules(weighing_.min_plots, weighing_.max_plots, weighing_.parabolas, weighing_.sojourn_s,
+                 weighing_.longest_line_probability, weighing_.acceleration_std_mps2);
     BayesianAlphaBeta loaded = *this;
-    LineWeighing saved = weighing_;
-    fields(saved.min_plots);
-    fields(saved.max_plots);
-    fields(saved.parabolas);
-    fields(saved.sojourn_s);
-    fields(saved.longest_line_probability);
-    fields(saved.acceleration_std_mps2);
-    if (!(saved == weighing_)) return fields.fail();
     loaded.archive_plots(fields);
     fields(loaded.weight_);
     const bool weighs = loaded.weight_.minCoeff() >= Scalar(0) && loaded.weight_.sum() > Scalar(0);

@@ -48,16 +48,9 @@ class FuzzyAlphaBeta
 
   /// Saves or restores what is remembered; that of another criterion fails.
   void archive(Archive& fields) {
+    fields.rules(criterion_.max_plots, criterion_.steepness, criterion_.threshold, criterion_.clip,
+                 criterion_.t_norm, criterion_.hold, criterion_.acceleration_std_mps2);
     FuzzyAlphaBeta loaded = *this;
-    auto [max_plots, steepness, threshold, clip, t_norm, hold, acceleration] = criterion_;
-    fields(max_plots);
-    fields(steepness);
-    fields(threshold);
-    fields(clip);
-    fields(t_norm);
-    fields(hold);
-    fields(acceleration);
-    const FuzzyCriterion saved{max_plots, steepness, threshold, clip, t_norm, hold, acceleration};
     loaded.archive_plots(fields);
     Judgement& last = loaded.judgement_;
     fields(last.ratios);
@@ -70,8 +63,8 @@ class FuzzyAlphaBeta
     const auto within = [](Scalar number, int least, int most) {
       return number >= Scalar(least) && number <= Scalar(most) && number == std::floor(number);
     };
-    if (saved != criterion_ || !within(last.lines, 0, max_plots - 1) ||
-        !(last.scans >= Scalar(0)) || !within(last.chosen, 2, std::max(2, loaded.bank_.size())))
+    if (!within(last.lines, 0, criterion_.max_plots - 1) || !(last.scans >= Scalar(0)) ||
+        !within(last.chosen, 2, std::max(2, loaded.bank_.size())))
       fields.fail();
     if (!fields.loading() || !fields.ok()) return;
     *this = loaded;

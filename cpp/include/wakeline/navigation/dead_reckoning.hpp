@@ -135,7 +135,7 @@ inline Vec<double, 2> velocity_from_rates_mps(double latitude_rate_rad_s,
 /// (11): combined dead reckoning by speed, course and drift, in mid-latitude:
 ///     dlat = (V cos K + Vc cos Kc) t / M,  dlon = (V sin K + Vc sin Kc) t / (N cos(mid-latitude)),
 /// M and N the radii of the ellipsoid (on the sphere of nautical miles both are one minute of arc a
-/// mile). Within 1 m of the rhumb line over 20 km up to 70 degrees; not for use at a pole.
+/// mile). Within 0.1 m of the rhumb line over 20 km up to 70 degrees; not for use at a pole.
 inline GeoPoint dead_reckon(const GeoPoint& from, const SpeedCourse& ship, const SpeedCourse& drift,
                             double dt_s) noexcept {
   const Vec<double, 2> run = dt_s * over_ground(ship.velocity_mps(), drift.velocity_mps());

@@ -22,6 +22,7 @@ from wakeline.study.base import Published, Report, Rows, finite, kept, worked_of
 
 from . import on_video, pictures
 from .estimators import LABELS, estimators, window_lengths
+from .on_video import LOST_AFTER
 
 __all__ = ["GATES_M", "LABELS", "SUMMARY", "estimators", "evaluate", "loss_probability", "run"]
 
@@ -29,7 +30,6 @@ SUMMARY = "a fuzzy choice among lines through plots, in a strobe little wider th
 
 GATES_M = {"10mps_r300": 18.0, "20mps_r300": 27.0, "20mps_r600": 22.0}
 SETTLED = 10  # scans before errors count
-LOST_AFTER = 3  # misses in a row
 _START_STD = (1000.0, 30.0)  # m and m/s: a start that knows nothing
 _CURVE_GATES_M = np.arange(8.0, 51.0, 2.0)
 _CURVE_RUNS = 200

@@ -16,10 +16,11 @@ import numpy as np
 import wakeline as wl
 from wakeline.recording import RadarVideo
 from wakeline.scenario import HardTurn, VideoScene, small_craft_scene
+from wakeline.study import curves
 
 from .estimators import estimators
 
-LOST_AFTER = 3
+LOST_AFTER = 3  # misses in a row
 RANGE_M = 10_000.0
 LEAST_AMPLITUDE = 40  # above all but one in a hundred cells of the sea
 # How far the centre of mass lies from the craft, found with strobes around the truth.
@@ -72,7 +73,7 @@ class Loop:
             self.estimator.update(SENSOR, echo)
         self.misses = 0 if echo is not None else self.misses + 1
         self.predicted_m.append(ahead_m)
-        self.measured_m.append(unknown if echo is None else from_polar(echo))
+        self.measured_m.append(unknown if echo is None else curves.place_m(echo))
         self.estimate_m.append(place_of(self.estimator))
 
 
@@ -153,8 +154,3 @@ def strobe(turn: RadarVideo, around_m: np.ndarray, radius_m: float) -> np.ndarra
 def place_of(estimator: Any) -> np.ndarray:
     """North and east of an estimate."""
     return estimator.estimate().mean[[0, 2]]
-
-
-def from_polar(z: np.ndarray) -> np.ndarray:
-    """North and east of a range and a bearing."""
-    return z[0] * np.array([np.cos(z[1]), np.sin(z[1])])

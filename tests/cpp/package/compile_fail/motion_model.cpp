@@ -1,22 +1,15 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// A motion model that forgets its process noise.
+// A motion model that hides its process noise.
 #include "wakeline/filter/ekf.hpp"
+#include "wakeline/motion/constant_velocity.hpp"
 
-struct Drifting {
-  static constexpr auto kComponents = wakeline::kKinematics;
-
-  template <class Scalar>
-  wakeline::Mat<Scalar, 4, 4> matrix(Scalar) const noexcept {
-    return wakeline::Mat<Scalar, 4, 4>::Identity();
-  }
-#ifndef WAKELINE_COMPILE_FAIL
-  template <class Scalar>
-  wakeline::Mat<Scalar, 4, 4> process_noise(Scalar dt_s) const noexcept {
-    return dt_s * wakeline::Mat<Scalar, 4, 4>::Identity();
-  }
+struct Drifting : wakeline::ConstantVelocity {
+#ifdef WAKELINE_COMPILE_FAIL
+ private:
 #endif
+  using wakeline::ConstantVelocity::process_noise;
 };
 
 int main() {

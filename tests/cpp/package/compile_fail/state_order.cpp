@@ -3,31 +3,15 @@
 //
 // A motion model over [x, y, vx, vy], which a start over [x, vx, y, vy] would fill wrongly.
 #include "wakeline/filter/ekf.hpp"
+#include "wakeline/motion/constant_velocity.hpp"
 
 using wakeline::Component;
-using wakeline::Mat;
 
-struct Drifting {
+struct Drifting : wakeline::ConstantVelocity {
 #ifdef WAKELINE_COMPILE_FAIL
   static constexpr std::array kComponents{Component::kNorth, Component::kEast, Component::kVnorth,
                                           Component::kVeast};
-  static constexpr int kVelocity = 2, kEast = 1;
-#else
-  static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
-                                          Component::kVeast};
-  static constexpr int kVelocity = 1, kEast = 2;
 #endif
-
-  template <class Scalar>
-  Mat<Scalar, 4, 4> matrix(Scalar dt_s) const noexcept {
-    Mat<Scalar, 4, 4> f = Mat<Scalar, 4, 4>::Identity();
-    f(0, kVelocity) = f(kEast, 3) = dt_s;
-    return f;
-  }
-  template <class Scalar>
-  Mat<Scalar, 4, 4> process_noise(Scalar dt_s) const noexcept {
-    return dt_s * Mat<Scalar, 4, 4>::Identity();
-  }
 };
 
 int main() {
