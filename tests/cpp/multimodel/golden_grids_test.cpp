@@ -86,7 +86,7 @@ TEST(GoldenGrids, SwitchingGrid) {
         .threshold = parameters.at("t"),
         .rule = parameters.at("rule") == "literal" ? SwitchRule::kLiteral : SwitchRule::kSymmetric,
         .carry = parameters.at("carry") == "slot" ? SwitchCarry::kSlot : SwitchCarry::kIdentity,
-        .initial_centre = parameters.at("initial_centre")};
+        .initial_centre = parameters.at("initial_centre").get<int>()};
     expect_golden(SwitchingGridImm{grid, ModeChain<3>::staying(0.9), filter_of(item)}, item);
   }
   EXPECT_EQ(cases, 8);

@@ -479,6 +479,7 @@ TEST(TurnGrid, RefusesWhatIsNoGrid) {
   EXPECT_THROW(TurnRateGrid(std::span<const double>(forty)), std::invalid_argument);
   EXPECT_THROW(TurnRateGrid::evenly(0.0, 2), std::invalid_argument);
   EXPECT_THROW(TurnRateGrid::evenly(1.0, 8), std::invalid_argument);
+  EXPECT_THROW(TurnRateGrid::evenly(1.0, std::numeric_limits<int>::max()), std::invalid_argument);
 }
 
 TEST(TurnGrid, SaysWhatWasWantedAndWhatCame) {

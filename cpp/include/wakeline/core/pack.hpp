@@ -284,9 +284,8 @@ class Pack {
         return (Raw)vsqrtq_f32((float32x4_t)a);
     }
 #endif
-    Raw root;
-    for (int k = 0; k < Lanes; ++k) root[k] = std::sqrt(a[k]);
-    return root;
+    for (int k = 0; k < Lanes; ++k) a[k] = std::sqrt(a[k]);
+    return a;
   }
 };
 

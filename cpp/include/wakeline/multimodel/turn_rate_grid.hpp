@@ -52,7 +52,7 @@ class TurnRateGrid {
   /// i wmax / n for i = -n .. n: paper B, step 1.2. Throws as above.
   static TurnRateGrid evenly(double max_turn_rate_rad_s, int steps_each_side) {
     require_positive("max_turn_rate_rad_s", max_turn_rate_rad_s);
-    require(steps_each_side >= 1 && 2 * steps_each_side + 1 <= kMaxModes, "steps_each_side",
+    require(steps_each_side >= 1 && steps_each_side <= (kMaxModes - 1) / 2, "steps_each_side",
             "1 to 7", double(steps_each_side));
     std::array<double, kMaxModes> rates{};
     const int count = 2 * steps_each_side + 1;
