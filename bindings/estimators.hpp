@@ -17,7 +17,7 @@ namespace wakeline::python {
 /// Filters from a sequence of them.
 inline std::vector<AnyFilter> to_filters(const py::sequence& sequence) {
   std::vector<AnyFilter> filters;
-  for (const py::handle item : sequence) {
+  for (py::handle item : sequence) {
     if (!py::isinstance<AnyFilter>(item))
       throw py::type_error("filters must be Kalman, Ekf, Ukf or SquareRootUkf, got " +
                            py::str(py::type::of(item).attr("__name__")).cast<std::string>());
