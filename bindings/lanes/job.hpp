@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lanes.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/filter/ukf.hpp"

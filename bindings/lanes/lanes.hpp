@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "wakeline/batch/run.hpp"
-#include "wakeline/batch/side_by_side.hpp"
+#include "wakeline/simd/side_by_side.hpp"
 #include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/filter/unscented.hpp"
 #include "wakeline/measurement/position.hpp"

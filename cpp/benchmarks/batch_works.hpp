@@ -12,7 +12,7 @@
 
 #include "flop_count.hpp"
 #include "models.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/multimodel/bayesian_alpha_beta.hpp"
 #include "wakeline/multimodel/fuzzy_alpha_beta.hpp"

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "wakeline/core/scalar.hpp"
+#include "wakeline/simd/scalar.hpp"
 
 namespace wakeline::bench {
 

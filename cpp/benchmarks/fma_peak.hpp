@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "wakeline/core/pack.hpp"
-#include "wakeline/core/unroll.hpp"
+#include "wakeline/simd/pack.hpp"
+#include "wakeline/simd/unroll.hpp"
 
 namespace wakeline::bench {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "filter/cases.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/multimodel/bayesian_alpha_beta.hpp"
 #include "wakeline/multimodel/fuzzy_alpha_beta.hpp"

@@ -16,7 +16,7 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/multimodel/mode_history.hpp"

@@ -11,7 +11,7 @@
 
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
-#include "wakeline/core/pack.hpp"
+#include "wakeline/simd/pack.hpp"
 
 namespace wakeline {
 namespace {

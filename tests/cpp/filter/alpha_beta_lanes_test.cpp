@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "support/draw.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"

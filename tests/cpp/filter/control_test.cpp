@@ -6,7 +6,7 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/measurement/position.hpp"
 
 namespace wakeline {

@@ -8,7 +8,7 @@
 
 #include "support/matrix_assert.hpp"
 #include "support/refusal.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "support/draw.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/multimodel/hypothesis_rows.hpp"
 
 namespace wakeline {

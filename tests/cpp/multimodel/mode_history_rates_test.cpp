@@ -11,7 +11,7 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
 namespace wakeline {

@@ -11,7 +11,7 @@
 
 #include "wakeline/batch/threads.hpp"
 #include "wakeline/core/component.hpp"
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/filter/concept.hpp"
 #include "wakeline/gating/radius_gate.hpp"

@@ -7,8 +7,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "wakeline/core/pack.hpp"
-#include "wakeline/core/scalar.hpp"
+#include "wakeline/simd/pack.hpp"
+#include "wakeline/simd/scalar.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {

@@ -6,8 +6,8 @@
 #include <concepts>
 #include <type_traits>
 
-#include "wakeline/core/scalar.hpp"
-#include "wakeline/core/unroll.hpp"
+#include "wakeline/simd/scalar.hpp"
+#include "wakeline/simd/unroll.hpp"
 
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
 #error "wakeline: -ffast-math and -ffinite-math-only take out the checks for what is not a number"

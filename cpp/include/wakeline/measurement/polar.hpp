@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "wakeline/core/angle.hpp"
-#include "wakeline/core/scalar.hpp"
+#include "wakeline/simd/scalar.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/measurement/own_ship.hpp"
 

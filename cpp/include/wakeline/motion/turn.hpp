@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "wakeline/core/scalar.hpp"
+#include "wakeline/simd/scalar.hpp"
 #include "wakeline/core/types.hpp"
-#include "wakeline/core/unroll.hpp"
+#include "wakeline/simd/unroll.hpp"
 #include "wakeline/motion/process_noise.hpp"
 
 namespace wakeline {

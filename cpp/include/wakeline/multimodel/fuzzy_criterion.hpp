@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "wakeline/core/require.hpp"
-#include "wakeline/core/scalar.hpp"
+#include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "wakeline/core/in_place_array.hpp"
-#include "wakeline/core/scalar.hpp"
+#include "wakeline/simd/scalar.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"

@@ -11,7 +11,7 @@
 #include <span>
 #include <type_traits>
 
-#include "wakeline/core/scalar.hpp"
+#include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
 

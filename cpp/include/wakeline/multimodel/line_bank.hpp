@@ -13,7 +13,7 @@
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/types.hpp"
-#include "wakeline/core/unroll.hpp"
+#include "wakeline/simd/unroll.hpp"
 
 namespace wakeline {
 

@@ -13,7 +13,7 @@
 
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/require.hpp"
-#include "wakeline/core/scalar.hpp"
+#include "wakeline/simd/scalar.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/multimodel/filter_bank.hpp"
 

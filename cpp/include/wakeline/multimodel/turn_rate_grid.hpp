@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-#include "wakeline/core/scalar.hpp"
+#include "wakeline/simd/scalar.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
 
 namespace wakeline {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline::detail {

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "wakeline/core/pack_math.hpp"
+#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/multimodel/filter_bank.hpp"
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"

@@ -18,7 +18,7 @@
 
 #include "wakeline/association/global_nearest_neighbour.hpp"
 #include "wakeline/association/nearest_neighbour.hpp"
-#include "wakeline/batch/side_by_side.hpp"
+#include "wakeline/simd/side_by_side.hpp"
 #include "wakeline/gating/chi_square_gate.hpp"
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/imm.hpp"

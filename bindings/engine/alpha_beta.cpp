@@ -1,0 +1,272 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "any_alpha_beta.hpp"
+#include "support/call_text.hpp"
+#include "face.hpp"
+
+namespace wakeline::python {
+namespace {
+
+void require_order(int order) {
+  if (order != 2 && order != 3)
+    throw py::value_error("order must be 2 or 3 states an axis, got " + std::to_string(order));
+}
+
+/// Adds `gains` to the class of a schedule of so many states an axis.
+template <class Schedule, bool OfThree>
+void define_gains(py::class_<Schedule>& schedule) {
+  define_copies(schedule);
+  schedule.def(
+      "gains",
+      [](const Schedule& s, int order, std::int64_t reading, double elapsed_s, double std_m,
+         double range_m) {
+        require_order(order);
+        require(reading >= 1, "reading", "1 or more", static_cast<double>(reading));
+        require_not_negative("elapsed_s", elapsed_s);
+        require_positive("std_m", std_m);
+        require_not_negative("range_m", range_m);
+        const GainOccasion<double> occasion{static_cast<double>(reading), elapsed_s, std_m,
+                                            range_m};
+        if constexpr (OfThree) {
+          if (order == 3) {
+            s.template validate<3>();
+            return to_array(s.template gains<3>(occasion));
+          }
+        } else if (order == 3) {
+          throw py::value_error("order must be 2: there are no such gains of three states an axis");
+        }
+        s.template validate<2>();
+        return to_array(s.template gains<2>(occasion));
+      },
+      py::arg("order") = 2, py::kw_only(), py::arg("reading") = 1, py::arg("elapsed_s") = 1.0,
+      py::arg("std_m") = 1.0, py::arg("range_m") = 0.0,
+      "[alpha, beta] or, of order 3, [alpha, beta, gamma] for the reading-th reading since the "
+      "start, `elapsed_s` after the one before, of error `std_m` along the axis, at a range.");
+}
+
+void define_schedules(py::module_& m) {
+  py::class_<ConstantGains> constant(
+      m, "ConstantGains",
+      "Gains that stay the same; gamma for an alpha-beta-gamma filter only. A filter refuses those "
+      "that are not stable.");
+  constant
+      .def(py::init([](double alpha, double beta, double gamma) {
+             return ConstantGains{alpha, beta, gamma};
+           }),
+           py::arg("alpha"), py::arg("beta"), py::arg("gamma") = 0.0)
+      .def_readonly("alpha", &ConstantGains::alpha)
+      .def_readonly("beta", &ConstantGains::beta)
+      .def_readonly("gamma", &ConstantGains::gamma)
+      .def("__repr__", [](const ConstantGains& gains) {
+        return CallText("ConstantGains")
+            .with("alpha", gains.alpha)
+            .with("beta", gains.beta)
+            .with("gamma", gains.gamma)
+            .text();
+      });
+  define_gains<ConstantGains, true>(constant);
+
+  py::class_<GrowingMemory> growing(
+      m, "GrowingMemory",
+      R"(Gains that draw the least-squares line (or parabola) through all readings so far.
+
+With regular steps the filter equals that line exactly, whatever the start. A missed scan does not count.
+
+Parameters
+----------
+plots_before : int
+    That the start was made of.
+max_plots : int
+    The gains stay those of so many; 0 for all.)");
+  growing
+      .def(py::init([](int before, int most) {
+             return GrowingMemory{before, most};
+           }),
+           py::kw_only(), py::arg("plots_before") = 0, py::arg("max_plots") = 0)
+      .def_readonly("plots_before", &GrowingMemory::plots_before)
+      .def_readonly("max_plots", &GrowingMemory::max_plots)
+      .def("__repr__", [](const GrowingMemory& memory) {
+        return CallText("GrowingMemory")
+            .with("plots_before", memory.plots_before)
+            .with("max_plots", memory.max_plots)
+            .text();
+      });
+  define_gains<GrowingMemory, true>(growing);
+
+  py::class_<BenedictBordner> bordner(m, "BenedictBordner",
+                                      "beta = alpha² / (2 - alpha): the least error after a change "
+                                      "of velocity for the noise that an "
+                                      "alpha lets through.");
+  bordner.def(py::init([](double alpha) { return BenedictBordner{alpha}; }), py::arg("alpha"))
+      .def_readonly("alpha", &BenedictBordner::alpha)
+      .def("__repr__", [](const BenedictBordner& gains) {
+        return CallText("BenedictBordner").with("alpha", gains.alpha).text();
+      });
+  define_gains<BenedictBordner, false>(bordner);
+
+  py::class_<CriticallyDamped> damped(
+      m, "CriticallyDamped",
+      "All poles at theta: the least-squares line or parabola with weights theta a reading back "
+      "(fading memory).");
+  damped.def(py::init([](double theta) { return CriticallyDamped{theta}; }), py::arg("theta"))
+      .def_readonly("theta", &CriticallyDamped::theta)
+      .def("__repr__", [](const CriticallyDamped& gains) {
+        return CallText("CriticallyDamped").with("theta", gains.theta).text();
+      });
+  define_gains<CriticallyDamped, true>(damped);
+
+  py::class_<TrackingIndex> index(
+      m, "TrackingIndex",
+      R"(Gains of the steady Kalman filter, by the tracking index: accel_std T² / error of the reading.
+
+The error is that of each reading along and across the bearing, so that the gains follow the range by themselves; the index follows
+the step.
+
+Parameters
+----------
+accel_std_mps2 : float
+    Of the acceleration (with three states: its change) drawn anew for each step.
+
+References
+----------
+P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alpha-beta-gamma target trackers, IEEE Trans. AES-20,
+1984.)");
+  index.def(py::init([](double accel) { return TrackingIndex{accel}; }), py::arg("accel_std_mps2"))
+      .def_readonly("accel_std_mps2", &TrackingIndex::accel_std_mps2)
+      .def("__repr__",
+           [](const TrackingIndex& index) {
+             return CallText("TrackingIndex").with("accel_std_mps2", index.accel_std_mps2).text();
+           })
+      .def(
+          "steady_covariance",
+          [](const TrackingIndex& schedule, double period_s, double std_m, int order) {
+            require_order(order);
+            require_positive("period_s", period_s);
+            require_positive("std_m", std_m);
+            schedule.validate<2>();
+            if (order == 3) return to_array(schedule.steady_covariance<3>(period_s, std_m));
+            return to_array(schedule.steady_covariance<2>(period_s, std_m));
+          },
+          py::arg("period_s"), py::arg("std_m"), py::arg("order") = 2,
+          "(order, order) covariance of the states of one axis after an update, in the steady "
+          "state.");
+  define_gains<TrackingIndex, true>(index);
+
+  const RangeDependent plotter;
+  py::class_<RangeDependent> range(m, "RangeDependent",
+                                   "Gains by the range alone, as a radar plotting aid has them: "
+                                   "beyond `near_range_m` in inverse "
+                                   "proportion to the range, down to those of `far`.");
+  range
+      .def(py::init([](double near_range_m, double near_alpha, double near_beta, double far_alpha,
+                       double far_beta) {
+             return RangeDependent{near_range_m, near_alpha, near_beta, far_alpha, far_beta};
+           }),
+           py::kw_only(), py::arg("near_range_m") = plotter.near_range_m,
+           py::arg("near_alpha") = plotter.near_alpha, py::arg("near_beta") = plotter.near_beta,
+           py::arg("far_alpha") = plotter.far_alpha, py::arg("far_beta") = plotter.far_beta)
+      .def_readonly("near_range_m", &RangeDependent::near_range_m)
+      .def_readonly("near_alpha", &RangeDependent::near_alpha)
+      .def_readonly("near_beta", &RangeDependent::near_beta)
+      .def_readonly("far_alpha", &RangeDependent::far_alpha)
+      .def_readonly("far_beta", &RangeDependent::far_beta)
+      .def("__repr__", [](const RangeDependent& gains) {
+        return CallText("RangeDependent")
+            .with("near_range_m", gains.near_range_m)
+            .with("near_alpha", gains.near_alpha)
+            .with("near_beta", gains.near_beta)
+            .with("far_alpha", gains.far_alpha)
+            .with("far_beta", gains.far_beta)
+            .text();
+      });
+  define_gains<RangeDependent, false>(range);
+
+  m.def(
+      "stable_gains",
+      [](double alpha, double beta, std::optional<double> gamma) {
+        return gamma ? stable_gains(alpha, beta, *gamma) : stable_gains(alpha, beta);
+      },
+      py::arg("alpha"), py::arg("beta"), py::arg("gamma") = py::none(),
+      "Whether a filter of these gains forgets its errors: alpha > 0, beta > 0, 2 alpha + beta < 4 "
+      "and, with gamma, 0 < gamma < 4 alpha beta / (2 - alpha).");
+}
+
+/// The filter with the process noise given, else that which its schedule stands for.
+template <int Order>
+AnyAlphaBeta<Order> make(const GainSchedule<Order>& gains, const std::optional<ProcessNoise>& noise,
+                         [[maybe_unused]] double prior_accel_std_mps2) {
+  typename AlphaBetaFilter<Order>::Motion motion = AlphaBetaFilter<Order>(gains).motion();
+  if (noise) motion.noise = *noise;
+  if constexpr (Order == 3) motion.prior_accel_std_mps2 = prior_accel_std_mps2;
+  return AnyAlphaBeta<Order>(gains, motion);
+}
+
+/// The call that makes the filter, up to what it is told of an acceleration.
+template <int Order>
+CallText filter_call(const char* name, const AnyAlphaBeta<Order>& filter) {
+  return CallText(name).with("gains", filter.schedule()).with("noise", filter.motion().noise);
+}
+
+}  // namespace
+
+void define_alpha_beta(py::module_& m) {
+  define_schedules(m);
+
+  py::class_<AnyAlphaBeta<2>> line(
+      m, "AlphaBeta",
+      R"(The alpha-beta filter over [x, vx, y, vy], its gains by a schedule.
+
+``x += alpha e`` and ``vx += beta e / T`` per axis, e the innovation in north and east and T the time since the reading before,
+missed scans included; readings within an eighth of a step are of one time and have one T. Covariance, NIS and likelihood are those
+of such gains where plots and motion are as the models say, so that it may be compared with a Kalman filter. Takes the position out
+of any sensor.
+
+Parameters
+----------
+gains : ConstantGains, GrowingMemory, BenedictBordner, CriticallyDamped, TrackingIndex or RangeDependent
+noise : ProcessNoise, optional
+    Of a constant velocity, for the covariance; when left out that which a tracking index stands for, else `WhiteAcceleration()`.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense or gains are not stable.)");
+  line.def(py::init([](const GainSchedule<2>& gains, const std::optional<ProcessNoise>& noise) {
+             return make<2>(gains, noise, 0.0);
+           }),
+           py::arg("gains"), py::kw_only(), py::arg("noise") = py::none());
+  define_face(line);
+  line.def("__repr__",
+           [](const AnyAlphaBeta<2>& one) { return filter_call("AlphaBeta", one).text(); });
+
+  py::class_<AnyAlphaBeta<3>> parabola(
+      m, "AlphaBetaGamma",
+      R"(The alpha-beta-gamma filter over [x, vx, ax, y, vy, ay], its gains by a schedule.
+
+As `AlphaBeta`, and ``ax += gamma e / (2 T²)``.
+
+Parameters
+----------
+gains : ConstantGains, GrowingMemory, CriticallyDamped or TrackingIndex
+noise : ProcessNoise, optional
+    Of a constant acceleration, for the covariance; when left out that which a tracking index stands for, else `WhiteJerk()`.
+prior_accel_std_mps2 : float
+    What a start without acceleration assumes of it.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense or gains are not stable.)");
+  parabola.def(py::init([](const GainSchedule<3>& gains, const std::optional<ProcessNoise>& noise,
+                           double prior) { return make<3>(gains, noise, prior); }),
+               py::arg("gains"), py::kw_only(), py::arg("noise") = py::none(),
+               py::arg("prior_accel_std_mps2") = ConstantAcceleration{}.prior_accel_std_mps2);
+  define_face(parabola);
+  parabola.def("__repr__", [](const AnyAlphaBeta<3>& one) {
+    return filter_call("AlphaBetaGamma", one)
+        .with("prior_accel_std_mps2", one.motion().prior_accel_std_mps2)
+        .text();
+  });
+}
+
+}  // namespace wakeline::python

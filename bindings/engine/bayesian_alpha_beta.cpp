@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "any_lines.hpp"
+#include "support/call_text.hpp"
+#include "face.hpp"
+
+namespace wakeline::python {
+
+void define_bayesian_alpha_beta(py::module_& m) {
+  const LineWeighing weighing;
+  py::class_<AnyBayesianAlphaBeta> bank(
+      m, "BayesianAlphaBeta", R"(Lines and parabolas through the last plots, weighed by Bayes' rule.
+
+Each member foretells the next plot with a known error: the plot's own, times one plus the member's noise factor. The plot's
+likelihood is the evidence for it, and from scan to scan a member stays the right one for a while. The estimate is the mixture.
+Does what `FuzzyAlphaBeta` does, many plots on a straight and few in a turn, without its usual residual, which a turn inflates,
+its hold and its hard choice; a parabola holds a turn that lines cut. Has the face of `Imm`, with a mode for each member: lines
+first, shorter before longer, then parabolas.
+
+Takes the position out of any sensor, and measures innovations in north and east.
+
+Parameters
+----------
+min_plots, max_plots : int
+    Of the shortest and the longest line, 2 to 16; at most 16 members in all.
+parabolas : bool
+    Whether there are parabolas too, through four plots and more.
+sojourn_s : float
+    Mean time until another member is the right one.
+longest_line_probability : float
+    Prior of the longest line; the other members are alike.
+acceleration_std_mps2 : float
+    Per axis, of a maneuver that began at the last plot but one: widens the covariance, not used in weighing.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense.)");
+  bank.def(py::init([](int min_plots, int max_plots, bool parabolas, double sojourn_s,
+                       double longest, double acceleration) {
+             return AnyBayesianAlphaBeta({.min_plots = min_plots,
+                                          .max_plots = max_plots,
+                                          .parabolas = parabolas,
+                                          .sojourn_s = sojourn_s,
+                                          .longest_line_probability = longest,
+                                          .acceleration_std_mps2 = acceleration});
+           }),
+           py::kw_only(), py::arg("min_plots") = weighing.min_plots,
+           py::arg("max_plots") = weighing.max_plots, py::arg("parabolas") = weighing.parabolas,
+           py::arg("sojourn_s") = weighing.sojourn_s,
+           py::arg("longest_line_probability") = weighing.longest_line_probability,
+           py::arg("acceleration_std_mps2") = weighing.acceleration_std_mps2);
+  define_face(bank);
+  bank.def("__repr__", [](const AnyBayesianAlphaBeta& estimator) {
+    const LineWeighing& rules = estimator.weighing();
+    return CallText("BayesianAlphaBeta")
+        .with("min_plots", rules.min_plots)
+        .with("max_plots", rules.max_plots)
+        .with("parabolas", rules.parabolas)
+        .with("sojourn_s", rules.sojourn_s)
+        .with("longest_line_probability", rules.longest_line_probability)
+        .with("acceleration_std_mps2", rules.acceleration_std_mps2)
+        .text();
+  });
+  bank.def_property_readonly(
+      "plots_of_mode",
+      [](const AnyBayesianAlphaBeta& estimator) {
+        const LineWeighing& rules = estimator.weighing();
+        py::array_t<int> plots(rules.members());
+        for (int mode = 0; mode < rules.members(); ++mode)
+          plots.mutable_at(mode) = rules.plots_of(mode);
+        return plots;
+      },
+      "(K,) number of plots that each member goes through.");
+}
+
+}  // namespace wakeline::python

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/core/chi_square.hpp"
+
+#include <pybind11/native_enum.h>
+
+#include "support/call_text.hpp"
+#include "wakeline/core/angle.hpp"
+
+namespace wakeline::python {
+namespace {
+
+PyGaussian make_gaussian(const DoubleArray& mean, const DoubleArray& covariance) {
+  PyGaussian belief;
+  belief.mean = to_vector("mean", mean);
+  belief.covariance = to_matrix("covariance", covariance, belief.mean.size(), belief.mean.size());
+  return belief;
+}
+
+/// A number for one angle, an array for several.
+py::object wrapped(const DoubleArray& angle_rad) {
+  if (angle_rad.ndim() == 0) return py::float_(wrap_angle(*angle_rad.data()));
+  py::array_t<double> result(shape_of(angle_rad));
+  for (py::ssize_t k = 0; k < angle_rad.size(); ++k)
+    result.mutable_data()[k] = wrap_angle(angle_rad.data()[k]);
+  return result;
+}
+
+}  // namespace
+
+void define_core(py::module_& parent) {
+  py::module_ m = parent.def_submodule("core", "Beliefs, statuses, angles and the chi-square law.");
+  py::register_exception<FilterError>(m, "FilterError", PyExc_RuntimeError).attr("__doc__") =
+      "An estimator could not be started, predicted or updated; its belief is as it was.";
+
+  py::native_enum<Status>(m, "Status", "enum.IntEnum",
+                          "What became of one step: a number, as in the `status` of a run.")
+      .value("ok", Status::kOk, "all was taken")
+      .value("missed", Status::kMissed, "no measurement in this scan: predicted only")
+      .value("not_started", Status::kNotStarted, "the estimator has no belief yet")
+      .value("not_finite", Status::kNotFinite, "an input or a result is not finite")
+      .value("not_positive_definite", Status::kNotPositiveDefinite,
+             "a covariance is not positive definite")
+      .value("negative_time_step", Status::kNegativeTimeStep, "time would run backwards")
+      .finalize();
+
+  py::class_<PyGaussian>(m, "Gaussian", R"(A Gaussian belief.
+
+Parameters
+----------
+mean : (N,) array
+covariance : (N, N) array
+    Symmetric positive definite; checked when an estimator starts with it.
+
+Raises
+------
+ValueError
+    When the shapes do not fit.)")
+      .def(py::init(&make_gaussian), py::arg("mean"), py::arg("covariance"))
+      .def_property_readonly(
+          "mean", [](const PyGaussian& g) { return to_array(g.mean); }, "(N,)")
+      .def_property_readonly(
+          "covariance", [](const PyGaussian& g) { return to_array(g.covariance); }, "(N, N)")
+      .def(py::pickle(
+          [](const PyGaussian& g) {
+            return py::make_tuple(to_array(g.mean), to_array(g.covariance));
+          },
+          [](const py::tuple& fields) {
+            return make_gaussian(fields[0].cast<DoubleArray>(), fields[1].cast<DoubleArray>());
+          }))
+      .def("__repr__", [](const PyGaussian& g) {
+        return CallText("Gaussian").with("mean", g.mean).with("covariance", g.covariance).text();
+      });
+
+  py::class_<PyStep>(m, "Step",
+                     "What one measurement update has found; true where the reading was taken.")
+      .def("__bool__", [](const PyStep& s) { return s.status == Status::kOk; })
+      .def_readonly("status", &PyStep::status)
+      .def_property_readonly(
+          "innovation", [](const PyStep& s) { return to_array(s.innovation); },
+          "(M,) measured minus predicted, angles wrapped")
+      .def_property_readonly(
+          "innovation_covariance",
+          [](const PyStep& s) { return to_array(s.innovation_covariance); }, "(M, M)")
+      .def_readonly("nis", &PyStep::nis, "normalised innovation squared")
+      .def_readonly("log_likelihood", &PyStep::log_likelihood)
+      .def(py::pickle([](const PyStep& s) { return fields_of(s); },
+                      [](const py::tuple& fields) { return step_of(fields); }))
+      .def("__repr__", [](const PyStep& s) {
+        const std::string found = ok(s.status) ? ", nis=" + text_of(s.nis) : "";
+        return "<Step: " + std::string(to_string(s.status)) + found + ">";
+      });
+
+  m.def("wrap_angle", &wrapped, py::arg("angle_rad"),
+        "The same angle in [-pi, pi], rad; of an array each.");
+  m.def("chi_square_quantile", &chi_square_quantile, py::arg("probability"), py::arg("dof"),
+        "The value that a chi-square variable of `dof` degrees of freedom stays below with "
+        "`probability`; NaN where there is none.");
+  m.def("chi_square_probability", &chi_square_probability, py::arg("value"), py::arg("dof"),
+        "Probability that a chi-square variable of `dof` degrees of freedom stays below `value`; "
+        "NaN where there is no such law.");
+}
+
+}  // namespace wakeline::python

@@ -1,0 +1,413 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <optional>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "any_lines.hpp"
+#include "any_turn_grids.hpp"
+#include "support/call_text.hpp"
+#include "face.hpp"
+#include "imm_smoother.hpp"
+#include "mode_history.hpp"
+#include "support/option.hpp"
+#include "turn_grid.hpp"
+
+namespace wakeline::python {
+namespace {
+
+constexpr Word<SwitchRule> kRules[] = {{"symmetric", SwitchRule::kSymmetric},
+                                       {"literal", SwitchRule::kLiteral}};
+constexpr Word<SwitchCarry> kCarries[] = {{"slot", SwitchCarry::kSlot},
+                                          {"identity", SwitchCarry::kIdentity}};
+
+Chain make_chain(const DoubleArray& matrix, const std::optional<double>& period_s) {
+  require_shape(matrix.ndim() == 2 && matrix.shape(0) == matrix.shape(1) && matrix.shape(0) > 0 &&
+                    matrix.shape(0) <= kMaxModes,
+                "matrix", "(K, K), K at most " + std::to_string(kMaxModes), matrix);
+  const Chain::Matrix rows = to_matrix("matrix", matrix, matrix.shape(0), matrix.shape(0));
+  return period_s ? Chain(rows, *period_s) : Chain(rows);
+}
+
+Chain chain_of_generator(const DoubleArray& rates) {
+  require_shape(rates.ndim() == 2 && rates.shape(0) == rates.shape(1) && rates.shape(0) > 0 &&
+                    rates.shape(0) <= kMaxModes,
+                "generator_per_s", "(K, K), K at most " + std::to_string(kMaxModes), rates);
+  return Chain::from_generator(to_matrix("generator_per_s", rates, rates.shape(0), rates.shape(0)));
+}
+
+/// True when the chain leaves each mode to all others alike, after these times.
+bool is_of_sojourn(const Chain::Matrix& generator_per_s, const Eigen::VectorXd& times_s) {
+  const Chain chain = Chain::from_sojourn_s(ModeVector<double, kRuntimeModes>(times_s));
+  return *chain.generator_per_s() == generator_per_s;
+}
+
+std::string chain_text(const Chain& chain) {
+  const auto generator_per_s = chain.generator_per_s();
+  if (!generator_per_s) return CallText("ModeChain").with("matrix", chain.transition(0.0)).text();
+  const auto times_s = sojourn_times_s(*generator_per_s);
+  if (times_s && is_of_sojourn(*generator_per_s, *times_s))
+    return CallText("ModeChain.from_sojourn_s").with("sojourn_s", *times_s).text();
+  return CallText("ModeChain.from_generator").with("generator_per_s", *generator_per_s).text();
+}
+
+/// The call that makes an estimator over a grid of turn rates, up to the rules of the grid.
+CallText grid_call(const char* name, const AnyImm& imm) {
+  return CallText(name)
+      .with("filter", without_turn(imm.bank().filter(0)))
+      .with("chain", imm.chain())
+      .with("initial_mode_probability", imm.initial_mode_probability());
+}
+
+std::string imm_text(const AnyImm& imm) {
+  std::vector<AnyFilter> filters;
+  for (int k = 0; k < imm.bank().size(); ++k)
+    filters.push_back(imm.bank().filter(static_cast<std::size_t>(k)));
+  return CallText("Imm")
+      .with("filters", filters)
+      .with("chain", imm.chain())
+      .with("initial_mode_probability", imm.initial_mode_probability())
+      .text();
+}
+
+/// Turn rates of the models, none where the rate of one is not known.
+std::optional<py::array_t<double>> known_turn_rates(const AnyImm& imm) {
+  std::vector<double> rates;
+  for (int k = 0; k < imm.bank().size(); ++k)
+    std::visit(
+        [&]<class Filter>(const Filter& filter) {
+          if constexpr (std::is_same_v<typename Filter::Motion, ConstantVelocity>)
+            rates.push_back(0.0);
+          else if constexpr (requires { filter.motion().turn_rate_rad_s; })
+            rates.push_back(filter.motion().turn_rate_rad_s);
+        },
+        imm.bank().filter(static_cast<std::size_t>(k)).variant());
+  if (rates.size() != static_cast<std::size_t>(imm.bank().size())) return std::nullopt;
+  return py::array_t<double>(static_cast<py::ssize_t>(rates.size()), rates.data());
+}
+
+std::string adaptive_grid_text(const AnyAdaptiveGridImm& imm) {
+  const AdaptiveGrid& grid = imm.grid();
+  const AdaptiveGrid::Rates initial = grid.initial();
+  return grid_call("AdaptiveGridImm", imm)
+      .with("max_turn_rate_rad_s", grid.max_turn_rate_rad_s)
+      .with("initial_turn_rates_rad_s", std::vector<double>(initial.begin(), initial.end()))
+      .with("min_spacing_rad_s", grid.min_spacing_rad_s)
+      .with("kept_spacing_rad_s", grid.kept_spacing_rad_s)
+      .with("least_move_rad_s", grid.least_move_rad_s)
+      .with("centre_threshold", grid.centre_threshold)
+      .with("centre_gain", grid.centre_gain)
+      .with("unlikely_threshold", grid.unlikely_threshold)
+      .with("likely_threshold", grid.likely_threshold)
+      .text();
+}
+
+std::string switching_grid_text(const AnySwitchingGridImm& imm) {
+  const SwitchingGrid& grid = imm.grid();
+  return grid_call("SwitchingGridImm", imm)
+      .with("grid_rad_s", grid.grid_rad_s.rates_rad_s())
+      .with("threshold", grid.threshold)
+      .with("rule", word_of(grid.rule, kRules))
+      .with("carry", word_of(grid.carry, kCarries))
+      .with("initial_centre", grid.initial())
+      .text();
+}
+
+std::string likely_model_set_text(const AnyLikelyModelSetImm& imm) {
+  const LikelyModelSet& set = imm.grid();
+  return grid_call("LikelyModelSetImm", imm)
+      .with("grid_rad_s", set.grid_rad_s.rates_rad_s())
+      .with("unlikely_threshold", set.unlikely_threshold)
+      .with("likely_threshold", set.likely_threshold)
+      .text();
+}
+
+AnyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
+                const std::optional<DoubleArray>& initial) {
+  AnyImm imm(chain, AnyFilterBank(filters));
+  if (initial)
+    imm.set_initial_mode_probability(
+        to_vector("initial_mode_probability", *initial, static_cast<py::ssize_t>(filters.size())));
+  return imm;
+}
+
+void define_adaptive_grid(py::module_& m) {
+  const AdaptiveGrid grid;
+  py::class_<AnyAdaptiveGridImm> adaptive(m, "AdaptiveGridImm",
+                                          R"(Three turn models whose rates move with the target.
+
+The turn rates move before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
+
+The printed rule is that of centre_threshold 0.3, centre_gain 1, kept_spacing_rad_s 0 and least_move_rad_s 0. Its grid collapses to half of
+min_spacing_rad_s to each side, where the rates may differ too little to be told apart, and nothing opens it again. The
+defaults keep it open and move its centre with patience.
+
+Parameters
+----------
+filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+    What all three models are like; its turn rate does not matter.
+max_turn_rate_rad_s : float
+    No model turns faster.
+initial_turn_rates_rad_s : (3,) array, optional
+    Left, centre and right at a start, none less than the one before it; zero and half the maximum to each side when left
+    out. Not printed.
+min_spacing_rad_s : float
+    The least spacing that a move starts from. Not printed.
+kept_spacing_rad_s : float
+    No side comes nearer to the centre, but for the maximum: what keeps the grid open. Not in the paper: 0.
+least_move_rad_s : float
+    A grid none of whose rates would move so far stays, which saves time. Not in the paper: 0.
+centre_threshold : float
+    A centre less probable than this moves towards the mean rate. In the paper 0.3.
+centre_gain : float
+    How far it moves towards it. Not in the paper: 1, all the way.
+unlikely_threshold : float
+    Where the centre is the most probable, a side less probable than this comes half way nearer.
+likely_threshold : float
+    Where a side is the most probable, and more than this, it goes twice as far.
+stay_probability : float
+    Of the models' chain: to stay, the rest to each other model alike.
+chain : ModeChain, optional
+    Another chain of three modes, instead of `stay_probability`.
+initial_mode_probability : (3,) array, optional
+    What a start begins with; 0.9 for the centre when left out. Not printed.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense.
+
+References
+----------
+Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.1.)");
+  adaptive.def(
+      py::init([](const AnyFilter& filter, double max_rate,
+                  const std::optional<DoubleArray>& initial_rates, double min_spacing,
+                  double kept_spacing, double least_move, double centre, double gain,
+                  double unlikely, double likely, double stay, const std::optional<Chain>& chain,
+                  const std::optional<DoubleArray>& initial) {
+        AdaptiveGrid grid{.max_turn_rate_rad_s = max_rate,
+                          .min_spacing_rad_s = min_spacing,
+                          .kept_spacing_rad_s = kept_spacing,
+                          .least_move_rad_s = least_move,
+                          .centre_threshold = centre,
+                          .centre_gain = gain,
+                          .unlikely_threshold = unlikely,
+                          .likely_threshold = likely};
+        if (initial_rates) {
+          const Eigen::VectorXd rates = to_vector("initial_turn_rates_rad_s", *initial_rates, 3);
+          grid.initial_turn_rates_rad_s = {rates[0], rates[1], rates[2]};
+        }
+        return with_initial(
+            AnyAdaptiveGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial);
+      }),
+      py::arg("filter"), py::kw_only(), py::arg("max_turn_rate_rad_s") = grid.max_turn_rate_rad_s,
+      py::arg("initial_turn_rates_rad_s") = py::none(),
+      py::arg("min_spacing_rad_s") = grid.min_spacing_rad_s,
+      py::arg("kept_spacing_rad_s") = grid.kept_spacing_rad_s,
+      py::arg("least_move_rad_s") = grid.least_move_rad_s,
+      py::arg("centre_threshold") = grid.centre_threshold,
+      py::arg("centre_gain") = grid.centre_gain,
+      py::arg("unlikely_threshold") = grid.unlikely_threshold,
+      py::arg("likely_threshold") = grid.likely_threshold, py::arg("stay_probability") = 0.9,
+      py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none());
+  define_face(adaptive);
+  adaptive.def("__repr__", &adaptive_grid_text);
+}
+
+void define_switching_grid(py::module_& m) {
+  const SwitchingGrid grid;
+  py::class_<AnySwitchingGridImm> switching(
+      m, "SwitchingGridImm", R"(Three turn models in a window on a fixed grid of turn rates.
+
+The window moves before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
+
+Parameters
+----------
+filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+    What all three models are like; its turn rate does not matter.
+grid_rad_s : (3 to 16,) array, optional
+    Turn rates, rising; 2.5 deg/s apart up to 5 deg/s to each side when left out.
+threshold : float
+    A model more probable than this decides. In the paper 0.7, with which the window often comes too late.
+rule : 'symmetric' or 'literal'
+    Left if the left model is above the threshold, right if the right one is, else stay; or as printed: left if the left
+    one is, stay if the centre is, else right.
+carry : 'slot' or 'identity'
+    Whether each slot keeps its estimate and probability, or each model that stays does and the entering one begins with
+    the combined estimate and the probability of the leaving one. Not printed.
+initial_centre : int, optional
+    Index of the window's middle at a start; the straightest rate but the ends when left out. Not printed.
+stay_probability : float
+    Of the models' chain: to stay, the rest to each other model alike.
+chain : ModeChain, optional
+    Another chain of three modes, instead of `stay_probability`.
+initial_mode_probability : (3,) array, optional
+    What a start begins with; 0.9 for the centre when left out. Not printed.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense.
+
+References
+----------
+Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelectronics, 2023, 26(3), step 1.2.)");
+  switching.def(
+      py::init([](const AnyFilter& filter, const std::optional<DoubleArray>& rates,
+                  double threshold, const std::string& rule, const std::string& carry,
+                  const std::optional<int>& centre, double stay, const std::optional<Chain>& chain,
+                  const std::optional<DoubleArray>& initial) {
+        const SwitchingGrid grid{.grid_rad_s = rates ? to_grid(*rates, SwitchingGrid::kLeastRates)
+                                                     : SwitchingGrid{}.grid_rad_s,
+                                 .threshold = threshold,
+                                 .rule = to_option("rule", rule, kRules),
+                                 .carry = to_option("carry", carry, kCarries),
+                                 .initial_centre = centre};
+        return with_initial(
+            AnySwitchingGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial);
+      }),
+      py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
+      py::arg("threshold") = grid.threshold, py::arg("rule") = "symmetric",
+      py::arg("carry") = "identity", py::arg("initial_centre") = py::none(),
+      py::arg("stay_probability") = 0.9, py::arg("chain") = py::none(),
+      py::arg("initial_mode_probability") = py::none());
+  switching.def_property_readonly("centre", &AnySwitchingGridImm::centre,
+                                  "Index of the window's middle in the grid.");
+  define_face(switching);
+  switching.def("__repr__", &switching_grid_text);
+}
+
+void define_likely_model_set(py::module_& m) {
+  const LikelyModelSet set;
+  py::class_<AnyLikelyModelSetImm> likely(m, "LikelyModelSetImm",
+                                          R"(Turn models that join and leave by their probability.
+
+All are active at a start. Before each prediction that follows an update the unlikely ones go to rest and the neighbours
+of the likely ones join; the most probable one always has its neighbours with it. Has the face of `Imm`; a model at rest
+has probability 0 and turn rate NaN, and its `filter_estimate` is the belief that it went to rest with.
+
+Parameters
+----------
+filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
+    What all models are like; its turn rate does not matter.
+grid_rad_s : (2 to 16,) array, optional
+    Turn rates, rising; 2 deg/s apart up to 4 deg/s to each side when left out.
+unlikely_threshold : float
+    A model less probable than this leaves.
+likely_threshold : float
+    One at least as probable as this has its neighbours join it.
+stay_probability : float
+    Of the models' chain: to stay, the rest to each other active model alike.
+chain : ModeChain, optional
+    Another chain of as many modes, instead of `stay_probability`; what leads to a model at rest goes to the active ones.
+initial_mode_probability : (K,) array, optional
+    What a start begins with; 0.9 for the straightest when left out.
+
+Raises
+------
+ValueError
+    When a parameter makes no sense.
+
+References
+----------
+X. R. Li, Y. Zhang, IEEE Trans. AES-36, 2000: the likely-model set.)");
+  likely.def(
+      py::init([](const AnyFilter& filter, const std::optional<DoubleArray>& rates, double unlikely,
+                  double principal, double stay, const std::optional<Chain>& chain,
+                  const std::optional<DoubleArray>& initial) {
+        LikelyModelSet set{.unlikely_threshold = unlikely, .likely_threshold = principal};
+        if (rates) set.grid_rad_s = to_grid(*rates);
+        const int models = set.grid_rad_s.size();
+        return with_initial(
+            AnyLikelyModelSetImm(set, chain_of(chain, stay, models), turning_bank(filter, models)),
+            initial);
+      }),
+      py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
+      py::arg("unlikely_threshold") = set.unlikely_threshold,
+      py::arg("likely_threshold") = set.likely_threshold, py::arg("stay_probability") = 0.9,
+      py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none());
+  define_face(likely);
+  likely.def("__repr__", &likely_model_set_text);
+}
+
+}  // namespace
+
+void define_multimodel(py::module_& parent) {
+  py::module_ m = parent.def_submodule("multimodel", "Estimators with several motion models.");
+
+  py::class_<Chain> chain(
+      m, "ModeChain",
+      R"(The Markov chain between modes: `matrix[i, j] = P(mode j now | mode i before)`.
+
+Parameters
+----------
+matrix : (K, K) array
+    Rows sum to 1.
+period_s : float, optional
+    The time the matrix stands for; the chain then depends on the time step. Left out, the matrix is applied once per
+    prediction.
+
+Raises
+------
+ValueError
+    When a row is no distribution, or no continuous-time chain has this matrix over the period.)");
+  define_copies(chain);
+  chain.def(py::init(&make_chain), py::arg("matrix"), py::arg("period_s") = py::none())
+      .def_static(
+          "from_sojourn_s",
+          [](const DoubleArray& sojourn_s) {
+            const Eigen::VectorXd times = to_vector("sojourn_s", sojourn_s);
+            if (times.size() < 1 || times.size() > kMaxModes)
+              throw py::value_error("sojourn_s must have 1 to " + std::to_string(kMaxModes) +
+                                    " times, got " + std::to_string(times.size()));
+            return Chain::from_sojourn_s(ModeVector<double, kRuntimeModes>(times));
+          },
+          py::arg("sojourn_s"),
+          "The chain that stays in mode k for sojourn_s[k] seconds on average and leaves to each "
+          "other mode alike.")
+      .def_static("from_generator", &chain_of_generator, py::arg("generator_per_s"),
+                  "The chain in continuous time that goes from mode i to mode j "
+                  "generator_per_s[i, j] times a second; rows sum to 0.")
+      .def(
+          "transition",
+          [](const Chain& chain, double dt_s) {
+            require_not_negative("dt_s", dt_s);
+            return to_array(chain.transition(dt_s));
+          },
+          py::arg("dt_s"), "P(dt), (K, K). Raises ValueError for a step below zero.")
+      .def_property_readonly("modes", [](const Chain& chain) { return chain.modes(); })
+      .def_property_readonly("continuous", &Chain::continuous)
+      .def("__repr__", &chain_text);
+
+  py::class_<AnyImm> imm(m, "Imm", R"(The interacting multiple model estimator.
+
+Parameters
+----------
+filters : sequence of K filters
+    Of any kinds and state sizes.
+chain : ModeChain
+initial_mode_probability : (K,) array, optional
+    What a start begins with; uniform when left out.)");
+  imm.def(py::init([](const py::sequence& filters, const Chain& chain,
+                      const std::optional<DoubleArray>& initial) {
+            return make_imm(to_filters(filters), chain, initial);
+          }),
+          py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none());
+  define_face(imm);
+  define_imm_smoother(imm);
+  imm.def("turn_rates_rad_s", &known_turn_rates,
+          "(K,) turn rates of the models, positive to starboard; None where one is not known.");
+  imm.def("__repr__", &imm_text);
+
+  define_adaptive_grid(m);
+  define_switching_grid(m);
+  define_likely_model_set(m);
+  define_mode_history(m);
+  define_bayesian_alpha_beta(m);
+  define_fuzzy_alpha_beta(m);
+}
+
+}  // namespace wakeline::python

@@ -1,0 +1,672 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include <map>
+#include <optional>
+
+#include "any_estimator.hpp"
+#include "support/call_text.hpp"
+#include "estimators.hpp"
+#include "lanes/lanes.hpp"
+#include "wakeline/track/tracker.hpp"
+#include "wakeline/track/vessel_models.hpp"
+
+namespace wakeline {
+
+/// The usual estimator takes its steps in the lanes of the processor that this runs on.
+template <>
+class SideBySide<VesselImm> {
+ public:
+  explicit SideBySide(const VesselImm& prototype) : one_by_one_(prototype) {
+    if (const python::LaneKernels* kernels = python::lane_kernels())
+      lanes_ = kernels->vessels(prototype);
+  }
+
+  void predict(std::span<PredictionStep<VesselImm>> steps) noexcept {
+    lanes_ ? lanes_->predict(steps) : one_by_one_.predict(steps);
+  }
+  void update(std::span<UpdateStep<VesselImm>> steps) noexcept {
+    lanes_ ? lanes_->update(steps) : one_by_one_.update(steps);
+  }
+
+ private:
+  OneByOne<VesselImm> one_by_one_;
+  std::unique_ptr<python::VesselLanes> lanes_;
+};
+
+}  // namespace wakeline
+
+namespace wakeline::python {
+namespace {
+
+/// A tracker with whatever estimator.
+class AnyTracker {
+ public:
+  AnyTracker(const Radar& radar, const TrackerConfig& config, const AnyEstimator& estimator)
+      : tracker_(Tracker<AnyEstimator>(radar, config, estimator)) {}
+  AnyTracker(const Radar& radar, const TrackerConfig& config, const VesselImm& imm)
+      : tracker_(Tracker<VesselImm>(radar, config, imm)) {}
+
+  template <class Function>
+  decltype(auto) visit(const Function& function) {
+    return std::visit(function, tracker_);
+  }
+  template <class Function>
+  decltype(auto) visit(const Function& function) const {
+    return std::visit(function, tracker_);
+  }
+
+ private:
+  std::variant<Tracker<VesselImm>, Tracker<AnyEstimator>> tracker_;
+};
+
+/// A plain struct of settings as a Python class: keyword arguments, attributes, and an error that
+/// names what is unknown.
+template <class Settings>
+class SettingsClass {
+ public:
+  SettingsClass(py::module_& m, const char* name, const char* doc) : class_(m, name, doc) {
+    define_copies(class_);
+    class_.def(py::init([](const py::kwargs& values) {
+      py::object settings = py::cast(Settings{});
+      const py::object known = settings.attr("as_dict")();
+      for (const auto& [key, value] : values) {
+        if (!known.contains(key))
+          throw py::type_error("no setting is called " + py::str(key).cast<std::string>());
+        set(settings, key, value, known[key]);
+      }
+      const Settings result = settings.cast<Settings>();
+      if constexpr (requires { result.validate(); }) result.validate();
+      return result;
+    }));
+    class_.def("__eq__", [](const py::object& self, const py::object& other) {
+      return py::isinstance<Settings>(other) &&
+             self.attr("as_dict")().equal(other.attr("as_dict")());
+    });
+  }
+
+  template <class Field>
+  SettingsClass& field(const char* name, Field Settings::*member) {
+    class_.def_readwrite(name, member);
+    names_.push_back(name);
+    return *this;
+  }
+
+  /// A field that is a property of its own.
+  SettingsClass& name(const char* name) {
+    names_.push_back(name);
+    return *this;
+  }
+
+  /// Closes the list of fields.
+  void done() {
+    class_.def(
+        "as_dict",
+        [names = names_](const py::object& self) {
+          py::dict values;
+          for (const std::string& name : names) values[name.c_str()] = self.attr(name.c_str());
+          return values;
+        },
+        "The settings by name.");
+    class_.def("__repr__", [names = names_](const py::object& self) {
+      CallText call(py::type::of(self).attr("__name__").cast<std::string>());
+      for (const std::string& name : names) call.with(name, py::object(self.attr(name.c_str())));
+      return call.text();
+    });
+  }
+
+  py::class_<Settings>& python() { return class_; }
+
+ private:
+  static void set(const py::object& settings, const py::handle& key, const py::handle& value,
+                  const py::object& known) {
+    try {
+      settings.attr(key) = value;
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_TypeError)) throw;
+      throw py::type_error(py::str("{} must be {}, got {!r}")
+                               .format(key, py::type::of(known).attr("__name__"), value)
+                               .cast<std::string>());
+    }
+  }
+
+  py::class_<Settings> class_;
+  std::vector<std::string> names_;
+};
+
+const std::map<std::string, Association> kAssociations{
+    {"probabilistic", Association::kProbabilistic},
+    {"global_nearest", Association::kGlobalNearest},
+    {"nearest", Association::kNearest}};
+
+std::string association_name(const TrackerConfig& config) {
+  for (const auto& [name, value] : kAssociations)
+    if (value == config.association) return name;
+  return "";
+}
+
+void set_association(TrackerConfig& config, const std::string& name) {
+  const auto found = kAssociations.find(name);
+  if (found == kAssociations.end())
+    throw py::value_error("association must be probabilistic, global_nearest or nearest, got " +
+                          name);
+  config.association = found->second;
+}
+
+const char* status_name(TrackStatus status) {
+  switch (status) {
+    case TrackStatus::kTentative:
+      return "tentative";
+    case TrackStatus::kConfirmed:
+      return "confirmed";
+    case TrackStatus::kCoasting:
+      return "coasting";
+    case TrackStatus::kHeld:
+      return "held";
+  }
+  return "";
+}
+
+const char* event_name(TrackEvent event) {
+  switch (event) {
+    case TrackEvent::kStarted:
+      return "started";
+    case TrackEvent::kConfirmed:
+      return "confirmed";
+    case TrackEvent::kCoasting:
+      return "coasting";
+    case TrackEvent::kLost:
+      return "lost";
+  }
+  return "";
+}
+
+using Course = Ekf<WanderingCourse>;
+using Turn = Ekf<CoordinatedTurnRate>;
+
+/// The same over filters composed at run time.
+AnyImm as_any_imm(const VesselImm& imm) {
+  AnyImm any(ModeChain<kRuntimeModes>(imm.chain()),
+             AnyFilterBank({AnyFilter(imm.filter<0>()), AnyFilter(imm.filter<1>()),
+                            AnyFilter(imm.filter<2>()), AnyFilter(imm.filter<3>())}));
+  any.set_initial_mode_probability(
+      ModeVector<double, kRuntimeModes>(imm.initial_mode_probability()));
+  return any;
+}
+
+AnyImm any_vessel_imm(const Radar& radar, const VesselModels& models) {
+  return as_any_imm(vessel_imm(radar, models));
+}
+
+/// The reverse, of an estimator that is made like it.
+std::optional<VesselImm> as_vessel_imm(const AnyImm& any) {
+  if (any.bank().size() != VesselImm::kModels) return std::nullopt;
+  const auto filter = [&](std::size_t k) -> const auto& { return any.bank().filter(k).variant(); };
+  const auto* cruising = std::get_if<Course>(&filter(0));
+  const auto* steady = std::get_if<Course>(&filter(1));
+  const auto* restless = std::get_if<Course>(&filter(2));
+  const auto* turning = std::get_if<Turn>(&filter(3));
+  if (cruising == nullptr || steady == nullptr || restless == nullptr || turning == nullptr)
+    return std::nullopt;
+  VesselImm imm(ModeChain<VesselImm::kModels>(any.chain()), Course(cruising->motion()),
+                Course(steady->motion()), Course(restless->motion()), Turn(turning->motion()));
+  imm.set_initial_mode_probability(any.initial_mode_probability());
+  return imm;
+}
+
+struct PyReport {
+  py::array_t<std::int64_t> plot_track_id;
+  std::vector<Event> events;
+  int refused_plots;
+};
+
+/// Tracks as arrays.
+struct PyTracks {
+  py::array_t<std::int64_t> track_id;
+  std::vector<std::string> status;
+  py::array_t<double> time_s, mean, covariance, mode_probability, nis, existence, visibility;
+  py::object turn_rate_rad_s;  ///< None where no model changes its turn rate
+  py::array_t<std::int64_t> hits, misses;
+  std::vector<std::string> name;
+};
+
+/// A column given as one number for all plots or one for each.
+DoubleArray column(const char* name, const py::object& values, py::ssize_t plots) {
+  const DoubleArray array = values.is_none() ? DoubleArray() : DoubleArray::ensure(values);
+  if (!array || values.is_none())
+    throw py::type_error(std::string(name) + " must be a number or an array, got " +
+                         py::repr(values).cast<std::string>());
+  if (array.ndim() == 0) {
+    DoubleArray filled(plots);
+    std::fill_n(filled.mutable_data(), plots, *array.data());
+    return filled;
+  }
+  require_shape(array.ndim() == 1 && array.shape(0) == plots, name, shape_text({plots}), array);
+  return array;
+}
+
+/// The engine's estimator behind a Python one.
+AnyEstimator to_estimator(const py::object& estimator) {
+  if (py::isinstance<AnyImm>(estimator)) return estimator.cast<const AnyImm&>();
+  if (py::isinstance<AnyAdaptiveGridImm>(estimator))
+    return estimator.cast<const AnyAdaptiveGridImm&>();
+  if (py::isinstance<AnySwitchingGridImm>(estimator))
+    return estimator.cast<const AnySwitchingGridImm&>();
+  if (py::isinstance<AnyLikelyModelSetImm>(estimator))
+    return estimator.cast<const AnyLikelyModelSetImm&>();
+  if (py::isinstance<AnyModeHistory>(estimator)) return estimator.cast<const AnyModeHistory&>();
+  if (py::isinstance<AnyFuzzyAlphaBeta>(estimator))
+    return estimator.cast<const AnyFuzzyAlphaBeta&>();
+  if (py::isinstance<AnyBayesianAlphaBeta>(estimator))
+    return estimator.cast<const AnyBayesianAlphaBeta&>();
+  throw py::type_error(
+      "estimator must be Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm, ModeHistory, "
+      "FuzzyAlphaBeta or BayesianAlphaBeta, got " +
+      py::str(py::type::of(estimator).attr("__name__")).cast<std::string>());
+}
+
+/// A tracker with an estimator given by hand.
+AnyTracker tracker_with(const Radar& radar, const TrackerConfig& config,
+                        const py::object& estimator) {
+  if (py::isinstance<AnyImm>(estimator))
+    if (const auto imm = as_vessel_imm(estimator.cast<const AnyImm&>()))
+      return AnyTracker(radar, config, *imm);
+  return AnyTracker(radar, config, to_estimator(estimator));
+}
+
+py::object python_estimator(const VesselImm& imm) { return py::cast(as_any_imm(imm)); }
+py::object python_estimator(const AnyEstimator& estimator) { return py::cast(estimator.variant()); }
+
+std::string tracker_text(const AnyTracker& any) {
+  return any.visit([](const auto& tracker) {
+    return CallText("Tracker")
+        .with("radar", Radar(tracker.radar()))
+        .with("config", TrackerConfig(tracker.config()))
+        .with("estimator", python_estimator(tracker.prototype()))
+        .text();
+  });
+}
+
+PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
+                 const DoubleArray& bearing_rad, const py::object& plot_time_s,
+                 const py::object& own_north_m, const py::object& own_east_m,
+                 double heading_std_rad, double own_position_std_m) {
+  require_shape(range_m.ndim() == 1, "range_m", "(n,)", range_m);
+  require_not_negative("heading_std_rad", heading_std_rad);
+  require_not_negative("own_position_std_m", own_position_std_m);
+  const py::ssize_t count = range_m.shape(0);
+  const DoubleArray bearing = column("bearing_rad", bearing_rad, count);
+  const DoubleArray time = column(
+      "plot_time_s", plot_time_s.is_none() ? py::object(py::float_(time_s)) : plot_time_s, count);
+  const DoubleArray north = column("own_north_m", own_north_m, count);
+  const DoubleArray east = column("own_east_m", own_east_m, count);
+  std::vector<Plot> plots(static_cast<std::size_t>(count));
+  for (std::size_t k = 0; k < plots.size(); ++k)
+    plots[k] = {time.data()[k], range_m.data()[k], bearing.data()[k],
+                OwnShip{.north_m = north.data()[k],
+                        .east_m = east.data()[k],
+                        .position_std_m = own_position_std_m,
+                        .heading_std_rad = heading_std_rad}};
+  ScanReport report;
+  {
+    const py::gil_scoped_release release;
+    report = tracker.visit([&](auto& one) { return one.process(time_s, plots); });
+  }
+  require_ok(report.status, "process");
+  PyReport result{py::array_t<std::int64_t>(count),
+                  {report.events.begin(), report.events.end()},
+                  report.refused_plots};
+  std::fill_n(result.plot_track_id.mutable_data(), count, 0);
+  std::copy(report.plot_track_id.begin(), report.plot_track_id.end(),
+            result.plot_track_id.mutable_data());
+  return result;
+}
+
+/// (k, K), those of each track.
+template <class Estimator>
+py::array_t<double> turn_rates(const std::vector<const Track<Estimator>*>& tracks,
+                               py::ssize_t modes) {
+  py::array_t<double> rates({static_cast<py::ssize_t>(tracks.size()), modes});
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    const auto of_track = tracks[k]->estimator.turn_rates_rad_s();
+    for (py::ssize_t mode = 0; mode < modes; ++mode)
+      rates.mutable_at(static_cast<py::ssize_t>(k), mode) = of_track[mode];
+  }
+  return rates;
+}
+
+template <class Estimator>
+PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& time_s,
+                bool tentative) {
+  if (time_s) require_finite("time_s", *time_s);
+  std::vector<const Track<Estimator>*> wanted;
+  tracker.for_each([&](const Track<Estimator>& track) {
+    if (tentative || track.shown()) wanted.push_back(&track);
+  });
+  const auto count = static_cast<py::ssize_t>(wanted.size());
+  const py::ssize_t modes = tracker.prototype().mode_probability().size();
+  PyTracks table{py::array_t<std::int64_t>(count),
+                 {},
+                 py::array_t<double>(count),
+                 py::array_t<double>({count, py::ssize_t{4}}),
+                 py::array_t<double>({count, py::ssize_t{4}, py::ssize_t{4}}),
+                 py::array_t<double>({count, modes}),
+                 py::array_t<double>(count),
+                 py::array_t<double>(count),
+                 py::array_t<double>(count),
+                 py::none(),
+                 py::array_t<std::int64_t>(count),
+                 py::array_t<std::int64_t>(count),
+                 {}};
+  for (py::ssize_t k = 0; k < count; ++k) {
+    const Track<Estimator>& track = *wanted[static_cast<std::size_t>(k)];
+    const Gaussian<4> belief = time_s ? tracker.kinematics_at(track, *time_s) : track.kinematics;
+    table.track_id.mutable_at(k) = track.id;
+    table.status.emplace_back(status_name(track.status));
+    table.time_s.mutable_at(k) = time_s ? std::max(*time_s, track.time_s) : track.time_s;
+    for (int i = 0; i < 4; ++i) {
+      table.mean.mutable_at(k, i) = belief.mean[i];
+      for (int j = 0; j < 4; ++j) table.covariance.mutable_at(k, i, j) = belief.covariance(i, j);
+    }
+    for (py::ssize_t mode = 0; mode < modes; ++mode)
+      table.mode_probability.mutable_at(k, mode) = track.estimator.mode_probability()[mode];
+    table.nis.mutable_at(k) = track.nis;
+    table.existence.mutable_at(k) = track.existence;
+    table.visibility.mutable_at(k) = track.visibility;
+    table.hits.mutable_at(k) = track.hits;
+    table.misses.mutable_at(k) = track.misses;
+    table.name.emplace_back(track.label());
+  }
+  if constexpr (kHasTurnRates<Estimator>)
+    if (tracker.prototype().turn_rates_rad_s().size() > 0)
+      table.turn_rate_rad_s = turn_rates(wanted, modes);
+  return table;
+}
+
+}  // namespace
+
+void define_track(py::module_& parent) {
+  py::module_ m = parent.def_submodule("track", "The life of tracks.");
+
+  SettingsClass<Radar> radar(m, "Radar",
+                             "What a console knows of its radar and of the vessels it looks at.");
+  radar.field("range_std_m", &Radar::range_std_m)
+      .field("bearing_std_rad", &Radar::bearing_std_rad)
+      .field("extent_std_m", &Radar::extent_std_m)
+      .field("period_s", &Radar::period_s)
+      .field("max_speed_mps", &Radar::max_speed_mps)
+      .field("bearing_offset_rad", &Radar::bearing_offset_rad)
+      .done();
+  radar.python().def(
+      "position",
+      [](const Radar& r, double range_m, double bearing_rad, const OwnShip& own) {
+        return PyGaussian::from(r.position(range_m, bearing_rad, own));
+      },
+      py::arg("range_m"), py::arg("bearing_rad"), py::arg_v("own", OwnShip{}, "OwnShip()"),
+      "A plot seen from own ship as a position [north, east] with its covariance.");
+
+  SettingsClass<TrackerConfig> config(
+      m, "TrackerConfig", "The rules by which tracks live; one set of defaults for all radars.");
+  config.python().def_property("association", &association_name, &set_association,
+                               "probabilistic, global_nearest or nearest");
+  config.field("detection_probability", &TrackerConfig::detection_probability)
+      .field("gate_probability", &TrackerConfig::gate_probability)
+      .field("clutter_density_per_m2", &TrackerConfig::clutter_density_per_m2)
+      .field("wild_probability", &TrackerConfig::wild_probability)
+      .field("wild_scale", &TrackerConfig::wild_scale)
+      .field("clutter_cell_m", &TrackerConfig::clutter_cell_m)
+      .field("clutter_memory_s", &TrackerConfig::clutter_memory_s)
+      .field("clutter_weight", &TrackerConfig::clutter_weight)
+      .field("visible_time_s", &TrackerConfig::visible_time_s)
+      .field("hidden_time_s", &TrackerConfig::hidden_time_s)
+      .field("initial_existence", &TrackerConfig::initial_existence)
+      .field("free_plot", &TrackerConfig::free_plot)
+      .field("start_gate_sigma", &TrackerConfig::start_gate_sigma)
+      .field("start_speed_factor", &TrackerConfig::start_speed_factor)
+      .field("confirm_existence", &TrackerConfig::confirm_existence)
+      .field("confirm_hits", &TrackerConfig::confirm_hits)
+      .field("confirm_window", &TrackerConfig::confirm_window)
+      .field("survival_time_s", &TrackerConfig::survival_time_s)
+      .field("drop_existence", &TrackerConfig::drop_existence)
+      .field("tentative_misses", &TrackerConfig::tentative_misses)
+      .field("coast_scans", &TrackerConfig::coast_scans)
+      .field("coast_scans_per_hit", &TrackerConfig::coast_scans_per_hit)
+      .field("coast_scans_max", &TrackerConfig::coast_scans_max)
+      .field("shown_scans", &TrackerConfig::shown_scans)
+      .field("drop_position_std_m", &TrackerConfig::drop_position_std_m)
+      .field("drop_speed_factor", &TrackerConfig::drop_speed_factor)
+      .field("duplicate_distance", &TrackerConfig::duplicate_distance)
+      .field("vessel_length_m", &TrackerConfig::vessel_length_m)
+      .field("duplicate_scans", &TrackerConfig::duplicate_scans)
+      .field("max_tracks", &TrackerConfig::max_tracks)
+      .field("max_plots", &TrackerConfig::max_plots)
+      .name("association")
+      .done();
+
+  SettingsClass<VesselModels> models(
+      m, "VesselModels", "The motion models of a tracker: cruising, steady, restless and turning.");
+  models.field("cruising_psd_m2s3", &VesselModels::cruising_psd_m2s3)
+      .field("cruising_course_psd_rad2s", &VesselModels::cruising_course_psd_rad2s)
+      .field("steady_psd_m2s3", &VesselModels::steady_psd_m2s3)
+      .field("steady_course_psd_rad2s", &VesselModels::steady_course_psd_rad2s)
+      .field("restless_psd_m2s3", &VesselModels::restless_psd_m2s3)
+      .field("restless_course_psd_rad2s", &VesselModels::restless_course_psd_rad2s)
+      .field("turning_psd_m2s3", &VesselModels::turning_psd_m2s3)
+      .field("turning_course_psd_rad2s", &VesselModels::turning_course_psd_rad2s)
+      .field("turn_rate_psd_rad2s3", &VesselModels::turn_rate_psd_rad2s3)
+      .field("prior_turn_rate_std_rad_s", &VesselModels::prior_turn_rate_std_rad_s)
+      .field("cruising_probability", &VesselModels::cruising_probability)
+      .field("cruising_sojourn_s", &VesselModels::cruising_sojourn_s)
+      .field("settling_s", &VesselModels::settling_s)
+      .field("steady_sojourn_s", &VesselModels::steady_sojourn_s)
+      .field("restless_sojourn_s", &VesselModels::restless_sojourn_s)
+      .field("turning_sojourn_s", &VesselModels::turning_sojourn_s)
+      .done();
+  models.python().def_static("ships", &VesselModels::ships,
+                             "Of ships under way, which alter course as ships do.");
+
+  m.def("vessel_imm", &any_vessel_imm, py::arg("radar"),
+        py::arg_v("models", VesselModels{}, "VesselModels()"),
+        "The estimator that a tracker uses for this radar unless told otherwise.");
+
+  py::class_<Event>(m, "Event", "Something that became of a track in a scan.")
+      .def(py::pickle(
+          [](const Event& event) {
+            return py::make_tuple(int(event.kind), event.track_id, event.tentative_id,
+                                  event.time_s);
+          },
+          [](const py::tuple& fields) {
+            const auto kind = fields[0].cast<int>();
+            if (kind < int(TrackEvent::kStarted) || kind > int(TrackEvent::kLost))
+              throw py::value_error("state is not that of an event");
+            return Event{TrackEvent(kind), fields[1].cast<std::int64_t>(),
+                         fields[2].cast<std::int64_t>(), fields[3].cast<double>()};
+          }))
+      .def_property_readonly(
+          "kind", [](const Event& event) { return event_name(event.kind); },
+          "started, confirmed, coasting or lost")
+      .def_readonly("track_id", &Event::track_id)
+      .def_readonly("tentative_id", &Event::tentative_id,
+                    "the negative number it had before it was confirmed; 0 for a designated track")
+      .def_readonly("time_s", &Event::time_s)
+      .def("__repr__", [](const Event& event) {
+        return "Event(kind=" + std::string(event_name(event.kind)) +
+               ", track_id=" + std::to_string(event.track_id) + ")";
+      });
+  py::class_<PyReport> report(m, "ScanReport", "What a scan has brought.");
+  define_pickle(report, &PyReport::plot_track_id, &PyReport::events, &PyReport::refused_plots);
+  report
+      .def_readonly("plot_track_id", &PyReport::plot_track_id,
+                    "(n,) the track each plot most likely belongs to; negative for a tentative "
+                    "one, 0 for none")
+      .def_readonly("events", &PyReport::events)
+      .def_readonly(
+          "refused_plots", &PyReport::refused_plots,
+          "plots not finite, behind the antenna, of so many turns that the bearing is lost, "
+          "of another time than the scan, or beyond max_plots")
+      .def("__repr__", [](const PyReport& r) {
+        return "<ScanReport: " + many(r.plot_track_id.size(), "plot") + ", " +
+               std::to_string(r.refused_plots) + " refused, " +
+               many(static_cast<py::ssize_t>(r.events.size()), "event") + ">";
+      });
+  py::class_<PyTracks> table(m, "TrackTable", "Tracks as arrays, older ones first.");
+  define_pickle(table, &PyTracks::track_id, &PyTracks::status, &PyTracks::time_s, &PyTracks::mean,
+                &PyTracks::covariance, &PyTracks::mode_probability, &PyTracks::nis,
+                &PyTracks::existence, &PyTracks::visibility, &PyTracks::turn_rate_rad_s,
+                &PyTracks::hits, &PyTracks::misses, &PyTracks::name);
+  table.def_readonly("track_id", &PyTracks::track_id, "(k,)")
+      .def_readonly("status", &PyTracks::status, "tentative, confirmed, coasting or held")
+      .def_readonly("time_s", &PyTracks::time_s, "(k,) of the belief")
+      .def_readonly("mean", &PyTracks::mean, "(k, 4) [x, vx, y, vy]")
+      .def_readonly("covariance", &PyTracks::covariance, "(k, 4, 4)")
+      .def_readonly("mode_probability", &PyTracks::mode_probability, "(k, K)")
+      .def_readonly("turn_rate_rad_s", &PyTracks::turn_rate_rad_s,
+                    "(k, K) of each model, positive to starboard, NaN for one at rest; None where "
+                    "models do not change theirs")
+      .def_readonly("nis", &PyTracks::nis, "(k,) of the likeliest plot; NaN where there was none")
+      .def_readonly("existence", &PyTracks::existence, "(k,)")
+      .def_readonly("visibility", &PyTracks::visibility, "(k,)")
+      .def_readonly("hits", &PyTracks::hits, "(k,)")
+      .def_readonly("misses", &PyTracks::misses, "(k,) scans in a row without a plot")
+      .def_readonly("name", &PyTracks::name, "given by the operator")
+      .def("__len__", [](const PyTracks& table) { return table.track_id.size(); })
+      .def("__repr__", [](const PyTracks& table) {
+        return "<TrackTable: " + many(table.track_id.size(), "track") + ">";
+      });
+
+  py::class_<AnyTracker>(m, "Tracker", R"(Keeps tracks of all vessels a radar sees, scan by scan.
+
+Use it from one thread at a time; trackers share nothing.
+
+Parameters
+----------
+radar : Radar
+config : TrackerConfig, optional
+models : VesselModels, optional
+    Motion models of the estimator.
+estimator : Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm, ModeHistory, FuzzyAlphaBeta or BayesianAlphaBeta, optional
+    Another estimator in place of that made of `models`.
+
+Raises
+------
+ValueError
+    When a setting makes no sense.)")
+      .def(py::init([](const Radar& r, const TrackerConfig& c, const VesselModels& v,
+                       const py::object& estimator) {
+             return estimator.is_none() ? AnyTracker(r, c, vessel_imm(r, v))
+                                        : tracker_with(r, c, estimator);
+           }),
+           py::arg("radar"), py::arg_v("config", TrackerConfig{}, "TrackerConfig()"),
+           py::arg_v("models", VesselModels{}, "VesselModels()"), py::arg("estimator") = py::none())
+      .def("process", &process, py::arg("time_s"), py::kw_only(), py::arg("range_m"),
+           py::arg("bearing_rad"), py::arg("plot_time_s") = py::none(),
+           py::arg("own_north_m") = 0.0, py::arg("own_east_m") = 0.0,
+           py::arg("heading_std_rad") = 0.0, py::arg("own_position_std_m") = 0.0,
+           R"(Takes in the plots of one scan.
+
+Parameters
+----------
+time_s : float
+    Time of the scan; not before the last one.
+range_m, bearing_rad : (n,) arrays
+plot_time_s, own_north_m, own_east_m : float or (n,) arrays
+    When each plot was seen, and from where.
+heading_std_rad : float
+    Error of own ship's heading.
+own_position_std_m : float
+    Error of own ship's position, per axis.
+
+Returns
+-------
+ScanReport
+
+Raises
+------
+ValueError
+    When a shape does not fit or an error is below zero.
+FilterError
+    When time runs backwards or is not finite; nothing changed.)")
+      .def(
+          "tracks",
+          [](const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {
+            return tracker.visit([&](const auto& one) { return tracks(one, time_s, tentative); });
+          },
+          py::arg("time_s") = py::none(), py::arg("tentative") = false,
+          "The confirmed and coasting tracks (with `tentative` all), a TrackTable: as of the last "
+          "scan, or predicted to `time_s` where that is later.")
+      .def(
+          "designate",
+          [](AnyTracker& tracker, double time_s, double north_m, double east_m,
+             double position_std_m) {
+            require_finite("time_s", time_s);
+            const double latest_s =
+                tracker.visit([](const auto& one) { return one.latest_designation_s(); });
+            require(
+                time_s <= latest_s, "time_s",
+                ("at most " + std::to_string(latest_s) + ", an hour after the last scan").c_str(),
+                time_s);
+            require_finite("north_m", north_m);
+            require_finite("east_m", east_m);
+            require_positive("position_std_m", position_std_m);
+            return tracker.visit(
+                [&](auto& one) { return one.designate(time_s, north_m, east_m, position_std_m); });
+          },
+          py::arg("time_s"), py::arg("north_m"), py::arg("east_m"),
+          py::arg("position_std_m") = 50.0,
+          R"(The operator says that there is a target.
+
+Parameters
+----------
+time_s : float
+    At most an hour after the last scan; scans go on without plots, too.
+north_m, east_m, position_std_m : float
+
+Returns
+-------
+int
+    The track's number, or 0 when there is no room.
+
+Raises
+------
+ValueError
+    When the time is too far ahead, a number is not finite or the error not above zero.)")
+      .def(
+          "drop",
+          [](AnyTracker& tracker, std::int64_t id) {
+            return tracker.visit([&](auto& one) { return one.drop(id); });
+          },
+          py::arg("track_id"), "Ends a track; False when there is none of that number.")
+      .def(
+          "rename",
+          [](AnyTracker& tracker, std::int64_t id, std::string_view name) {
+            return tracker.visit([&](auto& one) { return one.rename(id, name); });
+          },
+          py::arg("track_id"), py::arg("name"),
+          "Names a track (31 bytes at most are kept); False when there is none of that number.")
+      .def(
+          "save",
+          [](const AnyTracker& tracker) {
+            return to_bytes(tracker.visit([](const auto& one) { return one.save(); }));
+          },
+          "The whole state as bytes, for a tracker with the same settings on the same kind of "
+          "machine.")
+      .def(
+          "restore",
+          [](AnyTracker& tracker, const py::bytes& state) {
+            if (!tracker.visit([&](auto& one) { return one.restore(bytes_of(state)); }))
+              throw py::value_error("state is not that of a tracker with the same settings");
+          },
+          py::arg("state"), "Goes on bit for bit where the saved tracker was.")
+      .def_property_readonly(
+          "radar",
+          [](const AnyTracker& tracker) {
+            return tracker.visit([](const auto& one) { return Radar(one.radar()); });
+          })
+      .def_property_readonly(
+          "config",
+          [](const AnyTracker& tracker) {
+            return tracker.visit([](const auto& one) { return TrackerConfig(one.config()); });
+          })
+      .def("__repr__", &tracker_text);
+}
+
+}  // namespace wakeline::python

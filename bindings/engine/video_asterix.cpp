@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Recorded radar video, many sweeps a call: octets to arrays and back.
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "support/types.hpp"
+#include "wakeline/video/asterix_cat240_reader.hpp"
+#include "wakeline/video/asterix_cat240_writer.hpp"
+
+namespace wakeline::python {
+namespace {
+
+/// The vector's own memory as an array.
+template <class T>
+py::array_t<T> to_numpy(std::vector<T>&& values) {
+  auto owner = std::make_unique<std::vector<T>>(std::move(values));
+  T* const data = owner->data();
+  const auto size = static_cast<py::ssize_t>(owner->size());
+  const py::capsule base(owner.get(), [](void* p) { delete static_cast<std::vector<T>*>(p); });
+  owner.release();
+  return py::array_t<T>(size, data, base);
+}
+
+std::span<const std::byte> octets_of(const py::bytes& data) {
+  const std::string_view view(data);
+  return {reinterpret_cast<const std::byte*>(view.data()), view.size()};
+}
+
+using ProblemTuple = std::tuple<std::uint64_t, std::string, std::string, std::string>;
+
+ProblemTuple in_words(const Cat240Problem& problem) {
+  return {problem.offset, to_string(problem.fault), wanted_text(problem), came_text(problem)};
+}
+
+/// What the columns of a decoded piece are made of.
+struct Sweeps {
+  std::vector<std::int64_t> offset, source, sequence, cells, bits, first;
+  std::vector<double> azimuth_rad, azimuth_width_rad, time_s, start_range_m, cell_m;
+  std::vector<std::uint8_t> octets;
+  std::vector<std::uint16_t> words;
+
+  void add(const Cat240Video& video) {
+    offset.push_back(static_cast<std::int64_t>(video.offset));
+    source.push_back(256 * video.source.area + video.source.system);
+    sequence.push_back(video.sequence);
+    cells.push_back(video.cells);
+    bits.push_back(video.bits);
+    if (video.fits<std::uint8_t>())
+      add_cells(video, octets);
+    else
+      add_cells(video, words);
+  }
+
+ private:
+  template <class Amplitude>
+  void add_cells(const Cat240Video& video, std::vector<Amplitude>& amplitudes) {
+    const std::size_t begin = amplitudes.size();
+    amplitudes.resize(begin + video.cells);
+    const auto sweep = video.unpack(std::span<Amplitude>(amplitudes).subspan(begin));
+    first.push_back(static_cast<std::int64_t>(begin));
+    azimuth_rad.push_back(sweep.azimuth_rad);
+    azimuth_width_rad.push_back(sweep.azimuth_width_rad);
+    time_s.push_back(sweep.time_s);
+    start_range_m.push_back(sweep.start_range_m);
+    cell_m.push_back(sweep.cell_m);
+  }
+};
+
+struct PySweeps {
+  py::array_t<std::int64_t> offset, source, sequence, cells, bits, first;
+  py::array_t<double> azimuth_rad, azimuth_width_rad, time_s, start_range_m, cell_m;
+  py::array_t<std::uint8_t> octets;
+  py::array_t<std::uint16_t> words;
+  std::vector<std::string> summaries;
+  std::vector<ProblemTuple> problems;
+  std::int64_t problem_count = 0;
+  std::size_t consumed = 0;
+
+  void take(Sweeps&& sweeps) {
+    offset = to_numpy(std::move(sweeps.offset));
+    source = to_numpy(std::move(sweeps.source));
+    sequence = to_numpy(std::move(sweeps.sequence));
+    cells = to_numpy(std::move(sweeps.cells));
+    bits = to_numpy(std::move(sweeps.bits));
+    first = to_numpy(std::move(sweeps.first));
+    azimuth_rad = to_numpy(std::move(sweeps.azimuth_rad));
+    azimuth_width_rad = to_numpy(std::move(sweeps.azimuth_width_rad));
+    time_s = to_numpy(std::move(sweeps.time_s));
+    start_range_m = to_numpy(std::move(sweeps.start_range_m));
+    cell_m = to_numpy(std::move(sweeps.cell_m));
+    octets = to_numpy(std::move(sweeps.octets));
+    words = to_numpy(std::move(sweeps.words));
+  }
+};
+
+class Decoder {
+ public:
+  PySweeps decode(const py::bytes& data, bool last) {
+    const std::span<const std::byte> octets = octets_of(data);
+    PySweeps result;
+    Sweeps sweeps;
+    {
+      const py::gil_scoped_release release;
+      read(octets, last, sweeps, result);
+    }
+    result.take(std::move(sweeps));
+    return result;
+  }
+
+  [[nodiscard]] const Cat240Reader& reader() const { return reader_; }
+
+ private:
+  static constexpr std::size_t kToldProblems = 100;  ///< so that a file of nothing else stays small
+
+  void read(std::span<const std::byte> octets, bool last, Sweeps& sweeps, PySweeps& result) {
+    reader_.feed(octets, last);
+    for (auto event = reader_.next(); event != Cat240Event::kEnd; event = reader_.next()) {
+      if (event == Cat240Event::kVideo) {
+        sweeps.add(reader_.video());
+      } else if (event == Cat240Event::kSummary) {
+        if (result.summaries.size() < kToldProblems)
+          result.summaries.emplace_back(reader_.summary());
+      } else {
+        ++result.problem_count;
+        if (result.problems.size() < kToldProblems)
+          result.problems.push_back(in_words(reader_.problem()));
+      }
+    }
+    result.consumed = reader_.consumed();
+  }
+
+  Cat240Reader reader_;
+};
+
+class Encoder {
+ public:
+  Encoder(std::uint8_t area, std::uint8_t system) : writer_({area, system}) {}
+
+  template <class Amplitude>
+  py::bytes encode(const py::array_t<Amplitude, py::array::c_style>& amplitude,
+                   const DoubleArray& azimuth_rad, const DoubleArray& time_s,
+                   Sweep<Amplitude> sweep) {
+    require_shape(amplitude.ndim() == 2, "amplitude", "(N, C)", amplitude);
+    const py::ssize_t sweeps = amplitude.shape(0), cells = amplitude.shape(1);
+    const std::string wanted = shape_text({sweeps});
+    require_shape(azimuth_rad.ndim() == 1 && azimuth_rad.size() == sweeps, "azimuth_rad", wanted,
+                  azimuth_rad);
+    require_shape(time_s.ndim() == 1 && time_s.size() == sweeps, "time_s", wanted, time_s);
+    out_.clear();
+    for (py::ssize_t k = 0; k < sweeps; ++k) {
+      sweep.azimuth_rad = azimuth_rad.at(k);
+      sweep.time_s = time_s.at(k);
+      sweep.amplitude = {amplitude.data(k, 0), static_cast<std::size_t>(cells)};
+      append([&](std::span<std::byte> room) { return writer_.write(sweep, room); },
+             "sweep " + std::to_string(k));
+    }
+    return taken();
+  }
+
+  py::bytes encode_summary(const std::string& text) {
+    out_.clear();
+    append([&](std::span<std::byte> room) { return writer_.write_summary(text, room); }, "summary");
+    return taken();
+  }
+
+ private:
+  template <class Write>
+  void append(Write write, const std::string& what) {
+    const Cat240Written written = write(std::span<std::byte>(room_));
+    if (written != Cat240Written::kOk)
+      throw py::value_error(what + " cannot be written: " + to_string(written));
+    const auto* begin = reinterpret_cast<const char*>(room_.data());
+    out_.append(begin, writer_.size());
+  }
+  [[nodiscard]] py::bytes taken() const { return py::bytes(out_); }
+
+  Cat240Writer writer_;
+  std::vector<std::byte> room_ = std::vector<std::byte>(Cat240Writer::kRoom);
+  std::string out_;
+};
+
+template <class Amplitude, class Class>
+void define_encode(Class& encoder) {
+  encoder.def(
+      "encode",
+      [](Encoder& self, const py::array_t<Amplitude, py::array::c_style>& amplitude,
+         const DoubleArray& azimuth_rad, const DoubleArray& time_s, double azimuth_width_rad,
+         double start_range_m, double cell_m) {
+        return self.encode<Amplitude>(amplitude, azimuth_rad, time_s,
+                                      {.azimuth_width_rad = azimuth_width_rad,
+                                       .start_range_m = start_range_m,
+                                       .cell_m = cell_m,
+                                       .amplitude = {}});
+      },
+      py::arg("amplitude").noconvert(), py::arg("azimuth_rad"), py::arg("time_s"),
+      py::arg("azimuth_width_rad"), py::arg("start_range_m"), py::arg("cell_m"),
+      R"doc(The blocks of some sweeps, one each.
+
+Parameters
+----------
+amplitude : (N, C) array of uint8 or uint16
+azimuth_rad, time_s : (N,) array
+azimuth_width_rad, start_range_m, cell_m : float
+
+Raises
+------
+ValueError
+    When a sweep cannot be written: too many cells, a length that cannot be told.
+)doc");
+}
+
+}  // namespace
+
+void define_video_asterix(py::module_& m) {
+  py::class_<PySweeps>(m, "Cat240Sweeps",
+                       R"doc(Sweeps decoded from a piece of a file, a row each.
+
+`first` is where the cells of a sweep begin in `octets` (8 bits and fewer, these scaled to 8) or in
+`words` (16 bits). `source` is 256 SAC + SIC, `sequence` -1 and `time_s` NaN where the sender tells
+none. `problems` has the first 100 as (offset, problem, wanted, got).
+)doc")
+      .def_readonly("offset", &PySweeps::offset)
+      .def_readonly("source", &PySweeps::source)
+      .def_readonly("sequence", &PySweeps::sequence)
+      .def_readonly("cells", &PySweeps::cells)
+      .def_readonly("bits", &PySweeps::bits)
+      .def_readonly("first", &PySweeps::first)
+      .def_readonly("azimuth_rad", &PySweeps::azimuth_rad)
+      .def_readonly("azimuth_width_rad", &PySweeps::azimuth_width_rad)
+      .def_readonly("time_s", &PySweeps::time_s)
+      .def_readonly("start_range_m", &PySweeps::start_range_m)
+      .def_readonly("cell_m", &PySweeps::cell_m)
+      .def_readonly("octets", &PySweeps::octets)
+      .def_readonly("words", &PySweeps::words)
+      .def_property_readonly("summaries",
+                             [](const PySweeps& self) {
+                               std::vector<py::bytes> all;
+                               for (const std::string& text : self.summaries)
+                                 all.emplace_back(text);
+                               return all;
+                             })
+      .def_readonly("problems", &PySweeps::problems)
+      .def_readonly("problem_count", &PySweeps::problem_count)
+      .def_readonly("consumed", &PySweeps::consumed);
+  py::class_<Decoder>(m, "Cat240Decoder", "ASTERIX category 240 to arrays, piece by piece.")
+      .def(py::init())
+      .def("decode", &Decoder::decode, py::arg("data"), py::arg("last"),
+           R"doc(The sweeps of a piece of a file.
+
+Parameters
+----------
+data : bytes
+    What the piece before left over (all but its first `consumed` octets) and what follows.
+last : bool
+    Whether nothing follows.
+)doc")
+      .def_property_readonly(
+          "other_blocks", [](const Decoder& self) { return self.reader().other_blocks(); },
+          "Blocks of other categories so far.")
+      .def_property_readonly(
+          "skipped_octets", [](const Decoder& self) { return self.reader().skipped_octets(); },
+          "Octets passed over because of damage so far.");
+  py::class_<Encoder> encoder(m, "Cat240Encoder", "Sweeps to ASTERIX category 240.");
+  encoder.def(py::init<std::uint8_t, std::uint8_t>(), py::arg("area") = 0, py::arg("system") = 0);
+  define_encode<std::uint8_t>(encoder);
+  define_encode<std::uint16_t>(encoder);
+  encoder.def("encode_summary", &Encoder::encode_summary, py::arg("text"),
+              "The block of a text about the video, at most 255 characters of ASCII.");
+}
+
+}  // namespace wakeline::python

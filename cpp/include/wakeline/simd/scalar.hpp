@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "wakeline/simd/unroll.hpp"
+
+namespace wakeline {
+
+/// What the rest of the library asks of a type of numbers: `float`, `double`, or a pack of them,
+/// which specialises this.
+template <class Scalar>
+struct ScalarTraits {
+  using Real = Scalar;              ///< one number of it
+  using Mask = bool;                ///< what a comparison gives
+  static constexpr int kLanes = 1;  ///< numbers in it
+
+  template <class Function>
+  static Scalar of(const Function& number) noexcept {
+    return number(0);
+  }
+  static Scalar load(const Real* from) noexcept { return *from; }
+};
+
+template <class Scalar>
+using RealOf = typename ScalarTraits<Scalar>::Real;
+template <class Scalar>
+using MaskOf = typename ScalarTraits<Scalar>::Mask;
+template <class Scalar>
+inline constexpr int kLanesOf = ScalarTraits<Scalar>::kLanes;
+
+/// `a` where the condition holds, else `b`.
+template <class Scalar>
+constexpr Scalar select(bool condition, Scalar a, Scalar b) noexcept {
+  return condition ? a : b;
+}
+
+/// The greater one; `bound` where the value is not a number.
+template <class Scalar>
+constexpr Scalar at_least(Scalar value, Scalar bound) noexcept {
+  return select(value > bound, value, bound);
+}
+
+/// 1 / x and 1 / sqrt(x) of a positive number, to the last bit or two.
+template <class Scalar>
+Scalar reciprocal(Scalar x) noexcept {
+  return Scalar(1) / x;
+}
+template <class Scalar>
+Scalar inverse_sqrt(Scalar x) noexcept {
+  using std::sqrt;
+  return Scalar(1) / sqrt(x);
+}
+
+/// Lane k is `number(k)`.
+template <class Scalar, class Function>
+Scalar lanes_of(const Function& number) noexcept {
+  return ScalarTraits<Scalar>::of(number);
+}
+
+/// Reads a number, or as many as there are lanes in a row.
+template <class Scalar>
+Scalar load(const RealOf<Scalar>* from) noexcept {
+  return ScalarTraits<Scalar>::load(from);
+}
+
+/// Lanes of each scalar in a row of them.
+template <class Scalars>
+inline constexpr int kLanesIn = kLanesOf<std::decay_t<decltype(std::declval<Scalars&>()[0])>>;
+
+/// `scalars[k]` is number k of the arrays that `array(lane)` gives; and the reverse, for the first
+/// `count` lanes.
+template <int Size, class Array, class Scalars>
+requires(kLanesIn<Scalars> == 1)
+    [[gnu::always_inline]] inline void gather_lanes(const Array& array, Scalars scalars) noexcept {
+  unroll<Size>([&](int k) { scalars[k] = array(0)[k]; });
+}
+template <int Size, class Array, class Scalars>
+requires(kLanesIn<Scalars> == 1)
+    [[gnu::always_inline]] inline void scatter_lanes(Scalars scalars, int,
+                                                     const Array& array) noexcept {
+  unroll<Size>([&](int k) { array(0)[k] = scalars[k]; });
+}
+
+/// Over all lanes.
+template <class Scalar>
+requires(kLanesOf<Scalar> == 1) constexpr Scalar sum_of_lanes(Scalar x) noexcept { return x; }
+template <class Scalar>
+requires(kLanesOf<Scalar> == 1) constexpr Scalar least_of_lanes(Scalar x) noexcept { return x; }
+template <class Scalar>
+requires(kLanesOf<Scalar> == 1) constexpr Scalar greatest_of_lanes(Scalar x) noexcept { return x; }
+
+/// `sums[k]` is the sum of the lanes of `scalars[k]`.
+template <int Size, class Scalar>
+requires(kLanesOf<Scalar> == 1)
+    [[gnu::always_inline]] inline void sum_lanes(const Scalar* scalars, Scalar* sums) noexcept {
+  unroll<Size>([&](int k) { sums[k] = scalars[k]; });
+}
+
+/// `fold(x)` where `Result` is one number and x are many; else each lane for itself.
+template <class Result, class Scalar, class Fold>
+Result fold_to(Scalar x, const Fold& fold) noexcept {
+  if constexpr (kLanesOf<Result> == kLanesOf<Scalar>)
+    return x;
+  else
+    return fold(x);
+}
+template <class Result, class Scalar>
+Result sum_to(Scalar x) noexcept {
+  return fold_to<Result>(x, [](const auto& lanes) { return sum_of_lanes(lanes); });
+}
+template <class Result, class Scalar>
+Result least_to(Scalar x) noexcept {
+  return fold_to<Result>(x, [](const auto& lanes) { return least_of_lanes(lanes); });
+}
+
+/// Numbers above this, or what differs by as much and is then multiplied by a gain, have no square.
+template <class Scalar>
+inline constexpr RealOf<Scalar> kMostSquared = sizeof(RealOf<Scalar>) > 4 ? RealOf<Scalar>(0x1p492)
+                                                                          : RealOf<Scalar>(0x1p44);
+
+/// Whether a number is not beyond those.
+template <class Scalar>
+MaskOf<Scalar> has_square(Scalar x) noexcept {
+  using std::abs;
+  return abs(x) < Scalar(kMostSquared<Scalar>);
+}
+
+/// Over the lanes of a mask, of which a `bool` has one.
+constexpr bool all(bool mask) noexcept { return mask; }
+constexpr bool any(bool mask) noexcept { return mask; }
+constexpr bool none(bool mask) noexcept { return !mask; }
+constexpr unsigned bits_of(bool mask) noexcept { return mask; }  ///< bit k is lane k
+
+/// The mask of a scalar whose lane k is bit k.
+template <class Scalar>
+MaskOf<Scalar> mask_of_bits(unsigned bits) noexcept {
+  if constexpr (kLanesOf<Scalar> == 1)
+    return bits != 0;
+  else
+    return MaskOf<Scalar>::of_bits(bits);
+}
+
+/// Writes a number, or as many as there are lanes in a row.
+template <class Scalar>
+void store(Scalar value, Scalar* to) noexcept {
+  *to = value;
+}
+
+/// One number of many, or the number itself.
+template <class Scalar>
+constexpr Scalar lane(Scalar value, int) noexcept {
+  return value;
+}
+
+}  // namespace wakeline

@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Many estimators of one prototype, each with a step of its own to take.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "wakeline/simd/pack_math.hpp"
+#include "wakeline/filter/ekf.hpp"
+#include "wakeline/filter/ukf.hpp"
+#include "wakeline/measurement/fix.hpp"
+#include "wakeline/multimodel/imm.hpp"
+
+namespace wakeline {
+
+/// An estimator's next prediction, and what has come of it.
+template <class Estimator>
+struct PredictionStep {
+  Estimator* estimator;  ///< started
+  double dt_s;
+  Status status = Status::kOk;
+  Gaussian<4> kinematics = {};  ///< of the estimate after it
+};
+
+/// Fixes that may be an estimator's own, at least one, and what has come of them: see the update of
+/// `Imm` by several readings.
+template <class Estimator>
+struct UpdateStep {
+  Estimator* estimator;  ///< started
+  std::span<const Alternative<Fix>> fixes;
+  double none;
+  std::span<double> share;
+  double total = 0.0;
+  Gaussian<4> kinematics = {};
+};
+
+/// `InLanes<Estimator, Scalar>::of(prototype)` is the same estimator over packs of numbers, where
+/// there is one: all that two estimators of one prototype differ in are beliefs and mode
+/// probabilities.
+template <class Estimator, class Scalar>
+struct InLanes;
+
+template <class Motion, class Scalar>
+requires(kForPacks<Motion>) struct InLanes<Ekf<Motion>, Scalar> {
+  static auto of(const Ekf<Motion>& filter) { return Ekf<Motion, Scalar>(filter.motion()); }
+};
+
+template <class Motion, class Scalar>
+requires(kForPacks<Motion>) struct InLanes<Kalman<Motion>, Scalar> {
+  static auto of(const Kalman<Motion>& filter) { return Kalman<Motion, Scalar>(filter.motion()); }
+};
+
+template <class Motion, class Scalar>
+requires(kForPacks<Motion>) struct InLanes<Ukf<Motion>, Scalar> {
+  static auto of(const Ukf<Motion>& filter) {
+    return Ukf<Motion, Scalar>(filter.motion(), filter.unscented());
+  }
+};
+
+template <class... Filters, class Scalar>
+requires(requires(const Filters& filter) { InLanes<Filters, Scalar>::of(filter); } &&
+         ...) struct InLanes<Imm<FilterBank<Filters...>>, Scalar> {
+  static auto of(const Imm<FilterBank<Filters...>>& imm) {
+    return of(imm, std::index_sequence_for<Filters...>{});
+  }
+
+ private:
+  template <std::size_t... Index>
+  static auto of(const Imm<FilterBank<Filters...>>& imm, std::index_sequence<Index...>) {
+    return Imm(imm.chain(), InLanes<Filters, Scalar>::of(imm.template filter<Index>())...);
+  }
+};
+
+/// Takes steps of estimators one after the other.
+template <class Estimator>
+class OneByOne {
+ public:
+  explicit OneByOne(const Estimator&) noexcept {}
+
+  void predict(std::span<PredictionStep<Estimator>> steps) noexcept {
+    for (auto& [estimator, dt_s, status, kinematics] : steps) {
+      status = estimator->predict(dt_s);
+      kinematics = kinematics_of(estimator->estimate());
+    }
+  }
+
+  void update(std::span<UpdateStep<Estimator>> steps) noexcept {
+    for (auto& [estimator, fixes, none, share, total, kinematics] : steps) {
+      total = estimator->update(fixes, none, share);
+      kinematics = kinematics_of(estimator->estimate());
+    }
+  }
+};
+
+/// Takes steps of estimators that have no lanes.
+template <class Estimator>
+class SideBySide : public OneByOne<Estimator> {
+  using OneByOne<Estimator>::OneByOne;
+};
+
+/// Takes them in lanes. What comes of a step does not depend on the others.
+template <class Estimator>
+requires requires(const Estimator& prototype) {
+  InLanes<Estimator, Pack<double, kNativeLanes<double>>>::of(prototype);
+}
+class SideBySide<Estimator> {
+  using Scalar = Pack<double, kNativeLanes<double>>;
+  static constexpr std::size_t kLanes = kLanesOf<Scalar>;
+
+ public:
+  explicit SideBySide(const Estimator& prototype)
+      : lanes_(InLanes<Estimator, Scalar>::of(prototype)) {}
+
+  void predict(std::span<PredictionStep<Estimator>> steps) noexcept {
+    in_rows(
+        steps, [](const auto&) {}, [&](const auto& row) { predict_row(row); });
+  }
+
+  void update(std::span<UpdateStep<Estimator>> steps) noexcept {
+    // By their number of fixes, so that those of a row have the same or nearly.
+    const auto arrange = [](std::span<UpdateStep<Estimator>*> order) {
+      std::sort(order.begin(), order.end(),
+                [](const auto* a, const auto* b) { return a->fixes.size() < b->fixes.size(); });
+    };
+    in_rows(steps, arrange, [&](const auto& row) { update_row(row); });
+  }
+
+ private:
+  static constexpr std::size_t kArranged = 64;  ///< steps that are arranged together
+
+  /// A fix in each lane.
+  struct LaneFix : Fix {
+    Mat<Scalar, 2, 2> covariance;
+
+    template <class Lanes>
+    Gaussian<2, Lanes> observe(const Vec<Lanes, 2>& z) const noexcept {
+      return {z, covariance};
+    }
+  };
+
+  /// Steps that are taken together. Lanes that are left over repeat the last one.
+  template <class Step>
+  struct Row {
+    std::array<Step*, kLanes> step;
+    int count;
+
+    Step& operator[](int k) const noexcept { return *step[std::size_t(k)]; }
+
+    /// `field(step)` of each lane, read before anything is written.
+    template <class Field>
+    [[nodiscard]] auto each(const Field& field) const noexcept {
+      std::array<decltype(&field(*step[0])), kLanes> fields;
+      unroll<int(kLanes)>([&](auto k) { fields[k.value] = &field(*step[k.value]); });
+      return fields;
+    }
+  };
+
+  /// Takes the steps in rows, in the order to which `arrange` brings pointers to them.
+  template <class Step, class Arrange, class TakeRow>
+  static void in_rows(std::span<Step> steps, const Arrange& arrange, const TakeRow& take) noexcept {
+    while (!steps.empty()) {
+      const std::size_t count = std::min(kArranged, steps.size());
+      std::array<Step*, kArranged> order;
+      for (std::size_t k = 0; k < count; ++k) order[k] = &steps[k];
+      arrange(std::span<Step*>(order.data(), count));
+      for (std::size_t first = 0; first < count; first += kLanes) {
+        Row<Step> row{.step = {}, .count = int(std::min(kLanes, count - first))};
+        for (std::size_t k = 0; k < kLanes; ++k)
+          row.step[k] = order[std::min(first + k, count - 1)];
+        take(row);
+      }
+      steps = steps.subspan(count);
+    }
+  }
+
+  [[gnu::flatten, gnu::noinline]] void predict_row(
+      const Row<PredictionStep<Estimator>>& row) noexcept {
+    gather(row);
+    const auto status = lanes_.predict(lanes_of<Scalar>([&](int k) { return row[k].dt_s; }));
+    for (int k = 0; k < row.count; ++k) row[k].status = lane(status, k);
+    scatter(row);
+  }
+
+  [[gnu::flatten, gnu::noinline]] void update_row(const Row<UpdateStep<Estimator>>& row) noexcept {
+    gather(row);
+    const std::size_t count = std::min(row[row.count - 1].fixes.size(), kMaxAlternatives);
+    for (std::size_t i = 0; i < count; ++i) read(row, i);
+    std::array<Scalar, kMaxAlternatives> share;
+    const Scalar total = lanes_.update(
+        std::span<const Alternative<LaneFix, Scalar>>(fixes_.data(), count),
+        lanes_of<Scalar>([&](int k) { return row[k].none; }), std::span(share.data(), count));
+    for (int k = 0; k < row.count; ++k) {
+      row[k].total = lane(total, k);
+      for (std::size_t i = 0; i < row[k].share.size(); ++i)
+        row[k].share[i] = i < count ? lane(share[i], k) : 0.0;
+    }
+    scatter(row);
+  }
+
+  /// Fix `i` of each lane; one that a lane does not have weighs nothing.
+  void read(const Row<UpdateStep<Estimator>>& row, std::size_t i) noexcept {
+    const auto fix = [&](int k) -> const Alternative<Fix>& {
+      return row[k].fixes[std::min(i, row[k].fixes.size() - 1)];
+    };
+    auto& [sensor, z, weight] = fixes_[i];
+    gather_lanes<4>([&](int k) { return fix(k).sensor.covariance_m2.data(); },
+                    sensor.covariance.data());
+    gather_lanes<2>([&](int k) { return fix(k).z.data(); }, z.data());
+    weight = lanes_of<Scalar>([&](int k) { return i < row[k].fixes.size() ? fix(k).weight : 0.0; });
+  }
+
+  template <class Step>
+  void gather(const Row<Step>& row) noexcept {
+    const auto estimators = row.each([](Step& step) -> Estimator& { return *step.estimator; });
+    lanes_.gather([&](int k) -> const Estimator& { return *estimators[std::size_t(k)]; });
+  }
+
+  template <class Step>
+  void scatter(const Row<Step>& row) const noexcept {
+    const auto estimators = row.each([](Step& step) -> Estimator& { return *step.estimator; });
+    const auto kinematics = row.each([](Step & step) -> auto& { return step.kinematics; });
+    lanes_.scatter(row.count, [&](int k) -> Estimator& { return *estimators[std::size_t(k)]; });
+    scatter_lanes(
+        kinematics_of(lanes_.estimate()),
+        row.count, [&](int k) -> auto& { return *kinematics[std::size_t(k)]; });
+  }
+
+  decltype(InLanes<Estimator, Scalar>::of(std::declval<const Estimator&>())) lanes_;
+  std::array<Alternative<LaneFix, Scalar>, kMaxAlternatives> fixes_;
+};
+
+}  // namespace wakeline
