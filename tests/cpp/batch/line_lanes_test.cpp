@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "filter/cases.hpp"
-#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/multimodel/bayesian_alpha_beta.hpp"
 #include "wakeline/multimodel/fuzzy_alpha_beta.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 namespace {
@@ -60,8 +60,8 @@ struct Scan {
   Vec<double, 2> z;
 };
 
-/// A vessel that steers here and there, seen in most scans. Now and then time stands still or is
-/// none, or a plot is beyond all numbers.
+/// A maneuvering vessel, seen in most scans. Some time steps are zero, negative, NaN or too long,
+/// some plots out of range.
 std::vector<Scan> voyage(std::uint64_t seed) {
   Draw draw(seed);
   Vec<double, 2> position(4000.0 + 500.0 * double(seed), -3000.0);
@@ -72,7 +72,7 @@ std::vector<Scan> voyage(std::uint64_t seed) {
     const double dt_s = chance < 0.03   ? 4e-4
                         : chance < 0.04 ? -1.0
                         : chance < 0.05 ? kNaN
-                        : chance < 0.06 ? 1e200
+                        : chance < 0.06 ? 1e10
                                         : draw.uniform(1.0, 6.0);
     if (draw.uniform(0, 1) < 0.06) rate = draw.uniform(-0.05, 0.05);
     if (dt_s > 0.0 && dt_s < 10.0) {
@@ -83,7 +83,7 @@ std::vector<Scan> voyage(std::uint64_t seed) {
     z[0] += 8.0 * draw.normal();
     z[1] += deg(0.2) * draw.normal();
     if (draw.uniform(0, 1) < 0.12) z[0] = kNaN;
-    if (draw.uniform(0, 1) < 0.02) z[0] = 1e155;
+    if (draw.uniform(0, 1) < 0.02) z[0] = 1e10;
     scans.push_back({dt_s, z});
   }
   return scans;

@@ -45,22 +45,9 @@ TYPED_TEST_P(BadInput, StepsOfTimeThatAreNone) {
   EXPECT_EQ(this->filter.predict(this->kInfinity), Status::kNotFinite);
   EXPECT_EQ(this->filter.predict(-this->kInfinity), Status::kNotFinite);
   EXPECT_EQ(this->filter.predict(-1), Status::kNegativeTimeStep);
-  EXPECT_EQ(this->filter.predict(this->kHuge), Status::kNotFinite) << "the covariance overflows";
+  EXPECT_EQ(this->filter.predict(this->kHuge), Status::kNotFinite) << "too long";
   EXPECT_TRUE(test::beliefs_identical<TypeParam::kStates>(this->filter.estimate(), this->before));
   EXPECT_EQ(this->filter.predict(1), Status::kOk) << "and it goes on";
-}
-
-TYPED_TEST_P(BadInput, AnErrorThatGrowsBeyondAllNumbers) {
-  using Scalar = typename TypeParam::Scalar;
-  auto wide = this->before;
-  wide.covariance *= std::numeric_limits<Scalar>::max() / Scalar(1e10) / wide.covariance(0, 0);
-  if (this->filter.start(wide) != Status::kOk) return;
-  const auto started = this->filter.estimate();
-  ASSERT_TRUE(is_finite(started.covariance));
-  if (this->filter.predict(Scalar(1e5)) == Status::kOk)
-    EXPECT_TRUE(is_finite(this->filter.estimate().covariance));
-  else
-    EXPECT_TRUE(test::beliefs_identical<TypeParam::kStates>(this->filter.estimate(), started));
 }
 
 TYPED_TEST_P(BadInput, NoTimeChangesNothing) {

@@ -6,8 +6,8 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
-#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/measurement/position.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 namespace {
@@ -65,7 +65,7 @@ void expect_unmoved_by_failure(const typename Filter::Motion& motion) {
   EXPECT_EQ(filter.predict(3.0, {kNan, 0.0}), Status::kNotFinite);
   EXPECT_EQ(filter.predict(3.0, {0.0, std::numeric_limits<double>::infinity()}),
             Status::kNotFinite);
-  EXPECT_EQ(filter.predict(3.0, {0.0, -1e300}), Status::kNotFinite);
+  EXPECT_EQ(filter.predict(3.0, {0.0, -2.0 * kLargestInput}), Status::kNotFinite);
   EXPECT_TRUE(beliefs_identical<Filter::kStates>(filter.estimate(), before));
 }
 

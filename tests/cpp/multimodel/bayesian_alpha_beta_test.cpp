@@ -254,9 +254,9 @@ TEST(BayesianAlphaBeta, BadInputChangesNothing) {
   }
 }
 
-TEST(BayesianAlphaBeta, APlotThatNoMixtureHoldsChangesNothing) {
+TEST(BayesianAlphaBeta, APlotOutOfRangeChangesNothing) {
   const Position vague{1e5};
-  const Vec<double, 2> far(1e157, 0.0);
+  const Vec<double, 2> far(2.0 * kLargestInput, 0.0);
   Bayesian bank = started();
   for (int scan = 0; scan < 4; ++scan) {
     ASSERT_EQ(bank.predict(kPeriod_s), Status::kOk);

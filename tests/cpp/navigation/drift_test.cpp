@@ -192,7 +192,7 @@ TEST(DriftWindow, RefusesWhatMakesNoSenseAndStaysAsItWas) {
   EXPECT_THROW(DriftWindow<>({.log_std_mps = -1}), std::invalid_argument);
 }
 
-TEST(DriftWindow, IsNotSpoiltByNumbersThatHaveNoSquare) {
+TEST(DriftWindow, RejectsNumbersOutOfRange) {
   DriftWindow<> window({.log_std_mps = 0.05});
   const auto go_on = [&] {
     EXPECT_EQ(window.advance(10, 5, 1), Status::kOk);
@@ -201,9 +201,9 @@ TEST(DriftWindow, IsNotSpoiltByNumbersThatHaveNoSquare) {
   go_on();
   go_on();
   const Gaussian<2> before = window.drift();
-  EXPECT_EQ(window.advance(1e308, 0, 1), Status::kNotFinite);
-  EXPECT_EQ(window.advance(1e100, 1e100, 1), Status::kNotFinite);
-  EXPECT_EQ(window.add({Vec2(1e308, 0), kIdentity}), Status::kNotFinite);
+  EXPECT_EQ(window.advance(1e10, 0, 1), Status::kNotFinite);
+  EXPECT_EQ(window.advance(1, 1e10, 1), Status::kNotFinite);
+  EXPECT_EQ(window.add({Vec2(1e10, 0), kIdentity}), Status::kNotFinite);
   EXPECT_EQ(window.drift().mean, before.mean);
   go_on();
   EXPECT_TRUE(is_finite(window.drift().mean) && is_finite(window.drift().covariance));

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -15,21 +14,22 @@
 
 namespace wakeline {
 
-/// Rectangular assignment on a dense cost matrix: as many pairs as can be, and of these the least
-/// total cost.
+/// Rectangular assignment on a dense cost matrix: the largest possible number of pairs and, among
+/// these assignments, the least total cost.
 ///
-/// An element that is not finite forbids its pair. Leaving a row out costs (min(rows, columns) + 1)
-/// times the spread of the finite costs, which no gain elsewhere outweighs; the optimum is
-/// therefore exact to about 1e-16 times that. For scoring and small problems: memory grows with
-/// rows x columns.
+/// An element that is not finite forbids its pair; a finite one is clamped to ±`kLargestCost`. An
+/// unassigned row costs (min(rows, columns) + 1) times the spread of the finite costs, more than
+/// any other choice can gain; the optimum is exact to about 1e-16 times that. For scoring and small
+/// problems: memory grows with rows x columns.
 template <class Scalar = double>
 class DenseAssignment {
   static_assert(std::is_floating_point_v<Scalar>, "wakeline: costs are float or double");
 
  public:
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+  static constexpr Scalar kLargestCost = Scalar(1e30L);
 
-  /// Takes all memory. Throws `std::invalid_argument` when a capacity is negative.
+  /// Allocates all memory. Throws `std::invalid_argument` when a capacity is negative.
   DenseAssignment(int row_capacity, int column_capacity)
       : candidates_(Candidates<Scalar>::dense(row_capacity, column_capacity)),
         solver_(row_capacity, column_capacity) {}
@@ -43,30 +43,28 @@ class DenseAssignment {
       (void)solver_.solve(candidates_);
       return false;
     }
-    Scalar least = std::numeric_limits<Scalar>::max();
-    Scalar most = std::numeric_limits<Scalar>::lowest();
+    const auto clamped = [](Scalar element) {
+      return std::isfinite(element) ? std::clamp(element, -kLargestCost, kLargestCost) : element;
+    };
+    Scalar least = kLargestCost;
+    Scalar most = -kLargestCost;
     for (int column = 0; column < columns; ++column)
       for (int row = 0; row < rows; ++row) {
-        const Scalar element = cost(row, column);
+        const Scalar element = clamped(cost(row, column));
         if (!std::isfinite(element)) continue;
         least = std::min(least, element);
         most = std::max(most, element);
       }
-    // Costs near the largest number there is are made smaller, lest their sums overflow.
     const Scalar more_than_pairs = static_cast<Scalar>(std::min(rows, columns) + 1);
-    const Scalar small = Scalar(1) / (Scalar(16) * more_than_pairs);
-    const Scalar safe = small * std::numeric_limits<Scalar>::max();
-    const Scalar scale = most > safe || least < -safe ? small : Scalar(1);
-    const Scalar spread = most > least ? scale * most - scale * least : Scalar(1);
+    const Scalar spread = most > least ? most - least : Scalar(1);
     const Scalar unassigned_cost = more_than_pairs * spread;
 
-    // Costs count from the least one, which changes no choice among assignments of equally many
-    // pairs.
+    // The least cost is subtracted from all, which does not change the best assignment of a given
+    // number of pairs.
     for (int row = 0; row < rows; ++row) {
       candidates_.start_row(unassigned_cost);
       for (int column = 0; column < columns; ++column)
-        candidates_.add(column,
-                        scale * cost(row, column) - scale * least);  // refuses what is not finite
+        candidates_.add(column, clamped(cost(row, column)) - least);  // rejects non-finite costs
     }
     return solver_.solve(candidates_);
   }
@@ -86,8 +84,8 @@ class DenseAssignment {
   GlobalNearestNeighbour<Scalar> solver_;
 };
 
-/// The column of each row, or `kUnassigned`, by `DenseAssignment` with memory taken for this call.
-/// Whole numbers are taken as `double`.
+/// The column of each row, or `kUnassigned`, by a `DenseAssignment` allocated for this call.
+/// Integer costs are converted to `double`.
 template <class Derived>
 [[nodiscard]] std::vector<int> assign_dense(const Eigen::MatrixBase<Derived>& cost) {
   using Given = typename Derived::Scalar;

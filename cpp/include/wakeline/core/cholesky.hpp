@@ -201,14 +201,6 @@ MaskOf<typename Derived::Scalar> is_finite(const Eigen::MatrixBase<Derived>& mat
   return sum == Scalar(0);
 }
 
-/// True when every element of a vector has a square.
-template <class Derived>
-MaskOf<typename Derived::Scalar> has_squares(const Eigen::MatrixBase<Derived>& vector) noexcept {
-  MaskOf<typename Derived::Scalar> each = true;
-  for (Eigen::Index k = 0; k < vector.size(); ++k) each = each && has_square(vector[k]);
-  return each;
-}
-
 /// Says what is wrong with a belief, or `kOk`.
 template <int N, class Scalar>
 StatusOf<Scalar> check(const Gaussian<N, Scalar>& belief) noexcept {
@@ -223,7 +215,7 @@ StatusOf<Scalar> check(const Gaussian<N, Scalar>& belief) noexcept {
       valid = valid &&
               abs(belief.covariance(row, column) - belief.covariance(column, row)) <= tolerance;
   valid = valid && Cholesky<N, Scalar>(belief.covariance).ok();
-  const auto finite = is_finite(belief.mean) && is_finite(belief.covariance);
+  const auto finite = in_range(belief.mean) && is_finite(belief.covariance);
   return first_failure(ok_or(finite, Status::kNotFinite),
                        ok_or(valid, Status::kNotPositiveDefinite));
 }

@@ -7,9 +7,9 @@
 #include <limits>
 #include <type_traits>
 
+#include "wakeline/core/types.hpp"
 #include "wakeline/simd/pack.hpp"
 #include "wakeline/simd/scalar.hpp"
-#include "wakeline/core/types.hpp"
 
 namespace wakeline {
 
@@ -100,11 +100,30 @@ LaneStatus<Pack<Real, Lanes>> ok_or(const PackMask<Real, Lanes>& condition,
 template <class Scalar>
 using StatusOf = std::conditional_t<kLanesOf<Scalar> == 1, Status, LaneStatus<Scalar>>;
 
-/// `kOk` when time goes forward by a finite step.
+/// Largest magnitude of an input: a time step (s), a position (m), a velocity (m/s), an
+/// acceleration (m/s²) or an angle (rad). An estimator rejects a larger one with `kNotFinite`, as
+/// it does NaN, so that nothing computed from it overflows, in `float` either.
+inline constexpr double kLargestInput = 1e9;
+
+/// True when |x| <= `kLargestInput`; false for NaN.
+template <class Scalar>
+MaskOf<Scalar> in_range(const Scalar& x) noexcept {
+  using std::abs;
+  return abs(x) <= Scalar(RealOf<Scalar>(kLargestInput));
+}
+
+/// The same of every element of a vector.
+template <class Scalar, int N>
+MaskOf<Scalar> in_range(const Vec<Scalar, N>& x) noexcept {
+  MaskOf<Scalar> all_in_range = in_range(x[0]);
+  for (int k = 1; k < N; ++k) all_in_range = all_in_range && in_range(x[k]);
+  return all_in_range;
+}
+
+/// `kOk` for a time step from 0 to `kLargestInput` seconds.
 template <class Scalar>
 StatusOf<Scalar> check_time_step(Scalar dt_s) noexcept {
-  using std::isfinite;
-  return first_failure(ok_or(isfinite(dt_s), Status::kNotFinite),
+  return first_failure(ok_or(in_range(dt_s), Status::kNotFinite),
                        ok_or(!(dt_s < Scalar(0)), Status::kNegativeTimeStep));
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/component.hpp"
@@ -10,19 +11,6 @@
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
-
-/// Gives a filter back what it was, in the lanes told.
-template <class Filter>
-void restore(Filter& filter, const Filter& before,
-             const MaskOf<typename Filter::Scalar>& lanes) noexcept {
-  if constexpr (kLanesOf<typename Filter::Scalar> == 1) {
-    if (lanes) filter = before;
-  } else if constexpr (requires { filter.assign_in(lanes, before); }) {
-    filter.assign_in(lanes, before);
-  } else {
-    filter.assign_in(lanes, before.estimate());
-  }
-}
 
 /// A known acceleration: of own ship, or commanded. It acts on a state that has moved already, x +=
 /// G u, u = [north, east] (m/s²), and is constant during the step: G = [dt²/2; dt] per axis, and
@@ -45,21 +33,18 @@ struct Control {
     return shift;
   }
 
-  /// `filter.predict(dt_s)` under the acceleration; where that moves the state by what has no
-  /// square, or is not finite, nothing changes.
+  /// `filter.predict(dt_s)`, then x += G u. An acceleration that is not `in_range` gives
+  /// `kNotFinite` and changes nothing.
   template <class Filter>
   static auto predict(Filter& filter, typename Filter::Scalar dt_s,
                       const Vec<typename Filter::Scalar, 2>& acceleration_mps2) noexcept {
     using Scalar = typename Filter::Scalar;
-    const auto pushed = shift(Filter::kComponents, dt_s, acceleration_mps2);
-    const Filter before = filter;
-    StatusOf<Scalar> status = filter.predict(dt_s);
+    constexpr auto kNan = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
+    const StatusOf<Scalar> status =
+        filter.predict(select(in_range(acceleration_mps2), dt_s, Scalar(kNan)));
     if (none(ok(status))) return status;
-    const decltype(pushed) moved = filter.mean() + pushed;
+    const auto moved = (filter.mean() + shift(Filter::kComponents, dt_s, acceleration_mps2)).eval();
     assign_where(ok(status), filter.mean(), moved);
-    const MaskOf<Scalar> squared = is_finite(moved) && has_squares(pushed);
-    status = first_failure(status, ok_or(squared, Status::kNotFinite));
-    if (!all(ok(status))) restore(filter, before, !ok(status));
     return status;
   }
 };

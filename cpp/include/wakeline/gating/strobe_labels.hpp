@@ -6,33 +6,31 @@
 #include <array>
 #include <cstddef>
 
+#include "wakeline/gating/run_labels.hpp"
 #include "wakeline/gating/strobe_sums.hpp"
 
 namespace wakeline::detail {
 
-/// Runs of neighbouring cells joined to echoes: two runs of neighbouring sweeps belong together
-/// when their cells touch, be it at a corner.
+/// Joins runs of cells into echoes: two runs of consecutive sweeps belong to one echo when their
+/// cells share an edge or a corner.
 ///
-/// Rows come in the order of sweeps; of runs only the first row and the last two are kept, of
-/// echoes the sums. No heap: when there is no room for another run of a row, or for another echo
-/// (or branch of one that has not met the rest yet), it is left out and `full()` says so.
+/// Sweeps are added in order. The runs of the first and of the last two sweeps are kept, and the
+/// sums of every echo. No heap: a run without room in its row, or a new echo (or a branch that is
+/// not yet connected with the rest) beyond `kCapacity`, is left out, and `full()` returns true.
 template <int kCapacity>
 class StrobeLabels {
  public:
-  /// What comes now is of the next sweep.
+  /// Starts the next sweep.
   void start_row() noexcept {
     ++row_;
     runs(row_).size = 0;
+    if (row_ > 0) before_ = EarlierRuns(runs(row_ - 1).all());
   }
 
-  /// Cells `first` to `last` of the sweep, beyond those that came before.
+  /// Adds cells `first` to `last` of the sweep; runs are added in order of range.
   void add(int first, int last, const StrobeSums& sums) noexcept {
     int echo = kNone;
-    if (row_ > 0) {
-      const Row& before = runs(row_ - 1);
-      for (int k = 0; k < before.size; ++k)
-        if (touch(before[k], first, last)) echo = join(echo, before[k].echo);
-    }
+    before_.for_each_connected(first, last, 0, [&](int label) { echo = join(echo, label); });
     if (echo == kNone) echo = open();
     Row& row = runs(row_);
     if (echo == kNone || row.size == kCapacity) {
@@ -40,22 +38,20 @@ class StrobeLabels {
       return;
     }
     at(echo).sums += sums;
-    row[row.size++] = {first, last, echo};
+    row.runs[static_cast<std::size_t>(row.size++)] = {first, last, echo};
   }
 
-  /// The last row lies beside the first one.
+  /// Connects the last sweep with the first one, of a full circle.
   void close_circle() noexcept {
-    const Row& top = runs(0);
-    const Row& bottom = runs(row_);
-    for (int a = 0; a < top.size; ++a)
-      for (int b = 0; b < bottom.size; ++b)
-        if (touch(top[a], bottom[b].first, bottom[b].last)) join(top[a].echo, bottom[b].echo);
+    EarlierRuns last(runs(row_).all());
+    for (const LabelledRun& run : runs(0).all())
+      last.for_each_connected(run.first, run.last, 0, [&](int label) { join(run.label, label); });
   }
 
   [[nodiscard]] bool full() const noexcept { return full_; }
 
-  /// Echoes, counted as they came; of one that came as several branches the first has all, and only
-  /// it `is_whole`.
+  /// Number of labels in order of first appearance. Of an echo that appeared as several branches
+  /// the first has the sums of all, and only that one `is_whole`.
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] bool is_whole(int echo) const noexcept { return at(echo).root == echo; }
   [[nodiscard]] const StrobeSums& sums(int echo) const noexcept { return at(echo).sums; }
@@ -63,17 +59,12 @@ class StrobeLabels {
  private:
   static constexpr int kNone = -1;
 
-  struct Run {
-    int first;
-    int last;
-    int echo;
-  };
-
   struct Row {
-    std::array<Run, static_cast<std::size_t>(kCapacity)> runs;
+    std::array<LabelledRun, static_cast<std::size_t>(kCapacity)> runs;
     int size = 0;
-    Run& operator[](int k) noexcept { return runs[static_cast<std::size_t>(k)]; }
-    const Run& operator[](int k) const noexcept { return runs[static_cast<std::size_t>(k)]; }
+    [[nodiscard]] std::span<const LabelledRun> all() const noexcept {
+      return {runs.data(), static_cast<std::size_t>(size)};
+    }
   };
 
   struct Echo {
@@ -81,11 +72,7 @@ class StrobeLabels {
     StrobeSums sums;
   };
 
-  static bool touch(const Run& run, int first, int last) noexcept {
-    return run.first <= last + 1 && first <= run.last + 1;
-  }
-
-  /// The first row keeps its place, all others take turns.
+  /// Row 0 is kept; of the others the last two.
   Row& runs(int row) noexcept { return rows_[row == 0 ? 0U : 1U + std::size_t(row) % 2U]; }
 
   Echo& at(int echo) noexcept { return echoes_[static_cast<std::size_t>(echo)]; }
@@ -100,11 +87,10 @@ class StrobeLabels {
   }
 
   int root_of(int echo) noexcept {
-    while (!is_whole(echo)) echo = at(echo).root = at(at(echo).root).root;
-    return echo;
+    return find_root(echo, [this](int label) -> int& { return at(label).root; });
   }
 
-  /// Makes two echoes one, the earlier; `a` may be none.
+  /// Joins two echoes under the earlier label, which is returned; `a` may be `kNone`.
   int join(int a, int b) noexcept {
     b = root_of(b);
     if (a == kNone) return b;
@@ -119,6 +105,7 @@ class StrobeLabels {
   }
 
   std::array<Row, 3> rows_;
+  EarlierRuns before_;
   std::array<Echo, static_cast<std::size_t>(kCapacity)> echoes_;
   int row_ = -1;
   int size_ = 0;

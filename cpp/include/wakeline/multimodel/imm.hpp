@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "wakeline/core/in_place_array.hpp"
-#include "wakeline/simd/scalar.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
+#include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
 
@@ -94,7 +94,7 @@ class Imm {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
     Gaussian<kM, Scalar> reading = sensor.observe(z);
-    refuse_beyond_squares(reading.mean);
+    reject_out_of_range(reading.mean);
     InPlaceArray<Correction<kM, Scalar>, static_cast<std::size_t>(kModeCapacity<kModels>)> each;
     if constexpr (kMayRest)
       for (int mode = 0; mode < bank_.size(); ++mode)

@@ -87,7 +87,7 @@ class LineEstimator {
     Correction<2, Scalar> correction;
     if (!started()) return correction;
     Gaussian<2, Scalar> plot = sensor.position(z);
-    refuse_beyond_squares(plot.mean);
+    reject_out_of_range(plot.mean);
     const Gaussian<2, Scalar> ahead = position();
     correction.innovation = plot.mean - ahead.mean;
     correction.innovation_covariance = ahead.covariance + plot.covariance;

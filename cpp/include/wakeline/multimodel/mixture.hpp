@@ -13,9 +13,9 @@
 
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/require.hpp"
-#include "wakeline/simd/scalar.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/multimodel/filter_bank.hpp"
+#include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
 
@@ -91,12 +91,12 @@ Scalar part_of(Scalar part, Scalar total, Scalar scale) noexcept {
   return select(part == total, Scalar(1), part * scale);
 }
 
-/// Makes a reading that is too large for a mixture one that is none.
+/// Replaces the components of a reading that are not `in_range` by NaN, so that every model rejects
+/// it with `kNotFinite`.
 template <int M, class Scalar>
-[[gnu::always_inline]] inline void refuse_beyond_squares(Vec<Scalar, M>& reading) noexcept {
-  constexpr auto kNone = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
-  for (int i = 0; i < M; ++i)
-    reading[i] = select(has_square(reading[i]), reading[i], Scalar(kNone));
+[[gnu::always_inline]] inline void reject_out_of_range(Vec<Scalar, M>& reading) noexcept {
+  constexpr auto kNan = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
+  for (int i = 0; i < M; ++i) reading[i] = select(in_range(reading[i]), reading[i], Scalar(kNan));
 }
 
 /// Bayes' rule for the parts of a mixture: weights become weight times likelihood over their sum.

@@ -173,15 +173,14 @@ class ModeHistory {
 
   /// Corrects every hypothesis by a reading, weighs them, joins and cuts. The innovation of the
   /// step is that of the moment-matched prediction, its log-likelihood that of the mixture. A
-  /// hypothesis whose update fails is dropped; where all fail nothing changes, nor by a reading so
-  /// large that what two hypotheses make of it could not be squared, `kNotFinite`.
+  /// hypothesis whose update fails is dropped; where all fail nothing changes.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
     Gaussian<kM, Lanes> reading = sensor.observe(z).template cast<Lanes>();
-    refuse_beyond_squares(reading.mean);
+    reject_out_of_range(reading.mean);
     InPlaceArray<Correction<kM, Lanes>, Leaves::kMostRows> corrections;
     std::array<Lanes, Leaves::kMostRows> weights;
     const std::span<const Row> before = present().all();

@@ -133,29 +133,23 @@ class DriftWindow {
     step_ = {};
   }
 
-  /// Lets time pass at a speed through the water and a heading. A time or a run since the last fix
-  /// that could not be squared is refused as not finite.
+  /// Advances by a time step at a speed through the water and a heading. A number that is not
+  /// `in_range` gives `kNotFinite` and changes nothing.
   Status advance(double dt_s, double speed_mps, double heading_rad) noexcept {
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
-    if (!std::isfinite(speed_mps) || !std::isfinite(heading_rad)) return Status::kNotFinite;
+    if (!in_range(speed_mps) || !in_range(heading_rad)) return Status::kNotFinite;
     const Gaussian<2> water =
         water_velocity(speed_mps, heading_rad, settings_.log_std_mps, settings_.heading_std_rad);
-    Fixed next = step_;
-    next.gap_s += dt_s;
-    next.reckoned_m += dt_s * water.mean;
-    next.reckoned_covariance_m2 += dt_s * dt_s * water.covariance;
-    if (!has_square(next.gap_s) || !has_squares(next.reckoned_m) ||
-        !is_finite(next.reckoned_covariance_m2))
-      return Status::kNotFinite;
-    step_ = next;
+    step_.gap_s += dt_s;
+    step_.reckoned_m += dt_s * water.mean;
+    step_.reckoned_covariance_m2 += dt_s * dt_s * water.covariance;
     return Status::kOk;
   }
 
-  /// Takes a fix of the present time, [north, east] m on a plane; one too far off to be squared is
-  /// refused as not finite.
+  /// Adds a fix of the present time, [north, east] m on a plane. One whose mean is not `in_range`
+  /// or whose covariance is not positive definite changes nothing.
   Status add(const Gaussian<2>& fix) noexcept {
     if (const Status status = check(fix); status != Status::kOk) return status;
-    if (!has_squares(fix.mean)) return Status::kNotFinite;
     newest_ = (newest_ + 1) % settings_.max_fixes;
     size_ = std::min(size_ + 1, settings_.max_fixes);
     step_.fix = fix;

@@ -82,20 +82,15 @@ class DriftForecast {
             p(0, 0) * p(1, 1) - p(1, 0) * p(0, 1));
   }
 
-  /// Lets time pass under a wind and a current, [north, east] m/s. Of a step that cannot be done,
-  /// as it leads to what has no square, nothing is kept.
+  /// Advances by a time step under a wind and a current, [north, east] m/s. A number that is not
+  /// `in_range` gives `kNotFinite` and changes nothing.
   Status advance(double dt_s, const Vec<double, 2>& wind_mps,
                  const Vec<double, 2>& current_mps) noexcept {
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
-    if (!is_finite(wind_mps) || !is_finite(current_mps)) return Status::kNotFinite;
-    const double elapsed_s = elapsed_s_ + dt_s;
-    const Vec<double, 2> wind_run_m = wind_run_m_ + dt_s * wind_mps;
-    const Vec<double, 2> current_run_m = current_run_m_ + dt_s * current_mps;
-    if (!has_square(elapsed_s) || !has_squares(wind_run_m) || !has_squares(current_run_m))
-      return Status::kNotFinite;
-    elapsed_s_ = elapsed_s;
-    wind_run_m_ = wind_run_m;
-    current_run_m_ = current_run_m;
+    if (!in_range(wind_mps) || !in_range(current_mps)) return Status::kNotFinite;
+    elapsed_s_ += dt_s;
+    wind_run_m_ += dt_s * wind_mps;
+    current_run_m_ += dt_s * current_mps;
     return Status::kOk;
   }
 

@@ -10,8 +10,9 @@
 #include <limits>
 #include <numbers>
 
-#include "wakeline/simd/pack_math.hpp"
+#include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline::detail {
 inline namespace WAKELINE_INSTRUCTION_SET {
@@ -191,8 +192,7 @@ class PassingProbability {
 
   static constexpr int kDirections = 32;
   static constexpr double kLeastError = 1e-8;  ///< of a velocity that is known, beside itself
-  static constexpr double kLatest_s = 1e100;
-  static constexpr double kSpread = 0.4;  ///< of directions, beside their distance
+  static constexpr double kSpread = 0.4;       ///< of directions, beside their distance
 
   /// The probability that it is outside now and comes in.
   [[nodiscard]] double later(double limit_m, double horizon_s) const noexcept {
@@ -239,8 +239,8 @@ class PassingProbability {
   [[nodiscard]] double towards(const Vec2& c, const Vec2& by_psi, const Length& length,
                                double spread, double stagger, double limit_m,
                                double horizon_s) const noexcept {
-    const bool ever = std::isinf(horizon_s);
-    const double reach_s = ever ? 0.0 : std::min(horizon_s, kLatest_s);
+    const bool ever = horizon_s > kLargestInput;
+    const double reach_s = ever ? 0.0 : horizon_s;
     const double length_std = std::sqrt(length.variance), aside = length.mean * spread;
     const Vec2 one = root_ * c, turned = root_ * by_psi * aside;
     const double speed_mps = length.mean * one.norm();

@@ -117,18 +117,6 @@ Result least_to(Scalar x) noexcept {
   return fold_to<Result>(x, [](const auto& lanes) { return least_of_lanes(lanes); });
 }
 
-/// Numbers above this, or what differs by as much and is then multiplied by a gain, have no square.
-template <class Scalar>
-inline constexpr RealOf<Scalar> kMostSquared = sizeof(RealOf<Scalar>) > 4 ? RealOf<Scalar>(0x1p492)
-                                                                          : RealOf<Scalar>(0x1p44);
-
-/// Whether a number is not beyond those.
-template <class Scalar>
-MaskOf<Scalar> has_square(Scalar x) noexcept {
-  using std::abs;
-  return abs(x) < Scalar(kMostSquared<Scalar>);
-}
-
 /// Over the lanes of a mask, of which a `bool` has one.
 constexpr bool all(bool mask) noexcept { return mask; }
 constexpr bool any(bool mask) noexcept { return mask; }

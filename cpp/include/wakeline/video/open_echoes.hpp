@@ -10,17 +10,18 @@
 #include <vector>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/gating/run_labels.hpp"
 #include "wakeline/video/echo.hpp"
 
 namespace wakeline::detail {
 
-/// Connects the runs of sweep after sweep into echoes, and closes those that no sweep touches any
-/// more. Two cells are of one echo when at most `gap_cells` cells and `gap_sweeps` sweeps lie
-/// between them.
+/// Joins the runs of consecutive sweeps into echoes and closes an echo when no later sweep can be
+/// connected with it. Two cells belong to one echo when at most `gap_cells` cells and `gap_sweeps`
+/// sweeps are between them.
 ///
-/// Echoes are sets of a union-find whose members are the slots of a fixed pool; the runs of the
-/// last sweeps say which echo they are of. An open echo has a run in one of them, so their number
-/// is bounded by that of runs, and with it the memory.
+/// Echoes are the sets of a union-find over the slots of a fixed pool; the runs of the last sweeps
+/// hold the slot of their echo. An open echo has a run in one of these sweeps, so the number of
+/// runs bounds the number of open echoes and the memory.
 class OpenEchoes {
  public:
   struct Settings {
@@ -38,7 +39,7 @@ class OpenEchoes {
     if (settings.closed_circle) heads_.resize(depth);
     for (Runs& sweep : recent_) sweep.reserve(runs + 1);
     for (Runs& sweep : heads_) sweep.reserve(runs + 1);
-    cursor_.resize(depth);
+    earlier_.resize(depth);
     const std::size_t slots = runs * (recent_.size() + heads_.size());
     echoes_.resize(slots);
     set_.resize(slots);
@@ -47,32 +48,31 @@ class OpenEchoes {
     clear();
   }
 
-  // A copy of a vector has not the room that was reserved.
+  // No copies: a copied vector lacks the reserved capacity.
   OpenEchoes(OpenEchoes&&) = default;
   OpenEchoes& operator=(OpenEchoes&&) = default;
 
-  /// Never more echoes than this are open.
+  /// Largest possible number of open echoes.
   [[nodiscard]] std::size_t capacity() const noexcept { return echoes_.size(); }
   [[nodiscard]] std::size_t open() const noexcept { return echoes_.size() - free_.size(); }
 
-  /// The beam moves on to another sweep; `first` after sweeps that are missing.
+  /// Starts a sweep; `first` is true for one that follows missing sweeps.
   void begin_sweep(const BeamPlace& beam, bool first) noexcept {
     beam_ = beam;
     first_ = first;
-    for (std::size_t k = 0; k < cursor_.size(); ++k) {
-      const Runs& before = sweep(k + 1);
-      cursor_[k] = {before.data(), before.data() + before.size()};
+    for (std::size_t k = 0; k < earlier_.size(); ++k) {
+      earlier_[k] = EarlierRuns(sweep(k + 1));
     }
   }
 
-  /// The beam has passed north: azimuths begin anew.
+  /// The beam passes north: azimuths restart at zero.
   void pass_north() noexcept {
     for (Echo& echo : echoes_) echo.began.azimuth_rad -= 2 * kPi<double>;
   }
 
-  /// A run of this sweep; runs come by range, more than `gap_cells` apart.
+  /// Adds a run of this sweep; runs are added in order of range, more than `gap_cells` apart.
   void add(const EchoRun& run, bool touches_last_cell) noexcept {
-    int echo = touched_by(run);
+    int echo = connected_with(run);
     if (echo == kNone) echo = begin_echo();
     Echo& grown = slot(echo);
     grown.add(run, beam_);
@@ -81,7 +81,7 @@ class OpenEchoes {
     sweep(0).push_back({run.first, run.last, echo});
   }
 
-  /// Closes what the sweep has left behind: calls `close(echo)`.
+  /// Ends the sweep: calls `close(echo)` for every echo that no later sweep can be connected with.
   template <class Close>
   void end_sweep(Close&& close) noexcept {
     resolve();
@@ -90,45 +90,46 @@ class OpenEchoes {
     retire(close);
   }
 
-  /// Lets a missing sweep pass as an empty one.
+  /// Processes a missing sweep as an empty one.
   template <class Close>
   void skip_sweep(Close&& close) noexcept {
     begin_sweep(beam_, false);
     end_sweep(close);
   }
 
-  /// Sweeps are missing: closes all echoes but those that wait for the circle to be closed. What
-  /// follows is no longer its beginning.
+  /// Called where sweeps are missing: closes all echoes except those that wait for the circle to be
+  /// closed. The sweeps that follow are not part of the beginning of the circle.
   template <class Close>
   void interrupt(Close&& close) noexcept {
     count_ = std::max(count_, static_cast<std::int64_t>(heads_.size()));
     for (std::size_t k = 1; k < recent_.size(); ++k) {
-      for (const Run& run : sweep(k)) {
-        Echo& echo = slot(run.echo);
+      for (const LabelledRun& run : sweep(k)) {
+        Echo& echo = slot(run.label);
         echo.cut = true;
-        if (!echo.held) close_once(run.echo, close);
+        if (!echo.held) close_once(run.label, close);
       }
       sweep(k).clear();
     }
   }
 
-  /// Closes all echoes. Those at the end of a closed circle are joined with those at its beginning
-  /// when at most `missing` sweeps are missing between; -1 when it is not complete.
+  /// Closes all echoes. Those at the end of a closed circle are joined with those at its beginning.
+  /// `missing` is the number of sweeps missing between end and beginning, or -1 when the circle is
+  /// not complete.
   template <class Close>
   void finish(int missing, Close&& close) noexcept {
     if (settings_.closed_circle && missing >= 0) {
       join_circle(missing);
       resolve();
       for (std::size_t k = 1; k < recent_.size(); ++k) {
-        for (const Run& run : sweep(k)) close_once(run.echo, close);
+        for (const LabelledRun& run : sweep(k)) close_once(run.label, close);
         sweep(k).clear();
       }
     }
     interrupt(close);
     for (Runs& sweep : heads_) {
-      for (const Run& run : sweep) {
-        if (missing < 0) slot(run.echo).cut = true;
-        close_once(run.echo, close);
+      for (const LabelledRun& run : sweep) {
+        if (missing < 0) slot(run.label).cut = true;
+        close_once(run.label, close);
       }
       sweep.clear();
     }
@@ -139,18 +140,7 @@ class OpenEchoes {
   static constexpr int kNone = -1;
   static constexpr std::int64_t kClosed = -1;
 
-  struct Run {
-    int first;
-    int last;
-    int echo;
-  };
-  using Runs = std::vector<Run>;
-
-  /// How far the runs of an earlier sweep have been looked at.
-  struct Cursor {
-    const Run* at;
-    const Run* end;
-  };
+  using Runs = std::vector<LabelledRun>;
 
   [[nodiscard]] Echo& slot(int echo) noexcept { return echoes_[static_cast<std::size_t>(echo)]; }
 
@@ -171,12 +161,7 @@ class OpenEchoes {
   // Union-find ------------------------------------------------------------------------------------
 
   [[nodiscard]] int root(int echo) noexcept {
-    while (true) {
-      int& set = set_[static_cast<std::size_t>(echo)];
-      if (set == echo) return echo;
-      set = set_[static_cast<std::size_t>(set)];
-      echo = set;
-    }
+    return find_root(echo, [this](int label) -> int& { return set_[std::size_t(label)]; });
   }
 
   [[nodiscard]] int united(int echo, int other) noexcept {
@@ -187,29 +172,25 @@ class OpenEchoes {
     return echo;
   }
 
-  /// Makes all runs point to their sets' roots, and the other slots free.
+  /// Sets the label of every run to its root and frees the other slots.
   void resolve() noexcept {
     if (merged_.empty()) return;
     for (Runs& sweep : recent_)
-      for (Run& run : sweep) run.echo = root(run.echo);
+      for (LabelledRun& run : sweep) run.label = root(run.label);
     for (Runs& sweep : heads_)
-      for (Run& run : sweep) run.echo = root(run.echo);
+      for (LabelledRun& run : sweep) run.label = root(run.label);
     free_.insert(free_.end(), merged_.begin(), merged_.end());
     merged_.clear();
   }
 
   // One sweep -------------------------------------------------------------------------------------
 
-  /// The echo of the recent runs that a run touches: one, whatever they were before.
-  [[nodiscard]] int touched_by(const EchoRun& run) noexcept {
-    const int reach = settings_.gap_cells + 1;
+  /// Joins all echoes of the last sweeps that a run is connected with into one and returns it.
+  [[nodiscard]] int connected_with(const EchoRun& run) noexcept {
     int echo = kNone;
-    for (Cursor& before : cursor_) {
-      const Run*& at = before.at;
-      while (at != before.end && at->last + reach < run.first) ++at;
-      for (const Run* near = at; near != before.end && near->first - reach <= run.last; ++near)
-        echo = united(echo, root(near->echo));
-    }
+    for (EarlierRuns& runs : earlier_)
+      runs.for_each_connected(run.first, run.last, settings_.gap_cells,
+                              [&](int label) { echo = united(echo, root(label)); });
     return echo;
   }
 
@@ -221,7 +202,7 @@ class OpenEchoes {
     return echo;
   }
 
-  /// True while the sweeps are those that the end of a closed circle will be joined with.
+  /// True in the first sweeps of a closed circle, which its end will be joined with.
   [[nodiscard]] bool closing() const noexcept {
     return count_ < static_cast<std::int64_t>(heads_.size());
   }
@@ -230,13 +211,13 @@ class OpenEchoes {
     if (!closing()) return;
     Runs& head = heads_[static_cast<std::size_t>(count_)];
     head = sweep(0);
-    for (const Run& run : head) slot(run.echo).held = true;
+    for (const LabelledRun& run : head) slot(run.label).held = true;
   }
 
   template <class Close>
   void cut_long_echoes(Close&& close) noexcept {
-    for (const Run& run : sweep(0)) {
-      Echo& echo = slot(run.echo);
+    for (const LabelledRun& run : sweep(0)) {
+      Echo& echo = slot(run.label);
       if (count_ - echo.first_sweep + 1 < settings_.max_sweeps) continue;
       echo.cut = true;
       close(std::as_const(echo));
@@ -244,13 +225,13 @@ class OpenEchoes {
     }
   }
 
-  /// The oldest sweep is forgotten; an echo that nothing later has touched is over.
+  /// Drops the oldest sweep and closes the echoes that have no later run.
   template <class Close>
   void retire(Close&& close) noexcept {
     Runs& oldest = sweep(recent_.size() - 1);
     const std::int64_t age = count_ - static_cast<std::int64_t>(recent_.size()) + 1;
-    for (const Run& run : oldest)
-      if (slot(run.echo).last_sweep == age && !slot(run.echo).held) close_once(run.echo, close);
+    for (const LabelledRun& run : oldest)
+      if (slot(run.label).last_sweep == age && !slot(run.label).held) close_once(run.label, close);
     oldest.clear();
     newest_ = (newest_ == 0 ? recent_.size() : newest_) - 1;
     ++count_;
@@ -274,17 +255,14 @@ class OpenEchoes {
   }
 
   void join(const Runs& tail, const Runs& head) noexcept {
-    const int reach = settings_.gap_cells + 1;
-    const Run* at = tail.data();
-    const Run* const end = at + tail.size();
-    for (const Run& run : head) {
-      while (at != end && at->last + reach < run.first) ++at;
-      for (const Run* near = at; near != end && near->first - reach <= run.last; ++near)
-        join(root(near->echo), root(run.echo));
-    }
+    EarlierRuns runs(tail);
+    for (const LabelledRun& run : head)
+      runs.for_each_connected(run.first, run.last, settings_.gap_cells,
+                              [&](int label) { join(root(label), root(run.label)); });
   }
 
-  /// Joins an echo at the end of the circle with one at the beginning, as if seen a turn later.
+  /// Joins an echo at the end of the circle with one at its beginning, moved to one revolution
+  /// later.
   void join(int tail, int head) noexcept {
     if (tail == head) return;
     if (!slot(head).turned) {
@@ -296,15 +274,15 @@ class OpenEchoes {
   }
 
   Settings settings_;
-  std::vector<Runs> recent_;  ///< a ring: the runs of this sweep and of those that it may touch
-  std::vector<Runs> heads_;   ///< those of the first sweeps of a circle
-  std::vector<Cursor> cursor_;
+  std::vector<Runs> recent_;  ///< ring of the runs of this sweep and of those it may connect with
+  std::vector<Runs> heads_;   ///< runs of the first sweeps of a closed circle
+  std::vector<EarlierRuns> earlier_;
   std::vector<Echo> echoes_;
   std::vector<int> set_;
   std::vector<int> free_;
   std::vector<int> merged_;
   std::size_t newest_ = 0;
-  std::int64_t count_ = 0;  ///< of sweeps before this one
+  std::int64_t count_ = 0;  ///< sweeps before this one
   BeamPlace beam_;
   bool first_ = false;
 };
