@@ -610,7 +610,7 @@ Strayed strayed_of(const SpeedChange& ship) {
 
 // Fixes fit the belief for a while after she changed her speed, but they do not refute the log and
 // the velocities that say so, however rare or frequent they are.
-TEST(UsvNavigator, FollowsAVesselThatChangesHerSpeed) {
+TEST(UsvNavigator, FollowsAVesselThatChangesItsSpeed) {
   for (const double faster_mps : {2.0, 5.0, 9.0}) {
     const Strayed strayed = strayed_of({3, 3 + faster_mps, 3, 0.2, 5});
     EXPECT_LT(strayed.position_m, 15) << faster_mps;
