@@ -213,26 +213,6 @@ wrapped : bool
                py::kw_only(), py::arg("wrapped") = false);
   define_smoother(adaptive);
   define_alpha(adaptive);
-
-  using Printed = Either<PrintedAdaptiveExponential<Linear>, PrintedAdaptiveExponential<Wrapped>>;
-  py::class_<Printed> printed(
-      m, "PrintedAdaptiveExponential",
-      R"((23) by the letter: alpha over the smoother's own last steps, which never adapts. Kept for comparison.
-
-Parameters
-----------
-first_alpha : float
-    Above 0 and at most 1; it stays.
-wrapped : bool
-    Readings are angles, radians: values are in -pi .. pi.)");
-  printed.def(py::init([](double alpha, bool wrapped) {
-                return Printed::make(
-                    CallText("PrintedAdaptiveExponential").with("first_alpha", alpha), wrapped,
-                    alpha);
-              }),
-              py::arg("first_alpha") = 0.5, py::kw_only(), py::arg("wrapped") = false);
-  define_smoother(printed);
-  define_alpha(printed);
 }
 
 void define_three_point(py::module_& m) {
@@ -444,22 +424,6 @@ wrapped : bool
       py::kw_only(), py::arg("wrapped") = false);
   define_smoother(adaptive);
   define_beta(adaptive);
-
-  using Printed = Either<PrintedAdaptiveAlphaBeta<Linear>, PrintedAdaptiveAlphaBeta<Wrapped>>;
-  py::class_<Printed> printed(
-      m, "PrintedAdaptiveAlphaBeta",
-      R"((33) by the letter: its gains are means of those it has just used, and never adapt. Kept for comparison.
-
-Parameters
-----------
-wrapped : bool
-    Readings are angles, radians: values are in -pi .. pi.)");
-  printed.def(py::init([](bool wrapped) {
-                return Printed::make(CallText("PrintedAdaptiveAlphaBeta"), wrapped);
-              }),
-              py::kw_only(), py::arg("wrapped") = false);
-  define_smoother(printed);
-  define_beta(printed);
 
   using Bank = Either<WindowBank<Linear>, WindowBank<Wrapped>>;
   const WindowBankSettings defaults;

@@ -66,11 +66,9 @@ def test_an_estimator_that_has_not_begun_has_not_begun(name):
     [
         wl.filter.ExponentialSmoother(0.3, wrapped=True),
         wl.filter.AdaptiveExponentialSmoother(),
-        wl.filter.PrintedAdaptiveExponential(first_alpha=0.4),
         wl.filter.ThreePointSmoother(weight_before_s=2.0),
         wl.filter.AlphaBetaSmoother(wl.RecentMemory(max_plots=4), wrapped=True),
         wl.filter.AdaptiveAlphaBeta(),
-        wl.filter.PrintedAdaptiveAlphaBeta(),
         wl.filter.WindowBank(),
     ],
     ids=lambda smoother: type(smoother).__name__,

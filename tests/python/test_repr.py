@@ -341,12 +341,10 @@ def test_sensors_schedules_and_settings(thing):
     [
         ("ExponentialSmoother", {"alpha": 0.3}),
         ("AdaptiveExponentialSmoother", {}),
-        ("PrintedAdaptiveExponential", {"first_alpha": 0.4}),
         ("ThreePointSmoother", {"weight_before_s": 2.0, "adaptive": True, "parabola": False}),
         ("AlphaBetaSmoother", {"gains": wl.TrackingIndex(0.1), "reading_std": 2.0}),
         ("AlphaBetaSmoother", {"gains": wl.RecentMemory(max_plots=4)}),
         ("AdaptiveAlphaBeta", {}),
-        ("PrintedAdaptiveAlphaBeta", {}),
         ("WindowBank", {"max_readings": 7, "memory": 0.5}),
     ],
 )

@@ -12,7 +12,6 @@ from wakeline import scenario
 KINDS = {
     "exponential": lambda **k: wf.ExponentialSmoother(0.4, **k),
     "adaptive exponential": wf.AdaptiveExponentialSmoother,
-    "printed exponential": wf.PrintedAdaptiveExponential,
     "three points": wf.ThreePointSmoother,
     "adaptive three points": lambda **k: wf.ThreePointSmoother(adaptive=True, parabola=False, **k),
     "(27)": lambda **k: wf.AlphaBetaSmoother(wf.GrowingMemory(max_plots=5), **k),
@@ -24,7 +23,6 @@ KINDS = {
         wf.TrackingIndex(0.05), reading_std=0.1, **k
     ),
     "(33)": wf.AdaptiveAlphaBeta,
-    "(33) as printed": wf.PrintedAdaptiveAlphaBeta,
     "bank": wf.WindowBank,
 }
 every = pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS.keys())
@@ -125,26 +123,6 @@ def test_the_derivative_is_exact_for_a_parabola(a, b, c, before_s, after_s):
     assert rate == pytest.approx(b, abs=1e-8 * (1 + abs(b) + abs(a) * 10) + 1e-8)
     even = wf.three_point_rate(at(-2.0), at(0.0), at(2.0), 2.0, 2.0, parabola=False)
     assert even == pytest.approx(b, abs=1e-9)
-
-
-def test_as_printed_the_gains_never_adapt():
-    """(33) on its own output gives back means of its gains, in a maneuver as at rest."""
-    rng = np.random.default_rng(2)
-    printed, two_passes = wf.PrintedAdaptiveAlphaBeta(), wf.AdaptiveAlphaBeta()
-    alphas, adaptive = [], []
-    for k in range(300):
-        reading = rng.standard_normal() + (5.0 * (k - 200) ** 2 if k > 200 else 0.0)
-        printed.update(1.0, reading)
-        two_passes.update(1.0, reading)
-        alphas.append(printed.alpha)
-        adaptive.append(two_passes.alpha)
-    assert np.ptp(alphas[100:]) < 1e-6
-    assert np.ptp(adaptive[100:]) > 0.2
-    exponential = wf.PrintedAdaptiveExponential(0.3)
-    exponential.run(1.0, rng.standard_normal(50))
-    for reading in (1.0, 2.0, 100.0):
-        exponential.update(1.0, reading)
-        assert exponential.alpha == pytest.approx(0.3)
 
 
 def test_the_schedules_are_those_of_the_paper():

@@ -35,8 +35,6 @@ __all__ = [
     "Filter",
     "GrowingMemory",
     "Kalman",
-    "PrintedAdaptiveAlphaBeta",
-    "PrintedAdaptiveExponential",
     "RangeDependent",
     "RecentMemory",
     "RunResult",
@@ -904,73 +902,6 @@ class AdaptiveExponentialSmoother:
         NaN before the first reading
         """
 
-class PrintedAdaptiveExponential:
-    """
-    (23) by the letter: alpha over the smoother's own last steps, which never adapts. Kept for comparison.
-
-    Parameters
-    ----------
-    first_alpha : float
-        Above 0 and at most 1; it stays.
-    wrapped : bool
-        Readings are angles, radians: values are in -pi .. pi.
-    """
-    def __copy__(self) -> PrintedAdaptiveExponential: ...
-    def __deepcopy__(self, memo: dict) -> PrintedAdaptiveExponential: ...
-    def __init__(self, first_alpha: float = 0.5, *, wrapped: bool = False) -> None: ...
-    def forecast(self, ahead_s: float) -> float:
-        """
-        The value `ahead_s` after the newest reading.
-        """
-    def restore(self, state: bytes) -> None:
-        """
-        Goes on bit for bit where the saved one was.
-        """
-    def run(
-        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """
-        Smooths series of readings, each from a fresh start.
-
-        Parameters
-        ----------
-        dt_s : float or (T,) array
-            Steps to the readings; the first one means nothing.
-        reading : (..., T) array
-            NaN where one is missing: time goes on.
-        ahead_s : float
-            How far to foretell.
-
-        Returns
-        -------
-        (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
-            time. NaN before the first reading.
-        """
-    def save(self) -> bytes:
-        """
-        What it knows as bytes, for one that is made alike, on the same kind of machine.
-        """
-    def update(self, dt_s: float, reading: float) -> None:
-        """
-        Takes a reading, `dt_s` after the one before; the step of the first means nothing.
-        """
-    @property
-    def alpha(self) -> float:
-        """
-        the gain last used
-        """
-    @property
-    def rate(self) -> float:
-        """
-        of the value, per second
-        """
-    @property
-    def value(self) -> float:
-        """
-        NaN before the first reading
-        """
-
 class ThreePointSmoother:
     """
     Each reading smoothed by its neighbours, at uneven steps; (22), (24), (25).
@@ -1172,76 +1103,6 @@ class AdaptiveAlphaBeta:
     """
     def __copy__(self) -> AdaptiveAlphaBeta: ...
     def __deepcopy__(self, memo: dict) -> AdaptiveAlphaBeta: ...
-    def __init__(self, *, wrapped: bool = False) -> None: ...
-    def forecast(self, ahead_s: float) -> float:
-        """
-        The value `ahead_s` after the newest reading.
-        """
-    def restore(self, state: bytes) -> None:
-        """
-        Goes on bit for bit where the saved one was.
-        """
-    def run(
-        self, dt_s: ArrayLike, reading: ArrayLike, *, ahead_s: float = 0.0
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """
-        Smooths series of readings, each from a fresh start.
-
-        Parameters
-        ----------
-        dt_s : float or (T,) array
-            Steps to the readings; the first one means nothing.
-        reading : (..., T) array
-            NaN where one is missing: time goes on.
-        ahead_s : float
-            How far to foretell.
-
-        Returns
-        -------
-        (value, rate, forecast)
-            Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
-            time. NaN before the first reading.
-        """
-    def save(self) -> bytes:
-        """
-        What it knows as bytes, for one that is made alike, on the same kind of machine.
-        """
-    def update(self, dt_s: float, reading: float) -> None:
-        """
-        Takes a reading, `dt_s` after the one before; the step of the first means nothing.
-        """
-    @property
-    def alpha(self) -> float:
-        """
-        the gain last used
-        """
-    @property
-    def beta(self) -> float:
-        """
-        the gain of the rate last used
-        """
-    @property
-    def rate(self) -> float:
-        """
-        of the value, per second
-        """
-    @property
-    def value(self) -> float:
-        """
-        NaN before the first reading
-        """
-
-class PrintedAdaptiveAlphaBeta:
-    """
-    (33) by the letter: its gains are means of those it has just used, and never adapt. Kept for comparison.
-
-    Parameters
-    ----------
-    wrapped : bool
-        Readings are angles, radians: values are in -pi .. pi.
-    """
-    def __copy__(self) -> PrintedAdaptiveAlphaBeta: ...
-    def __deepcopy__(self, memo: dict) -> PrintedAdaptiveAlphaBeta: ...
     def __init__(self, *, wrapped: bool = False) -> None: ...
     def forecast(self, ahead_s: float) -> float:
         """

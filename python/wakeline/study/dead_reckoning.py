@@ -76,7 +76,7 @@ def smoothers() -> dict[str, Smoother]:
         "last_value": _last_value,
         "alpha_beta_w5": _window,
         "adaptive_two_pass": _engine(lambda wrapped: wf.AdaptiveAlphaBeta(wrapped=wrapped)),
-        "adaptive_one_pass": _engine(lambda wrapped: wf.PrintedAdaptiveAlphaBeta(wrapped=wrapped)),
+        "adaptive_one_pass": lambda metric, dt_s, readings: one_pass(metric, dt_s, readings)[0],
         "window_bank": _engine(lambda wrapped: wf.WindowBank(wrapped=wrapped)),
         "kalman": _kalman,
     }
@@ -105,6 +105,41 @@ def _window(metric: str, dt_s: float, readings: np.ndarray) -> Foretold:
         for begun, full in zip(first, later, strict=True)
     )
     return Foretold(*joined)
+
+
+def one_pass(
+    metric: str, dt_s: float, readings: np.ndarray
+) -> tuple[Foretold, np.ndarray, np.ndarray]:
+    """The adaptive alpha-beta filter (33) as printed, for comparison.
+
+    The gains are those sums over the filter's own last five steps which
+    :class:`wakeline.filter.AdaptiveAlphaBeta` takes over a first pass. There the correction of a
+    step is alpha times its innovation, so the sums return means of the gains just used.
+
+    Returns
+    -------
+    (Foretold, alpha, beta)
+        Each array has the shape (..., T) of the readings; the gains are those of each reading.
+    """
+    wrap = wl.wrap_angle if metric == "course_rms_deg" else np.asarray
+    value, rate, alpha, beta = (np.zeros_like(readings) for _ in range(4))
+    innovation = np.zeros_like(readings)
+    value[..., 0] = wrap(readings[..., 0])
+    alpha[..., 0] = beta[..., 0] = 1.0
+    for k in range(1, readings.shape[-1]):
+        n = k + 1
+        if n <= WINDOW + 1:  # (27), until the sums are full
+            alpha[..., k] = 2 * (2 * n - 1) / (n * (n + 1))
+            beta[..., k] = 6 / (n * (n + 1))
+        else:
+            squared = innovation[..., k - WINDOW : k] ** 2
+            for gain in (alpha, beta):
+                gain[..., k] = np.average(gain[..., k - WINDOW : k], axis=-1, weights=squared)
+        predicted = value[..., k - 1] + rate[..., k - 1] * dt_s
+        innovation[..., k] = wrap(readings[..., k] - predicted)
+        value[..., k] = wrap(predicted + alpha[..., k] * innovation[..., k])
+        rate[..., k] = rate[..., k - 1] + beta[..., k] * innovation[..., k] / dt_s
+    return Foretold(value, rate, wrap(value + rate * (AHEAD * dt_s))), alpha, beta
 
 
 def _kalman(metric: str, dt_s: float, readings: np.ndarray) -> Foretold:

@@ -46,8 +46,6 @@ using Exponential = ExponentialSmoother<R, S>;
 template <class R, class S>
 using AdaptiveExponential = AdaptiveExponentialSmoother<R, 5, S>;
 template <class R, class S>
-using PrintedExponential = PrintedAdaptiveExponential<R, 5, S>;
-template <class R, class S>
 using ThreePoint = ThreePointSmoother<R, S>;
 template <class R, class S>
 using AdaptiveThreePoint = Adaptive3::Of<R, S>;
@@ -60,19 +58,16 @@ using ByRange = AlphaBetaSmoother<RangeDependent, R, S>;
 template <class R, class S>
 using TwoPasses = AdaptiveAlphaBeta<R, 5, S>;
 template <class R, class S>
-using OnePass = PrintedAdaptiveAlphaBeta<R, 5, S>;
-template <class R, class S>
 using Bank = WindowBank<R, 32, S>;
 
 template <class Case>
 class EverySmoother : public ::testing::Test {};
 using Cases =
     ::testing::Types<Both<Exponential, double>, Both<AdaptiveExponential, double>,
-                     Both<PrintedExponential, double>, Both<ThreePoint, double>,
-                     Both<AdaptiveThreePoint, double>, Both<Growing, double>, Both<Recent, double>,
-                     Both<ByRange, double>, Both<TwoPasses, double>, Both<OnePass, double>,
-                     Both<Bank, double>, Both<TwoPasses, float>, Both<Bank, float>,
-                     Both<ThreePoint, float>, Both<Exponential, float>>;
+                     Both<ThreePoint, double>, Both<AdaptiveThreePoint, double>,
+                     Both<Growing, double>, Both<Recent, double>, Both<ByRange, double>,
+                     Both<TwoPasses, double>, Both<Bank, double>, Both<TwoPasses, float>,
+                     Both<Bank, float>, Both<ThreePoint, float>, Both<Exponential, float>>;
 TYPED_TEST_SUITE(EverySmoother, Cases, );
 
 TYPED_TEST(EverySmoother, IsASmoother) {
@@ -248,11 +243,9 @@ bool takes_ones() {
 
 TEST(Smoothers, RefuseCountsThatAreNone) {
   EXPECT_FALSE(takes_ones<AdaptiveExponentialSmoother<>>());
-  EXPECT_FALSE(takes_ones<PrintedAdaptiveExponential<>>());
   EXPECT_FALSE(takes_ones<ThreePointSmoother<>>());
   EXPECT_FALSE(takes_ones<AlphaBetaSmoother<>>());
   EXPECT_FALSE(takes_ones<AdaptiveAlphaBeta<>>());
-  EXPECT_FALSE(takes_ones<PrintedAdaptiveAlphaBeta<>>());
   EXPECT_FALSE(takes_ones<WindowBank<>>());
 
   // A bank of fewer windows than the one that spoke.
@@ -339,18 +332,6 @@ TEST(AdaptiveExponentialSmoother, GoesAsFarAsTheLineButNotBeyondAReading) {
       ASSERT_EQ(smoother.update(1, reading), Status::kOk);
     EXPECT_NEAR(smoother.alpha(), alpha, 1e-12);
     EXPECT_NEAR(smoother.value(), 1.0 + alpha * (third - 1.0), 1e-12);
-  }
-}
-
-TEST(AdaptiveExponentialSmoother, AsPrintedNeverAdapts) {
-  Draw draw(3);
-  for (const double first : {0.1, 0.5, 0.9}) {
-    PrintedAdaptiveExponential<> printed(first);
-    for (int k = 0; k < 300; ++k) {  // rest, a jump, a ramp: alpha is what it was told at the start
-      ASSERT_EQ(printed.update(1, draw.normal() + (k > 100 ? 50 : 0) + (k > 200 ? 10.0 * k : 0)),
-                Status::kOk);
-      EXPECT_NEAR(printed.alpha(), first, 1e-9);
-    }
   }
 }
 
@@ -518,32 +499,6 @@ TEST(AdaptiveAlphaBeta, GoesThroughAManeuverFasterThanAtRest) {
 
 TEST(AdaptiveAlphaBeta, TwoReadingsOfOneTimeAreTheirMean) {
   expect_mean_of_two(AdaptiveAlphaBeta<Wrapped>(), AdaptiveAlphaBeta<Wrapped>());
-}
-
-TEST(AdaptiveAlphaBeta, AsPrintedNeverAdapts) {
-  // The gains are means of the last five: they may only close in on each other, and what the
-  // readings do, a jump of 1000 among them, does not matter.
-  Draw draw(9);
-  PrintedAdaptiveAlphaBeta<> calm, wild;
-  std::vector<double> alphas;
-  for (int k = 0; k < 400; ++k) {
-    const double noise = draw.normal();
-    ASSERT_EQ(calm.update(1, noise), Status::kOk);
-    ASSERT_EQ(wild.update(1, noise + (k > 200 ? 1000.0 + 30.0 * (k - 200) : 0)), Status::kOk);
-    alphas.push_back(wild.alpha());
-    if (k < 6) continue;
-    double least = 1e9, most = -1e9;
-    for (std::size_t j = alphas.size() - 6; j + 1 < alphas.size(); ++j) {
-      least = std::min(least, alphas[j]);
-      most = std::max(most, alphas[j]);
-    }
-    EXPECT_GE(wild.alpha(), least - 1e-12);
-    EXPECT_LE(wild.alpha(), most + 1e-12);
-    if (k > 150) {
-      EXPECT_NEAR(wild.alpha(), alphas[150], 1e-6);
-      EXPECT_NEAR(calm.alpha(), alphas[150], 1e-6);
-    }
-  }
 }
 
 TEST(WindowBank, RestsOnLongWindowsAndManeuversOnShortOnes) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "wakeline/filter/alpha_beta_gains.hpp"
@@ -16,18 +15,19 @@ Vec<Scalar, 2> growing_memory_gains(std::int64_t n) noexcept {
   return GrowingMemory{}.gains<2>(GainOccasion<Scalar>{.reading = Scalar(n)});
 }
 
-/// The adaptive alpha-beta filter (33), in two passes over a sliding window of the last readings:
-/// the first with the gains (27); the second anew from the window's oldest reading, with the gains
-///     alpha = sum((x^ - x~) e) / sum(e²),  beta = sum(dv e/t) / sum((e/t)²)
-/// of the first. On the filter's own output, as printed, these sums give back the gains that were
-/// just used; see `PrintedAdaptiveAlphaBeta`.
+/// The adaptive alpha-beta filter (33): two passes over a sliding window of the last readings. The
+/// first uses the gains (27). The second starts again from the oldest reading of the window, with
+/// the gains that follow from the first pass,
+///     alpha = sum((x^ - x~) e) / sum(e²),  beta = sum(dv e/t) / sum((e/t)²).
+/// (The source computes these sums from the filter's own corrections, which returns the gains just
+/// used, so that they never adapt; see cpp/docs/theory/dead_reckoning.md.)
 template <class Residual = Linear, int Window = 5, class ScalarType = double>
 class AdaptiveAlphaBeta {
  public:
   static_assert(Window >= 3, "wakeline: gains need three readings");
   using Scalar = ScalarType;
 
-  /// Takes a reading; one of the time of the reading before joins it: both become their mean.
+  /// Adds a reading. Two readings of the same time (dt_s = 0) are replaced by their mean.
   Status update(Scalar dt_s, Scalar reading) noexcept {
     const Status status = readings_.take(dt_s, reading);
     if (status != Status::kOk) return status;
@@ -51,7 +51,7 @@ class AdaptiveAlphaBeta {
   [[nodiscard]] Scalar alpha() const noexcept { return gains_[0]; }
   [[nodiscard]] Scalar beta() const noexcept { return gains_[1]; }
 
-  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  /// Saves or restores the state; invalid bytes change nothing.
   void archive(Archive& fields) {
     AdaptiveAlphaBeta read = *this;
     read.readings_.archive(fields);
@@ -61,7 +61,7 @@ class AdaptiveAlphaBeta {
   }
 
  private:
-  /// Filters the window with the gains for its n-th reading; less the newest reading.
+  /// Filters the window with `gains_for(n)` at its n-th reading; values relative to the newest one.
   template <class Gains>
   AlphaBetaLine<Scalar> pass(AdaptiveGains<Scalar>* sums, Gains gains_for) const noexcept {
     AlphaBetaLine<Scalar> line{readings_.offset(0), Scalar(0)};
@@ -77,61 +77,6 @@ class AdaptiveAlphaBeta {
   ReadingWindow<Residual, Window, Scalar> readings_;
   AlphaBetaLine<Scalar> line_;
   Vec<Scalar, 2> gains_ = Vec<Scalar, 2>::Ones();
-};
-
-/// (33) by the letter: the sums run over the filter's own last steps. Its corrections are its gains
-/// times the innovations, so that the "new" gains are means of those used last, whatever the
-/// readings are: it never adapts. Kept for comparison; use `AdaptiveAlphaBeta`.
-template <class Residual = Linear, int Window = 5, class ScalarType = double>
-class PrintedAdaptiveAlphaBeta {
- public:
-  static_assert(Window >= 2, "wakeline: gains need two steps");
-  using Scalar = ScalarType;
-
-  Status update(Scalar dt_s, Scalar reading) noexcept {
-    if (const Status status = check_reading(count_ == 0, dt_s, reading); status != Status::kOk)
-      return status;
-    if (++count_ == 1) {
-      line_.value = Residual::normal(reading);
-      return Status::kOk;
-    }
-    if (count_ <= Window + 1) {  // until the sums are full
-      gains_ = growing_memory_gains<Scalar>(count_);
-    } else {
-      AdaptiveGains<Scalar> sums;
-      for (const AlphaBetaStep<Scalar>& step : steps_) sums.add(step);
-      gains_ = {sums.alpha(gains_[0]), sums.beta(gains_[1])};
-    }
-    steps_[static_cast<std::size_t>(count_ % Window)] =
-        line_.template step<Residual>(dt_s, reading, gains_[0], gains_[1]);
-    line_.value = Residual::normal(line_.value);
-    return Status::kOk;
-  }
-
-  [[nodiscard]] Scalar value() const noexcept { return line_.value; }
-  [[nodiscard]] Scalar rate() const noexcept { return line_.rate; }
-  [[nodiscard]] Scalar forecast(Scalar ahead_s) const noexcept {
-    return Residual::normal(line_.value + line_.rate * ahead_s);
-  }
-  [[nodiscard]] Scalar alpha() const noexcept { return gains_[0]; }
-  [[nodiscard]] Scalar beta() const noexcept { return gains_[1]; }
-
-  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
-  void archive(Archive& fields) {
-    PrintedAdaptiveAlphaBeta read = *this;
-    fields(read.line_);
-    fields(read.steps_);
-    fields(read.gains_);
-    fields(read.count_);
-    if (read.count_ < 0) fields.fail();
-    if (fields.ok()) *this = read;
-  }
-
- private:
-  AlphaBetaLine<Scalar> line_;
-  std::array<AlphaBetaStep<Scalar>, static_cast<std::size_t>(Window)> steps_{};
-  Vec<Scalar, 2> gains_ = Vec<Scalar, 2>::Ones();
-  std::int64_t count_ = 0;
 };
 
 }  // namespace wakeline

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 
 #include "wakeline/core/require.hpp"
 #include "wakeline/filter/adaptive_alpha_beta.hpp"
@@ -12,7 +10,7 @@
 
 namespace wakeline {
 
-/// (21): x^ += alpha (x - x^), whatever the time step. Has no rate: its forecast is its value.
+/// (21): x^ += alpha (x - x^), independent of the time step. The rate is 0, the forecast the value.
 template <class Residual = Linear, class ScalarType = double>
 class ExponentialSmoother {
  public:
@@ -38,7 +36,7 @@ class ExponentialSmoother {
   [[nodiscard]] Scalar forecast(Scalar) const noexcept { return value_; }
   [[nodiscard]] Scalar alpha() const noexcept { return alpha_; }
 
-  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  /// Saves or restores the state; invalid bytes change nothing.
   void archive(Archive& fields) {
     ExponentialSmoother read = *this;
     fields(read.value_);
@@ -52,11 +50,10 @@ class ExponentialSmoother {
   bool started_ = false;
 };
 
-/// (23): exponential smoothing whose alpha is found over a sliding window of the last readings,
+/// (23): exponential smoothing with alpha estimated over a sliding window of the last readings,
 ///     alpha = sum((l_i - l_i-1)(x_i - l_i-1)) / sum((x_i - l_i-1)²)  within 0 .. 1,
-/// l the line (26), (27) through the window: what part of a jump of the reading the line follows.
-/// On the smoother's own output, as printed, the sum gives back the alpha just used; see
-/// `PrintedAdaptiveExponential`.
+/// l the line (26), (27) through the window: the part of an innovation that the line follows.
+/// (The source computes the sum from the smoother's own output, which returns the alpha just used.)
 template <class Residual = Linear, int Window = 5, class ScalarType = double>
 class AdaptiveExponentialSmoother {
  public:
@@ -79,7 +76,7 @@ class AdaptiveExponentialSmoother {
   [[nodiscard]] Scalar forecast(Scalar) const noexcept { return value_; }
   [[nodiscard]] Scalar alpha() const noexcept { return alpha_; }
 
-  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  /// Saves or restores the state; invalid bytes change nothing.
   void archive(Archive& fields) {
     AdaptiveExponentialSmoother read = *this;
     read.readings_.archive(fields);
@@ -106,65 +103,6 @@ class AdaptiveExponentialSmoother {
   ReadingWindow<Residual, Window, Scalar> readings_;
   Scalar value_ = Scalar(0);
   Scalar alpha_ = Scalar(1);
-};
-
-/// (23) by the letter: alpha over the smoother's own last steps, which is a mean of those it has
-/// just used, whatever the readings are: it never adapts. Kept for comparison.
-template <class Residual = Linear, int Window = 5, class ScalarType = double>
-class PrintedAdaptiveExponential {
- public:
-  using Scalar = ScalarType;
-
-  /// Throws `std::invalid_argument` unless 0 < alpha <= 1.
-  explicit PrintedAdaptiveExponential(double first_alpha = 0.5) : alpha_(Scalar(first_alpha)) {
-    require(first_alpha > 0.0 && first_alpha <= 1.0, "first_alpha", "above 0 and at most 1",
-            first_alpha);
-  }
-
-  Status update(Scalar dt_s, Scalar reading) noexcept {
-    if (const Status status = check_reading(count_ == 0, dt_s, reading); status != Status::kOk)
-      return status;
-    if (++count_ == 1) {
-      value_ = Residual::normal(reading);
-      return Status::kOk;
-    }
-    Scalar product = Scalar(0), squared = Scalar(0);
-    for (const Jump& jump : jumps_) {
-      product += jump.followed * jump.read;
-      squared += jump.read * jump.read;
-    }
-    if (squared > Scalar(0)) alpha_ = product / squared;
-    const Scalar read = Residual::difference(reading, value_);
-    jumps_[static_cast<std::size_t>(count_ % Window)] = {alpha_ * read, read};
-    value_ = Residual::normal(value_ + alpha_ * read);
-    return Status::kOk;
-  }
-
-  [[nodiscard]] Scalar value() const noexcept { return value_; }
-  [[nodiscard]] Scalar rate() const noexcept { return Scalar(0); }
-  [[nodiscard]] Scalar forecast(Scalar) const noexcept { return value_; }
-  [[nodiscard]] Scalar alpha() const noexcept { return alpha_; }
-
-  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
-  void archive(Archive& fields) {
-    PrintedAdaptiveExponential read = *this;
-    fields(read.jumps_);
-    fields(read.alpha_);
-    fields(read.value_);
-    fields(read.count_);
-    if (read.count_ < 0) fields.fail();
-    if (fields.ok()) *this = read;
-  }
-
- private:
-  struct Jump {
-    Scalar followed = Scalar(0);
-    Scalar read = Scalar(0);
-  };
-  std::array<Jump, static_cast<std::size_t>(Window)> jumps_{};
-  Scalar alpha_;
-  Scalar value_ = Scalar(0);
-  std::int64_t count_ = 0;
 };
 
 }  // namespace wakeline
