@@ -127,14 +127,14 @@ def test_a_table_of_segments():
         ([], "at least one row"),
         ([(0, 10)], "row 0 must be three finite numbers"),
         ([0, 10, 0], "row 0 must be three finite numbers"),
-        ([("a", "b", "c")], r"row 0 must be three finite numbers, .*got \('a', 'b', 'c'\)"),
+        ([("a", "b", "c")], r"row 0 .*got \('a', 'b', 'c'\)"),
         ([("0", "10", "0.1")], "row 0 must be three finite numbers"),
-        ([(0, 10, 0), None], "row 1 must be three finite numbers, .*got None"),
+        ([(0, 10, 0), None], "row 1 .*got None"),
         ([(0, 10, 0), (10, (20, 30), 0)], "row 1 must be three finite numbers"),
         ([(0, 10, 0), (10, np.nan, 0)], "row 1 must be three finite numbers"),
-        ([(0, 10, 0), (10, 10, 0)], "row 1 ends at 10.0 s, not after its begin"),
+        ([(0, 10, 0), (10, 10, 0)], "row 1 .*10.0 s"),
         ([(0, 10, 0), (9, 20, 0)], "row 1 begins at 9.0 s and overlaps with row 0"),
-        ([(0, 10, 0), (11, 20, 0)], "row 1 begins at 11.0 s and leaves a gap to row 0"),
+        ([(0, 10, 0), (11, 20, 0)], "row 1 begins at 11.0 s .* row 0"),
         ([(0, 10, 0), (10, 20, -0.3)], "row 1 turns at -0.3 rad/s, faster than 0.2"),
     ],
 )
@@ -259,7 +259,7 @@ def test_a_limit_holds():
         ((ORDERS, 0.0, 1.0, 0), "scale_mps2"),
         ((ORDERS, np.inf, 1.0, 0), "scale_mps2"),
         ((ORDERS, 0.1, 0.0, 0), "interval_s"),
-        ((Truth(START), 0.1, 1.0, 0), "segments"),
+        ((Truth(START), 0.1, 1.0, 0), "truth must have at least one segment"),
     ],
 )
 def test_disturbances_that_make_no_sense(arguments, message):

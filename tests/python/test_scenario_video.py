@@ -645,16 +645,16 @@ def test_every_seed_has_a_radar_screen_of_its_own():
         ({"cells": 0}, "cells must be a whole number, at least 1, got 0"),
         ({"cell_m": -1.0}, "cell_m must be positive and finite, got -1.0"),
         ({"period_s": np.nan}, "period_s must be positive"),
-        ({"beam_width_rad": 1e-4}, "beam_width_rad must be at least the 0.00306796 rad"),
+        ({"beam_width_rad": 1e-4}, "beam_width_rad must be at least .*0.00306796 rad"),
         ({"pulse_length_m": 5.0}, "pulse_length_m must be at least a cell of 6.0 m, got 5.0"),
         ({"start_range_m": -5.0}, "start_range_m must be finite and not negative, got -5.0"),
         ({"snr_db": np.inf}, "snr_db must be finite, got inf"),
         ({"noise_rms": 70000.0}, "noise_rms must be below full scale, 65535, got 70000.0"),
         ({"bits": 12}, "bits must be 8 or 16, got 12"),
         ({"receiver": "square"}, "receiver must be one of .*, got 'square'"),
-        ({"sector_rad": (1.0, 9.0)}, "sector_rad must begin .* at most a turn"),
+        ({"sector_rad": (1.0, 9.0)}, "sector_rad must begin"),
         ({"sector_rad": (1.0,)}, "sector_rad must be two finite azimuths"),
-        ({"sector_rad": (1.0, 1.0 + 1e-6)}, "sector_rad holds no sweep"),
+        ({"sector_rad": (1.0, 1.0 + 1e-6)}, "sector_rad must contain a sweep"),
     ],
 )
 def test_a_radar_that_makes_no_sense_is_refused(bad, message):
@@ -701,5 +701,5 @@ def test_what_is_of_another_type_is_refused():
         simulator.turn([boat], np.nan)
     with pytest.raises(ValueError, match=r"places_m must have shape \(n, 2\), got \(3,\)"):
         simulator.around([1.0, 2.0, 3.0], 10.0)
-    with pytest.raises(ValueError, match="must not reach the antenna"):
+    with pytest.raises(ValueError, match=r"places_m .*antenna"):
         simulator.around([[5.0, 5.0]], 10.0)

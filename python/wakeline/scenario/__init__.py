@@ -1,4 +1,4 @@
-"""Scenarios: truth as a function of time, and a simulated radar that looks at it.
+"""Scenarios: truth as a function of time, and a simulated radar that observes it.
 
 >>> from wakeline import scenario
 >>> turns = scenario.named("example1")
@@ -81,8 +81,8 @@ def named(name: str) -> Scenario:
     Raises
     ------
     ValueError
-        When there is no scenario of that name.
+        When no scenario has that name.
     """
     if name not in papers.BY_NAME:
-        raise ValueError(f"no scenario {name!r}; there are {', '.join(names())}")
+        raise ValueError(f"name must be one of {', '.join(names())}, got {name!r}")
     return papers.BY_NAME[name]()

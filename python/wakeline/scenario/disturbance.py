@@ -20,27 +20,26 @@ def disturbed(
     degrees_of_freedom: float = 1.0,
     limit_mps2: float | None = None,
 ) -> Truth:
-    """The same orders to the helm under heavy-tailed random accelerations north and east.
+    """The same maneuvers under heavy-tailed random accelerations north and east.
 
-    The accelerations are drawn anew after each interval and held in between, so that the truth
-    stays exact in closed form: scale times Student's t, per axis, drawn again where it exceeds the
-    limit. One degree of freedom is the Cauchy law of paper A, equation (4), which has no variance
-    and, untruncated, now and then throws a vessel to the moon. An order that brakes ends when the
-    vessel has lost its speed: it then drifts, and does not go astern. The helm answers to drift: in
-    each interval the thrust points along the velocity that it begins with, which a known
-    acceleration turns, too.
+    The accelerations are constant over each interval, so that the truth remains exact in closed
+    form: scale times Student's t, per axis, redrawn where it exceeds the limit. One degree of
+    freedom is the Cauchy law of paper A, equation (4), which has no variance and must be truncated.
+    Braking ends when the vessel has lost its speed; it then drifts and does not go astern. In each
+    interval the thrust points along the velocity at its start, which a known acceleration turns,
+    too.
 
     Parameters
     ----------
     truth : Truth
-        What the vessel would do by itself; its segments are cut at the ends of the intervals, and
-        its accelerations stay.
+        The undisturbed motion; its segments are split at the ends of the intervals, and its
+        accelerations are kept.
     scale_mps2 : float
-        Scale of the law: half of the draws of a Cauchy law lie within it.
+        Scale of the distribution: half of the draws of a Cauchy law are within it.
     interval_s : float
-        How long an acceleration lasts.
+        Duration of an acceleration.
     rng : numpy.random.Generator or int
-        Source of chance, or its seed.
+        Random generator, or its seed.
     degrees_of_freedom : float
         Of Student's t: 1 is Cauchy, infinity Gaussian.
     limit_mps2 : float, optional
@@ -69,9 +68,9 @@ def disturbed(
             f"got {scale_mps2}, {interval_s} and {degrees_of_freedom}"
         )
     if not limit_mps2 >= scale_mps2:
-        raise ValueError(f"limit_mps2 must be at least the scale, got {limit_mps2}")
+        raise ValueError(f"limit_mps2 must be at least scale_mps2 {scale_mps2}, got {limit_mps2}")
     if not truth.segments:
-        raise ValueError("truth must have segments: a disturbance needs a time to last")
+        raise ValueError("truth must have at least one segment, got none")
     rng = np.random.default_rng(rng)
     span_s = truth.end_time_s - truth.start_time_s
     intervals = max(int(np.ceil(span_s / interval_s * (1 - 1e-12))), 1)
@@ -109,7 +108,7 @@ def disturbed(
 def _heavy_tailed(
     rng: np.random.Generator, shape: tuple[int, ...], degrees_of_freedom: float, limit: float
 ) -> np.ndarray:
-    """Student's t of unit scale, drawn again where it is beyond the limit."""
+    """Student's t of unit scale, redrawn where it exceeds the limit."""
 
     def draw(size):
         if np.isinf(degrees_of_freedom):

@@ -1,7 +1,7 @@
 """A small craft that turns hard, seen by a coastal radar whose plots lie on a grid of cells.
 
 The scenario of "Multi-model tracking of moving vessels with a fuzzy criterion of maneuver
-detection" (V. M. Grinyak, M. V. Trofimov): straight on, half a circle, straight on again.
+detection" (V. M. Grinyak, M. V. Trofimov): a straight, half a circle, a straight.
 """
 
 from __future__ import annotations
@@ -36,17 +36,17 @@ class HardTurnRuns(NamedTuple):
 
 @dataclass(frozen=True)
 class HardTurn:
-    """A straight leg, a turn of half a circle, a straight leg; a plot is the centre of its cell.
+    """A straight leg, a turn by half a circle, a straight leg; a plot is the center of its cell.
 
-    The paper gives speed, radius, period and cell. It does not give the range nor the lengths of
-    the legs; the defaults are ours. Course, side of the turn, bearing and place within a cell are
-    random in each run.
+    The paper gives speed, radius, period and cell, but neither the range nor the lengths of the
+    legs; those defaults are ours. Course, side of the turn, bearing and position within a cell
+    are random in each run.
 
     Attributes
     ----------
     speed_mps, radius_m : float
     before_s, after_s : float
-        Lengths of the straight legs.
+        Durations of the straight legs.
     range_m : float
         From the antenna, at the start.
     range_cell_m, azimuth_cell_rad : float
@@ -76,12 +76,12 @@ class HardTurn:
 
     @property
     def turn_rate_rad_s(self) -> float:
-        """Rate of the turn, without its side."""
+        """Absolute turn rate."""
         return self.speed_mps / self.radius_m
 
     @property
     def turn_s(self) -> tuple[float, float]:
-        """When the turn begins and ends."""
+        """Times at which the turn begins and ends."""
         return self.before_s, self.before_s + np.pi / self.turn_rate_rad_s
 
     @property
@@ -91,14 +91,14 @@ class HardTurn:
 
     @property
     def sensor(self) -> measurement.ConvertedRangeBearing:
-        """The radar as a filter takes it: a cell is a uniform error of its length over √12."""
+        """The radar as a sensor: a cell is a uniform error with a std of its length / √12."""
         return measurement.ConvertedRangeBearing(
             range_std_m=self.range_cell_m / _SQRT12,
             bearing_std_rad=self.azimuth_cell_rad / _SQRT12,
         )
 
     def truth(self, rng: np.random.Generator) -> Truth:
-        """One vessel, its place, course and side at random."""
+        """One vessel with random position, course and side of the turn."""
         bearing, course = rng.uniform(-np.pi, np.pi, 2)
         rate = rng.choice([-1.0, 1.0]) * self.turn_rate_rad_s
         range_m = self.range_m + self.range_cell_m * rng.random()
@@ -112,12 +112,12 @@ class HardTurn:
         return Truth([place[0], vnorth_mps, place[1], veast_mps], legs)
 
     def draw(self, runs: int, seed: int | Sequence[int] = 0) -> HardTurnRuns:
-        """Independent runs; run r is the same whatever their number.
+        """Independent runs; run r does not depend on their number.
 
         Raises
         ------
         ValueError
-            When runs or a seed is negative or no whole number.
+            When runs or a seed is negative or not an integer.
         """
         whole_number("runs", runs, 0)
         time_s = self.time_s
@@ -133,7 +133,7 @@ class HardTurn:
 
 
 def hard_turns() -> dict[str, HardTurn]:
-    """The paper's two speeds on its radius, and the higher one at the turn rate of the lower."""
+    """The paper's two speeds at its radius, and the higher one at the turn rate of the lower."""
     return {
         "10mps_r300": HardTurn(10.0, 300.0),
         "20mps_r300": HardTurn(20.0, 300.0),

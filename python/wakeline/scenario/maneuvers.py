@@ -1,4 +1,4 @@
-"""Random maneuvers: vessels that run straight and turn, at rates and times on no grid."""
+"""Random maneuvers: vessels that go straight and turn, at continuous rates and times."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ def random_maneuvers(
 ) -> list[Scenario]:
     """Scenarios of vessels that alternate between straights and turns, under the papers' radar.
 
-    Each starts at a random place and course, goes straight, then turns and goes straight by turns
-    until the time is up. Everything is uniform in its interval; a turn goes to either side alike.
-    Segments end when they end: a switch falls between scans, not on one.
+    Each vessel starts at a random position and course, goes straight, then alternates between turns
+    and straights until the time is up. All values are uniform in their intervals; both sides of a
+    turn are equally likely. A switch is in general between scans, not at one.
 
     Parameters
     ----------
     count : int
-        How many.
+        Number of scenarios.
     seed : int
-        Scenario k is the same whatever `count` is.
+        Scenario k does not depend on `count`.
     turn_rate_deg_s, speed_mps, duration_s, range_m : (float, float)
-        Least and largest turn rate (either side), speed, duration of a straight or a turn, and
-        distance from the radar at the start.
+        Minimum and maximum of the turn rate (either side), the speed, the duration of a straight or
+        a turn, and the distance from the radar at the start.
     total_s : float
         Length of a scenario.
 
@@ -47,8 +47,8 @@ def random_maneuvers(
     Raises
     ------
     ValueError
-        When the count is below 1, the seed below 0, an interval is no pair, empty or not finite, or
-        a duration is not positive.
+        When the count is below 1, the seed below 0, an interval is not a pair, empty or not
+        finite, or a duration is not positive.
     """
     whole_number("count", count, 1)
     whole_number("seed", seed, 0)
@@ -61,11 +61,11 @@ def random_maneuvers(
     for name, interval in intervals.items():
         if np.shape(interval) != (2,) or not 0 <= interval[0] <= interval[1] < np.inf:
             raise ValueError(
-                f"{name} must be an interval from 0 up, least and largest, got {interval}"
+                f"{name} must be a minimum and a maximum, both at least 0, got {interval}"
             )
     if not duration_s[0] > 0 or not RADAR.period_s <= total_s < np.inf:
         raise ValueError(
-            f"duration_s must be positive and total_s hold a scan, got {duration_s}, {total_s}"
+            f"duration_s must be positive and total_s at least a scan, got {duration_s}, {total_s}"
         )
     return [
         Scenario(

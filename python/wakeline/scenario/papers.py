@@ -2,9 +2,9 @@
 
 A is "Interacting multiple model algorithm for tracking maneuvering surface vessels" (Vestnik NovSU,
 2023), B is "Tracking of maneuvering targets using a variable structure multiple model algorithm"
-(J. Russian Universities. Radioelectronics, 2023). All have a radar of 60 m and 0.5 degrees that
-scans every 3 s, and a start known to 10 m and 1 m/s per axis; speeds are printed in knots, north
-and east.
+(J. Russian Universities. Radioelectronics, 2023). All have a radar of 60 m and 0.5 degrees with a
+period of 3 s, and an initial state known to 10 m and 1 m/s per axis; the papers print speeds in
+knots, north and east.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ def imm(reading: str = "scans") -> Scenario:
     Parameters
     ----------
     reading : {"scans", "seconds"}
-        The paper's table of turn rates (0-80: 0, 81-140: +1, 141-200: -1, 201-250: 0 deg/s) says
-        seconds. With 250 scans of 3 s it counts scans: the turns begin at 240 s. Taken at its
-        word, they begin at 80 s and the vessel goes straight on from 200 s.
+        The unit of the paper's table of turn rates (0-80: 0, 81-140: +1, 141-200: -1, 201-250:
+        0 deg/s). The paper prints seconds; its 250 scans of 3 s suggest scans, with which the turns
+        begin at 240 s. In seconds they begin at 80 s and the vessel goes straight from 200 s.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def example1() -> Scenario:
 
 
 def example2() -> Scenario:
-    """Example 2 of paper B: turns at 2 and 4 deg/s right from the antenna, 130 scans."""
+    """Example 2 of paper B: turns at 2 and 4 deg/s, starting at the antenna, 130 scans."""
     return _scenario("example2", (0, 0), (20, 12), _EXAMPLE_2)
 
 

@@ -1,4 +1,4 @@
-"""A simulated radar: noise, misses, clutter, and an antenna that takes its time to turn."""
+"""A simulated radar: noise, missed detections, clutter, and a rotating antenna."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ class RadarSimulator:
     Attributes
     ----------
     range_std_m, bearing_std_rad : float
-        Standard deviations of the errors, Gaussian and independent.
+        Standard deviations of the independent Gaussian errors.
     period_s : float
         Time from scan to scan.
     detection_probability : float
-        Chance that a look at a target in range gives a plot.
+        Probability that a look at a target in range gives a plot.
     clutter_per_scan : float
-        Mean number of false plots in a scan, Poisson, evenly spread over the disc in range.
+        Mean number of false plots per scan (Poisson), uniform over the disc in range.
     max_range_m : float
-        Farthest range seen; must be finite for clutter.
+        Maximum range; must be finite with clutter.
     rotating : bool
-        True: the antenna points north when a scan begins and turns clockwise once in `period_s`,
-        and a plot has the time at which the antenna points at it. A scan is one turn: it holds no
-        look at a target that runs across north before the antenna, and two at one that runs
-        towards it. False: all plots of a scan have the time of the scan.
+        True: the antenna points north when a scan begins and turns clockwise once in `period_s`;
+        a plot has the time at which the antenna points at it. A scan is one revolution. It contains
+        no look at a target that crosses north ahead of the antenna, and two at a target that
+        crosses north towards it. False: all plots of a scan have the time of the scan.
 
     Raises
     ------
     ValueError
-        When a value makes no sense.
+        When a value is invalid.
     """
 
     range_std_m: float
@@ -78,7 +78,7 @@ class RadarSimulator:
         own: Truth | None = None,
         start_time_s: float | None = None,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Plots of one target, as estimators take them.
+        """Plots of one target, in the form that estimators take.
 
         Parameters
         ----------
@@ -87,26 +87,25 @@ class RadarSimulator:
         scans : int
             Number of scans, T.
         rng : numpy.random.Generator or int
-            Source of chance, or its seed.
+            Random generator, or its seed.
         own : Truth, optional
             Own ship; default at rest at north 0, east 0.
         start_time_s : float, optional
-            Time at which the first scan begins; default where the truth begins, 0 for a truth that
-            does not tell it.
+            Time at which the first scan begins; default the start of the truth, or 0 for a truth
+            without one.
 
         Returns
         -------
         time_s : ndarray (T,)
-            Time at which the antenna points at the target: the later one in a scan of two looks,
-            half way through a scan of none.
+            Time at which the antenna points at the target: the later one in a scan with two looks,
+            the middle of a scan without a look.
         z : ndarray (T, 2)
-            Range in metres and bearing in [-pi, pi]; NaN rows where the target is missed or not
-            looked at.
+            Range in metres and bearing in [-pi, pi]; NaN rows without a detection or a look.
 
         Raises
         ------
         ValueError
-            When scans is negative or no whole number.
+            When scans is negative or not an integer.
         """
         rng = np.random.default_rng(rng)
         own = _at_rest() if own is None else own
@@ -114,21 +113,21 @@ class RadarSimulator:
         return self._rows(truth, own, begin_s, self._looks(truth, own, begin_s), rng)
 
     def readings(self, exact: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-        """What comes of exact ranges and bearings: errors added as they are, and misses.
+        """Add errors and missed detections to exact ranges and bearings.
 
-        Near the antenna a range may come out negative, and a bearing may leave [-pi, pi].
+        Near the antenna a range may become negative, and a bearing may leave [-pi, pi].
 
         Parameters
         ----------
         exact : ndarray (T, 2)
             Range in metres and bearing in radians.
         rng : numpy.random.Generator
-            Source of chance.
+            Random generator.
 
         Returns
         -------
         ndarray (T, 2)
-            NaN rows where the target is missed or out of range.
+            NaN rows where the target is not detected or out of range.
         """
         z = exact + rng.standard_normal(exact.shape) * [self.range_std_m, self.bearing_std_rad]
         missed = rng.random(len(exact)) >= self.detection_probability
@@ -145,7 +144,7 @@ class RadarSimulator:
         start_time_s: float | None = None,
         name: str = "simulated",
     ) -> Recording:
-        """A recording of several targets among clutter, with truth.
+        """A recording of several targets and clutter, with truth.
 
         Parameters
         ----------
@@ -154,16 +153,15 @@ class RadarSimulator:
         scans, rng, own
             As for :meth:`observe`.
         start_time_s : float, optional
-            Time at which the first scan begins; default where the last of the truths begins.
+            Time at which the first scan begins; default the latest start of the truths.
         name : str
             Name of the recording.
 
         Returns
         -------
         Recording
-            One episode. The time of a scan is that of its begin, or of its end for a rotating
-            antenna; truth stands at those times, with velocities. Every look is in the scan in
-            whose turn it lies.
+            One episode. The time of a scan is its start, or its end for a rotating antenna; truth
+            is given at those times, with velocities. A look belongs to the scan of its revolution.
 
         Raises
         ------
@@ -219,7 +217,7 @@ class RadarSimulator:
     def _plots(
         self, truth: Truth, own: Truth, time_s: np.ndarray, rng: np.random.Generator
     ) -> np.ndarray:
-        """Range and bearing (n, 2) of looks at the target, NaN rows where it is missed."""
+        """Range and bearing (n, 2) of looks at the target, NaN rows where it is not detected."""
         exact = polar(truth.state_at(time_s) - own.state_at(time_s))
         return _proper(self.readings(exact, rng))
 
@@ -228,8 +226,8 @@ class RadarSimulator:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Scan (L,) and time (L,) of every look at the target, in order of time.
 
-        A turn holds one look, none where the target crosses north clockwise in it, and two where
-        it does so the other way: the next after the turn begins and the last before it ends.
+        A revolution has one look, none where the target crosses north clockwise in it, and two
+        where it crosses anticlockwise: the next after its start and the last before its end.
         """
         scans = np.arange(len(begin_s))
         if not self.rotating:
@@ -289,7 +287,7 @@ class RadarSimulator:
         return scan[earlier], time_s, self._plots(truth, own, time_s, rng)
 
     def _clutter(self, begin_s: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-        """Times (n,) and plots (n, 2) of false plots, evenly over the disc."""
+        """Times (n,) and plots (n, 2) of false plots, uniform over the disc."""
         if self.clutter_per_scan == 0:
             return np.zeros(0), np.zeros((0, 2))
         count = rng.poisson(self.clutter_per_scan)
@@ -306,7 +304,7 @@ def _at_rest() -> Truth:
 
 
 def start_of(truth: Any) -> float:
-    """Time at which a truth begins, 0 for one that does not tell it."""
+    """Time at which a truth begins, 0 for one without a start time."""
     return float(getattr(truth, "start_time_s", 0.0))
 
 
@@ -326,7 +324,7 @@ def _wrapped(angle_rad: np.ndarray) -> np.ndarray:
 
 
 def _proper(z: np.ndarray) -> np.ndarray:
-    """Range-bearing pairs (n, 2) with range not negative: the same place seen the other way."""
+    """Range-bearing pairs (n, 2) of the same positions with non-negative range."""
     behind = z[:, 0] < 0
     return np.column_stack([np.abs(z[:, 0]), _wrapped(z[:, 1] + np.pi * behind)])
 

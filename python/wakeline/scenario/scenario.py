@@ -1,4 +1,4 @@
-"""A scenario: one truth, the radar that looks at it, and the prior an estimator starts with."""
+"""A scenario: one truth, the radar that observes it, and an estimator's prior."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .truth import Truth
 
 @runtime_checkable
 class AnyTruth(Protocol):
-    """What a scenario asks of a truth: :class:`Truth`, :class:`TrackTruth` or one of your own."""
+    """What a scenario needs of a truth: :class:`Truth`, :class:`TrackTruth` or a custom one."""
 
     def state_at(self, time_s: np.ndarray | float) -> np.ndarray:
         """States (T, 4), ``[north, vnorth, east, veast]``."""
@@ -30,31 +30,31 @@ class AnyTruth(Protocol):
 
 @dataclass(frozen=True)
 class Scenario:
-    """One target in front of a radar at north 0, east 0, and what an estimator knows of its start.
+    """One target, a radar at north 0, east 0, and an estimator's prior.
 
-    The first reading comes one period after the start.
+    The first plot is one period after the start.
 
     Attributes
     ----------
     name : str
-        Results go by it, and it is part of the seed of the readings.
+        Names the results, and is part of the seed of the plots.
     truth : Truth
         Or anything with ``state_at`` and ``turn_rate_at``.
     radar : RadarSimulator
-        Without clutter and not rotating: every scan is one reading at its time.
+        Without clutter and not rotating: every scan is one plot at its time.
     scans : int
-        Number of readings, T.
+        Number of plots, T.
     position_std_m, velocity_std_mps : float
-        Prior of the start, per axis; positive.
+        Standard deviations of the prior, per axis; positive.
     start_time_s : float, optional
-        Time of the start; default that of the truth, 0 for a truth that does not tell it.
+        Start time; default that of the truth, 0 for a truth without one.
 
     Raises
     ------
     ValueError
-        When a value makes no sense.
+        When a value is invalid.
     TypeError
-        When the truth cannot tell states and turn rates.
+        When the truth has no `state_at` or `turn_rate_at`.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Scenario:
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name:
-            raise ValueError(f"name must be text that is not empty, got {self.name!r}")
+            raise ValueError(f"name must be a non-empty string, got {self.name!r}")
         if not isinstance(self.truth, AnyTruth):
             raise TypeError(f"truth must have state_at and turn_rate_at, got {self.truth!r}")
         if not isinstance(self.radar, RadarSimulator):
@@ -108,7 +108,7 @@ class Scenario:
     def control_mps2(self) -> np.ndarray:
         """Known accelerations (T, 2), north and east, in force half a period before each reading.
 
-        Zeros for a truth that does not tell ``control_at``, as a recorded track.
+        Zeros for a truth without ``control_at``, such as a recorded track.
         """
         return self.control_at(self.time_s - 0.5 * self.radar.period_s)
 
@@ -121,7 +121,7 @@ class Scenario:
     def switch_times_s(self) -> np.ndarray:
         """Times (S,) after the start and before the last reading at which the turn rate switches.
 
-        Empty for a truth that does not tell ``switch_times_s``, as a recorded track.
+        Empty for a truth without ``switch_times_s``, such as a recorded track.
         """
         return self._within("switch_times_s")
 
@@ -129,7 +129,7 @@ class Scenario:
     def control_switch_times_s(self) -> np.ndarray:
         """Times (S,) after the start and before the last reading at which the control changes.
 
-        Empty for a truth that does not tell ``control_switch_times_s``.
+        Empty for a truth without ``control_switch_times_s``.
         """
         return self._within("control_switch_times_s")
 
@@ -140,7 +140,7 @@ class Scenario:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """The numbers of radar, scenario and truth by name; results are kept with them.
+        """The parameters of radar, scenario and truth by name; results are stored with them.
 
         ``truth`` holds the `parameters` of a :class:`Truth`; of another truth its type and a digest
         of :attr:`truth_states`.
@@ -158,7 +158,7 @@ class Scenario:
 
     @property
     def start(self) -> core.Gaussian:
-        """What an estimator starts with: the true state and the prior's covariance."""
+        """The initial belief: the true state and the prior's covariance."""
         position_m2, velocity_m2s2 = self.position_std_m**2, self.velocity_std_mps**2
         return core.Gaussian(
             self.truth.state_at(self.start_time_s)[0],
@@ -166,9 +166,9 @@ class Scenario:
         )
 
     def draw(self, runs: int, seed: int | Sequence[int] = 0, *, first_run: int = 0) -> np.ndarray:
-        """Readings of independent runs: the true range and bearing plus Gaussian errors.
+        """Plots of independent runs: the true range and bearing plus Gaussian errors.
 
-        The errors are added as the papers do, with nothing done to the sum: see
+        The errors are added as in the papers, without wrapping: see
         :meth:`RadarSimulator.readings`.
 
         Parameters
@@ -176,20 +176,20 @@ class Scenario:
         runs : int
             Number of runs, R.
         seed : int or sequence of int
-            Not negative. Run r of a scenario of this name has the same errors whatever R is.
+            Not negative. The errors of run r depend on the scenario's name, but not on R.
         first_run : int
-            Number of the first of them.
+            Number of the first run.
 
         Returns
         -------
         ndarray (R, T, 2)
-            Range in metres and bearing in radians; NaN rows where the radar misses the target or
-            it is out of range.
+            Range in metres and bearing in radians; NaN rows where the target is not detected or out
+            of range.
 
         Raises
         ------
         ValueError
-            When runs, first_run or a seed is negative or no whole number.
+            When runs, first_run or a seed is negative or not an integer.
         """
         chances = self._chances(runs, seed, first_run)
         exact = polar(self.truth_states)
@@ -201,12 +201,12 @@ class Scenario:
     def draw_starts(
         self, runs: int, seed: int | Sequence[int] = 0, *, first_run: int = 0
     ) -> list[core.Gaussian]:
-        """Starts of independent runs: :attr:`start` with a mean that errs as its covariance says.
+        """Initial beliefs of independent runs: :attr:`start` with a mean drawn from it.
 
         Parameters
         ----------
         runs, seed, first_run
-            As for :meth:`draw`, with whose readings the starts have nothing in common.
+            As for :meth:`draw`; the draws are independent of the plots.
 
         Returns
         -------
@@ -227,7 +227,7 @@ class Scenario:
     def _chances(
         self, runs: int, seed: int | Sequence[int], first_run: int, *purpose: int
     ) -> Iterator[np.random.Generator]:
-        """Source of chance of each run."""
+        """Random generator of each run."""
         whole_number("runs", runs, 0)
         whole_number("first_run", first_run, 0)
         begin = entropy(seed, self.name)
@@ -235,14 +235,14 @@ class Scenario:
 
     @property
     def polar_sensor(self) -> measurement.RangeBearing:
-        """The radar as a filter takes it: range and bearing, for Ekf and Ukf."""
+        """The radar as the sensor of an Ekf or Ukf: range and bearing."""
         return measurement.RangeBearing(
             range_std_m=self.radar.range_std_m, bearing_std_rad=self.radar.bearing_std_rad
         )
 
     @property
     def converted_sensor(self) -> measurement.ConvertedRangeBearing:
-        """The radar with readings turned into north and east, as the papers do (not unbiased)."""
+        """The radar with plots converted to north and east, as in the papers (not unbiased)."""
         return measurement.ConvertedRangeBearing(
             range_std_m=self.radar.range_std_m,
             bearing_std_rad=self.radar.bearing_std_rad,

@@ -1,4 +1,4 @@
-"""Truth from a recorded track: positions with or without velocities, smoothly joined."""
+"""Truth from a recorded track: interpolated positions with or without velocities."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _TURNING_ABOVE_MPS = 0.5
 
 
 class TrackTruth:
-    """Where a vessel was between recorded positions: cubic Hermite interpolation.
+    """The path between recorded positions: cubic Hermite interpolation.
 
-    Position and velocity are continuous and take the recorded values at the recorded times; the
-    acceleration jumps there. A velocity that was not recorded is the slope of the parabola through
-    the position and its neighbours. Before the first and after the last position the vessel goes
-    straight on.
+    Position and velocity are continuous and have the recorded values at the recorded times; the
+    acceleration is discontinuous there. A missing velocity is the slope of the parabola through the
+    position and its neighbors. Before the first and after the last position the velocity is
+    constant.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class TrackTruth:
         Increasing, at least two.
     north_m, east_m : array_like (n,)
     vnorth_mps, veast_mps : array_like (n,), optional
-        Recorded velocities; NaN where there is none.
+        Recorded velocities; NaN where missing.
 
     Raises
     ------
@@ -65,13 +65,13 @@ class TrackTruth:
 
     @classmethod
     def of(cls, track: Any) -> TrackTruth:
-        """From what has ``time_s, north_m, east_m, vnorth_mps, veast_mps``.
+        """From an object with ``time_s, north_m, east_m, vnorth_mps, veast_mps``.
 
-        That is an ``AisTrack``, a ``TargetTruth`` or an ``OwnShip`` of :mod:`wakeline.recording`.
-        Of a ``NavigationLog`` it is the `track`, around the first sound fix.
+        An ``AisTrack``, a ``TargetTruth`` or an ``OwnShip`` of :mod:`wakeline.recording`; a
+        ``NavigationLog`` gives its `track`, relative to the first valid fix.
 
-        What lies in a gap is joined like the rest. Where that is not wanted, take each of the
-        `parts` of an ``AisTrack`` or a ``NavigationLog`` by itself.
+        Gaps are interpolated, too. To avoid that, use each of the `parts` of an ``AisTrack`` or a
+        ``NavigationLog``.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class TrackTruth:
         return float(self._time_s[-1])
 
     def moved(self, north_m: float, east_m: float) -> TrackTruth:
-        """The same track, so much farther north and east: as seen from a radar elsewhere."""
+        """The same track moved by this much north and east."""
         place_m = self._place_m + complex(north_m, east_m)
         velocity = self._velocity_mps
         return TrackTruth(self._time_s, place_m.real, place_m.imag, velocity.real, velocity.imag)
@@ -127,7 +127,7 @@ class TrackTruth:
         return np.divide(across, speed_mps**2, out=np.zeros(len(across)), where=moving)
 
     def _motion(self, time_s: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Places, velocities and accelerations (T,) as north + i east."""
+        """Positions, velocities and accelerations (T,) as north + i east."""
         time_s = in_a_row("time_s", time_s)
         last = len(self._time_s) - 1
         k = np.clip(np.searchsorted(self._time_s, time_s, side="right") - 1, 0, last - 1)
@@ -158,7 +158,7 @@ def _track(recorded: Any) -> Any:
 
 
 def _slopes(time_s: np.ndarray, place_m: np.ndarray) -> np.ndarray:
-    """Slope at each point of the parabola through it and its neighbours; of the line for two."""
+    """Slope at each point of the parabola through it and its neighbors; of the line for two."""
     step_s = np.diff(time_s)
     mean_mps = np.diff(place_m) / step_s
     if len(mean_mps) == 1:
@@ -178,25 +178,25 @@ def smoothed(
     velocity_std_mps: float = 0.3,
     accel_psd_m2s3: float = 0.05,
 ) -> TrackTruth:
-    """The most probable path of a vessel whose reports have errors, as AIS reports do.
+    """The most probable path of a vessel from reports with errors, such as AIS.
 
-    The vessel is moved by white acceleration. A report errs in position alike in all directions,
-    along the course by its delay besides, and in velocity. What a Kalman filter and a
-    Rauch-Tung-Striebel smoother find at the reports is joined by cubic Hermite interpolation, which
-    is the most probable path between them.
+    The motion model is white acceleration. A report has an isotropic position error, an error along
+    the course from its delay, and a velocity error. A Kalman filter and a Rauch-Tung-Striebel
+    smoother estimate the states at the reports; cubic Hermite interpolation gives the most probable
+    path between them.
 
     Parameters
     ----------
     track : object
         As of :meth:`TrackTruth.of`; at least two reports.
     position_std_m : float
-        Error of a position per axis.
+        Standard deviation of a position per axis.
     delay_std_s : float
-        Error of the times; at speed ``v`` a position errs by ``v`` times this along the course.
+        Standard deviation of the times; at speed ``v`` it adds ``v`` times this along the course.
     velocity_std_mps : float
-        Error of a reported velocity per axis.
+        Standard deviation of a reported velocity per axis.
     accel_psd_m2s3 : float
-        How restless the vessel is: density of the white acceleration per axis.
+        Power spectral density of the white acceleration per axis.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Truth as a function of time: a vessel that runs through segments of constant turn and thrust."""
+"""Truth as a function of time: segments of constant turn rate and thrust."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SAME_COURSE_RAD = 1e-9
 
 @dataclass(frozen=True)
 class Segment:
-    """A stretch of constant turn rate, constant thrust and constant accelerations north and east.
+    """A segment of constant turn rate, thrust and accelerations north and east.
 
     Attributes
     ----------
@@ -26,19 +26,18 @@ class Segment:
     turn_rate_rad_s : float
         Positive to starboard.
     acceleration_mps2 : float
-        Thrust: change of speed per second, along the course.
+        Thrust: acceleration along the course.
     control_mps2 : (float, float)
-        A known acceleration north and east, on top of the turn and the thrust: the ``u`` of the
-        papers.
+        A known acceleration north and east in addition to turn and thrust: the ``u`` of the papers.
     disturbance_mps2 : (float, float)
-        An acceleration north and east that nobody knows of: the ``w`` of the papers. It moves the
-        vessel as `control_mps2` does and is not part of :meth:`Truth.control_at`. Under it a thrust
-        that brakes ends when it has taken all the speed that the segment began with.
+        An unknown acceleration north and east: the ``w`` of the papers. It acts as `control_mps2`
+        does, but is not part of :meth:`Truth.control_at`. With it, braking ends when the segment's
+        initial speed is used up.
 
     Raises
     ------
     ValueError
-        When a value is not finite, the duration is not positive or an acceleration is no pair.
+        When a value is not finite, the duration is not positive or an acceleration is not a pair.
     """
 
     duration_s: float
@@ -70,14 +69,14 @@ class Segment:
 def segments_from_table(
     rows: Sequence[Sequence[float]], *, max_turn_rate_rad_s: float | None = None
 ) -> tuple[Segment, ...]:
-    """Segments from rows of begin, end and turn rate.
+    """Segments from rows of start time, end time and turn rate.
 
     Parameters
     ----------
     rows : sequence of (begin_s, end_s, turn_rate_rad_s)
-        In order, each beginning where the one before it ends.
+        In order; each begins where the previous one ends.
     max_turn_rate_rad_s : float, optional
-        Fastest turn allowed, either side.
+        Largest turn rate allowed, either side.
 
     Returns
     -------
@@ -86,25 +85,25 @@ def segments_from_table(
     Raises
     ------
     ValueError
-        Naming the row, counted from 0: not three finite numbers, an end that is not after its
-        begin, rows that overlap or leave a gap, a turn that is too fast; or when there is no row
-        or the fastest turn is negative.
+        When a row is not three finite numbers, ends before it begins, overlaps the previous row,
+        leaves a gap or turns too fast (the message names the row, counted from 0); when there is
+        no row or the largest turn rate is negative.
     TypeError
-        When the rows are no sequence.
+        When the rows are not a sequence.
     """
     if max_turn_rate_rad_s is not None and not max_turn_rate_rad_s >= 0:
         raise ValueError(f"max_turn_rate_rad_s must not be negative, got {max_turn_rate_rad_s}")
     rows = listed("rows", rows, "(begin_s, end_s, turn_rate_rad_s)")
     if not rows:
-        raise ValueError("a table of segments must have at least one row")
+        raise ValueError("rows must have at least one row, got none")
     segments = []
     last_end_s = None
     for k, row in enumerate(rows):
         begin_s, end_s, rate_rad_s = _three_numbers(k, row)
         if end_s <= begin_s:
-            raise ValueError(f"row {k} ends at {end_s} s, not after its begin at {begin_s} s")
+            raise ValueError(f"row {k} must end after it begins at {begin_s} s, got {end_s} s")
         if last_end_s is not None and begin_s != last_end_s:
-            fault = "overlaps with" if begin_s < last_end_s else "leaves a gap to"
+            fault = "overlaps with" if begin_s < last_end_s else "leaves a gap after"
             raise ValueError(
                 f"row {k} begins at {begin_s} s and {fault} row {k - 1}, which ends at "
                 f"{last_end_s} s"
@@ -119,45 +118,45 @@ def segments_from_table(
 
 
 def _three_numbers(number: int, row: Any) -> list[float]:
-    """Those of a row of a table."""
+    """The three numbers of a row."""
     try:
         values = real_numbers("row", row)
     except (TypeError, ValueError):
         values = np.array(np.nan)
     if values.shape != (3,) or not np.isfinite(values).all():
         raise ValueError(
-            f"row {number} must be three finite numbers, begin, end and rate, got {row!r}"
+            f"row {number} must be three finite numbers: start, end and rate; got {row!r}"
         )
     return values.tolist()
 
 
 class Truth:
-    """Where a vessel truly is, in closed form at any time.
+    """True motion of a vessel, in closed form at any time.
 
     Within a segment of turn rate ``w``, thrust ``a`` and accelerations ``u`` north and east,
 
         ``dv/dt = w x v + a e(c) + u``
 
-    where ``w x v`` turns the velocity and ``e(c)`` points along the course steered: that of the
-    velocity when the segment begins, turned since at ``w``. All of it is taken exactly: the speed
-    ``v + a t`` along the steered course, the way made by it, and what ``u`` adds while the turn
-    turns it, too. Without ``u`` the steered course is the course over ground. Before the first and
-    after the last segment the vessel goes straight on at constant speed.
+    where ``w x v`` turns the velocity and ``e(c)`` points along the steered course: the course at
+    the start of the segment, turned at ``w`` since. The integrals are exact: the speed ``v + a t``
+    along the steered course, its path, and the contribution of ``u``, which the turn rotates, too.
+    Without ``u`` the steered course is the course over ground. Before the first and after the last
+    segment the velocity is constant.
 
-    A thrust may not brake for longer than until ``v + a t`` is zero. Under a disturbance, which
-    leaves the speed of the segments after it to chance, it ends there by itself.
+    Braking must end before ``v + a t`` becomes negative. With a disturbance, after which the speed
+    is random, it ends there automatically.
 
     Parameters
     ----------
     start : array_like (4,)
-        State ``[north, vnorth, east, veast]`` at the beginning, metres and metres per second.
+        Initial state ``[north, vnorth, east, veast]``, metres and metres per second.
     segments : sequence of Segment
-        In the order in which they are run through; none is a straight line.
+        In order; without segments the path is a straight line.
     start_time_s : float
-        Time of the beginning.
+        Start time.
     start_course_rad : float, optional
-        Course at the beginning of a vessel that starts at rest; default that of the velocity, from
-        which it may not differ.
+        Initial course of a vessel at rest; default, and required otherwise, the course of the
+        velocity.
 
     Attributes
     ----------
@@ -167,10 +166,10 @@ class Truth:
     Raises
     ------
     ValueError
-        When the start, its time or its course is not finite, the course is another than that of the
-        velocity or the thrust of a segment without disturbance brings the speed below zero.
+        When the start, its time or its course is not finite, the course is not that of the
+        velocity, or the thrust of a segment without disturbance makes the speed negative.
     TypeError
-        When a segment is something else, or the segments are no sequence.
+        When the segments are not a sequence of Segment.
     """
 
     def __init__(
@@ -198,8 +197,8 @@ class Truth:
             start_course_rad = course_rad
         elif speed_mps and abs(np.exp(1j * (start_course_rad - course_rad)) - 1) > _SAME_COURSE_RAD:
             raise ValueError(
-                f"start_course_rad must be the course of the velocity, {course_rad}, where the "
-                f"vessel does not start at rest, got {start_course_rad}"
+                f"start_course_rad must be the course of the velocity, {course_rad}, unless the "
+                f"vessel starts at rest, got {start_course_rad}"
             )
         self.segments = tuple(listed("segments", segments, "Segment"))
         for segment in self.segments:
@@ -213,7 +212,7 @@ class Truth:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """What it was made with, in lists and numbers."""
+        """Constructor parameters as lists and numbers."""
         return {
             "start": self.state_at(self.start_time_s)[0].tolist(),
             "start_time_s": self.start_time_s,
@@ -226,22 +225,22 @@ class Truth:
 
     @property
     def end_time_s(self) -> float:
-        """Time at which the last segment ends."""
+        """End time of the last segment."""
         return float(self._time_s[-1])
 
     @property
     def start_course_rad(self) -> float:
-        """Course steered at the beginning, in (-pi, pi] unless it was given otherwise."""
+        """Initial steered course, in (-pi, pi] unless given otherwise."""
         return float(self._course_rad[1])
 
     @property
     def switch_times_s(self) -> np.ndarray:
-        """Times (S,) from the start on at which the turn rate changes, in order."""
+        """Times (S,) at or after the start at which the turn rate changes, in order."""
         return self._time_s[np.diff(self._turn_rate_rad_s) != 0]
 
     @property
     def control_switch_times_s(self) -> np.ndarray:
-        """Times (S,) from the start on at which the known acceleration changes, in order."""
+        """Times (S,) at or after the start at which the known acceleration changes, in order."""
         return self._time_s[(np.diff(self._control_mps2, axis=0) != 0).any(axis=1)]
 
     def state_at(self, time_s: np.ndarray | float) -> np.ndarray:
@@ -267,11 +266,11 @@ class Truth:
         return np.column_stack([place_m.real, velocity_mps.real, place_m.imag, velocity_mps.imag])
 
     def turn_rate_at(self, time_s: np.ndarray | float) -> np.ndarray:
-        """Turn rates (T,) in radians per second; at a change that of the segment that begins."""
+        """Turn rates (T,) in radians per second; at a change the new one."""
         return self._turn_rate_rad_s[self._legs_at(time_s)[0]]
 
     def control_at(self, time_s: np.ndarray | float) -> np.ndarray:
-        """Known accelerations (T, 2) north and east in m/s²; at a change those that begin."""
+        """Known accelerations (T, 2) north and east in m/s²; at a change the new ones."""
         return self._control_mps2[self._legs_at(time_s)[0]]
 
     def _legs_at(self, time_s: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
@@ -281,9 +280,9 @@ class Truth:
         return leg, time_s - self._time_s[np.maximum(leg - 1, 0)]
 
     def _lay_legs(self, place_m: complex, speed_mps: float, course_rad: float) -> None:
-        """Legs are the straight run before the start, the segments, the straight run after them.
+        """Legs are the straight before the start, the segments, the straight after them.
 
-        Leg k begins at time k - 1 of `_time_s`; the leg before the start is told from there, too.
+        Leg k begins at time k - 1 of `_time_s`; the leg before the start is relative to it, too.
         """
         legs = [None, *self.segments, None]
         duration_s = [segment.duration_s for segment in self.segments]
@@ -301,7 +300,9 @@ class Truth:
             end_mps = self._speed_mps[leg] + segment.acceleration_mps2 * segment.duration_s
             if end_mps < least_mps:
                 if not any(segment.disturbance_mps2):
-                    raise ValueError(f"segment {leg - 1} brings the speed below zero")
+                    raise ValueError(
+                        f"segment {leg - 1} brakes to a negative speed; shorten it or brake less"
+                    )
                 self._thrust_ends_s[leg] = self._speed_mps[leg] / -segment.acceleration_mps2
             end_mps = max(end_mps, 0.0)
             end_m, velocity_mps = self._motion(np.array([leg]), np.array([segment.duration_s]))
@@ -312,12 +313,12 @@ class Truth:
             self._speed_mps[leg + 1], self._course_rad[leg + 1] = end_mps, end_rad
 
     def _motion(self, leg: np.ndarray, since_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Places and velocities (T,) on each leg so long after it began, as north + i east.
+        """Positions and velocities (T,) at times since each leg began, as north + i east.
 
-        With ``h = w t / 2`` and the steered course ``m`` half way, the way made by the vessel is
+        With ``h = w t / 2`` and the steered course ``m`` half way, the vessel's path is
         ``t e^(i m) [(v + a t / 2) sin(h) / h + i (a t / 2) (sin(h) - h cos(h)) / h^2]`` and what
-        the push ``u`` adds is ``u t^2 (e^(2 i h) - 1 - 2 i h) / (2 i h)^2``. Where the thrust ends
-        for want of speed, the first of them stays as it is then.
+        the acceleration ``u`` adds is ``u t^2 (e^(2 i h) - 1 - 2 i h) / (2 i h)^2``. After braking
+        ends, the first of them is constant.
         """
         half_turn_rad = 0.5 * self._turn_rate_rad_s[leg] * since_s
         way_s = np.minimum(since_s, self._thrust_ends_s[leg])

@@ -1,4 +1,4 @@
-"""An unmanned surface vessel on a mission: waypoints, obstacles, a current, and what she measures.
+"""An unmanned surface vessel on a mission: waypoints, obstacles, current and sensors.
 
 The simulator of "Sensor system information processing in unmanned navigation applications"
 (P. S. Evsyukov, O. N. Andreeva, V. V. Khanychev): 800 m by 800 m, guided by bearings.
@@ -29,7 +29,7 @@ _SHAPES = {
 
 
 class Obstacle(NamedTuple):
-    """A disc to be kept clear of."""
+    """A disc to avoid."""
 
     north_m: float
     east_m: float
@@ -37,7 +37,7 @@ class Obstacle(NamedTuple):
 
 
 class UsvVoyage(NamedTuple):
-    """What is true on a mission, at T times.
+    """True motion on a mission, at T times.
 
     Attributes
     ----------
@@ -46,8 +46,8 @@ class UsvVoyage(NamedTuple):
         [north, east]; the velocity is over ground.
     heading_rad : ndarray (T,)
     imu : ndarray (T, 3)
-        [forward m/s², starboard m/s², yaw rate rad/s] of the step that ends at each time, without
-        errors; the first row is NaN.
+        [forward m/s², starboard m/s², yaw rate rad/s] of the step that ends at each time,
+        without errors; the first row is NaN.
     """
 
     time_s: np.ndarray
@@ -61,7 +61,7 @@ class UsvVoyage(NamedTuple):
 
 
 class UsvLogs(NamedTuple):
-    """What the sensors say in R runs of T times; NaN in the first row of each.
+    """Sensor readings of R runs at T times; NaN in the first row of each.
 
     Attributes
     ----------
@@ -82,15 +82,15 @@ class UsvLogs(NamedTuple):
 
 @dataclass(frozen=True)
 class UsvMission:
-    """From (0, 0) to (800, 800) m through waypoints, round what is in the way.
+    """From (0, 0) to (800, 800) m through waypoints, around obstacles.
 
-    Each step she turns towards her aim by
+    In each step the vessel turns towards its aim by
 
         clip(wrap(bearing - heading), -w T, w T),
 
-    w the largest rate of turn; the aim is the waypoint, or, where the straight line to it comes
-    too close to an obstacle, the tangent to the circle about that obstacle which she keeps clear
-    of. A current carries her along. She is at a waypoint once it is closer than `accept_m`.
+    with w the largest rate of turn. The aim is the waypoint, or, where the straight line to it is
+    too close to an obstacle, the tangent to the circle of clearance around that obstacle. A current
+    carries the vessel along. A waypoint is reached once it is closer than `accept_m`.
 
     The paper gives the area, the sensors and the currents. The other defaults are ours.
 
@@ -98,23 +98,24 @@ class UsvMission:
     ----------
     current_mps, current_towards_rad : float
     allow_for_current : bool
-        Whether she points up into the current, so that her course over ground leads to the aim.
+        Whether the vessel points up into the current, so that its course over ground leads to the
+        aim.
     waypoints_m : tuple of (north, east)
     obstacles : tuple of Obstacle
     clearance_m : float
-        Between the edge of an obstacle and the circle that she keeps clear of.
+        Distance between the edge of an obstacle and the circle of clearance.
     accept_m, speed_mps, start_heading_rad, turn_rate_rad_s, period_s : float
         The speed is through the water.
     imu_bias, imu_std : tuple of 3 floats
-        [forward m/s², starboard m/s², yaw rate rad/s]; the noise is held over a step.
+        [forward m/s², starboard m/s², yaw rate rad/s]; the noise is constant over a step.
     gnss_std_m : (north, east)
     compass_std_rad : float
 
     Raises
     ------
     ValueError
-        When one that has to be positive is not, the current or a deviation is negative, or a number
-        not finite.
+        When a quantity that must be positive is not, the current or a standard deviation is
+        negative, or a number is not finite.
     """
 
     current_mps: float = 0.5
@@ -150,18 +151,18 @@ class UsvMission:
         if not 0 <= self.current_mps < np.inf:
             raise ValueError(f"current_mps must be finite, zero or more, got {self.current_mps}")
         for name, shape in _SHAPES.items():
-            told = getattr(self, name)
-            numbers = real_numbers(name, told)
+            value = getattr(self, name)
+            numbers = real_numbers(name, value)
             if numbers.shape != shape or not np.isfinite(numbers).all():
-                raise ValueError(f"{name} must be finite and have shape {shape}, got {told}")
+                raise ValueError(f"{name} must be finite and have shape {shape}, got {value}")
             if "_std" in name and (numbers < 0).any():
-                raise ValueError(f"{name} must be zero or more, got {told}")
+                raise ValueError(f"{name} must be zero or more, got {value}")
         ways = real_numbers("waypoints_m", self.waypoints_m)
         if ways.ndim != 2 or ways.shape[1] != 2 or not np.isfinite(ways).all():
             raise ValueError(f"waypoints_m must be pairs of finite numbers, got {self.waypoints_m}")
         for obstacle in self.obstacles:
             if not (np.isfinite(obstacle).all() and obstacle.radius_m > 0):
-                raise ValueError(f"an obstacle must be finite, its radius positive, got {obstacle}")
+                raise ValueError(f"obstacles must be finite with positive radius, got {obstacle}")
 
     @property
     def current(self) -> np.ndarray:
@@ -170,12 +171,12 @@ class UsvMission:
 
     @cached_property
     def voyage(self) -> UsvVoyage:
-        """What is true.
+        """The true motion.
 
         Raises
         ------
         ValueError
-            When she does not get there: the current is too much for her.
+            When a waypoint is not reached because the current is too strong.
         """
         most = self.turn_rate_rad_s * self.period_s
         position, heading = np.zeros(2), self.start_heading_rad
@@ -193,23 +194,25 @@ class UsvMission:
                 states.append((*position, *velocity, heading))
                 readings.append(np.array([*felt, turn / self.period_s]))
                 if len(states) > _LONGEST_STEPS:
-                    raise ValueError(f"waypoint {way} is not reached in {len(states)} steps")
-        told = np.array(states)
+                    raise ValueError(
+                        f"waypoint {way} is not reached in {len(states)} steps; reduce current_mps"
+                    )
+        rows = np.array(states)
         return UsvVoyage(
-            time_s=self.period_s * np.arange(len(told)),
-            position_m=told[:, :2],
-            velocity_mps=told[:, 2:4],
-            heading_rad=told[:, 4],
+            time_s=self.period_s * np.arange(len(rows)),
+            position_m=rows[:, :2],
+            velocity_mps=rows[:, 2:4],
+            heading_rad=rows[:, 4],
             imu=np.array(readings),
         )
 
     def draw(self, runs: int, seed: int | Sequence[int] = 0) -> UsvLogs:
-        """Independent runs of the sensors; run r is the same whatever their number.
+        """Independent runs of the sensors; run r does not depend on their number.
 
         Raises
         ------
         ValueError
-            When runs or a seed is negative or no whole number.
+            When runs or a seed is negative or not an integer.
         """
         whole_number("runs", runs, 0)
         truth = self.voyage
@@ -236,7 +239,7 @@ class UsvMission:
         return bearing - np.arcsin(np.clip(across, -1.0, 1.0))
 
     def _bearing(self, position: np.ndarray, way: np.ndarray) -> float:
-        """To the waypoint, or past the nearest obstacle that is in between."""
+        """Bearing to the waypoint, or past the nearest obstacle in between."""
         bearing = _bearing_of(way - position)
         reach = np.hypot(*(way - position))
         nearest = np.inf

@@ -1,7 +1,7 @@
-"""A vessel that alters speed and course in a current, seen by her log, her gyro and by fixes.
+"""A vessel that alters speed and course in a current, with log, gyro and fixes.
 
-Speed follows its orders with a lag of 60 s, course with a turn of at most 0.4 deg/s that builds up
-in 10 s; the water sets to 060 with 1.2 kn.
+Speed follows its orders with a lag of 60 s, course with a turn rate of at most 0.4 deg/s that
+builds up in 10 s; the current sets to 060 at 1.2 kn.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _FINE_S = 0.1
 
 
 class VoyageReadings(NamedTuple):
-    """What the instruments say, each (R, T): log m/s, gyro 0 .. 2 pi rad, fix rad."""
+    """Readings of the instruments, each (R, T): log m/s, gyro 0 .. 2 pi rad, fix rad."""
 
     speed_mps: np.ndarray
     course_rad: np.ndarray
@@ -43,7 +43,7 @@ class VoyageReadings(NamedTuple):
 
 @dataclass(frozen=True)
 class Voyage:
-    """The truth (T,) every `dt_s`: speed and course through the water, the course as it adds up.
+    """The truth (T,) every `dt_s`: speed and unwrapped course through the water.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Voyage:
         Parameters
         ----------
         runs, seed : int
-            The first runs of a seed are the same, however many there are.
+            Run r of a seed does not depend on the number of runs.
         """
         whole_number("runs", runs, least=1)
         whole_number("seed", seed, least=0)
@@ -85,7 +85,7 @@ class Voyage:
 
 
 def reckoning_voyage(dt_s: float) -> Voyage:
-    """The voyage of 40 minutes, seen every `dt_s`.
+    """The voyage of 40 minutes, sampled every `dt_s`.
 
     Raises
     ------
@@ -102,21 +102,21 @@ def reckoning_voyage(dt_s: float) -> Voyage:
 def reckoned(
     speed_mps: np.ndarray, course_rad: np.ndarray, dt_s: float, drift_mps: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Latitudes and longitudes (..., T) by log and gyro from the start of the voyage; (11).
+    """Latitudes and longitudes (..., T) reckoned by log and gyro from the start; (11).
 
     Parameters
     ----------
     speed_mps, course_rad : (..., T) array
-        A step is made with the mean of the readings before and after it.
+        A step uses the mean of the readings before and after it.
     dt_s : float
     drift_mps : float
-        Of the current to 060.
+        Speed of the current to 060.
     """
     courses = np.unwrap(course_rad, axis=-1)
     speed = 0.5 * (speed_mps[..., 1:] + speed_mps[..., :-1])
     course = 0.5 * (courses[..., 1:] + courses[..., :-1])
     latitude = np.full(speed.shape, START_RAD[0])
-    for _ in range(2):  # the steps at the latitude of the start, then at their own
+    for _ in range(2):  # first with the latitude of the start, then with that of each step
         there, east = nav.dead_reckon(
             latitude, 0.0, speed, course, dt_s, drift_mps, CURRENT_RAD if drift_mps else 0.0
         )
@@ -154,6 +154,6 @@ def _truth() -> tuple[np.ndarray, ...]:
 
 
 def _ordered(time_s: np.ndarray, orders: dict[int, float]) -> np.ndarray:
-    """What is ordered at each time."""
+    """The order in force at each time."""
     given = np.searchsorted(list(orders), time_s, side="right") - 1
     return np.array(list(orders.values()))[given]

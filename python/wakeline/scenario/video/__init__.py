@@ -1,4 +1,4 @@
-"""Simulated radar video: what stands in every cell of every sweep."""
+"""Simulated radar video: the amplitude in every cell of every sweep."""
 
 from .clutter import Land, SeaClutter
 from .examples import VideoScene, radar_screen, small_craft_scene, strait_scene

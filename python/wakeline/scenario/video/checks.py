@@ -31,7 +31,7 @@ def not_negative(settings: Any, *names: str) -> None:
 
 
 def at_least(settings: Any, least: float, *names: str) -> None:
-    """ValueError unless each of the fields is `least` or more; inf may be."""
+    """ValueError unless each of the fields is `least` or more; inf is allowed."""
     for name in names:
         if not _number(settings, name) >= least:
             raise ValueError(f"{name} must be at least {least}, got {getattr(settings, name)}")

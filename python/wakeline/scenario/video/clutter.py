@@ -1,4 +1,4 @@
-"""Echoes that nobody asked for: the sea and the land."""
+"""Sea and land clutter."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class SeaClutter:
     """Sea clutter of K-distributed amplitude.
 
     In every cell the power is a texture times the power of a speckle. The texture is
-    gamma-distributed with mean 1 and variance ``1 / shape``: patches of waves, ``correlation_m``
-    wide, that live for ``correlation_s``. The speckle is exponential, correlated over the beam and
-    the pulse and drawn anew every scan. The second moment of the power over the square of its mean
-    is therefore ``2 (1 + 1 / shape)``. The mean power over that of the receiver's noise is
+    gamma-distributed with mean 1 and variance ``1 / shape``: patches of waves of width
+    ``correlation_m`` and lifetime ``correlation_s``. The speckle is exponential, correlated over
+    beam and pulse, and independent in each scan. The second moment of the power over the square of
+    its mean is therefore ``2 (1 + 1 / shape)``. The mean clutter-to-noise ratio is
 
         ``clutter_to_noise_db - 10 decay log10(range / reference range)
         + upwind_downwind_db / 2 cos(azimuth - wind_from_rad)``  in dB.
@@ -37,9 +37,9 @@ class SeaClutter:
     Attributes
     ----------
     clutter_to_noise_db : float
-        Mean power over that of the noise, across the wind, at the radar's reference range.
+        Mean clutter-to-noise ratio across the wind, at the radar's reference range.
     decay : float
-        Power of the range by which the clutter falls; 3 for waves well above the horizon.
+        Exponent of the range with which the clutter falls; 3 well inside the horizon.
     shape : float
         Of the texture: 0.1 for spiky clutter, inf for none; at least 0.05.
     correlation_m : float
@@ -47,14 +47,14 @@ class SeaClutter:
     correlation_s : float
         Time at which it has fallen to 1 / e.
     wind_from_rad : float
-        Where the wind comes from.
+        Direction the wind comes from.
     upwind_downwind_db : float
-        How much stronger the clutter is against the wind than with it.
+        Ratio of the clutter looking upwind to downwind.
 
     Raises
     ------
     ValueError
-        When a value makes no sense.
+        When a value is invalid.
     """
 
     clutter_to_noise_db: float = 10.0
@@ -71,7 +71,7 @@ class SeaClutter:
         at_least(self, 0.05, "shape")
 
     def mean_amplitude(self, grid: PolarGrid, reference_range_m: float) -> NDArray[np.float32]:
-        """Root of the mean power over that of the noise, (N, C)."""
+        """Root of the mean clutter-to-noise ratio, (N, C)."""
         wind_db = 0.5 * self.upwind_downwind_db * np.cos(grid.azimuth_rad - self.wind_from_rad)
         range_db = -10.0 * self.decay * np.log10(grid.range_m / reference_range_m)
         return np.outer(
@@ -81,31 +81,30 @@ class SeaClutter:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Land:
-    """Land, whose echo is the same in every scan but for a fluctuation.
+    """Land clutter: constant from scan to scan except for a fluctuation.
 
     Attributes
     ----------
     where : sequence of (n, 2) arrays, or callable
-        Outlines in metres north and east of the antenna, each closed by itself; where an even
-        number of them overlap there is none (a lake). Or a function of arrays north and east that
-        is true on land.
+        Closed outlines in metres north and east of the antenna; an even number of overlapping
+        outlines is no land (a lake). Or a function of arrays north and east that is true on land.
     clutter_to_noise_db : float
-        Mean power over that of the noise at the radar's reference range.
+        Mean clutter-to-noise ratio at the radar's reference range.
     decay : float
-        Power of the range by which the echo falls.
+        Exponent of the range with which the echo falls.
     shape, correlation_m : float
-        Of its gamma texture, as with the sea, but half of it is hills of that size, half of it
-        pieces of a quarter of it; it stays as it is.
+        Of the gamma texture, as for the sea, but half of it has a quarter of that correlation
+        length; it is constant in time.
     fluctuation : float
-        Part of the power that is drawn anew every scan, from 0 to 1.
+        Part of the power that is independent in each scan, from 0 to 1.
     penetration_m : float
-        Way over land on which every echo from there on falls by 1 / e in power: hills hide what
-        lies behind them. inf for land as flat as the sea.
+        Distance over land at which the power of every echo behind has fallen to 1 / e, because
+        hills mask it. inf for flat land.
 
     Raises
     ------
     ValueError
-        When a value makes no sense.
+        When a value is invalid.
     """
 
     where: Sequence[ArrayLike] | LandMask
@@ -129,7 +128,7 @@ class Land:
             )
 
     def mean_amplitude(self, grid: PolarGrid, reference_range_m: float) -> NDArray[np.float32]:
-        """Root of the mean power over that of the noise in each cell of land, (C,)."""
+        """Root of the mean clutter-to-noise ratio in each cell of land, (C,)."""
         range_db = -10.0 * self.decay * np.log10(grid.range_m / reference_range_m)
         return amplitude_of_db(self.clutter_to_noise_db + range_db).astype(np.float32)
 
@@ -139,7 +138,7 @@ class Land:
         Raises
         ------
         ValueError
-            When the function of what is land does not give an array of the shape it was asked for.
+            When the function `where` does not return an array of the requested shape.
         """
         offset = np.linspace(-2.0, 2.0, _BEAM_RAYS)
         weight = np.exp(-0.5 * offset**2)
@@ -153,7 +152,7 @@ class Land:
         return cover
 
     def shade(self, cover: NDArray[np.float32], cell_m: float) -> NDArray[np.float32]:
-        """Root of the part of the power that comes back over the land in between, (N, C)."""
+        """Root of the part of the power that is not masked by land in between, (N, C)."""
         way_m = np.cumsum(cover, axis=1, dtype=np.float32) - cover
         return np.exp(way_m * np.float32(-0.5 * cell_m / self.penetration_m))
 
@@ -181,7 +180,7 @@ def _masked(
     east_m = np.outer(np.sin(azimuth_rad), grid.range_m)
     inside = np.asarray(where(north_m, east_m), dtype=bool)
     if inside.shape != north_m.shape:
-        raise ValueError(f"where must give an array of shape {north_m.shape}, got {inside.shape}")
+        raise ValueError(f"where must return an array of shape {north_m.shape}, got {inside.shape}")
     return inside
 
 
@@ -191,10 +190,10 @@ def _cover_of_outlines(
     offset_rad: NDArray[np.float64],
     weight: NDArray[np.float64],
 ) -> NDArray[np.float32]:
-    """Weight (N, C) of those rays of the beam that end on land in each cell.
+    """Weight (N, C) of the rays of the beam that end on land in each cell.
 
-    A ray ends inside an outline where it has an odd number of crossings still ahead. Each ray has a
-    bit of its own, so one pass from the far end inwards counts all of them at once.
+    A ray ends inside an outline if an odd number of crossings is ahead. Each ray has one bit, so
+    that one pass from the far end inwards counts all of them at once.
     """
     sweeps, cells = grid.shape
     ahead = np.zeros((sweeps, cells + 1), np.uint16)
@@ -212,7 +211,7 @@ def _cover_of_outlines(
 def _crossings(
     corners: NDArray[np.complex128], grid: PolarGrid, turned_rad: float
 ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Sweeps, turned by an angle, that cross an edge of the outline, and at which range.
+    """Sweeps, rotated by an angle, that cross an edge of the outline, and the ranges.
 
     An edge from ``p`` along ``v`` crosses the ray along ``u`` at ``Im(p* v) / Im(u* v)``.
     """

@@ -1,4 +1,4 @@
-"""Scenes ready to be looked at: a strait with ships, and a small craft that turns hard far out."""
+"""Scenes: a strait with ships, and a small craft that turns hard far out."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _CRAFT_STREAM = 0xC2AF
 
 @dataclass(frozen=True)
 class VideoScene:
-    """A radar and what it looks at.
+    """A radar and its targets.
 
     Attributes
     ----------
@@ -37,17 +37,17 @@ class VideoScene:
     targets: Mapping[str, VideoTarget] = field(default_factory=dict)
 
     def turns(self, scans: int, seed: int = 0) -> Iterator[RadarVideo]:
-        """Turn after turn of it: :meth:`RadarVideoSimulator.turns`."""
+        """Consecutive revolutions: :meth:`RadarVideoSimulator.turns`."""
         return self.radar.turns(self.targets, scans, seed)
 
 
 def radar_screen(seed: int = 0) -> RadarVideo:
-    """One turn of a radar on the shore of a strait: coast, islands, sea clutter, ships, noise.
+    """One revolution of a radar on the shore of a strait: coast, islands, sea, ships, noise.
 
     Parameters
     ----------
     seed : int
-        Not negative; of the scene, :func:`strait_scene`, and of its chance.
+        Not negative; of the scene, :func:`strait_scene`, and of its noise.
 
     Returns
     -------
@@ -64,13 +64,13 @@ def radar_screen(seed: int = 0) -> RadarVideo:
 
 
 def strait_scene(seed: int = 0) -> VideoScene:
-    """A strait: its two coasts, islands, a lane with ships each way, craft, buoys, and wind.
+    """A strait: two coasts, islands, two lanes with ships, craft, buoys, and wind.
 
     Parameters
     ----------
     seed : int
-        Not negative. The radar has 4096 sweeps of 2048 cells of 6 m, 3 s a turn and a logarithmic
-        receiver of 8 bits.
+        Not negative. The radar has 4096 sweeps of 2048 cells of 6 m, a period of 3 s and a
+        logarithmic receiver of 8 bits.
     """
     whole_number("seed", seed, 0)
     rng = np.random.default_rng([seed, _STRAIT_STREAM])
@@ -108,24 +108,24 @@ def small_craft_scene(
     beam_cells: float = 4.0,
     margin_m: float = 300.0,
 ) -> VideoScene:
-    """A craft of 15 m far out among sea clutter: straight on, a hard turn, straight on.
+    """A craft of 15 m far out in sea clutter: a straight, a hard turn, a straight.
 
-    The situation of V. M. Grinyak and M. V. Trofimov, "Multi-model tracking of moving vessels with
-    a fuzzy criterion of maneuver detection": cells of 0.03 degrees and 6 m, 3 s from scan to scan,
-    a turn of 300 m radius at 10 or 20 m/s. What they do not tell is chosen: range and legs (see
-    :class:`HardTurn`), beam, pulse, and how strong echo and clutter are.
+    The scenario of V. M. Grinyak and M. V. Trofimov, "Multi-model tracking of moving vessels with
+    a fuzzy criterion of maneuver detection": cells of 0.03 degrees and 6 m, a period of 3 s, a turn
+    of 300 m radius at 10 or 20 m/s. Our choices: range and legs (see :class:`HardTurn`), beam,
+    pulse, and the power of echo and clutter.
 
     Parameters
     ----------
     seed : int
-        Not negative; of place, course and side of the turn.
+        Not negative; of position, course and side of the turn.
     situation : HardTurn, optional
         Speed, radius, range, legs, cells and period; default 10 m/s and 300 m.
     beam_cells : float
         Width of the beam in azimuth cells. At 4 of them an echo 20 km away is 42 m wide, near the
         paper's gates of 22 and 27 m radius; coastal antennas in service have 10 and more.
     margin_m : float
-        How far around the craft's way the radar is simulated.
+        Margin around the craft's path within which the radar is simulated.
 
     Returns
     -------
@@ -135,8 +135,8 @@ def small_craft_scene(
     Raises
     ------
     ValueError
-        When the seed is negative or no whole number, the beam is narrower than a cell, or the way
-        and its margin reach the antenna.
+        When the seed is negative or not an integer, the beam is narrower than a cell, or the
+        path and its margin reach the antenna.
     """
     whole_number("seed", seed, 0)
     situation = HardTurn(10.0, 300.0) if situation is None else situation
@@ -158,7 +158,7 @@ def small_craft_scene(
 
 
 def _strait(rng: np.random.Generator, along_rad: float) -> list[NDArray[np.float64]]:
-    """Outlines of both coasts and of some islands; the antenna stands before the near one."""
+    """Outlines of both coasts and of some islands; the antenna is off the near one."""
     islands = [
         _island(rng, place, radius_m)
         for place, radius_m in (
@@ -184,8 +184,8 @@ def _coast(
 ) -> NDArray[np.complex128]:
     """A coast along the real axis, from -16 to 16 km, as a closed outline.
 
-    The shore is a curve of self-similar roughness that only takes from the land, calmed within
-    `calm_m` of the origin.
+    The shore is a curve of self-similar roughness that only removes land, smooth within `calm_m`
+    of the origin.
     """
     along_m = np.linspace(-16_000.0, 16_000.0, 513)
     rough_m = roughness_m * _self_similar(rng, len(along_m))

@@ -18,14 +18,14 @@ _HERMITE_TERMS = 40
 
 @dataclass(frozen=True)
 class PolarGrid:
-    """Sweeps and cells of a turn or a sector of it.
+    """Sweeps and cells of a revolution or a sector of it.
 
     Attributes
     ----------
     azimuth_rad : ndarray (N,)
-        Centres of the sweeps, counted on past a turn: not wrapped.
+        Centers of the sweeps, not wrapped.
     range_m : ndarray (C,)
-        Centres of the cells.
+        Centers of the cells.
     sweeps_per_turn : int
     cell_m : float
     """
@@ -41,14 +41,14 @@ class PolarGrid:
 
     @property
     def step_rad(self) -> float:
-        """From the centre of a sweep to that of the next one."""
+        """Angle between the centers of consecutive sweeps."""
         return 2.0 * np.pi / self.sweeps_per_turn
 
     def padded(self, sweeps: float, cells: float) -> tuple[int, int]:
-        """Sweeps and cells of a periodic field of which the grid may be cut.
+        """Sweeps and cells of a periodic field from which the grid can be cut.
 
-        Neither end of the cut feels the other through a kernel of that many sweeps or cells. A
-        whole turn is periodic as it is.
+        The ends of the cut are independent for a kernel of that many sweeps or cells. A full
+        revolution is periodic.
         """
         rows, columns = self.shape
         wanted = quick_length(rows + math.ceil(min(sweeps, self.sweeps_per_turn)))
@@ -56,7 +56,7 @@ class PolarGrid:
 
 
 class Speckle:
-    """Complex Gaussian field of unit power, as a beam and a pulse see scatterers without number.
+    """Complex Gaussian field of unit power: the echo of many scatterers in beam and pulse.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Speckle:
         self._along = _kernel_spectrum(columns, cells)
 
     def draw(self, rng: np.random.Generator) -> NDArray[np.complex64]:
-        """A field (N, C), independent of those before."""
+        """A field (N, C), independent of the previous ones."""
         rows, columns = self._shape
         white = complex_normal(rng, (len(self._band), len(self._along)))
         smooth = np.fft.ifft(white * self._along, axis=1, norm="ortho")[:, :columns]
@@ -88,8 +88,8 @@ class Speckle:
 class PatchyField:
     """Real Gaussian field of unit variance with one correlation length in metres everywhere.
 
-    The correlation is ``exp(-(d / length)^2)`` in the distance d. Across the beam a length is the
-    fewer sweeps the farther away it is, so every range has a spectrum of its own.
+    The correlation is ``exp(-(d / length)^2)`` in the distance d. Across the beam a length is
+    fewer sweeps at a longer range, so every range has a separate spectrum.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class PatchyField:
         self._across = _half_spectra(rows, sweeps.astype(np.float32))
 
     def draw(self, rng: np.random.Generator) -> NDArray[np.float32]:
-        """A field (N, C), independent of those before."""
+        """A field (N, C), independent of the previous ones."""
         rows, columns = self._shape
         spectrum = np.zeros((len(self._across), self._columns), np.complex64)
         white = _unit_pairs(rng, (len(self._across), len(self._band)))
@@ -122,12 +122,12 @@ class PatchyField:
 
 @dataclass(frozen=True)
 class GammaTexture:
-    """Gamma-distributed power of mean 1 out of a Gaussian field, value by value.
+    """Gamma-distributed power of mean 1, transformed from a Gaussian field.
 
     Attributes
     ----------
     shape : float
-        Its variance is one over it; inf for a texture that is 1 everywhere.
+        Reciprocal of the variance; inf for a texture that is 1 everywhere.
     """
 
     shape: float
@@ -140,7 +140,7 @@ class GammaTexture:
 
     @cached_property
     def gaussian_correlation(self) -> float:
-        """Correlation that the Gaussian field has where that of the texture is 1 / e.
+        """Correlation of the Gaussian field where that of the texture is 1 / e.
 
         With Hermite polynomials ``He_n`` and ``c_n = E[texture He_n]``, fields that correlate by
         ``r`` have textures that correlate by ``sum_n c_n^2 r^n / n!`` over the same sum at 1.
@@ -162,7 +162,7 @@ class GammaTexture:
 
     @cached_property
     def _amplitude_table(self) -> NDArray[np.float32]:
-        """Square root of the gamma quantile of the normal distribution, at the table's places."""
+        """Square root of the gamma quantile of the normal distribution, at the table's points."""
         if np.isinf(self.shape):
             return np.ones(_TABLE_SIZE, np.float32)
         spread, skew = 12.0 / math.sqrt(self.shape), 40.0 / self.shape
@@ -180,7 +180,7 @@ def complex_normal(rng: np.random.Generator, shape: tuple[int, int]) -> NDArray[
 
 
 def quick_length(least: int) -> int:
-    """The first whole number from `least` on that is a product of 2, 3 and 5: quick to transform.
+    """The smallest product of 2, 3 and 5 that is at least `least`: quick to transform.
 
     >>> quick_length(217)
     225
@@ -199,7 +199,7 @@ def _without_small_factors(number: int) -> int:
 
 
 def _unit_pairs(rng: np.random.Generator, shape: tuple[int, int]) -> NDArray[np.complex64]:
-    """Complex values of which either part has unit variance."""
+    """Complex values whose real and imaginary parts have unit variance."""
     return rng.standard_normal((*shape, 2), dtype=np.float32).view(np.complex64)[..., 0]
 
 
@@ -212,10 +212,10 @@ def _kernel_spectrum(length: int, std: float) -> NDArray[np.float32]:
 
 
 def _half_spectra(length: int, std: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Gains (length // 2 + 1, C) that make unit pairs the half spectrum of unit variance.
+    """Gains (length // 2 + 1, C) that turn unit pairs into a half spectrum of unit variance.
 
-    Column c smooths by a Gaussian kernel `std[c]` samples wide. The inverse transform takes the
-    real part of the first row alone, and of the last one of an even length.
+    Column c smooths with a Gaussian kernel `std[c]` samples wide. The inverse transform uses only
+    the real part of the first row, and of the last row of an even length.
     """
     turn = 2.0 * np.pi * np.fft.rfftfreq(length).astype(np.float32)
     power = np.exp(-((turn[:, None] * std) ** 2))

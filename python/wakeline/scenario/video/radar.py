@@ -1,4 +1,4 @@
-"""A simulated radar that gives video: vessels, sea, land and noise in every cell of every sweep."""
+"""Simulated radar video: vessels, sea, land and noise in every cell of every sweep."""
 
 from __future__ import annotations
 
@@ -31,59 +31,58 @@ Targets = Sequence[VideoTarget] | Mapping[str, VideoTarget]
 
 @dataclass(frozen=True, kw_only=True)
 class RadarVideoSimulator:
-    """A radar at north 0, east 0 whose antenna turns clockwise and points north when a turn begins.
+    """A radar at north 0, east 0; its antenna turns clockwise, each revolution starting at north.
 
-    All powers are told over that of the receiver's noise, in a complex field of which the amplitude
-    is taken: noise, clutter and echoes add up as waves. A point target of one square metre has the
-    mean power
+    All powers are relative to the receiver's noise, in a complex field whose amplitude is
+    detected: noise, clutter and echoes interfere. A point target of one square metre has the mean
+    power
 
         ``snr_db - 40 log10(range / reference_range_m)``  in dB
 
-    in the middle of beam and pulse. Both are Gaussian: an angle ``t`` off the beam's middle the
-    power that went out and came back is ``exp(-8 ln 2 (t / beam_width_rad)^2)``, a distance ``d``
-    off the pulse's middle ``exp(-4 ln 2 (d / pulse_length_m)^2)``. Noise is independent from cell
-    to cell and from sweep to sweep.
+    at the center of beam and pulse. Both are Gaussian: at an angle ``t`` off the beam's center the
+    two-way power is ``exp(-8 ln 2 (t / beam_width_rad)^2)``, at a distance ``d`` off the pulse's
+    center ``exp(-4 ln 2 (d / pulse_length_m)^2)``. Noise is independent in each cell and sweep.
 
-    The amplitude ``a`` over the noise's root mean square becomes ``noise_rms a`` (linear) or
+    An amplitude ``a`` relative to the noise's root mean square becomes ``noise_rms a`` (linear) or
     ``noise_rms + (full scale - noise_rms) 20 log10(a) / dynamic_range_db`` (logarithmic), rounded
-    and cut off at 0 and at full scale, ``2^bits - 1``.
+    and clipped to 0 and full scale, ``2^bits - 1``.
 
     Attributes
     ----------
     sweeps_per_turn, cells : int
-        Sweep k of a turn has its centre at ``(k + 1/2)`` of a turn over `sweeps_per_turn`.
+        The center of sweep k is at ``(k + 1/2) / sweeps_per_turn`` of a revolution.
     cell_m, start_range_m : float
-        Length of a range cell, and near edge of the first one.
+        Length of a range cell, and near edge of the first cell.
     period_s : float
-        Time of a turn.
+        Duration of a revolution.
     beam_width_rad : float
-        Of the antenna, between half-power points, one way; at least a sweep wide.
+        One-way half-power width of the antenna; at least one sweep.
     pulse_length_m : float
-        Of an echo in range, between half-power points (half the speed of light times the duration);
-        at least a cell long.
+        Half-power length of an echo in range (half the speed of light times the duration); at least
+        one cell.
     snr_db, reference_range_m : float
-        Power of one square metre at that range; clutter is told at the same range.
+        Signal-to-noise ratio of one square metre at that range; clutter refers to the same range.
     noise_rms : float
-        Root mean square of the noise's amplitude, in counts; above 0 and below full scale.
+        Root mean square of the noise amplitude, in counts; above 0 and below full scale.
     bits : int
         8 or 16.
     receiver : str
         "linear" or "logarithmic".
     dynamic_range_db : float
-        From the noise to full scale, of the logarithmic receiver.
+        From noise to full scale, of the logarithmic receiver.
     sea : SeaClutter, optional
     land : Land, optional
-        Sea and land take each other's place; both are smoothed across the beam where they meet.
+        Land replaces sea; both are smoothed across the beam where they meet.
     sector_rad : (float, float), optional
-        Only sweeps with their centre from the first azimuth up to the second one, clockwise; they
-        have the times that they have in the whole turn. A sector across north, such as
-        ``(-0.1, 0.1)`` or ``(6.2, 0.1)``, is one piece: of ``(-0.1, 0.1)`` the first sweeps come
-        before the turn begins, of ``(6.2, 0.1)`` the last ones after it has ended.
+        Only sweeps with centers from the first to the second azimuth, clockwise, at their times
+        within a full revolution. A sector across north, such as ``(-0.1, 0.1)`` or ``(6.2, 0.1)``,
+        is contiguous: with ``(-0.1, 0.1)`` the first sweeps are before the start of the revolution,
+        with ``(6.2, 0.1)`` the last ones are after its end.
 
     Raises
     ------
     ValueError
-        When a value makes no sense.
+        When a value is invalid.
 
     Examples
     --------
@@ -120,8 +119,8 @@ class RadarVideoSimulator:
         finite(self, "snr_db")
         if self.beam_width_rad < _TURN_RAD / self.sweeps_per_turn:
             raise ValueError(
-                f"beam_width_rad must be at least the {_TURN_RAD / self.sweeps_per_turn:.6g} rad "
-                f"from sweep to sweep, got {self.beam_width_rad}"
+                f"beam_width_rad must be at least a sweep of "
+                f"{_TURN_RAD / self.sweeps_per_turn:.6g} rad, got {self.beam_width_rad}"
             )
         if self.pulse_length_m < self.cell_m:
             raise ValueError(
@@ -143,16 +142,16 @@ class RadarVideoSimulator:
         if self.sector_rad is not None:
             object.__setattr__(self, "sector_rad", _sector(self.sector_rad))
             if len(self.grid.azimuth_rad) == 0:
-                raise ValueError(f"sector_rad holds no sweep, got {self.sector_rad}")
+                raise ValueError(f"sector_rad must contain a sweep, got {self.sector_rad}")
 
     @property
     def full_scale(self) -> int:
-        """Largest amplitude."""
+        """Maximum amplitude."""
         return 2**self.bits - 1
 
     @property
     def azimuth_step_rad(self) -> float:
-        """From the centre of a sweep to that of the next one."""
+        """Angle between the centers of consecutive sweeps."""
         return _TURN_RAD / self.sweeps_per_turn
 
     @cached_property
@@ -169,37 +168,37 @@ class RadarVideoSimulator:
         )
 
     def around(self, places_m: ArrayLike, margin_m: float) -> RadarVideoSimulator:
-        """The same radar, of which only the surroundings of some places are simulated.
+        """The same radar, simulated only around some positions.
 
         Parameters
         ----------
         places_m : array_like (n, 2)
-            North and east, such as the way of a target; not around the antenna.
+            North and east, such as the path of a target; not around the antenna.
         margin_m : float
-            Sector and cells reach so far beyond all of them.
+            Margin of sector and cells around all positions.
 
         Returns
         -------
         RadarVideoSimulator
-            Its cells lie where those of the whole picture do.
+            Its cells are a subset of the full picture's.
 
         Raises
         ------
         ValueError
-            When the places have another shape, the margin is negative or the antenna is among them.
+            When the shape is different, the margin is negative or the antenna is within it.
         """
         places = real_numbers("places_m", places_m)
         if places.ndim != 2 or places.shape[1] != 2 or not len(places):
             raise ValueError(f"places_m must have shape (n, 2), got {places.shape}")
         if not (np.isfinite(places).all() and 0 <= margin_m < np.inf):
             raise ValueError(
-                f"places_m and margin_m must be finite, margin not below 0: {margin_m}"
+                f"places_m must be finite and margin_m finite and not negative, got {margin_m}"
             )
         place = places @ [1.0, 1j]
         near_m, far_m = np.abs(place).min() - margin_m, np.abs(place).max() + margin_m
         middle = np.mean(place)
         if near_m <= 0 or abs(middle) == 0:
-            raise ValueError("places_m and their margin must not reach the antenna")
+            raise ValueError(f"places_m must be more than margin_m {margin_m} from the antenna")
         off_rad = np.angle(place / middle)
         reach_rad = margin_m / np.abs(place)
         low_rad, high_rad = np.min(off_rad - reach_rad), np.max(off_rad + reach_rad)
@@ -218,28 +217,28 @@ class RadarVideoSimulator:
         start_time_s: float | None = None,
         rng: np.random.Generator | int = 0,
     ) -> RadarVideo:
-        """One turn of the antenna, or the sector of it.
+        """One revolution of the antenna, or a sector of it.
 
         Parameters
         ----------
         targets : sequence of VideoTarget, or mapping of names to them
         start_time_s : float, optional
-            Time at which the antenna points north; default where the last of the targets' truths
-            begins.
+            Time at which the antenna points north; default the latest start of the targets'
+            truths.
         rng : numpy.random.Generator or int
-            Source of chance, or its seed.
+            Random generator, or its seed.
 
         Returns
         -------
         RadarVideo
-            Of the same seed the same; targets do not change the noise and the clutter.
+            Reproducible for a seed; targets do not change noise and clutter.
 
         Raises
         ------
         ValueError
             When the time is not finite.
         TypeError
-            When a target is no VideoTarget.
+            When a target is not a VideoTarget.
         """
         targets = _listed(targets)
         start_time_s = _start_s(targets, start_time_s)
@@ -253,17 +252,17 @@ class RadarVideoSimulator:
         *,
         start_time_s: float | None = None,
     ) -> Iterator[RadarVideo]:
-        """Turn after turn; the patches of the sea live on, and the land stays as it is.
+        """Consecutive revolutions; sea patches evolve, and land is constant.
 
         Parameters
         ----------
         targets : sequence of VideoTarget, or mapping of names to them
         scans : int
-            How many turns.
+            Number of revolutions.
         seed : int or numpy.random.Generator
-            Seed of chance, or its source.
+            Seed, or a random generator.
         start_time_s : float, optional
-            Time at which the first turn begins; default as of :meth:`turn`.
+            Time at which the first revolution begins; default as for :meth:`turn`.
 
         Returns
         -------
@@ -273,9 +272,9 @@ class RadarVideoSimulator:
         Raises
         ------
         ValueError
-            When the number of scans is below 0 or the time is not finite.
+            When the number of scans is negative or the time is not finite.
         TypeError
-            When a target is no VideoTarget.
+            When a target is not a VideoTarget.
         """
         targets = _listed(targets)
         whole_number("scans", scans, 0)
@@ -284,7 +283,7 @@ class RadarVideoSimulator:
         return (antenna.turn(targets, start_time_s + k * self.period_s) for k in range(scans))
 
     def received(self, amplitude: NDArray[np.float32]) -> NDArray[np.uint8] | NDArray[np.uint16]:
-        """What the receiver gives for amplitudes over the noise's root mean square."""
+        """Receiver output for amplitudes relative to the noise's root mean square."""
         if self.receiver == "linear":
             counts = amplitude * np.float32(self.noise_rms)
         else:
@@ -297,12 +296,12 @@ class RadarVideoSimulator:
 
     @property
     def beam_std_rad(self) -> float:
-        """Standard deviation of the Gaussian that the two-way response of the amplitude is."""
+        """Standard deviation of the two-way Gaussian response of the amplitude."""
         return self.beam_width_rad / np.sqrt(8.0 * np.log(2.0))
 
     @property
     def pulse_std_m(self) -> float:
-        """Standard deviation of the Gaussian that the response of the amplitude in range is."""
+        """Standard deviation of the Gaussian response of the amplitude in range."""
         return self.pulse_length_m / np.sqrt(4.0 * np.log(2.0))
 
     @cached_property
@@ -311,7 +310,7 @@ class RadarVideoSimulator:
 
     @cached_property
     def _cover(self) -> NDArray[np.float32] | None:
-        """Part of land in each cell; none where there is no land at all."""
+        """Part of land in each cell; None without land."""
         if self.land is None:
             return None
         return self.land.cover(self.grid, self.beam_std_rad / np.sqrt(2.0))
@@ -328,7 +327,7 @@ class RadarVideoSimulator:
 
     @cached_property
     def _sea_amplitude(self) -> NDArray[np.float32]:
-        """Root of the mean power of the sea in each cell."""
+        """Root of the mean power of sea clutter in each cell."""
         mean = self.sea.mean_amplitude(self.grid, self.reference_range_m)
         if self._cover is not None:
             mean *= np.sqrt(1.0 - np.minimum(self._cover, 1.0))
@@ -336,7 +335,7 @@ class RadarVideoSimulator:
 
 
 class _Antenna:
-    """One antenna on its turns: what of the clutter lives from one to the next."""
+    """The clutter's state from one revolution to the next."""
 
     def __init__(self, radar: RadarVideoSimulator, rng: np.random.Generator) -> None:
         self._radar, self._rng = radar, rng
@@ -364,7 +363,7 @@ class _Antenna:
         )
 
     def _add_clutter(self, field: NDArray[np.complex64]) -> None:
-        """The speckle of this turn under the textures of sea and land, and what of land stays."""
+        """This revolution's speckle times the textures of sea and land, and the constant land."""
         speckle = self._radar._speckle.draw(self._rng)
         strength = self._sea_strength() if self._radar.sea is not None else None
         if self._radar.land is not None:
@@ -375,10 +374,10 @@ class _Antenna:
         field += speckle
 
     def _sea_strength(self) -> NDArray[np.float32]:
-        """Root of the sea's power in each cell, its patches a period older than the last time.
+        """Root of the sea's power in each cell, its patches one period older.
 
-        The Gaussian field below the texture is a first-order autoregression from turn to turn, so
-        that the texture has lost all but 1 / e after the correlation time.
+        The Gaussian field behind the texture is a first-order autoregression, so that the
+        correlation of the texture falls to 1 / e in the correlation time.
         """
         sea, radar = self._radar.sea, self._radar
         texture, patches = radar._sea_patches
@@ -393,7 +392,7 @@ class _Antenna:
         return texture.amplitude(self._sea_field) * radar._sea_amplitude
 
     def _raise_land(self) -> None:
-        """Draw the land: what of its echo stays, and how strong the rest is."""
+        """Draw the land: the constant part of its echo, and the power of the rest."""
         radar, land, grid = self._radar, self._radar.land, self._radar.grid
         texture, patches = _patches(land.shape, land.correlation_m, grid)
         hills = np.float32(np.sqrt(0.5)) * patches.draw(self._rng)
@@ -414,10 +413,10 @@ class _Antenna:
         target: VideoTarget,
         start_time_s: float,
     ) -> None:
-        """The echo of every pass of the beam over the target that sweeps of this turn saw.
+        """The echo of every pass of the beam over the target within this revolution.
 
-        A pass has its number on from the first turn, and its phases come from that number: of an
-        echo across north one turn sees the one part and the next turn the other.
+        Passes are numbered from the first revolution, and the number seeds the phases: an echo
+        across north has its parts in two revolutions.
         """
         state, azimuth_rad = _at_passes(
             target, start_time_s + self._radar.period_s * _PASSES, self._radar.period_s
@@ -434,7 +433,7 @@ class _Antenna:
         azimuth_rad: float,
         offset: int,
     ) -> None:
-        """Scatterers through beam and pulse: the product (sweeps, S) (S, cells)."""
+        """Response of the scatterers in beam and pulse: the product (sweeps, S) (S, cells)."""
         radar, grid = self._radar, self._radar.grid
         place = target.scatterers_at(state)
         range_m = np.abs(place)
@@ -456,7 +455,7 @@ class _Antenna:
         field[sweeps, cells] += echo.astype(np.complex64)
 
     def _power(self, target: VideoTarget, state: NDArray[np.float64]) -> float:
-        """Mean power over that of the noise; nearer than a cell as at a cell's distance."""
+        """Mean signal-to-noise ratio; a range below one cell counts as one cell."""
         radar = self._radar
         range_m = max(float(np.hypot(state[0], state[2])), radar.cell_m)
         gain = amplitude_of_db(radar.snr_db) ** 2
@@ -467,10 +466,11 @@ class _Antenna:
 def _at_passes(
     target: VideoTarget, begin_s: NDArray[np.float64], period_s: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """States (n, 4) and azimuths when the beam of turns that begin then passes the target.
+    """States (n, 4) and azimuths at which the beam passes the target, by start of revolution.
 
-    Solves ``time = begin + period * azimuth(time) / turn`` by fixed point, from an azimuth between
-    0 and a turn; it contracts where the target's azimuth changes slower than the antenna turns.
+    Solves ``time = begin + period * azimuth(time) / turn`` by fixed-point iteration, from an
+    azimuth between 0 and 2 pi; it contracts if the target's azimuth changes slower than the
+    antenna's.
     """
     state = target.truth.state_at(begin_s)
     azimuth_rad = np.arctan2(state[:, 2], state[:, 0]) % _TURN_RAD
@@ -486,7 +486,7 @@ def _at_passes(
 
 
 def _within(centres: NDArray, places: NDArray, reach: float) -> slice:
-    """Those of the ascending centres that are within reach of any of the places."""
+    """The ascending centers that are within reach of any of the positions."""
     first = np.searchsorted(centres, np.min(places) - reach)
     return slice(int(first), int(np.searchsorted(centres, np.max(places) + reach)))
 
@@ -498,14 +498,14 @@ def _gaussian(distance: NDArray, std: float) -> NDArray[np.float64]:
 def _patches(
     shape: float, correlation_m: float, grid: PolarGrid
 ) -> tuple[GammaTexture, PatchyField]:
-    """A texture, and the field below it whose correlation makes that of the texture as asked."""
+    """A texture, and the field behind it that gives the requested correlation."""
     texture = GammaTexture(shape)
     gaussian_m = correlation_m / np.sqrt(-np.log(texture.gaussian_correlation))
     return texture, PatchyField(grid, float(gaussian_m))
 
 
 def _start_s(targets: Sequence[VideoTarget], start_time_s: float | None) -> float:
-    """The given time, by default that at which all truths have begun."""
+    """The given time, by default the latest start of the truths."""
     if start_time_s is None:
         return max((start_of(target.truth) for target in targets), default=0.0)
     if not np.isfinite(start_time_s):
@@ -524,7 +524,7 @@ def _listed(targets: Targets) -> list[VideoTarget]:
 
 
 def _sector(sector_rad: ArrayLike) -> tuple[float, float]:
-    """Begin as it was given, end after it by at most a turn."""
+    """Start as given; end after it by at most a revolution."""
     edges = real_numbers("sector_rad", sector_rad)
     if edges.shape != (2,) or not np.isfinite(edges).all():
         raise ValueError(f"sector_rad must be two finite azimuths, got {sector_rad}")
@@ -533,6 +533,6 @@ def _sector(sector_rad: ArrayLike) -> tuple[float, float]:
         end += _TURN_RAD
     if not (-_TURN_RAD <= begin <= _TURN_RAD and begin < end <= begin + _TURN_RAD + 1e-9):
         raise ValueError(
-            f"sector_rad must begin from -2 pi to 2 pi and be at most a turn, got {sector_rad}"
+            f"sector_rad must begin within -2 pi to 2 pi and span at most 2 pi, got {sector_rad}"
         )
     return begin, end

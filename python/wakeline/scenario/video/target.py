@@ -1,4 +1,4 @@
-"""A vessel as a radar sees it: a hull of scatterers that moves, turns and fluctuates."""
+"""A vessel in radar video: a hull of scatterers that moves, turns and fluctuates."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SWERLING = (0, 1, 2, 3, 4)
 
 @runtime_checkable
 class AnyMotion(Protocol):
-    """What a target asks of its truth: :class:`Truth` and all that can tell a state."""
+    """What a target needs of its truth: a :class:`Truth` or any object with ``state_at``."""
 
     def state_at(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
         """States (T, 4), ``[north, vnorth, east, veast]``, NaN where there is no target."""
@@ -28,38 +28,38 @@ class AnyMotion(Protocol):
 class VideoTarget:
     """A vessel in radar video.
 
-    Point scatterers of equal mean power stand along both rails of the hull, evenly from stern to
-    bow. Their echoes add up as waves, each with a phase of its own that is drawn for every pass of
-    the beam: an extended echo is irregular and its centre wanders (glint), a single point is not.
+    Point scatterers of equal mean power are evenly spaced along both sides of the hull. Their
+    echoes interfere, each with an independent phase in every pass of the beam: an extended echo is
+    irregular and its center wanders (glint), a single point's does not.
 
     Attributes
     ----------
     truth : Truth
-        Or anything with ``state_at``; the middle of the hull. NaN where it is not there.
+        Or any object with ``state_at``; the center of the hull. NaN where there is no target.
     length_m, beam_m : float
-        Of the hull; 0 for a point.
+        Length and beam of the hull; 0 for a point.
     rcs_m2 : float
-        Mean radar cross-section off the beam.
+        Mean radar cross-section outside the broadside lobe.
     swerling : int
         Fluctuation of the scatterers' powers: 0 none; 1 and 2 exponential; 3 and 4 chi-square of 4
-        degrees of freedom; 1 and 3 from pass to pass, 2 and 4 from sweep to sweep. Where many
-        scatterers share a cell the echo there tends to the exponential; 1 and 2 keep it exactly.
+        degrees of freedom; 1 and 3 from pass to pass, 2 and 4 from sweep to sweep. With many
+        scatterers in a cell the echo tends to the exponential; with 1 and 2 it is exactly
+        exponential.
     broadside_db : float
-        How much larger the cross-section is when a flat side faces the radar.
+        Increase of the cross-section when a flat side faces the radar.
     broadside_width_rad : float
-        Width of that lobe at half of its height.
+        Width of that lobe at half maximum.
     scatterers : int, optional
-        How many; default one for every 3 m of length and at least 2, one for a point.
+        Number of scatterers; default one per 3 m of length and at least 2, one for a point.
     heading_rad : float, optional
-        For a vessel that does not head where it moves; default the course over ground, north at
-        rest.
+        Heading, if it differs from the course over ground, which is the default (north at rest).
 
     Raises
     ------
     ValueError
-        When a value makes no sense.
+        When a value is invalid.
     TypeError
-        When the truth cannot tell states.
+        When the truth has no `state_at`.
     """
 
     truth: AnyMotion
@@ -86,7 +86,7 @@ class VideoTarget:
 
     @cached_property
     def hull_m(self) -> NDArray[np.float64]:
-        """Scatterers (S, 2), ahead and to starboard of the middle of the hull."""
+        """Scatterers (S, 2), ahead and to starboard of the center of the hull."""
         count = self.scatterers
         if count is None:
             extended = max(self.length_m, self.beam_m) > 0
@@ -98,18 +98,18 @@ class VideoTarget:
         return np.column_stack([ahead, side - side.mean()])
 
     def heading_at(self, state: NDArray[np.float64]) -> float:
-        """Where the bow points in a state (4,)."""
+        """Heading in a state (4,)."""
         _, vnorth_mps, _, veast_mps = state
         course_rad = float(np.arctan2(veast_mps, vnorth_mps))
         return course_rad if self.heading_rad is None else self.heading_rad
 
     def scatterers_at(self, state: NDArray[np.float64]) -> NDArray[np.complex128]:
-        """Places (S,) of the scatterers as north + i east."""
+        """Positions (S,) of the scatterers as north + i east."""
         hull = self.hull_m @ [1.0, 1j]
         return complex(state[0], state[2]) + hull * np.exp(1j * self.heading_at(state))
 
     def cross_section_at(self, state: NDArray[np.float64]) -> float:
-        """Mean cross-section (m^2): twice a turn the broadside lobe comes by, off a hull of length.
+        """Mean cross-section (m^2), with a broadside lobe on both sides of an extended hull.
 
         A Gaussian lobe over the angle between the line of sight and the vessel's beam.
         """
@@ -121,7 +121,7 @@ class VideoTarget:
         return self.rcs_m2 * (1.0 + (10.0 ** (self.broadside_db / 10.0) - 1.0) * lobe)
 
     def fluctuations(self, rng: np.random.Generator, sweeps: int) -> NDArray[np.complex128]:
-        """Amplitudes of unit mean power: a row for the pass, or for each sweep, and S columns."""
+        """Amplitudes of unit mean power: one row per pass, or per sweep, and S columns."""
         size = (sweeps if self.swerling in (2, 4) else 1, len(self.hull_m))
         phase = np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, size))
         if self.swerling == 0:
