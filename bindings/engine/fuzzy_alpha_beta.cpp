@@ -60,7 +60,7 @@ void trace_scan(AnyFuzzyAlphaBeta& estimator, const Sensor& sensor, const double
   const Vec<double, kM> reading = Eigen::Map<const Vec<double, kM>>(z + row * kM);
   const auto plots = static_cast<std::size_t>(estimator.criterion().max_plots);
   const bool moved = estimator.predict(dt_s) == Status::kOk;
-  const Vec<double, 2> prediction = position_of(estimator.estimate());
+  const Vec<double, 2> prediction = position_of(estimator.estimate()).mean;
   fill_row(trace.prediction_m, row, 2, {prediction.data(), 2});
   const auto step =
       moved ? estimator.update(sensor, reading) : failed_step<2, double>(Status::kNotFinite);

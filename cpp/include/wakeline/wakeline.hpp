@@ -21,6 +21,7 @@
 #include "wakeline/core/component.hpp"
 #include "wakeline/core/in_place_array.hpp"
 #include "wakeline/core/require.hpp"
+#include "wakeline/core/state_belief.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/eval/consistency.hpp"

@@ -11,11 +11,12 @@
 
 #include "wakeline/batch/threads.hpp"
 #include "wakeline/core/component.hpp"
-#include "wakeline/simd/pack_math.hpp"
+#include "wakeline/core/state_belief.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/filter/concept.hpp"
 #include "wakeline/gating/radius_gate.hpp"
 #include "wakeline/measurement/concept.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 
@@ -148,33 +149,17 @@ class RunColumn {
   std::size_t size_;
 };
 
-/// North and east of an estimate in any of our layouts of 4, 5 or 6 states.
-template <class Belief>
-auto position_of(const Belief& belief) noexcept {
-  using Scalar = typename std::decay_t<decltype(belief.mean)>::Scalar;
-  return Vec<Scalar, 2>(belief.mean[0], belief.mean[belief.mean.size() == 6 ? 3 : 2]);
-}
-
-/// The same in a layout of any order.
-template <auto Components, class Belief>
-auto position_in(const Belief& belief) noexcept {
-  using Scalar = typename std::decay_t<decltype(belief.mean)>::Scalar;
-  constexpr auto kRows = rows_of(Components, kPosition);
-  return Vec<Scalar, 2>(belief.mean[kRows[0]], belief.mean[kRows[1]]);
-}
-
-/// Where an estimator believes its target: by the components that it tells, or in one of our
-/// layouts.
+/// Estimated position, [north, east], of an estimator of fixed components or of one whose belief
+/// has a `kinematics_of`.
 template <class Estimator>
 auto estimated_position(const Estimator& estimator) noexcept {
   const auto& belief = estimator.estimate();
   using Belief = std::decay_t<decltype(belief)>;
-  if constexpr (requires { Belief::kComponents; })
-    return position_in<Belief::kComponents>(belief);
-  else if constexpr (requires { Estimator::kComponents; })
-    return position_in<Estimator::kComponents>(belief);
+  if constexpr (
+      !requires { Belief::kComponents; } && requires { Estimator::kComponents; })
+    return marginal<kPosition, Estimator::kComponents>(belief).mean;
   else
-    return position_of(belief);
+    return position_of(belief).mean;
 }
 
 /// Sees nothing of a run.

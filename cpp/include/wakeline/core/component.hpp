@@ -24,6 +24,9 @@ enum class Component : int {
 inline constexpr std::array kKinematics{Component::kNorth, Component::kVnorth, Component::kEast,
                                         Component::kVeast};
 
+/// Position `[x, y]`.
+inline constexpr std::array kPosition{Component::kNorth, Component::kEast};
+
 /// Row of `component` in a state laid out as `components`, or -1.
 template <std::size_t N>
 constexpr int index_of(const std::array<Component, N>& components, Component component) noexcept {

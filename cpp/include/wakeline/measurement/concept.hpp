@@ -58,7 +58,4 @@ concept PositionSensor = MeasurementModel<Sensor> &&
   { sensor.position(z) } -> std::convertible_to<Gaussian<2>>;
 };
 
-/// What a sensor reads.
-inline constexpr std::array kPosition{Component::kNorth, Component::kEast};
-
 }  // namespace wakeline

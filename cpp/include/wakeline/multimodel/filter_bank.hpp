@@ -9,39 +9,10 @@
 #include <utility>
 
 #include "wakeline/core/component.hpp"
+#include "wakeline/core/state_belief.hpp"
 #include "wakeline/filter/concept.hpp"
 
 namespace wakeline {
-
-/// A Gaussian belief that knows which component each of its rows holds.
-template <auto Components, class Scalar>
-struct StateBelief : Gaussian<static_cast<int>(Components.size()), Scalar> {
-  static constexpr auto kComponents = Components;
-  static constexpr int kStates = static_cast<int>(Components.size());
-
-  [[gnu::always_inline]] StateBelief& operator=(const Gaussian<kStates, Scalar>& belief) noexcept {
-    copy<kStates, Scalar>(belief, *this);
-    return *this;
-  }
-};
-
-/// The belief that a filter keeps, with what its rows hold; valid as long as the belief is.
-template <auto Components, class Scalar>
-struct BeliefView {
-  static constexpr auto kComponents = Components;
-  static constexpr int kStates = static_cast<int>(Components.size());
-  const Vec<Scalar, kStates>& mean;
-  const Mat<Scalar, kStates, kStates>& covariance;
-};
-
-/// Zero mean and covariance over the same components.
-template <auto Components, class Scalar>
-StateBelief<Components, Scalar> zero_like(const StateBelief<Components, Scalar>&) noexcept {
-  StateBelief<Components, Scalar> zero;
-  zero.mean.setZero();
-  zero.covariance.setZero();
-  return zero;
-}
 
 /// Takes the mean and the lower triangle of a belief, which are what mixing reads.
 template <auto Components, class Scalar, int N>
@@ -105,20 +76,6 @@ template <auto To, class Scalar, class Part>
     sum.covariance(i, j) += weight * (said.covariance(i, j) + d[i] * d[j]);
   });
   mirror_lower<Scalar, kStates>(sum.covariance);
-}
-
-/// The part of a belief that is about position and velocity, `[x, vx, y, vy]`.
-template <auto Components, class Scalar>
-Gaussian<4, Scalar> kinematics_of(const StateBelief<Components, Scalar>& belief) noexcept {
-  static_assert(holds(Components, kKinematics),
-                "wakeline: this state holds no position and velocity");
-  constexpr auto kRows = rows_of(Components, kKinematics);
-  Gaussian<4, Scalar> kinematics;
-  for (int i = 0; i < 4; ++i) {
-    kinematics.mean[i] = belief.mean[kRows[i]];
-    for (int j = 0; j < 4; ++j) kinematics.covariance(i, j) = belief.covariance(kRows[i], kRows[j]);
-  }
-  return kinematics;
 }
 
 /// Filters composed at compile time, of any kinds and state sizes, each with room for the belief it
