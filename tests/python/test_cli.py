@@ -429,7 +429,7 @@ def test_what_navigate_writes_is_an_own_ship_file(tmp_path, capsys):
         ("time_s,north_m,east_m\nnan,2,3\n", "line 2, column time_s"),
         ("time_s,north_m,east_m\n1,2\n", "line 2: a row does not fit the header"),
         ("scan,time_s,north_m,east_m\n0,9,2,3\n1,8,2,3\n", "scan times go back"),
-        ("scan,time_s,north_m,east_m\n0,9,2,3\n1,9,5,3\n", "scan times do not grow"),
+        ("scan,time_s,north_m,east_m\n0,9,2,3\n1,9,5,3\n", "scan times do not increase"),
         ("time_s,range_m,bearing_deg\n1,-5,3\n", "line 2, column range_m"),
         ("time_s,range_m,bearing_deg\n1,5,900\n", "line 2, column bearing_deg"),
         ("time_s;north_m;east_m\n1;2;3\n", "line 1: columns are not separated by commas"),
@@ -482,7 +482,7 @@ def test_plots_without_a_place_are_left_out_with_a_note(tmp_path, capsys):
     rows[[7, 12], 1] = np.nan
     plots = write_plots(tmp_path / "plots.csv", rows)
     assert track(plots, "--out", tmp_path) == 0
-    assert "2 plots without a finite place left out" in capsys.readouterr().out
+    assert "2 plots without a finite position left out" in capsys.readouterr().out
     assert np.isfinite(read_tracks(tmp_path / "tracks.csv").state).all()
 
 

@@ -522,7 +522,7 @@ def test_fixes_that_jump_far_and_come_back_move_nothing(tmp_path, capsys):
     assert "note" not in capsys.readouterr().out
     rows = navigated(tmp_path, moved_north(lines, range(400, 450), 50_000.0))
     assert np.abs(north_off_m(rows, true)).max() < 25.0
-    assert "50 fixes at 0/0 or where the vessel cannot have come" in capsys.readouterr().out
+    assert "50 fixes at 0/0 or out of the vessel's reach" in capsys.readouterr().out
     assert rows[3 * 440]["status"] == "coasting"
 
 

@@ -43,7 +43,7 @@ def test_smoothed_it_is_surer_of_the_same_voyage():
 def test_a_log_that_cannot_be_navigated_as_a_whole_is_refused_in_words():
     part = longest_part()
     unfixed = dataclasses.replace(part, fixes=part.fixes.rows(slice(0)))
-    with pytest.raises(ValueError, match="irene: a set of readings wants a sound fix, got none"):
+    with pytest.raises(ValueError, match="irene: a set of readings needs a usable fix, got none"):
         own_ship.readings_of(unfixed)
     again = dataclasses.replace(part, set_back_lines=part.fixes.line[500:501])
     with pytest.raises(ValueError, match=r"irene: the clock was set back.* each of parts"):

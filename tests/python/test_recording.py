@@ -72,7 +72,7 @@ def test_range_and_bearing_lead_from_own_ship_back_to_the_plot(name):
 
 
 def test_unknown_recording_is_named_beside_the_known_ones():
-    with pytest.raises(ValueError, match=r"'joyrid'.*autoferry, joyride"):
+    with pytest.raises(ValueError, match=r"autoferry, joyride.*'joyrid'"):
         recording.load("joyrid")
 
 
@@ -172,7 +172,7 @@ def test_a_quoted_cell_that_is_cut_or_goes_on_is_no_number(file, row, before):
     path = file(f"time_s,north_m,east_m\n{before}{row}")
     with pytest.raises(RecordingError) as caught:
         read_plots(path)
-    assert_says(caught, path, 3 if before else 2, None, "a row is not CSV", "wanted cells with")
+    assert_says(caught, path, 3 if before else 2, None, "a row is not CSV", "wanted cells")
 
 
 @pytest.mark.parametrize("end", ["", '2,4,5,c"\n', '2,4,5,"c\n', '2,4,5,"c"\n'])
@@ -212,7 +212,7 @@ def test_scans_can_be_read_without_plots(file):
     episode = only(read_plots(None, file(OWN, "own.csv")))
     assert len(episode) == 3
     assert episode.plot_count == 0
-    with pytest.raises(ValueError, match="plots file or an own-ship file"):
+    with pytest.raises(ValueError, match="plots_path or own_path"):
         read_plots(None)
 
 
@@ -248,7 +248,7 @@ def test_plots_in_a_grid_without_own_ship_in_it_are_told(file):
     rows = [f"{k},{5.6e6 + 10 * k},4e5" for k in range(5)]
     plots = file("\n".join(["time_s,north_m,east_m", *rows]) + "\n")
     (note,) = read_plots(plots).notes
-    assert note.startswith("plots are 5614 km from own ship, farther than a radar at sea sees; ")
+    assert note.startswith("plots are 5614 km from own ship")
     assert read_plots(plots, own=(5.6e6, 4.02e5)).notes == []
 
 
@@ -299,7 +299,7 @@ def test_a_turning_antenna_is_found_from_times_and_bearings(file, period_s, targ
     assert abs(len(only(read)) - np.count_nonzero(seen.any(axis=1))) <= 1
     assert abs(len(only(read)) - len(given)) <= 1
     assert len(read.notes) == (targets > 1)
-    assert all(f"turns of {period_s:.2g} s" in note for note in read.notes)
+    assert all(f"revolutions of {period_s:.2g} s" in note for note in read.notes)
 
 
 @pytest.mark.parametrize("cartesian", [False, True])
@@ -335,7 +335,7 @@ def test_plots_that_tell_of_no_turn_are_told_and_left_as_they_are(file):
     read = read_plots(file(polar(time_s, rng.uniform(0.0, 360.0, 300))))
     assert len(only(read)) == 300
     (note,) = read.notes
-    assert "nearly every scan holds one plot" in note
+    assert "nearly every scan has one plot" in note
     assert "period_s" in note
 
 
@@ -408,14 +408,14 @@ def test_plots_without_a_finite_place_are_left_out_and_counted(file, cell):
     read = read_plots(file(text))
     assert [len(scan) for scan in only(read).scans] == [1, 0, 0]
     (note,) = read.notes
-    assert "plots.csv: 2 plots without a finite place" in note
+    assert "plots.csv: 2 plots without a finite position" in note
     assert "line 3" in note
 
 
 def test_times_that_go_back_are_told_where_no_scans_are_numbered(file):
     rows = "86399.5,1,1\n86399,2,2\n0.5,3,3\n3,4,4\n"
     (note,) = read_plots(file("time_s,north_m,east_m\n" + rows)).notes
-    assert "plots.csv: 1 plot put in order that is more than a minute earlier" in note
+    assert "plots.csv: 1 plot sorted that is more than a minute earlier" in note
     assert "line 4" in note
     rows = "a,900,1,1\na,902,1,1\nb,0,1,1\nb,2,1,1\n"
     assert read_plots(file("scenario,time_s,north_m,east_m\n" + rows)).notes == []
@@ -478,7 +478,7 @@ def test_a_scan_list_without_positions_is_a_radar_at_rest(file):
     plots = file("scan,time_s,range_m,bearing_deg\n1,2,10,0\n")
     read = read_plots(plots, file("scan,time_s\n0,0\n1,2\n", "own.csv"), own=(5.0, 6.0))
     assert places(only(read)) == [[], [[15.0, 6.0]]]
-    assert "the radar stands still" in read.notes[0]
+    assert "the radar is stationary" in read.notes[0]
 
 
 # ------------------------------------------------------------------ errors
@@ -525,7 +525,7 @@ def assert_says(caught, path, line, column, *parts):
         ("time_s\n0\n0,1\n", 3, None, ["wanted 1 cell, got 2"]),
         ("time_s,north_m,east_m\n0,1,1\n\n0,1,1,1\n", 4, None, ["wanted 3 cells, got 4"]),
         ("scan,time_s,north_m,east_m\n0,5,1,1\n1,4,1,1\n", 3, "time_s", ["go back", "scan 0"]),
-        ("scan,time_s,north_m,east_m\n0,5,1,1\n1,5,1,1\n", 3, "time_s", ["do not grow", "scan 0"]),
+        ("scan,time_s,north_m,east_m\n0,5,1,1\n1,5,1,1\n", 3, "time_s", ["do not increase", "scan 0"]),
         ("time_s,north_m,east_m,own_north_m,own_east_m\n0,1,1,,1\n", 2, "own_north_m", ["finite"]),
     ],
 )
@@ -549,7 +549,7 @@ def test_bad_plots_are_told_by_file_line_and_column(file, text, line, column, pa
             "scan",
             ["listed twice; wanted each"],
         ),
-        ("scan,time_s,north_m,east_m\n0,2,0,0\n1,1,0,0\n", 3, "time_s", ["do not grow", "scan 0"]),
+        ("scan,time_s,north_m,east_m\n0,2,0,0\n1,1,0,0\n", 3, "time_s", ["do not increase", "scan 0"]),
         ("scan,time_s,north_m,east_m\n0,0,zero,0\n", 2, "north_m", ["a number", "'zero'"]),
     ],
 )
@@ -586,7 +586,7 @@ def test_a_pipe_that_is_no_text_is_not_read_again(tmp_path):
     reader.start()
     pipe.write_bytes(b"\x1f\x8b")
     reader.join(timeout=10.0)
-    assert "got a file packed by gzip, unpack it first" in told[0]
+    assert "got a file compressed by gzip, decompress it first" in told[0]
 
 
 def test_a_turned_scan_keeps_its_ranges_about_own_ship(file):
@@ -717,7 +717,7 @@ def test_recordings_that_ship_are_written_and_read_back(tmp_path, name):
 @pytest.mark.parametrize(
     ("episodes", "target", "wanted"),
     [
-        (["a", "a"], "1", "each episode must have a name of its own, got 'a' 2 times"),
+        (["a", "a"], "1", "each episode must have a unique name, got 'a' 2 times"),
         ([" a"], "1", "names of episodes must be one line without spaces around it, got ' a'"),
         (["a\nb"], "1", r"names of episodes must be one line .*, got 'a\\nb'"),
         (["a"], "1 ", "names of targets must be one line without spaces around it, got '1 '"),
@@ -776,7 +776,7 @@ def test_what_is_made_of_columns_takes_lists_and_refuses_what_does_not_fit(made)
 
 @pytest.mark.parametrize("time_s", [[], [0.0, 0.0], [0.0, 5.0, 5.0]])
 def test_own_ship_is_at_one_place_at_a_time(time_s):
-    with pytest.raises(ValueError, match="time_s must have one time or more, each once, got"):
+    with pytest.raises(ValueError, match="time_s must have at least one time, each once, got"):
         OwnShip(time_s, np.zeros(len(time_s)), np.zeros(len(time_s)))
 
 

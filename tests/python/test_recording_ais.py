@@ -63,9 +63,9 @@ def test_a_wild_report_does_not_move_the_plane(tmp_path, longitudes):
     place_m = beside.plane.position_m(alone.plane.latitude_deg, alone.plane.longitude_deg)
     assert np.hypot(*place_m) < 20.0
     (note,) = beside.notes
-    assert "1 report lies more than 300 km from the origin of the plane (first in line 2)" in note
+    assert "1 report is more than 300 km from the origin of the plane (first in line 2)" in note
     (note,) = read_ais(written(tmp_path, row(10, latitude=-20.0), *there)).notes
-    assert "1 report farther off than a vessel gets at 40 m/s left out (first in line 2)" in note
+    assert "1 report out of reach of the vessel at 40 m/s left out (first in line 2)" in note
 
 
 def test_other_programs_names_of_columns(tmp_path):
@@ -97,7 +97,7 @@ def test_what_a_message_can_hold_but_no_vessel_can_do_is_left_out_and_said(tmp_p
     assert np.isfinite(track.north_m).all()
     (note,) = ais.notes
     assert "1 value of" in note
-    assert "that no vessel has left out (first in line 3)" in note
+    assert "impossible for a vessel left out (first in line 3)" in note
 
 
 def test_a_stream_faster_than_wanted_is_thinned_not_lost(tmp_path):
@@ -141,7 +141,7 @@ def test_what_is_left_out_is_said(tmp_path):
     assert [note.split("left out")[0] for note in ais.notes] == [
         "ais.csv: 1 report without a position ",
         "ais.csv: 1 report less than 1 s before the next of the vessel ",
-        "ais.csv: 1 report farther off than a vessel gets at 40 m/s ",
+        "ais.csv: 1 report out of reach of the vessel at 40 m/s ",
     ]
     assert [note.split("line ")[1] for note in ais.notes] == ["3)", "5)", "6)"]
 
@@ -154,10 +154,10 @@ def test_reports_too_far_off_for_one_plane_are_told(tmp_path):
     way_m = np.hypot(np.diff(track.north_m)[0], np.diff(track.east_m)[0])
     short = 100.0 * (1.0 - way_m / (30 * 5e-5 * 111_320.0 * np.cos(np.deg2rad(21.0))))
     (note,) = ais.notes
-    assert "2 reports lie more than 300 km from the origin of the plane (first in line 3)" in note
-    told = float(note.partition("too short, by ")[2].partition(" %")[0])
+    assert "2 reports are more than 300 km from the origin of the plane (first in line 3)" in note
+    told = float(note.partition("too short by ")[2].partition(" %")[0])
     assert told == pytest.approx(short, abs=1.0)
-    assert "% at 4795 km: cut the file to one area" in note
+    assert "% at 4795 km; cut the file to one area" in note
     near = read_ais(written(tmp_path, row(0, "1", 54.0), row(0, "2", 56.6)), origin_deg=(54.0, 10))
     assert near.notes == []
     assert near.plane.angle_rad(54.0, 10.0) == 0.0
@@ -209,7 +209,7 @@ def test_files_and_parameters_that_make_no_sense(tmp_path):
         read_ais(written(tmp_path, "12:00,54,10", head="Time,Latitude,Longitude"))
     packed = tmp_path / "ais.csv.gz"
     packed.write_bytes(gzip.compress(HEAD.encode()))
-    with pytest.raises(RecordingError, match="packed by gzip, unpack it first"):
+    with pytest.raises(RecordingError, match="compressed by gzip, decompress it first"):
         read_ais(packed)
     path = written(tmp_path, row(0))
     for name in ("min_step_s", "max_speed_mps"):

@@ -403,7 +403,7 @@ def test_times_that_step_back_a_little_are_held(path):
     )
     (block,), report = read(path, octets)
     assert (block.time_s * 128).tolist() == [100, 101, 101, 102]
-    assert report.notes == ["1 sweep whose time goes back, put to the time before"]
+    assert report.notes == ["1 sweep whose time goes back, set to the previous time"]
 
 
 @pytest.mark.parametrize(
@@ -451,7 +451,7 @@ def test_damage_costs_the_sweeps_it_hits_only(path):
         assert report.sweeps == 40
         assert report.problems >= 1
         assert 0 < report.skipped_octets <= len(garbage)
-        assert any(note.endswith("octets passed over because of damage") for note in report.notes)
+        assert any(note.endswith("octets skipped because of damage") for note in report.notes)
 
 
 @given(data=st.data(), file=st.sampled_from(CORPUS))
@@ -483,7 +483,7 @@ def test_a_file_without_video_is_an_error(path, octets, got):
 def test_packed_video_is_named_and_no_video(path):
     like_a_summary = b"\xf0\x00\x11\xd0\x01\x02\x01\tby chance"
     packed = b"\x1f\x8b" + bytes(9) + like_a_summary + bytes(50)
-    with pytest.raises(RecordingError, match="got a file packed by gzip, unpack it first"):
+    with pytest.raises(RecordingError, match="got a file compressed by gzip, decompress it first"):
         read(path, packed)
     assert not recording.is_video(path)
 
@@ -617,7 +617,7 @@ def test_what_happened_once_is_told_in_the_singular():
     counts += ("time_jumps", "reversals", "astray")
     once = VideoReport(**dict.fromkeys(counts, 1)).notes
     twice = VideoReport(**dict.fromkeys(counts, 2)).notes
-    assert once[0] == "1 octet passed over because of damage"
+    assert once[0] == "1 octet skipped because of damage"
     assert once[-1] == "1 sweep far from its neighbours in azimuth, time or count left out"
     assert not [note for note in once if re.match(r"1 \w+s\b", note)]
     assert all(re.match(r"2 \w+s\b", note) for note in twice)

@@ -1,4 +1,4 @@
-"""Radar plots, own ship, truth, tracks, AIS and NMEA 0183 in files; recordings that ship along.
+"""Files of radar plots, own ship, truth, tracks, AIS and NMEA 0183; bundled recordings.
 
 >>> from wakeline import recording
 >>> joyride = recording.load("joyride")
@@ -57,19 +57,19 @@ __all__ = [
 
 
 def names() -> list[str]:
-    """Names of the radar recordings that ship with the package."""
+    """Names of the bundled radar recordings."""
     return sorted(f.name for f in _data().iterdir() if f.is_dir() and (f / "plots.csv").is_file())
 
 
 def load(name: str) -> Recording:
-    """Open a recording that ships with the package.
+    """Open a bundled recording.
 
     Parameters
     ----------
     name : str
         One of ``names()``: "joyride", a fast boat that keeps turning, from a moving own ship;
-        "autoferry", two boats near a slow ferry, five scenarios. Source and licence lie beside the
-        data.
+        "autoferry", two boats near a slow ferry, five scenarios. Source and license are in the
+        folder of the data.
 
     Returns
     -------
@@ -79,34 +79,34 @@ def load(name: str) -> Recording:
     Raises
     ------
     ValueError
-        When there is no recording of that name.
+        When no recording has that name.
     """
     if name not in names():
-        raise ValueError(f"no recording {name!r}; there are {', '.join(names())}")
+        raise ValueError(f"name must be one of {', '.join(names())}, got {name!r}")
     with resources.as_file(_data() / name) as folder:
         plots, scans, truth = (folder / f"{kind}.csv" for kind in ("plots", "scans", "truth"))
         return read_plots(plots, scans, truth, name=name)
 
 
 def load_ais() -> AisRecording:
-    """AIS tracks that ship with the package: 14 vessels that maneuver in the Solent in 2016.
+    """The bundled AIS tracks: 14 vessels that maneuver in the Solent in 2016.
 
-    Source and licence lie beside the data.
+    Source and license are in the folder of the data.
     """
     with resources.as_file(_data() / "solent") as folder:
         return read_ais(folder / "ais.csv")
 
 
 def load_navigation(*, variation_deg: float | None = None) -> NavigationLog:
-    """A log of own ship's instruments that ships with the package: a yacht in a race, 77 minutes.
+    """The bundled log of own ship's instruments: a yacht in a race, 77 minutes.
 
     Position, speed and course over ground, magnetic heading and speed through the water. Source and
-    licence lie beside the data.
+    license are in the folder of the data.
 
     Parameters
     ----------
     variation_deg : float, optional
-        Magnetic variation, positive east, which the log does not tell.
+        Magnetic variation, positive east, which the log does not contain.
     """
     with resources.as_file(_data() / "irene") as folder:
         return read_nmea(folder / "irene.nmea", variation_deg=variation_deg)

@@ -27,7 +27,7 @@ COLUMNS = {
     "sog": ("sog_knots", "sog_kn", "sog", "speed_over_ground"),
 }
 
-_FAR_M = 300e3  # where the plane shortens ways by a thousandth
+_FAR_M = 300e3  # where the plane shortens distances by a thousandth
 
 _NO_LATITUDE_DEG, _NO_LONGITUDE_DEG = 91.0, 181.0
 _NO_COURSE_DEG, _NO_SPEED_KN = 360.0, 102.15  # 102.2 means as much or more
@@ -43,7 +43,7 @@ class AisTrack:
     mmsi : str
         Its number.
     time_s : ndarray (n,)
-        UTC seconds, in order: of reception, which is at times a second or two after sending.
+        UTC seconds of reception, in order; reception may be a second or two after transmission.
     north_m, east_m : ndarray (n,)
         In the local plane.
     course_rad, speed_mps : ndarray (n,)
@@ -52,7 +52,7 @@ class AisTrack:
     Raises
     ------
     ValueError
-        When a column has not as many numbers as there are times, or the times are not finite and in
+        When a column's length differs from that of the times, or the times are not finite and in
         order.
     TypeError
         When a column holds text.
@@ -85,13 +85,13 @@ class AisTrack:
         return self._component(np.sin)
 
     def parts(self, max_gap_s: float = 60.0, min_reports: int = 2) -> list[AisTrack]:
-        """The track cut where nothing was heard for longer than `max_gap_s`.
+        """The track, split at gaps longer than `max_gap_s`.
 
         Parameters
         ----------
         max_gap_s : float
         min_reports : int
-            Shorter parts are left out.
+            Parts with fewer reports are dropped.
 
         Raises
         ------
@@ -124,7 +124,7 @@ class AisRecording:
     tracks : dict of str to AisTrack
         By MMSI, in order of their first report.
     notes : list of str
-        What was left out, and why.
+        Dropped reports and the reasons.
     """
 
     plane: LocalPlane
@@ -146,28 +146,27 @@ def read_ais(
 ) -> AisRecording:
     """Read AIS position reports.
 
-    Columns, by these or like names: ``Time`` (UTC), ``MMSI``, ``Latitude_degrees``,
-    ``Longitude_degrees`` (WGS84) and, where known, ``COG_degrees`` (true) and ``SOG_knots``. Rows
-    need not be sorted. What AIS sends for "not available" (latitude 91, longitude 181, course 360,
-    speed 102.3, and 102.2 for "or higher") is taken as that, and so are courses and speeds that a
-    message can hold but a vessel cannot have: a report without position is left out. Left out are,
-    too, of reports of a vessel closer together than `min_step_s` the earlier ones, which came late,
-    and positions that it cannot have come to from those before at `max_speed_mps`.
+    Columns, by these or similar names: ``Time`` (UTC), ``MMSI``, ``Latitude_degrees``,
+    ``Longitude_degrees`` (WGS84) and, optionally, ``COG_degrees`` (true) and ``SOG_knots``. Rows
+    need not be sorted. The AIS values for "not available" (latitude 91, longitude 181, course 360,
+    speed 102.3, and 102.2 for "or higher") and impossible courses and speeds are missing values.
+    Dropped are reports without a position, late reports (the earlier one of two reports closer
+    together than `min_step_s`), and positions that the vessel cannot reach at `max_speed_mps`.
 
-    The plane is that of one area: a note tells of reports more than 300 km from its origin, and by
-    how much ways are too short there.
+    The plane is for one area: a note reports positions more than 300 km from its origin, and by how
+    much distances are too short there.
 
     Parameters
     ----------
     path : str or Path
         The file.
     origin_deg : (float, float), optional
-        Latitude and longitude of the origin of the plane; default the medians of the positions,
-        which a few wild ones do not move.
+        Latitude and longitude of the plane's origin; default the medians of the positions, which
+        are robust to outliers.
     min_step_s : float
-        Least time between reports of a vessel: of more frequent ones as many are kept as fit.
+        Minimum time between reports of a vessel; more frequent ones are thinned.
     max_speed_mps : float
-        No vessel is faster.
+        Maximum speed of a vessel.
 
     Returns
     -------
@@ -176,8 +175,8 @@ def read_ais(
     Raises
     ------
     RecordingError
-        Naming file, line and column, when the file cannot be read, a column is missing, or a cell
-        is not what it should be.
+        When the file cannot be read, a column is missing, or a cell is invalid; the message names
+        file, line and column.
     ValueError
         When a parameter is not positive or the origin is not on the earth.
     """
@@ -220,7 +219,7 @@ def read_ais(
     angle_rad = plane.angle_rad(latitude_deg, longitude_deg)
     _note_far(notes, table, np.where(late | jumped, 0.0, angle_rad))
     _note(notes, table, late, "report", f"less than {min_step_s:g} s before the next of the vessel")
-    way = f"farther off than a vessel gets at {max_speed_mps:g} m/s"
+    way = f"out of reach of the vessel at {max_speed_mps:g} m/s"
     _note(notes, table, jumped, "report", way)
     return AisRecording(plane, tracks, notes)
 
@@ -228,7 +227,7 @@ def read_ais(
 def _rows_by_vessel(
     mmsi: np.ndarray, time_s: np.ndarray, row: np.ndarray
 ) -> Iterator[tuple[str, np.ndarray]]:
-    """Each vessel of the rows, as they come, with its rows in order of time."""
+    """Each vessel, in order of first report, with its rows in order of time."""
     numbers, first, vessel = np.unique(mmsi[row], return_index=True, return_inverse=True)
     order = np.lexsort((time_s[row], vessel))
     rows = np.split(row[order], np.flatnonzero(np.diff(vessel[order])) + 1)
@@ -255,7 +254,7 @@ def _over_ground(
     good = np.isnan(values) | (np.abs(values) <= largest)
     table.check(column, good, f"a number from 0 to {largest:g}")
     odd = (values < 0.0) | (values > _NO_COURSE_DEG)
-    _note(notes, table, odd, "value", f"of {table.name(column)} that no vessel has")
+    _note(notes, table, odd, "value", f"of {table.name(column)} impossible for a vessel")
     return np.where((values < 0.0) | (values >= missing), np.nan, values)
 
 
@@ -268,7 +267,7 @@ def _median_deg(latitude_deg: np.ndarray, longitude_deg: np.ndarray) -> tuple[fl
 
 
 def _too_soon(time_s: np.ndarray, min_step_s: float) -> np.ndarray:
-    """Mask (n,) of reports that lie less than a step before the next one that is kept."""
+    """Mask (n,) of reports less than a step before the next one that is kept."""
     soon = np.zeros(len(time_s), dtype=bool)
     if np.all(np.diff(time_s) >= min_step_s):
         return soon
@@ -289,14 +288,14 @@ def _note(notes: list[str], table: Table, rows: np.ndarray, noun: str, what: str
 
 
 def _note_far(notes: list[str], table: Table, angle_rad: np.ndarray) -> None:
-    """Tell of reports (n,) so far from the origin that the plane is none of theirs."""
+    """Note reports (n,) too far from the origin of the plane."""
     far = np.nan_to_num(angle_rad) * EARTH_RADIUS_M > _FAR_M
     if far.any():
         farthest_rad = float(angle_rad[far].max())
         short = 100.0 * min(1.0 - np.cos(farthest_rad), 1.0)
         notes.append(
-            f"{table.path.name}: {counted(np.count_nonzero(far), '[report lies|reports lie]')} "
+            f"{table.path.name}: {counted(np.count_nonzero(far), '[report is|reports are]')} "
             f"more than {_FAR_M / 1e3:.0f} km from the origin of the plane (first in line "
-            f"{table.line(int(np.argmax(far)))}), where ways are too short, by {short:.1f} % at "
-            f"{farthest_rad * EARTH_RADIUS_M / 1e3:.0f} km: cut the file to one area"
+            f"{table.line(int(np.argmax(far)))}); distances are too short by {short:.1f} % at "
+            f"{farthest_rad * EARTH_RADIUS_M / 1e3:.0f} km; cut the file to one area"
         )

@@ -1,4 +1,4 @@
-"""Recorded radar video: files of ASTERIX category 240, read turn by turn and written."""
+"""Recorded radar video: files of ASTERIX category 240, read by revolution and written."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from .not_text import packed
 from .video import Beam, RadarVideo
 
 _PIECE = 1 << 22  # octets read at once
-_HEAD = 1 << 19  # octets that tell what a file is
+_HEAD = 1 << 19  # octets that identify the format of a file
 _MOST = 1 << 27  # octets of amplitudes in a block
 _TURN = 2 * math.pi
-_STEP = _TURN / 65536  # of azimuth, as the format counts it
-_LATE = 64  # messages; a sender that goes back further has begun anew
+_STEP = _TURN / 65536  # of azimuth in the format
+_LATE = 64  # messages; a count that goes back further has restarted
 _SEQUENCES = 1 << 32
 _HELD_S = 1.0
 _PAUSE_S = 60.0
 _ASTRAY_RAD = 0.2
 _BELOW = {"azimuth_rad": 1e6, "time_s": 1e15, "start_range_m": 1e9, "cell_m": 1e6}  # to be written
-_ABUT = 1.5  # sweeps further apart, or nearer, by this factor are not as wide as is told
+_ABUT = 1.5  # sweeps farther apart, or nearer, by this factor do not have the given width
 
 
 _ASTRAY = "neighbours in azimuth, time or count"
@@ -39,41 +39,41 @@ _ASTRAY = "neighbours in azimuth, time or count"
 
 @dataclass
 class VideoReport:
-    """What a reader met beside the sweeps it gave; filled while it reads.
+    """What a reader found besides the sweeps; filled while it reads.
 
     Attributes
     ----------
     sweeps : int
-        Given.
+        Number of sweeps read.
     source : (int, int) or None
-        Area and system code (SAC, SIC) of the radar that the sweeps are of.
+        Area and system code (SAC, SIC) of the radar that was read.
     summaries : list of str
-        What the sender says about its video, each text once.
+        The sender's descriptions of its video, each text once.
     problems : int
         Blocks and records that cannot be read.
     first_problem : RecordingError or None
         The first of them.
     skipped_octets : int
-        Passed over because of damage.
+        Octets skipped because of damage.
     other_blocks : int
         Blocks of other categories.
     other_source : int
         Sweeps of other radars.
     missing : int
-        Sweeps that the sender's count says are not there.
+        Sweeps missing according to the sender's count.
     repeated, late : int
-        Sweeps left out: again the one before, or after one that was sent later.
+        Dropped sweeps: a repetition, or one that arrived after a later one.
     untimed : int
-        Sweeps left out, without a time of day.
+        Dropped sweeps without a time of day.
     held : int
-        Sweeps whose time goes back by less than a second; they get the time of the one before.
+        Sweeps whose time goes back by less than a second; they get the previous time.
     time_jumps : int
-        Times that go back further, or on by more than a minute.
+        Times that go back further, or forward by more than a minute.
     reversals : int
-        Changes of the way the antenna turns.
+        Changes of the antenna's direction of rotation.
     astray : int
-        Sweeps left out whose azimuth or time is far from those of the sweeps before and after,
-        which agree, or whose count runs ahead of theirs.
+        Dropped sweeps whose azimuth or time is far from those of both neighbors, which agree,
+        or whose count runs ahead of theirs.
     """
 
     sweeps: int = 0
@@ -95,16 +95,16 @@ class VideoReport:
 
     @property
     def notes(self) -> list[str]:
-        """What a user should know, a sentence each."""
+        """Notes for the user, one sentence each."""
         words = [
             (self.problems, "[record|records] cannot be read"),
-            (self.skipped_octets, "[octet|octets] passed over because of damage"),
+            (self.skipped_octets, "[octet|octets] skipped because of damage"),
             (self.other_source, "[sweep|sweeps] of other radars left out"),
             (self.missing, "[sweep|sweeps] missing"),
             (self.repeated, "[sweep that repeats|sweeps that repeat] the one before left out"),
             (self.late, "[sweep that comes|sweeps that come] late left out"),
             (self.untimed, "[sweep|sweeps] without a time of day left out"),
-            (self.held, "[sweep|sweeps] whose time goes back, put to the time before"),
+            (self.held, "[sweep|sweeps] whose time goes back, set to the previous time"),
             (self.time_jumps, "[jump|jumps] of time"),
             (self.reversals, "[reversal|reversals] of the antenna"),
             (self.astray, f"[sweep far from its|sweeps far from their] {_ASTRAY} left out"),
@@ -118,7 +118,7 @@ class VideoReport:
 def is_video(path: str | Path) -> bool:
     """Whether a file begins as ASTERIX radar video or has some in its first 512 KiB.
 
-    Summaries alone do not count in a packed file, where chance makes octets that look like them.
+    Summaries alone do not count in a compressed file, whose octets may look like them by chance.
 
     Raises
     ------
@@ -145,34 +145,33 @@ def read_video(
     period_s: float | None = None,
     report: VideoReport | None = None,
 ) -> Iterator[RadarVideo]:
-    """Read recorded radar video, a block of at most a turn at a time, in bounded memory.
+    """Read recorded radar video in blocks of at most one revolution, in bounded memory.
 
-    The file is ASTERIX category 240, data block after data block; what is read of it and what is
-    done with damage stands in ``cpp/docs/video_files.md``. A new block begins where the antenna
-    passes north or, where the radar shows a sector only, where the beam goes back; where start
-    range, length or number of cells or the bits of a cell change, where the width of sweeps changes
-    by more than half, and where time jumps. A turn of more than 128 MiB is cut. The azimuth is
-    taken as the true bearing.
+    The file is a sequence of ASTERIX category 240 data blocks; ``cpp/docs/video_files.md``
+    describes what is read and how damage is handled. A new block begins where the antenna passes
+    north or, for a sector scan, where the beam goes back; where start range, length or number of
+    cells or the bits of a cell change, where the width of sweeps changes by more than half, and
+    where time jumps. A revolution of more than 128 MiB is split. The azimuth is the true bearing.
 
     Cells of 8 bits and fewer come as ``uint8`` (fewer are scaled to full scale 255), of 16 bits as
-    ``uint16``. The width of a sweep is the mean of its block; where none is told, or sweeps do not
-    come that far apart, it is the median step from sweep to sweep.
+    ``uint16``. The width of a sweep is the mean of its block; without a width, or with another
+    distance between sweeps, it is the median step from sweep to sweep.
 
     Parameters
     ----------
     path : str or Path
         The file.
     strict : bool
-        Raise at the first block or record that cannot be read; else it is counted and left out.
+        Raise at the first block or record that cannot be read; otherwise count and skip it.
     source : (int, int), optional
         Area and system code (SAC, SIC) of the radar to read; default the first in the file.
     midnight_s : float
-        UTC seconds of the midnight before the first sweep, as a record has the time of day only.
-        Later midnights are counted.
+        UTC seconds of the midnight before the first sweep, because records contain only the time of
+        day. Later midnights are counted.
     period_s : float, optional
-        Time of a turn, for files without a time of day: the first sweep then has time 0.
+        Duration of a revolution, for files without a time of day: the first sweep then has time 0.
     report : VideoReport, optional
-        Is filled while reading.
+        Filled while reading.
 
     Yields
     ------
@@ -181,8 +180,8 @@ def read_video(
     Raises
     ------
     RecordingError
-        When the file cannot be opened or has not one sweep to give; with `strict`, at the first
-        fault. It names the file, the octet, what was wanted and what came.
+        When the file cannot be opened or contains no readable sweep; with `strict`, at the first
+        fault. The message names file, octet, what was expected and what came.
     ValueError
         When `period_s` is not positive, `midnight_s` is not finite or `source` is not two octets.
     """
@@ -206,28 +205,28 @@ def write_video(
     source: tuple[int, int] = (0, 0),
     summary: str = "",
 ) -> None:
-    """Write radar video as ASTERIX category 240; `path` is replaced only when all is written.
+    """Write radar video as ASTERIX category 240; `path` is replaced only on success.
 
-    Amplitudes come back as they are, azimuths to half of 360/65536 degrees, times of day to 1/256
-    s (the date is lost), cells to 75 nm (75 mm where longer than 643 m), the start range to half a
-    cell.
+    Amplitudes are read back exactly, azimuths within half of 360/65536 degrees, times of day within
+    1/256 s (the date is lost), cells within 75 nm (75 mm where longer than 643 m), the start range
+    within half a cell.
 
     Parameters
     ----------
     path : str or Path
         The file to write. Its folder must exist.
     videos : RadarVideo or iterable of RadarVideo
-        In the order of time; written as they come, one at a time.
+        In order of time; written one at a time.
     source : (int, int)
         Area and system code (SAC, SIC) of the radar.
     summary : str
-        A text about the video, at most 255 characters of ASCII; none is written when empty.
+        A description of the video, at most 255 ASCII characters; empty: not written.
 
     Raises
     ------
     ValueError
         When a sweep has more than 65024 cells of 8 or 32512 of 16 bits, a time or azimuth that is
-        not finite, or a length that cannot be told.
+        not finite, or a length that the format cannot represent.
     """
     if not summary.isascii():
         raise ValueError(f"summary must be ASCII, got {summary!r}")
@@ -259,7 +258,7 @@ def _check_source(source: tuple[int, int]) -> None:
 
 
 def _check_writable(video: RadarVideo) -> None:
-    """Refuse by name what a radar's sweep cannot have; the encoder knows what the format has."""
+    """Reject impossible values by name; the encoder checks the limits of the format."""
     for name, most in _BELOW.items():
         values = np.atleast_1d(getattr(video, name))
         wrong = np.flatnonzero(~(np.abs(values) < most))
@@ -287,7 +286,7 @@ def _blocks(path: Path, order: _Order, strict: bool) -> Iterator[RadarVideo]:
 def _nothing(path: Path, order: _Order) -> RecordingError:
     report = order.report
     if report.untimed:
-        wanted, got = "I240/140, or period_s told", f"{many(report.untimed, 'sweep')} without"
+        wanted, got = "I240/140, or period_s given", f"{many(report.untimed, 'sweep')} without"
         return RecordingError(path, "no sweep has a time of day", wanted=wanted, got=got)
     if order.other is not None:
         got = f"{report.other_source} of others, first of {order.other}"
@@ -318,7 +317,7 @@ def _decoded(path: Path, report: VideoReport, strict: bool) -> Iterator[Cat240Sw
 
 
 def _pieces(file: BinaryIO) -> Iterator[tuple[bytes, bool]]:
-    """What the file holds, and with each piece whether it is the last."""
+    """The pieces of the file, each with whether it is the last."""
     piece = file.read(_PIECE)
     while True:
         following = file.read(_PIECE)
@@ -341,7 +340,7 @@ def _take_note(path: Path, sweeps: Cat240Sweeps, report: VideoReport, strict: bo
 
 
 class _Sweep(NamedTuple):
-    """One sweep as it stands in the file."""
+    """One sweep of the file."""
 
     source: int
     sequence: int
@@ -352,7 +351,7 @@ class _Sweep(NamedTuple):
     amplitude: NDArray
 
     def follows(self, before: _Sweep) -> bool:
-        """Whether the two can stand in one array."""
+        """Whether the two fit in one array."""
         now, then = self.amplitude, before.amplitude
         return self.geometry == before.geometry and (now.shape, now.dtype) == (
             then.shape,
@@ -360,12 +359,12 @@ class _Sweep(NamedTuple):
         )
 
     def counts_from(self, before: _Sweep) -> int:
-        """Messages from another sweep on, below zero where the sender's count goes back."""
+        """Messages since another sweep, negative where the sender's count goes back."""
         half = _SEQUENCES // 2
         return (self.sequence - before.sequence + half) % _SEQUENCES - half
 
     def counts_ahead(self, before: _Sweep, after: _Sweep) -> bool:
-        """Whether its count makes some late that go on from the one before."""
+        """Whether its count would make sweeps late that continue from the one before."""
         return -_LATE < after.counts_from(self) < 0 and after.counts_from(before) > 0
 
     def strays(self, before: _Sweep, after: _Sweep) -> bool:
@@ -397,9 +396,9 @@ def _rows(sweeps: Cat240Sweeps) -> Iterator[_Sweep]:
         sweeps.bits > 8,
     )
     octets, words = sweeps.octets, sweeps.words
-    for *told, start, cell, first, cells, wide in zip(*(c.tolist() for c in columns), strict=True):
+    for *given, start, cell, first, cells, wide in zip(*(c.tolist() for c in columns), strict=True):
         amplitude = (words if wide else octets)[first : first + cells]
-        yield _Sweep(*told, (start, cell), amplitude.copy())  # lets the piece go
+        yield _Sweep(*given, (start, cell), amplitude.copy())  # lets the piece go
 
 
 class _Order:
@@ -407,7 +406,7 @@ class _Order:
 
     def __init__(self, report: VideoReport, midnight_s: float, period_s: float | None) -> None:
         self.report = report
-        self.other: tuple[int, int] | None = None  # the first radar that is not ours
+        self.other: tuple[int, int] | None = None  # the first other radar
         self._midnight_s = midnight_s
         self._period_s = period_s
         self._before: _Sweep | None = None
@@ -433,7 +432,7 @@ class _Order:
     def _steady(
         self, sweeps: Iterable[_Sweep], strays: Callable[[_Sweep, _Sweep, _Sweep], bool]
     ) -> Iterator[_Sweep]:
-        """The sweeps, but those that stand alone where their neighbours do not."""
+        """The sweeps without those far from both neighbors, which agree."""
         before = held = None
         for sweep in sweeps:
             if held is not None and before is not None and strays(held, before, sweep):
@@ -456,7 +455,7 @@ class _Order:
         return ours
 
     def _is_next(self, sweep: _Sweep) -> bool:
-        """Whether the sender's count, where there is one, goes on."""
+        """Whether the sender's count, if there is one, continues."""
         before = self._before
         if before is not None and sweep.sequence >= 0 and before.sequence >= 0:
             step = sweep.counts_from(before)
@@ -493,12 +492,12 @@ def _jumps(step_s: float) -> bool:
 
 
 def _same(sweep: _Sweep, before: _Sweep) -> bool:
-    """Whether both were received at the same time, as far as is told."""
+    """Whether both have the same time, if they have times."""
     return sweep.time_s == before.time_s or math.isnan(sweep.time_s)
 
 
 class _Block:
-    """Sweeps of one geometry and one turn."""
+    """Sweeps of one geometry and one revolution."""
 
     def __init__(self) -> None:
         self._sweeps: list[_Sweep] = []
@@ -514,15 +513,15 @@ class _Block:
 
     def _as_wide(self, sweep: _Sweep) -> bool:
         width_rad, first_rad = sweep.width_rad, self._sweeps[0].width_rad
-        told = width_rad > 0 and first_rad > 0
-        return not told or abs(width_rad - first_rad) <= 0.5 * first_rad + 1.5 * _STEP
+        given = width_rad > 0 and first_rad > 0
+        return not given or abs(width_rad - first_rad) <= 0.5 * first_rad + 1.5 * _STEP
 
     def add(self, sweep: _Sweep) -> None:
         self._octets += sweep.amplitude.nbytes
         self._sweeps.append(sweep)
 
     def videos(self) -> Iterator[RadarVideo]:
-        """The sweeps as radar video; nothing where there are none."""
+        """The sweeps as radar video; None without sweeps."""
         if not self._sweeps:
             return
         start_range_m, cell_m = self._sweeps[0].geometry
@@ -536,12 +535,12 @@ class _Block:
         )
 
     def _mean_width_rad(self) -> float:
-        told = np.array([sweep.width_rad for sweep in self._sweeps])
-        told_rad = float(told[told > 0].mean()) if told.any() else 0.0
+        given = np.array([sweep.width_rad for sweep in self._sweeps])
+        given_rad = float(given[given > 0].mean()) if given.any() else 0.0
         steps = np.abs(np.diff([sweep.azimuth_rad for sweep in self._sweeps]))
         steps = steps[(steps > 0) & (steps < math.pi)]
         if len(steps) == 0:
-            return told_rad or _STEP
+            return given_rad or _STEP
         step_rad = float(np.median(steps))
-        abut = step_rad / _ABUT <= told_rad <= step_rad * _ABUT
-        return told_rad if abut else step_rad
+        abut = step_rad / _ABUT <= given_rad <= step_rad * _ABUT
+        return given_rad if abut else step_rad

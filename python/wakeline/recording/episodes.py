@@ -1,4 +1,4 @@
-"""An episode put together from the rows of a plots file and of an own-ship file."""
+"""An episode assembled from the rows of a plots file and an own-ship file."""
 
 from __future__ import annotations
 
@@ -36,18 +36,18 @@ def build_episode(
     scenario : str
         Its name.
     plots : PlotRows
-        Rows of all scenarios, places that are not finite as NaN.
+        Rows of all scenarios; positions that are not finite are NaN.
     own : OwnRows or None
         Rows of all scenarios.
     fixed : OwnShip
-        Own ship where neither file knows better.
+        Own ship if neither file has its position.
     period_s, own_gap_s : float
         As for ``read_plots``.
 
     Raises
     ------
     RecordingError
-        When scan times do not grow, or own ship is not known at a plot.
+        When scan times do not increase, or own ship's position is unknown at a plot.
     """
     own = None if own is None else own.part(scenario)
     listed = _listed_scans(own)
@@ -84,7 +84,7 @@ def _numbered(
 
 
 def _bearing_rad(plots: PlotRows, own: OwnRows | None, fixed: OwnShip) -> np.ndarray:
-    """Bearing (n,) of each plot from own ship, NaN where its place is not known."""
+    """Bearing (n,) of each plot from own ship, NaN where a position is unknown."""
     if plots.polar:
         return plots.place[:, 1]
     known = own is not None and own.has_position
@@ -96,12 +96,12 @@ def _bearing_rad(plots: PlotRows, own: OwnRows | None, fixed: OwnShip) -> np.nda
 
 
 def _track(rows: OwnRows, fixed: OwnShip) -> OwnShip:
-    """Own ship's track by rows with a position, sorted by time; fixed where there is none."""
+    """Own ship's track from rows with a position, sorted by time; `fixed` without any."""
     return rows.ship() if len(rows.row) else fixed
 
 
 def _all_scans(listed: _ScanList, plots: PlotRows, number: np.ndarray) -> _ScanList:
-    """Listed scans and scans of plots in order of number; -1 stands for no row of the list."""
+    """Listed scans and scans of plots in order of number; -1 is no row of the list."""
     every = np.union1d(listed.number, number)
     time_s = np.empty(len(every))
     own_row = np.full(len(every), -1)
@@ -127,7 +127,7 @@ def _check_plot_times(plots: PlotRows, number: np.ndarray) -> None:
 def _check_scan_times(
     scans: _ScanList, plots: PlotRows, number: np.ndarray, own: OwnRows | None
 ) -> None:
-    """Times of scans must grow with their numbers."""
+    """Times of scans must increase with their numbers."""
     stuck = np.flatnonzero(np.diff(scans.time_s) <= 0)
     if not len(stuck):
         return
@@ -141,7 +141,7 @@ def _check_scan_times(
         row,
         "time_s",
         f"a time after {scans.time_s[k - 1]} of scan {scans.number[k - 1]}",
-        problem="scan times do not grow",
+        problem="scan times do not increase",
     )
 
 
@@ -161,7 +161,7 @@ def _own_ship(
 
 
 def _check_covered(plots: PlotRows, own: OwnRows, own_gap_s: float) -> None:
-    """Own ship must be known at each plot; `own` is sorted by time."""
+    """Own ship's position must be known at each plot; `own` is sorted by time."""
     lost = own.lacks(plots.time_s, own_gap_s)
     if lost is None:
         return
@@ -198,7 +198,7 @@ def _plot_columns(plots: PlotRows, own_m: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _within_half_turn(angle_rad: np.ndarray) -> np.ndarray:
-    """Angles of at most one turn either way, brought into [-pi, pi]; those inside stay as is."""
+    """Angles within one turn either way, wrapped to [-pi, pi]; those inside keep their bits."""
     return angle_rad - 2.0 * np.pi * ((angle_rad > np.pi) * 1.0 - (angle_rad < -np.pi) * 1.0)
 
 

@@ -1,4 +1,4 @@
-"""The one error a reader raises: file, line and column or octet, what was wanted, what came."""
+"""The error of all readers: file, line and column or octet, what was expected, what came."""
 
 from __future__ import annotations
 
@@ -6,24 +6,24 @@ from pathlib import Path
 
 
 class RecordingError(ValueError):
-    """A recording cannot be read as it stands.
+    """A recording cannot be read.
 
     Parameters
     ----------
     path : str or Path
         The file at fault.
     problem : str
-        What is wrong, in words.
+        What is wrong.
     line : int, optional
         Line of the file, 1 for the header.
     column : str, optional
-        Name of the column as it stands in the file.
+        Name of the column in the file.
     offset : int, optional
-        Octets before the place at fault, in a file that is not text in UTF-8.
+        Offset of the fault in octets, in a file that is not UTF-8 text.
     wanted, got : str, optional
-        What a correct file holds there and what this file holds.
+        What was expected there, and what the file has.
 
-    All parameters are kept as attributes; ``str(error)`` is one line made of them.
+    All parameters are attributes; ``str(error)`` is one line made of them.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ def _rebuild(path: Path, problem: str, places: dict) -> RecordingError:
 
 
 def octets_of(path: str | Path, wanted: str | None = None) -> bytes:
-    """All of a file; RecordingError, with what was wanted, where it cannot be read."""
+    """Contents of a file; RecordingError, with what was expected, if it cannot be read."""
     try:
         return Path(path).read_bytes()
     except OSError as error:

@@ -14,11 +14,11 @@ from pathlib import Path
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """Give a fresh path beside `path`; on success the file written there takes the place of `path`.
+    """Yield a temporary path beside `path`; on success that file replaces `path`.
 
-    When the block raises, what stood at `path` is left as it was and the fresh file is removed. The
-    fresh path keeps the suffix of `path`. Where `path` is a link, what it leads to is replaced; a
-    pipe or a device takes the content and stays what it is.
+    When the block raises, `path` is unchanged and the temporary file is removed. The temporary path
+    keeps the suffix of `path`. If `path` is a link, its target is replaced; a pipe or a device
+    receives the content.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
     Raises
     ------
     OSError
-        Naming `path`, when the fresh file cannot be written or cannot take its place.
+        When the temporary file cannot be written or cannot replace `path`; it names `path`.
     """
     path = Path(path)
     if _is_stream(path):
@@ -50,7 +50,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def check_writable(path: str | Path) -> None:
-    """Raise OSError naming `path` where `replacing` could not write a file there."""
+    """Raise OSError naming `path` if `replacing` could not write a file there."""
     path = Path(path)
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
@@ -65,12 +65,12 @@ def check_writable(path: str | Path) -> None:
 
 
 def _is_stream(path: Path) -> bool:
-    """Whether the path is there but neither a file nor a folder."""
+    """Whether the path exists but is neither a file nor a folder."""
     return path.exists() and not path.is_file() and not path.is_dir()
 
 
 def _led_to(path: Path) -> Path:
-    """What a link leads to in the end; any other path itself."""
+    """The final target of a link; any other path itself."""
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
@@ -80,7 +80,7 @@ def _beside(target: Path, suffix: str) -> Path:
 
 @contextmanager
 def _named(fresh: Path, path: Path) -> Iterator[None]:
-    """Errors about the fresh file name the one that was asked for."""
+    """Errors about the temporary file name the requested one."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""What a recording is: episodes of scans of plots, own ship beside them, truth where it is known.
+"""A recording: episodes of scans of plots, with own ship and optional truth.
 
 All positions are metres in one local plane, north and east; all times are seconds (UTC seconds
 since 1970 in files); bearings are radians clockwise from north.
@@ -22,17 +22,17 @@ _VELOCITY_SPAN_S = 20.0
 
 @dataclass(frozen=True)
 class Scan:
-    """The plots of one antenna turn; no plots at all is a scan like any other.
+    """The plots of one antenna revolution; a scan may have no plots.
 
     Attributes
     ----------
     time_s : float
-        The scan's own time: as listed with the scans, else the time of its last plot.
+        Time of the scan as listed, else the time of its last plot.
     number : int
-        The scan's number, as listed or counted from 0.
+        Number of the scan as listed, else counted from 0.
     plot_time_s, north_m, east_m, range_m, bearing_rad : ndarray (n,)
-        Time and place of each plot, sorted by time; range and bearing as seen from own ship at the
-        time of the plot, bearing in [-pi, pi].
+        Time and position of each plot, sorted by time; range and bearing from own ship at the time
+        of the plot, bearing in [-pi, pi].
     own_north_m, own_east_m : ndarray (n,)
         Own ship at the time of each plot.
     """
@@ -61,7 +61,7 @@ class Scan:
         bearing_rad: np.ndarray,
         own_position_m: Callable[[np.ndarray], np.ndarray],
     ) -> Scan:
-        """Of plots (n,) in any order; own ship is at `own_position_m(times)`, (n, 2)."""
+        """From plots (n,) in any order; own ship is at `own_position_m(times)`, (n, 2)."""
         order = np.argsort(plot_time_s, kind="stable")
         plot_time_s, range_m, bearing_rad = plot_time_s[order], range_m[order], bearing_rad[order]
         own_north_m, own_east_m = own_position_m(plot_time_s).T
@@ -78,7 +78,7 @@ class Scan:
         )
 
     def turned(self, by_rad: float) -> Scan:
-        """The scan with its plots turned about own ship, clockwise by an angle."""
+        """The scan with its plots rotated about own ship, clockwise by an angle."""
         bearing_rad = wrap_angle(self.bearing_rad + by_rad)
         own_m = np.column_stack([self.own_north_m, self.own_east_m])
         return Scan.of_plots(
@@ -106,7 +106,7 @@ class Scan:
 
 @dataclass(frozen=True)
 class OwnShip:
-    """Where the radar was, sorted by time, each time once; one row is a radar that does not move.
+    """Positions of the radar, sorted by unique times; one row is a stationary radar.
 
     Attributes
     ----------
@@ -117,13 +117,13 @@ class OwnShip:
     heading_rad : ndarray (n,) or None
         Heading, clockwise from north, where recorded.
     velocity_m2s2 : ndarray (n, 2, 2) or None
-        Covariance of the velocity, NaN where not known.
+        Covariance of the velocity, NaN where unknown.
 
     Raises
     ------
     ValueError
-        When there is no time, a time twice or out of order, a position that is not finite, or a
-        column of another length.
+        When there is no time, a repeated time or one out of order, a position that is not finite,
+        or a column of a different length.
     TypeError
         When a column holds text.
     """
@@ -140,7 +140,7 @@ class OwnShip:
         motion = ("vnorth_mps", "veast_mps", "heading_rad")
         columns(self, "time_s", "north_m", "east_m", optional=motion)
         if len(self) == 0 or (np.diff(self.time_s) == 0).any():
-            raise ValueError(f"time_s must have one time or more, each once, got {self.time_s}")
+            raise ValueError(f"time_s must have at least one time, each once, got {self.time_s}")
         for name in ("north_m", "east_m"):
             if not np.isfinite(getattr(self, name)).all():
                 raise ValueError(f"{name} must be finite, got {getattr(self, name)}")
@@ -156,13 +156,13 @@ class OwnShip:
 
     @classmethod
     def fixed(cls, north_m: float = 0.0, east_m: float = 0.0) -> OwnShip:
-        """A radar that does not move."""
+        """A stationary radar."""
         return cls(np.zeros(1), np.array([north_m]), np.array([east_m]))
 
     def position_at(self, time_s: np.ndarray) -> np.ndarray:
         """Positions (T, 2), north and east, by linear interpolation.
 
-        Before the first and after the last row the ship goes on straight at the speed it has there.
+        Before the first and after the last row the velocity is constant.
         """
         time_s = in_a_row("time_s", time_s)
         position_m = np.column_stack([self.north_m, self.east_m])
@@ -175,15 +175,15 @@ class OwnShip:
 
     @property
     def knows_velocity(self) -> bool:
-        """Whether a velocity was recorded or can be had from more than one position."""
+        """Whether a velocity was recorded or follows from more than one position."""
         return len(self) > 1 or self._recorded_velocity() is not None
 
     def velocity_at(self, time_s: np.ndarray) -> np.ndarray:
         """Velocities over ground (T, 2), north and east.
 
-        As recorded, by linear interpolation and constant beyond the ends; where none was recorded
-        the mean over the last 20 s of `position_at`, which errs by the error of a position over
-        14 s and lags by 10 s in a turn.
+        As recorded, linearly interpolated and constant beyond the ends. Otherwise the mean over the
+        last 20 s of `position_at`, with an error of a position's error over 14 s and a lag of 10 s
+        in a turn.
         """
         time_s = in_a_row("time_s", time_s)
         recorded = self._recorded_velocity()
@@ -206,7 +206,7 @@ class OwnShip:
         return np.column_stack(at).reshape(-1, 2, 2)
 
     def _recorded_velocity(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Times and velocities where they are finite, None where none is."""
+        """Times and velocities where they are finite, None without any."""
         if self.vnorth_mps is None or self.veast_mps is None:
             return None
         known = np.isfinite(self.vnorth_mps) & np.isfinite(self.veast_mps)
@@ -217,7 +217,7 @@ class OwnShip:
 
 @dataclass(frozen=True)
 class Episode:
-    """One stretch of a recording that is tracked from a fresh start.
+    """One part of a recording that is tracked from a fresh start.
 
     Attributes
     ----------
@@ -264,7 +264,7 @@ class Recording:
     episodes : list of Episode
         At least one.
     notes : list of str
-        What the reader left out or repaired, one counted remark each; empty for a clean recording.
+        What the reader dropped or repaired, one counted note each; empty for a clean recording.
     """
 
     name: str
@@ -283,8 +283,8 @@ class Recording:
     def episode_of(self, scenario: np.ndarray, time_s: np.ndarray) -> np.ndarray:
         """Index of the episode that each row of another table belongs to.
 
-        A row belongs to the episode its ``scenario`` names; a row that names none, to the episode
-        that holds its time or is nearest to it. A recording of one episode takes every row.
+        A row belongs to the episode that its ``scenario`` names; a row without a name belongs to
+        the episode that contains its time or is nearest to it. A single episode takes every row.
 
         Parameters
         ----------
@@ -326,7 +326,7 @@ class Recording:
 
 
 def _facts(episodes: Sequence[Episode]) -> list[str]:
-    """How much there is of scans, plots and targets with truth, and when."""
+    """Numbers of scans, plots and targets with truth, and the time span."""
     targets = {name for episode in episodes for name in episode.truth or ()}
     return [
         many(sum(map(len, episodes)), "scan"),

@@ -1,4 +1,4 @@
-"""What a file is that should be text, or radar video, and is not."""
+"""Identifies files that are neither text nor radar video."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 
 def instead_of_text(octets: bytes) -> str | None:
-    """What the octets of a file show it to be, with what to do; None where they may be text."""
+    """What a file is by its octets, and what to do; None if it may be text."""
     if octets.startswith(_UTF_16_MARKS) or b"\0\0" in (octets[0:4:2], octets[1:4:2]):
         return "text in UTF-16, save it as UTF-8 first"
     return packed(octets)
 
 
 def packed(octets: bytes) -> str | None:
-    """That the octets of a file show it to be packed, with what to do; None where they do not."""
+    """The compression of a file by its octets, and what to do; None if uncompressed."""
     for magic, program in _PACKED.items():
         if octets.startswith(magic):
-            return f"a file packed by {program}, unpack it first"
+            return f"a file compressed by {program}, decompress it first"
     return None

@@ -1,4 +1,4 @@
-"""Own ship from CSV: where the radar was, and the list of scans when the file holds one."""
+"""Own ship from CSV: positions of the radar, and the list of scans if the file has one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .errors import RecordingError
 from .model import OwnShip
 from .table import TIME_NAMES, Table
 
-OWN_GAP_S = 10.0  # longest step that is interpolated across, unless told otherwise
+OWN_GAP_S = 10.0  # longest step that is interpolated across by default
 _ROUNDED = 1e-4  # of covariances written to six digits
 
 VELOCITY_COVARIANCE = ("vnorth_var_m2s2", "vnorth_veast_cov_m2s2", "veast_var_m2s2")
@@ -44,11 +44,11 @@ class OwnRows:
         Row of the file behind each entry.
     scenario : ndarray of str (n,) or None
     scan : ndarray of int (n,) or None
-        None when the file lists no scans.
+        None if the file lists no scans.
     time_s : ndarray (n,)
     columns : dict of str to ndarray (n,)
-        ``north_m``, ``east_m`` and what else of velocity, ``heading_rad`` and, (n, 2, 2),
-        ``velocity_m2s2`` the file holds.
+        ``north_m``, ``east_m`` and, if the file has them, the velocity, ``heading_rad`` and
+        ``velocity_m2s2`` (n, 2, 2).
     """
 
     table: Table
@@ -60,7 +60,7 @@ class OwnRows:
 
     @property
     def has_position(self) -> bool:
-        """Whether the file says where own ship was."""
+        """Whether the file has own ship's position."""
         return "north_m" in self.columns
 
     def part(self, scenario: str) -> OwnRows:
@@ -75,14 +75,14 @@ class OwnRows:
         return rows._where(np.append(np.diff(rows.time_s) > 0, True)[: len(rows.time_s)])
 
     def ship(self) -> OwnShip:
-        """These rows, which must be sorted, as own ship's track."""
+        """These sorted rows as own ship's track."""
         return OwnShip(time_s=self.time_s, **self.columns)
 
     def lacks(self, time_s: np.ndarray, own_gap_s: float) -> tuple[int, str] | None:
-        """Which of times (n,) these rows, which must be sorted, do not cover, and what they have.
+        """The first of times (n,) that these sorted rows do not cover, and what they have.
 
-        A time may lie at most one median step outside of them, and in no step that is longer than
-        `own_gap_s`. None where all are covered.
+        A time may be at most one median step outside of them, and not in a step longer than
+        `own_gap_s`. None if all are covered.
         """
         if len(time_s) == 0:
             return None
@@ -108,7 +108,7 @@ class OwnRows:
     def not_known(
         self, path: str | Path, time_s: float, got: str, **place: int | str
     ) -> RecordingError:
-        """That `path` needs own ship at a time that these rows lack; `place` is line and column."""
+        """The error that `path` needs own ship at a time that these rows lack."""
         return RecordingError(
             path,
             f"own ship is not known at {time_s}",
@@ -134,7 +134,7 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
     Columns: a time; ``own_north_m, own_east_m`` (or ``north_m, east_m``); where known
     ``own_vnorth_mps, own_veast_mps, own_heading_deg``, and the covariance of the velocity,
     ``vnorth_var_m2s2, vnorth_veast_cov_m2s2, veast_var_m2s2``; ``scan`` when each row is a scan
-    (positions may then be absent); ``scenario``; ``status``, of which ``jumped`` is told. An empty
+    (positions may then be absent); ``scenario``; ``status``, of which ``jumped`` is noted. An empty
     or NaN position is a gap.
 
     Parameters
@@ -142,12 +142,12 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
     path : str or Path
         The file.
     notes : list of str
-        Remarks are added to it.
+        Notes are added to it.
 
     Raises
     ------
     RecordingError
-        When a column is missing, a cell cannot be read, a covariance is none, a scan is listed
+        When a column is missing, a cell cannot be read, a covariance is invalid, a scan is listed
         twice, or no row follows the header.
     """
     table = Table(path, COLUMNS)
@@ -172,7 +172,7 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
 
 def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
     if "north_m" not in table and "east_m" not in table and "scan" in table:
-        notes.append(f"{table.path.name}: no own-ship position, so the radar stands still")
+        notes.append(f"{table.path.name}: no own-ship position, so the radar is stationary")
         return {}
     table.require("north_m", "east_m")
     motion = {"north_m": table.ways_m("north_m"), "east_m": table.ways_m("east_m")}
@@ -210,7 +210,7 @@ def _note_jumped(table: Table, notes: list[str]) -> None:
     if "jumped" in status:
         rows = many(status.count("jumped"), "row")
         notes.append(
-            f"{table.path.name}: own ship's place is in doubt in {rows}, of "
+            f"{table.path.name}: own ship's position is in doubt in {rows} with "
             f"status jumped (first in line {table.line(status.index('jumped'))})"
         )
 
@@ -221,8 +221,8 @@ def _note_order(rows: OwnRows, notes: list[str]) -> None:
     if len(back):
         notes.append(
             f"{rows.table.path.name}: times go back {many(len(back), 'time')} (first in line "
-            f"{rows.table.line(int(back.min()))}), and rows are put in order: if a clock was set "
-            "back, own ship is at two places at a time, so cut the file there"
+            f"{rows.table.line(int(back.min()))}), and rows are sorted: if a clock was set "
+            "back, own ship has two positions at a time, so cut the file there"
         )
 
 

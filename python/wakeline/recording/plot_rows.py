@@ -36,8 +36,8 @@ _MEASUREMENT_WANTED = (
 
 _BACK_S = 60.0
 _PUT_IN_ORDER = (
-    "put in order that [is|are] more than a minute earlier than the row above: where a clock was "
-    "set back, or a day of seconds ended, cut the file"
+    "sorted that [is|are] more than a minute earlier than the row above: if a clock was set back "
+    "or restarted at midnight, cut the file there"
 )
 
 
@@ -52,7 +52,7 @@ class PlotRows:
     row : ndarray of int (n,)
         Row of the file behind each entry.
     scenario : ndarray of str (n,)
-        '' where the file has no scenario column.
+        '' if the file has no scenario column.
     scan : ndarray of int (n,) or None
     time_s : ndarray (n,)
     place : ndarray (n, 2)
@@ -60,7 +60,7 @@ class PlotRows:
     polar : bool
         Whether `place` is range and bearing.
     own_m : ndarray (n, 2) or None
-        Own position beside each plot, where the file has it.
+        Own position with each plot, if the file has it.
     """
 
     table: Table | None
@@ -77,7 +77,7 @@ class PlotRows:
 
     @classmethod
     def none(cls) -> PlotRows:
-        """No rows of no file."""
+        """No rows."""
         return cls(
             table=None,
             row=np.zeros(0, dtype=int),
@@ -111,12 +111,12 @@ def read_plot_rows(path: str | Path, notes: list[str]) -> PlotRows:
     path : str or Path
         The file.
     notes : list of str
-        Remarks are added to it: times that go back, repeated rows (left out), no plots at all.
+        Notes are added to it: times that go back, repeated rows (dropped), no plots.
 
     Raises
     ------
     RecordingError
-        When a column is missing or a cell cannot be read or makes no sense.
+        When a column is missing or a cell cannot be read or is invalid.
     """
     table = Table(path, COLUMNS)
     table.require("time_s")
@@ -144,12 +144,12 @@ def remark(rows: PlotRows, chosen: np.ndarray, what: str, notes: list[str]) -> N
     if chosen.any():
         first = rows.table.line(int(rows.row[np.argmax(chosen)]))
         count = np.count_nonzero(chosen)
-        told = counted(int(count), f"[plot|plots] {what}")
-        notes.append(f"{rows.table.path.name}: {told} (first in line {first})")
+        note = counted(int(count), f"[plot|plots] {what}")
+        notes.append(f"{rows.table.path.name}: {note} (first in line {first})")
 
 
 def _places(table: Table, notes: list[str]) -> tuple[np.ndarray, bool]:
-    """Measured places (n, 2), NaN where not finite, and whether they are polar."""
+    """Measured positions (n, 2), NaN where not finite, and whether they are polar."""
     _at_most_one(table, ("range_m", "range_nm"))
     _at_most_one(table, ("bearing_deg", "bearing_rad"))
     cartesian = "north_m" in table and "east_m" in table
@@ -157,7 +157,7 @@ def _places(table: Table, notes: list[str]) -> tuple[np.ndarray, bool]:
         "bearing_deg" in table or "bearing_rad" in table
     )
     if cartesian and polar:
-        notes.append(f"{table.path.name}: north and east are used, range and bearing are not")
+        notes.append(f"{table.path.name}: north and east are used, range and bearing are ignored")
     if cartesian:
         columns = [table.ways_m("north_m"), table.ways_m("east_m")]
     elif polar:
@@ -196,7 +196,7 @@ def _ranges_m(table: Table) -> np.ndarray:
 
 
 def _bearings_rad(table: Table) -> np.ndarray:
-    """Bearings from north; anything beyond a whole turn either way is an error."""
+    """Bearings from north; anything beyond one turn either way is an error."""
     if "bearing_deg" in table:
         values = table.numbers("bearing_deg")
         table.check("bearing_deg", ~(np.abs(values) > 360.0), "a bearing from -360 to 360 degrees")

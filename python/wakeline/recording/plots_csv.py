@@ -1,4 +1,4 @@
-"""Radar plots from CSV, with own ship and truth beside them, as a recording."""
+"""Radar plots from CSV, with own ship and truth, as a recording."""
 
 from __future__ import annotations
 
@@ -31,34 +31,34 @@ def read_plots(
     own_gap_s: float = OWN_GAP_S,
     name: str | None = None,
 ) -> Recording:
-    """Read radar plots, and own ship and truth where there are files of them.
+    """Read radar plots, and own ship and truth if there are files of them.
 
-    **Columns of the plots file**, known by name in any order and case (``Range [m]`` is
+    **Columns of the plots file**, recognized by name in any order and case (``Range [m]`` is
     ``range_m``): a time (``time_s``, ``time``, ``timestamp``, ``time_utc``, ``utc`` or
-    ``datetime``: UTC seconds or ISO 8601 text, UTC where no zone is given) and a place, either
+    ``datetime``: UTC seconds or ISO 8601 text, UTC without a zone) and a position, either
     ``north_m`` and ``east_m``, or a range (``range_m``, ``distance_m``, ``range_nm``) and a bearing
     clockwise from true north (``bearing_deg``, ``azimuth_deg``, ``bearing_rad``, ``azimuth_rad``).
-    North and east win where a file has both. Optional: ``scan`` (also ``scan_number``,
-    ``scan_id``), ``scenario``, ``own_north_m`` and ``own_east_m``. Other columns are left alone.
+    North and east take precedence over range and bearing. Optional: ``scan`` (also
+    ``scan_number``, ``scan_id``), ``scenario``, ``own_north_m`` and ``own_east_m``. Other columns
+    are ignored.
 
-    **Scans** are told apart by the ``scan`` column. Without one, a plot goes to the scan nearest in
-    time of those the own-ship file lists; without a list, a scan is a turn of the antenna, of
-    `period_s`. Where that is not given but the bearings grow with the times of the plots as under
-    an antenna that turns clockwise, it is found from them, which leaves a note. Bearings that grow
-    so tell where a turn ends; where they do not, a scan begins at a plot more than half a period
-    after the plot before it or 95 % of a period or more after its scan's first plot, and without a
-    period plots of equal time are one scan. Every scan the own-ship file lists is in the
-    recording, with or without plots. Within a scan plots are sorted by time; scans are in the order
-    of their numbers and their times must grow.
+    **Scans** are given by the ``scan`` column. Without one, a plot belongs to the nearest scan in
+    time of the own-ship file; without such a list, a scan is an antenna revolution of `period_s`.
+    Without `period_s` it is estimated from times and bearings, if they fit an antenna that turns
+    clockwise, with a note. Such bearings also show where a revolution ends. Otherwise a scan begins
+    at a plot more than half a period after the plot before it, or 95 % of a period or more after
+    the first plot of its scan; without a period, plots of equal time are one scan. The recording
+    has every scan of the own-ship file, with or without plots. Within a scan plots are sorted by
+    time; scans are in order of their numbers, and their times must increase.
 
     **Own ship** comes from the own columns of the plots file, else by linear interpolation from the
-    own-ship file, else it is the fixed position `own`. A plot may lie at most one median step of
+    own-ship file, else it is the fixed position `own`. A plot may be at most one median step of
     the own-ship file outside its record.
 
-    **Left out with a note**: plots without a finite place (the scan stays) and repeated rows. Where
-    no scans are numbered a note tells, too, of times that go back by more than a minute. A note
-    tells of plots that mostly lie more than 300 km from own ship, as in a grid of a country without
-    her place in it. A file with a header only has no plots, which is no error.
+    **Dropped with a note**: plots without a finite position (the scan remains) and repeated rows.
+    Without scan numbers, times that go back by more than a minute get a note, too. So do plots that
+    are mostly more than 300 km from own ship, as in a national grid without its position. A file
+    with only a header has no plots; that is not an error.
 
     Parameters
     ----------
@@ -72,9 +72,9 @@ def read_plots(
         Truth file: a time, ``target``, ``north_m``, ``east_m``; ``scenario``; ``vnorth_mps`` and
         ``veast_mps`` where known.
     own : (float, float)
-        North and east in metres of a radar that does not move.
+        North and east in metres of a stationary radar.
     period_s : float, optional
-        Time of one antenna turn, right to 5 %.
+        Duration of an antenna revolution, within 5 %.
     own_gap_s : float
         Longest step of the own-ship file that is interpolated across.
     name : str, optional
@@ -87,12 +87,12 @@ def read_plots(
     Raises
     ------
     RecordingError
-        When a file cannot be read as described; it names file, line and column.
+        When a file cannot be read as described; the message names file, line and column.
     ValueError
         When neither plots nor own ship is given, or a parameter is not positive.
     """
     if plots_path is None and own_path is None:
-        raise ValueError("a plots file or an own-ship file is needed")
+        raise ValueError("plots_path or own_path must be given, got neither")
     for label, value in (("period_s", period_s), ("own_gap_s", own_gap_s)):
         if value is None:
             continue
@@ -101,7 +101,7 @@ def read_plots(
             raise ValueError(f"{label} must be positive, got {value}")
     notes: list[str] = []
     plots = PlotRows.none() if plots_path is None else read_plot_rows(plots_path, notes)
-    remark(plots, np.isnan(plots.place[:, 0]), "without a finite place left out", notes)
+    remark(plots, np.isnan(plots.place[:, 0]), "without a finite position left out", notes)
     own_rows = None if own_path is None else read_own(own_path, notes)
     fixed = OwnShip.fixed(*own)
 
@@ -120,13 +120,13 @@ def read_plots(
 
 
 def _note_far(episodes: list[Episode], notes: list[str]) -> None:
-    """Tell of plots that no radar of a ship sees from where she is taken to be."""
+    """Note plots that are out of range of a ship's radar."""
     range_m = [scan.range_m for episode in episodes for scan in episode.scans if len(scan)]
     usual_m = float(np.median(np.concatenate(range_m))) if range_m else 0.0
     if usual_m > _FAR_M:
         notes.append(
-            f"plots are {usual_m / 1e3:.0f} km from own ship, farther than a radar at sea sees; "
-            "she stands at the origin where no file says otherwise"
+            f"plots are {usual_m / 1e3:.0f} km from own ship, beyond the range of a ship's radar; "
+            "own ship is at the origin unless a file gives its position"
         )
 
 
@@ -135,25 +135,25 @@ def _in_turns(
     episodes_of: Callable[[float | None], list[Episode]],
     notes: list[str],
 ) -> list[Episode]:
-    """The episodes with turns of the antenna as scans, where the plots tell of turns."""
+    """The episodes with antenna revolutions as scans, if the plots show them."""
     period_s = _turn_s(episodes)
     turns = episodes if period_s is None else episodes_of(period_s)
     if sum(map(len, turns)) < sum(map(len, episodes)):
         notes.append(
-            f"scans are turns of {period_s:.2g} s, as times and bearings of the plots tell"
+            f"scans are revolutions of {period_s:.2g} s, estimated from times and bearings"
         )
         return turns
     sizes = np.array([len(scan) for episode in episodes for scan in episode.scans])
     if period_s is None and len(sizes) >= _MANY and np.mean(sizes == 1) > _NEARLY_ALL:
         notes.append(
-            "nearly every scan holds one plot; where the antenna turns, its period_s tells which "
-            "plots make a scan"
+            "nearly every scan has one plot; give period_s of the radar to group the plots of a "
+            "revolution"
         )
     return episodes
 
 
 def _turn_s(episodes: list[Episode]) -> float | None:
-    """Median over the episodes that tell of a turn, None where none does."""
+    """Median period of the episodes that have one, None if none has."""
     found = []
     for episode in filter(len, episodes):
         time_s = np.concatenate([scan.plot_time_s for scan in episode.scans])
@@ -164,7 +164,7 @@ def _turn_s(episodes: list[Episode]) -> float | None:
 
 
 def _scenarios(plots: PlotRows, own: OwnRows | None) -> list[str]:
-    """Names of the scenarios in the order of the files; '' alone when there is none."""
+    """Names of the scenarios in the order of the files; '' alone without names."""
     named = plots.scenario.tolist()
     if own is not None and own.scenario is not None:
         if plots.table is not None:

@@ -22,35 +22,34 @@ def write_plots(
     own_path: str | Path | None = None,
     truth_path: str | Path | None = None,
 ) -> None:
-    """Write a recording, such as a simulated one, so that :func:`read_plots` reads it back.
+    """Write a recording so that :func:`read_plots` reads it back.
 
-    Ranges, bearings, times and own ship beside each plot are read back to the last bit. What stood
-    at a path is replaced only when the new file is complete.
+    Ranges, bearings, times and own ship's positions are read back to the last bit. An existing file
+    is replaced only when the new one is complete.
 
     Parameters
     ----------
     plots_path : str or Path
-        A row a plot: ``scan, time_s, range_m, bearing_rad, own_north_m, own_east_m``.
+        One row per plot: ``scan, time_s, range_m, bearing_rad, own_north_m, own_east_m``.
     recording : Recording
-        Where an episode has a name, every file has a last column ``scenario``.
+        If an episode has a name, every file ends with a column ``scenario``.
     own_path : str or Path, optional
-        A row a scan: ``scan, time_s, own_north_m, own_east_m`` and, where every episode has one
-        recorded, her velocity ``own_vnorth_mps, own_veast_mps``. Without this file scans without
+        One row per scan: ``scan, time_s, own_north_m, own_east_m`` and, if every episode has
+        recorded it, the velocity ``own_vnorth_mps, own_veast_mps``. Without this file scans without
         plots are lost, and the time of a scan is that of its last plot.
     truth_path : str or Path, optional
-        A row a target and time: ``time_s, target, north_m, east_m, vnorth_mps, veast_mps``.
+        One row per target and time: ``time_s, target, north_m, east_m, vnorth_mps, veast_mps``.
 
     Raises
     ------
     ValueError
-        When there is a path for the truth and an episode has none; when two episodes have the same
-        name, a target has none, or a name would not be read back: with spaces around it or of
-        several lines.
+        When `truth_path` is given and an episode has no truth; when two episodes have the same
+        name, a target has none, or a name cannot be read back (spaces around it, several lines).
     OSError
         When a file cannot be written.
     """
     if truth_path is not None and any(episode.truth is None for episode in recording):
-        raise ValueError("every episode must have truth where there is a truth_path")
+        raise ValueError("every episode must have truth if truth_path is given")
     _check_names("episode", [episode.name for episode in recording])
     if truth_path is not None:
         for episode in recording:
@@ -68,10 +67,10 @@ def write_plots(
 
 
 def _check_names(what: str, names: list[str]) -> None:
-    """ValueError unless each name stands once and is read back from a cell as it is."""
+    """ValueError unless each name is unique and can be read back from a cell."""
     for name, times in Counter(names).items():
         if times > 1:
-            raise ValueError(f"each {what} must have a name of its own, got {name!r} {times} times")
+            raise ValueError(f"each {what} must have a unique name, got {name!r} {times} times")
         if name != name.strip() or {"\n", "\r"} & set(name):
             raise ValueError(
                 f"names of {what}s must be one line without spaces around it, got {name!r}"

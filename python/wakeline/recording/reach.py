@@ -1,4 +1,4 @@
-"""Positions that a vessel cannot have come to."""
+"""Positions that a vessel cannot have reached."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ import numpy as np
 
 _SLACK_M, _SLACK_S = 50.0, 2.0
 _TRUSTED = 3
-_MOST_AWAY = 3  # stretches in a row
+_MOST_AWAY = 3  # consecutive parts
 
 
 def unreachable(time_s: np.ndarray, position_m: np.ndarray, max_speed_mps: float) -> np.ndarray:
-    """Mask (n,) of the positions that do not follow from those before them.
+    """Mask (n,) of the positions that are out of reach of the previous ones.
 
-    Where three in a row follow from each other but not from the track so far, they begin another
-    stretch of it. A first stretch that is no longer than these three is not believed. Neither is a
-    stretch from which the track comes back to where it can have come without it, unless it is
-    longer than those before and after together: the vessel was never there.
+    Three consecutive positions that are consistent with each other but not with the track begin
+    another part of it. A first part of at most three is rejected. So is a part after which the
+    track returns to where it could have gone without it, unless it is longer than the parts before
+    and after together.
 
     Parameters
     ----------
     time_s : ndarray (n,)
-        Never falling.
+        Not decreasing.
     position_m : ndarray (n, d)
         Cartesian.
     max_speed_mps : float
-        No vessel is faster; 50 m and 2 s are let pass on top.
+        Maximum speed of the vessel; 50 m and 2 s are tolerated in addition.
     """
 
     def reachable(a: int, b: int) -> bool:
@@ -40,7 +40,7 @@ def unreachable(time_s: np.ndarray, position_m: np.ndarray, max_speed_mps: float
 
 
 def jumps_m(time_s: np.ndarray, position_m: np.ndarray, max_speed_mps: float) -> np.ndarray:
-    """Ways (n,) from the position before to those that do not follow from it; zero for others."""
+    """Distances (n,) from the previous position to those out of reach; zero for others."""
     way_m = np.sqrt(np.sum(np.diff(position_m, axis=0) ** 2, axis=1))
     far = way_m > _reach_m(np.diff(time_s), max_speed_mps)
     return np.append(0.0, np.where(far, way_m, 0.0))[: len(time_s)]
@@ -51,7 +51,7 @@ def _reach_m(after_s, max_speed_mps: float):
 
 
 def _stretches(count: int, reachable: Callable[[int, int], bool]) -> list[list[int]]:
-    """Positions of which each follows from the one before it in its stretch."""
+    """Positions, each within reach of the previous one of its part."""
     stretches: list[list[int]] = []
     doubted: list[int] = []
     for k in range(count):
@@ -73,7 +73,7 @@ def _stretches(count: int, reachable: Callable[[int, int], bool]) -> list[list[i
 def _without_excursions(
     stretches: list[list[int]], reachable: Callable[[int, int], bool]
 ) -> list[list[int]]:
-    """The stretches without those that the track comes back from, short ones left out first."""
+    """The parts without those that the track returns from, short ones dropped first."""
     longest = _TRUSTED
     while longest < 2 * sum(map(len, stretches)):
         kept: list[list[int]] = []
@@ -91,7 +91,7 @@ def _without_excursions(
 def _stretches_away(
     kept: list[list[int]], stretch: list[int], longest: int, reachable: Callable[[int, int], bool]
 ) -> int:
-    """How many of the last stretches lie between this one and one it follows from."""
+    """Number of the last parts between this one and one that it continues."""
     positions = 0
     for back in range(1, min(_MOST_AWAY, len(kept) - 1) + 1):
         before = kept[-1 - back]

@@ -1,4 +1,4 @@
-"""Which plots make one scan, and what order scans have."""
+"""Grouping of plots into scans."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ _SEAM_RAD = np.deg2rad(18.0)
 
 
 def by_turns(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float | None) -> np.ndarray:
-    """Scan number of each plot, counted from 0: turns of the antenna where plots tell of them.
+    """Scan number of each plot, counted from 0: antenna revolutions if the plots show them.
 
-    Where bearings grow with times as under an antenna that turns clockwise in about `period_s`, a
-    scan begins where the beam passes the middle of the widest sector without plots of the 18
-    degrees before the first plot; elsewhere as `by_time` says. Plots of equal time are in one scan.
+    If bearings grow with time as for an antenna that turns clockwise in about `period_s`, a scan
+    begins where the beam passes the middle of the widest empty sector within the 18 degrees before
+    the first plot; otherwise as in `by_time`. Plots of equal time are in one scan.
 
     Parameters
     ----------
     time_s : ndarray (n,)
         Times of the plots, sorted.
     bearing_rad : ndarray (n,)
-        Clockwise from north; NaN where there is none.
+        Clockwise from north; NaN where missing.
     period_s : float or None
         Time of one antenna turn, right to 5 %.
 
@@ -51,7 +51,7 @@ def by_turns(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float | None
 
 
 def _turn_near(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float) -> float | None:
-    """Time of a turn near `period_s`, None where plots tell of none."""
+    """Duration of a revolution near `period_s`, None if the plots show none."""
     if len(time_s) < _LEAST_PLOTS:
         return None
     likeness = [_likeness(time_s, bearing_rad, turn) for turn in period_s * _NEAR_PERIOD]
@@ -60,7 +60,7 @@ def _turn_near(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float) -> 
 
 
 def _seam_rad(bearing_rad: np.ndarray) -> float:
-    """Where turns begin: the middle of the widest sector without plots shortly before the first."""
+    """Start of revolutions: the middle of the widest empty sector shortly before the first."""
     behind_rad = (bearing_rad[0] - bearing_rad) % (2.0 * np.pi)
     edges_rad = np.append(np.sort(behind_rad[behind_rad < _SEAM_RAD]), _SEAM_RAD)
     gap_rad = np.diff(edges_rad)
@@ -72,16 +72,16 @@ def by_time(time_s: np.ndarray, period_s: float | None) -> np.ndarray:
     """Scan number of each plot from its time alone, counted from 0.
 
     Without a period, plots of equal time are one scan. With the period of a rotating antenna, a
-    scan begins at a plot that comes more than half a period after the plot before it, or 95 % of a
-    period or more after the first plot of its scan, so a target that is seen every turn comes once
-    a scan although the antenna runs a little fast. Scans without plots cannot be seen from times.
+    scan begins at a plot more than half a period after the previous plot, or 95 % of a period or
+    more after the first plot of its scan, so that a target detected in every revolution is in
+    each scan once although the antenna runs a little fast. Scans without plots are not found.
 
     Parameters
     ----------
     time_s : ndarray (n,)
         Times of the plots, sorted.
     period_s : float or None
-        Time of one antenna turn.
+        Duration of an antenna revolution.
 
     Returns
     -------
@@ -100,25 +100,26 @@ def by_time(time_s: np.ndarray, period_s: float | None) -> np.ndarray:
 
 
 def _next_begin(time_s: np.ndarray, begins: np.ndarray, first: int, period_s: float) -> int:
-    """Index of the plot that begins the scan after the one that begins at `first`."""
+    """Index of the first plot of the scan after the one that begins at `first`."""
     full = max(int(np.searchsorted(time_s, time_s[first] + _SCAN_PERIODS * period_s)), first + 1)
     gap = np.flatnonzero(begins[first + 1 : full])
     return first + 1 + int(gap[0]) if len(gap) else full
 
 
 def turn_s(time_s: np.ndarray, bearing_rad: np.ndarray) -> float | None:
-    """Time of a turn of the antenna, right to a per cent or so, None where plots tell of none.
+    """Estimated duration of an antenna revolution, to about 1 %, None if the plots show none.
 
-    Where an antenna turns, the bearing of a plot says when in its turn the beam was there. Of 0.1
-    to 20 s it is the longest time after which plots, half a turn to three turns apart, differ in
-    bearing by as much as the beam turned meanwhile: the mean cosine of what is left is above 0.9.
+    With a rotating antenna, the bearing of a plot gives its phase in the revolution. The result is
+    the longest period of 0.1 to 20 s for which plots half a revolution to three revolutions apart
+    differ in bearing by the angle that the beam turned: the mean cosine of the residual is above
+    0.9.
 
     Parameters
     ----------
     time_s : ndarray (n,)
         Times of the plots, sorted.
     bearing_rad : ndarray (n,)
-        Clockwise from north, as the antenna turns.
+        Clockwise from north.
     """
     if len(time_s) < _LEAST_PLOTS:
         return None
@@ -130,7 +131,7 @@ def turn_s(time_s: np.ndarray, bearing_rad: np.ndarray) -> float | None:
 
 
 def _likeness(time_s: np.ndarray, bearing_rad: np.ndarray, turn: float) -> float:
-    """Mean cosine by which plots miss an antenna of this turn; 0 where too few can be compared."""
+    """Mean cosine of the residual for an antenna of this period; 0 with too few pairs."""
     one = np.linspace(0, len(time_s) - 1, _STARTS).astype(int)[:, np.newaxis]
     other = np.searchsorted(time_s, time_s[one] + turn * _LAGS)
     there = other < len(time_s)
@@ -144,13 +145,13 @@ def _likeness(time_s: np.ndarray, bearing_rad: np.ndarray, turn: float) -> float
 
 
 def by_list(time_s: np.ndarray, listed_time_s: np.ndarray, listed_number: np.ndarray) -> np.ndarray:
-    """Number (n,) of the listed scan nearest in time to each plot; of equals the earlier."""
+    """Number (n,) of the listed scan nearest in time to each plot; the earlier of equals."""
     order = np.argsort(listed_time_s, kind="stable")
     return listed_number[order][nearest(listed_time_s[order], time_s)]
 
 
 def nearest(sorted_time_s: np.ndarray, time_s: np.ndarray) -> np.ndarray:
-    """Index (n,) of the nearest of the sorted times (m,), m > 0; of equals the earlier."""
+    """Index (n,) of the nearest of the sorted times (m,), m > 0; the earlier of equals."""
     after = np.clip(np.searchsorted(sorted_time_s, time_s), 0, len(sorted_time_s) - 1)
     before = np.maximum(after - 1, 0)
     nearer = np.abs(sorted_time_s[before] - time_s) <= np.abs(sorted_time_s[after] - time_s)
@@ -158,7 +159,7 @@ def nearest(sorted_time_s: np.ndarray, time_s: np.ndarray) -> np.ndarray:
 
 
 def repeated(*columns: np.ndarray) -> np.ndarray:
-    """Mask (n,) of rows equal in every column to a row before them; NaN equals nothing."""
+    """Mask (n,) of rows equal to an earlier row in every column; NaN equals nothing."""
     order = np.lexsort(columns[::-1])
     same = np.ones(max(len(order) - 1, 0), dtype=bool)
     for column in columns:

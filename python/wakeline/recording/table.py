@@ -23,7 +23,7 @@ TIME_WANTED = "UTC seconds or ISO 8601 text such as 2021-05-04T07:54:53.034Z"
 _NOT_CSV = "the file is not CSV text in UTF-8"
 _FARTHEST_M = 1e9
 _FASTEST_MPS = 1e6
-_LATEST_S = 1e11  # of the year 5138; what is later is in another unit
+_LATEST_S = 1e11  # year 5138; a later time is in another unit
 
 _ISO_TIME = re.compile(
     r"(\d{4}-\d{2}-\d{2})[T ](\d{2}:\d{2})(?::([0-5]\d|60))?(?:[.,](\d+))?\s*"
@@ -37,23 +37,23 @@ _CELL = re.compile(r'( *"(?:[^"]|"")*")[ \t]*(?=[,\r\n]|$)|([^,]+)')
 class Table:
     """Columns of text read from a CSV file with one header line.
 
-    A byte-order mark, CRLF line ends, blank lines, lines of empty cells as spreadsheets leave them,
-    and spaces around cells do not matter. Column names are compared in lower case with every run of
-    other characters as one underscore, so ``Range [m]`` is ``range_m``.
+    A byte-order mark, CRLF line ends, blank lines, lines of empty cells, and spaces around cells
+    are ignored. Column names are compared in lower case with every run of other characters as one
+    underscore, so ``Range [m]`` is ``range_m``.
 
     Parameters
     ----------
     path : str or Path
         The file.
     meanings : dict of str to sequence of str
-        For each column the caller knows, the names a file may give it. Other columns are left out.
+        For each column the names that a file may use. Other columns are ignored.
 
     Raises
     ------
     RecordingError
-        When the file cannot be read or is empty, when its columns are not separated by commas, when
-        two columns mean the same, when a quoted cell goes on in the next line or after its closing
-        quote, or when a row has more or fewer cells than the header.
+        When the file cannot be read or is empty, its columns are not separated by commas, two
+        columns have the same meaning, a quoted cell continues in the next line or after its closing
+        quote, or a row has more or fewer cells than the header.
     """
 
     def __init__(self, path: str | Path, meanings: dict[str, Sequence[str]]) -> None:
@@ -83,7 +83,7 @@ class Table:
         return column in self._place
 
     def line(self, row: int) -> int:
-        """Line of the file that holds `row`."""
+        """Line of the file with `row`."""
         return int(self._line[row])
 
     def require(self, *columns: str) -> None:
@@ -100,7 +100,7 @@ class Table:
                 )
 
     def name(self, column: str) -> str:
-        """Name that the file gives `column`."""
+        """Name of `column` in the file."""
         return self.header[self._place[column]]
 
     def text(self, column: str) -> list[str]:
@@ -112,7 +112,7 @@ class Table:
         return self._parsed(column, _number, "a number")
 
     def ways_m(self, column: str, metres: float = 1.0) -> np.ndarray:
-        """Cells of a column, in units of so many metres, as metres (n,); an empty cell is NaN."""
+        """Cells of a column in a unit of given length as metres (n,); an empty cell is NaN."""
         return metres * self._at_most(_FARTHEST_M / metres, column, "at most 1e9 m")
 
     def speeds_mps(self, column: str) -> np.ndarray:
@@ -131,7 +131,7 @@ class Table:
         """Cells of a column as UTC seconds (n,), read from numbers or ISO 8601 text."""
         values = self._parsed(column, _time_s, TIME_WANTED)
         self.check(column, np.isfinite(values), TIME_WANTED)
-        self.check(column, np.abs(values) < _LATEST_S, f"{TIME_WANTED}, not milliseconds or less")
+        self.check(column, np.abs(values) < _LATEST_S, f"{TIME_WANTED}, not milliseconds")
         return values
 
     def check(self, column: str, good: np.ndarray, wanted: str) -> None:
@@ -142,7 +142,7 @@ class Table:
     def error(
         self, row: int, column: str, wanted: str, *, problem: str = "a cell cannot be read"
     ) -> RecordingError:
-        """The error that a cell is not what it should be."""
+        """The error for an invalid cell."""
         cell = self._cells[self._place[column]][row].strip()
         return RecordingError(
             self.path,
@@ -154,13 +154,13 @@ class Table:
         )
 
     def _at_most(self, most: float, column: str, wanted: str) -> np.ndarray:
-        """Cells of a column as floats (n,), none that is finite larger than `most` either way."""
+        """Cells of a column as floats (n,); finite ones are at most `most` in magnitude."""
         values = self.numbers(column)
         self.check(column, ~(np.isfinite(values) & (np.abs(values) > most)), wanted)
         return values
 
     def _recognise(self, header: list[str]) -> dict[str, int]:
-        """Where each known column stands."""
+        """Index of each known column."""
         meaning = {name: column for column, names in self._meanings.items() for name in names}
         place: dict[str, int] = {}
         for k, name in enumerate(header):
@@ -229,7 +229,7 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
             path,
             "a row is not CSV",
             line=line + 1,
-            wanted="cells with commas between, each in quotes as a whole or not at all",
+            wanted="cells separated by commas, each quoted as a whole or not at all",
             got=str(error),
         ) from error
 

@@ -1,4 +1,4 @@
-"""Tracks as CSV: one row a confirmed track and scan."""
+"""Tracks as CSV: one row per confirmed track and scan."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _NAMES = (
 
 @dataclass(frozen=True)
 class Tracks:
-    """Rows of tracks, one a track and scan.
+    """Rows of tracks, one per track and scan.
 
     Attributes
     ----------
@@ -60,14 +60,14 @@ class Tracks:
     mode_probability : ndarray (n, K) or None
         Of a multiple-model estimator.
     status : ndarray of str (n,) or None
-        Word for what the track did at the scan, such as ``updated`` or ``coasting``.
+        State of the track at the scan, such as ``confirmed`` or ``coasting``.
     nis : ndarray (n,) or None
-        Normalised innovation squared of the plot used, NaN where none was.
+        Normalized innovation squared of the associated plot, NaN without one.
     scenario : ndarray of str (n,) or None
         Episode of the recording that a row belongs to.
     cpa_m, tcpa_s, cpa_probability : ndarray (n,) or None
-        Closest approach to own ship: its distance, the time until then (negative when past), and
-        the probability of coming closer than a limit.
+        Closest approach to own ship: distance, time until then (negative: in the past), and the
+        probability of a distance below a limit.
 
     Raises
     ------
@@ -118,7 +118,7 @@ class Tracks:
 
     @classmethod
     def joined(cls, parts: Sequence[Tracks]) -> Tracks:
-        """The rows of all parts in their order, with the columns that every part has."""
+        """The rows of all parts in order, with the columns that every part has."""
         if not parts:
             return cls(np.zeros(0, dtype=str), np.zeros(0), np.zeros((0, 4)))
         columns = {name: [getattr(part, name) for part in parts] for name in cls._names()}
@@ -130,7 +130,7 @@ class Tracks:
         return [column.name for column in fields(cls)]
 
     def ids(self) -> list[str]:
-        """The track ids in the order in which they first come."""
+        """The track ids in order of first row."""
         return list(dict.fromkeys(self.track_id.tolist()))
 
     @property
@@ -158,10 +158,10 @@ class Tracks:
 def read_tracks(path: str | Path) -> Tracks:
     """Read a tracks file.
 
-    Columns: ``track_id, time_s, north_m, east_m, vnorth_mps, veast_mps``; where the file has all of
-    them the covariance terms, ``mode_1`` onwards, ``status``, ``nis``, ``cpa_m``, ``tcpa_s``,
-    ``cpa_probability``, ``scenario``. Other columns are left alone. Numbers may be NaN, times may
-    not. A file with a header only has no rows.
+    Columns: ``track_id, time_s, north_m, east_m, vnorth_mps, veast_mps``; optionally all covariance
+    terms, ``mode_1`` onwards, ``status``, ``nis``, ``cpa_m``, ``tcpa_s``, ``cpa_probability``,
+    ``scenario``. Other columns are ignored. Numbers may be NaN, times may not. A file with only a
+    header has no rows.
 
     Raises
     ------
@@ -185,20 +185,19 @@ def read_tracks(path: str | Path) -> Tracks:
 
 
 def write_tracks(path: str | Path, tracks: Tracks) -> None:
-    """Write a tracks file; what stood at `path` is replaced only when the new file is complete.
+    """Write a tracks file; `path` is replaced only when the new file is complete.
 
     The columns are ``track_id, time_s, north_m, east_m, vnorth_mps, veast_mps, course_deg,
-    speed_mps``, then, as far as `tracks` has them, the ten upper covariance terms of
+    speed_mps``, then, if `tracks` has them, the ten upper covariance terms of
     ``[north, vnorth, east, veast]`` row by row, ``mode_1`` onwards, ``status``, ``nis``,
-    ``cpa_m``, ``tcpa_s``, ``cpa_probability``, ``scenario``. Numbers are written so that
-    reading gives the same bits.
+    ``cpa_m``, ``tcpa_s``, ``cpa_probability``, ``scenario``. Numbers are read back to the last bit.
 
     Parameters
     ----------
     path : str or Path
         The file to write. Its folder must exist.
     tracks : Tracks
-        The rows, written in their order.
+        The rows, written in order.
     """
     columns = _columns(tracks)
     with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
@@ -208,7 +207,7 @@ def write_tracks(path: str | Path, tracks: Tracks) -> None:
 
 
 def _columns(tracks: Tracks) -> dict[str, list]:
-    """Columns by name, in the order in which they are written."""
+    """Columns by name, in the order of the file."""
     north, vnorth, east, veast = tracks.state.T
     columns = {
         "track_id": tracks.track_id,

@@ -1,4 +1,4 @@
-"""Where a target really was: recorded positions, and its state at any time between them."""
+"""True motion of a target: recorded positions, and the state at any time between them."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _FIT_SIDE_S = 0.5
 
 @dataclass(frozen=True)
 class TargetTruth:
-    """Recorded truth of one target, sorted by time, each time once.
+    """Recorded truth of one target, sorted by unique times.
 
     Attributes
     ----------
     time_s, north_m, east_m : ndarray (n,)
         Positions.
     vnorth_mps, veast_mps : ndarray (n,)
-        Velocities, NaN where none was recorded.
+        Velocities, NaN where not recorded.
     """
 
     time_s: np.ndarray
@@ -49,20 +49,19 @@ class TargetTruth:
     ) -> np.ndarray:
         """State ``[north, vnorth, east, veast]`` at the given times.
 
-        A sample with a velocity, less than 0.02 s away, is taken as it is. Otherwise the position
-        is interpolated linearly and the velocity is the slope, at that time, of a polynomial fitted
-        by least squares to the samples within `window_s` on either side (the nearest four when
-        there are fewer): a parabola where samples lie more than 0.5 s away on both sides, else a
-        line.
+        A sample with a velocity less than 0.02 s away is used unchanged. Otherwise the position is
+        interpolated linearly, and the velocity is the slope at that time of a least-squares
+        polynomial through the samples within `window_s` on either side (at least the nearest four):
+        a parabola with samples more than 0.5 s away on both sides, else a line.
 
         Parameters
         ----------
         time_s : array_like (T,)
-            Times asked for.
+            Requested times.
         max_gap_s : float
             Longest step between samples that is interpolated across.
         window_s : float
-            Half width of the velocity fit.
+            Half-width of the velocity fit.
 
         Returns
         -------
@@ -93,7 +92,7 @@ class TargetTruth:
         return state
 
     def _position_at(self, t: float, near: int, max_gap_s: float) -> np.ndarray | None:
-        """North and east at `t`, None where there is no truth; `near` is the nearest sample."""
+        """North and east at `t`, None without truth; `near` is the nearest sample."""
         if abs(self.time_s[near] - t) < _SAME_TIME_S:
             return self._position_m(near)
         after = int(np.searchsorted(self.time_s, t))

@@ -28,28 +28,28 @@ _VELOCITY = ("vnorth_mps", "veast_mps")
 def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetTruth]]:
     """Read the truth of each episode of a recording.
 
-    Columns: a time, ``target``, ``north_m``, ``east_m``; where known ``vnorth_mps``, ``veast_mps``;
+    Columns: a time, ``target``, ``north_m``, ``east_m``; optionally ``vnorth_mps``, ``veast_mps``,
     ``scenario``. Rows need not be sorted; of equal times of a target the last row counts. Rows
-    without a finite position, and rows of scenarios the recording does not have, are left out with
-    a note on the recording; one that names no scenario takes the rows of any.
+    without a finite position, or of scenarios that the recording does not have, are dropped with a
+    note on the recording; a recording without scenario names takes the rows of any scenario.
 
     Parameters
     ----------
     path : str or Path
         The file.
     recording : Recording
-        Its episodes take the rows; its notes take the remarks.
+        Its episodes receive the rows, its notes the remarks.
 
     Returns
     -------
     list of dict of str to TargetTruth
-        One an episode: the targets by name.
+        One per episode: the targets by name.
 
     Raises
     ------
     RecordingError
-        When a column is missing, a cell cannot be read, no row follows the header, or no row is of
-        the time of the recording.
+        When a column is missing, a cell cannot be read, no row follows the header, or no row is
+        within the time of the recording.
     """
     table = Table(path, COLUMNS)
     table.require("time_s", "target", "north_m", "east_m")
@@ -74,7 +74,7 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
 def _kept(
     table: Table, state: np.ndarray, scenario: np.ndarray, recording: Recording
 ) -> np.ndarray:
-    """Mask (n,) of the rows that can be used; the others leave a note."""
+    """Mask (n,) of the valid rows; the others get a note."""
     finite = np.isfinite(state[:, :2]).all(axis=1)
     names = [episode.name for episode in recording]
     known = np.isin(scenario, ["", *names]) | (names == [""])
@@ -92,7 +92,7 @@ def _kept(
 def _check_overlap(
     table: Table, time_s: np.ndarray, episode: np.ndarray, recording: Recording
 ) -> None:
-    """Truth must reach into the time of one episode, if there are scans and rows at all."""
+    """Truth must overlap the time of an episode, if there are scans and rows."""
     spans = [
         (own.time_s[[0, -1]], time_s[episode == k])
         for k, own in enumerate(recording)
@@ -102,15 +102,15 @@ def _check_overlap(
         (begin, end), rows = spans[0]
         raise RecordingError(
             table.path,
-            "the truth is of another time than the recording",
+            "the truth does not overlap the recording in time",
             column=table.name("time_s"),
-            wanted=f"times that reach into {begin} to {end}",
+            wanted=f"times within {begin} to {end}",
             got=f"{rows.min()} to {rows.max()}",
         )
 
 
 def _targets(target: np.ndarray, time_s: np.ndarray, state: np.ndarray) -> dict[str, TargetTruth]:
-    """Truth by target; names in order of length, then letters, so that 2 comes before 10."""
+    """Truth by target; names sorted by length, then letters, so that 2 comes before 10."""
     names = sorted(np.unique(target).tolist(), key=lambda name: (len(name), name))
     return {name: _one_target(time_s[target == name], state[target == name]) for name in names}
 

@@ -1,4 +1,4 @@
-"""Radar video: the amplitudes of sweeps, as a radar gives them to whoever looks for echoes."""
+"""Radar video: the amplitudes of sweeps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from wakeline._brief import brief, many, span
 from wakeline._checks import real_numbers
 
 _TURN = 2 * math.pi
-_BACK_RAD = 0.2  # of steps against the way the antenna turns: more than any jitter
+_BACK_RAD = 0.2  # of steps against the antenna's direction: more than any jitter
 
 
 @dataclass(frozen=True)
@@ -23,13 +23,13 @@ class RadarVideo:
     Parameters
     ----------
     amplitude : (N, C) array of uint8 or uint16
-        Of N sweeps the C range cells, from the antenna outwards.
+        C range cells of N sweeps, from the antenna outwards.
     azimuth_rad : (N,) array
-        Centre of each sweep, clockwise from north.
+        Center of each sweep, clockwise from north.
     time_s : (N,) array
-        When the beam stood there.
+        Time of each sweep.
     azimuth_width_rad : float
-        What a sweep stands for: from its centre to that of the next one.
+        Width of a sweep: from its center to that of the next one.
     start_range_m : float
         Near edge of the first cell.
     cell_m : float
@@ -38,7 +38,7 @@ class RadarVideo:
     Raises
     ------
     ValueError
-        When the arrays do not fit each other, or a length makes no sense.
+        When the shapes do not fit, or a length is invalid.
     """
 
     amplitude: NDArray[np.uint8] | NDArray[np.uint16]
@@ -89,11 +89,11 @@ class RadarVideo:
 
     @property
     def range_m(self) -> NDArray[np.float64]:
-        """(C,) centres of the cells."""
+        """(C,) centers of the cells."""
         return self.start_range_m + (np.arange(self.amplitude.shape[1]) + 0.5) * self.cell_m
 
     def turns(self) -> Iterator[RadarVideo]:
-        """The turns of the antenna one by one, cut as `read_video` cuts them."""
+        """The revolutions of the antenna one by one, split as by `read_video`."""
         beam = Beam()
         begins = [beam.begins_turn(azimuth_rad) for azimuth_rad in self.azimuth_rad.tolist()]
         cuts = np.flatnonzero(begins)
@@ -103,36 +103,36 @@ class RadarVideo:
 
 
 class Beam:
-    """Where the beam of an antenna looks, sweep by sweep, and where its turns begin.
+    """Azimuth of the beam, sweep by sweep, and the starts of revolutions.
 
-    A turn begins at north, whichever way the antenna turns. Of a radar that shows a sector only it
-    begins where the beam goes back: at once, as what lies between is not sent, or by and by, as the
-    antenna itself turns back. Where the beam has come all the way round, it goes back only if it
-    stays behind: else a few sweeps were false, or most of a turn was lost.
+    A revolution begins at north, in either direction. For a sector scan it begins where the beam
+    goes back, at once if the gap is not transmitted, or gradually if the antenna turns back. After
+    a full revolution the beam must remain behind, because a few sweeps may be false or most of a
+    revolution may be lost.
 
     Attributes
     ----------
     reversals : int
-        Steps against the step before.
+        Steps against the previous step.
     """
 
     def __init__(self) -> None:
         self.reversals = 0
-        self._way_rad = 0.0  # clockwise until it is known which way the antenna turns
+        self._way_rad = 0.0  # clockwise until the antenna's direction is known
         self._azimuth_rad: float | None = None
         self._step_rad = 0.0  # the last that was not zero
-        self._seen_rad = 0.0  # way until it is known which way the antenna turns
+        self._seen_rad = 0.0  # path until the antenna's direction is known
         self._sense = 0.0
         self._goes_round = False
         self._begin(0.0, from_north=True)
 
     @property
     def turned_rad(self) -> float:
-        """Way in all, whichever way the antenna turns; what is not sent of a turn counts."""
+        """Total path in either direction; the part of a revolution that is not sent counts."""
         return self._way_rad if self._sense else abs(self._way_rad)
 
     def begins_turn(self, azimuth_rad: float) -> bool:
-        """Whether a turn begins with the next sweep, which looks there."""
+        """Whether a revolution begins with the next sweep, at this azimuth."""
         azimuth_rad %= _TURN
         before_rad, self._azimuth_rad = self._azimuth_rad, azimuth_rad
         if before_rad is None:
@@ -153,12 +153,12 @@ class Beam:
         if step_rad * self._sense > _BACK_RAD:
             self._left_rad = self._place_rad
         turns = round((self._place_rad + step_rad - azimuth_rad) / _TURN)
-        self._place_rad = azimuth_rad + turns * _TURN  # exact, as a sum of steps is not
+        self._place_rad = azimuth_rad + turns * _TURN  # exact, unlike a sum of steps
         return self._turns_back(step_rad) or self._completes()
 
     @property
     def _likely_sense(self) -> float:
-        """The way the antenna turns, as far as the steps until now tell; 0 where none does."""
+        """Direction of the antenna from the steps until now; 0 if unknown."""
         return self._sense or float(np.sign(self._seen_rad))
 
     @property
@@ -166,7 +166,7 @@ class Beam:
         return math.pi / 2 if self._goes_round else _BACK_RAD
 
     def _begin(self, place_rad: float, *, from_north: bool) -> None:
-        """A turn begins at an azimuth, from which places go on without a wrap."""
+        """Begin a revolution at an azimuth, from which azimuths continue unwrapped."""
         self._from_north = from_north
         self._start_rad = self._place_rad = self._furthest_rad = self._left_rad = place_rad
         self._behind_rad = 0.0
@@ -176,7 +176,7 @@ class Beam:
             return
         self._seen_rad += step_rad
         sense = self._likely_sense
-        if -self._way_rad * sense > _BACK_RAD:  # it went back before any step told the sense
+        if -self._way_rad * sense > _BACK_RAD:  # it went back before the direction was known
             self._way_rad += sense * _TURN
         if abs(self._seen_rad) > _BACK_RAD:
             self._sense = sense
@@ -204,7 +204,7 @@ class Beam:
         return True
 
     def _completes(self) -> bool:
-        """Whether the beam has come to north, or once round to where a sector began."""
+        """Whether the beam reached north, or the start of a sector after a full revolution."""
         low_rad = 0.0 if self._from_north else self._start_rad - _TURN
         high_rad = _TURN if self._from_north else self._start_rad + _TURN
         complete = (self._sense >= 0.0 and self._place_rad >= high_rad) or (

@@ -1,4 +1,4 @@
-"""NMEA 0183 logs of a vessel's own instruments."""
+"""NMEA 0183 logs of own ship's instruments."""
 
 from .log import (
     BottomTrack,

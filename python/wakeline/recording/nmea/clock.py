@@ -1,4 +1,4 @@
-"""The time of every line of a log, from those of its sentences that tell the time of day."""
+"""The time of every line of a log, from its sentences with a time of day."""
 
 from __future__ import annotations
 
@@ -11,38 +11,38 @@ from .log import NmeaReport
 
 DAY_S = 86400.0
 
-_DOUBTED = 3  # a time that leaps is not believed when one of as many sentences after it comes back
+_DOUBTED = 3  # a time that leaps is rejected when one of as many next sentences returns
 _LEAP_S, _LEAP_STEPS = 10.0, 5.0
 
 
 class Clock:
     """Times of timed sentences and, between them, of lines.
 
-    **Day.** A time of day goes on from the time before by less than half a day either way, which
-    takes it over midnight. The day is that of the nearest sentence with a date.
+    **Day.** A time of day differs from the previous one by less than half a day, which continues
+    it over midnight. The day is that of the nearest sentence with a date.
 
-    **Leaps.** When a time lies before the last or a leap after it (10 s, or five usual steps where
-    these are longer), the three timed sentences that follow decide. If one of them goes on from
-    where the clock was, rather than from the time in doubt, that was a late sentence, where it is
-    before the last by up to `reorder_s`, or else a wrong time. If none does, there was a gap, or
-    the clock was set back. A date is wrong when the date before it is back within three dated
-    sentences, and from where it stays the same over midnight until it changes.
+    **Leaps.** If a time is before the last one or a leap after it (10 s, or five usual steps where
+    these are longer), the next three timed sentences decide. If one of them continues from the
+    previous clock, rather than from the time in doubt, that was a late sentence (before the last
+    one by up to `reorder_s`) or a wrong time. If none does, there was a gap, or the clock was set
+    back. A date is wrong if the previous date returns within three dated sentences, or from
+    midnight on if it does not change there, until it changes.
 
-    **Sections.** Where the clock was set back a section begins. Within a section times grow: late
-    sentences are put in order. A clock set back by a step or so more than `reorder_s`, or less,
-    looks the same as late sentences.
+    **Sections.** A section begins where the clock was set back. Within a section times increase:
+    late sentences are sorted. A clock set back by about `reorder_s` or less looks like late
+    sentences.
 
-    **Lines** between two timed sentences are equally spaced in time. Where fewer lines than usual
-    stand in a gap, so that the log itself must have stopped, they follow each other as usual after
-    the sentence before it; so do lines before the first and after the last.
+    **Lines** between two timed sentences are equally spaced in time. If a gap has fewer lines than
+    usual, so that the log itself must have stopped, they have the usual spacing after the previous
+    sentence; so do lines before the first and after the last.
 
     Parameters
     ----------
     line, time_of_day_s, day : array_like (n,)
         Line, time of day, and days since 1970 or NaN, of each timed sentence, in order; n >= 1.
     first_day : float
-        Days since 1970 of the first, where no sentence has a date; NaN where that is not known.
-        Then the dates of sentences with a wrong time are believed.
+        Days since 1970 of the first sentence, if none has a date; NaN if unknown, in which case the
+        dates of sentences with a wrong time are used.
     reorder_s : float
     report : NmeaReport
         Wrong times and dates are added to it.
@@ -50,7 +50,7 @@ class Clock:
     Attributes
     ----------
     time_s : ndarray (n,)
-        UTC seconds, NaN for a wrong time; from the midnight before the first where no day is known.
+        UTC seconds, NaN for a wrong time; since the midnight before the first if no day is known.
     dated : bool
         Whether a day is known.
     set_back_lines : ndarray of int (k,)
@@ -68,18 +68,18 @@ class Clock:
         self.dated = knows_day or bool(np.isfinite(day).any())
         day_offset = _day_offset(unrolled_s, clock_s, believed if knows_day else day, first_day)
         for k in np.flatnonzero(wrong):
-            report.add(int(line[k]), "time", "the time leaps, and the next ones do not follow it")
+            report.add(int(line[k]), "time", "the time leaps, and the next ones do not confirm it")
         off_days = day - day_offset - _midnights(unrolled_s, clock_s)
         for k in np.flatnonzero(~wrong & np.isfinite(day) & (off_days != 0)):
             stale = "the date is that of the day before"
-            leaps = "the date leaps, and the next ones do not follow it"
+            leaps = "the date leaps, and the next ones do not confirm it"
             report.add(int(line[k]), "date", stale if off_days[k] == -1 else leaps)
         self.time_s = np.where(wrong, np.nan, unrolled_s + DAY_S * day_offset)
         self.set_back_lines = self._set_back_lines(set_back, reorder_s)
         self._anchors = self._all_anchors(report.lines)
 
     def section(self, line: np.ndarray) -> np.ndarray:
-        """Number (m,) of the section each line (m,) stands in."""
+        """Number (m,) of the section of each line (m,)."""
         return np.searchsorted(self.set_back_lines, line, side="right")
 
     def at_line(self, line: np.ndarray) -> np.ndarray:
@@ -92,7 +92,7 @@ class Clock:
         return time_s
 
     def last_timed(self, line: np.ndarray) -> np.ndarray:
-        """Times (m,) of the last timed sentence before each line (m,), NaN where there is none."""
+        """Times (m,) of the last timed sentence before each line (m,), NaN without one."""
         believed = np.isfinite(self.time_s)
         before = np.searchsorted(self._line[believed], line, side="right") - 1
         return np.where(before < 0, np.nan, self.time_s[believed][before])
@@ -124,13 +124,13 @@ class Clock:
         ]
 
     def _next(self, line: int) -> tuple[np.ndarray, np.ndarray]:
-        """The time told next after a line as the only anchor of a section that tells none."""
+        """The next time after a line as the only anchor of a section without times."""
         believed = np.isfinite(self.time_s)
         after = np.searchsorted(self._line[believed], line)
         return np.array([float(line)]), self.time_s[believed][[after]]
 
     def _new_times(self, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Lines and times of the sentences that were the first to tell a later time."""
+        """Lines and times of the sentences that first give a later time."""
         chosen = chosen & np.isfinite(self.time_s)
         if not chosen.any():
             return np.zeros(0), np.zeros(0)
@@ -142,7 +142,7 @@ class Clock:
 
 
 def _usual_step_s(clock_s: np.ndarray) -> float:
-    """What mostly lies between times of day (n,), of any number of days, in whatever order."""
+    """The usual step between times of day (n,), over any number of days, in any order."""
     since_s = np.cumsum(_wrapped(np.diff(clock_s, prepend=clock_s[:1])))
     steps_s = np.diff(np.unique(np.rint(1e3 * since_s))) / 1e3
     return float(np.median(steps_s)) if len(steps_s) else 0.0
@@ -184,42 +184,42 @@ def _day_offset(
     dated = np.flatnonzero(np.isfinite(day))
     if len(dated) == 0:
         return np.full(len(day), np.nan_to_num(first_day))
-    told = _over_midnight((day - _midnights(unrolled_s, clock_s))[dated], day[dated])
-    edges = [0, *(np.flatnonzero(np.diff(told) != 0) + 1).tolist(), len(told)]
+    given = _over_midnight((day - _midnights(unrolled_s, clock_s))[dated], day[dated])
+    edges = [0, *(np.flatnonzero(np.diff(given) != 0) + 1).tolist(), len(given)]
     for (a, b), (_, c) in itertools.pairwise(itertools.pairwise(edges)):
-        if 0 < a and b - a <= _DOUBTED and told[b:c][0] == told[a - 1]:
-            told[a:b] = told[a - 1]
+        if 0 < a and b - a <= _DOUBTED and given[b:c][0] == given[a - 1]:
+            given[a:b] = given[a - 1]
     index = np.arange(len(day))
     after = np.minimum(np.searchsorted(dated, index), len(dated) - 1)
     before = np.maximum(np.searchsorted(dated, index, side="right") - 1, 0)
     nearer = np.abs(unrolled_s - unrolled_s[dated[after]]) < np.abs(
         unrolled_s - unrolled_s[dated[before]]
     )
-    return told[np.where(nearer, after, before)]
+    return given[np.where(nearer, after, before)]
 
 
-def _over_midnight(told: np.ndarray, day: np.ndarray) -> np.ndarray:
-    """Days (n,) to add as dates tell, those before where a date (n,) stays the same over midnight.
+def _over_midnight(given: np.ndarray, day: np.ndarray) -> np.ndarray:
+    """Days (n,) to add according to the dates, the previous one where a date (n,) is stale.
 
-    It is stale until it changes.
+    A date that does not change at midnight is stale until it changes.
     """
-    told = told.copy()
+    given = given.copy()
     changes = np.flatnonzero(np.diff(day) != 0) + 1
-    for first in np.flatnonzero((np.diff(told) == -1) & (np.diff(day) == 0)) + 1:
-        end = np.append(changes[changes > first], len(told))[0]
-        told[first:end] = told[first - 1]
-    return told
+    for first in np.flatnonzero((np.diff(given) == -1) & (np.diff(day) == 0)) + 1:
+        end = np.append(changes[changes > first], len(given))[0]
+        given[first:end] = given[first - 1]
+    return given
 
 
 def _midnights(unrolled_s: np.ndarray, clock_s: np.ndarray) -> np.ndarray:
-    """How often (n,) midnight had passed."""
+    """Number (n,) of midnights passed."""
     return np.rint((unrolled_s - clock_s) / DAY_S)
 
 
 def _extended(
     line: np.ndarray, time_s: np.ndarray, first_line: int, last_line: int, pace_s: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Anchors with one before each gap in which the log had stopped, and one at either end."""
+    """Anchors, with one before each gap in which the log stopped, and one at either end."""
     lines, step_s = np.diff(line), np.diff(time_s)
     stopped = np.flatnonzero((lines > 1) & (pace_s * lines < 0.5 * step_s))
     line = np.concatenate(

@@ -1,4 +1,4 @@
-"""What a log of a vessel's own instruments holds: one series a kind of reading, each at its times.
+"""A log of own ship's instruments: one series per kind of reading, with its times.
 
 Times are UTC seconds since 1970, angles radians clockwise from north, speeds m/s.
 """
@@ -26,18 +26,18 @@ if TYPE_CHECKING:
 class Series:
     """Readings of one kind.
 
-    Rows are in the order of time; where the clock was set back, what came before it stands first.
+    Rows are in order of time within each section between clock set-backs.
 
     Attributes
     ----------
     time_s : ndarray (n,)
         UTC seconds.
     valid : ndarray of bool (n,)
-        Whether the instrument itself stands by the reading.
+        Whether the instrument marks the reading as valid.
     sentence : ndarray of str (n,)
-        The sentence it came in, such as ``RMC``.
+        Kind of the sentence, such as ``RMC``.
     line : ndarray of int (n,)
-        Its line of the file.
+        Line of the file.
     """
 
     time_s: np.ndarray
@@ -53,7 +53,7 @@ class Series:
 
     @property
     def usable(self) -> np.ndarray:
-        """Mask (n,) of the readings to work with."""
+        """Mask (n,) of the readings to use."""
         return self.valid
 
     def rows(self, which: slice | np.ndarray) -> Self:
@@ -68,24 +68,23 @@ class Series:
 
 @dataclass(frozen=True, repr=False)
 class Fixes(Series):
-    """Positions by satellite, one a time (RMC, GGA, GNS, GLL).
+    """Satellite positions, one per time (RMC, GGA, GNS, GLL).
 
     Attributes
     ----------
     latitude_deg, longitude_deg : ndarray (n,)
         WGS84, positive north and east.
     quality : ndarray of int (n,)
-        As GGA counts: 0 none, 1 autonomous, 2 differential (9 of a GGA, too), 3 precise, 4 RTK,
-        5 RTK float, 6 estimated, 7 put in by hand, 8 simulated; -1 not said. `valid` is false for
-        0, 6 and 7, where the status is V, and where either cannot be read. Of the modes of a GNS it
-        is the best.
+        As in GGA: 0 none, 1 autonomous, 2 differential (also 9 of a GGA), 3 precise, 4 RTK, 5 RTK
+        float, 6 estimated, 7 manual input, 8 simulated; -1 not given. `valid` is false for 0, 6 and
+        7, for status V, and where either cannot be read. For GNS it is the best of the modes.
     hdop : ndarray (n,)
-        Horizontal dilution of precision, NaN where not said.
+        Horizontal dilution of precision, NaN where not given.
     frozen : ndarray of bool (n,)
-        The position is that of the fix before, again and again, though the vessel moves.
+        The position repeats that of the previous fix although the vessel moves.
     suspect : ndarray of bool (n,)
-        At latitude 0, longitude 0, or where the vessel cannot have come: alone, or several that
-        come back to where she can have come without them.
+        At latitude 0, longitude 0, or out of the vessel's reach: a single fix, or several after
+        which the track returns to where it could have gone without them.
     """
 
     latitude_deg: np.ndarray
@@ -103,15 +102,15 @@ class Fixes(Series):
 
 @dataclass(frozen=True, repr=False)
 class GroundSpeed(Series):
-    """Speed and course over ground, one a time (RMC, VTG).
+    """Speed and course over ground, one per time (RMC, VTG).
 
     Attributes
     ----------
     speed_mps, course_rad : ndarray (n,)
         NaN where only the other is given. Course from true north in [0, 2 pi).
     frozen : ndarray of bool (n,)
-        Speed and course are those of the reading before, as is the position of the fix they come
-        with, which is frozen or suspect.
+        Speed and course repeat the previous reading, and so does the position of their fix, which
+        is frozen or suspect.
     """
 
     speed_mps: np.ndarray
@@ -126,7 +125,7 @@ class GroundSpeed(Series):
 
 @dataclass(frozen=True, repr=False)
 class TrueHeading(Series):
-    """Heading from true north (HDT, THS, VHW; from a magnetic compass where these are silent).
+    """True heading (HDT, THS, VHW; from a magnetic compass where these are missing).
 
     Attributes
     ----------
@@ -139,14 +138,14 @@ class TrueHeading(Series):
 
 @dataclass(frozen=True, repr=False)
 class MagneticHeading(Series):
-    """Heading from magnetic north (HDG, HDM, VHW), deviation removed where the sentence gives it.
+    """Magnetic heading (HDG, HDM, VHW), corrected for deviation if the sentence gives it.
 
     Attributes
     ----------
     heading_magnetic_rad : ndarray (n,)
         In [0, 2 pi).
     variation_rad : ndarray (n,)
-        Positive east; NaN where neither the log nor the caller knows it.
+        Positive east; NaN if neither the log nor the caller gives it.
     """
 
     heading_magnetic_rad: np.ndarray
@@ -154,7 +153,7 @@ class MagneticHeading(Series):
 
     @property
     def heading_rad(self) -> np.ndarray:
-        """Heading (n,) from true north in [0, 2 pi); NaN where the variation is not known."""
+        """True heading (n,) in [0, 2 pi); NaN where the variation is unknown."""
         return np.mod(self.heading_magnetic_rad + self.variation_rad, 2 * np.pi)
 
 
@@ -174,7 +173,7 @@ class WaterSpeed(Series):
 
 @dataclass(frozen=True, repr=False)
 class BottomTrack(Series):
-    """Speed over ground as a log sees it (VBW).
+    """Speed over ground by Doppler log (VBW).
 
     Attributes
     ----------
@@ -201,7 +200,7 @@ class RateOfTurn(Series):
 
 @dataclass(frozen=True)
 class NmeaProblem:
-    """Something in a log that could not be used.
+    """A problem in a log.
 
     Attributes
     ----------
@@ -210,7 +209,7 @@ class NmeaProblem:
     kind : str
         A key of `NmeaReport.problems`.
     reason : str
-        What was wanted and what came.
+        What was expected and what came.
     """
 
     line: int
@@ -223,31 +222,30 @@ class NmeaProblem:
 
 @dataclass
 class NmeaReport:
-    """What was in a log and what could not be used of it.
+    """Contents of a log and the problems in it.
 
     Attributes
     ----------
     lines : int
         Lines of the file.
     sentences : Counter of str
-        Sound sentences by kind, such as ``RMC``, those of no interest among them.
+        Valid sentences by kind, such as ``RMC``, including unused kinds.
     problems : Counter of str
-        How often each kind of problem came. A sentence is left out for ``no sentence`` (text
-        without ``$``), ``cut`` (its end is missing), ``checksum``, ``character`` (an octet that
-        cannot be printed), ``address`` (none of talker and kind) and ``time`` (a time that leaps
-        and comes back). Of one with a ``field`` that cannot be read or out of ``range`` only that
-        value is left out, unless it is the time or the place; of one with a ``date`` that leaps and
-        comes back, only the date.
+        Number of problems of each kind. A sentence is dropped for ``no sentence`` (text without
+        ``$``), ``cut`` (its end is missing), ``checksum``, ``character`` (a non-printable octet),
+        ``address`` (not talker and kind) and ``time`` (a time that leaps and returns). With a
+        ``field`` that cannot be read or out of ``range`` only that value is dropped, unless it is
+        the time or the position; with a ``date`` that leaps and returns, only the date.
     examples : list of NmeaProblem
-        Problems in the order of lines, at most `max_examples`.
+        Problems in order of lines, at most `max_examples`.
     repeated : int
-        Fixes and ground speeds of a time that another sentence had given already.
+        Fixes and ground speeds of a time that another sentence has given already.
     displaced_lines : list of int
-        Lines of valid fixes among them that were left out though at another place than the fix of
-        that time, which another sentence of their kind had given.
+        Lines of those valid fixes that were dropped although another sentence of their kind gives
+        a different position at that time.
     other_speed_lines : list of int
-        Lines of valid ground speeds among them that were left out though other than that of their
-        time, which another sentence of their kind had given.
+        Lines of those valid ground speeds that were dropped although another sentence of their
+        kind gives a different speed at that time.
     max_examples : int
     """
 
@@ -261,7 +259,7 @@ class NmeaReport:
     max_examples: int = 100_000
 
     def add(self, line: int, kind: str, reason: str) -> None:
-        """Count a problem and keep it while there is room."""
+        """Count a problem, and store it up to `max_examples`."""
         self.problems[kind] += 1
         if len(self.examples) < self.max_examples:
             self.examples.append(NmeaProblem(line, kind, reason))
@@ -269,7 +267,7 @@ class NmeaReport:
 
 @dataclass(frozen=True)
 class NavigationLog:
-    """The readings of a vessel's own instruments.
+    """The readings of own ship's instruments.
 
     Attributes
     ----------
@@ -283,13 +281,13 @@ class NavigationLog:
     bottom : BottomTrack
     turn : RateOfTurn
     dated : bool
-        Whether the log, or the caller, says the day; if not, times count from the midnight before
+        Whether the log or the caller gives the day; otherwise times count from the midnight before
         the first.
     set_back_lines : ndarray of int (k,)
         Lines where the clock was set back.
     report : NmeaReport
     notes : list of str
-        What there is to know before using the log; empty for a clean one.
+        Notes for the user of the log; empty for a clean one.
     """
 
     name: str
@@ -325,43 +323,42 @@ class NavigationLog:
         return np.column_stack([fixes.time_s[wide], fixes.time_s[wide + 1]])
 
     def fixes_in_order(self, what: str) -> Fixes:
-        """Sound fixes, of which there is one at least, under a clock that was never set back.
+        """Usable fixes, at least one, with a clock that was never set back.
 
         Raises
         ------
         ValueError
-            When it is not so; says what wants them.
+            When there is none or the clock was set back; the message names what needs them.
         """
         fixes = self.fixes.sound()
         if len(fixes) == 0:
-            raise ValueError(f"{self.name}: a {what} wants a sound fix, got none")
+            raise ValueError(f"{self.name}: a {what} needs a usable fix, got none")
         if len(self.set_back_lines):
             raise ValueError(
-                f"{self.name}: the clock was set back, so that times do not grow: "
-                f"take the {what} of each of parts()"
+                f"{self.name}: the clock was set back, so that times do not increase; "
+                f"use the {what} of each of parts()"
             )
         return fixes
 
     def track(self, plane: LocalPlane | None = None) -> OwnShip:
-        """Where the vessel was, by her sound fixes, and her velocities as told with them.
+        """Own ship's track: usable fixes, with the velocities reported with them.
 
-        Gaps are not told apart: of a log in several parts take the track of each of `parts`, unless
-        what joins them may be made up.
+        Gaps are interpolated. For a log in several parts use the track of each of `parts`.
 
         Parameters
         ----------
         plane : LocalPlane, optional
-            Default the one that touches the earth at the first sound fix.
+            Default: tangent to the earth at the first usable fix.
 
         Returns
         -------
         OwnShip
-            Velocities are NaN at fixes that come without one; zero at rest without a course.
+            Velocities are NaN at fixes without one, and zero at rest without a course.
 
         Raises
         ------
         ValueError
-            When there is no sound fix, or the clock was set back.
+            When there is no usable fix, or the clock was set back.
         """
         fixes, ground = self.fixes_in_order("track"), self.ground.sound()
         place_deg = fixes.latitude_deg, fixes.longitude_deg
@@ -380,9 +377,9 @@ class NavigationLog:
         )
 
     def parts(self, max_gap_s: float = 60.0) -> list[NavigationLog]:
-        """The log cut where no instrument was heard for longer than `max_gap_s`.
+        """The log, split where all instruments are silent for longer than `max_gap_s`.
 
-        It is cut, too, where the clock was set back, so that in each part times only grow. All
+        It is also split where the clock was set back, so that times increase in each part. All
         parts share the report and the notes.
 
         Parameters
@@ -416,7 +413,7 @@ class NavigationLog:
         return dataclasses.replace(self, **inside, set_back_lines=np.zeros(0, dtype=np.int64))
 
     def _section(self, line: np.ndarray) -> np.ndarray:
-        """How often (n,) the clock had been set back by each line (n,)."""
+        """Number (n,) of clock set-backs before each line (n,)."""
         return np.searchsorted(self.set_back_lines, line, side="right")
 
 

@@ -1,4 +1,4 @@
-"""A log of NMEA 0183 sentences as the readings of a vessel's own instruments."""
+"""Reads a log of NMEA 0183 sentences of own ship's instruments."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ from .log import (
 )
 from .sentence import Sentence, sentences
 
-# Which sentence is kept of those that tell the same time.
+# Priority of the sentences that give the same time.
 _BEST_FIRST = ("GGA", "GNS", "RMC", "GLL", "VTG")
-# Quality of GGA for the mode of RMC, GLL and VTG, and those that are no measurement.
+# Quality of GGA for the mode of RMC, GLL and VTG, and those that are not measurements.
 _QUALITY = {"A": 1, "D": 2, "P": 3, "R": 4, "F": 5, "E": 6, "M": 7, "S": 8, "N": 0}
 _BEST_MODE_FIRST = "RFPDASEMN"  # of the modes of several systems of satellites
 _NOT_MEASURED = (0, 6, 7)
 _NOT_SAID = -1
-_SBAS, _DIFFERENTIAL = 9, 2  # some receivers write 9, which GGA does not know, for 2
+_SBAS, _DIFFERENTIAL = 9, 2  # some receivers write 9, which GGA does not define, for 2
 
 _SENTENCES = "NMEA 0183 sentences"
 _MAX_SPEED_KN = 200.0
 _MAX_RATE_DEG_MIN = 10_000.0
-_STILL_MPS = 1.0 * KNOT_MPS  # below, a vessel at rest and one that moves look the same
+_STILL_MPS = 1.0 * KNOT_MPS  # below, a vessel at rest and a moving one look the same
 _FROZEN_M = 50.0
 _AT_ZERO_DEG = 1e-4
 _BLIND_S = 60.0
@@ -61,54 +61,53 @@ def read_nmea(
     reorder_s: float = 2.0,
     max_speed_mps: float = 40.0,
 ) -> NavigationLog:
-    """Read what a vessel's instruments said of her own motion.
+    """Read an NMEA 0183 log of own ship's instruments.
 
     **Sentences**: RMC, GGA, GNS, GLL, VTG, HDT, HDG, HDM, THS, VHW, VBW, ROT and ZDA of any talker,
-    upper or lower case; the others are counted. A checksum need not be there but must be right.
-    What stands before the ``$`` of a line, a time stamp or a TAG block, is passed over. An empty
-    field is NaN. No line is fatal: what cannot be used is counted by kind in the report and kept
-    there with its line.
+    upper or lower case; others are counted. A checksum is optional but must be correct. Text before
+    the ``$`` of a line, such as a time stamp or a TAG block, is skipped. An empty field is NaN. No
+    line is fatal: problems are counted by kind in the report and listed with their lines.
 
     **Times** are those of the sentences (RMC, GGA, GNS, GLL, ZDA), with dates from RMC and ZDA, and
-    go on over midnight:
+    continue over midnight:
 
     - Without a date, a step is less than half a day.
     - A time before the last or a leap after it (10 s, or five usual steps where these are longer)
-      is wrong when one of the next three timed sentences goes on from where the clock was; its
-      sentence is left out, unless it was only late by up to `reorder_s`. Otherwise there is a gap,
-      or the clock was set back. So it is with dates, of which only the date is left aside. Where
-      all that is known of the day are dates of left out sentences, they are believed.
-    - A reading without a time lies between the timed sentences around it, equally spaced by lines;
-      where the log itself had stopped between them, as many lines after the first as usual. Of
-      VTG the first after a timed sentence has its time, whose fix it belongs to.
+    is wrong if one of the next three timed sentences continues from the previous clock; its
+    sentence is dropped, unless it was only late by up to `reorder_s`. Otherwise there is a gap,
+    or the clock was set back. Dates are checked in the same way, but only the date is dropped.
+    If only dropped sentences have dates, these dates are used.
+    - Readings without a time are equally spaced by lines between the timed sentences around them;
+    where the log itself stopped between them, they have the usual spacing after the first. The
+    first VTG after a timed sentence has that time, because it belongs to its fix.
 
-    **Fixes** of one time are one fix: the valid one, of these GGA before GNS before RMC before GLL.
-    Fixes are marked, never dropped: not `valid` (status V, quality 0); `frozen`, where the position
-    stays the same while the vessel, by her speed over ground or else through the water, told within
-    a minute of the fix, moves over 50 m;
-    `suspect` at 0/0 and where she cannot have come at `max_speed_mps`, for as long as they stay
-    there, if they come back to where she can have come meanwhile. Three or more that do not come
-    back are believed, and a note tells of the jump. Positions in sentences with empty fields are no
-    fixes. Speeds over ground are `frozen` where speed and course stay the same with the position of
-    frozen or suspect fixes.
+    **Fixes** of one time are one fix: the valid one, in the order GGA, GNS, RMC, GLL. Fixes are
+    marked, never dropped: not `valid` (status V, quality 0); `frozen`, where the position is
+    constant while the vessel moves over 50 m by its speed over ground, or else through the water,
+    reported within a minute of the fix; `suspect` at 0/0 and where the vessel cannot be at
+    `max_speed_mps`, if the fixes return to where it can be meanwhile. Three or more that do not
+    return are accepted, and a note reports the jump. Positions in sentences with empty fields are
+    not fixes. Speeds over ground are `frozen` where speed and course are constant with the
+    position of frozen or suspect fixes.
 
-    **Headings**: magnetic ones (HDG with its deviation, HDM) are kept apart, with the variation of
-    the sentence, else of the RMC before it (or else the first), else `variation_deg`. They are the
-    true headings too, where the variation is known and there is no true one within 10 s. Headings
-    in VHW count where the log has no others of their kind.
+    **Headings**: magnetic headings (HDG with its deviation, HDM) are a separate series, with the
+    variation of the sentence, else of the previous RMC (or else the first), else `variation_deg`.
+    They also serve as true headings where the variation is known and there is no true one within
+    10 s. Headings in VHW count only if the log has no others of their kind.
 
     Parameters
     ----------
     path : str or Path
         The log.
     variation_deg : float, optional
-        Magnetic variation where the log does not tell it, positive east.
+        Magnetic variation if the log does not give it, positive east.
     date : datetime.date, optional
-        Day of the first timed sentence, where none that is believed has a date; that of a datetime.
+        Day of the first timed sentence, if no accepted sentence has a date; a datetime counts by
+        its day.
     reorder_s : float
-        Sentences that are late by as much are put in order; a clock that goes back farther was set.
+        Sentences that are late by up to this are sorted; a clock that goes back farther was set.
     max_speed_mps : float
-        The vessel is not faster.
+        Maximum speed of the vessel.
 
     Returns
     -------
@@ -117,11 +116,11 @@ def read_nmea(
     Raises
     ------
     RecordingError
-        When the file cannot be read, or holds no sentence with a time, or none of a reading.
+        When the file cannot be read, or has no sentence with a time, or none with a reading.
     TypeError
-        When `date` is no date or another parameter no number.
+        When `date` is not a date or another parameter is not a number.
     ValueError
-        When a parameter makes no sense.
+        When a parameter is invalid.
     """
     plain_numbers(reorder_s=reorder_s, max_speed_mps=max_speed_mps)
     if not (reorder_s >= 0 and max_speed_mps > 0):
@@ -140,7 +139,7 @@ def read_nmea(
         for kind, reason in sentence.faults:
             report.add(sentence.line, kind, reason)
     if not rows.timed:
-        raise _nothing_read(path, octets, report, "no sentence that tells the time could be read")
+        raise _nothing_read(path, octets, report, "no sentence with a time could be read")
     clock = Clock(*zip(*rows.timed, strict=True), first_day, reorder_s, report)
     report.examples.sort(key=_line)
     series = {name: _series(kind, rows.of[name], clock, report) for name, kind in SERIES.items()}
@@ -150,7 +149,7 @@ def read_nmea(
     series["fixes"] = _marked(series, clock, max_speed_mps)
     series["ground"] = _marked_ground(series, clock)
     if not any(map(len, series.values())):
-        raise _nothing_read(path, octets, report, "nothing but times could be read")
+        raise _nothing_read(path, octets, report, "no sentence with a reading could be read")
     notes: list[str] = []
     log = NavigationLog(
         path.stem,
@@ -160,8 +159,8 @@ def read_nmea(
         report=report,
         notes=notes,
     )
-    told = [*_notes(log), *invalid_notes, *_jump_notes(log, max_speed_mps)]
-    notes += [f"{path.name}: {note}" for note in told]
+    remarks = [*_notes(log), *invalid_notes, *_jump_notes(log, max_speed_mps)]
+    notes += [f"{path.name}: {note}" for note in remarks]
     return log
 
 
@@ -197,7 +196,7 @@ def _nothing_read(path: Path, octets: bytes, report: NmeaReport, problem: str) -
 
 
 class _Rows:
-    """What was read so far.
+    """The rows read so far.
 
     Attributes
     ----------
@@ -206,7 +205,7 @@ class _Rows:
     of : dict of str to list of tuple
         For each series rows of line, sentence, index in `timed` or None, valid, and its values.
     empty : dict of str to list of int
-        For each kind of sentence lines where the fields of what it is there for are empty.
+        For each kind of sentence the lines in which its main fields are empty.
     """
 
     def __init__(self) -> None:
@@ -216,7 +215,7 @@ class _Rows:
         self.empty: dict[str, list[int]] = {}
 
     def read(self, s: Sentence) -> None:
-        """Add what a sentence says."""
+        """Add the readings of a sentence."""
         names, _ = _IS_FOR.get(s.kind, ((), ""))
         before = [len(self.of[name]) for name in names]
         _READERS[s.kind](s, self)
@@ -263,8 +262,8 @@ def _gga(s: Sentence, rows: _Rows) -> None:
     time_s, place = s.time_of_day_s(0), s.place_deg(1)
     if s.faults:
         return
-    told = s.number(5, 0, _SBAS)
-    quality = _NOT_SAID if math.isnan(told) else int(told)
+    given = s.number(5, 0, _SBAS)
+    quality = _NOT_SAID if math.isnan(given) else int(given)
     _add_fix_with_hdop(rows, s, time_s, place, _DIFFERENTIAL if quality == _SBAS else quality)
 
 
@@ -373,9 +372,9 @@ _READERS = {
     "ZDA": _zda,
 }
 
-# The series to which a kind of sentence should add, and what it is to tell.
+# The series of a kind of sentence, and its main quantity.
 _IS_FOR = {
-    **dict.fromkeys(("RMC", "GGA", "GNS", "GLL"), (("fixes",), "place")),
+    **dict.fromkeys(("RMC", "GGA", "GNS", "GLL"), (("fixes",), "position")),
     "VTG": (("ground",), "speed"),
     **dict.fromkeys(("HDT", "THS"), (("heading",), "heading")),
     **dict.fromkeys(("HDG", "HDM"), (("compass",), "heading")),
@@ -393,7 +392,7 @@ def _knots(s: Sentence, k: int) -> float:
 
 
 def _speed_mps(s: Sentence, k: int) -> float:
-    """A speed given in knots, or else, two fields on, in km/h."""
+    """A speed in knots, or else, two fields later, in km/h."""
     speed_mps = _knots(s, k)
     return _kmh(s, k + 2) if math.isnan(speed_mps) else speed_mps
 
@@ -409,7 +408,7 @@ _DTYPE = {"quality": np.int64, "frozen": bool, "suspect": bool}
 
 
 def _series(kind: type[Series], rows: list[tuple], clock: Clock, report: NmeaReport) -> Series:
-    """Rows with their times, in order; of fixes and ground speeds one a time."""
+    """Rows with their times, in order; fixes and ground speeds one per time."""
     names = [f.name for f in dataclasses.fields(kind) if f.name not in _BASE]
     line, sentence, stamp, valid, *values = (
         zip(*rows, strict=True) if rows else [()] * (4 + len(names))
@@ -471,13 +470,13 @@ def _differ(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _with_variation(
-    compass: MagneticHeading, told: list[tuple[int, float]], given_deg: float | None
+    compass: MagneticHeading, given: list[tuple[int, float]], given_deg: float | None
 ) -> MagneticHeading:
     """Magnetic headings with the variation of other sentences, or the one given, where unknown."""
     compass = _others_than_vhw(compass)
-    if told:
-        line, told_rad = map(np.array, zip(*told, strict=True))
-        known_rad = told_rad[np.maximum(np.searchsorted(line, compass.line, side="right") - 1, 0)]
+    if given:
+        line, given_rad = map(np.array, zip(*given, strict=True))
+        known_rad = given_rad[np.maximum(np.searchsorted(line, compass.line, side="right") - 1, 0)]
     else:
         known_rad = np.nan if given_deg is None else math.radians(given_deg)
     unknown = np.isnan(compass.variation_rad)
@@ -487,7 +486,7 @@ def _with_variation(
 
 
 def _true_headings(heading: TrueHeading, compass: MagneticHeading, clock: Clock) -> TrueHeading:
-    """The true headings, and those of the compass where they are silent."""
+    """The true headings, and those of the compass where they are missing."""
     heading = _others_than_vhw(heading)
     known = compass.rows(np.isfinite(compass.variation_rad))
     if not heading.valid.any() and len(known):
@@ -495,15 +494,15 @@ def _true_headings(heading: TrueHeading, compass: MagneticHeading, clock: Clock)
     own, other = clock.section(heading.line), clock.section(known.line)
     silent = np.ones(len(known), dtype=bool)
     for number in np.unique(other):
-        told_s = heading.time_s[heading.valid & (own == number)]
-        silent[other == number] = _far(known.time_s[other == number], told_s, _SILENT_S)
+        given_s = heading.time_s[heading.valid & (own == number)]
+        silent[other == number] = _far(known.time_s[other == number], given_s, _SILENT_S)
     joined = _joined(heading, known.rows(silent))
     return joined.rows(np.lexsort((joined.line, joined.time_s, clock.section(joined.line))))
 
 
-def _far(time_s: np.ndarray, told_s: np.ndarray, by_s: float) -> np.ndarray:
-    """Mask (n,) of the times that are farther than `by_s` from any of those told, sorted."""
-    around_s = np.concatenate([[-np.inf], told_s, [np.inf]])
+def _far(time_s: np.ndarray, given_s: np.ndarray, by_s: float) -> np.ndarray:
+    """Mask (n,) of the times that are farther than `by_s` from any of the sorted others."""
+    around_s = np.concatenate([[-np.inf], given_s, [np.inf]])
     after = np.searchsorted(around_s, time_s)
     return np.minimum(time_s - around_s[after - 1], around_s[after] - time_s) > by_s
 
@@ -520,11 +519,11 @@ def _others_than_vhw(series: Series) -> Series:
     return series.rows(other) if series.valid[other].any() else series
 
 
-# ------------------------------------------------------------------ fixes to doubt
+# ------------------------------------------------------------------ doubtful fixes
 
 
 def _marked(series: dict[str, Series], clock: Clock, max_speed_mps: float) -> Fixes:
-    """The fixes with what is frozen and suspect marked."""
+    """The fixes, with frozen and suspect ones marked."""
     fixes = series["fixes"]
     section = clock.section(fixes.line)
     frozen, suspect = np.zeros(len(fixes), dtype=bool), _at_zero(fixes)
@@ -539,7 +538,7 @@ def _marked(series: dict[str, Series], clock: Clock, max_speed_mps: float) -> Fi
 
 
 def _marked_ground(series: dict[str, Series], clock: Clock) -> GroundSpeed:
-    """The speeds over ground with what is frozen marked."""
+    """The speeds over ground, with frozen ones marked."""
     fixes, ground = series["fixes"], series["ground"]
     same_place = _repeats(fixes.latitude_deg, fixes.longitude_deg)
     stuck = fixes.rows(same_place & (fixes.frozen | fixes.suspect))
@@ -566,19 +565,21 @@ def _at_zero(fixes: Fixes) -> np.ndarray:
 
 
 def _speed_at(time_s: np.ndarray, series: dict[str, Series]) -> np.ndarray:
-    """Speeds (n,) over ground, or else through the water, or zero where neither is told."""
+    """Speeds (n,) over ground, or else through the water, or zero without either."""
     speed_mps = np.zeros(len(time_s))
     for name, values in (("water", "ahead_mps"), ("ground", "speed_mps")):
         readings = series[name]
         readings = readings.rows(readings.valid & np.isfinite(getattr(readings, values)))
-        told = ~_far(time_s, readings.time_s, _BLIND_S)
-        told_mps = np.abs(getattr(readings, values))
-        speed_mps[told] = np.interp(time_s[told], readings.time_s, told_mps) if told.any() else 0.0
+        given = ~_far(time_s, readings.time_s, _BLIND_S)
+        given_mps = np.abs(getattr(readings, values))
+        speed_mps[given] = (
+            np.interp(time_s[given], readings.time_s, given_mps) if given.any() else 0.0
+        )
     return speed_mps
 
 
 def _frozen(fixes: Fixes, speed_mps: np.ndarray) -> np.ndarray:
-    """Mask (n,) of fixes that repeat the one before while the vessel goes too far for that."""
+    """Mask (n,) of fixes that repeat the previous one although the vessel moves."""
     same = _repeats(fixes.latitude_deg, fixes.longitude_deg)
     speed_mps = np.where(speed_mps < _STILL_MPS, 0.0, speed_mps)
     step_m = 0.5 * (speed_mps[1:] + speed_mps[:-1]) * np.diff(fixes.time_s)
@@ -588,7 +589,7 @@ def _frozen(fixes: Fixes, speed_mps: np.ndarray) -> np.ndarray:
 
 
 def _repeats(*columns: np.ndarray) -> np.ndarray:
-    """Mask (n,) of the rows that are the same as the one before."""
+    """Mask (n,) of the rows equal to the previous one."""
     same = np.all([np.diff(column) == 0 for column in columns], axis=0)
     return np.append(False, same)[: len(columns[0])]
 
@@ -613,17 +614,17 @@ def _notes(log: NavigationLog) -> list[str]:
         notes.append(f"the clock was set back {times} (line {where})")
     displaced = report.displaced_lines
     if displaced:
-        what = "[fix|fixes] of times told before, but at other places, [is|are] left out"
+        what = "[fix|fixes] at a time given before but another position [is|are] left out"
         notes.append(f"{counted(len(displaced), what)} (first in line {displaced[0]})")
     other = report.other_speed_lines
     if other:
-        what = "[speed|speeds] over ground of times told before, but other ones, [is|are] left out"
+        what = "different [speed|speeds] over ground at a time given before [is|are] left out"
         notes.append(f"{counted(len(other), what)} (first in line {other[0]})")
     still = ground.frozen & ground.valid
     for series, mask, what in (
-        (fixes, ~fixes.valid, "[fix|fixes] that the receiver calls not valid"),
+        (fixes, ~fixes.valid, "[fix|fixes] marked invalid by the receiver"),
         (fixes, fixes.frozen, "[fix|fixes] frozen while the vessel moves"),
-        (fixes, fixes.suspect, "[fix|fixes] at 0/0 or where the vessel cannot have come"),
+        (fixes, fixes.suspect, "[fix|fixes] at 0/0 or out of the vessel's reach"),
         (ground, still, "[speed|speeds] over ground repeated with such a fix"),
     ):
         if mask.any():
@@ -638,49 +639,49 @@ def _notes(log: NavigationLog) -> list[str]:
     blind_s = _blind_s(log)
     if len(blind_s):
         notes.append(
-            counted(len(blind_s), "[stretch|stretches] of more than ")
+            counted(len(blind_s), "[interval|intervals] of more than ")
             + f"{_BLIND_S:g} s without a heading, the longest {blind_s.max():.0f} s"
         )
     lines = _unknown_where_silent(log)
     if len(lines):
-        what = "magnetic [heading|headings] where the true ones are silent [wants|want] a variation"
+        what = "magnetic [heading|headings] without true ones [needs|need] a variation"
         notes.append(f"{counted(len(lines), what)} (first in line {lines.min()})")
     unknown = np.count_nonzero(np.isnan(log.compass.variation_rad))
     if not log.heading.valid.any():
-        what = "magnetic [one wants|ones want] a variation"
+        what = "magnetic [one needs|ones need] a variation"
         also = f"; {counted(unknown, what)}" if unknown else ""
         notes.append(f"no true heading{also}")
     return notes
 
 
 def _blind_s(log: NavigationLog) -> np.ndarray:
-    """How long (k,) there was no heading though others were heard, in a log that has some."""
+    """Durations (k,) without a heading although other sentences came, if the log has headings."""
     stretches_s = [np.zeros(0)]
     if log.heading.valid.any() or log.compass.valid.any():
         for part in log.parts():
             heard_s = np.concatenate([series.time_s for series in part.series.values()])
-            told_s = (part.heading.sound() or part.compass.sound()).time_s
-            stretches_s.append(np.diff([heard_s.min(), *told_s, heard_s.max()]))
+            given_s = (part.heading.sound() or part.compass.sound()).time_s
+            stretches_s.append(np.diff([heard_s.min(), *given_s, heard_s.max()]))
     blind_s = np.concatenate(stretches_s)
     return blind_s[blind_s > _BLIND_S]
 
 
 def _unknown_where_silent(log: NavigationLog) -> np.ndarray:
-    """Lines (n,) of magnetic headings of unknown variation that would stand in for true ones."""
+    """Lines (n,) of magnetic headings of unknown variation that true ones do not replace."""
     lines = [np.zeros(0, dtype=np.int64)]
     for part in log.parts():
-        told_s, compass = part.heading.sound().time_s, part.compass.sound()
-        if len(told_s):
+        given_s, compass = part.heading.sound().time_s, part.compass.sound()
+        if len(given_s):
             unknown = np.isnan(compass.variation_rad)
-            lines.append(compass.line[unknown & _far(compass.time_s, told_s, _SILENT_S)])
+            lines.append(compass.line[unknown & _far(compass.time_s, given_s, _SILENT_S)])
     return np.concatenate(lines)
 
 
 def _empty_notes(empty: dict[str, list[int]]) -> Iterator[str]:
     for kind, lines in empty.items():
         _, what = _IS_FOR[kind]
-        told = counted(len(lines), f"{kind} [sentence tells|sentences tell] no {what}")
-        yield f"{told} (first in line {lines[0]})"
+        note = counted(len(lines), f"{kind} [sentence has|sentences have] no {what}")
+        yield f"{note} (first in line {lines[0]})"
 
 
 def _invalid_notes(series: dict[str, Series]) -> Iterator[str]:
@@ -692,8 +693,8 @@ def _invalid_notes(series: dict[str, Series]) -> Iterator[str]:
     ):
         line = series[name].line[~series[name].valid]
         if len(line):
-            told = counted(len(line), f"{what} that the instrument calls not valid")
-            yield f"{told} (first in line {line.min()})"
+            note = counted(len(line), f"{what} marked invalid by the instrument")
+            yield f"{note} (first in line {line.min()})"
 
 
 def _jump_notes(log: NavigationLog, max_speed_mps: float) -> Iterator[str]:
@@ -704,9 +705,9 @@ def _jump_notes(log: NavigationLog, max_speed_mps: float) -> Iterator[str]:
         if len(at):
             count = np.append(at, len(fixes))[1] - at[0]
             yield (
-                f"the position jumps {many(len(at), 'time')} farther than the vessel can have "
-                f"come, first by {jump_m[at[0]] / 1e3:.3g} km in line {fixes.line[at[0]]}, where "
-                + counted(count, "[fix goes|fixes go] on")
+                f"the position jumps {many(len(at), 'time')} out of the vessel's reach, "
+                f"first by {jump_m[at[0]] / 1e3:.3g} km in line {fixes.line[at[0]]}, where "
+                + counted(count, "[fix continues|fixes continue]")
             )
 
 

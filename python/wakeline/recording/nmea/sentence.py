@@ -1,4 +1,4 @@
-"""One sentence: where it stands in a line, whether it is sound, and what its fields say."""
+"""One sentence: its place in a line, its validity, and its fields."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from operator import xor
 
 from .log import NmeaReport
 
-# From this many fields on, a sentence without a checksum says all that is read from it.
+# A sentence without a checksum must have at least this many fields.
 FIELDS = {
     "RMC": 9,
     "GGA": 6,
@@ -39,14 +39,14 @@ _LONGITUDE = re.compile(r"(\d\d\d)(\d\d(?:\.\d*)?)").fullmatch
 _DATE = re.compile(r"(\d\d)(\d\d)(\d\d)").fullmatch
 _DAY_0 = datetime.date(1970, 1, 1).toordinal()
 _GPS_YEAR = 1980
-_FIRST_YEAR = 80  # two digits of a year from here on are of the last century
+_FIRST_YEAR = 80  # two-digit years from here on are of the last century
 
 
 class Sentence:
-    """A sound sentence and its fields, counted from 0 after the address.
+    """A valid sentence and its fields, counted from 0 after the address.
 
-    Every reader gives NaN for an empty field, and for one that cannot be read, which is then noted
-    in `faults`.
+    Every reader returns NaN for an empty field, and for one that cannot be read, which is added to
+    `faults`.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Sentence:
     kind : str
         The three letters after the talker.
     body : str
-        Fields with commas between.
+        Fields separated by commas.
     """
 
     __slots__ = ("_written", "faults", "fields", "kind", "line")
@@ -67,7 +67,7 @@ class Sentence:
         self.faults: list[tuple[str, str]] = []
 
     def text(self, k: int) -> str:
-        """A field as it stands; '' when there are fewer."""
+        """The text of a field; '' if there are fewer."""
         return self.fields[k] if k < len(self.fields) else ""
 
     def letter(self, k: int, allowed: str) -> str:
@@ -121,7 +121,7 @@ class Sentence:
         return math.radians(angle_deg if side == "E" else -angle_deg)
 
     def time_of_day_s(self, k: int) -> float:
-        """Seconds since midnight; 60 s are let pass for a leap second."""
+        """Seconds since midnight; 60 s are allowed for a leap second."""
         text = self.text(k)
         if not text:
             return math.nan
@@ -190,12 +190,12 @@ class Sentence:
 
 
 def sentences(octets: bytes, report: NmeaReport) -> list[Sentence]:
-    """The sound sentences of the kinds in `FIELDS`, in order; what is not sound goes to `report`.
+    """The valid sentences of the kinds in `FIELDS`, in order; problems are added to `report`.
 
-    A sentence begins at ``$`` (one of another kind also at ``!``) and ends where its line does or
-    the next one begins; what stands before it in the line, a time stamp or a TAG block, is passed
-    over. The octets between ``$`` and the last ``*`` must give the checksum that follows, where
-    there is one; a sentence without is cut if others of its kind have one.
+    A sentence begins at ``$`` (one of another kind also at ``!``) and ends with its line or where
+    the next one begins; text before it in the line, such as a time stamp or a TAG block, is
+    skipped. The octets between ``$`` and the last ``*`` must match the checksum that follows, if
+    there is one; a sentence without a checksum is cut if others of its kind have one.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def _whole(
     """Sentences without a checksum that seem to be whole."""
     for line, kind, body in unchecked:
         if kind in with_checksum:
-            report.add(line, "cut", f"{kind} has no checksum though others of the file have one")
+            report.add(line, "cut", f"{kind} has no checksum although others of the file have one")
             continue
         count = body.count(b",") + 1
         if count < FIELDS.get(kind, 0):
@@ -248,7 +248,7 @@ def _whole(
 
 
 def _unsound(piece: bytes) -> tuple[str, str] | None:
-    """Kind and reason of what is wrong with the octets of a sentence."""
+    """Kind and reason of a fault in the octets of a sentence."""
     star = piece.rfind(b"*")
     body = piece[1:] if star < 0 else piece[1:star]
     digits = piece[star + 1 : star + 3].rstrip()
@@ -269,7 +269,7 @@ def _unsound(piece: bytes) -> tuple[str, str] | None:
 
 
 def _parted(body: bytes) -> tuple[str, bytes]:
-    """The letters after the talker, or the whole address where it is a maker's own; and fields."""
+    """The letters after the talker, or the whole address of a proprietary sentence; and fields."""
     address, _, fields = body.rstrip().partition(b",")
     text = address.decode("ascii").strip().upper()
     return (text[2:] if len(text) == 5 and text[0] != "P" else text), fields
