@@ -143,10 +143,13 @@ from . import (  # noqa: E402, F401
     metrics,
     montecarlo,
     own_ship,
+    plot,
     recording,
     scenario,
     study,
+    tracking,
 )
+from .tracking import track_recording  # noqa: E402
 
 try:
     __version__ = _version("wakeline")
@@ -238,6 +241,7 @@ __all__ = [
     "montecarlo",
     "one_point",
     "own_ship",
+    "plot",
     "recording",
     "rhumb_line",
     "scenario",
@@ -246,6 +250,8 @@ __all__ = [
     "strobe_echo",
     "study",
     "threads",
+    "track_recording",
+    "tracking",
     "two_point",
     "vessel_imm",
     "wrap_angle",

@@ -1,5 +1,6 @@
 """`wakeline track` on radar video: sweeps in, tracks and a picture of the screen out."""
 
+import importlib
 import json
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from wakeline.recording import read_tracks, write_video
 pytestmark = pytest.mark.usefixtures("no_pictures")
 
 SCANS = 14
+PPI = importlib.import_module("wakeline.plot.ppi")  # the name is also that of its function
 PERIOD_S = 2.5
 
 
@@ -78,8 +80,8 @@ def test_every_ship_has_a_track_from_strobe_to_velocity(video, tmp_path, capsys)
 
 def test_a_file_may_be_named_by_text(video):
     film = read_plots_of_video(str(video))
-    assert film.recording.name == "harbour"
-    assert len(film.recording.episodes[0]) in (SCANS, SCANS + 1)
+    assert film.name == "harbour"
+    assert len(film.episodes[0]) in (SCANS, SCANS + 1)
 
 
 def test_the_screen_is_drawn(video, tmp_path, pictures):
@@ -100,7 +102,7 @@ def test_damage_is_told_and_what_is_sound_is_tracked(video, tmp_path, capsys):
 
 def test_truth_goes_with_plots(video, tmp_path, capsys):
     assert main(["track", str(video), "--truth", "truth.csv", "--out", str(tmp_path)]) == 2
-    assert "--truth" in capsys.readouterr().err
+    assert "truth goes with a file of plots" in capsys.readouterr().err
 
 
 # Own ship -----------------------------------------------------------------------------------------
@@ -197,7 +199,7 @@ def test_the_screen_shows_what_own_ship_sees(video, tmp_path, monkeypatch, pictu
     def keep(video, ax, **layers):
         shown.update(layers)
 
-    monkeypatch.setattr(plot, "ppi", keep)
+    monkeypatch.setattr(PPI, "ppi", keep)
     tracked(video, tmp_path, "--own", str(own_file(tmp_path / "own.csv")))
     time_s = shown["tracks"].time_s.max()
     here = shown["tracks"].where(shown["tracks"].time_s == time_s).state[:, ::2]
@@ -270,7 +272,7 @@ def test_two_turns_of_a_clock_set_back_have_no_period(tmp_path, capsys):
 
 def test_the_screen_shows_the_last_part(tmp_path, monkeypatch, pictures):
     drawn = {}
-    monkeypatch.setattr(plot, "ppi", lambda shown, axes, **kinds: drawn.update(kinds, video=shown))
+    monkeypatch.setattr(PPI, "ppi", lambda shown, axes, **kinds: drawn.update(kinds, video=shown))
     monkeypatch.setattr(plot, "save", lambda figure, file: file.write_bytes(b""))
     turns = list(simulator().turns(SHIPS, 2 * SCANS, seed=4))
     tracks_of(set_back(turns, SCANS), tmp_path)
@@ -499,7 +501,7 @@ def test_the_screen_shows_tracks_at_their_echoes_under_an_offset(
     video, tmp_path, monkeypatch, pictures
 ):
     drawn = {}
-    monkeypatch.setattr(plot, "ppi", lambda shown, axes, **kinds: drawn.update(kinds, video=shown))
+    monkeypatch.setattr(PPI, "ppi", lambda shown, axes, **kinds: drawn.update(kinds, video=shown))
     monkeypatch.setattr(plot, "save", lambda figure, file: file.write_bytes(b""))
     config = tmp_path / "some.toml"
     config.write_text("[radar]\nbearing_offset_deg = 10.0\n")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from wakeline import metrics, recording
-from wakeline.recording import Episode, OwnShip, TargetTruth, Tracks
+from wakeline.recording import Episode, OwnShip, Recording, TargetTruth, Tracks
 from wakeline.scenario import RadarSimulator, RadarVideoSimulator, Truth
 
 pytest.importorskip("matplotlib")
@@ -63,7 +63,7 @@ def test_the_map_has_north_up_and_equal_axes(episode, tracks):
 
 
 def test_tracks_lie_where_they_are_and_carry_their_ids(episode, tracks):
-    ax = plot.map_figure(episode, tracks).axes[0]
+    ax = plot.map(tracks, episode).axes[0]
     one = tracks.where(tracks.track_id == "T1")
     drawn = [line.get_xydata() for line in ax.lines]
     assert any(np.array_equal(d, np.column_stack([one.east_m, one.north_m])) for d in drawn)
@@ -76,11 +76,11 @@ def test_tracks_lie_where_they_are_and_carry_their_ids(episode, tracks):
 
 def test_rows_that_are_not_known_are_not_in_the_window_of_the_map():
     state = np.array([[0.0, 1.0, 0.0, 1.0], [np.nan] * 4, [100.0, 1.0, 50.0, 1.0]])
-    (ax,) = plot.map_figure(None, Tracks(["1"] * 3, np.arange(3.0), state)).axes
+    (ax,) = plot.map(Tracks(["1"] * 3, np.arange(3.0), state)).axes
     low, high = ax.get_ylim()
     assert low < 0.0
     assert high > 100.0
-    plot.map_figure(None, Tracks(["1"], [0.0], state[1:2]))
+    plot.map(Tracks(["1"], [0.0], state[1:2]))
 
 
 def test_the_map_shows_records_of_own_ship_and_truth_for_the_time_of_the_scans(episode):
@@ -93,7 +93,7 @@ def test_the_map_shows_records_of_own_ship_and_truth_for_the_time_of_the_scans(e
         own=OwnShip(time_s, *way_m),
         truth={"1": TargetTruth(time_s, *way_m, unknown, unknown)},
     )
-    ax = plot.map_figure(longer).axes[0]
+    ax = plot.map(None, longer).axes[0]
     shown = {line.get_label(): line.get_ydata() for line in ax.lines}
     assert np.ptp(shown["truth"]) == pytest.approx(5.0 * (end_s - start_s), abs=10.0)
     np.testing.assert_allclose(shown["own ship"], [5.0 * (end_s - start_s)])
@@ -105,7 +105,7 @@ def test_a_vessel_at_rest_is_seen_with_her_ellipse():
     covariance = np.broadcast_to(np.diag([100.0, 1.0, 400.0, 1.0]), (10, 4, 4))
     for rows in (10, 1):
         track = Tracks(["1"] * rows, np.arange(rows), states[:rows], covariance=covariance[:rows])
-        ax = plot.map_figure(None, track).axes[0]
+        ax = plot.map(track).axes[0]
         (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
         for ellipse in ax.collections[0].get_paths():
             assert (ellipse.vertices > [west, south]).all()
@@ -113,19 +113,19 @@ def test_a_vessel_at_rest_is_seen_with_her_ellipse():
 
 
 def test_every_kind_of_mark_is_explained_once(episode, tracks):
-    legend = plot.map_figure(episode, tracks).axes[0].get_legend()
+    legend = plot.map(tracks, episode).axes[0].get_legend()
     names = sorted(text.get_text() for text in legend.get_texts())
     assert names == ["95 % ellipse", "own ship", "plot", "track", "truth"]
 
 
 def test_plots_out_of_sight_are_counted_and_shown_on_request(episode, tracks):
-    ax = plot.map_figure(episode, tracks).axes[0]
+    ax = plot.map(tracks, episode).axes[0]
     (note,) = [text for text in texts(ax) if "outside" in text]
     (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
     places = np.concatenate([scan.position_m for scan in episode.scans])
     inside = (places >= [south, west]).all(axis=1) & (places <= [north, east]).all(axis=1)
     assert note == f"{np.count_nonzero(~inside)} of {len(places)} plots outside"
-    whole = plot.map_figure(episode, tracks, whole=True).axes[0]
+    whole = plot.map(tracks, episode, whole=True).axes[0]
     assert not [text for text in texts(whole) if "outside" in text]
 
 
@@ -133,7 +133,7 @@ def test_plots_out_of_sight_are_counted_and_shown_on_request(episode, tracks):
 def test_own_ship_is_in_sight_whatever_else_is(episode, tracks, whole):
     away = replace(episode, own=OwnShip.fixed(-20_000.0, 3_000.0), truth=None)
     for shown in (tracks, None):
-        ax = plot.map_figure(away, shown, whole=whole).axes[0]
+        ax = plot.map(shown, away, whole=whole).axes[0]
         assert ax.get_ylim()[0] < -20_000.0 < ax.get_ylim()[1]
         assert ax.get_xlim()[0] < 3_000.0 < ax.get_xlim()[1]
 
@@ -157,7 +157,7 @@ def crowd(count, side_m, seed):
 @pytest.mark.parametrize("side_m", [0.0, 100.0, 1000.0])
 def test_labels_of_danger_cover_no_other_text_and_stay_within_the_axes(count, side_m, seed):
     tracks = crowd(count, side_m, seed)
-    fig = plot.map_figure(None, tracks, alarmed=np.ones(len(tracks), dtype=bool))
+    fig = plot.map(replace(tracks, alarmed=np.ones(len(tracks), dtype=bool)))
     fig.draw_without_rendering()
     (ax,) = fig.axes
     ids = [text.get_window_extent() for text in ax.texts if "CPA" not in text.get_text()]
@@ -180,7 +180,7 @@ def test_ids_of_tracks_cover_none_of_longer_ones(count, side_m):
     turn = RadarVideoSimulator(sweeps_per_turn=600, cells=100, cell_m=10.0).turn()
     ppi = plot.figure().subplots()
     plot.ppi(turn, ppi, tracks=tracks)
-    for ax in (plot.map_figure(None, tracks).axes[0], ppi):
+    for ax in (plot.map(tracks).axes[0], ppi):
         ax.figure.draw_without_rendering()
         ids = [text for text in ax.texts if text.get_text() in tracks.ids()]
         assert len(ids) == count
@@ -194,7 +194,7 @@ def test_ids_of_tracks_cover_none_of_longer_ones(count, side_m):
 def test_a_dangerous_track_is_red_and_has_its_own_colour():
     state = np.column_stack([np.zeros(9), np.zeros(9), 10.0 * np.arange(9), np.full(9, 10.0)])
     tracks = Tracks(["1"] * 9, np.arange(9.0), state)
-    fig = plot.map_figure(None, tracks, alarmed=np.ones(9, dtype=bool))
+    fig = plot.map(replace(tracks, alarmed=np.ones(9, dtype=bool)))
     canvas = FigureCanvasAgg(fig)
     canvas.draw()
     image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255.0
@@ -207,7 +207,7 @@ def test_a_dangerous_track_is_red_and_has_its_own_colour():
 def test_danger_is_cut_where_its_track_is():
     when_s = np.array([0.0, 1.0, 2.0, 30.0, 31.0])
     tracks = Tracks(["1"] * 5, when_s, np.ones((5, 4)))
-    ax = plot.map_figure(None, tracks, alarmed=np.ones(5, dtype=bool)).axes[0]
+    ax = plot.map(replace(tracks, alarmed=np.ones(5, dtype=bool))).axes[0]
     cuts = [np.isnan(line.get_xdata()).tolist() for line in ax.lines if len(line.get_xdata()) > 1]
     assert cuts == [[False, False, False, True, False, False]] * 2
 
@@ -254,7 +254,7 @@ def test_many_tracks_have_over_time_the_colours_of_the_map_and_can_be_told_apart
     colors = {line.get_label().removeprefix("track "): line.get_color() for line in speed.lines}
     assert len(set(colors.values())) == 10
     assert [line.get_color() for line in course.lines] == list(colors.values())
-    (ax,) = plot.map_figure(None, tracks).axes
+    (ax,) = plot.map(tracks).axes
     on_map = {text.get_text(): text.get_color() for text in ax.texts}
     assert colors.items() <= on_map.items()
 
@@ -466,13 +466,13 @@ def test_times_with_fixes_are_named():
 def test_ids_are_shown_as_they_are(tmp_path, tracks):
     odd = replace(tracks, track_id=np.full(len(tracks), r"$5 \frac$"))
     first = np.arange(len(odd)) == 0
-    for k, fig in enumerate(
-        [plot.map_figure(None, odd, alarmed=first), plot.time_figure(None, odd)]
-    ):
+    for k, fig in enumerate([plot.map(replace(odd, alarmed=first)), plot.time_figure(None, odd)]):
         plot.save(fig, tmp_path / f"{k}.svg")
 
 
-@pytest.mark.parametrize("make", [plot.map_figure, plot.time_figure])
+@pytest.mark.parametrize(
+    "make", [lambda episode=None, tracks=None: plot.map(tracks, episode), plot.time_figure]
+)
 def test_figures_are_written_even_of_nothing(tmp_path, make, episode, tracks):
     nothing = Tracks([], [], np.zeros((0, 4)))
     for k, arguments in enumerate([(episode, tracks), (episode,), (Episode("", []), nothing), ()]):
@@ -720,7 +720,7 @@ def test_every_name_is_in_the_picture(name, way):
     truth = TargetTruth(TIME_S[:9], north, east, *state[:, 1::2].T)
     scans = RadarSimulator(5.0, 0.01, 1.0).record({"a": Truth(state[0])}, 9, rng=1).episodes[0]
     told = replace(scans, truth={"a": truth})
-    for fig in (plot.map_figure(told, lone), plot.time_figure(told, lone)):
+    for fig in (plot.map(lone, told), plot.time_figure(told, lone)):
         FigureCanvasAgg(fig).draw()
         picture = fig.get_tightbbox().padded(0.1)
         for legend in filter(None, (ax.get_legend() for ax in fig.axes)):
@@ -772,11 +772,24 @@ def test_panels_of_own_ship_take_lists_and_refuse_what_does_not_fit_by_name(name
                 draw(**{argument: np.ones(2, bool)})
 
 
-def test_maps_have_a_mark_of_danger_for_each_row():
-    tracks = Tracks(["1", "1"], [0.0, 1.0], np.zeros((2, 4)))
+def test_tracks_have_a_mark_of_alarm_for_each_row():
     with pytest.raises(ValueError, match=r"alarmed must have shape \(2,\), got \(3,\)"):
-        plot.map_figure(tracks=tracks, alarmed=np.ones(3, bool))
-    assert plot.map_figure(tracks=tracks, alarmed=[True, False]).axes
+        Tracks(["1", "1"], [0.0, 1.0], np.zeros((2, 4)), alarmed=np.ones(3, bool))
+
+
+def test_each_episode_of_a_recording_has_a_map(episode, tracks):
+    later = replace(
+        episode,
+        name="later",
+        scans=[replace(s, time_s=s.time_s + 1e4) for s in episode.scans],
+    )
+    both = Recording("two", [replace(episode, name="first"), later])
+    named = replace(tracks, scenario=np.full(len(tracks), "first"))
+    first, second = plot.map(named, both).axes
+    assert [ax.get_title("right") for ax in (first, second)] == ["first", "later"]
+    ids = set(tracks.ids())
+    assert {text.get_text() for text in first.texts} & ids == ids
+    assert not {text.get_text() for text in second.texts} & ids
 
 
 def test_an_ellipse_is_of_two_axes():

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+import wakeline as wl
 from wakeline import metrics, recording
-from wakeline.cli.config import read_settings
-from wakeline.cli.tracking import track_episode
+from wakeline.tracking import read_settings
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "cpp/docs").rglob("*.md"))]
@@ -68,9 +68,7 @@ def figures_of(name, section="tracker", changes=()):
     settings = read_settings(radar=name)
     changed = replace(settings, **{section: getattr(settings, section) | dict(changes)})
     recorded = recording.load(name)
-    parts = [track_episode(episode, changed, named=len(recorded) > 1) for episode in recorded]
-    tracks = recording.Tracks.joined([part.tracks for part in parts])
-    return metrics.score(tracks, recorded).overall.as_dict()
+    return metrics.score(wl.track_recording(recorded, config=changed), recorded).overall.as_dict()
 
 
 @pytest.mark.parametrize("part", WITHOUT)

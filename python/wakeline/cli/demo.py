@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from wakeline import recording
+from wakeline import metrics, recording
+from wakeline.tracking import Settings
 
 from . import outputs, report
-from .config import read_settings
-from .track import draw_into, score_of, track_into
+from .track import draw_into, track_into
 
 _ABOUT = {
     "joyride": """\
@@ -46,9 +46,10 @@ def run(arguments: argparse.Namespace) -> None:
     name = arguments.recording
     print(_ABOUT[name])
     real = recording.load(name)
-    parts = track_into(arguments.out, real, read_settings(radar=name), f"radar {name}")
-    score = score_of(real, parts)
+    settings = Settings.default().knowing(real.radar)
+    tracks = track_into(arguments.out, real, settings, f"radar {name}")
+    score = metrics.score(tracks, real)
     print(f"\nThe tracks against the truth:\n\n{report.explained(score.overall)}")
     if arguments.json is not None:
         outputs.write_json(arguments.json, "demo", report.score_rows(score, name))
-    draw_into(arguments.out, parts)
+    draw_into(arguments.out, tracks)

@@ -1,4 +1,4 @@
-"""The files that tracking leaves behind, each replaced only when the new one is complete."""
+"""The files of the command: what it must not overwrite, its pictures, its JSON."""
 
 from __future__ import annotations
 
@@ -7,24 +7,21 @@ import errno
 import json
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from wakeline import __version__, plot
 from wakeline._progress import progress
-from wakeline.recording import Tracks, replacing, write_tracks
-
-from .tracking import MODE_NAMES, TrackedEpisode
+from wakeline.extraction import VideoRecording
+from wakeline.recording import replacing
+from wakeline.tracking import MODE_NAMES, TrackedRecording
+from wakeline.tracking.tables import TABLES
 
 HOW_TO_GET_PICTURES = "no pictures without matplotlib: pip install 'wakeline[plot]'"
 PARTIAL = "-partial"
 
-_TABLES = ("tracks", "events", "plots_tracks", "alarms")
-_OF_ALARM = ("track_id", "begin_s", "end_s", "cpa_m", "tcpa_s", "cpa_probability", "range_m")
 _PICTURES = ("map", "time")
 _MOST_OCTETS = 120  # of a scenario in the name of a file, which some disks end at 143
 
@@ -59,7 +56,7 @@ def of_tracking(folder: Path) -> set[Path]:
     Pictures of scenarios are those of the scenarios that its ``plots_tracks.csv`` names, so that a
     file of the user's with a name like theirs is none of them.
     """
-    tables = {f"{stem}{suffix}.csv" for stem in _TABLES for suffix in ("", PARTIAL)}
+    tables = {f"{stem}{suffix}.csv" for stem in TABLES for suffix in ("", PARTIAL)}
     ends = {"", *(f"-{name}" for name in _file_names(_scenarios_in(folder / "plots_tracks.csv")))}
     pictures = {f"{stem}{end}.png" for stem in _PICTURES for end in ends}
     return {folder / name for name in tables | pictures | {"ppi.png"}}
@@ -72,57 +69,25 @@ def remove_stale(earlier: Iterable[Path], files: Iterable[Path]) -> None:
             file.unlink(missing_ok=True)
 
 
-def write_results(folder: Path, parts: Sequence[TrackedEpisode], suffix: str = "") -> list[Path]:
-    """Write ``tracks.csv``, ``events.csv`` and ``plots_tracks.csv``, and ``alarms.csv`` of danger.
-
-    Where no danger was asked for, ``alarms.csv`` of an earlier run is removed.
-
-    Parameters
-    ----------
-    folder : Path
-        Must exist.
-    parts : sequence of TrackedEpisode
-    suffix : str
-        Put before ``.csv``.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
-    tracks, events, plots, alarms = (folder / f"{stem}{suffix}.csv" for stem in _TABLES)
-    scenario = ["scenario"] if any(part.tracks.scenario is not None for part in parts) else []
-    write_tracks(tracks, Tracks.joined([part.tracks for part in parts]))
-    head = ["time_s", "event", "track_id", "tentative_id", *scenario]
-    _write_csv(events, head, (row for part in parts for row in _event_rows(part)))
-    head = ["scan", "time_s", "north_m", "east_m", "track_id", *scenario]
-    _write_csv(plots, head, (row for part in parts for row in _plot_rows(part)))
-    if all(part.danger is None for part in parts):
-        alarms.unlink(missing_ok=True)
-        return [tracks, events, plots]
-    head = [*_OF_ALARM, *scenario]
-    _write_csv(alarms, head, (row for part in parts for row in _alarm_rows(part)))
-    return [tracks, events, plots, alarms]
-
-
-def write_pictures(folder: Path, parts: Sequence[TrackedEpisode]) -> list[Path]:
-    """Write ``map.png`` and ``time.png``, one each an episode; nothing without matplotlib."""
-    if not can_draw():
-        return []
+def write_pictures(folder: Path, tracks: TrackedRecording) -> list[Path]:
+    """Write ``map.png`` and ``time.png`` of each episode, and ``ppi.png`` of radar video."""
     files = []
-    names_of_files = _file_names(part.episode.name for part in parts)
-    named = zip(parts, names_of_files, strict=True)
+    parts = tracks.episodes
+    named = zip(parts, _file_names(part.episode.name for part in parts), strict=True)
     for part, name in progress(named, len(parts), "drawing"):
         end = f"-{name}" if len(parts) > 1 else ""
         modes = part.tracks.mode_probability.shape[1]
         names = MODE_NAMES if modes == len(MODE_NAMES) else None
         figures = (
-            plot.map_figure(part.episode, part.tracks, alarmed=_alarmed(part)),
+            plot.map(part.tracks, part.episode),
             plot.time_figure(part.episode, part.tracks, mode_names=names),
         )
         for stem, figure in zip(_PICTURES, figures, strict=True):
             files.append(folder / f"{stem}{end}.png")
             plot.save(figure, files[-1])
+    if isinstance(tracks.recording, VideoRecording):
+        files.append(folder / "ppi.png")
+        plot.save(plot.screen(tracks), files[-1])
     return files
 
 
@@ -149,41 +114,6 @@ def _is_same(output: Path, file: Path) -> bool:
         return output.is_file() and output.samefile(file)  # a device replaces nothing
     except (OSError, ValueError):  # one of them is not there
         return False
-
-
-def _event_rows(part: TrackedEpisode) -> Iterable[list]:
-    scenario = _scenario(part)
-    for event in part.events:
-        yield [event.time_s, event.kind, event.track_id, event.tentative_id, *scenario]
-
-
-def _plot_rows(part: TrackedEpisode) -> Iterable[list]:
-    scenario = _scenario(part)
-    for scan, ids in zip(part.episode.scans, part.plot_track_id, strict=True):
-        columns = (scan.plot_time_s, scan.north_m, scan.east_m, ids)
-        for row in zip(*(column.tolist() for column in columns), strict=True):
-            yield [scan.number, *row, *scenario]
-
-
-def _alarm_rows(part: TrackedEpisode) -> Iterable[list]:
-    scenario = _scenario(part)
-    for alarm in part.danger.alarms if part.danger else ():
-        yield [*(getattr(alarm, name) for name in _OF_ALARM), *scenario]
-
-
-def _alarmed(part: TrackedEpisode) -> np.ndarray | None:
-    return part.danger.alarmed if part.danger else None
-
-
-def _scenario(part: TrackedEpisode) -> list[str]:
-    return [] if part.tracks.scenario is None else [part.episode.name]
-
-
-def _write_csv(path: Path, head: list[str], rows: Iterable[list]) -> None:
-    with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(head)
-        writer.writerows(rows)
 
 
 def _scenarios_in(plots: Path) -> list[str]:

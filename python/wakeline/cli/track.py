@@ -7,18 +7,27 @@ import math
 import sys
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from wakeline import FilterError, metrics
 from wakeline._brief import many
-from wakeline.extraction import VideoRecording, read_plots_of_video
-from wakeline.recording import Recording, Tracks, is_video, read_plots
+from wakeline.recording import Recording, radar_names
+from wakeline.tracking import (
+    VESSELS,
+    DangerLimits,
+    Settings,
+    TrackedEpisode,
+    TrackedRecording,
+    has_names,
+    median_step_s,
+    open_recording,
+    read_settings,
+    track_episode,
+    write_tables,
+)
 
-from . import outputs, report, video
-from .config import VESSELS, Settings, radar_names, read_settings
-from .tracking import TrackedEpisode, has_names, median_step_s, track_episode
+from . import outputs, report
 
 _MOST_ALARMS = 20
 
@@ -109,24 +118,21 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.plots is None:
         raise ValueError("track needs a recording (see wakeline track --help)")
     outputs.check_no_input("--out", outputs.of_tracking(arguments.out), inputs(arguments))
-    if arguments.plots.is_file() and is_video(arguments.plots):
-        track_video(arguments, settings)
-        return
-    recording = read_plots(
+    recording = open_recording(
         arguments.plots, arguments.own, arguments.truth, period_s=settings.period_s
     )
-    radar = _radar_text(arguments, settings)
-    danger = arguments.own is not None
-    parts = track_into(arguments.out, recording, settings, radar, danger=danger)
-    rows = _rows(parts, arguments.plots.name)
+    known = settings.knowing(recording.radar)
+    radar = _radar_text(arguments, settings, known, recording)
+    tracks = track_into(arguments.out, recording, known, radar, danger=arguments.own is not None)
+    rows = _rows(tracks.episodes, arguments.plots.name)
     if arguments.truth is not None:
-        score = score_of(recording, parts)
+        score = metrics.score(tracks, tracks.recording)
         print(f"\n{report.score_table(score)}")
         scores = report.score_rows(score, arguments.plots.name)
         rows = [scored | row for scored, row in zip(scores, rows, strict=True)]
     if arguments.json is not None:
         outputs.write_json(arguments.json, "track", rows)
-    draw_into(arguments.out, parts)
+    draw_into(arguments.out, tracks)
 
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:
@@ -137,82 +143,56 @@ def inputs(arguments: argparse.Namespace) -> list[Path]:
     return [file for file in files if file is not None]
 
 
-def track_video(arguments: argparse.Namespace, settings: Settings) -> None:
-    """Track radar video: as plots, and a picture of the screen besides."""
-    if arguments.truth is not None:
-        raise ValueError(f"--truth goes with a file of plots, {arguments.plots} is video")
-    film = read_plots_of_video(arguments.plots, arguments.own, period_s=settings.period_s)
-    measured = video.told_to(settings, film)
-    if measured is None:
-        radar = _radar_text(arguments, settings)
-    else:
-        settings, radar = measured, f"radar as its echoes are: {_std_text(film)}"
-    danger = arguments.own is not None
-    parts = track_into(arguments.out, film.recording, settings, radar, danger=danger)
-    if arguments.json is not None:
-        outputs.write_json(arguments.json, "track", _rows(parts, arguments.plots.name))
-    draw_into(arguments.out, parts)
-    if outputs.can_draw():
-        offset_rad = math.radians(settings.radar["bearing_offset_deg"])
-        file = video.draw_ppi(arguments.out, film, parts[-1], offset_rad)
-        print(f"and {file.name}")
-
-
-def _radar_text(arguments: argparse.Namespace, settings: Settings) -> str:
-    """Whose description of the radar holds."""
+def _radar_text(
+    arguments: argparse.Namespace, given: Settings, used: Settings, recording: Recording
+) -> str:
+    """Where the radar parameters are from."""
+    if used != given:
+        range_std_m, bearing_std_rad = recording.plot_std
+        errors = f"{range_std_m:.1f} m, {math.degrees(bearing_std_rad):.2f}°"
+        return f"radar as its echoes are: {errors}"
     if arguments.radar:
         return f"radar {arguments.radar}"
-    default = settings.radar == Settings.default().radar
+    default = used.radar == Settings.default().radar
     return "radar by default" if default else f"radar of {arguments.config.name}"
-
-
-def _std_text(film: VideoRecording) -> str:
-    range_std_m, bearing_std_rad = film.plot_std
-    return f"{range_std_m:.1f} m, {math.degrees(bearing_std_rad):.2f}°"
 
 
 def track_into(
     folder: Path, recording: Recording, settings: Settings, radar: str, *, danger: bool = False
-) -> list[TrackedEpisode]:
-    """Track every episode, write tables into `folder`, and say so on the screen.
+) -> TrackedRecording:
+    """Track every episode, write tables into `folder`, and report it on the screen.
 
-    Pictures of an earlier run are removed. With `danger`, the tracks are watched for those that
-    come too close to own ship.
+    Pictures of an earlier run are removed. With `danger`, alarms are raised for tracks that come
+    too close to own ship.
     """
     outputs.make_folder(folder)
     print(_input_lines(recording, settings, radar), flush=True)
     parts: list[TrackedEpisode] = []
     try:
         for episode in recording:
-            named = has_names(recording)
-            parts.append(track_episode(episode, settings, named=named, danger=danger))
+            own, named = episode.own if danger else None, has_names(recording)
+            parts.append(track_episode(episode, settings, own=own, named=named))
     except (ValueError, FilterError, MemoryError, KeyboardInterrupt):
         if parts:
-            files = outputs.write_results(folder, parts, outputs.PARTIAL)
+            files = write_tables(folder, parts, outputs.PARTIAL)
             print(f"of the scenarios before: {_listed(files)}", file=sys.stderr)
         raise
     earlier = outputs.of_tracking(folder)
-    files = outputs.write_results(folder, parts)
+    files = write_tables(folder, parts)
     outputs.remove_stale(earlier, files)
     print(_track_lines(parts))
     if danger:
-        print(_alarm_lines(parts, settings))
+        print(_alarm_lines(parts, settings.danger_limits))
     print(f"written to {folder}: {_listed(files)}", flush=True)
-    return parts
+    return TrackedRecording.of(recording, parts, settings)
 
 
-def draw_into(folder: Path, parts: Sequence[TrackedEpisode]) -> None:
-    """Draw every episode, and say so on the screen; last, as it takes longest."""
+def draw_into(folder: Path, tracks: TrackedRecording) -> None:
+    """Draw every episode, and report it on the screen; last, as it takes longest."""
     if not outputs.can_draw():
         print(outputs.HOW_TO_GET_PICTURES)
         return
-    print(f"drawn in {folder}: {_listed(outputs.write_pictures(folder, parts))}")
-
-
-def score_of(recording: Recording, parts: Sequence[TrackedEpisode]) -> metrics.Score:
-    """The score of the tracks against the truth of the recording."""
-    shown = replace(recording, episodes=[part.episode for part in parts])
-    return metrics.score(Tracks.joined([part.tracks for part in parts]), shown)
+    print(f"drawn in {folder}: {_listed(outputs.write_pictures(folder, tracks))}")
 
 
 def _input_lines(recording: Recording, settings: Settings, radar: str) -> str:
@@ -247,12 +227,11 @@ def _track_lines(parts: Sequence[TrackedEpisode]) -> str:
     return "\n".join(lines)
 
 
-def _alarm_lines(parts: Sequence[TrackedEpisode], settings: Settings) -> str:
-    known = [part for part in parts if part.danger is not None]
+def _alarm_lines(parts: Sequence[TrackedEpisode], limits: DangerLimits) -> str:
+    known = [part for part in parts if part.alarms is not None]
     if not known:
         return "note: own ship's velocity is not known, so closest approaches are not either"
-    limits = settings.danger_limits
-    alarms = [(part.episode.name, alarm) for part in known for alarm in part.danger.alarms]
+    alarms = [(part.episode.name, alarm) for part in known for alarm in part.alarms]
     within = f"{limits.cpa_limit_m:.0f} m within {limits.tcpa_limit_s / 60.0:g} min"
     plural = "" if len(alarms) == 1 else "s"
     lines = [f"{len(alarms) or 'no'} alarm{plural} of tracks closer than {within}"]

@@ -16,12 +16,11 @@ from wakeline.recording import (
     OwnShip,
     RadarVideo,
     Recording,
-    RecordingError,
     Scan,
     VideoReport,
     read_video,
 )
-from wakeline.recording.own_csv import OWN_GAP_S, OwnRows, read_own
+from wakeline.recording.own_csv import OWN_GAP_S, OwnRows, read_own_track
 
 from .plots import Extraction, Plots, joined
 from .turns import judged, turns
@@ -30,22 +29,25 @@ _UNSEEN = 2.0  # an echo errs more than its cells say: it wanders over the hull,
 _DAY_S = 86400.0
 
 
-@dataclass(frozen=True)
-class VideoRecording:
-    """Plots of radar video, and the last turn of it.
+@dataclass(frozen=True, kw_only=True, repr=False)
+class VideoRecording(Recording):
+    """The plots of radar video: one scan an antenna revolution, an episode until a clock is reset.
+
+    ``radar`` has the errors of plots as estimated from their echoes: ``range_std_m`` and
+    ``bearing_std_deg``.
 
     Attributes
     ----------
-    recording : Recording
-        One scan a turn, one episode as long as the clock goes on.
     last : RadarVideo
-    plot_std : (float, float)
-        What the echoes say of the errors of plots: range in metres and bearing in radians.
+        The last revolution.
     """
 
-    recording: Recording
     last: RadarVideo
-    plot_std: tuple[float, float]
+
+    @property
+    def plot_std(self) -> tuple[float, float]:
+        """Errors of plots as estimated from their echoes: range in metres, bearing in radians."""
+        return self.radar["range_std_m"], float(np.deg2rad(self.radar["bearing_std_deg"]))
 
 
 def read_plots_of_video(
@@ -89,13 +91,16 @@ def read_plots_of_video(
         notes.append(f"{begun} turn{'s' * (begun > 1)} only begun left out")
     ship = OwnShip.fixed()
     if own_path is not None:
-        rows = _own_rows(own_path, notes)
+        rows = read_own_track(own_path, notes)
         days_s = _days_s(rows, parts)
         parts = [[seen.later(days_s) for seen in part] for part in parts]
         _check_covered(rows, parts, path)
         ship = rows.ship()
-    recording = Recording(path.stem, _episodes(parts, ship, notes), notes=notes)
-    return VideoRecording(recording, last, (_UNSEEN * float(std[0]), _UNSEEN * float(std[1])))
+    radar = {
+        "range_std_m": _UNSEEN * float(std[0]),
+        "bearing_std_deg": float(np.degrees(_UNSEEN * float(std[1]))),
+    }
+    return VideoRecording(path.stem, _episodes(parts, ship, notes), notes, radar, last=last)
 
 
 class _Seen(NamedTuple):
@@ -136,29 +141,6 @@ def _scans(part: Sequence[_Seen], ship: OwnShip) -> list[Scan]:
         Scan.of_plots(end_s, k, seen.time_s, seen.range_m, seen.bearing_rad, ship.position_at)
         for k, (end_s, seen) in enumerate(part)
     ]
-
-
-def _own_rows(path: str | Path, notes: list[str]) -> OwnRows:
-    """Rows with a position, in order of time."""
-    rows = read_own(path, notes)
-    if not rows.has_position:
-        raise RecordingError(
-            path,
-            "there is no own-ship position",
-            line=1,
-            wanted="columns north_m and east_m",
-            got="scans alone",
-        )
-    scenarios = [] if rows.scenario is None else sorted(set(rows.scenario.tolist()))
-    if len(scenarios) > 1:
-        raise RecordingError(
-            path,
-            "own ship's track is not one",
-            column="scenario",
-            wanted="one scenario, as video has no names of them",
-            got=f"{len(scenarios)}, such as {scenarios[0]!r} and {scenarios[1]!r}",
-        )
-    return rows.by_time()
 
 
 def _days_s(own: OwnRows, parts: Sequence[Sequence[_Seen]]) -> float:

@@ -1,7 +1,8 @@
 """Figures of recordings, tracks and studies, drawn by matplotlib (installed by the extra ``plot``).
 
-Each ``..._view`` and ``..._panel`` draws into axes or a figure of the caller's; ``..._figure``
-makes one of its own, which :func:`save` writes.
+:func:`map` draws the tracks of a recording, :func:`screen` those of radar video. Each ``..._view``
+and ``..._panel`` draws into the caller's axes or figure; :func:`map`, :func:`screen` and each
+``..._figure`` make a figure, which :func:`save` writes.
 """
 
 from .comparison import (
@@ -14,9 +15,9 @@ from .comparison import (
     turn_colors,
     turn_rate_panel,
 )
-from .map import ellipse_outline, map_figure, map_view
+from .maps import ellipse_outline, map, map_view
 from .own_ship import course_over_time, drift_over_time, own_map, speed_over_time
-from .ppi import circle_outline, echo, ppi, screen_raster, window_outline
+from .ppi import circle_outline, echo, ppi, screen, screen_raster, window_outline
 from .style import (
     INK,
     MUTED,
@@ -57,7 +58,7 @@ __all__ = [
     "error_panel",
     "figure",
     "halo",
-    "map_figure",
+    "map",
     "map_view",
     "mark_switches",
     "mode_panel",
@@ -69,6 +70,7 @@ __all__ = [
     "probability_panel",
     "ranking_panel",
     "save",
+    "screen",
     "screen_raster",
     "speed_over_time",
     "speed_panel",

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import wakeline as wl
 from wakeline._checks import real_numbers, whole_number
 from wakeline._engine.video import ScanImage
+from wakeline.extraction import VideoRecording
 from wakeline.recording import RadarVideo, Tracks
 
-from .map import ellipse_outline
+from .maps import ellipse_outline
 from .style import INK, MUTED, TEXT_PT, by_length, dot_lone, figure, plain, with_gaps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Colormap
+    from matplotlib.figure import Figure
     from matplotlib.image import AxesImage
+
+    from wakeline.tracking import TrackedRecording
 
 _TURN_RAD = 2.0 * np.pi
 SCREEN = "#04070C"
@@ -37,6 +42,7 @@ _RINGS = 6
 _SWEEPS_AT_ONCE = 512
 _DARKEST_QUANTILE, _BRIGHTEST_QUANTILE = 0.15, 0.9995
 _SIDE_AROUND = 0.02
+_STROBE_PROBABILITY = 0.99
 
 
 def ppi(
@@ -102,6 +108,60 @@ def ppi(
         _draw_rings(ax, extent, float(video.range_m[-1] + 0.5 * video.cell_m))
     _draw_layers(ax, plots, strobes, tracks)
     return _dress_screen(ax, extent)
+
+
+def screen(tracks: TrackedRecording) -> Figure:
+    """Draw the last revolution of radar video: echoes, plots, strobes, and the tracks.
+
+    All as seen from own ship at the end of the revolution, and without the bearing offset of the
+    radar. A strobe is where the next plot of a track is with a probability of 99 %.
+
+    Parameters
+    ----------
+    tracks : TrackedRecording
+        Of a :class:`wakeline.extraction.VideoRecording`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        For :func:`save`.
+
+    Raises
+    ------
+    TypeError
+        When the tracks are not those of radar video.
+    """
+    recording, episode = tracks.recording, tracks.episodes[-1].episode
+    if not isinstance(recording, VideoRecording):
+        raise TypeError(f"tracks must be those of radar video, got those of {recording!r}")
+    scan, last = episode.scans[-1], tracks.episodes[-1].tracks
+    north_m, east_m = episode.own.position_at(scan.time_s)[0]
+    last = replace(last, state=last.state - [north_m, 0.0, east_m, 0.0])
+    offset_rad = np.deg2rad(tracks.settings.radar["bearing_offset_deg"])
+    range_m, bearing_rad = scan.range_bearing.T
+    fig = figure(8.6, 8.6)
+    ppi(
+        replace(recording.last, azimuth_rad=recording.last.azimuth_rad - offset_rad),
+        fig.add_subplot(),
+        plots=range_m[:, None] * np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)]),
+        strobes=_strobes(last.where(last.time_s == scan.time_s), recording.plot_std),
+        tracks=last,
+    )
+    return fig
+
+
+def _strobes(tracks: Tracks, plot_std: tuple[float, float]) -> list[NDArray]:
+    """Outlines around rows of tracks; errors of a plot are metres of range and radians."""
+    range_std_m, bearing_std_rad = plot_std
+    sensor = wl.ConvertedRangeBearing(range_std_m=range_std_m, bearing_std_rad=bearing_std_rad)
+    threshold = wl.ChiSquareGate(probability=_STROBE_PROBABILITY).threshold(2)
+    place = np.ix_([0, 2], [0, 2])
+    outlines = []
+    for (north_m, _, east_m, _), covariance in zip(tracks.state, tracks.covariance, strict=True):
+        polar = [np.hypot(north_m, east_m), np.arctan2(east_m, north_m)]
+        plot_m2 = wl.one_point(sensor, polar, 1.0).covariance[place]
+        outlines.append(ellipse_outline([north_m, east_m], covariance[place] + plot_m2, threshold))
+    return outlines
 
 
 def echo(

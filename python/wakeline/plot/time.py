@@ -10,7 +10,7 @@ import numpy as np
 from wakeline._brief import many
 from wakeline.recording import Episode, Tracks
 
-from .map import CHI_SQUARE_95_2DOF
+from .maps import CHI_SQUARE_95_2DOF
 from .style import (
     INK,
     MODE_PALETTE,

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import resources
 
 from .ais_csv import AisRecording, AisTrack, read_ais
@@ -17,8 +18,10 @@ from .files import replacing
 from .local_plane import LocalPlane
 from .model import Episode, OwnShip, Recording, Scan
 from .nmea import NavigationLog, NmeaProblem, NmeaReport, read_nmea
+from .own_csv import read_own_ship
 from .plots_csv import read_plots
 from .plots_writer import write_plots
+from .radars import load_radar, radar_names
 from .tracks_csv import Tracks, read_tracks, write_tracks
 from .truth import TargetTruth
 from .video import RadarVideo
@@ -43,9 +46,12 @@ __all__ = [
     "load",
     "load_ais",
     "load_navigation",
+    "load_radar",
     "names",
+    "radar_names",
     "read_ais",
     "read_nmea",
+    "read_own_ship",
     "read_plots",
     "read_tracks",
     "read_video",
@@ -74,7 +80,7 @@ def load(name: str) -> Recording:
     Returns
     -------
     Recording
-        With own ship and truth.
+        With own ship, truth and the description of its radar.
 
     Raises
     ------
@@ -85,7 +91,7 @@ def load(name: str) -> Recording:
         raise ValueError(f"name must be one of {', '.join(names())}, got {name!r}")
     with resources.as_file(_data() / name) as folder:
         plots, scans, truth = (folder / f"{kind}.csv" for kind in ("plots", "scans", "truth"))
-        return read_plots(plots, scans, truth, name=name)
+        return replace(read_plots(plots, scans, truth, name=name), radar=load_radar(name))
 
 
 def load_ais() -> AisRecording:

@@ -265,11 +265,15 @@ class Recording:
         At least one.
     notes : list of str
         What the reader dropped or repaired, one counted note each; empty for a clean recording.
+    radar : dict of str to float
+        What is known of the radar that recorded it, by the keys of ``[radar]`` in a file of
+        settings (:mod:`wakeline.tracking`), such as ``range_std_m``; empty where nothing is.
     """
 
     name: str
     episodes: list[Episode]
     notes: list[str] = field(default_factory=list)
+    radar: dict[str, float] = field(default_factory=dict)
 
     def __iter__(self) -> Iterator[Episode]:
         return iter(self.episodes)

@@ -170,6 +170,46 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
     return rows
 
 
+def read_own_track(path: str | Path, notes: list[str]) -> OwnRows:
+    """Read an own-ship file that holds one track: rows with a position, in order of time.
+
+    Raises
+    ------
+    RecordingError
+        When the file cannot be read, has no positions, or has those of several scenarios.
+    """
+    rows = read_own(path, notes)
+    if not rows.has_position:
+        raise RecordingError(
+            path,
+            "there is no own-ship position",
+            line=1,
+            wanted="columns north_m and east_m",
+            got="scans alone",
+        )
+    scenarios = [] if rows.scenario is None else sorted(set(rows.scenario.tolist()))
+    if len(scenarios) > 1:
+        raise RecordingError(
+            path,
+            "own ship's track is not one",
+            column="scenario",
+            wanted="one scenario, as the recording has no names of them",
+            got=f"{len(scenarios)}, such as {scenarios[0]!r} and {scenarios[1]!r}",
+        )
+    return rows.by_time()
+
+
+def read_own_ship(path: str | Path) -> OwnShip:
+    """Read own ship's track from a file, as :func:`read_plots` describes it.
+
+    Raises
+    ------
+    RecordingError
+        When the file cannot be read, has no positions, or has those of several scenarios.
+    """
+    return read_own_track(path, []).ship()
+
+
 def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
     if "north_m" not in table and "east_m" not in table and "scan" in table:
         notes.append(f"{table.path.name}: no own-ship position, so the radar is stationary")

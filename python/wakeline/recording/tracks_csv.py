@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import real_numbers
+from wakeline._checks import real_numbers, shaped
 
 from .errors import RecordingError
 from .files import replacing
@@ -68,6 +68,8 @@ class Tracks:
     cpa_m, tcpa_s, cpa_probability : ndarray (n,) or None
         Closest approach to own ship: distance, time until then (negative: in the past), and the
         probability of a distance below a limit.
+    alarmed : ndarray of bool (n,) or None
+        Rows under an alarm (:func:`wakeline.tracking.with_alarms`); not written to files of tracks.
 
     Raises
     ------
@@ -86,6 +88,7 @@ class Tracks:
     cpa_m: np.ndarray | None = None
     tcpa_s: np.ndarray | None = None
     cpa_probability: np.ndarray | None = None
+    alarmed: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         n = len(self.time_s)
@@ -99,6 +102,8 @@ class Tracks:
             array = np.asarray(given, dtype=str) if is_text else real_numbers(name, given)
             _check_shape(name, array.shape, shape)
             object.__setattr__(self, name, array)
+        if self.alarmed is not None:
+            object.__setattr__(self, "alarmed", shaped("alarmed", self.alarmed, n).astype(bool))
         if self.mode_probability is not None:
             modes = real_numbers("mode_probability", self.mode_probability)
             object.__setattr__(self, "mode_probability", modes)
@@ -113,21 +118,17 @@ class Tracks:
 
     def where(self, chosen: np.ndarray) -> Tracks:
         """The chosen rows, by mask or by index."""
-        columns = {name: getattr(self, name) for name in self._names()}
+        columns = {name: getattr(self, name) for name in _COLUMNS}
         return Tracks(**{k: None if v is None else v[chosen] for k, v in columns.items()})
 
-    @classmethod
-    def joined(cls, parts: Sequence[Tracks]) -> Tracks:
+    @staticmethod
+    def joined(parts: Sequence[Tracks]) -> Tracks:
         """The rows of all parts in order, with the columns that every part has."""
         if not parts:
-            return cls(np.zeros(0, dtype=str), np.zeros(0), np.zeros((0, 4)))
-        columns = {name: [getattr(part, name) for part in parts] for name in cls._names()}
+            return Tracks(np.zeros(0, dtype=str), np.zeros(0), np.zeros((0, 4)))
+        columns = {name: [getattr(part, name) for part in parts] for name in _COLUMNS}
         shared = {k: v for k, v in columns.items() if all(values is not None for values in v)}
-        return cls(**{name: np.concatenate(values) for name, values in shared.items()})
-
-    @classmethod
-    def _names(cls) -> list[str]:
-        return [column.name for column in fields(cls)]
+        return Tracks(**{name: np.concatenate(values) for name, values in shared.items()})
 
     def ids(self) -> list[str]:
         """The track ids in order of first row."""
@@ -153,6 +154,9 @@ class Tracks:
     def speed_mps(self) -> np.ndarray:
         """Speeds over ground, (n,)."""
         return np.hypot(self.state[:, 1], self.state[:, 3])
+
+
+_COLUMNS = tuple(column.name for column in fields(Tracks))
 
 
 def read_tracks(path: str | Path) -> Tracks:

@@ -1,17 +1,17 @@
-"""Which tracks come dangerously close to own ship, and since when."""
+"""Closest approach of tracks to own ship, and alarms of those that come dangerously close."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 import wakeline as wl
+from wakeline._units import NAUTICAL_MILE_M
 from wakeline.recording import OwnShip, Tracks
-
-NAUTICAL_MILE_M = 1852.0
 
 
 @dataclass(frozen=True)
@@ -19,10 +19,9 @@ class DangerLimits:
     """When a track is dangerous.
 
     An alarm begins when a track comes closer than `cpa_limit_m` within `tcpa_limit_s` with a
-    probability of `alarm_probability` or more, its closest point still ahead. It is over when the
-    probability stays below `clear_probability` for `clear_hold_s`, so that one encounter is one
-    alarm while the estimate of a far ship still wanders, or when the track ends. Its last scan is
-    the last one that was not below.
+    probability of `alarm_probability` or more, its closest point still ahead. It ends when the
+    probability stays below `clear_probability` for `clear_hold_s`, or when the track ends. The hold
+    keeps one encounter one alarm while the estimate of a distant ship still varies.
 
     Attributes
     ----------
@@ -33,7 +32,7 @@ class DangerLimits:
     clear_hold_s : float
         Not negative.
     own_velocity_std_mps : float
-        Error of own ship's velocity per axis, where her file does not tell its covariance.
+        Error of own ship's velocity per axis, where its covariance is not known.
 
     Raises
     ------
@@ -68,17 +67,18 @@ class DangerLimits:
 
 @dataclass(frozen=True)
 class Alarm:
-    """A stretch of a track that is dangerous.
+    """A part of a track that is dangerous.
 
     Attributes
     ----------
     track_id : str
     begin_s, end_s : float
-        Times of its first and last scan.
+        Times of its first and its last scan.
     cpa_m, tcpa_s, cpa_probability, range_m : float
-        As they stood when it began.
+        At the beginning: closest approach, time until it, probability of coming closer than the
+        limits, and distance.
     inside : bool
-        Whether it was closer than the limit already.
+        Whether the track was closer than the limit when the alarm began.
     """
 
     track_id: str
@@ -91,39 +91,28 @@ class Alarm:
     inside: bool
 
     def __str__(self) -> str:
-        inside = f"inside already, {_way(self.range_m)} off; " if self.inside else ""
+        inside = f"inside already, {_miles(self.range_m)} off; " if self.inside else ""
         return (
-            f"track {self.track_id} at {self.begin_s:.1f} s: {inside}CPA {_way(self.cpa_m)}, "
+            f"track {self.track_id} at {self.begin_s:.1f} s: {inside}CPA {_miles(self.cpa_m)}, "
             f"TCPA {self.tcpa_s / 60.0:.1f} min, {100.0 * self.cpa_probability:.0f} %, "
             f"until {self.end_s:.1f} s"
         )
 
 
-def _way(way_m: float) -> str:
-    return f"{way_m:.0f} m ({way_m / NAUTICAL_MILE_M:.2f} NM)"
+class Watched(NamedTuple):
+    """Tracks with ``alarmed`` rows, and the alarms in the order in which they began."""
 
-
-@dataclass(frozen=True)
-class Danger:
-    """What is dangerous of the tracks of an episode.
-
-    Attributes
-    ----------
-    alarmed : ndarray of bool (n,)
-        Rows of the tracks under an alarm.
-    alarms : list of Alarm
-        In the order in which they began.
-    """
-
-    alarmed: np.ndarray
+    tracks: Tracks
     alarms: list[Alarm]
 
 
-def with_closest_approach(tracks: Tracks, own: OwnShip, limits: DangerLimits) -> Tracks:
-    """The tracks with CPA, TCPA and the probability of passing closer than the limit.
+def with_closest_approach(
+    tracks: Tracks, own: OwnShip, limits: DangerLimits | None = None
+) -> Tracks:
+    """Add CPA, TCPA and the probability of coming closer than the limits to tracks.
 
-    Errors are those of the tracks and of own ship's velocity. An error of her place is none of
-    them: plots are seen from there, so that it moves the tracks with her.
+    The errors are those of the tracks and of own ship's velocity. An error of own ship's position
+    is none of them: plots are measured from there, so that it moves the tracks with own ship.
 
     Parameters
     ----------
@@ -131,8 +120,18 @@ def with_closest_approach(tracks: Tracks, own: OwnShip, limits: DangerLimits) ->
         With their covariance.
     own : OwnShip
         Its velocity must be known.
-    limits : DangerLimits
+    limits : DangerLimits, optional
+
+    Raises
+    ------
+    ValueError
+        When the tracks have no covariance or own ship's velocity is not known.
     """
+    limits = limits or DangerLimits()
+    if tracks.covariance is None:
+        raise ValueError("tracks must have a covariance for a closest approach, got none")
+    if not own.knows_velocity:
+        raise ValueError("own must have a velocity or more than one position, got one position")
     north_m, east_m = own.position_at(tracks.time_s).T
     vnorth_mps, veast_mps = own.velocity_at(tracks.time_s).T
     velocity_m2s2 = own.velocity_m2s2_at(tracks.time_s)
@@ -154,8 +153,20 @@ def with_closest_approach(tracks: Tracks, own: OwnShip, limits: DangerLimits) ->
     )
 
 
-def danger_of(tracks: Tracks, own: OwnShip, limits: DangerLimits) -> Danger:
-    """The alarms of tracks whose rows are in order of time and have a probability."""
+def with_alarms(tracks: Tracks, own: OwnShip, limits: DangerLimits | None = None) -> Watched:
+    """Find the alarms of tracks that come dangerously close to own ship.
+
+    Parameters
+    ----------
+    tracks : Tracks
+        Rows of each track in order of time. Where they have no closest approach yet, it is that of
+        :func:`with_closest_approach`.
+    own : OwnShip
+    limits : DangerLimits, optional
+    """
+    limits = limits or DangerLimits()
+    if tracks.cpa_probability is None:
+        tracks = with_closest_approach(tracks, own, limits)
     range_m = np.hypot(*(tracks.state[:, [0, 2]] - own.position_at(tracks.time_s)).T)
     alarmed = np.zeros(len(tracks), dtype=bool)
     alarms: list[Alarm] = []
@@ -176,11 +187,12 @@ def danger_of(tracks: Tracks, own: OwnShip, limits: DangerLimits) -> Danger:
                     inside=bool(range_m[first] < limits.cpa_limit_m),
                 )
             )
-    return Danger(alarmed, sorted(alarms, key=lambda alarm: alarm.begin_s))
+    alarms.sort(key=lambda alarm: alarm.begin_s)
+    return Watched(replace(tracks, alarmed=alarmed), alarms)
 
 
 def _runs(track: Tracks, limits: DangerLimits) -> Iterator[slice]:
-    """Stretches of a track under an alarm."""
+    """Rows of one track under each alarm."""
     begin = last = None
     ahead = track.tcpa_s >= 0.0
     for k, p in enumerate(track.cpa_probability):
@@ -194,3 +206,7 @@ def _runs(track: Tracks, limits: DangerLimits) -> Iterator[slice]:
             begin = None
     if begin is not None:
         yield slice(begin, last + 1)
+
+
+def _miles(distance_m: float) -> str:
+    return f"{distance_m:.0f} m ({distance_m / NAUTICAL_MILE_M:.2f} NM)"

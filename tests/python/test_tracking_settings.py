@@ -1,4 +1,4 @@
-"""Settings as TOML: they survive a file, and what is wrong in a file is named."""
+"""Settings as TOML: a file keeps them exactly, and errors name file, section and key."""
 
 import math
 
@@ -6,7 +6,9 @@ import pytest
 
 import wakeline as wl
 from wakeline.cli import main
-from wakeline.cli.config import KEYS, ConfigError, Settings, radar_names, read_settings
+from wakeline.recording import radar_names
+from wakeline.tracking import DangerLimits, Settings, SettingsError, read_settings
+from wakeline.tracking.settings import KEYS
 
 
 def read(tmp_path, text, name="mine.toml", **kwargs):
@@ -30,7 +32,8 @@ def test_the_defaults_are_those_of_the_engine():
         math.degrees(wl.Radar().bearing_std_rad)
     )
     assert settings.period_s is None
-    assert settings.tracker_of().radar == wl.Radar()
+    assert settings.make_tracker().radar == wl.Radar()
+    assert settings.danger_limits == DangerLimits()
 
 
 def test_printed_settings_read_back_the_same(tmp_path, capsys):
@@ -77,9 +80,8 @@ def test_vessels_win_over_the_models_of_the_configuration(tmp_path, capsys):
     assert read(tmp_path, "[models]\nsteady_psd_m2s3 = 9.0").vessels == "as configured"
     assert main(["track", "--vessels", "ships", "--print-config"]) == 0
     assert read(tmp_path, capsys.readouterr().out) == settings
-    assert main(["track", "--vessels", "yachts", "--print-config"]) == 2
-    told = capsys.readouterr().err.replace("'", "")  # Python 3.14 tells choices without quotes
-    assert "choose from any, ships" in told
+    with pytest.raises(SettingsError, match="vessels must be any or ships, got 'yachts'"):
+        read_settings(vessels="yachts")
 
 
 def test_radars_that_ship_are_complete_and_win_over_the_configuration(tmp_path):
@@ -93,7 +95,7 @@ def test_radars_that_ship_are_complete_and_win_over_the_configuration(tmp_path):
         "max_speed_mps": 25.0,
         "bearing_offset_deg": 0.0,
     }
-    autoferry = read_settings(radar="autoferry").tracker_of().radar
+    autoferry = read_settings(radar="autoferry").make_tracker().radar
     assert autoferry.bearing_std_rad == math.radians(1.5)
     assert autoferry.period_s == 1.68
 
@@ -102,7 +104,7 @@ def test_radars_that_ship_are_complete_and_win_over_the_configuration(tmp_path):
 def test_a_radar_of_ones_own(tmp_path, head):
     path = tmp_path / "radar.toml"
     path.write_text(f"{head}range_std_m = 30\nbearing_offset_deg = 2.0\n")
-    radar = read_settings(radar=str(path)).tracker_of(4.0).radar
+    radar = read_settings(radar=str(path)).make_tracker(4.0).radar
     assert radar.range_std_m == 30.0
     assert radar.bearing_offset_rad == math.radians(2.0)
     assert radar.period_s == 4.0
@@ -112,6 +114,11 @@ def test_a_radar_of_ones_own(tmp_path, head):
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
+        ("[danger]\ncpa_limit_m = -1", "[danger] cpa_limit_m = -1.0"),
+        ("[danger]\ntcpa_limit_s = inf", "[danger] tcpa_limit_s = inf"),
+        ("[danger]\nalarm_probability = 1.5", "[danger] alarm_probability = 1.5"),
+        ("[danger]\nclear_probability = 0.7", "[danger] clear_probability = 0.7"),
+        ("[danger]\ncpa = 3", "unknown key cpa in [danger]"),
         ("[tracker]\nconfirm_hitz = 3", "unknown key confirm_hitz in [tracker]"),
         ("[trackers]\nconfirm_hits = 3", "unknown section trackers"),
         ("confirm_hits = 3", "unknown section confirm_hits"),
@@ -138,16 +145,30 @@ def test_a_radar_of_ones_own(tmp_path, head):
         (f"[radar]\nrange_std_m{5000 * '.a'} = 1", "range_std_m must be a number, got {'a': "),
     ],
 )
-def test_what_is_wrong_is_named(tmp_path, capsys, text, wanted):
-    with pytest.raises(ConfigError) as caught:
+def test_what_is_wrong_is_named(tmp_path, text, wanted):
+    with pytest.raises(SettingsError) as caught:
         read(tmp_path, text)
     assert wanted in str(caught.value)
     assert "mine.toml" in str(caught.value)
-    assert main(["track", "--config", str(tmp_path / "mine.toml"), "--print-config"]) == 2
-    error = capsys.readouterr().err
-    assert error.startswith("wakeline: ")
-    assert error.count("\n") == 1
-    assert wanted in error
+
+
+def test_objects_of_the_engine_are_settings_too():
+    radar = wl.Radar(range_std_m=7.0, bearing_std_rad=math.radians(0.7), period_s=2.0)
+    config = wl.TrackerConfig(confirm_hits=4)
+    settings = read_settings(config, radar, wl.VesselModels.ships())
+    tracker = settings.make_tracker()
+    assert (tracker.radar, tracker.config) == (radar, config)
+    assert settings.vessels == "ships"
+    assert settings.period_s == 2.0
+    assert read_settings(settings) == settings
+
+
+def test_what_a_recording_knows_of_its_radar_holds_until_the_settings_differ():
+    known = {"range_std_m": 4.0, "bearing_std_deg": 0.2}
+    assert Settings.default().knowing(known).radar == Settings.default().radar | known
+    other = read_settings(radar="joyride")
+    assert other.knowing(known) == other
+    assert Settings.default().knowing({}) == Settings.default()
 
 
 def test_no_vessel_need_be_taken_for_a_ship(tmp_path):
@@ -165,13 +186,11 @@ def test_a_configuration_that_does_not_exist(tmp_path, capsys):
     assert "no.toml: No such file or directory" in capsys.readouterr().err
 
 
-def test_a_radar_file_has_keys_of_the_radar_alone(tmp_path, capsys):
+def test_a_radar_file_has_keys_of_the_radar_alone(tmp_path):
     full = tmp_path / "full.toml"
     full.write_text("[radar]\nrange_std_m = 12.0\n[tracker]\nconfirm_hits = 3\n")
-    assert main(["track", "--radar", str(full), "--print-config"]) == 2
-    error = capsys.readouterr().err
-    assert "full.toml: a radar file has the keys of [radar] alone, got radar, tracker" in error
-    assert "--config" in error
+    with pytest.raises(SettingsError, match=r"full.toml: a radar file .* got radar, tracker"):
+        read_settings(radar=full)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Settings of tracking as TOML: what the radar is, how tracks live, how vessels move.
+"""Settings of tracking: radar, tracker, motion models and limits of danger, in Python and as TOML.
 
 Settings are kept as a file holds them, with angles of the radar in degrees, so that writing and
 reading them again changes nothing.
@@ -10,15 +10,15 @@ import json
 import math
 import reprlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import wakeline as wl
+from wakeline.recording import load_radar, radar_names
 
-from .danger import DangerLimits
+from .alarms import DangerLimits
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -28,8 +28,8 @@ else:
 Value = float | int | str
 
 
-class ConfigError(ValueError):
-    """A file of settings cannot be used as it stands; the message names file and key."""
+class SettingsError(ValueError):
+    """Settings cannot be used; the message names file and key."""
 
 
 _RADAR = {
@@ -156,8 +156,8 @@ class Settings:
                 return name
         return "as configured"
 
-    def tracker_of(self, period_s: float | None = None) -> wl.Tracker:
-        """A fresh tracker; `period_s` stands in where the settings leave the period open."""
+    def make_tracker(self, period_s: float | None = None) -> wl.Tracker:
+        """A new tracker; `period_s` is that of the antenna where the settings leave it open."""
         radar = dict(self.radar)
         radar["period_s"] = self.period_s or period_s or 0.0
         return wl.Tracker(
@@ -165,6 +165,16 @@ class Settings:
             _engine("tracker", self.tracker),
             _engine("models", self.models),
         )
+
+    def knowing(self, radar: Mapping[str, Value]) -> Settings:
+        """These settings with what a recording knows of its radar.
+
+        Where they have any of those parameters other than the default, they stay as they are.
+        """
+        default = _defaults("radar")
+        if any(self.radar[key] != default[key] for key in radar):
+            return self
+        return replace(self, radar=self.radar | dict(radar))
 
     @property
     def danger_limits(self) -> DangerLimits:
@@ -184,92 +194,106 @@ class Settings:
         yield ""
 
 
-def radar_names() -> list[str]:
-    """Names of the radars that ship with the package."""
-    return sorted(Path(file.name).stem for file in _radars().iterdir())
-
-
 def read_settings(
-    config: Path | None = None, radar: str | None = None, vessels: str | None = None
+    config: Settings | wl.TrackerConfig | str | Path | None = None,
+    radar: wl.Radar | str | Path | None = None,
+    vessels: wl.VesselModels | str | None = None,
 ) -> Settings:
-    """The defaults, changed by a configuration file and then by what is told of radar and vessels.
+    """The defaults, changed by a configuration and then by radar and vessels.
 
     Parameters
     ----------
-    config : Path, optional
-        TOML with any of the sections and keys of `KEYS`.
-    radar : str, optional
-        Name of a radar that ships with the package, or a TOML file with keys of its section.
-    vessels : str, optional
-        A name of `VESSELS`, whose motion models take the place of all others.
+    config : Settings, TrackerConfig, str or Path, optional
+        All settings, parameters of the tracker, or a TOML file with any of the sections and keys
+        that :meth:`Settings.toml` writes.
+    radar : Radar, str or Path, optional
+        Radar parameters, the name of a radar that ships with the package, or a TOML file with keys
+        of ``[radar]``.
+    vessels : VesselModels or str, optional
+        Motion models, or a name of `VESSELS`. They replace those of `config`.
 
     Raises
     ------
-    ConfigError
-        When a key is not known or its value is no good.
+    SettingsError
+        When a file cannot be read, a key or name is not known, or a value is out of its range.
     """
-    settings = Settings.default()
-    if config is not None:
-        document = _read_toml(config)
-        for section, values in document.items():
+    settings = config if isinstance(config, Settings) else Settings.default()
+    if isinstance(config, wl.TrackerConfig):
+        settings = replace(settings, tracker=config.as_dict())
+    elif config is not None and not isinstance(config, Settings):
+        for section, values in _read_toml(Path(config)).items():
             if section not in KEYS:
-                raise ConfigError(f"{config}: unknown section {section}; {_one_of(KEYS)}")
+                raise SettingsError(f"{config}: unknown section {section}; {_one_of(KEYS)}")
             settings = _changed(settings, section, values, config)
-    if radar is not None:
-        path, document = _read_radar(radar)
-        settings = _changed(settings, "radar", _radar_of(path, document), path)
-    if vessels is not None:
+    if isinstance(radar, wl.Radar):
+        settings = replace(settings, radar=_as_in_file("radar", radar))
+    elif radar is not None:
+        settings = _changed(settings, "radar", _read_radar(radar), radar)
+    if isinstance(vessels, wl.VesselModels):
+        settings = replace(settings, models=vessels.as_dict())
+    elif vessels is not None:
+        if vessels not in VESSELS:
+            raise SettingsError(f"vessels must be {' or '.join(VESSELS)}, got {vessels!r}")
         settings = replace(settings, models=VESSELS[vessels]().as_dict())
     return settings
 
 
-def _radar_of(path: Path, document: dict[str, Any]) -> Any:
-    """What a file says of a radar, under the head of its section or without it."""
+def _read_radar(name: str | Path) -> Any:
+    """Values of ``[radar]`` by the name of a radar or from a file, with or without the heading."""
+    if name in radar_names():
+        return load_radar(str(name))
+    path = Path(name)
+    if not path.exists():
+        raise SettingsError(
+            f"no radar {str(name)!r}: neither a file nor one that ships "
+            f"({', '.join(radar_names())})"
+        )
+    document = _read_toml(path)
     if list(document) == ["radar"]:
         return document["radar"]
     sections = [key for key, value in document.items() if isinstance(value, dict)]
     if sections:
-        raise ConfigError(
+        raise SettingsError(
             f"{path}: a radar file has the keys of [radar] alone, got {', '.join(sections)}; "
             "settings of several sections go with --config"
         )
     return document
 
 
-def _changed(settings: Settings, section: str, values: Any, path: Path) -> Settings:
+def _changed(settings: Settings, section: str, values: Any, path: str | Path) -> Settings:
     """The settings with some of one section's replaced."""
     if not isinstance(values, dict):
-        raise ConfigError(f"{path}: {section} must be a section with keys of its own")
+        raise SettingsError(f"{path}: {section} must be a section with keys of its own")
     before = getattr(settings, section)
     for key, value in values.items():
         if key not in before:
-            raise ConfigError(f"{path}: unknown key {key} in [{section}]; {_one_of(before)}")
+            raise SettingsError(f"{path}: unknown key {key} in [{section}]; {_one_of(before)}")
         _check_type(path, f"[{section}] {key}", value, type(before[key]))
     after = before | {k: float(v) if type(before[k]) is float else v for k, v in values.items()}
     _check_values(path, section, before, after)
     return replace(settings, **{section: after})
 
 
-def _check_type(path: Path, place: str, value: Any, wanted: type) -> None:
+def _check_type(path: str | Path, place: str, value: Any, wanted: type) -> None:
     good = (int, float) if wanted is float else wanted
     if isinstance(value, bool) or not isinstance(value, good):
-        raise ConfigError(f"{path}: {place} must be {_WHAT[wanted]}, got {reprlib.repr(value)}")
+        raise SettingsError(f"{path}: {place} must be {_WHAT[wanted]}, got {reprlib.repr(value)}")
     below = _MANY if wanted is int else sys.float_info.max
     if isinstance(value, int) and not abs(value) < below:
-        raise ConfigError(f"{path}: {place} must be below {below}, got {value}")
+        raise SettingsError(f"{path}: {place} must be below {below}, got {value}")
 
 
 def _check_values(
-    path: Path, section: str, before: dict[str, Value], after: dict[str, Value]
+    path: str | Path, section: str, before: dict[str, Value], after: dict[str, Value]
 ) -> None:
-    """Raise ConfigError naming the key that the engine refuses, if there is one."""
+    """Raise SettingsError naming the key that the engine refuses, if there is one."""
     try:
         _check_engine(section, after)
     except ValueError as error:
         for key, value in after.items():
             if value != before[key] and str(error).startswith(f"{_engine_name(key)} "):
-                raise ConfigError(f"{path}: [{section}] {key} = {value!r}: {error}") from None
-        raise ConfigError(f"{path}: [{section}]: {error}") from None
+                raise SettingsError(f"{path}: [{section}] {key} = {value!r}: {error}") from None
+        raise SettingsError(f"{path}: [{section}]: {error}") from None
 
 
 def _check_engine(section: str, values: dict[str, Value]) -> None:
@@ -300,41 +324,29 @@ def _to_engine(key: str, value: Value) -> Value:
 
 
 def _defaults(section: str) -> dict[str, Value]:
-    engine = _CLASSES[section]().as_dict()
-    values = {}
+    values = _as_in_file(section, _CLASSES[section]())
+    return values | {"period_s": 0.0} if section == "radar" else values
+
+
+def _as_in_file(section: str, parameters: Any) -> dict[str, Value]:
+    """Parameters by the keys of a section; angles to 12 digits, so that 0.3 degrees are 0.3."""
+    engine, values = parameters.as_dict(), {}
     for key in KEYS[section]:
         value = engine[_engine_name(key)]
         values[key] = float(f"{math.degrees(value):.12g}") if key.endswith("_deg") else value
-    if section == "radar":
-        values["period_s"] = 0.0
     return values
-
-
-def _read_radar(name: str) -> tuple[Path, dict[str, Any]]:
-    if name in radar_names():
-        file = _radars() / f"{name}.toml"
-        return Path(file.name), tomllib.loads(file.read_text(encoding="utf-8"))
-    if not Path(name).exists():
-        raise ConfigError(
-            f"no radar {name!r}: neither a file nor one that ships ({', '.join(radar_names())})"
-        )
-    return Path(name), _read_toml(Path(name))
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except UnicodeDecodeError:
-        raise ConfigError(f"{path}: not text in UTF-8") from None
+        raise SettingsError(f"{path}: not text in UTF-8") from None
     except ValueError as error:  # TOMLDecodeError, and whole numbers of thousands of digits
-        raise ConfigError(f"{path}: not TOML: {error}") from None
+        raise SettingsError(f"{path}: not TOML: {error}") from None
     except RecursionError:
-        raise ConfigError(f"{path}: not TOML that can be read: it is nested too deep") from None
+        raise SettingsError(f"{path}: not TOML that can be read: it is nested too deep") from None
 
 
-def _radars():
-    return resources.files(__package__) / "radars"
-
-
-def _one_of(names) -> str:
+def _one_of(names: Iterable[str]) -> str:
     return f"known are {', '.join(names)}"

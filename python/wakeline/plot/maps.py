@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from wakeline._brief import many
 from wakeline._checks import shaped
-from wakeline.recording import Episode, Tracks
+from wakeline.recording import Episode, Recording, Tracks
 
 from .style import (
     DANGER,
@@ -40,6 +41,7 @@ _RING_PT = 11.0
 _WATER_AROUND = 0.12
 _FLATTEST = 0.75
 _GRID_LINES = 10
+_WIDTH_IN, _HEIGHT_IN = 7.2, 6.4
 
 
 def map_view(
@@ -50,7 +52,6 @@ def map_view(
     ellipse_every: int = 5,
     whole: bool = False,
     legend: bool = True,
-    alarmed: np.ndarray | None = None,
 ) -> Axes:
     """Draw an episode and its tracks: east to the right, north up, equal axes in metres.
 
@@ -64,7 +65,8 @@ def map_view(
     tracks : Tracks, optional
         Tracks of that episode, each with its id at its end, where it does not cover that of a
         longer one, and, where it has a covariance, the 95 % ellipse of every `ellipse_every`-th
-        row.
+        row. Rows under an alarm are edged in red, with a ring and the closest approach where it
+        begins; of labels that would cover each other the closest approach keeps its own.
     ellipse_every : int
         0 for no ellipses.
     whole : bool
@@ -73,24 +75,14 @@ def map_view(
         shown.
     legend : bool
         Whether to explain the marks.
-    alarmed : ndarray of bool (n,), optional
-        Rows of `tracks` that are dangerous, edged in red with a ring where danger begins and what
-        threatened then. Of labels that would lie on each other the closest approach keeps its own.
 
     Returns
     -------
     matplotlib.axes.Axes
         `ax`.
-
-    Raises
-    ------
-    ValueError
-        When `alarmed` does not have a mark for each row.
     """
     from .labels import LoneLabels
 
-    if tracks is not None and alarmed is not None:
-        alarmed = shaped("alarmed", alarmed, len(tracks)).astype(bool)
     if episode is not None:
         _draw_plots(ax, episode)
         _draw_own_ship(ax, *_own_way(episode))
@@ -104,8 +96,8 @@ def map_view(
         ids[track_id] = _draw_track(ax, track, track_id, color, "track" if k == 0 else None)
     if tracks is not None:
         ax.add_artist(LoneLabels([ids[track_id] for track_id in by_length(tracks)]))
-    if tracks is not None and alarmed is not None:
-        _draw_danger(ax, tracks, alarmed)
+    if tracks is not None and tracks.alarmed is not None:
+        _draw_danger(ax, tracks)
     ax.set_aspect("equal", adjustable="box")
     ax.ticklabel_format(useOffset=False, style="plain")
     _set_window(ax, episode, tracks, whole)
@@ -117,18 +109,43 @@ def map_view(
     return ax
 
 
-def map_figure(
-    episode: Episode | None = None,
+def map(
     tracks: Tracks | None = None,
+    recording: Recording | Episode | None = None,
     *,
     ellipse_every: int = 5,
     whole: bool = False,
-    alarmed: np.ndarray | None = None,
 ) -> Figure:
-    """A figure of one :func:`map_view`."""
-    fig = figure(7.2, 6.4)
-    ax = fig.add_subplot()
-    map_view(ax, episode, tracks, ellipse_every=ellipse_every, whole=whole, alarmed=alarmed)
+    """Draw tracks and their recording as a map, north up; one for each episode.
+
+    Parameters
+    ----------
+    tracks : Tracks, optional
+    recording : Recording or Episode, optional
+        Plots, own ship and truth to be drawn below the tracks.
+    ellipse_every, whole
+        As of :func:`map_view`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        For :func:`save`.
+    """
+    if not isinstance(recording, Recording):
+        recording = Recording("", [recording])
+    home = None
+    if tracks is not None and len(recording) > 1:
+        named = np.full(len(tracks), "") if tracks.scenario is None else tracks.scenario
+        home = recording.episode_of(named, tracks.time_s)
+    columns = max(1, math.ceil(math.sqrt(len(recording))))
+    rows = max(1, math.ceil(len(recording) / columns))
+    fig = figure(_WIDTH_IN * columns, _HEIGHT_IN * rows)
+    for k, episode in enumerate(recording):
+        ax = fig.add_subplot(rows, columns, k + 1)
+        shown = tracks if home is None else tracks.where(home == k)
+        map_view(ax, episode, shown, ellipse_every=ellipse_every, whole=whole)
+        if len(recording) > 1:
+            ax.set_title(plain(episode.name), fontsize=TEXT_PT, color=INK, loc="right")
     return fig
 
 
@@ -247,8 +264,8 @@ def _draw_track(
     )
 
 
-def _draw_danger(ax: Axes, tracks: Tracks, alarmed: np.ndarray) -> None:
-    """The dangerous part of each track, a ring where it begins, and what threatened then."""
+def _draw_danger(ax: Axes, tracks: Tracks) -> None:
+    """The dangerous part of each track, and a ring and the closest approach where it begins."""
     from matplotlib.patheffects import Normal, Stroke
 
     from .labels import ClearLabels
@@ -256,7 +273,7 @@ def _draw_danger(ax: Axes, tracks: Tracks, alarmed: np.ndarray) -> None:
     core = [Normal(), Stroke(linewidth=_DANGER_CORE_PT, foreground="white")]
     edge = {"linewidth": _DANGER_PT, "path_effects": core, "solid_capstyle": "round"}
     ring = {"markersize": _RING_PT, "markerfacecolor": "none", "markeredgewidth": 1.8}
-    threats, label = [], "danger"
+    threats, label, alarmed = [], "danger", tracks.alarmed
     for track_id in tracks.where(alarmed).ids():
         mine = tracks.track_id == track_id
         _, north_m, east_m = with_gaps(

@@ -1,0 +1,49 @@
+"""Tracking of whole recordings: settings, tracks, alarms.
+
+:func:`track_recording` is all that most programs need:
+
+>>> import wakeline as wl
+>>> len(wl.track_recording("joyride").ids())
+1
+
+:func:`track_episode` tracks one episode, :func:`open_recording` opens what is to be tracked, and
+:class:`Settings` are what a file of settings holds. :func:`with_alarms` finds the tracks that come
+dangerously close to own ship. Scans are grouped by :mod:`wakeline.recording.scans`.
+"""
+
+from __future__ import annotations
+
+from .alarms import Alarm, DangerLimits, Watched, with_alarms, with_closest_approach
+from .opening import open_recording
+from .settings import VESSELS, Settings, SettingsError, read_settings
+from .tables import write_tables
+from .tracked import (
+    MODE_NAMES,
+    TrackedEpisode,
+    TrackedRecording,
+    has_names,
+    median_step_s,
+    track_episode,
+    track_recording,
+)
+
+__all__ = [
+    "MODE_NAMES",
+    "VESSELS",
+    "Alarm",
+    "DangerLimits",
+    "Settings",
+    "SettingsError",
+    "TrackedEpisode",
+    "TrackedRecording",
+    "Watched",
+    "has_names",
+    "median_step_s",
+    "open_recording",
+    "read_settings",
+    "track_episode",
+    "track_recording",
+    "with_alarms",
+    "with_closest_approach",
+    "write_tables",
+]

@@ -1,0 +1,69 @@
+"""Open what is to be tracked: a recording, a bundled one by name, plots or radar video in files."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from wakeline.extraction import read_plots_of_video
+from wakeline.recording import (
+    OwnShip,
+    Recording,
+    is_video,
+    load,
+    names,
+    read_own_ship,
+    read_plots,
+)
+
+
+def open_recording(
+    recording: Recording | str | Path,
+    own: OwnShip | str | Path | None = None,
+    truth: str | Path | None = None,
+    *,
+    period_s: float | None = None,
+) -> Recording:
+    """Open a recording.
+
+    Parameters
+    ----------
+    recording : Recording, str or Path
+        A recording, the name of a bundled one, or a file of plots (CSV) or radar video (ASTERIX
+        category 240). A file takes precedence over a bundled recording of the same name.
+    own : OwnShip, str or Path, optional
+        Own ship, or its file. For plots and video in a file it must be a file, and the radar is
+        there; in a recording that is open it replaces own ship, and plots stay where they are.
+    truth : str or Path, optional
+        Truth; for plots in a file.
+    period_s : float, optional
+        Time of an antenna revolution. Groups plots without a scan number, and replaces missing
+        times of video.
+
+    Raises
+    ------
+    RecordingError
+        When a file cannot be read.
+    ValueError
+        When `truth` is given for anything but plots in a file.
+    TypeError
+        When `own` is not a file where it must be one.
+    """
+    path = None if isinstance(recording, Recording) else Path(recording)
+    if path is not None and str(path) in names() and not path.exists():
+        recording, path = load(str(path)), None
+    from_video = path is not None and path.is_file() and is_video(path)
+    if truth is not None and (path is None or from_video):
+        raise ValueError(f"truth goes with a file of plots, got {recording} with {truth}")
+    if path is None:
+        return recording if own is None else _with_own(recording, own)
+    if isinstance(own, OwnShip):
+        raise TypeError(f"own must be a file for the recording in {path}, got {own!r}")
+    if from_video:
+        return read_plots_of_video(path, own, period_s=period_s)
+    return read_plots(path, own, truth, period_s=period_s)
+
+
+def _with_own(recording: Recording, own: OwnShip | str | Path) -> Recording:
+    ship = own if isinstance(own, OwnShip) else read_own_ship(own)
+    return replace(recording, episodes=[replace(episode, own=ship) for episode in recording])

@@ -1,0 +1,82 @@
+"""Tracks, events, plots and alarms as files."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from wakeline.recording import Tracks, replacing, write_tracks
+
+from .tracked import TrackedEpisode
+
+TABLES = ("tracks", "events", "plots_tracks", "alarms")
+_OF_ALARM = ("track_id", "begin_s", "end_s", "cpa_m", "tcpa_s", "cpa_probability", "range_m")
+
+
+def write_tables(
+    folder: str | Path, episodes: Sequence[TrackedEpisode], suffix: str = ""
+) -> list[Path]:
+    """Write ``tracks.csv``, ``events.csv``, ``plots_tracks.csv`` and, of alarms, ``alarms.csv``.
+
+    Each file is replaced only when the new one is complete. Where no alarms were asked for, an
+    earlier ``alarms.csv`` is removed.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Must exist.
+    episodes : sequence of TrackedEpisode
+        Such as the ``episodes`` of a :class:`TrackedRecording`.
+    suffix : str
+        Inserted before ``.csv``.
+
+    Returns
+    -------
+    list of Path
+        The files.
+    """
+    tracks, events, plots, alarms = (Path(folder, f"{stem}{suffix}.csv") for stem in TABLES)
+    scenario = ["scenario"] if any(part.tracks.scenario is not None for part in episodes) else []
+    write_tracks(tracks, Tracks.joined([part.tracks for part in episodes]))
+    head = ["time_s", "event", "track_id", "tentative_id", *scenario]
+    _write_csv(events, head, (row for part in episodes for row in _event_rows(part)))
+    head = ["scan", "time_s", "north_m", "east_m", "track_id", *scenario]
+    _write_csv(plots, head, (row for part in episodes for row in _plot_rows(part)))
+    if all(part.alarms is None for part in episodes):
+        alarms.unlink(missing_ok=True)
+        return [tracks, events, plots]
+    head = [*_OF_ALARM, *scenario]
+    _write_csv(alarms, head, (row for part in episodes for row in _alarm_rows(part)))
+    return [tracks, events, plots, alarms]
+
+
+def _event_rows(part: TrackedEpisode) -> Iterable[list]:
+    scenario = _scenario(part)
+    for event in part.events:
+        yield [event.time_s, event.kind, event.track_id, event.tentative_id, *scenario]
+
+
+def _plot_rows(part: TrackedEpisode) -> Iterable[list]:
+    scenario = _scenario(part)
+    for scan, ids in zip(part.episode.scans, part.plot_track_id, strict=True):
+        columns = (scan.plot_time_s, scan.north_m, scan.east_m, ids)
+        for row in zip(*(column.tolist() for column in columns), strict=True):
+            yield [scan.number, *row, *scenario]
+
+
+def _alarm_rows(part: TrackedEpisode) -> Iterable[list]:
+    scenario = _scenario(part)
+    for alarm in part.alarms or ():
+        yield [*(getattr(alarm, name) for name in _OF_ALARM), *scenario]
+
+
+def _scenario(part: TrackedEpisode) -> list[str]:
+    return [] if part.tracks.scenario is None else [part.episode.name]
+
+
+def _write_csv(path: Path, head: list[str], rows: Iterable[list]) -> None:
+    with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(head)
+        writer.writerows(rows)

@@ -1,0 +1,255 @@
+"""A recording through the tracker: tracks, events, alarms, and the track of each plot."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+import wakeline as wl
+from wakeline._progress import progress
+from wakeline.recording import Episode, OwnShip, Recording, Scan, Tracks
+
+from .alarms import Alarm, with_alarms
+from .opening import open_recording
+from .settings import Settings, read_settings
+
+MODE_NAMES = ("cruising", "steady", "restless", "turning")
+_COLUMNS = ("track_id", "status", "time_s", "mean", "covariance", "mode_probability", "nis")
+
+
+@dataclass(frozen=True)
+class TrackedEpisode:
+    """Result of tracking an episode.
+
+    Attributes
+    ----------
+    episode : Episode
+        With the bearing offset of the radar removed from its plots.
+    tracks : Tracks
+        One row for each shown track and scan, at the time of the scan: predicted to it, or moved
+        back to it from a later plot of the scan.
+    events : list of wakeline.Event
+    plot_track_id : list of ndarray of int
+        For each scan the track of each plot: 0 none, negative a tentative one.
+    refused_plots : int
+        Number of plots that the tracker could not take.
+    elapsed_s : float
+        Time that the tracker needed.
+    alarms : list of Alarm or None
+        None where none were asked for or own ship's velocity is not known.
+    """
+
+    episode: Episode
+    tracks: Tracks
+    events: list[wl.Event]
+    plot_track_id: list[np.ndarray]
+    refused_plots: int
+    elapsed_s: float
+    alarms: list[Alarm] | None = None
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class TrackedRecording(Tracks):
+    """The tracks of a recording: a table of all rows, and what else tracking found.
+
+    Attributes
+    ----------
+    recording : Recording
+        As tracked, with the bearing offset of the radar removed from its plots.
+    episodes : list of TrackedEpisode
+        One for each episode of the recording.
+    settings : Settings
+        With which the recording was tracked.
+    """
+
+    recording: Recording
+    episodes: list[TrackedEpisode]
+    settings: Settings
+
+    @classmethod
+    def of(
+        cls, recording: Recording, episodes: Sequence[TrackedEpisode], settings: Settings
+    ) -> TrackedRecording:
+        """The tracks of episodes of a recording that were tracked one by one."""
+        return cls(
+            **vars(Tracks.joined([tracked.tracks for tracked in episodes])),
+            recording=replace(recording, episodes=[tracked.episode for tracked in episodes]),
+            episodes=list(episodes),
+            settings=settings,
+        )
+
+    @property
+    def alarms(self) -> list[Alarm]:
+        """The alarms of all episodes, in their order."""
+        return [alarm for tracked in self.episodes for alarm in tracked.alarms or ()]
+
+
+def track_recording(
+    recording: Recording | str | Path,
+    *,
+    radar: wl.Radar | str | Path | None = None,
+    vessels: wl.VesselModels | str | None = None,
+    own: OwnShip | str | Path | None = None,
+    config: Settings | wl.TrackerConfig | str | Path | None = None,
+) -> TrackedRecording:
+    """Track a recording: plots in, tracks out.
+
+    Each episode is tracked by a fresh :class:`wakeline.Tracker`.
+
+    Parameters
+    ----------
+    recording : Recording, str or Path
+        A recording, the name of a bundled one (``wakeline.recording.names()``), or a file: plots as
+        CSV (:func:`wakeline.recording.read_plots`) or radar video in ASTERIX category 240
+        (:func:`wakeline.extraction.read_plots_of_video`).
+    radar : Radar, str or Path, optional
+        Radar parameters, the name of a bundled radar (``wakeline.recording.radar_names()``), or a
+        TOML file with keys of ``[radar]``. Default: those of `config`, else what the recording
+        knows of its radar, else the defaults of :class:`wakeline.Radar`.
+    vessels : VesselModels or str, optional
+        Motion models, or "any" (default) or "ships" (under way, which seldom alter course).
+    own : OwnShip, str or Path, optional
+        Own ship, or its file. With it each row has the closest approach to own ship, and alarms are
+        found. For a recording in a file it must be a file, and the radar is there.
+    config : Settings, TrackerConfig, str or Path, optional
+        All settings, parameters of the tracker, or a TOML file in the form that
+        ``wakeline track --print-config`` prints.
+
+    Returns
+    -------
+    TrackedRecording
+        A table of tracks (:class:`wakeline.recording.Tracks`) with events, alarms and the tracks of
+        plots beside it.
+
+    Raises
+    ------
+    RecordingError
+        When a file of plots, video or own ship cannot be read.
+    SettingsError
+        When settings cannot be used.
+
+    Examples
+    --------
+    >>> import wakeline as wl
+    >>> recording = wl.recording.load("joyride")
+    >>> tracks = wl.track_recording(recording)
+    >>> picture = wl.plot.map(tracks, recording)  # doctest: +SKIP
+    >>> wl.plot.save(picture, "joyride.png")  # doctest: +SKIP
+    >>> tracks.ids()
+    ['1']
+    """
+    settings = read_settings(config, radar, vessels)
+    opened = open_recording(recording, own, period_s=settings.period_s)
+    if not isinstance(radar, wl.Radar):
+        settings = settings.knowing(opened.radar)
+    watched, named = own is not None, has_names(opened)
+    tracked = [
+        track_episode(episode, settings, own=episode.own if watched else None, named=named)
+        for episode in opened
+    ]
+    return TrackedRecording.of(opened, tracked, settings)
+
+
+def track_episode(
+    episode: Episode,
+    settings: Settings | None = None,
+    *,
+    own: OwnShip | None = None,
+    named: bool = False,
+) -> TrackedEpisode:
+    """Track one episode with a fresh tracker.
+
+    Parameters
+    ----------
+    episode : Episode
+    settings : Settings, optional
+    own : OwnShip, optional
+        Own ship whose closest approaches and alarms are found, where its velocity is known; mostly
+        ``episode.own``.
+    named : bool
+        Whether the tracks carry the name of the episode as their scenario.
+    """
+    settings = settings or Settings.default()
+    tracker = settings.make_tracker(median_step_s(episode))
+    tables, events, plot_track_id, refused = [_columns(tracker.tracks())], [], [], 0
+    end_s, began_s = -np.inf, time.perf_counter()
+    for scan in progress(episode.scans, len(episode), f"tracking {episode.name}".strip()):
+        end_s = max(end_s, scan.time_s, scan.plot_time_s.max(initial=-np.inf))
+        report = _process(tracker, end_s, scan)
+        tables.append(_at(scan.time_s, _columns(tracker.tracks(time_s=scan.time_s))))
+        events += report.events
+        plot_track_id.append(report.plot_track_id)
+        refused += report.refused_plots
+    elapsed_s = time.perf_counter() - began_s
+    tracks, alarms = _joined(tables, episode.name if named else None), None
+    if own is not None and own.knows_velocity:
+        tracks, alarms = with_alarms(tracks, own, settings.danger_limits)
+    shown = _without_offset(episode, math.radians(settings.radar["bearing_offset_deg"]))
+    return TrackedEpisode(shown, tracks, events, plot_track_id, refused, elapsed_s, alarms)
+
+
+def median_step_s(episode: Episode) -> float | None:
+    """Median time between scans, None where there are fewer than two."""
+    return float(np.median(np.diff(episode.time_s))) if len(episode) > 1 else None
+
+
+def has_names(recording: Recording) -> bool:
+    """Whether the episodes of a recording have names."""
+    return any(episode.name for episode in recording)
+
+
+def _without_offset(episode: Episode, bearing_offset_rad: float) -> Episode:
+    """The episode with its plots where the tracker takes them to be."""
+    if bearing_offset_rad == 0.0:
+        return episode
+    return replace(episode, scans=[scan.turned(-bearing_offset_rad) for scan in episode.scans])
+
+
+def _process(tracker: wl.Tracker, end_s: float, scan: Scan) -> wl.track.ScanReport:
+    """Process one scan; it ends with its last plot, whatever its own time is."""
+    return tracker.process(
+        end_s,
+        range_m=scan.range_m,
+        bearing_rad=scan.bearing_rad,
+        plot_time_s=scan.plot_time_s,
+        own_north_m=scan.own_north_m,
+        own_east_m=scan.own_east_m,
+    )
+
+
+def _columns(table: wl.track.TrackTable) -> dict[str, np.ndarray]:
+    return {name: np.asarray(getattr(table, name)) for name in _COLUMNS}
+
+
+def _at(time_s: float, column: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The columns of tracks at a time; those of a later time are moved straight back to it."""
+    back_s = np.minimum(time_s - column["time_s"], 0.0)
+    if not back_s.any():
+        return column
+    step = np.tile(np.eye(4), (len(back_s), 1, 1))
+    step[:, 0, 1] = step[:, 2, 3] = back_s
+    return column | {
+        "time_s": np.minimum(column["time_s"], time_s),
+        "mean": np.einsum("kij,kj->ki", step, column["mean"]),
+        "covariance": step @ column["covariance"] @ step.swapaxes(1, 2),
+    }
+
+
+def _joined(tables: Sequence[dict[str, np.ndarray]], scenario: str | None) -> Tracks:
+    """Columns of tracks as the rows of one table."""
+    column = {name: np.concatenate([table[name] for table in tables]) for name in _COLUMNS}
+    return Tracks(
+        track_id=column["track_id"].astype(str),
+        time_s=column["time_s"],
+        state=column["mean"],
+        covariance=column["covariance"],
+        mode_probability=column["mode_probability"],
+        status=column["status"].astype(str),
+        nis=column["nis"],
+        scenario=None if scenario is None else np.full(len(column["time_s"]), scenario),
+    )
