@@ -193,7 +193,7 @@ def test_plots_without_a_position_are_left_out(tmp_path):
     rows = boat(30)
     rows[[7, 12], 1] = np.nan
     tracks = tracks_of(tmp_path, rows)
-    assert any("without a finite place" in note for note in tracks.recording.notes)
+    assert any("2 plots without a finite position" in note for note in tracks.recording.notes)
     assert np.isfinite(tracks.state).all()
 
 
