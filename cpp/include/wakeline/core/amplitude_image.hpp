@@ -13,19 +13,19 @@
 
 namespace wakeline {
 
-/// A polar radar picture as plain memory: row by row the sweeps, clockwise, of each the amplitudes
-/// of its range cells from the antenna outwards. Owns nothing.
+/// A polar radar picture in the caller's memory: sweeps in clockwise order, each a row of the
+/// amplitudes of its range cells from the antenna outwards. Does not own the memory.
 template <std::unsigned_integral Amplitude = std::uint8_t>
 struct AmplitudeImage {
   const Amplitude* amplitudes = nullptr;  ///< (sweeps, cells), row-major
   int sweeps = 0;
   int cells = 0;
   double first_azimuth_rad = 0.0;  ///< centre of sweep 0, clockwise from north
-  double azimuth_step_rad = 0.0;   ///< from the centre of a sweep to that of the next; positive
+  double azimuth_step_rad = 0.0;   ///< angle between the centres of consecutive sweeps; positive
   double start_range_m = 0.0;      ///< near edge of cell 0
   double cell_m = 0.0;             ///< length of a cell
 
-  /// True when sweep 0 follows the last one.
+  /// True when the last sweep is adjacent to sweep 0.
   [[nodiscard]] bool full_circle() const noexcept {
     return (sweeps + 0.5) * azimuth_step_rad > 2 * kPi<double>;
   }
@@ -35,17 +35,17 @@ struct AmplitudeImage {
             static_cast<std::size_t>(cells)};
   }
 
-  /// Centre of a cell.
+  /// Range of the centre of a cell, m.
   [[nodiscard]] double range_m(int cell) const noexcept {
     return start_range_m + (cell + 0.5) * cell_m;
   }
 
-  /// Centre of a sweep.
+  /// Azimuth of the centre of a sweep, rad.
   [[nodiscard]] double azimuth_rad(int sweep) const noexcept {
     return first_azimuth_rad + sweep * azimuth_step_rad;
   }
 
-  /// North and east of a cell's centre from the antenna, m.
+  /// Position [north, east] of the centre of a cell relative to the antenna, m.
   [[nodiscard]] Vec<double, 2> position(int sweep, int cell) const noexcept {
     const double azimuth = azimuth_rad(sweep);
     return range_m(cell) * Vec<double, 2>(std::cos(azimuth), std::sin(azimuth));

@@ -13,21 +13,22 @@
 
 namespace wakeline {
 
-/// Writes or reads the state of an object, field by field, as plain bytes of this machine.
+/// Writes or reads the state of an object, field by field, in the byte representation of this
+/// machine.
 ///
-/// An object lists its fields once, in `archive(Archive&)`, which serves both ways. Reading past
-/// the end fails and leaves the rest of the fields as they were; ask `ok()` at the end.
+/// An object lists its fields once, in `archive(Archive&)`, for both directions. Reading past the
+/// end fails and leaves the remaining fields unchanged; check `ok()` at the end.
 class Archive {
  public:
-  /// For writing.
+  /// An archive to write to.
   Archive() = default;
-  /// For reading.
+  /// An archive to read from.
   explicit Archive(std::span<const std::byte> bytes)
       : bytes_(bytes.begin(), bytes.end()), loading_(true) {}
 
   [[nodiscard]] bool loading() const noexcept { return loading_; }
   [[nodiscard]] bool ok() const noexcept { return ok_; }
-  /// True when all has been read.
+  /// True when all bytes have been read.
   [[nodiscard]] bool at_end() const noexcept { return position_ == bytes_.size(); }
   [[nodiscard]] const std::vector<std::byte>& bytes() const noexcept { return bytes_; }
 
@@ -35,7 +36,7 @@ class Archive {
   template <class T>
   requires(std::is_trivially_copyable_v<T>) void operator()(T& value) { raw(&value, sizeof(T)); }
 
-  /// A truth; a byte that is none fails.
+  /// A `bool`; a byte other than 0 or 1 fails.
   void operator()(bool& value) {
     auto byte = static_cast<std::uint8_t>(value);
     raw(&byte, 1);
@@ -45,13 +46,13 @@ class Archive {
       value = byte != 0;
   }
 
-  /// An Eigen vector or matrix, of fixed size or of the size it has.
+  /// An Eigen vector or matrix; one of dynamic size must already have its size.
   template <class Scalar, int Rows, int Cols, int Options, int MaxRows, int MaxCols>
   void operator()(Eigen::Matrix<Scalar, Rows, Cols, Options, MaxRows, MaxCols>& matrix) {
     raw(matrix.data(), sizeof(Scalar) * static_cast<std::size_t>(matrix.size()));
   }
 
-  /// A vector of plain values, with its length; a length beyond `capacity` fails.
+  /// A vector of plain values, preceded by its length; a length greater than `capacity` fails.
   template <class T>
   requires(std::is_trivially_copyable_v<T>) void operator()(std::vector<T>& values,
                                                             std::size_t capacity) {
@@ -78,7 +79,7 @@ class Archive {
     (same(own), ...);
   }
 
-  /// Marks what was read as unusable.
+  /// Marks the bytes read as invalid.
   void fail() noexcept { ok_ = false; }
 
  private:
@@ -102,7 +103,7 @@ class Archive {
   bool ok_ = true;
 };
 
-/// FNV-1a of 64 bits, to find bytes that were damaged.
+/// 64-bit FNV-1a checksum, to detect damaged bytes.
 inline std::uint64_t checksum(std::span<const std::byte> bytes) noexcept {
   std::uint64_t sum = 0xCBF29CE484222325u;
   for (const std::byte byte : bytes)

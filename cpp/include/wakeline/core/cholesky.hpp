@@ -10,11 +10,12 @@
 
 namespace wakeline {
 
-/// The checked Cholesky factorisation A = L Lᵀ of a symmetric matrix (its lower triangle is read).
+/// The checked Cholesky factorisation A = L Lᵀ of a symmetric N x N matrix. Only the lower triangle
+/// of A is read.
 ///
-/// The one place where Wakeline factorises a covariance. `ok()` is false when A is not positive
-/// definite or not finite; the other members may then not be used. Of packs, each lane for itself.
-/// No heap, no exception.
+/// All covariances in the library are factorised here. `ok()` is false when A is not positive
+/// definite or not finite; the other members must not be used then. With packs each lane has its
+/// own factorisation. No heap, no exceptions.
 template <int N, class Scalar = double>
 class Cholesky {
  public:
@@ -75,7 +76,7 @@ class Cholesky {
     return norm;
   }
 
-  /// That of a v in each lane, by the matrix of one lane.
+  /// vᵀ A⁻¹ v with a different v in each lane and the matrix of one lane.
   template <class Lanes>
   Lanes squared_norms(const Vec<Lanes, N>& v, int of_lane) const noexcept {
     Lanes whitened[N];
@@ -105,7 +106,7 @@ class Cholesky {
     return whitened;
   }
 
-  /// W L⁻¹: what turns whitened rows W = B L⁻ᵀ into B A⁻¹.
+  /// W L⁻¹: turns whitened rows W = B L⁻ᵀ into B A⁻¹.
   template <int Rows>
   Mat<Scalar, Rows, N> unwhiten_rows(Mat<Scalar, Rows, N> left) const noexcept {
     for (int column = N - 1; column >= 0; --column)
@@ -148,8 +149,8 @@ class Cholesky {
     return pivot > Scalar(0) && pivot <= Scalar(std::numeric_limits<RealOf<Scalar>>::max());
   }
 
-  /// In closed form: both roots at once instead of one after the other, which is most of the time
-  /// an update takes.
+  /// Closed form with two independent square roots; two dependent ones would take most of the time
+  /// of an update.
   void compute_2x2(Scalar a, Scalar b, Scalar c) noexcept {
     const Scalar determinant = a * c - b * b;
     ok_ = is_variance(a) && is_variance(determinant);
@@ -166,9 +167,8 @@ class Cholesky {
   MaskOf<Scalar> ok_ = false;
 };
 
-/// A root G with G Gᵀ = A of a matrix that is only positive semidefinite, as process noise may be:
-/// a Cholesky factorisation that leaves out the directions without variance. Not finite where A is
-/// not.
+/// A root G with G Gᵀ = A of a positive semidefinite matrix, such as process noise: a Cholesky
+/// factorisation that skips directions without variance. Not finite where A is not finite.
 template <int N, class Scalar>
 Mat<Scalar, N, N> semidefinite_root(const Mat<Scalar, N, N>& matrix) noexcept {
   using std::sqrt;
@@ -201,7 +201,8 @@ MaskOf<typename Derived::Scalar> is_finite(const Eigen::MatrixBase<Derived>& mat
   return sum == Scalar(0);
 }
 
-/// Says what is wrong with a belief, or `kOk`.
+/// `kOk` when the mean is `in_range` and the covariance finite, symmetric and positive definite;
+/// else the first of `kNotFinite` and `kNotPositiveDefinite` that applies.
 template <int N, class Scalar>
 StatusOf<Scalar> check(const Gaussian<N, Scalar>& belief) noexcept {
   using std::abs;

@@ -7,8 +7,8 @@
 
 namespace wakeline {
 
-/// What a row of a state vector holds. A sensor names the components it reads, a motion model those
-/// it has; components of your own start at `kUser`.
+/// The quantity in a row of a state vector. A sensor names the components that it reads, a motion
+/// model those of its state; user-defined components start at `kUser`.
 enum class Component : int {
   kNorth,     ///< x, m
   kVnorth,    ///< vx, m/s
@@ -20,7 +20,7 @@ enum class Component : int {
   kUser = 100,
 };
 
-/// Position and velocity `[x, vx, y, vy]`: what every vessel model shares.
+/// Position and velocity `[x, vx, y, vy]`, which every vessel model has.
 inline constexpr std::array kKinematics{Component::kNorth, Component::kVnorth, Component::kEast,
                                         Component::kVeast};
 
@@ -42,7 +42,7 @@ struct Rows {
   constexpr int operator[](int k) const noexcept { return row[k]; }
 };
 
-/// Where a state laid out as `components` holds each of `wanted`; -1 where it does not.
+/// Row of each `wanted` component in a state laid out as `components`; -1 for a missing one.
 template <std::size_t N, std::size_t M>
 constexpr Rows<M> rows_of(const std::array<Component, N>& components,
                           const std::array<Component, M>& wanted) noexcept {
@@ -51,7 +51,7 @@ constexpr Rows<M> rows_of(const std::array<Component, N>& components,
   return rows;
 }
 
-/// True when a state laid out as `components` holds every one of `wanted`.
+/// True when a state laid out as `components` has all of `wanted`.
 template <std::size_t N, std::size_t M>
 constexpr bool holds(const std::array<Component, N>& components,
                      const std::array<Component, M>& wanted) noexcept {
@@ -60,7 +60,7 @@ constexpr bool holds(const std::array<Component, N>& components,
   return true;
 }
 
-/// True when no component stands there twice.
+/// True when no component occurs twice.
 template <std::size_t N>
 constexpr bool differ(const std::array<Component, N>& components) noexcept {
   for (std::size_t k = 0; k < N; ++k)

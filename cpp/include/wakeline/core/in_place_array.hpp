@@ -10,8 +10,8 @@
 
 namespace wakeline {
 
-/// Room for N values, each of which is made where it stays: what hot steps return is neither
-/// preceded by defaults nor copied.
+/// Storage for N values that are constructed in place, so that hot steps neither default-construct
+/// nor copy them.
 template <class T, std::size_t N>
 class InPlaceArray {
   static_assert(std::is_trivially_destructible_v<T>);
@@ -19,10 +19,10 @@ class InPlaceArray {
  public:
   InPlaceArray() noexcept {}
 
-  /// Where value k is to be made, by a placement new.
+  /// Address of value k, for placement new.
   [[nodiscard]] void* place(auto k) noexcept { return &values_[static_cast<std::size_t>(k)]; }
 
-  /// The first `count` values, all of which have been made.
+  /// The first `count` values, all of which must have been constructed.
   [[nodiscard]] std::span<const T> first(std::size_t count) const noexcept {
     return {values_.data(), count};
   }

@@ -42,7 +42,7 @@ inline void require_positive(const char* name, double value) {
   require(value > 0.0 && std::isfinite(value), name, "finite and positive", value);
 }
 
-/// A mean time, whose rate and shares have digits left.
+/// A mean time, large enough that its rate is finite.
 inline void require_time(const char* name, double time_s) {
   require(time_s >= 1e-3 && time_s <= 1e12, name, "0.001 s to 1e12 s", time_s);
 }

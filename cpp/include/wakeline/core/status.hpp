@@ -13,14 +13,14 @@
 
 namespace wakeline {
 
-/// What became of one step. Anything but `kOk` means: nothing was changed.
+/// Result of one step. With any value but `kOk` nothing was changed.
 enum class Status : std::uint8_t {
   kOk = 0,
   kMissed = 1,               ///< no measurement in this scan: predicted only
   kNotStarted = 2,           ///< the estimator has no belief yet
-  kNotFinite = 3,            ///< an input or a result is infinite or not a number
+  kNotFinite = 3,            ///< an input or a result is not finite, or an input is out of range
   kNotPositiveDefinite = 4,  ///< a covariance is not positive definite
-  kNegativeTimeStep = 5,     ///< time would run backwards
+  kNegativeTimeStep = 5,     ///< the time step is negative
 };
 
 /// The status in words, for messages and logs.
@@ -44,7 +44,7 @@ constexpr const char* to_string(Status status) noexcept {
 
 constexpr bool ok(Status status) noexcept { return status == Status::kOk; }
 
-/// The worse of two: the first that is not `kOk`.
+/// The first of the two that is not `kOk`.
 constexpr Status first_failure(Status a, Status b) noexcept { return ok(a) ? b : a; }
 
 /// `kOk` where the condition holds, else `otherwise`.
@@ -127,7 +127,7 @@ StatusOf<Scalar> check_time_step(Scalar dt_s) noexcept {
                        ok_or(!(dt_s < Scalar(0)), Status::kNegativeTimeStep));
 }
 
-/// What one measurement update has found; converts to true when it succeeded.
+/// Result of one measurement update; converts to true when it succeeded.
 template <int M, class Scalar = double>
 struct [[nodiscard]] Step {
   StatusOf<Scalar> status = Status::kNotStarted;
@@ -142,7 +142,7 @@ struct [[nodiscard]] Step {
   }
 };
 
-/// A likelihood, peak exp(-nis / 2); of what is impossible the peak is 0.
+/// A likelihood, peak exp(-nis / 2). The peak of an impossible hypothesis is 0.
 template <class Scalar = double>
 struct Likelihood {
   Scalar peak = Scalar(0);
@@ -154,8 +154,8 @@ struct Likelihood {
   }
 };
 
-/// A step whose likelihood N(v; 0, S) is still in its two parts, so that a mixture takes one
-/// logarithm of all.
+/// A step whose likelihood N(v; 0, S) is still in two factors, so that a mixture needs only one
+/// logarithm.
 template <int M, class Scalar = double>
 struct [[nodiscard]] Correction {
   StatusOf<Scalar> status = Status::kNotStarted;
@@ -173,7 +173,7 @@ struct [[nodiscard]] Correction {
     return {select(done, peak, Scalar(0)), select(done, nis, Likelihood<Scalar>{}.nis)};
   }
 
-  /// The same with its likelihood in one.
+  /// The same as a `Step` with the logarithm of the likelihood.
   [[nodiscard]] Step<M, Scalar> scored() const noexcept {
     using std::log;
     Step<M, Scalar> step{status, innovation, innovation_covariance, nis};
@@ -182,7 +182,7 @@ struct [[nodiscard]] Correction {
   }
 };
 
-/// A step that could not be done, and why.
+/// A step that failed with this status.
 template <int M, class Scalar>
 Step<M, Scalar> failed_step(const StatusOf<Scalar>& status) noexcept {
   Step<M, Scalar> step;
@@ -190,7 +190,7 @@ Step<M, Scalar> failed_step(const StatusOf<Scalar>& status) noexcept {
   return step;
 }
 
-/// A step that has failed, and why, in the lanes told.
+/// Replaces a step by a failed one in the given lanes.
 template <int M, class Scalar>
 Step<M, Scalar> failed_where(const MaskOf<Scalar>& lanes, const StatusOf<Scalar>& why,
                              const Step<M, Scalar>& step) noexcept {

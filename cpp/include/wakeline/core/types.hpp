@@ -19,12 +19,12 @@ namespace wakeline {
 template <class Scalar, int N>
 using Vec = Eigen::Matrix<Scalar, N, 1>;
 
-/// Matrix of Rows x Cols scalars, column-major as Eigen has it.
+/// Matrix of Rows x Cols scalars, column-major as in Eigen.
 template <class Scalar, int Rows, int Cols>
 using Mat = Eigen::Matrix<Scalar, Rows, Cols>;
 
-/// What is an Eigen expression of the size of `Wanted`. Eigen itself says that it converts others,
-/// and fails within.
+/// An Eigen expression of the size of `Wanted`. (Convertibility alone does not check sizes: Eigen
+/// reports a mismatch as an error inside the conversion.)
 template <class Given, class Wanted>
 concept SameSize =
     std::convertible_to<Given, Wanted> && std::remove_cvref_t<Given>::RowsAtCompileTime ==
@@ -43,7 +43,7 @@ struct Gaussian {
   }
 };
 
-/// Takes `value` where the condition holds, lane by lane.
+/// Assigns `value` in the lanes where the condition holds.
 template <class Mask, class Scalar, int Rows, int Cols>
 [[gnu::always_inline]] inline void assign_where(const Mask& condition,
                                                 Mat<Scalar, Rows, Cols>& target,
@@ -59,8 +59,8 @@ template <class Mask, int N, class Scalar>
   assign_where(condition, target.covariance, value.covariance);
 }
 
-/// Number by number, as the hot steps write and read: a processor waits where a wide load follows
-/// narrow stores.
+/// Copies element by element, as the hot steps write and read: a wide load after narrow stores
+/// would stall the processor.
 template <int N, class Scalar>
 [[gnu::always_inline]] inline void copy(const Gaussian<N, Scalar>& from,
                                         Gaussian<N, Scalar>& to) noexcept {
@@ -68,11 +68,11 @@ template <int N, class Scalar>
   unroll<N * N>([&](int k) { to.covariance.data()[k] = from.covariance.data()[k]; });
 }
 
-/// True where mean and covariance lie in a row in memory, as they do but for odd alignments.
+/// True where mean and covariance are contiguous in memory, which all but unusual alignments are.
 template <int N, class Real = double>
 inline constexpr bool kInARow = sizeof(Gaussian<N, Real>) == N*(N + 1) * sizeof(Real);
 
-/// The numbers of a belief: mean, then covariance.
+/// The elements of a belief: mean, then covariance.
 template <int N, class Belief>
 struct NumbersOf {
   Belief& belief;
@@ -81,7 +81,8 @@ struct NumbersOf {
   }
 };
 
-/// Lane k is the belief that `of_lane(k)` gives; and the reverse, for the first `count` lanes.
+/// Lane k of `to` is the belief `of_lane(k)`; `scatter_lanes` is the reverse for the first `count`
+/// lanes.
 template <int N, class Scalar, class OfLane>
 [[gnu::always_inline]] inline void gather_lanes(const OfLane& of_lane,
                                                 Gaussian<N, Scalar>& to) noexcept {
@@ -106,7 +107,7 @@ template <int N, class Scalar, class OfLane>
   }
 }
 
-/// Copies the lower triangle onto the upper one, so that the matrix is symmetric to the last bit.
+/// Copies the lower triangle to the upper one, so that the matrix is exactly symmetric.
 template <class Scalar, int N>
 [[gnu::always_inline]] inline void mirror_lower(Mat<Scalar, N, N>& matrix) noexcept {
   unroll_lower<N>([&](int row, int column) { matrix(column, row) = matrix(row, column); });

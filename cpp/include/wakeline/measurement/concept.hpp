@@ -13,22 +13,22 @@ namespace wakeline {
 template <class Sensor>
 inline constexpr int kReadsOf = static_cast<int>(Sensor::kReads.size());
 
-/// A sensor that tells how much it reads and reports.
+/// A sensor that declares the sizes of what it reads and reports.
 template <class Sensor>
 concept TellsSizes = requires {
   Sensor::kReads.size();
   Sensor::kMeasurements;
 };
 
-/// A sensor that reports z = h(x_r) + v, v ~ N(0, R), of those state components `kReads` that it
-/// reads.
+/// A measurement model: z = h(x_r) + v, v ~ N(0, R), of the state components `kReads`.
 ///
 /// - `kReads`: a `std::array<Component, N>`; `kMeasurements`: M;
-/// - `observe(z) -> Gaussian<M>`: the reading as value and covariance R, corrected and converted
-/// where need be;
+/// - `observe(z) -> Gaussian<M>`: the reading and its covariance R, corrected and converted where
+///   needed;
 /// - `measure(x_r) -> Vec<M>`: h; `jacobian(x_r) -> Mat<M, N>`: dh/dx_r;
-/// - `residual(a, b) -> Vec<M>`: a - b, angles wrapped;
-/// all of them templated on the scalar.
+/// - `residual(a, b) -> Vec<M>`: a - b, angles wrapped.
+///
+/// All functions are templated on the scalar.
 template <class Sensor>
 concept MeasurementModel = TellsSizes<Sensor> &&
     requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z,
@@ -39,19 +39,19 @@ concept MeasurementModel = TellsSizes<Sensor> &&
   { sensor.residual(z, z) } -> SameSize<Vec<double, Sensor::kMeasurements>>;
 };
 
-/// A sensor whose `measure` is linear and says so with `static constexpr bool kLinear = true`.
+/// A sensor that declares its `measure` linear with `static constexpr bool kLinear = true`.
 template <class Sensor>
 concept LinearMeasurementModel = MeasurementModel<Sensor> && Sensor::kLinear;
 
-/// True of a sensor whose `measure` gives what it reads, as it says with `static constexpr bool
-/// kDirect = true`: its `jacobian` is the identity.
+/// True for a sensor that declares with `static constexpr bool kDirect = true` that `measure`
+/// returns the components it reads: its `jacobian` is the identity.
 template <class Sensor>
 inline constexpr bool kIsDirect = false;
 template <class Sensor>
 requires requires { requires Sensor::kDirect; }
 inline constexpr bool kIsDirect<Sensor> = true;
 
-/// A sensor that fixes a position: `position(z) -> Gaussian<2>`, north and east in metres.
+/// A sensor that measures a position: `position(z) -> Gaussian<2>`, north and east in metres.
 template <class Sensor>
 concept PositionSensor = MeasurementModel<Sensor> &&
     requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) {

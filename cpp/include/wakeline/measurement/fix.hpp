@@ -6,8 +6,7 @@
 
 namespace wakeline {
 
-/// A position `[north m, east m]` with a covariance of its own: a plot that has been converted, a
-/// GNSS fix.
+/// A position `[north m, east m]` with its own covariance: a converted plot or a GNSS fix.
 struct Fix {
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;

@@ -7,7 +7,7 @@
 
 namespace wakeline {
 
-/// Where the antenna is when it measures, how it moves, and how well that is known.
+/// Position and velocity of the antenna at the time of a measurement, with their errors.
 struct OwnShip {
   double north_m = 0.0;
   double east_m = 0.0;

@@ -5,20 +5,21 @@
 #include <cmath>
 
 #include "wakeline/core/angle.hpp"
-#include "wakeline/simd/scalar.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/measurement/own_ship.hpp"
+#include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
 
-/// The unit vector towards a bearing, north and east.
+/// Unit vector [north, east] in the direction of a bearing.
 template <class Scalar>
 Vec<Scalar, 2> towards(Scalar bearing_rad) noexcept {
   using std::cos, std::sin;
   return {cos(bearing_rad), sin(bearing_rad)};
 }
 
-/// A covariance of `along` (m²) in the direction `u` and `across` (m²) square to it.
+/// Covariance with variance `along` (m²) in the direction `u` and `across` (m²) perpendicular to
+/// it.
 template <class Scalar>
 Mat<Scalar, 2, 2> oriented_covariance(const Vec<Scalar, 2>& u, Scalar along,
                                       Scalar across) noexcept {
@@ -30,9 +31,9 @@ Mat<Scalar, 2, 2> oriented_covariance(const Vec<Scalar, 2>& u, Scalar along,
   return covariance;
 }
 
-/// Polar plot to north/east about the antenna, first order: [r cos b, r sin b], covariance sr²
-/// along the bearing and (r sb)² across it. Source: Bar-Shalom, Li, Kirubarajan, 10.4.2; paper A,
-/// equation (6).
+/// Polar plot to north/east relative to the antenna, first order: [r cos b, r sin b], covariance
+/// sr² along the bearing and (r sb)² across it. Source: Bar-Shalom, Li, Kirubarajan, 10.4.2; paper
+/// A, equation (6).
 template <class Scalar>
 Gaussian<2, Scalar> convert_plain(Scalar range_m, Scalar bearing_rad, Scalar range_var_m2,
                                   Scalar bearing_var_rad2) noexcept {
@@ -41,11 +42,11 @@ Gaussian<2, Scalar> convert_plain(Scalar range_m, Scalar bearing_rad, Scalar ran
           oriented_covariance<Scalar>(u, range_var_m2, range_m * range_m * bearing_var_rad2)};
 }
 
-/// Polar plot to north/east about the antenna without bias: the plain point times exp(sb²/2), with
-/// its exact average covariance given the plot. Unlike the plain one it keeps a variance across the
-/// bearing at zero range. Source: M. Longbin, S. Xiaoquan, Z. Yiyu, S. Z. Kang, Y. Bar-Shalom,
-/// "Unbiased converted measurements for tracking", IEEE Trans. AES-34, 1998, equations (10) and
-/// (12), written along and across the bearing, where nothing cancels.
+/// Unbiased conversion of a polar plot to north/east relative to the antenna: the plain point times
+/// exp(sb²/2), with its exact mean covariance given the plot. Unlike the plain conversion its
+/// variance across the bearing is positive at zero range. Source: M. Longbin, S. Xiaoquan, Z. Yiyu,
+/// S. Z. Kang, Y. Bar-Shalom, "Unbiased converted measurements for tracking", IEEE Trans. AES-34,
+/// 1998, equations (10) and (12), written along and across the bearing to avoid cancellation.
 template <class Scalar>
 Gaussian<2, Scalar> convert_unbiased(Scalar range_m, Scalar bearing_rad, Scalar range_var_m2,
                                      Scalar bearing_var_rad2) noexcept {
@@ -59,25 +60,24 @@ Gaussian<2, Scalar> convert_unbiased(Scalar range_m, Scalar bearing_rad, Scalar 
   return {exp(bearing_var_rad2 / 2) * range_m * u, oriented_covariance<Scalar>(u, along, across)};
 }
 
-/// r sb² / sr: twice the bias r sb² / 2 of the plain conversion over the range error.
+/// r sb² / sr: twice the bias r sb² / 2 of the plain conversion, relative to the range error.
 inline double conversion_bias_ratio(double range_m, double range_std_m,
                                     double bearing_std_rad) noexcept {
   return range_m * bearing_std_rad * bearing_std_rad / range_std_m;
 }
 
-/// True when the plain conversion is biased enough to matter: r sb² / sr > 0.4.
-/// Source: Bar-Shalom, Li, Kirubarajan, 10.4.3, equation (10.4.3-19).
+/// True when the bias of the plain conversion is significant: r sb² / sr > 0.4. Source: Bar-Shalom,
+/// Li, Kirubarajan, 10.4.3, equation (10.4.3-19).
 inline bool conversion_bias_matters(double range_m, double range_std_m,
                                     double bearing_std_rad) noexcept {
   return conversion_bias_ratio(range_m, range_std_m, bearing_std_rad) > 0.4;
 }
 
-/// What every radar reading of range and bearing shares: errors of the radar, of the echo and of
-/// own ship.
+/// Errors of a radar measurement of range and bearing: of the radar, of the echo and of own ship.
 ///
-/// The echo of a vessel wanders over its hull: `extent_std_m` per axis, as own ship's position
-/// error does. Own ship's heading error adds to the bearing error. `bearing_offset_rad` is how much
-/// too large the radar reads bearings.
+/// The echo of a vessel moves about its hull with `extent_std_m` per axis, which adds to own ship's
+/// position error; own ship's heading error adds to the bearing error. `bearing_offset_rad` is
+/// measured minus true bearing.
 struct PolarErrors {
   double range_std_m;
   double bearing_std_rad;
@@ -85,7 +85,7 @@ struct PolarErrors {
   double bearing_offset_rad;
   OwnShip own;
 
-  /// Variance per axis (m²) that does not depend on range: echo extent and own position.
+  /// Variance per axis (m²) independent of range: echo extent and own position.
   [[nodiscard]] double isotropic_variance_m2() const noexcept {
     return extent_std_m * extent_std_m + own.position_std_m * own.position_std_m;
   }

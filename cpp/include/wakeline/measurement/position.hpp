@@ -7,7 +7,7 @@
 
 namespace wakeline {
 
-/// A position `[north m, east m]` with equal error in every direction.
+/// A position `[north m, east m]` with the same error in every direction.
 struct Position {
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;

@@ -7,7 +7,7 @@
 
 namespace wakeline {
 
-/// Ranges below this (m) are taken as this in derivatives, which have no limit at the antenna.
+/// Smallest range (m) used in derivatives, which are singular at the antenna.
 inline constexpr double kMinRange_m = 1e-3;
 
 /// A plot `[range m, bearing rad]` for EKF and UKF.
@@ -23,8 +23,8 @@ struct RangeBearing {
   double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
   OwnShip own = {};
 
-  /// z and R = diag(sr² + se², sb² + (se / r)²), the error of own ship's position in se, that of
-  /// her heading in sb.
+  /// z and R = diag(sr² + se², sb² + (se / r)²); se includes the error of own ship's position, sb
+  /// that of its heading.
   template <class Scalar>
   Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
     const PolarErrors e = errors();
@@ -76,9 +76,9 @@ struct RangeBearing {
   }
 };
 
-/// A plot `[range m, bearing rad]` turned into north/east with its own covariance, which makes it
-/// linear: the form of the papers. `unbiased` corrects the mean and covariance for the curvature of
-/// the bearing error.
+/// A plot `[range m, bearing rad]` converted to north/east with its covariance, which makes it a
+/// linear measurement: the form of the papers. `unbiased` corrects mean and covariance for the
+/// curvature of the bearing error.
 struct ConvertedRangeBearing {
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;
@@ -92,7 +92,7 @@ struct ConvertedRangeBearing {
   double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
   OwnShip own = {};
 
-  /// The plot as north/east.
+  /// The plot in north/east.
   template <class Scalar>
   Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
     return errors().position(z[0], z[1], unbiased);

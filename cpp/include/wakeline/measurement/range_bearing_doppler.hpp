@@ -6,8 +6,8 @@
 
 namespace wakeline {
 
-/// A plot `[range m, bearing rad, range rate m/s]`; the range rate is that seen from own ship,
-/// which moves. Source: Bar-Shalom, Li, Kirubarajan, 10.4.1, with the range rate d·v / r.
+/// A plot `[range m, bearing rad, range rate m/s]`. The range rate is relative to own ship, which
+/// moves. Source: Bar-Shalom, Li, Kirubarajan, 10.4.1, with the range rate d·v / r.
 struct RangeBearingDoppler {
   static constexpr int kMeasurements = 3;
   static constexpr auto kReads = kKinematics;
@@ -20,7 +20,7 @@ struct RangeBearingDoppler {
   double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
   OwnShip own = {};
 
-  /// z and R: that of RangeBearing, and the variance of the range rate with own ship's velocity
+  /// z and R: R of RangeBearing, and the variance of the range rate including own ship's velocity
   /// error.
   template <class Scalar>
   Gaussian<3, Scalar> observe(const Vec<Scalar, 3>& z) const noexcept {
@@ -80,10 +80,10 @@ struct RangeBearingDoppler {
     return {range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own};
   }
 
-  /// The target as own ship sees it.
+  /// The target relative to own ship.
   template <class Scalar>
   struct View {
-    Vec<Scalar, 2> position;       ///< in the plane
+    Vec<Scalar, 2> position;       ///< difference in the plane
     Vec<Scalar, 2> velocity;       ///< relative to own ship
     Vec<Scalar, 2> line_of_sight;  ///< unit vector from own ship to the target
     Scalar range;

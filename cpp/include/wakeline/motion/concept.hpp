@@ -19,9 +19,9 @@ using StateOf = Vec<Scalar, kStatesOf<Motion>>;
 template <class Motion, class Scalar = double>
 using StateMatrixOf = Mat<Scalar, kStatesOf<Motion>, kStatesOf<Motion>>;
 
-/// A vessel that moves as x' = F(dt) x + w, w ~ N(0, Q(dt)).
+/// A linear motion model: x' = F(dt) x + w, w ~ N(0, Q(dt)).
 ///
-/// `kComponents`, `matrix(dt_s)` and `process_noise(dt_s)`, the last two templated on the scalar of
+/// Needs `kComponents`, `matrix(dt_s)` and `process_noise(dt_s)`, both templated on the scalar of
 /// `dt_s`.
 template <class Motion>
 concept LinearMotionModel = requires(const Motion& motion, double dt_s) {
@@ -30,9 +30,9 @@ concept LinearMotionModel = requires(const Motion& motion, double dt_s) {
   { motion.process_noise(dt_s) } -> SameSize<StateMatrixOf<Motion>>;
 };
 
-/// A vessel that moves as x' = f(x, dt) + w, w ~ N(0, Q(x, dt)).
+/// A nonlinear motion model: x' = f(x, dt) + w, w ~ N(0, Q(x, dt)).
 ///
-/// `kComponents`, `transition(x, dt_s)`, `jacobian(x, dt_s)` and `process_noise(x, dt_s)`.
+/// Needs `kComponents`, `transition(x, dt_s)`, `jacobian(x, dt_s)` and `process_noise(x, dt_s)`.
 template <class Motion>
 concept NonlinearMotionModel = requires(const Motion& motion, const StateOf<Motion>& x,
                                         double dt_s) {
@@ -45,7 +45,7 @@ concept NonlinearMotionModel = requires(const Motion& motion, const StateOf<Moti
 template <class Motion>
 concept MotionModel = LinearMotionModel<Motion> || NonlinearMotionModel<Motion>;
 
-/// True of a model whose formulas hold for packs of numbers, too, which it says by `kForPacks`.
+/// True for a model that declares with `kForPacks` that its formulas also work on packs.
 template <class Motion>
 inline constexpr bool kForPacks = requires {
   requires Motion::kForPacks;
@@ -72,7 +72,7 @@ StateMatrixOf<Motion, Scalar> transition_jacobian(const Motion& motion,
     return motion.jacobian(x, dt_s);
 }
 
-/// Q, the covariance that the motion gains in dt.
+/// Q, the covariance added by the motion during dt.
 template <MotionModel Motion, class Scalar>
 StateMatrixOf<Motion, Scalar> process_noise(const Motion& motion, const StateOf<Motion, Scalar>& x,
                                             Scalar dt_s) noexcept {
@@ -89,8 +89,8 @@ struct StepMatrices {
   Mat<Scalar, N, N> q;
 };
 
-/// Both at once, by the model's own `step_matrices(dt_s)` where it has one: not by one that it
-/// inherits, which would know nothing of an F or Q of its own.
+/// F and Q together, by the model's own `step_matrices(dt_s)` where `HasStepMatrices` names the
+/// model itself: an inherited one would ignore an F or Q that the derived model overrides.
 template <LinearMotionModel Motion, class Scalar>
 StepMatrices<kStatesOf<Motion>, Scalar> step_matrices(const Motion& motion, Scalar dt_s) noexcept {
   if constexpr (requires { requires std::same_as<typename Motion::HasStepMatrices, Motion>; })
@@ -99,9 +99,8 @@ StepMatrices<kStatesOf<Motion>, Scalar> step_matrices(const Motion& motion, Scal
     return {motion.matrix(dt_s), motion.process_noise(dt_s)};
 }
 
-/// Refuses a state that holds a component twice, of which nothing would find the second, and one of
-/// position and velocity alone in another order than `[x, vx, y, vy]`: nothing could tell a start
-/// over the one from a start over the other.
+/// Checks at compile time that no component occurs twice and that a state of position and velocity
+/// alone has the order `[x, vx, y, vy]`, which a start could not be distinguished from otherwise.
 template <class Motion>
 constexpr void check_components() noexcept {
   constexpr auto kComponents = Motion::kComponents;
@@ -114,8 +113,8 @@ constexpr void check_components() noexcept {
                 "(kNorth, kVnorth, kEast, kVeast); see cpp/docs/concepts.md");
 }
 
-/// Variance of a component that a start does not know (a turn rate, an acceleration): the model's
-/// own `prior_variance(component)` where it has one, else 1.
+/// Variance of a component that a start does not give (a turn rate, an acceleration): the model's
+/// `prior_variance(component)` if it has one, else 1.
 template <class Motion>
 double prior_variance(const Motion& motion, Component component) noexcept {
   if constexpr (requires { motion.prior_variance(component); })
@@ -124,8 +123,8 @@ double prior_variance(const Motion& motion, Component component) noexcept {
     return 1.0;
 }
 
-/// Mean of a component that a start does not know: the model's own `prior_mean(component)` where it
-/// has one, else 0.
+/// Mean of a component that a start does not give: the model's `prior_mean(component)` if it has
+/// one, else 0.
 template <class Motion>
 double prior_mean(const Motion& motion, Component component) noexcept {
   if constexpr (requires { motion.prior_mean(component); })

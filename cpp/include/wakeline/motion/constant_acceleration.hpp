@@ -13,7 +13,7 @@ inline constexpr std::array kAccelerationKinematics{Component::kNorth,  Componen
                                                     Component::kAnorth, Component::kEast,
                                                     Component::kVeast,  Component::kAeast};
 
-/// Two equal axes on the diagonal of a 6 x 6 matrix.
+/// The same 3 x 3 matrix for both axes, as a block-diagonal 6 x 6 matrix.
 template <class Scalar>
 Mat<Scalar, 6, 6> both_axes(const Mat<Scalar, 3, 3>& axis) noexcept {
   Mat<Scalar, 6, 6> matrix = Mat<Scalar, 6, 6>::Zero();
@@ -21,8 +21,8 @@ Mat<Scalar, 6, 6> both_axes(const Mat<Scalar, 3, 3>& axis) noexcept {
   return matrix;
 }
 
-/// Acceleration that stays: state `[x, vx, ax, y, vy, ay]`, x' = x + vx dt + ax dt²/2, vx' = vx +
-/// ax dt. Source: Bar-Shalom, Li, Kirubarajan, 6.2.3; paper A, equation (2).
+/// Constant acceleration: state `[x, vx, ax, y, vy, ay]`, x' = x + vx dt + ax dt²/2, vx' = vx + ax
+/// dt. Source: Bar-Shalom, Li, Kirubarajan, 6.2.3; paper A, equation (2).
 struct ConstantAcceleration {
   static constexpr auto kComponents = kAccelerationKinematics;
   static constexpr bool kForPacks = true;

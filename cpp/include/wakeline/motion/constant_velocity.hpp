@@ -8,8 +8,8 @@
 
 namespace wakeline {
 
-/// Straight and steady: state `[x, vx, y, vy]` (m, m/s), x' = x + vx dt.
-/// Source: Bar-Shalom, Li, Kirubarajan, 6.2.2; paper A, equation (1).
+/// Constant velocity: state `[x, vx, y, vy]` (m, m/s), x' = x + vx dt. Source: Bar-Shalom, Li,
+/// Kirubarajan, 6.2.2; paper A, equation (1).
 struct ConstantVelocity {
   static constexpr auto kComponents = kKinematics;
   static constexpr bool kForPacks = true;

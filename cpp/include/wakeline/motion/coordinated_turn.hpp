@@ -10,8 +10,8 @@
 
 namespace wakeline {
 
-/// A steady turn at a known rate: state `[x, vx, y, vy]` (m, m/s); at zero rate exactly
-/// ConstantVelocity. `Rate` is `double`, or a pack: another turn rate in each lane. Source:
+/// A coordinated turn at a known rate: state `[x, vx, y, vy]` (m, m/s); at zero rate equal to
+/// ConstantVelocity. `Rate` is `double`, or a pack with a turn rate for each lane. Source:
 /// Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
 template <class Rate>
 struct KnownTurn {
@@ -32,12 +32,12 @@ struct KnownTurn {
   template <class Scalar>
   Mat<Scalar, 4, 4> process_noise(Scalar dt_s) const noexcept {
     if (noise.kind() == ProcessNoise::Kind::kPiecewiseAcceleration)
-      return Turn<Scalar>::piecewise_noise(noise, dt_s);  // spares the trigonometry
+      return Turn<Scalar>::piecewise_noise(noise, dt_s);  // needs no trigonometry
     return Turn<Scalar>(Scalar(turn_rate_rad_s), dt_s).noise(noise);
   }
 
   using HasStepMatrices = KnownTurn;
-  /// Both of them; the trigonometry is done once.
+  /// F and Q with one evaluation of the trigonometry.
   template <class Scalar>
   StepMatrices<4, Scalar> step_matrices(Scalar dt_s) const noexcept {
     Turn<Scalar> turn(Scalar(turn_rate_rad_s), dt_s);
@@ -53,11 +53,12 @@ struct KnownTurn {
 
 using CoordinatedTurn = KnownTurn<double>;
 
-/// A turn whose rate is part of the state and wanders: `[x, vx, y, vy, omega]` (m, m/s, rad/s).
+/// A coordinated turn with the rate in the state: `[x, vx, y, vy, omega]` (m, m/s, rad/s).
 ///
-/// Without `turn_rate_time_s` it wanders without end. With it the rate returns to its prior, as the
-/// acceleration of Singer's model does; of a target at rest, whose turns nobody sees, an estimator
-/// else comes to believe in half a turn a scan. Source: Bar-Shalom, Li, Kirubarajan, 11.7.2, 8.2.
+/// With `turn_rate_time_s` = 0 omega is a random walk. Otherwise it returns exponentially to its
+/// prior, as the acceleration of Singer's model does; without that, an estimator of a target at
+/// rest, whose turn rate is not observable, can diverge to half a turn per scan. Source:
+/// Bar-Shalom, Li, Kirubarajan, 11.7.2, 8.2.
 struct CoordinatedTurnRate {
   static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
                                           Component::kVeast, Component::kTurnRate};
@@ -72,7 +73,7 @@ struct CoordinatedTurnRate {
   double prior_turn_rate_rad_s = 0.0;  ///< the rate that `prior_turn_rate_std_rad_s` is about
   double turn_rate_time_s = 0.0;       ///< correlation time in which omega returns to it; 0: never
 
-  /// f(x, dt): a turn by the mean of omega over the step.
+  /// f(x, dt): a turn at the mean of omega over the step.
   template <class Scalar>
   Vec<Scalar, 5> transition(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
     const Turn<Scalar> turn(mean_rate(x[4], dt_s), dt_s);
@@ -102,13 +103,13 @@ struct CoordinatedTurnRate {
     return f;
   }
 
-  /// Q(x, dt), 5 x 5: the acceleration noise of the turn, and white noise q on omega which reaches
-  /// the velocity and the position through the acceleration omega x v, with v held at its value of
-  /// x: per axis the chain of integrators of white jerk q v², across the course. That omega returns
-  /// meanwhile counts in omega alone.
+  /// Q(x, dt), 5 x 5: the acceleration noise of the turn, plus white noise of density q on omega,
+  /// which enters velocity and position through the acceleration omega x v with v fixed at its
+  /// value in x: per axis a chain of integrators of white jerk q v², across the course. The return
+  /// of omega during the step is included in omega only.
   template <class Scalar>
   Mat<Scalar, 5, 5> process_noise(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
-    // Position and velocity, to the north and to the east, are `across` times two of the chain's
+    // Position and velocity, north and east, are `across` times elements of the chain of
     // integrators.
     const Scalar across[5] = {-x[3], -x[3], x[1], x[1], kept_wander(dt_s)};
     constexpr int kIntegrator[5] = {0, 1, 0, 1, 2};
@@ -142,14 +143,15 @@ struct CoordinatedTurnRate {
   }
 
  private:
-  /// How much of omega's distance from its prior mean a step leaves.
+  /// exp(-dt / turn_rate_time_s): the part of omega's deviation from its prior that remains after a
+  /// step.
   template <class Scalar>
   Scalar remembered(Scalar dt_s) const noexcept {
     using std::exp;
     return turn_rate_time_s > 0.0 ? exp(-dt_s / Scalar(turn_rate_time_s)) : Scalar(1);
   }
 
-  /// The mean of that over the step: (1 - e^-u) / u, u = dt / turn_rate_time_s.
+  /// Mean of that part over the step: (1 - e^-u) / u, u = dt / turn_rate_time_s.
   template <class Scalar>
   Scalar remembered_meanwhile(Scalar dt_s) const noexcept {
     if (!(turn_rate_time_s > 0.0)) return Scalar(1);
@@ -160,7 +162,7 @@ struct CoordinatedTurnRate {
                   (1 - remembered(dt_s)) / divisor);
   }
 
-  /// The mean of omega over a step that begins with it.
+  /// Mean of omega over a step that starts with this omega.
   template <class Scalar>
   Scalar mean_rate(Scalar rate_rad_s, Scalar dt_s) const noexcept {
     if (!(turn_rate_time_s > 0.0)) return rate_rad_s;
@@ -168,7 +170,7 @@ struct CoordinatedTurnRate {
     return prior + remembered_meanwhile(dt_s) * (rate_rad_s - prior);
   }
 
-  /// The standard deviation of omega that a step adds, over that without any return: the square
+  /// Standard deviation that a step adds to omega, relative to that of a random walk: the square
   /// root of (1 - e^-2u) / 2u, u = dt / turn_rate_time_s.
   template <class Scalar>
   Scalar kept_wander(Scalar dt_s) const noexcept {

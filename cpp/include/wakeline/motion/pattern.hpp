@@ -9,8 +9,8 @@
 
 namespace wakeline {
 
-/// What the elements of an N x N transition matrix are whatever the step: '0', '1', or 'x' for any
-/// number. Written row by row, as in `Pattern<2>{"1x 01"}`.
+/// The elements of an N x N transition matrix that are the same for every step: '0', '1', or 'x'
+/// for any value, row by row, e.g. `Pattern<2>{"1x 01"}`.
 template <int N>
 struct Pattern {
   char element[N][N] = {};
@@ -20,7 +20,7 @@ struct Pattern {
       for (int j = 0; j < N; ++j) element[i][j] = rows[i * (N + 1) + j];
   }
 
-  /// Whether nothing but those three is in it.
+  /// True when it contains only these three characters.
   [[nodiscard]] constexpr bool is_valid() const noexcept {
     for (const auto& row : element)
       for (const char one : row)
@@ -28,14 +28,14 @@ struct Pattern {
     return true;
   }
 
-  /// Nothing is known.
+  /// All elements unknown.
   constexpr Pattern() {
     for (auto& row : element)
       for (char& any : row) any = 'x';
   }
 };
 
-/// The pattern that a motion model tells of its matrix or Jacobian, `kPattern`.
+/// The `kPattern` that a motion model declares for its matrix or Jacobian.
 template <class Motion>
 inline constexpr Pattern<kStatesOf<Motion>> kPatternOf = {};
 template <class Motion>
@@ -52,9 +52,10 @@ inline constexpr Pattern<kStatesOf<Motion>> kPatternOf<Motion> = Motion::kPatter
   refuse(message.str());
 }
 
-/// Throws `std::invalid_argument` unless the matrix of a linear model, or the Jacobian at [1, 2, …]
-/// of another, is as its pattern says: one that a model has inherited may not be. For steps of 1 s
-/// and of 2 s, as for the first an element that is the step looks like 1.
+/// Throws `std::invalid_argument` unless the matrix of a linear model, or the Jacobian of a
+/// nonlinear one at [1, 2, …], has the declared pattern, which may be wrong for an inherited one.
+/// Checked for steps of 1 s and 2 s, because an element equal to the step looks like 1 in the
+/// first.
 template <class Scalar, class Motion>
 void require_pattern(const Motion& motion) {
   constexpr int kN = kStatesOf<Motion>;
@@ -74,7 +75,7 @@ void require_pattern(const Motion& motion) {
   }
 }
 
-/// Products with a transition matrix, without the terms that its pattern says are zero.
+/// Products with a transition matrix, without the terms that its pattern declares zero.
 template <auto kPattern, class Scalar, int N>
 struct Patterned {
   static_assert(
@@ -91,7 +92,7 @@ struct Patterned {
     return product;
   }
 
-  /// (F P)ᵀ of a symmetric P: what `congruence` takes.
+  /// (F P)ᵀ of a symmetric P, the input of `congruence`.
   [[gnu::always_inline]] Mat<Scalar, N, N> transposed_product(
       const Mat<Scalar, N, N>& p) const noexcept {
     Mat<Scalar, N, N> transposed;

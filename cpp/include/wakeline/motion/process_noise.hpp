@@ -7,23 +7,23 @@
 
 namespace wakeline {
 
-/// Continuous white acceleration of the given power spectral density per axis; its Q is right for
-/// any dt, which means Q(a + b) = F(b) Q(a) F(b)ᵀ + Q(b). Source: Bar-Shalom, Li, Kirubarajan,
-/// Estimation with Applications to Tracking and Navigation, 6.2.2.
+/// Continuous white acceleration of the given power spectral density per axis. Its Q is consistent
+/// for any dt: Q(a + b) = F(b) Q(a) F(b)ᵀ + Q(b). Source: Bar-Shalom, Li, Kirubarajan, Estimation
+/// with Applications to Tracking and Navigation, 6.2.2.
 struct WhiteAcceleration {
   double psd_m2s3 = 0.1;
 };
 
-/// An acceleration per axis drawn anew for each step and constant during it: Q = G s² Gᵀ, G =
-/// [dt²/2, dt]ᵀ (and [dt²/2, dt, 1]ᵀ where the acceleration is a state). The papers' form: how much
-/// noise a second brings depends on the step. Source: Bar-Shalom, Li, Kirubarajan, 6.3.2 and 6.3.3;
+/// A random acceleration per axis, independent in each step and constant during it: Q = G s² Gᵀ, G
+/// = [dt²/2, dt]ᵀ (and [dt²/2, dt, 1]ᵀ where the acceleration is a state). The papers' form: the
+/// noise per second depends on the step. Source: Bar-Shalom, Li, Kirubarajan, 6.3.2 and 6.3.3;
 /// paper A, equations (1)-(3).
 struct PiecewiseAcceleration {
   double std_mps2 = 0.1;
 };
 
-/// Continuous white jerk per axis, for states that hold an acceleration; right for any dt.
-/// Source: Bar-Shalom, Li, Kirubarajan, 6.2.3.
+/// Continuous white jerk per axis, for states with an acceleration; consistent for any dt. Source:
+/// Bar-Shalom, Li, Kirubarajan, 6.2.3.
 struct WhiteJerk {
   double psd_m2s5 = 0.01;
 };
@@ -44,7 +44,7 @@ class ProcessNoise {
 
   [[nodiscard]] constexpr Kind kind() const noexcept { return kind_; }
 
-  /// The number that the policy was given: a density, or a standard deviation.
+  /// The policy's parameter: a density or a standard deviation.
   [[nodiscard]] constexpr double parameter() const noexcept { return parameter_; }
 
   /// The density of white noise, or the variance s² of a piecewise acceleration.
@@ -52,8 +52,8 @@ class ProcessNoise {
     return kind_ == Kind::kPiecewiseAcceleration ? parameter_ * parameter_ : parameter_;
   }
 
-  /// Throws `std::invalid_argument` on a parameter that is negative or not finite, and on white
-  /// jerk where the state holds no acceleration.
+  /// Throws `std::invalid_argument` when the parameter is negative or not finite, or for white jerk
+  /// when the state has no acceleration.
   void validate(bool holds_acceleration) const {
     switch (kind_) {
       case Kind::kWhiteAcceleration:
@@ -70,7 +70,7 @@ class ProcessNoise {
       refuse("white jerk needs an acceleration in the state, this model has none");
   }
 
-  /// Q of one axis `[position, velocity]` without turning.
+  /// Q of one axis `[position, velocity]`, without a turn.
   template <class Scalar>
   Mat<Scalar, 2, 2> of_velocity_axis(Scalar dt_s) const noexcept {
     const Scalar q = Scalar(strength());

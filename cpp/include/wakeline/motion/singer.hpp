@@ -24,9 +24,9 @@ Scalar exponential_remainder(Scalar u) noexcept {
   }
 }
 
-/// Singer's maneuvering target: an acceleration that forgets itself, da/dt = -a/tau + w, with
-/// stationary standard deviation `accel_std_mps2` per axis. State `[x, vx, ax, y, vy, ay]` (m, m/s,
-/// m/s²). Source: R. A. Singer, IEEE Trans. AES-6, 1970; Bar-Shalom, Li, Kirubarajan, 8.2.
+/// Singer's model: an exponentially correlated acceleration, da/dt = -a/tau + w, with stationary
+/// standard deviation `accel_std_mps2` per axis. State `[x, vx, ax, y, vy, ay]` (m, m/s, m/s²).
+/// Source: R. A. Singer, IEEE Trans. AES-6, 1970; Bar-Shalom, Li, Kirubarajan, 8.2.
 struct Singer {
   static constexpr auto kComponents = kAccelerationKinematics;
   static constexpr bool kForPacks = true;
@@ -62,7 +62,7 @@ struct Singer {
   }
 
  private:
-  /// What an acceleration of 1 has become after t: `[position, velocity, acceleration]`.
+  /// Response `[position, velocity, acceleration]` after t to a unit acceleration.
   template <class Scalar>
   Vec<Scalar, 3> impulse_response(Scalar t_s) const noexcept {
     const Scalar u = t_s / Scalar(maneuver_time_s);
@@ -70,8 +70,8 @@ struct Singer {
             exponential_remainder<0>(u)};
   }
 
-  /// Gauss-Legendre with eight nodes: exact to rounding for steps up to tau, where the closed form
-  /// cancels.
+  /// Gauss-Legendre quadrature with eight nodes: exact to rounding for steps up to tau, where the
+  /// closed form cancels.
   template <class Scalar>
   Mat<Scalar, 3, 3> short_step_noise(Scalar dt_s) const noexcept {
     constexpr std::array kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,

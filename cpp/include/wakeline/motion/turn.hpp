@@ -6,17 +6,16 @@
 #include <cmath>
 #include <cstddef>
 
-#include "wakeline/simd/scalar.hpp"
 #include "wakeline/core/types.hpp"
-#include "wakeline/simd/unroll.hpp"
 #include "wakeline/motion/process_noise.hpp"
+#include "wakeline/simd/scalar.hpp"
+#include "wakeline/simd/unroll.hpp"
 
 namespace wakeline {
 
-/// Stumpff's functions of an angle: c0 is its cosine, c1 = sin(theta) / theta,
-/// c2 = (1 - cos(theta)) / theta² and c3 = (theta - sin(theta)) / theta³, of which zero is no
-/// special case. Source: Battin, An Introduction to the Mathematics and Methods of
-/// Astrodynamics, 4.5.
+/// Stumpff functions of an angle: c0 = cos(theta), c1 = sin(theta) / theta, c2 = (1 - cos(theta)) /
+/// theta² and c3 = (theta - sin(theta)) / theta³, without a singularity at zero. Source: Battin, An
+/// Introduction to the Mathematics and Methods of Astrodynamics, 4.5.
 template <class Scalar>
 struct Stumpff {
   Scalar c0, c1, c2, c3;
@@ -37,8 +36,8 @@ struct Stumpff {
   }
 
  private:
-  /// The sum over n of (-square)^n / (2 n + First)!, to the last bit or two up to kWidest: terms of
-  /// even and of odd n side by side.
+  /// The sum over n of (-square)^n / (2 n + First)!, accurate to one or two units in the last place
+  /// up to kWidest; terms of even and odd n side by side.
   template <int First>
   [[gnu::always_inline]] static Scalar series(Scalar square) noexcept {
     constexpr std::array kTerm = inverse_factorials<First>();
@@ -73,11 +72,11 @@ struct Stumpff {
     return {1 - versine, sinc, versine / angle / angle, (1 - sinc) / angle / angle};
   }
 
-  static constexpr int kTerms = sizeof(RealOf<Scalar>) > 4 ? 8 : 6;  ///< an even number
-  static constexpr double kWidest = 0.64;                            ///< of the squares
+  static constexpr int kTerms = sizeof(RealOf<Scalar>) > 4 ? 8 : 6;  ///< must be even
+  static constexpr double kWidest = 0.64;                            ///< largest theta²
 };
 
-/// The trigonometry of a steady turn by theta = omega dt. Source: Bar-Shalom, Li, Kirubarajan,
+/// Trigonometry of a coordinated turn by theta = omega dt. Source: Bar-Shalom, Li, Kirubarajan,
 /// 11.7.1; paper A, equation (3).
 template <class Scalar>
 struct Turn {
@@ -85,8 +84,8 @@ struct Turn {
   Stumpff<Scalar> c;
   Scalar sine;      ///< sin theta
   Scalar cosine;    ///< cos theta
-  Scalar along_s;   ///< sin(theta) / omega, s: how far a unit speed goes ahead
-  Scalar across_s;  ///< (1 - cos(theta)) / omega, s: how far it goes to starboard
+  Scalar along_s;   ///< sin(theta) / omega, s: distance ahead at unit speed
+  Scalar across_s;  ///< (1 - cos(theta)) / omega, s: distance to starboard at unit speed
   Scalar dt_s;
 
   [[gnu::always_inline]] Turn(Scalar turn_rate_rad_s, Scalar dt) noexcept
@@ -115,22 +114,22 @@ struct Turn {
     return dt_s * dt_s * Vec<Scalar, 2>(angle * (c.c3 - c.c2), c.c1 - c.c2);
   }
 
-  /// Q of `[x, vx, y, vy]` under the piecewise policy, whatever the turn.
+  /// Q of `[x, vx, y, vy]` under the piecewise policy, independent of the turn.
   static Mat<Scalar, 4, 4> piecewise_noise(const ProcessNoise& policy, Scalar dt_s) noexcept {
     const Mat<Scalar, 2, 2> axis = policy.of_velocity_axis(dt_s);
     return noise_of(axis(0, 0), axis(1, 0), axis(1, 1), Scalar(0));
   }
 
   /// Q of `[x, vx, y, vy]` under acceleration noise that acts throughout the turn. White
-  /// acceleration gives the exact integral of F(s) G q Gᵀ F(s)ᵀ; the piecewise policy is the
-  /// papers' G s² Gᵀ, which knows nothing of the turn.
+  /// acceleration gives the exact integral of F(s) G q Gᵀ F(s)ᵀ; the piecewise policy gives the
+  /// papers' G s² Gᵀ, which ignores the turn.
   Mat<Scalar, 4, 4> noise(const ProcessNoise& policy) const noexcept {
     if (policy.kind() == ProcessNoise::Kind::kPiecewiseAcceleration)
       return piecewise_noise(policy, dt_s);
     return white_noise(Scalar(policy.strength()));
   }
 
-  /// The same with white acceleration of so much more density.
+  /// The same with the density of the white acceleration increased by `more`.
   Mat<Scalar, 4, 4> noise(const ProcessNoise& policy, Scalar more_m2s3) const noexcept {
     if (policy.kind() == ProcessNoise::Kind::kPiecewiseAcceleration)
       return piecewise_noise(policy, dt_s) + white_noise(more_m2s3);
@@ -138,14 +137,15 @@ struct Turn {
   }
 
  private:
-  /// That of white acceleration.
+  /// Q of white acceleration of this density.
   Mat<Scalar, 4, 4> white_noise(Scalar density) const noexcept {
     const Scalar velocity = density * dt_s;
     return noise_of(velocity * dt_s * dt_s * (2 * c.c3), velocity * dt_s * c.c2, velocity,
                     velocity * dt_s * angle * c.c3);
   }
 
-  /// The same in every direction; `aside` is what a turn brings from one axis to the other.
+  /// Q that is the same in every direction; `aside` is the correlation between the axes caused by
+  /// the turn.
   static Mat<Scalar, 4, 4> noise_of(Scalar position, Scalar ahead, Scalar velocity,
                                     Scalar aside) noexcept {
     Mat<Scalar, 4, 4> q;

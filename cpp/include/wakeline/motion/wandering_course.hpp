@@ -8,9 +8,9 @@
 
 namespace wakeline {
 
-/// Density (m²/s³) of the acceleration of a course that wanders at speed v (m/s): a rate of turn of
-/// density q turns the velocity by an acceleration of density q v². Speeds beyond `max_speed_mps`
-/// count as that.
+/// Density (m²/s³) of the acceleration caused by course wander at speed v (m/s): white noise of
+/// density q on the turn rate accelerates the velocity with density q v². Speeds are limited to
+/// `max_speed_mps`.
 template <class Scalar>
 Scalar course_wander_psd(double course_psd_rad2s, double max_speed_mps, Scalar vx,
                          Scalar vy) noexcept {
@@ -19,9 +19,9 @@ Scalar course_wander_psd(double course_psd_rad2s, double max_speed_mps, Scalar v
   return Scalar(course_psd_rad2s) * select(speed2 < limit, speed2, limit);
 }
 
-/// Straight and nearly steady, with an acceleration that grows with the speed: state `[x, vx, y,
-/// vy]`. A fast boat turns hard where a slow ship drifts; the noise density is `psd_m2s3 +
-/// course_psd_rad2s v²` in every direction, so that one tuning serves both.
+/// Nearly constant velocity with noise that grows with the speed: state `[x, vx, y, vy]`, noise
+/// density `psd_m2s3 + course_psd_rad2s v²` in every direction, so that one tuning serves both fast
+/// boats, which turn hard, and slow ships.
 struct WanderingCourse {
   static constexpr auto kComponents = kKinematics;
   static constexpr bool kForPacks = true;

@@ -21,8 +21,7 @@
 #include "wakeline/simd/scalar.hpp"
 #include "wakeline/simd/unroll.hpp"
 
-// What is compiled for one instruction set never meets what is compiled for another, because the
-// names differ.
+// A namespace per instruction set, so that code compiled for different ones can be linked together.
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
 #define WAKELINE_INSTRUCTION_SET avx512
 #define WAKELINE_REGISTER_BYTES 64
@@ -43,12 +42,11 @@
 namespace wakeline {
 inline namespace WAKELINE_INSTRUCTION_SET {
 
-/// Lanes of the widest register of the instruction set that is compiled for. A pack wider than that
-/// works, and is slower.
+/// Lanes of the widest register of the target instruction set. A wider pack works but is slower.
 template <class Real>
 inline constexpr int kNativeLanes = WAKELINE_REGISTER_BYTES / int(sizeof(Real));
 
-/// A truth value for each lane of a `Pack`: all bits of a lane are set or none.
+/// A boolean for each lane of a `Pack`: the bits of a lane are all set or all clear.
 template <class Real, int Lanes>
 class PackMask {
   using Integer = std::conditional_t<sizeof(Real) == 8, std::int64_t, std::int32_t>;
@@ -101,8 +99,8 @@ class PackMask {
   friend bool all(PackMask mask) noexcept { return !any(!mask); }
 };
 
-/// `Lanes` numbers, on which every operation works lane by lane: a `Scalar` of the filters. Its
-/// comparisons give a `PackMask`, and `select` stands where a number would have an `if`.
+/// `Lanes` numbers, with every operation lane by lane: a `Scalar` of the filters. Comparisons
+/// return a `PackMask`; `select` replaces a branch.
 template <class Real, int Lanes>
 class Pack {
   static_assert(std::floating_point<Real> && Lanes > 1 && (Lanes & (Lanes - 1)) == 0);
@@ -129,7 +127,7 @@ class Pack {
     return pack;
   }
 
-  /// Reads numbers in a row, and writes them.
+  /// Loads or stores consecutive numbers.
   static Pack load(const Real* from) noexcept {
     Pack pack;
     std::memcpy(&pack.raw, from, sizeof pack.raw);
@@ -166,7 +164,8 @@ class Pack {
   friend Pack select(Mask condition, Pack a, Pack b) noexcept {
     return Pack(condition.raw ? a.raw : b.raw);
   }
-  // Where one is no number, the first. (Of `raw`, as compilers know these for one instruction.)
+  // Returns the first operand when one is NaN. (On `raw`, because compilers recognise it as one
+  // instruction.)
   friend Pack min(Pack a, Pack b) noexcept { return Pack(b.raw < a.raw ? b.raw : a.raw); }
   friend Pack max(Pack a, Pack b) noexcept { return Pack(b.raw > a.raw ? b.raw : a.raw); }
   friend Pack abs(Pack a) noexcept { return from_bits(a.bits() & ~sign_bit()); }
@@ -178,7 +177,8 @@ class Pack {
   friend Mask isfinite(Pack a) noexcept { return a - a == Pack(0); }
   friend Pack sqrt(Pack a) noexcept { return Pack(square_root(a.raw)); }
 
-  // By Newton's method where the processor has a first approximation: a division holds it up.
+  // Newton's method from the processor's approximation where there is one, which is faster than a
+  // division.
   friend Pack reciprocal(Pack a) noexcept {
 #if defined(__AVX512F__)
     if constexpr (sizeof(Raw) == 64) {
@@ -213,7 +213,7 @@ class Pack {
 
   /// The nearest integer, halves to even.
   friend Pack round_to_even(Pack a) noexcept {
-    // Adding a number whose last bit is worth one rounds; beyond it there are no fractions.
+    // Adding a number whose last bit is worth 1 rounds; larger numbers have no fractional part.
     const Pack shift = copysign(Pack(kFirstInteger), a);
     return select(abs(a) < Pack(kFirstInteger), copysign((a + shift) - shift, a), a);
   }
@@ -223,7 +223,7 @@ class Pack {
   }
 
   friend Real lane(const Pack& a, int k) noexcept { return a.raw[k]; }
-  // In the order of the lanes, so that the result is the same on every machine.
+  // Summed in the order of the lanes, so that the result is the same on every machine.
   friend Real sum_of_lanes(Pack a) noexcept {
     Real sum = a.raw[0];
     for (int k = 1; k < Lanes; ++k) sum += a.raw[k];
@@ -236,7 +236,7 @@ class Pack {
   }
   friend Real greatest_of_lanes(Pack a) noexcept { return -least_of_lanes(-a); }
 
-  /// The numbers as integers, bit by bit.
+  /// The bit patterns as integers.
   [[nodiscard]] typename Mask::Raw bits() const noexcept { return (typename Mask::Raw)raw; }
   static Pack from_bits(typename Mask::Raw bits) noexcept { return Pack((Raw)bits); }
 
@@ -298,8 +298,8 @@ template <int... From, class Raw, class Integers>
 #endif
 }
 
-/// Swaps the numbers of `upper` in every other block of `Size` lanes with those of `lower` in the
-/// blocks between.
+/// Swaps the elements of `upper` in every second block of `Size` lanes with those of `lower` in the
+/// other blocks.
 template <int Size, class Real, int Lanes, int... Lane>
 [[gnu::always_inline]] inline void swap_blocks(Pack<Real, Lanes>& upper, Pack<Real, Lanes>& lower,
                                                std::integer_sequence<int, Lane...>) noexcept {
@@ -309,7 +309,7 @@ template <int Size, class Real, int Lanes, int... Lane>
   lower.raw = shuffled<((Lane & Size) ? Lanes + Lane : Lane + Size)...>(a, b, Integers{});
 }
 
-/// Of rows: the blocks of `Size` x `Size` numbers off the diagonal of each block twice as large.
+/// Transposes the off-diagonal blocks of `Size` x `Size` within each block of twice that size.
 template <int Size, class Real, int Lanes>
 [[gnu::always_inline]] inline void swap_blocks(Pack<Real, Lanes> (&rows)[Lanes]) noexcept {
   unroll<Lanes>([&](auto row) {
@@ -319,7 +319,7 @@ template <int Size, class Real, int Lanes>
   });
 }
 
-/// As many rows as there are lanes become columns.
+/// Transposes a square of as many rows as lanes.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline void transpose(Pack<Real, Lanes> (&rows)[Lanes]) noexcept {
   swap_blocks<1>(rows);
@@ -329,12 +329,12 @@ template <class Real, int Lanes>
   static_assert(Lanes <= 16);
 }
 
-/// Writes the numbers of lanes `First` and `First + 1`.
+/// Stores the elements of lanes `First` and `First + 1`.
 template <int First, class Real, int Lanes, class Number>
 [[gnu::always_inline]] inline void store_pair(Pack<Real, Lanes> pack, Number* to) noexcept {
 #if defined(__AVX512DQ__)
   if constexpr (First > 0 && sizeof(pack) == 64 && std::same_as<Real, double>) {
-    // One instruction, of which GCC 12 makes a shuffle and a store.
+    // One instruction; GCC 12 would use a shuffle and a store.
     _mm_storeu_pd(to, _mm512_maskz_extractf64x2_pd(__mmask8(-1), (__m512d)pack.raw, First / 2));
     return;
   }
@@ -346,9 +346,9 @@ template <int First, class Real, int Lanes, class Number>
   std::memcpy(to, &numbers, sizeof numbers);
 }
 
-/// Writes two numbers of each lane in a row, to `place(lane)`, from the last lane to the first.
-/// What is aligned to no more than that would, in whole registers, lie across two cache lines, and
-/// a store of such takes as long as six others.
+/// Stores two numbers of each lane at `place(lane)`, from the last lane to the first. Without wider
+/// alignment, whole registers would cross cache lines, and such a store takes as long as six
+/// others.
 template <class Real, int Lanes, class Place>
 [[gnu::always_inline]] inline void store_pairs(Pack<Real, Lanes> first, Pack<Real, Lanes> second,
                                                const Place& place) noexcept {
@@ -362,8 +362,8 @@ template <class Real, int Lanes, class Place>
   });
 }
 
-/// Where blocks of as many numbers as there are lanes begin, so that they cover `Size` numbers:
-/// side by side, but for the last.
+/// Calls the function with the first index of each block of `Lanes` that together cover `Size`
+/// numbers; the last block may overlap the one before.
 template <int Size, int Lanes, class Function>
 [[gnu::always_inline]] inline void unroll_blocks(const Function& function) noexcept {
   unroll<Size / Lanes>([&](auto block) { function(Index<block.value * Lanes>{}); });
@@ -405,8 +405,8 @@ requires(kLanesIn<Packs> > 1)
     for (int k = 0; k < count; ++k) unroll<Size>([&](int i) { array(k)[i] = lane(packs[i], k); });
 }
 
-/// `sums[k]` is the sum of the lanes of `packs[k]`, in their order. Writes whole registers: there
-/// must be room for `Size`, rounded up to a multiple of the lanes.
+/// `sums[k]` is the sum of the lanes of `packs[k]`, in lane order. Stores whole registers: there
+/// must be room for `Size` rounded up to a multiple of the lanes.
 template <int Size, class Real, int Lanes>
 [[gnu::always_inline]] inline void sum_lanes(const Pack<Real, Lanes>* packs, Real* sums) noexcept {
   unroll<(Size + Lanes - 1) / Lanes>([&](auto block) {
@@ -440,7 +440,7 @@ struct ScalarTraits<Pack<Number, Lanes>> {
 
 }  // namespace wakeline
 
-/// So that Eigen takes a pack for a number.
+/// Lets Eigen use a pack as a scalar.
 template <class Real, int Lanes>
 struct Eigen::NumTraits<wakeline::Pack<Real, Lanes>>
     : Eigen::GenericNumTraits<wakeline::Pack<Real, Lanes>> {

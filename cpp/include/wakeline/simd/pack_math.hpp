@@ -1,21 +1,21 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Elementary functions of packs. A template that says `using std::exp;` and then `exp(x)` finds
-// them for a pack and the standard ones for a number.
+// Elementary functions of packs. A template with `using std::exp;` and then `exp(x)` finds these
+// for a pack and the standard ones for a number.
 //
-// Each is its standard namesake lane by lane, over the whole range, subnormal numbers included,
-// with the same results at infinities, zeros of either sign and NaN. No lane depends on another.
-// With fused multiply-add the accuracy is the same, though the last bit may differ. The error stays
-// below, in units in the last place, `float` and `double` alike:
+// Each function equals its standard namesake lane by lane over the whole range, including subnormal
+// numbers, infinities, zeros of either sign and NaN. Lanes are independent. With fused multiply-add
+// the accuracy is the same, though the last bit may differ. Largest error in units in the last
+// place, for `float` and `double`:
 //
-//   log 0.9   exp 1.1   sin, cos 1.2   expm1, hypot 1.3   atan, atan2 1.6
+//     log 0.9   exp 1.1   sin, cos 1.2   expm1, hypot 1.3   atan, atan2 1.6
 //
 // Method: the argument is reduced to a short interval around zero by subtracting a multiple of a
-// constant that is held in several parts, whose products are exact (Cody and Waite, Software Manual
-// for the Elementary Functions, 1980); there stands a polynomial of least maximum relative error
-// (Remez exchange, done in 200 bits, coefficients then rounded), written as a correction to the
-// leading terms so that its rounding does not count.
+// constant that is stored in several parts whose products are exact (Cody and Waite, Software
+// Manual for the Elementary Functions, 1980). On the interval a polynomial of least maximum
+// relative error (Remez exchange in 200 bits, coefficients then rounded) is added as a correction
+// to the leading terms, so that its rounding error is negligible.
 #pragma once
 
 #include <array>
@@ -48,9 +48,9 @@ struct Format {
   static constexpr int kBias = std::numeric_limits<Real>::max_exponent - 1;
   static constexpr Integer kMantissa = (Integer(1) << kMantissaBits) - 1;
   static constexpr Integer kSign = Integer(1) << (kBits - 1);
-  /// Added to a smaller number, leaves its nearest integer in the low bits of the sum.
+  /// Adding this to a smaller number leaves its nearest integer in the low bits of the sum.
   static constexpr Real kRounding = Real(Integer(3) << (kMantissaBits - 1));
-  /// Where its mantissa is replaced by an integer, it is larger by that integer.
+  /// Replacing its mantissa by an integer adds that integer.
   static constexpr Real kCounting = Real(Integer(1) << kMantissaBits);
 };
 
@@ -68,7 +68,7 @@ template <class Real, int Lanes>
   return Pack<Real, Lanes>((typename Pack<Real, Lanes>::Raw)bits);
 }
 
-/// c[First] + c[First + Step] x + c[First + 2 Step] x^2 + ..., from the inside.
+/// c[First] + c[First + Step] x + c[First + 2 Step] x^2 + ..., by Horner's rule.
 template <std::size_t First, std::size_t Step, class Real, int Lanes, std::size_t N>
 [[gnu::always_inline]] inline Pack<Real, Lanes> horner(Pack<Real, Lanes> x,
                                                        const std::array<Real, N>& c) noexcept {
@@ -78,7 +78,7 @@ template <std::size_t First, std::size_t Step, class Real, int Lanes, std::size_
     return c[First] + x * horner<First + Step, Step>(x, c);
 }
 
-/// c[0] + c[1] x + c[2] x^2 + ..., even and odd powers side by side where there are many.
+/// c[0] + c[1] x + c[2] x^2 + ..., with even and odd powers side by side where there are many.
 template <class Real, int Lanes, std::size_t N>
 [[gnu::always_inline]] inline Pack<Real, Lanes> polynomial(Pack<Real, Lanes> x,
                                                            const std::array<Real, N>& c) noexcept {
@@ -88,7 +88,7 @@ template <class Real, int Lanes, std::size_t N>
     return horner<0, 2>(x * x, c) + x * horner<1, 2>(x * x, c);
 }
 
-/// The polynomials, each with the largest error that it adds to its function.
+/// The polynomials, each with its contribution to the error of the function.
 template <class Real>
 struct Coefficients;
 
@@ -118,16 +118,16 @@ struct Coefficients<double> {
       -0x1.a8b42d57d3da9p-5, 0x1.6b2e4e2491d93p-5, -0x1.13d48d0749cb3p-5, 0x1.3ac1b53dc6340p-6,
       -0x1.7dd89dae6e277p-8};
 
-  // Constants in parts: all but the last have so few bits that small multiples are exact.
+  // Constants in parts: all but the last have few enough bits for exact small multiples.
   static constexpr double kLog2e = 0x1.71547652b82fep+0;
   static constexpr std::array kLn2{0x1.62e42fefa3800p-1, 0x1.ef35793c76730p-45};
   static constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
   static constexpr std::array kHalfPi{0x1.921fb54440000p+0, 0x1.68c234c4c0000p-39,
                                       0x1.98a2e03707345p-77};
   static constexpr std::array kQuarterPi{0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55};
-  /// Up to here multiples of the parts of pi/2 are exact.
+  /// Up to this magnitude multiples of the parts of pi/2 are exact.
   static constexpr double kLargestAngle = 1e5;
-  /// Outside of these e^x is 0 and infinite.
+  /// Outside this range e^x is 0 or infinite.
   static constexpr double kLowestPower = -746, kHighestPower = 710;
 };
 
@@ -155,7 +155,7 @@ struct Coefficients<float> {
   static constexpr float kLowestPower = -104, kHighestPower = 89;
 };
 
-/// `result`, but `function(x...)` of the lane where the mask is set.
+/// `result`, with `function(x...)` in the lanes where the mask is set.
 template <class Real, int Lanes, class Function, class... Packs>
 [[gnu::noinline, gnu::cold]] Pack<Real, Lanes> replaced(PackMask<Real, Lanes> mask,
                                                         Pack<Real, Lanes> result, Function function,
@@ -187,7 +187,7 @@ template <class Real, int Lanes>
   return of_bits<Real, Lanes>(to_bits(n + (F::kRounding + F::kBias)) << F::kMantissaBits);
 }
 
-/// p 2^n, rounded once, for p near one and n of the whole range from 0 to infinity.
+/// p 2^n, rounded once, for p near 1 and any n from underflow to overflow.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> scaled(Pack<Real, Lanes> p,
                                                        Pack<Real, Lanes> n) noexcept {
@@ -202,7 +202,7 @@ template <class Real, int Lanes>
           (Raw)_mm512_maskz_scalef_ps(__mmask16(-1), (__m512)p.raw, (__m512)n.raw));
   }
 #endif
-  // 2^n need not be a number, but is a product of two of about half that exponent.
+  // 2^n may overflow or underflow, but is a product of two powers of about half the exponent.
   using F = Format<Real>;
   const Bits<Real, Lanes> exponents = to_bits(n + (F::kRounding + 2 * F::kBias));
   const Bits<Real, Lanes> half = exponents >> 1;
@@ -280,7 +280,7 @@ template <class Real, int Lanes>
   const Number z = r * r;
   const Number q = pack_detail::polynomial(r, Constant::kExponential);
   const Number rest = Real(0.5) * z + (z * r * q + ((high - r) - low));
-  // Half of everything, as 2^n may be just beyond the largest number.
+  // Computed at half scale because 2^n may overflow.
   const Number scale = pack_detail::power_of_two(n - 1);
   const Number offset = scale - Real(0.5);
   const Number sum = offset + scale * r;
@@ -300,7 +300,7 @@ template <class Real, int Lanes>
   using Limits = std::numeric_limits<Real>;
   const auto subnormal = x < Number(Limits::min());
   const Number normal = select(subnormal, x * F::kCounting, x);
-  // Counted from sqrt(1/2), a mantissa begins at the exponent's next step there.
+  // Relative to sqrt(1/2), where a mantissa reaches the next exponent.
   const Bits start = pack_detail::to_bits(Number(std::numbers::sqrt2_v<Real> / 2));
   const Bits from_start =
       pack_detail::to_bits(normal) - start + (typename F::Integer(F::kBias) << F::kMantissaBits);
@@ -323,8 +323,8 @@ template <class Real, int Lanes>
   return select(x < Number(0), Number(Limits::quiet_NaN()), at_zero);
 }
 
-/// Sine and cosine, of an angle in radians. Reduced by pi/2; beyond |x| = 100000 (`float`: 400)
-/// lanes are computed one by one.
+/// Sine and cosine of an angle in radians. Reduced by pi/2; lanes with |x| above 100000 (`float`:
+/// 400) are computed one by one.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline SinCos<Pack<Real, Lanes>> sin_cos(Pack<Real, Lanes> x) noexcept {
   auto result = pack_detail::sin_cos_within(pack_detail::reduced_angle(x));
@@ -349,8 +349,8 @@ template <class Real, int Lanes>
 }
 
 /// The angle of (x, y), from -pi to pi. The ratio of the smaller to the larger magnitude gives
-/// atan(a/b), or above 9/16 pi/4 + atan((a - b) / (a + b)), by one division; eighths of a turn and
-/// signs make the rest.
+/// atan(a/b), or above 9/16 pi/4 + atan((a - b) / (a + b)), with one division; reflections give the
+/// other octants.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> atan2(Pack<Real, Lanes> y,
                                                       Pack<Real, Lanes> x) noexcept {
@@ -368,7 +368,7 @@ template <class Real, int Lanes>
   Number eighths = select(diagonal, Number(1), Number(0));
   eighths = select(steep, 2 - eighths, eighths);
   eighths = select(backward, 4 - eighths, eighths);
-  // Each of these mirrors the angle.
+  // Each of these reflects the angle.
   const pack_detail::Bits<Real, Lanes> mirrored =
       ((pack_detail::Bits<Real, Lanes>)steep.raw ^ pack_detail::to_bits(x)) & F::kSign;
   const Number t =
@@ -398,7 +398,7 @@ template <class Real, int Lanes>
   using Limits = std::numeric_limits<Real>;
   const Number square = x * x + y * y;
   const Number root = sqrt(square);
-  // Below this a square may have lost bits, beyond the largest number it is lost.
+  // Squares of smaller numbers may lose bits, those of larger ones may overflow.
   constexpr Real kSmall = Limits::min() / (Limits::epsilon() * Limits::epsilon());
   const auto safe = square >= Number(kSmall) && square <= Number(Limits::max());
   if (!all(safe)) [[unlikely]] {

@@ -10,13 +10,13 @@
 
 namespace wakeline {
 
-/// What the rest of the library asks of a type of numbers: `float`, `double`, or a pack of them,
-/// which specialises this.
+/// What the library requires of a scalar type: `float`, `double`, or a pack, which specialises
+/// this.
 template <class Scalar>
 struct ScalarTraits {
-  using Real = Scalar;              ///< one number of it
-  using Mask = bool;                ///< what a comparison gives
-  static constexpr int kLanes = 1;  ///< numbers in it
+  using Real = Scalar;              ///< type of one element
+  using Mask = bool;                ///< result of a comparison
+  static constexpr int kLanes = 1;  ///< number of elements
 
   template <class Function>
   static Scalar of(const Function& number) noexcept {
@@ -38,13 +38,13 @@ constexpr Scalar select(bool condition, Scalar a, Scalar b) noexcept {
   return condition ? a : b;
 }
 
-/// The greater one; `bound` where the value is not a number.
+/// The greater one; `bound` where the value is NaN.
 template <class Scalar>
 constexpr Scalar at_least(Scalar value, Scalar bound) noexcept {
   return select(value > bound, value, bound);
 }
 
-/// 1 / x and 1 / sqrt(x) of a positive number, to the last bit or two.
+/// 1 / x and 1 / sqrt(x) of a positive number, accurate to one or two units in the last place.
 template <class Scalar>
 Scalar reciprocal(Scalar x) noexcept {
   return Scalar(1) / x;
@@ -61,18 +61,18 @@ Scalar lanes_of(const Function& number) noexcept {
   return ScalarTraits<Scalar>::of(number);
 }
 
-/// Reads a number, or as many as there are lanes in a row.
+/// Loads a number, or as many consecutive ones as there are lanes.
 template <class Scalar>
 Scalar load(const RealOf<Scalar>* from) noexcept {
   return ScalarTraits<Scalar>::load(from);
 }
 
-/// Lanes of each scalar in a row of them.
+/// Number of lanes of the elements of an array of scalars.
 template <class Scalars>
 inline constexpr int kLanesIn = kLanesOf<std::decay_t<decltype(std::declval<Scalars&>()[0])>>;
 
-/// `scalars[k]` is number k of the arrays that `array(lane)` gives; and the reverse, for the first
-/// `count` lanes.
+/// `scalars[k]` is element k of the arrays `array(lane)`; `scatter_lanes` is the reverse for the
+/// first `count` lanes.
 template <int Size, class Array, class Scalars>
 requires(kLanesIn<Scalars> == 1)
     [[gnu::always_inline]] inline void gather_lanes(const Array& array, Scalars scalars) noexcept {
@@ -85,7 +85,7 @@ requires(kLanesIn<Scalars> == 1)
   unroll<Size>([&](int k) { array(0)[k] = scalars[k]; });
 }
 
-/// Over all lanes.
+/// Reductions over all lanes.
 template <class Scalar>
 requires(kLanesOf<Scalar> == 1) constexpr Scalar sum_of_lanes(Scalar x) noexcept { return x; }
 template <class Scalar>
@@ -100,7 +100,7 @@ requires(kLanesOf<Scalar> == 1)
   unroll<Size>([&](int k) { sums[k] = scalars[k]; });
 }
 
-/// `fold(x)` where `Result` is one number and x are many; else each lane for itself.
+/// `fold(x)` where `Result` is one number and x a pack; x where both have the same lanes.
 template <class Result, class Scalar, class Fold>
 Result fold_to(Scalar x, const Fold& fold) noexcept {
   if constexpr (kLanesOf<Result> == kLanesOf<Scalar>)
@@ -117,13 +117,13 @@ Result least_to(Scalar x) noexcept {
   return fold_to<Result>(x, [](const auto& lanes) { return least_of_lanes(lanes); });
 }
 
-/// Over the lanes of a mask, of which a `bool` has one.
+/// Reductions over the lanes of a mask; a `bool` has one.
 constexpr bool all(bool mask) noexcept { return mask; }
 constexpr bool any(bool mask) noexcept { return mask; }
 constexpr bool none(bool mask) noexcept { return !mask; }
 constexpr unsigned bits_of(bool mask) noexcept { return mask; }  ///< bit k is lane k
 
-/// The mask of a scalar whose lane k is bit k.
+/// The mask whose lane k is bit k.
 template <class Scalar>
 MaskOf<Scalar> mask_of_bits(unsigned bits) noexcept {
   if constexpr (kLanesOf<Scalar> == 1)
@@ -132,13 +132,13 @@ MaskOf<Scalar> mask_of_bits(unsigned bits) noexcept {
     return MaskOf<Scalar>::of_bits(bits);
 }
 
-/// Writes a number, or as many as there are lanes in a row.
+/// Stores a number, or as many consecutive ones as there are lanes.
 template <class Scalar>
 void store(Scalar value, Scalar* to) noexcept {
   *to = value;
 }
 
-/// One number of many, or the number itself.
+/// Element k of a pack, or the number itself.
 template <class Scalar>
 constexpr Scalar lane(Scalar value, int) noexcept {
   return value;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Many estimators of one prototype, each with a step of its own to take.
+// Steps of many estimators with the same parameters, several of them in the lanes of one.
 #pragma once
 
 #include <algorithm>
@@ -10,28 +10,28 @@
 #include <span>
 #include <utility>
 
-#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 
-/// An estimator's next prediction, and what has come of it.
+/// One prediction step of an estimator and its result.
 template <class Estimator>
 struct PredictionStep {
-  Estimator* estimator;  ///< started
+  Estimator* estimator;  ///< must have been started
   double dt_s;
   Status status = Status::kOk;
-  Gaussian<4> kinematics = {};  ///< of the estimate after it
+  Gaussian<4> kinematics = {};  ///< of the estimate after the step
 };
 
-/// Fixes that may be an estimator's own, at least one, and what has come of them: see the update of
-/// `Imm` by several readings.
+/// One update of an estimator by one or more fixes that may belong to its target, and its result;
+/// see `Imm::update` by several readings.
 template <class Estimator>
 struct UpdateStep {
-  Estimator* estimator;  ///< started
+  Estimator* estimator;  ///< must have been started
   std::span<const Alternative<Fix>> fixes;
   double none;
   std::span<double> share;
@@ -39,8 +39,8 @@ struct UpdateStep {
   Gaussian<4> kinematics = {};
 };
 
-/// `InLanes<Estimator, Scalar>::of(prototype)` is the same estimator over packs of numbers, where
-/// there is one: all that two estimators of one prototype differ in are beliefs and mode
+/// `InLanes<Estimator, Scalar>::of(prototype)` is the same estimator over packs of numbers. It
+/// exists for estimators that differ from others with the same parameters only in beliefs and mode
 /// probabilities.
 template <class Estimator, class Scalar>
 struct InLanes;
@@ -76,7 +76,7 @@ requires(requires(const Filters& filter) { InLanes<Filters, Scalar>::of(filter);
   }
 };
 
-/// Takes steps of estimators one after the other.
+/// Performs the steps one after the other.
 template <class Estimator>
 class OneByOne {
  public:
@@ -97,13 +97,13 @@ class OneByOne {
   }
 };
 
-/// Takes steps of estimators that have no lanes.
+/// Performs the steps of estimators without a form for lanes.
 template <class Estimator>
 class SideBySide : public OneByOne<Estimator> {
   using OneByOne<Estimator>::OneByOne;
 };
 
-/// Takes them in lanes. What comes of a step does not depend on the others.
+/// Performs the steps in lanes. The result of a step does not depend on the others.
 template <class Estimator>
 requires requires(const Estimator& prototype) {
   InLanes<Estimator, Pack<double, kNativeLanes<double>>>::of(prototype);
@@ -122,7 +122,7 @@ class SideBySide<Estimator> {
   }
 
   void update(std::span<UpdateStep<Estimator>> steps) noexcept {
-    // By their number of fixes, so that those of a row have the same or nearly.
+    // By number of fixes, so that the steps of a row have the same number or nearly.
     const auto arrange = [](std::span<UpdateStep<Estimator>*> order) {
       std::sort(order.begin(), order.end(),
                 [](const auto* a, const auto* b) { return a->fixes.size() < b->fixes.size(); });
@@ -131,9 +131,9 @@ class SideBySide<Estimator> {
   }
 
  private:
-  static constexpr std::size_t kArranged = 64;  ///< steps that are arranged together
+  static constexpr std::size_t kArranged = 64;  ///< steps that are sorted together
 
-  /// A fix in each lane.
+  /// A fix for each lane.
   struct LaneFix : Fix {
     Mat<Scalar, 2, 2> covariance;
 
@@ -143,7 +143,7 @@ class SideBySide<Estimator> {
     }
   };
 
-  /// Steps that are taken together. Lanes that are left over repeat the last one.
+  /// Steps performed together. Unused lanes repeat the last one.
   template <class Step>
   struct Row {
     std::array<Step*, kLanes> step;
@@ -160,7 +160,7 @@ class SideBySide<Estimator> {
     }
   };
 
-  /// Takes the steps in rows, in the order to which `arrange` brings pointers to them.
+  /// Performs the steps in rows, in the order to which `arrange` sorts pointers to them.
   template <class Step, class Arrange, class TakeRow>
   static void in_rows(std::span<Step> steps, const Arrange& arrange, const TakeRow& take) noexcept {
     while (!steps.empty()) {
@@ -202,7 +202,7 @@ class SideBySide<Estimator> {
     scatter(row);
   }
 
-  /// Fix `i` of each lane; one that a lane does not have weighs nothing.
+  /// Fix `i` of each lane; a missing one has weight zero.
   void read(const Row<UpdateStep<Estimator>>& row, std::size_t i) noexcept {
     const auto fix = [&](int k) -> const Alternative<Fix>& {
       return row[k].fixes[std::min(i, row[k].fixes.size() - 1)];

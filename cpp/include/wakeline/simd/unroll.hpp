@@ -6,15 +6,15 @@
 
 namespace wakeline {
 
-/// A number known at compile time.
+/// An integer known at compile time.
 template <int I>
 struct Index {
   static constexpr int value = I;
   constexpr operator int() const noexcept { return I; }  // NOLINT(google-explicit-constructor)
 };
 
-/// Calls `f(Index<0>{})` to `f(Index<N - 1>{})`, without a loop: what small matrices need to live
-/// in registers.
+/// Calls `f(Index<0>{})` to `f(Index<N - 1>{})` without a loop, so that small matrices stay in
+/// registers.
 template <int N, class Function>
 [[gnu::always_inline]] constexpr void unroll(const Function& function) noexcept {
   [&]<int... I>(std::integer_sequence<int, I...>) { (function(Index<I>{}), ...); }
