@@ -1,4 +1,4 @@
-"""Where other vessels will be: forecasts from what they report of themselves, or from a track.
+"""Position forecasts of other vessels from their AIS reports or from a track.
 
 >>> from wakeline import forecast, recording
 >>> track = recording.load_ais().tracks["235007473"]
@@ -39,23 +39,23 @@ def names() -> list[str]:
 def position_m(
     track: AisTrack | Tracks, ahead_s: ArrayLike, model: str = "last_report"
 ) -> NDArray[np.float64]:
-    """Where a vessel will be, some times after its last report.
+    """Predict a vessel's position at times after its last report.
 
     Parameters
     ----------
     track : AisTrack or Tracks
-        Its reports so far, all with course and speed; or the rows of one track, in order of time.
+        Reports so far, all with course and speed; or the rows of one track, in order of time.
     ahead_s : (H,) array_like
         Seconds after the last of them.
     model : str
-        ``last_report``: straight on with the course and speed of the last report. ``line_60s``:
-        along the line through the positions of the last minute. ``kalman_cv``: straight on from a
-        Kalman filter over the positions of the last two minutes. ``turning_on``: with the last
-        speed and the rate of turn of the last half minute. ``turn_that_ends``: the same, the rate
-        fading with a time constant of half a minute. ``window_5``, ``two_pass`` and
-        ``window_bank``: straight on with the course and speed that a smoother makes of those
-        reported in the last two minutes; the combined prediction of `theory/dead_reckoning.md`,
-        (11), by the gains (27) over five reports, by (33) and by the bank of windows.
+        ``last_report``: constant velocity with course and speed of the last report. ``line_60s``:
+        along the line through the positions of the last minute. ``kalman_cv``: constant velocity
+        from a Kalman filter over the positions of the last two minutes. ``turning_on``: constant
+        speed and turn rate, that of the last half minute. ``turn_that_ends``: the same, the turn
+        rate decaying with a time constant of half a minute. ``window_5``, ``two_pass`` and
+        ``window_bank``: constant velocity with course and speed smoothed over the reports of the
+        last two minutes: the combined prediction (11) of `theory/dead_reckoning.md`, by the gains
+        (27) over five reports, by (33) and by the bank of windows.
 
     Returns
     -------
@@ -65,14 +65,14 @@ def position_m(
     Raises
     ------
     ValueError
-        When there is no such model, a report is without position, course or speed, the last minute
-        has reports of fewer than two times, or a time ahead is negative or not finite; when rows
-        are of several tracks or out of order.
+        When no model has that name, a report lacks position, course or speed, the last minute has
+        reports of fewer than two times, or a time ahead is negative or not finite; when rows are
+        of several tracks or out of order.
     """
     track = _reports(track)
     ahead_s = real_numbers("ahead_s", ahead_s)
     if model not in _MODELS:
-        raise ValueError(f"no model {model!r}; there are {', '.join(_MODELS)}")
+        raise ValueError(f"model must be one of {', '.join(_MODELS)}, got {model!r}")
     if ahead_s.ndim != 1 or not ((ahead_s >= 0.0) & np.isfinite(ahead_s)).all():
         raise ValueError(f"ahead_s must be finite times (H,), none negative, got {ahead_s}")
     columns = (track.north_m, track.east_m, track.course_rad, track.speed_mps)
@@ -84,8 +84,10 @@ def position_m(
 
 
 def turn_rate_rad_s(track: AisTrack | Tracks) -> float:
-    """Slope of the courses reported over the last half minute; zero of fewer than three, or where
-    all are of one time."""
+    """Slope of the reported courses over the last half minute.
+
+    Zero for fewer than three reports, or if all have the same time.
+    """
     recent = _last(_reports(track), _RATE_OVER_S)
     recent = recent.rows(np.isfinite(recent.course_rad))
     if len(recent) < 3 or np.ptp(recent.time_s) == 0.0:
@@ -93,7 +95,7 @@ def turn_rate_rad_s(track: AisTrack | Tracks) -> float:
     return float(np.polyfit(_age_s(recent), np.unwrap(recent.course_rad), 1)[0])
 
 
-# The models: ways (H, 2) from the last report ----------------------------------------------------
+# The models: displacements (H, 2) from the last report -------------------------------------------
 
 
 def _last_report(track: AisTrack, ahead_s: np.ndarray) -> np.ndarray:
@@ -124,7 +126,7 @@ def _kalman(track: AisTrack, ahead_s: np.ndarray) -> np.ndarray:
 
 
 def _turning(track: AisTrack, ahead_s: np.ndarray, *, ends_s: float) -> np.ndarray:
-    """On with the reported speed and a rate of turn that fades with a time constant."""
+    """Constant reported speed and a turn rate that decays with a time constant."""
     times_s = np.arange(0.0, ahead_s.max(initial=0.0) + _STEP_S, _STEP_S)
     turned_s = times_s if np.isinf(ends_s) else ends_s * (1.0 - np.exp(-times_s / ends_s))
     course_rad = track.course_rad[-1] + turn_rate_rad_s(track) * turned_s
@@ -138,7 +140,7 @@ def _turning(track: AisTrack, ahead_s: np.ndarray, *, ends_s: float) -> np.ndarr
 def _smoothed(
     track: AisTrack, ahead_s: np.ndarray, *, make: Callable[[bool], Any], reports: int | None = None
 ) -> np.ndarray:
-    """Straight on with the speed and the course that a smoother makes of those reported."""
+    """Constant velocity with smoothed speed and course."""
     recent = _last(track, _KALMAN_OVER_S)
     if reports is not None:
         recent = recent.rows(slice(-reports, None))
@@ -167,7 +169,7 @@ _MODELS: dict[str, Callable[[AisTrack, np.ndarray], np.ndarray]] = {
 
 
 def _reports(track: AisTrack | Tracks) -> AisTrack:
-    """Each row of a track as a report of where the vessel was and how she went."""
+    """Each row of a track as a report of position, course and speed."""
     if isinstance(track, AisTrack):
         return track
     if not isinstance(track, Tracks):

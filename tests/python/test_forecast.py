@@ -138,7 +138,7 @@ def test_the_rate_of_turn_is_that_of_the_course_through_north(rate_deg_s):
 @pytest.mark.parametrize(
     ("track", "ahead_s", "model", "wanted"),
     [
-        (circling(0.0), [60.0], "magic", "no model 'magic'; there are last_report"),
+        (circling(0.0), [60.0], "magic", "model must be one of last_report"),
         (circling(0.0), [-1.0], "line_60s", "ahead_s must be finite times"),
         (circling(0.0), [np.nan], "line_60s", "ahead_s must be finite times"),
         (circling(0.0), [np.inf], "turning_on", "ahead_s must be finite times"),

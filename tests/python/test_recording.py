@@ -525,7 +525,7 @@ def assert_says(caught, path, line, column, *parts):
         ("time_s\n0\n0,1\n", 3, None, ["wanted 1 cell, got 2"]),
         ("time_s,north_m,east_m\n0,1,1\n\n0,1,1,1\n", 4, None, ["wanted 3 cells, got 4"]),
         ("scan,time_s,north_m,east_m\n0,5,1,1\n1,4,1,1\n", 3, "time_s", ["go back", "scan 0"]),
-        ("scan,time_s,north_m,east_m\n0,5,1,1\n1,5,1,1\n", 3, "time_s", ["do not increase", "scan 0"]),
+        ("scan,time_s,north_m,east_m\n0,5,1,1\n1,5,1,1\n", 3, "time_s", ["increase", "scan 0"]),
         ("time_s,north_m,east_m,own_north_m,own_east_m\n0,1,1,,1\n", 2, "own_north_m", ["finite"]),
     ],
 )
@@ -549,7 +549,7 @@ def test_bad_plots_are_told_by_file_line_and_column(file, text, line, column, pa
             "scan",
             ["listed twice; wanted each"],
         ),
-        ("scan,time_s,north_m,east_m\n0,2,0,0\n1,1,0,0\n", 3, "time_s", ["do not increase", "scan 0"]),
+        ("scan,time_s,north_m,east_m\n0,2,0,0\n1,1,0,0\n", 3, "time_s", ["increase", "scan 0"]),
         ("scan,time_s,north_m,east_m\n0,0,zero,0\n", 2, "north_m", ["a number", "'zero'"]),
     ],
 )

@@ -995,7 +995,7 @@ def test_a_file_that_is_packed_or_in_utf_16_is_named(tmp_path):
     text = "\n".join(under_way(range(10)))
     path.write_bytes(gzip.compress(text.encode()))
     with pytest.raises(
-        RecordingError, match="the file is not text; wanted NMEA 0183 sentences, got a file compressed"
+        RecordingError, match=r"the file is not text; .*NMEA 0183.* got a file compressed"
     ):
         read_nmea(path)
     for encoding in ("utf-16", "utf-16-le", "utf-16-be"):

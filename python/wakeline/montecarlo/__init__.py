@@ -1,4 +1,4 @@
-"""Many seeded runs of estimators on scenarios, and what they come to.
+"""Seeded Monte Carlo runs of estimators on scenarios, and their statistics.
 
 >>> import numpy as np, wakeline as wl
 >>> from wakeline import montecarlo, scenario

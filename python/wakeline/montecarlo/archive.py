@@ -1,4 +1,4 @@
-"""Results in one NPZ file: arrays as they are, everything else in one JSON text."""
+"""Results in one NPZ file: arrays, and everything else as one JSON text."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def save(
     parameters: Mapping[str, Any],
     version: str,
 ) -> None:
-    """Write the outcomes and what they were made with."""
+    """Write the outcomes and their parameters."""
     arrays: dict[str, np.ndarray] = {}
     plain: list[dict[str, Any]] = []
     for k, outcome in enumerate(outcomes.values()):
@@ -72,7 +72,7 @@ def save(
 
 
 def load(path: str | Path, result_type: type, outcome_type: type) -> Any:
-    """Read a result; ValueError when the file holds none."""
+    """Read a result; ValueError if the file has none."""
     path = Path(path)
     try:
         with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:

@@ -13,23 +13,23 @@ from .pieces import pieces
 
 
 def bound(scenario: Scenario, noise: Any = None) -> np.ndarray:
-    """Covariance that no unbiased estimator beats, told the turn rate at each instant.
+    """Least covariance of an unbiased estimator that knows the turn rate at each instant.
 
-    Conditional posterior Cramér-Rao bound of the mode sequence of the truth, at the true states,
-    with the start drawn from the scenario's prior. A switch between two scans parts the step in
-    two. Readings that may be missed count by their chance. On a recorded track, whose speed changes
-    too, no filter comes near a bound without `noise`.
+    Conditional posterior Cramér-Rao bound for the truth's mode sequence, at the true states, with
+    the start drawn from the scenario's prior. A switch between two scans splits the step. Plots
+    count with their detection probability. On a recorded track, whose speed changes, too, no filter
+    comes near a bound without `noise`.
 
     Parameters
     ----------
     scenario : Scenario
     noise : process-noise policy, optional
-        Default none at all.
+        Default: no process noise.
 
     Returns
     -------
     ndarray (T, 4, 4)
-        Over ``[north, vnorth, east, veast]`` after each reading.
+        Over ``[north, vnorth, east, veast]`` after each plot.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def bound_curves(scenario: Scenario, noise: Any = None) -> tuple[np.ndarray, np.
     Returns
     -------
     position_m, velocity_mps : ndarray (T,)
-        Least root mean square errors at each reading.
+        Least root mean square errors at each plot.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What competes in a Monte Carlo study: an estimator and the sensor it is told of."""
+"""A candidate of a Monte Carlo study: an estimator and its sensor."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ from .pieces import stretches
 
 @dataclass(frozen=True)
 class Candidate:
-    """An estimator, the sensor it is told of and, where it has such, the turn rates of its models.
+    """An estimator, its sensor and, optionally, the turn rates of its models.
 
-    It is told of the control that the vessel is under, where there is such.
+    The estimator also receives the scenario's known acceleration, if there is one.
 
-    Each of them may be a function of the scenario that gives the thing itself.
+    Each of the three may be a function of the scenario that returns it.
 
     Attributes
     ----------
     estimator : object or callable
-        Anything with ``run(z, dt_s=, sensor=, start=)``, or ``estimator(scenario)``, a function or
-        a class, that builds it; under control also with ``acceleration_mps2=``.
+        Any object with ``run(z, dt_s=, sensor=, start=)``, or ``estimator(scenario)``, a function
+        or a class, that builds it; with a known acceleration also ``acceleration_mps2=``.
     sensor : {"polar", "converted"}, object or callable
         The scenario's radar as ``RangeBearing`` or as ``ConvertedRangeBearing(unbiased=False)``, a
         sensor, or ``sensor(scenario)``.
     turn_rates_rad_s : sequence of K float, or callable, optional
-        Turn rate of each model, or ``turn_rates_rad_s(scenario)``; default what the estimator tells
-        by a method of that name. Gives the estimated turn rate and tells which model is right,
-        where the run itself does not tell ``turn_rate_rad_s``.
+        Turn rate of each model, or ``turn_rates_rad_s(scenario)``; default the estimator's method
+        of that name. Used for the estimated turn rate and the right model if the run itself has no
+        ``turn_rate_rad_s``.
     """
 
     estimator: Any
@@ -46,9 +46,9 @@ class Candidate:
     turn_rates_rad_s: Sequence[float] | Callable[[Scenario], Sequence[float]] | None = None
 
     def __call__(self, scenario: Scenario, z: np.ndarray, *, start: Any = None) -> Any:
-        """Run the readings (R, T, 2) of a scenario: a ``RunResult`` or what looks like one.
+        """Run the plots (R, T, 2) of a scenario: a ``RunResult`` or an object like it.
 
-        The start is that of the scenario or, where they are given, R of them.
+        The start is the scenario's, or R given ones.
         """
         return self._built(scenario).run(
             z,
@@ -59,7 +59,7 @@ class Candidate:
         )
 
     def rates(self, scenario: Scenario) -> np.ndarray | None:
-        """Turn rates (K,) of the models in rad/s, None where they are not told."""
+        """Turn rates (K,) of the models in rad/s, None if unknown."""
         rates = self.turn_rates_rad_s
         if callable(rates):
             rates = rates(scenario)
@@ -67,10 +67,10 @@ class Candidate:
             rates = getattr(self._built(scenario), "turn_rates_rad_s", lambda: None)()
         return None if rates is None else real_numbers("turn_rates_rad_s", rates)
 
-    def told(self, scenario: Scenario) -> dict[str, str]:
-        """The text of ``estimator`` and of ``sensor``, as they are on a scenario.
+    def description(self, scenario: Scenario) -> dict[str, str]:
+        """The ``repr`` of ``estimator`` and ``sensor`` on a scenario.
 
-        One that cannot be built, so that every run fails, is told as what builds it.
+        If one cannot be built, so that every run fails, it is the repr of its builder.
         """
         return {
             "estimator": _text_of(partial(self._built, scenario), self.estimator),
@@ -84,7 +84,7 @@ class Candidate:
             built = built(scenario)
         if not hasattr(built, "run"):
             raise TypeError(
-                "estimator must have run, or be a function of the scenario that gives what has, "
+                "estimator must have run, or be a function of the scenario that returns one, "
                 f"got {built!r}"
             )
         return built
@@ -92,7 +92,7 @@ class Candidate:
 
 @contextmanager
 def named(candidate_name: str, scenario: Scenario) -> Iterator[None]:
-    """Who refuses something, and on which scenario, is told with it."""
+    """Add the candidate and the scenario to errors."""
     try:
         yield
     except (TypeError, ValueError) as error:
@@ -101,10 +101,10 @@ def named(candidate_name: str, scenario: Scenario) -> Iterator[None]:
         raise refusal(f"{which}: {error}") from error
 
 
-def told(candidate: Candidate | Callable[..., Any], scenario: Scenario) -> dict[str, str]:
-    """What a candidate is on a scenario, by attribute of an outcome; of a callable its name."""
+def description(candidate: Candidate | Callable[..., Any], scenario: Scenario) -> dict[str, str]:
+    """Description of a candidate on a scenario, by attribute of an outcome."""
     if isinstance(candidate, Candidate):
-        return candidate.told(scenario)
+        return candidate.description(scenario)
     return {"estimator": _text(candidate)}
 
 
@@ -116,22 +116,22 @@ def clairvoyant(
     noise: Any = None,
     start: Any = None,
 ) -> SimpleNamespace:
-    """The Kalman filter that is told the turn rate at each instant.
+    """The Kalman filter that knows the turn rate at each instant.
 
-    Without thrust and disturbance, of which it is not told, no candidate can beat it. It is told of
-    the control. Where the rate or the control switches between two scans it moves in two pieces.
-    On a recorded track, whose speed changes too, it goes astray without `noise`. Bind options by
+    Without thrust and disturbance, which it does not know, no candidate can be better. It knows the
+    control. Where the rate or the control switches between two scans it predicts in two steps. On a
+    recorded track, whose speed changes, too, it diverges without `noise`. Bind options with
     ``functools.partial``.
 
     Parameters
     ----------
     scenario : Scenario
     z : ndarray (R, T, 2)
-        Readings, as of ``scenario.draw``.
+        Plots, as from ``scenario.draw``.
     sensor : {"polar", "converted"}, object or callable
-        As of :class:`Candidate`. Converted readings err where the antenna is near.
+        As for :class:`Candidate`. Converted plots are inaccurate near the antenna.
     noise : process-noise policy, optional
-        Default none at all.
+        Default: no process noise.
     start : Gaussian or sequence of R Gaussian, optional
         Default ``scenario.start``.
 
@@ -146,7 +146,7 @@ def clairvoyant(
     FilterError
         When the filter cannot start.
     ValueError
-        When the readings have another shape.
+        When the plots have a different shape.
     """
     z = real_numbers("z", z)
     if z.ndim != 3 or z.shape[1] != scenario.scans:
@@ -159,12 +159,12 @@ def clairvoyant(
     }
     for rate_rad_s, steps in stretches(scenario):
         dt_s = np.array([step.dt_s for step in steps])
-        told = np.full((len(z), len(steps), z.shape[-1]), np.nan)
+        padded = np.full((len(z), len(steps), z.shape[-1]), np.nan)
         read = [k for k, step in enumerate(steps) if step.scan is not None]
-        told[:, read] = z[:, [steps[k].scan for k in read]]
+        padded[:, read] = z[:, [steps[k].scan for k in read]]
         known = filter.Ekf(motion.CoordinatedTurn(turn_rate_rad_s=rate_rad_s, noise=noise))
         control = _control_of(np.array([step.control_mps2 for step in steps]))
-        piece = known.run(told, dt_s=dt_s, sensor=sensor, start=starts, **control)
+        piece = known.run(padded, dt_s=dt_s, sensor=sensor, start=starts, **control)
         starts = list(map(core.Gaussian, piece.mean[:, -1], piece.covariance[:, -1]))
         for name, parts in fields.items():
             parts.append(getattr(piece, name)[:, read])
@@ -174,12 +174,12 @@ def clairvoyant(
 
 
 def _control_of(control_mps2: np.ndarray) -> dict[str, np.ndarray]:
-    """The argument by which an estimator is told of a control (T, 2); none where it is zero."""
+    """The keyword argument for a known acceleration (T, 2); empty if it is zero."""
     return {"acceleration_mps2": control_mps2} if control_mps2.any() else {}
 
 
 def _text(thing: Any) -> str:
-    """Its repr, without where it is in memory."""
+    """The repr without a memory address."""
     return re.sub(r" at 0x[0-9a-fA-F]+", "", repr(thing))
 
 
@@ -193,6 +193,6 @@ def _text_of(build: Callable[[], Any], otherwise: Any) -> str:
 def _sensor(sensor: Any, scenario: Scenario) -> Any:
     if isinstance(sensor, str):
         if sensor not in ("polar", "converted"):
-            raise ValueError(f'sensor must be "polar" or "converted" where text, got {sensor!r}')
+            raise ValueError(f'sensor must be "polar", "converted" or a sensor, got {sensor!r}')
         return getattr(scenario, f"{sensor}_sensor")
     return sensor(scenario) if callable(sensor) else sensor

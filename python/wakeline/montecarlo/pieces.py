@@ -1,4 +1,4 @@
-"""The time of a scenario in pieces of steady turn and control, between which its readings come."""
+"""The time of a scenario in intervals of constant turn rate and control."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from wakeline.scenario import Scenario
 
 @dataclass(frozen=True)
 class Piece:
-    """A time of steady turn and control.
+    """An interval of constant turn rate and control.
 
     Attributes
     ----------
     turn_rate_rad_s, dt_s : float
     scan : int or None
-        The reading it ends at; None where it ends at a switch between two.
+        Index of the plot at its end; None if it ends at a switch between two plots.
     control_mps2 : (float, float)
         Known acceleration north and east.
     """
@@ -30,7 +30,7 @@ class Piece:
 
 
 def pieces(scenario: Scenario) -> list[Piece]:
-    """The time from the start to the last reading, cut at every reading and at every switch."""
+    """The time from the start to the last plot, split at every plot and every switch."""
     time_s = scenario.time_s
     switch_s = np.union1d(scenario.switch_times_s, scenario.control_switch_times_s)
     cuts_s = np.union1d(time_s, switch_s)
@@ -45,6 +45,6 @@ def pieces(scenario: Scenario) -> list[Piece]:
 
 
 def stretches(scenario: Scenario) -> list[tuple[float, list[Piece]]]:
-    """The pieces in groups of the same turn rate, one after the other."""
+    """The intervals in consecutive groups of the same turn rate."""
     groups = itertools.groupby(pieces(scenario), key=lambda piece: piece.turn_rate_rad_s)
     return [(rate, list(group)) for rate, group in groups]

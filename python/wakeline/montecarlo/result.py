@@ -1,4 +1,4 @@
-"""What many runs came to: curves and figures of every candidate on every scenario."""
+"""Results of Monte Carlo runs: curves and figures of every candidate on every scenario."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _STATES, _MEASUREMENTS = 4, 2
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one candidate did on one scenario. Curves are over the T readings.
+    """Results of one candidate on one scenario. Curves are over the T plots.
 
     Attributes
     ----------
@@ -29,15 +29,15 @@ class Outcome:
         Names.
     time_s : ndarray (T,)
     switch_times_s : ndarray (S,)
-        When the true turn rate switches.
+        Times at which the true turn rate switches.
     true_turn_rate_rad_s : ndarray (T,)
-        In force before each reading.
+        In force before each plot.
     runs : int
-        Runs that the curves are over.
+        Runs in the curves.
     failed_runs : int
-        Runs left out: they could not start or gave estimates that are not finite.
+        Excluded runs: they could not start, or their estimates are not finite.
     lost_runs : int
-        Runs whose last position is too far off; the curves hold them.
+        Runs whose last position is too far off; the curves include them.
     failed_steps : int
         Steps that an estimator reported as failed, over all runs.
     position_rmse_m, velocity_rmse_mps : ndarray (T,)
@@ -45,26 +45,25 @@ class Outcome:
     nees : ndarray (T,)
         Mean over the runs, of 4 states; NaN where a covariance is not positive definite.
     nees_inside_share : ndarray (T,)
-        Share of the runs whose own NEES lies within the 95 % bounds of one value.
+        Share of the runs whose individual NEES is within the 95 % bounds of one value.
     nis, nis_count : ndarray (T,)
-        Mean over the runs with a reading, and their number; NaN without any.
+        Mean over the runs with a plot, and their number; NaN without any.
     mode_probability : ndarray (T, K) or None
         Mean over the runs.
     turn_rate_rad_s : ndarray (T,) or None
         Estimate, mean over the runs.
     right_mode_share : ndarray (T,) or None
-        Share of the runs whose most probable model is, of those not at rest, the one nearest to the
-        true turn rate.
+        Share of the runs whose most probable model is the active one nearest to the true turn rate.
     cpu_s : float
-        CPU time of the estimator over the runs that the curves are over: that of the calling
-        threads, and so all of it only after ``wakeline.set_threads(1)``.
+        CPU time of the estimator over the runs in the curves, in the calling threads; complete only
+        after ``wakeline.set_threads(1)``.
     estimator : str or None
-        The call that makes the candidate's estimator anew, with all of its parameters, such as
+        The repr of the candidate's estimator with all of its parameters, such as
         ``Imm(filters=[Ekf(motion=...), ...], chain=..., initial_mode_probability=[...])``; of
-        estimators that are not Wakeline's, and of candidates that are functions, their ``repr``.
-        None in a file of before this was kept.
+        other estimators, and candidates that are functions, have their own ``repr``. None in older
+        files.
     sensor : str or None
-        The same of the sensor it is told of; None also where a function chooses it.
+        The same for the sensor; None also if a function chooses it.
     """
 
     scenario: str
@@ -132,7 +131,7 @@ class Outcome:
         )
 
     def summary(self) -> dict[str, float | None]:
-        """The figures by name; None where a figure has no meaning here.
+        """The figures by name; None where a figure does not apply.
 
         Returns
         -------
@@ -140,20 +139,20 @@ class Outcome:
             ``mean_position_m``, ``peak_position_m``, ``mean_velocity_mps``, ``peak_velocity_mps``:
             mean and maximum over the scans of the RMSE curves. ``settling_s``: mean over the
             switches of :func:`wakeline.metrics.settling_times_s` of the position RMSE.
-            ``ns_per_step``: CPU time of a step of the runs that the curves are over.
+            ``ns_per_step``: CPU time of a step of the runs in the curves.
 
             ``nees``: mean over the scans, 4 for a consistent estimator. ``nees_inside_share``:
-            share of all runs' scans whose own NEES lies within its 95 % bounds.
-            ``mean_nees_inside_share``: share of the scans whose mean over the runs lies within the
-            95 % bounds of that mean, narrow with many runs. The three again with ``steady_`` before
-            them leave out the three scans after each switch. ``nis``, ``mean_nis_inside_share``: as
-            those of the NEES, of the innovations; 2 for a consistent estimator.
+            share of all runs' scans whose individual NEES is within its 95 % bounds.
+            ``mean_nees_inside_share``: share of the scans whose mean over the runs is within the 95
+            % bounds of that mean, which are narrow with many runs. The prefix ``steady_`` excludes
+            the three scans after each switch. ``nis``, ``mean_nis_inside_share``: the same for the
+            innovations; 2 for a consistent estimator.
 
             ``right_mode_share``, ``detection_delay_scans``: mean over the scans and over the
             switches. ``runs``, ``failed_runs``, ``lost_runs``, ``failed_steps``: counts.
         """
         time_s, switch_s, right = self.time_s, self.switch_times_s, self.right_mode_share
-        # The right model of a reading is that in force half a scan before, at a switch the new one.
+        # The right model at a plot is the one in force half a scan before, at a switch the new one.
         new = np.unique(np.searchsorted(_half_a_scan_before(time_s), switch_s))
         scans = np.arange(len(time_s))
         delays = [] if right is None else metrics.detection_delays_scans(scans, right, new - 0.5)
@@ -203,7 +202,7 @@ class Outcome:
         Raises
         ------
         ValueError
-            When there is no such curve.
+            When no curve has that name.
         """
         values = getattr(self, curve, None)
         if not isinstance(values, np.ndarray) or values.shape != self.time_s.shape:
@@ -220,16 +219,16 @@ class Result:
     Attributes
     ----------
     outcomes : mapping of (str, str) to Outcome
-        By names of scenario and candidate, in the order in which they were given; some are not
-        there where the run ended early.
+        By names of scenario and candidate, in the given order; some are missing if the run ended
+        early.
     runs, seed : int
         As given to :func:`wakeline.montecarlo.run`.
     parameters : mapping
-        What else the figures depend on, beside the ``estimator`` and ``sensor`` that each outcome
-        tells: ``chunk_runs``, ``lost_beyond_m``, ``draw_start`` and, in ``scenarios``, the
-        ``parameters`` of each scenario by its name.
+        Other parameters of the figures, besides ``estimator`` and ``sensor`` of each outcome:
+        ``chunk_runs``, ``lost_beyond_m``, ``draw_start`` and, in ``scenarios``, the ``parameters``
+        of each scenario by name.
     version : str
-        Of Wakeline, that made it.
+        Version of Wakeline that made it.
     """
 
     outcomes: Mapping[tuple[str, str], Outcome] = field(repr=False)
@@ -273,10 +272,10 @@ class Result:
     ) -> dict[str, float | None]:
         """Figures of one candidate over several scenarios of the same length.
 
-        The squared errors are averaged over the scenarios, reading by reading, before their root
-        is taken: ``mean_...`` and ``peak_...`` are mean and maximum of these curves. The other
-        figures, and ``scenario_mean_position_m`` and ``scenario_mean_velocity_mps``, are means of
-        the scenarios' own; counts are sums.
+        The squared errors are averaged over the scenarios plot by plot before taking the root:
+        ``mean_...`` and ``peak_...`` are mean and maximum of these curves. The other figures, and
+        ``scenario_mean_position_m`` and ``scenario_mean_velocity_mps``, are means of the figures
+        of the scenarios; counts are sums.
 
         Parameters
         ----------
@@ -287,14 +286,14 @@ class Result:
         Returns
         -------
         dict
-            As of :meth:`Outcome.summary`, and the two figures above.
+            As for :meth:`Outcome.summary`, and the two figures above.
 
         Raises
         ------
         ValueError
             When there is no scenario or their lengths differ.
         KeyError
-            For a name that is not there.
+            For an unknown name.
         """
         names = self.scenarios if scenarios is None else scenarios
         parts = [self[name, candidate] for name in names]
@@ -315,17 +314,17 @@ class Result:
         return figures
 
     def save(self, path: str | Path) -> None:
-        """Write everything to one NPZ file, which replaces what stood there when it is complete."""
+        """Write everything to one NPZ file, which replaces an existing one when complete."""
         archive.save(path, self.outcomes, self.runs, self.seed, self.parameters, self.version)
 
     @classmethod
     def load(cls, path: str | Path) -> Result:
-        """Read what :meth:`save` wrote.
+        """Read a file written by :meth:`save`.
 
         Raises
         ------
         ValueError
-            Naming the file, when it cannot be read or is no such file.
+            When the file cannot be read or is not such a file; the message names it.
         """
         return archive.load(path, cls, Outcome)
 
@@ -336,7 +335,7 @@ def _divided(total: np.ndarray, count: int | np.ndarray) -> np.ndarray:
 
 
 def _half_a_scan_before(time_s: np.ndarray) -> np.ndarray:
-    """Times half a step before the given; the first step is as long as the second."""
+    """Times half a step before the given ones; the first step is as long as the second."""
     step_s = np.diff(time_s)
     return time_s - 0.5 * np.concatenate([step_s[:1], step_s]) if len(step_s) else time_s
 

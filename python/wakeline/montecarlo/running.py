@@ -1,4 +1,4 @@
-"""Runs cut into chunks, worked off by threads or by a cluster, added up in one order."""
+"""Runs in chunks, computed by threads or by a cluster, summed in a fixed order."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from wakeline import _progress
 from wakeline._checks import listed, run_numbers
 from wakeline.scenario import Scenario
 
-from .candidate import Candidate, named, told
+from .candidate import Candidate, description, named
 from .result import Outcome, Result
 from .sums import Chunk, Sums, sums_of
 
 CHUNK_RUNS = 25
-"""Runs in a chunk: fixed, so that sums are added alike on any number of threads or workers."""
+"""Runs in a chunk: fixed, so that sums do not depend on the number of threads or workers."""
 
 
 def run(
@@ -42,48 +42,46 @@ def run(
     lost_beyond_m: float = 500.0,
     draw_start: bool = False,
 ) -> Result:
-    """Run every candidate on the same readings of every scenario.
+    """Run every candidate on the same plots of every scenario.
 
-    Results are the same bits for any number of threads or workers, the CPU time aside; those of a
+    Results have the same bits for any number of threads or workers, except the CPU time; those of a
     candidate on a scenario do not depend on what else is run.
 
-    Every candidate does its first runs of every scenario before the rest is done, so that one that
-    refuses what it is given does so soon. What ends the run early, an interrupt from the keyboard,
-    too, has the attribute ``result``: a :class:`Result` of those candidates on those scenarios of
-    which all runs were done.
+    Every candidate does its first runs of every scenario before the rest, so that invalid
+    candidates fail early. An exception that ends the run, also a keyboard interrupt, has the
+    attribute ``result``: a :class:`Result` of the candidates and scenarios with complete runs.
 
     Parameters
     ----------
     scenarios : Scenario or sequence of Scenario
-        With names that differ.
+        With different names.
     candidates : mapping of str to Candidate or callable
-        By name. A callable takes the scenario and readings (R, T, 2), for R of 1 and more, and
-        gives what looks like a ``RunResult``: ``mean`` (R, T, N), ``covariance`` (R, T, N, N) with
-        N of 4, 5 or 6 in the engine's state orders, ``nis`` (R, T), ``status`` (R, T),
-        ``mode_probability`` (R, T, K) or None; where it also has ``turn_rate_rad_s``, that is the
-        estimated turn rate (R, T) or the models' turn rates (R, T, K), NaN for one at rest. It
-        raises ``FilterError`` when a run cannot start. Candidates are called by several threads at
-        once.
+        By name. A callable takes the scenario and plots (R, T, 2), for R of at least 1, and returns
+        an object like ``RunResult``: ``mean`` (R, T, N), ``covariance`` (R, T, N, N) with N of 4, 5
+        or 6 in the engine's state orders, ``nis`` (R, T), ``status`` (R, T), ``mode_probability``
+        (R, T, K) or None; an optional ``turn_rate_rad_s`` is the estimated turn rate (R, T) or the
+        models' turn rates (R, T, K), NaN for an inactive model. It raises ``FilterError`` when a
+        run cannot start. Candidates are called by several threads at once.
     runs : int
-        Number of runs, the readings being those of ``scenario.draw(runs, seed)``.
+        Number of runs; the plots are those of ``scenario.draw(runs, seed)``.
     seed : int
         Not negative.
     threads : int, optional
-        Default as many as there are processors; not together with `client`.
+        Default: the number of processors; not together with `client`.
     client : object, optional
         A ``dask.distributed.Client``, the module ``ray`` after ``ray.init()``, or an executor with
-        ``submit``: does the work elsewhere, with candidates that can be pickled, as estimators,
-        motion models and sensors of the engine can. Tested with local clusters of Dask and of Ray
-        and with executors of threads and of processes.
+        ``submit``: does the work elsewhere. Candidates must be picklable, as estimators, motion
+        models and sensors of the engine are. Tested with local clusters of Dask and of Ray and with
+        executors of threads and of processes.
     progress : bool or callable
-        True draws a bar where stderr is a terminal; a callable is told chunks done and in all. What
-        it raises ends the run: chunks that have not begun are called off.
+        True draws a bar if stderr is a terminal; a callable receives the chunks done and in total.
+        An exception in it ends the run: chunks that have not begun are cancelled.
     lost_beyond_m : float
-        A run is counted as lost when its last position is farther off than this.
+        A run counts as lost if the error of its last position is larger.
     draw_start : bool
-        False: every run starts at the true state, so that errors begin below what the prior says,
-        and below the bound for as long as the start is remembered. True: run r starts at the r-th
-        of ``scenario.draw_starts(runs, seed)``; a callable is then told R of them as ``start=``.
+        False: every run starts at the true state, so that errors are at first below the prior and
+        the bound. True: run r starts at the r-th of ``scenario.draw_starts(runs, seed)``; a
+        callable then receives R of them as ``start=``.
 
     Returns
     -------
@@ -92,10 +90,10 @@ def run(
     Raises
     ------
     ValueError
-        When there is nothing to run, two scenarios have the same name, a number makes no sense, a
-        candidate gives arrays of another shape or cannot be sent to a client.
+        When there is nothing to run, two scenarios have the same name, a number is invalid, a
+        candidate returns arrays of a different shape or cannot be sent to a client.
     TypeError
-        When a candidate or the client is of a kind that does not fit.
+        When a candidate or the client has an unsupported type.
     """
     if isinstance(scenarios, Scenario):
         scenarios = [scenarios]
@@ -117,11 +115,11 @@ def run(
         for scenario, name in pairs
         for first in firsts
     ]
-    chunks.sort(key=lambda chunk: chunk.first_run > 0)  # who refuses its input does so at once
+    chunks.sort(key=lambda chunk: chunk.first_run > 0)  # invalid candidates fail at once
     texts = {}
     for scenario, name in pairs:
         with named(name, scenario):
-            texts[scenario.name, name] = told(candidates[name], scenario)
+            texts[scenario.name, name] = description(candidates[name], scenario)
     parameters = {
         "chunk_runs": CHUNK_RUNS,
         "lost_beyond_m": float(lost_beyond_m),
@@ -147,7 +145,7 @@ def run(
 def _complete(
     chunks: Iterable[Chunk], done: Iterable[Sums], last: int
 ) -> Iterator[tuple[Scenario, str, Sums]]:
-    """Sums over all runs of each candidate on each scenario, as soon as its last chunk is done."""
+    """Sums over all runs of each candidate on each scenario, when its last chunk is done."""
     totals: dict[tuple[str, str], Sums] = {}
     for chunk, sums in zip(chunks, done, strict=True):
         names = chunk.scenario.name, chunk.candidate_name
@@ -173,12 +171,12 @@ def _check(
             raise TypeError(f"scenarios must be of type Scenario, got {scenario!r}")
     names = [scenario.name for scenario in scenarios]
     if len(set(names)) < len(names):
-        raise ValueError(f"scenarios must have names that differ, got {names}")
+        raise ValueError(f"scenarios must have different names, got {names}")
     if not isinstance(candidates, Mapping):
         raise TypeError(f"candidates must be a mapping by name, got {type(candidates)}")
     for name, candidate in candidates.items():
         if not isinstance(name, str):
-            raise TypeError(f"candidates must have names that are text, got {name!r}")
+            raise TypeError(f"candidates must have names of type str, got {name!r}")
         if not callable(candidate):
             raise TypeError(
                 f"candidate {name!r} must be a Candidate or callable, got {type(candidate)}"
@@ -187,7 +185,7 @@ def _check(
     if not (isinstance(lost_beyond_m, Real) and lost_beyond_m > 0):
         raise ValueError(f"lost_beyond_m must be positive, got {lost_beyond_m!r}")
     if client is not None and threads is not None:
-        raise ValueError("threads must be left out together with client")
+        raise ValueError("threads must not be given together with client")
     if client is not None and not isinstance(client, ThreadPoolExecutor):
         for name, candidate in candidates.items():
             _check_can_be_sent(name, candidate)
@@ -203,8 +201,8 @@ def _check_can_be_sent(name: str, candidate: Any) -> None:
         except (TypeError, AttributeError, pickle.PicklingError) as error:
             raise ValueError(
                 f"candidate {name!r} cannot be sent to the workers of a client ({error}): its "
-                "estimator and sensor, or functions of the scenario that build them, must be of a "
-                "kind that can be pickled"
+                "estimator and sensor, or functions of the scenario that build them, must be "
+                "picklable"
             ) from None
 
 
@@ -230,7 +228,7 @@ def _worked_off(chunks: list[Chunk], threads: int | None, client: Any) -> Iterat
 
 
 def sums_of_packed(chunk: bytes) -> Sums:
-    """`sums_of` of a pickled chunk: what a worker cannot import is then an error of its task.
+    """`sums_of` a pickled chunk, so that a failing import in a worker is an error of its task.
 
     A worker of Dask that cannot unpickle the arguments of a task dies, and the client waits.
     """
@@ -242,9 +240,9 @@ def _gathered(
     result: Callable[[Any], Sums] = methodcaller("result"),
     cancel: Callable[[Any], Any] = methodcaller("cancel"),
 ) -> Iterator[Sums]:
-    """Results in order; the first failure, or an early end, calls off what has not begun.
+    """Results in order; the first failure, or an early end, cancels what has not begun.
 
-    No task is kept, and with it its result, once that has come.
+    A task, and with it its result, is released once the result has arrived.
     """
     tasks.reverse()
     try:
@@ -260,7 +258,7 @@ def _gathered(
 def _told(
     sums: Iterable[Sums], total: int, progress: bool | Callable[[int, int], None]
 ) -> Iterator[Sums]:
-    """Hand on, telling how far the work has come."""
+    """Pass results on and report progress."""
     if not callable(progress):
         yield from _progress.progress(sums, total, "running") if progress else sums
         return

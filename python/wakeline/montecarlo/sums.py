@@ -1,4 +1,4 @@
-"""What one chunk of runs leaves behind: sums, which add up to those of all runs."""
+"""Sums over one chunk of runs, which add up to those of all runs."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ _FINE = [int(core.Status.ok), int(core.Status.missed)]
 
 @dataclass(frozen=True)
 class Sums:
-    """Sums over the runs of a chunk; those over nothing are None.
+    """Sums over the runs of a chunk; sums over nothing are None.
 
     Attributes
     ----------
     runs : int
-        Runs that the curves hold.
+        Runs in the curves.
     failed_runs, lost_runs, failed_steps : int
         See :class:`wakeline.montecarlo.Outcome`.
     position_m2, velocity_m2s2, nees : ndarray (T,)
     nees_inside : ndarray (T,)
-        Runs whose own NEES lies within its bounds.
+        Runs whose individual NEES is within its bounds.
     nis, nis_count : ndarray (T,)
-        Over the runs with a reading.
+        Over the runs with a plot.
     mode_probability : ndarray (T, K) or None
     turn_rate_rad_s : ndarray (T,) or None
     right_mode : ndarray (T,) or None
         Runs whose most probable model is the right one.
     cpu_s : float
-        Time the estimator took for the runs that the curves hold, all runs taking the same.
+        Time of the estimator for the runs in the curves, assuming equal times.
     """
 
     runs: int
@@ -62,7 +62,7 @@ class Sums:
     cpu_s: float
 
     def __add__(self, other: Sums) -> Sums:
-        """A chunk without runs that count adds its counts only."""
+        """Add a chunk; one without valid runs adds only its counts."""
         return replace(
             self,
             **{field.name: _added(self, other, field.name) for field in fields(self)},
@@ -95,7 +95,7 @@ class Chunk:
 
 
 def sums_of(chunk: Chunk) -> Sums:
-    """Draw the readings, run the candidate and sum up; one by one where not all runs can start."""
+    """Draw the plots, run the candidate and sum up; one by one if not all runs can start."""
     which = {"runs": chunk.runs, "seed": chunk.seed, "first_run": chunk.first_run}
     z = chunk.scenario.draw(**which)
     starts = chunk.scenario.draw_starts(**which) if chunk.draw_start else None
@@ -109,12 +109,12 @@ def sums_of(chunk: Chunk) -> Sums:
 
 
 def _named(chunk: Chunk) -> AbstractContextManager[None]:
-    """Refusals within name the candidate and the scenario."""
+    """Errors within name the candidate and the scenario."""
     return named(chunk.candidate_name, chunk.scenario)
 
 
 def _summed_one(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> Sums:
-    """Of a single run, failed where it cannot start."""
+    """Sums of a single run, failed if it cannot start."""
     try:
         return _summed(chunk, z, starts)
     except core.FilterError:
@@ -123,10 +123,10 @@ def _summed_one(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None)
 
 
 def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> Sums:
-    told = {} if starts is None else {"start": starts}
+    given = {} if starts is None else {"start": starts}
     began_s = time.thread_time()
     with _named(chunk):
-        result = chunk.candidate(chunk.scenario, z, **told)
+        result = chunk.candidate(chunk.scenario, z, **given)
     cpu_s = time.thread_time() - began_s
     mean, covariance = _kinematics(chunk, result, len(z))
     usable = np.isfinite(mean).all(axis=(1, 2))
@@ -158,7 +158,7 @@ def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> 
 
 
 def _told(chunk: Chunk, result: Any, name: str) -> np.ndarray:
-    """An array that a candidate must give."""
+    """An array of a candidate's result."""
     value = getattr(result, name, None)
     if value is None:
         raise ValueError(
@@ -177,7 +177,7 @@ def _told(chunk: Chunk, result: Any, name: str) -> np.ndarray:
 
 
 def _of_each_scan(chunk: Chunk, result: Any, name: str, runs: int, axes: str) -> np.ndarray:
-    """An array (R, T) or (R, T, K), as `axes` says, that a candidate must give."""
+    """An array of a candidate's result with the given axes, (R, T) or (R, T, K)."""
     value, scans = _told(chunk, result, name), chunk.scenario.scans
     if value.ndim != len(axes) or value.shape[:2] != (runs, scans):
         raise ValueError(
@@ -192,8 +192,8 @@ def _kinematics(chunk: Chunk, result: Any, runs: int) -> tuple[np.ndarray, np.nd
     mean = _told(chunk, result, "mean")
     covariance = _told(chunk, result, "covariance")
     states = mean.shape[-1] if mean.ndim else 0
-    told = mean.shape == (runs, chunk.scenario.scans, states)
-    if not (told and states in _KINEMATICS and covariance.shape == (*mean.shape, states)):
+    given = mean.shape == (runs, chunk.scenario.scans, states)
+    if not (given and states in _KINEMATICS and covariance.shape == (*mean.shape, states)):
         raise ValueError(
             f"candidate {chunk.candidate_name!r} must give mean (R, T, N) and covariance "
             f"(R, T, N, N) with R = {runs}, T = {chunk.scenario.scans} and N of 4, 5 or 6, "
@@ -206,17 +206,17 @@ def _kinematics(chunk: Chunk, result: Any, runs: int) -> tuple[np.ndarray, np.nd
 def _rates(
     chunk: Chunk, result: Any, modes: np.ndarray | None, usable: np.ndarray
 ) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Turn rates of the models, that broadcast to (R, T, K), and the estimated rate (R, T)."""
-    told = getattr(result, "turn_rate_rad_s", None)
+    """Turn rates of the models, which broadcast to (R, T, K), and the estimated rate (R, T)."""
+    given = getattr(result, "turn_rate_rad_s", None)
     mean = np.asarray(result.mean)
-    if told is not None:
-        axes = "RT" if np.ndim(told) == 2 else "RTK"
-        told = _of_each_scan(chunk, result, "turn_rate_rad_s", len(usable), axes)[usable]
+    if given is not None:
+        axes = "RT" if np.ndim(given) == 2 else "RTK"
+        given = _of_each_scan(chunk, result, "turn_rate_rad_s", len(usable), axes)[usable]
         if axes == "RT":
-            return None, told
+            return None, given
         if modes is not None:
-            _require_rates(chunk, modes, told.shape == modes.shape, told.shape)
-        return told, None if modes is None else _mean_rate(modes, told)
+            _require_rates(chunk, modes, given.shape == modes.shape, given.shape)
+        return given, None if modes is None else _mean_rate(modes, given)
     rates = None
     if isinstance(chunk.candidate, Candidate):
         with _named(chunk):
@@ -230,7 +230,7 @@ def _rates(
 
 
 def _mean_rate(modes: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """Mean turn rate (R, T) of models, of which one without probability may have none."""
+    """Mean turn rate (R, T) of models; a model without probability may have no rate."""
     return np.where(modes == 0.0, 0.0, modes * rates).sum(axis=-1)
 
 

@@ -1,4 +1,4 @@
-"""Own ship's log through the navigator: where the ship was, and how well it is known.
+"""Own ship's solution from a log: position, velocity and heading with their covariances.
 
 >>> from wakeline import own_ship, recording
 >>> part = recording.load_navigation(variation_deg=2.5).parts()[0]
@@ -6,10 +6,10 @@
 >>> track.position_m.shape == (len(track.time_s), 2)
 True
 
-Without an IMU the ship coasts from reading to reading, turning as her rate of turn indicator says.
-With heading and speed through water the state has seven components, current among them; without
-either it has five. Where the log tells of the speed across the hull, too, her way through the water
-is not where she heads, and it is the way that the state's heading and speed are of.
+Without an IMU the state is predicted between readings with the rate of turn, if the log has it.
+With heading and speed through water the state has seven components, including the current; without
+either it has five. If the log has the speed across the hull, the heading and speed of the state are
+those of the motion through the water, which differs from the heading by the leeway.
 """
 
 from __future__ import annotations

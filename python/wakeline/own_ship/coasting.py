@@ -1,4 +1,4 @@
-"""How far off the solution is after a minute without satellites, which are hidden from it."""
+"""Position errors after up to a minute without satellites, measured by hiding them."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _SETTLED_S = 120.0
 
 
 def hold_out(readings: Readings) -> dict[str, dict[float, np.ndarray]]:
-    """Errors (n,) in metres after seconds without satellites, by method and horizon.
+    """Errors (n,) in metres after a time without satellites, by method and horizon.
 
-    Fixes and speeds by satellite are hidden for a minute at a time, and what is foretold is
-    compared with the hidden fixes: by the navigator, by the last velocity by satellite or, where
-    there is none, of the last fixes, and by heading and speed through water alone.
+    Satellite fixes and speeds are hidden for a minute at a time, and predictions are compared with
+    the hidden fixes: by the navigator, by the last satellite velocity (or that of the last fixes),
+    and by heading and speed through water alone.
     """
     starts_s = _hidden_from_s(readings)
     hidden = _is_hidden(readings.time_s, starts_s)
@@ -50,7 +50,7 @@ def without_hidden(part: NavigationLog, readings: Readings) -> NavigationLog:
 
 
 def _hidden_from_s(readings: Readings) -> np.ndarray:
-    """Times (n,) from which on satellites are hidden."""
+    """Times (n,) at which satellites become hidden."""
     first_s, last_s = readings.time_s[[0, -1]]
     return np.arange(first_s + _SETTLED_S, last_s - HIDDEN_S - HIDDEN_EVERY_S / 2, HIDDEN_EVERY_S)
 
@@ -62,15 +62,15 @@ def _is_hidden(time_s: np.ndarray, starts_s: np.ndarray) -> np.ndarray:
 
 
 def _straight_on(seen: Readings) -> np.ndarray:
-    """Places (T, 2) on from the last fix with the last velocity over ground."""
+    """Positions (T, 2) predicted from the last fix with the last velocity over ground."""
     fix, fixed_s = held(seen.time_s, seen.fix_m)
-    told = np.isfinite(seen.velocity_mps).any()
-    velocity, _ = held(seen.time_s, seen.velocity_mps if told else made_good_mps(seen))
+    given = np.isfinite(seen.velocity_mps).any()
+    velocity, _ = held(seen.time_s, seen.velocity_mps if given else made_good_mps(seen))
     return fix + velocity * (seen.time_s - fixed_s)[:, None]
 
 
 def _reckoned(seen: Readings) -> np.ndarray:
-    """Places (T, 2) on from the last fix by heading and speed through water."""
+    """Positions (T, 2) predicted from the last fix by heading and speed through water."""
     way_rad, _ = held(seen.time_s, seen.way_rad)
     speed, _ = held(seen.time_s, seen.way_mps)
     water = np.nan_to_num(speed[:, None] * np.column_stack([np.cos(way_rad), np.sin(way_rad)]))
@@ -85,7 +85,7 @@ def _reckoned(seen: Readings) -> np.ndarray:
 def _errors(
     readings: Readings, place_m: np.ndarray, starts_s: np.ndarray
 ) -> dict[float, np.ndarray]:
-    """Distances of foretold places (T, 2) from hidden fixes, by horizon."""
+    """Distances of predicted positions (T, 2) from hidden fixes, by horizon."""
     fixed = np.flatnonzero(readings.has_fix)
     times = readings.time_s[fixed]
     errors: dict[float, list[float]] = {horizon_s: [] for horizon_s in HORIZONS_S}

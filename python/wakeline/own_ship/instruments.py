@@ -1,4 +1,4 @@
-"""What single instruments tell of own ship."""
+"""Readings of own ship's individual instruments."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from wakeline.recording.nmea import BottomTrack, GroundSpeed, WaterSpeed
 
 from .times import between
 
-VELOCITY_STD_MPS = 0.3  # over ground: filtered by the receiver, or turned by the heading
+VELOCITY_STD_MPS = 0.3  # over ground: filtered by the receiver, or rotated by the heading
 UNDER_WAY_MPS = 1.5
 
 
 def speed_and_course(ground: GroundSpeed) -> tuple[np.ndarray, np.ndarray]:
-    """Speeds and courses (n,) over ground; a speed within its error that has no course is rest."""
+    """Speeds and courses (n,) over ground; a speed within its error without a course is zero."""
     rest = np.isnan(ground.course_rad) & (ground.speed_mps <= VELOCITY_STD_MPS)
     return np.where(rest, 0.0, ground.speed_mps), np.where(rest, 0.0, ground.course_rad)
 
 
 def true_headings(part: NavigationLog, offset_rad: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times and true headings: those that are told as true, else of the compass.
+    """Times and true headings: reported as true, else from the magnetic compass.
 
-    `offset_rad` is added to magnetic ones where the variation is not known.
+    `offset_rad` is added to magnetic headings of unknown variation.
     """
     true = part.heading.sound()
     if len(true):
@@ -34,9 +34,9 @@ def true_headings(part: NavigationLog, offset_rad: float) -> tuple[np.ndarray, n
 
 
 def leeway_rad(water: WaterSpeed, time_s: np.ndarray) -> np.ndarray:
-    """Angles (T,) from the heading to the way through the water, 0 where no log tells of them.
+    """Leeway angles (T,) from the heading to the course through the water, 0 if unknown.
 
-    They fade with the speed ahead, for a ship at rest has no way.
+    They tend to zero with the speed ahead.
     """
     known = water.rows(np.isfinite(water.ahead_mps) & np.isfinite(water.starboard_mps))
     ahead, starboard = known.ahead_mps, known.starboard_mps
@@ -45,7 +45,7 @@ def leeway_rad(water: WaterSpeed, time_s: np.ndarray) -> np.ndarray:
 
 
 def over_ground_mps(bottom: BottomTrack, times: np.ndarray, heading_rad: np.ndarray) -> np.ndarray:
-    """Velocities (n, 2) north and east of a log; NaN without a heading at about the time."""
+    """Velocities (n, 2) north and east from a log; NaN without a heading near that time."""
     heading = between(bottom.time_s, times, np.unwrap(heading_rad))
     c, s = np.cos(heading), np.sin(heading)
     ahead, starboard = bottom.ahead_mps, bottom.starboard_mps

@@ -1,4 +1,4 @@
-"""What of a log the solution does not use, or does not believe."""
+"""Readings of a log that the solution ignores or rejects."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .times import between
 
 
 def unused(part: NavigationLog) -> dict[str, np.ndarray]:
-    """Lines of the sound readings of a part that its solution does not use, by what they are."""
+    """Lines of the valid readings of a part that its solution ignores, by kind."""
     fixed_s = part.fixes.sound().time_s
     first_s = fixed_s[0] if len(fixed_s) else np.inf
     early = [s.line[s.usable & (s.time_s < first_s)] for s in part.series.values()]
@@ -36,7 +36,7 @@ def unused(part: NavigationLog) -> dict[str, np.ndarray]:
 
 
 def rejected_lines(part: NavigationLog, track: OwnTrack) -> dict[str, np.ndarray]:
-    """Lines of the sound readings of a part that were not believed, by what they are."""
+    """Lines of the valid readings of a part that were rejected, by kind."""
     headings = part.heading.sound() or part.compass.sound()
     ground, bottom = part.ground.sound(), part.bottom.sound()
     by_satellite = np.isin(track.time_s, ground.time_s)
@@ -56,7 +56,7 @@ def rejected_lines(part: NavigationLog, track: OwnTrack) -> dict[str, np.ndarray
 
 
 def zero_speeds(part: NavigationLog) -> np.ndarray:
-    """Lines (n,) of sound speeds through the water of 0 while the ship makes way over ground."""
+    """Lines (n,) of valid speeds through the water of 0 while the ship moves over ground."""
     water, ground = part.water.sound(), part.ground.sound()
     over_ground_mps = between(water.time_s, ground.time_s, ground.speed_mps)
     return water.line[(water.ahead_mps == 0.0) & (over_ground_mps > UNDER_WAY_MPS)]

@@ -1,4 +1,4 @@
-"""What is to be added to the headings of a magnetic compass whose variation is not known."""
+"""Offset of magnetic headings with unknown variation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MINUTE_STD_MPS = 0.2  # of the mean velocity of a minute: gusts, leeway, deviat
 
 
 class MagneticOffset(NamedTuple):
-    """What is added to magnetic headings, and its standard deviation, which lasts."""
+    """Offset added to magnetic headings, and the standard deviation of this constant error."""
 
     offset_rad: float
     std_rad: float
@@ -29,19 +29,18 @@ ANY_OFFSET = MagneticOffset(0.0, np.deg2rad(15.0))  # variations over the seas
 
 
 def wants_offset(part: NavigationLog) -> bool:
-    """Whether the headings of a part are magnetic ones whose variation is not always known."""
+    """Whether the headings of a part are magnetic with partly unknown variation."""
     unknown = np.isnan(part.compass.sound().variation_rad)
     return len(part.heading.sound()) == 0 and bool(unknown.any())
 
 
 def magnetic_offset(parts: Sequence[NavigationLog]) -> MagneticOffset | None:
-    """What to add to magnetic headings that have no variation, found from velocities over ground.
+    """Estimate the offset of magnetic headings without variation from velocities over ground.
 
     Least squares over minutes of ground = a · water + current, complex numbers of north and east,
-    water by the magnetic compass; the angle of a is the offset. The current is another in every
-    half hour: alterations of course tell it from the offset. Without a log, speeds over ground
-    stand for those through the water, and nothing does. None where there is nothing to find it
-    from, or the log reads nothing but 0.
+    water by the magnetic compass; the angle of a is the offset. The current is constant over half
+    an hour; alterations of course separate it from the offset. Without a log, speeds over ground
+    replace those through the water. None if there are no such readings, or the log reads only 0.
     """
     if len(parts) == 0:
         return None
@@ -82,7 +81,7 @@ def _by_minute(parts: Sequence[NavigationLog]) -> tuple[np.ndarray, np.ndarray, 
 def _velocities(part: NavigationLog) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times (n,) of speeds over ground, the velocities by magnetic compass and those over ground.
 
-    Those by compass are through the water, or, without a log, of the speed over ground.
+    Those by compass have the speed through the water or, without a log, over ground.
     """
     ground, compass, water = part.ground.sound(), part.compass.sound(), part.water.sound()
     ground = ground.rows(ground.speed_mps > UNDER_WAY_MPS)

@@ -1,4 +1,4 @@
-"""All that a log tells of own ship, at the times at which it tells anything."""
+"""The readings of own ship's instruments on common times."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _MADE_GOOD_S = 10.0
 
 
 class Readings(NamedTuple):
-    """Readings at all times (T,) at which there is one, NaN where there is none; a plane for them.
+    """Readings at all times (T,) with any reading, NaN where missing, on a plane.
 
     ``fix_m`` and ``velocity_mps`` (T, 2) north and east, ``heading_rad`` (T,), ``log_mps``
-    (T,) through the water ahead, ``leeway_rad`` (T,) from the heading to the way through the water,
-    0 where no log tells of it, ``bottom_mps`` (T, 2) north and east over ground by a log that
-    sees the bottom, ``turn_rate_rad_s`` (T,) to starboard. Directions are those on the plane, which
-    are ``lean_rad`` (T,) more than from true north. ``offset_std_rad`` is the error that all
-    headings share.
+    (T,) through the water ahead, ``leeway_rad`` (T,) from the heading to the course through the
+    water, 0 if unknown, ``bottom_mps`` (T, 2) north and east over ground by a bottom-tracking log,
+    ``turn_rate_rad_s`` (T,) to starboard. Directions are relative to the plane's north; they exceed
+    true directions by ``lean_rad`` (T,). ``offset_std_rad`` is the standard deviation of the error
+    common to all headings.
     """
 
     plane: wl.navigation.LocalPlane
@@ -46,17 +46,17 @@ class Readings(NamedTuple):
 
     @property
     def over_ground_mps(self) -> np.ndarray:
-        """Velocities (T, 2) by satellite, or else by the log."""
+        """Velocities (T, 2) over ground by satellite, or else by the log."""
         return np.where(np.isfinite(self.velocity_mps), self.velocity_mps, self.bottom_mps)
 
     @property
     def way_rad(self) -> np.ndarray:
-        """Directions (T,) of the way through the water."""
+        """Courses (T,) through the water."""
         return self.heading_rad + self.leeway_rad
 
     @property
     def way_mps(self) -> np.ndarray:
-        """Speeds (T,) along it."""
+        """Speeds (T,) along the course through the water."""
         return self.log_mps / np.cos(self.leeway_rad)
 
     @property
@@ -66,12 +66,12 @@ class Readings(NamedTuple):
 
     @property
     def knows_water(self) -> bool:
-        """Whether there are heading and speed through water."""
+        """Whether heading and speed through water are available."""
         return bool(np.isfinite(self.heading_rad).any() and np.isfinite(self.log_mps).any())
 
 
 def plane_of(fixes: Fixes) -> wl.navigation.LocalPlane:
-    """The plane that touches the Earth at the first fix."""
+    """The plane tangent to the earth at the first fix."""
     latitude_rad, longitude_rad = np.radians([fixes.latitude_deg[0], fixes.longitude_deg[0]])
     return wl.navigation.LocalPlane(latitude_rad=latitude_rad, longitude_rad=longitude_rad)
 
@@ -81,14 +81,14 @@ def readings_of(
     offset: MagneticOffset = NO_OFFSET,
     plane: wl.navigation.LocalPlane | None = None,
 ) -> Readings:
-    """The readings of a log that has a fix, `offset` added to headings of unknown variation.
+    """The readings of a log, with `offset` added to headings of unknown variation.
 
-    They are on the plane at the first fix unless told another.
+    The plane is by default tangent to the earth at the first fix.
 
     Raises
     ------
     ValueError
-        When there is no sound fix, or the clock was set back.
+        When there is no usable fix, or the clock was set back.
     """
     fixes = part.fixes_in_order("set of readings")
     ground, water = part.ground.sound(), part.water.sound()
@@ -98,7 +98,7 @@ def readings_of(
     leans_rad = wl.wrap_angle(plane.plane_course_rad(np.zeros(len(fixes)), latitude, longitude))
 
     def lean_rad(times: np.ndarray) -> np.ndarray:
-        """By how much directions on the plane are more than true ones where the last fix is."""
+        """Difference between directions on the plane and true ones at the last fix."""
         return leans_rad[np.maximum(np.searchsorted(fixes.time_s, times, side="right") - 1, 0)]
 
     heading_s, true_heading_rad = true_headings(part, offset.offset_rad)
@@ -134,7 +134,7 @@ def readings_of(
 
 
 def made_good_mps(seen: Readings) -> np.ndarray:
-    """Velocities (T, 2) at fixes since one ten seconds or more before; NaN elsewhere."""
+    """Velocities (T, 2) at fixes relative to one at least ten seconds before; NaN elsewhere."""
     fixed = np.flatnonzero(seen.has_fix)
     time_s, fix_m = seen.time_s[fixed], seen.fix_m[fixed]
     before = np.searchsorted(time_s, time_s - _MADE_GOOD_S, side="right") - 1

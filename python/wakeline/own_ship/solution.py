@@ -1,4 +1,4 @@
-"""Where own ship was and how she moved, as a navigator finds it from her readings."""
+"""Own ship's position and motion, estimated by a navigator from its readings."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from .times import NEAR_S, at, between, first
 FIX_STD_M = 3.0
 COMPASS_STD_RAD = np.deg2rad(4.0)  # of a small craft in waves
 LOG_STD_MPS = 0.15
-START_STD_M = 100.0  # at the first fix, which is yet to be taken as any other
+START_STD_M = 100.0  # at the first fix, which the filter then processes like any other
 START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over ground, and without
-# What is gained in one second, whatever the steps:
+# Random walks over one second, whatever the steps:
 VELOCITY_WALK_MPS, SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.4, 0.1, 0.02
-HEADING_WALK_RAD = np.deg2rad(10.0)  # where no rate of turn is told
-TURNED_WALK_RAD = np.deg2rad(2.0)  # beside what an indicator tells, which lags
+HEADING_WALK_RAD = np.deg2rad(10.0)  # without a rate of turn
+TURNED_WALK_RAD = np.deg2rad(2.0)  # with a rate of turn, which lags
 LONGEST_STEP_S, MOST_STEPS = 2.0, 100  # between two readings, however far apart
 GATE_PROBABILITY = 0.999
 
@@ -36,10 +36,10 @@ JUMP_M, JUMPED_S = 50.0, 60.0
 class OwnTrack:
     """Own ship's solution at times (T,).
 
-    Positions, velocities and currents are north and east on the plane of the log, which touches the
-    Earth at its first fix. Elsewhere its north leans against true north, and across the line to the
-    first fix it is stretched, by 4e-4 at 300 km and 4e-3 at 1000 km: by as much of the speed
-    velocity and current err there.
+    Positions, velocities and currents are north and east on the plane of the log, tangent to the
+    earth at its first fix. Far from it the plane's north differs from true north, and distances
+    across the line to the first fix are stretched by 4e-4 at 300 km and 4e-3 at 1000 km, and so are
+    velocity and current.
 
     Attributes
     ----------
@@ -50,23 +50,22 @@ class OwnTrack:
     heading_rad : ndarray (T,)
         From true north; NaN where the log has no heading.
     current_mps : ndarray (T, 2)
-        NaN where there is no heading or no speed through water.
+        NaN without heading or speed through water.
     lean_rad : ndarray (T,)
-        By how much directions on the plane are more than from true north.
+        Directions on the plane minus true directions.
     position_m2, velocity_m2s2 : ndarray (T, 2, 2)
         Covariances.
     heading_std_rad : ndarray (T,)
     drift_std_mps : ndarray (T,)
-        Of the current in the direction in which it is known least.
+        Largest standard deviation of the current over all directions.
     status : ndarray of str (T,)
-        ``ok``; ``coasting`` without a fix that was believed for more than five seconds; ``jumped``
-        from where fixes that went on though rejected have moved the position by more than 50 m,
-        until others move it back or all fixes have fitted for a minute; ``rejected`` where a fix
-        was not believed.
+        ``ok``; ``coasting`` without an accepted fix for more than five seconds; ``jumped`` after
+        persistent fixes outside the gate moved the position by more than 50 m, until others move it
+        back or all fixes have been accepted for a minute; ``rejected`` where a fix was rejected.
     jump_m : ndarray (T,)
-        How far such fixes have moved the position, zero at other times.
+        Distance by which such fixes moved the position, zero at other times.
     rejected : dict of str to ndarray of bool (T,)
-        Where a reading was not believed, of ``gnss``, ``velocity``, ``compass`` and ``log``.
+        Rejected readings of ``gnss``, ``velocity``, ``compass`` and ``log``.
     """
 
     time_s: np.ndarray
@@ -95,15 +94,15 @@ class OwnTrack:
 
     @property
     def set_rad(self) -> np.ndarray:
-        """Where the current goes (T,), from true north."""
+        """Direction (T,) to which the current sets, from true north."""
         return np.arctan2(self.current_mps[:, 1], self.current_mps[:, 0]) - self.lean_rad
 
 
 def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
-    """The solution at every reading from the first fix on.
+    """The solution at every reading since the first fix.
 
-    Smoothed, it knows the readings after each time, too, up to one that was not believed until its
-    like went on. What was not believed is the same.
+    A smoothed solution also uses later readings, up to one that was rejected until readings of its
+    kind persisted. The rejected readings are the filter's.
     """
     states = 7 if readings.knows_water else 5
     done = _run(states, readings)
@@ -138,7 +137,7 @@ def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
 
 
 class _Solved(NamedTuple):
-    """What `UsvRun` has, at the times of the readings."""
+    """The arrays of `UsvRun` at the times of the readings."""
 
     mean: np.ndarray
     covariance: np.ndarray
@@ -175,9 +174,10 @@ def _run(states: int, readings: Readings, *, smooth: bool = False) -> _Solved:
 
 
 def _in_short_steps(time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Times with others between them where they are far apart, and the rows of the given ones.
+    """Times, with intermediate ones where they are far apart, and the rows of the given ones.
 
-    What drives a walk is held over a step: after a long one the place would tell the velocity.
+    The noise of a random walk is constant over a step; over a long step it would correlate position
+    and velocity.
     """
     steps = np.ceil(np.minimum(np.diff(time_s) / LONGEST_STEP_S, MOST_STEPS)).astype(int)
     rows = np.append(0, np.cumsum(steps))
@@ -185,7 +185,7 @@ def _in_short_steps(time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
-    """Begun by what is read within seconds; failing a heading, by the course made good."""
+    """Start from the first seconds of readings; without a heading, with the course made good."""
     navigator = wl.UsvNavigator(
         states,
         speed_walk_mps=SPEED_WALK_MPS,
@@ -212,19 +212,19 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
 
 
 def _turning(readings: Readings, time_s: np.ndarray) -> np.ndarray:
-    """What an IMU would say (T, 3) of rates of turn alone; NaN for steps without any."""
-    told = np.isfinite(readings.turn_rate_rad_s)
+    """IMU readings (T, 3) equivalent to rates of turn; NaN for steps without one."""
+    given = np.isfinite(readings.turn_rate_rad_s)
     middle_s = time_s - np.diff(time_s, prepend=time_s[:1]) / 2.0
-    rate = between(middle_s, readings.time_s[told], readings.turn_rate_rad_s[told])
+    rate = between(middle_s, readings.time_s[given], readings.turn_rate_rad_s[given])
     return np.column_stack([np.zeros((len(rate), 2)), rate])
 
 
-def _motion_std(time_s: np.ndarray, told: np.ndarray) -> np.ndarray:
-    """Deviations (T, 2) of acceleration and rate of turn in each step that make up the walks.
+def _motion_std(time_s: np.ndarray, given: np.ndarray) -> np.ndarray:
+    """Standard deviations (T, 2) of acceleration and turn rate per step that give the walks.
 
-    `told` (T,) is whether an indicator tells of the turn.
+    `given` (T,) is whether the step has a rate of turn.
     """
-    heading_walk_rad = np.where(told, TURNED_WALK_RAD, HEADING_WALK_RAD)
+    heading_walk_rad = np.where(given, TURNED_WALK_RAD, HEADING_WALK_RAD)
     walk = np.column_stack([np.full(len(time_s), VELOCITY_WALK_MPS), heading_walk_rad])
     return walk / np.sqrt(np.diff(time_s, prepend=-np.inf))[:, None]
 
@@ -243,9 +243,9 @@ def _velocity(mean: np.ndarray, states: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _drift_std_mps(done: _Solved, offset_std_rad: float) -> np.ndarray:
-    """Deviations (T,) of the current of seven states, in the direction in which it is known least.
+    """Largest standard deviations (T,) of the current of seven states over all directions.
 
-    An error of all headings takes speed through the water for current.
+    An error common to all headings turns speed through the water into current.
     """
     way_rad, way_mps = done.mean[:, 2], done.mean[:, 3]
     across = np.column_stack([-np.sin(way_rad), np.cos(way_rad)])
@@ -255,7 +255,7 @@ def _drift_std_mps(done: _Solved, offset_std_rad: float) -> np.ndarray:
 
 
 def _moved_m(readings: Readings, done: _Solved, velocity_mps: np.ndarray) -> np.ndarray:
-    """How far (T, 2) fixes outside the gate that were believed have moved the position."""
+    """Displacement (T, 2) of the position by accepted fixes outside the gate."""
     outside = done.nis["gnss"] > -2.0 * np.log(1.0 - GATE_PROBABILITY)
     believed = np.flatnonzero(outside & ~done.rejected["gnss"])
     step_s = readings.time_s[believed] - readings.time_s[believed - 1]
@@ -274,7 +274,7 @@ def _status(readings: Readings, rejected: np.ndarray, moved_m: np.ndarray) -> np
 
 
 def _jumped(readings: Readings, rejected: np.ndarray, moved_m: np.ndarray) -> np.ndarray:
-    """Mask (T,) of the times at which the position is in doubt, for it is not where it would be."""
+    """Mask (T,) of the times at which the position is in doubt after a jump."""
     jumped = np.zeros(len(moved_m), dtype=bool)
     moved = moved_m.any(axis=1)
     ends = np.append(_fitted(readings, rejected | moved), len(moved))
@@ -286,7 +286,7 @@ def _jumped(readings: Readings, rejected: np.ndarray, moved_m: np.ndarray) -> np
 
 
 def _fitted(readings: Readings, misfit: np.ndarray) -> np.ndarray:
-    """Indices (n,) of the fixes up to which all have fitted for a minute, without a gap as long."""
+    """Indices (n,) of the fixes after a minute of accepted fixes without a gap of a minute."""
     fixed = np.flatnonzero(readings.has_fix)
     time_s = readings.time_s[fixed]
     again = misfit[fixed] | (np.diff(time_s, prepend=-np.inf) > JUMPED_S)

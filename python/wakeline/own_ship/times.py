@@ -1,4 +1,4 @@
-"""Values that come at times of their own."""
+"""Values on separate times."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ NEAR_S = 3.0
 
 
 def between(time_s: np.ndarray, times: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values (T,) by linear interpolation; NaN where none is near."""
+    """Linearly interpolated values (T,); NaN where no value is near."""
     if len(times) == 0:
         return np.full(len(time_s), np.nan)
     after = np.searchsorted(times, time_s)
@@ -19,7 +19,7 @@ def between(time_s: np.ndarray, times: np.ndarray, values: np.ndarray) -> np.nda
 
 
 def at(time_s: np.ndarray, times: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values at those of the times at which there are some, NaN at the others."""
+    """Values at the times that have one, NaN at the others."""
     spread = np.full((len(time_s), *values.shape[1:]), np.nan)
     later = times >= time_s[0]
     spread[np.searchsorted(time_s, times[later])] = values[later]
@@ -33,7 +33,7 @@ def first(values: np.ndarray, otherwise: np.ndarray | float) -> np.ndarray | flo
 
 
 def held(time_s: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The last finite row at each time, and when it was."""
+    """The last finite row at each time, and its time."""
     sound = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
     last = np.maximum.accumulate(np.where(sound, np.arange(len(values)), 0))
     return values[last], time_s[last]

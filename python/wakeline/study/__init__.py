@@ -1,14 +1,13 @@
-"""Studies: the scenarios of papers, run again, with the papers' figures beside ours.
+"""Studies: the scenarios of papers reproduced, with the papers' figures beside ours.
 
 >>> from wakeline import study
 >>> report = study.imm.run(runs=20, seed=0)
 >>> report.row("scans", "imm3")["mean_position_m"] < report.row("scans", "imm2")["mean_position_m"]
 True
 
-A study is a module with a ``SUMMARY`` of one line and a function
-``run(runs, seed, *, full=False, threads=None, progress=False) -> Report``. What ends its work
-early, an interrupt from the keyboard, too, has the attribute ``result``: a :class:`Report` of what
-was done, without pictures.
+A study is a module with a ``SUMMARY`` of one line and a function ``run(runs, seed, *, full=False,
+threads=None, progress=False) -> Report``. An exception that ends it early, also a keyboard
+interrupt, has the attribute ``result``: a :class:`Report` of the complete rows, without pictures.
 """
 
 from __future__ import annotations
@@ -71,8 +70,8 @@ def load(name: str) -> ModuleType:
     Raises
     ------
     ValueError
-        When there is no study of that name.
+        When no study has that name.
     """
     if name not in _STUDIES:
-        raise ValueError(f"no study {name!r}; there are {', '.join(_STUDIES)}")
+        raise ValueError(f"name must be one of {', '.join(_STUDIES)}, got {name!r}")
     return _STUDIES[name]

@@ -1,12 +1,12 @@
 """Accuracy of tracking aids: the four scenarios of IMO resolution A.823(19) with its error budget.
 
-A ship rolls in a seaway, and tracks a ship of 200 m by a radar whose errors the resolution lists
-one by one (its appendix 3). After one and after three minutes of steady tracking the 95 % errors of
-what the operator is told are compared with the resolution's table; and the same once more after
-either ship has turned by 45 degrees within a minute, counted from the end of the turn. The second
-scenario is also run without glint, as what it asks for hangs on that.
+A ship rolls in a seaway and tracks a ship of 200 m with a radar whose errors the resolution lists
+(its appendix 3). After one and three minutes of steady tracking the 95 % errors of the displayed
+data are compared with the resolution's table; again after either ship has turned by 45 degrees
+within a minute, counted from the end of the turn. The second scenario is also run without glint,
+because its limits depend on that.
 
-This is a test on the scenarios of the resolution with its error budget. It is no type approval.
+This is a test on the scenarios of the resolution with its error budget. It is not a type approval.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ from .estimators import peaked, turn_filter, turn_imm
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SUMMARY = "the four scenarios of IMO A.823(19) with its error budget: what an operator is told"
+SUMMARY = "the four scenarios of IMO A.823(19) with its error budget: errors of displayed data"
 
-PERIOD_S = 2.5  # 24 turns a minute
+PERIOD_S = 2.5  # 24 revolutions a minute
 ROLL_PERIOD_S = 10.0
 GLINT_STD_M = 30.0  # along the hull; 1 m across
 TURN_RAD, TURN_S = np.deg2rad(45.0), 60.0
@@ -49,7 +49,7 @@ METRICS = (
 )
 MANEUVERS = ("steady", "own_turn", "target_turn")
 CHOSEN = "vessel_imm"
-NO_GLINT = 2  # the scenario that is also run with an echo that stays in the middle of the hull
+NO_GLINT = 2  # the scenario that is also run with an echo at the center of the hull
 
 _NAN = float("nan")
 _ONE_MINUTE = {
@@ -58,7 +58,7 @@ _ONE_MINUTE = {
     3: (14, 2.2, 1.8, _NAN, _NAN, _NAN),
     4: (15, 1.5, 2.0, _NAN, _NAN, _NAN),
 }
-_THREE_MINUTES = {  # of uncertain tradition: reported beside ours, not claimed
+_THREE_MINUTES = {  # from an uncertain source: reported beside ours, not claimed
     1: (3.0, 0.8, 0.5, 1.0, 7.4, 1.2),
     2: (2.3, 0.3, _NAN, _NAN, 2.8, 0.8),
     3: (4.4, 0.9, 0.7, 1.0, 3.3, 1.0),
@@ -67,7 +67,7 @@ _THREE_MINUTES = {  # of uncertain tradition: reported beside ours, not claimed
 
 
 class Encounter(NamedTuple):
-    """Own ship sails north; the target is seen at a range and bearing, with a relative motion."""
+    """Own ship sails north; the target has a range, a bearing and a relative motion."""
 
     own_speed_kn: float
     range_nm: float
@@ -89,7 +89,7 @@ ENCOUNTERS = {
 
 @dataclass(frozen=True)
 class Passage:
-    """Both ships' truth at the scans (T, 4), the geometry of the table at the last of them."""
+    """Both ships' truth at the scans (T, 4), with the table's geometry at the last scan."""
 
     time_s: np.ndarray
     own: np.ndarray
@@ -97,14 +97,14 @@ class Passage:
 
 
 def passage(number: int, maneuver: str, after_s: float) -> Passage:
-    """An encounter that is told `after_s` after steady tracking began.
+    """An encounter whose data are read `after_s` after steady tracking began.
 
     Parameters
     ----------
     number : int
         Of the scenario, 1 to 4.
     maneuver : {"steady", "own_turn", "target_turn"}
-        What goes before: nothing, or a minute straight on and a minute of turning by 45 degrees.
+        What precedes: nothing, or a straight minute and a minute with a turn by 45 degrees.
     after_s : float
     """
     end_s = after_s if maneuver == "steady" else 60.0 + TURN_S + after_s
@@ -121,7 +121,7 @@ def passage(number: int, maneuver: str, after_s: float) -> Passage:
 def _ending(
     place_m: np.ndarray, velocity_mps: np.ndarray, end_s: float, turns: bool, after_s: float
 ) -> Truth:
-    """A ship that is there, and so under way, at the end; one that turns did so before."""
+    """A ship with the given position and velocity at the end; a turn is before."""
     if not turns:
         start = place_m - end_s * velocity_mps
         return Truth([start[0], velocity_mps[0], start[1], velocity_mps[1]], [Segment(end_s)])
@@ -142,7 +142,7 @@ def _towards(course_deg: float) -> np.ndarray:
 
 
 class Seen(NamedTuple):
-    """What the sensors say in one run: readings (T, 2), own course (T,) and speed (T,)."""
+    """Sensor readings of one run: plots (T, 2), own course (T,) and speed (T,)."""
 
     z: np.ndarray
     gyro_rad: np.ndarray
@@ -196,14 +196,14 @@ _TWO_SIGMA = 1.96  # 95 % of a normal error
 
 
 def sensor(glint_std_m: float = GLINT_STD_M) -> wl.RangeBearing:
-    """What the radar's data sheet says: the budget's random errors, put together."""
+    """The radar of a data sheet: the budget's random errors combined."""
     return wl.RangeBearing(
         range_std_m=23.0, bearing_std_rad=np.deg2rad(0.19), extent_std_m=glint_std_m / np.sqrt(2.0)
     )
 
 
 def reckoned_m(seen: Seen) -> np.ndarray:
-    """(T, 2) own ship's way by gyro and log, from north 0, east 0."""
+    """(T, 2) own ship's path by gyro and log, from north 0, east 0."""
     velocity = seen.log_mps[:, None] * np.column_stack(
         [np.cos(seen.gyro_rad), np.sin(seen.gyro_rad)]
     )
@@ -215,9 +215,9 @@ def reckoned_m(seen: Seen) -> np.ndarray:
 
 
 def estimators() -> dict[str, Any]:
-    """One tuning each; ships go straight for many minutes and turn for one.
+    """One tuning each; ships go straight for many minutes and turn for one minute.
 
-    What is not told of these ships and their radar stands at its default.
+    Other parameters have their defaults.
     """
     noise = WhiteAcceleration(psd_m2s3=2e-5)
     straight = wl.Ekf(wl.ConstantVelocity(noise=noise))
@@ -262,21 +262,21 @@ def estimators() -> dict[str, Any]:
     }
 
 
-# What the operator is told ------------------------------------------------------------------------
+# The displayed data -------------------------------------------------------------------------------
 
 
 def errors(
     estimator: Any, ships: Passage, seen: list[Seen], radar: wl.RangeBearing
 ) -> dict[str, np.ndarray]:
-    """Errors (R,) of what is told at the last scan, by metric without its quantile."""
-    told_states = np.array([_told(estimator, one, radar) for one in seen])
+    """Errors (R,) of the displayed data at the last scan, by metric without its quantile."""
+    shown_states = np.array([_shown_state(estimator, one, radar) for one in seen])
     truth = np.concatenate([ships.target[-1] - ships.own[-1], ships.target[-1]])
-    is_told, is_true = _operators_view(told_states), _operators_view(truth)
-    return {name: np.abs(off) for name, off in _off(is_told, is_true).items()}
+    is_shown, is_true = _operators_view(shown_states), _operators_view(truth)
+    return {name: np.abs(off) for name, off in _off(is_shown, is_true).items()}
 
 
 def _off(figures: Mapping[str, Any], wanted: Mapping[str, Any]) -> dict[str, Any]:
-    """How far figures are off, angles the short way."""
+    """Absolute differences, of angles wrapped."""
     off = {name: figures[name] - wanted[name] for name in wanted}
     return {
         name: np.degrees(wl.wrap_angle(np.deg2rad(value))) if name.endswith("_deg") else value
@@ -284,7 +284,7 @@ def _off(figures: Mapping[str, Any], wanted: Mapping[str, Any]) -> dict[str, Any
     }
 
 
-def _told(estimator: Any, seen: Seen, radar: wl.RangeBearing) -> np.ndarray:
+def _shown_state(estimator: Any, seen: Seen, radar: wl.RangeBearing) -> np.ndarray:
     """(8,) the state relative to own ship, and over the sea, at the last scan."""
     own_m = reckoned_m(seen)
     start = wl.one_point(radar, seen.z[0], _START_SPEED_STD_MPS)
@@ -298,7 +298,7 @@ def _told(estimator: Any, seen: Seen, radar: wl.RangeBearing) -> np.ndarray:
 
 
 def _operators_view(states: np.ndarray) -> dict[str, np.ndarray]:
-    """Figures of states (..., 8) relative to own ship and over the sea; the CPA has a side."""
+    """Figures of states (..., 8) relative to own ship and over the sea; the CPA is signed."""
     pn, vn, pe, ve, _, un, _, ue = np.moveaxis(states, -1, 0)
     speed2 = vn**2 + ve**2
     tcpa_s = -(pn * vn + pe * ve) / speed2
@@ -315,8 +315,8 @@ def _operators_view(states: np.ndarray) -> dict[str, np.ndarray]:
 def bound(ships: Passage, glint_std_m: float = GLINT_STD_M) -> dict[str, float]:
     """95 % errors of relative motion of an efficient estimator that knows the ships go straight.
 
-    First order, from the errors of the budget that are new with each plot; biases, the roll, which
-    swings, and own ship's motion come on top.
+    First order, from the errors of the budget that are independent in each plot; biases, roll and
+    own ship's motion are excluded.
     """
     apart = ships.target - ships.own
     range_m, bearing = np.hypot(apart[:, 0], apart[:, 2]), np.arctan2(apart[:, 2], apart[:, 0])
@@ -363,11 +363,11 @@ def run(
     runs, seed : int
         Of the Monte Carlo runs.
     full : bool
-        Nothing more to do here.
+        No effect.
     threads : int, optional
-        Default as many as there are processors.
+        Default: the number of processors.
     progress : bool
-        Whether to draw a bar where stderr is a terminal.
+        Whether to draw a bar if stderr is a terminal.
 
     Returns
     -------
@@ -452,7 +452,7 @@ STANDARD = Published(
 
 
 def shares(rows: Rows, name: str, after_s: float) -> dict[str, float]:
-    """Largest share of the standard's figures that an estimator uses up, by scenario."""
+    """Largest ratio of an estimator's errors to the standard's figures, by scenario."""
     found = {}
     for number in ENCOUNTERS:
         case = case_name(number, "steady", after_s)
@@ -464,8 +464,8 @@ def shares(rows: Rows, name: str, after_s: float) -> dict[str, float]:
 
 def _share_note(rows: Rows) -> str:
     lines = [
-        "Largest error over the standard's figure for it, steady tracking; the figures after three",
-        "minutes are of uncertain tradition:",
+        "Largest ratio of an error to the standard's figure, steady tracking; the figures after",
+        "three minutes are from an uncertain source:",
     ]
     for name in estimators():
         parts = [
@@ -481,7 +481,7 @@ def _pictures(rows: Rows) -> tuple[Picture, ...]:
     return (
         Picture(
             "a823-geometry",
-            "The four encounters as they are judged: three minutes before, and where it leads",
+            "The four encounters: the last three minutes, and the relative motion",
             tuple(partial(_draw_encounter, number=number) for number in ENCOUNTERS),
             size_in=(9.0, 8.4),
             columns=2,

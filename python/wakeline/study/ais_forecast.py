@@ -1,8 +1,8 @@
-"""Where other vessels will be: the models of :mod:`wakeline.forecast` on AIS.
+"""Position forecasts of other vessels: the models of :mod:`wakeline.forecast` on AIS.
 
-The vessels of the Solent report position, course and speed every few seconds. From each quarter of
-a minute on it is foretold where a vessel will be after one, three and six minutes, and compared
-with where it then was. Nothing is random here: there is one run.
+The vessels of the Solent report position, course and speed every few seconds. Every 15 seconds a
+forecast for one, three and six minutes is made and compared with the later position. Nothing is
+random here: there is one run.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ SUMMARY = "forecasts of vessels in the Solent from their AIS, one to six minutes
 HORIZONS_S = (60.0, 180.0, 360.0)
 TURNING_RAD_S = np.deg2rad(0.5)
 LABELS = {
-    "last_report": "last report, straight on",
+    "last_report": "last report, constant velocity",
     "line_60s": "line through 60 s",
-    "kalman_cv": "Kalman, straight on",
+    "kalman_cv": "Kalman, constant velocity",
     "turning_on": "turning on",
-    "turn_that_ends": "a turn that ends",
+    "turn_that_ends": "decaying turn rate",
     "window_5": "smoothed, last five",
     "two_pass": "smoothed, two passes",
     "window_bank": "smoothed, bank of windows",
@@ -51,13 +51,13 @@ def run(
     threads: int | None = None,
     progress: bool = False,
 ) -> Report:
-    """Run the study once; there is nothing random in it, and no argument changes the figures.
+    """Run the study once; nothing is random, and no argument changes the figures.
 
     Returns
     -------
     Report
-        Scenarios ``after_60s`` and so on, and with ``_turning`` those forecasts that begin while
-        the course changes by more than half a degree a second.
+        Scenarios ``after_60s`` and so on; with ``_turning`` those forecasts that begin while the
+        course changes by more than half a degree a second.
     """
     ahead_s = np.unique([*_CURVE_S, *HORIZONS_S])
     errors = {name: [] for name in forecast.names()}
@@ -90,14 +90,14 @@ def run(
 
 @lru_cache(maxsize=1)
 def _tracks() -> tuple[AisTrack, ...]:
-    """Stretches of vessels under way that are long enough for a forecast."""
+    """Segments of vessels under way that are long enough for a forecast."""
     tracks = recording.load_ais().tracks.values()
     parts = (part for track in tracks for part in under_way.stretches(track))
     return tuple(part for part in parts if np.ptp(part.time_s) > _HISTORY_S + max(HORIZONS_S))
 
 
 def _cases(ahead_s: np.ndarray) -> Iterator[tuple[AisTrack, np.ndarray]]:
-    """The reports of a vessel until a time, and where it was later (H, 2)."""
+    """The reports of a vessel until a time, and its later positions (H, 2)."""
     for track in _tracks():
         last_s = track.time_s[-1] - ahead_s.max()
         for now_s in np.arange(track.time_s[0] + _HISTORY_S, last_s, _EVERY_S):

@@ -1,4 +1,4 @@
-"""What every study has: rows, a table of them beside published figures, and pictures."""
+"""Common parts of the studies: rows, a table with published figures, and pictures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from wakeline import plot
 from wakeline._brief import brief, many
-from wakeline._progress import progress as told
+from wakeline._progress import progress as reported
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,14 +52,14 @@ _DIGITS = {"m": 1, "s": 0, "deg": 1, "deg2": 3, "step": 0, "arcmin": 4, "drift_r
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure to be: panels that draw into axes, one above the other or in columns.
+    """A figure to draw: panels that draw into axes, one above the other or in columns.
 
     Attributes
     ----------
     name : str
         Stem of its file.
     title : str
-        What it shows.
+        Title of the figure.
     panels : tuple of callables
         Each takes axes, draws into them and returns them.
     size_in : (float, float)
@@ -95,26 +95,26 @@ class Picture:
 
 @dataclass(frozen=True)
 class Report:
-    """What a study found.
+    """Results of a study.
 
     Attributes
     ----------
     name : str
         Name of the study.
     seed : int or None
-        What it was run with; None where nothing is drawn at random.
+        Seed of the runs; None if nothing is random.
     runs : int
-        How many there were.
+        Number of runs.
     rows : list of dict
-        ``scenario``, ``estimator`` and metrics with their unit, None where there is none.
+        ``scenario``, ``estimator`` and metrics with their unit, None where missing.
     result : object
-        The Monte Carlo results by scenario, where the study has them.
+        The Monte Carlo results by scenario, if the study has them.
     pictures : tuple of Picture
         Not drawn yet.
     published : mapping of str to Published
-        Figures of others by source, such as ``paper``.
+        Published figures by source, such as ``paper``.
     notes : tuple of str
-        What to know when reading the table.
+        Remarks on the table.
     """
 
     name: str
@@ -137,27 +137,27 @@ class Report:
         )
 
     def row(self, scenario: str, estimator: str) -> dict[str, Any]:
-        """The row of an estimator on a scenario; raises KeyError where there is none."""
+        """The row of an estimator on a scenario; raises KeyError if there is none."""
         for row in self.rows:
             if (row["scenario"], row["estimator"]) == (scenario, estimator):
                 return row
         raise KeyError(f"no row of {estimator} on {scenario}")
 
     def save_pictures(self, folder: str | Path, *, progress: bool = False) -> list[Path]:
-        """Draw every picture into `folder`, made if need be, as ``NAME.png``; returns the files.
+        """Draw every picture as ``NAME.png`` into `folder`; returns the files.
 
-        With `progress` a bar is drawn where stderr is a terminal.
+        With `progress` a bar is drawn if stderr is a terminal.
         """
         Path(folder).mkdir(parents=True, exist_ok=True)
         files = []
         count = len(self.pictures)
-        for picture in told(self.pictures, count, "drawing") if progress else self.pictures:
+        for picture in reported(self.pictures, count, "drawing") if progress else self.pictures:
             files.append(Path(folder) / f"{picture.name}.png")
             plot.save(picture.draw(), files[-1])
         return files
 
     def table(self) -> list[list[str]]:
-        """Cells: a head, then a row an estimator and scenario, what others report below it."""
+        """Cells: a header, then one row per estimator and scenario, published figures below."""
         metrics = list(dict.fromkeys(key for row in self.rows for key in list(row)[2:]))
         cells = [["scenario", "estimator", *map(label, metrics)]]
         before = ""
@@ -181,16 +181,16 @@ class Published:
     Attributes
     ----------
     metrics : tuple of str
-        What it reports.
+        Names of the metrics.
     figures : mapping of (scenario, estimator) to sequence of float
-        In the order of `metrics`; NaN where it is silent.
+        In the order of `metrics`; NaN where not published.
     """
 
     metrics: tuple[str, ...]
     figures: Mapping[tuple[str, str], Sequence[float]]
 
     def get(self, scenario: str, estimator: str, metric: str) -> float | None:
-        """The figure, None where there is none."""
+        """The figure, None if not published."""
         row = self.figures.get((scenario, estimator))
         if row is None or metric not in self.metrics:
             return None
@@ -201,10 +201,10 @@ class Published:
 def worked_off(
     jobs: Mapping[Key, Callable[[], Found]], threads: int | None, progress: bool
 ) -> dict[Key, Found]:
-    """What every job gives, by default on as many threads as there are processors.
+    """Results of all jobs, by default with the number of processors as threads.
 
-    What stops it calls off the jobs that have not begun, and has the attribute ``result``: what
-    those gave that were done.
+    An exception cancels the jobs that have not begun, and has the attribute ``result``: the results
+    of the completed ones.
     """
     done: dict[Key, Found] = {}
 
@@ -216,7 +216,7 @@ def worked_off(
             ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool,
             closing(pool.map(work_off, jobs)) as ends,
         ):
-            for _ in told(ends, len(jobs), "running") if progress else ends:
+            for _ in reported(ends, len(jobs), "running") if progress else ends:
                 pass
     except BaseException as error:
         error.result = _in_order(done, jobs)
@@ -230,14 +230,14 @@ def _in_order(done: Mapping[Key, Found], jobs: Mapping[Key, Any]) -> dict[Key, F
 
 @contextmanager
 def kept(report_of: Callable[[Any], Report], nothing: Any = None) -> Iterator[None]:
-    """What ends the work early has the attribute ``result``: the report of what was done.
+    """An exception that ends the work early has the attribute ``result``: the partial report.
 
     Parameters
     ----------
     report_of : callable
-        The report of what the work left in that attribute.
+        Makes the report from what the work left in that attribute.
     nothing : object
-        What it is given where the work left nothing there.
+        Its argument if the work left nothing there.
     """
     try:
         yield
@@ -247,7 +247,7 @@ def kept(report_of: Callable[[Any], Report], nothing: Any = None) -> Iterator[No
 
 
 def label(metric: str) -> str:
-    """Head of a metric's column, such as "mean m/s" for ``mean_velocity_mps``."""
+    """Header of a metric's column, such as "mean m/s" for ``mean_velocity_mps``."""
     if metric in _HEADS:
         return _HEADS[metric]
     name, _, unit = metric.rpartition("_")
@@ -255,7 +255,7 @@ def label(metric: str) -> str:
 
 
 def figure_text(metric: str, value: float | None) -> str:
-    """A figure with the digits that mean something."""
+    """A figure with its significant digits."""
     if value is None or not np.isfinite(value):
         return "-"
     digits = _DIGITS.get(metric, _DIGITS.get(metric.split("_")[-1], 2))

@@ -1,4 +1,4 @@
-"""Rows and pictures of Monte Carlo results, alike in every study of maneuvers."""
+"""Rows and pictures of Monte Carlo results, common to the studies of maneuvers."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ _SAME_RATE_RAD_S = 1e-9
 
 
 def rows(result: montecarlo.Result, name: str, scenario: Scenario) -> Rows:
-    """A row of each candidate on a scenario, which goes by `name`, and one of the bound.
+    """A row per candidate on a scenario called `name`, and one of the bound.
 
-    Of a result that ended early the candidates that are not there have none.
+    Candidates missing from a partial result have no row.
     """
     found = [
         _row(name, candidate, outcome.summary())
@@ -84,7 +84,7 @@ def error_picture(
     labels: Mapping[str, str],
     colors: Mapping[str, str],
 ) -> Picture:
-    """RMSE of position and of velocity over time, with the bound under every curve."""
+    """RMSE of position and velocity over time, with the bound."""
     outcomes = {labels[key]: result[scenario.name, key] for key in labels}
     return Picture(
         name,
@@ -104,7 +104,7 @@ def draw_errors(
     colors: Mapping[str, str],
     speed: bool = False,
 ) -> Axes:
-    """One panel of RMSE curves; only that of positions names them."""
+    """One panel of RMSE curves; only that of positions has a legend."""
     key = "velocity_rmse_mps" if speed else "position_rmse_m"
     return plot.error_panel(
         ax,
@@ -162,10 +162,11 @@ def draw_modes(
 
 
 class Lead(NamedTuple):
-    """The right model in a segment: in what share of the scans it leads, and after how many.
+    """The right model in a segment: the share of scans in which it leads, and its delay.
 
-    It leads where its probability, mean of the runs, is the greatest; the delay is until it is the
-    most probable one in half of the runs. Both are None where no model has the true turn rate.
+    It leads where its mean probability over the runs is the largest; the delay is the number of
+    scans until it is the most probable one in half of the runs. Both are None if no model has the
+    true rate.
     """
 
     rate_deg_s: float
@@ -174,7 +175,7 @@ class Lead(NamedTuple):
 
 
 def leads_by_segment(outcome: montecarlo.Outcome, rates_rad_s: Sequence[float]) -> list[Lead]:
-    """How far the right model leads in each segment of a steady true turn rate."""
+    """The lead of the right model in each segment of constant true turn rate."""
     rates = np.asarray(rates_rad_s, dtype=float)
     true = outcome.true_turn_rate_rad_s
     leads = metrics.right_mode(outcome.mode_probability, rates, true)

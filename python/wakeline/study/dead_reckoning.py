@@ -1,9 +1,9 @@
-"""Smoothing and forecast of a vessel's own motion, and the drift of the water she is in.
+"""Smoothing and prediction of own ship's motion, and the drift of the water.
 
 The vessel of :mod:`wakeline.scenario.voyage` alters speed and course for 40 minutes in a current.
-Each estimator smooths speed, course, latitude and longitude and foretells them four readings ahead;
-combined dead reckoning (11) joins smoothed speed, course and drift. The drift itself is found on a
-steady course, from a fix every 30 s, by a line through the differences of observed and reckoned
+Each estimator smooths speed, course, latitude and longitude and predicts them four readings ahead;
+combined dead reckoning (11) combines smoothed speed, course and drift. The drift is estimated on a
+steady course with a fix every 30 s, by a line through the differences of observed and reckoned
 positions or from rates.
 """
 
@@ -32,7 +32,7 @@ from .base import Picture, Published, Report, Rows, kept, worked_off
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SUMMARY = "own ship's motion smoothed and foretold, set and drift: the gains (33) beside others"
+SUMMARY = "own ship's motion smoothed and predicted, set and drift: the gains (33) beside others"
 
 AHEAD = 4  # readings
 WINDOW = 5
@@ -56,7 +56,7 @@ _SHOWN = {"adaptive_two_pass": 1, "window_bank": 2, "kalman": 0}  # with their c
 _SHOWN_STEP_S = 3.0
 
 
-class Foretold(NamedTuple):
+class Predicted(NamedTuple):
     """A quantity after each reading, its rate per second, and the forecast; each (..., T)."""
 
     value: np.ndarray
@@ -64,7 +64,7 @@ class Foretold(NamedTuple):
     forecast: np.ndarray
 
 
-Smoother = Callable[[str, float, np.ndarray], Foretold]
+Smoother = Callable[[str, float, np.ndarray], Predicted]
 
 
 # The estimators -----------------------------------------------------------------------------------
@@ -83,19 +83,19 @@ def smoothers() -> dict[str, Smoother]:
 
 
 def _engine(make: Callable[[bool], Any]) -> Smoother:
-    def smooth(metric: str, dt_s: float, readings: np.ndarray) -> Foretold:
+    def smooth(metric: str, dt_s: float, readings: np.ndarray) -> Predicted:
         smoother = make(metric == "course_rms_deg")
-        return Foretold(*smoother.run(dt_s, readings, ahead_s=AHEAD * dt_s))
+        return Predicted(*smoother.run(dt_s, readings, ahead_s=AHEAD * dt_s))
 
     return smooth
 
 
-def _last_value(metric: str, dt_s: float, readings: np.ndarray) -> Foretold:
-    return Foretold(readings, np.zeros_like(readings), readings)
+def _last_value(metric: str, dt_s: float, readings: np.ndarray) -> Predicted:
+    return Predicted(readings, np.zeros_like(readings), readings)
 
 
-def _window(metric: str, dt_s: float, readings: np.ndarray) -> Foretold:
-    """(26) with the gains (27), begun anew in each window: the line through the last readings."""
+def _window(metric: str, dt_s: float, readings: np.ndarray) -> Predicted:
+    """(26) with the gains (27), restarted in each window: the line through the last readings."""
     smooth = _engine(lambda wrapped: wf.AlphaBetaSmoother(wf.GrowingMemory(), wrapped=wrapped))
     first = smooth(metric, dt_s, readings[..., : WINDOW - 1])
     windows = sliding_window_view(readings, WINDOW, axis=-1)
@@ -104,12 +104,12 @@ def _window(metric: str, dt_s: float, readings: np.ndarray) -> Foretold:
         np.concatenate([begun, full[..., -1]], axis=-1)
         for begun, full in zip(first, later, strict=True)
     )
-    return Foretold(*joined)
+    return Predicted(*joined)
 
 
 def one_pass(
     metric: str, dt_s: float, readings: np.ndarray
-) -> tuple[Foretold, np.ndarray, np.ndarray]:
+) -> tuple[Predicted, np.ndarray, np.ndarray]:
     """The adaptive alpha-beta filter (33) as printed, for comparison.
 
     The gains are those sums over the filter's own last five steps which
@@ -118,7 +118,7 @@ def one_pass(
 
     Returns
     -------
-    (Foretold, alpha, beta)
+    (Predicted, alpha, beta)
         Each array has the shape (..., T) of the readings; the gains are those of each reading.
     """
     wrap = wl.wrap_angle if metric == "course_rms_deg" else np.asarray
@@ -139,10 +139,10 @@ def one_pass(
         innovation[..., k] = wrap(readings[..., k] - predicted)
         value[..., k] = wrap(predicted + alpha[..., k] * innovation[..., k])
         rate[..., k] = rate[..., k - 1] + beta[..., k] * innovation[..., k] / dt_s
-    return Foretold(value, rate, wrap(value + rate * (AHEAD * dt_s))), alpha, beta
+    return Predicted(value, rate, wrap(value + rate * (AHEAD * dt_s))), alpha, beta
 
 
-def _kalman(metric: str, dt_s: float, readings: np.ndarray) -> Foretold:
+def _kalman(metric: str, dt_s: float, readings: np.ndarray) -> Predicted:
     """Value and rate, driven by white acceleration."""
     psd = ACCELERATION_PSD[metric]
     noise = psd * np.array([[dt_s**3 / 3, dt_s**2 / 2], [dt_s**2 / 2, dt_s]])
@@ -151,13 +151,13 @@ def _kalman(metric: str, dt_s: float, readings: np.ndarray) -> Foretold:
     value, rate = two_state_kalman(
         dt_s, readings, READING_STD[metric], noise, rate_std=RATE_STD[metric]
     )
-    return Foretold(value, rate, value + AHEAD * dt_s * rate)
+    return Predicted(value, rate, value + AHEAD * dt_s * rate)
 
 
 def two_state_kalman(
     dt_s: float, readings: np.ndarray, reading_std: float, noise: np.ndarray, rate_std: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Value and rate (..., T) of readings (..., T) by a Kalman filter that begins with the first.
+    """Value and rate (..., T) of readings (..., T) by a Kalman filter started with the first.
 
     Parameters
     ----------
@@ -165,9 +165,9 @@ def two_state_kalman(
     readings : (..., T) array
     reading_std : float
     noise : (2, 2) array
-        Covariance that value and rate gain in a step.
+        Process noise of value and rate per step.
     rate_std : float
-        Of the rate before the first reading, which is then zero.
+        Standard deviation of the initial rate, whose mean is zero.
     """
     move = np.array([[1.0, dt_s], [0.0, 1.0]])
     covariance = np.diag([reading_std**2, rate_std**2])
@@ -189,9 +189,9 @@ def combined(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Combined dead reckoning four readings ahead; (11).
 
-    Observed less reckoned position drifts along a line: its value mends the reckoned place, its
-    slope is the drift. From there the ship goes on with the speed and the course that the bank of
-    windows foretells for half way.
+    A line through observed minus reckoned positions corrects the reckoned position with its value
+    and gives the drift as its slope. The prediction continues with the speed and course that the
+    bank of windows predicts for half way.
 
     Returns
     -------
@@ -200,7 +200,8 @@ def combined(
     """
     place = sea.reckoned(read.speed_mps, read.course_rad, dt_s)
     fix = (read.latitude_rad, read.longitude_rad)
-    # Log and gyro err anew at each reading: the reckoned place walks.
+    # Errors of log and gyro are independent at each reading: the reckoned position is a random
+    # walk.
     walk_m = dt_s * np.hypot(sea.LOG_STD_MPS, DRIFT_SPEED_MPS * sea.GYRO_STD_RAD) / np.sqrt(2.0)
     noise_m2 = np.diag([walk_m**2, dt_s * _DRIFT_PSD_M2S3])
     now, drift = [], []
@@ -228,11 +229,11 @@ def combined(
     return (*ahead, *drift)
 
 
-# How far they are off -----------------------------------------------------------------------------
+# Errors -------------------------------------------------------------------------------------------
 
 
 def _radian_m() -> np.ndarray:
-    """Metres of a radian of latitude and of longitude where the voyage begins."""
+    """Metres per radian of latitude and of longitude at the start of the voyage."""
     return nav.velocity_from_rates_mps(1.0, 1.0, sea.START_RAD[0])
 
 
@@ -267,19 +268,19 @@ def _columns(of: Any) -> dict[str, np.ndarray]:
 
 
 def forecast_errors(metric: str, forecast: np.ndarray, truth: np.ndarray) -> np.ndarray:
-    """Forecast less truth (..., T - 4) in the unit of the metric."""
+    """Prediction minus truth (..., T - 4) in the unit of the metric."""
     off = forecast[..., :-AHEAD] - truth[AHEAD:]
     return (wl.wrap_angle(off) if metric == "course_rms_deg" else off) / _UNIT[metric]
 
 
 def judge(dt_s: float, read: sea.VoyageReadings, name: str) -> dict[str, np.ndarray]:
-    """RMS error of each run (R,) of what an estimator foretells of a voyage, by metric."""
+    """RMS prediction error of each run (R,) of an estimator on a voyage, by metric."""
     truth = sea.reckoning_voyage(dt_s)
     true, readings = _columns(truth), _columns(read)
     if name != "combined":
         smooth = smoothers()[name]
-        foretold = {m: smooth(m, dt_s, column).forecast for m, column in readings.items()}
-        return {m: rmse(forecast_errors(m, foretold[m], true[m]), axis=-1) for m in foretold}
+        predicted = {m: smooth(m, dt_s, column).forecast for m, column in readings.items()}
+        return {m: rmse(forecast_errors(m, predicted[m], true[m]), axis=-1) for m in predicted}
     latitude, longitude, *rates = combined(dt_s, read)
     drift = nav.velocity_from_rates_mps(*rates, truth.latitude_rad)
     off = drift - nav.velocity_mps(sea.CURRENT_MPS, sea.CURRENT_RAD)
@@ -292,8 +293,7 @@ def judge(dt_s: float, read: sea.VoyageReadings, name: str) -> dict[str, np.ndar
 def drift_errors(runs: int, seed: int, fixes: int) -> dict[str, np.ndarray]:
     """Errors (R, fixes) in kn of the drift after each fix that follows the first one.
 
-    The ship holds 10 kn and a course of her own in each run; log and gyro are read once from fix to
-    fix.
+    The ship holds 10 kn and a random course in each run; log and gyro are read once between fixes.
     """
     current = nav.velocity_mps(sea.CURRENT_MPS, sea.CURRENT_RAD)
     line = nav.DriftWindow(
@@ -317,7 +317,7 @@ def drift_errors(runs: int, seed: int, fixes: int) -> dict[str, np.ndarray]:
 
 
 def mean_drift_from_rates(log: np.ndarray, gyro: np.ndarray, fix_m: np.ndarray) -> np.ndarray:
-    """(T - 1, 2) m/s: the mean of what the rates of all fixes until then say."""
+    """(T - 1, 2) m/s: the mean drift from the rates of all fixes until then."""
     rates = np.diff(fix_m, axis=0) / DRIFT_STEP_S
     each = nav.drift_from_rates_mps(rates, log[1:], gyro[1:])
     return np.cumsum(each, axis=0) / np.arange(1, len(fix_m))[:, None]
@@ -365,7 +365,7 @@ def run(
     Parameters
     ----------
     runs, seed : int
-        Of the voyages.
+        Number of voyages, and their seed.
     full : bool
         Nothing more to do here.
     threads : int, optional
@@ -377,7 +377,7 @@ def run(
     -------
     Report
         Scenarios ``forecast_4x1s`` to ``forecast_4x10s``, four readings ahead on the voyage, and
-        ``drift_20``, ``drift_5``, so many fixes after the first.
+        ``drift_20``, ``drift_5``, with that many fixes after the first.
     """
     run_numbers(runs, seed, threads)
     jobs: dict[tuple[str, str], Callable[[], dict[str, np.ndarray]]] = {}
@@ -417,11 +417,11 @@ def _rows(done: Mapping[tuple[str, str], dict[str, np.ndarray]]) -> Rows:
 
 
 def _claim_note(rows: Rows) -> str:
-    """What holds of the claim that the gains (33) are the best."""
+    """Test of the claim that the gains (33) are the best."""
     figure = {(r["scenario"], r["estimator"]): r for r in rows}
     lines = [
         'The claim "(33) is best of all": the errors of (33) in two passes four readings ahead,',
-        "divided by those of the line through five readings it is made of, and by the least:",
+        "divided by those of the line through five readings, and by the least:",
     ]
     for case, dt_s in STEPS_S.items():
         parts = []
@@ -434,9 +434,9 @@ def _claim_note(rows: Rows) -> str:
             )
         lines.append(f"  every {dt_s:.0f} s: {'; '.join(parts)}")
     lines += [
-        "It is better than the line only where maneuvers, not noise, make the error: every 10 s.",
-        "As printed, in one pass, its gains never adapt. The paper gives no step: its 0.3 kn, 1.0",
-        "degrees and 0.03' stand beside every one.",
+        "It is better than the line only where maneuvers, not noise, dominate the error: at 10 s.",
+        "As printed, in one pass, its gains never adapt. The paper gives no step; its 0.3 kn, 1.0",
+        "degrees and 0.03' are beside every one.",
     ]
     return "\n".join(lines)
 
@@ -445,7 +445,7 @@ def _claim_note(rows: Rows) -> str:
 
 
 class _Shown(NamedTuple):
-    """How a quantity is drawn: its metric, name and unit, and which part of the voyage."""
+    """How a quantity is drawn: metric, name, unit, and part of the voyage."""
 
     metric: str
     name: str
@@ -465,10 +465,10 @@ def _pictures(rows: Rows, drifts: Mapping[str, np.ndarray], seed: int) -> tuple[
     quantities = (
         Picture(
             name,
-            f"{shown.name.capitalize()}: smoothed, and foretold 12 s ahead from a reading each 3 s",
+            f"{shown.name.capitalize()}: smoothed, and predicted 12 s ahead (reading every 3 s)",
             (
                 partial(_draw_smoothed, shown=shown, seed=seed),
-                partial(_draw_foretold, shown=shown, seed=seed),
+                partial(_draw_predicted, shown=shown, seed=seed),
             ),
             size_in=(8.4, 6.4),
         )
@@ -500,7 +500,7 @@ def _pictures(rows: Rows, drifts: Mapping[str, np.ndarray], seed: int) -> tuple[
         ),
         Picture(
             "reckoning-drift",
-            "Drift vector found on a steady course, a fix of 4 m every 30 s",
+            "Drift vector estimated on a steady course, a fix of 4 m every 30 s",
             (partial(_draw_drift, drifts=drifts),),
             size_in=(7.2, 4.2),
         ),
@@ -508,7 +508,7 @@ def _pictures(rows: Rows, drifts: Mapping[str, np.ndarray], seed: int) -> tuple[
 
 
 def _draw_wind_current(ax: Axes) -> Axes:
-    """Fig. 1 of the paper, with the graph of the manual that it is held against."""
+    """Fig. 1 of the paper, with the graph of the search manual."""
     latitude_deg = np.linspace(20.0, 90.0, 141)
     for wind_mps, color in zip((30.0, 20.0, 10.0), plot.PALETTE, strict=False):
         current = nav.wind_current_mps([wind_mps, 0.0], np.deg2rad(latitude_deg))
@@ -535,12 +535,12 @@ def _draw_wind_current(ax: Axes) -> Axes:
 
 
 class _Drawn(NamedTuple):
-    """A quantity of the first voyage in its unit, places from the start on."""
+    """A quantity of the first voyage in its unit, positions relative to the start."""
 
     time_s: np.ndarray
     truth: np.ndarray
     readings: np.ndarray
-    foretold: Mapping[str, Foretold]
+    predicted: Mapping[str, Predicted]
 
 
 def _drawn(shown: _Shown, seed: int) -> _Drawn:
@@ -559,12 +559,12 @@ def _drawn(shown: _Shown, seed: int) -> _Drawn:
         value, rate, forecast = smoothers()[name](shown.metric, voyage.dt_s, readings)
         ahead = np.full_like(forecast, np.nan)
         ahead[AHEAD:] = forecast[:-AHEAD]
-        found[name] = Foretold(in_unit(value), rate / _UNIT[shown.metric], in_unit(ahead))
+        found[name] = Predicted(in_unit(value), rate / _UNIT[shown.metric], in_unit(ahead))
     return _Drawn(voyage.time_s, in_unit(truth), in_unit(readings), found)
 
 
 def _within(ax: Axes, drawn: _Drawn, shown: _Shown, *columns: np.ndarray) -> None:
-    """Set the window to a part of the voyage and what `columns` do in it."""
+    """Set the window to a part of the voyage and the range of `columns` in it."""
     part = (drawn.time_s >= shown.part_s[0]) & (drawn.time_s <= shown.part_s[1])
     seen = np.concatenate([column[part] for column in columns])
     room = 0.06 * np.ptp(seen)
@@ -577,7 +577,7 @@ def _draw_smoothed(ax: Axes, shown: _Shown, seed: int) -> Axes:
     ax.plot(drawn.time_s, drawn.readings, ".", color=plot.MUTED, markersize=4, label="readings")
     ax.plot(drawn.time_s, drawn.truth, color=plot.INK, linewidth=1.0, linestyle="--", label="truth")
     for name, color in _SHOWN.items():
-        value = drawn.foretold[name].value
+        value = drawn.predicted[name].value
         ax.plot(drawn.time_s, value, color=plot.PALETTE[color], linewidth=1.3, label=name)
     _within(ax, drawn, shown, drawn.truth, drawn.readings)
     since = " from the start" if shown.metric in METRICS[2:] else ""
@@ -592,14 +592,14 @@ def _compass(course_deg: float, _tick: int) -> str:
     return f"{course_deg % 360.0:g}"
 
 
-def _draw_foretold(ax: Axes, shown: _Shown, seed: int) -> Axes:
+def _draw_predicted(ax: Axes, shown: _Shown, seed: int) -> Axes:
     drawn = _drawn(shown, seed)
     ax.axhline(0.0, color=plot.INK, linewidth=0.8)
-    off = {name: found.forecast - drawn.truth for name, found in drawn.foretold.items()}
+    off = {name: found.forecast - drawn.truth for name, found in drawn.predicted.items()}
     for name, color in _SHOWN.items():
         ax.plot(drawn.time_s, off[name], color=plot.PALETTE[color], linewidth=1.3, label=name)
     _within(ax, drawn, shown, *off.values())
-    ax.set(xlabel="time (s)", ylabel=f"forecast less truth ({shown.unit})")
+    ax.set(xlabel="time (s)", ylabel=f"prediction - truth ({shown.unit})")
     return plot.dress(ax)
 
 
@@ -607,11 +607,11 @@ def _draw_rate(ax: Axes, shown: _Shown, seed: int) -> Axes:
     drawn = _drawn(shown, seed)
     rate = np.gradient(drawn.truth, drawn.time_s)
     for name, color in _SHOWN.items():
-        found = 60.0 * drawn.foretold[name].rate
+        found = 60.0 * drawn.predicted[name].rate
         ax.plot(drawn.time_s, found, color=plot.PALETTE[color], linewidth=1.2, label=name)
     line = {"color": plot.INK, "linewidth": 1.0, "linestyle": "--", "label": "truth"}
     ax.plot(drawn.time_s, 60.0 * rate, **line)
-    rates = (60.0 * found.rate for found in drawn.foretold.values())
+    rates = (60.0 * found.rate for found in drawn.predicted.values())
     _within(ax, drawn, shown, 60.0 * rate, *rates)
     ax.set(xlabel="time (s)", ylabel=f"rate of {shown.name} ({shown.unit}/min)")
     plot.dress(ax)

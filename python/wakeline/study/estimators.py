@@ -19,7 +19,7 @@ def turn_filter(rate_deg_s: float, noise: Any) -> wl.Ekf:
 def learning_filter(
     noise: Any, rate_deg_s: float = 0.0, *, std_deg_s: float = 0.2, course_psd_rad2s: float = 0.0
 ) -> wl.Ekf:
-    """The filter of a turn whose rate is guessed, then learnt, and does not change."""
+    """The filter of a turn with a constant rate that is estimated from a first guess."""
     return wl.Ekf(
         wl.CoordinatedTurnRate(
             noise=noise,
@@ -37,11 +37,11 @@ def turn_imm(rates_deg_s: Sequence[float], noise: Any, *, stay: float = 0.9) -> 
     Parameters
     ----------
     rates_deg_s : sequence of K floats
-        Turn rates in degrees a second, 0 among them.
+        Turn rates in degrees per second, including 0.
     noise : process noise
     stay : float
-        Probability to stay in a mode from scan to scan, and of rate 0 at a start; the rest is
-        shared alike.
+        Probability to stay in a mode from scan to scan, and of rate 0 at the start; the others
+        share the rest equally.
     """
     filters = [turn_filter(rate, noise) for rate in rates_deg_s]
     return wl.Imm(
@@ -52,12 +52,12 @@ def turn_imm(rates_deg_s: Sequence[float], noise: Any, *, stay: float = 0.9) -> 
 
 
 def sticky_chain(modes: int, stay: float) -> np.ndarray:
-    """Transition matrix (K, K) that stays with one probability and shares the rest alike."""
+    """Transition matrix (K, K) with one probability to stay and equal other ones."""
     return np.array([peaked(modes, mode, stay) for mode in range(modes)])
 
 
 def peaked(modes: int, at: int, probability: float) -> np.ndarray:
-    """Probabilities (K,), the given one at one mode and the rest shared alike."""
+    """Probabilities (K,), the given one at one mode and equal other ones."""
     shared = np.full(modes, (1.0 - probability) / max(modes - 1, 1))
     shared[at] = probability
     return shared

@@ -1,8 +1,8 @@
-"""Paper A: an IMM of two and of three models on a vessel that turns each way.
+"""Paper A: an IMM of two and of three models on a vessel that turns to both sides.
 
 "Interacting multiple model algorithm for tracking maneuvering surface vessels", Vestnik NovSU,
-2023, 3(132), 394-404. The paper shows curves, reports no figures, and claims: the right model wins
-in each segment, the error peaks at the switches, IMM3 is better than IMM2.
+2023, 3(132), 394-404. The paper shows curves, reports no figures, and claims: the right model is
+the most probable in each segment, the error peaks at the switches, IMM3 is better than IMM2.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ REFERENCE = Published(
 
 
 def estimators() -> dict[str, Any]:
-    """The candidates by name; plain converted measurements and 0.05 m/s² as of the paper."""
+    """The candidates by name; plain converted measurements and 0.05 m/s² as in the paper."""
     return {
         name: turn_candidate(rates, _NOISE, "converted", stay=0.95)
         for name, rates in _RATES_DEG_S.items()
@@ -151,10 +151,10 @@ def _pictures(
 
 
 def _wins(result: montecarlo.Result, scenarios: dict[str, Scenario]) -> str:
-    """How much of each segment the right model is the most probable one, and from when on."""
+    """Share of each segment in which the right model is the most probable, and its delay."""
     lines = [
-        "Share of the scans of each segment in which the right model is the most probable in the",
-        "mean of the runs, and scans after its begin before it is so in half of the runs:",
+        "Share of the scans of each segment in which the right model has the largest mean",
+        "probability, and scans until it is the most probable in half of the runs:",
     ]
     for reading, scenario in scenarios.items():
         for name, rates in _RATES_DEG_S.items():

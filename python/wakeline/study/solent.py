@@ -1,13 +1,13 @@
 """Real maneuvers: vessels of the Solent, replayed from AIS under a simulated coastal radar.
 
-The truth is where vessels went in January 2016 off Portsmouth. A radar at Gilkicker Point sees
-those within ten kilometres at every scan with Gaussian errors in range and bearing, and every
-estimator, with one tuning for all vessels and both radars, starts from the first plot.
+The truth is the motion of vessels off Portsmouth in January 2016. A radar at Gilkicker Point
+detects those within ten kilometres in every scan, with Gaussian errors in range and bearing. Every
+estimator has one tuning for all vessels and both radars, and starts from the first plot.
 
-AIS is heard with delays of seconds, at random, so that a vessel seems to jump along its path. The
-time of each report is therefore told anew: from report to report passes the way made divided by the
-mean of the two reported speeds. Stretches count in which a vessel makes more than 2 m/s for three
-minutes and is heard at a median interval under 7 s, without a gap over 25 s.
+AIS reports arrive with random delays of seconds, so that a vessel seems to jump along its path. The
+time of each report is therefore recomputed: the interval between reports is the distance made
+divided by the mean of the two reported speeds. A segment counts if a vessel makes more than 2 m/s
+for three minutes and reports at a median interval under 7 s, without a gap over 25 s.
 """
 
 from __future__ import annotations
@@ -53,17 +53,17 @@ _COVERAGE_M = 10e3
 _START_SPEED_STD_MPS = 10.0
 _NOISE = WhiteAcceleration(psd_m2s3=0.06)
 _STRAIGHT_S, _TURN_S = 200.0, 20.0
-_LEAST_S = 6.0  # of a history's segments; the times beyond it are those of its chain
+_LEAST_S = 6.0  # minimum duration of a history's segments; the chain gives the rest
 _THREE_DEG_S = (0, 2, -2)
 _WANDERING_M2S3, _COURSE_PSD_RAD2S = 0.001, 0.0015
-_STRAIGHTS = (  # white acceleration m²/s³, wander of the course rad²/s, mean time s, as above
+_STRAIGHTS = (  # white acceleration m²/s³, course noise rad²/s, mean time s, as above
     (5e-5, 1e-5, 150.0),
     (0.001, 0.001, 100.0),
     (0.05, 0.003, 70.0),
 )
 _TURNS = (1e-4, 5e-4, 6.0)  # of the same
 _TURN_RATES_DEG_S, _TURN_STD_DEG_S, _NO_TURN_DEG_S = (-4, -2, 2, 4), 0.2, 0.01
-_TOLD = wl.VesselModels(
+_TUNED = wl.VesselModels(
     cruising_psd_m2s3=4e-4,
     cruising_course_psd_rad2s=3e-5,
     steady_psd_m2s3=4e-4,
@@ -91,7 +91,7 @@ _SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
 
 @lru_cache(maxsize=1)
 def vessels() -> dict[str, TrackTruth]:
-    """Stretches by name, with the radar at north 0, east 0."""
+    """Segments by name, with the radar at north 0, east 0."""
     ais = recording.load_ais()
     radar_m = [
         float(np.ravel(part)[0]) for part in ais.plane.position_m(*map(np.array, RADAR_AT_DEG))
@@ -109,7 +109,7 @@ def _heard_often(track: AisTrack) -> bool:
 
 
 def _retimed(track: AisTrack) -> TrackTruth | None:
-    """The track with times that fit way and speed; None for one that is too short."""
+    """The track with times that fit distance and speed; None if it is too short."""
     way_m = np.hypot(np.diff(track.north_m), np.diff(track.east_m))
     step_s = way_m / (0.5 * (track.speed_mps[1:] + track.speed_mps[:-1]))
     time_s = np.concatenate([[0.0], np.cumsum(step_s)])
@@ -120,13 +120,13 @@ def _retimed(track: AisTrack) -> TrackTruth | None:
 
 
 def _covered(truth: TrackTruth) -> bool:
-    """Whether the radar sees the vessel all the time."""
+    """Whether the vessel is always within range of the radar."""
     place_m = truth.state_at(np.arange(0.0, truth.end_time_s))[:, 0::2]
     return bool(np.hypot(*place_m.T).max() < _COVERAGE_M)
 
 
 def scenes(radar: str) -> list[Scenario]:
-    """A scenario of each stretch under a radar of :data:`RADARS`."""
+    """A scenario of each segment under a radar of :data:`RADARS`."""
     simulator = RADARS[radar]
     return [
         Scenario(f"{radar}-{name}", truth, simulator, int(truth.end_time_s // simulator.period_s))
@@ -135,9 +135,9 @@ def scenes(radar: str) -> list[Scenario]:
 
 
 def after_turn(scenario: Scenario) -> np.ndarray:
-    """Scans (T,) at which a turn goes on, or began or ended less than 30 s ago.
+    """Scans (T,) in a turn, or less than 30 s after its start or end.
 
-    A vessel turns where its course changes by more than 1.5 deg/s in the mean of 10 s.
+    A vessel turns where its course changes by more than 1.5 deg/s, averaged over 10 s.
     """
     time_s = scenario.time_s
     fine_s = np.arange(0.0, time_s[-1] + _WINDOW_S, 1.0)
@@ -156,16 +156,16 @@ def after_turn(scenario: Scenario) -> np.ndarray:
 def estimators() -> dict[str, Any]:
     """Every estimator by name, with its one tuning.
 
-    Models of one filter have the defaults of the library. Those of turns have a white acceleration
-    of 0.06 m²/s³; a straight goes on for 200 s and a turn for 20 s in the mean where a model is
-    either of them for good. What else there is stands at its default, but for the noises and times
-    of `mode_history_rates` and `mode_history_vessels`.
+    Single-model filters have the library's defaults. Turn models have a white acceleration of
+    0.06 m²/s³; the mean sojourn is 200 s on a straight and 20 s in a turn where separate models
+    represent them. Other parameters have their defaults, except the noises and times of
+    `mode_history_rates` and `mode_history_vessels`.
     """
     return {name: build() for name, build in _TABLE.items()}
 
 
 def variants() -> dict[str, Any]:
-    """What tuning is worth: other process noise, turns as often as in papers, these vessels."""
+    """Effect of tuning: other process noise, turns as often as in papers, these vessels."""
     noises = {psd: WhiteAcceleration(psd_m2s3=psd) for psd in _OTHER_NOISES_M2S3}
     return (
         {
@@ -177,13 +177,13 @@ def variants() -> dict[str, Any]:
             "imm3_restless": turn_imm(_THREE_DEG_S, _NOISE, stay=0.95),
             "mode_history_restless": wl.ModeHistory(turn_filter(0.0, _NOISE)),
             "imm_turn_rate_wandering": _imm_wandering(),
-            "vessel_imm_told": wl.vessel_imm(wl.Radar(), _TOLD),
+            "vessel_imm_tuned": wl.vessel_imm(wl.Radar(), _TUNED),
         }
     )
 
 
 def _imm(rates_deg_s: Sequence[float], noise: Any = _NOISE) -> wl.Imm:
-    """A straight, which comes first, and turns at known rates."""
+    """A straight, first, and turns at known rates."""
     return _straight_first([turn_filter(rate, noise) for rate in rates_deg_s])
 
 
@@ -195,7 +195,7 @@ def _imm_rate() -> wl.Imm:
 
 
 def _imm_wandering() -> wl.Imm:
-    """The same, with the noise of the histories that learn their rates."""
+    """The same with the noise of the histories that learn their rates."""
     straight = wl.WanderingCourse(psd_m2s3=_WANDERING_M2S3, course_psd_rad2s=_COURSE_PSD_RAD2S)
     turn = wl.CoordinatedTurnRate(
         noise=WhiteAcceleration(psd_m2s3=_WANDERING_M2S3), course_psd_rad2s=_COURSE_PSD_RAD2S
@@ -222,7 +222,7 @@ def _histories(filter: wl.Ekf) -> wl.ModeHistory:
 
 
 def _vessel_histories() -> wl.ModeHistory:
-    """Straights of three restlessnesses, and turns whose rates are guessed, then learnt."""
+    """Straights with three noises, and turns whose rates are estimated from first guesses."""
     modes = [(*straight, 0.0, _NO_TURN_DEG_S) for straight in _STRAIGHTS]
     modes += [(*_TURNS, rate_deg_s, _TURN_STD_DEG_S) for rate_deg_s in _TURN_RATES_DEG_S]
     filters = [
@@ -268,7 +268,7 @@ _TABLE: dict[str, Callable[[], Any]] = {
 
 @dataclass(frozen=True)
 class _Sums:
-    """Squared errors of position, speed and course (3,) and scans, of all and after turns."""
+    """Squared errors of position, speed and course (3,) and scans, overall and after turns."""
 
     squared: np.ndarray
     scans: int
@@ -307,9 +307,9 @@ def run(
     Parameters
     ----------
     runs, seed : int
-        Of the Monte Carlo runs. Each stretch has as many of them as make up `runs`, rounded up.
+        Of the Monte Carlo runs, divided among the segments and rounded up.
     full : bool
-        Also how much the tuning matters.
+        Also the effect of tuning.
     threads : int, optional
         Default as many as there are processors.
     progress : bool
@@ -319,7 +319,7 @@ def run(
     -------
     Report
         Scenarios are the radars. Errors are root mean squares over all vessels, runs and scans from
-        30 s after the start on; those that begin with ``after_turn_`` are over the scans of
+        30 s after the start; those with the prefix ``after_turn_`` cover the scans of
         :func:`after_turn`.
     """
     run_numbers(runs, seed, threads)
@@ -340,7 +340,7 @@ def run(
 
 
 def _totals(done: Mapping[tuple[str, str, str], _Sums]) -> dict[tuple[str, str], _Sums]:
-    """Sums over all stretches of each estimator under each radar, of which all are done."""
+    """Sums over all segments of each estimator under each radar, if all are done."""
     parts: dict[tuple[str, str], list[_Sums]] = {}
     for (radar, name, _), sums in done.items():
         parts.setdefault((radar, name), []).append(sums)
@@ -389,11 +389,11 @@ def _note(totals: Mapping[tuple[str, str], _Sums], each: int) -> str:
     minutes = sum(truth.end_time_s for truth in vessels().values()) / 60.0
     sums = next(iter(totals.values()))
     return (
-        f"{len(vessels())} stretches of {len(set(map(_vessel, vessels())))} vessels, "
+        f"{len(vessels())} segments of {len(set(map(_vessel, vessels())))} vessels, "
         f"{minutes:.0f} min in all, {many(each, 'run')} of each; "
         f"{100.0 * sums.scans_after / sums.scans:.0f} % of the scans are after a turn: at most\n"
-        f"{AFTER_TURN_S:.0f} s after the course changed by more than {TURN_RATE_DEG_S:g}°/s "
-        f"in the mean of {_WINDOW_S:.0f} s."
+        f"{AFTER_TURN_S:.0f} s after the course changed by more than {TURN_RATE_DEG_S:g}°/s, "
+        f"averaged over {_WINDOW_S:.0f} s."
     )
 
 
@@ -404,7 +404,7 @@ def _pictures(rows: Rows, seed: int) -> tuple[Picture, ...]:
     return (
         Picture(
             "solent-map",
-            "Vessels off Portsmouth, 12 January 2016, seen from Gilkicker Point",
+            "Vessels off Portsmouth, 12 January 2016, relative to Gilkicker Point",
             (_draw_map,),
             size_in=(6.4, 8.8),
             shared=False,
@@ -460,7 +460,7 @@ def _vessel(stretch: str) -> str:
 
 
 def _draw_track(ax: Axes, radar: str, seed: int) -> Axes:
-    """The part of a stretch with the most turning, as the shown estimators see it."""
+    """The part of a segment with the most turning, with the tracks of the shown estimators."""
     scene = next(one for one in scenes(radar) if one.name.endswith(_SHOWN_STRETCH))
     z, built = scene.draw(1, seed), estimators()
     count = int(_SHOWN_S // scene.radar.period_s)

@@ -1,4 +1,4 @@
-"""Vessels of a recording by AIS where they are under way, alike in every study of them."""
+"""Vessels of an AIS recording while under way, common to the studies of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LEAST_SPEED_MPS, MAX_GAP_S = 2.0, 25.0
 def stretches(track: AisTrack) -> Iterator[AisTrack]:
     """The parts of a track, of two reports or more, in which the vessel makes way and is heard.
 
-    She makes more than 2 m/s on a course that is told, without a gap over 25 s.
+    It makes more than 2 m/s with a reported course, without a gap over 25 s.
     """
     for gapless in track.parts(MAX_GAP_S):
         moving = (gapless.speed_mps > LEAST_SPEED_MPS) & np.isfinite(gapless.course_rad)

@@ -1,9 +1,8 @@
-"""Navigation of an unmanned surface vessel by IMU, GNSS and compass, with biases nobody knows.
+"""Navigation of an unmanned surface vessel by IMU, GNSS and compass, with unknown biases.
 
-"Sensor system information processing in unmanned navigation applications" (P. S. Evsyukov,
-O. N. Andreeva, V. V. Khanychev): a mission of 800 m by 800 m in a current, an unscented Kalman
-filter of five states. Ours estimates the biases of the IMU as well, and stands beside the least
-errors that any estimator can have.
+"Sensor system information processing in unmanned navigation applications" (P. S. Evsyukov, O. N.
+Andreeva, V. V. Khanychev): a mission of 800 m by 800 m in a current, an unscented Kalman filter of
+five states. Ours also estimates the biases of the IMU, and is compared with the Cramér-Rao bound.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ METRICS = (*_ERRORS, "nees", *(f"second_half_{metric}" for metric in _ERRORS))
 DEFAULT = "ukf8"
 SHOWN = "current_0.5"
 
-# What a navigator believes before it knows anything, the defaults of `wl.UsvNavigator`.
+# Prior of a navigator, the defaults of `wl.UsvNavigator`.
 PRIOR_STD = np.array(
     [8.0, 7.0, 0.5, 0.5, np.deg2rad(1.0), 0.05, 0.05, np.deg2rad(0.5)]
 )  # [north, east, v_north, v_east, heading, forward bias, starboard bias, gyro bias]
@@ -60,13 +59,13 @@ REFERENCE = Published(
         ("current_0.5", "ukf5_printed_noise"): (5.93, 4.74, 0.094, *[_NAN] * 4),
     },
 )
-NOTE = """Unscented and extended filter agree here to the digits shown: over a step the motion
-hardly bends. NEES is that of position, velocity and heading, 5 where a filter knows its errors.
-Every filter begins at the true place, the bound averages over a start that errs: over the whole
-mission a filter may lie below it, and the second half is the fair comparison. ukf5_known_bias, the
-paper's filter, is given the biases, which no vessel knows; ukf8 is not. ukf7_current knows that
-speed through water and current never change, which the bound does not. Errors hardly depend on the
-current: that the paper's fall with it is chance."""
+NOTE = """Unscented and extended filter agree to the digits shown, because the motion is nearly
+linear over a step. NEES is that of position, velocity and heading, 5 for a consistent filter. Every
+filter starts at the true position, the bound averages over initial errors: over the whole mission a
+filter may be below it, and the second half is the fair comparison. ukf5_known_bias, the paper's
+filter, is given the biases; ukf8 estimates them. ukf7_current assumes that speed through water and
+current never change, the bound does not. Errors hardly depend on the current; that the paper's fall
+with it is chance."""
 
 
 # The missions and the estimators ------------------------------------------------------------------
@@ -75,8 +74,8 @@ current: that the paper's fall with it is chance."""
 def missions() -> dict[str, UsvMission]:
     """The paper's three currents and its two tidal streams.
 
-    In a stream as fast as herself a vessel that follows bearings is carried past her waypoint for
-    good; there she points up into it.
+    In a current as fast as itself a vessel that follows bearings never reaches its waypoint; there
+    it points up into the current.
     """
     return {
         f"current_{current}": UsvMission(
@@ -87,7 +86,7 @@ def missions() -> dict[str, UsvMission]:
 
 
 class Estimator(NamedTuple):
-    """A navigator and what it is told.
+    """A navigator and its options.
 
     Attributes
     ----------
@@ -95,29 +94,29 @@ class Estimator(NamedTuple):
     filter : str
     options : mapping
         Of `wl.UsvNavigator`.
-    told_bias : bool
-        Whether the biases are taken off its IMU.
+    known_bias : bool
+        Whether the biases are subtracted from its IMU's readings.
     smooth : bool
     """
 
     states: int
     filter: str
     options: Mapping[str, float] = {}
-    told_bias: bool = False
+    known_bias: bool = False
     smooth: bool = False
 
 
 # The paper rejects nothing.
 _NO_GATE = {"gate_probability": 1.0 - 1e-12, "rejections": 0}
 _STEADY = {"speed_walk_mps": 1e-4, "current_walk_mps": 1e-4}
-# The paper's figures of the IMU, read as printed: variances.
+# The paper's figures of the IMU as printed: variances.
 _PRINTED = {
     "acceleration_std_mps2": np.sqrt(0.004),
     "yaw_rate_std_rad_s": np.deg2rad(np.sqrt(0.033)),
 }
 
 ESTIMATORS = {
-    "ukf5_known_bias": Estimator(5, "ukf", told_bias=True),
+    "ukf5_known_bias": Estimator(5, "ukf", known_bias=True),
     "ukf5_no_bias": Estimator(5, "ukf", _NO_GATE),
     "ukf8": Estimator(8, "ukf"),
     "ekf8": Estimator(8, "ekf"),
@@ -125,7 +124,7 @@ ESTIMATORS = {
     "smoother8": Estimator(8, "ekf", smooth=True),
 }
 IN_FULL = {
-    "ukf5_printed_noise": Estimator(5, "ukf", _PRINTED, told_bias=True),
+    "ukf5_printed_noise": Estimator(5, "ukf", _PRINTED, known_bias=True),
     "ukf8_turned_at_start": Estimator(8, "ukf", {"turned_at": 0.0}),
     "augmented_ukf8": Estimator(8, "augmented_ukf"),
 }
@@ -134,7 +133,7 @@ IN_FULL = {
 def navigate(estimator: Estimator, mission: UsvMission, logs: UsvLogs, run: int) -> Any:
     """The beliefs of an estimator along a run, an `UsvRun`.
 
-    It begins at the true place and heading, with the velocity through the water.
+    It starts at the true position and heading, with the velocity through the water.
     """
     truth = mission.voyage
     heading = truth.heading_rad[0]
@@ -142,7 +141,7 @@ def navigate(estimator: Estimator, mission: UsvMission, logs: UsvLogs, run: int)
     navigator.start(truth.position_m[0], truth.velocity_mps[0] - mission.current, heading)
     return navigator.run(
         truth.time_s,
-        logs.imu[run] - np.array(mission.imu_bias) * estimator.told_bias,
+        logs.imu[run] - np.array(mission.imu_bias) * estimator.known_bias,
         logs.gnss[run],
         logs.compass[run],
         gnss_std_m=mission.gnss_std_m,
@@ -151,7 +150,7 @@ def navigate(estimator: Estimator, mission: UsvMission, logs: UsvLogs, run: int)
     )
 
 
-# What they are off by -----------------------------------------------------------------------------
+# Errors -------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -163,7 +162,7 @@ class Outcome:
     squared : ndarray (T, 3)
         Of north and east m², and of the heading in degrees².
     nees : ndarray (T,) or None
-        Normalised squared error of position, velocity and heading.
+        Normalized squared error of position, velocity and heading.
     """
 
     squared: np.ndarray
@@ -192,7 +191,7 @@ def evaluate(estimator: Estimator, mission: UsvMission, logs: UsvLogs) -> Outcom
 
 
 def raw(mission: UsvMission, logs: UsvLogs) -> Outcome:
-    """What GNSS and compass are off by when nothing is made of them."""
+    """Errors of GNSS and compass alone."""
     truth = mission.voyage
     error = np.concatenate(
         [
@@ -205,9 +204,9 @@ def raw(mission: UsvMission, logs: UsvLogs) -> Outcome:
 
 
 def motion_of(mean: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(T, 5) and (T, 5, 5) of [north, east, v_north, v_east, heading], of a belief of any states.
+    """(T, 5) and (T, 5, 5) of [north, east, v_north, v_east, heading] from any belief.
 
-    With 7 states the velocity over ground is that through the water and the current.
+    With 7 states the velocity over ground is the sum of that through the water and the current.
     """
     if mean.shape[1] != 7:
         return mean[:, :5], covariance[:, :5, :5]
@@ -237,8 +236,7 @@ def _shown(error: np.ndarray) -> np.ndarray:
 
 
 class Bound(NamedTuple):
-    """Cramér-Rao bounds of eight states: covariances (T, 8, 8) with what was read until then, and
-    with all that is read on the mission."""
+    """Cramér-Rao bounds of eight states: covariances (T, 8, 8) of filter and smoother."""
 
     filtered: np.ndarray
     smoothed: np.ndarray
@@ -317,8 +315,8 @@ def run(
     runs, seed : int
         Of the Monte Carlo runs.
     full : bool
-        Also the paper's filter with its figures of the IMU read as variances, ours with its
-        accelerations turned by the heading at the start of a step, and with augmented noise.
+        Also the paper's filter with its figures of the IMU as variances, ours with accelerations
+        rotated by the heading at the start of a step, and with augmented noise.
     threads : int, optional
         Default as many as there are processors.
     progress : bool
@@ -400,7 +398,7 @@ def _pictures(done: Mapping[tuple[str, str], Outcome], seed: int) -> tuple[Pictu
         ),
         Picture(
             "usv-biases",
-            "The biases of the IMU as they are found, with two standard deviations",
+            "The estimated biases of the IMU, with two standard deviations",
             tuple(
                 partial(_draw_bias, mission=mission, beliefs=beliefs, axis=axis)
                 for axis in range(len(_BIASES))

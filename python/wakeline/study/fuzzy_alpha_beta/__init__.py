@@ -1,8 +1,8 @@
-"""The narrow strobe: a bank of lines through plots, chosen by a fuzzy machine, on a hard turn.
+"""The narrow strobe: a bank of lines through plots with a fuzzy choice, on a hard turn.
 
-"Multi-model tracking of moving vessels with a fuzzy criterion of maneuver detection",
-V. M. Grinyak, M. V. Trofimov. The paper asks how wide a strobe must be to hold a small craft
-through a turn of 300 m radius, and finds about 22 m at 10 m/s and 27 m at 20 m/s.
+"Multi-model tracking of moving vessels with a fuzzy criterion of maneuver detection", V. M.
+Grinyak, M. V. Trofimov. How wide must a strobe be to hold a small craft through a turn of 300 m
+radius? The paper reports about 22 m at 10 m/s and 27 m at 20 m/s.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ SUMMARY = "a fuzzy choice among lines through plots, in a strobe little wider th
 
 GATES_M = {"10mps_r300": 18.0, "20mps_r300": 27.0, "20mps_r600": 22.0}
 SETTLED = 10  # scans before errors count
-_START_STD = (1000.0, 30.0)  # m and m/s: a start that knows nothing
+_START_STD = (1000.0, 30.0)  # m and m/s: an uninformative start
 _CURVE_GATES_M = np.arange(8.0, 51.0, 2.0)
 _CURVE_RUNS = 200
 
@@ -56,15 +56,15 @@ REFERENCE = Published(
         ("20mps_r600", "imm"): (15.1, 18.9, 2.15, _NAN),
     },
 )
-NOTE = """The gate radius of a run is its largest distance from the predicted position to the plot
+NOTE = """The gate radius of a run is the largest distance from the predicted position to the plot
 after scan 10. The paper's 22 and 27 m fit two turns of the same rate, 10 m/s at 300 m and 20 m/s
-at 600 m. At 20 m/s and 300 m as printed the turn is twice as fast, and the fuzzy choice falls
-behind by 40 m: its usual residual has been inflated by the turn itself."""
+at 600 m. At 20 m/s and 300 m as printed the turn rate is twice as high, and the fuzzy choice lags
+by 40 m: the turn itself inflates its usual residual."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What an estimator makes of the runs of a scenario.
+    """Results of an estimator on the runs of a scenario.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Outcome:
         Distances from the predicted position to the plot and to the truth, and from the estimate
         to the truth; NaN where there was no prediction.
     window : ndarray (R, T) or None
-        Plots that the estimate goes through, in the mean of its modes.
+        Number of plots in the estimate's line, averaged over its modes.
     """
 
     innovation_m: np.ndarray
@@ -81,12 +81,12 @@ class Outcome:
     window: np.ndarray | None
 
     def gate_m(self) -> np.ndarray:
-        """(R,) least radius of a strobe that would have held every plot after scan 10."""
+        """(R,) minimum radius of a strobe with every plot after scan 10 inside."""
         return self.innovation_m[:, SETTLED:].max(axis=1)
 
 
 def evaluate(estimator: Any, scenario: HardTurn, runs: HardTurnRuns) -> Outcome:
-    """An estimator on all runs, without a gate, started by the first plot alone."""
+    """An estimator on all runs, without a gate, started from the first plot."""
     plots_m = curves.place_m(runs.z)
     done = estimator.run(
         runs.z,
@@ -108,10 +108,10 @@ def evaluate(estimator: Any, scenario: HardTurn, runs: HardTurnRuns) -> Outcome:
 def loss_probability(
     estimator: Any, scenario: HardTurn, runs: HardTurnRuns, gate_m: float
 ) -> float:
-    """Share of the runs in which the loop is lost: three plots in a row outside the gate.
+    """Share of the runs that lose the track: three consecutive plots outside the gate.
 
-    The loop is closed: a plot outside a circle of ``gate_m`` about the predicted position is
-    missed. It begins with the first two plots.
+    The loop is closed: a plot outside a circle of ``gate_m`` around the predicted position is
+    missed. It starts with the first two plots.
     """
     sensor, period_s = scenario.sensor, scenario.period_s
     done = estimator.run(
@@ -148,8 +148,8 @@ def run(
     progress : bool
         Whether to draw a bar where stderr is a terminal.
     video_runs : int, optional
-        Runs of each scenario on simulated radar video, from strobe to track; default one for every
-        50 of `runs`, 10 at most.
+        Runs of each scenario on simulated radar video, from strobe to track; default one per 50 of
+        `runs`, at most 10.
 
     Returns
     -------
@@ -242,7 +242,7 @@ def _rows(
 
 
 def _video_rows(scenarios: dict[str, HardTurn], films: dict[str, list[on_video.VideoRun]]) -> Rows:
-    """Errors of the runs in which the craft is not lost, and the share of those in which it is."""
+    """Errors of the runs that keep the track, and the share of runs that lose it."""
     rows = []
     for case, runs in films.items():
         begin_s, _ = scenarios[case].turn_s
@@ -266,8 +266,8 @@ def _video_rows(scenarios: dict[str, HardTurn], films: dict[str, list[on_video.V
 
 
 def _video_note(runs: int) -> str:
-    return f"""Runs on video: {runs} of each scenario; errors there are those of the runs in which
-the craft is not lost."""
+    return f"""Runs on video: {runs} of each scenario; errors there are those of the runs that keep
+    the track."""
 
 
 def _median_worst(error_m: np.ndarray) -> float:

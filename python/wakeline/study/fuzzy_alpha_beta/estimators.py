@@ -18,7 +18,7 @@ LABELS = {
 
 
 def estimators() -> dict[str, Any]:
-    """By name; Monte Carlo on other runs than those reported has set the IMM's noises."""
+    """By name; the IMM's noises were tuned on other runs than those reported."""
     straight = wl.ConstantVelocity(noise=wl.WhiteAcceleration(psd_m2s3=5e-4))
     turning = wl.CoordinatedTurnRate(
         noise=wl.WhiteAcceleration(psd_m2s3=0.014),
@@ -40,5 +40,5 @@ def estimators() -> dict[str, Any]:
 
 
 def window_lengths(estimator: Any) -> np.ndarray | None:
-    """(K,) plots that each mode goes through, of an estimator that draws lines through plots."""
+    """(K,) number of plots of each mode of an estimator of lines through plots."""
     return getattr(estimator, "plots_of_mode", None)

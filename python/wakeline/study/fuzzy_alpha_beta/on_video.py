@@ -1,8 +1,8 @@
-"""The same turn once more, from radar video: the strobe is laid on the picture, scan by scan.
+"""The same turn from radar video: the strobe is placed on the picture, scan by scan.
 
-At 20 km the beam of a coastal radar is wider than the strobe, and the centre of mass in the strobe
-is little more than its middle. Here the craft is 10 km off and the beam as narrow as three cells,
-so that its echo fits into the strobe.
+At 20 km the beam of a coastal radar is wider than the strobe, and the centroid in the strobe is
+close to the strobe's center. Here the craft is 10 km away and the beam only three cells wide, so
+that its echo fits into the strobe.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from wakeline.study import curves
 
 from .estimators import estimators
 
-LOST_AFTER = 3  # misses in a row
+LOST_AFTER = 3  # consecutive misses
 RANGE_M = 10_000.0
 LEAST_AMPLITUDE = 40  # above all but one in a hundred cells of the sea
-# How far the centre of mass lies from the craft, found with strobes around the truth.
+# Standard deviation of the centroid from the craft, measured with strobes around the truth.
 SENSOR = wl.ConvertedRangeBearing(range_std_m=2.2, bearing_std_rad=2.5 / RANGE_M)
 _SNR_DB, _CLUTTER_TO_NOISE_DB = 12.0, 4.0
 _BEAM_CELLS = 3.0
@@ -33,7 +33,7 @@ _MARGIN_M = 120.0
 
 @dataclass
 class Loop:
-    """One estimator that follows one craft on video; arrays over scans, NaN after a loss.
+    """One estimator tracking one craft on video; arrays over scans, NaN after a loss.
 
     Attributes
     ----------
@@ -41,10 +41,10 @@ class Loop:
     gate_m : float
         Radius of the strobe.
     predicted_m, measured_m, estimate_m : list of (2,) arrays
-        North and east: middle of the strobe, centre of mass in it (NaN where there was none), and
-        the estimate after it.
+        North and east: center of the strobe, centroid in it (NaN without one), and the estimate
+        afterwards.
     misses : int
-        In a row, at present.
+        Current number of consecutive misses.
     """
 
     estimator: Any
@@ -59,7 +59,7 @@ class Loop:
         return self.misses >= LOST_AFTER
 
     def take(self, turn: RadarVideo, period_s: float) -> None:
-        """Predict, lay the strobe on a turn, and take what is in it."""
+        """Predict, place the strobe on a revolution, and update with the plot in it."""
         unknown = np.full(2, np.nan)
         if self.lost:
             self.predicted_m.append(unknown)
@@ -84,11 +84,11 @@ class VideoRun:
     Attributes
     ----------
     time_s : ndarray (T,)
-        When the beam passed the craft.
+        Times at which the beam passed the craft.
     truth : ndarray (T, 4)
     loops : mapping of str to Loop
     last : RadarVideo
-        The last turn.
+        The last revolution.
     """
 
     time_s: np.ndarray
@@ -102,9 +102,9 @@ class VideoRun:
 
 
 def follow(situation: HardTurn, gate_m: float, seed: int) -> VideoRun:
-    """Simulate a recording and let every estimator follow the craft through it.
+    """Simulate a recording and let every estimator track the craft in it.
 
-    The first two plots come from wide strobes around the truth, as of an operator who points at the
+    The first two plots come from wide strobes around the truth, as if an operator designated the
     craft.
     """
     scene = video_scene(situation, seed)
@@ -132,7 +132,7 @@ def follow(situation: HardTurn, gate_m: float, seed: int) -> VideoRun:
 
 
 def video_scene(situation: HardTurn, seed: int) -> VideoScene:
-    """The small craft among sea clutter, so near that its echo fits into the strobe."""
+    """The small craft in sea clutter, so near that its echo fits into the strobe."""
     near = replace(situation, range_m=RANGE_M)
     scene = small_craft_scene(seed, situation=near, margin_m=_MARGIN_M, beam_cells=_BEAM_CELLS)
     sea = replace(scene.radar.sea, clutter_to_noise_db=_CLUTTER_TO_NOISE_DB)
@@ -140,7 +140,7 @@ def video_scene(situation: HardTurn, seed: int) -> VideoScene:
 
 
 def strobe(turn: RadarVideo, around_m: np.ndarray, radius_m: float) -> np.ndarray | None:
-    """Range and bearing of the centre of mass in a round strobe; None where there is nothing."""
+    """Range and bearing of the centroid in a circular strobe; None without an echo."""
     echo = wl.gating.strobe_echo(
         turn,
         wl.RadiusGate(radius_m=radius_m),

@@ -42,7 +42,7 @@ def pictures(
     losses: Mapping[Of, np.ndarray],
     films: Mapping[str, Sequence[VideoRun]],
 ) -> tuple[Picture, ...]:
-    """Those of the paper, then how wide a gate must be, and how often a track is lost in one."""
+    """The paper's figures, then the required gates and the losses."""
     traced = {case: _trace(scenarios[case], runs) for case, runs in drawn.items()}
     return (
         Picture(
@@ -53,7 +53,7 @@ def pictures(
         ),
         Picture(
             "fuzzy-echo",
-            "The echo of a craft of 15 m among sea clutter, 20 km off",
+            "The echo of a craft of 15 m in sea clutter, 20 km away",
             (_draw_echo,),
             size_in=(6.4, 4.6),
         ),
@@ -78,7 +78,7 @@ def pictures(
         ),
         Picture(
             "fuzzy-gates",
-            "Gate radius that would have held every plot: half of the runs, and 95 %",
+            "Gate radius with every plot inside: median and 95 % of the runs",
             tuple(partial(_draw_gates, case=case, outcomes=outcomes) for case in scenarios),
             size_in=(11.0, 3.2),
             columns=3,
@@ -86,7 +86,7 @@ def pictures(
         ),
         Picture(
             "fuzzy-losses",
-            "Closed loop: share of runs lost by the radius of the gate",
+            "Closed loop: share of lost runs over the gate radius",
             tuple(
                 partial(_draw_losses, case=case, gates_m=gates_m, losses=losses)
                 for case in scenarios
@@ -107,7 +107,7 @@ def pictures(
 
 
 class _Trace(NamedTuple):
-    """One run: scans from the first on that was foretold."""
+    """One run: scans from the first predicted one."""
 
     time_s: np.ndarray
     innovation_m: dict[str, np.ndarray]
@@ -238,7 +238,7 @@ def _draw_losses(ax: Axes, case: str, gates_m: np.ndarray, losses: Mapping[Of, n
 
 
 def _draw_film(ax: Axes, film: VideoRun) -> Axes:
-    """The last turn around the craft, and over it the strobes of the last scans."""
+    """The last revolution around the craft, with the strobes of the last scans."""
     loop = film.loops["fuzzy_improved"]
     north_m, east_m = film.truth[-1, ::2]
     measured_m = np.array(loop.measured_m)

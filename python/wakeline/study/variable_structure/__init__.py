@@ -1,4 +1,4 @@
-"""Paper B: an IMM of five models against three models whose turn rates move with the vessel.
+"""Paper B: an IMM of five models against three models with adaptive turn rates.
 
 Le Minh Hoang, A. A. Konovalov, Dao Van Luc, "Tracking of maneuvering targets using a variable
 structure multiple model algorithm", J. Russian Universities. Radioelectronics, 2023, 26(3), 77-89.
@@ -29,9 +29,9 @@ SUMMARY = "IMM of five models against moving grids of three, paper B: AGMM and S
 
 RANDOM_SCENARIOS = 24
 NOTE = (
-    "The paper's mean position errors of AGMM and SGMM lie on or below the bound of an estimator\n"
-    "that is told every turn. Runs start at the true state, while the bound takes the start to be\n"
-    "known to 10 m and 1 m/s only: as long as that is remembered, an estimator can be below it."
+    "The paper's mean position errors of AGMM and SGMM are at or below the bound of an estimator\n"
+    "that knows every turn. Runs start at the true state, while the bound assumes initial errors\n"
+    "of 10 m and 1 m/s: as long as these have an influence, an estimator can be below it."
 )
 
 
@@ -48,11 +48,10 @@ def run(
     Parameters
     ----------
     runs, seed : int
-        Of the Monte Carlo runs. Each of the 24 random scenarios has as many of them as make up
-        `runs`, rounded up.
+        Of the Monte Carlo runs; the 24 random scenarios share them, rounded up.
     full : bool
-        Also what the outcome hangs on: turn rates beside the grid, noise, thresholds, what is not
-        printed, a start from plots.
+        Also the dependence on turn rates off the grid, noise, thresholds, unprinted parameters, and
+        a start from plots.
     threads : int, optional
         Default as many as there are processors.
     progress : bool

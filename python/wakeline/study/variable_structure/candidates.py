@@ -1,4 +1,4 @@
-"""The estimators of the study and what each is told."""
+"""The estimators of the study and their parameters."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PLAIN_LABELS = {
     "likely_model_set": "LMS",
     "imm9": "IMM9",
     "mode_history_known": "histories, known rates",
-    "mode_history_rates": "histories, own rates",
+    "mode_history_rates": "histories, learnt rates",
     "clairvoyant": "clairvoyant",
     "agmm_printed": "AGMM as printed",
     "sgmm_printed": "SGMM as printed",
@@ -53,7 +53,7 @@ _BETWEEN_WEIGHT = 0.3
 
 @dataclass(frozen=True)
 class Setting:
-    """What the estimators are told about an example.
+    """Parameters of the estimators in an example.
 
     Attributes
     ----------
@@ -87,12 +87,12 @@ def imm9(setting: Setting, form: str) -> Candidate:
 
 
 def agmm(setting: Setting, form: str) -> Candidate:
-    """Three models whose turn rates move, at the library's defaults."""
+    """Three models with adaptive turn rates, with the library's defaults."""
     return Candidate(wl.AdaptiveGridImm(_turning(form)), form)
 
 
 def agmm_printed(setting: Setting, form: str, **options: Any) -> Candidate:
-    """The same by the rules and thresholds of the paper; what is not printed has its default."""
+    """The same by the rules and thresholds of the paper; unprinted parameters have defaults."""
     printed = {
         "max_turn_rate_rad_s": np.deg2rad(setting.agmm_max_deg_s),
         "centre_threshold": 0.3,
@@ -106,12 +106,12 @@ def agmm_printed(setting: Setting, form: str, **options: Any) -> Candidate:
 
 
 def sgmm(setting: Setting, form: str) -> Candidate:
-    """A window of three models on a fixed grid, at the library's defaults."""
+    """A window of three models on a fixed grid, with the library's defaults."""
     return Candidate(wl.SwitchingGridImm(_turning(form)), form)
 
 
 def sgmm_printed(setting: Setting, form: str, **options: Any) -> Candidate:
-    """The same on the IMM's five rates with the paper's threshold; the places keep estimates."""
+    """The same on the IMM's five rates with the paper's threshold, estimates kept by place."""
     printed = {"threshold": 0.7, "carry": "slot"}
     grid_rad_s = np.deg2rad(setting.imm5_deg_s)
     window = wl.SwitchingGridImm(_turning(form), grid_rad_s, **(printed | options))
@@ -119,7 +119,7 @@ def sgmm_printed(setting: Setting, form: str, **options: Any) -> Candidate:
 
 
 def likely_model_set(setting: Setting, form: str) -> Candidate:
-    """The likely ones of several models, at the library's defaults."""
+    """The likely ones of several models, with the library's defaults."""
     return Candidate(wl.LikelyModelSetImm(_turning(form)), form)
 
 
@@ -142,13 +142,13 @@ def mode_history_known(setting: Setting, form: str) -> Candidate:
 
 
 def mode_history_rates(setting: Setting, form: str) -> Candidate:
-    """The same, whose histories begin a turn at one of the rates and learn their own."""
+    """The same; histories begin a turn at one of the rates and learn the rate."""
     tree = wl.ModeHistory(learning_filter(_NOISE[form]), np.deg2rad(_NINE_DEG_S))
     return Candidate(tree, form)
 
 
 def unmixed(setting: Setting, form: str) -> dict[str, Candidate]:
-    """IMM5, and estimators of its rates and its chain that mix less and less."""
+    """IMM5, and estimators with its rates and its chain that mix less and less."""
     filter, rates_rad_s = _turning(form), np.deg2rad(setting.imm5_deg_s)
     chain = wl.ModeChain(sticky_chain(len(rates_rad_s), _STAY))
     apart = partial(

@@ -1,4 +1,4 @@
-"""What the covariances of the estimators are worth: their NEES beside its band, scan by scan."""
+"""Consistency of the estimators: their NEES and its band, scan by scan."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from wakeline import eval, metrics, montecarlo
 _STATES, _CONFIDENCE = 4, 0.95
 _SOON_SCANS = 10
 _HEAD = """\
-NEES without the three scans after each switch, 4 is right; share of these scans whose mean over
-the runs is below and above its 95 % band; in brackets, above within ten scans after a switch:"""
+NEES without the three scans after each switch (consistent: 4); share of these scans whose mean
+over the runs is below and above its 95 % band; in brackets, above within ten scans of a switch:"""
 
 
 class Worth(NamedTuple):
-    """Figures of the NEES over the scans that are not within three of a switch.
+    """Figures of the NEES without the three scans after each switch.
 
     Shares of these scans: ``below`` and ``above`` the 95 % band of the mean of the runs, and
     ``soon``, above and within ten scans after a switch.
@@ -34,13 +34,13 @@ class Worth(NamedTuple):
 
 
 def worth(outcomes: Sequence[montecarlo.Outcome]) -> Worth:
-    """The figures of one estimator, means of those on each scenario; NaN where no run was done."""
+    """The figures of one estimator, averaged over the scenarios; NaN without a run."""
     each = [_worth(outcome) for outcome in outcomes if outcome.runs]
     return Worth(*np.mean(each or [[np.nan] * 4], axis=0).tolist())
 
 
 def note(results: Mapping[str, montecarlo.Result]) -> str:
-    """A line an estimator, with its figures on each group of scenarios."""
+    """One line per estimator, with its figures on each group of scenarios."""
     names = next(iter(results.values())).candidates
     columns = [["", *names]]
     for group, result in results.items():

@@ -44,7 +44,7 @@ _IN_ROBUSTNESS = (
 
 @dataclass(frozen=True)
 class _Influence:
-    """What the centre model of an estimator does by the value of one of its thresholds."""
+    """The center model of an estimator for several values of a threshold."""
 
     letter: str
     field: str
@@ -100,7 +100,7 @@ def pictures_of(
 
 
 def robustness_picture(rows: Rows) -> Picture:
-    """Mean position error over the bound, by turn rates and by noise."""
+    """Mean position error divided by the bound, by turn rates and by noise."""
     return Picture(
         "robustness",
         "Example 1 with other turn rates, finer radars: mean position RMSE over the bound",
@@ -184,7 +184,7 @@ def _group_pictures(
 def _draw_modes(
     ax: Axes, example: Scenario, candidate: Candidate, label: str, z: np.ndarray, legend: bool
 ) -> Axes:
-    """Probability of each rate of IMM5, to which that of the nearest rates is added."""
+    """Probability of each rate of IMM5, with that of the nearest rates added."""
     found = candidate(example, z)
     moving = found.turn_rate_rad_s
     rates_rad_s = candidate.rates(example) if moving is None else moving

@@ -1,4 +1,4 @@
-"""What the outcome hangs on: turn rates, noise, thresholds, what is not printed, the start."""
+"""Dependence on turn rates, noise, thresholds, unprinted parameters, and the start."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from . import candidates
 from .candidates import POLAR, SETTINGS, Setting
 
 RATES = {"on": 1.0, "between": 0.75, "outside": 1.5}
-"""By what the turn rates of example 1 are multiplied to lie on, between, outside the IMM's own."""
+"""Factors that put the turn rates of example 1 on, between and outside the IMM's rates."""
 NOISES = (1.0, 0.3, 0.1)
-"""By what both errors of the radar are multiplied."""
+"""Factors of both errors of the radar."""
 FIRST = {
     "even": (1 / 3, 1 / 3, 1 / 3),
     "half": (0.25, 0.5, 0.25),
@@ -60,7 +60,7 @@ def swept() -> Iterator[tuple[Scenario, dict[str, Any]]]:
 
 
 def _turning(example: Scenario, times: float) -> scenario.Truth:
-    """The truth of an example with all its turn rates so many times as large."""
+    """The truth of an example with all turn rates multiplied by a factor."""
     segments = [
         replace(segment, turn_rate_rad_s=times * segment.turn_rate_rad_s)
         for segment in example.truth.segments
@@ -77,11 +77,10 @@ def _finer(radar: scenario.RadarSimulator, times: float) -> scenario.RadarSimula
 
 
 def _variants(setting: Setting) -> dict[str, Candidate]:
-    """The printed rules, with other thresholds, with other choices of what is not printed.
+    """The printed rules, with other thresholds and other unprinted parameters.
 
-    Rates of AGMM are in degrees a second, first probabilities those of `FIRST`. `agmm_kept` and
-    `agmm_patient` have one each of two of the additions that the library's defaults make to the
-    rules.
+    Rates of AGMM are in degrees per second, first probabilities those of `FIRST`. `agmm_kept` and
+    `agmm_patient` each have one of two additions to the rules in the library's defaults.
     """
     first = {name: {"initial_mode_probability": given} for name, given in FIRST.items()}
     adaptive = {
@@ -121,8 +120,8 @@ def _variants(setting: Setting) -> dict[str, Candidate]:
 
 
 def moves(runs: int, seed: int) -> str:
-    """How often the centre model moves in a run, by the thresholds."""
-    lines = ["Moves of the centre model in a run, mean of the runs:"]
+    """Number of moves of the center model in a run, by threshold."""
+    lines = ["Moves of the center model in a run, mean of the runs:"]
     for name in ("example1", "example2"):
         example, setting = scenario.named(name), SETTINGS[name]
         z = example.draw(runs, seed)
@@ -142,7 +141,7 @@ def moves(runs: int, seed: int) -> str:
 
 
 def survey(runs: int, seed: int, threads: int | None) -> str:
-    """How often random settings of AGMM and of SGMM have a lower mean error than IMM5."""
+    """Share of random settings of AGMM and SGMM with a lower mean error than IMM5."""
     ratios = {}
     for name in ("example1", "example2"):
         example, setting = scenario.named(name), SETTINGS[name]
@@ -152,14 +151,14 @@ def survey(runs: int, seed: int, threads: int | None) -> str:
         ).summary()[example.name]
         imm5_m = figures["imm5"]["mean_position_m"]
         ratios[name] = {k: figures[k]["mean_position_m"] / imm5_m for k in drawn if k != "imm5"}
-    lines = [f"Mean position error over IMM5's, of {_SURVEY} random settings of everything else:"]
+    lines = [f"Ratio of the mean position error to IMM5's, for {_SURVEY} random settings:"]
     for kind in ("agmm", "sgmm"):
         each = np.array([[of[f"{kind}-{k}"] for k in range(_SURVEY)] for of in ratios.values()])
         less = (each < 1.0).all(axis=0).mean()
         least, middle = each.min(axis=1), np.median(each, axis=1)
         lines.append(
             f"  {kind.upper()}: less in both examples {less:.0%}, least {least[0]:.2f} and "
-            f"{least[1]:.2f}, in the middle {middle[0]:.2f} and {middle[1]:.2f}"
+            f"{least[1]:.2f}, median {middle[0]:.2f} and {middle[1]:.2f}"
         )
     return "\n".join(lines)
 
@@ -195,7 +194,7 @@ def _drawn(setting: Setting) -> dict[str, Candidate]:
 
 @dataclass(frozen=True)
 class _FromPlots:
-    """A candidate that starts from the first two plots, which stand for its first two estimates."""
+    """A candidate started from the first two plots, which replace its first two estimates."""
 
     estimator: Any
     sensor: Any
@@ -215,12 +214,12 @@ class _FromPlots:
 
 
 def _led_by(start: np.ndarray, later: np.ndarray) -> np.ndarray:
-    """Values (R, T + 2, ...) of which the first two are those of the start."""
+    """Values (R, T + 2, ...), the first two from the start."""
     return np.concatenate([start[:, np.newaxis], start[:, np.newaxis], later], axis=1)
 
 
 def _from_plots(example: Scenario, setting: Setting) -> dict[str, _FromPlots]:
-    """IMM5 with each form of the measurement and the same process noise."""
+    """IMM5 with each form of the measurements and the same process noise."""
     radar = example.radar
     unbiased = wl.ConvertedRangeBearing(
         range_std_m=radar.range_std_m, bearing_std_rad=radar.bearing_std_rad, unbiased=True
