@@ -1,4 +1,4 @@
-"""What the documentation says, holds: its Python runs and its links lead somewhere."""
+"""The documentation: its programs run, its links and file names exist, its figures hold."""
 
 import re
 import runpy
@@ -15,12 +15,22 @@ ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "cpp/docs").rglob("*.md"))]
 
 
-def test_the_python_of_the_readme_runs(tmp_path, capsys):
-    (block,) = re.findall(r"```python\n(.*?)```", PAGES[0].read_text(), flags=re.DOTALL)
-    script = tmp_path / "readme.py"
-    script.write_text(block)
-    runpy.run_path(str(script))
-    assert "(58, 4)" in capsys.readouterr().out
+def block_of_the_readme(language):
+    (block,) = re.findall(rf"```{language}\n(.*?)```", PAGES[0].read_text(), flags=re.DOTALL)
+    return block
+
+
+def test_the_python_of_the_readme_ends_in_a_picture(tmp_path, monkeypatch):
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "readme.py").write_text(block_of_the_readme("python"))
+    runpy.run_path("readme.py")
+    assert (tmp_path / "joyride.png").stat().st_size > 10_000
+
+
+def test_the_cpp_of_the_readme_is_an_example_that_ctest_runs():
+    example = (ROOT / "cpp/examples/imm.cpp").read_text()
+    assert example.endswith("\n\n" + block_of_the_readme("cpp"))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
