@@ -11,15 +11,15 @@
 
 namespace wakeline {
 
-/// The row or column that has no partner.
+/// Marks a row or column without a partner.
 inline constexpr int kUnassigned = -1;
 
-/// Which row (track) goes with which column (plot), one to one, and what that costs. Memory is
-/// taken once, in the constructor.
+/// A one-to-one assignment of rows (tracks) to columns (plots) and its cost. Memory is allocated in
+/// the constructor only.
 template <class Scalar = double>
 class Assignment {
  public:
-  /// Room for problems of up to this size. Throws `std::invalid_argument` when a capacity is
+  /// Capacity for problems of up to this size. Throws `std::invalid_argument` when a capacity is
   /// negative.
   Assignment(int row_capacity, int column_capacity) {
     require_not_negative("row_capacity", row_capacity);
@@ -33,7 +33,7 @@ class Assignment {
            static_cast<std::size_t>(columns) <= row_of_column_.size();
   }
 
-  /// Starts over with every row and column unassigned, at cost zero. The size must fit.
+  /// Resets to every row and column unassigned, at cost zero. The size must fit.
   void clear(int rows, int columns) noexcept {
     rows_ = static_cast<std::size_t>(rows);
     columns_ = static_cast<std::size_t>(columns);
@@ -44,7 +44,7 @@ class Assignment {
     unassigned_cost_ = Scalar(0);
   }
 
-  /// Pairs a row and a column that are both free.
+  /// Assigns a free row to a free column.
   void pair(int row, int column, Scalar cost) noexcept {
     column_of_row_[static_cast<std::size_t>(row)] = column;
     row_of_column_[static_cast<std::size_t>(column)] = row;
@@ -52,7 +52,7 @@ class Assignment {
     ++pairs_;
   }
 
-  /// Accounts for a row that stays unassigned.
+  /// Adds the cost of a row that stays unassigned.
   void leave_out(Scalar cost) noexcept { unassigned_cost_ += cost; }
 
   /// The column of each row, or `kUnassigned`.
@@ -64,9 +64,9 @@ class Assignment {
     return {row_of_column_.data(), columns_};
   }
   [[nodiscard]] int pairs() const noexcept { return pairs_; }
-  /// Cost of the pairs alone.
+  /// Cost of the assigned pairs only.
   [[nodiscard]] Scalar pair_cost() const noexcept { return pair_cost_; }
-  /// Cost of the pairs plus the unassigned costs of the rows left out.
+  /// Cost of the pairs plus the unassigned costs of the other rows.
   [[nodiscard]] Scalar total_cost() const noexcept { return pair_cost_ + unassigned_cost_; }
 
  private:

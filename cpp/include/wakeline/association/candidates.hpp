@@ -12,8 +12,8 @@
 
 namespace wakeline {
 
-/// Which plots may belong to which track, and at what cost: a sparse matrix of gated costs in
-/// compressed rows.
+/// The plots that each track may be associated with, and at what cost: a sparse matrix of gated
+/// costs in compressed rows.
 ///
 /// A row is a track, a column a plot. Costs may have any sign; only their differences to the row's
 /// unassigned cost matter (NIS + ln det S against the gate threshold, or a negative log-likelihood
@@ -23,13 +23,13 @@ namespace wakeline {
 ///     for each track: candidates.start_row(cost_of_a_miss);
 ///                     for each plot in its gate: candidates.add(plot, cost);
 ///
-/// All memory is taken in the constructor. When a capacity is used up the list keeps what it has,
-/// refuses what comes after, says so (`false`) and counts it (`refused()`): the problem that is
-/// left is smaller but sound.
+/// All memory is allocated in the constructor. When a capacity is used up, further candidates are
+/// rejected with `false` and counted in `rejected()`; the smaller problem remains valid.
 template <class Scalar = double>
 class Candidates {
  public:
-  /// Room for this many rows and candidates. Throws `std::invalid_argument` when one is negative.
+  /// Capacity for this many rows and candidates. Throws `std::invalid_argument` when one is
+  /// negative.
   Candidates(int row_capacity, int candidate_capacity) {
     require_not_negative("row_capacity", row_capacity);
     require_not_negative("candidate_capacity", candidate_capacity);
@@ -39,8 +39,8 @@ class Candidates {
     cost_.resize(static_cast<std::size_t>(candidate_capacity));
   }
 
-  /// Room for every pair of this many rows and columns. Throws `std::invalid_argument` when one is
-  /// negative, or there are more pairs than an int counts.
+  /// Capacity for every pair of this many rows and columns. Throws `std::invalid_argument` when one
+  /// is negative or there are more pairs than an `int` can count.
   [[nodiscard]] static Candidates dense(int row_capacity, int column_capacity) {
     require_not_negative("row_capacity", row_capacity);
     require_not_negative("column_capacity", column_capacity);
@@ -50,23 +50,23 @@ class Candidates {
     return Candidates(row_capacity, row_capacity * column_capacity);
   }
 
-  /// Forgets all rows; the rows to come choose from columns 0 .. columns - 1.
+  /// Removes all rows; the rows added next choose from columns 0 .. columns - 1.
   void clear(int columns) noexcept {
     columns_ = columns > 0 ? columns : 0;
     rows_ = 0;
-    refused_ = 0;
+    rejected_ = 0;
     open_ = false;
   }
 
-  /// Opens the next row, which may stay without a column at this cost.
+  /// Starts the next row, which may stay without a column at this cost.
   ///
-  /// False when the row capacity is used up (there is no such row), or when the cost is not finite
-  /// (the row is there, but stays empty); then candidates are refused until the next row.
+  /// False when the row capacity is used up (the row is not added) or when the cost is not finite
+  /// (the row is added but stays empty); candidates are then rejected until the next row.
   bool start_row(Scalar unassigned_cost) noexcept {
     using std::isfinite;
     if (rows_ == row_capacity()) {
       open_ = false;
-      ++refused_;
+      ++rejected_;
       return false;
     }
     open_ = isfinite(unassigned_cost);
@@ -76,15 +76,15 @@ class Candidates {
     return open_;
   }
 
-  /// Adds a candidate to the open row. Each column at most once a row, in any order.
+  /// Adds a candidate to the current row; each column at most once per row, in any order.
   ///
-  /// False, and nothing added, when the candidate capacity is used up, no row is open, the column
-  /// is out of range or the cost is not finite.
+  /// False, and nothing added, when the candidate capacity is used up, there is no current row, the
+  /// column is out of range or the cost is not finite.
   bool add(int column, Scalar cost) noexcept {
     using std::isfinite;
     if (!open_ || size() == candidate_capacity() || column < 0 || column >= columns_ ||
         !isfinite(cost)) {
-      ++refused_;
+      ++rejected_;
       return false;
     }
     int& end = row_start_[at(rows_)];
@@ -98,17 +98,17 @@ class Candidates {
   [[nodiscard]] int columns() const noexcept { return columns_; }
   /// Number of candidates in all rows.
   [[nodiscard]] int size() const noexcept { return row_start_[at(rows_)]; }
-  /// Number of rows and candidates refused since `clear`.
-  [[nodiscard]] int refused() const noexcept { return refused_; }
+  /// Number of rows and candidates rejected since `clear`.
+  [[nodiscard]] int rejected() const noexcept { return rejected_; }
   [[nodiscard]] int row_capacity() const noexcept {
     return static_cast<int>(unassigned_cost_.size());
   }
   [[nodiscard]] int candidate_capacity() const noexcept { return static_cast<int>(cost_.size()); }
 
-  /// What it costs to leave the row without a column.
+  /// Cost of leaving the row without a column.
   [[nodiscard]] Scalar unassigned_cost(int row) const noexcept { return unassigned_cost_[at(row)]; }
 
-  /// The row's candidate columns, in the order in which they were added.
+  /// The row's candidate columns, in the order of `add`.
   [[nodiscard]] std::span<const int> columns_of(int row) const noexcept {
     return {column_.data() + row_start_[at(row)], length(row)};
   }
@@ -130,7 +130,7 @@ class Candidates {
   std::vector<Scalar> cost_;
   int rows_ = 0;
   int columns_ = 0;
-  int refused_ = 0;
+  int rejected_ = 0;
   bool open_ = false;
 };
 

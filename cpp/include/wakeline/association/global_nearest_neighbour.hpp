@@ -15,14 +15,14 @@ namespace wakeline {
 
 /// The optimal assignment on gated sparse costs: minimises, over all one-to-one pairings,
 ///
-///     Σ cost(row, column) of the pairs + Σ unassigned_cost(row) of the rows left out.
+///     Σ cost(row, column) of the pairs + Σ unassigned_cost(row) of the other rows.
 ///
-/// Columns carry prices; a row wants the column of least cost + price, or to stay out. Rows first
-/// bid in turn, raising the price of a contested column to where the winner would do as well
-/// elsewhere; the few rows still in conflict then enter by a shortest augmenting path (Dijkstra on
-/// reduced costs) that ends at a free column or at a row that steps out. Prices and assignment stay
-/// complementary throughout, which proves the optimum. Exact up to the rounding of sums of costs;
-/// deterministic; among equally cheap assignments which one depends on the order of rows.
+/// Columns have prices; a row prefers the column of least cost + price, or no column. Rows first
+/// bid in turn, which raises the price of a contested column to the winner's point of indifference.
+/// Rows still in conflict are then added by a shortest augmenting path (Dijkstra on reduced costs)
+/// that ends at a free column or at a row that becomes unassigned. Prices and assignment satisfy
+/// complementary slackness throughout, which proves optimality. Exact up to the rounding of sums of
+/// costs; deterministic; ties are broken by the order of rows.
 ///
 /// Sources: R. Jonker, A. Volgenant, A Shortest Augmenting Path Algorithm for Dense and Sparse
 /// Linear Assignment Problems, Computing 38, 1987; D. P. Bertsekas, The Auction Algorithm, Annals
@@ -30,7 +30,7 @@ namespace wakeline {
 template <class Scalar = double>
 class GlobalNearestNeighbour {
  public:
-  /// Takes all memory. Throws `std::invalid_argument` when a capacity is negative.
+  /// Allocates all memory. Throws `std::invalid_argument` when a capacity is negative.
   GlobalNearestNeighbour(int row_capacity, int column_capacity)
       : assignment_(row_capacity, column_capacity),
         column_of_row_(static_cast<std::size_t>(row_capacity)),
@@ -65,18 +65,18 @@ class GlobalNearestNeighbour {
     return true;
   }
 
-  /// The assignment `solve` has found last.
+  /// The result of the last `solve`.
   [[nodiscard]] const Assignment<Scalar>& assignment() const noexcept { return assignment_; }
 
  private:
-  /// A free column has price zero; an owned one is among its owner's cheapest choices.
+  /// A free column has price zero; an assigned one is among its row's cheapest choices.
   struct Column {
     Scalar price = Scalar(0);
     Scalar owner_cost = Scalar(0);
     int owner = kUnassigned;
   };
 
-  /// How the current search has reached a column.
+  /// How the current search reached a column.
   struct Visit {
     Scalar distance = Scalar(0);
     Scalar cost = Scalar(0);  // of the pair (from_row, this column)
@@ -85,7 +85,7 @@ class GlobalNearestNeighbour {
     int place = kSettled;  // index in the frontier
   };
 
-  /// Where the shortest path found so far ends: at a free column, or at a row that steps out.
+  /// End of the shortest path found so far: a free column, or a row that becomes unassigned.
   struct PathEnd {
     Scalar distance;
     int row;
@@ -103,8 +103,8 @@ class GlobalNearestNeighbour {
     column_of_row_[at(row)] = column;
   }
 
-  /// Gives the row its cheapest choice; a row evicted by that bids next. A row that ties, or comes
-  /// when the evictions are used up (many rows that fight for few columns), is left to `augment`.
+  /// Assigns the row to its cheapest choice; the row evicted by that bids next. A row with a tie,
+  /// or without evictions left (many rows competing for few columns), is left to `augment`.
   void bid(const Candidates<Scalar>& candidates, int row) noexcept {
     while (true) {
       const auto columns = candidates.columns_of(row);
@@ -134,8 +134,8 @@ class GlobalNearestNeighbour {
     waiting_rows_.push_back(row);
   }
 
-  /// Brings in one row by the shortest augmenting path, and raises the prices of the columns
-  /// settled on the way.
+  /// Adds one row by the shortest augmenting path and raises the prices of the columns settled on
+  /// it.
   void augment(const Candidates<Scalar>& candidates, int row) noexcept {
     ++search_;
     frontier_.clear();
@@ -191,8 +191,8 @@ class GlobalNearestNeighbour {
     }
   }
 
-  // The frontier is a binary heap of columns by distance, ties by column; each visit knows its
-  // place in it.
+  // The frontier is a binary heap of columns by distance, ties by column; each visit stores its
+  // index.
 
   [[nodiscard]] bool nearer(int a, int b) const noexcept {
     const Scalar& distance_a = visits_[at(a)].distance;

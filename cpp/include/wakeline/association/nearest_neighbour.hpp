@@ -13,16 +13,15 @@
 
 namespace wakeline {
 
-/// Greedy assignment: the cheapest pair of all first, then the cheapest of what is left. Equal
-/// costs go by row, then by column. A row is left out rather than paired at its unassigned cost or
-/// more.
+/// Greedy assignment: repeatedly the cheapest remaining pair. Ties are broken by row, then by
+/// column. A row is left unassigned when a pair would cost its unassigned cost or more.
 ///
 /// Sorting dominates: O(n log n) for n candidates. Not optimal; `GlobalNearestNeighbour` is, and
 /// never costs more.
 template <class Scalar = double>
 class NearestNeighbour {
  public:
-  /// Takes all memory. Throws `std::invalid_argument` when a capacity is negative.
+  /// Allocates all memory. Throws `std::invalid_argument` when a capacity is negative.
   NearestNeighbour(int row_capacity, int column_capacity, int candidate_capacity)
       : assignment_(row_capacity, column_capacity) {
     require_not_negative("candidate_capacity", candidate_capacity);
@@ -57,7 +56,7 @@ class NearestNeighbour {
     return true;
   }
 
-  /// The assignment `solve` has found last.
+  /// The result of the last `solve`.
   [[nodiscard]] const Assignment<Scalar>& assignment() const noexcept { return assignment_; }
 
  private:

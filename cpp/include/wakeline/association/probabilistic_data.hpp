@@ -14,18 +14,18 @@
 
 namespace wakeline {
 
-/// Probabilistic data association (PDA): how likely each gated plot is the target's own, and how
-/// likely none is.
+/// Probabilistic data association (PDA): the probability of each gated plot to be the target's, and
+/// that no plot is.
 ///
 /// With N(ν_i; 0, S_i) the Gaussian likelihood of plot i and λ the clutter density,
 ///
-///     β_0 ∝ 1 - P_D P_G        none of the plots is the target's
+///     β_0 ∝ 1 - P_D P_G        no plot is the target's
 ///     β_i ∝ P_D N(ν_i; 0, S_i) / λ
 ///
 /// Source: Bar-Shalom, Li, Multitarget-Multisensor Tracking, 1995, section 3.4 (parametric PDA).
 struct ProbabilisticData {
-  double detection_probability = 0.9;  ///< P_D, that the target gives a plot at all
-  double gate_probability = 0.99;      ///< P_G, that its plot falls inside the gate
+  double detection_probability = 0.9;  ///< P_D, that the target is detected
+  double gate_probability = 0.99;      ///< P_G, that its plot is inside the gate
   /// λ, false plots per unit of measurement volume (per m² for a position): Poisson, the parametric
   /// form.
   double clutter_density = 1e-6;
@@ -38,8 +38,8 @@ struct ProbabilisticData {
     require_not_negative("clutter_density", clutter_density);
   }
 
-  /// The non-parametric form for a clutter density nobody knows: λ = m / V, m plots in a gate of
-  /// volume V > 0.
+  /// The non-parametric form for an unknown clutter density: λ = m / V, m plots in a gate of volume
+  /// V > 0.
   [[nodiscard]] ProbabilisticData with_clutter_from(int plots_in_gate,
                                                     double gate_volume) const noexcept {
     ProbabilisticData adapted = *this;
@@ -49,10 +49,10 @@ struct ProbabilisticData {
 
   /// β from ln N(ν_i; 0, S_i) of the n plots in the gate.
   ///
-  /// `probability` has n + 1 elements that sum to 1: [0] that none is the target's, [i + 1] that
-  /// plot i is. When all weights are zero (no clutter, certain detection, and no plot of positive
-  /// likelihood) none is. kNotFinite, and nothing written, when a log-likelihood is NaN or
-  /// +infinity, or a setting is not valid; likewise when `probability` has not n + 1 elements.
+  /// `probability` has n + 1 elements that sum to 1: [0] for no plot, [i + 1] for plot i. When all
+  /// weights are zero (no clutter, certain detection, no plot with positive likelihood), [0] is 1.
+  /// kNotFinite, and nothing written, when a log-likelihood is NaN or +infinity, a setting is
+  /// invalid, or `probability` does not have n + 1 elements.
   template <class Scalar>
   Status association_probability(std::span<const Scalar> log_likelihood,
                                  std::span<Scalar> probability) const noexcept {
@@ -62,7 +62,7 @@ struct ProbabilisticData {
     const std::size_t plots = log_likelihood.size();
     if (probability.size() != plots + 1) return Status::kNotFinite;
 
-    // Weights times λ, so that no clutter at all (λ = 0) is an ordinary case.
+    // Weights times λ, so that zero clutter (λ = 0) needs no special case.
     const Scalar log_none = static_cast<Scalar>(
         std::log((1.0 - detection_probability * gate_probability) * clutter_density));
     const Scalar log_detection = static_cast<Scalar>(std::log(detection_probability));
@@ -92,7 +92,7 @@ struct ProbabilisticData {
   }
 };
 
-/// The innovations of all gated plots as one: what the PDA update needs of them.
+/// The combined innovation of all gated plots, the input of the PDA update.
 template <int M, class Scalar = double>
 struct CombinedInnovation {
   Scalar none_probability = Scalar(1);           ///< β_0
@@ -101,7 +101,8 @@ struct CombinedInnovation {
   Mat<Scalar, M, M> spread = Mat<Scalar, M, M>::Zero();
 };
 
-/// Combines n innovations (angles wrapped) by their n + 1 association probabilities, [0] for none.
+/// Combines n innovations (angles wrapped) by their n + 1 association probabilities, [0] for no
+/// plot.
 ///
 /// The spread is summed about the mean, Σ_{i>=0} β_i (ν_i - ν)(ν_i - ν)ᵀ with ν_0 = 0, so that
 /// rounding cannot make it indefinite. Source: Bar-Shalom, Li 1995, section 3.4.
@@ -126,8 +127,8 @@ CombinedInnovation<M, Scalar> combine_innovations(std::span<const Vec<Scalar, M>
 ///     P = β_0 P⁻ + (1 - β_0) P⁺ + K (spread of innovations) Kᵀ
 ///
 /// `predicted` is x⁻, P⁻; `updated_covariance` is P⁺, the filter's covariance after an update with
-/// one certain plot; `gain` is K (N x M). With β_1 = 1 this is that update itself.
-/// Source: Bar-Shalom, Li 1995, section 3.4.
+/// one certain plot; `gain` is K (N x M). With β_1 = 1 the result is that update. Source:
+/// Bar-Shalom, Li 1995, section 3.4.
 template <int N, int M, class Scalar>
 Gaussian<N, Scalar> probabilistic_data_update(
     const Gaussian<N, Scalar>& predicted, const Mat<Scalar, N, N>& updated_covariance,

@@ -20,39 +20,40 @@
 
 namespace wakeline {
 
-/// R recordings of T scans with M numbers each, as plain memory in row-major order.
+/// R recordings of T scans with M numbers each, in the caller's memory, row-major.
 struct RunInput {
   std::size_t runs = 0;
   std::size_t scans = 0;
-  const double* z = nullptr;                  ///< (R, T, M); not a number: a missed scan
+  const double* z = nullptr;                  ///< (R, T, M); NaN for a missed scan
   const double* dt_s = nullptr;               ///< (T), before each scan
   const double* own_m = nullptr;              ///< (T, 2) north and east of own ship, or null
   const double* own_mps = nullptr;            ///< (T, 2) velocity of own ship, or null
   const double* acceleration_mps2 = nullptr;  ///< (T, 2) known acceleration, or null
-  const RadiusGate* gate = nullptr;           ///< of a `PositionSensor`, outside is missed; or null
+  const RadiusGate* gate =
+      nullptr;  ///< for a `PositionSensor`: a plot outside counts as missed; or null
 };
 
-/// Where the results of N states and K models go.
+/// Destination of the results of N states and K models, in the caller's memory.
 struct RunOutput {
   std::size_t states = 0;
-  std::size_t models = 0;              ///< 0 of a single filter
+  std::size_t models = 0;              ///< 0 for a single filter
   double* mean = nullptr;              ///< (R, T, N)
   double* covariance = nullptr;        ///< (R, T, N, N)
   double* mode_probability = nullptr;  ///< (R, T, K)
-  double* turn_rate_rad_s = nullptr;   ///< (R, T, K), where models change theirs
+  double* turn_rate_rad_s = nullptr;   ///< (R, T, K), for models with variable turn rates
   double* innovation = nullptr;        ///< (R, T, M)
   double* nis = nullptr;               ///< (R, T)
   double* log_likelihood = nullptr;    ///< (R, T)
   std::uint8_t* status = nullptr;      ///< (R, T)
 };
 
-/// True for an estimator whose models change their turn rates.
+/// True for an estimator with models of variable turn rates.
 template <class Estimator>
 inline constexpr bool kHasTurnRates = requires(const Estimator& estimator) {
   estimator.turn_rates_rad_s();
 };
 
-/// The sensor as own ship carries it at a scan.
+/// The sensor with own ship's position and velocity at a scan.
 template <class Sensor>
 Sensor seen_from(const Sensor& sensor, const RunInput& in, std::size_t scan) noexcept {
   Sensor moved = sensor;
@@ -69,9 +70,8 @@ Sensor seen_from(const Sensor& sensor, const RunInput& in, std::size_t scan) noe
   return moved;
 }
 
-/// Some runs, side by side in the lanes of a `Scalar`: run `first`, `first + 1`, ... Where there
-/// are fewer runs than lanes, the last one is run more than once, and its results are written as
-/// often.
+/// Several runs in the lanes of a `Scalar`: run `first`, `first + 1`, ... With fewer runs than
+/// lanes, the last run is repeated, and its results are written repeatedly.
 template <class Scalar>
 class RunLanes {
  public:
@@ -82,14 +82,14 @@ class RunLanes {
       row_[lane] = std::min(first + static_cast<std::size_t>(lane), in.runs - 1) * in.scans;
   }
 
-  /// Where the `size` numbers of a lane's run at a scan are, among those of all runs and scans.
+  /// Address of the `size` numbers of a lane's run at a scan, among those of all runs and scans.
   template <class Number>
   [[nodiscard]] Number* place(Number* of, std::size_t size, int lane,
                               std::size_t scan) const noexcept {
     return of + (row_[lane] + scan) * size;
   }
 
-  /// Number k of `size` that each run has at a scan.
+  /// Number k of the `size` numbers of each run at a scan.
   [[nodiscard]] Scalar load(const double* from, std::size_t size, std::size_t scan,
                             std::size_t k) const noexcept {
     return lanes_of<Scalar>(
@@ -102,10 +102,10 @@ class RunLanes {
   }
 
  private:
-  std::size_t row_[kLanes];  ///< of the first scan of each lane's run, among all runs and scans
+  std::size_t row_[kLanes];  ///< first scan of each lane's run, among all runs and scans
 };
 
-/// Where `size` numbers of each scan of some runs side by side go. There may be none.
+/// Destination of `size` numbers per scan of several runs side by side; may be null.
 template <class Scalar>
 class RunColumn {
  public:
@@ -114,8 +114,8 @@ class RunColumn {
       first_[lane] = size > 0 ? lanes.place(to, size, lane, 0) : nullptr;
   }
 
-  /// Begins to fetch the memory of a scan. To be called for each scan, though many share a line, so
-  /// that neither that nor its page is dropped.
+  /// Prefetches the memory of a scan. Called for every scan, though many share a cache line, so
+  /// that neither the line nor its page is evicted.
   [[gnu::always_inline]] void fetch(std::size_t scan) const noexcept {
     constexpr std::size_t kLine = 64 / sizeof(double);
     for (std::size_t k = 0; k < size_; k += kLine)
@@ -124,7 +124,7 @@ class RunColumn {
   }
 
   void write(std::size_t scan, const Scalar& number) const noexcept { write(scan, &number, 1); }
-  /// Column by column; of a covariance that is row by row.
+  /// Column by column; for a covariance the same as row by row.
   template <class Matrix>
   void write(std::size_t scan, const Eigen::PlainObjectBase<Matrix>& numbers) const noexcept {
     write(scan, numbers.data(), static_cast<std::size_t>(numbers.size()));
@@ -145,7 +145,7 @@ class RunColumn {
       for (int run = kLanes - 1; run >= 0; --run) *place(run, k) = double(lane(numbers[k], run));
   }
 
-  double* first_[kLanes];  ///< place of the first scan of each lane's run
+  double* first_[kLanes];  ///< address of the first scan of each lane's run
   std::size_t size_;
 };
 
@@ -162,7 +162,7 @@ auto estimated_position(const Estimator& estimator) noexcept {
     return position_of(belief).mean;
 }
 
-/// Sees nothing of a run.
+/// An observer of a run that does nothing.
 struct Unwatched {
   template <class Estimator>
   void predicted(std::size_t, const Estimator&) const noexcept {}
@@ -170,8 +170,8 @@ struct Unwatched {
   void updated(std::size_t, const Estimator&) const noexcept {}
 };
 
-/// A prediction under a known acceleration, apart: few recordings have one, and what is compiled
-/// into one function with all else would double it.
+/// A prediction under a known acceleration, not inlined: few recordings have one, and inlined it
+/// would double the code of the loop.
 template <class Estimator, class Scalar>
 [[gnu::flatten, gnu::noinline]] StatusOf<Scalar> predict_pushed(Estimator& estimator, Scalar dt_s,
                                                                 const double* push_mps2) noexcept {
@@ -179,10 +179,10 @@ template <class Estimator, class Scalar>
   return estimator.predict(dt_s, Vec<Scalar, 2>(push_mps2[0], push_mps2[1]));
 }
 
-/// Runs the recordings `first`, `first + 1`, ... through an estimator that has been started, one in
-/// each lane of its scalar. A step that fails is told in its status: a reading that cannot be taken
-/// leaves the prediction, a time that cannot leaves all as it was. No lane influences another.
-/// `watch` sees the estimator after each prediction and at the end of each scan.
+/// Runs the recordings `first`, `first + 1`, ... through a started estimator, one in each lane of
+/// its scalar. A failed step is reported in its status: a rejected reading leaves the prediction, a
+/// rejected time step leaves everything unchanged. Lanes are independent. `watch` is called after
+/// each prediction and at the end of each scan.
 template <class Estimator, class Sensor, class Watch = Unwatched>
 void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput& in,
                       std::size_t first, const RunOutput& out, const Watch& watch = {}) noexcept {
@@ -220,11 +220,11 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
     step.innovation.setConstant(kNaN);
     step.log_likelihood = kNaN;
     if (any(predicted && !missed)) {
-      // A reading that is not a number changes nothing in its lane.
+      // A NaN reading changes nothing in its lane.
       for (int m = 0; m < kM; ++m) z[m] = select(predicted && !missed, z[m], kNaN);
       const auto taken = estimator.update(seen, z);
       const Mask done = ok(taken.status) && predicted && !missed;
-      // Some estimators take no more than the position out of a reading.
+      // Some estimators use only the position of a reading.
       for (int m = 0; m < taken.innovation.size(); ++m)
         step.innovation[m] = select(done, taken.innovation[m], kNaN);
       step.nis = select(done, taken.nis, kNaN);
@@ -251,7 +251,7 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
   }
 }
 
-/// The same with every call inside compiled into one function, which is what lanes are fast in.
+/// The same with every call inlined into one function, which is fastest for lanes.
 template <class Estimator, class Sensor>
 [[gnu::flatten, gnu::noinline]] void run_lanes_side_by_side(Estimator& estimator,
                                                             const Sensor& sensor,
@@ -260,9 +260,9 @@ template <class Estimator, class Sensor>
   run_side_by_side(estimator, sensor, in, first, out);
 }
 
-/// All runs: `begin(first)` gives an estimator that has been started with the beliefs of the runs
-/// `first`, `first + 1`, ..., as many as its scalar has lanes. Results do not depend on the number
-/// of threads.
+/// All runs: `begin(first)` returns an estimator started with the beliefs of the runs `first`,
+/// `first + 1`, ..., as many as its scalar has lanes. Results do not depend on the number of
+/// threads.
 template <class Begin, class Sensor, class Pool = Threads>
 void run_batch(const Begin& begin, const Sensor& sensor, const RunInput& in, const RunOutput& out,
                const Pool& pool = {}) {

@@ -11,7 +11,7 @@
 
 namespace wakeline {
 
-/// Keeps what an Imm believes in each scan of a run.
+/// Stores the state of an Imm in each scan of a run.
 template <class Bank>
 struct KeepScans {
   std::vector<ImmScan<Bank>>& scans;
@@ -24,9 +24,9 @@ struct KeepScans {
   void updated(std::size_t scan, const Imm<Bank>& imm) const noexcept { scans[scan].updated = imm; }
 };
 
-/// Smooths the scans of a recording from its end. Where a step is so long that a covariance beyond
-/// it has no factor, nothing goes back over it: what was before is smoothed by itself. Returns what
-/// else hinders that, with the scans before it as they were.
+/// Smooths the scans of a recording backwards. A step so long that the predicted covariance has no
+/// factor separates two stretches that are smoothed independently. Returns the status of any other
+/// failure; the scans before it stay as filtered.
 template <class Bank>
 Status smooth_stretches(std::span<ImmScan<Bank>> scans,
                         std::span<const Vec<typename Bank::Scalar, 2>> acceleration_mps2) {
@@ -39,10 +39,9 @@ Status smooth_stretches(std::span<ImmScan<Bank>> scans,
   return Status::kOk;
 }
 
-/// Runs a recording through an Imm that has been started, and smooths it: mean, covariance and mode
-/// probability of each scan know the readings after it, too, up to a step over which nothing goes
-/// back (`smooth_stretches`). Returns what hinders that, with the scans before it as they were
-/// filtered.
+/// Runs a recording through a started Imm and smooths it: mean, covariance and mode probability of
+/// each scan use the later readings too, up to a step that separates stretches
+/// (`smooth_stretches`). Returns the status of a failure; the scans before it stay as filtered.
 template <class Bank, class Sensor>
 Status run_smoothed(Imm<Bank> imm, const Sensor& sensor, const RunInput& in, std::size_t run,
                     const RunOutput& out) {

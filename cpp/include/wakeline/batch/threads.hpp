@@ -11,12 +11,12 @@
 
 namespace wakeline {
 
-/// Threads that share the work of one call: this one, and others that live as long as it, as many
-/// as the system has of those wanted.
+/// Threads that share the work of one call: the calling one and others created for the call, up to
+/// the number wanted.
 ///
-/// What `run_batch` asks of a host's own pool is the same: `pool(count, work)` calls `work(k)` once
-/// for each k from 0 to count - 1, in any order and on any thread, and returns when all are done.
-/// `work` does not throw.
+/// A host's own pool has the same interface for `run_batch`: `pool(count, work)` calls `work(k)`
+/// once for each k from 0 to count - 1, in any order and on any thread, and returns when all are
+/// done. `work` does not throw.
 struct Threads {
   int count = 1;
 
@@ -38,7 +38,7 @@ struct Threads {
   }
 
  private:
-  /// Adds a thread that does some work; false where the system has no more of them.
+  /// Adds a thread; false when the system cannot create one.
   template <class Work>
   static bool start(std::vector<std::thread>& threads, const Work& work) {
 #if defined(__cpp_exceptions)

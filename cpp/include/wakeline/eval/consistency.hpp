@@ -11,11 +11,10 @@
 
 namespace wakeline {
 
-/// Normalised estimation error squared eᵀ P⁻¹ e of an error (N) and the covariance (N x N) claimed
-/// for it; chi-square with N degrees of freedom when the claim is true. NaN when P is not positive
-/// definite or an input not finite.
-/// Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation,
-/// 2001, section 5.4.2.
+/// Normalised estimation error squared eᵀ P⁻¹ e of an error (N) and its estimated covariance (N x
+/// N); chi-square with N degrees of freedom for a consistent estimator. NaN when P is not positive
+/// definite or an input is not finite. Source: Bar-Shalom, Li, Kirubarajan, Estimation with
+/// Applications to Tracking and Navigation, 2001, section 5.4.2.
 template <int N, class Scalar>
 [[nodiscard]] Scalar nees(const Vec<Scalar, N>& error,
                           const Mat<Scalar, N, N>& covariance) noexcept {
@@ -32,7 +31,7 @@ template <int M, class Scalar>
   return nees<M, Scalar>(innovation, innovation_covariance);
 }
 
-/// Where an average shall lie.
+/// Acceptance interval of an average.
 struct ConsistencyBounds {
   double lower = 0.0;
   double upper = 0.0;
@@ -44,9 +43,8 @@ struct ConsistencyBounds {
 
 /// Two-sided bounds of the average of `samples` independent NEES or NIS values with `dof` degrees
 /// of freedom each, which a consistent filter meets with probability `confidence`: χ²_{R n}
-/// quantiles at (1 ∓ confidence)/2, divided by R. NaN bounds (that contain nothing) unless 0 <
-/// confidence < 1, dof > 0 and samples > 0.
-/// Source: Bar-Shalom, Li, Kirubarajan 2001, section 5.4.2.
+/// quantiles at (1 ∓ confidence)/2, divided by R. NaN unless 0 < confidence < 1, dof > 0 and
+/// samples > 0. Source: Bar-Shalom, Li, Kirubarajan 2001, section 5.4.2.
 [[nodiscard]] inline ConsistencyBounds consistency_bounds(double confidence, int dof,
                                                           long samples) noexcept {
   const double total_dof = static_cast<double>(dof) * static_cast<double>(samples);
@@ -57,15 +55,14 @@ struct ConsistencyBounds {
           chi_square_quantile(1.0 - tail, total_dof) / static_cast<double>(samples)};
 }
 
-/// Average of NEES or NIS values as they come, and whether it is what a consistent filter would
-/// give.
+/// Running average of NEES or NIS values, and its acceptance interval for a consistent filter.
 class ConsistencyAverage {
  public:
   /// `dof`: N for NEES, M for NIS. Throws `std::invalid_argument` unless positive.
   explicit ConsistencyAverage(int dof) : dof_(dof) { require_positive("dof", dof); }
 
-  /// Counts one value. One that is not a number comes from a covariance that was not positive
-  /// definite: it makes the average NaN, so that the failure cannot hide.
+  /// Adds one value. NaN, the result of a covariance that is not positive definite, makes the
+  /// average NaN, so that the failure stays visible.
   void add(double value) noexcept {
     ++samples_;
     average_ += (value - average_) / static_cast<double>(samples_);
@@ -77,7 +74,7 @@ class ConsistencyAverage {
   /// value.
   [[nodiscard]] double average() const noexcept { return average_; }
 
-  /// The bounds for as many values as have been added; they must be independent, so from different
+  /// The bounds for the number of values added, which must be independent, i.e. from different
   /// runs.
   [[nodiscard]] ConsistencyBounds bounds(double confidence = 0.95) const noexcept {
     return consistency_bounds(confidence, dof_, samples_);

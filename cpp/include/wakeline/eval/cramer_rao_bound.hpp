@@ -15,35 +15,35 @@
 
 namespace wakeline {
 
-/// The posterior Cramér-Rao bound of a target whose motion is known: the covariance (N x N) that no
-/// unbiased estimator beats, conditional on the sequence of motion models and, where a model is not
-/// linear, on the true path.
+/// The posterior Cramér-Rao bound for known motion: the lower bound of the covariance (N x N) of
+/// any unbiased estimator, conditional on the sequence of motion models and, for a nonlinear model,
+/// on the true path.
 ///
 ///     predict:  P' = F P Fᵀ + Q
 ///     update:   P'⁻¹ = P⁻¹ + p Hᵀ R⁻¹ H
 ///
-/// with F, Q, H and R at the true state and p the chance that there is a reading at all. Taken as
-/// P' = L (I + p Bᵀ B)⁻¹ Lᵀ with P = L Lᵀ, R = U Uᵀ and B = U⁻¹ H L, which keeps P' symmetric and
-/// positive definite and inverts nothing. On a linear model it is the Kalman filter's covariance.
-/// No heap; a step that cannot be done says why and changes nothing.
-/// Source: Tichavsky, Muravchik, Nehorai, Posterior Cramér-Rao Bounds for Discrete-Time Nonlinear
-/// Filtering, IEEE Trans. Signal Processing 46(5), 1998, equation (21).
+/// with F, Q, H and R at the true state and p the probability of a measurement. Computed as P' = L
+/// (I + p Bᵀ B)⁻¹ Lᵀ with P = L Lᵀ, R = U Uᵀ and B = U⁻¹ H L, which keeps P' symmetric and positive
+/// definite without an inverse. For a linear model it is the Kalman filter's covariance. No heap; a
+/// step that fails returns its status and changes nothing. Source: Tichavsky, Muravchik, Nehorai,
+/// Posterior Cramér-Rao Bounds for Discrete-Time Nonlinear Filtering, IEEE Trans. Signal Processing
+/// 46(5), 1998, equation (21).
 template <int N, class Scalar = double>
 class CramerRaoBound {
  public:
   using Covariance = Mat<Scalar, N, N>;
 
-  /// Begins with the covariance of the prior. Throws `std::invalid_argument` unless it is finite,
+  /// Starts with the covariance of the prior. Throws `std::invalid_argument` unless it is finite,
   /// symmetric and positive definite.
   explicit CramerRaoBound(const Covariance& start_covariance) : covariance_(start_covariance) {
     if (check(Gaussian<N, Scalar>{Vec<Scalar, N>::Zero(), start_covariance}) != Status::kOk)
       refuse("start_covariance must be finite, symmetric and positive definite");
   }
 
-  /// (N x N), over the state of the motion.
+  /// (N x N), over the state of the motion model.
   [[nodiscard]] const Covariance& covariance() const noexcept { return covariance_; }
 
-  /// Moves on by a transition F and a process noise Q (N x N each).
+  /// Predicts with a transition F and a process noise Q (N x N each).
   [[nodiscard]] Status predict(const Covariance& transition,
                                const Covariance& process_noise) noexcept {
     Covariance moved = transition * covariance_ * transition.transpose() + process_noise;
@@ -51,7 +51,7 @@ class CramerRaoBound {
     return take(moved);
   }
 
-  /// Moves on by a motion model from the true state at the begin of the step.
+  /// Predicts with a motion model at the true state at the start of the step.
   template <MotionModel Motion>
   [[nodiscard]] Status predict(const Motion& motion, const StateOf<Motion, Scalar>& truth,
                                Scalar dt_s) noexcept {
@@ -60,7 +60,8 @@ class CramerRaoBound {
     return predict(transition_jacobian(motion, truth, dt_s), process_noise(motion, truth, dt_s));
   }
 
-  /// Takes a reading of Jacobian H (M x N) and noise R (M x M), `chance` in [0, 1] that it is made.
+  /// Updates with a measurement of Jacobian H (M x N) and noise R (M x M), made with probability
+  /// `chance` in [0, 1].
   template <int M>
   [[nodiscard]] Status update(const Mat<Scalar, M, N>& jacobian, const Mat<Scalar, M, M>& noise,
                               Scalar chance = Scalar(1)) noexcept {
@@ -78,8 +79,8 @@ class CramerRaoBound {
     return take(half.transpose() * half);
   }
 
-  /// Takes a reading of a sensor at the true state of a motion model's components. A converted
-  /// reading holds what the plot holds that it is made of.
+  /// Updates with a sensor at the true state. A converted measurement has the information of the
+  /// plot that it is computed from.
   template <MotionModel Motion, MeasurementModel Sensor>
   [[nodiscard]] Status update(const Sensor& sensor, const StateOf<Motion, Scalar>& truth,
                               Scalar chance = Scalar(1)) noexcept {

@@ -16,15 +16,15 @@
 
 namespace wakeline {
 
-/// One scan's distance between the true targets and the tracks. The three parts are p-th powers
-/// that add up: gospa^p = localisation + missed + false.
+/// Distance between the true targets and the tracks of one scan. The three parts are p-th powers:
+/// gospa^p = localisation + missed + false_tracks.
 struct SetDistance {
   double gospa = 0.0;         ///< in the unit of the distances
   double localisation = 0.0;  ///< Σ d^p of the pairs
   double missed = 0.0;        ///< c^p/2 for each target without a track
   double false_tracks = 0.0;  ///< c^p/2 for each track without a target
   double ospa = 0.0;          ///< in the unit of the distances, at most the cut-off
-  int pairs = 0;              ///< targets with a track nearer than the cut-off
+  int pairs = 0;              ///< targets with a track within the cut-off
 };
 
 /// GOSPA (alpha = 2) and OSPA of a set of targets and a set of tracks, with cut-off c and order p.
@@ -32,12 +32,11 @@ struct SetDistance {
 ///     gospa^p = min over pairings of  Σ d^p + c^p/2 (targets + tracks - 2 pairs)
 ///     ospa^p  = min over pairings of (Σ d^p + c^p (n - pairs)) / n,   n = max(targets, tracks)
 ///
-/// One optimal assignment serves both. Without targets and tracks all is zero. Distances at or
-/// beyond the cut-off, or not a number, pair nothing.
-/// Sources: A. S. Rahmathullah, A. F. Garcia-Fernandez, L. Svensson, Generalized Optimal
-/// Sub-Pattern Assignment Metric, Fusion 2017, proposition 1 (alpha = 2); D. Schuhmacher, B.-T. Vo,
-/// B.-N. Vo, A Consistent Metric for Performance Evaluation of Multi-Object Filters, IEEE Trans.
-/// Signal Processing 56(8), 2008, section III.
+/// One optimal assignment gives both. Two empty sets have distance zero. Distances that are NaN or
+/// not below the cut-off form no pair. Sources: A. S. Rahmathullah, A. F. Garcia-Fernandez, L.
+/// Svensson, Generalized Optimal Sub-Pattern Assignment Metric, Fusion 2017, proposition 1 (alpha =
+/// 2); D. Schuhmacher, B.-T. Vo, B.-N. Vo, A Consistent Metric for Performance Evaluation of
+/// Multi-Object Filters, IEEE Trans. Signal Processing 56(8), 2008, section III.
 class Gospa {
  public:
   using Matrix = Eigen::MatrixXd;
@@ -47,9 +46,9 @@ class Gospa {
     double order = 2.0;  ///< p >= 1
   };
 
-  /// Takes all memory, for up to this many targets and tracks. Throws `std::invalid_argument` when
-  /// the cut-off is not positive, the order below 1 or so high that c^p overflows or underflows, or
-  /// a capacity negative.
+  /// Allocates all memory for up to this many targets and tracks. Throws `std::invalid_argument`
+  /// when the cut-off is not positive, the order is below 1 or so large that c^p overflows or
+  /// underflows, or a capacity is negative.
   Gospa(const Options& options, int target_capacity, int track_capacity)
       : options_(options),
         candidates_(Candidates<double>::dense(target_capacity, track_capacity)),
@@ -83,7 +82,7 @@ class Gospa {
                    });
   }
 
-  /// Which track goes with which target in the last result: rows are targets, columns tracks.
+  /// The assignment of the last result: rows are targets, columns tracks.
   [[nodiscard]] const Assignment<double>& assignment() const noexcept {
     return solver_.assignment();
   }

@@ -13,14 +13,14 @@
 
 namespace wakeline {
 
-/// How sure a gate shall be to hold the target's own plot; one setting for measurements of every
+/// The probability that a gate contains the target's plot; one setting for measurements of every
 /// dimension.
 struct ChiSquareGate {
-  double probability = 0.99;  ///< P_G, that the target's own plot falls inside; in (0, 1)
+  double probability = 0.99;  ///< P_G, that the target's plot is inside the gate; in (0, 1)
 
-  /// Largest normalised innovation squared (NIS) inside the gate, for `dof` measured quantities.
-  /// NaN when the setting is not valid or dof is not positive. Computed anew at each call: a hot
-  /// loop keeps an `EllipsoidalGate`.
+  /// Largest normalised innovation squared (NIS) inside the gate for `dof` measured quantities. NaN
+  /// when the setting is invalid or dof is not positive. Computed at each call; a hot loop keeps an
+  /// `EllipsoidalGate`.
   [[nodiscard]] double threshold(int dof) const noexcept {
     return chi_square_quantile(probability, dof);
   }
@@ -53,8 +53,7 @@ class EllipsoidalGate {
   /// γ.
   [[nodiscard]] Scalar threshold() const noexcept { return threshold_; }
 
-  /// Whether a plot with this normalised innovation squared is inside; a NIS that is not a number
-  /// is not.
+  /// True when a plot with this normalised innovation squared is inside; false for NaN.
   [[nodiscard]] auto contains(const Scalar& nis) const noexcept { return nis <= threshold_; }
 
   /// Volume in the units of the measurement: V = c_M √(γ^M det S), c_M the volume of the unit ball;

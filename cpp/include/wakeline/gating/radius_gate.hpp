@@ -12,16 +12,15 @@
 
 namespace wakeline {
 
-/// A circular gate of fixed radius around a predicted position, as the trial-track stage of a
-/// console uses it; on radar video, a strobe.
+/// A circular gate of fixed radius about a predicted position, as used for tentative tracks; on
+/// radar video a strobe.
 struct RadiusGate {
   double radius_m = 100.0;
 
   /// Throws `std::invalid_argument` unless the radius is finite and positive.
   void validate() const { require_positive("radius_m", radius_m); }
 
-  /// Whether |plot - predicted| <= radius_m; both [north, east] in metres. A position that is not a
-  /// number is outside.
+  /// True when |plot - predicted| <= radius_m; both [north, east] in metres. False for NaN.
   template <class Scalar>
   [[nodiscard]] auto contains(const Vec<Scalar, 2>& predicted_m,
                               const Vec<Scalar, 2>& plot_m) const noexcept {
@@ -29,17 +28,18 @@ struct RadiusGate {
     return (plot_m - predicted_m).squaredNorm() <= radius * radius;
   }
 
-  /// Half the angle in which the antenna sees it, rad; NaN when the radius is negative or NaN.
+  /// Half the angle that the gate subtends at the antenna, rad; NaN when the radius is negative or
+  /// NaN.
   [[nodiscard]] double half_angle_rad(const Vec<double, 2>& predicted_m) const noexcept {
     return half_angle_of_box(predicted_m.norm(), radius_m, radius_m);
   }
 
-  /// What of the ray from the antenna at `bearing_rad` lies inside: |ρ u - p| <= r.
+  /// The part of the ray from the antenna at `bearing_rad` inside the gate: |ρ u - p| <= r.
   [[nodiscard]] StrobeChord chord(const Vec<double, 2>& predicted_m,
                                   double bearing_rad) const noexcept {
     const Vec<double, 2> u = towards(bearing_rad);
     const double miss =
-        predicted_m[0] * u[1] - predicted_m[1] * u[0];  // of the ray from the centre
+        predicted_m[0] * u[1] - predicted_m[1] * u[0];  // distance of the ray from the centre
     return StrobeChord::about(u.dot(predicted_m), std::sqrt(radius_m * radius_m - miss * miss));
   }
 

@@ -1,24 +1,24 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Connected-component labelling of the cells of a radar picture, sweep by sweep: what the strobe
-// and the plot extractor share. What they sum over the cells of an echo, and when an echo is
-// complete, differs: a strobe is evaluated at once on the stack, video is streamed.
+// Connected-component labelling of the cells of a radar picture, sweep by sweep, shared by the
+// strobe and the plot extractor. They differ in the sums over the cells of an echo and in when an
+// echo is complete: a strobe is evaluated at once on the stack, video is streamed.
 #pragma once
 
 #include <span>
 
 namespace wakeline::detail {
 
-/// Cells `first` to `last` of a sweep, and the label of the echo that they belong to.
+/// Cells `first` to `last` of a sweep and the label of their echo.
 struct LabelledRun {
   int first;
   int last;
   int label;
 };
 
-/// The runs of an earlier sweep, in order of range, compared with those of the present sweep, which
-/// come in order of range too: linear in the number of runs.
+/// The runs of an earlier sweep, to compare with those of the present one. Both are in order of
+/// range; the comparison is linear in the number of runs.
 class EarlierRuns {
  public:
   EarlierRuns() = default;
@@ -40,7 +40,7 @@ class EarlierRuns {
   const LabelledRun* end_ = nullptr;
 };
 
-/// The root of a label in a union-find whose parents are `int& parent(label)`; halves the path.
+/// The root of a label in a union-find with parents `int& parent(label)`; halves the path.
 template <class Parent>
 int find_root(int label, const Parent& parent) noexcept {
   while (parent(label) != label) label = parent(label) = parent(parent(label));

@@ -17,13 +17,14 @@
 
 namespace wakeline {
 
-/// The shape of a strobe: where about a predicted position the echo of a target is looked for. A
-/// ray from the antenna crosses it at most once. Positions are [north, east] from the antenna, m.
+/// The shape of a strobe: the region about a predicted position in which the echo of a target is
+/// searched. A ray from the antenna intersects it in one interval. Positions are [north, east] from
+/// the antenna, m.
 ///
 /// - `contains(predicted_m, point_m) -> bool`;
-/// - `half_angle_rad(predicted_m) -> double`: it lies within this angle of the prediction's
-///   bearing; pi is all round, NaN says that it is no shape;
-/// - `chord(predicted_m, bearing_rad) -> StrobeChord`: the ranges inside in that direction.
+/// - `half_angle_rad(predicted_m) -> double`: largest deviation of a bearing inside from the
+///   prediction's bearing; pi for all round, NaN for an invalid shape;
+/// - `chord(predicted_m, bearing_rad) -> StrobeChord`: the ranges inside on that bearing.
 ///
 /// `RadiusGate` is the circle.
 template <class Strobe>
@@ -34,7 +35,7 @@ concept StrobeShape = requires(const Strobe& strobe, const Vec<double, 2>& posit
   { strobe.chord(position, bearing_rad) } -> std::convertible_to<StrobeChord>;
 };
 
-/// The ellipse dᵀ S⁻¹ d <= γ about the prediction: the gate of an estimator laid on the picture.
+/// The ellipse dᵀ S⁻¹ d <= γ about the prediction: the gate of an estimator applied to the picture.
 struct CovarianceStrobe {
   Mat<double, 2, 2> innovation_covariance_m2 =
       Mat<double, 2, 2>::Identity();                ///< S, north and east
@@ -84,8 +85,8 @@ struct CovarianceStrobe {
   }
 };
 
-/// Ranges and bearings near the predicted ones, as the window of a plot extractor. Of a prediction
-/// at the antenna itself the bearing is north.
+/// A window of range and bearing about the prediction, as in a plot extractor. A prediction at the
+/// antenna has bearing north.
 struct RangeBearingWindow {
   double range_half_m = 100.0;
   double bearing_half_rad = deg(1.0);

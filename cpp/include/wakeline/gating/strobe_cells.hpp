@@ -12,18 +12,18 @@
 
 namespace wakeline {
 
-/// Cells `first` to `last` of a sweep; none when last < first.
+/// Cells `first` to `last` of a sweep; empty when last < first.
 struct CellSpan {
   int first = 0;
   int last = -1;
-  bool cut = false;  ///< there would be more, before the sweep's first cell or beyond its last
+  bool cut = false;  ///< the strobe extends past the first or the last cell of the sweep
 
   [[nodiscard]] int size() const noexcept { return std::max(0, last - first + 1); }
   [[nodiscard]] bool holds(int cell) const noexcept { return first <= cell && cell <= last; }
 };
 
-/// The cells of a picture whose centres lie inside a strobe, sweep by sweep: only the sweeps that
-/// the strobe can reach are looked at, and of each the cells come as one span. Keeps references.
+/// The cells of a picture whose centres are inside a strobe, sweep by sweep: one span of cells for
+/// each sweep within reach of the strobe. Keeps references.
 template <class Amplitude, StrobeShape Strobe>
 class StrobeCells {
  public:
@@ -33,16 +33,17 @@ class StrobeCells {
     find_rows();
   }
 
-  /// How many sweeps the strobe may reach. Neighbours in this order are neighbours in the picture.
+  /// Number of sweeps that the strobe may reach; consecutive rows are adjacent sweeps of the
+  /// picture.
   [[nodiscard]] int rows() const noexcept { return rows_; }
 
   /// The sweep of a row in 0 .. rows() - 1.
   [[nodiscard]] int sweep(int row) const noexcept { return (first_ + row) % image_.sweeps; }
 
-  /// True when the last row lies beside the first one, too.
+  /// True when the last row is also adjacent to the first one.
   [[nodiscard]] bool closes() const noexcept { return full_ && rows_ == image_.sweeps; }
 
-  /// The sweep `step` (1 or -1) beside this one, or -1 when the picture ends there.
+  /// The sweep `step` (1 or -1) away, or -1 at the end of the picture.
   [[nodiscard]] int beside(int sweep, int step) const noexcept {
     const int next = sweep + step;
     if (full_) return (next + image_.sweeps) % image_.sweeps;
@@ -61,12 +62,12 @@ class StrobeCells {
             first <= last && (first < 0.0 || last > end)};
   }
 
-  /// True when the strobe goes on beside the first or the last sweep of a sector.
+  /// True when the strobe extends past the first or the last sweep of a sector.
   [[nodiscard]] bool cut_sideways() const noexcept {
     return !full_ && (reaches(-1) || reaches(image_.sweeps));
   }
 
-  /// True when the prediction lies within the picture.
+  /// True when the prediction is inside the picture.
   [[nodiscard]] bool prediction_in_picture() const noexcept {
     const double cell = cell_at(predicted_m_.norm());
     return cell >= -0.5 && cell <= image_.cells - 0.5 &&
@@ -79,14 +80,14 @@ class StrobeCells {
     return cells.cut || cells.size() > 0;
   }
 
-  /// The cell at a range, as a real number: whole at the centre.
+  /// The cell at a range as a real number, integer at the centre of a cell.
   [[nodiscard]] double cell_at(double range_m) const noexcept {
     return (range_m - image_.start_range_m) / image_.cell_m - 0.5;
   }
 
   [[nodiscard]] double middle() const noexcept { return 0.5 * (image_.sweeps - 1); }
 
-  /// The sweep at the prediction's bearing, as a real number, the nearest such to the middle.
+  /// The sweep at the prediction's bearing as a real number, the one nearest to the middle.
   [[nodiscard]] double row_at_prediction() const noexcept {
     const double bearing = std::atan2(predicted_m_[1], predicted_m_[0]);
     const double middle_azimuth = image_.first_azimuth_rad + middle() * image_.azimuth_step_rad;
@@ -96,7 +97,8 @@ class StrobeCells {
   void find_rows() noexcept {
     const double end = image_.sweeps - 1.0;
     const double row = row_at_prediction();
-    // One more each way, for rounding and for a turn that is no whole number of steps.
+    // One more on each side, for rounding and for a full circle that is not a whole number of
+    // steps.
     const double half = strobe_.half_angle_rad(predicted_m_) / image_.azimuth_step_rad + 1.0;
     const double half_turn = kPi<double> / image_.azimuth_step_rad;
     first_ = 0;
@@ -106,7 +108,8 @@ class StrobeCells {
       const int from = static_cast<int>(std::ceil(row - half));
       first_ = (from % image_.sweeps + image_.sweeps) % image_.sweeps;
       rows_ = static_cast<int>(std::floor(row + half)) - from + 1;
-    } else if (std::abs(row - middle()) + half <= half_turn) {  // not round the sector's back
+    } else if (std::abs(row - middle()) + half <=
+               half_turn) {  // does not wrap around behind the sector
       first_ = static_cast<int>(std::clamp(std::ceil(row - half), 0.0, end));
       rows_ = static_cast<int>(std::clamp(std::floor(row + half), -1.0, end)) - first_ + 1;
       rows_ = std::max(rows_, 0);

@@ -11,13 +11,13 @@
 
 namespace wakeline {
 
-/// What of a ray from the antenna lies inside a strobe: the ranges from `near_m` to `far_m`.
+/// The part of a ray from the antenna inside a strobe: ranges from `near_m` to `far_m`.
 struct StrobeChord {
   double near_m = std::numeric_limits<double>::infinity();
   double far_m = -std::numeric_limits<double>::infinity();
 
-  /// The ranges within `half_m` of `centre_m`; none is below zero. Empty when half is negative or
-  /// not a number.
+  /// The ranges within `half_m` of `centre_m`, not below zero. Empty when `half_m` is negative or
+  /// NaN.
   [[nodiscard]] static StrobeChord about(double centre_m, double half_m) noexcept {
     if (!(half_m >= 0.0) || centre_m + half_m < 0.0) return {};
     return {std::max(0.0, centre_m - half_m), centre_m + half_m};
@@ -26,9 +26,8 @@ struct StrobeChord {
   [[nodiscard]] bool empty() const noexcept { return !(near_m <= far_m); }
 };
 
-/// Half the angle in which the antenna sees a strobe, at most: of a convex one at `range_m` that
-/// extends `along_m` each way along the line of sight and `across_m` each way square to it. All
-/// round (pi) when the antenna may be inside.
+/// Upper bound of half the angle that a convex strobe at `range_m` subtends at the antenna, given
+/// its half lengths along the line of sight and across it. pi when the antenna may be inside.
 inline double half_angle_of_box(double range_m, double along_m, double across_m) noexcept {
   if (!(along_m >= 0.0) || !(across_m >= 0.0)) return std::numeric_limits<double>::quiet_NaN();
   return range_m > along_m ? std::atan2(across_m, range_m - along_m) : kPi<double>;

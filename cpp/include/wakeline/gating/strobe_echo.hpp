@@ -23,20 +23,20 @@
 
 namespace wakeline {
 
-/// What a strobe has found. Up to `kCrowded` there is a measurement; where several of these hold,
-/// the later one is told, and `StrobeEcho` has each of them by itself.
+/// Result of a strobe. Up to `kCrowded` there is a measurement. Where several of these apply the
+/// status is the last one; `StrobeEcho` has each of them separately.
 enum class StrobeStatus : std::uint8_t {
-  kOk = 0,             ///< one echo, wholly inside
-  kCut = 1,            ///< part of the strobe lies outside the picture
-  kTouchesEdge = 2,    ///< the echo goes on beyond the strobe: only part of it was weighed
-  kSeveralEchoes = 3,  ///< there are two or more that do not touch
-  kCrowded = 4,        ///< too many to be told apart: the centre of mass of them all
-  kEmpty = 5,          ///< no cell inside counts
-  kOutside = 6,        ///< no cell of the picture lies inside, and the strobe reaches beyond it
-  kInvalid = 7,        ///< prediction, strobe or picture is not finite or makes no sense
+  kOk = 0,             ///< one echo, entirely inside
+  kCut = 1,            ///< part of the strobe is outside the picture
+  kTouchesEdge = 2,    ///< the echo extends past the strobe: only the part inside was measured
+  kSeveralEchoes = 3,  ///< two or more echoes that are not connected
+  kCrowded = 4,        ///< more echoes than can be separated: the centre of mass of all
+  kEmpty = 5,          ///< no cell inside exceeds the threshold
+  kOutside = 6,  ///< no cell of the picture is inside, and the strobe extends past the picture
+  kInvalid = 7,  ///< prediction, strobe or picture is not finite or invalid
 };
 
-/// The status in words, for messages and logs.
+/// The status as text, for messages and logs.
 constexpr const char* to_string(StrobeStatus status) noexcept {
   switch (status) {
     case StrobeStatus::kOk:
@@ -59,17 +59,17 @@ constexpr const char* to_string(StrobeStatus status) noexcept {
   return "unknown";
 }
 
-/// Which is measured of several echoes in one strobe.
+/// Which of several echoes in a strobe is measured.
 enum class EchoChoice : std::uint8_t {
-  kAll,        ///< the centre of mass of all, as the paper has it
-  kNearest,    ///< the one whose centre is nearest to the prediction
-  kStrongest,  ///< the one of the largest weight
+  kAll,        ///< the centre of mass of all, as in the paper
+  kNearest,    ///< the one with its centre nearest to the prediction
+  kStrongest,  ///< the one with the largest total weight
 };
 
-/// Which cells count in a strobe, and how much.
+/// Selection and weight of the cells in a strobe.
 ///
-/// A cell counts from `least_amplitude` on, with the weight amplitude - pedestal. On a picture with
-/// noise in every cell, a least amplitude of 1 draws the centre of mass towards that of the strobe,
+/// A cell is used from `least_amplitude` on, with the weight amplitude - pedestal. With noise in
+/// every cell, a least amplitude of 1 draws the centre of mass towards the centre of the strobe,
 /// which is the prediction: set it above the noise.
 struct StrobeSettings {
   int least_amplitude = 1;
@@ -84,7 +84,7 @@ struct StrobeSettings {
   }
 };
 
-/// The echo in a strobe as a measurement; converts to true when there is one. Else range and
+/// The echo in a strobe as a measurement; converts to true when there is one, else range and
 /// bearing are NaN.
 struct StrobeEcho {
   StrobeStatus status = StrobeStatus::kInvalid;
@@ -94,15 +94,16 @@ struct StrobeEcho {
   Mat<double, 2, 2> covariance = Mat<double, 2, 2>::Identity();  ///< of range_m and bearing_rad
   double total_amplitude = 0.0;
   int peak_amplitude = 0;
-  int cells = 0;              ///< measured
-  int echoes = 0;             ///< in the strobe, measured or not; 0 when not told apart
-  int strobe_cells = 0;       ///< of the picture inside the strobe, whatever their amplitude
-  bool touches_edge = false;  ///< what was measured goes on beyond the strobe
-  bool cut = false;           ///< part of the strobe lies outside the picture
+  int cells = 0;  ///< number of measured cells
+  int echoes =
+      0;  ///< number of echoes in the strobe, measured or not; 0 when they cannot be separated
+  int strobe_cells = 0;       ///< cells of the picture inside the strobe, whatever their amplitude
+  bool touches_edge = false;  ///< the measured echo extends past the strobe
+  bool cut = false;           ///< part of the strobe is outside the picture
 
   explicit operator bool() const noexcept { return status <= StrobeStatus::kCrowded; }
 
-  /// North and east of the antenna with covariance to first order, m and m².
+  /// Position [north, east] relative to the antenna with covariance to first order, m and m².
   [[nodiscard]] Gaussian<2> position() const noexcept {
     const Vec<double, 2> u = towards(bearing_rad);
     Mat<double, 2, 2> jacobian;
@@ -112,20 +113,20 @@ struct StrobeEcho {
     return position;
   }
 
-  /// The sensor that reads `position().mean` with its covariance.
+  /// The sensor for the measurement `position().mean` with its covariance.
   [[nodiscard]] Fix fix() const noexcept { return {position().covariance}; }
 };
 
 namespace detail {
 
-/// Weighs the cells of one strobe on one picture.
+/// Evaluates one strobe on one picture.
 template <int kEchoes, class Amplitude, class Strobe>
-class StrobeScale {
+class StrobeEvaluation {
  public:
   static_assert(sizeof(Amplitude) <= 2, "amplitudes are of 8 or 16 bits");
 
-  StrobeScale(const AmplitudeImage<Amplitude>& image, const Strobe& strobe,
-              const Vec<double, 2>& predicted_m, const StrobeSettings& settings) noexcept
+  StrobeEvaluation(const AmplitudeImage<Amplitude>& image, const Strobe& strobe,
+                   const Vec<double, 2>& predicted_m, const StrobeSettings& settings) noexcept
       : image_(image),
         settings_(settings),
         predicted_m_(predicted_m),
@@ -133,15 +134,15 @@ class StrobeScale {
         range_m_(predicted_m.norm()),
         bearing_rad_(std::atan2(predicted_m[1], predicted_m[0])) {}
 
-  StrobeEcho weigh() noexcept {
+  StrobeEcho evaluate() noexcept {
     StrobeEcho echo;
     for (int row = 0; row < cells_.rows(); ++row) add_sweep(cells_.sweep(row), echo);
     if (cells_.closes()) labels_.close_circle();
     echo.cut = echo.cut || cells_.cut_sideways();
     if (all_.cells > 0)
-      tell(echo);
+      report(echo);
     else
-      tell_nothing(echo);
+      report_empty(echo);
     return echo;
   }
 
@@ -160,14 +161,14 @@ class StrobeScale {
       if (!counts(row[cell])) continue;
       const int first = cell;
       while (cell < span.last && counts(row[cell + 1])) ++cell;
-      const StrobeSums sums = weigh_run(sweep, first, cell, span);
+      const StrobeSums sums = sum_run(sweep, first, cell, span);
       all_ += sums;
       labels_.add(first, cell, sums);
     }
   }
 
-  [[nodiscard]] StrobeSums weigh_run(int sweep, int first, int last,
-                                     const CellSpan& span) const noexcept {
+  [[nodiscard]] StrobeSums sum_run(int sweep, int first, int last,
+                                   const CellSpan& span) const noexcept {
     const Amplitude* row = image_.row(sweep).data();
     const Vec<double, 2> u = towards(image_.azimuth_rad(sweep) - bearing_rad_);
     StrobeSums sums{};
@@ -186,26 +187,26 @@ class StrobeScale {
     sums.range_along = sums.range * u[0];
     sums.range_across = sums.range * u[1];
     sums.cells = last - first + 1;
-    sums.reaches_out = goes_on(sweep, first, last, span) ||
-                       goes_on_beside(cells_.beside(sweep, -1), first, last) ||
-                       goes_on_beside(cells_.beside(sweep, 1), first, last);
+    sums.extends_outside = continues(sweep, first, last, span) ||
+                           continues_beside(cells_.beside(sweep, -1), first, last) ||
+                           continues_beside(cells_.beside(sweep, 1), first, last);
     return sums;
   }
 
-  /// Whether a cell next to first .. last in their own sweep counts but is not inside.
-  [[nodiscard]] bool goes_on(int sweep, int first, int last,
-                             const CellSpan& inside) const noexcept {
+  /// True when a cell adjacent to first .. last in `sweep` is above the threshold but not inside.
+  [[nodiscard]] bool continues(int sweep, int first, int last,
+                               const CellSpan& inside) const noexcept {
     const std::span<const Amplitude> row = image_.row(sweep);
     for (int cell = std::max(first - 1, 0); cell <= std::min(last + 1, image_.cells - 1); ++cell)
       if (!inside.holds(cell) && counts(row[static_cast<std::size_t>(cell)])) return true;
     return false;
   }
 
-  [[nodiscard]] bool goes_on_beside(int sweep, int first, int last) const noexcept {
-    return sweep >= 0 && goes_on(sweep, first, last, cells_.span(sweep));
+  [[nodiscard]] bool continues_beside(int sweep, int first, int last) const noexcept {
+    return sweep >= 0 && continues(sweep, first, last, cells_.span(sweep));
   }
 
-  /// The echo that is to be measured; there is one.
+  /// The echo to be measured; there is at least one.
   [[nodiscard]] int chosen() const noexcept {
     int best = 0;
     for (int echo = 1; echo < labels_.size(); ++echo)
@@ -223,7 +224,7 @@ class StrobeScale {
     return ((range_m_ + sums.mean_range()) * u - predicted_m_).squaredNorm();
   }
 
-  void tell(StrobeEcho& echo) const noexcept {
+  void report(StrobeEcho& echo) const noexcept {
     if (!labels_.full())
       for (int k = 0; k < labels_.size(); ++k) echo.echoes += labels_.is_whole(k);
     const bool one_of_several = echo.echoes > 1 && settings_.several != EchoChoice::kAll;
@@ -245,10 +246,10 @@ class StrobeScale {
     echo.total_amplitude = sums.amplitude;
     echo.peak_amplitude = sums.peak;
     echo.cells = sums.cells;
-    echo.touches_edge = sums.reaches_out;
+    echo.touches_edge = sums.extends_outside;
   }
 
-  void tell_nothing(StrobeEcho& echo) const noexcept {
+  void report_empty(StrobeEcho& echo) const noexcept {
     const bool outside = echo.strobe_cells == 0 && (echo.cut || !cells_.prediction_in_picture());
     echo.cut = echo.cut || outside;
     echo.status = outside ? StrobeStatus::kOutside : StrobeStatus::kEmpty;
@@ -264,9 +265,9 @@ class StrobeScale {
   StrobeLabels<kEchoes> labels_;
 };
 
-/// True when a picture has cells of a size and a place.
+/// True when the geometry of a picture is finite and its steps are positive.
 template <class Amplitude>
-bool makes_sense(const AmplitudeImage<Amplitude>& image) noexcept {
+bool is_valid(const AmplitudeImage<Amplitude>& image) noexcept {
   return image.azimuth_step_rad > 0.0 && std::isfinite(image.azimuth_step_rad) &&
          image.cell_m > 0.0 && std::isfinite(image.cell_m) &&
          std::isfinite(image.first_azimuth_rad) && std::isfinite(image.start_range_m);
@@ -275,21 +276,21 @@ bool makes_sense(const AmplitudeImage<Amplitude>& image) noexcept {
 }  // namespace detail
 
 /// The echo inside a strobe about a predicted position [north, east] (m, from the antenna): the
-/// centre of mass of the amplitudes of those cells whose centres lie inside.
+/// centre of mass of the amplitudes of the cells whose centres are inside.
 ///
 /// The centre is that of range and of bearing (of their unit vectors), not of north and east: the
-/// beam smears a small target along an arc, whose centre of mass in the plane falls short of it by
-/// r sb²/2, metres at long range. A target that is itself L across is put L²/(24 r) too far
-/// instead, which is the lesser harm from r = L / (3.5 sb) on.
+/// beam spreads a small target along an arc, whose centre of mass in the plane is short of it by r
+/// sb²/2, metres at long range. For a target of width L the result is L²/(24 r) too far instead,
+/// the smaller error from r = L / (3.5 sb) on.
 ///
-/// With the weighted covariance S of range and bearing over the cells and n = (Σw)² / Σw² of them
-/// in effect, the covariance is that of a video plot,
+/// With the weighted covariance S of range and bearing over the cells and the effective number of
+/// cells n = (Σw)² / Σw², the covariance is that of a video plot,
 ///
 ///     R = S / n + diag(cell², step²) / 12.
 ///
-/// Echoes are told apart by cells that touch, at a corner too, up to `kEchoes` of them; it bounds
-/// the memory, 132 bytes each on the stack. A strobe smaller than the distance of two cells may
-/// hold the centre of none and is then empty.
+/// Cells that share an edge or a corner belong to one echo. Up to `kEchoes` echoes are separated;
+/// this bounds the memory, 132 bytes each on the stack. A strobe smaller than the distance of two
+/// cells may contain no cell centre and is then empty.
 ///
 /// Source: Grinyak, Trofimov, "Multi-model tracking of moving vessels with a fuzzy criterion of
 /// maneuver detection".
@@ -297,12 +298,12 @@ template <int kEchoes = 256, std::unsigned_integral Amplitude, StrobeShape Strob
 [[nodiscard]] StrobeEcho strobe_echo(const AmplitudeImage<Amplitude>& image, const Strobe& strobe,
                                      const Vec<double, 2>& predicted_m,
                                      const StrobeSettings& settings = {}) noexcept {
-  if (!is_finite(predicted_m) || !detail::makes_sense(image) ||
+  if (!is_finite(predicted_m) || !detail::is_valid(image) ||
       !(strobe.half_angle_rad(predicted_m) >= 0.0))
     return {};
   if (image.sweeps <= 0 || image.cells <= 0) return {.status = StrobeStatus::kOutside, .cut = true};
-  return detail::StrobeScale<kEchoes, Amplitude, Strobe>(image, strobe, predicted_m, settings)
-      .weigh();
+  return detail::StrobeEvaluation<kEchoes, Amplitude, Strobe>(image, strobe, predicted_m, settings)
+      .evaluate();
 }
 
 }  // namespace wakeline

@@ -9,7 +9,7 @@
 
 namespace wakeline::detail {
 
-/// Weighted sums over cells, range and bearing as offsets from a reference near by.
+/// Weighted sums over cells, with range and bearing relative to a nearby reference.
 struct StrobeSums {
   double weight;        ///< Σ w
   double squares;       ///< Σ w²
@@ -22,7 +22,8 @@ struct StrobeSums {
   double amplitude;     ///< Σ a
   int peak;             ///< max a
   int cells;
-  bool reaches_out;  ///< a cell beside one of them counts, too, but lies outside the strobe
+  bool extends_outside;  ///< a cell adjacent to one of them is above the threshold but outside the
+                         ///< strobe
 
   StrobeSums& operator+=(const StrobeSums& other) noexcept {
     weight += other.weight;
@@ -36,7 +37,7 @@ struct StrobeSums {
     amplitude += other.amplitude;
     peak = std::max(peak, other.peak);
     cells += other.cells;
-    reaches_out = reaches_out || other.reaches_out;
+    extends_outside = extends_outside || other.extends_outside;
     return *this;
   }
 
@@ -45,9 +46,9 @@ struct StrobeSums {
   /// Direction of the mean unit vector.
   [[nodiscard]] double mean_bearing() const noexcept { return std::atan2(across, along); }
 
-  /// Covariance of range and bearing over the cells. Of the bearing it is 2 (1 - R), R the length
-  /// of the mean unit vector, which for a narrow echo is the variance and never too small for the
-  /// matrix to be one.
+  /// Covariance of range and bearing over the cells. The bearing variance is 2 (1 - R), R the
+  /// length of the mean unit vector: for a narrow echo the variance, and never too small for a
+  /// covariance matrix.
   [[nodiscard]] Mat<double, 2, 2> spread() const noexcept {
     const double length = std::hypot(along, across);
     const double range_spread = range2 / weight - mean_range() * mean_range();
@@ -59,7 +60,7 @@ struct StrobeSums {
     return spread;
   }
 
-  /// (Σ w)² / Σ w²: as many cells of equal weight would tell as much.
+  /// (Σ w)² / Σ w²: the number of cells of equal weight with the same information.
   [[nodiscard]] double effective_cells() const noexcept { return weight * weight / squares; }
 };
 
