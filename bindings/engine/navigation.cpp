@@ -171,7 +171,7 @@ T. Vincenty, Direct and inverse solutions of geodesics on the ellipsoid, Survey 
 
 Distance and course from the reference along the geodesic, as polar coordinates (the azimuthal equidistant projection): what is
 measured from the reference is true to 0.1 mm. Across, at a distance d, the plane is stretched by d² / (6 R²): 1e-5 at 50 km, 4e-5 at
-100 km.
+100 km. Places are given by keyword, in radians: one in degrees would be another place.
 
 Parameters
 ----------
@@ -194,7 +194,7 @@ ValueError
       .def(py::init([](double latitude, double longitude) {
              return LocalPlane(GeoPoint{latitude, longitude});
            }),
-           py::arg("latitude_rad"), py::arg("longitude_rad"))
+           py::kw_only(), py::arg("latitude_rad"), py::arg("longitude_rad"))
       .def_property_readonly("latitude_rad",
                              [](const LocalPlane& p) { return p.reference().latitude_rad; })
       .def_property_readonly("longitude_rad",
@@ -209,7 +209,7 @@ ValueError
                 },
                 latitude, longitude);
           },
-          py::arg("latitude_rad"), py::arg("longitude_rad"),
+          py::kw_only(), py::arg("latitude_rad"), py::arg("longitude_rad"),
           "[north, east] (..., 2) of places (...); NaN on the other side of the earth.")
       .def(
           "place",
@@ -233,7 +233,8 @@ ValueError
                 },
                 course, latitude, longitude);
           },
-          py::arg("true_course_rad"), py::arg("latitude_rad"), py::arg("longitude_rad"),
+          py::arg("true_course_rad"), py::kw_only(), py::arg("latitude_rad"),
+          py::arg("longitude_rad"),
           "Directions on the plane of courses from true north at places: meridians lean towards "
           "each other.")
       .def(
@@ -247,7 +248,8 @@ ValueError
                 },
                 course, latitude, longitude);
           },
-          py::arg("plane_course_rad"), py::arg("latitude_rad"), py::arg("longitude_rad"),
+          py::arg("plane_course_rad"), py::kw_only(), py::arg("latitude_rad"),
+          py::arg("longitude_rad"),
           "Courses from true north at places of directions on the plane.");
 }
 

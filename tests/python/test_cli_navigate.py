@@ -757,13 +757,17 @@ def test_courses_of_the_solution_are_true(tmp_path):
     assert np.degrees(track.lean_rad[-1]) == pytest.approx(-3.3, abs=0.1)
 
 
+def position_m(plane, where):
+    return plane.position_m(latitude_rad=where[:, 0], longitude_rad=where[:, 1])
+
+
 def test_places_are_written_to_the_millimetre_however_far(tmp_path):
     rows = navigated(tmp_path, eastward(6))
     where = np.radians([[float(row["lat_deg"]), float(row["lon_deg"])] for row in rows])
     place_m = np.column_stack([column(rows, "north_m"), column(rows, "east_m")])
-    plane = LocalPlane(*np.radians([60.0, 10.0]))
+    plane = LocalPlane(latitude_rad=np.radians(60.0), longitude_rad=np.radians(10.0))
     assert place_m[-1, 1] > 200e3
-    np.testing.assert_allclose(place_m, plane.position_m(*where.T), atol=0.005)
+    np.testing.assert_allclose(place_m, position_m(plane, where), atol=0.005)
 
 
 def test_all_parts_lie_in_one_plane(tmp_path):
@@ -772,7 +776,7 @@ def test_all_parts_lie_in_one_plane(tmp_path):
     place_m = np.array([[float(row["north_m"]), float(row["east_m"])] for row in rows])
     where = np.radians([[float(row["lat_deg"]), float(row["lon_deg"])] for row in rows])
     plane = LocalPlane(latitude_rad=where[0, 0], longitude_rad=where[0, 1])
-    off_m = place_m - plane.position_m(*where.T)
+    off_m = place_m - position_m(plane, where)
     assert np.hypot(*place_m[-1]) > 1000.0
     assert np.ptp(off_m, axis=0) == pytest.approx([0.0, 0.0], abs=0.1)
 

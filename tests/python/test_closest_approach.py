@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wakeline as wl
-from wakeline.recording import OwnShip, RecordingError
+from wakeline.recording import OwnShipMotion, RecordingError
 from wakeline.recording.own_csv import read_own
 
 KNOT = 1852.0 / 3600.0
@@ -135,16 +135,16 @@ def test_limits_below_zero_are_refused(limits):
 def test_own_velocity_is_the_recorded_one_else_that_of_the_positions():
     time_s = np.arange(0.0, 100.0, 2.0)
     places = (10.0 + 3.0 * time_s, 5.0 - 4.0 * time_s)
-    steady = OwnShip(time_s, *places)
+    steady = OwnShipMotion(time_s, *places)
     np.testing.assert_allclose(steady.velocity_at([0.0, 31.0, 120.0]), [[3.0, -4.0]] * 3)
     gap = np.where(time_s == 30.0, np.nan, 7.0)
-    told = OwnShip(time_s, *places, vnorth_mps=gap, veast_mps=gap)
+    told = OwnShipMotion(time_s, *places, vnorth_mps=gap, veast_mps=gap)
     np.testing.assert_allclose(told.velocity_at([30.0, 999.0]), [[7.0, 7.0]] * 2)
     lost = np.full(50, np.nan)
-    untold = OwnShip(time_s, *places, vnorth_mps=lost, veast_mps=lost)
+    untold = OwnShipMotion(time_s, *places, vnorth_mps=lost, veast_mps=lost)
     np.testing.assert_allclose(untold.velocity_at([31.0]), [[3.0, -4.0]])
     assert steady.knows_velocity
-    assert not OwnShip.fixed().knows_velocity
+    assert not OwnShipMotion.fixed().knows_velocity
 
 
 def test_a_covariance_of_own_ship_is_interpolated_over_rows_that_tell_none():
@@ -152,11 +152,11 @@ def test_a_covariance_of_own_ship_is_interpolated_over_rows_that_tell_none():
     covariance = np.array([1.0, np.nan, 3.0, 5.0])[:, None, None] * np.array(
         [[1.0, 0.5], [0.5, 2.0]]
     )
-    own = OwnShip(time_s, time_s, time_s, time_s, time_s, velocity_m2s2=covariance)
+    own = OwnShipMotion(time_s, time_s, time_s, time_s, time_s, velocity_m2s2=covariance)
     at = own.velocity_m2s2_at([0.0, 1.0, 2.5, 9.0])
     np.testing.assert_allclose(at[:, 0, 0], [1.0, 2.0, 4.0, 5.0])
     np.testing.assert_allclose(at[:, 0, 1], at[:, 0, 0] / 2.0)
-    assert OwnShip(time_s, time_s, time_s).velocity_m2s2_at([0.0]) is None
+    assert OwnShipMotion(time_s, time_s, time_s).velocity_m2s2_at([0.0]) is None
 
 
 def read_rows(path, *rows, head=HEAD):

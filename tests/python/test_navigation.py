@@ -18,6 +18,14 @@ def wrapped(angle_rad):
     return (np.asarray(angle_rad) + np.pi) % (2 * np.pi) - np.pi
 
 
+def plane_at(latitude, longitude):
+    return nav.LocalPlane(latitude_rad=latitude, longitude_rad=longitude)
+
+
+def position_m(plane, latitude, longitude):
+    return plane.position_m(latitude_rad=latitude, longitude_rad=longitude)
+
+
 def metres_apart(a, b):
     return float(nav.geodesic(*a, *b)[0])
 
@@ -53,12 +61,12 @@ def test_the_plane_is_true_to_a_millimetre_within_50_km_and_far_beyond():
             latitude, longitude = rng.uniform(-89, 89), rng.uniform(-180, 180)
             azimuth, distance_m = rng.uniform(0, 360), rng.uniform(0, reach_m)
             there = geodesic.Direct(latitude, longitude, azimuth, distance_m)
-            plane = nav.LocalPlane(np.radians(latitude), np.radians(longitude))
+            plane = plane_at(np.radians(latitude), np.radians(longitude))
             place = np.radians([there["lat2"], there["lon2"]])
             wanted = distance_m * np.array(
                 [np.cos(np.radians(azimuth)), np.sin(np.radians(azimuth))]
             )
-            assert np.linalg.norm(plane.position_m(*place) - wanted) < 1e-3
+            assert np.linalg.norm(position_m(plane, *place) - wanted) < 1e-3
             back = np.array(plane.place(wanted))
             assert metres_apart(back, place) < 1e-3
 
@@ -92,10 +100,10 @@ def test_nothing_happens_at_the_date_line(latitude, to_the_west, to_the_east):
     )
     assert here[0] == pytest.approx(there[0], abs=1e-6)
     assert np.abs(wrapped(np.subtract(here[1:], there[1:]))).max() < 1e-6
-    plane = nav.LocalPlane(latitude, np.pi)
-    mirrored = nav.LocalPlane(latitude, -np.pi)
+    plane = plane_at(latitude, np.pi)
+    mirrored = plane_at(latitude, -np.pi)
     place = latitude + 0.002, wrapped(np.pi + to_the_east)
-    assert plane.position_m(*place) == pytest.approx(mirrored.position_m(*place), abs=1e-6)
+    assert position_m(plane, *place) == pytest.approx(position_m(mirrored, *place), abs=1e-6)
 
 
 def test_a_rhumb_line_is_the_integral_of_its_course():
@@ -125,26 +133,27 @@ def test_places_opposite_each_other_are_not_found():
 
 
 def test_arrays_are_broadcast():
-    plane = nav.LocalPlane(0.8, 0.1)
-    position_m = plane.position_m(np.full((3, 1), 0.801), np.linspace(0.1, 0.11, 4))
-    assert position_m.shape == (3, 4, 2)
-    latitude, longitude = plane.place(position_m)
+    plane = plane_at(0.8, 0.1)
+    places_m = position_m(plane, np.full((3, 1), 0.801), np.linspace(0.1, 0.11, 4))
+    assert places_m.shape == (3, 4, 2)
+    latitude, longitude = plane.place(places_m)
     assert latitude.shape == longitude.shape == (3, 4)
     assert np.allclose(latitude, 0.801, atol=1e-12)
-    course = plane.plane_course_rad(1.0, latitude, longitude)
-    assert np.allclose(plane.true_course_rad(course, latitude, longitude), 1.0)
+    place = {"latitude_rad": latitude, "longitude_rad": longitude}
+    course = plane.plane_course_rad(1.0, **place)
+    assert np.allclose(plane.true_course_rad(course, **place), 1.0)
     assert (plane.latitude_rad, plane.longitude_rad) == (0.8, 0.1)
 
 
 def test_latitudes_in_degrees_are_refused():
     with pytest.raises(ValueError, match=r"latitude_rad must be from -pi/2 to pi/2, got 46\.5"):
-        nav.LocalPlane(46.5, 30.7)
+        plane_at(46.5, 30.7)
     with pytest.raises(ValueError, match=r"to_latitude_rad must be .* got 46\.5"):
         nav.geodesic(0.8, 0.1, [0.8, 46.5], 0.1)
     with pytest.raises(ValueError, match="broadcast"):
         nav.geodesic([0.8, 0.8], 0.1, [0.8, 0.7, 0.6], 0.1)
     with pytest.raises(ValueError, match=r"position_m must have shape \(\.\.\., 2\), got \(3,\)"):
-        nav.LocalPlane(0.8, 0.1).place([1.0, 2.0, 3.0])
+        plane_at(0.8, 0.1).place([1.0, 2.0, 3.0])
 
 
 # Dead reckoning

@@ -154,7 +154,7 @@ def test_a_tracker_goes_on_bit_for_bit(estimator):
         wl.RadiusGate(radius_m=300.0),
         wl.gating.RangeBearingWindow(range_half_m=40.0),
         wl.CovarianceStrobe([[90.0, 1 / 3], [1 / 3, 7.0]], wl.ChiSquareGate(probability=0.7)),
-        wl.navigation.LocalPlane(0.8, -0.1),
+        wl.LocalPlane(latitude_rad=0.8, longitude_rad=-0.1),
         wl.Radar(period_s=3.0),
         wl.TrackerConfig(confirm_hits=4),
         wl.VesselModels.ships(),

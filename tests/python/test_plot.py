@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from wakeline import metrics, recording
-from wakeline.recording import Episode, OwnShip, Recording, TargetTruth, Tracks
+from wakeline.recording import Episode, OwnShipMotion, Recording, TargetTruth, Tracks
 from wakeline.scenario import RadarSimulator, RadarVideoSimulator, Truth
 
 pytest.importorskip("matplotlib")
@@ -90,7 +90,7 @@ def test_the_map_shows_records_of_own_ship_and_truth_for_the_time_of_the_scans(e
     unknown = np.full(len(time_s), np.nan)
     longer = replace(
         episode,
-        own=OwnShip(time_s, *way_m),
+        own=OwnShipMotion(time_s, *way_m),
         truth={"1": TargetTruth(time_s, *way_m, unknown, unknown)},
     )
     ax = plot.map(None, longer).axes[0]
@@ -131,7 +131,7 @@ def test_plots_out_of_sight_are_counted_and_shown_on_request(episode, tracks):
 
 @pytest.mark.parametrize("whole", [True, False])
 def test_own_ship_is_in_sight_whatever_else_is(episode, tracks, whole):
-    away = replace(episode, own=OwnShip.fixed(-20_000.0, 3_000.0), truth=None)
+    away = replace(episode, own=OwnShipMotion.fixed(-20_000.0, 3_000.0), truth=None)
     for shown in (tracks, None):
         ax = plot.map(shown, away, whole=whole).axes[0]
         assert ax.get_ylim()[0] < -20_000.0 < ax.get_ylim()[1]

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from wakeline import forecast, metrics, montecarlo, recording
-from wakeline.recording import OwnShip, RecordingError, read_plots
+from wakeline.recording import OwnShipMotion, RecordingError, read_plots
 from wakeline.recording.scans import by_time
 from wakeline.scenario import RadarSimulator, Truth
 
@@ -441,9 +441,9 @@ def test_own_ship_is_interpolated_to_each_plot(file):
 
 
 def test_own_ship_goes_straight_on_beyond_its_record():
-    ship = OwnShip(np.array([0.0, 2.0]), np.array([0.0, 4.0]), np.array([1.0, 1.0]))
+    ship = OwnShipMotion(np.array([0.0, 2.0]), np.array([0.0, 4.0]), np.array([1.0, 1.0]))
     np.testing.assert_allclose(ship.position_at([-1.0, 1.0, 3.0]), [[-2, 1], [2, 1], [6, 1]])
-    np.testing.assert_allclose(OwnShip.fixed(3, 4).position_at([0, 9]), [[3, 4], [3, 4]])
+    np.testing.assert_allclose(OwnShipMotion.fixed(3, 4).position_at([0, 9]), [[3, 4], [3, 4]])
 
 
 def test_a_plot_beyond_own_ship_is_an_error(file):
@@ -653,7 +653,7 @@ def test_what_holds_much_is_shown_in_a_few_words():
     counts, when = "115 scans, 147 plots, 1 target", "1495196206.9 to 1495196526.2 s"
     assert repr(read) == f"<Recording 'joyride': 1 episode, {counts}, {when}>"
     assert repr(episode) == f"<Episode: {counts}, {when}>"
-    assert repr(episode.own) == f"<OwnShip: 115 positions, {when}>"
+    assert repr(episode.own) == f"<OwnShipMotion: 115 positions, {when}>"
     assert repr(episode.truth) == f"{{'1': <TargetTruth: 115 positions, {when}>}}"
     assert repr(episode.scans[3]) == "<Scan: number 3, 1 plot, at 1495196214.5 s>"
     assert (
@@ -747,7 +747,7 @@ def test_plots_alone_are_written_without_own_ship_and_truth(tmp_path):
 
 def own_ship(**change):
     rows = np.arange(3.0)
-    return recording.OwnShip(**{"time_s": rows, "north_m": rows, "east_m": rows} | change)
+    return recording.OwnShipMotion(**{"time_s": rows, "north_m": rows, "east_m": rows} | change)
 
 
 def truth(**change):
@@ -777,7 +777,7 @@ def test_what_is_made_of_columns_takes_lists_and_refuses_what_does_not_fit(made)
 @pytest.mark.parametrize("time_s", [[], [0.0, 0.0], [0.0, 5.0, 5.0]])
 def test_own_ship_is_at_one_place_at_a_time(time_s):
     with pytest.raises(ValueError, match="time_s must have at least one time, each once, got"):
-        OwnShip(time_s, np.zeros(len(time_s)), np.zeros(len(time_s)))
+        OwnShipMotion(time_s, np.zeros(len(time_s)), np.zeros(len(time_s)))
 
 
 @pytest.mark.parametrize("nowhere", [np.nan, np.inf])
@@ -786,9 +786,9 @@ def test_own_ship_is_somewhere(file, nowhere):
     with pytest.raises(ValueError, match=r"north_m must be finite, got \["):
         read_plots(plots, own=(nowhere, 0.0))
     with pytest.raises(ValueError, match=r"east_m must be finite, got \["):
-        OwnShip([0.0, 1.0], [0.0, 0.0], [0.0, nowhere])
+        OwnShipMotion([0.0, 1.0], [0.0, 0.0], [0.0, nowhere])
     with pytest.raises(TypeError, match="east_m must hold real numbers: got text such as '5'"):
-        OwnShip.fixed(0.0, "5")
+        OwnShipMotion.fixed(0.0, "5")
 
 
 NOWHERE = "there/is/no/such/file"
@@ -796,7 +796,6 @@ WITH_A_NUMBER = {
     "period_s": lambda value: read_plots(NOWHERE, period_s=value),
     "own_gap_s": lambda value: read_plots(NOWHERE, own_gap_s=value),
     "min_step_s": lambda value: recording.read_ais(NOWHERE, min_step_s=value),
-    "latitude_deg": lambda value: recording.LocalPlane(value, 0.0),
     "reorder_s": lambda value: recording.read_nmea(NOWHERE, reorder_s=value),
     "variation_deg": lambda value: recording.read_nmea(NOWHERE, variation_deg=value),
     "midnight_s": lambda value: recording.read_video(NOWHERE, midnight_s=value),

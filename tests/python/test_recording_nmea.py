@@ -13,7 +13,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from wakeline import recording
-from wakeline.recording import LocalPlane, RecordingError, read_nmea
+from wakeline.navigation import LocalPlane
+from wakeline.recording import RecordingError, read_nmea
 
 KNOT_MPS = 1852.0 / 3600.0
 DAY_S = 86400.0
@@ -425,7 +426,7 @@ def test_the_track_of_a_log_is_where_its_sound_fixes_are(log):
     np.testing.assert_allclose(track.vnorth_mps[:20], 0.0, atol=1e-4)
     assert (track.vnorth_mps[20], track.veast_mps[20]) == (0.0, 0.0)
     assert np.isnan([track.vnorth_mps[21], track.veast_mps[21]]).all()
-    elsewhere = read.track(LocalPlane(46.6, 6.6))
+    elsewhere = read.track(LocalPlane(latitude_rad=np.radians(46.6), longitude_rad=np.radians(6.6)))
     np.testing.assert_allclose(elsewhere.north_m[0], -11_115.0, atol=10.0)
     north_leans_rad = np.radians(0.1) * np.sin(np.radians(46.5))
     np.testing.assert_allclose(
@@ -1207,8 +1208,11 @@ def test_irene_holds_what_its_source_says(irene):
 
 def test_speeds_and_courses_of_irene_are_those_of_her_positions(irene):
     """Which they would not be with a wrong time, unit or angle."""
-    plane = recording.LocalPlane(46.5, 6.6)
-    north_m, east_m = plane.position_m(irene.fixes.latitude_deg, irene.fixes.longitude_deg)
+    north_m, east_m = (
+        irene.fixes.plane()
+        .position_m(latitude_rad=irene.fixes.latitude_rad, longitude_rad=irene.fixes.longitude_rad)
+        .T
+    )
     way_m, told_m = [], []
     for start in range(0, len(irene.fixes) - 15, 15):
         rows = slice(start, start + 16)

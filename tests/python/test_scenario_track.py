@@ -103,8 +103,9 @@ def test_truths_and_own_ships_of_recordings_are_tracks():
 def test_a_log_of_instruments_is_a_track():
     log = recording.load_navigation()
     truth, fixes = TrackTruth.of(log), log.fixes.sound()
-    plane = recording.LocalPlane(fixes.latitude_deg[0], fixes.longitude_deg[0])
-    place_m = np.column_stack(plane.position_m(fixes.latitude_deg, fixes.longitude_deg))
+    place_m = fixes.plane().position_m(
+        latitude_rad=fixes.latitude_rad, longitude_rad=fixes.longitude_rad
+    )
     state = truth.state_at(fixes.time_s)
     np.testing.assert_allclose(state[:, 0::2], place_m, atol=1e-6)
     assert np.hypot(*state[0, 0::2]) < 1e-6

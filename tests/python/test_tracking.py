@@ -10,7 +10,7 @@ import pytest
 import wakeline as wl
 from wakeline import metrics, recording, scenario
 from wakeline.cli import main
-from wakeline.recording import OwnShip, RecordingError, Tracks, read_tracks
+from wakeline.recording import OwnShipMotion, RecordingError, Tracks, read_tracks
 from wakeline.tracking import (
     DangerLimits,
     Settings,
@@ -231,7 +231,7 @@ def test_what_cannot_be_tracked_is_named(tmp_path):
         wl.track_recording(tmp_path / "none.csv")
     plots = write(tmp_path / "plots.csv", boat(3))
     with pytest.raises(TypeError, match=r"own must be a file for the recording in .*plots.csv"):
-        wl.track_recording(plots, own=OwnShip.fixed())
+        wl.track_recording(plots, own=OwnShipMotion.fixed())
     with pytest.raises(ValueError, match="truth goes with a file of plots"):
         open_recording("joyride", truth=plots)
 
@@ -313,7 +313,7 @@ def approaching(probability, tcpa_s=60.0):
 
 def alarms_of(tracks, *, range_m=2000.0, **limits):
     """The alarms of tracks at a distance from own ship, which is at rest."""
-    own = OwnShip(np.array([0.0, 1.0]), np.full(2, range_m), np.zeros(2))
+    own = OwnShipMotion(np.array([0.0, 1.0]), np.full(2, range_m), np.zeros(2))
     return with_alarms(tracks, own, DangerLimits(**limits))
 
 
@@ -357,7 +357,7 @@ def test_probabilities_that_are_nan_raise_no_alarm():
 
 def test_an_alarm_ends_when_the_ship_is_past():
     time_s = np.arange(1000.0, 1500.0, 5.0)
-    own = OwnShip(time_s, 5.0 * (time_s - 1000.0), 0.0 * time_s)
+    own = OwnShipMotion(time_s, 5.0 * (time_s - 1000.0), 0.0 * time_s)
     state = np.column_stack(
         [4000.0 - 6.0 * (time_s - 1000.0), 0 * time_s - 6.0, 0 * time_s + 50.0, 0 * time_s]
     )
@@ -370,12 +370,12 @@ def test_an_alarm_ends_when_the_ship_is_past():
 
 def test_a_closest_approach_needs_a_covariance_and_a_velocity():
     tracks = Tracks(["1"], [0.0], np.zeros((1, 4)))
-    moving = OwnShip(np.arange(2.0), np.zeros(2), np.zeros(2))
+    moving = OwnShipMotion(np.arange(2.0), np.zeros(2), np.zeros(2))
     with pytest.raises(ValueError, match="tracks must have a covariance"):
         with_closest_approach(tracks, moving)
     known = dataclasses.replace(tracks, covariance=np.eye(4)[np.newaxis])
     with pytest.raises(ValueError, match="own must have a velocity"):
-        with_closest_approach(known, OwnShip.fixed())
+        with_closest_approach(known, OwnShipMotion.fixed())
 
 
 SCANS, SCAN_S = 120, 3.0
@@ -463,7 +463,7 @@ def test_the_covariance_of_own_ships_velocity_is_in_the_probability(encounter):
 
 def test_an_own_ship_of_one_position_raises_no_alarm(encounter):
     plots, _ = encounter
-    tracks = wl.track_recording(wl.tracking.open_recording(plots), own=OwnShip.fixed())
+    tracks = wl.track_recording(wl.tracking.open_recording(plots), own=OwnShipMotion.fixed())
     assert tracks.episodes[0].alarms is None
     assert tracks.cpa_m is None
 
@@ -481,7 +481,7 @@ def test_one_encounter_from_afar_is_one_alarm(tmp_path, models, needs_hold):
     bearing = np.arctan2(600.0, 9000.0 - 12.0 * time_s) + rng.normal(scale=0.009, size=260)
     rows = np.column_stack([time_s, own_m + range_m * np.cos(bearing), range_m * np.sin(bearing)])
     opened = open_recording(write(tmp_path / "plots.csv", rows))
-    own = OwnShip(time_s, own_m, 0.0 * time_s)
+    own = OwnShipMotion(time_s, own_m, 0.0 * time_s)
     config = tmp_path / "mine.toml"
     counts = []
     for hold in ("", "[danger]\nclear_hold_s = 0\n"):

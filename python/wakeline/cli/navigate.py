@@ -16,7 +16,7 @@ from wakeline._brief import counted, many
 from wakeline._progress import progress
 from wakeline.navigation import LocalPlane
 from wakeline.recording import NavigationLog, RecordingError, read_nmea, replacing
-from wakeline.recording.local_plane import EARTH_RADIUS_M
+from wakeline.recording.reach import plane_stretch
 
 from . import outputs, report
 
@@ -136,7 +136,7 @@ def run(arguments: argparse.Namespace) -> None:
 def _legs(log: NavigationLog, *, smooth: bool) -> list[_Leg]:
     parts = log.parts()
     offset = _magnetic_offset(log, parts)
-    plane = own_ship.plane_of(log.fixes.sound())
+    plane = log.fixes.sound().plane()
     for note in (*_unused_notes(parts), *_stuck_notes(parts), *_far_notes(log, plane)):
         print(note, flush=True)
     fixed = [part for part in parts if len(part.fixes.sound())]
@@ -193,11 +193,12 @@ def _stuck_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
 def _far_notes(log: NavigationLog, plane: LocalPlane) -> Iterator[str]:
     """What the plane of the first fix does to places far from it."""
     fixes = log.fixes.sound()
-    position_m = plane.position_m(np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg))
+    position_m = plane.position_m(
+        latitude_rad=fixes.latitude_rad, longitude_rad=fixes.longitude_rad
+    )
     far_m = np.hypot(*position_m.T).max()
     if far_m > _FAR_M:
-        angle = far_m / EARTH_RADIUS_M
-        percent = 100.0 * (angle / np.sin(angle) - 1.0)
+        percent = 100.0 * plane_stretch(far_m)
         yield (
             f"note: fixes lie up to {far_m / 1e3:.0f} km from the first one, whose plane is "
             f"stretched by {percent:.3g} % across the line to them, and speeds and drift with it: "

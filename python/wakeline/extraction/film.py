@@ -13,7 +13,7 @@ from wakeline._brief import many
 from wakeline._progress import counted
 from wakeline.recording import (
     Episode,
-    OwnShip,
+    OwnShipMotion,
     RadarVideo,
     Recording,
     Scan,
@@ -89,7 +89,7 @@ def read_plots_of_video(
     notes += [*report.notes, *extraction.notes()]
     if begun:
         notes.append(f"{begun} turn{'s' * (begun > 1)} only begun left out")
-    ship = OwnShip.fixed()
+    ship = OwnShipMotion.fixed()
     if own_path is not None:
         rows = read_own_track(own_path, notes)
         days_s = _days_s(rows, parts)
@@ -121,7 +121,9 @@ def _finish(parts: Sequence[list[_Seen]], extraction: Extraction) -> None:
         parts[-1].append(_Seen(end_s, joined([plots, extraction.finished()])))
 
 
-def _episodes(parts: Sequence[Sequence[_Seen]], ship: OwnShip, notes: list[str]) -> list[Episode]:
+def _episodes(
+    parts: Sequence[Sequence[_Seen]], ship: OwnShipMotion, notes: list[str]
+) -> list[Episode]:
     """One a part, with names where there are several, which is told."""
     if len(parts) == 1:
         return [Episode("", _scans(parts[0], ship), ship)]
@@ -136,7 +138,7 @@ def _episodes(parts: Sequence[Sequence[_Seen]], ship: OwnShip, notes: list[str])
     ]
 
 
-def _scans(part: Sequence[_Seen], ship: OwnShip) -> list[Scan]:
+def _scans(part: Sequence[_Seen], ship: OwnShipMotion) -> list[Scan]:
     return [
         Scan.of_plots(end_s, k, seen.time_s, seen.range_m, seen.bearing_rad, ship.position_at)
         for k, (end_s, seen) in enumerate(part)

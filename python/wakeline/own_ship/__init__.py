@@ -17,7 +17,7 @@ from __future__ import annotations
 from .coasting import HORIZONS_S, hold_out, medians, without_hidden
 from .left_out import rejected_lines, unused, zero_speeds
 from .magnetic import ANY_OFFSET, NO_OFFSET, MagneticOffset, magnetic_offset, wants_offset
-from .readings import Readings, plane_of, readings_of
+from .readings import Readings, readings_of
 from .solution import JUMP_M, OwnTrack, navigate
 
 __all__ = [
@@ -32,7 +32,6 @@ __all__ = [
     "magnetic_offset",
     "medians",
     "navigate",
-    "plane_of",
     "readings_of",
     "rejected_lines",
     "unused",

@@ -9,7 +9,6 @@ import numpy as np
 import wakeline as wl
 from wakeline._brief import brief, many, span
 from wakeline.recording import NavigationLog
-from wakeline.recording.nmea import Fixes
 
 from .instruments import leeway_rad, over_ground_mps, speed_and_course, true_headings
 from .magnetic import NO_OFFSET, MagneticOffset, wants_offset
@@ -70,12 +69,6 @@ class Readings(NamedTuple):
         return bool(np.isfinite(self.heading_rad).any() and np.isfinite(self.log_mps).any())
 
 
-def plane_of(fixes: Fixes) -> wl.navigation.LocalPlane:
-    """The plane tangent to the earth at the first fix."""
-    latitude_rad, longitude_rad = np.radians([fixes.latitude_deg[0], fixes.longitude_deg[0]])
-    return wl.navigation.LocalPlane(latitude_rad=latitude_rad, longitude_rad=longitude_rad)
-
-
 def readings_of(
     part: NavigationLog,
     offset: MagneticOffset = NO_OFFSET,
@@ -92,10 +85,10 @@ def readings_of(
     """
     fixes = part.fixes_in_order("set of readings")
     ground, water = part.ground.sound(), part.water.sound()
-    plane = plane or plane_of(fixes)
+    plane = plane or fixes.plane()
     bottom, turn = part.bottom.sound(), part.turn.sound()
-    latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
-    leans_rad = wl.wrap_angle(plane.plane_course_rad(np.zeros(len(fixes)), latitude, longitude))
+    place = {"latitude_rad": fixes.latitude_rad, "longitude_rad": fixes.longitude_rad}
+    leans_rad = wl.wrap_angle(plane.plane_course_rad(np.zeros(len(fixes)), **place))
 
     def lean_rad(times: np.ndarray) -> np.ndarray:
         """Difference between directions on the plane and true ones at the last fix."""
@@ -107,7 +100,7 @@ def readings_of(
     course_rad = true_course_rad + lean_rad(ground.time_s)
     course = np.column_stack([np.cos(course_rad), np.sin(course_rad)])
     series = (
-        (fixes.time_s, plane.position_m(latitude, longitude)),
+        (fixes.time_s, plane.position_m(**place)),
         (ground.time_s, speed_mps[:, None] * course),
         headings,
         (water.time_s, water.ahead_mps),

@@ -15,8 +15,7 @@ from .ais_csv import AisRecording, AisTrack, read_ais
 from .asterix_video import VideoReport, is_video, read_video, write_video
 from .errors import RecordingError
 from .files import replacing
-from .local_plane import LocalPlane
-from .model import Episode, OwnShip, Recording, Scan
+from .model import Episode, OwnShipMotion, Recording, Scan
 from .nmea import NavigationLog, NmeaProblem, NmeaReport, read_nmea
 from .own_csv import read_own_ship
 from .plots_csv import read_plots
@@ -30,11 +29,10 @@ __all__ = [
     "AisRecording",
     "AisTrack",
     "Episode",
-    "LocalPlane",
     "NavigationLog",
     "NmeaProblem",
     "NmeaReport",
-    "OwnShip",
+    "OwnShipMotion",
     "RadarVideo",
     "Recording",
     "RecordingError",

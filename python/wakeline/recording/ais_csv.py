@@ -11,11 +11,11 @@ import numpy as np
 
 from wakeline._brief import brief, counted, many, span
 from wakeline._checks import columns, not_negative, plain_numbers
+from wakeline._engine.navigation import LocalPlane
 from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
-from .local_plane import EARTH_RADIUS_M, LocalPlane
-from .reach import unreachable
+from .reach import plane_stretch, unreachable
 from .table import TIME_NAMES, Table
 
 COLUMNS = {
@@ -27,7 +27,7 @@ COLUMNS = {
     "sog": ("sog_knots", "sog_kn", "sog", "speed_over_ground"),
 }
 
-_FAR_M = 300e3  # where the plane shortens distances by a thousandth
+_FAR_M = 500e3  # where the plane stretches distances by a thousandth
 
 _NO_LATITUDE_DEG, _NO_LONGITUDE_DEG = 91.0, 181.0
 _NO_COURSE_DEG, _NO_SPEED_KN = 360.0, 102.15  # 102.2 means as much or more
@@ -153,8 +153,8 @@ def read_ais(
     Dropped are reports without a position, late reports (the earlier one of two reports closer
     together than `min_step_s`), and positions that the vessel cannot reach at `max_speed_mps`.
 
-    The plane is for one area: a note reports positions more than 300 km from its origin, and by how
-    much distances are too short there.
+    The plane is for one area: a note reports positions more than 500 km from its origin, and by how
+    much distances across are too long there.
 
     Parameters
     ----------
@@ -185,6 +185,11 @@ def read_ais(
         raise ValueError(
             f"min_step_s and max_speed_mps must be positive, got {min_step_s} and {max_speed_mps}"
         )
+    if origin_deg is not None and not (abs(origin_deg[0]) <= 90 and abs(origin_deg[1]) <= 180):
+        raise ValueError(
+            "origin_deg must be a latitude from -90 to 90 and a longitude from -180 to 180, "
+            f"got {origin_deg}"
+        )
     table = Table(path, COLUMNS)
     table.require("time", "mmsi", "latitude", "longitude")
     time_s = table.times("time")
@@ -201,12 +206,17 @@ def read_ais(
     _note(notes, table, ~placed, "report", "without a position")
     if origin_deg is None:
         origin_deg = _median_deg(latitude_deg[placed], longitude_deg[placed])
-    plane = LocalPlane(*origin_deg)
-    north_m, east_m = plane.position_m(latitude_deg, longitude_deg)
-    course_rad = plane.course_rad(np.radians(cog_deg), latitude_deg, longitude_deg)
+    plane = LocalPlane(
+        latitude_rad=np.radians(origin_deg[0]), longitude_rad=np.radians(origin_deg[1])
+    )
+    place = {"latitude_rad": np.radians(latitude_deg), "longitude_rad": np.radians(longitude_deg)}
+    north_m, east_m = plane.position_m(**place).T
+    course_rad = plane.plane_course_rad(np.radians(cog_deg), **place)
+    opposite = placed & np.isnan(north_m)
+    _note(notes, table, opposite, "report", "on the other side of the earth from the origin")
     tracks: dict[str, AisTrack] = {}
     late, jumped = np.zeros(len(table), dtype=bool), np.zeros(len(table), dtype=bool)
-    for number, row in _rows_by_vessel(mmsi, time_s, np.flatnonzero(placed)):
+    for number, row in _rows_by_vessel(mmsi, time_s, np.flatnonzero(placed & ~opposite)):
         soon = _too_soon(time_s[row], min_step_s)
         late[row[soon]] = True
         row = row[~soon]
@@ -216,8 +226,7 @@ def read_ais(
         tracks[number] = AisTrack(
             number, time_s[row], north_m[row], east_m[row], course_rad[row], sog_kn[row] * KNOT_MPS
         )
-    angle_rad = plane.angle_rad(latitude_deg, longitude_deg)
-    _note_far(notes, table, np.where(late | jumped, 0.0, angle_rad))
+    _note_far(notes, table, np.where(late | jumped, 0.0, np.hypot(north_m, east_m)))
     _note(notes, table, late, "report", f"less than {min_step_s:g} s before the next of the vessel")
     way = f"out of reach of the vessel at {max_speed_mps:g} m/s"
     _note(notes, table, jumped, "report", way)
@@ -287,15 +296,15 @@ def _note(notes: list[str], table: Table, rows: np.ndarray, noun: str, what: str
         )
 
 
-def _note_far(notes: list[str], table: Table, angle_rad: np.ndarray) -> None:
+def _note_far(notes: list[str], table: Table, distance_m: np.ndarray) -> None:
     """Note reports (n,) too far from the origin of the plane."""
-    far = np.nan_to_num(angle_rad) * EARTH_RADIUS_M > _FAR_M
+    far = np.nan_to_num(distance_m) > _FAR_M
     if far.any():
-        farthest_rad = float(angle_rad[far].max())
-        short = 100.0 * min(1.0 - np.cos(farthest_rad), 1.0)
+        farthest_m = float(distance_m[far].max())
         notes.append(
             f"{table.path.name}: {counted(np.count_nonzero(far), '[report is|reports are]')} "
             f"more than {_FAR_M / 1e3:.0f} km from the origin of the plane (first in line "
-            f"{table.line(int(np.argmax(far)))}); distances are too short by {short:.1f} % at "
-            f"{farthest_rad * EARTH_RADIUS_M / 1e3:.0f} km; cut the file to one area"
+            f"{table.line(int(np.argmax(far)))}); distances across are too long by "
+            f"{100.0 * plane_stretch(farthest_m):.1f} % at {farthest_m / 1e3:.0f} km; cut the file "
+            "to one area"
         )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import scans as grouping
-from .model import Episode, OwnShip, Scan
+from .model import Episode, OwnShipMotion, Scan
 from .own_csv import OwnRows
 from .plot_rows import PlotRows
 
@@ -25,7 +25,7 @@ def build_episode(
     scenario: str,
     plots: PlotRows,
     own: OwnRows | None,
-    fixed: OwnShip,
+    fixed: OwnShipMotion,
     period_s: float | None,
     own_gap_s: float,
 ) -> Episode:
@@ -39,7 +39,7 @@ def build_episode(
         Rows of all scenarios; positions that are not finite are NaN.
     own : OwnRows or None
         Rows of all scenarios.
-    fixed : OwnShip
+    fixed : OwnShipMotion
         Own ship if neither file has its position.
     period_s, own_gap_s : float
         As for ``read_plots``.
@@ -83,7 +83,7 @@ def _numbered(
     return plots.where(order), number[order]
 
 
-def _bearing_rad(plots: PlotRows, own: OwnRows | None, fixed: OwnShip) -> np.ndarray:
+def _bearing_rad(plots: PlotRows, own: OwnRows | None, fixed: OwnShipMotion) -> np.ndarray:
     """Bearing (n,) of each plot from own ship, NaN where a position is unknown."""
     if plots.polar:
         return plots.place[:, 1]
@@ -95,7 +95,7 @@ def _bearing_rad(plots: PlotRows, own: OwnRows | None, fixed: OwnShip) -> np.nda
     return np.arctan2(east_m, north_m)
 
 
-def _track(rows: OwnRows, fixed: OwnShip) -> OwnShip:
+def _track(rows: OwnRows, fixed: OwnShipMotion) -> OwnShipMotion:
     """Own ship's track from rows with a position, sorted by time; `fixed` without any."""
     return rows.ship() if len(rows.row) else fixed
 
@@ -146,8 +146,8 @@ def _check_scan_times(
 
 
 def _own_ship(
-    plots: PlotRows, own: OwnRows | None, fixed: OwnShip, own_gap_s: float
-) -> tuple[np.ndarray, OwnShip]:
+    plots: PlotRows, own: OwnRows | None, fixed: OwnShipMotion, own_gap_s: float
+) -> tuple[np.ndarray, OwnShipMotion]:
     """Own position (n, 2) at each plot, and own ship's track."""
     if own is not None and own.has_position:
         rows = own.by_time()
@@ -156,7 +156,7 @@ def _own_ship(
         return ship.position_at(plots.time_s) if plots.own_m is None else plots.own_m, ship
     if plots.own_m is not None and len(plots):
         time_s, first = np.unique(plots.time_s, return_index=True)
-        return plots.own_m, OwnShip(time_s, *plots.own_m[first].T)
+        return plots.own_m, OwnShipMotion(time_s, *plots.own_m[first].T)
     return fixed.position_at(plots.time_s), fixed
 
 

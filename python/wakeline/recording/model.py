@@ -105,7 +105,7 @@ class Scan:
 
 
 @dataclass(frozen=True)
-class OwnShip:
+class OwnShipMotion:
     """Positions of the radar, sorted by unique times; one row is a stationary radar.
 
     Attributes
@@ -155,7 +155,7 @@ class OwnShip:
         return brief(self, many(len(self), "position"), span(self.time_s))
 
     @classmethod
-    def fixed(cls, north_m: float = 0.0, east_m: float = 0.0) -> OwnShip:
+    def fixed(cls, north_m: float = 0.0, east_m: float = 0.0) -> OwnShipMotion:
         """A stationary radar."""
         return cls(np.zeros(1), np.array([north_m]), np.array([east_m]))
 
@@ -225,7 +225,7 @@ class Episode:
         Value of the ``scenario`` column, '' when the recording has none.
     scans : list of Scan
         In order of time.
-    own : OwnShip
+    own : OwnShipMotion
         Own ship over the episode.
     truth : dict of str to TargetTruth, or None
         Truth of each target by name; None when no truth was given.
@@ -233,7 +233,7 @@ class Episode:
 
     name: str
     scans: list[Scan]
-    own: OwnShip = field(default_factory=OwnShip.fixed)
+    own: OwnShipMotion = field(default_factory=OwnShipMotion.fixed)
     truth: dict[str, TargetTruth] | None = None
 
     def __len__(self) -> int:

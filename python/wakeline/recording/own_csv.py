@@ -10,7 +10,7 @@ import numpy as np
 from wakeline._brief import many
 
 from .errors import RecordingError
-from .model import OwnShip
+from .model import OwnShipMotion
 from .table import TIME_NAMES, Table
 
 OWN_GAP_S = 10.0  # longest step that is interpolated across by default
@@ -74,9 +74,9 @@ class OwnRows:
         rows = rows._where(np.argsort(rows.time_s, kind="stable"))
         return rows._where(np.append(np.diff(rows.time_s) > 0, True)[: len(rows.time_s)])
 
-    def ship(self) -> OwnShip:
+    def ship(self) -> OwnShipMotion:
         """These sorted rows as own ship's track."""
-        return OwnShip(time_s=self.time_s, **self.columns)
+        return OwnShipMotion(time_s=self.time_s, **self.columns)
 
     def lacks(self, time_s: np.ndarray, own_gap_s: float) -> tuple[int, str] | None:
         """The first of times (n,) that these sorted rows do not cover, and what they have.
@@ -199,7 +199,7 @@ def read_own_track(path: str | Path, notes: list[str]) -> OwnRows:
     return rows.by_time()
 
 
-def read_own_ship(path: str | Path) -> OwnShip:
+def read_own_ship(path: str | Path) -> OwnShipMotion:
     """Read own ship's track from a file, as :func:`read_plots` describes it.
 
     Raises

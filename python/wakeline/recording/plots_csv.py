@@ -11,7 +11,7 @@ import numpy as np
 from wakeline._checks import plain_numbers
 
 from .episodes import build_episode
-from .model import Episode, OwnShip, Recording
+from .model import Episode, OwnShipMotion, Recording
 from .own_csv import OWN_GAP_S, OwnRows, read_own
 from .plot_rows import PlotRows, read_plot_rows, remark
 from .scans import turn_s
@@ -103,7 +103,7 @@ def read_plots(
     plots = PlotRows.none() if plots_path is None else read_plot_rows(plots_path, notes)
     remark(plots, np.isnan(plots.place[:, 0]), "without a finite position left out", notes)
     own_rows = None if own_path is None else read_own(own_path, notes)
-    fixed = OwnShip.fixed(*own)
+    fixed = OwnShipMotion.fixed(*own)
 
     def episodes_of(period_s: float | None) -> list[Episode]:
         return [

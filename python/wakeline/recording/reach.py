@@ -1,4 +1,4 @@
-"""Positions that a vessel cannot have reached."""
+"""Positions that a vessel cannot have reached, and how far a plane reaches."""
 
 from __future__ import annotations
 
@@ -9,6 +9,16 @@ import numpy as np
 _SLACK_M, _SLACK_S = 50.0, 2.0
 _TRUSTED = 3
 _MOST_AWAY = 3  # consecutive parts
+_EARTH_RADIUS_M = 6371e3
+
+
+def plane_stretch(distance_m: float) -> float:
+    """Relative stretch of a distance on a `LocalPlane`, across the direction to its origin.
+
+    At a distance d from the origin it is d / (R sin(d / R)) - 1.
+    """
+    angle_rad = distance_m / _EARTH_RADIUS_M
+    return float(angle_rad / np.sin(angle_rad) - 1.0) if angle_rad else 0.0
 
 
 def unreachable(time_s: np.ndarray, position_m: np.ndarray, max_speed_mps: float) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from wakeline._checks import plain_numbers, whole_number
-from wakeline.recording import Episode, OwnShip, Recording, Scan, TargetTruth
+from wakeline.recording import Episode, OwnShipMotion, Recording, Scan, TargetTruth
 
 from .truth import Truth
 
@@ -196,7 +196,7 @@ class RadarSimulator:
             )
         own_s = scan_time_s if scans else np.array([float(start_time_s)])
         own_state = own.state_at(own_s)
-        ship = OwnShip(
+        ship = OwnShipMotion(
             time_s=own_s,
             north_m=own_state[:, 0],
             east_m=own_state[:, 2],

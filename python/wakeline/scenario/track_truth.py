@@ -67,7 +67,7 @@ class TrackTruth:
     def of(cls, track: Any) -> TrackTruth:
         """From an object with ``time_s, north_m, east_m, vnorth_mps, veast_mps``.
 
-        An ``AisTrack``, a ``TargetTruth`` or an ``OwnShip`` of :mod:`wakeline.recording`; a
+        An ``AisTrack``, a ``TargetTruth`` or an ``OwnShipMotion`` of :mod:`wakeline.recording`; a
         ``NavigationLog`` gives its `track`, relative to the first valid fix.
 
         Gaps are interpolated, too. To avoid that, use each of the `parts` of an ``AisTrack`` or a

@@ -93,9 +93,8 @@ _SHOWN_STRETCH, _SHOWN_S = "235007473-1", 180.0
 def vessels() -> dict[str, TrackTruth]:
     """Segments by name, with the radar at north 0, east 0."""
     ais = recording.load_ais()
-    radar_m = [
-        float(np.ravel(part)[0]) for part in ais.plane.position_m(*map(np.array, RADAR_AT_DEG))
-    ]
+    latitude_rad, longitude_rad = np.radians(RADAR_AT_DEG)
+    radar_m = ais.plane.position_m(latitude_rad=latitude_rad, longitude_rad=longitude_rad)
     found = {}
     for mmsi, track in ais.tracks.items():
         often = filter(_heard_often, under_way.stretches(track))

@@ -11,7 +11,7 @@ import numpy as np
 
 import wakeline as wl
 from wakeline._units import NAUTICAL_MILE_M
-from wakeline.recording import OwnShip, Tracks
+from wakeline.recording import OwnShipMotion, Tracks
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class Watched(NamedTuple):
 
 
 def with_closest_approach(
-    tracks: Tracks, own: OwnShip, limits: DangerLimits | None = None
+    tracks: Tracks, own: OwnShipMotion, limits: DangerLimits | None = None
 ) -> Tracks:
     """Add CPA, TCPA and the probability of coming closer than the limits to tracks.
 
@@ -118,7 +118,7 @@ def with_closest_approach(
     ----------
     tracks : Tracks
         With their covariance.
-    own : OwnShip
+    own : OwnShipMotion
         Its velocity must be known.
     limits : DangerLimits, optional
 
@@ -153,7 +153,7 @@ def with_closest_approach(
     )
 
 
-def with_alarms(tracks: Tracks, own: OwnShip, limits: DangerLimits | None = None) -> Watched:
+def with_alarms(tracks: Tracks, own: OwnShipMotion, limits: DangerLimits | None = None) -> Watched:
     """Find the alarms of tracks that come dangerously close to own ship.
 
     Parameters
@@ -161,7 +161,7 @@ def with_alarms(tracks: Tracks, own: OwnShip, limits: DangerLimits | None = None
     tracks : Tracks
         Rows of each track in order of time. Where they have no closest approach yet, it is that of
         :func:`with_closest_approach`.
-    own : OwnShip
+    own : OwnShipMotion
     limits : DangerLimits, optional
     """
     limits = limits or DangerLimits()

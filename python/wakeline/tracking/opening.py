@@ -7,7 +7,7 @@ from pathlib import Path
 
 from wakeline.extraction import read_plots_of_video
 from wakeline.recording import (
-    OwnShip,
+    OwnShipMotion,
     Recording,
     is_video,
     load,
@@ -19,7 +19,7 @@ from wakeline.recording import (
 
 def open_recording(
     recording: Recording | str | Path,
-    own: OwnShip | str | Path | None = None,
+    own: OwnShipMotion | str | Path | None = None,
     truth: str | Path | None = None,
     *,
     period_s: float | None = None,
@@ -31,7 +31,7 @@ def open_recording(
     recording : Recording, str or Path
         A recording, the name of a bundled one, or a file of plots (CSV) or radar video (ASTERIX
         category 240). A file takes precedence over a bundled recording of the same name.
-    own : OwnShip, str or Path, optional
+    own : OwnShipMotion, str or Path, optional
         Own ship, or its file. For plots and video in a file it must be a file, and the radar is
         there; in a recording that is open it replaces own ship, and plots stay where they are.
     truth : str or Path, optional
@@ -57,13 +57,13 @@ def open_recording(
         raise ValueError(f"truth goes with a file of plots, got {recording} with {truth}")
     if path is None:
         return recording if own is None else _with_own(recording, own)
-    if isinstance(own, OwnShip):
+    if isinstance(own, OwnShipMotion):
         raise TypeError(f"own must be a file for the recording in {path}, got {own!r}")
     if from_video:
         return read_plots_of_video(path, own, period_s=period_s)
     return read_plots(path, own, truth, period_s=period_s)
 
 
-def _with_own(recording: Recording, own: OwnShip | str | Path) -> Recording:
-    ship = own if isinstance(own, OwnShip) else read_own_ship(own)
+def _with_own(recording: Recording, own: OwnShipMotion | str | Path) -> Recording:
+    ship = own if isinstance(own, OwnShipMotion) else read_own_ship(own)
     return replace(recording, episodes=[replace(episode, own=ship) for episode in recording])

@@ -12,7 +12,7 @@ import numpy as np
 
 import wakeline as wl
 from wakeline._progress import progress
-from wakeline.recording import Episode, OwnShip, Recording, Scan, Tracks
+from wakeline.recording import Episode, OwnShipMotion, Recording, Scan, Tracks
 
 from .alarms import Alarm, with_alarms
 from .opening import open_recording
@@ -94,7 +94,7 @@ def track_recording(
     *,
     radar: wl.Radar | str | Path | None = None,
     vessels: wl.VesselModels | str | None = None,
-    own: OwnShip | str | Path | None = None,
+    own: OwnShipMotion | str | Path | None = None,
     config: Settings | wl.TrackerConfig | str | Path | None = None,
 ) -> TrackedRecording:
     """Track a recording: plots in, tracks out.
@@ -113,7 +113,7 @@ def track_recording(
         knows of its radar, else the defaults of :class:`wakeline.Radar`.
     vessels : VesselModels or str, optional
         Motion models, or "any" (default) or "ships" (under way, which seldom alter course).
-    own : OwnShip, str or Path, optional
+    own : OwnShipMotion, str or Path, optional
         Own ship, or its file. With it each row has the closest approach to own ship, and alarms are
         found. For a recording in a file it must be a file, and the radar is there.
     config : Settings, TrackerConfig, str or Path, optional
@@ -159,7 +159,7 @@ def track_episode(
     episode: Episode,
     settings: Settings | None = None,
     *,
-    own: OwnShip | None = None,
+    own: OwnShipMotion | None = None,
     named: bool = False,
 ) -> TrackedEpisode:
     """Track one episode with a fresh tracker.
@@ -168,7 +168,7 @@ def track_episode(
     ----------
     episode : Episode
     settings : Settings, optional
-    own : OwnShip, optional
+    own : OwnShipMotion, optional
         Own ship whose closest approaches and alarms are found, where its velocity is known; mostly
         ``episode.own``.
     named : bool

@@ -14,9 +14,9 @@ import numpy as np
 
 from wakeline._brief import brief, many, span
 from wakeline._checks import not_negative
+from wakeline._engine.navigation import LocalPlane
 
-from ..local_plane import LocalPlane
-from ..model import OwnShip
+from ..model import OwnShipMotion
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -98,6 +98,20 @@ class Fixes(Series):
     def usable(self) -> np.ndarray:
         """Mask (n,) of fixes that are valid, not frozen and not suspect."""
         return self.valid & ~self.frozen & ~self.suspect
+
+    @property
+    def latitude_rad(self) -> np.ndarray:
+        """Latitude (n,) in radians."""
+        return np.radians(self.latitude_deg)
+
+    @property
+    def longitude_rad(self) -> np.ndarray:
+        """Longitude (n,) in radians."""
+        return np.radians(self.longitude_deg)
+
+    def plane(self) -> LocalPlane:
+        """The plane about the first fix."""
+        return LocalPlane(latitude_rad=self.latitude_rad[0], longitude_rad=self.longitude_rad[0])
 
 
 @dataclass(frozen=True, repr=False)
@@ -340,7 +354,7 @@ class NavigationLog:
             )
         return fixes
 
-    def track(self, plane: LocalPlane | None = None) -> OwnShip:
+    def track(self, plane: LocalPlane | None = None) -> OwnShipMotion:
         """Own ship's track: usable fixes, with the velocities reported with them.
 
         Gaps are interpolated. For a log in several parts use the track of each of `parts`.
@@ -348,11 +362,11 @@ class NavigationLog:
         Parameters
         ----------
         plane : LocalPlane, optional
-            Default: tangent to the earth at the first usable fix.
+            Default: about the first usable fix.
 
         Returns
         -------
-        OwnShip
+        OwnShipMotion
             Velocities are NaN at fixes without one, and zero at rest without a course.
 
         Raises
@@ -361,17 +375,17 @@ class NavigationLog:
             When there is no usable fix, or the clock was set back.
         """
         fixes, ground = self.fixes_in_order("track"), self.ground.sound()
-        place_deg = fixes.latitude_deg, fixes.longitude_deg
-        plane = plane or LocalPlane(fixes.latitude_deg[0], fixes.longitude_deg[0])
+        place = {"latitude_rad": fixes.latitude_rad, "longitude_rad": fixes.longitude_rad}
+        plane = plane or fixes.plane()
         speed_mps, course_rad = np.full((2, len(fixes)), np.nan)
         _, of_fix, of_ground = np.intersect1d(fixes.time_s, ground.time_s, return_indices=True)
         speed_mps[of_fix] = ground.speed_mps[of_ground]
         course_rad[of_fix] = ground.course_rad[of_ground]
         course_rad[speed_mps == 0] = 0.0
-        course_rad = plane.course_rad(course_rad, *place_deg)
-        return OwnShip(
+        course_rad = plane.plane_course_rad(course_rad, **place)
+        return OwnShipMotion(
             fixes.time_s,
-            *plane.position_m(*place_deg),
+            *plane.position_m(**place).T,
             vnorth_mps=speed_mps * np.cos(course_rad),
             veast_mps=speed_mps * np.sin(course_rad),
         )

@@ -15,7 +15,6 @@ from wakeline._checks import plain_numbers
 from wakeline._units import KNOT_MPS
 
 from ..errors import RecordingError, octets_of
-from ..local_plane import EARTH_RADIUS_M, verticals
 from ..not_text import instead_of_text
 from ..reach import jumps_m, unreachable
 from .clock import Clock
@@ -39,6 +38,7 @@ _QUALITY = {"A": 1, "D": 2, "P": 3, "R": 4, "F": 5, "E": 6, "M": 7, "S": 8, "N":
 _BEST_MODE_FIRST = "RFPDASEMN"  # of the modes of several systems of satellites
 _NOT_MEASURED = (0, 6, 7)
 _NOT_SAID = -1
+_EARTH_RADIUS_M = 6371e3
 _SBAS, _DIFFERENTIAL = 9, 2  # some receivers write 9, which GGA does not define, for 2
 
 _SENTENCES = "NMEA 0183 sentences"
@@ -596,8 +596,10 @@ def _repeats(*columns: np.ndarray) -> np.ndarray:
 
 def _earth_centred_m(fixes: Fixes) -> np.ndarray:
     """Positions (n, 3) on a sphere."""
-    latitude, longitude = np.radians(fixes.latitude_deg), np.radians(fixes.longitude_deg)
-    return EARTH_RADIUS_M * verticals(latitude, longitude)
+    latitude, longitude = fixes.latitude_rad, fixes.longitude_rad
+    across = np.cos(latitude)
+    vertical = (across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude))
+    return _EARTH_RADIUS_M * np.column_stack(vertical)
 
 
 # ------------------------------------------------------------------ notes
