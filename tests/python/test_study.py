@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -472,7 +473,7 @@ def test_what_stops_the_work_calls_off_what_has_not_begun(monkeypatch, where):
         raise KeyboardInterrupt
         yield
 
-    monkeypatch.setattr(base, "told", stop)
+    monkeypatch.setattr(base, "reported", stop)
     jobs = {number: lambda number=number: job(number) for number in range(300)}
     with pytest.raises(KeyboardInterrupt) as caught:
         base.worked_off(jobs, 1, where == "bar")
@@ -486,11 +487,14 @@ def test_what_stops_the_work_has_what_was_done():
             raise ZeroDivisionError
         return -number
 
-    jobs = {number: lambda number=number: job(number) for number in range(300)}
+    jobs = {number: partial(job, number) for number in range(300)}
     with pytest.raises(ZeroDivisionError) as caught:
         base.worked_off(jobs, 1, False)
     assert list(caught.value.result.items())[:2] == [(0, 0), (1, -1)]
     assert 2 not in caught.value.result
+    with pytest.raises(ZeroDivisionError) as caught:
+        base.in_turn(jobs)
+    assert caught.value.result == {0: 0, 1: -1}
 
 
 @pytest.fixture
@@ -504,7 +508,7 @@ def stopped(monkeypatch):
                 if done == count:
                     raise KeyboardInterrupt
 
-        monkeypatch.setattr(base, "told", stop)
+        monkeypatch.setattr(base, "reported", stop)
         monkeypatch.setattr("wakeline._progress.progress", stop)
 
     return stop_after
@@ -539,15 +543,15 @@ def test_a_study_that_is_stopped_tells_what_was_done(stopped, tmp_path, capsys):
 
 
 def test_a_study_that_is_stopped_at_once_has_nothing_to_tell(monkeypatch, tmp_path, capsys):
-    def stop(runs, seed, **told):
-        if seed:
-            raise KeyboardInterrupt
-        with base.kept(lambda done: study.Report("imm", seed, runs, rows=done), nothing=[]):
-            raise KeyboardInterrupt
+    def stop(*_):
+        raise KeyboardInterrupt
 
-    monkeypatch.setattr(study.imm, "run", stop)
-    for seed in (0, 1):
-        assert run("run", "imm", "--seed", seed, "--out", tmp_path) == 130
+    def planned(request):
+        return base.Plan({"one": stop}, rows=list, in_turn=True)
+
+    for plan in (stop, planned):
+        monkeypatch.setitem(study._STUDIES, "imm", base.Study("imm", "", plan))
+        assert run("run", "imm", "--out", tmp_path) == 130
         assert capsys.readouterr().out == ""
 
 

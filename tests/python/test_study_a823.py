@@ -160,7 +160,7 @@ def test_the_same_seed_gives_the_same_figures():
     one = a823.run(5, seed=2, threads=1)
     other = a823.run(5, seed=2, threads=3)
     assert json.dumps(one.rows) == json.dumps(other.rows)
-    assert study.load("a823") is a823
+    assert study.load("a823") is a823.STUDY
 
 
 def test_every_picture_can_be_drawn(report, tmp_path):

@@ -217,7 +217,7 @@ def test_the_same_seed_gives_the_same_figures():
 
 
 def test_the_study_has_its_name_and_its_table(report):
-    assert study.load("dead-reckoning") is reckoning
+    assert study.load("dead-reckoning") is reckoning.STUDY
     assert "dead-reckoning" in study.names()
     cells = report.table()
     assert any(row[1].strip() == "paper" for row in cells)

@@ -43,6 +43,6 @@ def test_no_turn_goes_on_for_six_minutes(report):
 
 
 def test_it_is_listed_and_its_picture_can_be_drawn(report, tmp_path):
-    assert study.load("ais-forecast") is ais_forecast
+    assert study.load("ais-forecast") is ais_forecast.STUDY
     (file,) = report.save_pictures(tmp_path)
     assert file.stat().st_size > 5000

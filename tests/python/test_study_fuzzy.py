@@ -21,7 +21,7 @@ def report():
 
 
 def test_it_is_listed():
-    assert study.load("fuzzy-alpha-beta") is fuzzy_alpha_beta
+    assert study.load("fuzzy-alpha-beta") is fuzzy_alpha_beta.STUDY
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
 
 def list_studies(arguments: argparse.Namespace) -> None:
     """Print each name and what it is."""
-    print(report.aligned([[name, study.load(name).SUMMARY] for name in study.names()], text=(1,)))
+    print(report.aligned([[name, study.load(name).summary] for name in study.names()], text=(1,)))
 
 
 def run_study(arguments: argparse.Namespace) -> None:

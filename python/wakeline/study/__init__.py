@@ -5,14 +5,11 @@
 >>> report.row("scans", "imm3")["mean_position_m"] < report.row("scans", "imm2")["mean_position_m"]
 True
 
-A study is a module with a ``SUMMARY`` of one line and a function ``run(runs, seed, *, full=False,
-threads=None, progress=False) -> Report``. An exception that ends it early, also a keyboard
-interrupt, has the attribute ``result``: a :class:`Report` of the complete rows, without pictures.
+A study is a module with ``STUDY``, a :class:`Study`, whose ``run`` is that of the module, too:
+``run(runs, seed, *, full=False, threads=None, progress=False) -> Report``.
 """
 
 from __future__ import annotations
-
-from types import ModuleType
 
 from . import (
     a823,
@@ -24,12 +21,13 @@ from . import (
     usv_navigation,
     variable_structure,
 )
-from .base import Picture, Published, Report
+from .base import Picture, Published, Report, Study
 
 __all__ = [
     "Picture",
     "Published",
     "Report",
+    "Study",
     "a823",
     "ais_forecast",
     "dead_reckoning",
@@ -43,14 +41,17 @@ __all__ = [
 ]
 
 _STUDIES = {
-    "imm": imm,
-    "variable-structure": variable_structure,
-    "fuzzy-alpha-beta": fuzzy_alpha_beta,
-    "solent": solent,
-    "a823": a823,
-    "ais-forecast": ais_forecast,
-    "dead-reckoning": dead_reckoning,
-    "usv-navigation": usv_navigation,
+    module.STUDY.name: module.STUDY
+    for module in (
+        imm,
+        variable_structure,
+        fuzzy_alpha_beta,
+        solent,
+        a823,
+        ais_forecast,
+        dead_reckoning,
+        usv_navigation,
+    )
 }
 
 
@@ -59,8 +60,8 @@ def names() -> list[str]:
     return list(_STUDIES)
 
 
-def load(name: str) -> ModuleType:
-    """The module of a study.
+def load(name: str) -> Study:
+    """A study by name.
 
     Parameters
     ----------

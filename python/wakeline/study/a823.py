@@ -7,13 +7,17 @@ within a minute, counted from the end of the turn. The second scenario is also r
 because its limits depend on that.
 
 This is a test on the scenarios of the resolution with its error budget. It is not a type approval.
+
+Scenarios are ``scenario1_1min`` to ``scenario4_3min``, and with ``_own_turn`` or ``_target_turn``
+before the minutes where a ship has turned before, ``_no_glint`` where the echo does not wander
+along the hull.
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,18 +25,15 @@ import numpy as np
 
 import wakeline as wl
 from wakeline import WhiteAcceleration, plot
-from wakeline._checks import run_numbers
 from wakeline._units import KNOT_MPS, NAUTICAL_MILE_M
 from wakeline.scenario import Segment, Truth
 
 from . import curves
-from .base import Picture, Published, Report, Rows, kept, worked_off
+from .base import Picture, Plan, Published, Request, Rows, Study
 from .estimators import peaked, turn_filter, turn_imm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-SUMMARY = "the four scenarios of IMO A.823(19) with its error budget: errors of displayed data"
 
 PERIOD_S = 2.5  # 24 revolutions a minute
 ROLL_PERIOD_S = 10.0
@@ -348,49 +349,23 @@ def _spread(direction_rad: float, along_m: float, across_m: float) -> np.ndarray
     return along_m**2 * np.outer(u, u) + across_m**2 * np.outer(w, w)
 
 
-def run(
-    runs: int = 500,
-    seed: int = 0,
-    *,
-    full: bool = False,
-    threads: int | None = None,
-    progress: bool = False,
-) -> Report:
-    """Run the study.
-
-    Parameters
-    ----------
-    runs, seed : int
-        Of the Monte Carlo runs.
-    full : bool
-        No effect.
-    threads : int, optional
-        Default: the number of processors.
-    progress : bool
-        Whether to draw a bar if stderr is a terminal.
-
-    Returns
-    -------
-    Report
-        Scenarios ``scenario1_1min`` to ``scenario4_3min``, and with ``_own_turn`` or
-        ``_target_turn`` before the minutes where a ship has turned before, ``_no_glint`` where the
-        echo does not wander along the hull.
-    """
-    run_numbers(runs, seed, threads)
+def _plan(request: Request) -> Plan:
     jobs: dict[tuple[str, str], Callable[[], dict[str, np.ndarray]]] = {}
     for number, maneuver, after_s, glint_std_m in _cases():
         ships, radar = passage(number, maneuver, after_s), sensor(glint_std_m)
-        key = [seed, number, MANEUVERS.index(maneuver), int(after_s)]
-        seen = [see(ships, np.random.default_rng([*key, r]), glint_std_m) for r in range(runs)]
+        key = [request.seed, number, MANEUVERS.index(maneuver), int(after_s)]
+        seen = [
+            see(ships, np.random.default_rng([*key, r]), glint_std_m) for r in range(request.runs)
+        ]
         case = case_name(number, maneuver, after_s, glint_std_m)
         for name, estimator in estimators().items():
             jobs[case, name] = partial(errors, estimator, ships, seen, radar)
-    report = Report(name="a823", seed=seed, runs=runs, rows=[], published={"standard": STANDARD})
-    with kept(lambda done: replace(report, rows=_rows(done), result=done)):
-        done = worked_off(jobs, threads, progress)
-    rows = _rows(done) + _bound_rows()
-    return replace(
-        report, rows=rows, result=done, pictures=_pictures(rows), notes=(_share_note(rows),)
+    whole = len(jobs)
+    return Plan(
+        jobs=jobs,
+        rows=lambda done: _rows(done) + (_bound_rows() if len(done) == whole else []),
+        pictures=lambda done, rows: _pictures(rows),
+        notes=lambda done, rows: [_share_note(rows)],
     )
 
 
@@ -449,6 +424,14 @@ STANDARD = Published(
         if case.maneuver == "steady"
     },
 )
+
+STUDY = Study(
+    "a823",
+    "the four scenarios of IMO A.823(19) with its error budget: errors of displayed data",
+    _plan,
+    published={"standard": STANDARD},
+)
+run = STUDY.run
 
 
 def shares(rows: Rows, name: str, after_s: float) -> dict[str, float]:

@@ -3,6 +3,9 @@
 The vessels of the Solent report position, course and speed every few seconds. Every 15 seconds a
 forecast for one, three and six minutes is made and compared with the later position. Nothing is
 random here: there is one run.
+
+Scenarios are ``after_60s`` and so on; with ``_turning`` those forecasts that begin while the course
+changes by more than half a degree a second.
 """
 
 from __future__ import annotations
@@ -17,12 +20,10 @@ from wakeline import forecast, plot, recording
 from wakeline.recording import AisTrack
 
 from . import under_way
-from .base import Picture, Report, Rows
+from .base import Done, Picture, Plan, Request, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-SUMMARY = "forecasts of vessels in the Solent from their AIS, one to six minutes ahead"
 
 HORIZONS_S = (60.0, 180.0, 360.0)
 TURNING_RAD_S = np.deg2rad(0.5)
@@ -43,49 +44,50 @@ _HISTORY_S = 60.0
 _CURVE_S = np.arange(20.0, 361.0, 20.0)
 
 
-def run(
-    runs: int = 1,
-    seed: int = 0,
-    *,
-    full: bool = False,
-    threads: int | None = None,
-    progress: bool = False,
-) -> Report:
-    """Run the study once; nothing is random, and no argument changes the figures.
-
-    Returns
-    -------
-    Report
-        Scenarios ``after_60s`` and so on; with ``_turning`` those forecasts that begin while the
-        course changes by more than half a degree a second.
-    """
+def _plan(request: Request) -> Plan:
     ahead_s = np.unique([*_CURVE_S, *HORIZONS_S])
-    errors = {name: [] for name in forecast.names()}
+
+    def turning(done: Done) -> np.ndarray:
+        return done["forecasts"][1]
+
+    def pictures(done: Done, rows: Rows) -> list[Picture]:
+        table, turning = done["forecasts"]
+        panels = (
+            partial(_draw, table=table, which=which, ahead_s=ahead_s)
+            for which in (np.ones(len(turning), bool), turning)
+        )
+        title = "Error of a forecast: half of all, and of those that begin in a turn"
+        return [Picture("forecast-errors", title, tuple(panels), size_in=(7.2, 6.6))]
+
+    return Plan(
+        jobs={"forecasts": partial(_errors, ahead_s)},
+        rows=lambda done: [row for one in done.values() for row in _rows(*one, ahead_s)],
+        pictures=pictures,
+        notes=lambda done, rows: [
+            _NOTE.format(count=len(turning(done)), share=np.mean(turning(done)))
+        ],
+        runs=1,
+    )
+
+
+STUDY = Study(
+    "ais-forecast",
+    "forecasts of vessels in the Solent from their AIS, one to six minutes ahead",
+    _plan,
+    random=False,
+)
+run = STUDY.run
+
+
+def _errors(ahead_s: np.ndarray) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """Errors (n, H) of n forecasts by model, and which of them (n,) begin in a turn."""
+    errors: dict[str, list[np.ndarray]] = {name: [] for name in forecast.names()}
     turning = []
     for past, later_m in _cases(ahead_s):
         turning.append(abs(forecast.turn_rate_rad_s(past)) > TURNING_RAD_S)
         for name, of_model in errors.items():
             of_model.append(np.hypot(*(forecast.position_m(past, ahead_s, name) - later_m).T))
-    table = {name: np.array(values) for name, values in errors.items()}
-    return Report(
-        name="ais-forecast",
-        seed=None,
-        runs=1,
-        rows=_rows(table, np.array(turning), ahead_s),
-        result=table,
-        pictures=(
-            Picture(
-                "forecast-errors",
-                "Error of a forecast: half of all, and of those that begin in a turn",
-                (
-                    partial(_draw, table=table, which=np.ones(len(turning), bool), ahead_s=ahead_s),
-                    partial(_draw, table=table, which=np.array(turning), ahead_s=ahead_s),
-                ),
-                size_in=(7.2, 6.6),
-            ),
-        ),
-        notes=(_NOTE.format(count=len(turning), share=np.mean(turning)),),
-    )
+    return {name: np.array(values) for name, values in errors.items()}, np.array(turning)
 
 
 @lru_cache(maxsize=1)

@@ -1,12 +1,12 @@
-"""Common parts of the studies: rows, a table with published figures, and pictures."""
+"""Common parts of the studies: runs, rows, a table with published figures, and pictures."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing, contextmanager
-from dataclasses import dataclass, field
+from contextlib import closing
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from wakeline import plot
 from wakeline._brief import brief, many
+from wakeline._checks import run_numbers
 from wakeline._progress import progress as reported
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 Panel = Callable[["Axes"], "Axes"]
 Rows = list[dict[str, Any]]
 Key, Found = TypeVar("Key"), TypeVar("Found")
+Done = dict[Any, Any]
 
 _HEADS = {
     "mean_position_m": "mean m",
@@ -198,6 +200,130 @@ class Published:
         return None if np.isnan(value) else value
 
 
+@dataclass(frozen=True)
+class Request:
+    """What is asked of a study; the arguments of :meth:`Study.run`."""
+
+    runs: int
+    seed: int
+    full: bool
+    threads: int | None
+    progress: bool
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The work of a study for a request, and what is made of it.
+
+    Attributes
+    ----------
+    jobs : mapping of key to callable
+        Independent of each other; what each returns is `done` by its key.
+    rows : callable
+        Rows of the jobs that are done, all or some of them.
+    result : callable, optional
+        `Report.result` of the same; default all that is done.
+    pictures, notes : callable, optional
+        Of all that is done and of its rows.
+    in_turn : bool
+        Whether the jobs are run one after another, since each takes all threads itself. One that is
+        interrupted leaves what it has in the attribute ``result`` of its exception.
+    runs : int, optional
+        How many runs there are, where it is not the number that was asked for.
+    """
+
+    jobs: Mapping[Any, Callable[[], Any]]
+    rows: Callable[[Done], Rows]
+    result: Callable[[Done], Any] = dict
+    pictures: Callable[[Done, Rows], Iterable[Picture]] = lambda done, rows: ()
+    notes: Callable[[Done, Rows], Iterable[str]] = lambda done, rows: ()
+    in_turn: bool = False
+    runs: int | None = None
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study by name.
+
+    Attributes
+    ----------
+    name : str
+    summary : str
+        One line.
+    plan : callable
+        Takes a :class:`Request`, and options of the study, and returns its :class:`Plan`.
+    published : mapping of str to Published
+        Figures of others by source.
+    random : bool
+        Whether anything is drawn at random.
+    """
+
+    name: str
+    summary: str
+    plan: Callable[..., Plan] = field(repr=False)
+    published: Mapping[str, Published] = field(default_factory=dict, repr=False)
+    random: bool = True
+
+    def run(
+        self,
+        runs: int = 500,
+        seed: int = 0,
+        *,
+        full: bool = False,
+        threads: int | None = None,
+        progress: bool = False,
+        **options: Any,
+    ) -> Report:
+        """Run the study.
+
+        Parameters
+        ----------
+        runs, seed : int
+            Of the Monte Carlo runs.
+        full : bool
+            Also how sensitive the results are, where the study has it.
+        threads : int, optional
+            Default as many as there are processors.
+        progress : bool
+            Whether to draw a bar where stderr is a terminal.
+        **options
+            Of the study, see its module.
+
+        Returns
+        -------
+        Report
+            An exception that ends the work early, KeyboardInterrupt among them, has the attribute
+            ``result``: a report of what was done, without pictures.
+
+        Raises
+        ------
+        ValueError
+            When a number is not a whole one or too small.
+        """
+        run_numbers(runs, seed, threads)
+        plan = self.plan(Request(runs, seed, full, threads, progress), **options)
+        report = Report(
+            self.name,
+            seed if self.random else None,
+            plan.runs or runs,
+            rows=[],
+            published=self.published,
+        )
+
+        def so_far(done: Done) -> Report:
+            return replace(report, rows=plan.rows(done), result=plan.result(done))
+
+        done: Done = {}
+        try:
+            done = in_turn(plan.jobs) if plan.in_turn else worked_off(plan.jobs, threads, progress)
+            found = so_far(done)
+            pictures, notes = plan.pictures(done, found.rows), plan.notes(done, found.rows)
+            return replace(found, pictures=tuple(pictures), notes=tuple(notes))
+        except BaseException as error:
+            error.result = so_far(done or getattr(error, "result", {}))
+            raise
+
+
 def worked_off(
     jobs: Mapping[Key, Callable[[], Found]], threads: int | None, progress: bool
 ) -> dict[Key, Found]:
@@ -219,31 +345,26 @@ def worked_off(
             for _ in reported(ends, len(jobs), "running") if progress else ends:
                 pass
     except BaseException as error:
-        error.result = _in_order(done, jobs)
+        error.result = {key: done[key] for key in jobs if key in done}
         raise
-    return _in_order(done, jobs)
+    return {key: done[key] for key in jobs}
 
 
-def _in_order(done: Mapping[Key, Found], jobs: Mapping[Key, Any]) -> dict[Key, Found]:
-    return {key: done[key] for key in jobs if key in done}
+def in_turn(jobs: Mapping[Key, Callable[[], Found]]) -> dict[Key, Found]:
+    """What every job gives, one after another.
 
-
-@contextmanager
-def kept(report_of: Callable[[Any], Report], nothing: Any = None) -> Iterator[None]:
-    """An exception that ends the work early has the attribute ``result``: the partial report.
-
-    Parameters
-    ----------
-    report_of : callable
-        Makes the report from what the work left in that attribute.
-    nothing : object
-        Its argument if the work left nothing there.
+    What stops it has the attribute ``result``: what those gave that were done, and what that of the
+    same name holds of the one that was stopped.
     """
-    try:
-        yield
-    except BaseException as error:
-        error.result = report_of(getattr(error, "result", nothing))
-        raise
+    done: dict[Key, Found] = {}
+    for key, job in jobs.items():
+        try:
+            done[key] = job()
+        except BaseException as error:
+            partial = getattr(error, "result", None)
+            error.result = done if partial is None else done | {key: partial}
+            raise
+    return done
 
 
 def label(metric: str) -> str:

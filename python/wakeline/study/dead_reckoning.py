@@ -5,12 +5,14 @@ Each estimator smooths speed, course, latitude and longitude and predicts them f
 combined dead reckoning (11) combines smoothed speed, course and drift. The drift is estimated on a
 steady course with a fix every 30 s, by a line through the differences of observed and reckoned
 positions or from rates.
+
+Scenarios are ``forecast_4x1s`` to ``forecast_4x10s``, four readings ahead on the voyage, and
+``drift_20``, ``drift_5``, so many fixes after the first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,18 +23,15 @@ import wakeline as wl
 from wakeline import filter as wf
 from wakeline import navigation as nav
 from wakeline import plot
-from wakeline._checks import run_numbers
 from wakeline._units import KNOT_MPS
 from wakeline.metrics import rmse
 from wakeline.scenario import voyage as sea
 
 from . import curves
-from .base import Picture, Published, Report, Rows, kept, worked_off
+from .base import Done, Picture, Plan, Published, Request, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-SUMMARY = "own ship's motion smoothed and predicted, set and drift: the gains (33) beside others"
 
 AHEAD = 4  # readings
 WINDOW = 5
@@ -352,60 +351,47 @@ _REFERENCE = Published(
 )
 
 
-def run(
-    runs: int = 500,
-    seed: int = 0,
-    *,
-    full: bool = False,
-    threads: int | None = None,
-    progress: bool = False,
-) -> Report:
-    """Run the study.
-
-    Parameters
-    ----------
-    runs, seed : int
-        Number of voyages, and their seed.
-    full : bool
-        Nothing more to do here.
-    threads : int, optional
-        Default as many as there are processors.
-    progress : bool
-        Whether to draw a bar where stderr is a terminal.
-
-    Returns
-    -------
-    Report
-        Scenarios ``forecast_4x1s`` to ``forecast_4x10s``, four readings ahead on the voyage, and
-        ``drift_20``, ``drift_5``, with that many fixes after the first.
-    """
-    run_numbers(runs, seed, threads)
+def _plan(request: Request) -> Plan:
+    runs, seed = request.runs, request.seed
     jobs: dict[tuple[str, str], Callable[[], dict[str, np.ndarray]]] = {}
     for case, dt_s in STEPS_S.items():
         read = sea.reckoning_voyage(dt_s).read(runs, seed)
         for name in (*smoothers(), "combined"):
             jobs[case, name] = partial(judge, dt_s, read, name)
-    report = Report(
-        name="dead-reckoning",
-        seed=seed,
-        runs=runs,
-        rows=[],
-        published={"paper": _PAPER, "reference": _REFERENCE},
-    )
-    with kept(lambda done: replace(report, rows=_rows(done), result=done)):
-        done = worked_off(jobs, threads, progress)
-    drifts = {fixes: drift_errors(runs, seed, fixes) for fixes in FIXES.values()}
     for case, fixes in FIXES.items():
-        for name, off in drifts[fixes].items():
-            done[case, name] = {"drift_rms_kn": off[:, -1]}
-    rows = _rows(done)
-    return replace(
-        report,
-        rows=rows,
-        result=done,
-        pictures=_pictures(rows, drifts[max(FIXES.values())], seed),
-        notes=(_claim_note(rows),),
+        jobs[case, "drift"] = partial(drift_errors, runs, seed, fixes)
+
+    def pictures(done: Done, rows: Rows) -> tuple[Picture, ...]:
+        longest = max(FIXES, key=FIXES.__getitem__)
+        return _pictures(rows, done[longest, "drift"], seed)
+
+    return Plan(
+        jobs=jobs,
+        rows=lambda done: _rows(_by_estimator(done)),
+        result=_by_estimator,
+        pictures=pictures,
+        notes=lambda done, rows: [_claim_note(rows)],
     )
+
+
+STUDY = Study(
+    "dead-reckoning",
+    "own ship's motion smoothed and predicted, set and drift: the gains (33) beside others",
+    _plan,
+    published={"paper": _PAPER, "reference": _REFERENCE},
+)
+run = STUDY.run
+
+
+def _by_estimator(done: Done) -> dict[tuple[str, str], dict[str, np.ndarray]]:
+    """Errors of each run (R,) by scenario and estimator; those of a drift after the last fix."""
+    found = {}
+    for (case, name), errors in done.items():
+        if name == "drift":
+            found |= {(case, one): {"drift_rms_kn": off[:, -1]} for one, off in errors.items()}
+        else:
+            found[case, name] = errors
+    return found
 
 
 def _rows(done: Mapping[tuple[str, str], dict[str, np.ndarray]]) -> Rows:

@@ -3,11 +3,13 @@
 "Interacting multiple model algorithm for tracking maneuvering surface vessels", Vestnik NovSU,
 2023, 3(132), 394-404. The paper shows curves, reports no figures, and claims: the right model is
 the most probable in each segment, the error peaks at the switches, IMM3 is better than IMM2.
+
+Scenarios are ``scans`` and ``seconds``, the two readings of the paper's table of turns; the result
+is the Monte Carlo result of both.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -18,10 +20,8 @@ from wakeline._brief import many
 from wakeline.scenario import Scenario, papers
 
 from . import curves
-from .base import Picture, Published, Report, Rows, kept
+from .base import Done, Picture, Plan, Published, Request, Rows, Study
 from .estimators import turn_candidate
-
-SUMMARY = "IMM of two and three models, paper A: turns at 1 deg/s either way"
 
 LABELS = {"imm2": "IMM2", "imm3": "IMM3", "clairvoyant": "clairvoyant"}
 _NOISE = PiecewiseAcceleration(std_mps2=0.05)
@@ -45,51 +45,40 @@ def estimators() -> dict[str, Any]:
     } | {"clairvoyant": montecarlo.clairvoyant}
 
 
-def run(
-    runs: int = 500,
-    seed: int = 0,
-    *,
-    full: bool = False,
-    threads: int | None = None,
-    progress: bool = False,
-) -> Report:
-    """Run the study.
-
-    Parameters
-    ----------
-    runs, seed : int
-        Of the Monte Carlo runs.
-    full : bool
-        Nothing more to do here.
-    threads : int, optional
-        Default as many as there are processors.
-    progress : bool
-        Whether to draw a bar where stderr is a terminal.
-
-    Returns
-    -------
-    Report
-        Scenarios ``scans`` and ``seconds``, the two readings of the paper's table of turns.
-    """
+def _plan(request: Request) -> Plan:
     scenarios = {reading: papers.imm(reading) for reading in _READINGS}
-    report = Report(name="imm", seed=seed, runs=runs, rows=[], published={"reference": REFERENCE})
-    nothing = montecarlo.Result({}, runs, seed)
-    with kept(lambda done: replace(report, rows=_rows(scenarios, done), result=done), nothing):
-        result = montecarlo.run(
-            list(scenarios.values()), estimators(), runs, seed, threads=threads, progress=progress
-        )
-    return replace(
-        report,
-        rows=_rows(scenarios, result),
-        result=result,
-        pictures=tuple(_pictures(result, scenarios, seed)),
-        notes=(_wins(result, scenarios),),
+    work = partial(
+        montecarlo.run,
+        list(scenarios.values()),
+        estimators(),
+        request.runs,
+        request.seed,
+        threads=request.threads,
+        progress=request.progress,
+    )
+    return Plan(
+        jobs={"imm": work},
+        in_turn=True,
+        rows=lambda done: _rows(scenarios, done),
+        result=lambda done: done.get("imm"),
+        pictures=lambda done, _: _pictures(done["imm"], scenarios, request.seed),
+        notes=lambda done, _: [_wins(done["imm"], scenarios)],
     )
 
 
-def _rows(scenarios: dict[str, Scenario], result: montecarlo.Result) -> Rows:
+STUDY = Study(
+    "imm",
+    "IMM of two and three models, paper A: turns at 1 deg/s either way",
+    _plan,
+    published={"reference": REFERENCE},
+)
+run = STUDY.run
+
+
+def _rows(scenarios: dict[str, Scenario], done: Done) -> Rows:
     return [
         row
+        for result in done.values()
         for reading, scenario in scenarios.items()
         for row in curves.rows(result, reading, scenario)
     ]

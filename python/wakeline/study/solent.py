@@ -8,12 +8,16 @@ AIS reports arrive with random delays of seconds, so that a vessel seems to jump
 time of each report is therefore recomputed: the interval between reports is the distance made
 divided by the mean of the two reported speeds. A segment counts if a vessel makes more than 2 m/s
 for three minutes and reports at a median interval under 7 s, without a gap over 25 s.
+
+Scenarios are the radars. Errors are root mean squares over all vessels, runs and scans from 30 s
+after the start; those with the prefix ``after_turn_`` cover the scans of :func:`after_turn`. Runs
+are divided among the segments and rounded up. In full also the effect of tuning.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
@@ -22,18 +26,15 @@ import numpy as np
 import wakeline as wl
 from wakeline import WhiteAcceleration, plot, recording
 from wakeline._brief import many
-from wakeline._checks import run_numbers
 from wakeline.recording import AisTrack
 from wakeline.scenario import RadarSimulator, Scenario, TrackTruth
 
 from . import curves, under_way
-from .base import Picture, Report, Rows, kept, worked_off
+from .base import Picture, Plan, Request, Rows, Study
 from .estimators import learning_filter, peaked, turn_filter, turn_imm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-SUMMARY = "real maneuvers replayed from AIS under coastal radars: every estimator by name"
 
 RADARS = {
     "coastal_60m": RadarSimulator(60.0, np.deg2rad(0.5), period_s=3.0),
@@ -293,49 +294,30 @@ class _Sums:
 _NOTHING = _Sums(np.zeros(3), 0, np.zeros(3), 0)
 
 
-def run(
-    runs: int = 500,
-    seed: int = 0,
-    *,
-    full: bool = False,
-    threads: int | None = None,
-    progress: bool = False,
-) -> Report:
-    """Run the study.
+def _plan(request: Request) -> Plan:
+    each = -(-request.runs // len(vessels()))
+    built = estimators() | (variants() if request.full else {})
+    return Plan(
+        jobs={
+            (radar, name, scene.name): partial(_score, scene, estimator, each, request.seed)
+            for radar in RADARS
+            for name, estimator in built.items()
+            for scene in scenes(radar)
+        },
+        rows=lambda done: _rows(_totals(done)),
+        result=_totals,
+        pictures=lambda done, rows: _pictures(rows, request.seed),
+        notes=lambda done, rows: [_note(_totals(done), each)],
+        runs=each * len(vessels()),
+    )
 
-    Parameters
-    ----------
-    runs, seed : int
-        Of the Monte Carlo runs, divided among the segments and rounded up.
-    full : bool
-        Also the effect of tuning.
-    threads : int, optional
-        Default as many as there are processors.
-    progress : bool
-        Whether to draw a bar where stderr is a terminal.
 
-    Returns
-    -------
-    Report
-        Scenarios are the radars. Errors are root mean squares over all vessels, runs and scans from
-        30 s after the start; those with the prefix ``after_turn_`` cover the scans of
-        :func:`after_turn`.
-    """
-    run_numbers(runs, seed, threads)
-    each = -(-runs // len(vessels()))
-    built = estimators() | (variants() if full else {})
-    jobs = {
-        (radar, name, scene.name): partial(_score, scene, estimator, each, seed)
-        for radar in RADARS
-        for name, estimator in built.items()
-        for scene in scenes(radar)
-    }
-    report = Report(name="solent", seed=seed, runs=each * len(vessels()), rows=[])
-    with kept(lambda done: replace(report, rows=_rows(_totals(done)))):
-        done = worked_off(jobs, threads, progress)
-    totals = _totals(done)
-    rows = _rows(totals)
-    return replace(report, rows=rows, pictures=_pictures(rows, seed), notes=(_note(totals, each),))
+STUDY = Study(
+    "solent",
+    "real maneuvers replayed from AIS under coastal radars: every estimator by name",
+    _plan,
+)
+run = STUDY.run
 
 
 def _totals(done: Mapping[tuple[str, str, str], _Sums]) -> dict[tuple[str, str], _Sums]:

@@ -3,12 +3,16 @@
 "Sensor system information processing in unmanned navigation applications" (P. S. Evsyukov, O. N.
 Andreeva, V. V. Khanychev): a mission of 800 m by 800 m in a current, an unscented Kalman filter of
 five states. Ours also estimates the biases of the IMU, and is compared with the Cramér-Rao bound.
+
+Scenarios are ``current_0.5`` and so on, in m/s. In full also the paper's filter with its figures of
+the IMU as variances, ours with accelerations rotated by the heading at the start of a step, and
+with augmented noise.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,15 +20,12 @@ import numpy as np
 
 import wakeline as wl
 from wakeline import plot
-from wakeline._checks import run_numbers
 from wakeline.scenario import UsvLogs, UsvMission, UsvVoyage
 
-from .base import Picture, Published, Report, Rows, kept, worked_off
+from .base import Picture, Plan, Published, Request, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-SUMMARY = "an unmanned vessel by IMU, GNSS and compass: biases known, ignored and estimated"
 
 _ERRORS = ("north_mse_m2", "east_mse_m2", "heading_mse_deg2")
 METRICS = (*_ERRORS, "nees", *(f"second_half_{metric}" for metric in _ERRORS))
@@ -300,56 +301,32 @@ def _step(
 # The study ----------------------------------------------------------------------------------------
 
 
-def run(
-    runs: int = 500,
-    seed: int = 0,
-    *,
-    full: bool = False,
-    threads: int | None = None,
-    progress: bool = False,
-) -> Report:
-    """Run the study.
-
-    Parameters
-    ----------
-    runs, seed : int
-        Of the Monte Carlo runs.
-    full : bool
-        Also the paper's filter with its figures of the IMU as variances, ours with accelerations
-        rotated by the heading at the start of a step, and with augmented noise.
-    threads : int, optional
-        Default as many as there are processors.
-    progress : bool
-        Whether to draw a bar where stderr is a terminal.
-
-    Returns
-    -------
-    Report
-        Scenarios ``current_0.5`` and so on, in m/s.
-    """
-    run_numbers(runs, seed, threads)
-    chosen = ESTIMATORS | (IN_FULL if full else {})
+def _plan(request: Request) -> Plan:
+    chosen = ESTIMATORS | (IN_FULL if request.full else {})
     jobs: dict[tuple[str, str], Callable[[], Outcome]] = {}
-    bounds: dict[str, Bound] = {}
     for k, (scene, mission) in enumerate(missions().items()):
-        logs = mission.draw(runs, [seed, k])
-        bounds[scene] = bound(mission)
+        logs = mission.draw(request.runs, [request.seed, k])
+        least = bound(mission)
         jobs[scene, "gnss_compass"] = partial(raw, mission, logs)
         for name, estimator in chosen.items():
             jobs[scene, name] = partial(evaluate, estimator, mission, logs)
-        jobs[scene, "bound8"] = bounds[scene].outcome
-        jobs[scene, "smoother_bound8"] = partial(bounds[scene].outcome, smoothed=True)
-    report = Report(
-        name="usv-navigation",
-        seed=seed,
-        runs=runs,
-        rows=[],
-        published={"paper": PAPER, "reference": REFERENCE},
-        notes=(NOTE,),
+        jobs[scene, "bound8"] = least.outcome
+        jobs[scene, "smoother_bound8"] = partial(least.outcome, smoothed=True)
+    return Plan(
+        jobs=jobs,
+        rows=_rows,
+        pictures=lambda done, rows: _pictures(done, request.seed),
+        notes=lambda done, rows: [NOTE],
     )
-    with kept(lambda done: replace(report, rows=_rows(done), result=done)):
-        done = worked_off(jobs, threads, progress)
-    return replace(report, rows=_rows(done), result=done, pictures=_pictures(done, seed))
+
+
+STUDY = Study(
+    "usv-navigation",
+    "an unmanned vessel by IMU, GNSS and compass: biases known, ignored and estimated",
+    _plan,
+    published={"paper": PAPER, "reference": REFERENCE},
+)
+run = STUDY.run
 
 
 def _rows(done: Mapping[tuple[str, str], Outcome]) -> Rows:

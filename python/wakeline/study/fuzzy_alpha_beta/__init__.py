@@ -3,30 +3,32 @@
 "Multi-model tracking of moving vessels with a fuzzy criterion of maneuver detection", V. M.
 Grinyak, M. V. Trofimov. How wide must a strobe be to hold a small craft through a turn of 300 m
 radius? The paper reports about 22 m at 10 m/s and 27 m at 20 m/s.
+
+Scenarios go by name, and with ``_video`` after it for runs on simulated radar video, from strobe to
+track: `video_runs` of each, default one per 50 of `runs`, at most 10. The result holds, by scenario
+and estimator, an :class:`Outcome`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 import wakeline as wl
-from wakeline._checks import run_numbers, whole_number
+from wakeline._checks import whole_number
 from wakeline.scenario import HardTurn, HardTurnRuns, hard_turns
 from wakeline.study import curves
-from wakeline.study.base import Published, Report, Rows, finite, kept, worked_off
+from wakeline.study.base import Done, Picture, Plan, Published, Request, Rows, Study, finite
 
 from . import on_video, pictures
 from .estimators import LABELS, estimators, window_lengths
 from .on_video import LOST_AFTER
 
-__all__ = ["GATES_M", "LABELS", "SUMMARY", "estimators", "evaluate", "loss_probability", "run"]
-
-SUMMARY = "a fuzzy choice among lines through plots, in a strobe little wider than the boat"
+__all__ = ["GATES_M", "LABELS", "STUDY", "estimators", "evaluate", "loss_probability", "run"]
 
 GATES_M = {"10mps_r300": 18.0, "20mps_r300": 27.0, "20mps_r600": 22.0}
 SETTLED = 10  # scans before errors count
@@ -126,38 +128,8 @@ def loss_probability(
     return float(in_a_row.any(axis=1).mean())
 
 
-def run(
-    runs: int = 500,
-    seed: int = 0,
-    *,
-    full: bool = False,
-    threads: int | None = None,
-    progress: bool = False,
-    video_runs: int | None = None,
-) -> Report:
-    """Run the study.
-
-    Parameters
-    ----------
-    runs, seed : int
-        Of the Monte Carlo runs.
-    full : bool
-        Nothing more to do here.
-    threads : int, optional
-        Default as many as there are processors.
-    progress : bool
-        Whether to draw a bar where stderr is a terminal.
-    video_runs : int, optional
-        Runs of each scenario on simulated radar video, from strobe to track; default one per 50 of
-        `runs`, at most 10.
-
-    Returns
-    -------
-    Report
-        Scenarios by name, and with ``_video`` after it; ``result`` holds, by scenario and
-        estimator, an :class:`Outcome`.
-    """
-    run_numbers(runs, seed, threads)
+def _plan(request: Request, video_runs: int | None = None) -> Plan:
+    runs, seed = request.runs, request.seed
     if video_runs is not None:
         whole_number("video_runs", video_runs, 0)
     scenarios = hard_turns()
@@ -178,26 +150,39 @@ def run(
             jobs[number, case, "video"] = partial(
                 on_video.follow, scenario, GATES_M[case], seed * _CURVE_RUNS + number
             )
-    report = Report(
-        name="fuzzy-alpha-beta",
-        seed=seed,
-        runs=runs,
-        rows=[],
-        published={"paper": PAPER, "reference": REFERENCE},
-        notes=(NOTE, _video_note(seen)),
+
+    def films(done: Done) -> dict[str, list[on_video.VideoRun]]:
+        """Runs on video of the scenarios of which all are done."""
+        of_case = {case: [(number, case, "video") for number in range(seen)] for case in scenarios}
+        return {
+            case: [done[key] for key in keys]
+            for case, keys in of_case.items()
+            if all(key in done for key in keys)
+        }
+
+    def drawings(done: Done, rows: Rows) -> tuple[Picture, ...]:
+        outcomes = _outcomes(done)
+        losses = {
+            of: np.array([done[(gate_m, *of)] for gate_m in _CURVE_GATES_M]) for of in outcomes
+        }
+        return pictures.pictures(scenarios, drawn, outcomes, _CURVE_GATES_M, losses, films(done))
+
+    return Plan(
+        jobs=jobs,
+        rows=lambda done: _rows(scenarios, drawn, done) + _video_rows(scenarios, films(done)),
+        result=_outcomes,
+        pictures=drawings,
+        notes=lambda done, rows: (NOTE, _video_note(seen)),
     )
-    rows = partial(_rows, scenarios, drawn)
-    with kept(lambda done: replace(report, rows=rows(done), result=_outcomes(done))):
-        done = worked_off(jobs, threads, progress)
-    outcomes = _outcomes(done)
-    losses = {of: np.array([done[(gate_m, *of)] for gate_m in _CURVE_GATES_M]) for of in outcomes}
-    films = {case: [done[number, case, "video"] for number in range(seen)] for case in scenarios}
-    return replace(
-        report,
-        rows=rows(done) + _video_rows(scenarios, films),
-        result=outcomes,
-        pictures=pictures.pictures(scenarios, drawn, outcomes, _CURVE_GATES_M, losses, films),
-    )
+
+
+STUDY = Study(
+    "fuzzy-alpha-beta",
+    "a fuzzy choice among lines through plots, in a strobe little wider than the boat",
+    _plan,
+    published={"paper": PAPER, "reference": REFERENCE},
+)
+run = STUDY.run
 
 
 def _start(plot_m: np.ndarray) -> wl.Gaussian:
