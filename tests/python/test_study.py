@@ -576,5 +576,5 @@ def test_an_output_folder_that_is_a_file(tmp_path, capsys):
 
 
 def test_there_is_no_study_of_that_name():
-    with pytest.raises(ValueError, match=r"no study 'none'; there are imm"):
+    with pytest.raises(ValueError, match=r"name must be one of imm"):
         study.load("none")

@@ -115,7 +115,7 @@ def test_errors_of_a_mission_say_what_is_wrong():
     with pytest.raises(ValueError, match="current_mps must be finite, zero or more, got -1"):
         UsvMission(current_mps=-1)
     for obstacle in (Obstacle(0.0, 0.0, -1.0), Obstacle(np.nan, 0.0, 1.0)):
-        with pytest.raises(ValueError, match="an obstacle must be finite, its radius positive"):
+        with pytest.raises(ValueError, match="obstacles must be finite"):
             UsvMission(obstacles=(obstacle,))
     with pytest.raises(ValueError, match="waypoints_m must be pairs of finite numbers"):
         UsvMission(waypoints_m=((0.0, np.nan),))

@@ -1,4 +1,4 @@
-"""Radar video through the plot extractor, so that it can be tracked as any recording.
+"""Plots from radar video, as a recording that can be tracked.
 
 >>> from wakeline import extraction
 >>> film = extraction.read_plots_of_video("radar.cat240")  # doctest: +SKIP

@@ -25,13 +25,13 @@ from wakeline.recording.own_csv import OWN_GAP_S, OwnRows, read_own_track
 from .plots import Extraction, Plots, joined
 from .turns import judged, turns
 
-_UNSEEN = 2.0  # an echo errs more than its cells say: it wanders over the hull, and is cut in two
+_UNSEEN = 2.0  # plots have more error than their cells: echoes wander over the hull and split
 _DAY_S = 86400.0
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class VideoRecording(Recording):
-    """The plots of radar video: one scan an antenna revolution, an episode until a clock is reset.
+    """The plots of radar video: one scan per revolution, one episode per clock reset.
 
     ``radar`` has the errors of plots as estimated from their echoes: ``range_std_m`` and
     ``bearing_std_deg``.
@@ -53,18 +53,18 @@ class VideoRecording(Recording):
 def read_plots_of_video(
     path: str | Path, own_path: str | Path | None = None, *, period_s: float | None = None
 ) -> VideoRecording:
-    """Read radar video and take its echoes as plots, a turn of the antenna after the other.
+    """Read radar video and extract plots, one antenna revolution per scan.
 
-    A turn that is only begun, at either end of the recording, is left out: the beam has not been
-    everywhere. What comes after a clock that was set back is an episode of its own. Without
-    `own_path` the radar stands at the origin. Video has the time of day alone; its day is that on
-    which own ship's track lies. Where it has none, `period_s` is the time of a turn.
+    An incomplete revolution at either end of the recording is dropped. A new episode begins where
+    the clock was set back. Without `own_path` the radar is at the origin. Video has only the time
+    of day; its date is that of own ship's track. Without a time of day, `period_s` is the duration
+    of a revolution.
 
     Raises
     ------
     RecordingError
-        When the file holds no radar video, or own ship is not known at one of its plots, or is
-        that of several scenarios.
+        When the file has no radar video, or own ship's position is unknown at a plot, or own ship's
+        file has several scenarios.
     """
     path = Path(path)
     report = VideoReport()
@@ -85,10 +85,10 @@ def read_plots_of_video(
     variance = np.concatenate([seen.plots.variance for part in parts for seen in part])
     least = np.array([last.cell_m, last.azimuth_width_rad]) ** 2 / 12.0
     std = np.sqrt(np.maximum(np.median(variance, axis=0) if len(variance) else least, least))
-    notes = [f"the sender says: {text}" for text in report.summaries]
+    notes = [f"summary of the sender: {text}" for text in report.summaries]
     notes += [*report.notes, *extraction.notes()]
     if begun:
-        notes.append(f"{begun} turn{'s' * (begun > 1)} only begun left out")
+        notes.append(f"{begun} incomplete revolution{'s' * (begun > 1)} left out")
     ship = OwnShipMotion.fixed()
     if own_path is not None:
         rows = read_own_track(own_path, notes)
@@ -104,7 +104,7 @@ def read_plots_of_video(
 
 
 class _Seen(NamedTuple):
-    """When a turn ended, and its plots."""
+    """End time of a revolution, and its plots."""
 
     end_s: float
     plots: Plots
@@ -115,7 +115,7 @@ class _Seen(NamedTuple):
 
 
 def _finish(parts: Sequence[list[_Seen]], extraction: Extraction) -> None:
-    """Give the echoes that are open to the last turn."""
+    """Add the open echoes to the last revolution."""
     if parts:
         end_s, plots = parts[-1].pop()
         parts[-1].append(_Seen(end_s, joined([plots, extraction.finished()])))
@@ -124,13 +124,13 @@ def _finish(parts: Sequence[list[_Seen]], extraction: Extraction) -> None:
 def _episodes(
     parts: Sequence[Sequence[_Seen]], ship: OwnShipMotion, notes: list[str]
 ) -> list[Episode]:
-    """One a part, with names where there are several, which is told."""
+    """One episode per part, with names and a note if there are several."""
     if len(parts) == 1:
         return [Episode("", _scans(parts[0], ship), ship)]
     notes.append(
         f"the clock is set back {many(len(parts) - 1, 'time')}, first after "
-        f"{parts[0][-1].end_s:.1f} s: what follows is tracked from a fresh start, as scenario "
-        "part-2 and so on"
+        f"{parts[0][-1].end_s:.1f} s; the following parts are tracked from a fresh start, as "
+        "scenario part-2 and so on"
     )
     return [
         Episode(f"part-{number}", _scans(part, ship), ship)
@@ -146,7 +146,7 @@ def _scans(part: Sequence[_Seen], ship: OwnShipMotion) -> list[Scan]:
 
 
 def _days_s(own: OwnRows, parts: Sequence[Sequence[_Seen]]) -> float:
-    """Whole days from the time of day to own ship's track, as their middles come nearest."""
+    """Days to add to the time of day so that the middles of video and own ship's track agree."""
     if len(own.time_s) == 0:
         return 0.0
     middle_s = (parts[0][0].end_s + parts[-1][-1].end_s) / 2.0
@@ -154,7 +154,7 @@ def _days_s(own: OwnRows, parts: Sequence[Sequence[_Seen]]) -> float:
 
 
 def _check_covered(own: OwnRows, parts: Sequence[Sequence[_Seen]], path: Path) -> None:
-    """Own ship must be known at each plot and at the end of each turn."""
+    """Own ship's position must be known at each plot and at the end of each revolution."""
     turns = [np.append(seen.plots.time_s, seen.end_s) for part in parts for seen in part]
     time_s = np.sort(np.concatenate(turns))
     lost = own.lacks(time_s, OWN_GAP_S)

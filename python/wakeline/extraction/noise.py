@@ -10,17 +10,17 @@ _WINDOW_CELLS = 32
 
 
 class Noise(NamedTuple):
-    """Standard deviation in amplitudes, and skewness, of the noise of a picture."""
+    """Standard deviation of the amplitude, and skewness, of the noise of a picture."""
 
     std: float
     skewness: float
 
 
 def noise_of(amplitude: np.ndarray) -> Noise | None:
-    """The noise of a picture (N, C); None where there is none to see.
+    """The noise of a picture (N, C); None if none is visible.
 
-    Of pieces of sweeps of 32 cells a fifth is taken for noise: those of the least mean that are not
-    dark.
+    Noise is estimated from the fifth of all pieces of 32 cells that has the smallest mean without
+    being dark.
     """
     whole = amplitude.shape[1] // _WINDOW_CELLS * _WINDOW_CELLS
     pieces = amplitude[:, :whole].reshape(-1, _WINDOW_CELLS).astype(np.float32)
@@ -28,7 +28,7 @@ def noise_of(amplitude: np.ndarray) -> Noise | None:
     lit = np.flatnonzero(mean > 1.0)
     if len(lit) == 0:
         return None
-    low, high = np.quantile(mean[lit], [0.05, 0.25], method="nearest")  # of few pieces, too
+    low, high = np.quantile(mean[lit], [0.05, 0.25], method="nearest")  # also for few pieces
     quiet = lit[(mean[lit] >= low) & (mean[lit] <= high)]
     away = pieces[quiet] - mean[quiet, None]
     std = float(np.sqrt(np.mean(away**2)))

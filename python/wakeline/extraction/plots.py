@@ -1,4 +1,4 @@
-"""Plots of the echoes of turn after turn."""
+"""Plots of the echoes of consecutive revolutions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from wakeline.recording import RadarVideo
 from .settings import Kind, settings_for
 from .turns import Turn
 
-_SWEEPS_THAT_TELL = 16  # which way the antenna turns
+_SWEEPS_FOR_DIRECTION = 16  # of the antenna
 
 
 class Plots(NamedTuple):
@@ -32,7 +32,7 @@ def joined(parts: Sequence[Plots]) -> Plots:
 
 
 class Extraction:
-    """Plots of turn after turn, with settings found where a kind of video is met first."""
+    """Plots of consecutive revolutions, with settings estimated for each kind of video."""
 
     def __init__(self) -> None:
         self._extractor: wl.PlotExtractor | None = None
@@ -43,7 +43,7 @@ class Extraction:
         self._refused = 0
 
     def plots_of(self, turn: Turn) -> Plots:
-        """Plots of the echoes that end in a turn."""
+        """Plots of the echoes that end in a revolution."""
         plots = []
         for block in turn.blocks:
             kind = Kind.of(block)
@@ -54,7 +54,7 @@ class Extraction:
         return joined(plots)
 
     def finished(self) -> Plots:
-        """Plots of the echoes that are open; after it the next turn stands alone."""
+        """Plots of the open echoes; the next revolution is then independent."""
         if self._extractor is None:
             return Plots(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros((0, 2)))
         plots = self._as_seen(self._extractor.finish())
@@ -64,16 +64,16 @@ class Extraction:
         return plots
 
     def notes(self) -> list[str]:
-        """What a user should know."""
+        """Notes for the user."""
         notes = []
         if self._above_db:
             notes.append(
-                f"so much clutter that echoes count from {self._above_db} dB above noise on"
+                f"strong clutter: the threshold is {self._above_db} dB above that for noise"
             )
         if self._mirrored:
             notes.append("the antenna turns anticlockwise")
         if self._refused:
-            what = "[sweep that makes|sweeps that make] no sense left out"
+            what = "invalid [sweep|sweeps] left out"
             notes.append(counted(self._refused, what))
         return notes
 
@@ -88,11 +88,11 @@ class Extraction:
         self._kind = kind
 
     def _turns_back(self, block: RadarVideo) -> bool:
-        """Whether the antenna turns the other way from this block on."""
+        """Whether the antenna's direction changes with this block."""
         return _sense(block) * (-1.0 if self._mirrored else 1.0) < 0.0
 
     def _clockwise(self, video: RadarVideo) -> RadarVideo:
-        """The video as it is, or in a mirror where the antenna turns the other way."""
+        """The video, mirrored if the antenna turns anticlockwise."""
         return replace(video, azimuth_rad=-video.azimuth_rad) if self._mirrored else video
 
     def _as_seen(self, plots: wl.video.VideoPlots) -> Plots:
@@ -102,7 +102,7 @@ class Extraction:
 
 
 def _sense(video: RadarVideo) -> float:
-    """1 where the antenna turns clockwise, -1 anticlockwise, 0 where too few sweeps tell."""
-    if len(video) < _SWEEPS_THAT_TELL:
+    """1 if the antenna turns clockwise, -1 anticlockwise, 0 with too few sweeps."""
+    if len(video) < _SWEEPS_FOR_DIRECTION:
         return 0.0
     return float(np.sign(np.sum(wl.wrap_angle(np.diff(video.azimuth_rad)))))

@@ -1,4 +1,4 @@
-"""Settings of a plot extractor that suit the video that it is given."""
+"""Settings of a plot extractor estimated from the video."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from .noise import Noise, noise_of
 _FALSE_ALARMS = 1e-5
 _TRAIN_M, _GUARD_M = 400.0, 150.0  # either side of a cell; ships are up to 300 m long
 _MOST_TRAIN_CELLS = 128
-_ALIKE = 0.25  # parts by which windows may differ before settings are found anew
-_WINDOW_SHARE = 8  # of a sweep, so that every cell has others to be compared with
+_ALIKE = 0.25  # relative difference of windows before settings are estimated again
+_WINDOW_SHARE = 8  # of a sweep, so that every cell has others for comparison
 _LOGARITHMIC_BELOW = 0.2  # skewness of noise: 0.63 behind a linear receiver, -1.1 in decibels
 _RAYLEIGH_SPREAD_DB = 5.57  # standard deviation of noise in decibels
 _ABOVE_NOISE_DB = range(0, 40, 2)
-_MOST_PLOTS = 150  # of a turn
+_MOST_PLOTS = 150  # of a revolution
 _MOST_CELLS = 65536
 _WIDE_ECHO_RAD = np.deg2rad(20.0)
-_LONG_ECHO_M = 800.0  # a land mass, as consoles have it
+_LONG_ECHO_M = 800.0  # longer echoes are land
 
 
 class Kind(NamedTuple):
-    """What the settings of an extractor depend on, beside the noise: bits and windows in cells."""
+    """Besides the noise, the settings depend on bits and on windows in cells."""
 
     dtype: np.dtype
     train_cells: int
@@ -39,7 +39,7 @@ class Kind(NamedTuple):
         return cls(video.amplitude.dtype, min(train, most), min(int(_GUARD_M / video.cell_m), most))
 
     def fits(self, other: Kind) -> bool:
-        """Whether windows of one do for the other."""
+        """Whether the windows are similar enough."""
         windows = zip(self[1:], other[1:], strict=True)
         return self.dtype == other.dtype and all(
             abs(mine - its) <= _ALIKE * max(mine, its) for mine, its in windows
@@ -47,10 +47,10 @@ class Kind(NamedTuple):
 
 
 def settings_for(turn: RadarVideo, kind: Kind) -> tuple[dict[str, float], int]:
-    """Settings for this picture, and how far its threshold lies above that of noise, in dB.
+    """Settings for this picture, and its threshold relative to that for noise, in dB.
 
-    It is raised until the turn gives no more plots than an operator would bear: land and sea
-    clutter fluctuate more than noise.
+    The threshold is raised until a revolution has an acceptable number of plots, because land and
+    sea clutter fluctuate more than noise.
     """
     noise = noise_of(turn.amplitude)
     most = _MOST_PLOTS * min(len(turn) * turn.azimuth_width_rad / (2 * np.pi), 1.0)
@@ -73,7 +73,7 @@ def _settings(kind: Kind, noise: Noise | None, above_db: float) -> dict[str, flo
         threshold = {"threshold_factor": min(factor * 10 ** (above_db / 20), 1000.0)}
     return {
         "max_sweep_cells": _MOST_CELLS,
-        "gap_sweeps": 1,  # azimuth is often counted as coarsely as sweeps come
+        "gap_sweeps": 1,  # the resolution of the azimuth is often that of the sweeps
         "train_cells": kind.train_cells,
         "guard_cells": kind.guard_cells,
         "max_range_extent_m": _LONG_ECHO_M,

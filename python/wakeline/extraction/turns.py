@@ -1,4 +1,4 @@
-"""Turns of the antenna, of blocks of radar video."""
+"""Antenna revolutions from blocks of radar video."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from itertools import chain, islice, pairwise
 from wakeline.recording import RadarVideo
 from wakeline.recording.video import Beam
 
-_NEARLY = 0.7  # of its neighbour, and a turn counts as a whole one
+_NEARLY = 0.7  # of its neighbor: a revolution then counts as complete
 _PAUSE_S = 10.0
 
 
 @dataclass
 class Turn:
-    """Blocks of video from one beginning of a turn to the next."""
+    """Blocks of video of one revolution."""
 
     blocks: list[RadarVideo]
     whole: bool = True
@@ -32,12 +32,12 @@ class Turn:
 
     @property
     def longest(self) -> RadarVideo:
-        """The block of the most sweeps."""
+        """The block with the most sweeps."""
         return max(self.blocks, key=len)
 
     @property
     def covered_rad(self) -> float:
-        """How far the beam has turned."""
+        """Angle that the beam has turned."""
         return sum(len(block) * block.azimuth_width_rad for block in self.blocks)
 
 
@@ -60,9 +60,9 @@ def _pauses(before: RadarVideo, block: RadarVideo) -> bool:
 
 
 def judged(turns: Iterable[Turn]) -> Iterator[Turn]:
-    """The turns, those at either end marked where they are much less than their neighbours.
+    """The revolutions; those at either end are marked if they are incomplete.
 
-    At the beginning there may be two: a sector across north is cut there until its end is known.
+    There may be two at the start, because a sector across north is split until its end is known.
     """
     turns = iter(turns)
     first = list(islice(turns, 3))

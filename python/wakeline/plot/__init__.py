@@ -1,4 +1,4 @@
-"""Figures of recordings, tracks and studies, drawn by matplotlib (installed by the extra ``plot``).
+"""Figures of recordings, tracks and studies with matplotlib (installed by the extra ``plot``).
 
 :func:`map` draws the tracks of a recording, :func:`screen` those of radar video. Each ``..._view``
 and ``..._panel`` draws into the caller's axes or figure; :func:`map`, :func:`screen` and each

@@ -59,7 +59,7 @@ def paths_view(
     radar : bool
         Whether to mark the radar at the origin.
     colors : mapping of str to str, optional
-        Colour of each track.
+        Color of each track.
     """
     truth = shaped("truth", truth, None, 4)
     tracks = _by_name("tracks", {} if tracks is None else tracks, None, 4)
@@ -90,7 +90,7 @@ def error_panel(
     top: float | None = None,
     legend: bool = True,
 ) -> Axes:
-    """Root mean square errors over time, with what no estimator can be below shaded.
+    """Root mean square errors over time, with the region below the bound shaded.
 
     Parameters
     ----------
@@ -103,13 +103,13 @@ def error_panel(
     bound : ndarray (T,), optional
         The lower bound.
     ylabel : str
-        What the errors are, with their unit.
+        Label of the errors, with their unit.
     switch_s : iterable of float
         Times at which the turn rate changes.
     colors : mapping of str to str, optional
         Colour of each estimator.
     top : float, optional
-        Upper end of the axis; default just above the highest curve.
+        Upper end of the axis; default above the highest curve.
     legend : bool
         Whether to name the lines.
     """
@@ -137,7 +137,7 @@ def turn_rate_panel(
     ylabel: str = "turn rate (°/s)",
     legend: bool = True,
 ) -> Axes:
-    """Turn rates in degrees a second, positive to starboard, beside the true one.
+    """Turn rates in degrees per second, positive to starboard, and the true one.
 
     Parameters
     ----------
@@ -148,9 +148,9 @@ def turn_rate_panel(
     rates_rad_s : mapping of str to ndarray (T,)
         Turn rates by name.
     colors : mapping of str to str, optional
-        Colour of each.
+        Color of each.
     ylabel : str
-        What the rates are, with their unit.
+        Label of the rates, with their unit.
     legend : bool
         Whether to name the lines.
     """
@@ -199,11 +199,11 @@ def probability_panel(
     turn_rate_rad_s : sequence of K floats
         Turn rate of each mode.
     true_rate_rad_s : ndarray (T,), optional
-        The true turn rate of the step that ends at each time: a strip in the colour of that rate.
+        The true turn rate of the step that ends at each time: a strip in the color of that rate.
     switch_s : iterable of float
         Times at which the turn rate changes.
     ylabel : str
-        Whose probabilities they are.
+        Label of the probabilities.
     legend : bool
         Whether to name the bands.
     """
@@ -235,7 +235,7 @@ def ranking_panel(
     best_first: str | None = None,
     log: bool = False,
 ) -> Axes:
-    """One row an estimator, one mark for each of several circumstances, best estimator on top.
+    """One row per estimator, one mark per case, best estimator on top.
 
     Parameters
     ----------
@@ -244,17 +244,17 @@ def ranking_panel(
     names : sequence of K str
         The estimators.
     values : mapping of str to sequence of K floats
-        Their figures by circumstance.
+        Their figures by case.
     xlabel : str
-        What the figures are, with their unit.
+        Label of the figures, with their unit.
     best_first : str, optional
-        The circumstance to sort by; default the last.
+        The case to sort by; default the last.
     log : bool
         Whether the axis is logarithmic; else it begins at 0.
     """
     table = _by_name("values", values, len(names))
     if not table or best_first not in (None, *table):
-        raise ValueError(f"values must have {best_first or 'a circumstance'}, got {list(table)}")
+        raise ValueError(f"values must have {best_first or 'a case'}, got {list(table)}")
     by = table[best_first if best_first is not None else list(table)[-1]]
     order = np.argsort(by)[::-1]
     rows = np.arange(len(order))
@@ -287,18 +287,18 @@ def steps_panel(
     colors: Mapping[str, str] | None = None,
     legend: bool = True,
 ) -> Axes:
-    """Figures of several estimators in a few circumstances, logarithmic.
+    """Figures of several estimators in a few cases, logarithmic.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes
         Axes to draw into.
     steps : sequence of K str
-        The circumstances, from left to right.
+        The cases, from left to right.
     values : mapping of str to sequence of K floats
         Figures by name of the estimator.
     xlabel, ylabel : str
-        What the circumstances and the figures are.
+        Labels of cases and figures.
     colors : mapping of str to str, optional
         Colour of each estimator.
     legend : bool
@@ -325,7 +325,7 @@ def mark_switches(ax: Axes, switch_s: Iterable[float], color: str = MUTED) -> Ax
 
 
 def turn_colors(turn_rate_deg_s: Sequence[float]) -> list[str]:
-    """Colours of turn rates: grey straight on, red to port, blue to starboard, dark when hard."""
+    """Colors of turn rates: gray straight, red to port, blue to starboard, dark for fast turns."""
     from matplotlib.colors import LinearSegmentedColormap, to_hex
 
     rates = real_numbers("turn_rate_deg_s", turn_rate_deg_s)
@@ -344,15 +344,15 @@ def turn_colors(turn_rate_deg_s: Sequence[float]) -> list[str]:
 
 
 def _times(time_s: np.ndarray) -> np.ndarray:
-    """Times (T,), one at least."""
+    """Times (T,), at least one."""
     time_s = shaped("time_s", time_s, None)
     if not len(time_s):
-        raise ValueError("time_s must have a time")
+        raise ValueError("time_s must have at least one time")
     return time_s
 
 
 def _by_name(what: str, rows: Mapping[str, Any], *shape: int | None) -> dict[str, np.ndarray]:
-    """Arrays of that shape."""
+    """Arrays of a given shape."""
     if not isinstance(rows, Mapping):
         raise TypeError(f"{what} must be a mapping by name, got {type(rows).__name__}")
     return {name: shaped(f"{what} of {name!r}", row, *shape) for name, row in rows.items()}
@@ -361,7 +361,7 @@ def _by_name(what: str, rows: Mapping[str, Any], *shape: int | None) -> dict[str
 def _looks(
     named: Mapping[str, object], colors: Mapping[str, str] | None
 ) -> list[tuple[str, dict[str, Any]]]:
-    """Names with colour and dashes; those without a colour take the palette in order."""
+    """Names with color and dashes; those without a color take the palette in order."""
     given = {name: {"color": color} for name, color in (colors or {}).items()}
     looks = cycle(product(_DASHES, PALETTE))
     return [
@@ -371,13 +371,13 @@ def _looks(
 
 
 def _highest(curves: Iterable[np.ndarray]) -> float:
-    """The largest finite value, 1 where there is none above 0."""
+    """The largest finite value, 1 if none is above 0."""
     values = np.concatenate([np.zeros(0), *curves])
     return float(values[np.isfinite(values)].max(initial=0.0)) or 1.0
 
 
 def _draw_strip(ax: Axes, time_s: np.ndarray, rate: np.ndarray, colors: Sequence[str]) -> None:
-    """A strip above 1 in the colour of the rate of each stretch of equal rate."""
+    """A strip above 1 in the color of the rate of each interval of constant rate."""
     begins = np.flatnonzero(np.diff(rate, prepend=np.nan) != 0.0)
     edges_s = np.append(time_s[np.maximum(begins - 1, 0)], time_s[-1])
     bars = list(zip(edges_s[:-1], np.diff(edges_s), strict=True))

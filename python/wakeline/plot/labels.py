@@ -1,4 +1,4 @@
-"""Labels beside places of a map that keep clear of each other."""
+"""Labels beside points of a map that do not overlap."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _UP = {1: "bottom", 0: "center", -1: "top"}
 
 
 class ClearLabels(Artist):
-    """Moves labels, whenever the axes are drawn, to where nothing is written.
+    """Moves labels to free positions whenever the axes are drawn.
 
-    Each goes to that side of its place where it covers the fewest lines, and is left out where
-    every side has text, the place of another label, or too little room within the axes.
+    Each moves to the side of its point where it covers the fewest lines. It is hidden if every side
+    has text, the point of another label, or too little room within the axes.
 
     Parameters
     ----------
     labels : sequence of Annotation
-        At places in data coordinates; the first have the choice.
+        At points in data coordinates; the first have priority.
     clear_pt : float
-        Radius around each place that stays clear.
+        Radius around each point that remains clear.
     """
 
     def __init__(self, labels: Sequence[Annotation], clear_pt: float) -> None:
@@ -39,7 +39,7 @@ class ClearLabels(Artist):
             artist.set_in_layout(False)
 
     def draw(self, renderer: RendererBase) -> None:
-        """Place the labels; they are drawn after this, as texts of the axes."""
+        """Place the labels; the axes draw them afterwards, as texts."""
         window = self.axes.get_window_extent(renderer)
         ways = [line.get_transform().transform_path(line.get_path()) for line in self.axes.lines]
         clear = renderer.points_to_pixels(self._clear_pt)
@@ -60,7 +60,7 @@ class ClearLabels(Artist):
     def _boxes(
         self, label: Annotation, renderer: RendererBase
     ) -> Iterator[tuple[tuple[int, int], Bbox]]:
-        """The sides of a place, and what the label would cover there."""
+        """The sides of a point, and what the label would cover there."""
         label.set_visible(True)
         for side in _SIDES:
             self._put(label, side)
@@ -73,12 +73,12 @@ class ClearLabels(Artist):
 
 
 class LoneLabels(Artist):
-    """Leaves out labels, whenever the axes are drawn, that would cover one before them.
+    """Hides labels that would cover an earlier one, whenever the axes are drawn.
 
     Parameters
     ----------
     labels : sequence of Annotation
-        They stay where they are.
+        They do not move.
     """
 
     def __init__(self, labels: Sequence[Annotation]) -> None:
@@ -87,7 +87,7 @@ class LoneLabels(Artist):
         self.set_in_layout(False)
 
     def draw(self, renderer: RendererBase) -> None:
-        """Choose the labels; they are drawn after this, as texts of the axes."""
+        """Choose the labels; the axes draw them afterwards, as texts."""
         taken: list[Bbox] = []
         for label in self._labels:
             label.set_visible(True)
@@ -98,19 +98,19 @@ class LoneLabels(Artist):
 
 
 def _around(label: Annotation, radius: float) -> Bbox:
-    """The square about the place of a label, in pixels."""
+    """The square around the point of a label, in pixels."""
     place = label.axes.transData.transform(label.xy)
     return Bbox([place - radius, place + radius])
 
 
 def _written(ax: Axes, labels: Sequence[Annotation], renderer: RendererBase) -> list[Bbox]:
-    """Where the other texts of the axes stand."""
+    """Boxes of the other texts of the axes."""
     others = (text for text in ax.texts if text not in labels and text.get_visible())
     return [_apart(text.get_window_extent(renderer), renderer) for text in others]
 
 
 def _apart(box: Bbox, renderer: RendererBase) -> Bbox:
-    """What another text must not cover, so that the two are not read as one line."""
+    """Box that another text must not cover, so that they are not read as one line."""
     away = renderer.points_to_pixels(2.0 * _AWAY_PT)
     return Bbox.from_extents(box.x0 - away, box.y0, box.x1 + away, box.y1)
 

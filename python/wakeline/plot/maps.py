@@ -60,19 +60,17 @@ def map_view(
     ax : matplotlib.axes.Axes
         Axes to draw into.
     episode : Episode, optional
-        Its plots and, from its first scan to its last, own ship and, where it has it, truth are
-        drawn.
+        Its plots and, from the first scan to the last, own ship and truth, if available.
     tracks : Tracks, optional
-        Tracks of that episode, each with its id at its end, where it does not cover that of a
-        longer one, and, where it has a covariance, the 95 % ellipse of every `ellipse_every`-th
-        row. Rows under an alarm are edged in red, with a ring and the closest approach where it
-        begins; of labels that would cover each other the closest approach keeps its own.
+        Tracks of that episode, each with its id at its end, unless it would cover that of a longer
+        one, and, with a covariance, the 95 % ellipse of every `ellipse_every`-th row. Rows under an
+        alarm have a red edge, with a ring and the closest approach at the start; where labels would
+        overlap, the closest approach has the label.
     ellipse_every : int
         0 for no ellipses.
     whole : bool
-        True: show every plot, too. False: show the tracks, own ship and truth with some water
-        around them, and say how many plots lie outside; without tracks and truth every plot is
-        shown.
+        True: show every plot, too. False: show the tracks, own ship and truth with a margin, and
+        report how many plots are outside; without tracks and truth every plot is shown.
     legend : bool
         Whether to explain the marks.
 
@@ -122,9 +120,9 @@ def map(
     ----------
     tracks : Tracks, optional
     recording : Recording or Episode, optional
-        Plots, own ship and truth to be drawn below the tracks.
+        Plots, own ship and truth, drawn below the tracks.
     ellipse_every, whole
-        As of :func:`map_view`.
+        As for :func:`map_view`.
 
     Returns
     -------
@@ -160,9 +158,9 @@ def ellipse_outline(
     covariance : array_like (2, 2)
         Symmetric and positive semidefinite.
     quantile : float
-        Chi-square quantile of 2 degrees of freedom; default that of 95 %.
+        Chi-square quantile of 2 degrees of freedom; default 95 %.
     points : int
-        Number of points; the last is the first again.
+        Number of points; the last equals the first.
 
     Returns
     -------
@@ -171,7 +169,7 @@ def ellipse_outline(
     Raises
     ------
     ValueError
-        When the shapes are others.
+        When the shapes differ.
     """
     variance, axes = np.linalg.eigh(shaped("covariance", covariance, 2, 2))
     around = np.linspace(0.0, 2.0 * np.pi, points)
@@ -234,7 +232,7 @@ def _draw_truth(
 def _draw_track(
     ax: Axes, track: Tracks, track_id: str, color: str, label: str | None
 ) -> Annotation:
-    """The track; returns its id at its end."""
+    """Draw the track; returns the label at its end."""
     _, north_m, east_m = with_gaps(track.time_s, track.north_m, track.east_m)
     dot_lone(*ax.plot(east_m, north_m, color=color, linewidth=1.8, label=label, zorder=4))
     ax.plot(
@@ -265,7 +263,7 @@ def _draw_track(
 
 
 def _draw_danger(ax: Axes, tracks: Tracks) -> None:
-    """The dangerous part of each track, and a ring and the closest approach where it begins."""
+    """The dangerous part of each track, with a ring and the closest approach at its start."""
     from matplotlib.patheffects import Normal, Stroke
 
     from .labels import ClearLabels
@@ -318,7 +316,7 @@ def _draw_ellipses(ax: Axes, track: Tracks, color: str, labelled: bool) -> None:
 
 
 def _set_window(ax: Axes, episode: Episode | None, tracks: Tracks | None, whole: bool) -> None:
-    """Fit the axes to what is to be seen, and say how many plots are left outside."""
+    """Fit the axes, and report how many plots are outside."""
     plots = np.zeros((0, 2)) if episode is None else _plot_positions(episode)
     seen = _tracked_positions(episode, tracks)
     if whole or len(seen) == 0:
@@ -338,7 +336,7 @@ def _set_window(ax: Axes, episode: Episode | None, tracks: Tracks | None, whole:
 
 
 def _least_side_m(tracks: Tracks | None) -> float:
-    """The usual 95 % ellipse fits into it, and it is at least a metre."""
+    """Margin for the usual 95 % ellipse, at least a metre."""
     if tracks is None or tracks.covariance is None:
         return 1.0
     variance = tracks.covariance[:, (0, 2), (0, 2)].max(axis=1)
@@ -348,7 +346,7 @@ def _least_side_m(tracks: Tracks | None) -> float:
 
 
 def _same_steps(ax: Axes, side_m: float) -> None:
-    """Grid lines at the same round distance both ways."""
+    """Grid lines at the same round distance in both directions."""
     from matplotlib.ticker import MaxNLocator, MultipleLocator
 
     ticks = MaxNLocator(_GRID_LINES, steps=[1, 2, 2.5, 5, 10]).tick_values(0.0, side_m)

@@ -1,4 +1,4 @@
-"""Own ship's solution: where she went, and speed, course and drift over time."""
+"""Own ship's solution: its path, and speed, course and drift over time."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ARROWS = 24
-_LONGEST = 0.1  # arrow, as a share of the way across the map
+_LONGEST = 0.1  # arrow, as a share of the width of the map
 
 
 def own_map(
@@ -40,7 +40,7 @@ def own_map(
     jumped: np.ndarray | None = None,
     name: str = "own ship",
 ) -> Axes:
-    """Map of own ship's way and fixes, north up, with the current along it; returns `ax`.
+    """Map of own ship's path and fixes, north up, with the current along it; returns `ax`.
 
     Parameters
     ----------
@@ -49,13 +49,13 @@ def own_map(
     position_m, fix_m : ndarray (T, 2), (n, 2)
         North and east, of the solution and of fixes.
     current_mps : ndarray (T, 2), optional
-        North and east; drawn as arrows where finite, beside one of a round number of knots.
+        North and east; drawn as arrows where finite, with a scale arrow of a round speed.
     coasting : ndarray of bool (T,), optional
-        Where there were no fixes.
+        Times without fixes.
     jumped : ndarray of bool (T,), optional
-        Where the place is in doubt, for fixes that did not fit have moved it.
+        Times at which the position is in doubt after a jump.
     name : str
-        What the way is called.
+        Label of the path.
     """
     position_m, fix_m = shaped("position_m", position_m, None, 2), shaped("fix_m", fix_m, None, 2)
     ax.plot(fix_m[:, 1] / 1e3, fix_m[:, 0] / 1e3, ".", color=MUTED, markersize=3, label="fixes")
@@ -82,7 +82,7 @@ def own_map(
 
 
 def _arrows(ax: Axes, from_km: np.ndarray, drift_kn: np.ndarray, longest_km: float) -> None:
-    """Arrows (n, 2) north and east of drifts, the longest so long, and one beside a round drift."""
+    """Arrows (n, 2) north and east of drifts of a given maximum length, and a scale arrow."""
     most_kn = np.hypot(*drift_kn.T).max()
     if not (most_kn > 0 and longest_km > 0):
         return
@@ -114,7 +114,7 @@ def _arrows(ax: Axes, from_km: np.ndarray, drift_kn: np.ndarray, longest_km: flo
 
 
 def _round_below(value: float) -> float:
-    """The greatest 1, 2 or 5 times a power of ten that is not above a value."""
+    """The largest 1, 2 or 5 times a power of ten that is not above a value."""
     power = 10.0 ** np.floor(np.log10(value))
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value))
 
@@ -122,7 +122,7 @@ def _round_below(value: float) -> float:
 def speed_over_time(
     ax: Axes, time_s: np.ndarray, over_ground_mps: np.ndarray, through_water_mps: np.ndarray
 ) -> Axes:
-    """Speeds in knots over time in minutes, those that are known; returns `ax`."""
+    """Known speeds in knots over time in minutes; returns `ax`."""
     time_s = shaped("time_s", time_s, None)
     over_ground_mps = shaped("over_ground_mps", over_ground_mps, len(time_s))
     through_water_mps = shaped("through_water_mps", through_water_mps, len(time_s))

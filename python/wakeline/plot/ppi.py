@@ -1,4 +1,4 @@
-"""Radar video as a picture: the screen of a radar, north up, and a close-up of cells and sweeps."""
+"""Radar video as a picture: a PPI, north up, and a B-scope of cells and sweeps."""
 
 from __future__ import annotations
 
@@ -57,15 +57,15 @@ def ppi(
     rings: bool = True,
     pixels: int = 1200,
 ) -> Axes:
-    """Draw radar video as a radar screen does: on a map, antenna at the origin, north up.
+    """Draw radar video as a PPI: north up, antenna at the origin.
 
-    A pixel shows the largest amplitude of the cells in it, so that no echo falls between pixels.
-    Of sweeps of the same azimuth the last one is shown: give a turn, or the latest of several.
+    A pixel shows the largest amplitude of the cells in it, so that no echo is lost between pixels.
+    Of sweeps with the same azimuth the last one is shown.
 
     Parameters
     ----------
     video : RadarVideo or ScanImage
-        A turn, a sector of it, or as much as there is.
+        A revolution, or a part of it.
     ax : matplotlib.axes.Axes, optional
         Axes to draw into; default those of a new figure.
     plots : array_like (n, 2), optional
@@ -76,24 +76,24 @@ def ppi(
     tracks : Tracks, optional
         Drawn as lines with their ids at the ends.
     extent_m : (west, east, south, north), optional
-        What to show, in metres; default all of the video.
+        Area to show, in metres; default all of the video.
     amplitude_range : (float, float), optional
-        Amplitudes shown darkest and brightest; default from the darker part of the noise to what
-        one cell in 2000 exceeds.
+        Darkest and brightest amplitude; default from the darker part of the noise to the amplitude
+        that one cell in 2000 exceeds.
     rings : bool
-        Whether to draw range rings with their ranges, and the four quarters of the compass.
+        Whether to draw range rings with their ranges, and the cardinal directions.
     pixels : int
-        Of the longer side.
+        Pixels of the longer side.
 
     Returns
     -------
     matplotlib.axes.Axes
-        Data coordinates are metres east and north, however the ticks are labelled.
+        Data coordinates are metres east and north, whatever the labels of the ticks.
 
     Raises
     ------
     ValueError
-        When the video has no sweep, the extent is empty, or a layer has another shape.
+        When the video has no sweep, the extent is empty, or a layer has a wrong shape.
     TypeError
         When the video is something else.
     """
@@ -113,8 +113,8 @@ def ppi(
 def screen(tracks: TrackedRecording) -> Figure:
     """Draw the last revolution of radar video: echoes, plots, strobes, and the tracks.
 
-    All as seen from own ship at the end of the revolution, and without the bearing offset of the
-    radar. A strobe is where the next plot of a track is with a probability of 99 %.
+    Positions are relative to own ship at the end of the revolution, without the bearing offset of
+    the radar. A strobe contains the next plot of a track with a probability of 99 %.
 
     Parameters
     ----------
@@ -176,24 +176,24 @@ def echo(
     amplitude_range: tuple[float, float] | None = None,
     colorbar: bool = True,
 ) -> Axes:
-    """Draw the cells around a place as they are: azimuth to the right, range upwards (B-scope).
+    """Draw the cells around a position as a B-scope: azimuth to the right, range upwards.
 
     Parameters
     ----------
     video : RadarVideo or ScanImage
-        Of sweeps of the same azimuth the last one is shown.
+        Of sweeps with the same azimuth the last one is shown.
     ax : matplotlib.axes.Axes, optional
         Axes to draw into; default those of a new figure.
     around_m : (north, east), optional
-        Middle of the picture; default the strongest cell.
+        Center of the picture; default the strongest cell.
     half_range_m, half_azimuth_rad : float
-        How far it reaches from there.
+        Half the range and azimuth of the picture.
     plots, strobes
         As for :func:`ppi`, in metres north and east.
     amplitude_range : (float, float), optional
-        Amplitudes shown darkest and brightest; default 0 and the largest in the picture.
+        Darkest and brightest amplitude; default 0 and the largest in the picture.
     colorbar : bool
-        Whether to explain the amplitudes beside the picture.
+        Whether to draw a scale of the amplitudes.
 
     Returns
     -------
@@ -203,7 +203,7 @@ def echo(
     Raises
     ------
     ValueError
-        When nothing of the video lies there, or a layer has another shape.
+        When no cell of the video is there, or a layer has a wrong shape.
     TypeError
         When the video is something else.
     """
@@ -214,7 +214,7 @@ def echo(
     cells = np.flatnonzero(np.abs(video.range_m - range_m) <= half_range_m)
     if len(cells) == 0 or not (sweep >= 0).any():
         raise ValueError(
-            f"no cell of the video lies around azimuth {np.rad2deg(azimuth_rad):.2f} degrees, "
+            f"no cell of the video is around azimuth {np.rad2deg(azimuth_rad):.2f} degrees, "
             f"range {range_m:.0f} m"
         )
     picture = video.amplitude[sweep][:, cells].astype(float)
@@ -240,7 +240,7 @@ def echo(
 
 
 def circle_outline(centre_m: ArrayLike, radius_m: float, points: int = 61) -> NDArray[np.float64]:
-    """Outline (points, 2) of a circle around a place north and east."""
+    """Outline (points, 2) of a circle around a position north and east."""
     return ellipse_outline(np.asarray(centre_m), np.eye(2) * radius_m**2, 1.0, points)
 
 
@@ -266,15 +266,15 @@ def screen_raster(
 ) -> NDArray[np.float32]:
     """Video on a square grid north up: row 0 in the south, NaN where there is no video.
 
-    A pixel holds the largest amplitude of the cell below its centre and of all cells that have
-    their centre in it: no cell is lost in a small picture, no hole is left in a large one.
+    A pixel has the largest amplitude of the cell at its center and of all cells with their center
+    in it: a small picture loses no cell, a large one has no holes.
 
     Parameters
     ----------
     video : RadarVideo or ScanImage
     extent_m : (west, east, south, north)
     pixels : int
-        Of the longer side.
+        Pixels of the longer side.
 
     Returns
     -------
@@ -316,17 +316,17 @@ def _as_video(video: RadarVideo | ScanImage) -> RadarVideo:
 
 @dataclass(frozen=True)
 class _Steps:
-    """A turn cut into even steps as wide as a sweep.
+    """A revolution divided into equal steps as wide as a sweep.
 
-    Sweeps have their centres about the middle of steps, so that each sweep of a regular turn has a
-    step of its own, wherever a turn begins and however its azimuths are rounded.
+    The centers of sweeps are near the middle of steps, so that each sweep of a regular revolution
+    has its step, wherever the revolution begins and however its azimuths are rounded.
 
     Attributes
     ----------
     sweep : ndarray (count,)
-        Number of the last sweep in each step, -1 where there is none.
+        Number of the last sweep in each step, -1 without one.
     shift : float
-        Steps from where the first begins to north.
+        Steps from the start of the first to north.
     """
 
     sweep: NDArray[np.intp]
@@ -346,9 +346,9 @@ class _Steps:
 
 
 def _steps(video: RadarVideo) -> _Steps:
-    """The steps of a turn with their last sweeps.
+    """The steps of a revolution with their last sweeps.
 
-    A single empty step between two sweeps takes the one before it: real antennas jitter.
+    A single empty step between two sweeps takes the previous sweep, because real antennas jitter.
     """
     if len(video) == 0:
         raise ValueError("video must have a sweep, got none")
@@ -363,7 +363,7 @@ def _steps(video: RadarVideo) -> _Steps:
 
 
 def _latest(video: RadarVideo, steps: _Steps) -> NDArray[np.intp]:
-    """Sweeps since which the beam has not come back to their step."""
+    """Sweeps after which the beam has not returned to their step."""
     step = steps.of(video.azimuth_rad) % len(steps.sweep)
     stay = np.cumsum(np.diff(step, prepend=step[0]) != 0)
     return np.flatnonzero(stay == stay[steps.sweep[step]])
@@ -372,7 +372,7 @@ def _latest(video: RadarVideo, steps: _Steps) -> NDArray[np.intp]:
 def _cells_below(
     video: RadarVideo, steps: _Steps, north_m: NDArray, east_m: NDArray
 ) -> NDArray[np.float32]:
-    """Amplitude of the cell at each place, NaN where there is none."""
+    """Amplitude of the cell at each position, NaN without one."""
     sweep = steps.sweep[steps.of(np.arctan2(east_m, north_m)) % len(steps.sweep)]
     cell = np.floor((np.hypot(north_m, east_m) - video.start_range_m) / video.cell_m).astype(int)
     seen = (sweep >= 0) & (cell >= 0) & (cell < video.amplitude.shape[1])
@@ -384,9 +384,9 @@ def _cells_below(
 def _sweeps_about(
     video: RadarVideo, azimuth_rad: float, half_rad: float
 ) -> tuple[NDArray[np.intp], tuple[float, float]]:
-    """Sweeps of the steps about an azimuth in order, and where the first begins and the last ends.
+    """Sweeps of the steps around an azimuth, in order, and the azimuths of both ends.
 
-    Azimuths run on across north.
+    Azimuths are not wrapped.
     """
     steps = _steps(video)
     count = len(steps.sweep)
@@ -397,7 +397,7 @@ def _sweeps_about(
 
 
 def _middle(video: RadarVideo, around_m: tuple[float, float] | None) -> tuple[float, float]:
-    """Azimuth from 0 to a turn, and range."""
+    """Azimuth from 0 to 2 pi, and range."""
     if around_m is not None:
         if np.shape(around_m) != (2,):
             raise ValueError(f"around_m must be north and east, got {around_m}")
@@ -410,7 +410,7 @@ def _middle(video: RadarVideo, around_m: tuple[float, float] | None) -> tuple[fl
 
 
 def _scope_coordinates(places_m: NDArray[np.float64], middle_rad: float) -> tuple[NDArray, NDArray]:
-    """Azimuth in degrees, run on across north about the middle, and range in metres."""
+    """Azimuth in degrees, unwrapped around the center, and range in metres."""
     north_m, east_m = places_m.T
     off_rad = (np.arctan2(east_m, north_m) - middle_rad + np.pi) % _TURN_RAD - np.pi
     return np.rad2deg(middle_rad + off_rad), np.hypot(north_m, east_m)
@@ -462,7 +462,7 @@ def _checked_range(amplitude_range: tuple[float, float] | None) -> tuple[float, 
 
 
 def _echo_map() -> Colormap:
-    """From the dark screen through sea green to amber: brighter with every step."""
+    """From dark through sea green to amber, with increasing brightness."""
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("radar", list(_ECHO_COLORS))
@@ -485,7 +485,7 @@ _CROSS = {
 
 
 def _draw_rings(ax: Axes, extent: tuple[float, float, float, float], far_m: float) -> None:
-    """Rings at round ranges; each has its range where it crosses the line to the upper right."""
+    """Rings at round ranges, each labelled to the upper right."""
     from matplotlib.patches import Circle
     from matplotlib.ticker import MaxNLocator
 
@@ -539,7 +539,7 @@ def _draw_layers(
 
 
 def _draw_tracks(ax: Axes, tracks: Tracks) -> None:
-    """Each with its id at its end, where it does not cover that of a longer one."""
+    """Each with its id at its end, unless it would cover that of a longer one."""
     from .labels import LoneLabels
 
     ids = {}
@@ -585,7 +585,7 @@ def _dress_screen(ax: Axes, extent: tuple[float, float, float, float]) -> Axes:
 
 
 def _unit(extent: tuple[float, float, float, float]) -> tuple[str, float]:
-    """Unit of lengths on the screen, and how many metres it has."""
+    """Unit of lengths on the screen, and its metres."""
     return ("km", 1000.0) if np.abs(extent).max() > _KM_FROM_M else ("m", 1.0)
 
 
@@ -606,7 +606,7 @@ def _show(
     extent: tuple[float, float, float, float],
     amplitude_range: tuple[float, float],
 ) -> AxesImage:
-    """The picture as the only thing within the axes, on the dark of the screen."""
+    """The picture alone within the axes, on a dark screen."""
     low, high = amplitude_range
     ax.set_facecolor(SCREEN)
     image = ax.imshow(

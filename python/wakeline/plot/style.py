@@ -1,4 +1,4 @@
-"""The look of every figure: colours that colour-blind readers can tell apart, quiet axes."""
+"""The style of all figures: a color-blind safe palette, plain axes."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ GRID = "#E4E7EB"
 TEXT_PT = 9
 _ROOM_ABOVE = 1.08
 _GAP_STEPS = 4.0
-_BESIDE_IN = 0.7  # of a column of panels: what stands left of the axes, at least
-_AROUND_IN = 0.09  # what the layout leaves free around it
+_BESIDE_IN = 0.7  # minimum width left of the axes of a column of panels
+_AROUND_IN = 0.09  # margin of the layout
 
 
 def figure(width_in: float = 7.2, height_in: float = 6.0) -> Figure:
@@ -45,19 +45,19 @@ def figure(width_in: float = 7.2, height_in: float = 6.0) -> Figure:
 
 
 def save(fig: Figure, path: str | Path) -> None:
-    """Write a figure; what stood at `path` is replaced only when the new file is complete.
+    """Write a figure; `path` is replaced only when the new file is complete.
 
     Parameters
     ----------
     fig : matplotlib.figure.Figure
         The figure.
     path : str or Path
-        Its suffix names the format, such as ``.png`` or ``.pdf``.
+        The suffix determines the format, such as ``.png`` or ``.pdf``.
 
     Raises
     ------
     ValueError
-        When the suffix names no format that can be written.
+        When the suffix is not a supported format.
     """
     kinds = fig.canvas.get_supported_filetypes()
     if Path(path).suffix[1:].lower() not in kinds:
@@ -67,7 +67,7 @@ def save(fig: Figure, path: str | Path) -> None:
 
 
 def dress(ax: Axes) -> Axes:
-    """Give axes the house look; returns `ax`."""
+    """Apply the common style to axes; returns `ax`."""
     ax.set_axisbelow(True)
     ax.grid(color=GRID, linewidth=0.8)
     ax.tick_params(labelsize=TEXT_PT, color=MUTED, labelcolor=INK, length=3)
@@ -81,14 +81,14 @@ def dress(ax: Axes) -> Axes:
 
 
 def from_zero(ax: Axes) -> Axes:
-    """Begins the upright axis at zero, with room above the highest line; returns `ax`."""
+    """Start the vertical axis at zero, with room above the highest line; returns `ax`."""
     highest = ax.dataLim.y1
     ax.set_ylim(0.0, _ROOM_ABOVE * highest if 0.0 < highest < np.inf else None)
     return ax
 
 
 def dress_map(ax: Axes) -> Axes:
-    """The house look of a map in kilometres, north up; returns `ax`."""
+    """The style of a map in kilometres, north up; returns `ax`."""
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("east (km)")
     ax.set_ylabel("north (km)")
@@ -96,19 +96,19 @@ def dress_map(ax: Axes) -> Axes:
 
 
 def halo(width: float = 2.0) -> list:
-    """Path effects that keep text and thin lines legible on whatever lies below."""
+    """Path effects that keep text and thin lines legible on any background."""
     from matplotlib import patheffects
 
     return [patheffects.withStroke(linewidth=width, foreground="white")]
 
 
 def plain(text: str) -> str:
-    """Text that is shown as it is: no dollar in it begins a formula."""
+    """Literal text: a dollar sign does not begin a formula."""
     return text.replace("$", r"\$")
 
 
 def name_lines(ax: Axes, columns: int | None = None) -> Axes:
-    """A legend above the axes, where it covers nothing, by default as of :func:`name_above`.
+    """A legend above the axes, by default as in :func:`name_above`.
 
     Returns `ax`.
     """
@@ -127,7 +127,7 @@ def name_lines(ax: Axes, columns: int | None = None) -> Axes:
 
 
 def name_above(ax: Axes, columns: int | None = None, **look: object) -> Axes:
-    """A legend of that look, in as few rows as are no wider than the axes; returns `ax`."""
+    """A legend in as few rows as fit the width of the axes; returns `ax`."""
     count, room_px = len(ax.get_legend_handles_labels()[1]), _room_px(ax)
     for rows in range(1, count + 1):
         legend = ax.legend(ncols=columns or -(-count // rows), **look)
@@ -140,9 +140,9 @@ def name_above(ax: Axes, columns: int | None = None, **look: object) -> Axes:
 
 
 def _within_width(legend: Legend, renderer: RendererBase | None = None) -> Bbox:
-    """The box of a legend above axes that are to be as wide: the layout takes no width for it.
+    """The box of a legend above the axes, for which the layout reserves no width.
 
-    It would shrink the axes for a legend wider than they are before they have their place.
+    Otherwise the layout would shrink the axes for a legend that is wider than they are.
     """
     from matplotlib.transforms import Bbox
 
@@ -152,7 +152,7 @@ def _within_width(legend: Legend, renderer: RendererBase | None = None) -> Bbox:
 
 
 def _room_px(ax: Axes) -> float:
-    """About the width that the axes will have in the layout of their figure."""
+    """Approximate width of the axes in the layout of their figure."""
     spec = ax.get_subplotspec()
     if spec is None:
         return ax.get_window_extent().width
@@ -163,9 +163,9 @@ def _room_px(ax: Axes) -> float:
 
 
 def track_colors(tracks: Tracks | None) -> dict[str, str]:
-    """Colour of each track id, the same in every view of the same tracks.
+    """Color of each track id, the same in every view of the same tracks.
 
-    No two of the longest tracks share one, as many as there are colours.
+    The longest tracks have different colors, as far as the palette allows.
     """
     ids = [] if tracks is None else tracks.ids()
     longest = [] if tracks is None else by_length(tracks)[: len(PALETTE)]
@@ -179,24 +179,23 @@ def by_length(tracks: Tracks) -> list[str]:
 
 
 def with_gaps(time_s: np.ndarray, *columns: np.ndarray) -> list[np.ndarray]:
-    """Times and columns (n,) with a NaN row wherever a line must not be drawn across a gap.
+    """Times and columns (n,) with a NaN row in each gap, so that lines are interrupted.
 
-    A gap is a step more than four times the median one.
+    A gap is a step of more than four times the median one.
     """
     after = _after_gaps(time_s)
     return [np.insert(column.astype(float), after, np.nan) for column in (time_s, *columns)]
 
 
 def stretches(time_s: np.ndarray, *columns: np.ndarray) -> Iterator[tuple[np.ndarray, ...]]:
-    """Times (n,) and columns (n, ...) from one gap, as of :func:`with_gaps`, to the next."""
+    """Times (n,) and columns (n, ...) between gaps as in :func:`with_gaps`."""
     after = _after_gaps(time_s)
     return zip(*(np.split(column, after) for column in (time_s, *columns)), strict=True)
 
 
 def through_north(time_s: np.ndarray, degrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The line (n,) of a compass angle, led out at 360 and in at 0, or the other way, where the
-    short way from one angle to the next passes north."""
-    degrees = degrees % 360.0  # what lies next below 0 has become 360
+    """The line (n,) of a compass angle, broken at the edges where it passes north."""
+    degrees = degrees % 360.0  # a value just below 0 becomes 360
     step = np.diff(degrees)
     last = np.flatnonzero(np.abs(step) > 180.0)
     way = step[last] - np.copysign(360.0, step[last])
@@ -208,7 +207,7 @@ def through_north(time_s: np.ndarray, degrees: np.ndarray) -> tuple[np.ndarray, 
 
 
 def dot_lone(line: Line2D) -> None:
-    """A dot on each point between two gaps of a line, which has no stroke to be seen by."""
+    """A dot on each point between two gaps, where a line would be invisible."""
     known = np.isfinite(line.get_xydata()).all(axis=1)
     stroke = known[1:] & known[:-1]
     lone = known & ~np.append(False, stroke) & ~np.append(stroke, False)

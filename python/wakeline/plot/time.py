@@ -1,4 +1,4 @@
-"""The same tracks over time: speed, course, NIS and mode probability, one panel each."""
+"""Tracks over time: speed, course, NIS and mode probability, one panel each."""
 
 from __future__ import annotations
 
@@ -45,18 +45,18 @@ def time_view(
     *,
     mode_names: Sequence[str] | None = None,
 ) -> list[Axes]:
-    """Draw tracks over time, in seconds from the first scan, as panels one above the other.
+    """Draw tracks over time since the first scan, as stacked panels.
 
-    Of more than ten tracks the ten longest; of more than ten true targets none.
-    Speed and course always; NIS where the tracks have it, with the line that 95 % of two-component
-    innovations stay below; mode probability, where the tracks have it, of the longest track.
+    With more than ten tracks the ten longest; with more than ten true targets no truth. Panels:
+    speed and course; NIS, if the tracks have it, with the 95 % line of two degrees of freedom;
+    mode probability of the longest track, if available.
 
     Parameters
     ----------
     fig : matplotlib.figure.Figure
         Figure to draw into.
     episode : Episode, optional
-        Its truth is drawn beside the tracks; its first scan is time 0.
+        Its truth is drawn with the tracks; its first scan is time 0.
     tracks : Tracks, optional
         Tracks of that episode.
     mode_names : sequence of str, optional
@@ -138,7 +138,7 @@ def course_panel(
     start_s: float = 0.0,
     colors: Mapping[str, str] | None = None,
 ) -> Axes:
-    """Course over ground in degrees, led from edge to edge where it passes north; returns `ax`."""
+    """Course over ground in degrees, interrupted where it passes north; returns `ax`."""
     for time_s, state in _true_states(episode):
         course_deg = np.degrees(np.arctan2(state[:, 3], state[:, 1])) % 360.0
         ax.plot(*through_north(time_s - start_s, course_deg), **_TRUTH_LINE)
@@ -159,9 +159,9 @@ def nis_panel(
     start_s: float = 0.0,
     colors: Mapping[str, str] | None = None,
 ) -> Axes:
-    """Normalised innovation squared, with the 95 % line of two degrees of freedom; returns `ax`.
+    """Normalized innovation squared, with the 95 % line of two degrees of freedom; returns `ax`.
 
-    What lies above the panel is drawn as a triangle at its upper edge.
+    Values above the panel are triangles at its upper edge.
     """
     for _, color, track in _each(tracks, colors):
         time_s, nis = track.time_s - start_s, track.nis
@@ -212,9 +212,9 @@ def draw_bands(
     names: Sequence[str],
     colors: Sequence[str] | None = None,
 ) -> Axes:
-    """Probabilities (T, K) as bands that add up to 1, explained above the axes; returns `ax`.
+    """Probabilities (T, K) as bands that add up to 1, with a legend above; returns `ax`.
 
-    Bands are cut where times are missing, as lines are.
+    Bands are interrupted at gaps, like lines.
     """
     modes = probability.shape[1]
     colors = colors or [MODE_PALETTE[k % len(MODE_PALETTE)] for k in range(modes)]
@@ -244,7 +244,7 @@ def _start_s(episode: Episode | None, tracks: Tracks | None) -> float:
 
 
 def _longest(tracks: Tracks | None) -> Tracks | None:
-    """As many tracks as can be told apart."""
+    """As many tracks as can be distinguished."""
     if tracks is None or len(tracks.ids()) <= _MANY_TRACKS:
         return tracks
     return tracks.where(np.isin(tracks.track_id, by_length(tracks)[:_MANY_TRACKS]))

@@ -6,9 +6,9 @@
 >>> len(wl.track_recording("joyride").ids())
 1
 
-:func:`track_episode` tracks one episode, :func:`open_recording` opens what is to be tracked, and
-:class:`Settings` are what a file of settings holds. :func:`with_alarms` finds the tracks that come
-dangerously close to own ship. Scans are grouped by :mod:`wakeline.recording.scans`.
+:func:`track_episode` tracks one episode, :func:`open_recording` opens a recording, and
+:class:`Settings` are the contents of a settings file. :func:`with_alarms` finds the tracks that
+come dangerously close to own ship. :mod:`wakeline.recording.scans` groups plots into scans.
 """
 
 from __future__ import annotations

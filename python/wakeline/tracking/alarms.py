@@ -1,4 +1,4 @@
-"""Closest approach of tracks to own ship, and alarms of those that come dangerously close."""
+"""Closest approach of tracks to own ship, and collision alarms."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from wakeline.recording import OwnShipMotion, Tracks
 class DangerLimits:
     """When a track is dangerous.
 
-    An alarm begins when a track comes closer than `cpa_limit_m` within `tcpa_limit_s` with a
-    probability of `alarm_probability` or more, its closest point still ahead. It ends when the
-    probability stays below `clear_probability` for `clear_hold_s`, or when the track ends. The hold
-    keeps one encounter one alarm while the estimate of a distant ship still varies.
+    An alarm begins when a track will be closer than `cpa_limit_m` within `tcpa_limit_s` with at
+    least `alarm_probability`, before its closest approach. It ends when the probability remains
+    below `clear_probability` for `clear_hold_s`, or when the track ends. The hold time keeps one
+    alarm per encounter while the estimate of a distant ship varies.
 
     Attributes
     ----------
@@ -32,12 +32,12 @@ class DangerLimits:
     clear_hold_s : float
         Not negative.
     own_velocity_std_mps : float
-        Error of own ship's velocity per axis, where its covariance is not known.
+        Standard deviation of own ship's velocity per axis, if its covariance is unknown.
 
     Raises
     ------
     ValueError
-        When one is out of its range.
+        When a value is out of range.
     """
 
     cpa_limit_m: float = NAUTICAL_MILE_M / 2.0
@@ -67,7 +67,7 @@ class DangerLimits:
 
 @dataclass(frozen=True)
 class Alarm:
-    """A part of a track that is dangerous.
+    """A dangerous part of a track.
 
     Attributes
     ----------
@@ -75,8 +75,8 @@ class Alarm:
     begin_s, end_s : float
         Times of its first and its last scan.
     cpa_m, tcpa_s, cpa_probability, range_m : float
-        At the beginning: closest approach, time until it, probability of coming closer than the
-        limits, and distance.
+        At the start: distance and time of the closest approach, probability of a distance below the
+        limit, and range.
     inside : bool
         Whether the track was closer than the limit when the alarm began.
     """
@@ -100,7 +100,7 @@ class Alarm:
 
 
 class Watched(NamedTuple):
-    """Tracks with ``alarmed`` rows, and the alarms in the order in which they began."""
+    """Tracks with ``alarmed`` rows, and the alarms in order of start."""
 
     tracks: Tracks
     alarms: list[Alarm]
@@ -109,10 +109,10 @@ class Watched(NamedTuple):
 def with_closest_approach(
     tracks: Tracks, own: OwnShipMotion, limits: DangerLimits | None = None
 ) -> Tracks:
-    """Add CPA, TCPA and the probability of coming closer than the limits to tracks.
+    """Add CPA, TCPA and the probability of a CPA below the limits to tracks.
 
     The errors are those of the tracks and of own ship's velocity. An error of own ship's position
-    is none of them: plots are measured from there, so that it moves the tracks with own ship.
+    does not count: plots are measured from there, so that it moves the tracks with own ship.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def with_closest_approach(
     Raises
     ------
     ValueError
-        When the tracks have no covariance or own ship's velocity is not known.
+        When the tracks have no covariance or own ship's velocity is unknown.
     """
     limits = limits or DangerLimits()
     if tracks.covariance is None:
@@ -159,8 +159,8 @@ def with_alarms(tracks: Tracks, own: OwnShipMotion, limits: DangerLimits | None 
     Parameters
     ----------
     tracks : Tracks
-        Rows of each track in order of time. Where they have no closest approach yet, it is that of
-        :func:`with_closest_approach`.
+        Rows of each track in order of time. Without a closest approach,
+        :func:`with_closest_approach` adds it.
     own : OwnShipMotion
     limits : DangerLimits, optional
     """

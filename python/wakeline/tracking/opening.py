@@ -1,4 +1,4 @@
-"""Open what is to be tracked: a recording, a bundled one by name, plots or radar video in files."""
+"""Open a recording: an object, a bundled one by name, or a file of plots or radar video."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Settings of tracking: radar, tracker, motion models and limits of danger, in Python and as TOML.
+"""Settings of tracking: radar, tracker, motion models and danger limits, in Python and as TOML.
 
 Settings are kept as a file holds them, with angles of the radar in degrees, so that writing and
 reading them again changes nothing.
@@ -140,12 +140,12 @@ class Settings:
 
     @classmethod
     def default(cls) -> Settings:
-        """The settings of the engine, with the period left to the recording."""
+        """The engine's settings, with the period of the recording."""
         return cls(**{section: _defaults(section) for section in KEYS})
 
     @property
     def period_s(self) -> float | None:
-        """Period of the antenna, None where it is left to the recording."""
+        """Period of the antenna, None if the recording gives it."""
         return float(self.radar["period_s"]) or None
 
     @property
@@ -157,7 +157,7 @@ class Settings:
         return "as configured"
 
     def make_tracker(self, period_s: float | None = None) -> wl.Tracker:
-        """A new tracker; `period_s` is that of the antenna where the settings leave it open."""
+        """A new tracker; `period_s` is that of the antenna if the settings do not give it."""
         radar = dict(self.radar)
         radar["period_s"] = self.period_s or period_s or 0.0
         return wl.Tracker(
@@ -167,9 +167,9 @@ class Settings:
         )
 
     def knowing(self, radar: Mapping[str, Value]) -> Settings:
-        """These settings with what a recording knows of its radar.
+        """These settings with the radar parameters of a recording.
 
-        Where they have any of those parameters other than the default, they stay as they are.
+        If any of the radar parameters differs from its default, the settings are unchanged.
         """
         default = _defaults("radar")
         if any(self.radar[key] != default[key] for key in radar):
@@ -178,11 +178,11 @@ class Settings:
 
     @property
     def danger_limits(self) -> DangerLimits:
-        """When a track is dangerous."""
+        """Limits of danger."""
         return _engine("danger", self.danger)
 
     def toml(self) -> str:
-        """Every setting with a line that explains it; reading it gives the same settings."""
+        """Every setting with a line of explanation; reading it gives the same settings."""
         return "\n".join(line for section in KEYS for line in self._section(section))
 
     def _section(self, section: str) -> Iterator[str]:
@@ -207,15 +207,14 @@ def read_settings(
         All settings, parameters of the tracker, or a TOML file with any of the sections and keys
         that :meth:`Settings.toml` writes.
     radar : Radar, str or Path, optional
-        Radar parameters, the name of a radar that ships with the package, or a TOML file with keys
-        of ``[radar]``.
+        Radar parameters, the name of a bundled radar, or a TOML file with keys of ``[radar]``.
     vessels : VesselModels or str, optional
         Motion models, or a name of `VESSELS`. They replace those of `config`.
 
     Raises
     ------
     SettingsError
-        When a file cannot be read, a key or name is not known, or a value is out of its range.
+        When a file cannot be read, a key or name is unknown, or a value is out of range.
     """
     settings = config if isinstance(config, Settings) else Settings.default()
     if isinstance(config, wl.TrackerConfig):
@@ -245,8 +244,7 @@ def _read_radar(name: str | Path) -> Any:
     path = Path(name)
     if not path.exists():
         raise SettingsError(
-            f"no radar {str(name)!r}: neither a file nor one that ships "
-            f"({', '.join(radar_names())})"
+            f"radar must be a file or one of {', '.join(radar_names())}, got {str(name)!r}"
         )
     document = _read_toml(path)
     if list(document) == ["radar"]:
@@ -254,8 +252,8 @@ def _read_radar(name: str | Path) -> Any:
     sections = [key for key, value in document.items() if isinstance(value, dict)]
     if sections:
         raise SettingsError(
-            f"{path}: a radar file has the keys of [radar] alone, got {', '.join(sections)}; "
-            "settings of several sections go with --config"
+            f"{path}: a radar file must have only keys of [radar], got {', '.join(sections)}; "
+            "use --config for settings of several sections"
         )
     return document
 
@@ -263,7 +261,7 @@ def _read_radar(name: str | Path) -> Any:
 def _changed(settings: Settings, section: str, values: Any, path: str | Path) -> Settings:
     """The settings with some of one section's replaced."""
     if not isinstance(values, dict):
-        raise SettingsError(f"{path}: {section} must be a section with keys of its own")
+        raise SettingsError(f"{path}: {section} must be a section with keys")
     before = getattr(settings, section)
     for key, value in values.items():
         if key not in before:
@@ -286,7 +284,7 @@ def _check_type(path: str | Path, place: str, value: Any, wanted: type) -> None:
 def _check_values(
     path: str | Path, section: str, before: dict[str, Value], after: dict[str, Value]
 ) -> None:
-    """Raise SettingsError naming the key that the engine refuses, if there is one."""
+    """Raise SettingsError naming the key that the engine rejects, if there is one."""
     try:
         _check_engine(section, after)
     except ValueError as error:
@@ -308,7 +306,7 @@ def _check_engine(section: str, values: dict[str, Value]) -> None:
 
 
 def _engine(section: str, values: dict[str, Value]) -> Any:
-    """The engine's object of a section; a period of 0 is left at the engine's default."""
+    """The engine's object of a section; a period of 0 is the engine's default."""
     given = {_engine_name(key): _to_engine(key, value) for key, value in values.items()}
     if section == "radar" and given["period_s"] == 0:
         del given["period_s"]
@@ -342,11 +340,11 @@ def _read_toml(path: Path) -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except UnicodeDecodeError:
         raise SettingsError(f"{path}: not text in UTF-8") from None
-    except ValueError as error:  # TOMLDecodeError, and whole numbers of thousands of digits
+    except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
         raise SettingsError(f"{path}: not TOML: {error}") from None
     except RecursionError:
-        raise SettingsError(f"{path}: not TOML that can be read: it is nested too deep") from None
+        raise SettingsError(f"{path}: not valid TOML: nested too deep") from None
 
 
 def _one_of(names: Iterable[str]) -> str:
-    return f"known are {', '.join(names)}"
+    return f"known: {', '.join(names)}"

@@ -17,10 +17,10 @@ _OF_ALARM = ("track_id", "begin_s", "end_s", "cpa_m", "tcpa_s", "cpa_probability
 def write_tables(
     folder: str | Path, episodes: Sequence[TrackedEpisode], suffix: str = ""
 ) -> list[Path]:
-    """Write ``tracks.csv``, ``events.csv``, ``plots_tracks.csv`` and, of alarms, ``alarms.csv``.
+    """Write ``tracks.csv``, ``events.csv``, ``plots_tracks.csv`` and, with alarms, ``alarms.csv``.
 
-    Each file is replaced only when the new one is complete. Where no alarms were asked for, an
-    earlier ``alarms.csv`` is removed.
+    Each file is replaced only when the new one is complete. Without alarms an earlier
+    ``alarms.csv`` is removed.
 
     Parameters
     ----------

@@ -31,17 +31,17 @@ class TrackedEpisode:
     episode : Episode
         With the bearing offset of the radar removed from its plots.
     tracks : Tracks
-        One row for each shown track and scan, at the time of the scan: predicted to it, or moved
+        One row per displayed track and scan, at the time of the scan: predicted to it, or moved
         back to it from a later plot of the scan.
     events : list of wakeline.Event
     plot_track_id : list of ndarray of int
         For each scan the track of each plot: 0 none, negative a tentative one.
     refused_plots : int
-        Number of plots that the tracker could not take.
+        Number of plots that the tracker rejected.
     elapsed_s : float
         Time that the tracker needed.
     alarms : list of Alarm or None
-        None where none were asked for or own ship's velocity is not known.
+        None if not requested or own ship's velocity is unknown.
     """
 
     episode: Episode
@@ -55,7 +55,7 @@ class TrackedEpisode:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class TrackedRecording(Tracks):
-    """The tracks of a recording: a table of all rows, and what else tracking found.
+    """The tracks of a recording: a table of all rows, with events and alarms by episode.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class TrackedRecording(Tracks):
     def of(
         cls, recording: Recording, episodes: Sequence[TrackedEpisode], settings: Settings
     ) -> TrackedRecording:
-        """The tracks of episodes of a recording that were tracked one by one."""
+        """Join the tracked episodes of a recording."""
         return cls(
             **vars(Tracks.joined([tracked.tracks for tracked in episodes])),
             recording=replace(recording, episodes=[tracked.episode for tracked in episodes]),
@@ -112,10 +112,10 @@ def track_recording(
         TOML file with keys of ``[radar]``. Default: those of `config`, else what the recording
         knows of its radar, else the defaults of :class:`wakeline.Radar`.
     vessels : VesselModels or str, optional
-        Motion models, or "any" (default) or "ships" (under way, which seldom alter course).
+        Motion models, or "any" (default) or "ships" (merchant ships under way).
     own : OwnShipMotion, str or Path, optional
-        Own ship, or its file. With it each row has the closest approach to own ship, and alarms are
-        found. For a recording in a file it must be a file, and the radar is there.
+        Own ship, or its file. With it each row has the closest approach to own ship, and the result
+        has alarms. For a recording in a file it must be a file, and the radar is there.
     config : Settings, TrackerConfig, str or Path, optional
         All settings, parameters of the tracker, or a TOML file in the form that
         ``wakeline track --print-config`` prints.
@@ -169,7 +169,7 @@ def track_episode(
     episode : Episode
     settings : Settings, optional
     own : OwnShipMotion, optional
-        Own ship whose closest approaches and alarms are found, where its velocity is known; mostly
+        Own ship for closest approaches and alarms, if its velocity is known; usually
         ``episode.own``.
     named : bool
         Whether the tracks carry the name of the episode as their scenario.
@@ -204,14 +204,14 @@ def has_names(recording: Recording) -> bool:
 
 
 def _without_offset(episode: Episode, bearing_offset_rad: float) -> Episode:
-    """The episode with its plots where the tracker takes them to be."""
+    """The episode with the radar's bearing offset removed."""
     if bearing_offset_rad == 0.0:
         return episode
     return replace(episode, scans=[scan.turned(-bearing_offset_rad) for scan in episode.scans])
 
 
 def _process(tracker: wl.Tracker, end_s: float, scan: Scan) -> wl.track.ScanReport:
-    """Process one scan; it ends with its last plot, whatever its own time is."""
+    """Process one scan; it ends at its last plot, whatever its time is."""
     return tracker.process(
         end_s,
         range_m=scan.range_m,
@@ -227,7 +227,7 @@ def _columns(table: wl.track.TrackTable) -> dict[str, np.ndarray]:
 
 
 def _at(time_s: float, column: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The columns of tracks at a time; those of a later time are moved straight back to it."""
+    """The columns of tracks at a time; later ones are moved back at constant velocity."""
     back_s = np.minimum(time_s - column["time_s"], 0.0)
     if not back_s.any():
         return column
