@@ -1,7 +1,7 @@
 # Sourced by python/demo.sh and tests/run.sh: makes the checkout ready to use on a bare Debian or Ubuntu machine.
 #
 #   source setup.sh demo     a compiler, CMake, Eigen and the Python package with its plots
-#   source setup.sh tests    the same, the C++ test libraries and the Python test tools
+#   source setup.sh tests    the same, the C++ test libraries, ccache and the Python test tools
 #   source setup.sh sanitize as tests, and clang 14 with its sanitizers
 #
 # Installs with apt what is missing and nothing else, keeps everything of its own in build/, and leaves in the
@@ -63,6 +63,7 @@ missing_packages() {
   find_python || echo python3 python3-dev python3-venv
   has_header eigen3/Eigen/Core || echo libeigen3-dev
   if [[ $purpose != demo ]]; then
+    command -v ccache >/dev/null || echo ccache
     has_header gtest/gtest.h || echo libgtest-dev
     has_header benchmark/benchmark.h || echo libbenchmark-dev
     has_header nlohmann/json.hpp || echo nlohmann-json3-dev
@@ -117,9 +118,8 @@ if ! "$python" -m pip --version >/dev/null 2>&1; then
   "$system_python" -m venv "$root/build/venv"
 fi
 
-# A package for tests has all that the demo needs; that of the demo has lanes for this machine's processor alone, which is a
-# third less to compile.
-if [[ $purpose == demo ]]; then extra=plot lanes=native; else extra=dev lanes=all; fi
+# A package for tests has all that the demo needs. Both have lanes for this machine's processor alone.
+if [[ $purpose == demo ]]; then extra=plot; else extra=dev; fi
 fingerprint=$(
   cd "$root"
   {
@@ -152,7 +152,7 @@ if ! is_installed dev && ! is_installed "$extra"; then
   "$python" -m pip install -q --disable-pip-version-check "scikit-build-core>=0.10" "pybind11>=3.0"
   if ninja --version >/dev/null 2>&1; then generator=Ninja; else generator="Unix Makefiles"; fi
   log=$root/build/wheel.log
-  SKBUILD_BUILD_DIR="$root/build/wheel/$generator" SKBUILD_CMAKE_DEFINE="WAKELINE_LANES=$lanes" \
+  SKBUILD_BUILD_DIR="$root/build/wheel/$generator" SKBUILD_CMAKE_DEFINE="WAKELINE_LANES=native" \
     CMAKE_GENERATOR=$generator CMAKE_BUILD_PARALLEL_LEVEL=$jobs \
     "$python" -m pip install -v --disable-pip-version-check --no-build-isolation "$root[$extra]" 2>&1 |
     tee "$log" | show_progress || { tail -n 40 "$log" >&2; fail "the package could not be built; all of it is in $log"; }

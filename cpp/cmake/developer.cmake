@@ -1,5 +1,16 @@
 # wakeline_developer: how our own tests, examples, benchmarks and bindings are compiled. Never linked by users.
 set(CMAKE_CXX_SCAN_FOR_MODULES OFF)  # there are none, and newer CMake would read each file twice
+
+# ccache for anyone who has it, unless another launcher is given (-DCMAKE_CXX_COMPILER_LAUNCHER= gives none). The first
+# setting is what precompiled headers ask for, the others let a second clone use what the first one has compiled.
+if(NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  find_program(WAKELINE_CCACHE ccache)
+  mark_as_advanced(WAKELINE_CCACHE)
+  if(WAKELINE_CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+                                    CCACHE_NOHASHDIR=1 "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}" "${WAKELINE_CCACHE}")
+  endif()
+endif()
 add_library(wakeline_developer INTERFACE)
 target_link_libraries(wakeline_developer INTERFACE wakeline::wakeline)
 

@@ -16,11 +16,11 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
-#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 namespace {
@@ -113,15 +113,10 @@ void expect_equal_runs(Trees trees, int scans = 60) {
 
 TEST(ModeHistoryInLanes, IsThatOfOneFilterAfterTheOther) { expect_equal_runs(Pair({})); }
 
-TEST(ModeHistoryInLanes, OfUnscentedFilters) {
-  expect_equal_runs(PairOver<Ukf, CoordinatedTurn>({}));
+TEST(ModeHistoryInLanes, OfEveryFilterAndOfTurnRatesThatAreEstimated) {
   expect_equal_runs(PairOver<SquareRootUkf, CoordinatedTurn>({}));
-}
-
-TEST(ModeHistoryInLanes, OfFiltersThatLearnTheirTurnRate) {
   expect_equal_runs(PairOver<Ekf, CoordinatedTurnRate>({}));
   expect_equal_runs(PairOver<Ukf, CoordinatedTurnRate>({}));
-  expect_equal_runs(PairOver<SquareRootUkf, CoordinatedTurnRate>({}));
 }
 
 TEST(ModeHistoryInLanes, OfNothingJoinedFillsEveryRow) {
