@@ -5,7 +5,6 @@ import dataclasses
 import gc
 import json
 import multiprocessing
-import pickle
 import re
 import sys
 import time
@@ -149,40 +148,12 @@ def test_what_a_worker_cannot_import_is_told(monkeypatch):
         run([CASE], {"lost": module.candidate}, client=pool)
 
 
-def in_the_manner_of_ray(called_off):
-    return SimpleNamespace(
-        remote=lambda function: SimpleNamespace(remote=partial(partial, function)),
-        get=lambda task: pickle.loads(pickle.dumps(task())),
-        cancel=called_off.append,
-    )
-
-
-def test_a_client_in_the_manner_of_ray_gives_the_same_bits(result):
-    assert_same_bits(run([CASE, SELDOM], BOTH, client=in_the_manner_of_ray([])), result)
-
-
-def test_a_client_in_the_manner_of_ray_is_told_what_is_called_off():
-    called_off = []
-    with pytest.raises(KeyboardInterrupt):
-        run(client=in_the_manner_of_ray(called_off), runs=250, progress=told_to_stop)
-    first_runs = {task.args[0].first_run for task in called_off}
-    assert first_runs.issuperset(range(25, 250, 25))
-
-
 @pytest.mark.slow
 def test_a_dask_cluster_gives_the_same_bits(result):
     distributed = pytest.importorskip("distributed")
     options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         assert_same_bits(run([CASE, SELDOM], BOTH, client=client), result)
-
-
-@pytest.mark.slow
-def test_a_ray_cluster_gives_the_same_bits(result, monkeypatch):
-    monkeypatch.setenv("RAY_AUTH_MODE", "disabled")
-    ray = pytest.importorskip("ray")
-    with ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False):
-        assert_same_bits(run([CASE, SELDOM], BOTH, client=ray), result)
 
 
 @pytest.mark.slow

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from numbers import Real
-from operator import methodcaller
 from typing import Any
 
 import numpy as np
@@ -69,10 +68,9 @@ def run(
     threads : int, optional
         Default: the number of processors; not together with `client`.
     client : object, optional
-        A ``dask.distributed.Client``, the module ``ray`` after ``ray.init()``, or an executor with
-        ``submit``: does the work elsewhere. Candidates must be picklable, as estimators, motion
-        models and sensors of the engine are. Tested with local clusters of Dask and of Ray and with
-        executors of threads and of processes.
+        Does the work elsewhere: a ``dask.distributed.Client`` or an executor of
+        ``concurrent.futures``. Candidates must be picklable, as estimators, motion models and
+        sensors of the engine are.
     progress : bool or callable
         True draws a bar if stderr is a terminal; a callable receives the chunks done and in total.
         An exception in it ends the run: chunks that have not begun are cancelled.
@@ -216,14 +214,9 @@ def _worked_off(chunks: list[Chunk], threads: int | None, client: Any) -> Iterat
     elif hasattr(client, "submit"):
         packed = map(pickler.dumps, chunks)
         yield from _gathered([client.submit(sums_of_packed, chunk) for chunk in packed])
-    elif hasattr(client, "remote") and hasattr(client, "get"):
-        remote = client.remote(sums_of)
-        waiting = [remote.remote(chunk) for chunk in chunks]
-        yield from _gathered(waiting, client.get, client.cancel)
     else:
         raise TypeError(
-            "client must be a dask.distributed.Client, the module ray or an executor, "
-            f"got {type(client)}"
+            f"client must be a dask.distributed.Client or an executor, got {type(client)}"
         )
 
 
@@ -235,11 +228,7 @@ def sums_of_packed(chunk: bytes) -> Sums:
     return sums_of(pickle.loads(chunk))
 
 
-def _gathered(
-    tasks: list[Any],
-    result: Callable[[Any], Sums] = methodcaller("result"),
-    cancel: Callable[[Any], Any] = methodcaller("cancel"),
-) -> Iterator[Sums]:
+def _gathered(tasks: list[Any]) -> Iterator[Sums]:
     """Results in order; the first failure, or an early end, cancels what has not begun.
 
     A task, and with it its result, is released once the result has arrived.
@@ -247,12 +236,12 @@ def _gathered(
     tasks.reverse()
     try:
         while tasks:
-            sums = result(tasks[-1])
+            sums = tasks[-1].result()
             tasks.pop()
             yield sums
     finally:
         for task in tasks:
-            cancel(task)
+            task.cancel()
 
 
 def _told(
