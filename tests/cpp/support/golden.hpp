@@ -10,13 +10,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/tests_dir.hpp"
+
 namespace wakeline::test {
 
 /// tests/golden: results of independent references, read by the C++ and the Python tests alike.
-inline const std::filesystem::path kGoldenDir =
-    std::filesystem::path(WAKELINE_TESTS_DIR) / "golden";
+inline const std::filesystem::path kGoldenDir = tests_dir() / "golden";
 /// tests/data: inputs of tests.
-inline const std::filesystem::path kDataDir = std::filesystem::path(WAKELINE_TESTS_DIR) / "data";
+inline const std::filesystem::path kDataDir = tests_dir() / "data";
 
 /// A file of tests/golden, for example `golden("multiple_models.json")`.
 inline nlohmann::json golden(const std::string& name) {

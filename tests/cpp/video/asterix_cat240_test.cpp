@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "support/malloc_fence.hpp"
+#include "support/tests_dir.hpp"
 #include "wakeline/video/asterix_cat240_reader.hpp"
 #include "wakeline/video/asterix_cat240_writer.hpp"
 
@@ -453,8 +454,8 @@ Bytes contents(const std::filesystem::path& path) {
 
 std::vector<Bytes> corpus() {
   std::vector<Bytes> all;
-  for (const auto& entry : std::filesystem::directory_iterator(
-           std::filesystem::path(WAKELINE_TESTS_DIR) / "fuzz" / "cat240_corpus"))
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::tests_dir() / "fuzz" / "cat240_corpus"))
     all.push_back(contents(entry.path()));
   return all;
 }
