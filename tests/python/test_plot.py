@@ -558,7 +558,7 @@ NINE = np.zeros(9)
             lambda ax: plot.error_panel(ax, TIME_S, {}, bound=NINE),
             r"bound .* \(10,\), got \(9,\)",
         ),
-        (lambda ax: plot.error_panel(ax, [], {}), "time_s must have a time"),
+        (lambda ax: plot.error_panel(ax, [], {}), "time_s must have"),
         (
             lambda ax: plot.turn_rate_panel(ax, TIME_S, NINE, {}),
             r"true_rate_rad_s .* \(10,\), got \(9,\)",
@@ -581,7 +581,7 @@ NINE = np.zeros(9)
             lambda ax: plot.ranking_panel(ax, ["a"], {"easy": [1.0]}, xlabel="", best_first="hard"),
             r"values must have hard, got \['easy'\]",
         ),
-        (lambda ax: plot.ranking_panel(ax, [], {}, xlabel=""), "values must have a circumstance"),
+        (lambda ax: plot.ranking_panel(ax, [], {}, xlabel=""), "values must have"),
         (
             lambda ax: plot.steps_panel(ax, ["a", "b"], {"imm": [1.0]}, xlabel="", ylabel=""),
             r"values of 'imm' .* \(2,\), got \(1,\)",

@@ -303,7 +303,7 @@ def test_bad_arguments_are_named(screen):
         plot.ppi(screen, extent_m=(1.0, 0.0, 0.0, 1.0))
     with pytest.raises(ValueError, match="pixels must be a whole number, at least 16, got 2"):
         plot.ppi(screen, pixels=2)
-    with pytest.raises(ValueError, match=r"no cell of the video lies around .* range 9000 m"):
+    with pytest.raises(ValueError, match=r"no cell of the video is around .* range 9000 m"):
         plot.echo(screen, around_m=(9000.0, 0.0))
     with pytest.raises(ValueError, match=r"around_m must be north and east, got \(1\.0,\)"):
         plot.echo(screen, around_m=(1.0,))

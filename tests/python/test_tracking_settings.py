@@ -178,7 +178,7 @@ def test_no_vessel_need_be_taken_for_a_ship(tmp_path):
 
 def test_a_radar_that_does_not_exist(capsys):
     assert main(["track", "--radar", "nonesuch", "--print-config"]) == 2
-    assert "no radar 'nonesuch'" in capsys.readouterr().err
+    assert "got 'nonesuch'" in capsys.readouterr().err
 
 
 def test_a_configuration_that_does_not_exist(tmp_path, capsys):

@@ -1,6 +1,6 @@
 """The ``wakeline`` command.
 
-Built on argparse of the standard library, so that it works where nothing but numpy is installed.
+Built on argparse of the standard library, so that it needs only numpy.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status: 0 on success, 2 after one line on stderr about bad input or too little memory,
-        130 when interrupted, 141 when the reader of the output has gone. Before that line, where a
-        scenario fails or is interrupted, another one names the files of those before it.
+        Exit status: 0 on success, 2 after one line on stderr about invalid input or insufficient
+        memory, 130 when interrupted, 141 when the reader of the output is gone. If a scenario fails
+        or is interrupted, an earlier line names the files of the previous scenarios.
     """
     _degrade(sys.stdout)
     try:
@@ -60,7 +60,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _check_json(arguments: argparse.Namespace) -> None:
-    """Fail before the work, not after it, where the JSON cannot or must not be written."""
+    """Fail before the work if the JSON cannot or must not be written."""
     if hasattr(arguments, "inputs"):
         outputs.check_no_input("--json", [arguments.json], arguments.inputs(arguments))
     if hasattr(arguments, "out"):
@@ -70,13 +70,13 @@ def _check_json(arguments: argparse.Namespace) -> None:
 
 
 def _degrade(output: TextIO) -> None:
-    """Let what the terminal's encoding cannot say come out as a question mark."""
+    """Print a question mark for characters that the terminal's encoding lacks."""
     if isinstance(output, io.TextIOWrapper):
         output.reconfigure(errors="replace")
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose complaint is one line like any other about bad input."""
+    """A parser whose errors are one line like all others about invalid input."""
 
     def error(self, message: str) -> NoReturn:
         raise ValueError(f"{message} (see {self.prog} --help)")
@@ -106,7 +106,7 @@ def _one_line(error: Exception) -> str:
 
 
 def _close_output() -> None:
-    """Give stdout a place to go, so that the interpreter does not complain at its end."""
+    """Redirect stdout to null, so that the interpreter does not report an error at exit."""
     try:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (OSError, ValueError):  # stdout has no file behind it

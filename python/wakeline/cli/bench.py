@@ -1,4 +1,4 @@
-"""``wakeline bench``: what the engine does in a second on this machine, from Python."""
+"""``wakeline bench``: throughput of the engine on this machine, from Python."""
 
 from __future__ import annotations
 

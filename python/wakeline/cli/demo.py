@@ -1,4 +1,4 @@
-"""``wakeline demo``: a real recording that ships with the package, tracked and scored."""
+"""``wakeline demo``: a bundled real recording, tracked and scored."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from .track import draw_into, track_into
 
 _ABOUT = {
     "joyride": """\
-A fast boat that keeps turning, up to 17 degrees a second, seen every 2.5 s by a marine radar
-on a moving boat. GNSS aboard tells where it really was.
+A fast boat that turns at up to 17 degrees per second, observed every 2.5 s by the marine radar
+of a moving boat. The truth is from GNSS aboard.
 """,
     "autoferry": """\
-Two boats near a slow ferry in a harbour, in five scenarios, among quays and other boats.
-GNSS aboard tells where they really were.
+Two boats near a slow ferry in a harbor, in five scenarios, among quays and other boats.
+The truth is from GNSS aboard.
 """,
 }
 
@@ -27,9 +27,9 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     """Add the command to the program."""
     parser = commands.add_parser(
         "demo",
-        help="track and score a real recording that ships with the package",
-        description="Tracks a real recording that ships with the package, scores the tracks "
-        "against GNSS truth, and writes tracks and pictures.",
+        help="track and score a bundled real recording",
+        description="Tracks a bundled real recording, scores the tracks against GNSS truth, and "
+        "writes tracks and pictures.",
     )
     parser.add_argument(
         "--recording", choices=recording.names(), default="joyride", help="default %(default)s"

@@ -1,4 +1,4 @@
-"""``wakeline navigate``: the log of a vessel's own instruments in, her solution out."""
+"""``wakeline navigate``: own ship's solution from a log of its instruments."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ _SHOWN_ROWS = 5
 _LEAST_DRAWN_FIXES = 10
 _FAR_M = 1000e3
 _SMOOTHED = (
-    "smoothed: own.csv and pictures know at each time the readings after it, too, up to a gap or "
-    "to what was not believed until it went on"
+    "smoothed: own.csv and pictures also use later readings, up to a gap or to rejected "
+    "readings that persisted"
 )
 _METHODS = {
     "navigator": "navigator",
@@ -45,30 +45,28 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     """Add the command to the program."""
     parser = commands.add_parser(
         "navigate",
-        help="own ship's solution from a log of her instruments",
+        help="own ship's solution from an NMEA 0183 log",
         description="Reads NMEA 0183, fuses fixes, speeds, headings and rates of turn, and writes "
-        "own.csv and pictures. A part after a gap of a minute is navigated by itself. Then "
-        "satellites are hidden for a minute at a time, and the errors of what is foretold are "
-        "told. What cannot be read of the log, or not be used, is counted, never fatal, and listed "
-        "in problems.csv. In "
-        "own.csv the status is ok, coasting (no fix that fits for five seconds), rejected (a fix "
-        "that does not fit) or jumped (from where fixes that were rejected but went on have moved "
-        "the position by over 50 m, until it comes back or all fixes have fitted for a minute).",
+        "own.csv and pictures. Parts separated by a gap of a minute are independent. Then "
+        "satellites are hidden for a minute at a time, and the prediction errors are reported. "
+        "Problems in the log are counted and listed in problems.csv; none is fatal. The status in "
+        "own.csv is ok, coasting (no accepted fix for five seconds), rejected (a fix was rejected) "
+        "or jumped (persistent rejected fixes moved the position by over 50 m; until it returns or "
+        "all fixes have been accepted for a minute).",
     )
-    parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one a line")
+    parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one per line")
     parser.add_argument(
         "--variation",
         type=_variation_deg,
         metavar="DEG",
-        help="magnetic variation, positive east, where the log has none; default what velocities "
-        "over ground say of the compass, which is little if the ship never alters course",
+        help="magnetic variation, positive east, if the log has none; default: estimated from "
+        "velocities over ground, which needs alterations of course",
     )
     parser.add_argument(
         "--smooth",
         action="store_true",
-        help="let own.csv and the pictures know at each time the readings after it, too, up to a "
-        "gap or to what was not believed until it went on: the best that can be said of a voyage "
-        "that is over",
+        help="smooth: own.csv and the pictures also use later readings, up to a gap or to rejected "
+        "readings that persisted; for finished voyages",
     )
     parser.add_argument(
         "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
@@ -88,7 +86,7 @@ def _variation_deg(text: str) -> float:
 
 
 class _Leg(NamedTuple):
-    """A part of the log without a gap of a minute."""
+    """A part of the log without gaps of a minute."""
 
     part: NavigationLog
     readings: own_ship.Readings
@@ -96,7 +94,7 @@ class _Leg(NamedTuple):
 
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:
-    """The file that the command line names to be read."""
+    """The input file of the command line."""
     return [arguments.log]
 
 
@@ -111,9 +109,9 @@ def run(arguments: argparse.Namespace) -> None:
     if len(log.fixes.sound()) == 0:
         raise RecordingError(
             arguments.log,
-            "there is no fix to navigate by",
-            wanted="one sound fix or more",
-            got=f"{len(log.fixes)} that are not sound",
+            "there is no usable fix",
+            wanted="at least one usable fix",
+            got=f"{len(log.fixes)} that are not usable",
         )
     legs = _legs(log, smooth=arguments.smooth)
     files = [arguments.out / _OWN, *problems]
@@ -151,14 +149,14 @@ def _magnetic_offset(log: NavigationLog, parts: Sequence[NavigationLog]) -> own_
     if not any(map(own_ship.wants_offset, parts)):
         return own_ship.NO_OFFSET
     offset = own_ship.magnetic_offset(parts)
-    how = "for nothing is known" if offset is None else "as velocities over ground say"
+    how = "(unknown)" if offset is None else "(estimated from velocities over ground)"
     offset = offset or own_ship.ANY_OFFSET
     degrees, std_deg = np.degrees(offset)
     added = f"{degrees:+.1f}° ± {std_deg:.1f}° are added to magnetic headings"
-    print(f"note: {added} of unknown variation, {how}")
+    print(f"note: {added} of unknown variation {how}")
     if len(log.water.sound()):
         share = f"{100.0 * offset.std_rad:.0f} %"
-        print(f"note: without --variation set and drift err by {share} of the speed")
+        print(f"note: without --variation set and drift have an error of {share} of the speed")
     return offset
 
 
@@ -186,12 +184,12 @@ def _stuck_notes(parts: Sequence[NavigationLog]) -> Iterator[str]:
     if len(lines):
         yield (
             f"note: speeds through the water are 0 while the ship makes way over ground: "
-            f"{_lines(lines)}; if the log is stuck, set and drift are wrong"
+            f"{_lines(lines)}; if the log is faulty, set and drift are wrong"
         )
 
 
 def _far_notes(log: NavigationLog, plane: LocalPlane) -> Iterator[str]:
-    """What the plane of the first fix does to places far from it."""
+    """Note the distortion of the plane far from the first fix."""
     fixes = log.fixes.sound()
     position_m = plane.position_m(
         latitude_rad=fixes.latitude_rad, longitude_rad=fixes.longitude_rad
@@ -200,14 +198,14 @@ def _far_notes(log: NavigationLog, plane: LocalPlane) -> Iterator[str]:
     if far_m > _FAR_M:
         percent = 100.0 * plane_stretch(far_m)
         yield (
-            f"note: fixes lie up to {far_m / 1e3:.0f} km from the first one, whose plane is "
+            f"note: fixes are up to {far_m / 1e3:.0f} km from the first one, whose plane is "
             f"stretched by {percent:.3g} % across the line to them, and speeds and drift with it: "
-            "cut the log before there"
+            "split the log before that"
         )
 
 
 def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
-    """What the navigator did not believe, or did so only after a while."""
+    """Note readings that the navigator rejected, or accepted only after a while."""
     jump_m = np.concatenate([leg.track.jump_m for leg in legs])
     far_m, near_m = jump_m[jump_m > own_ship.JUMP_M], jump_m[jump_m <= own_ship.JUMP_M]
     jumps = _fix_lines(legs, [leg.track.jump_m > own_ship.JUMP_M for leg in legs])
@@ -216,20 +214,20 @@ def _doubt_notes(legs: Sequence[_Leg]) -> Iterator[str]:
     for what, lines in _rejected_lines(legs).items():
         went_on = moves and what == "fixes"
         times = many(moves, "time")
-        moved = f"; {times} they went on and moved the position {by}" if went_on else ""
+        moved = f"; {times} they persisted and moved the position {by}" if went_on else ""
         yield (
-            f"note: {what} that do not fit the other readings are rejected: {_lines(lines)}{moved}"
+            f"note: {what} inconsistent with other readings are rejected: {_lines(lines)}{moved}"
         )
     if len(jumps):
         yield (
-            f"note: the position jumps {many(len(jumps), 'time')}, to fixes that went on though "
-            f"rejected, first by {far_m[0]:.0f} m in line {jumps[0]}; from there the status is "
-            "jumped, until it comes back or all fixes have fitted for a minute"
+            f"note: the position jumps {many(len(jumps), 'time')}, to persistent rejected fixes, "
+            f"first by {far_m[0]:.0f} m in line {jumps[0]}; from there the status is jumped, until "
+            "the position returns or all fixes have been accepted for a minute"
         )
 
 
 def _rejected_lines(legs: Sequence[_Leg]) -> dict[str, np.ndarray]:
-    """Lines of what was not believed, of the instruments of which something was not."""
+    """Lines of rejected readings, by instrument."""
     rejected = [own_ship.rejected_lines(leg.part, leg.track) for leg in legs]
     kinds = dict.fromkeys(what for of_leg in rejected for what in of_leg)
     lines = {w: np.concatenate([r[w] for r in rejected if w in r]) for w in kinds}
@@ -242,8 +240,8 @@ def _order_notes(legs: Sequence[_Leg]) -> Iterator[str]:
     if len(back):
         rows = ", ".join(f"{k + 3}" for k in back[:_SHOWN_ROWS])
         yield (
-            f"note: the times of own.csv go back {many(len(back), 'time')}, where the clock was "
-            f"set back (line {rows}): cut it there before it is used as an own-ship file"
+            f"note: the times of own.csv go back {many(len(back), 'time')} because the clock was "
+            f"set back (line {rows}); split it there before you use it as an own-ship file"
         )
 
 
@@ -268,7 +266,7 @@ def _input_lines(log: NavigationLog) -> str:
 
 
 def _hold_out(legs: Sequence[_Leg]) -> dict[str, dict[float, np.ndarray]]:
-    """Errors without satellites over all legs, to magnetic offsets, too."""
+    """Errors without satellites over all legs."""
     of_legs = [leg.readings for leg in legs]
     if any(own_ship.wants_offset(leg.part) for leg in legs):
         seen = [own_ship.without_hidden(leg.part, leg.readings) for leg in legs]
@@ -288,7 +286,7 @@ def _hold_out(legs: Sequence[_Leg]) -> dict[str, dict[float, np.ndarray]]:
 def _error_table(errors: dict[str, dict[float, np.ndarray]]) -> str:
     count = max(len(values) for by_horizon in errors.values() for values in by_horizon.values())
     if count == 0:
-        return "too short, or its fixes too seldom, to hide satellites from it and compare"
+        return "too short, or its fixes too rare, to test it without satellites"
     head = ["", *(f"{horizon_s:.0f} s" for horizon_s in own_ship.HORIZONS_S)]
     body = [
         [_METHODS[name], *map(_metres, own_ship.medians(errors[name]).values())]
@@ -318,7 +316,7 @@ def _rows(errors: dict[str, dict[float, np.ndarray]], file: str) -> list[dict[st
 
 
 def _write_problems(path: Path, log: NavigationLog) -> list[Path]:
-    """Write what could not be used of the log, and tell where; without any, remove the file."""
+    """Write the problems of the log and report the file; without problems remove the file."""
     problems, count = log.report.examples, sum(log.report.problems.values())
     if count == 0:
         path.unlink(missing_ok=True)
@@ -369,12 +367,12 @@ def _csv_rows(track: own_ship.OwnTrack) -> Iterator[list[Any]]:
 
 
 def _write_pictures(folder: Path, legs: Sequence[_Leg], way: str) -> list[Path]:
-    """Write the map and the panels over time, one pair a leg that is not too short for it."""
+    """Write the map and the panels over time, one pair per sufficiently long leg."""
     files = []
     drawn = [leg for leg in legs if leg.readings.has_fix.sum() >= _LEAST_DRAWN_FIXES]
     if len(drawn) < len(legs):
         short = f"{len(legs) - len(drawn)} of {many(len(legs), 'part')}"
-        print(f"note: not drawn are {short}, of fewer than {_LEAST_DRAWN_FIXES} fixes")
+        print(f"note: {short} not drawn, with fewer than {_LEAST_DRAWN_FIXES} fixes")
     watched = progress(drawn, len(drawn), "drawing")
     for number, (_, readings, track) in enumerate(watched, start=1):
         end = f"-{number}" if len(drawn) > 1 else ""
@@ -403,7 +401,7 @@ def _earlier_pictures(folder: Path) -> Iterator[Path]:
 def _time_figure(
     readings: own_ship.Readings, track: own_ship.OwnTrack, fix_time_s: np.ndarray
 ) -> Any:
-    """Speed and course over time, and the drift where anything is known of the current."""
+    """Speed and course over time, and the drift if the current is known."""
     knows_drift = bool(np.isfinite(track.current_mps).any())
     figure = plot.figure(7.2, 6.8 if knows_drift else 4.6)
     speed, course, *drift = figure.subplots(2 + knows_drift, 1, sharex=True)

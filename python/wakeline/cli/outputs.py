@@ -1,4 +1,4 @@
-"""The files of the command: what it must not overwrite, its pictures, its JSON."""
+"""Output files of the command: checks, pictures, JSON."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ HOW_TO_GET_PICTURES = "no pictures without matplotlib: pip install 'wakeline[plo
 PARTIAL = "-partial"
 
 _PICTURES = ("map", "time")
-_MOST_OCTETS = 120  # of a scenario in the name of a file, which some disks end at 143
+_MOST_OCTETS = 120  # of a scenario in a file name, which some file systems limit to 143
 
 
 def make_folder(folder: Path) -> None:
-    """Fail before the work, not after it, where nothing can be written."""
+    """Fail before the work if nothing can be written."""
     folder.mkdir(parents=True, exist_ok=True)
     if not os.access(folder, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
 
 
 def check_no_input(option: str, outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
-    """Raise ValueError where what an option of the command names is a file that is read."""
+    """Raise ValueError if an output option names an input file."""
     inputs = list(inputs)
     for output in outputs:
         for file in inputs:
@@ -43,7 +43,7 @@ def check_no_input(option: str, outputs: Iterable[Path], inputs: Iterable[Path])
 
 
 def check_no_result(option: str, output: Path, folder: Path) -> None:
-    """Raise ValueError where what an option names may be one of the results in the folder."""
+    """Raise ValueError if an option names a possible result in the folder."""
     if output.suffix.lower() in (".csv", ".png") and output.parent.resolve() == folder.resolve():
         raise ValueError(
             f"{option} must not have the name of a table or picture in {folder}, got {output.name}"
@@ -51,10 +51,10 @@ def check_no_result(option: str, output: Path, folder: Path) -> None:
 
 
 def of_tracking(folder: Path) -> set[Path]:
-    """The files that a run of tracking before this one may have left in `folder`.
+    """The files that an earlier run of tracking may have left in `folder`.
 
-    Pictures of scenarios are those of the scenarios that its ``plots_tracks.csv`` names, so that a
-    file of the user's with a name like theirs is none of them.
+    Pictures are those of the scenarios in its ``plots_tracks.csv``, so that a user's file with a
+    similar name does not count.
     """
     tables = {f"{stem}{suffix}.csv" for stem in TABLES for suffix in ("", PARTIAL)}
     ends = {"", *(f"-{name}" for name in _file_names(_scenarios_in(folder / "plots_tracks.csv")))}
@@ -63,7 +63,7 @@ def of_tracking(folder: Path) -> set[Path]:
 
 
 def remove_stale(earlier: Iterable[Path], files: Iterable[Path]) -> None:
-    """Remove files of an earlier run that this one has not written."""
+    """Remove files of an earlier run that this one did not write."""
     for file in set(earlier) - set(files):
         if os.path.lexists(file):  # False for a name that is too long for the disk
             file.unlink(missing_ok=True)
@@ -92,7 +92,7 @@ def write_pictures(folder: Path, tracks: TrackedRecording) -> list[Path]:
 
 
 def can_draw() -> bool:
-    """Whether matplotlib is there."""
+    """Whether matplotlib is installed."""
     try:
         import matplotlib  # noqa: F401
     except ImportError:
@@ -103,7 +103,7 @@ def can_draw() -> bool:
 def write_json(
     path: Path, name: str, rows: list[dict[str, Any]], *, seed: int | None = None, runs: int = 1
 ) -> None:
-    """Write machine-readable results; `seed` is None where nothing is drawn at random."""
+    """Write machine-readable results; `seed` is None if nothing is random."""
     results = {"name": name, "version": __version__, "seed": seed, "runs": runs, "rows": rows}
     with replacing(path) as fresh:
         fresh.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
@@ -112,12 +112,12 @@ def write_json(
 def _is_same(output: Path, file: Path) -> bool:
     try:
         return output.is_file() and output.samefile(file)  # a device replaces nothing
-    except (OSError, ValueError):  # one of them is not there
+    except (OSError, ValueError):  # one of them does not exist
         return False
 
 
 def _scenarios_in(plots: Path) -> list[str]:
-    """Scenarios that a file of plots and their tracks names; none where there is no such file."""
+    """Scenarios in a file of plots and their tracks; none without such a file."""
     try:
         with plots.open(newline="", encoding="utf-8") as file:
             return list(dict.fromkeys(row["scenario"] or "" for row in csv.DictReader(file)))
@@ -126,9 +126,9 @@ def _scenarios_in(plots: Path) -> list[str]:
 
 
 def _file_names(scenarios: Iterable[str]) -> list[str]:
-    """Names of scenarios as file names can hold them, cut; one that is taken gets a number.
+    """File names of scenarios, shortened; duplicates get a number.
 
-    Names that differ only in case are the same: on some disks their files are.
+    Names that differ only in case are duplicates, as on some file systems.
     """
     taken: dict[str, str] = {}
     for scenario in scenarios:

@@ -38,20 +38,20 @@ _HEAD = (
 
 
 def score_rows(score: Score, file: str) -> list[dict[str, Any]]:
-    """One row of metrics a scenario and one of all together, scenario ``all``.
+    """One row of metrics per scenario, and one of all together, scenario ``all``.
 
     Parameters
     ----------
     score : Score
     file : str
-        Stands for a scenario that has no name.
+        Name of a scenario without a name.
     """
     rows = [_row(episode.name or file, episode.summary) for episode in score.episodes]
     return [*rows, _row(ALL, score.overall)]
 
 
 def score_table(score: Score) -> str:
-    """Accuracy and continuity of each target and of all, then false tracks and GOSPA."""
+    """Accuracy and continuity of each target and overall, then false tracks and GOSPA."""
     named = any(episode.name for episode in score.episodes)
     rows = [["scenario"] * named + ["target", *_HEAD]]
     for episode in score.episodes:
@@ -62,27 +62,27 @@ def score_table(score: Score) -> str:
 
 
 def explained(summary: Summary) -> str:
-    """Every figure of a score with a few words on what it means."""
+    """Every figure of a score with a short explanation."""
     errors = summary.errors
     rows = [
-        ["coverage", percent(summary.coverage), "scans in which a target had its track"],
+        ["coverage", percent(summary.coverage), "share of scans in which a target has a track"],
         ["track ids", f"{summary.ids} for {summary.targets}", "tracks and the targets they follow"],
-        ["switches", str(summary.switches), "times a target went over to another track"],
-        ["breaks", str(summary.breaks), "times a target lost its track and got one again"],
+        ["switches", str(summary.switches), "changes of a target to another track"],
+        ["breaks", str(summary.breaks), "gaps in the tracks of a target"],
         ["position", metres(errors.position_rmse_m), "RMS distance from the true position"],
         [
             "  debiased",
             metres(errors.position_rmse_debiased_m),
-            "the same without its mean, such as a constant bearing offset",
+            "the same without its mean (e.g. from a bearing offset)",
         ],
         ["velocity", f"{number(errors.velocity_rmse_mps, 2)} m/s", "RMS error of the vector"],
-        ["course", f"{number(errors.course_rms_deg)}°", "RMS error above 2 m/s"],
+        ["course", f"{number(errors.course_rms_deg)}°", "RMS error, true speed above 2 m/s"],
         [
             "false tracks",
             str(summary.false_tracks),
-            f"near no target whose truth is known, {summary.false_track_scans_per_scan:.2f} a scan",
+            f"away from all known targets, {summary.false_track_scans_per_scan:.2f} per scan",
         ],
-        ["GOSPA", metres(summary.gospa_m), "error, missed targets and false tracks in one"],
+        ["GOSPA", metres(summary.gospa_m), "errors, missed targets and false tracks combined"],
     ]
     return aligned(rows, left=1, text=(2,))
 
@@ -98,7 +98,7 @@ def aligned(rows: Sequence[Sequence[str]], left: int = 1, text: Sequence[int] = 
 
 
 def number(value: float | None, digits: int = 1) -> str:
-    """A figure, or a dash where there is none."""
+    """A figure, or a dash if missing."""
     return "-" if value is None else f"{value:.{digits}f}"
 
 
@@ -135,7 +135,7 @@ def _figures(part: TargetScore | Summary) -> list[str]:
 def _tail(score: Score) -> str:
     total = score.overall
     tail = (
-        f"false tracks {total.false_tracks} ({total.false_track_scans_per_scan:.2f} a scan), "
+        f"false tracks {total.false_tracks} ({total.false_track_scans_per_scan:.2f} per scan), "
         f"GOSPA {metres(total.gospa_m)}, gate {score.gate_m:g} m"
     )
     targets = [target for episode in score.episodes for target in episode.targets]
@@ -143,10 +143,10 @@ def _tail(score: Score) -> str:
         known = max(target.present_scans for target in targets)
         near = max(target.supported_scans for target in targets)
         tail += (
-            f"\nno scan counts: of {total.scans} truth of a target is known in at most {known}, "
-            f"with plots near it in {near}, of which the first {score.warmup_scans} do not count"
+            f"\nno scan counts: of {total.scans} scans at most {known} have the truth of a target, "
+            f"{near} of these with plots near it, and the first {score.warmup_scans} do not count"
         )
     left_out = sum(episode.unmatched_rows for episode in score.episodes)
     if left_out:
-        tail += f"\n{many(left_out, 'row')} of tracks at no scan's time, or not finite, left out"
+        tail += f"\n{many(left_out, 'row')} of tracks not at a scan's time, or not finite, left out"
     return tail

@@ -28,7 +28,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "score",
         help="score tracks against truth",
         description="Scores tracks against truth: accuracy, continuity, false tracks. The JSON has "
-        "a row for each scenario, named after the tracks file where it has no name, and one of all "
+        "one row per scenario, named after the tracks file if it has no name, and one of all "
         "together, scenario all.",
     )
     parser.add_argument("tracks", type=Path, metavar="TRACKS.csv")
@@ -38,17 +38,17 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "--plots",
         type=Path,
         metavar="PLOTS.csv",
-        help="radar plots; default plots.csv beside the scans, if there",
+        help="radar plots; default plots.csv in the folder of the scans, if it exists",
     )
     parser.add_argument(
-        "--gate", type=float, default=50.0, metavar="M", help="m, farthest match (default 50)"
+        "--gate", type=float, default=50.0, metavar="M", help="m, largest distance (default 50)"
     )
     parser.add_argument("--json", type=Path, metavar="F", help="write the score as JSON")
     parser.set_defaults(run=run, inputs=inputs)
 
 
 def _check_scenarios(file: Path, tracks: Tracks, recording: Recording) -> None:
-    """RecordingError where a track is of a scenario that a recording of several does not have."""
+    """RecordingError if a track belongs to a scenario that the recording does not have."""
     known = [episode.name for episode in recording]
     if tracks.scenario is None or len(known) == 1:
         return
@@ -56,7 +56,7 @@ def _check_scenarios(file: Path, tracks: Tracks, recording: Recording) -> None:
     if len(lost):
         raise RecordingError(
             file,
-            "a track is of a scenario without scans",
+            "a track belongs to a scenario without scans",
             column="scenario",
             wanted=" or ".join(map(repr, known)),
             got=repr(str(lost[0])),
@@ -64,20 +64,20 @@ def _check_scenarios(file: Path, tracks: Tracks, recording: Recording) -> None:
 
 
 class _Watched(Recording):
-    """A recording that shows which of its episodes is being scored."""
+    """A recording that reports the progress over its episodes."""
 
     def __iter__(self) -> Iterator[Episode]:
         return progress(self.episodes, len(self), "scoring")
 
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:
-    """The files that the command line names to be read."""
+    """The input files of the command line."""
     files = [arguments.tracks, arguments.truth, arguments.scans, _plots(arguments)]
     return [file for file in files if file is not None]
 
 
 def _plots(arguments: argparse.Namespace) -> Path | None:
-    """Radar plots, or those beside the scans, if there."""
+    """Radar plots, or those in the folder of the scans, if they exist."""
     beside = arguments.scans.with_name("plots.csv")
     return arguments.plots or (beside if beside.exists() else None)
 

@@ -1,4 +1,4 @@
-"""``wakeline study``: the scenarios of papers, run again, beside what the papers report."""
+"""``wakeline study``: reproduce the scenarios of papers, with their figures beside ours."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     """Add the command to the program."""
     parser = commands.add_parser(
         "study",
-        help="a paper's study: its figures beside ours",
+        help="reproduce a paper's scenarios, with its figures beside ours",
         description="Runs the scenarios of papers again, and prints a table of the papers' figures "
         "beside ours.",
     )
     actions = parser.add_subparsers(
         title="actions", required=True, metavar="ACTION", parser_class=type(parser)
     )
-    listing = actions.add_parser("list", help="the studies", description="Names the studies.")
+    listing = actions.add_parser("list", help="list the studies", description="Lists the studies.")
     listing.set_defaults(run=list_studies, json=None)
     one = actions.add_parser(
         "run",
@@ -39,8 +39,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         type=_runs,
         default=_RUNS,
         metavar="N",
-        help="Monte Carlo runs, default 500; solent rounds up to as many of each of its stretches, "
-        "ais-forecast draws nothing at random and runs once",
+        help="Monte Carlo runs, default 500; solent divides them among its segments and rounds up; "
+        "ais-forecast is not random and runs once",
     )
     one.add_argument("--seed", type=_seed, default=_SEED, metavar="S", help="default 0")
     one.add_argument("--json", type=Path, metavar="F", help="write the table as JSON")
@@ -52,13 +52,13 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         help="folder of the figures, default %(default)s",
     )
     one.add_argument(
-        "--full", action="store_true", help="also how sensitive the results are; may take minutes"
+        "--full", action="store_true", help="also the sensitivity of the results; may take minutes"
     )
     one.set_defaults(run=run_study)
 
 
 def list_studies(arguments: argparse.Namespace) -> None:
-    """Print each name and what it is."""
+    """Print each name and its summary."""
     print(report.aligned([[name, study.load(name).summary] for name in study.names()], text=(1,)))
 
 
@@ -73,7 +73,7 @@ def run_study(arguments: argparse.Namespace) -> None:
         found = getattr(error, "result", None)
         if found is not None and found.rows:
             _tell(found, arguments.json and _partial(arguments.json))
-            print("\nnot all was done: the table has what was", flush=True)
+            print("\ninterrupted: the table has the completed rows", flush=True)
         raise
     _tell(done, arguments.json)
     if not outputs.can_draw():
@@ -84,8 +84,8 @@ def run_study(arguments: argparse.Namespace) -> None:
 
 
 def _tell(done: study.Report, json: Path | None) -> None:
-    """Print the table and the notes, and write the JSON where it is asked for."""
-    drawn = "nothing drawn at random" if done.seed is None else f"seed {done.seed}"
+    """Print the table and the notes, and write the JSON if requested."""
+    drawn = "nothing random" if done.seed is None else f"seed {done.seed}"
     print(f"{done.name}: {many(done.runs, 'run')}, {drawn}\n")
     print(report.aligned(done.table(), left=2))
     for note in done.notes:
@@ -112,5 +112,5 @@ def _whole(text: str, least: int) -> int:
     except ValueError:
         value = least - 1
     if value < least:
-        raise argparse.ArgumentTypeError(f"wanted a whole number from {least} on, got {text!r}")
+        raise argparse.ArgumentTypeError(f"wanted an integer, at least {least}, got {text!r}")
     return value

@@ -1,4 +1,4 @@
-"""``wakeline track``: a recording in, tracks and pictures out."""
+"""``wakeline track``: tracks and pictures of a recording."""
 
 from __future__ import annotations
 
@@ -33,32 +33,30 @@ _MOST_ALARMS = 20
 
 _ABOUT = """\
 Tracks the plots of a recording and writes tracks.csv, events.csv,
-plots_tracks.csv and pictures; with --own also how close each track will come to
-own ship, and alarms.csv of those that come too close. Radar video is made plots
-of first, with thresholds and plot errors found in it, and its last turn is
-drawn as ppi.png; it has the time of day alone, and its day is that of --own.
-Where its clock is set back a scenario begins, part-2 and so on.
+plots_tracks.csv and pictures; with --own also the closest approach of each
+track, and alarms.csv. Plots are extracted from radar video first, with
+thresholds and plot errors estimated from it, and its last revolution is drawn
+as ppi.png. Video has the time of day only; its date is that of --own. Where its
+clock is set back a scenario begins: part-2 and so on.
 
-Plots without a scan column, each with a time of its own, are grouped into turns
-of the antenna: of period_s, where the radar's settings tell it, else of what
-times and bearings of the plots say.
+Plots without a scan number are grouped by antenna revolution (period_s of
+--radar, else estimated).
 
-Each value of a scenario column is tracked from a fresh start. When one of
-several scenarios fails, the files of those before it are written with -partial
-in their names, and files of an earlier run stay as they were; else those of
-them that this run does not write are removed.
+Each value of a scenario column is tracked from a fresh start. If one of several
+scenarios fails, the files of the previous ones are written with -partial in
+their names, and files of an earlier run are kept; otherwise files of an earlier
+run that this run does not write are removed.
 """
 _COLUMNS = """\
-columns, separated by commas, known by name in any order:
+columns, separated by commas, recognized by name in any order:
   RECORDING  time_s (UTC seconds or ISO 8601); range_m or range_nm and
              bearing_deg or bearing_rad from true north, or north_m and east_m;
-             scan, scenario, own_north_m, own_east_m where known
-  --own      time_s, north_m, east_m; scan, scenario, vnorth_mps, veast_mps,
-             heading_deg, vnorth_var_m2s2, vnorth_veast_cov_m2s2,
-             veast_var_m2s2, status where known; own.csv of wakeline navigate
-             is one
-  --truth    time_s, target, north_m, east_m; vnorth_mps, veast_mps, scenario
-             where known
+             optional scan, scenario, own_north_m, own_east_m
+  --own      time_s, north_m, east_m; optional scan, scenario, vnorth_mps,
+             veast_mps, heading_deg, vnorth_var_m2s2, vnorth_veast_cov_m2s2,
+             veast_var_m2s2, status; own.csv of wakeline navigate has this form
+  --truth    time_s, target, north_m, east_m; optional vnorth_mps, veast_mps,
+             scenario
   --radar    keys of a TOML file: range_std_m, bearing_std_deg, extent_std_m,
              period_s, max_speed_mps, bearing_offset_deg
 """
@@ -81,20 +79,20 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         help="radar plots as CSV, or radar video: ASTERIX category 240",
     )
     parser.add_argument(
-        "--own", type=Path, metavar="SCANS.csv", help="own ship; with a scan column, every scan too"
+        "--own", type=Path, metavar="SCANS.csv", help="own ship, and the list of scans"
     )
     parser.add_argument("--truth", type=Path, metavar="TRUTH.csv", help="truth, drawn and scored")
     parser.add_argument(
         "--radar",
         metavar="NAME|F.toml",
-        help=f"what is known of the radar: {', '.join(radar_names())}, or a TOML file with keys of "
-        "[radar]; wins over the [radar] of --config",
+        help=f"radar parameters: {', '.join(radar_names())}, or a TOML file with keys of [radar]; "
+        "overrides [radar] of --config",
     )
     parser.add_argument(
         "--vessels",
         choices=VESSELS,
-        help="how vessels move: any, the default, ships and small craft alike, or ships under way, "
-        "which alter course as ships do; wins over the [models] of --config",
+        help="motion models: any (default; ships and small craft) or ships (merchant ships under "
+        "way); overrides [models] of --config",
     )
     parser.add_argument(
         "--config", type=Path, metavar="F.toml", help="settings, in the form of --print-config"
@@ -104,7 +102,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--json", type=Path, metavar="F", help="counts, and scores with --truth")
     parser.add_argument(
-        "--print-config", action="store_true", help="print every setting, explained, and end"
+        "--print-config", action="store_true", help="print every setting with its explanation"
     )
     parser.set_defaults(run=run, inputs=inputs)
 
@@ -136,7 +134,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:
-    """The files that the command line names to be read."""
+    """The input files of the command line."""
     files = [arguments.plots, arguments.own, arguments.truth, arguments.config]
     if arguments.radar is not None and arguments.radar not in radar_names():
         files.append(Path(arguments.radar))
@@ -146,11 +144,11 @@ def inputs(arguments: argparse.Namespace) -> list[Path]:
 def _radar_text(
     arguments: argparse.Namespace, given: Settings, used: Settings, recording: Recording
 ) -> str:
-    """Where the radar parameters are from."""
+    """Source of the radar parameters."""
     if used != given:
         range_std_m, bearing_std_rad = recording.plot_std
         errors = f"{range_std_m:.1f} m, {math.degrees(bearing_std_rad):.2f}°"
-        return f"radar as its echoes are: {errors}"
+        return f"radar errors estimated from its echoes: {errors}"
     if arguments.radar:
         return f"radar {arguments.radar}"
     default = used.radar == Settings.default().radar
@@ -160,10 +158,9 @@ def _radar_text(
 def track_into(
     folder: Path, recording: Recording, settings: Settings, radar: str, *, danger: bool = False
 ) -> TrackedRecording:
-    """Track every episode, write tables into `folder`, and report it on the screen.
+    """Track every episode, write tables into `folder`, and print a report.
 
-    Pictures of an earlier run are removed. With `danger`, alarms are raised for tracks that come
-    too close to own ship.
+    Pictures of an earlier run are removed. With `danger`, close approaches raise alarms.
     """
     outputs.make_folder(folder)
     print(_input_lines(recording, settings, radar), flush=True)
@@ -175,7 +172,7 @@ def track_into(
     except (ValueError, FilterError, MemoryError, KeyboardInterrupt):
         if parts:
             files = write_tables(folder, parts, outputs.PARTIAL)
-            print(f"of the scenarios before: {_listed(files)}", file=sys.stderr)
+            print(f"of the previous scenarios: {_listed(files)}", file=sys.stderr)
         raise
     earlier = outputs.of_tracking(folder)
     files = write_tables(folder, parts)
@@ -188,7 +185,7 @@ def track_into(
 
 
 def draw_into(folder: Path, tracks: TrackedRecording) -> None:
-    """Draw every episode, and report it on the screen; last, as it takes longest."""
+    """Draw every episode and print the files; last, because it takes longest."""
     if not outputs.can_draw():
         print(outputs.HOW_TO_GET_PICTURES)
         return
@@ -223,14 +220,14 @@ def _track_lines(parts: Sequence[TrackedEpisode]) -> str:
     lines = [f"{many(tracks, 'track')} in {many(rows, 'row')}, {coasting} of them coasting"]
     refused = sum(part.refused_plots for part in parts)
     if refused:
-        lines.append(f"note: {many(refused, 'plot')} that the tracker could not take")
+        lines.append(f"note: {many(refused, 'plot')} rejected by the tracker")
     return "\n".join(lines)
 
 
 def _alarm_lines(parts: Sequence[TrackedEpisode], limits: DangerLimits) -> str:
     known = [part for part in parts if part.alarms is not None]
     if not known:
-        return "note: own ship's velocity is not known, so closest approaches are not either"
+        return "note: no closest approaches, because own ship's velocity is unknown"
     alarms = [(part.episode.name, alarm) for part in known for alarm in part.alarms]
     within = f"{limits.cpa_limit_m:.0f} m within {limits.tcpa_limit_s / 60.0:g} min"
     plural = "" if len(alarms) == 1 else "s"

@@ -343,7 +343,7 @@ def _read_toml(path: Path) -> dict[str, Any]:
     except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
         raise SettingsError(f"{path}: not TOML: {error}") from None
     except RecursionError:
-        raise SettingsError(f"{path}: not valid TOML: nested too deep") from None
+        raise SettingsError(f"{path}: not TOML: nested too deep") from None
 
 
 def _one_of(names: Iterable[str]) -> str:
