@@ -7,9 +7,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from wakeline import navigation
 from wakeline._progress import progress
 from wakeline.recording import NavigationLog
 
+from .dead_reckoning import travelled_m
 from .readings import Readings, made_good_mps
 from .solution import navigate
 from .times import NEAR_S, held
@@ -66,17 +68,15 @@ def _straight_on(seen: Readings) -> np.ndarray:
     fix, fixed_s = held(seen.time_s, seen.fix_m)
     given = np.isfinite(seen.velocity_mps).any()
     velocity, _ = held(seen.time_s, seen.velocity_mps if given else made_good_mps(seen))
-    return fix + velocity * (seen.time_s - fixed_s)[:, None]
+    return navigation.predict_position_m(fix, velocity, seen.time_s - fixed_s)
 
 
 def _reckoned(seen: Readings) -> np.ndarray:
     """Positions (T, 2) predicted from the last fix by heading and speed through water."""
     way_rad, _ = held(seen.time_s, seen.way_rad)
     speed, _ = held(seen.time_s, seen.way_mps)
-    water = np.nan_to_num(speed[:, None] * np.column_stack([np.cos(way_rad), np.sin(way_rad)]))
-    way = np.vstack(
-        [np.zeros((1, 2)), np.cumsum(np.diff(seen.time_s)[:, None] * water[:-1], axis=0)]
-    )
+    water = np.nan_to_num(navigation.velocity_mps(speed, way_rad))
+    way = travelled_m(np.diff(seen.time_s), water[:-1])
     fix, _ = held(seen.time_s, seen.fix_m)
     way_at_fix, _ = held(seen.time_s, np.where(np.isfinite(seen.fix_m), way, np.nan))
     return fix + way - way_at_fix

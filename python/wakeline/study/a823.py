@@ -26,6 +26,7 @@ import numpy as np
 import wakeline as wl
 from wakeline import WhiteAcceleration, plot
 from wakeline._units import KNOT_MPS, NAUTICAL_MILE_M
+from wakeline.own_ship.dead_reckoning import travelled_m
 from wakeline.scenario import Segment, Truth
 
 from . import curves
@@ -205,11 +206,8 @@ def sensor(glint_std_m: float = GLINT_STD_M) -> wl.RangeBearing:
 
 def reckoned_m(seen: Seen) -> np.ndarray:
     """(T, 2) own ship's path by gyro and log, from north 0, east 0."""
-    velocity = seen.log_mps[:, None] * np.column_stack(
-        [np.cos(seen.gyro_rad), np.sin(seen.gyro_rad)]
-    )
-    steps = 0.5 * PERIOD_S * (velocity[1:] + velocity[:-1])
-    return np.vstack([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
+    velocity = wl.navigation.velocity_mps(seen.log_mps, seen.gyro_rad)
+    return travelled_m(PERIOD_S, 0.5 * (velocity[1:] + velocity[:-1]))
 
 
 # The estimators -----------------------------------------------------------------------------------
