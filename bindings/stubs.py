@@ -1,19 +1,19 @@
-"""Writes the stubs of the engine anew: ``python bindings/stubs.py`` where `wakeline` is installed.
+"""Writes the stubs of a built engine: ``python stubs.py MODULES_FOLDER STUBS_FOLDER``.
 
-What pybind11-stubgen finds out is put into the words of the documentation: arrays are `ArrayLike`,
-numbers `float` and `int`, sensors and settings are told by name. Needs pybind11-stubgen and ruff.
+A step of the build. What pybind11-stubgen finds out is put into the words of the documentation:
+arrays are `ArrayLike`, numbers `float` and `int`; sensors, estimators and parameters have their
+types.
 """
 
+import importlib
 import re
-import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from types import ModuleType
 
-from wakeline import _engine
+import pybind11_stubgen
 
-STUBS = Path(__file__).parents[1] / "python" / "wakeline" / "_engine"
 SENSOR = "RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position"
 ESTIMATOR = (
     "Imm | AdaptiveGridImm | SwitchingGridImm | LikelyModelSetImm | ModeHistory"
@@ -145,36 +145,41 @@ def imports(noun: str, text: str) -> str:
     return "\n".join(lines)
 
 
-def tidy(noun: str, text: str) -> str:
+def tidy(module: ModuleType, text: str) -> str:
     """The stub of a noun in our words."""
     for pattern, word in WORDS:
         text = re.sub(pattern, word, text)
     text = re.sub(r"^(import|from) [^\n]*\n", "", text, flags=re.MULTILINE)
     text = re.sub(r"^__all__: list\[str\]", "__all__", text, flags=re.MULTILINE)
-    text = with_settings(text, getattr(_engine, noun))
+    text = with_settings(text, module)
     text = ATTRIBUTE.sub(as_attribute, text)
     end = text.index('"""', 3) + 4
-    return text[:end] + imports(noun, text[end:]) + "\n" + text[end:]
+    return text[:end] + imports(module.__name__.rpartition(".")[2], text[end:]) + "\n" + text[end:]
+
+
+def engine_in(folder: Path) -> ModuleType:
+    """The engine of a build, without the package around it."""
+    package = ModuleType("wakeline")
+    package.__path__ = [str(folder)]
+    sys.modules["wakeline"] = package
+    return importlib.import_module("wakeline._engine")
 
 
 def main() -> None:
+    modules, stubs = map(Path, sys.argv[1:])
+    engine = engine_in(modules)
+    stubs.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(
-            [sys.executable, "-m", "pybind11_stubgen", "wakeline._engine", "-o", folder], check=True
-        )
-        STUBS.mkdir(exist_ok=True)
+        pybind11_stubgen.main(["wakeline._engine", "-o", folder])
         for path in Path(folder).rglob("*.pyi"):
-            noun, text = path.stem, path.read_text()
-            if noun == "__init__":
-                nouns = re.findall(r"^from \. import (\w+)", text, flags=re.MULTILINE)
-                text = f'"""{_engine.__doc__}"""\n\nfrom . import {", ".join(sorted(nouns))}\n'
-                text += f"\n__all__ = {sorted(nouns)}\n"
+            text = path.read_text(encoding="utf-8")
+            if path.stem == "__init__":
+                nouns = sorted(re.findall(r"^from \. import (\w+)", text, flags=re.MULTILINE))
+                text = f'"""{engine.__doc__}"""\n\nfrom . import {", ".join(nouns)}\n'
+                text += f"\n__all__ = {nouns}\n"
             else:
-                text = tidy(noun, text)
-            (STUBS / path.name).write_text(text)
-    ruff = shutil.which("ruff") or Path(sys.executable).with_name("ruff")
-    for command in (["check", "--select=I", "--fix", "--quiet"], ["format", "--quiet"]):
-        subprocess.run([ruff, *command, STUBS], check=True)
+                text = tidy(getattr(engine, path.stem), text)
+            (stubs / path.name).write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

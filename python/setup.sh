@@ -149,7 +149,8 @@ if ! is_installed dev && ! is_installed "$extra"; then
   say "building and installing the Python package (extra: $extra), which may take ten minutes or more"
   rm -f "$(stamp_of dev)" "$(stamp_of plot)"
   # Without build isolation and with a build folder that stays, so that the next build compiles only what changed.
-  "$python" -m pip install -q --disable-pip-version-check "scikit-build-core>=0.10" "pybind11>=3.0"
+  "$python" -m pip install -q --disable-pip-version-check \
+    "scikit-build-core>=0.10" "pybind11>=3.0" "pybind11-stubgen>=2.5" "numpy>=1.22"
   if ninja --version >/dev/null 2>&1; then generator=Ninja; else generator="Unix Makefiles"; fi
   log=$root/build/wheel.log
   SKBUILD_BUILD_DIR="$root/build/wheel/$generator" SKBUILD_CMAKE_DEFINE="WAKELINE_LANES=native" \

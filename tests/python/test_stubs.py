@@ -1,4 +1,4 @@
-"""The stubs name what the engine has, and do not stand in its way."""
+"""The stubs of the installed package name and type what the engine has."""
 
 import ast
 from importlib.machinery import EXTENSION_SUFFIXES
@@ -11,6 +11,10 @@ from wakeline import _engine
 
 PACKAGE = Path(wl.__file__).parent
 STUBS = PACKAGE / "_engine"
+pytestmark = pytest.mark.skipif(
+    wl.__version__ == "0+unknown" and not STUBS.exists(),
+    reason="a checkout that is not installed has no stubs",
+)
 NOUNS = sorted(name for name, value in vars(_engine).items() if type(value) is type(_engine))
 
 
@@ -18,7 +22,7 @@ def names_in(body):
     """What a module or class stub defines."""
     names = set()
     for node in body:
-        if isinstance(node, ast.ClassDef | ast.FunctionDef):
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
             names.add(node.name)
         elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
             names.add(node.target.id)
@@ -51,3 +55,27 @@ def test_a_stub_names_all_that_its_noun_has(noun):
             wanted = public(getattr(module, node.name)) - {"name", "value", "add_note"}
             if not issubclass(getattr(module, node.name), BaseException):
                 assert wanted <= names_in(node.body), node.name
+
+
+def untyped(function):
+    """Arguments of a function stub, but for the first of a method, without a type or with any."""
+    arguments = function.args
+    listed = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
+    any_of = ("object", "typing.Any", "Any")
+    return [
+        one.arg
+        for one in listed
+        if one.arg not in ("self", "cls")
+        and (one.annotation is None or ast.unparse(one.annotation) in any_of)
+    ] + [one.arg for one in (arguments.vararg, arguments.kwarg) if one is not None]
+
+
+@pytest.mark.parametrize("noun", NOUNS)
+def test_a_stub_has_the_types_of_arguments_and_results(noun):
+    tree = ast.parse((STUBS / f"{noun}.pyi").read_text())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("__"):
+            assert not untyped(node), f"{node.name}: {untyped(node)}"
+            assert ast.unparse(node.returns) not in ("object", "typing.Any"), node.name
+        elif isinstance(node, ast.FunctionDef) and node.name == "__init__":
+            assert not untyped(node), f"line {node.lineno}: {untyped(node)}"
