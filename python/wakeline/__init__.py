@@ -1,8 +1,8 @@
 """Wakeline tracks maneuvering vessels with radar.
 
-The engine is C++; its nouns are name spaces here, and their names stand at the top as well:
-`wakeline.filter.Ekf` is `wakeline.Ekf`. Python adds recordings, scenarios, scores, pictures and
-the `wakeline` command.
+The engine is C++; its nouns are modules here, and their names are also at the top level:
+`wakeline.filter.Ekf` is `wakeline.Ekf`. Python adds recordings, scenarios, scores, pictures and the
+`wakeline` command.
 
 Axes are north and east in metres, angles radians clockwise from north, turn rates positive to
 starboard.
@@ -135,7 +135,7 @@ for _noun in (
 ):
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
-# They use the nouns above.
+# These modules use the nouns above.
 from . import (  # noqa: E402, F401
     _pickling,
     extraction,

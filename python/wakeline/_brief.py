@@ -1,4 +1,4 @@
-"""Things that hold many numbers, in the few words that a prompt has room for."""
+"""Short reprs of objects with many numbers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def many(count: int, noun: str) -> str:
 
 
 def counted(count: int, what: str) -> str:
-    """A count with what it counts, of ``[one|more]`` in it the part that fits.
+    """A count with its noun; ``[one|more]`` is the form for one or for more.
 
     >>> counted(1, "[row|rows] that [repeats|repeat] another")
     '1 row that repeats another'
@@ -31,6 +31,6 @@ def counted(count: int, what: str) -> str:
 
 
 def span(*times_s: Sequence[float]) -> str:
-    """From the first to the last of times, each sequence of them sorted; '' where there is none."""
+    """From the first to the last time of sorted sequences; '' without times."""
     ends: Iterable[float] = [end for t in times_s if len(t) for end in (t[0], t[-1])]
     return f"{min(ends):.1f} to {max(ends):.1f} s" if ends else ""

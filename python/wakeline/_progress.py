@@ -1,4 +1,4 @@
-"""How far long work has come, on a terminal; nothing in a pipe."""
+"""Progress of long work on a terminal; nothing in a pipe."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ _WIDTH = 24
 
 
 def progress(items: Iterable[T], total: int, label: str) -> Iterator[T]:
-    """Hand on `items`, with a bar on stderr where that is a terminal.
+    """Iterate over `items`, with a bar on stderr if it is a terminal.
 
     Parameters
     ----------
     items : iterable
     total : int
-        How many there are.
+        Number of items.
     label : str
-        What is being done.
+        Name of the work.
     """
     if not _seen():
         yield from items
@@ -39,7 +39,7 @@ def progress(items: Iterable[T], total: int, label: str) -> Iterator[T]:
 
 
 def counted(items: Iterable[T], label: str) -> Iterator[T]:
-    """Hand on `items` of which nobody knows how many there are, with a count where that is seen."""
+    """Iterate over `items` of unknown number, with a count on a terminal."""
     if not _seen():
         yield from items
         return
@@ -52,7 +52,7 @@ def counted(items: Iterable[T], label: str) -> Iterator[T]:
 
 
 def _seen() -> bool:
-    """Whether stderr is a terminal; where it is closed there is none."""
+    """Whether stderr is open and a terminal."""
     return sys.stderr is not None and sys.stderr.isatty()
 
 

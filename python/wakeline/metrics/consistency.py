@@ -1,4 +1,4 @@
-"""Whether the errors of many runs are as large as their covariances say."""
+"""Consistency of errors and covariances over many runs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def squared_distance(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
     -------
     ndarray (...)
         NEES for errors of estimates, NIS for innovations: chi-square with N degrees of freedom
-        where the covariance is right.
+        for a correct covariance.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def nees(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
     error : array_like (..., N)
         Estimate minus truth.
     covariance : array_like (..., N, N)
-        What the estimator claims.
+        Covariance of the estimate.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def nees(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
 def share_inside(
     curve: np.ndarray, dof: int, samples: int | np.ndarray, *, confidence: float = 0.95
 ) -> float:
-    """Share of the scans whose average NEES or NIS lies within its chi-square bounds.
+    """Share of the scans whose average NEES or NIS is within its chi-square bounds.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def share_inside(
     dof : int
         Degrees of freedom of one value: states for NEES, numbers in a reading for NIS.
     samples : int or array_like (T,)
-        Values averaged at each scan; scans with none are left out.
+        Values averaged at each scan; scans without values are ignored.
     confidence : float
         Probability that a consistent estimator is inside.
 
@@ -98,7 +98,7 @@ def share_inside(
     Raises
     ------
     ValueError
-        When confidence or dof makes no sense or the shapes do not fit.
+        When confidence or dof is invalid or the shapes do not fit.
     """
     curve, samples = real_numbers("curve", curve), real_numbers("samples", samples)
     plain_numbers(confidence=confidence)
@@ -108,7 +108,7 @@ def share_inside(
     counts = (samples == np.floor(samples)) & (samples >= 0) & (samples < np.inf)
     if samples.shape not in ((), curve.shape) or not counts.all():
         raise ValueError(
-            f"samples must be whole numbers, none negative, of shape () or {curve.shape}, "
+            f"samples must be integers, not negative, of shape () or {curve.shape}, "
             f"got {samples.tolist()}"
         )
     samples = np.broadcast_to(samples.astype(int), curve.shape)

@@ -1,6 +1,6 @@
-"""Errors of many runs as curves over time, and what a curve says of the switches of the truth.
+"""Errors of many runs as curves over time, and figures of curves around switches of the truth.
 
-A segment is the time between two switches; a reading exactly at a switch still belongs to the
+A segment is the time between two switches; a plot exactly at a switch belongs to the
 segment that ends there.
 """
 
@@ -21,9 +21,9 @@ class SegmentFigures:
     Attributes
     ----------
     begin_s, end_s : float
-        The segment; the first begins, and the last ends, with the first and last reading.
+        The segment; the first begins, and the last ends, with the first and last plot.
     scans : int
-        Readings in it.
+        Number of plots in the segment.
     mean, peak : float
         In the unit of the curve.
     """
@@ -51,7 +51,7 @@ def rmse_curve(error: np.ndarray) -> np.ndarray:
     Raises
     ------
     ValueError
-        When the shape is another or there is no run.
+        When the shape is different or there is no run.
     """
     error = real_numbers("error", error)
     if error.ndim != 3 or not len(error):
@@ -75,7 +75,7 @@ def by_segment(
     Returns
     -------
     list of SegmentFigures
-        Of the segments that hold a reading, at most S + 1.
+        The segments with a plot, at most S + 1.
 
     Raises
     ------
@@ -101,12 +101,12 @@ def by_segment(
 def settling_times_s(
     time_s: np.ndarray, curve: np.ndarray, switch_times_s: np.ndarray, *, factor: float = 1.2
 ) -> np.ndarray:
-    """How long after each switch a curve of errors takes to calm down.
+    """Settling time of an error curve after each switch.
 
-    A segment's calm is the median of the curve over its second half. The curve has settled at the
-    first reading from which on it stays at or below `factor` times that until the segment ends. A
-    segment in which it does not settle counts with its whole length up to its last reading: the
-    figure is then a lower bound.
+    The reference level of a segment is the median of the curve over its second half. The curve has
+    settled at the first plot after which it remains at or below `factor` times that level until the
+    segment ends. A segment in which it does not settle counts with its length up to its last plot,
+    which is then a lower bound.
 
     Parameters
     ----------
@@ -122,8 +122,8 @@ def settling_times_s(
     Returns
     -------
     ndarray (S,)
-        Seconds after the switch; 0 where the curve never rises above the level, NaN for a segment
-        without a reading.
+        Seconds after the switch; 0 if the curve never exceeds the level, NaN for a segment without
+        a plot.
 
     Raises
     ------
@@ -153,7 +153,7 @@ def detection_delays_scans(
     *,
     share: float = 0.5,
 ) -> np.ndarray:
-    """How many scans after each switch the right model is the most probable.
+    """Detection delay: scans after each switch until the right model is the most probable.
 
     Parameters
     ----------
@@ -164,13 +164,13 @@ def detection_delays_scans(
     switch_times_s : array_like (S,)
         Increasing.
     share : float
-        Share of the runs that must have it right.
+        Required share of the runs.
 
     Returns
     -------
     ndarray (S,)
-        Readings after the switch before the first at which that is so: 0 when at once, and all the
-        readings of a segment in which it never is. NaN for a segment without a reading.
+        Plots after the switch before the share is reached: 0 if at once, all plots of a segment in
+        which it is never reached, NaN for a segment without a plot.
 
     Raises
     ------
@@ -190,10 +190,10 @@ def detection_delays_scans(
 
 
 def steady_scans(time_s: np.ndarray, switch_times_s: np.ndarray, *, scans: int = 3) -> np.ndarray:
-    """The readings that are not right after a switch.
+    """The plots that are not directly after a switch.
 
-    No causal estimator knows of a switch before some readings have shown it; what is asked of its
-    consistency is asked of the other readings.
+    No causal estimator detects a switch before some plots have shown it; its consistency is judged
+    at the other plots.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def steady_scans(time_s: np.ndarray, switch_times_s: np.ndarray, *, scans: int =
     switch_times_s : array_like (S,)
         Increasing.
     scans : int
-        Readings left out after each switch.
+        Plots excluded after each switch.
 
     Returns
     -------
@@ -222,10 +222,9 @@ def steady_scans(time_s: np.ndarray, switch_times_s: np.ndarray, *, scans: int =
 
 
 def _parts(time_s: np.ndarray, switch_times_s: np.ndarray) -> list[slice]:
-    """Readings of each of the S + 1 segments.
+    """Plots of each of the S + 1 segments.
 
-    A reading is at a switch when rounding of the times, or of what they were added up from, can be
-    what parts them.
+    A plot counts as at a switch if their times differ by no more than rounding.
     """
     tolerance_s = 1e-9 * (time_s[-1] - time_s[0]) + 8.0 * np.spacing(np.abs(time_s).max())
     cuts = np.searchsorted(time_s, switch_times_s + tolerance_s, side="right")

@@ -19,15 +19,15 @@ def right_mode(
     mode_probability : array_like (..., T, K)
         Of one or more runs, or their mean.
     turn_rates_rad_s : array_like (K,), (T, K) or (..., T, K)
-        Turn rates of the models, fixed or as they move; NaN for one at rest, which is not right and
-        in nobody's way.
+        Turn rates of the models, fixed or over time; NaN for an inactive model, which does not
+        count.
     true_turn_rate_rad_s : array_like (T,)
 
     Returns
     -------
     ndarray of bool (..., T)
-        Of models equally near each is right; of models equally probable the first counts. False
-        where a probability is NaN.
+        Equally near models are all right; of equally probable models the first counts. False where
+        a probability is NaN.
 
     Raises
     ------

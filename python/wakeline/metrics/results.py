@@ -1,4 +1,4 @@
-"""What a score holds: figures of a target, of an episode, and of both taken together."""
+"""Results of a score: figures of targets, of episodes, and overall."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from .states import Errors, errors_of
 
 @dataclass(frozen=True)
 class TargetScore:
-    """How well one target was tracked in one episode.
+    """Score of one target in one episode.
 
     Attributes
     ----------
     target : str
         Name of the target.
     present_scans, supported_scans, eligible_scans : int
-        Scans with truth; of these with a plot near it; of these past the warm-up.
+        Scans with truth; those with a plot near it; those after the warm-up.
     coverage : float or None
-        Part of the eligible scans that are matched, 0..1; None when no scan is eligible.
+        Share of the eligible scans that are matched, 0..1; None if no scan is eligible.
     ids, switches, breaks : int
         Distinct track ids, changes of id, interruptions.
     lost_at_end : bool
         Whether the last three present scans are unmatched.
     lost_at_time_s : list of float
-        Start of each interruption, the one at the end included, in seconds from the first scan.
+        Start of each interruption, including one at the end, in seconds from the first scan.
     initiation_scans : int or None
         Scans from the first supported to the first matched one.
     errors : Errors
         Over the matched eligible scans.
     estimate, truth : ndarray (errors.matched, 4)
-        The states the errors were taken of.
+        The states of the errors.
     """
 
     target: str
@@ -55,22 +55,22 @@ class TargetScore:
 
 @dataclass(frozen=True)
 class Summary:
-    """Scores of one or more episodes taken together.
+    """Combined scores of one or more episodes.
 
     Attributes
     ----------
     scans, targets, eligible_scans : int
         Sums.
     coverage : float or None
-        Matched eligible scans by eligible scans, 0..1.
+        Matched eligible scans / eligible scans, 0..1.
     ids, switches, breaks, lost_at_end, never_tracked : int
         Sums over targets.
     errors : Errors
         Of all matched eligible scans; debiased target by target.
     false_tracks : int
-        Tracks that never come within the gate of any truth.
+        Tracks that are never within the gate of any truth.
     false_track_scans_per_scan, duplicate_track_scans_per_scan : float
-        Rows of false tracks, and rows within the gate of a truth that another track is matched to.
+        Rows of false tracks, and rows within the gate of a truth matched to another track.
     gospa_m, gospa_near_m : float or None
         Mean over the scans with truth, of all tracks and of those within four gates of a truth.
     """
@@ -92,7 +92,7 @@ class Summary:
     gospa_near_m: float | None
 
     def as_dict(self) -> dict[str, float | int | None]:
-        """All figures in one flat dictionary, those of `errors` among them."""
+        """All figures in one flat dictionary, including those of `errors`."""
         flat = asdict(self)
         return flat | flat.pop("errors")
 
@@ -111,11 +111,11 @@ class EpisodeScore:
     track_ids, false_tracks : int
         Distinct ids, and those of tracks never within the gate of any truth.
     false_track_scans, duplicate_track_scans : int
-        Rows of false tracks; rows near a truth that another track is matched to.
+        Rows of false tracks; rows near a truth matched to another track.
     unmatched_rows : int
-        Track rows left out: at no scan's time, or not finite.
+        Ignored track rows: not at a scan's time, or not finite.
     gospa, gospa_near : list of Gospa
-        One a scan with truth: of all tracks, and of those within four gates of a truth.
+        One per scan with truth: of all tracks, and of those within four gates of a truth.
     """
 
     name: str
@@ -145,7 +145,7 @@ class Score:
     episodes : list of EpisodeScore
     gate_m, bonus_m : float
     warmup_scans : int
-        The parameters it was taken with.
+        Parameters of the score.
     """
 
     overall: Summary

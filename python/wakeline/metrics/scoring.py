@@ -1,4 +1,4 @@
-"""The score of tracks against truth; the definitions stand in ``cpp/docs/scoring.md``."""
+"""The score of tracks against truth; ``cpp/docs/scoring.md`` has the definitions."""
 
 from __future__ import annotations
 
@@ -31,15 +31,14 @@ def score(
     Parameters
     ----------
     tracks : Tracks
-        One row a confirmed track and scan.
+        One row per confirmed track and scan.
     recording : Recording or Episode
-        Scans, plots and truth. Without any plot in an episode every scan with truth counts as
+        Scans, plots and truth. In an episode without plots every scan with truth counts as
         supported by plots.
     gate_m : float
-        Farthest that a track may be from the target it is matched to; also the cut-off of GOSPA.
-        From 1e-9 to 1e9, as its square counts.
+        Maximum distance of a track from its target; also the cut-off of GOSPA. From 1e-9 to 1e9.
     bonus_m : float
-        How much nearer another track must be before a target leaves the one it was matched to.
+        Distance by which another track must be nearer before a target changes its track.
     warmup_scans : int
         A target counts after this many scans with a plot near it.
 
@@ -51,7 +50,7 @@ def score(
     ------
     ValueError
         When tracks name a scenario that the recording does not have, or a parameter is not
-        positive and finite (the bonus may be zero) or the gate out of its range.
+        positive and finite (the bonus may be zero) or the gate is out of range.
     """
     if not isinstance(tracks, Tracks):
         raise TypeError(f"tracks must be of type Tracks, got {type(tracks).__name__}")
@@ -76,7 +75,7 @@ def score(
 
 
 class _EpisodeScorer:
-    """The tracks and truths of one episode laid out by scan, and the counts taken over them."""
+    """The tracks and truths of one episode by scan, and the counts over them."""
 
     def __init__(
         self, episode: Episode, tracks: Tracks, gate_m: float, bonus_m: float, warmup_scans: int
@@ -136,7 +135,7 @@ class _EpisodeScorer:
     def _match_scan(
         self, scan: int, here: list[str], ids: list[str], distance_m: np.ndarray
     ) -> set[str]:
-        """Match targets to tracks, most pairs first, then least cost; returns the ids taken."""
+        """Match targets to tracks: most pairs, then least cost; returns the matched ids."""
         other = np.array([[self.last_id.get(name) != i for i in ids] for name in here])
         cost = np.where(distance_m < self.gate_m, distance_m + self.bonus_m * other, np.inf)
         matched = [(here[target], ids[track]) for target, track in pairs(cost)]
@@ -189,7 +188,7 @@ class _EpisodeScorer:
 def _states_by_scan(
     tracks: Tracks, scan_time_s: np.ndarray
 ) -> tuple[list[dict[str, np.ndarray]], int]:
-    """State by track id for each scan, and the number of rows that no scan takes."""
+    """State by track id for each scan, and the number of rows without a scan."""
     states: list[dict[str, np.ndarray]] = [{} for _ in scan_time_s]
     if len(scan_time_s) == 0:
         return states, len(tracks)
@@ -203,5 +202,5 @@ def _states_by_scan(
 
 
 def _first(mask: np.ndarray) -> int | None:
-    """Index of the first True, None when there is none."""
+    """Index of the first True, None if there is none."""
     return int(np.argmax(mask)) if mask.any() else None

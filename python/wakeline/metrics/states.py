@@ -19,7 +19,7 @@ def rmse(error: np.ndarray, axis: int | tuple[int, ...] | None = None) -> np.nda
 
 @dataclass(frozen=True)
 class Errors:
-    """Errors of matched states; every figure is None when there is none to take it over.
+    """Errors of matched states; a figure without states is None.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class Errors:
     position_rmse_m, position_median_m : float or None
         Root mean square and median of the distance to truth.
     position_rmse_debiased_m : float or None
-        Root mean square distance after taking each target's mean error out.
+        Root mean square distance after subtracting each target's mean error.
     mean_offset_north_m, mean_offset_east_m : float or None
         Mean position error.
     velocity_rmse_mps, speed_rmse_mps : float or None
