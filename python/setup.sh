@@ -132,7 +132,7 @@ fingerprint=$(
 stamp_of() { echo "$root/build/venv/wakeline-$1.stamp"; }
 is_installed() { [[ -e $(stamp_of "$1") && $(<"$(stamp_of "$1")") == "$fingerprint" ]]; }
 
-# Tells of what a build prints how far it is.
+# Reports the progress of a build from its output.
 show_progress() {
   local line of='' said=''
   while IFS= read -r line; do

@@ -160,7 +160,7 @@ def test_gains_can_be_asked_for():
         (lambda: wl.TrackingIndex(0.5).steady_covariance(0.0, 1.0), ValueError, "period_s"),
     ],
 )
-def test_what_makes_no_sense_is_refused_in_words(build, error, words):
+def test_what_is_invalid_is_rejected_in_words(build, error, words):
     with pytest.raises(error, match=words):
         build()
 

@@ -119,7 +119,7 @@ def test_each_row_has_its_own_way_out():
         ({"columns": -1}, "columns"),
     ],
 )
-def test_what_is_no_sparse_matrix_is_refused(change, words):
+def test_what_is_no_sparse_matrix_is_rejected(change, words):
     good = {
         "indptr": [0, 1, 2],
         "indices": [0, 1],
@@ -141,7 +141,7 @@ def test_what_is_no_sparse_matrix_is_refused(change, words):
         (1j, TypeError, "real numbers"),
     ],
 )
-def test_places_that_are_no_whole_numbers_are_refused(name, wrong, error, words):
+def test_places_that_are_no_whole_numbers_are_rejected(name, wrong, error, words):
     places = {"indptr": [0, 1, 2], "indices": [0, 1]}
     places[name][1] = wrong
     with pytest.raises(error, match=words):

@@ -370,7 +370,7 @@ def test_a_run_is_its_own_while_another_thread_steps_its_estimator():
         stepping.join()
 
 
-def test_the_number_of_threads_is_told_and_set(restored_threads):
+def test_the_number_of_threads_is_reported_and_set(restored_threads):
     wl.set_threads(2)
     assert wl.threads() == 2
     with pytest.raises(ValueError, match="threads must be at least 1, got 0"):
@@ -405,11 +405,11 @@ def test_where_there_are_no_more_threads_those_that_there_are_do_all():
 
 
 def test_the_environment_limits_the_threads():
-    told = subprocess.run(
+    reported = subprocess.run(
         [sys.executable, "-c", "import wakeline; print(wakeline.threads())"],
         env=os.environ | {"WAKELINE_THREADS": "5", "OMP_NUM_THREADS": "7"},
         capture_output=True,
         text=True,
         check=True,
     )
-    assert told.stdout.strip() == "5"
+    assert reported.stdout.strip() == "5"

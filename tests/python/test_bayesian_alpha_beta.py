@@ -30,7 +30,7 @@ def test_innovations_are_positions_minus_predicted_ones(sensor):
         np.testing.assert_allclose(bank.update(sensor, z).innovation, place - ahead, atol=1e-9)
 
 
-def test_every_mode_tells_its_plots():
+def test_every_mode_reports_its_plots():
     assert wl.BayesianAlphaBeta().plots_of_mode.tolist() == [*range(2, 11), *range(4, 11)]
     only = wl.BayesianAlphaBeta(min_plots=3, max_plots=5, parabolas=False)
     assert only.plots_of_mode.tolist() == [3, 4, 5]
@@ -88,7 +88,7 @@ def test_a_tracker_holds_a_vessel_with_it():
     ("setting", "value"),
     [("min_plots", 1), ("max_plots", 11), ("sojourn_s", 0.0), ("longest_line_probability", 1.0)],
 )
-def test_settings_that_make_no_sense_are_refused(setting, value):
+def test_settings_that_are_invalid_are_rejected(setting, value):
     with pytest.raises(ValueError, match=setting):
         wl.BayesianAlphaBeta(**{setting: value})
 

@@ -79,7 +79,7 @@ def bundled(name, kind):
 
 
 def refused(capsys, *arguments):
-    """The one line with which the command refuses its input."""
+    """The one line with which the command rejects its input."""
     assert main([*map(str, arguments)]) == 2
     captured = capsys.readouterr()
     assert captured.err.startswith("wakeline: ")
@@ -140,11 +140,11 @@ def test_a_score_of_no_scans_says_why(tmp_path, capsys):
     rows = [(1001.0 + 4.0 * k, "A", *boat(40)[0, 1:]) for k in range(20)]
     truth = write_plots(tmp_path / "truth.csv", rows, "time_s,target,north_m,east_m")
     assert track(plots, "--truth", truth, "--out", tmp_path) == 0
-    told = "no scan counts: of 40 truth of a target is known in at most 4,"
-    assert told in capsys.readouterr().out
+    reported = "no scan counts: of 40 truth of a target is known in at most 4,"
+    assert reported in capsys.readouterr().out
 
 
-def test_tracks_of_a_scenario_without_scans_are_told_by_their_file(demo, tmp_path, capsys):
+def test_tracks_of_a_scenario_without_scans_are_reported_by_their_file(demo, tmp_path, capsys):
     found = read_tracks(demo / "autoferry" / "tracks.csv")
     lost = dataclasses.replace(
         found, scenario=np.where(found.scenario == "3", "none", found.scenario)
@@ -234,7 +234,7 @@ def test_each_scenario_starts_afresh_and_is_carried_to_the_output(tmp_path):
         assert {row["scenario"] for row in rows} == {"run 1", "run 2"}
 
 
-def test_each_scenario_has_pictures_of_its_own(tmp_path, pictures):
+def test_each_scenario_has_separate_pictures(tmp_path, pictures):
     rows = [(name, *boat(1)[0]) for name in ("run/1", "run 2")]
     plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")
     assert track(plots, "--out", tmp_path) == 0
@@ -382,7 +382,7 @@ def test_an_own_ship_of_one_position_has_no_velocity(plots_csv, tmp_path, capsys
         ("", "the file is empty"),
     ],
 )
-def test_plots_that_cannot_be_read_are_refused(tmp_path, capsys, text, wanted):
+def test_plots_that_cannot_be_read_are_rejected(tmp_path, capsys, text, wanted):
     plots = tmp_path / "plots.csv"
     plots.write_text(text)
     out = tmp_path / "out"
@@ -401,7 +401,7 @@ def test_bad_input_leaves_earlier_files_alone(plots_csv, tmp_path, capsys):
     assert (tmp_path / "tracks.csv").read_bytes() == before
 
 
-def test_truth_of_another_time_is_refused(plots_csv, tmp_path, capsys):
+def test_truth_of_another_time_is_rejected(plots_csv, tmp_path, capsys):
     rows = [(5000 + k, "A", 0, 0) for k in range(30)]
     truth = write_plots(tmp_path / "truth.csv", rows, "time_s,target,north_m,east_m")
     message = refused(capsys, "track", plots_csv, "--truth", truth, "--out", tmp_path)
@@ -430,7 +430,9 @@ def test_an_output_folder_that_is_a_file(plots_csv, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("place", ["here", "/proc/self/fd"])
-def test_a_json_that_cannot_be_written_is_told_before_the_work(place, plots_csv, tmp_path, capsys):
+def test_a_json_that_cannot_be_written_is_reported_before_the_work(
+    place, plots_csv, tmp_path, capsys
+):
     (tmp_path / "here" / "score.json").mkdir(parents=True)
     result = tmp_path / place / "score.json"
     if not result.parent.is_dir():
@@ -452,7 +454,7 @@ SCORE = ["score", "tracks.csv", "truth.csv", "--scans", "own.csv"]
         *((SCORE, file) for file in ("tracks.csv", "truth.csv", "own.csv", "plots.csv")),
     ],
 )
-def test_a_json_that_would_replace_an_input_is_refused(
+def test_a_json_that_would_replace_an_input_is_rejected(
     tmp_path, capsys, monkeypatch, arguments, file
 ):
     monkeypatch.chdir(tmp_path)
@@ -465,7 +467,7 @@ def test_a_json_that_would_replace_an_input_is_refused(
 
 
 @pytest.mark.parametrize("name", ["tracks.csv", "plots_tracks.csv", "alarms-partial.csv"])
-def test_plots_that_the_output_would_replace_are_refused(tmp_path, capsys, name):
+def test_plots_that_the_output_would_replace_are_rejected(tmp_path, capsys, name):
     plots = write_plots(tmp_path / name, boat(2))
     before = plots.read_bytes()
     message = refused(capsys, "track", plots, "--out", tmp_path)
@@ -493,11 +495,11 @@ def test_a_json_does_not_take_the_place_of_a_result(tmp_path, capsys, name):
         (["score", "a.csv", "b.csv", "--scans", "c.csv", "--gate", "wide"], "invalid float"),
     ],
 )
-def test_a_command_line_that_makes_no_sense(capsys, arguments, wanted):
+def test_a_command_line_that_is_invalid(capsys, arguments, wanted):
     assert wanted in refused(capsys, *arguments)
 
 
-def test_a_gate_that_makes_no_sense(demo, capsys):
+def test_a_gate_that_is_invalid(demo, capsys):
     files = [demo / "joyride" / "tracks.csv", bundled("joyride", "truth")]
     scans = ["--scans", bundled("joyride", "scans")]
     capsys.readouterr()
@@ -577,8 +579,8 @@ def test_too_little_memory_is_no_traceback(plots_csv, tmp_path, capsys, monkeypa
         raise MemoryError(words)
 
     monkeypatch.setattr(track_command, "track_episode", has_no_memory)
-    told = refused(capsys, "track", plots_csv, "--out", tmp_path)
-    assert told == f"wakeline: {words or 'not enough memory'}\n"
+    reported = refused(capsys, "track", plots_csv, "--out", tmp_path)
+    assert reported == f"wakeline: {words or 'not enough memory'}\n"
 
 
 def test_a_reader_that_leaves_and_a_silent_stderr():

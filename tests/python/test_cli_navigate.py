@@ -1,4 +1,4 @@
-"""`wakeline navigate`: a log of own ship's instruments in, her solution out."""
+"""`wakeline navigate`: own ship's solution from a log of its instruments."""
 
 import csv
 import json
@@ -58,7 +58,7 @@ def voyage(
     compass="HDT",
     water=True,
     across_kn=0.0,
-    across_told=False,
+    across_given=False,
     bottom=False,
     turn=False,
     compass_std_deg=1.0,
@@ -66,7 +66,7 @@ def voyage(
 ):
     """Sentences of a ship of 6 kn that turns every five minutes, in a current (north, east).
 
-    She moves through the water to starboard at `across_kn`, too.
+    It also moves through the water to starboard at `across_kn`.
     """
     rng = np.random.default_rng(seed)
     lines, north, east = [], 0.0, 0.0
@@ -80,7 +80,7 @@ def voyage(
         latitude_min = 30.0 + 60 * (north + 2 * rng.standard_normal()) / NORTH_M
         longitude_min = 30.0 + 60 * (east + 2 * rng.standard_normal()) / EAST_M
         course = np.degrees(np.arctan2(ve, vn)) % 360
-        told = (np.degrees(heading) + compass_std_deg * rng.standard_normal()) % 360
+        reported = (np.degrees(heading) + compass_std_deg * rng.standard_normal()) % 360
         lines.append(
             sentence(
                 f"GPRMC,{clock},A,50{latitude_min:08.5f},N,002{longitude_min:08.5f},E,"
@@ -88,10 +88,10 @@ def voyage(
             )
         )
         if compass == "HDT":
-            lines.append(sentence(f"HEHDT,{told:.1f},T"))
+            lines.append(sentence(f"HEHDT,{reported:.1f},T"))
         elif compass == "HDG":
-            lines.append(sentence(f"HCHDG,{(told - 3.0) % 360:.1f},,,,"))
-        if water and across_told:
+            lines.append(sentence(f"HCHDG,{(reported - 3.0) % 360:.1f},,,,"))
+        if water and across_given:
             told_kn = [6.0, across_kn] + 0.1 * rng.standard_normal(2)
             lines.append(sentence(f"VDVBW,{told_kn[0]:.1f},{told_kn[1]:.1f},A,,,V"))
         elif water:
@@ -155,17 +155,17 @@ def test_set_and_drift_come_out(tmp_path):
 
 
 def test_speed_across_the_hull_is_no_current(tmp_path):
-    """Told of it, the current is the water's own, on every course; else it has the leeway in it."""
+    """With leeway given, the current is right on every course; else it contains the leeway."""
     off_kn, heading_off_deg = {}, {}
-    for told in (True, False):
-        rows = navigated(tmp_path, voyage(20, across_kn=0.8, across_told=told))
+    for reported in (True, False):
+        rows = navigated(tmp_path, voyage(20, across_kn=0.8, across_given=reported))
         settled = seconds(rows) % 300 > 150
         toward = np.deg2rad(column(rows, "set_deg"))
         found = column(rows, "drift_mps") * np.array([np.cos(toward), np.sin(toward)]) / KN
         off = found - np.array([[0.8], [-0.5]])
-        off_kn[told] = np.sqrt(np.mean(np.hypot(*off[:, settled]) ** 2))
+        off_kn[reported] = np.sqrt(np.mean(np.hypot(*off[:, settled]) ** 2))
         off_deg = column(rows, "heading_deg") - heading_deg(np.rint(seconds(rows)))
-        heading_off_deg[told] = np.median((off_deg + 180.0) % 360.0 - 180.0)
+        heading_off_deg[reported] = np.median((off_deg + 180.0) % 360.0 - 180.0)
     assert off_kn[True] < 0.15
     assert off_kn[False] > 0.5
     assert abs(heading_off_deg[True]) < 0.3
@@ -173,16 +173,18 @@ def test_speed_across_the_hull_is_no_current(tmp_path):
 
 def test_speed_across_the_hull_coasts_through_turns(tmp_path):
     error_m = {}
-    for told in (True, False):
+    for reported in (True, False):
         answer = tmp_path / "errors.json"
-        navigated(tmp_path, voyage(across_kn=0.8, across_told=told), "--json", str(answer))
+        navigated(tmp_path, voyage(across_kn=0.8, across_given=reported), "--json", str(answer))
         rows = {row["estimator"]: row for row in json.loads(answer.read_text())["rows"]}
-        error_m[told] = [rows[who]["coast_60s_p95_m"] for who in ("navigator", "dead_reckoning")]
+        error_m[reported] = [
+            rows[who]["coast_60s_p95_m"] for who in ("navigator", "dead_reckoning")
+        ]
     assert np.all(np.array(error_m[True]) < 0.8 * np.array(error_m[False])), error_m
 
 
 def test_speed_across_the_hull_is_not_taken_for_an_error_of_the_compass(tmp_path, capsys):
-    navigated(tmp_path, voyage(12, compass="HDG", across_kn=0.8, across_told=True))
+    navigated(tmp_path, voyage(12, compass="HDG", across_kn=0.8, across_given=True))
     assert added_deg(capsys.readouterr().out)[0] == pytest.approx(3.0, abs=0.5)
     navigated(tmp_path, voyage(12, compass="HDG", across_kn=0.8))
     assert added_deg(capsys.readouterr().out)[0] > 8.0
@@ -226,7 +228,7 @@ def test_an_offset_that_may_be_drift_is_in_the_error_of_the_heading(tmp_path, ca
 
 @pytest.mark.parametrize("variation", ["3.0,E", ","])
 def test_a_part_without_true_headings_takes_those_of_its_compass(tmp_path, capsys, variation):
-    """With the variation where it is told, else with what velocities over ground say of it."""
+    """With the given variation, else with that estimated from velocities over ground."""
     second_part = [
         re.sub(r"HDG,([0-9.]+),.*", rf"HDG,\1,,,{variation}", line.strip())[1:]
         if line.startswith("$HCHDG")
@@ -245,18 +247,19 @@ def test_a_part_without_true_headings_takes_those_of_its_compass(tmp_path, capsy
 
 
 @pytest.mark.filterwarnings("error")
-def test_a_log_that_is_stuck_is_told_and_says_nothing_of_the_compass(tmp_path, capsys):
+def test_a_log_that_is_stuck_is_reported_and_says_nothing_of_the_compass(tmp_path, capsys):
     stuck = [
         sentence("VWVHW,,T,,M,0.00,N,,K") if line.startswith("$VWVHW") else line
         for line in voyage(6, compass="HDG")
     ]
     navigated(tmp_path, stuck)
-    told = capsys.readouterr().out
-    assert added_deg(told) == (0.0, 15.0)
+    reported = capsys.readouterr().out
+    assert added_deg(reported) == (0.0, 15.0)
     assert (
-        "speeds through the water are 0 while the ship makes way over ground: 360 (first in" in told
+        "speeds through the water are 0 while the ship makes way over ground: 360 (first in"
+        in reported
     )
-    assert "(first in line 3)" in told
+    assert "(first in line 3)" in reported
     navigated(tmp_path, voyage(6))
     assert "are 0 while" not in capsys.readouterr().out
 
@@ -266,8 +269,8 @@ def without_speed(line):
     return sentence(",".join([*fields[:7], "", "", *fields[9:]]))
 
 
-def expect_soon_right(rows, told, within_mps=1.0):
-    """She makes 6 kn to 040 in her current for five minutes."""
+def expect_soon_right(rows, reported, within_mps=1.0):
+    """The ship makes 6 kn to 040 in the current for five minutes."""
     early = (seconds(rows) > 20) & (seconds(rows) < 300)
     heading = np.deg2rad(40.0)
     off_mps = [
@@ -275,7 +278,7 @@ def expect_soon_right(rows, told, within_mps=1.0):
         column(rows, "veast_mps") - (6.0 * np.sin(heading) - 0.5) * KN,
     ]
     assert np.hypot(*off_mps)[early].max() < within_mps
-    assert "rejected" not in told
+    assert "rejected" not in reported
 
 
 def test_a_compass_and_a_log_that_come_late_say_nothing_of_the_start(tmp_path, capsys):
@@ -311,11 +314,11 @@ def test_at_rest_no_course_is_wanted(tmp_path, capsys, speed):
     assert "not used" not in capsys.readouterr().out
 
 
-def test_a_speed_over_ground_that_lacks_its_course_is_told(tmp_path, capsys):
+def test_a_speed_over_ground_that_lacks_its_course_is_reported(tmp_path, capsys):
     lines = changed(voyage(4), "RMC", range(100, 105), 8, "")
     navigated(tmp_path, changed(lines, "RMC", [110], 7, ""))
-    told = "speeds over ground without a course, or courses without a speed are not used: 6"
-    assert f"note: {told} (first in line 301)" in capsys.readouterr().out
+    reported = "speeds over ground without a course, or courses without a speed are not used: 6"
+    assert f"note: {reported} (first in line 301)" in capsys.readouterr().out
 
 
 def test_without_velocities_over_ground_the_variation_may_be_any(tmp_path, capsys):
@@ -361,7 +364,7 @@ def test_a_receiver_that_freezes_is_not_believed_in_its_velocity_either(tmp_path
 
 
 def turned_by(angle_deg):
-    return lambda told: f"{(float(told) + angle_deg) % 360.0:.1f}"
+    return lambda reported: f"{(float(reported) + angle_deg) % 360.0:.1f}"
 
 
 @pytest.mark.parametrize("begins_s", [400, 590])
@@ -387,8 +390,8 @@ def test_an_instrument_that_good_fixes_refute_is_named_and_moves_nothing(
         tmp_path, changed(lines, kind, range(begins_s, begins_s + lasts_s), field, value)
     )
     line = 3 * begins_s + 1 + ("RMC", "HDT", "VHW").index(kind)
-    (told,) = [line for line in capsys.readouterr().out.splitlines() if "rejected" in line]
-    assert told == (
+    (reported,) = [line for line in capsys.readouterr().out.splitlines() if "rejected" in line]
+    assert reported == (
         f"note: {what} that do not fit the other readings are rejected: {lasts_s} "
         f"(first in line {line})"
     )
@@ -481,9 +484,9 @@ def test_where_fixes_are_seldom_it_is_said_what_cannot_be_compared(
     tmp_path, capsys, every_s, wanted
 ):
     navigated(tmp_path, [line for k, line in enumerate(voyage(30)) if k // 3 % every_s == 0])
-    told = capsys.readouterr().out
-    assert re.search(wanted, told)
-    assert "nan" not in told
+    reported = capsys.readouterr().out
+    assert re.search(wanted, reported)
+    assert "nan" not in reported
 
 
 def test_what_is_hidden_takes_no_more_memory_than_the_log():
@@ -531,9 +534,11 @@ def test_a_position_that_jumped_is_in_doubt_until_it_comes_back(tmp_path, capsys
     true = navigated(tmp_path, lines)
     capsys.readouterr()
     rows = navigated(tmp_path, moved_north(lines, range(400, 460), 150.0))
-    told = capsys.readouterr().out
-    assert "fixes that do not fit the other readings are rejected: 20 (first in line 1201)" in told
-    assert "the position jumps 2 times" in told
+    reported = capsys.readouterr().out
+    assert (
+        "fixes that do not fit the other readings are rejected: 20 (first in line 1201)" in reported
+    )
+    assert "the position jumps 2 times" in reported
     status = np.array([row["status"] for row in rows])
     off = np.abs(north_off_m(rows, true)) > 75.0
     assert off.sum() > 150
@@ -561,21 +566,21 @@ def test_a_position_that_jumped_is_in_doubt_until_fixes_have_fitted_for_a_minute
         status = np.array([row["status"] for row in navigated(tmp_path, log)])
         assert set(status[3 * 410 : 3 * until_s]) - {"rejected"} == {"jumped"}
         assert set(status[3 * until_s :]) == {"ok"}
-    told = capsys.readouterr().out
-    assert "the position jumps 1 time, to fixes that went on though rejected" in told
+    reported = capsys.readouterr().out
+    assert "the position jumps 1 time, to fixes that went on though rejected" in reported
     if way_m > 1000.0:
-        assert "first by 50 km in line 1201, where 320 fixes go on" in told
+        assert "first by 50 km in line 1201, where 320 fixes go on" in reported
 
 
-def test_fixes_that_were_rejected_and_moved_the_position_a_little_are_told(tmp_path, capsys):
+def test_fixes_that_were_rejected_and_moved_the_position_a_little_are_reported(tmp_path, capsys):
     rows = navigated(tmp_path, moved_north(voyage(10), range(400, 600), 35.0))
-    told = re.search(
+    reported = re.search(
         r"fixes that do not fit the other readings are rejected: (\d+) \(first in line 1201\); "
         r"1 time they went on and moved the position by up to (\d+) m",
         capsys.readouterr().out,
     )
-    assert int(told[1]) == sum(row["status"] == "rejected" for row in rows)
-    assert 25.0 < float(told[2]) < 45.0
+    assert int(reported[1]) == sum(row["status"] == "rejected" for row in rows)
+    assert 25.0 < float(reported[2]) < 45.0
     assert "jumped" not in {row["status"] for row in rows}
 
 
@@ -664,27 +669,27 @@ def test_rates_of_turn_steady_the_heading(tmp_path):
     for turn in (True, False):
         rows = navigated(tmp_path, voyage(turn=turn, compass_std_deg=4.0))
         second = np.rint([float(row["time_s"]) for row in rows]) % 3600
-        told = np.array([float(row["heading_deg"]) for row in rows])
-        off = (told - heading_deg(second) + 180.0) % 360.0 - 180.0
+        reported = np.array([float(row["heading_deg"]) for row in rows])
+        off = (reported - heading_deg(second) + 180.0) % 360.0 - 180.0
         error_deg[turn] = np.sqrt(np.mean(off**2))
     assert error_deg[True] < 0.85 * error_deg[False]
 
 
-def test_what_no_state_is_there_for_is_told(tmp_path, capsys):
+def test_what_no_state_is_there_for_is_reported(tmp_path, capsys):
     lines = voyage(3, compass="none", bottom=True, turn=True)
     lines += [sentence("VDVBW,,0.3,A,,,V"), sentence("VDVBW,6.0,0.0,A,6.0,,A")]
     navigated(tmp_path, lines)
     out = capsys.readouterr().out
-    for told in (
+    for reported in (
         "speeds through the water without a heading are not used: 182 (first in line 2)",
         "speeds through the water across the hull alone are not used: 1 (first in line 721)",
         "speeds over ground by log that lack a heading or a side are not used: 181 (first in",
         "rates of turn without a heading are not used: 180 (first in line 4)",
     ):
-        assert f"note: {told}" in out
+        assert f"note: {reported}" in out
     navigated(tmp_path, [*voyage(3, bottom=True, turn=True), sentence("VDVBW,,,V,6.0,,A")])
-    (told,) = [line for line in capsys.readouterr().out.splitlines() if "not used" in line]
-    assert "speeds over ground by log that lack a heading or a side are not used: 1 " in told
+    (reported,) = [line for line in capsys.readouterr().out.splitlines() if "not used" in line]
+    assert "speeds over ground by log that lack a heading or a side are not used: 1 " in reported
 
 
 def test_short_parts_are_navigated_too(tmp_path, capsys):
@@ -733,10 +738,10 @@ def test_far_from_the_first_fix_headings_and_set_are_true_and_the_current_is_the
 
 
 @pytest.mark.parametrize(
-    ("longitude_deg", "told"),
+    ("longitude_deg", "reported"),
     [("012", ""), ("032", "1572 km from the first one, whose plane is stretched by 1.02 %")],
 )
-def test_fixes_too_far_for_one_plane_are_told(tmp_path, capsys, longitude_deg, told):
+def test_fixes_too_far_for_one_plane_are_reported(tmp_path, capsys, longitude_deg, reported):
     times_s = range(0, 1200, 20)
     lines = [
         sentence(f"GPRMC,10{s // 60:02d}{s % 60:02d},A,5000.0,N,{place}00.0,E,0.0,0.0,010620,,")
@@ -744,8 +749,8 @@ def test_fixes_too_far_for_one_plane_are_told(tmp_path, capsys, longitude_deg, t
     ]
     navigated(tmp_path, lines)
     notes = [n for n in capsys.readouterr().out.splitlines() if "km from the first one" in n]
-    assert len(notes) == bool(told)
-    assert all(told in note for note in notes)
+    assert len(notes) == bool(reported)
+    assert all(reported in note for note in notes)
 
 
 def test_courses_of_the_solution_are_true(tmp_path):
@@ -781,7 +786,9 @@ def test_all_parts_lie_in_one_plane(tmp_path):
     assert np.ptp(off_m, axis=0) == pytest.approx([0.0, 0.0], abs=0.1)
 
 
-def test_a_clock_set_back_is_told_where_it_puts_own_ship_at_two_places_at_a_time(tmp_path, capsys):
+def test_a_clock_set_back_is_reported_where_it_puts_own_ship_at_two_places_at_a_time(
+    tmp_path, capsys
+):
     lines = voyage(10)
     again = [
         sentence(re.sub(r",10(\d\d)", lambda m: f",10{int(m[1]) - 2:02d}", line[1:-4], count=1))
@@ -797,8 +804,8 @@ def test_a_clock_set_back_is_told_where_it_puts_own_ship_at_two_places_at_a_time
     notes = []
     own = read_own(tmp_path / "own.csv", notes)
     assert len(own.time_s) == len(rows)
-    (told,) = notes
-    assert f"times go back 1 time (first in line {k + 3})" in told
+    (reported,) = notes
+    assert f"times go back 1 time (first in line {k + 3})" in reported
     navigated(tmp_path, lines)
     assert "go back" not in capsys.readouterr().out
     notes.clear()
@@ -896,10 +903,10 @@ def test_the_bundled_log_is_smoothed(tmp_path, capsys):
         assert np.all(column(smooth, name) <= column(found, name)), name
     for name in VARIANCES:
         assert np.median(column(smooth, name)) < 0.75 * np.median(column(found, name)), name
-    told = [
+    reported = [
         text.partition("error in metres")[2] for text in capsys.readouterr().out.split("irene:")
     ]
-    assert told[1].splitlines()[:5] == told[2].splitlines()[:5], "errors without satellites"
+    assert reported[1].splitlines()[:5] == reported[2].splitlines()[:5], "errors without satellites"
 
 
 def test_pictures_of_an_earlier_log_are_removed(tmp_path, pictures):
@@ -910,7 +917,7 @@ def test_pictures_of_an_earlier_log_are_removed(tmp_path, pictures):
     assert left == {"own_map.png", "own_time.png", "own_map-harbour.png"}
 
 
-def test_readings_without_a_fix_before_them_are_told(tmp_path, capsys):
+def test_readings_without_a_fix_before_them_are_reported(tmp_path, capsys):
     lines = voyage(12)
     early = [line for line in lines[:30] if not line.startswith("$GPRMC")]
     late = [sentence("GPZDA,101100,01,06,2020,00,00"), *lines[3 * 660 + 1 : 3 * 660 + 3]]
@@ -953,15 +960,15 @@ def test_without_speeds_over_ground_the_straight_is_that_of_the_last_fixes(tmp_p
     assert rows["constant_velocity"]["coast_60s_median_m"] < 1.0
 
 
-def test_bad_lines_are_told_and_nothing_else_is_lost(tmp_path, capsys):
+def test_bad_lines_are_reported_and_nothing_else_is_lost(tmp_path, capsys):
     lines = voyage(5)
     lines[99] = lines[99][:20] + "\n"
     lines[201] = lines[201].replace("*", "7*")
     lines[300] = "\x00\x01 nonsense\n"
     rows = navigated(tmp_path, lines)
-    told = capsys.readouterr().out
+    reported = capsys.readouterr().out
     for line in (100, 202, 301):
-        assert told.count(f"line {line}:") == 1
+        assert reported.count(f"line {line}:") == 1
     assert len(rows) >= 298
     with (tmp_path / "problems.csv").open(newline="") as file:
         problems = list(csv.DictReader(file))
@@ -972,7 +979,7 @@ def test_bad_lines_are_told_and_nothing_else_is_lost(tmp_path, capsys):
     ]
     assert problems[1]["reason"].startswith("wanted ")
     assert ", got '$" in problems[1]["reason"]
-    assert "note: all problems are listed in problems.csv" in told
+    assert "note: all problems are listed in problems.csv" in reported
     navigated(tmp_path, voyage(5))
     assert not (tmp_path / "problems.csv").exists()
 
@@ -1035,9 +1042,9 @@ def test_long_work_is_seen_on_a_terminal(tmp_path, pictures, capsys, monkeypatch
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(_progress, "_EVERY_S", -1.0)
     navigated(tmp_path, voyage(6))
-    told = capsys.readouterr().err
+    reported = capsys.readouterr().err
     for work in ("navigating", "writing own.csv", "drawing", "hiding satellites", "comparing"):
-        assert work in told
+        assert work in reported
 
 
 @pytest.mark.parametrize("name", ["own.csv", "problems.csv"])

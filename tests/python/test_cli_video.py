@@ -73,9 +73,9 @@ def test_every_ship_has_a_track_from_strobe_to_velocity(video, tmp_path, capsys)
     row = json.loads((tmp_path / "f").read_text())["rows"][-1]
     assert row["scans"] in (SCANS, SCANS + 1)
     assert row["tracks"] == len(SHIPS)
-    told = capsys.readouterr().out
-    assert "harbour" in told
-    assert "as its echoes are" in told
+    reported = capsys.readouterr().out
+    assert "harbour" in reported
+    assert "as its echoes are" in reported
 
 
 def test_a_file_may_be_named_by_text(video):
@@ -90,7 +90,7 @@ def test_the_screen_is_drawn(video, tmp_path, pictures):
     assert (tmp_path / "map.png").stat().st_size > 5000
 
 
-def test_damage_is_told_and_what_is_sound_is_tracked(video, tmp_path, capsys):
+def test_damage_is_reported_and_what_is_sound_is_tracked(video, tmp_path, capsys):
     octets = bytearray(video.read_bytes())
     octets[len(octets) // 2 : len(octets) // 2 + 50] = bytes(50)
     damaged = tmp_path / "damaged.cat240"
@@ -112,7 +112,7 @@ DAY_S = 86400.0
 
 
 def own_file(path, own=OWN, begin_s=-2.0, end_s=SCANS * PERIOD_S + 2.0, day_s=0.0):
-    """A row a second of a ship on a straight course, at places that are hers at time 0."""
+    """A row per second of a ship on a straight course, with its position at time 0."""
     rows = ["time_s,north_m,east_m"]
     for time_s in np.arange(begin_s, end_s):
         north_m, east_m = own[::2] + time_s * own[1::2]
@@ -127,7 +127,7 @@ def tracked(video, folder, *own):
 
 
 def test_own_ship_in_motion_adds_her_place_and_her_velocity(video, tmp_path):
-    """What is seen from her is where it is seen, and moves as she does besides."""
+    """Targets have absolute positions and velocities, seen from a moving ship."""
     tracks = tracked(video, tmp_path, "--own", str(own_file(tmp_path / "own.csv")))
     now = tracks.time_s[:, None]
     moved = np.column_stack([OWN[:1] + now * OWN[1], OWN[2:3] + now * OWN[3]])
@@ -152,7 +152,7 @@ def test_own_ship_at_rest_shifts_the_tracks(video, tmp_path):
 
 def test_a_ship_that_comes_towards_own_ship_raises_an_alarm(tmp_path):
     path = tmp_path / "some.cat240"
-    ahead = {"ahead": ship(2400.0, 150.0, -12.0, 0.0)}  # as own ship sees her
+    ahead = {"ahead": ship(2400.0, 150.0, -12.0, 0.0)}  # relative to own ship
     write_video(path, simulator().turns(ahead, SCANS, seed=5))
     tracks = tracked(path, tmp_path, "--own", str(own_file(tmp_path / "own.csv")))
     assert len(tracks.ids()) == 1
@@ -170,18 +170,18 @@ def test_the_day_of_video_is_that_of_own_ship(video, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "reported"),
     [
         ({"end_s": 20.0}, "own ship is not known at"),
         ({"begin_s": 10.0}, "own ship is not known at"),
         ({"begin_s": 7200.0, "end_s": 7300.0}, "own.csv covers"),
     ],
 )
-def test_own_ship_must_be_known_at_every_plot(video, tmp_path, changes, told, capsys):
+def test_own_ship_must_be_known_at_every_plot(video, tmp_path, changes, reported, capsys):
     own = own_file(tmp_path / "own.csv", **changes)
     assert main(["track", str(video), "--own", str(own), "--out", str(tmp_path)]) == 2
     error = capsys.readouterr().err
-    assert told in error
+    assert reported in error
     assert "harbour.cat240" in error
 
 
@@ -193,7 +193,7 @@ def test_a_list_of_scans_without_places_is_no_own_ship(video, tmp_path, capsys):
 
 
 def test_the_screen_shows_what_own_ship_sees(video, tmp_path, monkeypatch, pictures):
-    """Plots, strobes and tracks lie on the echoes, wherever she is."""
+    """Plots, strobes and tracks are on the echoes, wherever own ship is."""
     shown = {}
 
     def keep(video, ax, **layers):
@@ -224,7 +224,7 @@ def test_own_ship_of_one_scenario_is_own_ship(video, tmp_path):
     np.testing.assert_array_equal(named.state, alone.state)
 
 
-def test_own_ship_of_several_scenarios_is_refused(video, tmp_path, capsys):
+def test_own_ship_of_several_scenarios_is_rejected(video, tmp_path, capsys):
     own = in_scenarios(own_file(tmp_path / "own.csv"), ["b", "a", "c"])
     assert main(["track", str(video), "--own", str(own), "--out", str(tmp_path)]) == 2
     assert f"{own}, column scenario: " in (error := capsys.readouterr().err)
@@ -252,10 +252,10 @@ def test_after_a_clock_was_set_back_all_is_tracked_from_a_fresh_start(
 ):
     turns = list(simulator().turns(SHIPS, 2 * SCANS, seed=4))
     tracks = tracks_of(set_back(turns, SCANS, sweep, by_s), tmp_path)
-    told = capsys.readouterr().out
-    assert "the clock is set back 1 time, first after 723" in told
-    assert "period 2.5 s" in told
-    assert "could not take" not in told
+    reported = capsys.readouterr().out
+    assert "the clock is set back 1 time, first after 723" in reported
+    assert "period 2.5 s" in reported
+    assert "could not take" not in reported
     for name, begin_s in (("part-1", 7200.0), ("part-2", 7200.0 + SCANS * PERIOD_S - by_s)):
         part = tracks.where(tracks.scenario == name)
         assert len(part.ids()) == len(SHIPS)
@@ -428,7 +428,7 @@ def tracks_of(turns, folder, *options):
 
 @pytest.mark.parametrize("sector_deg", [(90.0, 180.0), (-60.0, 60.0), (20.0, 320.0)])
 def test_a_radar_that_shows_a_sector_gives_a_scan_a_turn(tmp_path, sector_deg):
-    """Wherever it lies: across north, and so wide that the beam seems to go on from its end."""
+    """Any sector: across north, and so wide that the beam seems to continue from its end."""
     middle_rad = np.deg2rad(np.mean(sector_deg))
     sight = np.array([np.cos(middle_rad), np.sin(middle_rad)])
     truth = scenario.Truth(np.array([*(2000.0 * sight), *(6.0 * sight)])[[0, 2, 1, 3]])

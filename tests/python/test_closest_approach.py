@@ -103,7 +103,7 @@ def test_ships_that_keep_together_stay_at_their_range():
     assert approach.probability(501.0) == 1.0
 
 
-def test_what_is_no_number_gives_none():
+def test_what_is_not_a_number_gives_none():
     approach = closest_approach(np.zeros(4), [[np.nan, 1.0, 1.0, 1.0], [9.0, -1.0, 1.0, 0.0]])
     assert np.isnan(approach.cpa_m).tolist() == [True, False]
     assert np.isnan(approach.probability(5.0)).tolist() == [True, False]
@@ -124,7 +124,7 @@ def test_shapes_that_do_not_fit_are_named(arguments, wanted):
 
 
 @pytest.mark.parametrize("limits", [(-1.0, 5.0), (1.0, -5.0), (np.nan, 5.0), (1.0, np.nan)])
-def test_limits_below_zero_are_refused(limits):
+def test_limits_below_zero_are_rejected(limits):
     with pytest.raises(ValueError, match="must not be negative"):
         closest_approach(np.zeros(4), np.ones(4)).probability(*limits)
 
@@ -138,8 +138,8 @@ def test_own_velocity_is_the_recorded_one_else_that_of_the_positions():
     steady = OwnShipMotion(time_s, *places)
     np.testing.assert_allclose(steady.velocity_at([0.0, 31.0, 120.0]), [[3.0, -4.0]] * 3)
     gap = np.where(time_s == 30.0, np.nan, 7.0)
-    told = OwnShipMotion(time_s, *places, vnorth_mps=gap, veast_mps=gap)
-    np.testing.assert_allclose(told.velocity_at([30.0, 999.0]), [[7.0, 7.0]] * 2)
+    reported = OwnShipMotion(time_s, *places, vnorth_mps=gap, veast_mps=gap)
+    np.testing.assert_allclose(reported.velocity_at([30.0, 999.0]), [[7.0, 7.0]] * 2)
     lost = np.full(50, np.nan)
     untold = OwnShipMotion(time_s, *places, vnorth_mps=lost, veast_mps=lost)
     np.testing.assert_allclose(untold.velocity_at([31.0]), [[3.0, -4.0]])
@@ -147,7 +147,7 @@ def test_own_velocity_is_the_recorded_one_else_that_of_the_positions():
     assert not OwnShipMotion.fixed().knows_velocity
 
 
-def test_a_covariance_of_own_ship_is_interpolated_over_rows_that_tell_none():
+def test_a_covariance_of_own_ship_is_interpolated_over_rows_that_report_none():
     time_s = np.arange(4.0)
     covariance = np.array([1.0, np.nan, 3.0, 5.0])[:, None, None] * np.array(
         [[1.0, 0.5], [0.5, 2.0]]

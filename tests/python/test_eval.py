@@ -41,7 +41,7 @@ def test_more_samples_narrow_the_bounds(dof, samples):
         ((0.95, 1, 0), "samples must be at least 1, got 0"),
     ],
 )
-def test_what_makes_no_sense_is_refused(wrong, wanted):
+def test_what_is_invalid_is_rejected(wrong, wanted):
     with pytest.raises(ValueError, match=wanted):
         wl.consistency_bounds(*wrong)
 
@@ -102,7 +102,7 @@ def test_a_converted_reading_holds_no_more_than_its_plot():
         ({"detection_probability": np.nan}, "detection_probability must be from 0 to 1, got nan"),
     ],
 )
-def test_bounds_that_make_no_sense(change, message):
+def test_bounds_that_are_invalid(change, message):
     with pytest.raises(ValueError, match=message):
         bound(**change)
 

@@ -79,7 +79,7 @@ def test_covariances_stay_symmetric_and_positive(name):
     assert np.linalg.eigvalsh(covariance).min() > 0.0
 
 
-def test_a_filter_of_the_true_model_tells_the_truth_about_its_errors():
+def test_a_filter_of_the_true_model_reports_the_truth_about_its_errors():
     rng = np.random.default_rng(11)
     motion = MOTIONS["ConstantVelocity"]
     runs, scans = 300, 30
@@ -245,11 +245,11 @@ def test_a_moving_own_ship_sees_the_same_vessel():
 def test_a_reading_outside_the_gate_is_a_missed_one(name):
     z = readings()
     z[7, 0] += 900.0
-    told = run(ESTIMATORS[name](), np.where(np.arange(len(z))[:, None] == 7, np.nan, z))
+    reported = run(ESTIMATORS[name](), np.where(np.arange(len(z))[:, None] == 7, np.nan, z))
     gated = run(ESTIMATORS[name](), z, gate=wl.RadiusGate(radius_m=700.0))
     assert (gated.status == np.where(np.arange(len(z)) == 7, int(wl.Status.missed), 0)).all()
     for field in FIELDS:
-        np.testing.assert_array_equal(getattr(gated, field), getattr(told, field))
+        np.testing.assert_array_equal(getattr(gated, field), getattr(reported, field))
 
 
 def test_a_step_is_true_where_its_reading_was_taken():
@@ -276,9 +276,9 @@ def test_times_and_complex_numbers_are_no_readings(kind):
 @pytest.mark.parametrize("kind", ["U9", "S9", object])
 def test_numbers_written_as_text_are_no_readings(kind):
     z = np.array([["5000", "0.5"], ["4980", "0.506"]], dtype=kind)
-    for told in (z, z.tolist(), np.ma.array(z)):
+    for reported in (z, z.tolist(), np.ma.array(z)):
         with pytest.raises(TypeError, match=r"must hold real numbers, got text such as .*5000"):
-            ekf().run(told, 3.0, RADAR, START)
+            ekf().run(reported, 3.0, RADAR, START)
     with pytest.raises(TypeError, match="dt_s must be a number or an array, got '3'"):
         ekf().run(np.zeros((2, 2)), "3", RADAR, START)
 
@@ -318,7 +318,7 @@ def test_an_own_position_that_is_not_finite_is_marked_and_changes_nothing():
     ("dt_s", "status"),
     [(-1.0, wl.Status.negative_time_step), (np.nan, wl.Status.not_finite)],
 )
-def test_a_time_step_that_makes_no_sense_is_marked_and_changes_nothing(dt_s, status):
+def test_a_time_step_that_is_invalid_is_marked_and_changes_nothing(dt_s, status):
     result = run(ekf(), readings(3), dt_s=[DT_S, dt_s, DT_S])
     assert wl.Status(result.status[1]) == status
     np.testing.assert_array_equal(result.mean[1], result.mean[0])
@@ -418,19 +418,19 @@ def test_range_rates_are_those_that_a_turning_own_ship_sees(runs):
     )
     start = wl.Gaussian([3000.0, 0.0, 1000.0, 5.0], np.diag([100.0, 1.0, 100.0, 1.0]))
     many = z if runs is None else np.tile(z, (runs, 1, 1))
-    told = {"dt_s": DT_S, "sensor": doppler, "start": start, "own_position_m": own_m}
-    result = ekf().run(many, own_velocity_mps=own_mps, **told)
+    reported = {"dt_s": DT_S, "sensor": doppler, "start": start, "own_position_m": own_m}
+    result = ekf().run(many, own_velocity_mps=own_mps, **reported)
     truth = np.column_stack([0.0 * z[:, 0] + 3000.0, 1000.0 + 5.0 * DT_S * np.arange(1, 61)])
     assert np.abs(result.mean[..., [0, 2]] - truth).max() < 1e-6
     assert np.abs(result.nis).max() < 1e-9
     with pytest.raises(ValueError, match=r"own_velocity_mps must be told .* got None"):
-        ekf().run(many, **told)
+        ekf().run(many, **reported)
     with pytest.raises(ValueError, match=r"own_velocity_mps must have shape \(60, 2\), got"):
-        ekf().run(many, own_velocity_mps=own_mps[1:], **told)
+        ekf().run(many, own_velocity_mps=own_mps[1:], **reported)
 
 
 @pytest.mark.parametrize("dt_s", ["abc", object(), None])
-def test_a_time_step_that_is_no_number_is_named(dt_s):
+def test_a_time_step_that_is_not_a_number_is_named(dt_s):
     with pytest.raises(TypeError, match="dt_s must be a number or an array, got"):
         run(ekf(), readings(3), dt_s=dt_s)
 
@@ -455,30 +455,30 @@ def test_starts_are_one_or_one_a_run(starts):
 
 
 @given(st.sampled_from([0, 1, 2, 3, 7, 8]))
-def test_a_belief_of_wrong_size_is_refused(size):
+def test_a_belief_of_wrong_size_is_rejected(size):
     with pytest.raises(ValueError, match=f"belief must have a mean of .*, got {size}"):
         ekf().start(wl.Gaussian(np.zeros(size), np.eye(size)))
 
 
 @pytest.mark.parametrize("states", [5, 6])
-def test_a_belief_over_another_state_is_refused(states):
+def test_a_belief_over_another_state_is_rejected(states):
     with pytest.raises((ValueError, wl.FilterError)):
         ekf().start(wl.Gaussian(np.zeros(states), np.eye(states)))
 
 
 @pytest.mark.parametrize("sensor", [None, 3, "radar", START])
-def test_what_is_no_sensor_is_refused_by_name(sensor):
+def test_what_is_no_sensor_is_rejected_by_name(sensor):
     with pytest.raises(TypeError, match="sensor must be RangeBearing"):
         run(ekf(), readings(3), sensor=sensor)
 
 
 @pytest.mark.parametrize("motion", [wl.CoordinatedTurnRate(), wl.WanderingCourse(), None])
-def test_kalman_refuses_motion_that_is_not_linear(motion):
+def test_kalman_rejects_motion_that_is_not_linear(motion):
     with pytest.raises(TypeError):
         wl.Kalman(motion)
 
 
-def test_kalman_refuses_a_sensor_that_is_not_linear():
+def test_kalman_rejects_a_sensor_that_is_not_linear():
     kalman = wl.Kalman(MOTIONS["ConstantVelocity"])
     with pytest.raises(ValueError, match="sensor must be linear for Kalman"):
         run(kalman, readings(3))
@@ -489,7 +489,7 @@ def test_kalman_refuses_a_sensor_that_is_not_linear():
 
 @pytest.mark.parametrize("wrong", [{"alpha": 0.0}, {"kappa": -4.0}, {"beta": np.nan}])
 @pytest.mark.parametrize("kind", [wl.Ukf, wl.SquareRootUkf])
-def test_sigma_points_that_make_no_sense_are_refused_by_name(kind, wrong):
+def test_sigma_points_that_are_invalid_are_rejected_by_name(kind, wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         kind(MOTIONS["ConstantVelocity"], **wrong)
 
@@ -517,7 +517,7 @@ def test_a_start_needs_plots_that_are_there(plot):
 
 @pytest.mark.parametrize("name", ESTIMATORS)
 @pytest.mark.parametrize("how", [copy.copy, copy.deepcopy])
-def test_a_copy_goes_on_by_itself(name, how):
+def test_a_copy_continues_by_itself(name, how):
     estimator = ESTIMATORS[name]()
     estimator.start(START)
     before = estimator.estimate()
@@ -594,7 +594,7 @@ def test_a_step_that_fails_leaves_the_belief_as_it_was(name):
 
 @pytest.mark.parametrize("name", ["Ekf-ConstantVelocity", "Imm"])
 @given(size=st.integers(0, 5).filter(lambda n: n != 2))
-def test_a_single_reading_of_wrong_shape_is_refused(name, size):
+def test_a_single_reading_of_wrong_shape_is_rejected(name, size):
     estimator = ESTIMATORS[name]()
     estimator.start(START)
     with pytest.raises(ValueError, match=rf"z must have shape \(2,\), got \({size},\)"):
@@ -608,7 +608,7 @@ def test_a_single_reading_of_wrong_shape_is_refused(name, size):
         (np.zeros((5, 4)), np.zeros((4, 4, 4)), r"covariance must have shape \(5, 4, 4\)"),
     ],
 )
-def test_smoothing_arrays_of_wrong_shape_is_refused(mean, covariance, wanted):
+def test_smoothing_arrays_of_wrong_shape_is_rejected(mean, covariance, wanted):
     with pytest.raises(ValueError, match=wanted):
         ekf().smooth(mean, covariance, DT_S)
 

@@ -31,7 +31,7 @@ def placed_at(north_m):
 
 
 @pytest.mark.parametrize("model", forecast.names())
-def test_a_straight_is_foretold_exactly(model):
+def test_a_straight_is_predicted_exactly(model):
     place_m = forecast.position_m(circling(0.0), [0.0, 60.0, 360.0], model)
     np.testing.assert_allclose(place_m - PLACE_M, [[0, 0], [480, 0], [2880, 0]], atol=1e-3)
 
@@ -45,7 +45,7 @@ def test_who_turns_on_stays_on_the_circle():
     np.testing.assert_allclose(place_m - PLACE_M, wanted, atol=0.1)
 
 
-def test_a_turn_that_ends_goes_on_straight():
+def test_a_turn_that_ends_continues_straight():
     rate = np.deg2rad(1.0)
     place_m = forecast.position_m(circling(rate), [300.0, 360.0], "turn_that_ends")
     north_m, east_m = np.diff(place_m, axis=0)[0]
@@ -78,7 +78,7 @@ def test_the_kalman_filter_counts_each_position_once():
     np.testing.assert_allclose(place_m, [state[0] + 60.0 * state[1], 0.0], atol=1e-9)
 
 
-def test_unless_told_otherwise_it_goes_on_as_last_reported():
+def test_unless_reported_otherwise_it_continues_as_last_reported():
     track = circling(np.deg2rad(1.0))
     place_m = forecast.position_m(track, [60.0])
     np.testing.assert_allclose(place_m - PLACE_M, [[480.0, 0.0]], atol=1e-9)
@@ -91,7 +91,7 @@ def rows_of(track, number="7"):
 
 
 @pytest.mark.parametrize("model", forecast.names())
-def test_a_track_of_the_radar_is_foretold_as_the_reports_that_say_the_same(model):
+def test_a_track_of_the_radar_is_predicted_as_the_reports_that_say_the_same(model):
     reports, ahead_s = circling(np.deg2rad(-1.0)), [0.0, 60.0, 180.0]
     rows = rows_of(reports)
     np.testing.assert_allclose(
@@ -111,7 +111,7 @@ def test_the_rate_of_turn_is_that_of_the_courses_that_are_reported():
     assert forecast.turn_rate_rad_s(Tracks.joined([])) == 0.0
 
 
-def test_reports_of_one_time_tell_no_rate_of_turn():
+def test_reports_of_one_time_report_no_rate_of_turn():
     seen = circling(np.deg2rad(1.0), step_s=40.0, count=3)
     again = seen.rows(np.array([0, 1, 2, 2, 2]))  # heard by three stations
     assert forecast.turn_rate_rad_s(again) == 0.0
@@ -120,7 +120,7 @@ def test_reports_of_one_time_tell_no_rate_of_turn():
         np.testing.assert_allclose(place_m, forecast.position_m(again, [60.0]), atol=1e-9)
 
 
-def test_of_several_tracks_none_is_foretold():
+def test_of_several_tracks_none_is_predicted():
     one, other = rows_of(circling(0.0)), rows_of(circling(0.0), "8")
     with pytest.raises(ValueError, match="rows of one track, got 2"):
         forecast.position_m(Tracks.joined([one, other]), [60.0])
@@ -151,6 +151,6 @@ def test_the_rate_of_turn_is_that_of_the_course_through_north(rate_deg_s):
         (circling(0.0, step_s=90.0), [60.0], "kalman_cv", "reports of two times or more"),
     ],
 )
-def test_what_cannot_be_foretold_is_refused(track, ahead_s, model, wanted):
+def test_what_cannot_be_predicted_is_rejected(track, ahead_s, model, wanted):
     with pytest.raises(ValueError, match=wanted):
         forecast.position_m(track, ahead_s, model)

@@ -45,11 +45,11 @@ def test_trace_is_what_the_estimator_shows_step_by_step():
         step = fuzzy.update(RADAR, reading)
         np.testing.assert_array_equal(trace.innovation_m[k], step.innovation)
         for name in TRACED:
-            told, shown = getattr(trace, name)[k], np.asarray(getattr(fuzzy, name))
+            reported, shown = getattr(trace, name)[k], np.asarray(getattr(fuzzy, name))
             if shown.ndim:
-                assert np.isnan(told[len(shown) :]).all()
-                told = told[: len(shown)]
-            np.testing.assert_array_equal(told, shown)
+                assert np.isnan(reported[len(shown) :]).all()
+                reported = reported[: len(shown)]
+            np.testing.assert_array_equal(reported, shown)
     assert len(fuzzy.residual_ratios) == 5
     assert len(fuzzy.rule_strengths) == 6
     assert fuzzy.plots_of_mode.tolist() == [2, 3, 4, 5, 6]
@@ -178,12 +178,12 @@ def test_a_tracker_holds_a_vessel_with_it_and_its_state_can_be_saved():
         ({"acceleration_std_mps2": np.nan}, "acceleration_std_mps2"),
     ],
 )
-def test_what_makes_no_sense_is_refused_in_words(options, words):
+def test_what_is_invalid_is_rejected_in_words(options, words):
     with pytest.raises(ValueError, match=words):
         wl.FuzzyAlphaBeta(**options)
 
 
-def test_arrays_that_do_not_fit_are_refused():
+def test_arrays_that_do_not_fit_are_rejected():
     fuzzy = wl.FuzzyAlphaBeta()
     with pytest.raises(ValueError, match=r"z must have shape \(T, 2\) or \(R, T, 2\)"):
         fuzzy.trace(np.zeros((5, 3)), dt_s=DT_S, sensor=RADAR, start=START)

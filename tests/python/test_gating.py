@@ -40,17 +40,17 @@ def test_nan_is_in_no_gate():
 
 
 @pytest.mark.parametrize("probability", [0.0, -0.1, 1.0, 1.1, np.nan])
-def test_a_gate_probability_that_makes_no_sense_is_refused(probability):
+def test_a_gate_probability_that_is_invalid_is_rejected(probability):
     with pytest.raises(ValueError, match="probability"):
         wl.ChiSquareGate(probability=probability)
 
 
 @pytest.mark.parametrize("radius_m", [-1.0, np.nan, np.inf])
-def test_a_radius_that_makes_no_sense_is_refused(radius_m):
+def test_a_radius_that_is_invalid_is_rejected(radius_m):
     with pytest.raises(ValueError, match="radius_m"):
         wl.RadiusGate(radius_m=radius_m)
 
 
-def test_a_plot_of_wrong_shape_is_refused():
+def test_a_plot_of_wrong_shape_is_rejected():
     with pytest.raises(ValueError, match=r"plot_m must have shape \(2,\), got \(3,\)"):
         wl.RadiusGate(radius_m=1.0).contains([0.0, 0.0], [0.0, 0.0, 0.0])

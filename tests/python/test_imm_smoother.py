@@ -43,8 +43,8 @@ def rms(result, truth, rows):
 def test_the_turns_of_example_1_are_known_far_better(example):
     z, truth, start = example
     estimator = imm(*(turning(rate) for rate in (-2, -1, 0, 1, 2)))
-    told = {"dt_s": DT_S, "sensor": SENSOR, "start": start}
-    filtered, smooth = estimator.run(z, **told), estimator.smooth(z, **told)
+    reported = {"dt_s": DT_S, "sensor": SENSOR, "start": start}
+    filtered, smooth = estimator.run(z, **reported), estimator.smooth(z, **reported)
     assert rms(smooth, truth, [0, 2]) < 0.55 * rms(filtered, truth, [0, 2])
     assert rms(smooth, truth, [1, 3]) < 0.35 * rms(filtered, truth, [1, 3])
     error = smooth.mean - truth
@@ -66,10 +66,10 @@ def test_equal_models_are_one_filter(example, kind):
     z[20:23] = np.nan
     dt_s, push = rng.uniform(1.0, 4.0, 60), rng.normal(0.0, 0.05, (60, 2))
     filter = kind(wl.CoordinatedTurnRate(noise=wl.WhiteAcceleration(psd_m2s3=0.01)))
-    told = {"dt_s": dt_s, "sensor": SENSOR, "start": start, "acceleration_mps2": push}
-    filtered = filter.run(z, **told)
+    reported = {"dt_s": dt_s, "sensor": SENSOR, "start": start, "acceleration_mps2": push}
+    filtered = filter.run(z, **reported)
     mean, covariance = filter.smooth(filtered.mean, filtered.covariance, dt_s, push)
-    smooth = imm(filter, filter).smooth(z, **told)
+    smooth = imm(filter, filter).smooth(z, **reported)
     np.testing.assert_allclose(smooth.mean, mean, rtol=1e-5, atol=1e-6)
     np.testing.assert_allclose(smooth.covariance, covariance, rtol=1e-4, atol=1e-6)
 
@@ -77,12 +77,12 @@ def test_equal_models_are_one_filter(example, kind):
 def test_a_recording_alone_is_that_among_others(example):
     z, _, start = example
     estimator = imm(turning(0.0), turning(2.0))
-    told = {"dt_s": DT_S, "sensor": SENSOR, "start": start}
-    together = estimator.smooth(z[:, :40], **told)
+    reported = {"dt_s": DT_S, "sensor": SENSOR, "start": start}
+    together = estimator.smooth(z[:, :40], **reported)
     before = wl.threads()
     try:
         wl.set_threads(1)
-        alone = estimator.smooth(z[3, :40], **told)
+        alone = estimator.smooth(z[3, :40], **reported)
     finally:
         wl.set_threads(before)
     np.testing.assert_array_equal(together.mean[3], alone.mean)
@@ -98,8 +98,8 @@ def test_models_of_other_states(example):
         wl.Ukf(wl.CoordinatedTurnRate(noise=noise)),
         wl.Ekf(wl.ConstantAcceleration(noise=noise)),
     )
-    told = {"dt_s": DT_S, "sensor": SENSOR, "start": start}
-    filtered, smooth = estimator.run(z, **told), estimator.smooth(z, **told)
+    reported = {"dt_s": DT_S, "sensor": SENSOR, "start": start}
+    filtered, smooth = estimator.run(z, **reported), estimator.smooth(z, **reported)
     assert smooth.mean.shape == (*z.shape[:2], 4)
     assert rms(smooth, truth, [0, 2]) < 0.75 * rms(filtered, truth, [0, 2])
     assert rms(smooth, truth, [1, 3]) < 0.6 * rms(filtered, truth, [1, 3])
@@ -110,16 +110,16 @@ def test_a_pause_of_months_costs_no_recording(example):
     estimator = imm(turning(0.0), turning(2.0))
     steps_s = np.full(20, DT_S)
     steps_s[12] = 1e8
-    told = {"sensor": SENSOR, "start": start}
-    filtered = estimator.run(z[:, :20], dt_s=steps_s, **told)
-    smooth = estimator.smooth(z[:, :20], dt_s=steps_s, **told)
-    before = estimator.smooth(z[:, :12], dt_s=DT_S, **told)
+    reported = {"sensor": SENSOR, "start": start}
+    filtered = estimator.run(z[:, :20], dt_s=steps_s, **reported)
+    smooth = estimator.smooth(z[:, :20], dt_s=steps_s, **reported)
+    before = estimator.smooth(z[:, :12], dt_s=DT_S, **reported)
     assert (smooth.mean[:, :12] == before.mean).all((1, 2)).any()
     assert (smooth.mean[:, 12:-1] != filtered.mean[:, 12:-1]).all()
     assert np.isfinite(smooth.covariance).all()
 
 
-def test_what_cannot_be_smoothed_is_told(example):
+def test_what_cannot_be_smoothed_is_reported(example):
     z, _, start = example
     estimator = imm(turning(0.0), turning(2.0))
     steps_s = np.full(20, DT_S)

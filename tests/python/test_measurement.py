@@ -1,4 +1,4 @@
-"""Sensors as Python sees them: seams, own ship, the polar conversion and refused parameters."""
+"""Sensors in Python: seams, own ship, the polar conversion and rejected parameters."""
 
 import copy
 
@@ -137,7 +137,7 @@ def test_a_bearing_offset_is_taken_out():
 
 @pytest.mark.parametrize("name", SENSORS)
 @given(size=st.integers(0, 6))
-def test_a_reading_of_wrong_size_is_refused(name, size):
+def test_a_reading_of_wrong_size_is_rejected(name, size):
     sensor = SENSORS[name]
     if size == sensor.measurements:
         return
@@ -161,14 +161,14 @@ def test_a_reading_of_wrong_size_is_refused(name, size):
     ],
 )
 @pytest.mark.parametrize("value", [-1.0, np.nan, np.inf])
-def test_parameters_that_make_no_sense_are_refused_by_name(build, name, value):
+def test_parameters_that_are_invalid_are_rejected_by_name(build, name, value):
     with pytest.raises(ValueError, match=name):
         build(value)
 
 
 @pytest.mark.parametrize("name", ["position_std_m", "velocity_std_mps", "heading_std_rad"])
 @pytest.mark.parametrize("value", [-1.0, np.nan, np.inf])
-def test_own_ship_is_not_set_to_what_makes_no_sense(name, value):
+def test_own_ship_is_not_set_to_what_is_invalid(name, value):
     sensor = wl.RangeBearing(own=wl.OwnShip(north_m=5.0))
     with pytest.raises(ValueError, match=f"own.{name} must be finite and not negative"):
         setattr(sensor.own, name, value)

@@ -233,7 +233,7 @@ def test_episodes_add_up():
     json.dumps(got.overall.as_dict())
 
 
-def test_parameters_and_scenarios_that_make_no_sense():
+def test_parameters_and_scenarios_that_are_invalid():
     for name, values in {
         "gate_m": (0.0, np.inf, np.nan, 1e-200, 1e200),
         "bonus_m": (-1.0, np.inf, np.nan),
@@ -320,7 +320,7 @@ def test_points_that_are_nowhere(metric, value):
 @pytest.mark.parametrize("metric", [metrics.gospa, metrics.ospa])
 @pytest.mark.parametrize("value", [0.0, np.inf, np.nan])
 @pytest.mark.parametrize("name", ["cutoff_m", "p"])
-def test_cutoffs_and_orders_that_make_no_sense(metric, name, value):
+def test_cutoffs_and_orders_that_are_invalid(metric, name, value):
     with pytest.raises(ValueError, match=f"^{name} must be .*finite.*, got {value}"):
         metric(np.zeros((1, 2)), np.zeros((1, 2)), **{name: value})
 
@@ -377,7 +377,7 @@ TAKES = {
         ([[1.0], [2.0, 3.0]], ValueError, "inhomogeneous"),
     ],
 )
-def test_what_is_no_number_is_refused_by_name(name, values, error, words):
+def test_what_is_not_a_number_is_rejected_by_name(name, values, error, words):
     with pytest.raises(error, match=f"{name} must hold real numbers: .*{words}"):
         TAKES[name](values)
 

@@ -68,7 +68,7 @@ def test_segments_part_the_readings(curve, switches_s):
         ([1.0, 2.0], [1.0, 1.0], [[1.0]], r"switch_times_s must have shape \(S,\)"),
     ],
 )
-def test_curves_that_make_no_sense(time_s, curve, switches_s, message):
+def test_curves_that_are_invalid(time_s, curve, switches_s, message):
     for figure in (
         metrics.by_segment,
         metrics.settling_times_s,
@@ -124,7 +124,7 @@ def test_the_delay_counts_readings_before_the_right_model_leads():
     assert metrics.detection_delays_scans(TIME_S, np.ones(20), SWITCHES_S) == pytest.approx([0, 0])
 
 
-def test_factors_and_shares_that_make_no_sense():
+def test_factors_and_shares_that_are_invalid():
     with pytest.raises(ValueError, match=r"factor must be at least 1, got 0\.9"):
         metrics.settling_times_s(TIME_S, np.ones(20), [], factor=0.9)
     for share in (0.0, 1.1, np.nan):
@@ -266,14 +266,14 @@ def test_scans_count_by_how_many_samples_they_have():
 
 
 @pytest.mark.parametrize("samples", [[50, 50], 10.5, np.nan, np.inf, -3, [50, -1, 50]])
-def test_samples_that_are_no_counts_are_refused_by_name(samples):
+def test_samples_that_are_no_counts_are_rejected_by_name(samples):
     with pytest.raises(
         ValueError, match=r"samples must be whole numbers, .* of shape \(\) or \(3,\)"
     ):
         metrics.share_inside(np.ones(3), 2, samples)
 
 
-def test_confidences_that_make_no_sense():
+def test_confidences_that_are_invalid():
     with pytest.raises(ValueError, match="confidence must be between 0 and 1, got 1"):
         metrics.share_inside([1.0], 2, 1, confidence=1.0)
     with pytest.raises(ValueError, match="dof"):

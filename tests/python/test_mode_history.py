@@ -101,13 +101,14 @@ def test_deviations_and_weights_that_are_those_left_out_change_nothing(kind):
     z = np.stack([readings(15, seed) for seed in range(2)])
     std_rad_s = np.full(len(RATES), LEARNT_STD_RAD_S)
     std_rad_s[2] *= 0.1  # that of the straight
-    told = wl.ModeHistory(
+    reported = wl.ModeHistory(
         kind(LEARNT), RATES, grid_std_rad_s=std_rad_s, grid_weight=np.full(len(RATES), 0.5)
     )
     left_out = wl.ModeHistory(kind(LEARNT), RATES)
     for readings_of in (z, z[0]):
         results = [
-            one.run(readings_of, dt_s=DT_S, sensor=RADAR, start=START) for one in (told, left_out)
+            one.run(readings_of, dt_s=DT_S, sensor=RADAR, start=START)
+            for one in (reported, left_out)
         ]
         np.testing.assert_array_equal(results[0].mean, results[1].mean)
 
@@ -244,7 +245,7 @@ def test_rates_that_are_learnt_between_known_ones_are_nearly_the_best_of_both():
     assert mean_m["both"] < 1.04 * mean_m["learnt"]
 
 
-def test_a_filter_without_turn_rate_is_refused():
+def test_a_filter_without_turn_rate_is_rejected():
     with pytest.raises(ValueError, match=r"over CoordinatedTurn, .*CoordinatedTurnRate"):
         wl.ModeHistory(wl.Ekf(wl.ConstantVelocity()), RATES)
 
@@ -267,15 +268,15 @@ def test_any_tree_is_a_belief(kept, switches, min_segment_s, merge_distance, dat
     np.testing.assert_allclose(result.mode_probability.sum(axis=-1), 1.0, atol=1e-12)
 
 
-def test_it_tells_its_turn_rates_and_a_study_needs_no_others():
+def test_it_reports_its_turn_rates_and_a_study_needs_no_others():
     np.testing.assert_array_equal(tree().turn_rates_rad_s(), RATES)
     default = wl.ModeHistory(wl.Ekf(TURN)).turn_rates_rad_s()
     np.testing.assert_allclose(np.rad2deg(default), np.arange(-4.0, 5.0), atol=1e-12)
     example = scenario.named("example1")
-    told = montecarlo.Candidate(tree(), turn_rates_rad_s=RATES)
+    reported = montecarlo.Candidate(tree(), turn_rates_rad_s=RATES)
     figures = [
         montecarlo.run(example, {"tree": one}, runs=2, progress=False).summary()["example1"]["tree"]
-        for one in (told, montecarlo.Candidate(tree()), montecarlo.Candidate(lambda _: tree()))
+        for one in (reported, montecarlo.Candidate(tree()), montecarlo.Candidate(lambda _: tree()))
     ]
     assert figures[0]["right_mode_share"] is not None
     for found in figures[1:]:
@@ -469,7 +470,7 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         (lambda: wl.ModeHistory.pseudo_bayes(4, wl.Ekf(TURN), RATES), "more than 256 filters"),
     ],
 )
-def test_what_makes_no_sense_is_refused_in_words(build, words):
+def test_what_is_invalid_is_rejected_in_words(build, words):
     with pytest.raises(ValueError, match=words):
         build()
 
@@ -482,7 +483,7 @@ def test_a_kalman_filter_takes_linear_sensors_only():
         one.update(RADAR, readings(1)[0])
 
 
-def test_a_reading_that_is_no_number_changes_nothing():
+def test_a_reading_that_is_not_a_number_changes_nothing():
     one = tree()
     one.start(START)
     one.predict(DT_S)

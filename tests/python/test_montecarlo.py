@@ -45,7 +45,7 @@ def case(name="case", radar=None, **change):
 CASE = case()
 SELDOM = case("seldom", RadarSimulator(30.0, 0.01, 3.0, detection_probability=0.8))
 IMM = Candidate(turning_imm(rates_deg_s=RATES_DEG_S), "polar", np.deg2rad(RATES_DEG_S))
-BOTH = {"imm": IMM, "told": montecarlo.clairvoyant}
+BOTH = {"imm": IMM, "clairvoyant": montecarlo.clairvoyant}
 
 
 def run(scenarios=CASE, candidates=None, runs=RUNS, seed=0, **options):
@@ -108,7 +108,10 @@ def told_rates(scenario):
 
 
 def test_candidates_built_by_functions_are_the_same(result):
-    built = {"imm": Candidate(built_imm, "polar", told_rates), "told": montecarlo.clairvoyant}
+    built = {
+        "imm": Candidate(built_imm, "polar", told_rates),
+        "clairvoyant": montecarlo.clairvoyant,
+    }
     assert_same_bits(run([CASE, SELDOM], built), result)
 
 
@@ -137,7 +140,7 @@ def only_here():
 
 
 @pytest.mark.slow
-def test_what_a_worker_cannot_import_is_told(monkeypatch):
+def test_what_a_worker_cannot_import_is_reported(monkeypatch):
     module = only_here()
     monkeypatch.setitem(sys.modules, "only_here", module)
     spawn = multiprocessing.get_context("spawn")
@@ -157,7 +160,7 @@ def test_a_dask_cluster_gives_the_same_bits(result):
 
 
 @pytest.mark.slow
-def test_what_a_worker_of_dask_cannot_import_is_told(monkeypatch):
+def test_what_a_worker_of_dask_cannot_import_is_reported(monkeypatch):
     distributed = pytest.importorskip("distributed")
     module = only_here()
     monkeypatch.setitem(sys.modules, "only_here", module)
@@ -170,9 +173,9 @@ def test_what_a_worker_of_dask_cannot_import_is_told(monkeypatch):
         run([CASE], {"lost": module.candidate}, client=client)
 
 
-def test_progress_is_told_chunk_by_chunk():
+def test_progress_is_reported_chunk_by_chunk():
     heard = []
-    run([CASE, SELDOM], BOTH, progress=lambda *told: heard.append(told))
+    run([CASE, SELDOM], BOTH, progress=lambda *reported: heard.append(reported))
     assert heard == [(k, 12) for k in range(1, 13)]
 
 
@@ -232,7 +235,7 @@ def test_who_stops_the_run_calls_the_others_off(monkeypatch, who):
         return IMM(scene, z)
 
     if who == "outcome":
-        stop = SimpleNamespace(of=lambda *given, **told: told_to_stop(1, 1))
+        stop = SimpleNamespace(of=lambda *given, **reported: told_to_stop(1, 1))
         monkeypatch.setattr(running, "Outcome", stop)
     scenes = [CASE, *(case(f"later {k}") for k in range(60))]
     progress = told_to_stop if who == "progress" else False
@@ -250,7 +253,7 @@ def refusing(scene, z, begun, from_call):
     return IMM(scene, z)
 
 
-def test_who_refuses_everything_does_so_before_the_others_have_done_their_work():
+def test_who_rejects_everything_does_so_before_the_others_have_done_their_work():
     calls = []
 
     def counted(scene, z):
@@ -287,7 +290,7 @@ def test_who_stops_the_run_has_what_is_done(result):
     assert list(kept.summary()) == ["case"]
     with pytest.raises(KeyboardInterrupt) as caught:
         run([CASE, SELDOM], BOTH, runs=25, progress=lambda done, _: stop(3 * done, 0))
-    assert list(caught.value.result.outcomes) == [("case", "imm"), ("case", "told")]
+    assert list(caught.value.result.outcomes) == [("case", "imm"), ("case", "clairvoyant")]
 
 
 # Figures ------------------------------------------------------------------------------------------
@@ -402,8 +405,8 @@ def test_the_time_of_day_changes_no_summary(start_s):
 
 
 def test_a_summary_is_silent_where_there_is_nothing_to_say(result):
-    told = result["case", "told"].summary()
-    assert told["right_mode_share"] is told["detection_delay_scans"] is None
+    reported = result["case", "clairvoyant"].summary()
+    assert reported["right_mode_share"] is reported["detection_delay_scans"] is None
     straight = run(case(truth=Truth([2000.0, 8.0, 1000.0, -3.0])))["case", "imm"].summary()
     assert straight["settling_s"] is straight["detection_delay_scans"] is None
     assert straight["steady_nees"] == straight["nees"]
@@ -480,7 +483,7 @@ def test_states_of_any_size_are_compared_in_position_and_velocity(name):
         assert outcome.turn_rate_rad_s is None
 
 
-def test_rates_that_move_with_the_run_tell_the_right_model():
+def test_rates_that_move_with_the_run_report_the_right_model():
     def moving(scene, z):
         found = IMM(scene, z)
         rates = np.broadcast_to([0.0, 0.02, -0.02], found.mode_probability.shape)
@@ -559,15 +562,15 @@ def test_what_is_saved_is_loaded(result, tmp_path):
     assert (loaded.parameters["chunk_runs"], loaded.parameters["lost_beyond_m"]) == (25, 500.0)
     seldom = {"range_std_m": 30.0, "period_s": 3.0, "detection_probability": 0.8, "scans": 30.0}
     assert loaded.parameters["scenarios"]["seldom"].items() >= seldom.items()
-    told = loaded.parameters["scenarios"]["case"]["truth"]
-    segments = [Segment(**segment) for segment in told["segments"]]
-    again = Truth(told["start"], segments, start_course_rad=told["start_course_rad"])
+    reported = loaded.parameters["scenarios"]["case"]["truth"]
+    segments = [Segment(**segment) for segment in reported["segments"]]
+    again = Truth(reported["start"], segments, start_course_rad=reported["start_course_rad"])
     np.testing.assert_allclose(again.state_at(50.0), CASE.truth.state_at(50.0), rtol=1e-12)
     assert loaded.summary() == result.summary()
-    assert (loaded.scenarios, loaded.candidates) == (["case", "seldom"], ["imm", "told"])
+    assert (loaded.scenarios, loaded.candidates) == (["case", "seldom"], ["imm", "clairvoyant"])
 
 
-def test_a_loaded_result_tells_what_it_was_made_with(result, tmp_path):
+def test_a_loaded_result_reports_what_it_was_made_with(result, tmp_path):
     result.save(tmp_path / "result.npz")
     loaded = Result.load(tmp_path / "result.npz")
     for scene in (CASE, SELDOM):
@@ -576,8 +579,8 @@ def test_a_loaded_result_tells_what_it_was_made_with(result, tmp_path):
         assert kept.sensor == repr(scene.polar_sensor)
         again = run(scene, {"imm": Candidate(made_by(kept.estimator), made_by(kept.sensor))})
         np.testing.assert_array_equal(again[scene.name, "imm"].nees, kept.nees)
-        assert loaded[scene.name, "told"].estimator == "<function clairvoyant>"
-        assert loaded[scene.name, "told"].sensor is None
+        assert loaded[scene.name, "clairvoyant"].estimator == "<function clairvoyant>"
+        assert loaded[scene.name, "clairvoyant"].sensor is None
 
 
 def by_radar(scene):
@@ -585,38 +588,38 @@ def by_radar(scene):
     return wl.Ekf(wl.ConstantVelocity(noise=noise))
 
 
-def test_what_is_built_for_a_scenario_is_told_as_it_was_there():
+def test_what_is_built_for_a_scenario_is_reported_as_it_was_there():
     blunt = case("blunt", RadarSimulator(50.0, 0.01, 3.0))
-    told = run([CASE, blunt], {"x": Candidate(by_radar, "converted")}, runs=1)
-    assert "psd_m2s3=30.0" in told["case", "x"].estimator
-    assert "psd_m2s3=50.0" in told["blunt", "x"].estimator
-    assert told["blunt", "x"].sensor == repr(blunt.converted_sensor)
+    reported = run([CASE, blunt], {"x": Candidate(by_radar, "converted")}, runs=1)
+    assert "psd_m2s3=30.0" in reported["case", "x"].estimator
+    assert "psd_m2s3=50.0" in reported["blunt", "x"].estimator
+    assert reported["blunt", "x"].sensor == repr(blunt.converted_sensor)
 
 
-def test_what_is_not_an_estimator_of_ours_is_told_without_its_address():
+def test_what_is_not_an_estimator_of_ours_is_reported_without_its_address():
     bound = partial(montecarlo.clairvoyant, noise=NO_NOISE)
     own = Candidate(SimpleNamespace(run=IMM.estimator.run, name="mine"), lambda s: s.polar_sensor)
-    told = run(CASE, {"bound": bound, "own": own}, runs=1)
+    reported = run(CASE, {"bound": bound, "own": own}, runs=1)
     wanted = "functools.partial(<function clairvoyant>, noise=PiecewiseAcceleration(std_mps2=0.0))"
-    assert told["case", "bound"].estimator == wanted
-    assert told["case", "own"].estimator.endswith("name='mine')")
-    assert "0x" not in told["case", "own"].estimator
-    assert told["case", "own"].sensor == repr(CASE.polar_sensor)
+    assert reported["case", "bound"].estimator == wanted
+    assert reported["case", "own"].estimator.endswith("name='mine')")
+    assert "0x" not in reported["case", "own"].estimator
+    assert reported["case", "own"].sensor == repr(CASE.polar_sensor)
 
 
 def not_here(scene):
     raise wl.FilterError("not today")
 
 
-def test_what_cannot_be_built_is_told_as_what_builds_it():
-    told = run(CASE, {"x": Candidate(not_here)}, runs=1)["case", "x"]
-    assert (told.failed_runs, told.estimator) == (1, "<function not_here>")
-    assert told.sensor == repr(CASE.polar_sensor)
+def test_what_cannot_be_built_is_reported_as_what_builds_it():
+    reported = run(CASE, {"x": Candidate(not_here)}, runs=1)["case", "x"]
+    assert (reported.failed_runs, reported.estimator) == (1, "<function not_here>")
+    assert reported.sensor == repr(CASE.polar_sensor)
     blind = run(CASE, {"x": Candidate(IMM.estimator, not_here)}, runs=1)["case", "x"]
     assert (blind.failed_runs, blind.sensor) == (1, "<function not_here>")
 
 
-def test_a_file_of_before_estimators_were_told_is_loaded(result, tmp_path):
+def test_a_file_of_before_estimators_were_reported_is_loaded(result, tmp_path):
     path = tmp_path / "result.npz"
     result.save(path)
     with np.load(path) as file:
@@ -667,12 +670,12 @@ def test_files_that_hold_no_result(result, tmp_path):
         np.savez(wrong, **arrays)
         with pytest.raises(
             ValueError, match=r"wrong\.npz: not a Monte Carlo result; wanted"
-        ) as told:
+        ) as reported:
             Result.load(wrong)
-        assert "pickle" not in str(told.value)
+        assert "pickle" not in str(reported.value)
 
 
-# The filter that is told --------------------------------------------------------------------------
+# The clairvoyant filter ---------------------------------------------------------------------------
 
 
 def kalman(scene, z, steps):
@@ -709,7 +712,7 @@ def told_steps(scene):
             yield [(3.0, first if t <= 30 else second if t <= 60 else third, (0, 0))]
 
 
-def test_clairvoyant_is_the_kalman_filter_that_is_told_the_rates():
+def test_clairvoyant_is_the_kalman_filter_that_is_reported_the_rates():
     z = SELDOM.draw(3, 4)
     got = montecarlo.clairvoyant(SELDOM, z)
     for k in range(3):
@@ -743,14 +746,14 @@ def controlled(control):
 
 
 @pytest.mark.parametrize("change", [lambda z: z[0], lambda z: z[:, :10], lambda z: z[:, [0] * 40]])
-def test_clairvoyant_is_told_all_readings_and_no_others(change):
+def test_clairvoyant_is_reported_all_readings_and_no_others(change):
     z = change(CASE.draw(2))
     wanted = rf"z must have shape \(R, 30, 2\), got {re.escape(str(z.shape))}"
     with pytest.raises(ValueError, match=wanted):
         montecarlo.clairvoyant(CASE, z)
 
 
-def test_control_is_told_where_there_is_such():
+def test_control_is_reported_where_there_is_such():
     scene = controlled((0.1, -0.05))
     np.testing.assert_array_equal(scene.control_mps2[:10], 0.0)
     np.testing.assert_array_equal(scene.control_mps2[10:], [(0.1, -0.05)] * 20)
@@ -889,17 +892,19 @@ def test_no_estimator_is_below_the_bound_and_the_right_one_is_on_it():
 # Starts that are drawn ----------------------------------------------------------------------------
 
 
-def test_with_drawn_starts_the_told_filter_is_consistent_from_the_first_scan_on():
+def test_with_drawn_starts_the_reported_filter_is_consistent_from_the_first_scan_on():
     runs = 2000
     turn = case(scans=60)
-    outcome = run(turn, {"told": montecarlo.clairvoyant}, runs, draw_start=True)["case", "told"]
+    outcome = run(turn, {"clairvoyant": montecarlo.clairvoyant}, runs, draw_start=True)[
+        "case", "clairvoyant"
+    ]
     low, high = wl.consistency_bounds(0.9999, 4, runs)
     assert ((low < outcome.nees) & (outcome.nees < high)).all()
     position_m, velocity_mps = montecarlo.bound_curves(turn)
     chance = 4 / np.sqrt(4 * runs)  # of the root of a mean of at least two squares
     np.testing.assert_allclose(outcome.position_rmse_m, position_m, rtol=1.5 * chance)
     np.testing.assert_allclose(outcome.velocity_rmse_mps, velocity_mps, rtol=1.5 * chance)
-    exact = run(turn, {"told": montecarlo.clairvoyant}, runs)["case", "told"]
+    exact = run(turn, {"clairvoyant": montecarlo.clairvoyant}, runs)["case", "clairvoyant"]
     assert exact.nees[0] < 0.5 * low
 
 
@@ -1066,7 +1071,7 @@ LOCKED = SimpleNamespace(run=print, lock=Lock())
         ({"client": 7, "candidates": {"x": Candidate(LOCKED)}}, ValueError, "'x' cannot be sent"),
     ],
 )
-def test_what_makes_no_sense_is_refused(change, error, message):
+def test_what_is_invalid_is_rejected(change, error, message):
     with pytest.raises(error, match=message):
         run(**change)
 
@@ -1081,7 +1086,7 @@ def test_a_sensor_that_is_no_word_of_ours(sensor):
             run(CASE, {"x": candidate}, runs=1)
 
 
-def test_who_refuses_its_readings_is_named():
+def test_who_rejects_its_readings_is_named():
     nonlinear = Candidate(wl.Kalman(wl.ConstantVelocity()), "polar")
     with pytest.raises(ValueError, match="candidate 'line' on 'case': sensor must be linear"):
         run(CASE, {"imm": IMM, "line": nonlinear}, runs=1)
@@ -1106,7 +1111,7 @@ def without_options(z):
         ),
     ],
 )
-def test_who_refuses_anything_is_named(change, error, message):
+def test_who_rejects_anything_is_named(change, error, message):
     with pytest.raises(error, match=f"^candidate 'x' on 'case': .*{message}"):
         run(CASE, {"imm": IMM, "x": dataclasses.replace(IMM, **change)}, runs=1)
 
@@ -1117,8 +1122,8 @@ class Built:
     def __init__(self, scene):
         self.estimator = built_imm(scene)
 
-    def run(self, z, **told):
-        return self.estimator.run(z, **told)
+    def run(self, z, **reported):
+        return self.estimator.run(z, **reported)
 
 
 def test_an_estimator_may_be_built_by_its_class():
@@ -1126,7 +1131,7 @@ def test_an_estimator_may_be_built_by_its_class():
     np.testing.assert_array_equal(built["case", "imm"].nees, run()["case", "imm"].nees)
 
 
-def test_an_imm_of_known_turns_tells_their_rates(result):
+def test_an_imm_of_known_turns_reports_their_rates(result):
     found = run(CASE, {"imm": dataclasses.replace(IMM, turn_rates_rad_s=None)})
     whole = SimpleNamespace(outcomes={("case", "imm"): result["case", "imm"]})
     assert_same_bits(found, whole)
@@ -1158,7 +1163,7 @@ def test_a_sensor_may_be_given_or_built():
         ("covariance", np.zeros((3, 4)), r"must give mean \(R, T, N\) and covariance"),
     ],
 )
-def test_what_a_candidate_gives_must_have_the_shapes_that_are_told(name, value, message):
+def test_what_a_candidate_gives_must_have_the_shapes_that_are_reported(name, value, message):
     def candidate(scene, z):
         result = IMM(scene, z)
         given = {field: getattr(result, field) for field in ("mean", "covariance", "nis", "status")}
@@ -1209,7 +1214,7 @@ def test_estimates_of_another_shape(mean, covariance):
 
 
 def test_an_outcome_that_is_not_there(result):
-    with pytest.raises(KeyError, match="scenarios: case, seldom; candidates: imm, told"):
+    with pytest.raises(KeyError, match="scenarios: case, seldom; candidates: imm, clairvoyant"):
         result["case", "imm9"]
 
 

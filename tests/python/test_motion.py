@@ -1,4 +1,4 @@
-"""Motion models as Python sees them: laws of time, limits, and refused parameters."""
+"""Motion models in Python: laws of time, limits, and rejected parameters."""
 
 import copy
 
@@ -130,7 +130,7 @@ def test_white_acceleration_is_the_textbooks_form(dt_s, psd):
     ],
 )
 @pytest.mark.parametrize("value", [-1.0, np.nan, np.inf])
-def test_parameters_that_make_no_sense_are_refused_by_name(build, name, value):
+def test_parameters_that_are_invalid_are_rejected_by_name(build, name, value):
     with pytest.raises(ValueError, match=name):
         build(value)
 
@@ -140,7 +140,7 @@ def test_a_turn_rate_must_be_finite():
         wl.CoordinatedTurn(turn_rate_rad_s=np.nan)
 
 
-def test_a_model_without_acceleration_refuses_jerk():
+def test_a_model_without_acceleration_rejects_jerk():
     with pytest.raises(ValueError, match=r"[Jj]erk|psd_m2s5|noise"):
         wl.ConstantVelocity(noise=wl.WhiteJerk(psd_m2s5=0.1))
 
@@ -151,7 +151,7 @@ def test_parameters_are_given_by_name():
 
 
 @given(st.integers(0, 8).filter(lambda n: n != 5))
-def test_a_state_of_wrong_size_is_refused(size):
+def test_a_state_of_wrong_size_is_rejected(size):
     with pytest.raises(ValueError, match=rf"x must have shape \(5,\), got \({size},\)"):
         wl.CoordinatedTurnRate().transition(np.zeros(size), 1.0)
 

@@ -91,7 +91,7 @@ def test_a_matrix_with_a_period_stands_for_that_time(matrix, period_s):
         [[0.7, 0.2], [0.3, 0.8]],  # columns sum to 1: given the wrong way round
     ],
 )
-def test_rows_that_are_no_distribution_are_refused(matrix):
+def test_rows_that_are_no_distribution_are_rejected(matrix):
     with pytest.raises(ValueError, match=r"mode chain must (sum to 1|be a probability)"):
         wl.ModeChain(matrix)
 
@@ -113,7 +113,7 @@ def test_forty_modes_are_too_many():
 
 
 @pytest.mark.parametrize("times", [[0.0, 1.0], [-1.0, 1.0], [np.nan], [np.inf, 1.0], []])
-def test_sojourn_times_that_make_no_sense_are_refused(times):
+def test_sojourn_times_that_are_invalid_are_rejected(times):
     with pytest.raises(ValueError, match="sojourn"):
         wl.ModeChain.from_sojourn_s(times)
 
@@ -228,7 +228,7 @@ def test_the_trap_of_the_transposed_chain():
 
 
 def test_the_trap_of_likelihoods_that_underflow():
-    """FilterPy trap: a far outlier tells the modes nothing when likelihoods are clamped."""
+    """FilterPy trap: a far outlier has no effect on the modes when likelihoods are clamped."""
     noises = [wl.WhiteAcceleration(psd_m2s3=psd) for psd in (1e-4, 10.0)]
     filters = [wl.Ekf(wl.ConstantVelocity(noise=noise)) for noise in noises]
     imm = wl.Imm(filters, wl.ModeChain([[0.95, 0.05], [0.05, 0.95]]))
@@ -292,7 +292,7 @@ def test_five_models_find_the_numbers_of_an_independent_reference(case, kind):
 # --- consistency ------------------------------------------------------------------------------
 
 
-def test_an_imm_of_the_true_chain_and_models_tells_the_truth_about_its_errors():
+def test_an_imm_of_the_true_chain_and_models_reports_the_truth_about_its_errors():
     rng = np.random.default_rng(17)
     runs, scans = 400, 40
     rates = np.deg2rad([0.0, 1.5, -1.5])
@@ -349,18 +349,18 @@ def test_a_filter_for_each_mode(count):
 
 
 @pytest.mark.parametrize("count", [0, 17, 40])
-def test_no_filters_and_too_many_are_refused(count):
+def test_no_filters_and_too_many_are_rejected(count):
     with pytest.raises(ValueError, match=f"filters must be 1 to 16 filters, got {count}"):
         wl.Imm([one_filter()] * count, wl.ModeChain([[1.0]]))
 
 
 @pytest.mark.parametrize("what", [3, None, MOTIONS["ConstantVelocity"]])
-def test_what_is_no_filter_is_refused_by_name(what):
+def test_what_is_no_filter_is_rejected_by_name(what):
     with pytest.raises(TypeError, match="filters must be Kalman, Ekf, Ukf or SquareRootUkf"):
         wl.Imm([what], wl.ModeChain([[1.0]]))
 
 
-def test_known_turn_rates_are_told():
+def test_known_turn_rates_are_reported():
     def imm(*motions):
         chain = wl.ModeChain.from_sojourn_s([60.0] * len(motions))
         return wl.Imm([wl.Ukf(motion) for motion in motions], chain)
@@ -386,7 +386,7 @@ def test_initial_probabilities_must_be_a_distribution(initial):
         wl.Imm([one_filter()] * 2, wl.ModeChain(np.full((2, 2), 0.5)), initial)
 
 
-def test_kalman_filters_refuse_a_sensor_that_is_not_linear():
+def test_kalman_filters_reject_a_sensor_that_is_not_linear():
     imm = turning_imm(wl.Kalman)
     with pytest.raises(ValueError, match="sensor must be linear for Kalman"):
         imm.run(readings(3), dt_s=DT_S, sensor=RADAR, start=START)

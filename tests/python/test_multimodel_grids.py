@@ -36,29 +36,29 @@ KINDS = [wl.Kalman, wl.Ekf, wl.Ukf, wl.SquareRootUkf]
 def from_case(case, kind):
     """The estimator of a golden case."""
     turn = kind(wl.CoordinatedTurn(noise=wl.PiecewiseAcceleration(std_mps2=case["accel_std_mps2"])))
-    told = case["parameters"]
-    initial = told["initial_mode_probability"]
+    reported = case["parameters"]
+    initial = reported["initial_mode_probability"]
     if case["estimator"] == "agmm":
         return wl.AdaptiveGridImm(
             turn,
-            max_turn_rate_rad_s=np.deg2rad(told["max_turn_rate_deg_s"]),
-            initial_turn_rates_rad_s=np.deg2rad(told["initial_set_deg_s"]),
-            min_spacing_rad_s=np.deg2rad(told["min_spacing_deg_s"]),
+            max_turn_rate_rad_s=np.deg2rad(reported["max_turn_rate_deg_s"]),
+            initial_turn_rates_rad_s=np.deg2rad(reported["initial_set_deg_s"]),
+            min_spacing_rad_s=np.deg2rad(reported["min_spacing_deg_s"]),
             kept_spacing_rad_s=0.0,
             least_move_rad_s=0.0,
-            centre_threshold=told["t1"],
+            centre_threshold=reported["t1"],
             centre_gain=1.0,
-            unlikely_threshold=told["t2"],
-            likely_threshold=told["t3"],
+            unlikely_threshold=reported["t2"],
+            likely_threshold=reported["t3"],
             initial_mode_probability=initial,
         )
     return wl.SwitchingGridImm(
         turn,
-        np.deg2rad(told["grid_deg_s"]),
-        threshold=told["t"],
-        rule=told["rule"],
-        carry=told["carry"],
-        initial_centre=told["initial_centre"],
+        np.deg2rad(reported["grid_deg_s"]),
+        threshold=reported["t"],
+        rule=reported["rule"],
+        carry=reported["carry"],
+        initial_centre=reported["initial_centre"],
         initial_mode_probability=initial,
     )
 
@@ -80,11 +80,11 @@ def test_grids_find_the_numbers_of_an_independent_reference(case, kind):
     result = from_case(case, kind).run(case["z"], dt_s=case["period_s"], sensor=sensor, start=start)
     tolerance = 1e-6 if kind is wl.Ukf else 1e-9
     np.testing.assert_allclose(result.mean, case["mean"], rtol=tolerance, atol=tolerance)
-    for told, field in (
+    for reported, field in (
         (result.mode_probability, "mode_probability"),
         (np.rad2deg(result.turn_rate_rad_s), "turn_rate_deg_s"),
     ):
-        np.testing.assert_allclose(told, case[field], rtol=0, atol=tolerance)
+        np.testing.assert_allclose(reported, case[field], rtol=0, atol=tolerance)
 
 
 # --- the same by either way -------------------------------------------------------------------
@@ -129,7 +129,7 @@ def test_runs_do_not_know_of_each_other(build, kind):
 
 
 @pytest.mark.parametrize("build", BUILD.values(), ids=BUILD)
-def test_results_tell_the_turn_rates_of_the_models(build):
+def test_results_report_the_turn_rates_of_the_models(build):
     estimator = build()
     z = readings(80)
     result = estimator.run(z, dt_s=DT_S, sensor=RADAR, start=START)
@@ -221,9 +221,9 @@ def test_a_known_acceleration_is_no_surprise(build):
     truth = np.array(truth[1:])
     z = np.stack([np.hypot(truth[:, 0], truth[:, 2]), np.arctan2(truth[:, 2], truth[:, 0])], -1)
     arguments = {"dt_s": DT_S, "sensor": RADAR, "start": START}
-    told = build().run(z, **arguments, acceleration_mps2=push)
+    reported = build().run(z, **arguments, acceleration_mps2=push)
     untold = build().run(z, **arguments)
-    assert np.abs(told.mean - truth).max() < 10.0
+    assert np.abs(reported.mean - truth).max() < 10.0
     assert np.abs(untold.mean - truth).max() > 20.0
 
 
@@ -247,7 +247,7 @@ def test_before_a_start_the_modes_are_those_that_it_begins_with(build):
 
 
 @pytest.mark.parametrize("build", [wl.AdaptiveGridImm, wl.SwitchingGridImm])
-def test_before_a_start_the_modes_are_those_told(build):
+def test_before_a_start_the_modes_are_those_reported(build):
     estimator = build(EKF, initial_mode_probability=[0.2, 0.3, 0.5])
     np.testing.assert_array_equal(estimator.mode_probability(), [0.2, 0.3, 0.5])
 
@@ -311,7 +311,7 @@ def test_a_tracker_names_the_estimators_it_takes():
         wl.Tracker(TRACKER_RADAR, estimator=EKF)
 
 
-# --- what is refused --------------------------------------------------------------------------
+# --- rejected input ---------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -356,19 +356,19 @@ def test_a_tracker_names_the_estimators_it_takes():
         (wl.LikelyModelSetImm, {"stay_probability": -0.1}, "probability"),
     ],
 )
-def test_parameters_that_make_no_sense_are_refused_by_name(build, options, message):
+def test_parameters_that_are_invalid_are_rejected_by_name(build, options, message):
     with pytest.raises(ValueError, match=message):
         build(EKF, **options)
 
 
 @pytest.mark.parametrize("build", [wl.AdaptiveGridImm, wl.SwitchingGridImm, wl.LikelyModelSetImm])
-def test_a_filter_without_a_known_turn_rate_is_refused(build):
+def test_a_filter_without_a_known_turn_rate_is_rejected(build):
     with pytest.raises(ValueError, match="filter must be one over CoordinatedTurn"):
         build(wl.Ekf(MOTIONS["ConstantVelocity"]))
 
 
 @pytest.mark.parametrize("build", BUILD.values(), ids=BUILD)
-def test_a_reading_that_is_no_number_changes_nothing(build):
+def test_a_reading_that_is_not_a_number_changes_nothing(build):
     estimator = build()
     estimator.start(START)
     for z in readings(20):

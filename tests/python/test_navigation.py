@@ -145,7 +145,7 @@ def test_arrays_are_broadcast():
     assert (plane.latitude_rad, plane.longitude_rad) == (0.8, 0.1)
 
 
-def test_latitudes_in_degrees_are_refused():
+def test_latitudes_in_degrees_are_rejected():
     with pytest.raises(ValueError, match=r"latitude_rad must be from -pi/2 to pi/2, got 46\.5"):
         plane_at(46.5, 30.7)
     with pytest.raises(ValueError, match=r"to_latitude_rad must be .* got 46\.5"):
@@ -303,7 +303,7 @@ def test_drift_over_a_window_is_the_best_line_through_differences_that_err_toget
     rng = np.random.default_rng(5)
     log_std, heading_std, eye = 0.2, 0.01, np.eye(2)
     window = nav.DriftWindow(max_fixes=7, log_std_mps=log_std, heading_std_rad=heading_std)
-    time_s, reckoned, summed, told = 0.0, np.zeros(2), np.zeros((2, 2)), []
+    time_s, reckoned, summed, reported = 0.0, np.zeros(2), np.zeros((2, 2)), []
     for _ in range(20):
         for dt in rng.choice([0.0, 1.0, 7.0], 3):
             speed, heading = rng.uniform(0, 8), rng.uniform(-np.pi, np.pi)
@@ -319,14 +319,14 @@ def test_drift_over_a_window_is_the_best_line_through_differences_that_err_toget
         half = rng.standard_normal((2, 2))
         fix = wl.Gaussian(reckoned + 3.0 * rng.standard_normal(2), 9.0 * half @ half.T + eye)
         window.add(fix)
-        told = [*told, (time_s, fix.mean - reckoned, fix.covariance, summed)][-7:]
+        reported = [*reported, (time_s, fix.mean - reckoned, fix.covariance, summed)][-7:]
         if not window.ready:
             continue
-        times, off, of_fix, of_log = zip(*told, strict=True)
+        times, off, of_fix, of_log = zip(*reported, strict=True)
         covariance = np.block(
             [
-                [of_log[min(i, j)] - of_log[0] + (i == j) * of_fix[i] for j in range(len(told))]
-                for i in range(len(told))
+                [of_log[min(i, j)] - of_log[0] + (i == j) * of_fix[i] for j in range(len(reported))]
+                for i in range(len(reported))
             ]
         )
         design = np.vstack([np.hstack([eye, (t - times[0]) * eye]) for t in times])
@@ -356,7 +356,7 @@ def test_a_window_step_by_step_is_its_run_and_bridges_missing_fixes():
     assert not window.ready
 
 
-def test_bad_windows_are_refused():
+def test_bad_windows_are_rejected():
     with pytest.raises(ValueError, match="max_fixes must be 2 to 32, got 1"):
         nav.DriftWindow(max_fixes=1)
     window = nav.DriftWindow()
@@ -444,7 +444,7 @@ def test_an_ellipse_has_the_axes_of_its_covariance():
         nav.UncertaintyEllipse(-np.eye(2))
 
 
-def test_bad_forecasts_are_refused():
+def test_bad_forecasts_are_rejected():
     with pytest.raises(ValueError, match="leeway_std must be finite and not negative, got -1"):
         nav.DriftModel(leeway_std=-1.0)
     with pytest.raises(ValueError, match="wind_mps must be finite"):

@@ -40,7 +40,7 @@ def test_smoothed_it_is_surer_of_the_same_voyage():
     assert np.median(variance_m2(smoothed) / variance_m2(as_it_went)) < 0.6
 
 
-def test_a_log_that_cannot_be_navigated_as_a_whole_is_refused_in_words():
+def test_a_log_that_cannot_be_navigated_as_a_whole_is_rejected_in_words():
     part = longest_part()
     unfixed = dataclasses.replace(part, fixes=part.fixes.rows(slice(0)))
     with pytest.raises(ValueError, match="irene: a set of readings needs a usable fix, got none"):
@@ -52,7 +52,7 @@ def test_a_log_that_cannot_be_navigated_as_a_whole_is_refused_in_words():
 
 
 def fixes_alone(time_s, fix_m):
-    """Readings of a receiver that tells no velocity, aboard a ship without other instruments."""
+    """Readings of a receiver without velocities, aboard a ship without other instruments."""
     none, pairs = np.full(len(time_s), np.nan), np.full((len(time_s), 2), np.nan)
     return own_ship.Readings(
         plane=LocalPlane(latitude_rad=0.9, longitude_rad=0.1),
@@ -69,7 +69,7 @@ def fixes_alone(time_s, fix_m):
     )
 
 
-def test_seldom_fixes_tell_as_much_of_the_velocity_whatever_times_lie_between():
+def test_seldom_fixes_report_as_much_of_the_velocity_whatever_times_lie_between():
     time_s = np.arange(0.0, 1200.0, 40.0)
     course_rad = np.pi / 2 * (time_s > 600.0)
     velocity_mps = 5.0 * np.column_stack([np.cos(course_rad), np.sin(course_rad)])

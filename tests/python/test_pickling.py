@@ -1,4 +1,4 @@
-"""What is pickled, or sent to another process, goes on bit for bit."""
+"""Pickled objects, also in other processes, continue bit for bit."""
 
 import copy
 import multiprocessing
@@ -40,7 +40,7 @@ def assert_same(one, other):
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", OF_ALL_KINDS)
-def test_an_estimator_goes_on_bit_for_bit(name, way):
+def test_an_estimator_continues_bit_for_bit(name, way):
     estimator = copy.copy(OF_ALL_KINDS[name])
     estimator.start(START)
     follow(estimator, z[:12])
@@ -73,7 +73,7 @@ def test_an_estimator_that_has_not_begun_has_not_begun(name):
     ],
     ids=lambda smoother: type(smoother).__name__,
 )
-def test_a_smoother_goes_on_bit_for_bit(smoother):
+def test_a_smoother_continues_bit_for_bit(smoother):
     assert np.isnan(WAYS["pickle"](smoother).value)
     course = np.linspace(3.0, 3.4, 20)
     for reading in course[:9]:
@@ -87,7 +87,7 @@ def test_a_smoother_goes_on_bit_for_bit(smoother):
 
 @pytest.mark.parametrize("filter", ["ekf", "ukf", "augmented_ukf"])
 @pytest.mark.parametrize("states", [5, 7, 8])
-def test_a_navigator_goes_on_bit_for_bit(states, filter):
+def test_a_navigator_continues_bit_for_bit(states, filter):
     navigator = wl.UsvNavigator(states, filter, rejections=4)
     navigator.start([0.0, 0.0], [5.0, 0.0], 0.0)
     rng = np.random.default_rng(2)
@@ -114,7 +114,7 @@ def test_a_navigator_goes_on_bit_for_bit(states, filter):
 
 
 @pytest.mark.parametrize("estimator", [None, OF_ALL_KINDS["ModeHistory"]])
-def test_a_tracker_goes_on_bit_for_bit(estimator):
+def test_a_tracker_continues_bit_for_bit(estimator):
     tracker = wl.Tracker(wl.Radar(period_s=DT_S), estimator=estimator)
 
     def watch(one, rows, first):
@@ -241,7 +241,7 @@ def test_closest_approaches(way):
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("estimator", [None, OF_ALL_KINDS["SwitchingGridImm"]])
-def test_what_a_tracker_tells(estimator, way):
+def test_what_a_tracker_reports(estimator, way):
     tracker = wl.Tracker(wl.Radar(period_s=DT_S), estimator=estimator)
     events = []
     for k, row in enumerate(z[:12]):
@@ -265,7 +265,7 @@ def assert_equal_fields_of_all(events, wanted):
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_a_window_of_drift_goes_on_bit_for_bit(way):
+def test_a_window_of_drift_continues_bit_for_bit(way):
     window = wl.navigation.DriftWindow(max_fixes=5, log_std_mps=0.1, heading_std_rad=0.01)
 
     def sail(one, first, last):
@@ -287,13 +287,13 @@ def test_a_window_of_drift_goes_on_bit_for_bit(way):
 
 
 @pytest.mark.parametrize("state", [(), (1, 2, 3, 4, 5)])
-def test_a_result_of_no_such_fields_is_refused(state):
+def test_a_result_of_no_such_fields_is_rejected(state):
     for kind in (wl.track.ScanReport, wl.track.TrackTable, wl.navigation.ClosestApproach):
         with pytest.raises(ValueError, match="state is not that of such a result"):
             kind.__new__(kind).__setstate__(state)
 
 
-def test_a_state_that_is_of_another_is_refused_and_nothing_changes():
+def test_a_state_that_is_of_another_is_rejected_and_nothing_changes():
     imm = copy.copy(OF_ALL_KINDS["Imm-initial"])
     imm.start(START)
     follow(imm, z[:5])
@@ -324,7 +324,7 @@ def test_a_root_is_no_covariance():
         (np.zeros((2, 2)), np.eye(4), "innovation must have shape"),
     ],
 )
-def test_a_step_of_no_shape_is_refused(innovation, covariance, name):
+def test_a_step_of_no_shape_is_rejected(innovation, covariance, name):
     step = wl.Step.__new__(wl.Step)
     with pytest.raises(ValueError, match=name):
         step.__setstate__((wl.Status.ok, innovation, covariance, 0.0, 0.0))

@@ -247,7 +247,7 @@ def test_of_many_tracks_the_longest_are_drawn(episode):
     assert course.get_xlabel() == "time from start (s), the 10 longest of 12 tracks"
 
 
-def test_many_tracks_have_over_time_the_colours_of_the_map_and_can_be_told_apart():
+def test_many_tracks_have_over_time_the_colours_of_the_map_and_can_be_distinguished():
     rows = [str(k) for k in (5, 1, 12, 11, 2, 9, 3, 10, 4, 8, 6, 7) for _ in range(k)]
     tracks = Tracks(rows, np.arange(float(len(rows))), np.ones((len(rows), 4)))
     speed, course = plot.time_view(plot.figure(), None, tracks)
@@ -588,7 +588,7 @@ NINE = np.zeros(9)
         ),
     ],
 )
-def test_what_does_not_fit_is_refused_by_name(ax, draw, message):
+def test_what_does_not_fit_is_rejected_by_name(ax, draw, message):
     with pytest.raises(ValueError, match=message):
         draw(ax)
 
@@ -650,7 +650,7 @@ def test_a_ranking_may_be_logarithmic(ax):
 
 
 @pytest.mark.parametrize("count", [1, 10, 11, 25])
-def test_every_circumstance_of_a_ranking_is_drawn_and_has_a_mark_of_its_own(ax, count):
+def test_every_circumstance_of_a_ranking_is_drawn_with_a_separate_mark(ax, count):
     values = {f"case {k}": [k, k + 1.0] for k in range(count)}
     plot.ranking_panel(ax, ["a", "b"], values, xlabel="error (m)")
     marks = [one for one in ax.collections if one.get_label() in values]
@@ -719,8 +719,8 @@ def test_every_name_is_in_the_picture(name, way):
     lone = Tracks(np.full(9, name), TIME_S[:9], state, np.array([np.eye(4)] * 9))
     truth = TargetTruth(TIME_S[:9], north, east, *state[:, 1::2].T)
     scans = RadarSimulator(5.0, 0.01, 1.0).record({"a": Truth(state[0])}, 9, rng=1).episodes[0]
-    told = replace(scans, truth={"a": truth})
-    for fig in (plot.map(lone, told), plot.time_figure(told, lone)):
+    reported = replace(scans, truth={"a": truth})
+    for fig in (plot.map(lone, reported), plot.time_figure(reported, lone)):
         FigureCanvasAgg(fig).draw()
         picture = fig.get_tightbbox().padded(0.1)
         for legend in filter(None, (ax.get_legend() for ax in fig.axes)):
@@ -742,7 +742,7 @@ def test_steps_are_named_and_their_ratios_are_alike_at_any_height(ax):
 def own_ship_panel(name):
     """Draws a panel of own ship's, with changes of what it draws."""
     rows, vectors = [0.0, 1.0, 2.0], [[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]]
-    told = {
+    reported = {
         "own_map": {"position_m": vectors, "fix_m": vectors[:2], "current_mps": vectors},
         "speed_over_time": {"time_s": rows, "over_ground_mps": rows, "through_water_mps": rows},
         "course_over_time": {"time_s": rows, "course_rad": rows, "heading_rad": rows},
@@ -750,18 +750,18 @@ def own_ship_panel(name):
     }[name]
 
     def draw(**change):
-        return getattr(plot, name)(plot.figure().subplots(), **told | change)
+        return getattr(plot, name)(plot.figure().subplots(), **reported | change)
 
-    return told, draw
+    return reported, draw
 
 
 @pytest.mark.parametrize(
     "name", ["own_map", "speed_over_time", "course_over_time", "drift_over_time"]
 )
-def test_panels_of_own_ship_take_lists_and_refuse_what_does_not_fit_by_name(name):
-    told, draw = own_ship_panel(name)
+def test_panels_of_own_ship_take_lists_and_reject_what_does_not_fit_by_name(name):
+    reported, draw = own_ship_panel(name)
     assert draw().lines
-    for argument in told:
+    for argument in reported:
         with pytest.raises(ValueError, match=rf"{argument} must have shape \(.*\), got \(3, 3\)"):
             draw(**{argument: np.zeros((3, 3))})
         with pytest.raises(TypeError, match=f"{argument} must hold real numbers: got text"):
@@ -799,6 +799,6 @@ def test_an_ellipse_is_of_two_axes():
         plot.ellipse_outline([0.0, 0.0, 0.0], np.eye(2))
 
 
-def test_curves_that_have_no_names_are_refused():
+def test_curves_that_have_no_names_are_rejected():
     with pytest.raises(TypeError, match="errors must be a mapping by name, got list"):
         plot.error_panel(plot.figure().subplots(), [0.0, 1.0], [1.0, 2.0])

@@ -103,7 +103,7 @@ def test_a_part_of_the_screen_may_be_shown_in_metres(screen):
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("east (m)", "north (m)")
 
 
-def test_rings_stand_at_round_ranges_and_tell_them(screen):
+def test_rings_stand_at_round_ranges_and_report_them(screen):
     ax = plot.ppi(screen, pixels=100)
     radii = [patch.get_radius() for patch in ax.patches]
     assert radii == sorted(radii)

@@ -87,9 +87,9 @@ def test_what_each_part_of_the_tracker_is_worth(part):
     (row,) = re.findall(rf"^\| {re.escape(part)} \| (.*) \|$", page, flags=re.MULTILINE)
     for boats, text in re.findall(r"(fast boat|close boats): ([^;]*)", row):
         scores = figures_of(BOATS[boats]), figures_of(BOATS[boats], *WITHOUT[part])
-        told = re.findall(rf"({'|'.join(FIGURES)}) ([\d.]+) → ([\d.]+)", text)
-        assert len(told) == text.count("→")
-        for figure, *numbers in told:
+        reported = re.findall(rf"({'|'.join(FIGURES)}) ([\d.]+) → ([\d.]+)", text)
+        assert len(reported) == text.count("→")
+        for figure, *numbers in reported:
             key, scale = FIGURES[figure]
             for score, number in zip(scores, numbers, strict=True):
                 last_digit = 10.0 ** -len(number.partition(".")[2])

@@ -142,7 +142,7 @@ def test_a_leap_second_is_the_second_after_it(file, text):
 
 
 @pytest.mark.parametrize("zone", ["+99:99", "-23:75", "+24:00", "+2", "-9900"])
-def test_a_zone_that_does_not_exist_is_refused(file, zone):
+def test_a_zone_that_does_not_exist_is_rejected(file, zone):
     path = file(f"time,north_m,east_m\n2021-05-04T07:54:53{zone},1,2\n")
     with pytest.raises(RecordingError) as caught:
         read_plots(path)
@@ -168,7 +168,7 @@ def test_spaces_before_quotes_do_not_matter(file):
 
 @pytest.mark.parametrize("row", ['"1","2","31', '"1","2","3"4', '"1","2"5,"3"'])
 @pytest.mark.parametrize("before", ["", "0,1,2\n"])
-def test_a_quoted_cell_that_is_cut_or_goes_on_is_no_number(file, row, before):
+def test_a_quoted_cell_that_is_cut_or_continues_is_not_a_number(file, row, before):
     path = file(f"time_s,north_m,east_m\n{before}{row}")
     with pytest.raises(RecordingError) as caught:
         read_plots(path)
@@ -217,7 +217,7 @@ def test_scans_can_be_read_without_plots(file):
 
 
 @pytest.mark.parametrize("head", ["range_m,bearing_deg", "range_nm,bearing_deg", "north_m,east_m"])
-def test_a_place_beyond_all_radars_is_told_by_its_cell(file, head):
+def test_a_place_beyond_all_radars_is_reported_by_its_cell(file, head):
     plots = file(f"time_s,{head}\n0,1,1\n3,1e308,1\n")
     column = head.split(",")[0]
     with pytest.raises(RecordingError, match=f"line 3, column {column}: .*at most 1e9 m"):
@@ -227,7 +227,7 @@ def test_a_place_beyond_all_radars_is_told_by_its_cell(file, head):
 @pytest.mark.parametrize(
     ("column", "wanted"), [("north_m", "1e9 m"), ("east_m", "1e9 m"), ("veast_mps", "1e6 m/s")]
 )
-def test_what_is_beyond_the_earth_is_told_by_its_cell_in_every_file(file, column, wanted):
+def test_what_is_beyond_the_earth_is_reported_by_its_cell_in_every_file(file, column, wanted):
     def far(head, name):
         row = dict.fromkeys(head.split(","), "0") | {"time_s": "3", column: "-1e200"}
         return file(f"{head}\n{','.join(row.values())}\n", name)
@@ -244,7 +244,7 @@ def test_what_is_beyond_the_earth_is_told_by_its_cell_in_every_file(file, column
             read()
 
 
-def test_plots_in_a_grid_without_own_ship_in_it_are_told(file):
+def test_plots_in_a_grid_without_own_ship_in_it_are_reported(file):
     rows = [f"{k},{5.6e6 + 10 * k},4e5" for k in range(5)]
     plots = file("\n".join(["time_s,north_m,east_m", *rows]) + "\n")
     (note,) = read_plots(plots).notes
@@ -303,9 +303,9 @@ def test_a_turning_antenna_is_found_from_times_and_bearings(file, period_s, targ
 
 
 @pytest.mark.parametrize("cartesian", [False, True])
-@pytest.mark.parametrize("told", [{}, {"period_s": 2.5}, {"period_s": 2.6}])
+@pytest.mark.parametrize("reported", [{}, {"period_s": 2.5}, {"period_s": 2.6}])
 @pytest.mark.parametrize(("plots", "begin_deg"), [(30, 0.0), (300, 0.0), (300, 200.0)])
-def test_of_many_plots_a_turn_each_turn_is_a_scan(file, plots, begin_deg, told, cartesian):
+def test_of_many_plots_a_turn_each_turn_is_a_scan(file, plots, begin_deg, reported, cartesian):
     """A scan shorter than a turn would miss, time and again, what is seen in every turn."""
     rng = np.random.default_rng(6)
     turn = np.repeat(np.arange(60), plots)
@@ -316,7 +316,7 @@ def test_of_many_plots_a_turn_each_turn_is_a_scan(file, plots, begin_deg, told, 
         place_m = 4000.0 * np.exp(1j * np.deg2rad(bearing_deg))
         rows = zip(time_s, place_m.real, place_m.imag, strict=True)
         text = "time_s,north_m,east_m\n" + "".join(f"{t:.3f},{n},{e}\n" for t, n, e in rows)
-    sizes = [len(scan) for scan in only(read_plots(file(text), **told)).scans]
+    sizes = [len(scan) for scan in only(read_plots(file(text), **reported)).scans]
     assert len(sizes) in (60, 61)
     assert np.abs(np.array(sizes[1:-1]) - plots).max() <= 0.1 * plots + 3
 
@@ -329,7 +329,7 @@ def test_plots_of_one_time_are_in_one_scan_of_an_antenna_that_turns(file):
     assert (ends_s < [scan.plot_time_s[0] for scan in scans[1:]]).all()
 
 
-def test_plots_that_tell_of_no_turn_are_told_and_left_as_they_are(file):
+def test_plots_that_report_of_no_turn_are_reported_and_left_as_they_are(file):
     rng = np.random.default_rng(5)
     time_s = np.cumsum(rng.uniform(0.1, 2.0, 300))
     read = read_plots(file(polar(time_s, rng.uniform(0.0, 360.0, 300))))
@@ -412,7 +412,7 @@ def test_plots_without_a_finite_place_are_left_out_and_counted(file, cell):
     assert "line 3" in note
 
 
-def test_times_that_go_back_are_told_where_no_scans_are_numbered(file):
+def test_times_that_go_back_are_reported_where_no_scans_are_numbered(file):
     rows = "86399.5,1,1\n86399,2,2\n0.5,3,3\n3,4,4\n"
     (note,) = read_plots(file("time_s,north_m,east_m\n" + rows)).notes
     assert "plots.csv: 1 plot sorted that is more than a minute earlier" in note
@@ -529,7 +529,7 @@ def assert_says(caught, path, line, column, *parts):
         ("time_s,north_m,east_m,own_north_m,own_east_m\n0,1,1,,1\n", 2, "own_north_m", ["finite"]),
     ],
 )
-def test_bad_plots_are_told_by_file_line_and_column(file, text, line, column, parts):
+def test_bad_plots_are_reported_by_file_line_and_column(file, text, line, column, parts):
     path = file(text)
     with pytest.raises(RecordingError) as caught:
         read_plots(path)
@@ -553,14 +553,14 @@ def test_bad_plots_are_told_by_file_line_and_column(file, text, line, column, pa
         ("scan,time_s,north_m,east_m\n0,0,zero,0\n", 2, "north_m", ["a number", "'zero'"]),
     ],
 )
-def test_bad_own_ship_is_told_by_file_line_and_column(file, text, line, column, parts):
+def test_bad_own_ship_is_reported_by_file_line_and_column(file, text, line, column, parts):
     path = file(text, "own.csv")
     with pytest.raises(RecordingError) as caught:
         read_plots(None, path)
     assert_says(caught, path, line, column, *parts)
 
 
-def test_scenarios_must_be_told_apart_in_both_files(file):
+def test_scenarios_must_be_distinguished_in_both_files(file):
     with_scenario = file("scenario,scan,time_s,north_m,east_m\na,0,0,1,1\nb,0,9,1,1\n")
     with pytest.raises(RecordingError) as caught:
         read_plots(with_scenario, file(OWN, "own.csv"))
@@ -575,18 +575,18 @@ def test_scenarios_must_be_told_apart_in_both_files(file):
 def test_a_pipe_that_is_no_text_is_not_read_again(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
-    told = []
+    reported = []
 
     def read():
         with pytest.raises(RecordingError) as caught:
             read_plots(pipe)
-        told.append(str(caught.value))
+        reported.append(str(caught.value))
 
     reader = threading.Thread(target=read, daemon=True)
     reader.start()
     pipe.write_bytes(b"\x1f\x8b")
     reader.join(timeout=10.0)
-    assert "got a file compressed by gzip, decompress it first" in told[0]
+    assert "got a file compressed by gzip, decompress it first" in reported[0]
 
 
 def test_a_turned_scan_keeps_its_ranges_about_own_ship(file):
@@ -622,7 +622,7 @@ def test_files_that_are_no_text_or_not_there(file, tmp_path):
 
 
 @pytest.mark.parametrize("arguments", [{"period_s": 0.0}, {"own_gap_s": -1.0}])
-def test_parameters_that_make_no_sense(file, arguments):
+def test_parameters_that_are_invalid(file, arguments):
     path = file("time_s,north_m,east_m\n0,1,1\n")
     with pytest.raises(ValueError, match=next(iter(arguments))):
         read_plots(path, **arguments)
@@ -761,7 +761,7 @@ def ais_track(**change):
 
 
 @pytest.mark.parametrize("made", [own_ship, truth, ais_track])
-def test_what_is_made_of_columns_takes_lists_and_refuses_what_does_not_fit(made):
+def test_what_is_made_of_columns_takes_lists_and_rejects_what_does_not_fit(made):
     listed = made(time_s=[0.0, 1.0, 2.0], north_m=[0.0, 1.0, 2.0])
     np.testing.assert_array_equal(listed.north_m, made().north_m)
     for wrong in (np.zeros(2), 0.0, None):
@@ -808,14 +808,14 @@ WITH_A_NUMBER = {
 
 @pytest.mark.parametrize("name", WITH_A_NUMBER)
 @pytest.mark.parametrize("wrong", ["3", [1.0]])
-def test_readers_and_recordings_name_what_is_no_number(name, wrong):
+def test_readers_and_recordings_name_what_is_not_a_number(name, wrong):
     with pytest.raises(TypeError, match=f"^{name} must be a number, got {re.escape(repr(wrong))}"):
         WITH_A_NUMBER[name](wrong)
 
 
 @pytest.mark.parametrize("name", ["max_gap_s", "min_reports", "longer_than_s", "window_s"])
 @pytest.mark.parametrize("wrong", [-1.0, np.nan])
-def test_spans_and_counts_below_zero_are_refused(name, wrong):
+def test_spans_and_counts_below_zero_are_rejected(name, wrong):
     with pytest.raises(ValueError, match=f"^{name} must not be negative, got {wrong}"):
         WITH_A_NUMBER[name](wrong)
     with pytest.raises(ValueError, match="max_gap_s must not be negative"):
@@ -838,7 +838,7 @@ def test_scores_forecasts_and_bounds_name_what_is_none():
         montecarlo.run(None, {}, 1)
 
 
-def test_tracks_and_video_of_numbers_written_as_text_are_refused():
+def test_tracks_and_video_of_numbers_written_as_text_are_rejected():
     state = np.zeros((2, 4))
     with pytest.raises(TypeError, match="time_s must hold real numbers: got text such as '1'"):
         recording.Tracks(track_id=["1", "1"], time_s=["1", "2"], state=state)

@@ -1,4 +1,4 @@
-"""AIS reports: what is read, what is left out and said so, what is refused; the Solent."""
+"""AIS reports: reading, dropped reports and their notes, rejected files; the Solent."""
 
 import gzip
 
@@ -40,7 +40,7 @@ def test_reports_become_a_track_in_the_local_plane(tmp_path):
     assert ais.notes == []
 
 
-def test_rows_need_no_order_and_vessels_are_told_apart(tmp_path):
+def test_rows_need_no_order_and_vessels_are_reported_apart(tmp_path):
     mixed = [*northbound([9, 0, 6], "2"), *northbound([3, 1], "1")]
     ais = read_ais(written(tmp_path, *mixed))
     assert list(ais.tracks) == ["2", "1"]
@@ -58,7 +58,7 @@ def test_the_origin_is_the_median_where_none_is_given(tmp_path):
 
 
 @pytest.mark.parametrize("longitudes", [(10.0, 10.0), (179.9999, -179.9999)])
-def test_a_wild_report_does_not_move_the_plane(tmp_path, longitudes):
+def test_a_outlier_report_does_not_move_the_plane(tmp_path, longitudes):
     there = [row(s, longitude=longitudes[s % 2], latitude=54.0 + s * SECOND_DEG) for s in range(9)]
     alone = read_ais(written(tmp_path, *there))
     beside = read_ais(written(tmp_path, row(4, "8", -20.0, 40.0), *there))
@@ -116,7 +116,7 @@ def test_a_stream_faster_than_wanted_is_thinned_not_lost(tmp_path):
     assert "19 reports less than 100 s before the next of the vessel" in ais.notes[0]
 
 
-def test_a_vessel_that_crosses_180_degrees_goes_on(tmp_path):
+def test_a_vessel_that_crosses_180_degrees_continues(tmp_path):
     crossing = [
         row(0, latitude=-17.0, longitude=179.999, cog=90.0),
         row(20, latitude=-17.0, longitude=-179.999, cog=90.0),
@@ -150,7 +150,7 @@ def test_what_is_left_out_is_said(tmp_path):
     assert [note.split("line ")[1] for note in ais.notes] == ["3)", "5)", "6)"]
 
 
-def test_reports_too_far_off_for_one_plane_are_told(tmp_path):
+def test_reports_too_far_off_for_one_plane_are_reported(tmp_path):
     hawaii = [row(second, "1", 21.0 + second * 5e-5, -157.0, 0.0, 10.8) for second in (0, 30)]
     rows = [row(0, "2", 19.0, -111.0), *hawaii]
     ais = read_ais(written(tmp_path, *rows), origin_deg=(19.0, -111.0))
@@ -159,8 +159,8 @@ def test_reports_too_far_off_for_one_plane_are_told(tmp_path):
     stretch = 100.0 * (way_m / (30 * 5e-5 * 110_700.0) - 1.0)
     (note,) = ais.notes
     assert "2 reports are more than 500 km from the origin of the plane (first in line 3)" in note
-    told = float(note.partition("too long by ")[2].partition(" %")[0])
-    assert told == pytest.approx(stretch, abs=1.0)
+    reported = float(note.partition("too long by ")[2].partition(" %")[0])
+    assert reported == pytest.approx(stretch, abs=1.0)
     assert "% at 4803 km; cut the file to one area" in note
     near = read_ais(written(tmp_path, row(0, "1", 54.0), row(0, "2", 56.6)), origin_deg=(54.0, 10))
     assert near.notes == []
@@ -198,14 +198,14 @@ def test_parts_are_cut_at_gaps(tmp_path):
         ([row(0, latitude=91)], ["no report has a position"]),
     ],
 )
-def test_cells_that_make_no_sense_are_told_by_line_and_column(tmp_path, rows, wanted):
+def test_cells_that_are_invalid_are_reported_by_line_and_column(tmp_path, rows, wanted):
     with pytest.raises(RecordingError) as caught:
         read_ais(written(tmp_path, *rows))
     for word in ("ais.csv", *wanted):
         assert word.lower() in str(caught.value).lower()
 
 
-def test_files_and_parameters_that_make_no_sense(tmp_path):
+def test_files_and_parameters_that_are_invalid(tmp_path):
     with pytest.raises(RecordingError, match="cannot be read"):
         read_ais(tmp_path / "none.csv")
     with pytest.raises(RecordingError, match="mmsi"):

@@ -64,13 +64,13 @@ def test_an_error_of_a_device_names_it():
     full = Path("/dev/full")
     if not full.exists():
         pytest.skip("there is no such device")
-    with pytest.raises(OSError, match="No space") as told:
+    with pytest.raises(OSError, match="No space") as reported:
         write(full)
-    assert told.value.filename == str(full)
+    assert reported.value.filename == str(full)
 
 
-def test_where_nothing_can_be_written_is_told_by_the_path_asked_for(tmp_path):
+def test_where_nothing_can_be_written_is_reported_by_the_path_asked_for(tmp_path):
     for path in (tmp_path, tmp_path / "none" / "a.txt"):
-        with pytest.raises(OSError, match="directory") as told:
+        with pytest.raises(OSError, match="directory") as reported:
             check_writable(path)
-        assert told.value.filename == str(path)
+        assert reported.value.filename == str(path)

@@ -133,7 +133,7 @@ def test_gns_is_a_gga_of_several_systems_of_satellites(log):
     assert read.report.problems == {}
 
 
-def test_a_gns_of_another_mode_is_told(log):
+def test_a_gns_of_another_mode_is_reported(log):
     read = log(rmc(10), gns(12, modes="AX"))
     assert read.fixes.valid.tolist() == [True, False]
     assert "GNS field 6: wanted letters out of" in str(read.report.examples[0])
@@ -173,7 +173,7 @@ def test_gll_of_old_has_neither_time_nor_status(log):
     ],
 )
 @pytest.mark.parametrize("talker", ["II", "gp", ""])
-def test_what_each_sentence_tells(log, body, series, name, wanted, talker):
+def test_what_each_sentence_reports(log, body, series, name, wanted, talker):
     read = log(
         sentence("ZDA,120000.5,21,05,2008,00,00"),
         sentence(body.lower() if talker == "gp" else body, talker),
@@ -248,20 +248,20 @@ def test_sentences_of_one_fix_are_one_fix(log):
     ("clock", "lost"),
     [
         (lambda t: t - (t % 50 == 49), 4),  # goes back by a second now and then
-        (lambda t: 100 if 100 <= t < 130 else t, 29),  # stands
+        (lambda t: 100 if 100 <= t < 130 else t, 29),  # stopped
     ],
 )
-def test_fixes_that_a_wrong_clock_takes_for_others_are_told(log, clock, lost):
+def test_fixes_that_a_wrong_clock_takes_for_others_are_reported(log, clock, lost):
     vessel = [6.7 + 3.35e-5 * t for t in range(200)]
     read = log(*(rmc(clock(t), longitude_deg=where) for t, where in enumerate(vessel)))
     first = 50 if lost == 4 else 102
     assert len(read.fixes) == 200 - lost
     assert len(read.report.displaced_lines) == lost
-    told = f"{lost} fixes at a time given before but another position are left out"
-    assert any(f"{told} (first in line {first})" in note for note in read.notes)
+    reported = f"{lost} fixes at a time given before but another position are left out"
+    assert any(f"{reported} (first in line {first})" in note for note in read.notes)
 
 
-def test_a_fix_told_again_at_its_place_or_by_another_sentence_is_not_lost(log):
+def test_a_fix_reported_again_at_its_place_or_by_another_sentence_is_not_lost(log):
     where = [6.7 + 3.35e-5 * t for t in range(50)]
     again = [
         fix
@@ -272,7 +272,7 @@ def test_a_fix_told_again_at_its_place_or_by_another_sentence_is_not_lost(log):
     read = log(*again)
     assert read.report.repeated > 100
     assert read.report.displaced_lines == []
-    assert not any("told before" in note for note in read.notes)
+    assert not any("given before" in note for note in read.notes)
 
 
 def test_the_valid_one_of_a_time_is_kept(log):
@@ -302,7 +302,7 @@ def test_more_vtg_than_fixes_lie_between_them(log):
     assert read.report.repeated == 0
 
 
-def test_speeds_go_on_where_fixes_are_damaged(log):
+def test_speeds_continue_where_fixes_are_damaged(log):
     fixes = [gga(10 + t) for t in range(20)]
     fixes[5:15] = [line.replace("GGA", "GGX") for line in fixes[5:15]]
     read = log(*(line for t, fix in enumerate(fixes) for line in (fix, vtg(t))))
@@ -311,15 +311,15 @@ def test_speeds_go_on_where_fixes_are_damaged(log):
     np.testing.assert_allclose(read.ground.time_s, 10 + np.arange(20), atol=0.6)
 
 
-def test_speeds_left_out_though_they_are_other_ones_are_told(log):
+def test_speeds_left_out_though_they_are_other_ones_are_reported(log):
     standing = [line for t in range(12, 15) for line in (rmc(10, kn=f"{t}.0"), gga(t))]
     read = log(rmc(10), gga(10), *standing, reorder_s=10)
     assert len(read.ground) == 1
     assert read.report.other_speed_lines == [3, 5, 7]
-    told = (
+    reported = (
         "3 different speeds over ground at a time given before are left out (first in line 3)"
     )
-    assert f"own.nmea: {told}" in read.notes
+    assert f"own.nmea: {reported}" in read.notes
     same = log(rmc(10, course=""), rmc(10, course=""), vtg(7.0), rmc(12))
     assert same.report.repeated == 3
     assert same.report.other_speed_lines == []
@@ -328,7 +328,7 @@ def test_speeds_left_out_though_they_are_other_ones_are_told(log):
 # ------------------------------------------------------------------ times
 
 
-def test_times_go_on_over_midnight(log):
+def test_times_continue_over_midnight(log):
     times_s = [DAY_S - 4, DAY_S - 2, DAY_S, DAY_S + 2]
     read = log(*under_way(times_s))
     assert clock_s(read.fixes) == times_s
@@ -475,7 +475,7 @@ def test_readings_without_a_time_lie_equally_between_those_with_one(log):
     assert (np.diff(read.heading.time_s) >= 0).all()
 
 
-def test_while_fixes_are_missing_headings_go_on(log):
+def test_while_fixes_are_missing_headings_continue(log):
     usual = [line for t in range(10) for line in (gll(t), *headings(4))]
     after = [line for t in range(70, 80) for line in (gll(t), *headings(4))]
     read = log(*usual, *headings(300), *after)
@@ -545,7 +545,7 @@ def test_headings_come_from_the_best_sentence_there_is(log):
 
 
 @pytest.mark.parametrize(("variation", "taken"), [("3.0,E", 40), (",", 0)])
-def test_where_true_headings_are_silent_those_of_the_compass_go_on(log, variation, taken):
+def test_where_true_headings_are_silent_those_of_the_compass_continue(log, variation, taken):
     lines = []
     for t, fix in enumerate(under_way(range(120))):
         lines += [fix, sentence(f"HDG,37.0,,,{variation}")]
@@ -604,19 +604,19 @@ def jumping(*where, seconds=300):
 def test_fixes_that_jump_and_come_back_are_suspect_all_of_them(log, count):
     read = log(*jumping((slice(100, 100 + count), 0.5)))
     assert np.flatnonzero(read.fixes.suspect).tolist() == list(range(100, 100 + count))
-    (told,) = [note for note in read.notes if "out of the vessel's reach" in note]
-    assert f"{count} fixes" in told
-    assert "first in line 101" in told
+    (reported,) = [note for note in read.notes if "out of the vessel's reach" in note]
+    assert f"{count} fixes" in reported
+    assert "first in line 101" in reported
     twice = log(*jumping((slice(100, 120), 0.5), (slice(120, 130), -0.5)))
     assert np.flatnonzero(twice.fixes.suspect).tolist() == list(range(100, 130))
 
 
-def test_fixes_that_jump_and_stay_are_believed_and_told(log):
+def test_fixes_that_jump_and_stay_are_believed_and_reported(log):
     read = log(*jumping((slice(100, 300), 0.5), (slice(150, 154), -0.4)))
     assert np.flatnonzero(read.fixes.suspect).tolist() == [150, 151, 152, 153]
-    (told,) = [note for note in read.notes if "jumps" in note]
-    assert "1 time out of the vessel's reach, first by 55.6 km in line 101" in told
-    assert "196 fixes continue" in told
+    (reported,) = [note for note in read.notes if "jumps" in note]
+    assert "1 time out of the vessel's reach, first by 55.6 km in line 101" in reported
+    assert "196 fixes continue" in reported
     silent = log(*(rmc(t + 3000 * (t > 50), 46.5 + 0.5 * (t > 50)) for t in range(100)))
     assert not silent.fixes.suspect.any()
     assert not any("jumps" in note for note in silent.notes)
@@ -639,17 +639,17 @@ def test_fixes_that_stay_while_the_vessel_moves_are_frozen(log, source):
     ("lost", "longest_s"),
     [(range(200, 300), 101), (range(100), 100), (range(500, 600), 100), (range(200, 250), 0)],
 )
-def test_a_heading_that_is_lost_for_long_is_told(log, kind, lost, longest_s):
+def test_a_heading_that_is_lost_for_long_is_reported(log, kind, lost, longest_s):
     lines = [
         line
         for t, fix in enumerate(under_way(range(600)))
         for line in (fix, *([] if t in lost else [sentence(kind)]))
     ]
-    told = [note for note in log(*lines).notes if "without a heading" in note]
+    reported = [note for note in log(*lines).notes if "without a heading" in note]
     if longest_s == 0:
-        assert told == []
+        assert reported == []
     else:
-        (note,) = told
+        (note,) = reported
         assert "1 interval of more than 60 s without a heading" in note
         assert float(note.split()[-2]) == pytest.approx(longest_s, abs=1.0)
 
@@ -677,18 +677,18 @@ def test_speeds_that_stay_the_same_beside_frozen_fixes_are_frozen_too(log, speed
     frozen = [] if live else list(range(21, 50))
     assert np.flatnonzero(read.ground.frozen).tolist() == frozen
     assert np.flatnonzero(~read.ground.usable).tolist() == frozen
-    told = [note for note in read.notes if "29 speeds over ground repeated" in note]
-    assert len(told) == (not live)
+    reported = [note for note in read.notes if "29 speeds over ground repeated" in note]
+    assert len(reported) == (not live)
 
 
 def test_a_vessel_that_lies_still_long_after_her_last_speed_is_not_frozen(log):
     way = [gll(t, longitude_deg=6.7 + 3.35e-5 * t) for t in range(300)]
     still = [gll(t, longitude_deg=6.71) for t in range(300, 900)]
     speeds = [sentence("VTG,90,T,,M,5.0,N,,K,A")] * 120
-    told = [line for pair in zip(way, speeds, strict=False) for line in pair]
-    assert not log(*told, *way[120:], *still).fixes.frozen.any()
+    reported = [line for pair in zip(way, speeds, strict=False) for line in pair]
+    assert not log(*reported, *way[120:], *still).fixes.frozen.any()
     moving = [line for fix in still for line in (fix, sentence("VHW,,T,,M,5.0,N,,K"))]
-    assert log(*told, *way[120:], *moving).fixes.frozen.sum() == 599
+    assert log(*reported, *way[120:], *moving).fixes.frozen.sum() == 599
 
 
 def test_a_vessel_at_rest_is_not_frozen(log):
@@ -698,17 +698,17 @@ def test_a_vessel_at_rest_is_not_frozen(log):
     assert not log(*slow).fixes.frozen.any()
 
 
-def test_readings_that_their_instrument_calls_not_valid_are_told(log):
+def test_readings_that_their_instrument_calls_not_valid_are_reported(log):
     bad = ["VBW,5.0,0.1,V,5.1,0.2,V", "VBW,5.0,0.1,A,5.1,0.2,V", "ROT,3.0,V", "THS,90.0,V"]
     read = log(rmc(10), *map(sentence, bad), sentence("HDG,89.0,,,1.0,E"), rmc(12))
     assert read.heading.sentence.tolist() == ["HDG"]
-    for told in (
+    for reported in (
         "1 heading marked invalid by the instrument (first in line 5)",
         "1 speed through the water marked invalid by the instrument (first in line 2)",
         "2 speeds over ground by log marked invalid by the instrument (first in line 2)",
         "1 rate of turn marked invalid by the instrument (first in line 4)",
     ):
-        assert f"own.nmea: {told}" in read.notes
+        assert f"own.nmea: {reported}" in read.notes
     good = ["VBW,5.0,0.1,A,5.1,0.2,A", "VBW,,,V,,,V", "ROT,3.0,A", "THS,90.0,A"]
     assert log(rmc(10), *map(sentence, good), rmc(12)).notes == []
 
@@ -828,7 +828,7 @@ def test_dates_that_the_receiver_does_not_know_yet_leave_a_log_without_a_date(lo
         ("32,05,2008", "a date"),
     ],
 )
-def test_a_zda_with_a_bad_date_tells_the_time_alone(log, date, words):
+def test_a_zda_with_a_bad_date_reports_the_time_alone(log, date, words):
     read = log(sentence(f"ZDA,000010,{date},00,00"), gll(12))
     assert not read.dated
     assert read.fixes.time_s.tolist() == [12]
@@ -880,16 +880,16 @@ def test_fields_are_shown_as_they_are_written(log):
     assert "got '50three'" in str(read.report.examples[0])
 
 
-def test_sentences_without_what_they_are_there_for_are_told(log):
+def test_sentences_without_what_they_are_there_for_are_reported(log):
     empty = ["HDT,,T", "HDT,,T", "ROT,,A", "RMC,100011,V,,,,,,,010620,,", "VHW,,T,,M,,N,,K"]
     notes = log(rmc(10), sentence("HDT,40.0,T"), *map(sentence, empty), rmc(12)).notes
-    for told in (
+    for reported in (
         "2 HDT sentences have no heading (first in line 3)",
         "1 ROT sentence has no rate of turn (first in line 5)",
         "1 RMC sentence has no position (first in line 6)",
         "1 VHW sentence has no heading or speed (first in line 7)",
     ):
-        assert f"own.nmea: {told}" in notes
+        assert f"own.nmea: {reported}" in notes
 
 
 def test_a_date_that_stays_the_same_over_midnight_is_stale_until_it_changes(log):
@@ -1034,7 +1034,7 @@ def test_what_is_no_file_is_an_error(tmp_path):
         {"max_speed_mps": 0.0},
     ],
 )
-def test_parameters_that_make_no_sense(log, wrong):
+def test_parameters_that_are_invalid(log, wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         log(rmc(10), **wrong)
 

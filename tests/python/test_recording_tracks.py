@@ -70,7 +70,7 @@ def test_truth_of_another_scenario_is_left_out_of_the_only_one(file):
         ("time_s,target,north_m,east_m\n0,1,1,1\n1, ,1,1\n", "target", ["line 3", "empty cell"]),
     ],
 )
-def test_bad_truth_is_told(file, text, column, parts):
+def test_bad_truth_is_reported(file, text, column, parts):
     plots = file(PLOTS, "plots.csv")
     truth = file(text, "truth.csv")
     with pytest.raises(RecordingError) as caught:
@@ -211,7 +211,7 @@ def test_tracks_of_the_wrong_shape():
         ),
     ],
 )
-def test_bad_tracks_are_told(file, text, column, parts):
+def test_bad_tracks_are_reported(file, text, column, parts):
     path = file(text, "tracks.csv")
     with pytest.raises(RecordingError) as caught:
         read_tracks(path)

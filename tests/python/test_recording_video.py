@@ -106,7 +106,7 @@ def test_what_is_written_comes_back(tmp_path_factory, written):
         assert abs(block.start_range_m - written.start_range_m) <= 0.501 * block.cell_m
 
 
-def test_turns_are_cut_at_north_and_times_go_on_over_midnight(path):
+def test_turns_are_cut_at_north_and_times_continue_over_midnight(path):
     written = [video(512, dtype=np.uint16, start_s=86398.0, first=k) for k in (0, 513)]
     recording.write_video(path, iter(written), source=(25, 7), summary="harbour radar")
     videos, report = read(path, midnight_s=1e9)
@@ -301,7 +301,7 @@ def test_small_cells_are_scaled_to_full_scale(path):
     ]
 
 
-def test_a_sender_that_tells_no_width_is_given_the_step(path):
+def test_a_sender_that_reports_no_width_is_given_the_step(path):
     octets = b"".join(
         record(azimuth=(64 * k, 64 * k), sequence=k, ticks=k) for k in range(10) if k != 4
     )
@@ -310,7 +310,7 @@ def test_a_sender_that_tells_no_width_is_given_the_step(path):
     assert report.missing == 1
 
 
-def test_a_sender_that_does_not_count_or_tell_the_time_is_read(path):
+def test_a_sender_that_does_not_count_or_report_the_time_is_read(path):
     octets = b"".join(record(azimuth=(16 * k, 16 * k + 16)) for k in range(4096 + 1024))
     with pytest.raises(RecordingError, match=r"no sweep has a time of day; wanted .* got 5120"):
         read(path, octets)
@@ -495,7 +495,7 @@ def test_a_file_that_is_not_there_is_an_error(path):
         recording.is_video(path)
 
 
-def test_what_a_reader_and_a_writer_are_told_must_make_sense(path):
+def test_what_a_reader_and_a_writer_are_reported_must_make_sense(path):
     with pytest.raises(ValueError, match="period_s must be positive, got 0"):
         recording.read_video(path, period_s=0)
     with pytest.raises(ValueError, match="midnight_s must be finite, got nan"):
@@ -523,11 +523,11 @@ def test_what_a_reader_and_a_writer_are_told_must_make_sense(path):
 # ------------------------------------------------------------------ telling video from tables
 
 
-def test_video_is_told_from_tables(path):
+def test_video_is_reported_from_tables(path):
     octets = octets_of(path, video(3))
-    told = [octets, octets[:30], b"\x30\x00\x03" + octets, bytes(99) + octets]
+    reported = [octets, octets[:30], b"\x30\x00\x03" + octets, bytes(99) + octets]
     other = [b"", b"\xf0", b"time_s,north_m\n1,2\n", "🚢 time_s\n".encode(), bytes(5000)]
-    for wanted, files in ((True, told), (False, other)):
+    for wanted, files in ((True, reported), (False, other)):
         for content in files:
             path.write_bytes(content)
             assert recording.is_video(path) is wanted
@@ -612,7 +612,7 @@ def test_we_read_what_another_implementation_writes(path, oracle):
     assert block.start_range_m == pytest.approx(149.896229, abs=1e-8)
 
 
-def test_what_happened_once_is_told_in_the_singular():
+def test_what_happened_once_is_reported_in_the_singular():
     counts = ("skipped_octets", "other_source", "missing", "repeated", "late", "untimed", "held")
     counts += ("time_jumps", "reversals", "astray")
     once = VideoReport(**dict.fromkeys(counts, 1)).notes

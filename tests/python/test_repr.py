@@ -150,7 +150,7 @@ TOLD_AS_A_CHAIN = {
 
 
 @pytest.mark.parametrize("thing", [*OF_ALL_KINDS.values(), *MOTIONS.values(), RADAR, CONVERTED])
-def test_the_text_tells_every_argument(thing):
+def test_the_text_reports_every_argument(thing):
     text = repr(thing)
     signature = type(thing).__init__.__doc__.split("->")[0]
     arguments = set(re.findall(r"(\w+):", signature)) - {"self"}
@@ -192,7 +192,7 @@ def test_what_the_text_of_a_mode_history_says_of_its_chain():
     )
 
 
-def test_the_turn_rate_of_a_filter_that_does_not_matter_is_told_as_zero():
+def test_the_turn_rate_of_a_filter_that_does_not_matter_is_reported_as_zero():
     for name in ("AdaptiveGridImm", "SwitchingGridImm", "LikelyModelSetImm", "ModeHistory"):
         assert "CoordinatedTurn(turn_rate_rad_s=0.0, " in repr(OF_ALL_KINDS[name])
 
@@ -216,7 +216,7 @@ def test_chains_of_sojourn_times(sojourn_s):
 
 
 @given(st.lists(st.integers(1, 10**6).map(lambda n: n / 100), min_size=2, max_size=5))
-def test_sojourn_times_are_told_as_they_were_written(sojourn_s):
+def test_sojourn_times_are_reported_as_they_were_written(sojourn_s):
     chain = wl.ModeChain.from_sojourn_s(sojourn_s)
     assert repr(chain) == f"ModeChain.from_sojourn_s(sojourn_s={sojourn_s})"
 

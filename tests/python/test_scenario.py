@@ -86,9 +86,9 @@ def test_a_vessel_may_start_at_rest_on_a_given_course():
 @pytest.mark.parametrize("turns", [-1, 0, 1])
 def test_a_vessel_that_moves_starts_on_the_course_of_its_velocity(turns):
     course_rad = np.arctan2(START[3], START[1])
-    told = Truth(START, [Segment(9.0, 0.1)], start_course_rad=course_rad + turns * 2 * np.pi)
+    reported = Truth(START, [Segment(9.0, 0.1)], start_course_rad=course_rad + turns * 2 * np.pi)
     wanted = Truth(START, [Segment(9.0, 0.1)])
-    np.testing.assert_allclose(told.state_at(20.0), wanted.state_at(20.0), atol=1e-9)
+    np.testing.assert_allclose(reported.state_at(20.0), wanted.state_at(20.0), atol=1e-9)
     with pytest.raises(ValueError, match=r"start_course_rad must be the course of .*got 1\.57"):
         Truth(START, start_course_rad=np.pi / 2)
 
@@ -103,10 +103,10 @@ def test_scenarios_of_other_truths_have_other_parameters():
     turning = Truth([1000.0, 5.0, 0.0, 0.0], [Segment(60.0, 0.02)])
     recorded = TrackTruth([0.0, 60.0], [1000.0, 1300.0], [0.0, 0.0])
     moved = recorded.moved(1.0, 0.0)
-    told = [parameters(truth) for truth in (straight, turning, recorded, moved)]
-    assert all(one != other for k, one in enumerate(told) for other in told[:k])
-    assert parameters(recorded) == told[2]
-    assert told[2]["type"] == "TrackTruth"
+    reported = [parameters(truth) for truth in (straight, turning, recorded, moved)]
+    assert all(one != other for k, one in enumerate(reported) for other in reported[:k])
+    assert parameters(recorded) == reported[2]
+    assert reported[2]["type"] == "TrackTruth"
 
 
 def test_what_another_truth_calls_parameters_is_its_own():
@@ -114,15 +114,15 @@ def test_what_another_truth_calls_parameters_is_its_own():
         parameters = np.zeros(3)
 
     truth = Known([0.0, 60.0], [1000.0, 1300.0], [0.0, 0.0])
-    told = Scenario("one", truth, RadarSimulator(30.0, 0.01, 3.0), 20).parameters["truth"]
-    assert told["type"] == "Known"
-    assert len(told["states_sha256"]) == 64
+    reported = Scenario("one", truth, RadarSimulator(30.0, 0.01, 3.0), 20).parameters["truth"]
+    assert reported["type"] == "Known"
+    assert len(reported["states_sha256"]) == 64
 
 
 @pytest.mark.parametrize("name", ["switch_times_s", "control_switch_times_s"])
-def test_what_another_truth_tells_of_its_switches_are_numbers(name):
-    told = type("Told", (TrackTruth,), {name: ["10", "20"]})
-    truth = told([0.0, 60.0], [1000.0, 1300.0], [0.0, 0.0])
+def test_what_another_truth_reports_of_its_switches_are_numbers(name):
+    reported = type("Told", (TrackTruth,), {name: ["10", "20"]})
+    truth = reported([0.0, 60.0], [1000.0, 1300.0], [0.0, 0.0])
     with pytest.raises(TypeError, match=f"^{name} must hold real numbers: got text such as '10'"):
         getattr(Scenario("one", truth, RadarSimulator(30.0, 0.01, 3.0), 20), name)
 
@@ -151,7 +151,7 @@ def test_times_are_in_a_row(truth):
         truth.state_at(np.zeros((2, 2)))
 
 
-def test_truths_that_make_no_sense():
+def test_truths_that_are_invalid():
     with pytest.raises(ValueError, match="duration_s"):
         Segment(0.0)
     with pytest.raises(ValueError, match="finite"):
@@ -303,7 +303,7 @@ def test_clutter_is_even_over_the_disc():
         ({"max_range_m": 0.0}, "max_range_m"),
     ],
 )
-def test_radars_that_make_no_sense(arguments, name):
+def test_radars_that_are_invalid(arguments, name):
     with pytest.raises(ValueError, match=name):
         RadarSimulator(
             **({"range_std_m": 1.0, "bearing_std_rad": 0.01, "period_s": 1.0} | arguments)
@@ -345,12 +345,12 @@ WITH_A_NUMBER = {
 
 @pytest.mark.parametrize("name", WITH_A_NUMBER)
 @pytest.mark.parametrize("wrong", ["3", {}, np.ones(2), 1j])
-def test_what_is_no_number_is_refused_by_name(name, wrong):
+def test_what_is_not_a_number_is_rejected_by_name(name, wrong):
     with pytest.raises(TypeError, match=f"^{name} must be a number, got {re.escape(repr(wrong))}"):
         WITH_A_NUMBER[name](wrong)
 
 
-def test_a_radar_that_is_none_and_a_scan_at_no_time_are_refused_by_name():
+def test_a_radar_that_is_none_and_a_scan_at_no_time_are_rejected_by_name():
     radar, truth = RadarSimulator(60.0, 0.01, 3.0), Truth(START)
     with pytest.raises(TypeError, match="radar must be a RadarSimulator, got None"):
         Scenario("one", truth, None, 5)

@@ -1,4 +1,4 @@
-"""Truth under control, from tables and under disturbance: exact, seeded, refused where wrong."""
+"""Truth under control, from tables and under disturbance: exact, seeded, validated."""
 
 import numpy as np
 import pytest
@@ -60,14 +60,14 @@ def test_a_controlled_turn_cut_in_two_is_the_same_motion(rate, push, cut_s):
 
 
 @given(rates, pushes)
-def test_control_and_disturbance_move_alike_but_only_control_is_told(rate, push):
+def test_control_and_disturbance_move_alike_but_only_control_is_reported(rate, push):
     known = Truth(START, [Segment(30.0, rate, control_mps2=push)])
     unknown = Truth(START, [Segment(30.0, rate, disturbance_mps2=push)])
     time_s = np.linspace(-5.0, 40.0, 19)
     np.testing.assert_array_equal(known.state_at(time_s), unknown.state_at(time_s))
     np.testing.assert_array_equal(unknown.control_at(time_s), 0.0)
-    told = known.control_at([-1.0, 0.0, 29.9, 30.0])
-    np.testing.assert_array_equal(told, [(0.0, 0.0), push, push, (0.0, 0.0)])
+    reported = known.control_at([-1.0, 0.0, 29.9, 30.0])
+    np.testing.assert_array_equal(reported, [(0.0, 0.0), push, push, (0.0, 0.0)])
 
 
 @given(rates, pushes)
@@ -138,19 +138,19 @@ def test_a_table_of_segments():
         ([(0, 10, 0), (10, 20, -0.3)], "row 1 turns at -0.3 rad/s, faster than 0.2"),
     ],
 )
-def test_tables_that_make_no_sense_are_told_by_row(rows, message):
+def test_tables_that_are_invalid_are_reported_by_row(rows, message):
     with pytest.raises(ValueError, match=message):
         segments_from_table(rows, max_turn_rate_rad_s=0.2)
 
 
 @pytest.mark.parametrize("what", [None, 3.0])
-def test_what_is_no_table_is_told(what):
+def test_what_is_no_table_is_reported(what):
     with pytest.raises(TypeError, match=f"rows must be a sequence of .*got {what}"):
         segments_from_table(what)
 
 
 @pytest.mark.parametrize("most", [-0.1, np.nan])
-def test_a_fastest_turn_that_makes_no_sense(most):
+def test_a_fastest_turn_that_is_invalid(most):
     with pytest.raises(ValueError, match="max_turn_rate_rad_s must not be negative"):
         segments_from_table([(0, 10, 0)], max_turn_rate_rad_s=most)
 
@@ -262,7 +262,7 @@ def test_a_limit_holds():
         ((Truth(START), 0.1, 1.0, 0), "truth must have at least one segment"),
     ],
 )
-def test_disturbances_that_make_no_sense(arguments, message):
+def test_disturbances_that_are_invalid(arguments, message):
     with pytest.raises(ValueError, match=message):
         disturbed(*arguments)
     with pytest.raises(ValueError, match="limit_mps2"):

@@ -140,7 +140,7 @@ def test_a_scenario_starts_with_its_truth():
 
 
 class SilentTruth:
-    """A vessel at rest that does not tell when it begins."""
+    """A vessel at rest without a start time."""
 
     def state_at(self, time_s):
         return np.zeros((np.size(time_s), 4))
@@ -210,7 +210,7 @@ def test_scenarios_can_be_sent_to_another_process():
         ),
     ],
 )
-def test_scenarios_that_make_no_sense(change, message):
+def test_scenarios_that_are_invalid(change, message):
     right = {"name": "x", "truth": STRAIGHT, "radar": RADAR, "scans": 3}
     with pytest.raises(ValueError, match=message):
         Scenario(**(right | change))
@@ -218,7 +218,7 @@ def test_scenarios_that_make_no_sense(change, message):
         Scenario(**(right | {"truth": None}))
 
 
-def test_draws_that_make_no_sense():
+def test_draws_that_are_invalid():
     case = Scenario("x", STRAIGHT, RADAR, 3)
     assert case.draw(0).shape == (0, 3, 2)
     with pytest.raises(ValueError, match="runs must be a whole number, at least 0, got -1"):
@@ -278,6 +278,6 @@ def test_random_maneuvers_depend_on_the_seed_alone():
         ({"total_s": 1.0}, "total_s"),
     ],
 )
-def test_random_maneuvers_that_make_no_sense(arguments, message):
+def test_random_maneuvers_that_are_invalid(arguments, message):
     with pytest.raises(ValueError, match=message):
         scenario.random_maneuvers(**arguments)

@@ -163,7 +163,7 @@ def test_a_track_can_be_moved_in_front_of_a_radar():
         (([0.0, 1.0], [0.0, 1.0], [0.0, 1.0], [1.0]), "vnorth_mps must have shape"),
     ],
 )
-def test_tracks_that_make_no_sense(arguments, message):
+def test_tracks_that_are_invalid(arguments, message):
     with pytest.raises(ValueError, match=message):
         TrackTruth(*arguments)
 
@@ -194,12 +194,12 @@ def test_smoothing_evens_out_reports_that_came_late():
     straight = Truth([0.0, 15.0, 0.0, 0.0])
     heard = track_of(straight, time_s)
     heard.north_m = heard.north_m - 15.0 * np.random.default_rng(1).uniform(0, 2, len(time_s))
-    told, untold = (
+    reported, untold = (
         smoothed(heard, delay_std_s=delay_s).state_at(time_s)[:, 0] - 15.0 * time_s
         for delay_s in (1.0, 0.0)
     )
-    assert told.std() < 0.1 * (heard.north_m - 15.0 * time_s).std()
-    assert told.std() < 0.6 * untold.std()
+    assert reported.std() < 0.1 * (heard.north_m - 15.0 * time_s).std()
+    assert reported.std() < 0.6 * untold.std()
 
 
 def test_smoothing_manages_with_positions_alone():
@@ -213,7 +213,7 @@ def test_smoothing_manages_with_positions_alone():
 @pytest.mark.parametrize(
     "name", ["position_std_m", "delay_std_s", "velocity_std_mps", "accel_psd_m2s3"]
 )
-def test_smoothing_parameters_that_make_no_sense(name):
+def test_smoothing_parameters_that_are_invalid(name):
     heard = track_of(TURN, np.arange(0.0, 30.0, 3.0))
     for wrong in (-1.0, np.nan):
         with pytest.raises(ValueError, match=name):
@@ -237,6 +237,6 @@ def test_a_vessel_of_the_solent_is_tracked_under_a_coastal_radar():
     )
     assert len(seen.switch_times_s) == 0
     assert not seen.control_mps2.any()
-    result = montecarlo.run(seen, {"told": montecarlo.clairvoyant}, 5, progress=False)
-    assert result["solent", "told"].summary()["failed_runs"] == 0
+    result = montecarlo.run(seen, {"clairvoyant": montecarlo.clairvoyant}, 5, progress=False)
+    assert result["solent", "clairvoyant"].summary()["failed_runs"] == 0
     assert np.isfinite(montecarlo.bound_curves(seen)).all()

@@ -1,4 +1,4 @@
-"""Simulated radar video: noise, sea, land and echoes obey the laws that they are told by."""
+"""Simulated radar video: noise, sea, land and echoes follow their documented statistics."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -351,10 +351,10 @@ def test_any_outline_even_around_the_antenna_covers_its_inside(seed):
     assert np.mean((cover > 0.5) != inside(north_m, east_m, outline)) < 1e-4
 
 
-def test_land_may_be_told_by_a_function():
-    drawn, told = island(), island(where=lambda n, e: inside(n, e, ISLAND) ^ inside(n, e, POND))
+def test_land_may_be_given_by_a_function():
+    drawn, reported = island(), island(where=lambda n, e: inside(n, e, ISLAND) ^ inside(n, e, POND))
     np.testing.assert_allclose(
-        drawn.land.cover(drawn.grid, 0.01), told.land.cover(told.grid, 0.01), atol=1e-6
+        drawn.land.cover(drawn.grid, 0.01), reported.land.cover(reported.grid, 0.01), atol=1e-6
     )
     with pytest.raises(ValueError, match=r"shape \(720, 250\), got \(3,\)"):
         island(where=lambda n, e: np.ones(3)).turn()
@@ -629,7 +629,7 @@ def test_the_strait_has_ships_and_a_coast():
 
 
 @pytest.mark.slow
-def test_every_seed_has_a_radar_screen_of_its_own():
+def test_every_seed_has_a_separate_radar_screen():
     one, other = (radar_screen(seed).amplitude for seed in (5, 6))
     assert one.shape == (4096, 2048)
     assert np.mean(one != other) > 0.5
@@ -657,7 +657,7 @@ def test_every_seed_has_a_radar_screen_of_its_own():
         ({"sector_rad": (1.0, 1.0 + 1e-6)}, "sector_rad must contain a sweep"),
     ],
 )
-def test_a_radar_that_makes_no_sense_is_refused(bad, message):
+def test_a_radar_that_is_invalid_is_rejected(bad, message):
     with pytest.raises(ValueError, match=message):
         radar(**bad)
 
@@ -677,12 +677,12 @@ def test_a_radar_that_makes_no_sense_is_refused(bad, message):
         (VideoTarget, {"truth": Truth([1, 0, 0, 0]), "scatterers": 0}, "scatterers must be a"),
     ],
 )
-def test_clutter_and_targets_that_make_no_sense_are_refused(kind, bad, message):
+def test_clutter_and_targets_that_are_invalid_are_rejected(kind, bad, message):
     with pytest.raises(ValueError, match=message):
         kind(**bad)
 
 
-def test_what_is_of_another_type_is_refused():
+def test_what_is_of_another_type_is_rejected():
     simulator = radar()
     boat = at(5000.0, 1.0)
     with pytest.raises(TypeError, match="truth must have state_at, got 3"):

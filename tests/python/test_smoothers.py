@@ -50,7 +50,7 @@ def test_angles_go_through_north(kind, start, rate, seed):
 
 
 @pytest.mark.parametrize("kind", ["adaptive three points", "(33)", "bank"])
-def test_readings_that_are_told_twice_count_once(kind):
+def test_readings_that_are_reported_twice_count_once(kind):
     rng = np.random.default_rng(4)
     dt_s, reading = rng.uniform(0.5, 3.0, 60), np.cumsum(rng.standard_normal(60))
     twice = np.column_stack([dt_s, np.zeros(60)]).ravel(), np.repeat(reading, 2)
@@ -81,7 +81,7 @@ def test_step_by_step_is_the_run_and_arrays_are_runs(kind):
 
 
 @every
-def test_missing_readings_let_time_go_on(kind):
+def test_missing_readings_let_time_continue(kind):
     readings = np.array([np.nan, np.nan, 3.0, 3.0, np.nan, 3.0, 3.0, np.nan, np.nan])
     value, rate, forecast = kind().run(1.0, readings)
     assert np.isnan(value[:2]).all()
@@ -99,7 +99,7 @@ def test_two_readings_of_one_time_are_taken(kind):
 
 
 @every
-def test_bad_readings_are_refused(kind):
+def test_bad_readings_are_rejected(kind):
     with pytest.raises(wl.FilterError, match="reading 2: not finite"):
         kind().run(1.0, [1.0, np.nan, np.inf])
     with pytest.raises(ValueError, match="dt_s must be finite and not negative, got -1"):
@@ -141,7 +141,7 @@ def test_the_schedules_are_those_of_the_paper():
 
 
 @pytest.mark.parametrize("settings", [{"max_readings": 1}, {"max_readings": 33}, {"memory": -0.1}])
-def test_a_bank_that_makes_no_sense_is_refused(settings):
+def test_a_bank_that_is_invalid_is_rejected(settings):
     with pytest.raises(ValueError, match=next(iter(settings))):
         wf.WindowBank(**settings)
 
@@ -149,7 +149,7 @@ def test_a_bank_that_makes_no_sense_is_refused(settings):
 @pytest.mark.parametrize(
     ("dt_s", "speed_kn", "course_deg"), [(1.0, 0.10, 0.30), (3.0, 0.22, 0.85), (10.0, 0.80, 4.2)]
 )
-def test_a_bank_foretells_a_voyage_four_steps_ahead(dt_s, speed_kn, course_deg):
+def test_a_bank_predicts_a_voyage_four_steps_ahead(dt_s, speed_kn, course_deg):
     truth = scenario.reckoning_voyage(dt_s)
     log, gyro, *_ = truth.read(runs=6, seed=0)
     forecast = wf.WindowBank().run(dt_s, log, ahead_s=4 * dt_s)[2]
@@ -168,9 +168,9 @@ def passed(dt_s, reading, gains):
     value, rate, steps = reading[0], 0.0, []
     for n in range(1, len(reading)):
         alpha, beta = gains(n + 1)
-        foretold = value + rate * dt_s[n]
-        error = reading[n] - foretold
-        before, value = value, foretold + alpha * error
+        predicted = value + rate * dt_s[n]
+        error = reading[n] - predicted
+        before, value = value, predicted + alpha * error
         rate += beta * error / dt_s[n]
         steps.append([alpha * error, error, beta * error / dt_s[n], dt_s[n], value - before])
     return value, rate, np.array(steps)
@@ -248,8 +248,8 @@ def test_the_bank_is_the_line_whose_innovations_have_the_least_energy(seed):
     energy = np.zeros(8)
     for k in range(1, 50):
         bank.update(dt_s[k], reading[k])
-        foretold = np.array([np.polyval(line(n, k), time_s[k]) for n in range(2, 10)])
-        energy = 0.9 * energy + (reading[k] - foretold) ** 2
+        predicted = np.array([np.polyval(line(n, k), time_s[k]) for n in range(2, 10)])
+        energy = 0.9 * energy + (reading[k] - predicted) ** 2
         best = line(int(np.argmin(energy)) + 2, k + 1)
         assert bank.window == min(int(np.argmin(energy)) + 2, k + 1)
         assert [bank.value, bank.rate] == pytest.approx([np.polyval(best, time_s[k]), best[0]])

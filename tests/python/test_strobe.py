@@ -215,7 +215,7 @@ def test_a_scan_image_stands_in_for_video_with_gaps():
     )
 
 
-def test_video_that_is_no_picture_is_refused():
+def test_video_that_is_no_picture_is_rejected():
     video = blob_video((100, 100, 90))
     strobe = wl.RadiusGate(radius_m=60.0)
     with pytest.raises(TypeError, match="RadarVideo or a ScanImage, got ndarray"):
@@ -232,7 +232,7 @@ def test_video_that_is_no_picture_is_refused():
         wl.strobe_echo(video[twice], strobe, [0.0, 0.0])
 
 
-def test_settings_that_make_no_sense_are_refused():
+def test_settings_that_are_invalid_are_rejected():
     video = blob_video((100, 100, 90))
     strobe = wl.RadiusGate(radius_m=60.0)
     with pytest.raises(ValueError, match="least_amplitude must be at least 1, got 0"):

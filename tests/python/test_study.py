@@ -89,11 +89,11 @@ def test_nobody_beats_the_bound_by_more_than_chance_and_a_true_start_allow(repor
     report = reports[name]
     for scene in SCENARIOS[name]:
         bound = report.row(scene, "bound")
-        told = report.row(scene, "clairvoyant")
-        assert bound["mean_position_m"] < 1.4 * told["mean_position_m"]
+        reported = report.row(scene, "clairvoyant")
+        assert bound["mean_position_m"] < 1.4 * reported["mean_position_m"]
         for row in report.rows:
             if row["scenario"] == scene:
-                assert row["mean_position_m"] >= 0.95 * told["mean_position_m"]
+                assert row["mean_position_m"] >= 0.95 * reported["mean_position_m"]
 
 
 def test_three_models_are_better_than_two_when_the_vessel_turns_both_ways(reports):
@@ -151,10 +151,10 @@ def test_windows_and_centres_move_the_more_the_lower_their_threshold_asks():
 
 def test_what_covariances_are_worth_is_what_the_rows_say(reports):
     report = reports["variable-structure"]
-    told = report.notes[1].splitlines()
-    assert told[2].split() == SCENARIOS["variable-structure"]
+    reported = report.notes[1].splitlines()
+    assert reported[2].split() == SCENARIOS["variable-structure"]
     for name in ("imm5", "sgmm", "mode_history"):
-        (line,) = [line for line in told if line.split()[0] == name]
+        (line,) = [line for line in reported if line.split()[0] == name]
         for scene, result in report.result.items():
             outcomes = [result[one, name] for one in result.scenarios]
             found = study.variable_structure.covariances.worth(outcomes)
@@ -194,7 +194,7 @@ def test_the_window_forgets_its_first_probabilities_and_the_moving_grid_does_not
     assert late_m[1] > 0.5
 
 
-def test_in_full_it_also_tells_what_the_outcome_hangs_on():
+def test_in_full_it_also_reports_what_the_outcome_hangs_on():
     report = study.variable_structure.run(1, 0, full=True)
     keys = [(row["scenario"], row["estimator"]) for row in report.rows]
     assert len(set(keys)) == len(keys)
@@ -236,7 +236,7 @@ def test_the_models_of_a_tracker_stand_beside_those_made_for_these_vessels(repor
 
 
 @pytest.mark.parametrize("radar", SCENARIOS["solent"])
-def test_histories_told_of_vessels_have_less_error_than_any_imm(reports, radar):
+def test_histories_reported_of_vessels_have_less_error_than_any_imm(reports, radar):
     report = reports["solent"]
     histories = report.row(radar, "mode_history_vessels")
     for metric in METRICS["solent"]:
@@ -276,7 +276,7 @@ def test_errors_count_from_half_a_minute_on_and_those_after_a_turn_once_more(ben
     class Off:
         """Too far north, and a tenth too fast."""
 
-        def run(self, z, **told):
+        def run(self, z, **reported):
             states = bend.truth_states[1:] * [1.0, 1.1, 1.0, 1.1]
             states[:, 0] += off_m
             return SimpleNamespace(mean=np.broadcast_to(states, (len(z), *states.shape)))
@@ -354,19 +354,21 @@ def test_run_prints_the_table_and_writes_json(tmp_path, capsys, no_pictures):
 
 
 @pytest.mark.parametrize(
-    ("name", "told", "counts"),
+    ("name", "reported", "counts"),
     [
         ("imm", "imm: 1 run, seed 0", (0, 1)),
         ("solent", "solent: 10 runs, seed 0", (0, 10)),
         ("ais-forecast", "ais-forecast: 1 run, nothing drawn at random", (None, 1)),
     ],
 )
-def test_as_many_runs_are_told_as_there_were(name, told, counts, tmp_path, capsys, no_pictures):
+def test_as_many_runs_are_reported_as_there_were(
+    name, reported, counts, tmp_path, capsys, no_pictures
+):
     runs = 1 if name == "imm" else 3
     result = tmp_path / "study.json"
     assert run("run", name, "--runs", runs, "--json", result, "--out", tmp_path / "out") == 0
     text = capsys.readouterr().out
-    assert told in text
+    assert reported in text
     assert " 1 runs" not in text
     written = json.loads(result.read_text())
     assert (written["seed"], written["runs"]) == counts
@@ -405,7 +407,7 @@ def test_every_panel_returns_the_axes_it_drew_into(reports):
         (["run", "imm", "--seed", "-1"], "wanted a whole number from 0 on, got '-1'"),
     ],
 )
-def test_a_study_that_makes_no_sense(capsys, arguments, wanted):
+def test_a_study_that_is_invalid(capsys, arguments, wanted):
     assert run(*arguments) == 2
     message = capsys.readouterr().err
     assert message.startswith("wakeline: ")
@@ -428,12 +430,12 @@ def test_a_study_that_makes_no_sense(capsys, arguments, wanted):
         ({"threads": 1.5}, r"threads must be a whole number, at least 1, got 1\.5"),
     ],
 )
-def test_numbers_that_make_no_sense_are_refused_by_name(name, change, message):
+def test_numbers_that_are_invalid_are_rejected_by_name(name, change, message):
     with pytest.raises(ValueError, match=message):
         study.load(name).run(**({"runs": 1} | change))
 
 
-def test_numbers_of_runs_on_video_that_make_no_sense_are_refused_by_name():
+def test_numbers_of_runs_on_video_that_are_invalid_are_rejected_by_name():
     for value in (-1, 1.5):
         with pytest.raises(ValueError, match=f"video_runs must be .* at least 0, got {value}"):
             study.fuzzy_alpha_beta.run(runs=1, video_runs=value)
@@ -443,7 +445,7 @@ def test_numbers_of_runs_on_video_that_make_no_sense_are_refused_by_name():
 
 
 @pytest.mark.parametrize("threads", [1, 3, None])
-def test_jobs_keep_their_order_and_have_the_threads_they_are_told(threads):
+def test_jobs_keep_their_order_and_have_the_threads_they_are_reported(threads):
     running, most = [], []
 
     def job(number):
@@ -530,19 +532,19 @@ def test_a_study_that_is_stopped_has_the_rows_that_were_done(name, stopped):
     assert len(kept.table()) > len(kept.rows)
 
 
-def test_a_study_that_is_stopped_tells_what_was_done(stopped, tmp_path, capsys):
+def test_a_study_that_is_stopped_reports_what_was_done(stopped, tmp_path, capsys):
     stopped(3)
     file = tmp_path / "imm.json"
     assert run("run", "imm", "--runs", RUNS, "--json", file, "--out", tmp_path) == 130
-    told = capsys.readouterr()
-    assert told.out.endswith("\nnot all was done: the table has what was\n")
-    assert told.err == "wakeline: interrupted\n"
+    reported = capsys.readouterr()
+    assert reported.out.endswith("\nnot all was done: the table has what was\n")
+    assert reported.err == "wakeline: interrupted\n"
     assert not file.exists()
     rows = json.loads((tmp_path / "imm-partial.json").read_text())["rows"]
     assert [row["estimator"] for row in rows] == ["imm2", "imm3", "clairvoyant", "bound"]
 
 
-def test_a_study_that_is_stopped_at_once_has_nothing_to_tell(monkeypatch, tmp_path, capsys):
+def test_a_study_that_is_stopped_at_once_has_nothing_to_report(monkeypatch, tmp_path, capsys):
     def stop(*_):
         raise KeyboardInterrupt
 

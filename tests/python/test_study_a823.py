@@ -26,7 +26,7 @@ def report():
 
 @pytest.mark.parametrize("maneuver", a823.MANEUVERS)
 @pytest.mark.parametrize("number", a823.ENCOUNTERS)
-def test_the_geometry_is_that_of_the_resolution_when_it_is_told(number, maneuver):
+def test_the_geometry_is_that_of_the_resolution_when_it_is_reported(number, maneuver):
     encounter = a823.ENCOUNTERS[number]
     for after_s in a823.TOLD_AFTER_S:
         ships = a823.passage(number, maneuver, after_s)
@@ -48,14 +48,16 @@ def test_the_geometry_is_that_of_the_resolution_when_it_is_told(number, maneuver
 
 
 @pytest.mark.parametrize("number", a823.ENCOUNTERS)
-def test_what_an_operator_is_told_of_the_truth_is_what_the_resolution_prints(number):
+def test_what_an_operator_is_reported_of_the_truth_is_what_the_resolution_prints(number):
     ships, encounter = a823.passage(number, "steady", 60.0), a823.ENCOUNTERS[number]
-    told = a823._operators_view(
+    reported = a823._operators_view(
         np.concatenate([ships.target[-1] - ships.own[-1], ships.target[-1]])
     )
     course, speed, cpa, tcpa = DERIVED[number]
     relative = encounter.relative_course_deg, encounter.relative_speed_kn
-    off = a823._off(told, dict(zip(told, (*relative, cpa, tcpa, course, speed), strict=True)))
+    off = a823._off(
+        reported, dict(zip(reported, (*relative, cpa, tcpa, course, speed), strict=True))
+    )
     np.testing.assert_allclose(list(off.values()), 0.0, atol=0.06)
 
 
@@ -135,12 +137,12 @@ def test_what_expects_a_maneuver_at_any_time_fails(report):
 )
 def test_the_best_are_near_the_bound(report, number, name, after_s):
     case = a823.case_name(number, "steady", after_s)
-    told, least = report.row(case, name), report.row(case, "bound")
-    ratio = told["relative_speed_p95_kn"] / least["relative_speed_p95_kn"]
+    reported, least = report.row(case, name), report.row(case, "bound")
+    ratio = reported["relative_speed_p95_kn"] / least["relative_speed_p95_kn"]
     assert 0.75 < ratio < 1.6
 
 
-def test_three_minutes_tell_more_than_one(report):
+def test_three_minutes_report_more_than_one(report):
     for name in ("mode_history", "kalman_cv", "imm_turn_rate", "vessel_imm"):
         for number in a823.ENCOUNTERS:
             one, three = (

@@ -1,4 +1,4 @@
-"""The study on dead reckoning: its voyage, what is foretold of it, and the claim about (33)."""
+"""The study on dead reckoning: its voyage, its predictions, and the claim about (33)."""
 
 import json
 import math
@@ -61,12 +61,12 @@ def test_instruments_err_as_they_are_said_to():
 
 
 @pytest.mark.parametrize("dt_s", [0.0, -1.0, 0.25, 700.0, float("nan")])
-def test_steps_that_do_not_fit_are_refused(dt_s):
+def test_steps_that_do_not_fit_are_rejected(dt_s):
     with pytest.raises(ValueError, match=r"dt_s must be a multiple of 0\.1 s"):
         scenario.reckoning_voyage(dt_s)
 
 
-def test_voyages_without_runs_are_refused():
+def test_voyages_without_runs_are_rejected():
     with pytest.raises(ValueError, match="runs must be a whole number, at least 1, got 0"):
         scenario.reckoning_voyage(10.0).read(runs=0)
     with pytest.raises(ValueError, match="seed must be a whole number, at least 0, got -1"):
@@ -96,7 +96,7 @@ def test_rows_are_those_of_the_design(report):
     assert report.row("forecast_4x3s", "combined")["course_rms_deg"] is None
 
 
-def test_the_table_has_figures_that_tell_estimators_apart(report):
+def test_the_table_has_figures_that_report_estimators_apart(report):
     head, *rows = report.table()
     drift = [row[head.index("drift rms kn")] for row in rows]
     assert all(len(cell.lstrip("0.")) >= 2 for cell in drift if cell not in ("", "-"))
@@ -112,7 +112,7 @@ def test_forecasts_four_readings_ahead_are_as_good_as_asked_for(report, name):
     assert every_three["course_rms_deg"] < 0.85
 
 
-def test_combined_dead_reckoning_foretells_places_best(report):
+def test_combined_dead_reckoning_predicts_places_best(report):
     for metric in PLACE:
         assert report.row("forecast_4x3s", "combined")[metric] < 0.6 * 0.003
         for case in FORECASTS:

@@ -37,7 +37,7 @@ def test_errors_grow_with_time_and_turns_are_harder(report):
         assert report.row("after_60s_turning", name)["position_median_m"] > medians[0]
 
 
-def test_no_turn_goes_on_for_six_minutes(report):
+def test_no_turn_continues_for_six_minutes(report):
     rows = {name: report.row("after_360s", name) for name in forecast.names()}
     assert rows["turning_on"]["position_median_m"] > 1.5 * rows["last_report"]["position_median_m"]
 

@@ -147,6 +147,6 @@ def test_a_hard_turn_is_what_it_says():
 
 @pytest.mark.parametrize("field", ["speed_mps", "radius_m", "range_m", "period_s"])
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
-def test_a_hard_turn_that_makes_no_sense_is_refused(field, value):
+def test_a_hard_turn_that_is_invalid_is_rejected(field, value):
     with pytest.raises(ValueError, match=field):
         HardTurn(**({"speed_mps": 10.0, "radius_m": 300.0} | {field: value}))

@@ -1,4 +1,4 @@
-"""The study of an unmanned vessel's navigation: her mission, her sensors, and what comes out."""
+"""The study of an unmanned vessel's navigation: mission, sensors and results."""
 
 import dataclasses
 import json
@@ -58,7 +58,7 @@ def test_she_reaches_every_waypoint_and_keeps_clear_of_what_is_in_the_way(name):
 
 
 def test_without_the_obstacles_she_would_run_into_them():
-    """Pointing up into the current she holds the straight lines, on which the obstacles lie."""
+    """Pointing up into the current the vessel follows the straight lines with the obstacles."""
     mission = UsvMission(allow_for_current=True)
     free = dataclasses.replace(mission, obstacles=())
     for obstacle in mission.obstacles:
@@ -136,7 +136,7 @@ def test_errors_of_a_mission_say_what_is_wrong():
         ("compass_std_rad", -0.1, "zero or more"),
     ],
 )
-def test_numbers_of_a_mission_that_are_none_are_refused(name, value, wanted):
+def test_numbers_of_a_mission_that_are_none_are_rejected(name, value, wanted):
     with pytest.raises(ValueError, match=f"{name} must be {wanted}"):
         UsvMission(**{name: value})
 

@@ -1,4 +1,4 @@
-"""The tracker: the life of tracks, what it saves, what it refuses, and threads."""
+"""The tracker: the life of tracks, saved states, rejected input, and threads."""
 
 import re
 from concurrent.futures import ThreadPoolExecutor
@@ -144,7 +144,7 @@ def test_a_target_seen_in_five_of_ten_scans_is_held(pattern):
             assert np.hypot(*(table.mean[0, [0, 2]] - place)) < 100.0
 
 
-def test_events_tell_the_life_of_a_track():
+def test_events_report_the_life_of_a_track():
     truths = {"one": Truth([1500.0, 4.0, -800.0, 3.0])}
     recorded = scans(20, truths=truths, clutter=0.0, detection=1.0)
     tracker = wl.Tracker(RADAR)
@@ -278,7 +278,7 @@ def test_a_name_is_cut_between_letters():
         {"time_s": np.nan, "north_m": 0.0, "east_m": 0.0},
     ],
 )
-def test_a_designation_that_makes_no_sense_is_refused(place):
+def test_a_designation_that_is_invalid_is_rejected(place):
     tracker = wl.Tracker(RADAR)
     with pytest.raises(ValueError, match="must be finite"):
         tracker.designate(**({"time_s": 0.0} | place))
@@ -296,7 +296,7 @@ def test_when_there_is_no_room_for_more():
 # --- save and restore -------------------------------------------------------------------------
 
 
-def test_a_restored_tracker_goes_on_bit_for_bit():
+def test_a_restored_tracker_continues_bit_for_bit():
     recorded = scans(40)
     saved = wl.Tracker(RADAR)
     track_all(recorded[:17], saved)
@@ -328,7 +328,7 @@ def test_a_tracker_that_was_never_used_saves_too():
     ],
     ids=["radar", "confirm", "room", "association", "models", "chain", "estimator"],
 )
-def test_a_state_is_refused_by_other_settings(other):
+def test_a_state_is_rejected_by_other_settings(other):
     before = other.save()
     with pytest.raises(ValueError, match="same settings"):
         other.restore(tracker_after().save())
@@ -337,7 +337,7 @@ def test_a_state_is_refused_by_other_settings(other):
 
 @settings(max_examples=50)
 @given(st.data())
-def test_a_damaged_state_is_refused_or_harmless(data):
+def test_a_damaged_state_is_rejected_or_harmless(data):
     state = bytearray(STATE)
     place = data.draw(st.integers(0, len(state) - 1))
     if data.draw(st.booleans()):
@@ -360,7 +360,7 @@ LATER = scans(21)[20]
 
 
 @pytest.mark.parametrize("state", [b"", b"no state", STATE + b"\0"])
-def test_what_is_no_state_is_refused(state):
+def test_what_is_no_state_is_rejected(state):
     with pytest.raises(ValueError, match="state is not that of a tracker"):
         wl.Tracker(RADAR).restore(state)
 
@@ -389,7 +389,7 @@ def test_an_error_of_the_heading_that_is_none_is_an_error(wrong):
         wl.Tracker(RADAR).process(0.0, range_m=[1e3], bearing_rad=[0.1], heading_std_rad=wrong)
 
 
-def test_plots_that_make_no_sense_are_refused_and_counted():
+def test_plots_that_are_invalid_are_rejected_and_counted():
     tracker = wl.Tracker(RADAR)
     report = tracker.process(
         0.0,
@@ -401,7 +401,7 @@ def test_plots_that_make_no_sense_are_refused_and_counted():
     np.testing.assert_array_equal(report.plot_track_id[1:], 0)
 
 
-def test_refused_plots_leave_no_trace():
+def test_rejected_plots_leave_no_trace():
     recorded = scans(25)
     clean = track_all(recorded)
     tracker, tables = wl.Tracker(RADAR), []
@@ -454,7 +454,7 @@ def test_ten_thousand_plots_in_a_scan():
     assert np.isfinite(table.mean).all()
 
 
-def test_plots_beyond_the_room_are_refused_and_counted():
+def test_plots_beyond_the_room_are_rejected_and_counted():
     tracker = wl.Tracker(RADAR, wl.TrackerConfig(max_plots=5))
     report = tracker.process(0.0, range_m=np.full(8, 1e3), bearing_rad=np.linspace(0, 1, 8))
     assert report.refused_plots == 3
@@ -479,7 +479,7 @@ def test_plots_of_wrong_shape_name_wanted_and_given(shape):
 
 @pytest.mark.parametrize("name", ["plot_time_s", "own_north_m", "own_east_m"])
 @pytest.mark.parametrize("value", ["east", [[1.0], [2.0, 3.0]], None])
-def test_columns_that_are_no_numbers_are_refused_by_name(name, value):
+def test_columns_that_are_no_numbers_are_rejected_by_name(name, value):
     if name == "plot_time_s" and value is None:
         return  # the time of the scan
     wanted = f"{name} must be a number or an array, got {re.escape(repr(value))}"
@@ -487,7 +487,7 @@ def test_columns_that_are_no_numbers_are_refused_by_name(name, value):
         wl.Tracker(RADAR).process(0.0, range_m=[1e3], bearing_rad=[0.1], **{name: value})
 
 
-def test_tracks_at_no_time_are_refused():
+def test_tracks_at_no_time_are_rejected():
     with pytest.raises(ValueError, match="time_s must be finite, got nan"):
         wl.Tracker(RADAR).tracks(time_s=np.nan)
 
@@ -541,18 +541,18 @@ def test_a_misspelt_attribute_is_an_error(kind):
         (wl.VesselModels, "turning_sojourn_s", 0.0),
     ],
 )
-def test_a_setting_that_makes_no_sense_is_refused_by_name(kind, name, value):
+def test_a_setting_that_is_invalid_is_rejected_by_name(kind, name, value):
     with pytest.raises(ValueError, match=name):
         kind(**{name: value})
 
 
 @pytest.mark.parametrize("value", ["3", None, [1.0]])
-def test_a_setting_of_another_type_is_refused(value):
+def test_a_setting_of_another_type_is_rejected(value):
     with pytest.raises(TypeError, match=f"period_s must be float, got {re.escape(repr(value))}"):
         wl.Radar(period_s=value)
 
 
-def test_settings_changed_to_nonsense_are_refused_by_the_tracker():
+def test_settings_changed_to_nonsense_are_rejected_by_the_tracker():
     radar = wl.Radar()
     radar.period_s = -1.0
     with pytest.raises(ValueError, match="period_s"):
@@ -580,13 +580,13 @@ def test_the_usual_estimator_given_by_hand_gives_the_same_bits():
 
 def test_models_of_ships_are_those_of_the_estimator_for_ships():
     recorded, ships = scans(25), wl.VesselModels.ships()
-    told = wl.Tracker(RADAR, models=ships)
+    reported = wl.Tracker(RADAR, models=ships)
     by_hand = wl.Tracker(RADAR, estimator=wl.vessel_imm(RADAR, ships))
-    assert_same(track_all(recorded, told), track_all(recorded, by_hand))
+    assert_same(track_all(recorded, reported), track_all(recorded, by_hand))
     assert ships != wl.VesselModels()
 
 
-def test_a_track_tells_the_turn_rates_of_models_that_change_theirs():
+def test_a_track_reports_the_turn_rates_of_models_that_change_theirs():
     known_turn = wl.Ekf(wl.CoordinatedTurn(noise=wl.WhiteAcceleration(psd_m2s3=0.05)))
     recorded = scans(40, clutter=0.5)
     for estimator in (wl.AdaptiveGridImm(known_turn), wl.LikelyModelSetImm(known_turn)):

@@ -200,7 +200,7 @@ def test_a_radar_file_has_keys_of_the_radar_alone(tmp_path):
         ("[tracker]\nconfirm_hits = 3\n", "radar by default, period"),
     ],
 )
-def test_whose_radar_holds_is_told(tmp_path, capsys, text, wanted):
+def test_whose_radar_holds_is_reported(tmp_path, capsys, text, wanted):
     (tmp_path / "mine.toml").write_text(text)
     plots = tmp_path / "plots.csv"
     plots.write_text("time_s,north_m,east_m\n")

@@ -99,7 +99,7 @@ def test_biases_are_found_and_smoothing_helps():
 
 
 def test_a_vessel_that_keeps_turning_is_known_as_well_as_believed():
-    """Rows of the IMU are means over a second in which she turns by 5 degrees."""
+    """Rows of the IMU are means over a second in which the vessel turns by 5 degrees."""
     rng = np.random.default_rng(4)
     time_s, speed, rate = np.arange(301.0), 5.0, 5 * DEG
     heading = rate * time_s
@@ -126,7 +126,7 @@ def test_a_vessel_that_keeps_turning_is_known_as_well_as_believed():
 
 
 @pytest.mark.parametrize("turned_at", [-0.1, 1.5, np.nan])
-def test_a_heading_outside_the_step_is_refused(turned_at):
+def test_a_heading_outside_the_step_is_rejected(turned_at):
     with pytest.raises(ValueError, match="turned_at must be between 0 and 1, got"):
         UsvNavigator(turned_at=turned_at)
 
@@ -267,7 +267,7 @@ def test_absurd_fixes_are_rejected_and_nothing_else_is_lost(states, filter, off_
     np.testing.assert_array_equal(run.covariance, without.covariance)
 
 
-def test_headings_of_more_turns_than_a_number_can_tell_are_rejected():
+def test_headings_of_more_turns_than_a_number_can_report_are_rejected():
     absurd, lost = voyage(steps=200), voyage(steps=200)
     rows = [20, *range(100, 115)]
     absurd["compass"][rows], lost["compass"][rows] = 1e30, np.nan
@@ -286,15 +286,15 @@ def test_steps_without_the_imu_coast():
 
 @pytest.mark.parametrize("filter", ["ekf", "ukf", "augmented_ukf"])
 @pytest.mark.parametrize("states", [5, 7, 8])
-def test_the_noise_of_each_step_may_be_told(states, filter):
+def test_the_noise_of_each_step_may_be_given(states, filter):
     log = voyage(steps=100)
     log["imu"][40:60] = np.nan
     plain = started(log, states, filter).run(**sensors(log))
     std = np.full((100, 2), np.nan)
     std[:40] = std[60:] = 0.004, 0.033 * DEG
-    told = started(log, states, filter).run(**sensors(log), imu_std=std)
-    np.testing.assert_array_equal(told.mean, plain.mean)
-    np.testing.assert_array_equal(told.covariance, plain.covariance)
+    reported = started(log, states, filter).run(**sensors(log), imu_std=std)
+    np.testing.assert_array_equal(reported.mean, plain.mean)
+    np.testing.assert_array_equal(reported.covariance, plain.covariance)
     std[45:55] = 0.3, 5 * DEG
     more = started(log, states, filter).run(**sensors(log), imu_std=std)
     np.testing.assert_array_equal(more.covariance[:45], plain.covariance[:45])
@@ -327,15 +327,15 @@ def test_log_velocity_and_rate_of_turn():
 
 
 @pytest.mark.parametrize("states", [7, 8])
-def test_beside_a_rate_of_turn_the_gyro_has_the_noise_that_is_told(states):
+def test_beside_a_rate_of_turn_the_gyro_has_the_noise_that_is_reported(states):
     log = voyage(steps=200)
     log["imu"][:, 2] += np.random.default_rng(3).normal(size=200) * DEG
     log["rate_of_turn"] = log["imu"][:, 2] - BIAS[2]
     readings = {name: log[name] for name in (*sensors(log), "rate_of_turn")}
     plain = started(log, states, yaw_rate_std_rad_s=DEG).run(**readings)
-    told = started(log, states).run(**readings, imu_std=np.full((200, 2), [0.004, DEG]))
-    np.testing.assert_array_equal(told.mean, plain.mean)
-    np.testing.assert_array_equal(told.covariance, plain.covariance)
+    reported = started(log, states).run(**readings, imu_std=np.full((200, 2), [0.004, DEG]))
+    np.testing.assert_array_equal(reported.mean, plain.mean)
+    np.testing.assert_array_equal(reported.covariance, plain.covariance)
 
 
 @pytest.mark.parametrize("states", [7, 8])

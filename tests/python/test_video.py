@@ -189,7 +189,7 @@ def test_plots_turn_with_the_picture(seed, turn):
         assert np.allclose(np.sort(before[name]), np.sort(after[name]), rtol=1e-12)
     where = np.exp(1j * turned) * before["range_m"]
     found = np.exp(1j * after["bearing_rad"]) * after["range_m"]
-    # An echo all around has no bearing of its own.
+    # An echo all around has no bearing.
     ring = (picture > 0).any(axis=1).all()
     if not ring:
         assert np.allclose(np.sort_complex(where.round(6)), np.sort_complex(found.round(6)))
@@ -265,7 +265,7 @@ def test_a_gap_and_a_step_back_close_echoes():
     assert extractor.counts.reversals == 1
 
 
-def test_a_sweep_that_makes_no_sense_is_as_if_it_had_not_come():
+def test_a_sweep_that_is_invalid_is_as_if_it_had_not_come():
     turn = video(ship())
     azimuth = np.insert(turn.azimuth_rad, 100, [np.nan, turn.azimuth_rad[99]])
     damaged = dataclasses.replace(
@@ -292,7 +292,7 @@ def test_another_cell_length_closes_echoes():
     assert extractor.counts.geometry_changes == 1
 
 
-def test_a_sweep_too_long_is_refused_and_counted():
+def test_a_sweep_too_long_is_rejected_and_counted():
     extractor = wl.PlotExtractor(max_sweep_cells=100)
     assert len(extractor.process(video(ship()))) == 0
     assert extractor.counts.too_long == 360
@@ -427,12 +427,12 @@ def test_a_view_outlives_the_name_of_its_image():
         ({"max_range_extent_m": np.nan}, "max_range_extent_m must be finite and positive"),
     ],
 )
-def test_settings_that_make_no_sense_are_refused(keywords, message):
+def test_settings_that_are_invalid_are_rejected(keywords, message):
     with pytest.raises(ValueError, match=message):
         wl.PlotExtractor(**keywords)
 
 
-def test_amplitudes_of_another_kind_are_refused():
+def test_amplitudes_of_another_kind_are_rejected():
     with pytest.raises(ValueError, match="amplitude must be of uint8 or uint16, got float64"):
         wl.video.cfar(np.zeros((3, 4)))
     with pytest.raises(ValueError, match=r"amplitude must have shape \(N, C\), got \(4,\)"):

@@ -50,5 +50,5 @@ def right_mode(
     distance = np.broadcast_to(np.where(np.isnan(distance), np.inf, distance), modes.shape)
     first = modes.argmax(axis=-1)[..., np.newaxis]
     chosen = np.take_along_axis(distance, first, axis=-1)[..., 0]
-    told = ~np.isnan(modes).any(axis=-1) & np.isfinite(chosen)
-    return told & (chosen <= distance.min(axis=-1) + _SAME_RATE_RAD_S)
+    valid = ~np.isnan(modes).any(axis=-1) & np.isfinite(chosen)
+    return valid & (chosen <= distance.min(axis=-1) + _SAME_RATE_RAD_S)

@@ -34,10 +34,10 @@ def hold_out(readings: Readings) -> dict[str, dict[float, np.ndarray]]:
         fix_m=np.where(hidden[:, None], np.nan, readings.fix_m),
         velocity_mps=np.where(hidden[:, None], np.nan, readings.velocity_mps),
     )
-    foretold = {"navigator": navigate(seen).position_m, "constant_velocity": _straight_on(seen)}
+    predicted = {"navigator": navigate(seen).position_m, "constant_velocity": _straight_on(seen)}
     if readings.knows_water:
-        foretold["dead_reckoning"] = _reckoned(seen)
-    return {name: _errors(readings, place_m, starts_s) for name, place_m in foretold.items()}
+        predicted["dead_reckoning"] = _reckoned(seen)
+    return {name: _errors(readings, place_m, starts_s) for name, place_m in predicted.items()}
 
 
 def medians(errors: Mapping[float, np.ndarray]) -> dict[float, float]:

@@ -25,12 +25,12 @@ def estimators() -> dict[str, Any]:
         turn_rate_psd_rad2s3=1.4e-4,
         prior_turn_rate_std_rad_s=0.09,
     )
-    wild = wl.ConstantVelocity(noise=wl.PiecewiseAcceleration(std_mps2=0.7))
+    model = wl.ConstantVelocity(noise=wl.PiecewiseAcceleration(std_mps2=0.7))
     return {
         "fuzzy": wl.FuzzyAlphaBeta(),
         "fuzzy_improved": wl.BayesianAlphaBeta(),
         "fixed3": wl.BayesianAlphaBeta(min_plots=3, max_plots=3, parabolas=False),
-        "kalman": wl.Kalman(wild),
+        "kalman": wl.Kalman(model),
         "imm": wl.Imm(
             filters=[wl.Ekf(straight), wl.Ekf(turning)],
             chain=wl.ModeChain.from_sojourn_s([14.5, 120.0]),
