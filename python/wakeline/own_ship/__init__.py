@@ -19,23 +19,28 @@ from .left_out import rejected_lines, unused, zero_speeds
 from .magnetic import ANY_OFFSET, NO_OFFSET, MagneticOffset, magnetic_offset, wants_offset
 from .readings import Readings, readings_of
 from .solution import JUMP_M, OwnTrack, navigate
+from .voyage import Leg, Voyage, navigate_log, write_own
 
 __all__ = [
     "ANY_OFFSET",
     "HORIZONS_S",
     "JUMP_M",
     "NO_OFFSET",
+    "Leg",
     "MagneticOffset",
     "OwnTrack",
     "Readings",
+    "Voyage",
     "hold_out",
     "magnetic_offset",
     "medians",
     "navigate",
+    "navigate_log",
     "readings_of",
     "rejected_lines",
     "unused",
     "wants_offset",
     "without_hidden",
+    "write_own",
     "zero_speeds",
 ]

@@ -16,7 +16,14 @@ from .comparison import (
     turn_rate_panel,
 )
 from .maps import ellipse_outline, map, map_view
-from .own_ship import course_over_time, drift_over_time, own_map, speed_over_time
+from .own_ship import (
+    course_over_time,
+    drift_over_time,
+    own_map,
+    own_map_figure,
+    own_time_figure,
+    speed_over_time,
+)
 from .ppi import circle_outline, echo, ppi, screen, screen_raster, window_outline
 from .style import (
     INK,
@@ -65,6 +72,8 @@ __all__ = [
     "name_lines",
     "nis_panel",
     "own_map",
+    "own_map_figure",
+    "own_time_figure",
     "paths_view",
     "ppi",
     "probability_panel",

@@ -17,6 +17,7 @@ from .style import (
     dot_lone,
     dress,
     dress_map,
+    figure,
     from_zero,
     name_lines,
     through_north,
@@ -25,6 +26,9 @@ from .style import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from wakeline.own_ship import Leg
 
 _ARROWS = 24
 _LONGEST = 0.1  # arrow, as a share of the width of the map
@@ -163,6 +167,37 @@ def drift_over_time(
     minutes = (fix_time_s - (time_s[0] if len(time_s) else 0.0)) / 60.0
     ax.plot(minutes, np.zeros(len(minutes)), "|", color=INK, markersize=4, label="fixes")
     return name_lines(_over_time(from_zero(ax), "drift (kn)"))
+
+
+def own_map_figure(leg: Leg, *, name: str = "own ship") -> Figure:
+    """A figure of one :func:`own_map`: a leg of a voyage and its fixes."""
+    fig, track = figure(7.2, 6.4), leg.track
+    own_map(
+        fig.add_subplot(),
+        track.position_m,
+        leg.readings.fix_m[leg.readings.has_fix],
+        track.current_mps,
+        coasting=track.status == "coasting",
+        jumped=track.status == "jumped",
+        name=name,
+    )
+    return fig
+
+
+def own_time_figure(leg: Leg) -> Figure:
+    """A figure of speed, course and, where the current is known, drift over time."""
+    track, readings = leg.track, leg.readings
+    knows_drift = bool(np.isfinite(track.current_mps).any())
+    fig = figure(7.2, 6.8 if knows_drift else 4.6)
+    panels = fig.subplots(2 + knows_drift, 1, sharex=True)
+    speed_over_time(panels[0], track.time_s, np.hypot(*track.velocity_mps.T), readings.log_mps)
+    course_over_time(panels[1], track.time_s, track.course_rad, track.heading_rad)
+    for ax in panels[2:]:
+        drift_over_time(ax, track.time_s, track.current_mps, readings.time_s[readings.has_fix])
+    for ax in panels[:-1]:
+        ax.set_xlabel("")
+    fig.align_ylabels(panels)
+    return fig
 
 
 def _draw(ax: Axes, line: tuple[np.ndarray, np.ndarray], color: str, name: str) -> None:
