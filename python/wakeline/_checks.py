@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Any
 
@@ -26,12 +26,46 @@ def plain_numbers(**values: Any) -> None:
             raise TypeError(f"{name} must be a number, got {value!r}")
 
 
+def number_fields(settings: Any, *names: str) -> dict[str, Any]:
+    """Fields of an object by their names, for the checks below."""
+    return {name: getattr(settings, name) for name in names}
+
+
+def finite(**values: Any) -> None:
+    """TypeError unless each argument is one real number, ValueError where it is not finite."""
+    _require("finite", np.isfinite, values)
+
+
+def positive(**values: Any) -> None:
+    """The same where it is not above zero."""
+    _require("finite and positive", lambda value: 0 < value < np.inf, values)
+
+
 def not_negative(**values: Any) -> None:
-    """TypeError unless each argument is one real number, ValueError where it is below zero."""
+    """The same where it is below zero."""
+    _require("finite and not negative", lambda value: 0 <= value < np.inf, values)
+
+
+def at_least(least: float, **values: Any) -> None:
+    """The same where it is less; infinity is allowed."""
+    _require(f"at least {least:g}", lambda value: value >= least, values)
+
+
+def above_zero(**values: Any) -> None:
+    """The same where it is not above zero; infinity is allowed."""
+    _require("positive", lambda value: value > 0, values)
+
+
+def fraction(**values: Any) -> None:
+    """The same where it is not from 0 to 1."""
+    _require("from 0 to 1", lambda value: 0 <= value <= 1, values)
+
+
+def _require(wanted: str, holds: Callable[[Any], Any], values: dict[str, Any]) -> None:
     plain_numbers(**values)
     for name, value in values.items():
-        if not value >= 0:
-            raise ValueError(f"{name} must not be negative, got {value}")
+        if not holds(value):
+            raise ValueError(f"{name} must be {wanted}, got {value}")
 
 
 def listed(name: str, sequence: Any, of_what: str) -> list[Any]:

@@ -816,11 +816,11 @@ def test_readers_and_recordings_name_what_is_not_a_number(name, wrong):
 @pytest.mark.parametrize("name", ["max_gap_s", "min_reports", "longer_than_s", "window_s"])
 @pytest.mark.parametrize("wrong", [-1.0, np.nan])
 def test_spans_and_counts_below_zero_are_rejected(name, wrong):
-    with pytest.raises(ValueError, match=f"^{name} must not be negative, got {wrong}"):
+    with pytest.raises(ValueError, match=f"^{name} must be at least 0, got {wrong}"):
         WITH_A_NUMBER[name](wrong)
-    with pytest.raises(ValueError, match="max_gap_s must not be negative"):
+    with pytest.raises(ValueError, match="max_gap_s must be at least 0"):
         recording.load_navigation().parts(-1.0)
-    with pytest.raises(ValueError, match="max_gap_s must not be negative"):
+    with pytest.raises(ValueError, match="max_gap_s must be at least 0"):
         truth().state_at([0.5], max_gap_s=-1.0)
 
 

@@ -496,7 +496,7 @@ def test_a_file_that_is_not_there_is_an_error(path):
 
 
 def test_what_a_reader_and_a_writer_are_reported_must_make_sense(path):
-    with pytest.raises(ValueError, match="period_s must be positive, got 0"):
+    with pytest.raises(ValueError, match="period_s must be finite and positive, got 0"):
         recording.read_video(path, period_s=0)
     with pytest.raises(ValueError, match="midnight_s must be finite, got nan"):
         recording.read_video(path, midnight_s=float("nan"))

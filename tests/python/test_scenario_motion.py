@@ -151,7 +151,7 @@ def test_what_is_no_table_is_reported(what):
 
 @pytest.mark.parametrize("most", [-0.1, np.nan])
 def test_a_fastest_turn_that_is_invalid(most):
-    with pytest.raises(ValueError, match="max_turn_rate_rad_s must not be negative"):
+    with pytest.raises(ValueError, match="max_turn_rate_rad_s must be at least 0"):
         segments_from_table([(0, 10, 0)], max_turn_rate_rad_s=most)
 
 

@@ -200,8 +200,8 @@ def test_scenarios_can_be_sent_to_another_process():
         ({"name": ""}, "name must be"),
         ({"scans": 0}, "scans must be a whole number"),
         ({"scans": 2.5}, "scans must be a whole number"),
-        ({"position_std_m": 0.0}, "position_std_m must be positive"),
-        ({"velocity_std_mps": np.nan}, "velocity_std_mps must be positive"),
+        ({"position_std_m": 0.0}, "position_std_m must be finite and positive"),
+        ({"velocity_std_mps": np.nan}, "velocity_std_mps must be finite and positive"),
         ({"start_time_s": np.inf}, "start_time_s must be finite"),
         ({"radar": RadarSimulator(1.0, 0.1, 1.0, rotating=True)}, "must not rotate"),
         (

@@ -643,8 +643,8 @@ def test_every_seed_has_a_separate_radar_screen():
     [
         ({"sweeps_per_turn": 2}, "sweeps_per_turn must be a whole number, at least 8, got 2"),
         ({"cells": 0}, "cells must be a whole number, at least 1, got 0"),
-        ({"cell_m": -1.0}, "cell_m must be positive and finite, got -1.0"),
-        ({"period_s": np.nan}, "period_s must be positive"),
+        ({"cell_m": -1.0}, "cell_m must be finite and positive, got -1.0"),
+        ({"period_s": np.nan}, "period_s must be finite and positive"),
         ({"beam_width_rad": 1e-4}, "beam_width_rad must be at least .*0.00306796 rad"),
         ({"pulse_length_m": 5.0}, "pulse_length_m must be at least a cell of 6.0 m, got 5.0"),
         ({"start_range_m": -5.0}, "start_range_m must be finite and not negative, got -5.0"),
@@ -666,7 +666,7 @@ def test_a_radar_that_is_invalid_is_rejected(bad, message):
     ("kind", "bad", "message"),
     [
         (SeaClutter, {"shape": 0.01}, "shape must be at least 0.05, got 0.01"),
-        (SeaClutter, {"correlation_m": 0.0}, "correlation_m must be positive"),
+        (SeaClutter, {"correlation_m": 0.0}, "correlation_m must be finite and positive"),
         (SeaClutter, {"decay": np.nan}, "decay must be finite"),
         (Land, {"where": [[[0, 0], [1, 1]]]}, r"outline 0 of where must have shape \(n, 2\)"),
         (Land, {"where": [[[0, 0], [1, 1], [np.nan, 2]]]}, "outline 0 of where must be finite"),

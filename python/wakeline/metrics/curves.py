@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wakeline._checks import plain_numbers, real_numbers, whole_number
+from wakeline._checks import at_least, plain_numbers, real_numbers, whole_number
 
 
 @dataclass(frozen=True)
@@ -130,9 +130,7 @@ def settling_times_s(
     ValueError
         As :func:`by_segment`, and when the factor is below 1.
     """
-    plain_numbers(factor=factor)
-    if not factor >= 1:
-        raise ValueError(f"factor must be at least 1, got {factor}")
+    at_least(1, factor=factor)
     time_s, curve, switch_times_s = _checked(time_s, curve, switch_times_s)
     settled_s = np.full(len(switch_times_s), np.nan)
     for k, part in enumerate(_parts(time_s, switch_times_s)[1:]):

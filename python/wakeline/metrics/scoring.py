@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from wakeline._checks import plain_numbers
+from wakeline._checks import not_negative, plain_numbers
 from wakeline.recording import Episode, Recording, Tracks
 from wakeline.recording.scans import nearest
 
@@ -56,11 +56,10 @@ def score(
         raise TypeError(f"tracks must be of type Tracks, got {type(tracks).__name__}")
     if not isinstance(recording, (Recording, Episode)):
         raise TypeError(f"recording must be a Recording or Episode, got {type(recording).__name__}")
-    plain_numbers(gate_m=gate_m, bonus_m=bonus_m, warmup_scans=warmup_scans)
+    plain_numbers(gate_m=gate_m, warmup_scans=warmup_scans)
     if not 1e-9 <= gate_m <= 1e9:
         raise ValueError(f"gate_m must be positive and finite, from 1e-9 to 1e9, got {gate_m}")
-    if not 0 <= bonus_m < np.inf:
-        raise ValueError(f"bonus_m must be finite and not negative, got {bonus_m}")
+    not_negative(bonus_m=bonus_m)
     if not 1 <= warmup_scans < np.inf:
         raise ValueError(f"warmup_scans must be finite and at least 1, got {warmup_scans}")
     if isinstance(recording, Episode):

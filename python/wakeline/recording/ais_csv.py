@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wakeline._brief import brief, counted, many, span
-from wakeline._checks import columns, not_negative, plain_numbers
+from wakeline._checks import above_zero, at_least, columns
 from wakeline._engine.navigation import LocalPlane
 from wakeline._units import KNOT_MPS
 
@@ -98,7 +98,7 @@ class AisTrack:
         ValueError
             When a parameter is negative.
         """
-        not_negative(max_gap_s=max_gap_s, min_reports=min_reports)
+        at_least(0, max_gap_s=max_gap_s, min_reports=min_reports)
         cuts = np.flatnonzero(np.diff(self.time_s) > max_gap_s) + 1
         edges = [0, *cuts.tolist(), len(self)]
         parts = [self.rows(slice(a, b)) for a, b in itertools.pairwise(edges)]
@@ -180,11 +180,7 @@ def read_ais(
     ValueError
         When a parameter is not positive or the origin is not on the earth.
     """
-    plain_numbers(min_step_s=min_step_s, max_speed_mps=max_speed_mps)
-    if not (min_step_s > 0 and max_speed_mps > 0):
-        raise ValueError(
-            f"min_step_s and max_speed_mps must be positive, got {min_step_s} and {max_speed_mps}"
-        )
+    above_zero(min_step_s=min_step_s, max_speed_mps=max_speed_mps)
     if origin_deg is not None and not (abs(origin_deg[0]) <= 90 and abs(origin_deg[1]) <= 180):
         raise ValueError(
             "origin_deg must be a latitude from -90 to 90 and a longitude from -180 to 180, "

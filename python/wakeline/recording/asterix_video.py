@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wakeline._brief import counted, many
-from wakeline._checks import plain_numbers
+from wakeline._checks import finite, positive
 from wakeline._engine.video import Cat240Decoder, Cat240Encoder, Cat240Sweeps
 
 from .errors import RecordingError
@@ -185,11 +185,9 @@ def read_video(
     ValueError
         When `period_s` is not positive, `midnight_s` is not finite or `source` is not two octets.
     """
-    plain_numbers(midnight_s=midnight_s, period_s=1.0 if period_s is None else period_s)
-    if period_s is not None and not (period_s > 0 and math.isfinite(period_s)):
-        raise ValueError(f"period_s must be positive, got {period_s}")
-    if not math.isfinite(midnight_s):
-        raise ValueError(f"midnight_s must be finite, got {midnight_s}")
+    finite(midnight_s=midnight_s)
+    if period_s is not None:
+        positive(period_s=period_s)
     if source is not None:
         _check_source(source)
     report = VideoReport() if report is None else report

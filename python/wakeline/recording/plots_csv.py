@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wakeline._checks import plain_numbers
+from wakeline._checks import above_zero
 
 from .episodes import build_episode
 from .model import Episode, OwnShipMotion, Recording
@@ -96,9 +96,7 @@ def read_plots(
     for label, value in (("period_s", period_s), ("own_gap_s", own_gap_s)):
         if value is None:
             continue
-        plain_numbers(**{label: value})
-        if not value > 0:
-            raise ValueError(f"{label} must be positive, got {value}")
+        above_zero(**{label: value})
     notes: list[str] = []
     plots = PlotRows.none() if plots_path is None else read_plot_rows(plots_path, notes)
     remark(plots, np.isnan(plots.place[:, 0]), "without a finite position left out", notes)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import columns, in_a_row, not_negative
+from wakeline._checks import at_least, columns, in_a_row
 
 from .scans import nearest
 
@@ -73,7 +73,7 @@ class TargetTruth:
         ValueError
             When a parameter is negative.
         """
-        not_negative(max_gap_s=max_gap_s, window_s=window_s)
+        at_least(0, max_gap_s=max_gap_s, window_s=window_s)
         time_s = in_a_row("time_s", time_s)
         state = np.full((len(time_s), 4), np.nan)
         if len(self) == 0:

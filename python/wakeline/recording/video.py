@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import real_numbers
+from wakeline._checks import not_negative, positive, real_numbers
 
 _TURN = 2 * math.pi
 _BACK_RAD = 0.2  # of steps against the antenna's direction: more than any jitter
@@ -64,12 +64,8 @@ class RadarVideo:
             raise ValueError(
                 f"azimuth_width_rad must be between 0 and pi, got {self.azimuth_width_rad}"
             )
-        if not (np.isfinite(self.start_range_m) and self.start_range_m >= 0):
-            raise ValueError(
-                f"start_range_m must be finite and not negative, got {self.start_range_m}"
-            )
-        if not (np.isfinite(self.cell_m) and self.cell_m > 0):
-            raise ValueError(f"cell_m must be finite and positive, got {self.cell_m}")
+        not_negative(start_range_m=self.start_range_m)
+        positive(cell_m=self.cell_m)
 
     def __len__(self) -> int:
         return len(self.amplitude)

@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from wakeline._checks import plain_numbers
+from wakeline._checks import above_zero, at_least, positive
 
 from .truth import Segment, Truth
 
@@ -56,19 +56,10 @@ def disturbed(
         When a parameter is not positive and finite (degrees of freedom may be infinite), the
         limit is below the scale, or the truth has no segments.
     """
-    plain_numbers(
-        scale_mps2=scale_mps2, interval_s=interval_s, degrees_of_freedom=degrees_of_freedom
-    )
+    positive(scale_mps2=scale_mps2, interval_s=interval_s)
+    above_zero(degrees_of_freedom=degrees_of_freedom)
     limit_mps2 = 20.0 * scale_mps2 if limit_mps2 is None else limit_mps2
-    plain_numbers(limit_mps2=limit_mps2)
-    finite = 0 < scale_mps2 < np.inf and 0 < interval_s < np.inf
-    if not (finite and degrees_of_freedom > 0):
-        raise ValueError(
-            "scale_mps2, interval_s and degrees_of_freedom must be positive, "
-            f"got {scale_mps2}, {interval_s} and {degrees_of_freedom}"
-        )
-    if not limit_mps2 >= scale_mps2:
-        raise ValueError(f"limit_mps2 must be at least scale_mps2 {scale_mps2}, got {limit_mps2}")
+    at_least(scale_mps2, limit_mps2=limit_mps2)
     if not truth.segments:
         raise ValueError("truth must have at least one segment, got none")
     rng = np.random.default_rng(rng)

@@ -14,7 +14,7 @@ import numpy as np
 
 from wakeline import measurement
 from wakeline._brief import brief, many, span
-from wakeline._checks import entropy, plain_numbers, whole_number
+from wakeline._checks import entropy, positive, whole_number
 
 from .radar import polar
 from .truth import Segment, Truth
@@ -69,10 +69,7 @@ class HardTurn:
     period_s: float = 3.0
 
     def __post_init__(self) -> None:
-        plain_numbers(**vars(self))
-        for name, value in vars(self).items():
-            if not 0 < value < np.inf:
-                raise ValueError(f"{name} must be finite and positive, got {value}")
+        positive(**vars(self))
 
     @property
     def turn_rate_rad_s(self) -> float:

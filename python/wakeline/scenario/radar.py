@@ -8,7 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from wakeline._checks import plain_numbers, whole_number
+from wakeline._checks import (
+    finite,
+    fraction,
+    not_negative,
+    number_fields,
+    plain_numbers,
+    positive,
+    whole_number,
+)
 from wakeline.recording import Episode, OwnShipMotion, Recording, Scan, TargetTruth
 
 from .truth import Truth
@@ -54,16 +62,10 @@ class RadarSimulator:
     rotating: bool = False
 
     def __post_init__(self) -> None:
-        plain_numbers(**{name: value for name, value in vars(self).items() if name != "rotating"})
-        for name in ("range_std_m", "bearing_std_rad", "clutter_per_scan"):
-            if not 0 <= getattr(self, name) < np.inf:
-                raise ValueError(f"{name} must not be negative, got {getattr(self, name)}")
-        if not 0 < self.period_s < np.inf:
-            raise ValueError(f"period_s must be positive, got {self.period_s}")
-        if not 0 <= self.detection_probability <= 1:
-            raise ValueError(
-                f"detection_probability must be from 0 to 1, got {self.detection_probability}"
-            )
+        plain_numbers(max_range_m=self.max_range_m)
+        not_negative(**number_fields(self, "range_std_m", "bearing_std_rad", "clutter_per_scan"))
+        positive(period_s=self.period_s)
+        fraction(detection_probability=self.detection_probability)
         if not self.max_range_m > 0 or (self.clutter_per_scan and np.isinf(self.max_range_m)):
             raise ValueError(
                 f"max_range_m must be positive, and finite for clutter, got {self.max_range_m}"
@@ -209,9 +211,7 @@ class RadarSimulator:
     def _begins(self, scans: int, start_time_s: float) -> np.ndarray:
         """Times (T,) at which the scans begin."""
         whole_number("scans", scans, 0)
-        plain_numbers(start_time_s=start_time_s)
-        if not np.isfinite(start_time_s):
-            raise ValueError(f"start_time_s must be finite, got {start_time_s}")
+        finite(start_time_s=start_time_s)
         return start_time_s + self.period_s * np.arange(scans)
 
     def _plots(

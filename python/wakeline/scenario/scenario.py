@@ -11,7 +11,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from wakeline import core, measurement
-from wakeline._checks import entropy, plain_numbers, real_numbers, whole_number
+from wakeline._checks import entropy, finite, number_fields, positive, real_numbers, whole_number
 
 from .radar import RadarSimulator, polar, start_of
 from .truth import Truth
@@ -73,15 +73,10 @@ class Scenario:
         if not isinstance(self.radar, RadarSimulator):
             raise TypeError(f"radar must be a RadarSimulator, got {self.radar!r}")
         whole_number("scans", self.scans, 1)
-        for name in ("position_std_m", "velocity_std_mps"):
-            plain_numbers(**{name: getattr(self, name)})
-            if not 0 < getattr(self, name) < np.inf:
-                raise ValueError(f"{name} must be positive, got {getattr(self, name)}")
+        positive(**number_fields(self, "position_std_m", "velocity_std_mps"))
         if self.start_time_s is None:
             object.__setattr__(self, "start_time_s", start_of(self.truth))
-        plain_numbers(start_time_s=self.start_time_s)
-        if not np.isfinite(self.start_time_s):
-            raise ValueError(f"start_time_s must be finite, got {self.start_time_s}")
+        finite(start_time_s=self.start_time_s)
         if self.radar.rotating or self.radar.clutter_per_scan:
             raise ValueError("radar must not rotate nor have clutter: a scan is one reading here")
 

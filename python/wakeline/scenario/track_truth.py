@@ -8,7 +8,7 @@ import numpy as np
 
 from wakeline import filter, motion
 from wakeline._brief import brief, many, span
-from wakeline._checks import in_a_row, real_numbers
+from wakeline._checks import above_zero, at_least, in_a_row, real_numbers
 from wakeline.recording import NavigationLog
 
 _TURNING_ABOVE_MPS = 0.5
@@ -209,13 +209,12 @@ def smoothed(
     """
     track = _track(track)
     exact = TrackTruth.of(track)
-    if not (position_std_m > 0 and velocity_std_mps > 0 and accel_psd_m2s3 > 0):
-        raise ValueError(
-            "position_std_m, velocity_std_mps and accel_psd_m2s3 must be positive, "
-            f"got {position_std_m}, {velocity_std_mps} and {accel_psd_m2s3}"
-        )
-    if not delay_std_s >= 0:
-        raise ValueError(f"delay_std_s must not be negative, got {delay_std_s}")
+    above_zero(
+        position_std_m=position_std_m,
+        velocity_std_mps=velocity_std_mps,
+        accel_psd_m2s3=accel_psd_m2s3,
+    )
+    at_least(0, delay_std_s=delay_std_s)
     reported = np.isfinite(np.asarray(track.vnorth_mps) + np.asarray(track.veast_mps))
     time_s = np.asarray(track.time_s, dtype=float)
     z = exact.state_at(time_s)

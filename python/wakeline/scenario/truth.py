@@ -9,7 +9,15 @@ from typing import Any
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import in_a_row, listed, plain_numbers, real_numbers
+from wakeline._checks import (
+    at_least,
+    finite,
+    in_a_row,
+    listed,
+    plain_numbers,
+    positive,
+    real_numbers,
+)
 
 _SERIES_BELOW_RAD = 0.3
 _SAME_COURSE_RAD = 1e-9
@@ -57,8 +65,7 @@ class Segment:
         plain_numbers(**values)
         if not np.isfinite([*values.values(), *self.control_mps2, *self.disturbance_mps2]).all():
             raise ValueError(f"a segment must be finite, got {self}")
-        if self.duration_s <= 0:
-            raise ValueError(f"duration_s must be positive, got {self.duration_s}")
+        positive(duration_s=self.duration_s)
 
     @property
     def push_mps2(self) -> complex:
@@ -91,8 +98,8 @@ def segments_from_table(
     TypeError
         When the rows are not a sequence.
     """
-    if max_turn_rate_rad_s is not None and not max_turn_rate_rad_s >= 0:
-        raise ValueError(f"max_turn_rate_rad_s must not be negative, got {max_turn_rate_rad_s}")
+    if max_turn_rate_rad_s is not None:
+        at_least(0, max_turn_rate_rad_s=max_turn_rate_rad_s)
     rows = listed("rows", rows, "(begin_s, end_s, turn_rate_rad_s)")
     if not rows:
         raise ValueError("rows must have at least one row, got none")
@@ -183,13 +190,10 @@ class Truth:
         start = real_numbers("start", start)
         if start.shape != (4,) or not np.isfinite(start).all():
             raise ValueError(f"start must be 4 finite numbers, got {start.tolist()}")
-        for name, value in (
-            ("start_time_s", start_time_s),
-            ("start_course_rad", 0.0 if start_course_rad is None else start_course_rad),
-        ):
-            plain_numbers(**{name: value})
-            if not np.isfinite(value):
-                raise ValueError(f"{name} must be finite, got {value}")
+        finite(
+            start_time_s=start_time_s,
+            start_course_rad=0.0 if start_course_rad is None else start_course_rad,
+        )
         north_m, vnorth_mps, east_m, veast_mps = start
         speed_mps = float(np.hypot(vnorth_mps, veast_mps))
         course_rad = float(np.arctan2(veast_mps, vnorth_mps))

@@ -15,7 +15,14 @@ import numpy as np
 
 import wakeline as wl
 from wakeline._brief import brief, many, span
-from wakeline._checks import entropy, plain_numbers, real_numbers, whole_number
+from wakeline._checks import (
+    entropy,
+    not_negative,
+    number_fields,
+    positive,
+    real_numbers,
+    whole_number,
+)
 
 _LONGEST_STEPS = 5000
 _SHAPES = {
@@ -142,14 +149,9 @@ class UsvMission:
     compass_std_rad: float = np.deg2rad(1.0)
 
     def __post_init__(self) -> None:
-        positive = ("clearance_m", "accept_m", "speed_mps", "turn_rate_rad_s", "period_s")
-        plain_numbers(**{name: getattr(self, name) for name in (*positive, "current_mps")})
-        for name in positive:
-            value = getattr(self, name)
-            if not 0 < value < np.inf:
-                raise ValueError(f"{name} must be finite and positive, got {value}")
-        if not 0 <= self.current_mps < np.inf:
-            raise ValueError(f"current_mps must be finite, zero or more, got {self.current_mps}")
+        names = ("clearance_m", "accept_m", "speed_mps", "turn_rate_rad_s", "period_s")
+        positive(**number_fields(self, *names))
+        not_negative(current_mps=self.current_mps)
         for name, shape in _SHAPES.items():
             value = getattr(self, name)
             numbers = real_numbers(name, value)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from typing import NamedTuple
@@ -10,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 import wakeline as wl
+from wakeline._checks import fraction, not_negative, number_fields
 from wakeline._units import NAUTICAL_MILE_M
 from wakeline.recording import OwnShipMotion, Tracks
 
@@ -48,12 +48,8 @@ class DangerLimits:
     own_velocity_std_mps: float = 0.2
 
     def __post_init__(self) -> None:
-        for name, value in asdict(self).items():
-            if not (math.isfinite(value) and value >= 0.0):
-                raise ValueError(f"{name} must be finite and not negative, got {value}")
-        for name in ("alarm_probability", "clear_probability"):
-            if not getattr(self, name) <= 1.0:
-                raise ValueError(f"{name} must be at most 1, got {getattr(self, name)}")
+        not_negative(**asdict(self))
+        fraction(**number_fields(self, "alarm_probability", "clear_probability"))
         if self.clear_probability > self.alarm_probability:
             raise ValueError(
                 f"clear_probability must not be above alarm_probability = "

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wakeline._brief import brief, many, span
-from wakeline._checks import not_negative
+from wakeline._checks import at_least
 from wakeline._engine.navigation import LocalPlane
 
 from ..model import OwnShipMotion
@@ -331,7 +331,7 @@ class NavigationLog:
 
         ValueError when that is negative.
         """
-        not_negative(longer_than_s=longer_than_s)
+        at_least(0, longer_than_s=longer_than_s)
         fixes = self.fixes.sound()
         wide = np.flatnonzero(np.diff(fixes.time_s) > longer_than_s)
         return np.column_stack([fixes.time_s[wide], fixes.time_s[wide + 1]])
@@ -405,7 +405,7 @@ class NavigationLog:
         ValueError
             When it is negative.
         """
-        not_negative(max_gap_s=max_gap_s)
+        at_least(0, max_gap_s=max_gap_s)
         all_series = self.series.values()
         time_s = np.concatenate([s.time_s for s in all_series])
         section = self._section(np.concatenate([s.line for s in all_series]))

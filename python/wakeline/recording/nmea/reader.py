@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from wakeline._brief import counted, many
-from wakeline._checks import plain_numbers
+from wakeline._checks import above_zero, at_least, plain_numbers
 from wakeline._units import KNOT_MPS
 
 from ..errors import RecordingError, octets_of
@@ -122,12 +122,8 @@ def read_nmea(
     ValueError
         When a parameter is invalid.
     """
-    plain_numbers(reorder_s=reorder_s, max_speed_mps=max_speed_mps)
-    if not (reorder_s >= 0 and max_speed_mps > 0):
-        raise ValueError(
-            "reorder_s must not be negative and max_speed_mps must be positive, "
-            f"got {reorder_s} and {max_speed_mps}"
-        )
+    at_least(0, reorder_s=reorder_s)
+    above_zero(max_speed_mps=max_speed_mps)
     if variation_deg is not None:
         plain_numbers(variation_deg=variation_deg)
         if not abs(variation_deg) <= 180:

@@ -8,9 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wakeline._checks import real_numbers
+from wakeline._checks import (
+    above_zero,
+    at_least,
+    finite,
+    fraction,
+    number_fields,
+    positive,
+    real_numbers,
+)
 
-from .checks import at_least, finite, fraction, positive
 from .fields import PolarGrid
 
 _BEAM_RAYS = 9
@@ -66,9 +73,13 @@ class SeaClutter:
     upwind_downwind_db: float = 6.0
 
     def __post_init__(self) -> None:
-        finite(self, "clutter_to_noise_db", "wind_from_rad", "upwind_downwind_db", "decay")
-        positive(self, "correlation_m", "correlation_s")
-        at_least(self, 0.05, "shape")
+        finite(
+            **number_fields(
+                self, "clutter_to_noise_db", "wind_from_rad", "upwind_downwind_db", "decay"
+            )
+        )
+        positive(**number_fields(self, "correlation_m", "correlation_s"))
+        at_least(0.05, **number_fields(self, "shape"))
 
     def mean_amplitude(self, grid: PolarGrid, reference_range_m: float) -> NDArray[np.float32]:
         """Root of the mean clutter-to-noise ratio, (N, C)."""
@@ -116,12 +127,11 @@ class Land:
     penetration_m: float = np.inf
 
     def __post_init__(self) -> None:
-        finite(self, "clutter_to_noise_db", "decay")
-        positive(self, "correlation_m")
-        fraction(self, "fluctuation")
-        at_least(self, 0.05, "shape")
-        if not self.penetration_m > 0:
-            raise ValueError(f"penetration_m must be positive, got {self.penetration_m}")
+        finite(**number_fields(self, "clutter_to_noise_db", "decay"))
+        positive(**number_fields(self, "correlation_m"))
+        fraction(**number_fields(self, "fluctuation"))
+        at_least(0.05, **number_fields(self, "shape"))
+        above_zero(penetration_m=self.penetration_m)
         if not callable(self.where):
             object.__setattr__(
                 self, "where", tuple(_outline(k, w) for k, w in enumerate(self.where))

@@ -9,11 +9,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wakeline._checks import real_numbers, whole_number
+from wakeline._checks import (
+    finite,
+    not_negative,
+    number_fields,
+    positive,
+    real_numbers,
+    whole_number,
+)
 from wakeline.recording import RadarVideo
 
 from ..radar import start_of
-from .checks import finite, not_negative, positive
 from .clutter import Land, SeaClutter, amplitude_of_db
 from .fields import GammaTexture, PatchyField, PolarGrid, Speckle, complex_normal
 from .target import VideoTarget
@@ -113,10 +119,14 @@ class RadarVideoSimulator:
     def __post_init__(self) -> None:
         whole_number("sweeps_per_turn", self.sweeps_per_turn, 8)
         whole_number("cells", self.cells, 1)
-        positive(self, "cell_m", "period_s", "beam_width_rad", "pulse_length_m", "noise_rms")
-        positive(self, "reference_range_m", "dynamic_range_db")
-        not_negative(self, "start_range_m")
-        finite(self, "snr_db")
+        positive(
+            **number_fields(
+                self, "cell_m", "period_s", "beam_width_rad", "pulse_length_m", "noise_rms"
+            )
+        )
+        positive(**number_fields(self, "reference_range_m", "dynamic_range_db"))
+        not_negative(**number_fields(self, "start_range_m"))
+        finite(**number_fields(self, "snr_db"))
         if self.beam_width_rad < _TURN_RAD / self.sweeps_per_turn:
             raise ValueError(
                 f"beam_width_rad must be at least a sweep of "
@@ -508,8 +518,7 @@ def _start_s(targets: Sequence[VideoTarget], start_time_s: float | None) -> floa
     """The given time, by default the latest start of the truths."""
     if start_time_s is None:
         return max((start_of(target.truth) for target in targets), default=0.0)
-    if not np.isfinite(start_time_s):
-        raise ValueError(f"start_time_s must be finite, got {start_time_s}")
+    finite(start_time_s=start_time_s)
     return start_time_s
 
 

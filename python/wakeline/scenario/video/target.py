@@ -9,9 +9,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from wakeline._checks import whole_number
-
-from .checks import not_negative, positive
+from wakeline._checks import finite, not_negative, number_fields, positive, whole_number
 
 SWERLING = (0, 1, 2, 3, 4)
 
@@ -75,14 +73,14 @@ class VideoTarget:
     def __post_init__(self) -> None:
         if not isinstance(self.truth, AnyMotion):
             raise TypeError(f"truth must have state_at, got {self.truth!r}")
-        not_negative(self, "length_m", "beam_m", "rcs_m2", "broadside_db")
-        positive(self, "broadside_width_rad")
+        not_negative(**number_fields(self, "length_m", "beam_m", "rcs_m2", "broadside_db"))
+        positive(**number_fields(self, "broadside_width_rad"))
         if self.swerling not in SWERLING:
             raise ValueError(f"swerling must be one of {SWERLING}, got {self.swerling!r}")
         if self.scatterers is not None:
             whole_number("scatterers", self.scatterers, 1)
-        if self.heading_rad is not None and not np.isfinite(self.heading_rad):
-            raise ValueError(f"heading_rad must be finite, got {self.heading_rad}")
+        if self.heading_rad is not None:
+            finite(heading_rad=self.heading_rad)
 
     @cached_property
     def hull_m(self) -> NDArray[np.float64]:
