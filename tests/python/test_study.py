@@ -415,7 +415,6 @@ def test_a_study_that_is_invalid(capsys, arguments, wanted):
     assert wanted in message
 
 
-@pytest.mark.parametrize("name", [name for name in study.names() if name != "ais-forecast"])
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -430,9 +429,9 @@ def test_a_study_that_is_invalid(capsys, arguments, wanted):
         ({"threads": 1.5}, r"threads must be a whole number, at least 1, got 1\.5"),
     ],
 )
-def test_numbers_that_are_invalid_are_rejected_by_name(name, change, message):
+def test_numbers_that_are_invalid_are_rejected_by_name(change, message):
     with pytest.raises(ValueError, match=message):
-        study.load(name).run(**({"runs": 1} | change))
+        study.imm.run(**({"runs": 1} | change))
 
 
 def test_numbers_of_runs_on_video_that_are_invalid_are_rejected_by_name():
