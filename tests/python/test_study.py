@@ -358,7 +358,7 @@ def test_run_prints_the_table_and_writes_json(tmp_path, capsys, no_pictures):
     [
         ("imm", "imm: 1 run, seed 0", (0, 1)),
         ("solent", "solent: 10 runs, seed 0", (0, 10)),
-        ("ais-forecast", "ais-forecast: 1 run, nothing drawn at random", (None, 1)),
+        ("ais-forecast", "ais-forecast: 1 run, nothing random", (None, 1)),
     ],
 )
 def test_as_many_runs_are_reported_as_there_were(
@@ -401,10 +401,10 @@ def test_every_panel_returns_the_axes_it_drew_into(reports):
         (["run", "none"], "invalid choice: 'none'"),
         (["run"], "NAME"),
         ([], "ACTION"),
-        (["run", "imm", "--runs", "0"], "wanted a whole number from 1 on, got '0'"),
-        (["run", "imm", "--runs", "-3"], "wanted a whole number from 1 on, got '-3'"),
-        (["run", "imm", "--runs", "many"], "wanted a whole number from 1 on, got 'many'"),
-        (["run", "imm", "--seed", "-1"], "wanted a whole number from 0 on, got '-1'"),
+        (["run", "imm", "--runs", "0"], "wanted an integer, at least 1, got '0'"),
+        (["run", "imm", "--runs", "-3"], "wanted an integer, at least 1, got '-3'"),
+        (["run", "imm", "--runs", "many"], "wanted an integer, at least 1, got 'many'"),
+        (["run", "imm", "--seed", "-1"], "wanted an integer, at least 0, got '-1'"),
     ],
 )
 def test_a_study_that_is_invalid(capsys, arguments, wanted):
@@ -536,7 +536,7 @@ def test_a_study_that_is_stopped_reports_what_was_done(stopped, tmp_path, capsys
     file = tmp_path / "imm.json"
     assert run("run", "imm", "--runs", RUNS, "--json", file, "--out", tmp_path) == 130
     reported = capsys.readouterr()
-    assert reported.out.endswith("\nnot all was done: the table has what was\n")
+    assert reported.out.endswith("\ninterrupted: the table has the completed rows\n")
     assert reported.err == "wakeline: interrupted\n"
     assert not file.exists()
     rows = json.loads((tmp_path / "imm-partial.json").read_text())["rows"]

@@ -112,7 +112,7 @@ def test_a_run_is_the_same_whatever_their_number():
 def test_errors_of_a_mission_say_what_is_wrong():
     with pytest.raises(ValueError, match="speed_mps must be finite and positive, got 0"):
         UsvMission(speed_mps=0)
-    with pytest.raises(ValueError, match="current_mps must be finite, zero or more, got -1"):
+    with pytest.raises(ValueError, match="current_mps must be finite and not negative, got -1"):
         UsvMission(current_mps=-1)
     for obstacle in (Obstacle(0.0, 0.0, -1.0), Obstacle(np.nan, 0.0, 1.0)):
         with pytest.raises(ValueError, match="obstacles must be finite"):
