@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// The drift of a vessel, observed: her motion over ground less that through the water, [north,
-// east] m/s. Source: Hannoshyna, Kalinichenko, Nikitin, equations (16)-(20); see
+// Observed drift of a vessel: its velocity over ground minus that through the water, [north, east]
+// m/s. Source: Hannoshyna, Kalinichenko, Nikitin, equations (16)-(20); see
 // cpp/docs/theory/dead_reckoning.md.
 #pragma once
 
@@ -27,8 +27,8 @@ namespace wakeline {
 
 // At once -----------------------------------------------------------------------------------------
 
-/// Velocity through the water by log and compass, with the covariance of their errors: along the
-/// heading and across it, speed times that of the heading.
+/// Velocity through the water from log and compass, with its covariance: the log error along the
+/// heading, speed times the heading error across it.
 inline Gaussian<2> water_velocity(double speed_mps, double heading_rad, double log_std_mps,
                                   double heading_std_rad) noexcept {
   const Vec<double, 2> ahead(std::cos(heading_rad), std::sin(heading_rad));
@@ -38,26 +38,26 @@ inline Gaussian<2> water_velocity(double speed_mps, double heading_rad, double l
                                  across_std * across_std * abeam * abeam.transpose()};
 }
 
-/// From rates: (V_N - V cos K, V_E - V sin K).
+/// From velocities: (V_N - V cos K, V_E - V sin K).
 inline Vec<double, 2> drift_from_rates_mps(const Vec<double, 2>& ground_velocity_mps,
                                            const SpeedCourse& through_water) noexcept {
   return ground_velocity_mps - through_water.velocity_mps();
 }
 
-/// The same of uncertain velocities that err independently.
+/// The same for uncertain velocities with independent errors.
 inline Gaussian<2> drift_between(const Gaussian<2>& over_ground,
                                  const Gaussian<2>& through_water) noexcept {
   return {over_ground.mean - through_water.mean, over_ground.covariance + through_water.covariance};
 }
 
-/// Own velocity over ground by a mark that lies still, tracked by radar: minus its motion relative
-/// to the ship (axes to true north).
+/// Own velocity over ground from a stationary mark tracked by radar: minus its motion relative to
+/// the ship (axes to true north).
 inline Gaussian<2> ground_velocity_from_mark(const Gaussian<2>& relative_velocity) noexcept {
   return {-relative_velocity.mean, relative_velocity.covariance};
 }
 
-/// The same by several marks, each weighed by its information. Not a number without a mark or where
-/// a covariance is not positive definite.
+/// The same from several marks, each weighted by its information. NaN without a mark or where a
+/// covariance is not positive definite.
 inline Gaussian<2> ground_velocity_from_marks(
     std::span<const Gaussian<2>> relative_velocities) noexcept {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -79,13 +79,13 @@ inline Gaussian<2> ground_velocity_from_marks(
 // Stabilisation of a radar's picture --------------------------------------------------------------
 
 /// True velocity of a target through the water (sea stabilised): its motion relative to the ship
-/// plus hers by log and compass. This is the one that its lights and its aspect tell.
+/// plus the ship's by log and compass. It corresponds to the target's lights and aspect.
 inline Vec<double, 2> sea_stabilised_mps(const Vec<double, 2>& relative_mps,
                                          const SpeedCourse& own_through_water) noexcept {
   return relative_mps + own_through_water.velocity_mps();
 }
 
-/// True velocity of a target over ground (ground stabilised): a mark that lies still has none.
+/// True velocity of a target over ground (ground stabilised); zero for a stationary mark.
 inline Vec<double, 2> ground_stabilised_mps(const Vec<double, 2>& relative_mps,
                                             const SpeedCourse& own_through_water,
                                             const Vec<double, 2>& drift_mps) noexcept {
@@ -94,21 +94,21 @@ inline Vec<double, 2> ground_stabilised_mps(const Vec<double, 2>& relative_mps,
 
 // Over a window -----------------------------------------------------------------------------------
 
-/// How a drift is found over a window.
+/// Parameters of a drift estimate over a window.
 struct DriftWindowSettings {
   int max_fixes = 20;            ///< that are remembered
   double log_std_mps = 0.0;      ///< error of one reading of the log
   double heading_std_rad = 0.0;  ///< error of one reading of the compass
 };
 
-/// The drift of a vessel by the differences of observed and reckoned positions over a sliding
-/// window: the slope of the line through them by least squares, with its covariance.
+/// The drift of a vessel from the differences between observed and reckoned positions over a
+/// sliding window: the slope of the least-squares line through them, with its covariance.
 ///
-/// The differences err by the fixes and by what log and compass sum up to in between; each reading
-/// (each `advance`) errs independently of the one before. Steps from fix to fix therefore have a
-/// covariance of two bands, R_k + R_k+1 + Q beside -R_k, and the slope is the best one for it. With
-/// no error of log and compass it is the plain line. A lasting error of the log or the compass
-/// counts as drift. Storage is in place, no heap.
+/// The differences have the errors of the fixes and the accumulated errors of log and compass in
+/// between; the errors of each reading (each `advance`) are independent. Steps between fixes
+/// therefore have a block-tridiagonal covariance, R_k + R_k+1 + Q next to -R_k, for which the slope
+/// is optimal. Without errors of log and compass it is the ordinary line. A constant error of log
+/// or compass appears as drift. Storage is in place, no heap.
 template <int Capacity = 32>
 class DriftWindow {
  public:
@@ -116,8 +116,8 @@ class DriftWindow {
   static constexpr int kCapacity = Capacity;
   using Settings = DriftWindowSettings;
 
-  /// Throws `std::invalid_argument` when a setting makes no sense. By default no more fixes are
-  /// remembered than there is room for.
+  /// Throws `std::invalid_argument` when a setting is invalid. The default number of fixes is
+  /// limited to the capacity.
   explicit DriftWindow(
       const Settings& settings = {.max_fixes = std::min(DriftWindowSettings{}.max_fixes, Capacity)})
       : settings_(settings) {
@@ -127,7 +127,7 @@ class DriftWindow {
     require_not_negative("heading_std_rad", settings.heading_std_rad);
   }
 
-  /// Forgets all fixes: after an alteration, where drift is wanted on the new course alone.
+  /// Removes all fixes, e.g. after a course alteration.
   void clear() noexcept {
     size_ = 0;
     step_ = {};
@@ -158,7 +158,7 @@ class DriftWindow {
     return Status::kOk;
   }
 
-  /// Saves or restores the fixes and what was reckoned since.
+  /// Saves or restores the fixes and the motion since the last one.
   void archive(Archive& fields) {
     for (Fixed& fixed : fixes_) fixed.archive(fields);
     step_.archive(fields);
@@ -168,7 +168,7 @@ class DriftWindow {
     if (size_ < 0 || size_ > most || newest_ < 0 || newest_ >= most) fields.fail();
   }
 
-  /// Fixes that are remembered.
+  /// Number of stored fixes.
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
 
@@ -179,13 +179,14 @@ class DriftWindow {
     return span_s > 0.0;
   }
 
-  /// The drift, [north, east] m/s; zero with an infinite covariance until `ready()`, and while the
-  /// times are too near each other to tell.
+  /// The drift, [north, east] m/s; zero with infinite covariance until `ready()`, and while the
+  /// times are too close together.
   [[nodiscard]] Gaussian<2> drift() const noexcept {
     const Mat<double, 2, 2> identity = Mat<double, 2, 2>::Identity();
     if (!ready()) return unknown();
-    // Block elimination of the banded covariance of the steps: each less what the step before tells
-    // of the fix that both share. `rest` is that of a step but for the fix that it leads to.
+    // Block elimination of the tridiagonal covariance of the steps: subtracts from each step the
+    // part correlated with the one before through their common fix. `rest` is the covariance of a
+    // step without the fix at its end.
     Mat<double, 2, 2> information = Mat<double, 2, 2>::Zero();
     Vec<double, 2> weighted = Vec<double, 2>::Zero();
     Mat<double, 2, 2> rest = latest(size_ - 1).fix.covariance;
@@ -219,7 +220,7 @@ class DriftWindow {
   }
 
  private:
-  /// A fix and how the ship has come there, reckoned from the fix before.
+  /// A fix, and the reckoned motion from the fix before.
   struct Fixed {
     Gaussian<2> fix;
     double gap_s = 0.0;
@@ -241,7 +242,7 @@ class DriftWindow {
     return drift;
   }
 
-  /// The k-th fix, counted back from the newest.
+  /// The k-th newest fix.
   [[nodiscard]] const Fixed& latest(int k) const noexcept {
     const int slot = newest_ - k;
     return fixes_[static_cast<std::size_t>(slot < 0 ? slot + settings_.max_fixes : slot)];

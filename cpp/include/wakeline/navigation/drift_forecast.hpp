@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Where an object that is left to wind and current will be, and how well that is known: the area to
-// search.
+// Forecast of the position of an object drifting in wind and current, with its uncertainty: the
+// search area.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/chi_square.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/status.hpp"
@@ -18,8 +19,8 @@
 
 namespace wakeline {
 
-/// How an object drifts: v = k U + C + r, U the wind, C the current of the water, both [north,
-/// east] m/s, and what is not known of them.
+/// Drift of an object: v = k U + C + r, U the wind, C the current, both [north, east] m/s, with
+/// their uncertainties.
 struct DriftModel {
   double leeway = 0.0385;           ///< k
   double leeway_std = 0.00375;      ///< of k, which stays the same during a forecast
@@ -28,7 +29,7 @@ struct DriftModel {
   double residual_std_mps = 0.05;   ///< per axis, of r, which wanders (Gauss-Markov) ...
   double residual_time_s = 1800.0;  ///< ... with this correlation time
 
-  /// The factor of an object by kind, the rest as it stands.
+  /// The leeway factor of a kind of object; other parameters have their defaults.
   static DriftModel of(FloatingObject object) noexcept {
     DriftModel model;
     model.leeway = leeway_factor(object).middle();
@@ -46,17 +47,17 @@ struct DriftModel {
   }
 };
 
-/// The area that holds a Gaussian position with a probability.
+/// The ellipse that contains a Gaussian position with a given probability.
 struct UncertaintyEllipse {
   double semi_major_m = 0.0;
   double semi_minor_m = 0.0;
   double major_axis_rad = 0.0;  ///< direction of the long axis, 0 .. pi clockwise from north
   double area_m2 = 0.0;
 
-  /// For a covariance (2, 2) that is positive semidefinite and a probability below 1.
+  /// For a positive semidefinite covariance (2, 2) and a probability below 1.
   static UncertaintyEllipse of(const Mat<double, 2, 2>& covariance_m2,
                                double probability) noexcept {
-    const double threshold = -2.0 * std::log1p(-probability);  // chi-square quantile, 2 dof
+    const double threshold = chi_square_quantile(probability, 2.0);
     const double half_sum = covariance_m2.trace() / 2;
     const double half_difference = (covariance_m2(0, 0) - covariance_m2(1, 1)) / 2;
     const double spread = std::hypot(half_difference, covariance_m2(1, 0));
@@ -67,13 +68,13 @@ struct UncertaintyEllipse {
   }
 };
 
-/// The position of a drifting object as a Gaussian that grows:
+/// The position of a drifting object as a Gaussian:
 ///     P = P0 + s_k² W Wᵀ + ((k² + s_k²) s_u² + s_c²) t² I + 2 s_r² T² (t/T - 1 + exp(-t/T)) I,
-/// W the run of the wind so far. Mean and covariance are exact for the model, however the time is
-/// cut.
+/// W the integral of the wind so far. Mean and covariance are exact for the model and independent
+/// of the division into steps.
 class DriftForecast {
  public:
-  /// Throws `std::invalid_argument` when a parameter or the start makes no sense.
+  /// Throws `std::invalid_argument` when a parameter or the start is invalid.
   DriftForecast(const DriftModel& model, const Gaussian<2>& start) : model_(model), start_(start) {
     model.validate();
     const Mat<double, 2, 2>& p = start.covariance;
@@ -98,7 +99,7 @@ class DriftForecast {
   [[nodiscard]] const DriftModel& model() const noexcept { return model_; }
   [[nodiscard]] const Gaussian<2>& start() const noexcept { return start_; }
 
-  /// The position at present, [north, east] m.
+  /// The present position, [north, east] m.
   [[nodiscard]] Gaussian<2> position() const noexcept {
     const auto squared = [](double x) { return x * x; };
     const double steps = elapsed_s_ / model_.residual_time_s;
@@ -122,13 +123,13 @@ class DriftForecast {
   Vec<double, 2> current_run_m_ = Vec<double, 2>::Zero();
 };
 
-/// One of many objects that might be the one adrift: its own leeway, errors of wind and current,
-/// and wandering. A cloud of them has the moments of `DriftForecast` and shows what no ellipse can,
-/// as a coast between.
+/// A random sample of the drifting object, with its own leeway, errors of wind and current, and
+/// random motion. A cloud of particles has the moments of `DriftForecast` and can represent what an
+/// ellipse cannot, e.g. a coast.
 class DriftParticle {
  public:
-  /// Number `index` of the cloud of a seed; the same two give the same particle. The arguments are
-  /// those of a `DriftForecast`, unchecked.
+  /// Particle `index` of the cloud of a seed; the same two numbers give the same particle.
+  /// Arguments as for `DriftForecast`, unchecked.
   DriftParticle(const DriftModel& model, const Gaussian<2>& start, std::uint64_t seed,
                 std::uint64_t index) noexcept
       : time_s_(model.residual_time_s),
@@ -141,7 +142,7 @@ class DriftParticle {
     residual_mps_ = residual_std_mps_ * normals();
   }
 
-  /// Lets time pass under a wind and a current, [north, east] m/s; unchecked.
+  /// Advances by a time step under a wind and a current, [north, east] m/s; unchecked.
   void advance(double dt_s, const Vec<double, 2>& wind_mps,
                const Vec<double, 2>& current_mps) noexcept {
     position_m_ += dt_s * (wind_drift_mps(wind_mps + wind_error_mps_, leeway_) + current_mps +
@@ -156,7 +157,7 @@ class DriftParticle {
   void wander(double dt_s) noexcept {
     const double x = dt_s / time_s_;
     const double rest = -std::expm1(-x);  // 1 - exp(-x)
-    Mat<double, 2, 2> noise;              // of [run, velocity] per unit variance
+    Mat<double, 2, 2> noise;              // of [displacement, velocity] per unit variance
     noise(0, 0) = time_s_ * time_s_ *
                   (x < 1e-3 ? x * x * x * (2.0 / 3 - x / 2) : 2 * (x - rest) - rest * rest);
     noise(0, 1) = noise(1, 0) = time_s_ * rest * rest;
@@ -169,7 +170,7 @@ class DriftParticle {
 
   static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
 
-  /// One number of SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, 2014): the same on any machine.
+  /// One number of SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, 2014): the same on every machine.
   static std::uint64_t mixed(std::uint64_t bits) noexcept {
     bits += kGolden;
     bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -177,14 +178,14 @@ class DriftParticle {
     return bits ^ (bits >> 31);
   }
 
-  /// Uniform in 0 .. 1, neither included.
+  /// Uniform in the open interval (0, 1).
   double uniform() noexcept {
     const std::uint64_t bits = mixed(random_);
     random_ += kGolden;
     return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;
   }
 
-  /// Two independent standard normal numbers, by Box and Muller.
+  /// Two independent standard normal numbers (Box-Muller).
   Vec<double, 2> normals() noexcept {
     const double radius = std::sqrt(-2 * std::log(uniform()));
     const double angle = 2 * kPi<double> * uniform();

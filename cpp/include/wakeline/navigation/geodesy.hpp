@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Places on the WGS84 ellipsoid, the shortest line between them (geodesic) and the line of constant
-// course (rhumb line).
+// Positions on the WGS84 ellipsoid, the shortest line between them (geodesic) and the line of
+// constant course (rhumb line).
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ inline constexpr double kFlattening = 1.0 / 298.257223563;
 inline constexpr double kEccentricitySquared = kFlattening * (2.0 - kFlattening);
 inline constexpr double kPolarRadius_m = kEquatorialRadius_m * (1.0 - kFlattening);
 
-/// A place at sea level, radians; longitude positive to the east.
+/// A position at sea level, radians; longitude positive to the east.
 struct GeoPoint {
   double latitude_rad = 0.0;
   double longitude_rad = 0.0;
@@ -31,13 +31,14 @@ struct GeoPoint {
   }
 };
 
-/// How to get from one place to another along a geodesic or a rhumb line.
+/// Distance and courses between two positions along a geodesic or a rhumb line.
 struct GeoLine {
   double distance_m = NAN;
-  double course_rad = NAN;          ///< at departure, 0 .. 2 pi clockwise from true north
-  double arrival_course_rad = NAN;  ///< at the destination; that of departure on a rhumb line
-  bool found = false;  ///< false where the series does not converge or an input is not finite;
-                       ///< the rest is then not a number
+  double course_rad = NAN;  ///< at departure, 0 .. 2 pi clockwise from true north
+  double arrival_course_rad =
+      NAN;             ///< at the destination; equal to that at departure on a rhumb line
+  bool found = false;  ///< false where the series does not converge or an input is not finite; the
+                       ///< rest is then NaN
 };
 
 // The ellipsoid -----------------------------------------------------------------------------------
@@ -67,7 +68,7 @@ inline double meridian_arc_m(double latitude_rad) noexcept {
           (35.0 / 48) * n2 * n * std::sin(6 * p) + (315.0 / 512) * n2 * n2 * std::sin(8 * p));
 }
 
-/// The latitude at that distance along the meridian from the equator.
+/// The latitude at this distance along the meridian from the equator.
 inline double latitude_of_meridian_arc_rad(double arc_m) noexcept {
   constexpr double n = kFlattening / (2.0 - kFlattening);
   constexpr double n2 = n * n;
@@ -78,8 +79,8 @@ inline double latitude_of_meridian_arc_rad(double arc_m) noexcept {
          (151.0 / 96) * n2 * n * std::sin(6 * m) + (1097.0 / 512) * n2 * n2 * std::sin(8 * m);
 }
 
-/// The ordinate of Mercator's chart, on which a rhumb line is straight:
-/// psi = asinh(tan latitude) - e atanh(e sin latitude).
+/// The ordinate of the Mercator projection, in which a rhumb line is straight: psi = asinh(tan
+/// latitude) - e atanh(e sin latitude).
 inline double isometric_latitude_rad(double latitude_rad) noexcept {
   const double e = std::sqrt(kEccentricitySquared);
   return std::asinh(std::tan(latitude_rad)) - e * std::atanh(e * std::sin(latitude_rad));
@@ -93,8 +94,8 @@ inline bool is_pole(double latitude_rad) noexcept {
   return kPi<double> / 2 - std::abs(latitude_rad) < 1e-12;
 }
 
-/// Metres of meridian arc to a radian of isometric latitude between two latitudes: N cos(latitude)
-/// on average. Where they are near, by Simpson's rule, since the difference quotient would cancel.
+/// Metres of meridian arc per radian of isometric latitude between two latitudes: the mean of N
+/// cos(latitude). Simpson's rule for near ones, where the difference quotient would cancel.
 inline double metres_per_isometric_rad(double from_rad, double to_rad) noexcept {
   const double middle = (from_rad + to_rad) / 2;
   if (std::abs(to_rad - from_rad) > 1e-3 * std::cos(middle))
@@ -110,8 +111,8 @@ inline double metres_per_isometric_rad(double from_rad, double to_rad) noexcept 
 
 }  // namespace detail
 
-/// Distance and course of the rhumb line, the shorter way round. At a pole, where longitude means
-/// nothing, it is the meridian.
+/// Distance and course of the rhumb line, the shorter way round. At a pole, where the longitude is
+/// undefined, it is the meridian.
 inline GeoLine rhumb_line(const GeoPoint& from, const GeoPoint& to) noexcept {
   const bool along_meridian =
       detail::is_pole(from.latitude_rad) || detail::is_pole(to.latitude_rad);
@@ -124,8 +125,7 @@ inline GeoLine rhumb_line(const GeoPoint& from, const GeoPoint& to) noexcept {
   return {distance, course, course, true};
 }
 
-/// Where a rhumb line leads. Not a number when it would go beyond a pole, around which it winds
-/// without end.
+/// Destination of a rhumb line. NaN when it would pass a pole, around which it spirals without end.
 inline GeoPoint rhumb_destination(const GeoPoint& from, double course_rad,
                                   double distance_m) noexcept {
   const double arc = meridian_arc_m(from.latitude_rad) + distance_m * std::cos(course_rad);
@@ -159,8 +159,8 @@ struct Vincenty {
     b = k1 * (1.0 - 3.0 / 8 * k1 * k1);
   }
 
-  /// Distance over A b less the arc `sigma`; `m` is the cosine of twice the arc from the equator to
-  /// its middle.
+  /// Distance over A b minus the arc `sigma`; `m` is the cosine of twice the arc from the equator
+  /// to its middle.
   [[nodiscard]] double excess(double sin_sigma, double cos_sigma, double m) const noexcept {
     return b * sin_sigma *
            (m + b / 4 *
@@ -168,7 +168,7 @@ struct Vincenty {
                      b / 6 * m * (4 * sin_sigma * sin_sigma - 3) * (4 * m * m - 3)));
   }
 
-  /// Longitude on the sphere less that on the ellipsoid.
+  /// Longitude on the sphere minus that on the ellipsoid.
   [[nodiscard]] double longitude_excess(double sigma, double sin_sigma, double cos_sigma,
                                         double m) const noexcept {
     constexpr double f = kFlattening;
@@ -196,10 +196,10 @@ inline constexpr double kVincentyTolerance_rad = 1e-14;
 
 }  // namespace detail
 
-/// Distance and courses of the shortest line between two places, within 0.1 mm.
+/// Distance and courses of the shortest line between two positions, within 0.1 mm.
 ///
-/// Vincenty's iteration. It does not converge, and says so by `found`, where the places are nearly
-/// opposite each other on the earth (within about 0.7 degrees of it).
+/// Vincenty's iteration. It does not converge, and returns `found` = false, for nearly antipodal
+/// positions (within about 0.7 degrees).
 inline GeoLine geodesic(const GeoPoint& from, const GeoPoint& to) noexcept {
   const detail::ReducedLatitude u1(from.latitude_rad), u2(to.latitude_rad);
   const double longitude = wrap_angle(to.longitude_rad - from.longitude_rad);
@@ -230,7 +230,7 @@ inline GeoLine geodesic(const GeoPoint& from, const GeoPoint& to) noexcept {
   return {};
 }
 
-/// Where a geodesic leads, within 0.1 mm; `course_rad` is that at departure.
+/// Destination of a geodesic, within 0.1 mm; `course_rad` is that at departure.
 inline GeoPoint geodesic_destination(const GeoPoint& from, double course_rad,
                                      double distance_m) noexcept {
   const detail::ReducedLatitude u1(from.latitude_rad);
@@ -260,12 +260,12 @@ inline GeoPoint geodesic_destination(const GeoPoint& from, double course_rad,
 
 // The plane ---------------------------------------------------------------------------------------
 
-/// The plane of north and east about a place: distance and course from it along the geodesic, as
-/// polar coordinates (the azimuthal equidistant projection).
+/// The plane of north and east about a reference: distance and course from it along the geodesic,
+/// as polar coordinates (the azimuthal equidistant projection).
 ///
-/// What is measured from the reference is true to 0.1 mm at any distance at which `geodesic` finds
-/// it. Across, at a distance d, the plane is stretched by d² / (6 R²): 1e-5 at 50 km, 4e-5 at 100
-/// km.
+/// Distances and directions from the reference are accurate to 0.1 mm wherever `geodesic`
+/// converges. Across, at a distance d, the plane is stretched by d² / (6 R²): 1e-5 at 50 km, 4e-5
+/// at 100 km.
 class LocalPlane {
  public:
   /// Throws `std::invalid_argument` when the reference is not on the earth.
@@ -273,28 +273,27 @@ class LocalPlane {
 
   [[nodiscard]] const GeoPoint& reference() const noexcept { return reference_; }
 
-  /// North and east of a place, m; not a number on the other side of the earth.
+  /// North and east of a position, m; NaN near the antipode.
   [[nodiscard]] Vec<double, 2> position_m(const GeoPoint& place) const noexcept {
     const GeoLine line = geodesic(reference_, place);
     return {line.distance_m * std::cos(line.course_rad),
             line.distance_m * std::sin(line.course_rad)};
   }
 
-  /// The place at [north, east] m.
+  /// The position at [north, east] m.
   [[nodiscard]] GeoPoint place(const Vec<double, 2>& position_m) const noexcept {
     return geodesic_destination(reference_, std::atan2(position_m[1], position_m[0]),
                                 std::hypot(position_m[0], position_m[1]));
   }
 
-  /// The direction on the plane of a course from true north at a place: meridians lean towards each
-  /// other.
+  /// The direction on the plane of a true course at a position: meridians converge.
   [[nodiscard]] double plane_course_rad(double true_course_rad,
                                         const GeoPoint& place) const noexcept {
     const GeoLine line = geodesic(reference_, place);
     return compass_angle(true_course_rad + line.course_rad - line.arrival_course_rad);
   }
 
-  /// The course from true north at a place of a direction on the plane.
+  /// The true course at a position of a direction on the plane.
   [[nodiscard]] double true_course_rad(double plane_course_rad,
                                        const GeoPoint& place) const noexcept {
     const GeoLine line = geodesic(reference_, place);

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// What wind and waves do to a drifting object and to the water it lies in. Source: Hannoshyna,
+// Effect of wind and waves on a drifting object and on the surface water. Source: Hannoshyna,
 // Kalinichenko, Nikitin, equations (12)-(15); see cpp/docs/theory/dead_reckoning.md.
 //
-// A wind here is the velocity of the air, [north, east] m/s: where it blows to.
+// A wind is the velocity of the air, [north, east] m/s: the direction it blows to.
 #pragma once
 
 #include <array>
@@ -16,17 +16,17 @@
 
 namespace wakeline {
 
-/// What floats.
+/// Kinds of floating objects.
 enum class FloatingObject : unsigned char { kBuoy, kDinghy, kLaunch, kShip };
 
-/// How much of the wind's speed an object takes on, as a range.
+/// Range of the ratio of an object's drift to the wind speed.
 struct LeewayFactor {
   double least = 0.0;
   double greatest = 0.0;
 
   [[nodiscard]] constexpr double middle() const noexcept { return (least + greatest) / 2; }
 
-  /// Standard deviation of a factor that may lie anywhere in the range alike.
+  /// Standard deviation of a uniform distribution over the range.
   [[nodiscard]] double std() const noexcept { return (greatest - least) / std::sqrt(12.0); }
 };
 
@@ -42,17 +42,18 @@ inline Vec<double, 2> wind_drift_mps(const Vec<double, 2>& wind_mps, double fact
   return factor * wind_mps;
 }
 
-/// (14): the current at the surface that a lasting wind makes, V = k U / sqrt(sin |latitude|), 45
-/// degrees to the right of where the wind blows in the northern hemisphere, to the left in the
-/// southern.
+/// (14): the surface current caused by a steady wind, V = k U / sqrt(sin |latitude|), 45 degrees to
+/// the right of the wind in the northern hemisphere, to the left in the southern.
 ///
-/// The factor is 0.0127 after Ekman; observed ones lie from 0.04 (wind of 2 m/s) to 0.012 (20 m/s).
+/// The factor is 0.0127 after Ekman; observed ones range from 0.04 (wind of 2 m/s) to 0.012 (20
+/// m/s).
 class WindCurrent {
  public:
   static constexpr double kLeastLatitude_rad = deg(20.0);
   static constexpr double kDefaultFactor = 0.0127;
 
-  /// Throws `std::invalid_argument` less than 20 degrees from the equator, where the law fails.
+  /// Throws `std::invalid_argument` less than 20 degrees from the equator, where the formula is not
+  /// valid.
   explicit WindCurrent(double latitude_rad, double factor = kDefaultFactor) {
     require(
         std::abs(latitude_rad) >= kLeastLatitude_rad && std::abs(latitude_rad) <= kPi<double> / 2,
@@ -66,7 +67,7 @@ class WindCurrent {
     of_wind_ << c, -s, s, c;
   }
 
-  /// [north, east] m/s of the water.
+  /// Velocity of the water [north, east] m/s.
   [[nodiscard]] Vec<double, 2> velocity_mps(const Vec<double, 2>& wind_mps) const noexcept {
     return of_wind_ * wind_mps;
   }
@@ -75,7 +76,7 @@ class WindCurrent {
   Mat<double, 2, 2> of_wind_;
 };
 
-/// (15): speed of the surface drift with waves in deep water (Stokes), in their direction:
+/// (15): speed of the Stokes drift at the surface for waves in deep water, in their direction:
 /// (h/2)² (2 pi / L) sqrt(2 pi g / L), h from trough to crest, L from crest to crest.
 inline double stokes_drift_mps(double wave_height_m, double wave_length_m) noexcept {
   constexpr double gravity_mps2 = 9.80665;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// How likely a point that moves straight, of uncertain position and velocity, comes into a disc.
+// Probability that a point in straight motion, of uncertain position and velocity, enters a disc.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr int kSlices = 4;
 constexpr int kSlicesAtOnce = std::min(kSlices, kNativeLanes<double>);
 using Slices = Pack<double, kSlicesAtOnce>;
 
-/// P(Z < z) of a standard Gaussian, and sqrt(2 pi) times its density.
+/// P(Z < z) of a standard normal variable, and sqrt(2 pi) times its density.
 struct StandardNormal {
   Slices below, bell;
 
@@ -39,21 +39,21 @@ struct StandardNormal {
 
 inline double normal_below(double z) noexcept { return std::erfc(-z / std::numbers::sqrt2) / 2; }
 
-/// A number that is Gaussian but for its skewness, given how far another is off its mean:
-/// mean + slope off + curve off² + std Z.
+/// A nearly Gaussian variable with skewness, conditional on the offset of another one from its
+/// mean: mean + slope off + curve off² + std Z.
 struct GivenOffset {
   double mean, slope = 0.0, curve = 0.0, std = 0.0, skewness = 0.0;
 
-  static constexpr double kFarthest = 40.0;  ///< whose bell is zero
+  static constexpr double kFarthest = 40.0;  ///< where the density is zero
 
-  /// By Edgeworth's expansion, to the square of the skewness.
+  /// Edgeworth expansion, up to the squared skewness.
   [[nodiscard]] Slices probability_below(Slices limit, Slices off) const noexcept {
     const Slices left = limit - (mean + off * (slope + curve * off));
     if (std == 0.0) return select(left > Slices(0.0), Slices(1.0), Slices(0.0));
     const Slices z = max(min(left * (1.0 / std), Slices(kFarthest)), Slices(-kFarthest));
     const StandardNormal normal(z);
     constexpr double kDensity = 0.3989422804014327;  // 1 / sqrt(2 pi)
-    // The excess that a length has beside its skewness squared, which is 0.615 of one in a plane.
+    // Excess kurtosis over squared skewness of the length; 0.615 in the plane.
     constexpr double kExcess = 0.615;
     const Slices z2 = z * z, once = (z2 - 1.0) * (1.0 / 6.0);
     const Slices twice =
@@ -64,13 +64,12 @@ struct GivenOffset {
   }
 };
 
-/// ∫ P(x, half a chord there) p(x) dx over a disc of radius L, x Gaussian along a diameter: the
-/// mean of P over slices x = L sin f, equally wide in f, the first of them begun by a share
-/// `stagger` of its width further.
+/// ∫ P(x, half chord at x) p(x) dx over a disc of radius L, x Gaussian along a diameter: the mean
+/// of P over slices x = L sin f, equal in f and offset by the fraction `stagger` of their width.
 template <class OnChord>
 double within_disc(double limit_m, double mean_m, double std_m, double stagger,
                    const OnChord& on_chord) noexcept {
-  constexpr double kSigmas = 3.5;  // what lies beyond counts as what lies within
+  constexpr double kSigmas = 3.5;  // the integral beyond is negligible
   if (std_m == 0.0) {
     if (std::abs(mean_m) >= limit_m) return 0.0;
     const double half_chord_m = std::sqrt((limit_m - mean_m) * (limit_m + mean_m));
@@ -96,13 +95,13 @@ double within_disc(double limit_m, double mean_m, double std_m, double stagger,
   return all > 0.0 ? mass * sum_of_lanes(sum) / all : 0.0;
 }
 
-/// Where a velocity v = ρ A c(ψ) points, A Aᵀ its covariance, c a unit vector: ψ = 0 is the mean.
-/// Given ψ, the density of ρ is as ρ exp(-(ρ - D cos ψ)² / 2), D = |A⁻¹ mean(v)|.
+/// Direction of a velocity v = ρ A c(ψ), A Aᵀ its covariance, c a unit vector: ψ = 0 is the mean.
+/// Given ψ, the density of ρ is proportional to ρ exp(-(ρ - D cos ψ)² / 2), D = |A⁻¹ mean(v)|.
 struct Length {
-  double mean, variance, third;  ///< of ρ, the third about the mean
-  double weight;                 ///< as the density of ψ
+  double mean, variance, third;  ///< of ρ; `third` is the third central moment
+  double weight;                 ///< proportional to the density of ψ
 
-  /// With D for ρ and a somewhat larger one for ψ.
+  /// With D for ρ and a somewhat larger value for ψ.
   Length(double distance, double narrowed, double cos_psi, double sin_psi) noexcept {
     const double a = distance * cos_psi, q = zeroth(a) / first(a);
     mean = a + q;
@@ -120,9 +119,9 @@ struct Length {
   static double first(double a) noexcept { return std::exp(-0.5 * a * a) + a * zeroth(a); }
 };
 
-constexpr double kRest_mps = 1e-6;  ///< a relative speed that is none
+constexpr double kRest_mps = 1e-6;  ///< smallest relative speed of a moving target
 
-/// Unit vectors and standard deviations along the axes of a covariance's ellipse, the longer first.
+/// Unit vectors and standard deviations along the axes of a covariance ellipse, the longer first.
 struct PrincipalAxes {
   Mat<double, 2, 2> axes;
   Vec<double, 2> std;
@@ -153,8 +152,8 @@ inline double probability_within(double limit_m, const Vec<double, 2>& position_
   return sum / 4;
 }
 
-/// Position and velocity by independent errors: v = A w, p = p0 + G (w - mean(w)) + e, w and e
-/// Gaussian, the covariance of w one.
+/// Position and velocity in independent errors: v = A w, p = p0 + G (w - mean(w)) + e, w and e
+/// Gaussian, w with unit covariance.
 class PassingProbability {
  public:
   explicit PassingProbability(const Gaussian<4>& relative) noexcept
@@ -191,10 +190,10 @@ class PassingProbability {
   using Mat2 = Mat<double, 2, 2>;
 
   static constexpr int kDirections = 32;
-  static constexpr double kLeastError = 1e-8;  ///< of a velocity that is known, beside itself
-  static constexpr double kSpread = 0.4;       ///< of directions, beside their distance
+  static constexpr double kLeastError = 1e-8;  ///< relative to a velocity without error
+  static constexpr double kSpread = 0.4;       ///< spread of directions, relative to their spacing
 
-  /// The probability that it is outside now and comes in.
+  /// The probability to be outside now and to enter later.
   [[nodiscard]] double later(double limit_m, double horizon_s) const noexcept {
     const double distance = whitened_.norm();
     const Vec2 ahead = distance > 0.0 ? Vec2(whitened_ / distance) : Vec2(1.0, 0.0);
@@ -208,7 +207,7 @@ class PassingProbability {
     double sum = 0.0, weights = 0.0;
     for (int k = 0; k < kDirections; ++k) {
       const double psi = (k + 0.5) * step - widest, c = std::cos(psi), s = std::sin(psi);
-      if (distance * c < -5.0) continue;  // less than one in a million goes there
+      if (distance * c < -5.0) continue;  // probability below one in a million
       const Length length(distance, narrowed, c, s);
       sum += length.weight * towards(c * ahead + s * aside, c * aside - s * ahead, length, spread,
                                      stagger(k), limit_m, horizon_s);
@@ -217,25 +216,26 @@ class PassingProbability {
     return sum / weights;
   }
 
-  /// The bits of k from behind as a share: each direction has its slices between those of others.
+  /// The bit-reversed k as a fraction, so that the slices of a direction are between those of
+  /// others.
   static constexpr double stagger(int k) noexcept {
     int reversed = 0;
     for (int bit = 1; bit < kDirections; bit *= 2, k /= 2) reversed = 2 * reversed + k % 2;
     return (reversed + 0.5) / kDirections;
   }
 
-  /// What errors of one standard deviation of ρ and of ψ do to a way.
+  /// Changes of a path by one standard deviation of ρ and of ψ.
   struct Ways {
     double by_length, by_turn;
   };
 
-  /// The same in a direction ψ that errs by `spread`. With n the unit vector to starboard of the
-  /// velocity |v| u, d = p·n, s = -p·u the way to go and h² = L² - d² half the chord, it comes in
-  /// where |d| < L, s > h and s - |v| H < h:
+  /// The same for a direction ψ with the spread `spread`. With n the unit vector to starboard of
+  /// the velocity |v| u, d = p·n, s = -p·u the distance to go and h² = L² - d² half the chord, it
+  /// enters where |d| < L, s > h and s - |v| H < h:
   ///
   ///     ∫ (P(s - |v| H < h, given d) - P(s < h, given d)) p(d) dd,    -L < d < L.
   ///
-  /// Of first order in the errors, of second order in the direction.
+  /// First order in the errors, second order in the direction.
   [[nodiscard]] double towards(const Vec2& c, const Vec2& by_psi, const Length& length,
                                double spread, double stagger, double limit_m,
                                double horizon_s) const noexcept {

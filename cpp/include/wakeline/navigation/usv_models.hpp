@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// How own ship moves between two readings of her IMU. Headings clockwise from north, axes of the
-// body forward and starboard. Source: Evsyukov, Andreeva, Khanychev, "Sensor system information
+// Motion of own ship between two readings of its IMU. Headings are clockwise from north, body axes
+// forward and starboard. Source: Evsyukov, Andreeva, Khanychev, "Sensor system information
 // processing in unmanned navigation applications", equations (1)-(6).
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace wakeline {
 
-/// Components of own ship's state beside position and velocity.
+/// Components of own ship's state in addition to position and velocity.
 inline constexpr Component kHeading{static_cast<Component>(50)};            ///< rad
 inline constexpr Component kForwardBias{static_cast<Component>(51)};        ///< m/s²
 inline constexpr Component kStarboardBias{static_cast<Component>(52)};      ///< m/s²
@@ -25,7 +25,7 @@ inline constexpr Component kSpeedThroughWater{static_cast<Component>(54)};  ///<
 inline constexpr Component kCurrentNorth{static_cast<Component>(55)};       ///< m/s
 inline constexpr Component kCurrentEast{static_cast<Component>(56)};        ///< m/s
 
-/// One reading of an inertial unit, gravity removed; held until the next one.
+/// One reading of an inertial measurement unit, gravity removed; held until the next one.
 struct Imu {
   double forward_mps2 = 0.0;    ///< acceleration along the body
   double starboard_mps2 = 0.0;  ///< acceleration across it
@@ -37,7 +37,7 @@ struct Imu {
   }
 };
 
-/// Standard deviations of one reading; its error is the same during a whole step.
+/// Standard deviations of one reading; its error is constant during a step.
 struct ImuNoise {
   double acceleration_std_mps2 = 0.004;
   double yaw_rate_std_rad_s = deg(0.033);
@@ -48,16 +48,16 @@ struct ImuNoise {
   }
 };
 
-/// What drives a step: a reading with its noise and its biases, or, where there is none, a guess of
-/// no acceleration and no turn, which has noise alone (`bias_share` 0).
+/// Input of a step: a reading with its noise and biases or, without one, zero acceleration and turn
+/// rate, which has noise but no bias (`bias_share` 0).
 struct UsvInput {
   Imu imu;
   ImuNoise noise;
   double bias_share = 1.0;
-  double gyro_share = 1.0;  ///< of the gyro in the rate of turn, whose rest has none of its bias
+  double gyro_share = 1.0;  ///< part of the gyro in the turn rate; the rest does not have its bias
 };
 
-/// Where own ship begins, with standard deviations.
+/// Initial state of own ship, with standard deviations.
 struct UsvStart {
   Vec<double, 2> position_m = Vec<double, 2>::Zero();    ///< [north, east]
   Vec<double, 2> velocity_mps = Vec<double, 2>::Zero();  ///< [north, east], over ground
@@ -67,7 +67,7 @@ struct UsvStart {
   double heading_std_rad = deg(1.0);
 };
 
-/// The turn by `heading_rad` from body axes to north and east (6).
+/// Rotation by `heading_rad` from body axes to north and east (6).
 template <class Scalar>
 Mat<Scalar, 2, 2> body_to_north_east(Scalar heading_rad) noexcept {
   using std::cos;
@@ -78,15 +78,15 @@ Mat<Scalar, 2, 2> body_to_north_east(Scalar heading_rad) noexcept {
   return turn;
 }
 
-/// Own ship driven by acceleration and rate of turn: state `[px, py, vx, vy, heading]`, and with
-/// biases `[..., forward bias, starboard bias, gyro bias]` behind.
+/// Own ship driven by acceleration and turn rate: state `[px, py, vx, vy, heading]`, with biases
+/// `[..., forward bias, starboard bias, gyro bias]` appended.
 ///
 ///     w = w_imu - b_w,   a = R(heading + s T w) (a_imu - b),
 ///     p += T v + T²/2 a,   v += T a,   heading += T w.
 ///
-/// The acceleration is held over a step and turned by the heading in its middle, s = 1/2. In the
-/// paper, (1)-(6), it is that of its start, s = 0, which in a steady turn is wrong by half of each
-/// step's turn, always to the same side.
+/// The acceleration is constant over a step and rotated by the heading in its middle, s = 1/2. In
+/// the paper, (1)-(6), it is the heading at the start, s = 0, which in a steady turn has a
+/// systematic error of half of each step's turn.
 template <bool Biases>
 struct UsvInertialMotion {
   static constexpr int kN = Biases ? 8 : 5;
@@ -134,7 +134,7 @@ struct UsvInertialMotion {
     return f;
   }
 
-  /// Q: the error of the IMU held over the step, and the walk of the biases.
+  /// Q: the error of the IMU, constant over the step, and the random walk of the biases.
   template <class Scalar>
   Mat<Scalar, kN, kN> process_noise(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     const Scalar a_std = Scalar(input.noise.acceleration_std_mps2);
@@ -151,7 +151,7 @@ struct UsvInertialMotion {
     return q;
   }
 
-  /// The walk of the biases alone.
+  /// The random walk of the biases only.
   template <class Scalar>
   Mat<Scalar, kN, kN> walk_noise(const Vec<Scalar, kN>&, Scalar dt_s) const noexcept {
     Mat<Scalar, kN, kN> q = Mat<Scalar, kN, kN>::Zero();
@@ -203,13 +203,13 @@ struct UsvInertialMotion {
   }
 
  private:
-  /// R of the heading that turns the acceleration.
+  /// R of the heading that rotates the acceleration.
   template <class Scalar>
   [[nodiscard]] Mat<Scalar, 2, 2> body_axes(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     return body_to_north_east(Scalar(x[4] + Scalar(turned_at) * dt_s * turn_rate(x)));
   }
 
-  /// What position and velocity gain by that heading.
+  /// Derivatives of position and velocity by that heading.
   template <class Scalar>
   [[nodiscard]] Vec<Scalar, 4> by_heading(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     const Vec<Scalar, 2> a = body_axes(x, dt_s) * body_acceleration(x), across(-a[1], a[0]);
@@ -218,7 +218,7 @@ struct UsvInertialMotion {
     return gain;
   }
 
-  /// What position, velocity and heading gain by the rate of turn.
+  /// Derivatives of position, velocity and heading by the turn rate.
   template <class Scalar>
   [[nodiscard]] Vec<Scalar, 5> by_yaw_rate(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     Vec<Scalar, 5> gain;
@@ -241,19 +241,19 @@ struct UsvInertialMotion {
   }
 };
 
-/// The paper's five states, for an IMU whose biases are known and removed.
+/// The paper's five states, for an IMU with known and removed biases.
 using UsvMotion = UsvInertialMotion<false>;
 
 /// Eight states: the IMU's three biases are estimated.
 using UsvBiasMotion = UsvInertialMotion<true>;
 
-/// Own ship by her speed through water in a current, turned by the gyro: state `[px, py, heading,
-/// speed, gyro bias, current north, current east]`. The accelerometer is not used.
+/// Own ship by its speed through the water in a current, turned by the gyro: state `[px, py,
+/// heading, speed, gyro bias, current north, current east]`. The accelerometer is not used.
 ///
 ///     p += T (s [cos, sin](heading + T w / 2) + c),   heading += T w,   w = w_imu - b_w.
 ///
-/// Speed, current and bias walk. It knows more than the inertial model as long as the speed hardly
-/// changes, and less while it does.
+/// Speed, current and bias are random walks. More accurate than the inertial model while the speed
+/// is nearly constant, less while it changes.
 struct UsvCurrentMotion {
   static constexpr int kN = 7;
   static constexpr int kInputs = 1;  ///< readings that drive it
@@ -292,7 +292,8 @@ struct UsvCurrentMotion {
     return f;
   }
 
-  /// Q: the error of the gyro held over the step, which turns heading and way, and the walks.
+  /// Q: the error of the gyro, constant over the step, which rotates heading and path, and the
+  /// random walks.
   template <class Scalar>
   Mat<Scalar, kN, kN> process_noise(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     const Scalar turned = dt_s * Scalar(input.noise.yaw_rate_std_rad_s);
@@ -304,7 +305,7 @@ struct UsvCurrentMotion {
     return q;
   }
 
-  /// The walks of speed, current and bias alone, which carry the position along.
+  /// The random walks of speed, current and bias only, with their effect on the position.
   template <class Scalar>
   Mat<Scalar, kN, kN> walk_noise(const Vec<Scalar, kN>& x, Scalar dt_s) const noexcept {
     const Scalar s = Scalar(speed_walk_mps * speed_walk_mps);
@@ -344,7 +345,7 @@ struct UsvCurrentMotion {
     return x[3] * body_to_north_east(x[2]).col(0);
   }
 
-  /// The current that is left of the velocity over ground of one state for the heading and the
+  /// The current that remains of the velocity over ground of one state with the heading and the
   /// speed through the water of another.
   template <class Scalar>
   static Vec<Scalar, 2> current_left(const Vec<Scalar, kN>& over_ground,
@@ -352,7 +353,7 @@ struct UsvCurrentMotion {
     return over_ground.template tail<2>() + way_mps(over_ground) - way_mps(through_water);
   }
 
-  /// The speed is the start's velocity along its heading; the current begins at zero.
+  /// The speed is the start's velocity along its heading; the current starts at zero.
   template <class Scalar>
   [[nodiscard]] Gaussian<kN, Scalar> start_belief(const UsvStart& start) const noexcept {
     const double speed_mps = body_to_north_east(start.heading_rad).col(0).dot(start.velocity_mps);

@@ -18,7 +18,7 @@
 
 namespace wakeline {
 
-/// When own ship's navigator does not believe a reading.
+/// When own ship's navigator rejects a reading.
 struct UsvOutliers {
   ChiSquareGate gate{0.999};  ///< a reading whose NIS is outside is rejected
   int rejections = 10;        ///< of one kind in a row, before the next one is believed
@@ -29,50 +29,49 @@ struct UsvOutliers {
   }
 };
 
-/// What a reading has done. A rejected one has status `kMissed` and leaves the belief as it was;
-/// innovation and NIS are those before any widening. The NIS of an absurd one is infinite.
+/// Result of a reading. A rejected one has status `kMissed` and leaves the belief unchanged;
+/// innovation and NIS are those before any widening. The NIS of an implausible one is infinite.
 template <int M, class Scalar = double>
 struct [[nodiscard]] UsvReading : Step<M, Scalar> {
   bool rejected = false;  ///< outside the gate
-  bool widened = false;   ///< outside, but believed after too many rejections
+  bool widened = false;   ///< outside, but used after too many rejections
 };
 
-/// One step of time and what drove it.
+/// One time step and its input.
 template <class Scalar = double>
 struct UsvLeg {
   Scalar dt_s = Scalar(0);
   UsvInput input{};
 };
 
-/// Own ship's position, motion and heading by her IMU, corrected by whatever else there is: fixes
-/// (`Fix`), velocities over ground, compass, log, rate of turn, each whenever it comes, after a
-/// step up to its time.
+/// Own ship's position, motion and heading from its IMU, corrected by any other sensors: fixes
+/// (`Fix`), velocities over ground, compass, log, rate of turn, each at any time, after a step to
+/// its time.
 ///
-/// - Without readings it coasts and the covariance grows; without the IMU too, a step assumes no
-///   acceleration and no turn, with the noise `unmeasured`, which is held over the step: a long
-///   time goes in several, or the next place tells the velocity all too well.
-/// - A reading outside the gate is rejected. When more than `rejections` of its kind in a row were,
-///   it is the belief that is wrong: the states are widened by the likeliest error that would
-///   explain the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and it is taken.
-/// - It is not, where positions refute the readings: they fit the belief, and where she would be
-///   had the readings been right since the first of them so much worse that the differences of
-///   NIS, summed up (CUSUM), are outside the gate. Place and velocity over ground are then right.
-///   Velocities over ground stay rejected until one lies in the gate of 0.9. Compass and log move
-///   the current in place of them, and are rejected where it would be stronger than now and outside
-///   the gate of `current_std_mps`. Three positions in a row that are rejected take it back, one
-///   that is believed though it did not fit, and 15 s or three times the last pause without any.
-///   Likewise headings refute rates of turn.
-/// - An absurd reading, finite but more than a million standard deviations off (a thousand in
-///   `float`) or so large that its last digit is more than one, says nothing of the belief: it is
-///   rejected however often it comes, and not counted. A belief widened to it would have no digits
-///   left.
-/// - Each fix is one to it: it does not find that a receiver froze. Who reads a log marks that
-///   (`recording.read_nmea` in Python does).
+/// - Without readings it predicts and the covariance grows. Without the IMU too, a step assumes
+///   zero acceleration and turn rate with the noise `unmeasured`, constant over the step: divide a
+///   long time into several steps, or the next position determines the velocity too precisely.
+/// - A reading outside the gate is rejected. After more than `rejections` of its kind in a row, the
+///   belief is considered wrong: its covariance is widened by the most probable error that explains
+///   the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and the reading is used.
+/// - It is not used when positions refute the readings: when positions fit the belief, and fit the
+///   position integrated with the rejected readings so much worse that the accumulated difference
+///   of NIS (CUSUM) is outside the gate. Velocities over ground then stay rejected until one is
+///   inside the gate of 0.9. Compass and log change the current instead of position and velocity,
+///   and are rejected where the current would increase and leave the gate of `current_std_mps`. The
+///   refutation ends after three rejected positions in a row, after one that is used though it did
+///   not fit, and after 15 s or three times the last interval without any. Likewise headings refute
+///   rates of turn.
+/// - An implausible reading, finite but more than a million standard deviations off (a thousand in
+///   `float`) or so large that its last digit exceeds one standard deviation, is rejected however
+///   often it occurs, and not counted. A belief widened to it would have no significant digits.
+/// - Each fix counts as a measurement: a receiver with frozen output is not detected here; the
+///   reader of a log does that (`recording.read_nmea` in Python).
 /// - The heading of the estimate is in [-pi, pi].
 ///
 /// Model: `UsvMotion`, `UsvBiasMotion` or `UsvCurrentMotion`; FilterType: `Ekf`, `Ukf` (additive
-/// noise) or `AugmentedUkf` (the IMU's noise through the motion; the transform of both is the
-/// fourth argument of the constructor). All agree where turns between readings are small. Source:
+/// noise) or `AugmentedUkf` (the IMU's noise through the motion; the unscented parameters of both
+/// are the fourth argument of the constructor). All agree for small turns between readings. Source:
 /// Evsyukov, Andreeva, Khanychev, equations (1)-(25).
 template <class Model, template <class, class> class FilterType = Ekf, class ScalarType = double>
 class UsvNavigator {
@@ -84,8 +83,8 @@ class UsvNavigator {
   static constexpr int kStates = kStatesOf<Model>;
   using State = Gaussian<kStates, Scalar>;
 
-  /// The noise of the IMU is that of `model.input`; further arguments go to the filter. Throws
-  /// `std::invalid_argument` when a parameter makes no sense.
+  /// The noise of the IMU is that of `model.input`; further arguments are passed to the filter.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   template <class... Options>
   explicit UsvNavigator(const Model& model = {}, const UsvOutliers& outliers = {},
                         const ImuNoise& unmeasured = {0.1, deg(2.0)}, const Options&... options)
@@ -106,7 +105,7 @@ class UsvNavigator {
     const Status status = filter_.start(belief);
     if (status != Status::kOk) return status;
     rejected_ = {};
-    evidence_ = misread_ = silent_s_ = pause_s_ = {};
+    evidence_ = reading_error_ = silent_s_ = pause_s_ = {};
     off_.setZero();
     strayed_.setZero();
     by_gyro_.setZero();
@@ -114,7 +113,7 @@ class UsvNavigator {
     return status;
   }
 
-  /// The step under a reading of the IMU, and the one without.
+  /// The step with a reading of the IMU; the overload without one assumes none.
   [[nodiscard]] Leg leg(Scalar dt_s, const Imu& imu) const noexcept {
     return {dt_s, {imu, model_.input.noise, 1.0}};
   }
@@ -137,12 +136,12 @@ class UsvNavigator {
     return status;
   }
 
-  /// Corrects the belief by the reading z of a sensor, unless it is an outlier.
+  /// Updates the belief with the reading z of a sensor, unless it is an outlier.
   template <class Sensor>
   UsvReading<Sensor::kMeasurements, Scalar> update(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     UsvReading<Sensor::kMeasurements, Scalar> reading{filter_.innovation(as_taken(sensor), z)};
-    if (is_absurd(reading, z)) {
+    if (is_implausible(reading, z)) {
       reading.nis = std::numeric_limits<Scalar>::infinity();
       return rejected(reading);
     }
@@ -150,12 +149,12 @@ class UsvNavigator {
     constexpr int kKind = kKindOf<Sensor>;
     const State before = estimate();
     pause_s_[kKind] = std::exchange(silent_s_[kKind], Scalar(0));
-    if constexpr (kSplitsWay<Sensor>) misread_[kKind] = reading.innovation[0];
+    if constexpr (kSplitsWay<Sensor>) reading_error_[kKind] = reading.innovation[0];
     const bool fits = gate<Sensor>().contains(reading.nis);
     if (!fits && (rejected_[kKind] < rejections_ || !widen(sensor, reading.innovation))) {
       rejected_[kKind] = std::min(rejected_[kKind] + 1, rejections_);
       off_.col(kKind) = off<Sensor>(reading.innovation);
-      if (rejected_[kKind] >= std::min(kFew, rejections_)) acquit_others<Sensor>();
+      if (rejected_[kKind] >= std::min(kFew, rejections_)) clear_refuted<Sensor>();
       return rejected(reading);
     }
     reading.status = filter_.update(as_taken(sensor), z).status;
@@ -166,18 +165,18 @@ class UsvNavigator {
     }
     if constexpr (kErrsWithStep<Sensor>) by_gyro_.setZero();
     rejected_[kKind] = 0;
-    acquit(kKind);
+    clear_evidence(kKind);
     if (fits)
-      judge_others<Sensor>(before, reading);
+      update_evidence<Sensor>(before, reading);
     else
-      acquit_others<Sensor>();
+      clear_refuted<Sensor>();
     wrap();
     return reading;
   }
 
-  /// A step as it is known with a rate of turn beside its gyro, z: turned by the mean of both, each
-  /// weighed by its information. What is left of the reading, gyro less indicator, tells of the
-  /// gyro's bias alone, by a noise that is independent of that of the mean.
+  /// A step revised with a rate of turn measured beside its gyro, z: turned by the
+  /// information-weighted mean of both. The difference, gyro minus indicator, measures the gyro's
+  /// bias with a noise that is independent of that of the mean.
   [[nodiscard]] static Leg turned_by(const RateOfTurn& sensor, const Vec<Scalar, 1>& z,
                                      Leg leg) noexcept {
     double& gyro_std = leg.input.noise.yaw_rate_std_rad_s;
@@ -193,10 +192,10 @@ class UsvNavigator {
   [[nodiscard]] bool started() const noexcept { return filter_.started(); }
   [[nodiscard]] const Model& model() const noexcept { return model_; }
 
-  /// Rauch-Tung-Striebel smoother of a log, with additive noise, in place: `legs[k]` leads from
-  /// belief k, as it was after all readings of its time, to belief k + 1, and is `turned_by` a rate
-  /// of turn that was taken there. Returns the first failure, with that belief and all before it
-  /// left as filtered. It knows nothing of a widening, whose jump it spreads.
+  /// Rauch-Tung-Striebel smoother of a log, with additive noise, in place: `legs[k]` is the step
+  /// from belief k, after all readings of its time, to belief k + 1, and is `turned_by` a rate of
+  /// turn used there. Returns the first failure, with that belief and all before it left as
+  /// filtered. A widening is not modelled; its jump is spread over time.
   Status smooth(std::span<State> beliefs, std::span<const Leg> legs) const noexcept {
     for (std::size_t k = beliefs.size(); k-- > 1;) {
       const Leg& leg = legs[k - 1];
@@ -204,7 +203,9 @@ class UsvNavigator {
       std::array pair{beliefs[k - 1], beliefs[k]};
       const Scalar expected = motion.transition(pair[0].mean, leg.dt_s)[kHeadingRow];
       Scalar& heading = pair[1].mean[kHeadingRow];
-      heading = expected + wrap_angle(Scalar(heading - expected));  // the same turn of the circle
+      heading =
+          expected + wrap_angle(Scalar(
+                         heading - expected));  // the equivalent angle nearest to the expected one
       const Status status = smooth_as(filter_, motion, pair, std::span(&leg.dt_s, 1));
       if (status != Status::kOk) return status;
       pair[0].mean[kHeadingRow] = wrap_angle(pair[0].mean[kHeadingRow]);
@@ -213,12 +214,12 @@ class UsvNavigator {
     return Status::kOk;
   }
 
-  /// Saves or restores the belief and what is known of rejections.
+  /// Saves or restores the belief and the state of rejections.
   void archive(Archive& fields) {
     filter_.archive(fields);
     fields(rejected_);
     fields(evidence_);
-    fields(misread_);
+    fields(reading_error_);
     fields(silent_s_);
     fields(pause_s_);
     fields(off_);
@@ -240,35 +241,35 @@ class UsvNavigator {
   template <class Sensor>
   static constexpr int kKindOf = rows_read<Sensor>(kComponents)[0];
 
-  /// Whether a sensor tells how fast changes what another one tells: velocity, rate of turn.
+  /// True for a sensor of a rate of change of what another one measures: velocity, rate of turn.
   template <class Sensor>
   static constexpr bool kIsRate =
       Sensor::kReads[0] == Component::kVnorth || Sensor::kReads[0] == kCurrentNorth ||
       Sensor::kReads[0] == kGyroBias;
 
-  /// Whether a sensor tells a part of the velocity through the water, of which the current has the
-  /// rest: compass, log.
+  /// True for a sensor of a part of the velocity through the water, which with the current gives
+  /// the velocity over ground: compass, log.
   template <class Sensor>
   static constexpr bool kSplitsWay = kHasCurrent&& Sensor::kMeasurements == 1 &&
                                      (kKindOf<Sensor> == kHeadingRow ||
                                       kKindOf<Sensor> == kSpeedRow);
 
-  /// Whether readings of a sensor refute others: a position, or a heading.
+  /// True for a sensor whose readings can refute others: a position, or a heading.
   template <class Sensor>
   static constexpr bool kIsJudge =
       kKindOf<Sensor> == kNorthRow ? Sensor::kMeasurements == 2
                                    : kKindOf<Sensor> == kHeadingRow&& Sensor::kMeasurements == 1;
 
-  /// Whether the noise of a sensor has also driven the last step.
+  /// True for a sensor whose noise also drove the last step.
   template <class Sensor>
   static constexpr bool kErrsWithStep = std::is_same_v<Sensor, RateOfTurn>&& kGyroBiasRow >= 0;
 
   using Pair = Vec<Scalar, 2>;
-  static constexpr int kFew = 3;                   ///< misfits in a row that are no chance
-  static constexpr Scalar kMostEvidence = 40;      ///< so that a few misfits take it back
+  static constexpr int kFew = 3;                   ///< misfits in a row that are significant
+  static constexpr Scalar kMostEvidence = 40;      ///< limited so that a few misfits cancel it
   static constexpr double kTogether_s = 2.0;       ///< between readings of compass and log
-  static constexpr double kSilence_s = 15.0;       ///< that says nothing of others any more
-  static constexpr double kBackProbability = 0.9;  ///< of the gate of rates once refuted
+  static constexpr double kSilence_s = 15.0;       ///< after which others are no longer refuted
+  static constexpr double kBackProbability = 0.9;  ///< of the gate of refuted rates
   static constexpr Scalar kDigit = std::numeric_limits<Scalar>::epsilon();
   static constexpr Scalar kFarthestStds = kDigit < 1e-10F ? 1e6F : 1e3F;
 
@@ -278,8 +279,8 @@ class UsvNavigator {
     return model;
   }
 
-  /// Keeps what the noise of the gyro has done in a step: the covariance of the state's error with
-  /// it is that of its variance times df/d(rate of turn), which is what a bias of it does, less.
+  /// Stores the effect of the gyro noise in a step: its covariance with the state's error is its
+  /// variance times df/d(rate of turn), the negative effect of a gyro bias.
   void note_gyro(const Leg& leg, const Model& motion, const State& before) noexcept {
     by_gyro_.setZero();
     if constexpr (kGyroBiasRow >= 0) {
@@ -293,8 +294,8 @@ class UsvNavigator {
     }
   }
 
-  /// A sensor as the filter takes it. Readings since the step leave y = P⁻¹ C as it was, as they
-  /// shrink C = cov(x - x̂, v) and P alike.
+  /// A sensor as passed to the filter. Readings since the step leave y = P⁻¹ C unchanged, because
+  /// they reduce C = cov(x - x̂, v) and P alike.
   template <class Sensor>
   [[nodiscard]] auto as_taken(const Sensor& sensor) const noexcept {
     if constexpr (kErrsWithStep<Sensor>) {
@@ -336,9 +337,9 @@ class UsvNavigator {
     return reading;
   }
 
-  /// Whether a reading is finite, but too far or too large to be one.
+  /// True when a reading is finite but implausible.
   template <int M>
-  static bool is_absurd(const Step<M, Scalar>& step, const Vec<Scalar, M>& z) noexcept {
+  static bool is_implausible(const Step<M, Scalar>& step, const Vec<Scalar, M>& z) noexcept {
     if (step.status == Status::kNotStarted || !is_finite(z)) return false;
     for (int k = 0; k < M; ++k) {
       const Scalar std = std::sqrt(step.innovation_covariance(k, k));
@@ -356,41 +357,41 @@ class UsvNavigator {
     (void)filter_.assign(belief);
   }
 
-  /// By how much velocity over ground, or rate of turn in the first row, would differ from what is
-  /// believed if a reading was right.
+  /// Difference of the velocity over ground, or of the rate of turn in the first row, from the
+  /// belief if the reading were right.
   template <class Sensor, int M>
   [[nodiscard]] Pair off(const Vec<Scalar, M>& innovation) const noexcept {
     Pair off = Pair::Zero();
     if constexpr (kSplitsWay<Sensor>) {
-      auto told = estimate().mean;
-      told[kKindOf<Sensor>] += innovation[0];
-      off = Model::way_mps(told) - Model::way_mps(estimate().mean);
+      auto revised = estimate().mean;
+      revised[kKindOf<Sensor>] += innovation[0];
+      off = Model::way_mps(revised) - Model::way_mps(estimate().mean);
     } else if constexpr (kIsRate<Sensor>) {
       off.template head<M>() = innovation;
     }
     return off;
   }
 
-  /// The kind whose readings refute those of a kind: headings of rates of turn, else positions.
-  static constexpr int judge_of(std::size_t kind) noexcept {
+  /// The kind whose readings refute those of `kind`: headings for rates of turn, else positions.
+  static constexpr int refuting_kind(std::size_t kind) noexcept {
     return int(kind) == kGyroBiasRow ? kHeadingRow : kNorthRow;
   }
 
   template <class Sensor>
-  static constexpr bool judges(std::size_t other) noexcept {
-    return kIsJudge<Sensor> && judge_of(other) == kKindOf<Sensor>;
+  static constexpr bool refutes(std::size_t other) noexcept {
+    return kIsJudge<Sensor> && refuting_kind(other) == kKindOf<Sensor>;
   }
 
-  /// What a reading that is believed says of kinds that are being rejected: how much worse it would
-  /// fit had they been right, summed up as it goes (CUSUM). It draws the belief to itself.
+  /// Accumulates, for each rejected kind, how much worse a used reading would fit had they been
+  /// right (CUSUM), and resets its dead-reckoned state to the belief.
   template <class Sensor, int M>
-  void judge_others(const State& before, const Step<M, Scalar>& reading) noexcept {
+  void update_evidence(const State& before, const Step<M, Scalar>& reading) noexcept {
     if constexpr (kIsJudge<Sensor>) {
       constexpr int kRow = kKindOf<Sensor>;
       const Cholesky<M, Scalar> factor(reading.innovation_covariance);
       const Mat<Scalar, M, M> covariance = before.covariance.template block<M, M>(kRow, kRow);
       for (std::size_t other = 0; other < kStates; ++other) {
-        if (!judges<Sensor>(other) || rejected_[other] == 0) continue;
+        if (!refutes<Sensor>(other) || rejected_[other] == 0) continue;
         const Vec<Scalar, M> strayed = strayed_.col(int(other)).template head<M>();
         Vec<Scalar, M> innovation = reading.innovation - strayed;
         if constexpr (kRow == kHeadingRow) innovation[0] = wrap_angle(Scalar(innovation[0]));
@@ -407,80 +408,81 @@ class UsvNavigator {
     return !gates2_[0].contains(evidence_[static_cast<std::size_t>(kind)]);
   }
 
-  /// Takes back what was said of a kind.
-  void acquit(std::size_t kind) noexcept {
+  /// Clears the evidence against a kind.
+  void clear_evidence(std::size_t kind) noexcept {
     evidence_[kind] = Scalar(0);
     off_.col(int(kind)).setZero();
     strayed_.col(int(kind)).setZero();
   }
 
-  /// The same of all that readings of a sensor judge.
+  /// The same for all kinds that readings of a sensor can refute.
   template <class Sensor>
-  void acquit_others() noexcept {
+  void clear_refuted() noexcept {
     for (std::size_t other = 0; other < kStates; ++other)
-      if (judges<Sensor>(other)) acquit(other);
+      if (refutes<Sensor>(other)) clear_evidence(other);
   }
 
-  /// Acquits kinds that are silent, or whose judge is: it cannot see when they are right again.
+  /// Clears kinds that are silent, or whose refuting kind is: it cannot show when they are right
+  /// again.
   void forget_silent() noexcept {
     for (std::size_t kind = 0; kind < kStates; ++kind)
-      if (is_silent(kind) || is_silent(std::size_t(judge_of(kind)))) acquit(kind);
+      if (is_silent(kind) || is_silent(std::size_t(refuting_kind(kind)))) clear_evidence(kind);
   }
 
   [[nodiscard]] bool is_silent(std::size_t kind) const noexcept {
     return silent_s_[kind] > std::max(Scalar(kSilence_s), Scalar(kFew) * pause_s_[kind]);
   }
 
-  /// Makes room in the belief for a reading that insists; false where it is refuted.
+  /// Widens the belief for a repeatedly rejected reading; false where it is refuted.
   template <class Sensor, int M>
   bool widen(const Sensor& sensor, const Vec<Scalar, M>& innovation) noexcept {
     if (refuted(kKindOf<Sensor>)) {
       if constexpr (kIsRate<Sensor>) return false;
-      if constexpr (kSplitsWay<Sensor>) return blame_current(kKindOf<Sensor>);
+      if constexpr (kSplitsWay<Sensor>) return adjust_current(kKindOf<Sensor>);
     }
     doubt_all(sensor, innovation);
     return true;
   }
 
-  /// Takes heading or speed through the water as they are read, or both where both insist.
-  bool blame_current(int row) noexcept {
+  /// Sets heading or speed through the water to the readings, or both where both are rejected.
+  bool adjust_current(int row) noexcept {
     const int other = row == kHeadingRow ? kSpeedRow : kHeadingRow;
     const auto k = static_cast<std::size_t>(other);
     const bool both = rejected_[k] >= rejections_ && silent_s_[k] <= Scalar(kTogether_s);
-    return blame_current(std::array{row}) || (both && blame_current(std::array{row, other}));
+    return adjust_current(std::array{row}) || (both && adjust_current(std::array{row, other}));
   }
 
-  /// The same of these rows. Place and velocity over ground stay as they are: the current has the
-  /// rest, and is doubted by as much. False where that is a current that the model does not expect,
-  /// and a stronger one than now.
+  /// The same for these rows. Position and velocity over ground stay: the current takes the
+  /// difference, and its covariance grows by as much. False where the current would be stronger
+  /// than now and implausible for the model.
   template <std::size_t N>
-  bool blame_current(const std::array<int, N>& rows) noexcept {
+  bool adjust_current(const std::array<int, N>& rows) noexcept {
     const State now = estimate();
-    State told = now;
+    State revised = now;
     for (const int row : rows) {
-      const Scalar misread = misread_[static_cast<std::size_t>(row)];
-      told.mean[row] += misread;
-      told.covariance.row(row).setZero();
-      told.covariance.col(row).setZero();
-      told.covariance(row, row) = square(misread);
+      const Scalar reading_error = reading_error_[static_cast<std::size_t>(row)];
+      revised.mean[row] += reading_error;
+      revised.covariance.row(row).setZero();
+      revised.covariance.col(row).setZero();
+      revised.covariance(row, row) = square(reading_error);
     }
-    const Vec<Scalar, 2> current = Model::current_left(now.mean, told.mean);
+    const Vec<Scalar, 2> current = Model::current_left(now.mean, revised.mean);
     const Vec<Scalar, 2> before = now.mean.template tail<2>();
     const Scalar strength = current.squaredNorm();
     const bool expected = gates2_[0].contains(strength / square(Scalar(model_.current_std_mps)));
     if (!expected && strength > before.squaredNorm()) return false;
-    told.mean.template tail<2>() = current;
-    told.covariance.template bottomRightCorner<2, 2>() +=
+    revised.mean.template tail<2>() = current;
+    revised.covariance.template bottomRightCorner<2, 2>() +=
         (current - before) * (current - before).transpose();
     by_gyro_.setZero();
-    return filter_.assign(told) == Status::kOk;
+    return filter_.assign(revised) == Status::kOk;
   }
 
   static Scalar square(Scalar x) noexcept { return x * x; }
 
-  /// P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v: of what the belief itself takes for the likeliest error
-  /// behind the innovation. After a silence that is of the velocity or the current that the
-  /// position comes from, too.
+  /// P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v: the most probable error of the belief that explains the
+  /// innovation. After a silence also that of the velocity or the current from which the position
+  /// results.
   template <class Sensor, int M>
   void doubt_all(const Sensor& sensor, const Vec<Scalar, M>& innovation) noexcept {
     constexpr auto kRows = rows_read<Sensor>(kComponents);
@@ -502,21 +504,23 @@ class UsvNavigator {
   Filter filter_;
   Vec<Scalar, kStates> by_gyro_ = Vec<Scalar, kStates>::Zero();  ///< cov(x - x̂, v) after the step
   Mat<Scalar, kStates, kStates> predicted_ = Mat<Scalar, kStates, kStates>::Identity();
-  double gyro_rad_s_ = 0.0;      ///< that drove the last step
+  double gyro_rad_s_ = 0.0;      ///< input of the last step
   double gyro_std_rad_s_ = 0.0;  ///< its noise then
   Model model_;
   ImuNoise unmeasured_;
   int rejections_;
-  std::array<EllipsoidalGate<1, Scalar>, 2> gates1_;  ///< the second for rates once refuted
-  std::array<EllipsoidalGate<2, Scalar>, 2> gates2_;  ///< the first for evidence, too
-  // By kind of sensor, which is the first state that it reads:
-  std::array<int, kStates> rejected_{};     ///< in a row, counted up to `rejections_`
-  std::array<Scalar, kStates> evidence_{};  ///< against those rejected, as a difference of NIS
-  std::array<Scalar, kStates> misread_{};   ///< heading, speed: by how much, last
-  std::array<Scalar, kStates> silent_s_{};  ///< since the last reading
-  std::array<Scalar, kStates> pause_s_{};   ///< between the last two
-  Mat<Scalar, 2, kStates> off_ = Mat<Scalar, 2, kStates>::Zero();  ///< rates rejected less believed
-  Mat<Scalar, 2, kStates> strayed_ = off_;  ///< from the belief, had the rejected been right
+  std::array<EllipsoidalGate<1, Scalar>, 2> gates1_;  ///< the second for refuted rates
+  std::array<EllipsoidalGate<2, Scalar>, 2> gates2_;  ///< the first also for evidence
+  // By kind of sensor, i.e. the first state that it reads:
+  std::array<int, kStates> rejected_{};     ///< in a row, up to `rejections_`
+  std::array<Scalar, kStates> evidence_{};  ///< against the rejected ones, as a difference of NIS
+  std::array<Scalar, kStates> reading_error_{};  ///< last error of heading or speed
+  std::array<Scalar, kStates> silent_s_{};       ///< since the last reading
+  std::array<Scalar, kStates> pause_s_{};        ///< between the last two
+  Mat<Scalar, 2, kStates> off_ =
+      Mat<Scalar, 2, kStates>::Zero();  ///< rejected rates minus the belief
+  Mat<Scalar, 2, kStates> strayed_ =
+      off_;  ///< displacement from the belief, had the rejected ones been right
 };
 
 }  // namespace wakeline

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// What own ship measures beside her position (which is a `Fix`).
+// Sensors of own ship other than position (which is a `Fix`).
 #pragma once
 
 #include "wakeline/core/angle.hpp"
@@ -11,7 +11,7 @@
 
 namespace wakeline {
 
-/// A sensor that reads M components as they are, each with its standard deviation.
+/// A sensor that measures M components directly, each with its standard deviation.
 template <Component... Reads>
 struct DirectSensor {
   static constexpr int kMeasurements = sizeof...(Reads);
@@ -79,7 +79,7 @@ struct GroundVelocity : DirectSensor<Component::kVnorth, Component::kVeast> {
   void validate() const { require_positive("velocity_std_mps", velocity_std_mps); }
 };
 
-/// The same for states of speed through water and current: s [cos heading, sin heading] + c.
+/// The same for states with speed through the water and current: s [cos heading, sin heading] + c.
 struct GroundVelocityInCurrent {
   static constexpr int kMeasurements = 2;
   static constexpr std::array kReads{kCurrentNorth, kCurrentEast, kSpeedThroughWater, kHeading};
@@ -115,7 +115,7 @@ struct GroundVelocityInCurrent {
   void validate() const { require_positive("velocity_std_mps", velocity_std_mps); }
 };
 
-/// A log: speed through water, m/s.
+/// A speed log: speed through the water, m/s.
 struct SpeedLog : DirectSensor<kSpeedThroughWater> {
   double speed_std_mps = 0.1;
 
@@ -129,10 +129,9 @@ struct SpeedLog : DirectSensor<kSpeedThroughWater> {
   void validate() const { require_positive("speed_std_mps", speed_std_mps); }
 };
 
-/// A rate of turn indicator beside the gyro that drives the steps: what the gyro reads more than it
-/// is the gyro's bias. The noise of both instruments counts. That of the gyro has turned the
-/// heading, too: where this is the reading that drove the last step, a `UsvNavigator` turns it back
-/// by what the indicator tells of it.
+/// A rate-of-turn indicator beside the gyro that drives the steps: the gyro minus the indicator is
+/// the gyro's bias, with the noise of both. The gyro's noise has also turned the heading: where
+/// this reading drove the last step, a `UsvNavigator` corrects the heading accordingly.
 struct RateOfTurn {
   static constexpr int kMeasurements = 1;
   static constexpr std::array kReads{kGyroBias};
@@ -169,10 +168,10 @@ struct RateOfTurn {
   }
 };
 
-/// A sensor of one number whose noise v errs together with the belief: cov(x - x̂, v) = P y. That is
-/// a sensor which reads y·(x - x̂) more, with an independent noise of variance R - yᵀ P y: its gain
-/// is (P Hᵀ + C) / S, S = H P Hᵀ + R + H C + Cᵀ Hᵀ, C = P y. Source: Bar-Shalom, Li, Kirubarajan,
-/// chapter 8 (correlated noises).
+/// A sensor of one number whose noise v is correlated with the belief: cov(x - x̂, v) = P y.
+/// Equivalent to a sensor with the additional term y·(x - x̂) and independent noise of variance R -
+/// yᵀ P y: its gain is (P Hᵀ + C) / S, S = H P Hᵀ + R + H C + Cᵀ Hᵀ, C = P y. Source: Bar-Shalom,
+/// Li, Kirubarajan, chapter 8 (correlated noises).
 template <class Sensor, auto Components>
 struct ErringTogether {
   static constexpr int kStates = static_cast<int>(Components.size());

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Radar video as ASTERIX category 240 writes it: EUROCONTROL-SPEC-0149-240, edition 1.3 (2015), and
-// part 1 (SPEC-0149) for blocks and records. What reader and writer share.
+// Radar video in ASTERIX category 240: EUROCONTROL-SPEC-0149-240, edition 1.3 (2015), and part 1
+// (SPEC-0149) for blocks and records. Common parts of reader and writer.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace wakeline {
 
-/// Which radar of which area sent a record (I240/010).
+/// The radar and area that sent a record (I240/010).
 struct Cat240Source {
   std::uint8_t area = 0;    ///< SAC
   std::uint8_t system = 0;  ///< SIC
@@ -34,14 +34,14 @@ namespace cat240 {
 inline constexpr unsigned kCategory = 240;
 inline constexpr std::size_t kBlockHeader = 3;                 ///< CAT, LEN
 inline constexpr std::size_t kLongestBlock = 0xFFFF;           ///< octets, header included
-inline constexpr double kAzimuthTurn = 65536.0;                ///< steps of azimuth in a turn
-inline constexpr double kTicksPerSecond = 128.0;               ///< of time of day
+inline constexpr double kAzimuthTurn = 65536.0;                ///< azimuth steps per revolution
+inline constexpr double kTicksPerSecond = 128.0;               ///< ticks of the time of day
 inline constexpr double kDay = 86400.0;                        ///< s
 inline constexpr double kLight = 299792458.0;                  ///< m/s
-inline constexpr double kFemtosecondRange = 0.5e-15 * kLight;  ///< m, there and back
+inline constexpr double kFemtosecondRange = 0.5e-15 * kLight;  ///< m, round trip
 inline constexpr std::uint64_t kFemtosPerNano = 1000000;
 
-/// The data items of a record in the order of its field specification.
+/// The data items of a record, in the order of its field specification.
 enum Item : std::size_t {
   kSource,
   kMessageType,
@@ -60,11 +60,11 @@ enum Item : std::size_t {
   kItems
 };
 
-/// How long an item is.
+/// How the length of an item is encoded.
 enum class Length : std::uint8_t {
-  kFixed,     ///< so many octets
-  kRepeated,  ///< an octet n, then n times so many octets
-  kOwn,       ///< its first octet tells, itself included
+  kFixed,     ///< this number of octets
+  kRepeated,  ///< an octet n, then n times this number of octets
+  kOwn,       ///< its first octet is its length, including itself
 };
 
 struct ItemForm {
@@ -99,25 +99,25 @@ inline std::uint64_t number(std::span<const std::byte> octets) noexcept {
 
 }  // namespace cat240
 
-/// What is wrong with octets that should be radar video.
+/// Faults of ASTERIX data.
 enum class Cat240Fault : std::uint8_t {
   kNone = 0,
   kBlockLength = 1,         ///< a block shorter than its own header
   kTruncated = 2,           ///< the data end inside a block
-  kNoBlock = 3,             ///< what stands here does not lead to another block
-  kFieldSpecification = 4,  ///< names items that there are not
-  kItemLength = 5,          ///< an item goes beyond its block
-  kItemCount = 6,           ///< an item is missing, or two stand where one should
+  kNoBlock = 3,             ///< these octets do not lead to another block
+  kFieldSpecification = 4,  ///< names undefined items
+  kItemLength = 5,          ///< an item extends past its block
+  kItemCount = 6,           ///< an item is missing, or two are present where one is allowed
   kMessageType = 7,         ///< neither video nor summary
-  kCompressed = 8,          ///< cells are packed in a way only the sender knows
-  kResolution = 9,          ///< bits of a cell that are not read
-  kCounters = 10,           ///< more cells than octets to hold them
+  kCompressed = 8,          ///< cells are compressed in a sender-specific way
+  kResolution = 9,          ///< unsupported number of bits per cell
+  kCounters = 10,           ///< more cells than octets for them
   kNoCells = 11,            ///< video without cells
-  kAzimuth = 12,            ///< a sweep half a turn wide
-  kCellDuration = 13,       ///< a cell of no length
+  kAzimuth = 12,            ///< a sweep half a revolution wide or more
+  kCellDuration = 13,       ///< a cell of zero length
 };
 
-/// The fault in words, for messages and logs.
+/// The fault as text, for messages and logs.
 constexpr const char* to_string(Cat240Fault fault) noexcept {
   switch (fault) {
     case Cat240Fault::kNone:
@@ -131,7 +131,7 @@ constexpr const char* to_string(Cat240Fault fault) noexcept {
     case Cat240Fault::kFieldSpecification:
       return "a field specification is too long";
     case Cat240Fault::kItemLength:
-      return "an item goes beyond its data block";
+      return "an item extends past its data block";
     case Cat240Fault::kItemCount:
       return "a record lacks an item or has two of a kind";
     case Cat240Fault::kMessageType:
@@ -152,16 +152,16 @@ constexpr const char* to_string(Cat240Fault fault) noexcept {
   return "unknown";
 }
 
-/// A fault, where it stands, what was wanted and what came.
+/// A fault, its position, what was expected and what was found.
 struct Cat240Problem {
   Cat240Fault fault = Cat240Fault::kNone;
-  std::uint64_t offset = 0;  ///< of the block or record at fault, octets from the start of the data
-  const char* item = "";     ///< the item at fault, where it is one
+  std::uint64_t offset = 0;  ///< of the faulty block or record, octets from the start of the data
+  const char* item = "";     ///< the faulty item, if any
   std::uint64_t wanted = 0;
   std::uint64_t came = 0;
 };
 
-/// What a sound file would hold there: "at least 3 octets".
+/// What was expected, e.g. "at least 3 octets".
 inline std::string wanted_text(const Cat240Problem& problem) {
   const std::string number = std::to_string(problem.wanted);
   switch (problem.fault) {
@@ -192,7 +192,7 @@ inline std::string wanted_text(const Cat240Problem& problem) {
   }
 }
 
-/// What stands there instead.
+/// What was found.
 inline std::string came_text(const Cat240Problem& problem) {
   const std::string number = std::to_string(problem.came);
   switch (problem.fault) {
@@ -207,22 +207,22 @@ inline std::string came_text(const Cat240Problem& problem) {
   }
 }
 
-/// One video record: what was received of one azimuth, its cells still packed in the data read.
+/// One video record: the reception at one azimuth, its cells still packed in the data read.
 struct Cat240Video {
   std::uint64_t offset = 0;  ///< of the record, octets from the start of the data
   Cat240Source source;
-  std::int64_t sequence = -1;  ///< counts the sender's messages, 32 bits; -1 where it does not
+  std::int64_t sequence = -1;  ///< 32-bit counter of the sender's messages; -1 when absent
   double time_s = std::numeric_limits<double>::quiet_NaN();  ///< since the midnight before the
-                                                             ///< first record; NaN where not told
+                                                             ///< first record; NaN when absent
   std::uint16_t start_azimuth = 0;                           ///< in steps of 2 pi / 65536
   std::uint16_t end_azimuth = 0;
-  std::uint32_t start_cell = 0;        ///< cells from the antenna to the first
-  std::uint64_t cell_duration_fs = 0;  ///< there and back
-  int bits = 8;                        ///< of a cell
+  std::uint32_t start_cell = 0;        ///< number of cells between the antenna and the first one
+  std::uint64_t cell_duration_fs = 0;  ///< round trip
+  int bits = 8;                        ///< per cell
   std::uint32_t cells = 0;
-  std::span<const std::byte> packed;  ///< as many octets as the cells fill
+  std::span<const std::byte> packed;  ///< the octets occupied by the cells
 
-  /// Steps of azimuth from start to end; below zero for an antenna that turns anticlockwise.
+  /// Azimuth steps from start to end; negative for an antenna that turns anticlockwise.
   [[nodiscard]] int turned() const noexcept {
     return std::bit_cast<std::int16_t>(static_cast<std::uint16_t>(end_azimuth - start_azimuth));
   }
@@ -231,7 +231,7 @@ struct Cat240Video {
     const double steps = start_azimuth + 0.5 * turned();
     return compass_angle(steps * (2 * kPi<double> / cat240::kAzimuthTurn));
   }
-  /// 0 where a sender names one azimuth for start and end.
+  /// 0 where start and end azimuth are equal.
   [[nodiscard]] double azimuth_width_rad() const noexcept {
     return std::abs(turned()) * (2 * kPi<double> / cat240::kAzimuthTurn);
   }
@@ -242,18 +242,19 @@ struct Cat240Video {
   /// Near edge of the first cell.
   [[nodiscard]] double start_range_m() const noexcept { return start_cell * cell_m(); }
 
-  /// Whether the cells can be unpacked to this kind of amplitude: 1 to 8 bits to octets, 16 to
+  /// True when the cells can be unpacked to this type of amplitude: 1 to 8 bits to octets, 16 to
   /// words.
   template <std::unsigned_integral Amplitude>
   [[nodiscard]] bool fits() const noexcept {
     return (bits <= 8) == (sizeof(Amplitude) == 1);
   }
 
-  /// The sweep, its cells unpacked into `room`, which must hold `cells` of them and live as long.
+  /// The sweep with its cells unpacked into `room`, which must hold `cells` of them and outlive the
+  /// sweep.
   ///
-  /// Cells of 1, 2 and 4 bits are scaled by 255, 85 and 17, so that full scale stays full scale; of
-  /// an octet the first cell is in the high bits. A sweep without amplitudes comes back when they
-  /// do not fit `room` or its kind.
+  /// Cells of 1, 2 and 4 bits are scaled by 255, 85 and 17, so that full scale stays full scale;
+  /// the first cell of an octet is in the high bits. Returns a sweep without amplitudes when they
+  /// do not fit `room` or its type.
   template <std::unsigned_integral Amplitude>
   requires(sizeof(Amplitude) <= 2) Sweep<Amplitude> unpack(std::span<Amplitude> room)
   const noexcept {

@@ -13,18 +13,18 @@
 
 namespace wakeline {
 
-/// What the reader has come to.
+/// What the reader found next.
 enum class Cat240Event : std::uint8_t {
   kEnd = 0,      ///< no more in these data
   kVideo = 1,    ///< a sweep: see `video()`
-  kSummary = 2,  ///< the sender's words about its video: see `summary()`
-  kProblem = 3,  ///< something that cannot be read: see `problem()`
+  kSummary = 2,  ///< a text of the sender about its video: see `summary()`
+  kProblem = 3,  ///< data that cannot be read: see `problem()`
 };
 
-/// Time since the first midnight, of times of day that begin anew at each.
+/// Time since the first midnight, from times of day that restart at each midnight.
 class DayClock {
  public:
-  /// The time of day that lies within half a day of the one before. NaN stays NaN.
+  /// The time nearest to the one before with this time of day. NaN stays NaN.
   double operator()(double time_of_day_s) noexcept {
     if (std::isnan(time_of_day_s)) return time_of_day_s;
     if (last_s_ - time_of_day_s > cat240::kDay / 2) midnight_s_ += cat240::kDay;
@@ -43,26 +43,26 @@ class DayClock {
 ///     Cat240Reader reader;
 ///     reader.feed(octets);
 ///     for (auto event = reader.next(); event != Cat240Event::kEnd; event = reader.next())
-///       if (event == Cat240Event::kVideo) see(reader.video().unpack<std::uint8_t>(room));
+///       if (event == Cat240Event::kVideo) show(reader.video().unpack<std::uint8_t>(room));
 ///
-/// A long file is fed in pieces: after `kEnd`, `consumed()` octets are done with, and the next
-/// piece begins with the rest; it comes to the same events, for pieces of `kPiece` octets or more.
+/// A long file is fed in pieces: after `kEnd`, `consumed()` octets are finished, and the next piece
+/// starts with the rest. Pieces of `kPiece` octets or more give the same events.
 ///
-/// **Blocks of other categories** are passed over by their length.
+/// **Blocks of other categories** are skipped by their length.
 ///
-/// **Damage.** A record that cannot be read is a problem. Reading goes on behind it, or behind its
-/// block where its own end cannot be told, if the length of the block leads to something sound: to
-/// a video block whose first record is whole, to the end of the data, or over blocks of other
-/// categories (128 KiB or 256 of them at most) to one of these. Otherwise the reader looks for a
-/// sound video block octet by octet. The length of a block, of whatever category, that leads past
-/// two sound video blocks in a row is wrong. So next to nothing sound is lost behind damage,
-/// whether data or a length are damaged.
+/// **Damage.** A record that cannot be read is a problem. Reading continues after it, or after its
+/// block where its end cannot be determined, provided that the length of the block leads to valid
+/// data: to a video block with a complete first record, to the end of the data, or over blocks of
+/// other categories (at most 128 KiB or 256 of them) to one of these. Otherwise the reader searches
+/// for a valid video block octet by octet. A block length of any category that skips two
+/// consecutive valid video blocks is considered wrong. So almost no valid data are lost after
+/// damage, whether of contents or of a length.
 class Cat240Reader {
  public:
   static constexpr std::size_t kPiece = 1 << 19;  ///< octets
 
-  /// Octets to read: the rest of those before, from `consumed()` on, and what follows them. `last`:
-  /// nothing follows these. They must live until the next `feed`.
+  /// Octets to read: the rest of the last ones, from `consumed()` on, and what follows. `last`:
+  /// nothing follows. They must live until the next `feed`.
   void feed(std::span<const std::byte> octets, bool last = true) noexcept {
     base_ += position_;
     block_end_ -= std::min(block_end_, position_);
@@ -72,7 +72,7 @@ class Cat240Reader {
     last_ = last;
   }
 
-  /// Goes to the next record or problem.
+  /// Advances to the next record or problem.
   Cat240Event next() noexcept {
     for (;;) {
       const Cat240Event event = step();
@@ -80,18 +80,18 @@ class Cat240Reader {
     }
   }
 
-  /// The sweep that `next` came to; its cells lie in the data fed.
+  /// The sweep found by `next`; its cells are in the data fed.
   [[nodiscard]] const Cat240Video& video() const noexcept { return video_; }
-  /// The text that `next` came to; lies in the data fed.
+  /// The text found by `next`, in the data fed.
   [[nodiscard]] std::string_view summary() const noexcept { return summary_; }
-  /// The problem that `next` came to.
+  /// The problem found by `next`.
   [[nodiscard]] const Cat240Problem& problem() const noexcept { return problem_; }
 
-  /// Octets of these data that are done with.
+  /// Octets of these data that are finished.
   [[nodiscard]] std::size_t consumed() const noexcept { return position_; }
-  /// Blocks of other categories so far.
+  /// Number of blocks of other categories so far.
   [[nodiscard]] std::uint64_t other_blocks() const noexcept { return other_blocks_; }
-  /// Octets passed over so far because of damage.
+  /// Number of octets skipped so far because of damage.
   [[nodiscard]] std::uint64_t skipped_octets() const noexcept { return skipped_; }
 
  private:
@@ -99,7 +99,7 @@ class Cat240Reader {
   using Items = std::array<Octets, cat240::kItems>;
 
   enum class At : std::uint8_t { kBlock, kRecord, kDamage, kNowhere };
-  enum class Sound : std::uint8_t { kNo, kYes, kUnknown };  ///< unknown: more data are needed
+  enum class Sound : std::uint8_t { kNo, kYes, kUnknown };  ///< kUnknown: more data are needed
 
   struct Record {
     Items items;
@@ -161,13 +161,14 @@ class Cat240Reader {
     if (event == Cat240Event::kProblem) {
       resume_ = whole ? record.end : block_end_;
       at_ = At::kDamage;
-      return truncated && !whole ? kGoOn : event;  // that it is truncated has been told
+      return truncated && !whole ? kGoOn : event;  // the truncation has been reported
     }
     position_ = record.end;
     return event;
   }
 
-  /// Trusts the length of the block, or looks for another from the record at fault on.
+  /// Continues after the block if its length is plausible, else searches for another block from the
+  /// faulty record on.
   Cat240Event leave_damage() noexcept {
     const Sound sound = leads_rightly_to(block_end_);
     if (sound == Sound::kUnknown) return Cat240Event::kEnd;
@@ -190,7 +191,7 @@ class Cat240Reader {
     }
   }
 
-  /// The first octet from there on that can begin a video block, or the end of these data.
+  /// The first octet from here on that can start a video block, or the end of these data.
   [[nodiscard]] std::size_t find_mark(std::size_t at) const noexcept {
     const Octets rest = octets_.subspan(at);
     const void* found =
@@ -199,7 +200,7 @@ class Cat240Reader {
     return static_cast<std::size_t>(static_cast<const std::byte*>(found) - octets_.data());
   }
 
-  /// Whether a length that leads there from here is right: to something sound, and past no video.
+  /// True when a length that leads from here to `end` is right: to valid data, and past no video.
   [[nodiscard]] Sound leads_rightly_to(std::size_t end) const noexcept {
     const Sound sound = leads_on(end);
     if (sound != Sound::kYes) return sound;
@@ -207,8 +208,8 @@ class Cat240Reader {
     return passed == Sound::kUnknown ? passed : passed == Sound::kYes ? Sound::kNo : Sound::kYes;
   }
 
-  /// Whether two sound video blocks in a row, which no other data hold by chance, begin from here
-  /// on and before the end.
+  /// True when two consecutive valid video blocks, which other data do not contain by chance, start
+  /// between here and the end.
   [[nodiscard]] Sound video_before(std::size_t end) const noexcept {
     for (std::size_t at = find_mark(position_); at < end; at = find_mark(at + 1)) {
       Sound sound = sound_video(at);
@@ -218,7 +219,7 @@ class Cat240Reader {
     return Sound::kNo;
   }
 
-  /// Whether what begins there leads to a sound video block or to the end of the data.
+  /// True when the data there lead to a valid video block or to the end of the data.
   [[nodiscard]] Sound leads_on(std::size_t at) const noexcept {
     const std::size_t limit = position_ + cat240::kLongestBlock + kLookAhead;
     for (int block = 0; block < kBlocksAhead; ++block) {
@@ -232,7 +233,7 @@ class Cat240Reader {
     return Sound::kYes;
   }
 
-  /// Whether a video block begins there whose first record is whole and names source and type.
+  /// True when a video block starts there whose first record is complete and has source and type.
   [[nodiscard]] Sound sound_video(std::size_t at) const noexcept {
     using namespace cat240;
     if (at + kBlockHeader > octets_.size()) return cut();
@@ -252,7 +253,7 @@ class Cat240Reader {
     return split(begin, limit, record, problem_);
   }
 
-  /// Tells the items of a record apart; false, and why, when they do not end within `limit`.
+  /// Splits a record into its items; false, and the reason, when they do not end within `limit`.
   bool split(std::size_t begin, std::size_t limit, Record& record,
              Cat240Problem& problem) const noexcept {
     using namespace cat240;
@@ -279,7 +280,7 @@ class Cat240Reader {
     return true;
   }
 
-  /// Octets of the field specification: as long as the lowest bit says that another follows.
+  /// Octets of the field specification: its lowest bit is set while another octet follows.
   [[nodiscard]] std::size_t specification_octets(std::size_t begin,
                                                  std::size_t limit) const noexcept {
     std::size_t octets = 1;
@@ -294,7 +295,7 @@ class Cat240Reader {
            std::byte{0};
   }
 
-  /// Octets of an item that begins there, or 1 where its length itself is beyond the limit.
+  /// Octets of an item that starts there, or 1 where its length is past the limit.
   [[nodiscard]] std::size_t item_octets(const cat240::ItemForm& form, std::size_t at,
                                         std::size_t limit) const noexcept {
     if (form.length == cat240::Length::kFixed) return form.octets;
@@ -384,7 +385,7 @@ class Cat240Reader {
     std::size_t count = 0;
   };
 
-  /// The item that stands for a choice of some, and how many do.
+  /// The item present out of several alternatives, and how many of them are.
   static Choice choose(const Items& items, std::size_t first, std::size_t last) noexcept {
     Choice choice;
     for (std::size_t item = first; item <= last; ++item)
@@ -414,7 +415,8 @@ class Cat240Reader {
     position_ = position;
   }
 
-  /// A problem of the block that should begin here; a block is looked for from the next octet on.
+  /// Reports a problem of the block that should start here; the search for a block starts at the
+  /// next octet.
   Cat240Event give_up(Cat240Fault fault, std::uint64_t wanted, std::uint64_t came) noexcept {
     const std::size_t block = position_;
     skip_to(position_ + 1);
@@ -447,9 +449,9 @@ class Cat240Reader {
   bool last_ = true;
   At at_ = At::kBlock;
   std::size_t position_ = 0;
-  std::size_t block_end_ = 0;  ///< of the block that `position_` is in
-  std::size_t resume_ = 0;     ///< behind damage, where the length of the block is right
-  std::uint64_t base_ = 0;     ///< octets fed and done with before these
+  std::size_t block_end_ = 0;  ///< of the current block
+  std::size_t resume_ = 0;     ///< after the damage, where the length of the block is right
+  std::uint64_t base_ = 0;     ///< octets of earlier pieces
   std::uint64_t other_blocks_ = 0;
   std::uint64_t skipped_ = 0;
   Cat240Video video_;

@@ -14,18 +14,18 @@
 
 namespace wakeline {
 
-/// What became of a sweep to write.
+/// Result of writing a sweep.
 enum class Cat240Written : std::uint8_t {
   kOk = 0,
-  kNoSweep = 1,       ///< not a radar's: see `Sweep::valid`; or half a turn wide and more
-  kTooManyCells = 2,  ///< beyond `Cat240Writer::max_cells`
+  kNoSweep = 1,       ///< invalid (see `Sweep::valid`), or half a revolution wide or more
+  kTooManyCells = 2,  ///< more than `Cat240Writer::max_cells`
   kCellLength = 3,    ///< the cells are shorter than 75 nm
-  kStartRange = 4,    ///< begins 2^32 cells from the antenna or more
+  kStartRange = 4,    ///< starts 2^32 cells from the antenna or more
   kNoRoom = 5,        ///< `out` is too small
   kTextTooLong = 6,   ///< a summary of more than 255 characters
 };
 
-/// The outcome in words, for messages and logs.
+/// The result as text, for messages and logs.
 constexpr const char* to_string(Cat240Written written) noexcept {
   switch (written) {
     case Cat240Written::kOk:
@@ -35,9 +35,9 @@ constexpr const char* to_string(Cat240Written written) noexcept {
     case Cat240Written::kTooManyCells:
       return "too many cells for one block";
     case Cat240Written::kCellLength:
-      return "a length of the cells that cannot be told";
+      return "a cell length outside the range of the format";
     case Cat240Written::kStartRange:
-      return "a start range that cannot be told";
+      return "a start range outside the range of the format";
     case Cat240Written::kNoRoom:
       return "no room to write to";
     case Cat240Written::kTextTooLong:
@@ -46,27 +46,27 @@ constexpr const char* to_string(Cat240Written written) noexcept {
   return "unknown";
 }
 
-/// Writes sweeps as ASTERIX category 240, a block of one record each; never allocates, never
+/// Writes sweeps as ASTERIX category 240, a block with one record each; never allocates, never
 /// throws.
 ///
-/// What is kept of a sweep: amplitudes as they are, 8 or 16 bits; azimuth to half a step of 2 pi /
-/// 65536, width to one; time of day to 1/256 s; length of the cells to 75 nm up to 643 m (cell
-/// durations in whole nanoseconds where they are such, else in femtoseconds) and to 75 mm beyond;
-/// start range to half a cell, as the format counts it in cells.
+/// Precision: amplitudes unchanged, 8 or 16 bits; azimuth to half a step of 2 pi / 65536, width to
+/// one; time of day to 1/256 s; cell length to 75 nm up to 643 m (cell durations in whole
+/// nanoseconds where possible, else in femtoseconds) and to 75 mm above; start range to half a
+/// cell, as the format counts it in cells.
 class Cat240Writer {
  public:
-  /// Octets that are always enough for a sweep or a summary.
+  /// Octets that suffice for any sweep or summary.
   static constexpr std::size_t kRoom = cat240::kLongestBlock;
 
   explicit Cat240Writer(Cat240Source source = {}) noexcept : source_(source) {}
 
-  /// Cells that one record holds: 254 parts of 256 octets.
+  /// Capacity of one record in cells: 254 parts of 256 octets.
   template <std::unsigned_integral Amplitude>
   [[nodiscard]] static constexpr std::size_t max_cells() noexcept {
     return std::size_t{254} * 256 / sizeof(Amplitude);
   }
 
-  /// Writes one sweep to the start of `out` and counts it; `size()` then tells how many octets.
+  /// Writes one sweep to the start of `out` and counts it; `size()` is then its number of octets.
   template <std::unsigned_integral Amplitude>
   requires(sizeof(Amplitude) <= 2) Cat240Written
       write(const Sweep<Amplitude>& sweep, std::span<std::byte> out)
@@ -102,7 +102,7 @@ class Cat240Writer {
     return Cat240Written::kOk;
   }
 
-  /// Writes words about the video, ASCII, of at most 255 characters.
+  /// Writes a text about the video, ASCII, at most 255 characters.
   Cat240Written write_summary(std::string_view text, std::span<std::byte> out) noexcept {
     using namespace cat240;
     begin(out);
@@ -114,13 +114,14 @@ class Cat240Writer {
     return end() ? Cat240Written::kOk : Cat240Written::kNoRoom;
   }
 
-  /// Octets of the block written last; 0 when it was not.
+  /// Octets of the last block written; 0 after a failure.
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
  private:
-  static constexpr double kWidest = kPi<double> - 2e-4;  ///< rounded, still less than half a turn
+  static constexpr double kWidest =
+      kPi<double> - 2e-4;  ///< still less than half a revolution after rounding
 
-  /// A cell's duration in the unit that tells it best.
+  /// The duration of a cell in the unit that represents it best.
   struct Duration {
     std::uint64_t count = 0;
     bool nano = false;
@@ -140,7 +141,7 @@ class Cat240Writer {
     }
   };
 
-  /// The smallest video block that holds so many octets.
+  /// The smallest video block for a number of octets.
   struct Parts {
     cat240::Item item;
     std::size_t count;
@@ -178,7 +179,7 @@ class Cat240Writer {
     put(2, 0);
   }
 
-  /// The field specification of these items.
+  /// Writes the field specification of these items.
   void specify(std::initializer_list<cat240::Item> items) noexcept {
     unsigned first = 0, second = 0;
     for (const cat240::Item item : items) (item < 7 ? first : second) |= 0x80u >> item % 7;
@@ -192,7 +193,7 @@ class Cat240Writer {
     put(1, message_type);
   }
 
-  /// Appends a number of so many octets, most significant first; beyond the room it is only
+  /// Appends a number of so many octets, most significant first; past the capacity it is only
   /// counted.
   void put(std::size_t octets, std::uint64_t value) noexcept {
     if (at_ + octets <= out_.size())
@@ -201,7 +202,7 @@ class Cat240Writer {
     at_ += octets;
   }
 
-  /// Fills in the length of the block.
+  /// Writes the length of the block.
   bool end() noexcept {
     if (at_ > out_.size()) return false;
     size_ = at_;

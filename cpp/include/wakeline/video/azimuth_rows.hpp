@@ -8,26 +8,26 @@
 
 namespace wakeline::detail {
 
-/// A turn cut into rows of one width. Radars put the centres of their sweeps at whole or half
-/// steps; the cuts lie at neither, so that a sweep falls into the same row in every turn, however
-/// its azimuth is rounded.
+/// A revolution divided into rows of equal width. Radars have the centres of their sweeps at whole
+/// or half steps; the row boundaries are at neither, so that a sweep falls into the same row in
+/// every revolution, however its azimuth is rounded.
 class AzimuthRows {
  public:
   explicit AzimuthRows(int rows) noexcept : rows_(rows) {}
 
   [[nodiscard]] double step() const noexcept { return 2 * kPi<double> / rows_; }
 
-  /// Rows from the one about north to an azimuth from 0 to 2 pi: a count that is not wrapped.
+  /// Number of rows from the one about north to an azimuth from 0 to 2 pi, not wrapped.
   [[nodiscard]] int count_to(double azimuth_rad) const noexcept {
     return static_cast<int>(azimuth_rad / step() + kPhase);
   }
 
-  /// The row of any azimuth.
+  /// Row of any azimuth.
   [[nodiscard]] std::size_t of(double azimuth_rad) const noexcept {
     return static_cast<std::size_t>(count_to(compass_angle(azimuth_rad)) % rows_);
   }
 
-  /// The middle of a row.
+  /// Azimuth of the middle of a row.
   [[nodiscard]] double middle(int row) const noexcept { return (row + 0.5 - kPhase) * step(); }
 
  private:

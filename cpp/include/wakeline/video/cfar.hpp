@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Detection at a constant false alarm rate along the range of a sweep. A cell is compared with the
-// cells about it: `train_cells` on each side, beyond the `guard_cells` next to it, which are left
-// out for a target spreads over them.
+// Constant-false-alarm-rate (CFAR) detection along the range of a sweep. A cell is compared with
+// the `train_cells` on each side of it, outside the `guard_cells` next to it, which are excluded
+// because a target covers several cells.
 //
 //     cell averaging       a > f * (mean of the training cells) + d
 //     ordered statistic    a > f * (k-th smallest of the training cells) + d,  k = ceil(rank * N)
 //
-// Behind a linear or square-law detector noise is told by a factor f, behind a logarithmic one by
-// an offset d, with f = 1.
+// After a linear or square-law detector the threshold is set by a factor f, after a logarithmic one
+// by an offset d, with f = 1.
 //
-// Where the sweep begins or ends the training cells are those that exist; the factor stays. The
-// arithmetic is of integers: the factor, over the number of cells where a mean is taken, is rounded
-// up to 16 binary places, and the rest is exact.
+// At the ends of the sweep the training cells are those that exist, with the same factor. Integer
+// arithmetic: the factor, divided by the number of cells where a mean is used, is rounded up to 16
+// binary places; the rest is exact.
 //
 // Source: H. Finn, R. Johnson, "Adaptive detection mode with threshold control as a function of
 // spatially sampled clutter-level estimates", RCA Review 29 (1968), 414-464; H. Rohling, "Radar
@@ -37,11 +37,11 @@
 
 namespace wakeline {
 
-/// With what of its surroundings a cell is compared.
+/// The statistic of the training cells that a cell is compared with.
 enum class CfarKind : std::uint8_t { kCellAveraging, kOrderedStatistic };
 
-/// How the amplitudes of noise are distributed: exponential behind a square-law detector, Rayleigh
-/// behind a linear one.
+/// Distribution of noise amplitudes: exponential after a square-law detector, Rayleigh after a
+/// linear one.
 enum class Noise : std::uint8_t { kExponential, kRayleigh };
 
 struct CfarSettings {
@@ -71,16 +71,16 @@ struct CfarSettings {
   }
 };
 
-/// Probability that a cell of nothing but independent noise is detected, with all N training cells.
+/// Probability of a detection in independent noise, with all N training cells.
 ///
 ///     cell averaging     exponential   (1 + f / N)^-N
 ///                        Rayleigh      (1 + f² b / N)^-N,   b = pi/4 + (1 - pi/4) / N
 ///     ordered statistic  exponential   prod_{i<k} (N - i) / (N - i + f)
 ///                        Rayleigh      the same with f²
 ///
-/// The second takes the square of a mean of Rayleigh amplitudes for gamma distributed: with N = 16
-/// to 32, noise is detected 10 to 30 % more often than a probability of 1e-4 to 1e-6 says. It is
-/// exact for N = 1 and in the limit of large N, the others are exact.
+/// The second approximates the square of a mean of Rayleigh amplitudes by a gamma distribution:
+/// with N = 16 to 32, the true rate is 10 to 30 % above 1e-4 to 1e-6. It is exact for N = 1 and in
+/// the limit of large N; the others are exact.
 [[nodiscard]] inline double false_alarm_probability(const CfarSettings& cfar, Noise noise) {
   cfar.validate();
   const double n = 2.0 * cfar.train_cells;
@@ -97,14 +97,14 @@ struct CfarSettings {
   return probability;
 }
 
-/// The threshold factor f of a wanted probability: the other way round.
+/// The threshold factor f for a probability, the inverse of `false_alarm_probability`:
 ///
 ///     cell averaging     exponential   f  = N (p^(-1/N) - 1)
 ///                        Rayleigh      f² = N (p^(-1/N) - 1) / b
 ///     ordered statistic  by bisection
 ///
-/// Throws `std::invalid_argument` when the probability is not within (0, 1) or needs a factor
-/// above 1000.
+/// Throws `std::invalid_argument` when the probability is not in (0, 1) or needs a factor above
+/// 1000.
 [[nodiscard]] inline double threshold_factor(CfarSettings cfar, Noise noise, double probability) {
   require(probability > 0.0 && probability < 1.0, "probability", "between 0 and 1", probability);
   double low = 0.0;
@@ -124,9 +124,9 @@ struct CfarSettings {
   return high;
 }
 
-/// Offset in decibels over the mean level of noise, behind a logarithmic receiver, that noise
-/// exceeds with a probability: 10 lg(-ln p) + 10 γ / ln 10, γ = 0.5772. Exact where the mean is
-/// known, so for many training cells. Throws `std::invalid_argument` unless 0 < p < 1.
+/// Offset in decibels above the mean level of noise, after a logarithmic receiver, that noise
+/// exceeds with a probability: 10 lg(-ln p) + 10 γ / ln 10, γ = 0.5772. Exact for a known mean,
+/// i.e. for many training cells. Throws `std::invalid_argument` unless 0 < p < 1.
 [[nodiscard]] inline double threshold_offset_db(double probability) {
   require(probability > 0.0 && probability < 1.0, "probability", "between 0 and 1", probability);
   constexpr double kMeanOfNoise_dB = 2.506815718;
@@ -135,8 +135,7 @@ struct CfarSettings {
 
 namespace detail {
 
-/// The cells of a sliding window in order, counted by amplitude: the k-th is a few steps from where
-/// it was.
+/// Histogram of the cells of a sliding window: the k-th smallest is a few steps from the last one.
 class SlidingHistogram {
  public:
   void insert(std::uint8_t amplitude) noexcept {
@@ -158,11 +157,11 @@ class SlidingHistogram {
  private:
   std::array<std::uint16_t, 256> cells_{};
   int level_ = 0;
-  int below_ = 0;  ///< cells of less than the level
+  int below_ = 0;  ///< number of cells below the level
 };
 
-/// The cells of a sliding window in order, at most 256, sorted: for amplitudes too many to be
-/// counted. A place is found by counting all that is less, which has no branches to guess.
+/// The cells of a sliding window, at most 256, sorted: for amplitudes too many for a histogram. A
+/// position is found by counting all smaller cells, without unpredictable branches.
 class SortedWindow {
  public:
   SortedWindow() { cells_.fill(kPad); }
@@ -201,7 +200,7 @@ class SortedWindow {
 
 }  // namespace detail
 
-/// Finds the thresholds of a sweep's cells. Amplitudes of 8 or 16 bits.
+/// Computes the thresholds of the cells of a sweep. Amplitudes of 8 or 16 bits.
 template <class Amplitude = std::uint8_t>
 class Cfar {
   static_assert(std::is_same_v<Amplitude, std::uint8_t> || std::is_same_v<Amplitude, std::uint16_t>,
@@ -210,8 +209,7 @@ class Cfar {
  public:
   static constexpr Amplitude kMost = std::numeric_limits<Amplitude>::max();
 
-  /// Takes all memory that is ever needed. Throws `std::invalid_argument` for settings that make no
-  /// sense.
+  /// Allocates all memory. Throws `std::invalid_argument` when a setting is invalid.
   Cfar(const CfarSettings& settings, int max_cells) : settings_(settings) {
     settings.validate();
     require(max_cells >= 1 && max_cells <= kMaxCells, "max_cells", "1 to 65536", max_cells);
@@ -229,8 +227,8 @@ class Cfar {
   [[nodiscard]] const CfarSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] int max_cells() const noexcept { return static_cast<int>(sums_.size()) - 1; }
 
-  /// For each cell the amplitude that it has to exceed; the greatest amplitude, which none exceeds,
-  /// where it has no training cell. Not more than `max_cells` of both.
+  /// For each cell the amplitude that it has to exceed; the largest amplitude, which none exceeds,
+  /// for a cell without training cells. At most `max_cells` of both.
   void thresholds(std::span<const Amplitude> amplitude, std::span<Amplitude> threshold) noexcept {
     if (settings_.kind == CfarKind::kCellAveraging)
       average(amplitude, threshold.data());
@@ -242,14 +240,14 @@ class Cfar {
   static constexpr int kMaxCells = 65536;
 
  private:
-  // Sums are modulo the range of Sum: that of a window, a difference, is right as it fits.
+  // Sums are modulo the range of Sum; the difference over a window is correct because it fits.
   static constexpr bool kNarrow = sizeof(Amplitude) == 1;
   using Sum = std::conditional_t<kNarrow, std::uint16_t, std::uint32_t>;
   using Product = std::conditional_t<kNarrow, std::uint32_t, std::uint64_t>;
   static constexpr int kPlaces = 16;
   static constexpr double kOne = 1 << kPlaces;
 
-  /// Below which no threshold lies before the offset.
+  /// Lower bound of thresholds before the offset.
   [[nodiscard]] Amplitude floor() const noexcept {
     const int all_in_all = settings_.least_amplitude - 1;
     return static_cast<Amplitude>(std::max(all_in_all - settings_.threshold_offset, 0));
@@ -260,7 +258,7 @@ class Cfar {
         std::min<std::uint64_t>(std::max<std::uint64_t>(level, floor()), kMost));
   }
 
-  /// Adds the offset, no further than to the greatest amplitude.
+  /// Adds the offset, saturating at the largest amplitude.
   void raise(std::span<Amplitude> threshold) const noexcept {
     const auto offset = static_cast<Amplitude>(std::min<int>(settings_.threshold_offset, kMost));
     for (Amplitude& level : threshold)
@@ -293,7 +291,7 @@ class Cfar {
     return limited(std::uint64_t{sum} * weight_[static_cast<std::size_t>(count)] >> kPlaces);
   }
 
-  /// Where all training cells exist: from cell `far` on.
+  /// Cells from `far` on, where all training cells exist.
   void average_inside(int first, int last, Amplitude* threshold) const noexcept {
     if (first >= last) return;
     const int near = settings_.guard_cells;
@@ -325,7 +323,7 @@ class Cfar {
       window.erase(a[i]);
       --count;
     };
-    for (int i = near + 1; i < far; ++i) enter(i);  // all of cell 0 but the last
+    for (int i = near + 1; i < far; ++i) enter(i);  // all of cell 0 except the last
     for (int i = 0; i < cells; ++i) {
       enter(i + far);
       enter(i - near - 1);

@@ -24,8 +24,8 @@ struct EchoRun {
   std::uint64_t aa = 0;
 };
 
-/// Adds up a run; cells not above their threshold lie in a gap and do not count. `threshold` may be
-/// null where there is no gap.
+/// Sums over a run; cells not above their threshold are in a gap and do not count. `threshold` may
+/// be null when there is no gap.
 template <class Amplitude>
 [[nodiscard]] EchoRun add_up(const Amplitude* amplitude, const Amplitude* threshold, int first,
                              int last) noexcept {
@@ -44,15 +44,15 @@ template <class Amplitude>
   return run;
 }
 
-/// Where the beam stood.
+/// Position of the beam.
 struct BeamPlace {
   double azimuth_rad = 0.0;
   double width_rad = 0.0;
   double time_s = 0.0;
 };
 
-/// An echo that grows: sums over its cells, of amplitude a, cell r, and offsets b from the azimuth
-/// and t from the time at which it began.
+/// An echo under construction: sums over its cells, of amplitude a, cell r, and offsets b from the
+/// azimuth and t from the time of its start.
 struct Echo {
   static constexpr double kNothing = std::numeric_limits<double>::infinity();
 
@@ -75,8 +75,8 @@ struct Echo {
   std::int64_t last_sweep = 0;
   bool touches_last_cell = false;
   bool cut = false;
-  bool held = false;    ///< touches the first sweeps of a circle that will be closed
-  bool turned = false;  ///< its part at the beginning of the circle has been moved to its end
+  bool held = false;    ///< connected with the first sweeps of a circle that will be closed
+  bool turned = false;  ///< its part at the beginning of the circle has been moved to the end
 
   void add(const EchoRun& run, const BeamPlace& beam) noexcept {
     const auto first = static_cast<double>(run.first);
@@ -100,7 +100,7 @@ struct Echo {
     peak = std::max(peak, run.peak);
   }
 
-  /// Takes in another echo, which turns out to be a part of this one.
+  /// Merges another echo, a connected part of this one.
   void add(const Echo& part) noexcept {
     const double b = part.began.azimuth_rad - began.azimuth_rad;
     a += part.a;
@@ -125,7 +125,7 @@ struct Echo {
     turned |= part.turned;
   }
 
-  /// The plot of an echo that has cells.
+  /// The plot of an echo with at least one cell.
   [[nodiscard]] VideoPlot plot(double start_range_m, double cell_m) const noexcept {
     const double r = ar / a;
     const double b = ab / a;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// The three loops that see every cell of every sweep, as any compiler takes them and, for 8 bits,
-// in the vector instructions that every 64-bit x86 has. Both give the same bits.
+// The three loops over every cell of every sweep, in portable form and, for 8 bits, with the vector
+// instructions of every 64-bit x86. Both give the same bits.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ void running_sums(std::span<const Amplitude> amplitude, Sum* __restrict sums) no
   Sum sum = sums[0] = 0;
 #ifdef __SSE2__
   if constexpr (sizeof(Amplitude) == 1 && sizeof(Sum) == 2) {
-    // Eight lanes add up in three steps, each over twice as many; then comes what was before.
+    // Eight lanes are summed in three steps of doubling distance; then the previous sum is added.
     __m128i before = _mm_setzero_si128();
     const auto add_up = [&](__m128i lanes) noexcept {
       lanes = _mm_add_epi16(lanes, _mm_slli_si128(lanes, 2));
@@ -60,12 +60,12 @@ void running_sums(std::span<const Amplitude> amplitude, Sum* __restrict sums) no
   for (; i < cells; ++i) sums[i + 1] = sum = static_cast<Sum>(sum + a[i]);
 }
 
-/// Thresholds from running sums over two windows of `train` cells, the second of which begins
+/// Thresholds from running sums over two windows of `train` cells, the second of which starts
 /// `ahead` cells after the first,
 ///
 ///     threshold[i] = clamp(weight (sums[i + train] - sums[i] +
 ///                                  sums[i + ahead + train] - sums[i + ahead]) / 2^16,
-///                          floor, greatest amplitude).
+///                          floor, largest amplitude).
 template <class Amplitude, class Sum, class Product>
 void mean_thresholds(const Sum* __restrict sums, int train, int ahead, std::uint16_t weight,
                      Amplitude floor, int cells, Amplitude* __restrict threshold) noexcept {
@@ -97,7 +97,7 @@ void mean_thresholds(const Sum* __restrict sums, int train, int ahead, std::uint
 
 inline constexpr int kBlock = 64;
 
-/// Bit i tells whether amplitude i is above threshold i; at most 64 cells.
+/// Bit i is set when amplitude i exceeds threshold i; at most 64 cells.
 template <class Amplitude>
 [[nodiscard]] std::uint64_t exceeding(const Amplitude* amplitude, const Amplitude* threshold,
                                       int cells) noexcept {
@@ -106,12 +106,13 @@ template <class Amplitude>
   return bits;
 }
 
-/// The same of 64 cells.
+/// The same for 64 cells.
 template <class Amplitude>
 [[nodiscard]] std::uint64_t exceeding(const Amplitude* amplitude,
                                       const Amplitude* threshold) noexcept {
 #ifdef __SSE2__
-  // Bytes of ones where the amplitude is not above the threshold: their difference saturates at 0.
+  // Bytes of ones where the amplitude does not exceed the threshold: their difference saturates at
+  // 0.
   const auto below = [&](int i) noexcept {
     const __m128i zero = _mm_setzero_si128();
     if constexpr (sizeof(Amplitude) == 1) {
@@ -127,7 +128,7 @@ template <class Amplitude>
     bits |= std::uint64_t{static_cast<std::uint16_t>(_mm_movemask_epi8(below(i)))} << i;
   return ~bits;
 #else
-  bool any = false;  // most blocks are empty, and this loop is one that compilers know
+  bool any = false;  // most blocks are empty, and compilers vectorise this loop
   for (int i = 0; i < kBlock; ++i) any |= amplitude[i] > threshold[i];
   return any ? exceeding(amplitude, threshold, kBlock) : 0;
 #endif

@@ -17,19 +17,20 @@
 
 namespace wakeline {
 
-/// Areas about the antenna in which nothing is detected: land, the own wake, a blind sector. Of
-/// each of `azimuths` directions it knows the ranges that are excluded, exactly, whatever the
-/// length of the sweeps' cells; a cell that lies in an area by a part is excluded.
+/// Areas about the antenna without detections: land, own wake, a blind sector. For each of
+/// `azimuths` directions it stores the exact excluded ranges, independent of the cell length; a
+/// cell partly inside is excluded.
 ///
-/// What is excluded still counts among the training cells of what is not: of boats close to a shore
-/// the ordered statistic sees more than cell averaging.
+/// Excluded cells still are training cells of others: close to a shore the ordered statistic
+/// detects more boats than cell averaging.
 ///
-/// One built by default excludes nothing. On a ship under way it is built anew as she moves.
+/// A default-constructed mask excludes nothing. On a moving ship the mask is rebuilt with its
+/// motion.
 class LandMask {
  public:
   LandMask() = default;
 
-  /// `azimuths` directions in a turn. Throws `std::invalid_argument` unless 1 to 65536.
+  /// `azimuths` directions per revolution. Throws `std::invalid_argument` unless 1 to 65536.
   explicit LandMask(int azimuths) {
     require(azimuths >= 1 && azimuths <= 65536, "azimuths", "1 to 65536", azimuths);
     excluded_.resize(static_cast<std::size_t>(azimuths));
@@ -38,7 +39,7 @@ class LandMask {
   [[nodiscard]] int azimuths() const noexcept { return static_cast<int>(excluded_.size()); }
 
   /// Excludes the ranges from `near_m` to `far_m` in the directions clockwise from
-  /// `from_azimuth_rad` to `to_azimuth_rad`; a whole turn where these are a turn apart. Throws
+  /// `from_azimuth_rad` to `to_azimuth_rad`; a full circle when these differ by one. Throws
   /// `std::invalid_argument` for ranges that are negative or not in order, for azimuths that are
   /// not finite, and when the mask has no directions.
   void exclude_sector(double from_azimuth_rad, double to_azimuth_rad, double near_m, double far_m) {
@@ -58,7 +59,7 @@ class LandMask {
   }
 
   /// Excludes the inside of a polygon with corners [north, east] in m from the antenna, which may
-  /// lie inside. Directions are tried at their middles. Throws `std::invalid_argument` for fewer
+  /// be inside. Directions are tested at their middles. Throws `std::invalid_argument` for fewer
   /// than 3 corners, corners that are not finite, and when the mask has no directions.
   void exclude_polygon(std::span<const Vec<double, 2>> corners_m) {
     require_directions();
@@ -76,7 +77,7 @@ class LandMask {
     }
   }
 
-  /// Whether a place is excluded.
+  /// True when a position is excluded.
   [[nodiscard]] bool excludes(double azimuth_rad, double range_m) const noexcept {
     if (excluded_.empty() || !std::isfinite(azimuth_rad)) return false;
     return std::ranges::any_of(excluded_[rows().of(azimuth_rad)], [&](const Ranges& ranges) {
@@ -84,7 +85,7 @@ class LandMask {
     });
   }
 
-  /// Lifts the thresholds of excluded cells to where no amplitude exceeds them.
+  /// Raises the thresholds of excluded cells to the largest amplitude, which none exceeds.
   template <class Amplitude>
   void lift(const Sweep<Amplitude>& sweep, std::span<Amplitude> threshold) const noexcept {
     if (excluded_.empty()) return;
@@ -114,7 +115,7 @@ class LandMask {
     return detail::AzimuthRows(azimuths());
   }
 
-  /// Takes ranges in, joined with those that they meet.
+  /// Adds ranges, merged with overlapping ones.
   void exclude(int row, Ranges added) {
     auto& list = excluded_[static_cast<std::size_t>(row)];
     std::erase_if(list, [&](const Ranges& known) {

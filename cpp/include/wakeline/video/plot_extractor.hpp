@@ -51,22 +51,22 @@ struct PlotExtractorSettings {
   }
 };
 
-/// What became of a sweep.
+/// Result of a sweep.
 enum class SweepStatus : std::uint8_t {
   kOk = 0,
   kGap = 1,              ///< used; sweeps before it are missing: open echoes were closed
-  kReversed = 2,         ///< used; the antenna went back: open echoes were closed
-  kGeometryChanged = 3,  ///< used; other start range or cell length: open echoes were closed
-  kRepeated = 4,         ///< refused: it stands where the last one stood
-  kTooLong = 5,          ///< refused: more cells than `max_sweep_cells`
-  kInvalid = 6,          ///< refused: see `Sweep::valid`
+  kReversed = 2,         ///< used; the antenna turned back: open echoes were closed
+  kGeometryChanged = 3,  ///< used; start range or cell length changed: open echoes were closed
+  kRepeated = 4,         ///< rejected: same azimuth as the last one
+  kTooLong = 5,          ///< rejected: more cells than `max_sweep_cells`
+  kInvalid = 6,          ///< rejected: see `Sweep::valid`
 };
 
 [[nodiscard]] constexpr bool refused(SweepStatus status) noexcept {
   return status >= SweepStatus::kRepeated;
 }
 
-/// The status in words, for messages and logs.
+/// The status as text, for messages and logs.
 constexpr const char* to_string(SweepStatus status) noexcept {
   switch (status) {
     case SweepStatus::kOk:
@@ -87,7 +87,7 @@ constexpr const char* to_string(SweepStatus status) noexcept {
   return "unknown";
 }
 
-/// What has happened since the extractor was built.
+/// Counts since the extractor was constructed.
 struct ExtractionCounts {
   std::int64_t sweeps = 0;  ///< used
   std::int64_t gaps = 0;
@@ -97,33 +97,33 @@ struct ExtractionCounts {
   std::int64_t too_long = 0;
   std::int64_t invalid = 0;
   std::int64_t plots = 0;
-  std::int64_t too_small = 0;  ///< echoes, as are the next
+  std::int64_t too_small = 0;  ///< echoes, like the next ones
   std::int64_t too_large = 0;
   std::int64_t cut = 0;  ///< plots that may be parts of echoes
 };
 
-/// Sweeps in, plots out as soon as their echo is over.
+/// Converts sweeps to plots, each as soon as its echo is complete.
 ///
 ///     threshold (Cfar, StaticClutterMap, LandMask) -> runs of cells above -> echoes -> VideoPlot
 ///
-/// Sweeps come one after the other clockwise, `azimuth_width_rad` apart, turn after turn; north is
-/// a direction as any other. Two cells are of one echo when they are next to each other, also
-/// across a corner, or no more than `gap_cells` and `gap_sweeps` lie between. An echo is over when
-/// `gap_sweeps` + 1 sweeps have not touched it.
+/// Sweeps follow each other clockwise, `azimuth_width_rad` apart, revolution after revolution;
+/// north is not special. Two cells belong to one echo when they share an edge or a corner, or when
+/// at most `gap_cells` and `gap_sweeps` are between them. An echo is complete when `gap_sweeps` + 1
+/// sweeps are not connected with it.
 ///
-/// Sweeps are missing where an azimuth is more than 1.5 widths from the last: so many widths as
-/// `gap_sweeps` pass as empty sweeps, more close the open echoes, as does a step back of the
-/// antenna and a change of start range or cell length. A sweep at the azimuth of the last one (by
-/// a thousandth of its width) is refused, and so is one that makes no sense; it is as if it had
-/// not come. A sweep of zeros has no detections, and with a factor of 1 or more neither has one
-/// that is saturated all along, for none of its cells exceeds the others.
+/// Sweeps are missing when an azimuth is more than 1.5 widths after the last. Up to `gap_sweeps`
+/// missing ones are processed as empty sweeps; more close the open echoes, as do a backward step of
+/// the antenna and a change of start range or cell length. A sweep at the azimuth of the last one
+/// (within a thousandth of its width) and an invalid one are rejected and change nothing. A sweep
+/// of zeros has no detections; with a factor of 1 or more neither has a fully saturated one,
+/// because none of its cells exceeds the others.
 ///
-/// All memory is taken at construction. A picture of any content needs no more, whatever the
-/// number and size of its echoes. An extractor can be moved, not copied.
+/// All memory is allocated at construction; no picture needs more, whatever the number and size of
+/// its echoes. An extractor can be moved, not copied.
 template <class Amplitude = std::uint8_t>
 class PlotExtractor {
  public:
-  /// Throws `std::invalid_argument` for settings that make no sense.
+  /// Throws `std::invalid_argument` when a setting is invalid.
   explicit PlotExtractor(const PlotExtractorSettings& settings, LandMask land = {},
                          StaticClutterMap clutter = {})
       : settings_((settings.validate(), settings)),
@@ -144,16 +144,16 @@ class PlotExtractor {
   [[nodiscard]] const StaticClutterMap& clutter() const noexcept { return clutter_; }
   [[nodiscard]] const LandMask& land() const noexcept { return land_; }
 
-  /// Other areas from the next sweep on. Frees and takes memory.
+  /// Replaces the excluded areas from the next sweep on. Frees and allocates memory.
   void set_land(LandMask land) noexcept { land_ = std::move(land); }
 
-  /// What became of the last sweep.
+  /// Status of the last sweep.
   [[nodiscard]] SweepStatus status() const noexcept { return status_; }
 
-  /// Echoes that are not over yet.
+  /// Number of echoes that are not complete.
   [[nodiscard]] std::size_t open_echoes() const noexcept { return echoes_.open(); }
 
-  /// Takes a sweep; gives the plots of the echoes that are over with it, until the next call.
+  /// Processes a sweep; returns the plots of the echoes completed by it, valid until the next call.
   std::span<const VideoPlot> process(const Sweep<Amplitude>& sweep) noexcept {
     plots_.clear();
     status_ = admit(sweep);
@@ -169,8 +169,8 @@ class PlotExtractor {
     return plots_;
   }
 
-  /// No sweep will follow: gives the plots of all open echoes. Then the extractor is ready for
-  /// other sweeps, with the counts and the clutter map that it has.
+  /// After the last sweep: returns the plots of all open echoes. The extractor can then process
+  /// other sweeps; counts and clutter map are kept.
   std::span<const VideoPlot> finish() noexcept {
     plots_.clear();
     close_all();
@@ -223,7 +223,7 @@ class PlotExtractor {
     return move_on(sweep, step);
   }
 
-  /// Lets missing sweeps pass.
+  /// Processes missing sweeps.
   [[nodiscard]] SweepStatus move_on(const Sweep<Amplitude>& sweep, double step) noexcept {
     if (!running_) return SweepStatus::kOk;
     if (compass_angle(sweep.azimuth_rad) < compass_angle(azimuth_rad_)) echoes_.pass_north();
@@ -236,7 +236,7 @@ class PlotExtractor {
     return SweepStatus::kOk;
   }
 
-  /// Sweeps that are missing within a step of so many widths.
+  /// Number of missing sweeps in a step of so many widths.
   [[nodiscard]] static double missing_in(double step) noexcept {
     return std::max(std::ceil(step - 0.5) - 1.0, 0.0);
   }
@@ -300,7 +300,7 @@ class PlotExtractor {
   std::vector<VideoPlot> plots_;
   ExtractionCounts counts_;
   SweepStatus status_ = SweepStatus::kOk;
-  bool running_ = false;     ///< a sweep came before
+  bool running_ = false;     ///< there was a sweep before
   double turned_rad_ = 0.0;  ///< since the first one
   double azimuth_rad_ = 0.0;
   double width_rad_ = 1.0;
@@ -308,8 +308,8 @@ class PlotExtractor {
   double cell_m_ = 1.0;
 };
 
-/// The plots of a picture, all taken at one time. A full circle is closed: an echo across its seam
-/// gives one plot. Allocates; throws `std::invalid_argument` for settings that make no sense.
+/// The plots of a picture taken at one time. A full circle is closed: an echo across its seam gives
+/// one plot. Allocates; throws `std::invalid_argument` when a setting is invalid.
 template <class Amplitude>
 [[nodiscard]] std::vector<VideoPlot> extract_plots(const AmplitudeImage<Amplitude>& image,
                                                    PlotExtractorSettings settings,

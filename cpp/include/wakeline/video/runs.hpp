@@ -10,7 +10,7 @@
 
 namespace wakeline::detail {
 
-/// Calls `visit(first, last)` for every unbroken run of cells above their thresholds.
+/// Calls `visit(first, last)` for every run of consecutive cells above their thresholds.
 template <class Amplitude, class Visit>
 void for_each_run(std::span<const Amplitude> amplitude, const Amplitude* threshold,
                   Visit&& visit) noexcept {
@@ -28,7 +28,7 @@ void for_each_run(std::span<const Amplitude> amplitude, const Amplitude* thresho
     }
     while (bits != 0) {
       const int first = std::countr_zero(bits);
-      const std::uint64_t after = bits + (std::uint64_t{1} << first);  // 0: the run is not over
+      const std::uint64_t after = bits + (std::uint64_t{1} << first);  // 0: the run continues
       if (after == 0) {
         open = base + first;
         break;

@@ -15,17 +15,16 @@
 
 namespace wakeline {
 
-/// The picture of the last turn on a regular polar grid, put together from sweeps as they come.
+/// The picture of the last revolution on a regular polar grid, updated sweep by sweep.
 ///
-/// Row k lies at the azimuth `first_azimuth_rad` + k 2 pi / `sweeps`. A sweep is written to all
-/// rows whose middles its width covers, or else to the nearest one. Where sweeps that follow each
-/// other share a row, the greater amplitude stays; a row that the beam comes back to is written
-/// anew. Rows not seen yet are zero.
+/// Row k is at the azimuth `first_azimuth_rad` + k 2 pi / `sweeps`. A sweep is written to all rows
+/// whose middles it covers, or else to the nearest one. Where consecutive sweeps share a row, the
+/// larger amplitude is kept; in the next revolution a row is overwritten. Rows not seen yet are
+/// zero.
 template <class Amplitude = std::uint8_t>
 class ScanImage {
  public:
-  /// Takes all memory that is ever needed. Throws `std::invalid_argument` for sizes that make no
-  /// sense.
+  /// Allocates all memory. Throws `std::invalid_argument` when a size is invalid.
   ScanImage(int sweeps, int cells, double first_azimuth_rad = 0.0) {
     require(sweeps >= 3 && sweeps <= 65536, "sweeps", "3 to 65536", sweeps);
     require(cells >= 1 && cells <= 65536, "cells", "1 to 65536", cells);
@@ -40,9 +39,8 @@ class ScanImage {
              .cell_m = 1.0};
   }
 
-  /// Takes a sweep; false, and nothing is changed, when it makes no sense or has more cells than
-  /// the image. Shorter ones are filled up with zeros. Another start range or cell length clears
-  /// the image.
+  /// Adds a sweep; false, and nothing changed, when it is invalid or has more cells than the image.
+  /// Shorter ones are padded with zeros. A different start range or cell length clears the image.
   [[nodiscard]] bool add(const Sweep<Amplitude>& sweep) noexcept {
     if (!sweep.valid() || sweep.amplitude.size() > static_cast<std::size_t>(view_.cells))
       return false;
@@ -68,7 +66,7 @@ class ScanImage {
     written_ = 0;
   }
 
-  /// Valid as long as the image lives, and changes with it.
+  /// Valid while the image lives; changes with it.
   [[nodiscard]] AmplitudeImage<Amplitude> view() const noexcept {
     AmplitudeImage<Amplitude> image = view_;
     image.amplitudes = amplitude_.data();
@@ -76,13 +74,13 @@ class ScanImage {
   }
 
  private:
-  static constexpr double kTouch = 1e-6;  // rows: of a middle at both ends the near one counts
+  static constexpr double kTouch = 1e-6;  // rows: of two middles at the edges the nearer one counts
 
   [[nodiscard]] int wrapped(int row) const noexcept {
     return ((row % view_.sweeps) + view_.sweeps) % view_.sweeps;
   }
 
-  /// True for rows of the sweep before.
+  /// True for rows of the last sweep.
   [[nodiscard]] bool just_written(int row) const noexcept {
     return wrapped(row - first_) < written_;
   }

@@ -17,26 +17,25 @@
 
 namespace wakeline {
 
-/// What always stands there: the mean amplitude m of each cell of azimuth and range, with a memory
-/// that fades with the time constant T,
+/// Stationary clutter: the mean amplitude m of each cell of azimuth and range, averaged with the
+/// time constant T,
 ///
-///     m += (1 - exp(-dt / T)) (a - m),    dt since this azimuth was last seen, m = 0 at first;
+///     m += (1 - exp(-dt / T)) (a - m),    dt since the last sweep at this azimuth, m = 0 at first;
 ///
-/// a cell must exceed `factor` * m. So land and buoys vanish after T ln(factor / (factor - 1)), and
+/// a cell must exceed `factor` * m. Land and buoys disappear after T ln(factor / (factor - 1)), and
 /// so does a ship that stays as long: choose T well above the time in which the slowest ship of
-/// interest moves by her own echo (200 m at 1 m/s: 200 s), and well below the hours in which the
-/// tide changes the picture.
+/// interest moves by the length of its echo (200 m at 1 m/s: 200 s), and well below the hours in
+/// which the tide changes the picture.
 ///
-/// One built by default is empty and does nothing. When start range or cell length change, what
-/// has been learned is forgotten.
+/// A default-constructed map is empty and does nothing. A change of start range or cell length
+/// clears it.
 class StaticClutterMap {
  public:
   StaticClutterMap() = default;
 
-  /// `azimuths` rows in a turn and `cells` of range; cells of sweeps beyond are left alone. Of
-  /// several sweeps in a row the strongest amplitudes are learned. Takes all memory that is ever
-  /// needed, 4 bytes a cell. Throws `std::invalid_argument` for sizes, times and factors that make
-  /// no sense.
+  /// `azimuths` rows per revolution and `cells` of range; further cells of a sweep are not changed.
+  /// Of several sweeps in a row the largest amplitudes are averaged. Allocates all memory, 4 bytes
+  /// per cell. Throws `std::invalid_argument` when a size, time or factor is invalid.
   StaticClutterMap(int azimuths, int cells, double time_constant_s, double factor = 1.5)
       : cells_(static_cast<std::size_t>(cells)),
         time_constant_s_(time_constant_s),
@@ -60,7 +59,7 @@ class StaticClutterMap {
   [[nodiscard]] double time_constant_s() const noexcept { return time_constant_s_; }
   [[nodiscard]] double factor() const noexcept { return double(factor_); }
 
-  /// Saves or restores what has been learned; of a map of the same sizes and settings.
+  /// Saves or restores the means; fails for a map of different sizes and settings.
   void archive(Archive& fields) {
     const std::size_t rows = seen_s_.size(), cells = mean_.size(), row_cells = strongest_.size();
     fields(start_range_m_);
@@ -82,7 +81,7 @@ class StaticClutterMap {
     visited_ = kNone;
   }
 
-  /// Lifts thresholds to what always stands there, and then learns the sweep.
+  /// Raises thresholds by the stationary clutter, then averages the sweep.
   template <class Amplitude>
   void lift_and_learn(const Sweep<Amplitude>& sweep, std::span<Amplitude> threshold) noexcept {
     if (!enabled()) return;
@@ -124,8 +123,8 @@ class StaticClutterMap {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  /// Share of the new amplitude in the mean of a row; none at first, or when time
-  /// stands still or runs back.
+  /// Weight of the new amplitude in the mean of a row; zero at first, or when the time does not
+  /// increase.
   [[nodiscard]] float gain_at(std::size_t row, double time_s) noexcept {
     const double since_s = seen_s_[row] == kNever ? 0.0 : time_s - seen_s_[row];
     seen_s_[row] = time_s;
@@ -137,13 +136,13 @@ class StaticClutterMap {
   float factor_ = 1.0f;
   double start_range_m_ = -1.0;
   double cell_m_ = 0.0;
-  std::vector<double> seen_s_;  ///< by azimuth
+  std::vector<double> seen_s_;  ///< last time of each azimuth
   std::vector<float> mean_;
   std::size_t visited_ = kNone;   ///< the row of the last sweep
   double azimuth_rad_ = 0.0;      ///< of it
-  double turned_rad_ = 0.0;       ///< since the visit to that row began
-  float gain_ = 0.0f;             ///< of the visit to that row
-  std::vector<float> strongest_;  ///< of the visit, by cell
+  double turned_rad_ = 0.0;       ///< since the start of the visit to that row
+  float gain_ = 0.0f;             ///< weight for the visit to that row
+  std::vector<float> strongest_;  ///< largest amplitude of the visit, by cell
 };
 
 }  // namespace wakeline

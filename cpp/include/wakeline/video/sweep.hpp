@@ -9,12 +9,12 @@
 
 namespace wakeline {
 
-/// What the radar received of one azimuth: amplitudes of range cells, from the antenna outwards.
+/// The radar's reception at one azimuth: amplitudes of range cells, from the antenna outwards.
 template <std::unsigned_integral Amplitude = std::uint8_t>
 struct Sweep {
-  double time_s = 0.0;             ///< when the beam stood there
+  double time_s = 0.0;             ///< time of reception
   double azimuth_rad = 0.0;        ///< centre of the sweep, clockwise from north
-  double azimuth_width_rad = 0.0;  ///< that it stands for: to the centre of the next sweep
+  double azimuth_width_rad = 0.0;  ///< to the centre of the next sweep
   double start_range_m = 0.0;      ///< near edge of the first cell
   double cell_m = 0.0;             ///< length of a cell
   std::span<const Amplitude> amplitude;
@@ -24,8 +24,8 @@ struct Sweep {
     return start_range_m + (cell + 0.5) * cell_m;
   }
 
-  /// True when it can be a radar's: finite and of a size that has a meaning, cells of a length, an
-  /// azimuth width of at most half a turn, cells there.
+  /// True when all numbers are finite and in range, the cell length is positive, the azimuth width
+  /// at most half a revolution, and there are cells.
   [[nodiscard]] bool valid() const noexcept {
     return std::fabs(time_s) < 1e15 && std::fabs(azimuth_rad) < 1e6 && azimuth_width_rad > 0.0 &&
            azimuth_width_rad < 3.15 && start_range_m >= 0.0 && start_range_m < 1e9 &&

@@ -9,17 +9,17 @@ namespace wakeline {
 /// An echo of radar video as a measurement.
 ///
 /// With amplitudes a of its cells, W = sum a, range and bearing are the means with weights a / W.
-/// With their weighted spreads S (2 x 2, of range and bearing) and the effective number of cells
-/// n = W² / sum a², the covariance is
+/// With their weighted spread S (2 x 2, of range and bearing) and the effective number of cells n =
+/// W² / sum a², the covariance is
 ///
 ///     R = S / n + diag(cell², width²) / 12 :
 ///
-/// the error of a mean of n cells, whose amplitudes fluctuate, and what the grid of cells and
-/// sweeps rounds away. A lone cell has that of a uniform error; the middle of a smooth echo many
-/// cells long is known better than this says. Errors that echoes of a radar share (its alignment)
-/// and the wander of echoes over a hull are not in it.
+/// the error of a mean of n cells with fluctuating amplitudes, and the quantisation by cells and
+/// sweeps. A single cell has a uniform error; the middle of a smooth echo many cells long is more
+/// accurate than this. Common errors of a radar (its alignment) and the motion of echoes over a
+/// hull are not included.
 struct VideoPlot {
-  double time_s = 0.0;  ///< amplitude-weighted, too
+  double time_s = 0.0;  ///< amplitude-weighted too
   double range_m = 0.0;
   double bearing_rad = 0.0;  ///< clockwise from north, 0 to 2 pi
   Mat<double, 2, 2> covariance = Mat<double, 2, 2>::Identity();  ///< of range_m and bearing_rad
@@ -28,7 +28,7 @@ struct VideoPlot {
   double bearing_extent_rad = 0.0;  ///< from the edge of its first sweep to that of its last
   double peak_amplitude = 0.0;
   double total_amplitude = 0.0;  ///< W
-  int cells = 0;                 ///< above their thresholds
+  int cells = 0;                 ///< number above their thresholds
 
   bool touches_first_cell = false;
   bool touches_last_cell = false;
