@@ -1,4 +1,4 @@
-"""Checks of arguments that several rooms share."""
+"""Checks of arguments, shared by the modules."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST_RUNS = 10**7
 
 
 def whole_number(name: str, value: Any, least: int) -> None:
-    """ValueError unless the argument of that name is an integer, `least` or more."""
+    """ValueError unless the named argument is an integer, at least `least`."""
     if not isinstance(value, (int, np.integer)) or value < least:
         raise ValueError(f"{name} must be a whole number, at least {least}, got {value!r}")
 
@@ -32,32 +32,32 @@ def number_fields(settings: Any, *names: str) -> dict[str, Any]:
 
 
 def finite(**values: Any) -> None:
-    """TypeError unless each argument is one real number, ValueError where it is not finite."""
+    """TypeError unless each argument is one real number, ValueError unless it is finite."""
     _require("finite", np.isfinite, values)
 
 
 def positive(**values: Any) -> None:
-    """The same where it is not above zero."""
+    """The same, and ValueError unless it is positive."""
     _require("finite and positive", lambda value: 0 < value < np.inf, values)
 
 
 def not_negative(**values: Any) -> None:
-    """The same where it is below zero."""
+    """The same, and ValueError if it is negative."""
     _require("finite and not negative", lambda value: 0 <= value < np.inf, values)
 
 
 def at_least(least: float, **values: Any) -> None:
-    """The same where it is less; infinity is allowed."""
+    """The same, and ValueError if it is less; infinity is allowed."""
     _require(f"at least {least:g}", lambda value: value >= least, values)
 
 
 def above_zero(**values: Any) -> None:
-    """The same where it is not above zero; infinity is allowed."""
+    """The same, and ValueError unless it is positive; infinity is allowed."""
     _require("positive", lambda value: value > 0, values)
 
 
 def fraction(**values: Any) -> None:
-    """The same where it is not from 0 to 1."""
+    """The same, and ValueError unless it is from 0 to 1."""
     _require("from 0 to 1", lambda value: 0 <= value <= 1, values)
 
 
@@ -69,7 +69,7 @@ def _require(wanted: str, holds: Callable[[Any], Any], values: dict[str, Any]) -
 
 
 def listed(name: str, sequence: Any, of_what: str) -> list[Any]:
-    """The argument of that name as a list; TypeError where it is no sequence."""
+    """The named argument as a list; TypeError if it is not a sequence."""
     try:
         return list(sequence)
     except TypeError:
@@ -77,7 +77,7 @@ def listed(name: str, sequence: Any, of_what: str) -> list[Any]:
 
 
 def run_numbers(runs: Any, seed: Any, threads: Any) -> None:
-    """ValueError unless runs can be done with these arguments; threads may be None."""
+    """ValueError unless these arguments of runs are valid; threads may be None."""
     whole_number("runs", runs, 1)
     if runs > MOST_RUNS:
         raise ValueError(f"runs must be at most {MOST_RUNS}, got {runs}")
@@ -87,9 +87,9 @@ def run_numbers(runs: Any, seed: Any, threads: Any) -> None:
 
 
 def entropy(seed: Any, purpose: str) -> list[int]:
-    """Numbers that a source of chance begins with: those of a seed, one or several, and a purpose.
+    """Seed of a random generator: the numbers of a seed, one or several, and a purpose.
 
-    ValueError unless those of the seed are whole numbers that are not negative.
+    ValueError unless those of the seed are non-negative integers.
     """
     seeds = list(seed) if np.ndim(seed) else [seed]
     for number in seeds:
@@ -98,9 +98,9 @@ def entropy(seed: Any, purpose: str) -> list[int]:
 
 
 def real_numbers(name: str, values: Any) -> np.ndarray:
-    """The argument of that name as the engine takes arrays: masked numbers are NaN.
+    """The named argument as an array of real numbers; masked numbers are NaN.
 
-    TypeError for text, times and complex numbers, ValueError for what is no array.
+    TypeError for text, times and complex numbers, ValueError for ragged sequences.
     """
     masked = isinstance(values, np.ma.MaskedArray)
     try:
@@ -112,7 +112,7 @@ def real_numbers(name: str, values: Any) -> np.ndarray:
 
 
 def shaped(name: str, values: Any, *shape: int | None) -> np.ndarray:
-    """Real numbers of that shape, None standing for any length; ValueError for another."""
+    """Real numbers of the given shape (None: any length); ValueError for another shape."""
     numbers = real_numbers(name, values)
     lengths = zip(shape, numbers.shape, strict=False)
     if numbers.ndim != len(shape) or any(wanted not in (None, got) for wanted, got in lengths):
@@ -122,9 +122,9 @@ def shaped(name: str, values: Any, *shape: int | None) -> np.ndarray:
 
 
 def columns(table: Any, time: str, *names: str, optional: Sequence[str] = ()) -> None:
-    """Make fields of a frozen dataclass numbers (n,), one for each time of the field `time`.
+    """Convert fields of a frozen dataclass to arrays (n,) with one number per time of `time`.
 
-    ValueError where they are not as many or the times are not in order; optional ones may be None.
+    ValueError if the lengths differ or the times are not in order; optional ones may be None.
     """
     time_s = shaped(time, getattr(table, time), None)
     if not (np.isfinite(time_s).all() and (np.diff(time_s) >= 0).all()):
@@ -145,7 +145,7 @@ def _refuse_others(numbers: np.ndarray) -> None:
 
 
 def in_a_row(name: str, values: Any) -> np.ndarray:
-    """Numbers (T,), one of a single number; ValueError where the argument has more axes."""
+    """Numbers (T,), T = 1 for a single number; ValueError if the argument has more axes."""
     row = np.atleast_1d(real_numbers(name, values))
     if row.ndim != 1:
         raise ValueError(f"{name} must be a number or have shape (T,), got {row.shape}")

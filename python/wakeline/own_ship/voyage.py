@@ -49,7 +49,7 @@ class Voyage:
     legs : list of Leg
         The parts that have a fix, in order of time, all in the plane of the first fix.
     notes : list of str
-        What a user should know: readings that are not used, rejected or doubtful.
+        Notes for the user: readings that are ignored, rejected or doubtful.
     """
 
     legs: list[Leg]
@@ -77,20 +77,20 @@ class Voyage:
 
 
 def navigate_log(log: NavigationLog, *, smooth: bool = False) -> Voyage:
-    """Navigate a whole log, each part after a gap of a minute by itself.
+    """Navigate a whole log; parts separated by a gap of a minute are independent.
 
     Parameters
     ----------
     log : NavigationLog
-        As :func:`wakeline.recording.read_nmea` reads it.
+        From :func:`wakeline.recording.read_nmea`.
     smooth : bool
-        Whether each time uses the readings after it, too, up to a gap or to a reading that was not
-        believed until others agreed with it.
+        Whether each time also uses later readings, up to a gap or to a rejected reading that
+        persisted.
 
     Raises
     ------
     ValueError
-        When the log has no sound fix.
+        When the log has no usable fix.
 
     Examples
     --------
@@ -120,14 +120,14 @@ def navigate_log(log: NavigationLog, *, smooth: bool = False) -> Voyage:
 def write_own(path: str | Path, tracks: Sequence[OwnTrack]) -> None:
     """Write solutions as an own-ship file, which ``wakeline track --own`` takes.
 
-    What was at `path` is replaced only when the new file is complete.
+    `path` is replaced only when the new file is complete.
 
     Parameters
     ----------
     path : str or Path
         The file. Its folder must exist.
     tracks : sequence of OwnTrack
-        Such as those of the legs of a voyage, written one after the other.
+        Such as those of the legs of a voyage, written in order.
     """
     path = Path(path)
     with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
@@ -167,7 +167,7 @@ def _csv_rows(track: OwnTrack) -> Iterator[list[Any]]:
 def _magnetic_offset(
     log: NavigationLog, parts: Sequence[NavigationLog]
 ) -> tuple[MagneticOffset, list[str]]:
-    """What is added to magnetic headings of unknown variation, and notes of it."""
+    """The offset of magnetic headings of unknown variation, and notes about it."""
     if not any(map(wants_offset, parts)):
         return NO_OFFSET, []
     offset = magnetic_offset(parts)
