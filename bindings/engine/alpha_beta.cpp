@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "any_alpha_beta.hpp"
-#include "support/call_text.hpp"
 #include "face.hpp"
+#include "support/call_text.hpp"
 
 namespace wakeline::python {
 namespace {
@@ -191,19 +190,23 @@ P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alp
       "and, with gamma, 0 < gamma < 4 alpha beta / (2 - alpha).");
 }
 
+template <int Order>
+using PyAlphaBeta = PyEstimator<AlphaBetaFilter<Order>>;
+
 /// The filter with the process noise given, else that which its schedule stands for.
 template <int Order>
-AnyAlphaBeta<Order> make(const GainSchedule<Order>& gains, const std::optional<ProcessNoise>& noise,
-                         [[maybe_unused]] double prior_accel_std_mps2) {
+PyAlphaBeta<Order> make(const GainSchedule<Order>& gains, const std::optional<ProcessNoise>& noise,
+                        [[maybe_unused]] double prior_accel_std_mps2) {
   typename AlphaBetaFilter<Order>::Motion motion = AlphaBetaFilter<Order>(gains).motion();
   if (noise) motion.noise = *noise;
   if constexpr (Order == 3) motion.prior_accel_std_mps2 = prior_accel_std_mps2;
-  return AnyAlphaBeta<Order>(gains, motion);
+  return AlphaBetaFilter<Order>(gains, motion);
 }
 
 /// The call that makes the filter, up to what it is told of an acceleration.
 template <int Order>
-CallText filter_call(const char* name, const AnyAlphaBeta<Order>& filter) {
+CallText filter_call(const char* name, const PyAlphaBeta<Order>& estimator) {
+  const AlphaBetaFilter<Order>& filter = estimator.get();
   return CallText(name).with("gains", filter.schedule()).with("noise", filter.motion().noise);
 }
 
@@ -212,7 +215,7 @@ CallText filter_call(const char* name, const AnyAlphaBeta<Order>& filter) {
 void define_alpha_beta(py::module_& m) {
   define_schedules(m);
 
-  py::class_<AnyAlphaBeta<2>> line(
+  EstimatorClass<AlphaBetaFilter<2>> line(
       m, "AlphaBeta",
       R"(The alpha-beta filter over [x, vx, y, vy], its gains by a schedule.
 
@@ -235,11 +238,11 @@ ValueError
              return make<2>(gains, noise, 0.0);
            }),
            py::arg("gains"), py::kw_only(), py::arg("noise") = py::none());
-  define_face(line);
+  define_copies(line);
   line.def("__repr__",
-           [](const AnyAlphaBeta<2>& one) { return filter_call("AlphaBeta", one).text(); });
+           [](const PyAlphaBeta<2>& one) { return filter_call("AlphaBeta", one).text(); });
 
-  py::class_<AnyAlphaBeta<3>> parabola(
+  EstimatorClass<AlphaBetaFilter<3>> parabola(
       m, "AlphaBetaGamma",
       R"(The alpha-beta-gamma filter over [x, vx, ax, y, vy, ay], its gains by a schedule.
 
@@ -261,10 +264,10 @@ ValueError
                            double prior) { return make<3>(gains, noise, prior); }),
                py::arg("gains"), py::kw_only(), py::arg("noise") = py::none(),
                py::arg("prior_accel_std_mps2") = ConstantAcceleration{}.prior_accel_std_mps2);
-  define_face(parabola);
-  parabola.def("__repr__", [](const AnyAlphaBeta<3>& one) {
+  define_copies(parabola);
+  parabola.def("__repr__", [](const PyAlphaBeta<3>& one) {
     return filter_call("AlphaBetaGamma", one)
-        .with("prior_accel_std_mps2", one.motion().prior_accel_std_mps2)
+        .with("prior_accel_std_mps2", one.get().motion().prior_accel_std_mps2)
         .text();
   });
 }

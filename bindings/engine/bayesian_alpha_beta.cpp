@@ -1,14 +1,19 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "any_lines.hpp"
+#include "multimodel.hpp"
 #include "support/call_text.hpp"
-#include "face.hpp"
 
 namespace wakeline::python {
 
+namespace {
+
+using PyBayesian = PyEstimator<BayesianAlphaBeta<>>;
+
+}  // namespace
+
 void define_bayesian_alpha_beta(py::module_& m) {
   const LineWeighing weighing;
-  py::class_<AnyBayesianAlphaBeta> bank(
+  EstimatorClass<BayesianAlphaBeta<>> bank(
       m, "BayesianAlphaBeta", R"(Lines and parabolas through the last plots, weighed by Bayes' rule.
 
 Each member foretells the next plot with a known error: the plot's own, times one plus the member's noise factor. The plot's
@@ -36,23 +41,24 @@ Raises
 ------
 ValueError
     When a parameter makes no sense.)");
-  bank.def(py::init([](int min_plots, int max_plots, bool parabolas, double sojourn_s,
-                       double longest, double acceleration) {
-             return AnyBayesianAlphaBeta({.min_plots = min_plots,
-                                          .max_plots = max_plots,
-                                          .parabolas = parabolas,
-                                          .sojourn_s = sojourn_s,
-                                          .longest_line_probability = longest,
-                                          .acceleration_std_mps2 = acceleration});
-           }),
-           py::kw_only(), py::arg("min_plots") = weighing.min_plots,
-           py::arg("max_plots") = weighing.max_plots, py::arg("parabolas") = weighing.parabolas,
-           py::arg("sojourn_s") = weighing.sojourn_s,
-           py::arg("longest_line_probability") = weighing.longest_line_probability,
-           py::arg("acceleration_std_mps2") = weighing.acceleration_std_mps2);
-  define_face(bank);
-  bank.def("__repr__", [](const AnyBayesianAlphaBeta& estimator) {
-    const LineWeighing& rules = estimator.weighing();
+  bank.def(
+      py::init([](int min_plots, int max_plots, bool parabolas, double sojourn_s, double longest,
+                  double acceleration) {
+        return PyBayesian(BayesianAlphaBeta<>(LineWeighing{.min_plots = min_plots,
+                                                           .max_plots = max_plots,
+                                                           .parabolas = parabolas,
+                                                           .sojourn_s = sojourn_s,
+                                                           .longest_line_probability = longest,
+                                                           .acceleration_std_mps2 = acceleration}));
+      }),
+      py::kw_only(), py::arg("min_plots") = weighing.min_plots,
+      py::arg("max_plots") = weighing.max_plots, py::arg("parabolas") = weighing.parabolas,
+      py::arg("sojourn_s") = weighing.sojourn_s,
+      py::arg("longest_line_probability") = weighing.longest_line_probability,
+      py::arg("acceleration_std_mps2") = weighing.acceleration_std_mps2);
+  define_copies(bank);
+  bank.def("__repr__", [](const PyBayesian& estimator) {
+    const LineWeighing& rules = estimator.get().weighing();
     return CallText("BayesianAlphaBeta")
         .with("min_plots", rules.min_plots)
         .with("max_plots", rules.max_plots)
@@ -64,8 +70,8 @@ ValueError
   });
   bank.def_property_readonly(
       "plots_of_mode",
-      [](const AnyBayesianAlphaBeta& estimator) {
-        const LineWeighing& rules = estimator.weighing();
+      [](const PyBayesian& estimator) {
+        const LineWeighing& rules = estimator.get().weighing();
         py::array_t<int> plots(rules.members());
         for (int mode = 0; mode < rules.members(); ++mode)
           plots.mutable_at(mode) = rules.plots_of(mode);

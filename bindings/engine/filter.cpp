@@ -2,80 +2,36 @@
 // SPDX-License-Identifier: MIT
 #include "wakeline/filter/rts_smoother.hpp"
 
-#include "support/call_text.hpp"
 #include "face.hpp"
+#include "support/call_text.hpp"
 
 namespace wakeline::python {
-
-std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs, int states) {
-  const auto one = [&](const py::handle& item) {
-    if (!py::isinstance<PyGaussian>(item))
-      throw py::type_error("start must be a Gaussian or a sequence of them, got " +
-                           py::str(py::type::of(item).attr("__name__")).cast<std::string>());
-    return to_start("start", item.cast<const PyGaussian&>(), states);
-  };
-  if (!py::isinstance<py::sequence>(start)) return {one(start)};
-  std::vector<AnyBelief> beliefs;
-  for (const py::handle item : start) beliefs.push_back(one(item));
-  if (beliefs.size() != runs)
-    throw py::value_error("start must be one Gaussian or one per run (" + std::to_string(runs) +
-                          "), got " + std::to_string(beliefs.size()));
-  return beliefs;
-}
-
-std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans) {
-  const DoubleArray array = dt_s.is_none() ? DoubleArray() : DoubleArray::ensure(dt_s);
-  if (!array || dt_s.is_none())
-    throw py::type_error("dt_s must be a number or an array, got " +
-                         py::repr(dt_s).cast<std::string>());
-  if (array.ndim() == 0) return std::vector<double>(scans, *array.data());
-  require_shape(array.ndim() == 1 && array.shape(0) == static_cast<py::ssize_t>(scans), "dt_s",
-                "() or " + shape_text({static_cast<py::ssize_t>(scans)}), array);
-  return {array.data(), array.data() + scans};
-}
-
-const double* per_scan(const char* name, const DoubleArray& array, std::size_t scans) {
-  const auto rows = static_cast<py::ssize_t>(scans);
-  require_shape(array.ndim() == 2 && array.shape(0) == rows && array.shape(1) == 2, name,
-                shape_text({rows, 2}), array);
-  return array.data();
-}
 
 namespace {
 
 // One Python class a filter, all over the same run-time composed filter.
-struct PyKalman : AnyFilter {
-  template <class Motion>
-  explicit PyKalman(const Motion& motion) : AnyFilter(Ekf<Motion>(motion), true) {}
-};
-struct PyEkf : AnyFilter {
-  template <class Motion>
-  explicit PyEkf(const Motion& motion) : AnyFilter(Ekf<Motion>(motion)) {}
-};
-struct PyUkf : AnyFilter {
-  template <class Motion>
-  PyUkf(const Motion& motion, double alpha, double beta, double kappa)
-      : AnyFilter(Ukf<Motion>(motion, Unscented{alpha, beta, kappa})) {}
-};
-struct PySquareRootUkf : AnyFilter {
-  template <class Motion>
-  PySquareRootUkf(const Motion& motion, double alpha, double beta, double kappa)
-      : AnyFilter(SquareRootUkf<Motion>(motion, Unscented{alpha, beta, kappa})) {}
-};
+struct PyKalman : AnyFilter {};
+struct PyEkf : AnyFilter {};
+struct PyUkf : AnyFilter {};
+struct PySquareRootUkf : AnyFilter {};
 
-template <class Filter, class... Motions>
-void define_plain(py::class_<Filter, AnyFilter>& filter) {
+/// A filter over some of the motion models, without parameters of its own.
+template <class SomeMotion, class PyFilter, class Make>
+void define_plain(py::class_<PyFilter, AnyFilter>& filter, const Make& make) {
   define_copies(filter);
-  (filter.def(py::init<const Motions&>(), py::arg("motion")), ...);
+  filter.def(py::init([make](const SomeMotion& motion) { return PyFilter{make(motion)}; }),
+             py::arg("motion"));
 }
 
-template <class Filter, class... Motions>
-void define_unscented(py::class_<Filter, AnyFilter>& filter) {
+/// One with the parameters of the unscented transform.
+template <class PyFilter, class Make>
+void define_unscented(py::class_<PyFilter, AnyFilter>& filter, const Make& make) {
   define_copies(filter);
-  (filter.def(py::init<const Motions&, double, double, double>(), py::arg("motion"), py::kw_only(),
-              py::arg("alpha") = Unscented{}.alpha, py::arg("beta") = Unscented{}.beta,
-              py::arg("kappa") = Unscented{}.kappa),
-   ...);
+  filter.def(py::init([make](const AnyMotion& motion, double alpha, double beta, double kappa) {
+               return PyFilter{make(motion, Unscented{alpha, beta, kappa})};
+             }),
+             py::arg("motion"), py::kw_only(), py::arg("alpha") = Unscented{}.alpha,
+             py::arg("beta") = Unscented{}.beta, py::arg("kappa") = Unscented{}.kappa);
 }
 
 template <class Motion>
@@ -160,56 +116,12 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
   return py::make_tuple(smooth_mean, smooth_covariance);
 }
 
-/// "<RunResult: 500 runs of 250 scans, 4 states, 3 models>".
-std::string result_text(const RunResult& result) {
-  const auto extent = [](const py::array& array, int from_the_end) {
-    return array.shape(array.ndim() - from_the_end);
-  };
-  std::string text = "<RunResult: ";
-  if (result.mean.ndim() == 3) text += many(result.mean.shape(0), "run") + " of ";
-  text += many(extent(result.mean, 2), "scan") + ", " + many(extent(result.mean, 1), "state");
-  if (!result.mode_probability.is_none())
-    text += ", " + many(extent(py::array(result.mode_probability), 1), "model");
-  return text + ">";
-}
-
 }  // namespace
 
 void define_filter(py::module_& parent) {
   py::module_ m = parent.def_submodule("filter", "Estimators with one motion model.");
 
-  py::class_<RunResult>(
-      m, "RunResult",
-      "What `run` returns: arrays over scans, and over runs where there are several.")
-      .def_readonly("mean", &RunResult::mean, "(..., T, N)")
-      .def_readonly("covariance", &RunResult::covariance, "(..., T, N, N)")
-      .def_readonly("mode_probability", &RunResult::mode_probability,
-                    "(..., T, K), None for a single filter")
-      .def_readonly("turn_rate_rad_s", &RunResult::turn_rate_rad_s,
-                    "(..., T, K), of the models in each scan, NaN for one at rest; None where they "
-                    "do not change")
-      .def_readonly("innovation", &RunResult::innovation,
-                    "(..., T, M), measured minus predicted; NaN where there was no update")
-      .def_readonly("nis", &RunResult::nis, "(..., T), NaN where there was no update")
-      .def_readonly("log_likelihood", &RunResult::log_likelihood, "(..., T)")
-      .def_readonly("status", &RunResult::status, "(..., T) values of Status")
-      .def(py::pickle(
-          [](const RunResult& r) {
-            return py::make_tuple(r.mean, r.covariance, r.mode_probability, r.turn_rate_rad_s,
-                                  r.innovation, r.nis, r.log_likelihood, r.status);
-          },
-          [](const py::tuple& fields) {
-            using Array = py::array_t<double>;
-            return RunResult{fields[0].cast<Array>(),
-                             fields[1].cast<Array>(),
-                             fields[2],
-                             fields[3],
-                             fields[4].cast<Array>(),
-                             fields[5].cast<Array>(),
-                             fields[6].cast<Array>(),
-                             fields[7].cast<py::array_t<std::uint8_t>>()};
-          }))
-      .def("__repr__", &result_text);
+  define_run_result(m);
 
   py::class_<AnyFilter> filter(m, "Filter", "What Kalman, Ekf, Ukf and SquareRootUkf share.");
   define_face(filter);
@@ -240,20 +152,25 @@ FilterError
 
   py::class_<PyKalman, AnyFilter> kalman(
       m, "Kalman", "The Kalman filter: linear motion and linear sensors, nothing approximated.");
-  define_plain<PyKalman, ConstantVelocity, ConstantAcceleration, CoordinatedTurn, Singer>(kalman);
+  define_plain<AnyLinearMotion>(kalman, &any_kalman);
   py::class_<PyEkf, AnyFilter> ekf(
       m, "Ekf", "The extended Kalman filter: motion and sensor linearised about the mean.");
-  define_plain<PyEkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn, CoordinatedTurnRate,
-               Singer, WanderingCourse>(ekf);
+  define_plain<AnyMotion>(ekf, [](const AnyMotion& motion) { return any_filter<Ekf>(motion); });
   py::class_<PyUkf, AnyFilter> ukf(
       m, "Ukf", "The unscented Kalman filter, with the scaled transform's alpha, beta and kappa.");
-  define_unscented<PyUkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn,
-                   CoordinatedTurnRate, Singer, WanderingCourse>(ukf);
+  define_unscented(ukf, [](const AnyMotion& motion, const Unscented& unscented) {
+    return any_filter<Ukf>(motion, unscented);
+  });
   py::class_<PySquareRootUkf, AnyFilter> square_root(
       m, "SquareRootUkf",
       "The unscented Kalman filter on a square root of the covariance, for long runs.");
-  define_unscented<PySquareRootUkf, ConstantVelocity, ConstantAcceleration, CoordinatedTurn,
-                   CoordinatedTurnRate, Singer, WanderingCourse>(square_root);
+  define_unscented(square_root, [](const AnyMotion& motion, const Unscented& unscented) {
+    return any_filter<SquareRootUkf>(motion, unscented);
+  });
+
+  py::class_<AnyEstimator> estimator(m, "Estimator",
+                                     "What estimators of one or several models share.");
+  define_face(estimator);
 
   m.def(
       "one_point",

@@ -4,13 +4,15 @@
 #include <limits>
 #include <utility>
 
-#include "any_lines.hpp"
+#include "multimodel.hpp"
 #include "support/call_text.hpp"
-#include "face.hpp"
 #include "support/option.hpp"
 
 namespace wakeline::python {
 namespace {
+
+using Fuzzy = FuzzyAlphaBeta<>;
+using PyFuzzy = PyEstimator<Fuzzy>;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -53,10 +55,9 @@ void fill_row(py::array_t<double>& array, std::size_t row, std::size_t columns,
   std::copy(values.begin(), values.end(), array.mutable_data() + row * columns);
 }
 
-template <class Sensor>
-void trace_scan(AnyFuzzyAlphaBeta& estimator, const Sensor& sensor, const double* z, double dt_s,
+template <int kM>
+void trace_scan(Fuzzy& estimator, const AnySensorOf<kM>& sensor, const double* z, double dt_s,
                 std::size_t row, FuzzyTrace& trace) {
-  constexpr int kM = Sensor::kMeasurements;
   const Vec<double, kM> reading = Eigen::Map<const Vec<double, kM>>(z + row * kM);
   const auto plots = static_cast<std::size_t>(estimator.criterion().max_plots);
   const bool moved = estimator.predict(dt_s) == Status::kOk;
@@ -73,23 +74,22 @@ void trace_scan(AnyFuzzyAlphaBeta& estimator, const Sensor& sensor, const double
   trace.quality.mutable_data()[row] = estimator.quality();
 }
 
-FuzzyTrace trace_runs(AnyFuzzyAlphaBeta estimator, const DoubleArray& z, const py::object& dt_s,
+FuzzyTrace trace_runs(const PyFuzzy& prototype, const DoubleArray& z, const py::object& dt_s,
                       const py::object& sensor, const py::object& start) {
-  return visit_sensor(sensor, [&]<class Sensor>(const Sensor& given) {
-    const Sensor model = given;  // as another thread may change it meanwhile
-    constexpr int kM = Sensor::kMeasurements;
+  Fuzzy estimator = prototype.get();
+  return visit_numbers(to_sensor(sensor), [&]<int kM>(const AnySensorOf<kM>& model) {
     const bool many = z.ndim() == 3;
     require_shape((z.ndim() == 2 || many) && z.shape(z.ndim() - 1) == kM, "z",
                   "(T, " + std::to_string(kM) + ") or (R, T, " + std::to_string(kM) + ")", z);
     const auto runs = static_cast<std::size_t>(many ? z.shape(0) : 1);
     const auto scans = static_cast<std::size_t>(z.shape(many ? 1 : 0));
     const std::vector<double> steps = parse_steps(dt_s, scans);
-    const std::vector<AnyBelief> starts = parse_starts(start, runs, 4);
+    const std::vector<AnyBelief> starts = parse_starts(start, runs, StateLayout::kKinematics);
     FuzzyTrace trace = empty_trace(z, estimator.criterion().max_plots);
     {
       const py::gil_scoped_release release;
       for (std::size_t r = 0; r < runs; ++r) {
-        require_ok(estimator.start(starts[starts.size() == 1 ? 0 : r]), "start");
+        require_ok(estimator.start(kinematics_of(starts[starts.size() == 1 ? 0 : r])), "start");
         for (std::size_t k = 0; k < scans; ++k)
           trace_scan(estimator, model, z.data(), steps[k], r * scans + k, trace);
       }
@@ -118,7 +118,7 @@ void define_fuzzy_alpha_beta(py::module_& m) {
       .def_readonly("prediction_m", &FuzzyTrace::prediction_m, "(..., T, 2) north and east")
       .def_readonly("innovation_m", &FuzzyTrace::innovation_m, "(..., T, 2) north and east");
 
-  py::class_<AnyFuzzyAlphaBeta> fuzzy(
+  EstimatorClass<Fuzzy> fuzzy(
       m, "FuzzyAlphaBeta",
       R"(The line through the last plots, as many as a fuzzy criterion finds good: many on a straight, few in a turn.
 
@@ -157,22 +157,22 @@ References
 V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuzzy criterion of maneuver detection.)");
   fuzzy.def(py::init([](int max_plots, double steepness, double threshold, double clip,
                         const std::string& t_norm, bool hold, double acceleration) {
-              return AnyFuzzyAlphaBeta({.max_plots = max_plots,
-                                        .steepness = steepness,
-                                        .threshold = threshold,
-                                        .clip = clip,
-                                        .t_norm = to_option("t_norm", t_norm, kTNorms),
-                                        .hold = hold,
-                                        .acceleration_std_mps2 = acceleration});
+              return PyFuzzy(Fuzzy(FuzzyCriterion{.max_plots = max_plots,
+                                                  .steepness = steepness,
+                                                  .threshold = threshold,
+                                                  .clip = clip,
+                                                  .t_norm = to_option("t_norm", t_norm, kTNorms),
+                                                  .hold = hold,
+                                                  .acceleration_std_mps2 = acceleration}));
             }),
             py::kw_only(), py::arg("max_plots") = criterion.max_plots,
             py::arg("steepness") = criterion.steepness, py::arg("threshold") = criterion.threshold,
             py::arg("clip") = criterion.clip, py::arg("t_norm") = "product",
             py::arg("hold") = criterion.hold,
             py::arg("acceleration_std_mps2") = criterion.acceleration_std_mps2);
-  define_face(fuzzy);
-  fuzzy.def("__repr__", [](const AnyFuzzyAlphaBeta& estimator) {
-    const FuzzyCriterion& rules = estimator.criterion();
+  define_copies(fuzzy);
+  fuzzy.def("__repr__", [](const PyFuzzy& estimator) {
+    const FuzzyCriterion& rules = estimator.get().criterion();
     return CallText("FuzzyAlphaBeta")
         .with("max_plots", rules.max_plots)
         .with("steepness", rules.steepness)
@@ -184,26 +184,26 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
         .text();
   });
   fuzzy
-      .def_property_readonly("quality", &AnyFuzzyAlphaBeta::quality,
+      .def_property_readonly("quality", of_kind(&Fuzzy::quality),
                              "Output of the machine at the last plot, before it is held and "
                              "rounded; NaN without one.")
-      .def_property_readonly("chosen", &AnyFuzzyAlphaBeta::chosen, "Plots of the line chosen.")
-      .def_property_readonly("sigma_hat_m", &AnyFuzzyAlphaBeta::sigma_hat_m,
+      .def_property_readonly("chosen", of_kind(&Fuzzy::chosen), "Plots of the line chosen.")
+      .def_property_readonly("sigma_hat_m", of_kind(&Fuzzy::sigma_hat_m),
                              "Mean residual of the shortest line since the start; NaN before the "
                              "first one.")
       .def_property_readonly(
           "residual_ratios",
-          [](const AnyFuzzyAlphaBeta& estimator) { return to_array(estimator.residual_ratios()); },
+          [](const PyFuzzy& estimator) { return to_array(estimator.get().residual_ratios()); },
           "Of each line that was judged at the last plot: its residual over `sigma_hat_m`, "
           "clipped.")
       .def_property_readonly(
           "rule_strengths",
-          [](const AnyFuzzyAlphaBeta& estimator) { return to_array(estimator.rule_strengths()); },
+          [](const PyFuzzy& estimator) { return to_array(estimator.get().rule_strengths()); },
           "Of each rule of that judgement.")
       .def_property_readonly(
           "plots_of_mode",
-          [](const AnyFuzzyAlphaBeta& estimator) {
-            py::array_t<int> plots(estimator.criterion().max_plots - 1);
+          [](const PyFuzzy& estimator) {
+            py::array_t<int> plots(estimator.get().criterion().max_plots - 1);
             for (py::ssize_t k = 0; k < plots.size(); ++k)
               plots.mutable_at(k) = static_cast<int>(k) + 2;
             return plots;
@@ -211,19 +211,19 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
           "(K,) number of plots that each line goes through.")
       .def(
           "judge",
-          [](const AnyFuzzyAlphaBeta& estimator, const DoubleArray& ratios) {
-            const auto most = static_cast<py::ssize_t>(estimator.criterion().max_plots - 1);
+          [](const PyFuzzy& estimator, const DoubleArray& ratios) {
+            const auto most = static_cast<py::ssize_t>(estimator.get().criterion().max_plots - 1);
             require_shape(ratios.ndim() == 1 && ratios.size() >= 1 && ratios.size() <= most,
                           "ratios", "(n,), n from 1 to " + std::to_string(most), ratios);
             const auto lines = static_cast<std::size_t>(ratios.size());
             std::vector<double> clipped(ratios.data(), ratios.data() + lines);
             for (double& ratio : clipped) {
               require(ratio >= 0.0, "ratios", "0 or more", ratio);
-              ratio = std::min(ratio, estimator.criterion().clip);
+              ratio = std::min(ratio, estimator.get().criterion().clip);
             }
             std::vector<double> strengths(lines + 1);
             const double quality =
-                estimator.criterion().judge(clipped, {strengths.data(), lines + 1});
+                estimator.get().criterion().judge(clipped, {strengths.data(), lines + 1});
             return std::pair<double, py::array_t<double>>(quality, to_array(strengths));
           },
           py::arg("ratios"),

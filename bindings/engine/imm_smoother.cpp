@@ -1,111 +1,50 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "imm_smoother.hpp"
-
-#include <array>
-#include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "run.hpp"
+#include "multimodel.hpp"
+#include "thread_share.hpp"
 #include "wakeline/batch/run_smoothed.hpp"
+#include "wakeline/catalog/imm_smoother.hpp"
 
 namespace wakeline::python {
-
 namespace {
 
-/// Calls `function` with a belief that knows its components at compile time.
-template <class Function>
-auto visit_layout(const AnyBelief& any, const Function& function) noexcept {
-  const auto with = [&]<class Motion>(const Motion&) {
-    StateBelief<Motion::kComponents, double> belief;
-    belief = Gaussian<kStatesOf<Motion>>{any.mean, any.covariance};
-    return function(belief);
-  };
-  switch (any.layout) {
-    case StateLayout::kKinematics:
-      return with(ConstantVelocity{});
-    case StateLayout::kTurn:
-      return with(CoordinatedTurnRate{});
-    default:
-      return with(ConstantAcceleration{});
-  }
-}
-
-template <int N>
-AnyBelief to_any(StateLayout layout, const Gaussian<N>& belief) noexcept {
-  return {layout, belief.mean, belief.covariance};
-}
-
-}  // namespace
-
-/// As of Gaussians; all three are of one layout.
-Revised<AnyBelief> revised(const AnyBelief& prior, const AnyBelief& before,
-                           const AnyBelief& after) noexcept {
-  return visit_layout(prior, [&]<int N>(const Gaussian<N>& belief) -> Revised<AnyBelief> {
-    const auto result = wakeline::revised(belief, Gaussian<N>{before.mean, before.covariance},
-                                          Gaussian<N>{after.mean, after.covariance});
-    return {result.status, to_any(prior.layout, result.belief), result.log_evidence};
-  });
-}
-
-/// As of beliefs whose components are known at compile time.
-AnyBelief carried_over(const AnyBelief& own, const AnyBelief& part) noexcept {
-  if (own.layout == part.layout) return part;
-  return visit_layout(own, [&](const auto& to) {
-    return visit_layout(part, [&](const auto& from) {
-      return to_any(own.layout, wakeline::carried_over(to, from));
-    });
-  });
-}
-
-/// As of the filter itself.
-template <class... Known>
-Status smooth_pair(const AnyFilter& filter, AnyBelief& belief, const AnyBelief& later, double dt_s,
-                   const Known&... acceleration_mps2) noexcept {
-  return std::visit(
-      [&]<class Filter>(const Filter& one) {
-        StateBelief<Filter::kComponents, double> fixed;
-        fixed = Gaussian<Filter::kStates>{belief.mean, belief.covariance};
-        const Status status = wakeline::smooth_pair(
-            one, fixed, Gaussian<Filter::kStates>{later.mean, later.covariance}, dt_s,
-            acceleration_mps2...);
-        belief.mean = fixed.mean;
-        belief.covariance = fixed.covariance;
-        return status;
-      },
-      filter.variant());
-}
-
-namespace {
-
-/// All runs of an Imm, smoothed, each by itself. Throws where one cannot be.
-struct RunSmoothed {
-  template <class Sensor>
-  void operator()(const AnyImm& prototype, const Sensor& sensor, const RunInput& in,
-                  const std::vector<AnyBelief>& starts, const RunOutput& out) const {
-    std::vector<Status> status(in.runs);
-    const ThreadShare threads(in.runs * in.scans);
+/// All recordings of an Imm, smoothed, each by itself. Throws where one cannot be.
+int smooth_all(const AnyImm& prototype, const Recordings& recordings) {
+  const RunInput& in = recordings.in;
+  std::vector<Status> status(in.runs);
+  const ThreadShare threads(in.runs * in.scans);
+  visit_numbers(recordings.sensor, [&](const auto& sensor) {
     Threads{threads.count()}(in.runs, [&](std::size_t run) noexcept {
       AnyImm imm = prototype;
-      (void)imm.start(starts[starts.size() == 1 ? 0 : run]);
-      status[run] = run_smoothed(imm, sensor, in, run, out);
+      (void)imm.start(recordings.start(run));
+      status[run] = run_smoothed(imm, sensor, in, run, recordings.out);
     });
-    for (std::size_t run = 0; run < in.runs; ++run)
-      if (status[run] != Status::kOk)
-        throw FilterError("smooth of run " + std::to_string(run) + ": " + to_string(status[run]));
-  }
-};
+  });
+  for (std::size_t run = 0; run < in.runs; ++run)
+    if (status[run] != Status::kOk)
+      throw FilterError("smooth of run " + std::to_string(run) + ": " + to_string(status[run]));
+  return 1;
+}
+
+RunResult smooth(const PyEstimator<AnyImm>& estimator, const RunArguments& arguments) {
+  const AnySensor sensor = to_sensor(arguments.sensor);
+  require_linear(estimator, sensor);
+  const AnyImm prototype = estimator.get();  // as another thread may change it meanwhile
+  return run_recordings(run_layout(estimator), arguments, sensor,
+                        [&](const Recordings& recordings) {
+                          require_starts(prototype, recordings.starts);
+                          return smooth_all(prototype, recordings);
+                        });
+}
 
 }  // namespace
 
-void define_imm_smoother(py::class_<AnyImm>& imm) {
-  imm.def(
-      "smooth", &run<AnyImm, RunSmoothed>, py::arg("z"), py::arg("dt_s"), py::arg("sensor"),
-      py::arg("start"), py::arg("own_position_m") = py::none(),
-      py::arg("own_velocity_mps") = py::none(), py::arg("acceleration_mps2") = py::none(),
-      py::arg("gate") = py::none(),
+void define_imm_smoother(EstimatorClass<AnyImm>& imm) {
+  define_run(
+      imm, "smooth", &smooth,
       R"(Runs whole recordings and smooths them: what each scan tells knows the scans after it, too.
 
 Each pair of modes of two scans is a way of its own: carried back by the Rauch-Tung-Striebel

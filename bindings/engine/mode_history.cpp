@@ -1,68 +1,18 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "mode_history.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
+#include "multimodel.hpp"
 #include "support/call_text.hpp"
-#include "estimators.hpp"
-#include "face.hpp"
 #include "turn_grid.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 
 namespace wakeline::python {
 namespace {
 
-AnyModeHistory::Variant over_filter(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
-                                    const std::optional<TurnRateGrid::Rates>& grid_std_rad_s,
-                                    const Chain& chain, const AnyFilter& filter) {
-  return std::visit(
-      [&]<class Filter>(const Filter& prototype) -> AnyModeHistory::Variant {
-        if constexpr (std::is_constructible_v<AnyModeHistory::Variant, ModeHistory<Filter>>) {
-          if (!grid_std_rad_s) return ModeHistory<Filter>(tree, grid_rad_s, chain, prototype);
-          if constexpr (kLearnsTurnRate<Filter>)
-            return ModeHistory<Filter>(tree, grid_rad_s, *grid_std_rad_s, chain, prototype);
-          else
-            throw py::value_error(
-                "grid_std_rad_s is for a filter over CoordinatedTurnRate, which learns its turn "
-                "rate; this one knows it");
-        } else {
-          throw py::value_error(
-              "filter must be one over CoordinatedTurn, whose turn rate is known, or over "
-              "CoordinatedTurnRate, which learns it");
-        }
-      },
-      filter.variant());
-}
-
-AnyModeHistory::Variant over_filters(const HistoryTree& tree, const Chain& chain,
-                                     const std::vector<AnyFilter>& filters) {
-  if (filters.empty() || filters.size() > kMaxModes)
-    throw py::value_error("filters must be 1 to " + std::to_string(kMaxModes) + " filters, got " +
-                          std::to_string(filters.size()));
-  return std::visit(
-      [&]<class Filter>(const Filter&) -> AnyModeHistory::Variant {
-        if constexpr (std::is_constructible_v<AnyModeHistory::Variant, ModeHistory<Filter>>) {
-          std::vector<Filter> bank;
-          for (const AnyFilter& any : filters) {
-            const auto* const filter = std::get_if<Filter>(&any.variant());
-            if (filter == nullptr || any.linear() != filters.front().linear())
-              throw py::value_error("filters must be of one kind over one motion model, got " +
-                                    text_of(filters.front()) + " and " + text_of(any));
-            bank.push_back(*filter);
-          }
-          return ModeHistory<Filter>(tree, chain,
-                                     UniformBank<Filter>(std::span<const Filter>(bank)));
-        } else {
-          throw py::value_error(
-              "filters must be over CoordinatedTurn or CoordinatedTurnRate, got " +
-              text_of(filters.front()));
-        }
-      },
-      filters.front().variant());
-}
+using PyModeHistory = PyEstimator<AnyModeHistory>;
 
 /// One number for each turn rate, where there are any.
 std::optional<TurnRateGrid::Rates> for_each_rate(const char* name,
@@ -174,7 +124,8 @@ std::string text_over_grid(const AnyModeHistory& any, const TurnRateGrid& grid_r
       any.variant());
 }
 
-std::string history_text(const AnyModeHistory& any) {
+std::string history_text(const PyModeHistory& estimator) {
+  const AnyModeHistory& any = estimator.get();
   return any.grid_rad_s() ? text_over_grid(any, *any.grid_rad_s()) : text_over_filters(any);
 }
 
@@ -192,17 +143,6 @@ HistoryTree tree_of(int max_hypotheses, int max_branches, double min_segment_s,
 
 }  // namespace
 
-AnyModeHistory::AnyModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
-                               const Chain& chain, const AnyFilter& filter,
-                               const std::optional<TurnRateGrid::Rates>& grid_std_rad_s)
-    : history_(over_filter(tree, grid_rad_s, grid_std_rad_s, chain, filter)),
-      grid_rad_s_(grid_rad_s),
-      linear_(filter.linear()) {}
-
-AnyModeHistory::AnyModeHistory(const HistoryTree& tree, const Chain& chain,
-                               const std::vector<AnyFilter>& filters)
-    : history_(over_filters(tree, chain, filters)), linear_(filters.front().linear()) {}
-
 void define_mode_history(py::module_& m) {
   const HistoryTree tree;
   const TurnHabits habits;
@@ -213,8 +153,8 @@ void define_mode_history(py::module_& m) {
       py::arg("sibling_distance") = tree.sibling_distance,
       py::arg("switch_time_spread") = tree.switch_time_spread,
       py::arg("negligible_probability") = tree.negligible_probability);
-  py::class_<AnyModeHistory> history(m, "ModeHistory",
-                                     R"(A tree of histories of turn rates, not mixed.
+  EstimatorClass<AnyModeHistory> history(m, "ModeHistory",
+                                         R"(A tree of histories of turn rates, not mixed.
 
 Each hypothesis is one filter with its own past. A prediction lets every hypothesis keep its turn rate or take another one; an
 update weighs the hypotheses by their likelihood, joins those that have become alike and keeps the likeliest. Has the face of
@@ -283,12 +223,12 @@ G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait,
               const TurnRateGrid::Rates weights =
                   for_each_rate("grid_weight", weight, grid)
                       .value_or(TurnRateGrid::Rates::Ones(grid.size()));
-              return with_initial(
+              return PyModeHistory(with_initial(
                   AnyModeHistory(tree_of(max_hypotheses, max_branches, min_segment, merge_distance,
                                          sibling_distance, spread, negligible),
                                  grid, chain ? *chain : turning_chain(grid, habits, weights),
                                  filter, for_each_rate("grid_std_rad_s", deviation, grid)),
-                  initial);
+                  initial));
             }),
             py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
             py::arg("grid_std_rad_s") = py::none(), py::arg("grid_weight") = py::none(),
@@ -303,11 +243,11 @@ G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait,
                const std::optional<DoubleArray>& initial, int max_hypotheses, int max_branches,
                double min_segment, double merge_distance, double sibling_distance, double spread,
                double negligible) {
-              return with_initial(
+              return PyModeHistory(with_initial(
                   AnyModeHistory(tree_of(max_hypotheses, max_branches, min_segment, merge_distance,
                                          sibling_distance, spread, negligible),
                                  chain, to_filters(filters)),
-                  initial);
+                  initial));
             },
             py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none(),
             py::kw_only(), of_the_tree...,
@@ -344,9 +284,10 @@ ValueError
           throw py::value_error("order " + std::to_string(order) + " over " +
                                 std::to_string(grid.size()) +
                                 " turn rates needs more than 256 filters in a scan");
-        return with_initial(AnyModeHistory(HistoryTree::pseudo_bayes(order, grid.size()), grid,
-                                           chain_of(chain, stay, grid.size()), filter),
-                            initial);
+        return PyModeHistory(
+            with_initial(AnyModeHistory(HistoryTree::pseudo_bayes(order, grid.size()), grid,
+                                        chain_of(chain, stay, grid.size()), filter),
+                         initial));
       },
       py::arg("order"), py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
       py::arg("stay_probability") = 0.9, py::arg("chain") = py::none(),
@@ -372,16 +313,16 @@ ValueError
 References
 ----------
 Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 11.6.3-11.6.5.)");
-  define_face(history);
+  define_copies(history);
   history.def("__repr__", &history_text);
   history.def(
       "turn_rates_rad_s",
-      [](const AnyModeHistory& one) {
+      [](const PyModeHistory& one) {
         return std::visit([](const auto& history) { return to_array(turn_rates(history.bank())); },
-                          one.variant());
+                          one.get().variant());
       },
       "(K,) turn rates of the modes, positive to starboard. Those learnt are in the state.");
-  history.def_property_readonly("hypothesis_count", &AnyModeHistory::hypotheses,
+  history.def_property_readonly("hypothesis_count", of_kind(&AnyModeHistory::hypotheses),
                                 "How many there are at present.");
 }
 

@@ -6,12 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "any_lines.hpp"
-#include "any_turn_grids.hpp"
-#include "support/call_text.hpp"
 #include "face.hpp"
-#include "imm_smoother.hpp"
-#include "mode_history.hpp"
+#include "multimodel.hpp"
+#include "support/call_text.hpp"
 #include "support/option.hpp"
 #include "turn_grid.hpp"
 
@@ -53,6 +50,8 @@ std::string chain_text(const Chain& chain) {
   return CallText("ModeChain.from_generator").with("generator_per_s", *generator_per_s).text();
 }
 
+using PyImm = PyEstimator<AnyImm>;
+
 /// The call that makes an estimator over a grid of turn rates, up to the rules of the grid.
 CallText grid_call(const char* name, const AnyImm& imm) {
   return CallText(name)
@@ -61,10 +60,10 @@ CallText grid_call(const char* name, const AnyImm& imm) {
       .with("initial_mode_probability", imm.initial_mode_probability());
 }
 
-std::string imm_text(const AnyImm& imm) {
+std::string imm_text(const PyImm& estimator) {
+  const AnyImm& imm = estimator.get();
   std::vector<AnyFilter> filters;
-  for (int k = 0; k < imm.bank().size(); ++k)
-    filters.push_back(imm.bank().filter(static_cast<std::size_t>(k)));
+  for (int k = 0; k < imm.bank().size(); ++k) filters.push_back(imm.bank().filter(k));
   return CallText("Imm")
       .with("filters", filters)
       .with("chain", imm.chain())
@@ -73,7 +72,8 @@ std::string imm_text(const AnyImm& imm) {
 }
 
 /// Turn rates of the models, none where the rate of one is not known.
-std::optional<py::array_t<double>> known_turn_rates(const AnyImm& imm) {
+std::optional<py::array_t<double>> known_turn_rates(const PyImm& estimator) {
+  const AnyImm& imm = estimator.get();
   std::vector<double> rates;
   for (int k = 0; k < imm.bank().size(); ++k)
     std::visit(
@@ -83,12 +83,13 @@ std::optional<py::array_t<double>> known_turn_rates(const AnyImm& imm) {
           else if constexpr (requires { filter.motion().turn_rate_rad_s; })
             rates.push_back(filter.motion().turn_rate_rad_s);
         },
-        imm.bank().filter(static_cast<std::size_t>(k)).variant());
+        imm.bank().filter(k).variant());
   if (rates.size() != static_cast<std::size_t>(imm.bank().size())) return std::nullopt;
   return py::array_t<double>(static_cast<py::ssize_t>(rates.size()), rates.data());
 }
 
-std::string adaptive_grid_text(const AnyAdaptiveGridImm& imm) {
+std::string adaptive_grid_text(const PyEstimator<AnyAdaptiveGridImm>& estimator) {
+  const AnyAdaptiveGridImm& imm = estimator.get();
   const AdaptiveGrid& grid = imm.grid();
   const AdaptiveGrid::Rates initial = grid.initial();
   return grid_call("AdaptiveGridImm", imm)
@@ -104,7 +105,8 @@ std::string adaptive_grid_text(const AnyAdaptiveGridImm& imm) {
       .text();
 }
 
-std::string switching_grid_text(const AnySwitchingGridImm& imm) {
+std::string switching_grid_text(const PyEstimator<AnySwitchingGridImm>& estimator) {
+  const AnySwitchingGridImm& imm = estimator.get();
   const SwitchingGrid& grid = imm.grid();
   return grid_call("SwitchingGridImm", imm)
       .with("grid_rad_s", grid.grid_rad_s.rates_rad_s())
@@ -115,7 +117,8 @@ std::string switching_grid_text(const AnySwitchingGridImm& imm) {
       .text();
 }
 
-std::string likely_model_set_text(const AnyLikelyModelSetImm& imm) {
+std::string likely_model_set_text(const PyEstimator<AnyLikelyModelSetImm>& estimator) {
+  const AnyLikelyModelSetImm& imm = estimator.get();
   const LikelyModelSet& set = imm.grid();
   return grid_call("LikelyModelSetImm", imm)
       .with("grid_rad_s", set.grid_rad_s.rates_rad_s())
@@ -124,8 +127,8 @@ std::string likely_model_set_text(const AnyLikelyModelSetImm& imm) {
       .text();
 }
 
-AnyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
-                const std::optional<DoubleArray>& initial) {
+PyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
+               const std::optional<DoubleArray>& initial) {
   AnyImm imm(chain, AnyFilterBank(filters));
   if (initial)
     imm.set_initial_mode_probability(
@@ -135,8 +138,8 @@ AnyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
 
 void define_adaptive_grid(py::module_& m) {
   const AdaptiveGrid grid;
-  py::class_<AnyAdaptiveGridImm> adaptive(m, "AdaptiveGridImm",
-                                          R"(Three turn models whose rates move with the target.
+  EstimatorClass<AnyAdaptiveGridImm> adaptive(m, "AdaptiveGridImm",
+                                              R"(Three turn models whose rates move with the target.
 
 The turn rates move before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
 
@@ -200,8 +203,8 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
           const Eigen::VectorXd rates = to_vector("initial_turn_rates_rad_s", *initial_rates, 3);
           grid.initial_turn_rates_rad_s = {rates[0], rates[1], rates[2]};
         }
-        return with_initial(
-            AnyAdaptiveGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial);
+        return PyEstimator<AnyAdaptiveGridImm>(with_initial(
+            AnyAdaptiveGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial));
       }),
       py::arg("filter"), py::kw_only(), py::arg("max_turn_rate_rad_s") = grid.max_turn_rate_rad_s,
       py::arg("initial_turn_rates_rad_s") = py::none(),
@@ -213,13 +216,15 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
       py::arg("unlikely_threshold") = grid.unlikely_threshold,
       py::arg("likely_threshold") = grid.likely_threshold, py::arg("stay_probability") = 0.9,
       py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none());
-  define_face(adaptive);
+  define_copies(adaptive);
+  define_filter_estimate(adaptive);
+  define_turn_rates(adaptive);
   adaptive.def("__repr__", &adaptive_grid_text);
 }
 
 void define_switching_grid(py::module_& m) {
   const SwitchingGrid grid;
-  py::class_<AnySwitchingGridImm> switching(
+  EstimatorClass<AnySwitchingGridImm> switching(
       m, "SwitchingGridImm", R"(Three turn models in a window on a fixed grid of turn rates.
 
 The window moves before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
@@ -266,24 +271,27 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
                                  .rule = to_option("rule", rule, kRules),
                                  .carry = to_option("carry", carry, kCarries),
                                  .initial_centre = centre};
-        return with_initial(
-            AnySwitchingGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial);
+        return PyEstimator<AnySwitchingGridImm>(with_initial(
+            AnySwitchingGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial));
       }),
       py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
       py::arg("threshold") = grid.threshold, py::arg("rule") = "symmetric",
       py::arg("carry") = "identity", py::arg("initial_centre") = py::none(),
       py::arg("stay_probability") = 0.9, py::arg("chain") = py::none(),
       py::arg("initial_mode_probability") = py::none());
-  switching.def_property_readonly("centre", &AnySwitchingGridImm::centre,
+  switching.def_property_readonly("centre", of_kind(&AnySwitchingGridImm::centre),
                                   "Index of the window's middle in the grid.");
-  define_face(switching);
+  define_copies(switching);
+  define_filter_estimate(switching);
+  define_turn_rates(switching);
   switching.def("__repr__", &switching_grid_text);
 }
 
 void define_likely_model_set(py::module_& m) {
   const LikelyModelSet set;
-  py::class_<AnyLikelyModelSetImm> likely(m, "LikelyModelSetImm",
-                                          R"(Turn models that join and leave by their probability.
+  EstimatorClass<AnyLikelyModelSetImm> likely(
+      m, "LikelyModelSetImm",
+      R"(Turn models that join and leave by their probability.
 
 All are active at a start. Before each prediction that follows an update the unlikely ones go to rest and the neighbours
 of the likely ones join; the most probable one always has its neighbours with it. Has the face of `Imm`; a model at rest
@@ -321,15 +329,17 @@ X. R. Li, Y. Zhang, IEEE Trans. AES-36, 2000: the likely-model set.)");
         LikelyModelSet set{.unlikely_threshold = unlikely, .likely_threshold = principal};
         if (rates) set.grid_rad_s = to_grid(*rates);
         const int models = set.grid_rad_s.size();
-        return with_initial(
+        return PyEstimator<AnyLikelyModelSetImm>(with_initial(
             AnyLikelyModelSetImm(set, chain_of(chain, stay, models), turning_bank(filter, models)),
-            initial);
+            initial));
       }),
       py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
       py::arg("unlikely_threshold") = set.unlikely_threshold,
       py::arg("likely_threshold") = set.likely_threshold, py::arg("stay_probability") = 0.9,
       py::arg("chain") = py::none(), py::arg("initial_mode_probability") = py::none());
-  define_face(likely);
+  define_copies(likely);
+  define_filter_estimate(likely);
+  define_turn_rates(likely);
   likely.def("__repr__", &likely_model_set_text);
 }
 
@@ -382,7 +392,17 @@ ValueError
       .def_property_readonly("continuous", &Chain::continuous)
       .def("__repr__", &chain_text);
 
-  py::class_<AnyImm> imm(m, "Imm", R"(The interacting multiple model estimator.
+  py::class_<AnyMixture, AnyEstimator>(m, "MultiModelEstimator",
+                                       "What estimators of several models share.")
+      .def(
+          "mode_probability",
+          [](const AnyMixture& estimator) { return to_array(estimator.mode_probability()); },
+          "(K,)")
+      .def_property_readonly(
+          "models", [](const AnyMixture& estimator) { return estimator.mode_probability().size(); },
+          "K");
+
+  EstimatorClass<AnyImm> imm(m, "Imm", R"(The interacting multiple model estimator.
 
 Parameters
 ----------
@@ -396,7 +416,8 @@ initial_mode_probability : (K,) array, optional
             return make_imm(to_filters(filters), chain, initial);
           }),
           py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none());
-  define_face(imm);
+  define_copies(imm);
+  define_filter_estimate(imm);
   define_imm_smoother(imm);
   imm.def("turn_rates_rad_s", &known_turn_rates,
           "(K,) turn rates of the models, positive to starboard; None where one is not known.");

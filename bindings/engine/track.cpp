@@ -3,7 +3,6 @@
 #include <map>
 #include <optional>
 
-#include "any_estimator.hpp"
 #include "support/call_text.hpp"
 #include "estimators.hpp"
 #include "lanes/lanes.hpp"
@@ -184,7 +183,7 @@ using Course = Ekf<WanderingCourse>;
 using Turn = Ekf<CoordinatedTurnRate>;
 
 /// The same over filters composed at run time.
-AnyImm as_any_imm(const VesselImm& imm) {
+PyEstimator<AnyImm> as_any_imm(const VesselImm& imm) {
   AnyImm any(ModeChain<kRuntimeModes>(imm.chain()),
              AnyFilterBank({AnyFilter(imm.filter<0>()), AnyFilter(imm.filter<1>()),
                             AnyFilter(imm.filter<2>()), AnyFilter(imm.filter<3>())}));
@@ -193,14 +192,14 @@ AnyImm as_any_imm(const VesselImm& imm) {
   return any;
 }
 
-AnyImm any_vessel_imm(const Radar& radar, const VesselModels& models) {
+PyEstimator<AnyImm> any_vessel_imm(const Radar& radar, const VesselModels& models) {
   return as_any_imm(vessel_imm(radar, models));
 }
 
 /// The reverse, of an estimator that is made like it.
 std::optional<VesselImm> as_vessel_imm(const AnyImm& any) {
   if (any.bank().size() != VesselImm::kModels) return std::nullopt;
-  const auto filter = [&](std::size_t k) -> const auto& { return any.bank().filter(k).variant(); };
+  const auto filter = [&](int k) -> const auto& { return any.bank().filter(k).variant(); };
   const auto* cruising = std::get_if<Course>(&filter(0));
   const auto* steady = std::get_if<Course>(&filter(1));
   const auto* restless = std::get_if<Course>(&filter(2));
@@ -244,37 +243,20 @@ DoubleArray column(const char* name, const py::object& values, py::ssize_t plots
   return array;
 }
 
-/// The engine's estimator behind a Python one.
-AnyEstimator to_estimator(const py::object& estimator) {
-  if (py::isinstance<AnyImm>(estimator)) return estimator.cast<const AnyImm&>();
-  if (py::isinstance<AnyAdaptiveGridImm>(estimator))
-    return estimator.cast<const AnyAdaptiveGridImm&>();
-  if (py::isinstance<AnySwitchingGridImm>(estimator))
-    return estimator.cast<const AnySwitchingGridImm&>();
-  if (py::isinstance<AnyLikelyModelSetImm>(estimator))
-    return estimator.cast<const AnyLikelyModelSetImm&>();
-  if (py::isinstance<AnyModeHistory>(estimator)) return estimator.cast<const AnyModeHistory&>();
-  if (py::isinstance<AnyFuzzyAlphaBeta>(estimator))
-    return estimator.cast<const AnyFuzzyAlphaBeta&>();
-  if (py::isinstance<AnyBayesianAlphaBeta>(estimator))
-    return estimator.cast<const AnyBayesianAlphaBeta&>();
-  throw py::type_error(
-      "estimator must be Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm, ModeHistory, "
-      "FuzzyAlphaBeta or BayesianAlphaBeta, got " +
-      py::str(py::type::of(estimator).attr("__name__")).cast<std::string>());
-}
-
 /// A tracker with an estimator given by hand.
 AnyTracker tracker_with(const Radar& radar, const TrackerConfig& config,
                         const py::object& estimator) {
-  if (py::isinstance<AnyImm>(estimator))
-    if (const auto imm = as_vessel_imm(estimator.cast<const AnyImm&>()))
-      return AnyTracker(radar, config, *imm);
-  return AnyTracker(radar, config, to_estimator(estimator));
+  if (!is_a<AnyMixture>(estimator))
+    throw py::type_error("estimator must be one of several models (MultiModelEstimator), got " +
+                         class_name(estimator));
+  const AnyEstimator& any = estimator.cast<const AnyMixture&>();
+  if (const auto* imm = std::get_if<AnyImm>(&any.variant()))
+    if (const auto vessel = as_vessel_imm(*imm)) return AnyTracker(radar, config, *vessel);
+  return AnyTracker(radar, config, any);
 }
 
 py::object python_estimator(const VesselImm& imm) { return py::cast(as_any_imm(imm)); }
-py::object python_estimator(const AnyEstimator& estimator) { return py::cast(estimator.variant()); }
+py::object python_estimator(const AnyEstimator& estimator) { return to_python(estimator); }
 
 std::string tracker_text(const AnyTracker& any) {
   return any.visit([](const auto& tracker) {

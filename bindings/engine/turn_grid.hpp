@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "any_filter.hpp"
+#include "catalog.hpp"
 #include "support/types.hpp"
 #include "wakeline/multimodel/turn_rate_grid.hpp"
 

@@ -201,27 +201,44 @@ def test_runs_of_range_rates_are_the_runs_one_by_one(name):
             assert_near(many, one, k, relative=1e-10, of_modes=1e-9)
 
 
+@pytest.mark.parametrize("name", ESTIMATORS)
+def test_filters_imms_and_mode_histories_run_in_lanes(name):
+    kinds = (wl.Ekf, wl.Ukf, wl.SquareRootUkf, wl.Imm, wl.ModeHistory)
+    expected = wl.lanes() if isinstance(ESTIMATORS[name], kinds) else 1
+    for sensor in (POLAR, CONVERTED):
+        assert run(ESTIMATORS[name], recordings(), sensor).lanes == expected
+
+
+@pytest.mark.parametrize("name", ESTIMATORS)
+def test_a_single_recording_and_range_rates_have_no_lanes(name):
+    assert run(ESTIMATORS[name], recordings()[0]).lanes == 1
+    assert run(ESTIMATORS[name], recordings(range_rates=True), DOPPLER).lanes == 1
+
+
+def test_starts_of_several_layouts_have_no_lanes():
+    wide = wl.Gaussian([4000.0, 0.0, 4000.0, 0.0, 0.0], np.diag([1e6, 100.0, 1e6, 100.0, 1e-4]))
+    mixed = [start()] * (RUNS - 1) + [wide]
+    assert run(ESTIMATORS["ekf_ctr"], recordings(), begin=mixed).lanes == 1
+    assert run(ESTIMATORS["ekf_ctr"], recordings(), begin=[wide] * RUNS).lanes == wl.lanes()
+
+
 @pytest.mark.skipif(wl.lanes() == 1, reason="one run after the other on this processor")
-@pytest.mark.parametrize(
-    ("name", "sensor"),
-    [(name, POLAR) for name in ESTIMATORS] + [(name, DOPPLER) for name in DOPPLER_ESTIMATORS],
-)
-def test_many_runs_are_in_lanes(name, sensor):
-    """The functions of lanes round otherwise than those of one number."""
-    z = recordings(range_rates=sensor is DOPPLER)
-    many = run(ESTIMATORS[name], z, sensor)
+@pytest.mark.parametrize("name", ["ekf_ct", "imm3", "imm_all_kinds", "mode_history"])
+def test_lanes_round_otherwise_than_single_runs(name):
+    """So that `lanes` is what was done."""
+    z = recordings()
+    many = run(ESTIMATORS[name], z)
     assert any(
-        np.any(many.covariance[k] != run(ESTIMATORS[name], z[k], sensor).covariance)
-        for k in range(RUNS)
+        np.any(many.covariance[k] != run(ESTIMATORS[name], z[k]).covariance) for k in range(RUNS)
     )
 
 
-def test_without_lanes_for_its_sensor_an_estimator_runs_one_by_one():
+@pytest.mark.parametrize("name", ["square_root", "adaptive", "mode_history", "fuzzy"])
+def test_without_lanes_runs_have_the_bits_of_single_ones(name):
     z = recordings(range_rates=True)
-    for name in ("square_root", "adaptive", "mode_history"):
-        many = run(ESTIMATORS[name], z, DOPPLER)
-        one = run(ESTIMATORS[name], z[4], DOPPLER)
-        np.testing.assert_array_equal(many.mean[4], one.mean)
+    many = run(ESTIMATORS[name], z, DOPPLER)
+    one = run(ESTIMATORS[name], z[4], DOPPLER)
+    np.testing.assert_array_equal(many.mean[4], one.mean)
 
 
 @pytest.mark.parametrize("name", ["imm3", "imm_of_many_kinds", *UNSCENTED_TURNS, *LINES])

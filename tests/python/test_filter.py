@@ -423,7 +423,7 @@ def test_range_rates_are_those_that_a_turning_own_ship_sees(runs):
     truth = np.column_stack([0.0 * z[:, 0] + 3000.0, 1000.0 + 5.0 * DT_S * np.arange(1, 61)])
     assert np.abs(result.mean[..., [0, 2]] - truth).max() < 1e-6
     assert np.abs(result.nis).max() < 1e-9
-    with pytest.raises(ValueError, match=r"own_velocity_mps must be told .* got None"):
+    with pytest.raises(ValueError, match=r"own_velocity_mps is required .* got None"):
         ekf().run(many, **reported)
     with pytest.raises(ValueError, match=r"own_velocity_mps must have shape \(60, 2\), got"):
         ekf().run(many, own_velocity_mps=own_mps[1:], **reported)

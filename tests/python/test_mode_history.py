@@ -443,11 +443,11 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         (lambda: wl.ModeHistory.of([wl.Ekf(TURN)] * 17, WAYS), "1 to 16 filters, got 17"),
         (
             lambda: wl.ModeHistory.of([wl.Ekf(TURN), wl.Ukf(TURN)], WAYS),
-            r"filters must be of one kind .* got Ekf\(.* and Ukf\(",
+            "filters must be of one kind .* filter 1 differs",
         ),
         (
             lambda: wl.ModeHistory.of([wl.Ekf(TURN), wl.Kalman(TURN)], WAYS),
-            r"filters must be of one kind .* got Ekf\(.* and Kalman\(",
+            "filters must be of one kind .* filter 1 differs",
         ),
         (
             lambda: wl.ModeHistory.of([wl.Ekf(TURN), wl.Ekf(LEARNT)], WAYS),
@@ -455,7 +455,7 @@ def test_pseudo_bayes_of_second_order_is_as_good_as_an_imm_and_of_first_order_is
         ),
         (
             lambda: wl.ModeHistory.of([wl.Kalman(MOTIONS["ConstantVelocity"])], WAYS),
-            r"filters must be over CoordinatedTurn or CoordinatedTurnRate, got Kalman\(",
+            "filters must be over CoordinatedTurn or CoordinatedTurnRate",
         ),
         (lambda: wl.ModeHistory.of(kinds_of_way()[:3], WAYS), "got 4 modes and 3 filters"),
         (

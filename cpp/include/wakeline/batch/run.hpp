@@ -16,6 +16,7 @@
 #include "wakeline/filter/concept.hpp"
 #include "wakeline/gating/radius_gate.hpp"
 #include "wakeline/measurement/concept.hpp"
+#include "wakeline/measurement/own_ship.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
@@ -40,7 +41,7 @@ struct RunOutput {
   double* mean = nullptr;              ///< (R, T, N)
   double* covariance = nullptr;        ///< (R, T, N, N)
   double* mode_probability = nullptr;  ///< (R, T, K)
-  double* turn_rate_rad_s = nullptr;   ///< (R, T, K), for models with variable turn rates
+  double* turn_rate_rad_s = nullptr;   ///< (R, T, K), null unless models have variable turn rates
   double* innovation = nullptr;        ///< (R, T, M)
   double* nis = nullptr;               ///< (R, T)
   double* log_likelihood = nullptr;    ///< (R, T)
@@ -57,14 +58,14 @@ inline constexpr bool kHasTurnRates = requires(const Estimator& estimator) {
 template <class Sensor>
 Sensor seen_from(const Sensor& sensor, const RunInput& in, std::size_t scan) noexcept {
   Sensor moved = sensor;
-  if constexpr (requires { moved.own; }) {
+  if (OwnShip* own = own_ship_of(moved)) {
     if (in.own_m != nullptr) {
-      moved.own.north_m = in.own_m[2 * scan];
-      moved.own.east_m = in.own_m[2 * scan + 1];
+      own->north_m = in.own_m[2 * scan];
+      own->east_m = in.own_m[2 * scan + 1];
     }
     if (in.own_mps != nullptr) {
-      moved.own.vnorth_mps = in.own_mps[2 * scan];
-      moved.own.veast_mps = in.own_mps[2 * scan + 1];
+      own->vnorth_mps = in.own_mps[2 * scan];
+      own->veast_mps = in.own_mps[2 * scan + 1];
     }
   }
   return moved;
@@ -194,7 +195,8 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
   const RunColumn<Scalar> mean(lanes, out.mean, out.states),
       covariance(lanes, out.covariance, out.states * out.states),
       mode_probability(lanes, out.mode_probability, out.models),
-      turn_rates(lanes, out.turn_rate_rad_s, kHasTurnRates<Estimator> ? out.models : 0),
+      turn_rates(lanes, out.turn_rate_rad_s,
+                 kHasTurnRates<Estimator> && out.turn_rate_rad_s != nullptr ? out.models : 0),
       innovation(lanes, out.innovation, kM), nis(lanes, out.nis, 1),
       log_likelihood(lanes, out.log_likelihood, 1);
   for (std::size_t scan = 0; scan < in.scans; ++scan) {

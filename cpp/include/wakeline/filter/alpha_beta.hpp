@@ -8,6 +8,7 @@
 
 #include "wakeline/filter/alpha_beta_gains.hpp"
 #include "wakeline/filter/ekf.hpp"
+#include "wakeline/measurement/own_ship.hpp"
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
@@ -226,10 +227,9 @@ class AlphaBetaFilter
   template <class Sensor>
   static Scalar range(const Sensor& sensor, const Vec<Scalar, 2>& plot) noexcept {
     using std::sqrt;
-    if constexpr (requires { sensor.own; })
-      return sqrt((plot - sensor.own.template position<Scalar>()).squaredNorm());
-    else
-      return sqrt(plot.squaredNorm());
+    if (const OwnShip* own = own_ship_of(sensor))
+      return sqrt((plot - own->template position<Scalar>()).squaredNorm());
+    return sqrt(plot.squaredNorm());
   }
 
   /// [alpha, beta / T, gamma / (2 T²)] for an error of the plot of `std_m`.

@@ -69,7 +69,9 @@ class Ekf : public Belief<MotionType, ScalarType> {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
-    return correct(sensor, sensor.observe(z)).scored();
+    return with_model(sensor, [&](const auto& model) {
+      return correct(model, sensor.observe(z)).scored();
+    });
   }
 
   /// The same by a reading that the sensor has observed, the likelihood in two parts.

@@ -122,7 +122,9 @@ class SquareRootUkf {
   [[nodiscard]] bool started() const noexcept { return started_; }
 
   /// The root of the array [sqrt(w) e_i, sqrt(beta - alpha²) d, Q^(1/2)].
-  StatusOf<Scalar> predict(Scalar dt_s) noexcept {
+  /// Not inlined, as is `correct`: beside the sigma points a call is nothing, and each estimator over
+  /// the filter would compile them anew.
+  [[gnu::flatten, gnu::noinline]] StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     using std::sqrt;
     if (!started_) return Status::kNotStarted;
     const StatusOf<Scalar> forward = check_time_step(dt_s);
@@ -166,12 +168,14 @@ class SquareRootUkf {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
-    return correct(sensor, sensor.observe(z)).scored();
+    return with_model(sensor, [&](const auto& model) {
+      return correct(model, sensor.observe(z)).scored();
+    });
   }
 
   /// The same by a reading that the sensor has observed, the likelihood in two parts.
   template <class Sensor>
-  Correction<Sensor::kMeasurements, Scalar> correct(
+  [[gnu::flatten, gnu::noinline]] Correction<Sensor::kMeasurements, Scalar> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
     using std::sqrt;
     check_sensor<Sensor, SquareRootUkf>();

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "wakeline/measurement/concept.hpp"
+#include "wakeline/measurement/own_ship.hpp"
 #include "wakeline/motion/concept.hpp"
 
 namespace wakeline {
@@ -56,8 +57,8 @@ Gaussian<4, Scalar> two_point(const Sensor& sensor, const Vec<Scalar, Sensor::kM
                               const Vec<Scalar, Sensor::kMeasurements>& second,
                               std::type_identity_t<Scalar> dt_s) noexcept {
   Gaussian<2, Scalar> before = sensor.position(first);
-  if constexpr (requires { sensor.own.template velocity<Scalar>(); })
-    before.mean -= dt_s * sensor.own.template velocity<Scalar>();
+  if (const OwnShip* own = own_ship_of(sensor))
+    before.mean -= dt_s * own->template velocity<Scalar>();
   return two_point<Scalar>(before, sensor.position(second), dt_s);
 }
 

@@ -53,9 +53,20 @@ inline constexpr bool kIsDirect<Sensor> = true;
 
 /// A sensor that measures a position: `position(z) -> Gaussian<2>`, north and east in metres.
 template <class Sensor>
-concept PositionSensor = MeasurementModel<Sensor> &&
+concept PositionSensor =
     requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) {
   { sensor.position(z) } -> std::convertible_to<Gaussian<2>>;
 };
+
+/// Calls `function` with the measurement model of a sensor: the sensor itself, or what one that is
+/// chosen at run time is by its `visit_model`.
+template <class Sensor, class Function>
+[[gnu::always_inline]] inline decltype(auto) with_model(const Sensor& sensor,
+                                                        Function&& function) noexcept {
+  if constexpr (requires { sensor.visit_model(function); })
+    return sensor.visit_model(function);
+  else
+    return function(sensor);
+}
 
 }  // namespace wakeline

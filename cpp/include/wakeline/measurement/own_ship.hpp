@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <type_traits>
+
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/types.hpp"
 
@@ -37,5 +39,17 @@ struct OwnShip {
     require_not_negative("own.heading_std_rad", heading_std_rad);
   }
 };
+
+/// Own ship that carries a sensor, null of a sensor without one.
+template <class Sensor>
+auto* own_ship_of(Sensor& sensor) noexcept {
+  using Own = std::conditional_t<std::is_const_v<Sensor>, const OwnShip, OwnShip>;
+  if constexpr (requires { sensor.own_ship(); })
+    return sensor.own_ship();
+  else if constexpr (requires { sensor.own; })
+    return static_cast<Own*>(&sensor.own);
+  else
+    return static_cast<Own*>(nullptr);
+}
 
 }  // namespace wakeline

@@ -100,7 +100,8 @@ class Imm {
       for (int mode = 0; mode < bank_.size(); ++mode)
         if (none(bank_.active(mode))) ::new (each.place(mode)) Correction<kM, Scalar>();
     bank_.for_each([&](int mode, auto& filter, auto&) {
-      ::new (each.place(mode)) Correction<kM, Scalar>(filter.correct(sensor, reading));
+      ::new (each.place(mode)) Correction<kM, Scalar>(with_model(
+          sensor, [&](const auto& model) { return filter.correct(model, reading); }));
     });
 
     const auto count = static_cast<std::size_t>(bank_.size());
@@ -122,7 +123,9 @@ class Imm {
     Evidence<Scalar> evidence;
     const Gaussian<Sensor::kMeasurements, Scalar> reading = sensor.observe(z);
     bank_.for_each([&](int mode, const auto& filter) {
-      evidence.add(probability_[mode], filter.compare(sensor, reading));
+      evidence.add(probability_[mode], with_model(sensor, [&](const auto& model) {
+                     return filter.compare(model, reading);
+                   }));
     });
     return evidence;
   }

@@ -409,7 +409,8 @@ class ModeHistory {
                                                 const Gaussian<M, Lanes>& reading,
                                                 const Row& before, Row& after) noexcept {
     Filter& filter = filter_of(before);
-    const Correction<M, Lanes> correction = filter.correct(sensor, reading);
+    const Correction<M, Lanes> correction = with_model(
+        sensor, [&](const auto& model) { return filter.correct(model, reading); });
     after.set_beliefs(filter.estimate());
     return correction;
   }

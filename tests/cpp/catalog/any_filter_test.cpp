@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Filters composed at run time, as Python has them, against the same composed at compile time: bit
-// for bit.
-#include "any_filter.hpp"
+// Filters composed at run time against the same composed at compile time: bit for bit.
+#include "wakeline/catalog/filters.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +11,7 @@
 #include "support/matrix_assert.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
-namespace wakeline::python {
+namespace wakeline {
 namespace {
 
 using test::matrices_identical;
@@ -110,4 +109,4 @@ TEST(AnyFilterBank, RefusesNoneAndTooMany) {
 }
 
 }  // namespace
-}  // namespace wakeline::python
+}  // namespace wakeline

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "catalog.hpp"
+
+namespace wakeline {
+
+template class AnyFilterOf<Filters>;
+template class AnyFilterBankOf<Filters>;
+template Correction<2> AnyFilter::correct_by(const RangeBearing&, const Gaussian<2>&) noexcept;
+template Correction<2> AnyFilter::correct_by(const Fix&, const Gaussian<2>&) noexcept;
+template Correction<2> AnyFilter::compare_by(const Fix&, const Gaussian<2>&) const noexcept;
+template Correction<3> AnyFilter::correct_by(const RangeBearingDoppler&,
+                                             const Gaussian<3>&) noexcept;
+
+}  // namespace wakeline

@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "run.hpp"
+
+#include <string>
+
+#include "lanes/lanes.hpp"
+#include "support/call_text.hpp"
+#include "thread_share.hpp"
+
+namespace wakeline::python {
+namespace {
+
+AnyBelief parse_start(const py::handle& item, StateLayout layout) {
+  if (!py::isinstance<PyGaussian>(item))
+    throw py::type_error("start must be a Gaussian or a sequence of them, got " + class_name(item));
+  return to_start("start", item.cast<const PyGaussian&>(), layout);
+}
+
+/// Throws where own ship moves under a sensor of range rates that has it at rest.
+void require_own_velocity(const AnySensor& any, const RunInput& in) {
+  const auto* sensor = std::get_if<RangeBearingDoppler>(&any);
+  if (sensor == nullptr || in.own_m == nullptr || in.own_mps != nullptr) return;
+  if (sensor->own.vnorth_mps != 0.0 || sensor->own.veast_mps != 0.0) return;
+  for (std::size_t k = 2; k < 2 * in.scans; ++k)
+    if (in.own_m[k] != in.own_m[k - 2])
+      throw py::value_error(
+          "own_velocity_mps is required where own_position_m moves and the sensor reads range "
+          "rates, got None");
+}
+
+/// In lanes of the widest instruction set of the processor, by what `kernel` says of the module
+/// for it. 0, and nothing done, where there are none for the recordings.
+template <class Kernel>
+int run_in_lanes(const Recordings& all, const Kernel& kernel) {
+  const LaneKernels* kernels = lane_kernels();
+  if (kernels == nullptr || all.in.runs < 2) return 0;
+  return visit_numbers(all.sensor, [&]<int M>(const AnySensorOf<M>& sensor) {
+    if constexpr (M == 2) {
+      const ThreadShare threads(all.in.runs * all.in.scans /
+                                static_cast<std::size_t>(kernels->lanes));
+      const LaneRecordings recordings{sensor, all.in, all.starts, all.out, threads.count()};
+      if (kernel(*kernels, recordings)) return kernels->lanes;
+    }
+    return 0;
+  });
+}
+
+template <class Estimator>
+int run_each(const Estimator& estimator, const Recordings& recordings) {
+  const ThreadShare threads(recordings.in.runs * recordings.in.scans);
+  run_one_by_one(estimator, recordings, threads.count());
+  return 1;
+}
+
+/// "<RunResult: 500 runs of 250 scans, 4 states, 3 models>".
+std::string result_text(const RunResult& result) {
+  const auto extent = [](const py::array& array, int from_the_end) {
+    return array.shape(array.ndim() - from_the_end);
+  };
+  std::string text = "<RunResult: ";
+  if (result.mean.ndim() == 3) text += many(result.mean.shape(0), "run") + " of ";
+  text += many(extent(result.mean, 2), "scan") + ", " + many(extent(result.mean, 1), "state");
+  if (!result.mode_probability.is_none())
+    text += ", " + many(extent(py::array(result.mode_probability), 1), "model");
+  return text + ">";
+}
+
+}  // namespace
+
+std::vector<AnyBelief> parse_starts(const py::object& start, std::size_t runs, StateLayout layout) {
+  if (!py::isinstance<py::sequence>(start)) return {parse_start(start, layout)};
+  std::vector<AnyBelief> beliefs;
+  for (const py::handle item : start) beliefs.push_back(parse_start(item, layout));
+  if (beliefs.size() != runs)
+    throw py::value_error("start must be one Gaussian or one per run (" + std::to_string(runs) +
+                          "), got " + std::to_string(beliefs.size()));
+  return beliefs;
+}
+
+std::vector<double> parse_steps(const py::object& dt_s, std::size_t scans) {
+  const DoubleArray array = dt_s.is_none() ? DoubleArray() : DoubleArray::ensure(dt_s);
+  if (!array || dt_s.is_none())
+    throw py::type_error("dt_s must be a number or an array, got " +
+                         py::repr(dt_s).cast<std::string>());
+  if (array.ndim() == 0) return std::vector<double>(scans, *array.data());
+  require_shape(array.ndim() == 1 && array.shape(0) == static_cast<py::ssize_t>(scans), "dt_s",
+                "() or " + shape_text({static_cast<py::ssize_t>(scans)}), array);
+  return {array.data(), array.data() + scans};
+}
+
+const double* per_scan(const char* name, const DoubleArray& array, std::size_t scans) {
+  const auto rows = static_cast<py::ssize_t>(scans);
+  require_shape(array.ndim() == 2 && array.shape(0) == rows && array.shape(1) == 2, name,
+                shape_text({rows, 2}), array);
+  return array.data();
+}
+
+RunLayout run_layout(const AnyFilter& filter) { return {filter.layout(), 0, false}; }
+
+RunLayout run_layout(const AnyEstimator& estimator) {
+  return {estimator.estimate().layout, estimator.mode_probability().size(),
+          estimator.turn_rates_rad_s().size() > 0};
+}
+
+RunResult run_recordings(const RunLayout& layout, const RunArguments& arguments,
+                         const AnySensor& sensor,
+                         const std::function<int(const Recordings&)>& run_all) {
+  const DoubleArray& z = arguments.z;
+  const py::ssize_t numbers = std::visit(
+      []<class Sensor>(const Sensor&) { return py::ssize_t{Sensor::kMeasurements}; }, sensor);
+  const bool many = z.ndim() == 3;
+  require_shape((z.ndim() == 2 || many) && z.shape(z.ndim() - 1) == numbers, "z",
+                "(T, " + std::to_string(numbers) + ") or (R, T, " + std::to_string(numbers) + ")",
+                z);
+  RunInput in;
+  in.runs = many ? static_cast<std::size_t>(z.shape(0)) : 1;
+  in.scans = static_cast<std::size_t>(z.shape(many ? 1 : 0));
+  in.z = z.data();
+  const std::vector<double> steps_s = parse_steps(arguments.dt_s, in.scans);
+  in.dt_s = steps_s.data();
+  const std::vector<AnyBelief> starts = parse_starts(arguments.start, in.runs, layout.layout);
+  in.gate = arguments.gate ? &*arguments.gate : nullptr;
+  const bool carried =
+      std::visit([](const auto& one) { return own_ship_of(one) != nullptr; }, sensor);
+  const auto of_own_ship = [&](const char* name, const std::optional<DoubleArray>& array) {
+    if (array && !carried)
+      throw py::value_error(std::string(name) + " must be None for a sensor without own ship");
+    return array ? per_scan(name, *array, in.scans) : nullptr;
+  };
+  in.own_m = of_own_ship("own_position_m", arguments.own_position_m);
+  in.own_mps = of_own_ship("own_velocity_mps", arguments.own_velocity_mps);
+  require_own_velocity(sensor, in);
+  if (arguments.acceleration_mps2)
+    in.acceleration_mps2 = per_scan("acceleration_mps2", *arguments.acceleration_mps2, in.scans);
+
+  const py::ssize_t states = states_of(layout.layout);
+  std::vector<py::ssize_t> shape;
+  if (many) shape.push_back(z.shape(0));
+  shape.push_back(z.shape(many ? 1 : 0));
+  const auto with = [&](std::initializer_list<py::ssize_t> more) {
+    std::vector<py::ssize_t> extended = shape;
+    extended.insert(extended.end(), more);
+    return extended;
+  };
+  RunResult result{py::array_t<double>(with({states})),
+                   py::array_t<double>(with({states, states})),
+                   py::none(),
+                   py::none(),
+                   py::array_t<double>(with({numbers})),
+                   py::array_t<double>(shape),
+                   py::array_t<double>(shape),
+                   py::array_t<std::uint8_t>(shape)};
+  py::array_t<double> modes(with({layout.models}));
+  if (layout.models > 0) result.mode_probability = modes;
+  py::array_t<double> rates(with({layout.turn_rates ? layout.models : 0}));
+  if (layout.turn_rates) result.turn_rate_rad_s = rates;
+  const RunOutput out{static_cast<std::size_t>(states),
+                      static_cast<std::size_t>(layout.models),
+                      result.mean.mutable_data(),
+                      result.covariance.mutable_data(),
+                      modes.mutable_data(),
+                      layout.turn_rates ? rates.mutable_data() : nullptr,
+                      result.innovation.mutable_data(),
+                      result.nis.mutable_data(),
+                      result.log_likelihood.mutable_data(),
+                      result.status.mutable_data()};
+  {
+    const py::gil_scoped_release release;
+    result.lanes = run_all({sensor, in, starts, out});
+  }
+  return result;
+}
+
+int run_all(const AnyFilter& filter, const Recordings& recordings) {
+  const int lanes =
+      run_in_lanes(recordings, [&](const LaneKernels& kernels, const LaneRecordings& all) {
+        return kernels.run_filter(filter, all);
+      });
+  return lanes > 0 ? lanes : run_each(filter, recordings);
+}
+
+int run_all(const AnyEstimator& estimator, const Recordings& recordings) {
+  const int lanes =
+      run_in_lanes(recordings, [&](const LaneKernels& kernels, const LaneRecordings& all) {
+        if (const auto* imm = std::get_if<AnyImm>(&estimator.variant()))
+          return kernels.run_imm(*imm, all);
+        if (const auto* history = std::get_if<AnyModeHistory>(&estimator.variant()))
+          return kernels.run_history(*history, all);
+        return false;
+      });
+  return lanes > 0 ? lanes : run_each(estimator, recordings);
+}
+
+void define_run_result(py::module_& m) {
+  py::class_<RunResult> result(
+      m, "RunResult",
+      "What `run` returns: arrays over scans, and over runs where there are several.");
+  define_pickle(result, &RunResult::mean, &RunResult::covariance, &RunResult::mode_probability,
+                &RunResult::turn_rate_rad_s, &RunResult::innovation, &RunResult::nis,
+                &RunResult::log_likelihood, &RunResult::status, &RunResult::lanes);
+  result.def_readonly("mean", &RunResult::mean, "(..., T, N)")
+      .def_readonly("covariance", &RunResult::covariance, "(..., T, N, N)")
+      .def_readonly("mode_probability", &RunResult::mode_probability,
+                    "(..., T, K), None for a single filter")
+      .def_readonly("turn_rate_rad_s", &RunResult::turn_rate_rad_s,
+                    "(..., T, K), of the models in each scan, NaN for one at rest; None where they "
+                    "do not change")
+      .def_readonly("innovation", &RunResult::innovation,
+                    "(..., T, M), measured minus predicted; NaN where there was no update")
+      .def_readonly("nis", &RunResult::nis, "(..., T), NaN where there was no update")
+      .def_readonly("log_likelihood", &RunResult::log_likelihood, "(..., T)")
+      .def_readonly("status", &RunResult::status, "(..., T) values of Status")
+      .def_readonly("lanes", &RunResult::lanes,
+                    "how many filters were stepped side by side in one register: recordings, or "
+                    "hypotheses of a ModeHistory; 1 for one after the other")
+      .def("__repr__", &result_text);
+}
+
+}  // namespace wakeline::python

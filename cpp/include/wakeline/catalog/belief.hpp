@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "wakeline/catalog/motions.hpp"
+#include "wakeline/core/types.hpp"
+
+namespace wakeline {
+
+/// A belief whose layout is known at run time, without heap.
+struct AnyBelief {
+  using Mean = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStates, 1>;
+  using Covariance =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates>;
+
+  StateLayout layout = StateLayout::kKinematics;
+  Mean mean = Vec<double, 4>::Zero();
+  Covariance covariance = Mat<double, 4, 4>::Identity();
+
+  [[nodiscard]] int states() const noexcept { return states_of(layout); }
+
+  /// As one of a size known at compile time.
+  template <int N>
+  [[nodiscard]] Gaussian<N> fixed() const noexcept {
+    return {mean, covariance};
+  }
+};
+
+/// A belief over the state of a motion model.
+template <class Motion>
+AnyBelief any_belief(const Gaussian<kStatesOf<Motion>>& belief) noexcept {
+  return {kLayoutOf<Motion>, belief.mean, belief.covariance};
+}
+
+/// Rows of a layout in another one: `rows(from, to)[i]` is where `from` holds row i of `to`, or -1.
+inline const auto& rows_between(StateLayout from, StateLayout to) noexcept {
+  using RowsOf = std::array<int, static_cast<std::size_t>(kMaxStates)>;
+  constexpr auto kLayouts = static_cast<std::size_t>(kStateLayouts.count);
+  static constexpr auto kRows = [] {
+    std::array<std::array<RowsOf, kLayouts>, kLayouts> rows{};
+    for (std::size_t a = 0; a < kLayouts; ++a)
+      for (std::size_t b = 0; b < kLayouts; ++b)
+        for (int i = 0; i < states_of(StateLayout(b)); ++i) {
+          const auto k = static_cast<std::size_t>(i);
+          rows[a][b][k] = rows_of(StateLayout(a)).row_of(rows_of(StateLayout(b)).components[k]);
+        }
+    return rows;
+  }();
+  return kRows[static_cast<std::size_t>(from)][static_cast<std::size_t>(to)];
+}
+
+// What mixing asks of a belief; see `StateBelief`.
+
+inline void keep_lower(const AnyBelief& belief, AnyBelief& kept) noexcept { kept = belief; }
+inline void complete(AnyBelief&) noexcept {}
+
+inline AnyBelief zero_like(const AnyBelief& belief) noexcept {
+  AnyBelief zero = belief;
+  zero.mean.setZero();
+  zero.covariance.setZero();
+  return zero;
+}
+
+inline void add_mean(AnyBelief& sum, double weight, const AnyBelief& part,
+                     const AnyBelief& own) noexcept {
+  const auto& row = rows_between(part.layout, own.layout);
+  for (int i = 0; i < own.states(); ++i) {
+    const int from = row[static_cast<std::size_t>(i)];
+    sum.mean[i] += weight * (from >= 0 ? part.mean[from] : own.mean[i]);
+  }
+}
+
+/// `add_spread` between beliefs of one layout, of N states.
+template <int N>
+void add_spread_within(AnyBelief& sum, double weight, const AnyBelief& part) noexcept {
+  const double* p = part.covariance.data();
+  double* covariance = sum.covariance.data();
+  double d[N];
+  for (int i = 0; i < N; ++i) d[i] = part.mean[i] - sum.mean[i];
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) covariance[N * j + i] += weight * (p[N * j + i] + d[i] * d[j]);
+}
+
+inline void add_spread(AnyBelief& sum, double weight, const AnyBelief& part,
+                       const AnyBelief& own) noexcept {
+  if (part.layout == own.layout) {
+    [&]<int... Less>(std::integer_sequence<int, Less...>) {
+      (void)((own.states() == Less + 1 && (add_spread_within<Less + 1>(sum, weight, part), true)) ||
+             ...);
+    }
+    (std::make_integer_sequence<int, kMaxStates>{});
+    return;
+  }
+  const auto& row = rows_between(part.layout, own.layout);
+  const auto from = [&](int i) { return row[static_cast<std::size_t>(i)]; };
+  double d[kMaxStates];
+  for (int i = 0; i < own.states(); ++i)
+    d[i] = (from(i) >= 0 ? part.mean[from(i)] : own.mean[i]) - sum.mean[i];
+  for (int j = 0; j < own.states(); ++j)
+    for (int i = 0; i < own.states(); ++i) {
+      const double p = from(i) >= 0 && from(j) >= 0 ? part.covariance(from(i), from(j))
+                       : from(i) < 0 && from(j) < 0 ? own.covariance(i, j)
+                                                    : 0.0;
+      sum.covariance(i, j) += weight * (p + d[i] * d[j]);
+    }
+}
+
+/// The part of a belief that is about position and velocity.
+inline Gaussian<4> kinematics_of(const AnyBelief& belief) noexcept {
+  const auto& row = rows_between(belief.layout, StateLayout::kKinematics);
+  const auto from = [&](int i) { return row[static_cast<std::size_t>(i)]; };
+  Gaussian<4> kinematics;
+  for (int i = 0; i < 4; ++i) {
+    kinematics.mean[i] = belief.mean[from(i)];
+    for (int j = 0; j < 4; ++j) kinematics.covariance(i, j) = belief.covariance(from(i), from(j));
+  }
+  return kinematics;
+}
+
+}  // namespace wakeline
