@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "face.hpp"
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 
 namespace wakeline::python {
 namespace {
@@ -56,12 +56,11 @@ void define_schedules(py::module_& m) {
       .def_readonly("alpha", &ConstantGains::alpha)
       .def_readonly("beta", &ConstantGains::beta)
       .def_readonly("gamma", &ConstantGains::gamma)
-      .def("__repr__", [](const ConstantGains& gains) {
-        return CallText("ConstantGains")
+      .def("_arguments", [](const ConstantGains& gains) {
+        return Arguments()
             .with("alpha", gains.alpha)
             .with("beta", gains.beta)
-            .with("gamma", gains.gamma)
-            .text();
+            .with("gamma", gains.gamma);
       });
   define_gains<ConstantGains, true>(constant);
 
@@ -84,11 +83,10 @@ max_plots : int
            py::kw_only(), py::arg("plots_before") = 0, py::arg("max_plots") = 0)
       .def_readonly("plots_before", &GrowingMemory::plots_before)
       .def_readonly("max_plots", &GrowingMemory::max_plots)
-      .def("__repr__", [](const GrowingMemory& memory) {
-        return CallText("GrowingMemory")
+      .def("_arguments", [](const GrowingMemory& memory) {
+        return Arguments()
             .with("plots_before", memory.plots_before)
-            .with("max_plots", memory.max_plots)
-            .text();
+            .with("max_plots", memory.max_plots);
       });
   define_gains<GrowingMemory, true>(growing);
 
@@ -98,9 +96,8 @@ max_plots : int
                                       "alpha lets through.");
   bordner.def(py::init([](double alpha) { return BenedictBordner{alpha}; }), py::arg("alpha"))
       .def_readonly("alpha", &BenedictBordner::alpha)
-      .def("__repr__", [](const BenedictBordner& gains) {
-        return CallText("BenedictBordner").with("alpha", gains.alpha).text();
-      });
+      .def("_arguments",
+           [](const BenedictBordner& gains) { return Arguments().with("alpha", gains.alpha); });
   define_gains<BenedictBordner, false>(bordner);
 
   py::class_<CriticallyDamped> damped(
@@ -109,9 +106,8 @@ max_plots : int
       "(fading memory).");
   damped.def(py::init([](double theta) { return CriticallyDamped{theta}; }), py::arg("theta"))
       .def_readonly("theta", &CriticallyDamped::theta)
-      .def("__repr__", [](const CriticallyDamped& gains) {
-        return CallText("CriticallyDamped").with("theta", gains.theta).text();
-      });
+      .def("_arguments",
+           [](const CriticallyDamped& gains) { return Arguments().with("theta", gains.theta); });
   define_gains<CriticallyDamped, true>(damped);
 
   py::class_<TrackingIndex> index(
@@ -132,9 +128,9 @@ P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alp
 1984.)");
   index.def(py::init([](double accel) { return TrackingIndex{accel}; }), py::arg("accel_std_mps2"))
       .def_readonly("accel_std_mps2", &TrackingIndex::accel_std_mps2)
-      .def("__repr__",
+      .def("_arguments",
            [](const TrackingIndex& index) {
-             return CallText("TrackingIndex").with("accel_std_mps2", index.accel_std_mps2).text();
+             return Arguments().with("accel_std_mps2", index.accel_std_mps2);
            })
       .def(
           "steady_covariance",
@@ -169,14 +165,13 @@ P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alp
       .def_readonly("near_beta", &RangeDependent::near_beta)
       .def_readonly("far_alpha", &RangeDependent::far_alpha)
       .def_readonly("far_beta", &RangeDependent::far_beta)
-      .def("__repr__", [](const RangeDependent& gains) {
-        return CallText("RangeDependent")
+      .def("_arguments", [](const RangeDependent& gains) {
+        return Arguments()
             .with("near_range_m", gains.near_range_m)
             .with("near_alpha", gains.near_alpha)
             .with("near_beta", gains.near_beta)
             .with("far_alpha", gains.far_alpha)
-            .with("far_beta", gains.far_beta)
-            .text();
+            .with("far_beta", gains.far_beta);
       });
   define_gains<RangeDependent, false>(range);
 
@@ -203,11 +198,11 @@ PyAlphaBeta<Order> make(const GainSchedule<Order>& gains, const std::optional<Pr
   return AlphaBetaFilter<Order>(gains, motion);
 }
 
-/// The call that makes the filter, up to what it is told of an acceleration.
+/// The arguments of both filters.
 template <int Order>
-CallText filter_call(const char* name, const PyAlphaBeta<Order>& estimator) {
+Arguments filter_arguments(const PyAlphaBeta<Order>& estimator) {
   const AlphaBetaFilter<Order>& filter = estimator.get();
-  return CallText(name).with("gains", filter.schedule()).with("noise", filter.motion().noise);
+  return Arguments().with("gains", filter.schedule()).with("noise", filter.motion().noise);
 }
 
 }  // namespace
@@ -239,8 +234,7 @@ ValueError
            }),
            py::arg("gains"), py::kw_only(), py::arg("noise") = py::none());
   define_copies(line);
-  line.def("__repr__",
-           [](const PyAlphaBeta<2>& one) { return filter_call("AlphaBeta", one).text(); });
+  line.def("_arguments", [](const PyAlphaBeta<2>& one) { return filter_arguments(one); });
 
   EstimatorClass<AlphaBetaFilter<3>> parabola(
       m, "AlphaBetaGamma",
@@ -265,10 +259,9 @@ ValueError
                py::arg("gains"), py::kw_only(), py::arg("noise") = py::none(),
                py::arg("prior_accel_std_mps2") = ConstantAcceleration{}.prior_accel_std_mps2);
   define_copies(parabola);
-  parabola.def("__repr__", [](const PyAlphaBeta<3>& one) {
-    return filter_call("AlphaBetaGamma", one)
-        .with("prior_accel_std_mps2", one.get().motion().prior_accel_std_mps2)
-        .text();
+  parabola.def("_arguments", [](const PyAlphaBeta<3>& one) {
+    return filter_arguments(one).with("prior_accel_std_mps2",
+                                      one.get().motion().prior_accel_std_mps2);
   });
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "multimodel.hpp"
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 
 namespace wakeline::python {
 
@@ -57,16 +57,15 @@ ValueError
       py::arg("longest_line_probability") = weighing.longest_line_probability,
       py::arg("acceleration_std_mps2") = weighing.acceleration_std_mps2);
   define_copies(bank);
-  bank.def("__repr__", [](const PyBayesian& estimator) {
+  bank.def("_arguments", [](const PyBayesian& estimator) {
     const LineWeighing& rules = estimator.get().weighing();
-    return CallText("BayesianAlphaBeta")
+    return Arguments()
         .with("min_plots", rules.min_plots)
         .with("max_plots", rules.max_plots)
         .with("parabolas", rules.parabolas)
         .with("sojourn_s", rules.sojourn_s)
         .with("longest_line_probability", rules.longest_line_probability)
-        .with("acceleration_std_mps2", rules.acceleration_std_mps2)
-        .text();
+        .with("acceleration_std_mps2", rules.acceleration_std_mps2);
   });
   bank.def_property_readonly(
       "plots_of_mode",

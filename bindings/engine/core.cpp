@@ -4,7 +4,7 @@
 
 #include <pybind11/native_enum.h>
 
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 #include "wakeline/core/angle.hpp"
 
 namespace wakeline::python {
@@ -44,7 +44,7 @@ void define_core(py::module_& parent) {
       .value("negative_time_step", Status::kNegativeTimeStep, "time would run backwards")
       .finalize();
 
-  py::class_<PyGaussian>(m, "Gaussian", R"(A Gaussian belief.
+  py::class_<PyGaussian> gaussian(m, "Gaussian", R"(A Gaussian belief.
 
 Parameters
 ----------
@@ -55,21 +55,15 @@ covariance : (N, N) array
 Raises
 ------
 ValueError
-    When the shapes do not fit.)")
-      .def(py::init(&make_gaussian), py::arg("mean"), py::arg("covariance"))
+    When the shapes do not fit.)");
+  define_copies(gaussian);
+  gaussian.def(py::init(&make_gaussian), py::arg("mean"), py::arg("covariance"))
       .def_property_readonly(
           "mean", [](const PyGaussian& g) { return to_array(g.mean); }, "(N,)")
       .def_property_readonly(
           "covariance", [](const PyGaussian& g) { return to_array(g.covariance); }, "(N, N)")
-      .def(py::pickle(
-          [](const PyGaussian& g) {
-            return py::make_tuple(to_array(g.mean), to_array(g.covariance));
-          },
-          [](const py::tuple& fields) {
-            return make_gaussian(fields[0].cast<DoubleArray>(), fields[1].cast<DoubleArray>());
-          }))
-      .def("__repr__", [](const PyGaussian& g) {
-        return CallText("Gaussian").with("mean", g.mean).with("covariance", g.covariance).text();
+      .def("_arguments", [](const PyGaussian& g) {
+        return Arguments().with("mean", g.mean).with("covariance", g.covariance);
       });
 
   py::class_<PyStep>(m, "Step",

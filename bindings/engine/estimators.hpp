@@ -11,9 +11,16 @@
 #include <vector>
 
 #include "catalog.hpp"
+#include "support/arguments.hpp"
 #include "support/types.hpp"
 
 namespace wakeline::python {
+
+/// A Kalman, Ekf, Ukf or SquareRootUkf.
+template <>
+struct AsPython<AnyFilter> {
+  static py::object of(const AnyFilter& filter);
+};
 
 /// An estimator of several models in Python.
 struct AnyMixture : AnyEstimator {

@@ -3,7 +3,7 @@
 #include "wakeline/filter/rts_smoother.hpp"
 
 #include "face.hpp"
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 
 namespace wakeline::python {
 
@@ -34,29 +34,16 @@ void define_unscented(py::class_<PyFilter, AnyFilter>& filter, const Make& make)
              py::arg("beta") = Unscented{}.beta, py::arg("kappa") = Unscented{}.kappa);
 }
 
-template <class Motion>
-const char* class_of(const Ekf<Motion>&, bool linear) {
-  return linear ? "Kalman" : "Ekf";
-}
-template <class Motion>
-const char* class_of(const Ukf<Motion>&, bool) {
-  return "Ukf";
-}
-template <class Motion>
-const char* class_of(const SquareRootUkf<Motion>&, bool) {
-  return "SquareRootUkf";
-}
-
-std::string filter_text(const AnyFilter& any) {
+Arguments filter_arguments(const AnyFilter& any) {
   return std::visit(
-      [&](const auto& filter) {
-        CallText call(class_of(filter, any.linear()));
-        call.with("motion", filter.motion());
+      [](const auto& filter) {
+        Arguments arguments;
+        arguments.with("motion", filter.motion());
         if constexpr (requires { filter.unscented(); })
-          call.with("alpha", filter.unscented().alpha)
+          arguments.with("alpha", filter.unscented().alpha)
               .with("beta", filter.unscented().beta)
               .with("kappa", filter.unscented().kappa);
-        return call.text();
+        return arguments;
       },
       any.variant());
 }
@@ -116,7 +103,25 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
   return py::make_tuple(smooth_mean, smooth_covariance);
 }
 
+/// The Python class of a filter.
+template <class Motion>
+py::object as_python(const AnyFilter& any, const Ekf<Motion>&) {
+  return any.linear() ? py::cast(PyKalman{any}) : py::cast(PyEkf{any});
+}
+template <class Motion>
+py::object as_python(const AnyFilter& any, const Ukf<Motion>&) {
+  return py::cast(PyUkf{any});
+}
+template <class Motion>
+py::object as_python(const AnyFilter& any, const SquareRootUkf<Motion>&) {
+  return py::cast(PySquareRootUkf{any});
+}
+
 }  // namespace
+
+py::object AsPython<AnyFilter>::of(const AnyFilter& any) {
+  return std::visit([&](const auto& filter) { return as_python(any, filter); }, any.variant());
+}
 
 void define_filter(py::module_& parent) {
   py::module_ m = parent.def_submodule("filter", "Estimators with one motion model.");
@@ -125,7 +130,7 @@ void define_filter(py::module_& parent) {
 
   py::class_<AnyFilter> filter(m, "Filter", "What Kalman, Ekf, Ukf and SquareRootUkf share.");
   define_face(filter);
-  filter.def("__repr__", &filter_text);
+  filter.def("_arguments", &filter_arguments);
   filter.def("smooth", &smooth_arrays, py::arg("mean"), py::arg("covariance"), py::arg("dt_s"),
              py::arg("acceleration_mps2") = py::none(),
              R"(Rauch-Tung-Striebel smoother over the results of `run`.

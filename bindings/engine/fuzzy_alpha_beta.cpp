@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "multimodel.hpp"
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 #include "support/option.hpp"
 
 namespace wakeline::python {
@@ -171,17 +171,16 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
             py::arg("hold") = criterion.hold,
             py::arg("acceleration_std_mps2") = criterion.acceleration_std_mps2);
   define_copies(fuzzy);
-  fuzzy.def("__repr__", [](const PyFuzzy& estimator) {
+  fuzzy.def("_arguments", [](const PyFuzzy& estimator) {
     const FuzzyCriterion& rules = estimator.get().criterion();
-    return CallText("FuzzyAlphaBeta")
+    return Arguments()
         .with("max_plots", rules.max_plots)
         .with("steepness", rules.steepness)
         .with("threshold", rules.threshold)
         .with("clip", rules.clip)
         .with("t_norm", word_of(rules.t_norm, kTNorms))
         .with("hold", rules.hold)
-        .with("acceleration_std_mps2", rules.acceleration_std_mps2)
-        .text();
+        .with("acceleration_std_mps2", rules.acceleration_std_mps2);
   });
   fuzzy
       .def_property_readonly("quality", of_kind(&Fuzzy::quality),

@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 #include "support/option.hpp"
 #include "wakeline/core/angle.hpp"
 #include "wakeline/gating/chi_square_gate.hpp"
@@ -119,9 +119,8 @@ void define_strobes(py::module_& m) {
            }),
            py::kw_only(), py::arg("radius_m") = RadiusGate{}.radius_m)
       .def_readonly("radius_m", &RadiusGate::radius_m)
-      .def("__repr__", [](const RadiusGate& gate) {
-        return CallText("RadiusGate").with("radius_m", gate.radius_m).text();
-      });
+      .def("_arguments",
+           [](const RadiusGate& gate) { return Arguments().with("radius_m", gate.radius_m); });
   define_contains(circle);
 
   py::class_<PyCovarianceStrobe> ellipse(m, "CovarianceStrobe",
@@ -156,11 +155,10 @@ ValueError
       .def_property_readonly(
           "threshold", [](const PyCovarianceStrobe& s) { return s.threshold; },
           "largest normalised innovation squared inside")
-      .def("__repr__", [](const PyCovarianceStrobe& s) {
-        return CallText("CovarianceStrobe")
+      .def("_arguments", [](const PyCovarianceStrobe& s) {
+        return Arguments()
             .with("innovation_covariance_m2", s.innovation_covariance_m2)
-            .with("gate", s.gate)
-            .text();
+            .with("gate", s.gate);
       });
   define_contains(ellipse);
 
@@ -177,11 +175,10 @@ ValueError
            py::arg("bearing_half_rad") = RangeBearingWindow{}.bearing_half_rad)
       .def_readonly("range_half_m", &RangeBearingWindow::range_half_m)
       .def_readonly("bearing_half_rad", &RangeBearingWindow::bearing_half_rad)
-      .def("__repr__", [](const RangeBearingWindow& strobe) {
-        return CallText("RangeBearingWindow")
+      .def("_arguments", [](const RangeBearingWindow& strobe) {
+        return Arguments()
             .with("range_half_m", strobe.range_half_m)
-            .with("bearing_half_rad", strobe.bearing_half_rad)
-            .text();
+            .with("bearing_half_rad", strobe.bearing_half_rad);
       });
   define_contains(window);
 }
@@ -213,11 +210,8 @@ void define_strobe_echo(py::module_& m) {
                     "what was measured goes on beyond the strobe")
       .def_readonly("cut", &StrobeEcho::cut, "part of the strobe lies outside the picture")
       .def("__repr__", [](const StrobeEcho& e) {
-        return CallText("StrobeEcho")
-            .with("status", std::string(to_string(e.status)))
-            .with("range_m", e.range_m)
-            .with("bearing_rad", e.bearing_rad)
-            .text();
+        return std::string("<StrobeEcho: ") + to_string(e.status) +
+               ", range_m=" + text_of(e.range_m) + ", bearing_rad=" + text_of(e.bearing_rad) + ">";
       });
 
   const StrobeSettings settings;
@@ -281,8 +275,8 @@ void define_gating(py::module_& parent) {
       .def("threshold", &ChiSquareGate::threshold, py::arg("dof"),
            "Largest normalised innovation squared inside, for `dof` measured quantities, at least "
            "1; else NaN.")
-      .def("__repr__", [](const ChiSquareGate& gate) {
-        return CallText("ChiSquareGate").with("probability", gate.probability).text();
+      .def("_arguments", [](const ChiSquareGate& gate) {
+        return Arguments().with("probability", gate.probability);
       });
   define_strobes(m);
   define_strobe_echo(m);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
@@ -9,10 +9,10 @@
 namespace wakeline::python {
 namespace {
 
-/// The call that made a radar, up to what is its own.
+/// The arguments of all radars.
 template <class Sensor>
-CallText polar_call(const char* name, const Sensor& sensor) {
-  return CallText(name)
+Arguments polar_arguments(const Sensor& sensor) {
+  return Arguments()
       .with("range_std_m", sensor.range_std_m)
       .with("bearing_std_rad", sensor.bearing_std_rad)
       .with("extent_std_m", sensor.extent_std_m)
@@ -100,16 +100,15 @@ void define_measurement(py::module_& parent) {
            py::kw_only(), py::arg("north_m") = 0.0, py::arg("east_m") = 0.0,
            py::arg("vnorth_mps") = 0.0, py::arg("veast_mps") = 0.0, py::arg("position_std_m") = 0.0,
            py::arg("velocity_std_mps") = 0.0, py::arg("heading_std_rad") = 0.0)
-      .def("__repr__", [](const OwnShip& own) {
-        return CallText("OwnShip")
+      .def("_arguments", [](const OwnShip& own) {
+        return Arguments()
             .with("north_m", own.north_m)
             .with("east_m", own.east_m)
             .with("vnorth_mps", own.vnorth_mps)
             .with("veast_mps", own.veast_mps)
             .with("position_std_m", own.position_std_m)
             .with("velocity_std_mps", own.velocity_std_mps)
-            .with("heading_std_rad", own.heading_std_rad)
-            .text();
+            .with("heading_std_rad", own.heading_std_rad);
       });
 
   const std::string polar =
@@ -129,8 +128,7 @@ void define_measurement(py::module_& parent) {
       .def_readonly("extent_std_m", &RangeBearing::extent_std_m)
       .def_readonly("bearing_offset_rad", &RangeBearing::bearing_offset_rad)
       .def_readwrite("own", &RangeBearing::own)
-      .def("__repr__",
-           [](const RangeBearing& sensor) { return polar_call("RangeBearing", sensor).text(); });
+      .def("_arguments", [](const RangeBearing& sensor) { return polar_arguments(sensor); });
   define_sensor(range_bearing);
 
   const std::string converted =
@@ -155,8 +153,8 @@ void define_measurement(py::module_& parent) {
       .def_readonly("extent_std_m", &ConvertedRangeBearing::extent_std_m)
       .def_readonly("bearing_offset_rad", &ConvertedRangeBearing::bearing_offset_rad)
       .def_readwrite("own", &ConvertedRangeBearing::own)
-      .def("__repr__", [](const ConvertedRangeBearing& sensor) {
-        return polar_call("ConvertedRangeBearing", sensor).with("unbiased", sensor.unbiased).text();
+      .def("_arguments", [](const ConvertedRangeBearing& sensor) {
+        return polar_arguments(sensor).with("unbiased", sensor.unbiased);
       });
   define_sensor(converted_range_bearing);
 
@@ -180,10 +178,8 @@ void define_measurement(py::module_& parent) {
       .def_readonly("extent_std_m", &RangeBearingDoppler::extent_std_m)
       .def_readonly("bearing_offset_rad", &RangeBearingDoppler::bearing_offset_rad)
       .def_readwrite("own", &RangeBearingDoppler::own)
-      .def("__repr__", [](const RangeBearingDoppler& sensor) {
-        return polar_call("RangeBearingDoppler", sensor)
-            .with("range_rate_std_mps", sensor.range_rate_std_mps)
-            .text();
+      .def("_arguments", [](const RangeBearingDoppler& sensor) {
+        return polar_arguments(sensor).with("range_rate_std_mps", sensor.range_rate_std_mps);
       });
   define_sensor(range_bearing_doppler);
 
@@ -193,8 +189,8 @@ void define_measurement(py::module_& parent) {
       .def(py::init([](double std) { return validated(Position{std}); }), py::kw_only(),
            py::arg("position_std_m") = Position{}.position_std_m)
       .def_readonly("position_std_m", &Position::position_std_m)
-      .def("__repr__", [](const Position& sensor) {
-        return CallText("Position").with("position_std_m", sensor.position_std_m).text();
+      .def("_arguments", [](const Position& sensor) {
+        return Arguments().with("position_std_m", sensor.position_std_m);
       });
   define_sensor(position);
 

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "multimodel.hpp"
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 #include "turn_grid.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 
@@ -28,32 +28,8 @@ TurnRateGrid grid_or_default(const std::optional<DoubleArray>& rates) {
   return rates ? to_grid(*rates) : TurnRateGrid::evenly(deg(4.0), 4);
 }
 
-/// The habits that this is the chain of, where there are such.
-std::optional<TurnHabits> habits_of(const Chain& chain, const TurnRateGrid& grid_rad_s) {
-  const auto generator_per_s = chain.generator_per_s();
-  if (!generator_per_s) return std::nullopt;
-  const auto times_s = sojourn_times_s(*generator_per_s);
-  if (!times_s) return std::nullopt;
-  const int straight = grid_rad_s.straightest();
-  const int turn = straight == 0 ? 1 : 0;
-  const double straightens = -(*generator_per_s)(turn, straight) / (*generator_per_s)(turn, turn);
-  const TurnHabits habits{(*times_s)[straight], (*times_s)[turn],
-                          std::min(as_written(straightens), 1.0)};
-  const Chain same = turning_chain(grid_rad_s, habits);
-  return *same.generator_per_s() == *generator_per_s ? std::optional(habits) : std::nullopt;
-}
-
-void tell_chain(CallText& call, const Chain& chain, const TurnRateGrid& grid_rad_s) {
-  if (const auto habits = habits_of(chain, grid_rad_s))
-    call.with("straight_sojourn_s", habits->straight_sojourn_s)
-        .with("turn_sojourn_s", habits->turn_sojourn_s)
-        .with("straighten_probability", habits->straighten_probability);
-  else
-    call.with("chain", chain);
-}
-
-void tell_tree(CallText& call, const HistoryTree& tree) {
-  call.with("max_hypotheses", tree.max_hypotheses)
+void add_tree(Arguments& arguments, const HistoryTree& tree) {
+  arguments.with("max_hypotheses", tree.max_hypotheses)
       .with("max_branches", tree.max_branches)
       .with("min_segment_s", tree.min_segment_s)
       .with("merge_distance", tree.merge_distance)
@@ -82,51 +58,49 @@ TurnRateGrid::Rates deviations(const Bank& bank) {
   return std_rad_s;
 }
 
-std::string text_over_filters(const AnyModeHistory& any) {
+Arguments arguments_over_filters(const AnyModeHistory& any) {
   return std::visit(
       [&](const auto& history) {
         std::vector<AnyFilter> filters;
         history.bank().for_each(
             [&](int, const auto& filter) { filters.emplace_back(filter, any.linear()); });
-        CallText call("ModeHistory.of");
-        call.with("filters", filters)
+        Arguments arguments("of");
+        arguments.with("filters", filters)
             .with("chain", history.chain())
             .with("initial_mode_probability", history.initial_mode_probability());
-        tell_tree(call, history.tree());
-        return call.text();
+        add_tree(arguments, history.tree());
+        return arguments;
       },
       any.variant());
 }
 
-std::string text_over_grid(const AnyModeHistory& any, const TurnRateGrid& grid_rad_s) {
+Arguments arguments_over_grid(const AnyModeHistory& any, const TurnRateGrid& grid_rad_s) {
   return std::visit(
       [&](const auto& history) {
         const HistoryTree& tree = history.tree();
         const bool pseudo_bayes = tree.pseudo_bayes_order > 0;
-        CallText call(pseudo_bayes ? "ModeHistory.pseudo_bayes" : "ModeHistory");
-        if (pseudo_bayes) call.with("order", tree.pseudo_bayes_order);
+        Arguments arguments(pseudo_bayes ? "pseudo_bayes" : "");
+        if (pseudo_bayes) arguments.with("order", tree.pseudo_bayes_order);
         const auto& bank = history.bank();
         auto filter = bank.filter(grid_rad_s.straightest() == 0 ? 1 : 0);
         expect_turn_rate(filter, 0.0, turn_rate_std_rad_s(filter));
-        call.with("filter", AnyFilter(filter, any.linear()))
+        arguments.with("filter", AnyFilter(filter, any.linear()))
             .with("grid_rad_s", grid_rad_s.rates_rad_s());
         const auto grid_std_rad_s = deviations(bank);
         if (grid_std_rad_s != history.usual_deviations(grid_rad_s, filter))
-          call.with("grid_std_rad_s", grid_std_rad_s);
-        if (pseudo_bayes)
-          call.with("chain", history.chain());
-        else
-          tell_chain(call, history.chain(), grid_rad_s);
-        call.with("initial_mode_probability", history.initial_mode_probability());
-        if (!pseudo_bayes) tell_tree(call, tree);
-        return call.text();
+          arguments.with("grid_std_rad_s", grid_std_rad_s);
+        arguments.with("chain", history.chain())
+            .with("initial_mode_probability", history.initial_mode_probability());
+        if (!pseudo_bayes) add_tree(arguments, tree);
+        return arguments;
       },
       any.variant());
 }
 
-std::string history_text(const PyModeHistory& estimator) {
+Arguments history_arguments(const PyModeHistory& estimator) {
   const AnyModeHistory& any = estimator.get();
-  return any.grid_rad_s() ? text_over_grid(any, *any.grid_rad_s()) : text_over_filters(any);
+  return any.grid_rad_s() ? arguments_over_grid(any, *any.grid_rad_s())
+                          : arguments_over_filters(any);
 }
 
 HistoryTree tree_of(int max_hypotheses, int max_branches, double min_segment_s,
@@ -314,7 +288,7 @@ References
 ----------
 Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 11.6.3-11.6.5.)");
   define_copies(history);
-  history.def("__repr__", &history_text);
+  history.def("_arguments", &history_arguments);
   history.def(
       "turn_rates_rad_s",
       [](const PyModeHistory& one) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
@@ -56,32 +56,19 @@ void define_model(py::class_<Motion>& model) {
   }
 }
 
-std::string policy_text(const ProcessNoise& noise) {
+}  // namespace
+
+py::object AsPython<ProcessNoise>::of(const ProcessNoise& noise) {
   switch (noise.kind()) {
     case ProcessNoise::Kind::kWhiteAcceleration:
-      return text_of(WhiteAcceleration{noise.parameter()});
+      return py::cast(WhiteAcceleration{noise.parameter()});
     case ProcessNoise::Kind::kPiecewiseAcceleration:
-      return text_of(PiecewiseAcceleration{noise.parameter()});
+      return py::cast(PiecewiseAcceleration{noise.parameter()});
     case ProcessNoise::Kind::kWhiteJerk:
-      return text_of(WhiteJerk{noise.parameter()});
+      return py::cast(WhiteJerk{noise.parameter()});
   }
-  return "";
+  return py::none();
 }
-
-/// The policy of a kind and its parameter.
-ProcessNoise policy_of(int kind, double parameter) {
-  switch (ProcessNoise::Kind(kind)) {
-    case ProcessNoise::Kind::kWhiteAcceleration:
-      return WhiteAcceleration{parameter};
-    case ProcessNoise::Kind::kPiecewiseAcceleration:
-      return PiecewiseAcceleration{parameter};
-    case ProcessNoise::Kind::kWhiteJerk:
-      return WhiteJerk{parameter};
-  }
-  throw py::value_error("state is not that of a process noise");
-}
-
-}  // namespace
 
 void define_motion(py::module_& parent) {
   py::module_ m = parent.def_submodule("motion", "How a vessel moves.");
@@ -93,8 +80,8 @@ void define_motion(py::module_& parent) {
       .def(py::init([](double psd) { return WhiteAcceleration{psd}; }), py::kw_only(),
            py::arg("psd_m2s3") = WhiteAcceleration{}.psd_m2s3)
       .def_readonly("psd_m2s3", &WhiteAcceleration::psd_m2s3)
-      .def("__repr__", [](const WhiteAcceleration& noise) {
-        return CallText("WhiteAcceleration").with("psd_m2s3", noise.psd_m2s3).text();
+      .def("_arguments", [](const WhiteAcceleration& noise) {
+        return Arguments().with("psd_m2s3", noise.psd_m2s3);
       });
   py::class_<PiecewiseAcceleration> piecewise(
       m, "PiecewiseAcceleration",
@@ -104,8 +91,8 @@ void define_motion(py::module_& parent) {
       .def(py::init([](double std) { return PiecewiseAcceleration{std}; }), py::kw_only(),
            py::arg("std_mps2") = PiecewiseAcceleration{}.std_mps2)
       .def_readonly("std_mps2", &PiecewiseAcceleration::std_mps2)
-      .def("__repr__", [](const PiecewiseAcceleration& noise) {
-        return CallText("PiecewiseAcceleration").with("std_mps2", noise.std_mps2).text();
+      .def("_arguments", [](const PiecewiseAcceleration& noise) {
+        return Arguments().with("std_mps2", noise.std_mps2);
       });
   py::class_<WhiteJerk> jerk(
       m, "WhiteJerk", "Continuous white jerk per axis, for states that hold an acceleration.");
@@ -113,21 +100,15 @@ void define_motion(py::module_& parent) {
   jerk.def(py::init([](double psd) { return WhiteJerk{psd}; }), py::kw_only(),
            py::arg("psd_m2s5") = WhiteJerk{}.psd_m2s5)
       .def_readonly("psd_m2s5", &WhiteJerk::psd_m2s5)
-      .def("__repr__", [](const WhiteJerk& noise) {
-        return CallText("WhiteJerk").with("psd_m2s5", noise.psd_m2s5).text();
-      });
-  py::class_<ProcessNoise>(m, "ProcessNoise", "One of the process-noise policies.")
-      .def(py::init<WhiteAcceleration>())
-      .def(py::init<PiecewiseAcceleration>())
-      .def(py::init<WhiteJerk>())
-      .def(py::pickle(
-          [](const ProcessNoise& noise) {
-            return py::make_tuple(int(noise.kind()), noise.parameter());
-          },
-          [](const py::tuple& fields) {
-            return policy_of(fields[0].cast<int>(), fields[1].cast<double>());
-          }))
-      .def("__repr__", &policy_text);
+      .def("_arguments",
+           [](const WhiteJerk& noise) { return Arguments().with("psd_m2s5", noise.psd_m2s5); });
+  py::class_<ProcessNoise> noise(m, "ProcessNoise", "One of the process-noise policies.");
+  define_copies(noise);
+  noise.def(py::init<WhiteAcceleration>(), py::arg("policy"))
+      .def(py::init<PiecewiseAcceleration>(), py::arg("policy"))
+      .def(py::init<WhiteJerk>(), py::arg("policy"))
+      .def("_arguments",
+           [](const ProcessNoise& noise) { return Arguments().with("policy", noise); });
   py::implicitly_convertible<WhiteAcceleration, ProcessNoise>();
   py::implicitly_convertible<PiecewiseAcceleration, ProcessNoise>();
   py::implicitly_convertible<WhiteJerk, ProcessNoise>();
@@ -137,9 +118,8 @@ void define_motion(py::module_& parent) {
   cv.def(py::init([](const ProcessNoise& noise) { return validated(ConstantVelocity{noise}); }),
          py::kw_only(),
          py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
-  cv.def("__repr__", [](const ConstantVelocity& motion) {
-    return CallText("ConstantVelocity").with("noise", motion.noise).text();
-  });
+  cv.def("_arguments",
+         [](const ConstantVelocity& motion) { return Arguments().with("noise", motion.noise); });
   define_model(cv);
 
   py::class_<WanderingCourse> wandering(m, "WanderingCourse",
@@ -151,12 +131,11 @@ void define_motion(py::module_& parent) {
                 py::kw_only(), py::arg("psd_m2s3") = WanderingCourse{}.psd_m2s3,
                 py::arg("course_psd_rad2s") = WanderingCourse{}.course_psd_rad2s,
                 py::arg("max_speed_mps") = WanderingCourse{}.max_speed_mps);
-  wandering.def("__repr__", [](const WanderingCourse& motion) {
-    return CallText("WanderingCourse")
+  wandering.def("_arguments", [](const WanderingCourse& motion) {
+    return Arguments()
         .with("psd_m2s3", motion.psd_m2s3)
         .with("course_psd_rad2s", motion.course_psd_rad2s)
-        .with("max_speed_mps", motion.max_speed_mps)
-        .text();
+        .with("max_speed_mps", motion.max_speed_mps);
   });
   define_model(wandering);
 
@@ -168,11 +147,10 @@ void define_motion(py::module_& parent) {
          }),
          py::kw_only(), py::arg_v("noise", ProcessNoise(WhiteJerk{}), "WhiteJerk()"),
          py::arg("prior_accel_std_mps2") = ConstantAcceleration{}.prior_accel_std_mps2);
-  ca.def("__repr__", [](const ConstantAcceleration& motion) {
-    return CallText("ConstantAcceleration")
+  ca.def("_arguments", [](const ConstantAcceleration& motion) {
+    return Arguments()
         .with("noise", motion.noise)
-        .with("prior_accel_std_mps2", motion.prior_accel_std_mps2)
-        .text();
+        .with("prior_accel_std_mps2", motion.prior_accel_std_mps2);
   });
   define_model(ca);
 
@@ -185,11 +163,8 @@ void define_motion(py::module_& parent) {
          py::kw_only(), py::arg("turn_rate_rad_s") = 0.0,
          py::arg_v("noise", ProcessNoise(WhiteAcceleration{}), "WhiteAcceleration()"));
   ct.def_readonly("turn_rate_rad_s", &CoordinatedTurn::turn_rate_rad_s);
-  ct.def("__repr__", [](const CoordinatedTurn& motion) {
-    return CallText("CoordinatedTurn")
-        .with("turn_rate_rad_s", motion.turn_rate_rad_s)
-        .with("noise", motion.noise)
-        .text();
+  ct.def("_arguments", [](const CoordinatedTurn& motion) {
+    return Arguments().with("turn_rate_rad_s", motion.turn_rate_rad_s).with("noise", motion.noise);
   });
   define_model(ct);
 
@@ -209,16 +184,15 @@ void define_motion(py::module_& parent) {
       py::arg("max_speed_mps") = CoordinatedTurnRate{}.max_speed_mps,
       py::arg("prior_turn_rate_rad_s") = CoordinatedTurnRate{}.prior_turn_rate_rad_s,
       py::arg("turn_rate_time_s") = CoordinatedTurnRate{}.turn_rate_time_s);
-  ctr.def("__repr__", [](const CoordinatedTurnRate& motion) {
-    return CallText("CoordinatedTurnRate")
+  ctr.def("_arguments", [](const CoordinatedTurnRate& motion) {
+    return Arguments()
         .with("noise", motion.noise)
         .with("turn_rate_psd_rad2s3", motion.turn_rate_psd_rad2s3)
         .with("prior_turn_rate_std_rad_s", motion.prior_turn_rate_std_rad_s)
         .with("course_psd_rad2s", motion.course_psd_rad2s)
         .with("max_speed_mps", motion.max_speed_mps)
         .with("prior_turn_rate_rad_s", motion.prior_turn_rate_rad_s)
-        .with("turn_rate_time_s", motion.turn_rate_time_s)
-        .text();
+        .with("turn_rate_time_s", motion.turn_rate_time_s);
   });
   define_model(ctr);
 
@@ -229,11 +203,10 @@ void define_motion(py::module_& parent) {
              }),
              py::kw_only(), py::arg("maneuver_time_s") = Singer{}.maneuver_time_s,
              py::arg("accel_std_mps2") = Singer{}.accel_std_mps2);
-  singer.def("__repr__", [](const Singer& motion) {
-    return CallText("Singer")
+  singer.def("_arguments", [](const Singer& motion) {
+    return Arguments()
         .with("maneuver_time_s", motion.maneuver_time_s)
-        .with("accel_std_mps2", motion.accel_std_mps2)
-        .text();
+        .with("accel_std_mps2", motion.accel_std_mps2);
   });
   define_model(singer);
 }

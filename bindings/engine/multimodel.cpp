@@ -8,7 +8,7 @@
 
 #include "face.hpp"
 #include "multimodel.hpp"
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 #include "support/option.hpp"
 #include "turn_grid.hpp"
 
@@ -35,40 +35,30 @@ Chain chain_of_generator(const DoubleArray& rates) {
   return Chain::from_generator(to_matrix("generator_per_s", rates, rates.shape(0), rates.shape(0)));
 }
 
-/// True when the chain leaves each mode to all others alike, after these times.
-bool is_of_sojourn(const Chain::Matrix& generator_per_s, const Eigen::VectorXd& times_s) {
-  const Chain chain = Chain::from_sojourn_s(ModeVector<double, kRuntimeModes>(times_s));
-  return *chain.generator_per_s() == generator_per_s;
-}
-
-std::string chain_text(const Chain& chain) {
+Arguments chain_arguments(const Chain& chain) {
   const auto generator_per_s = chain.generator_per_s();
-  if (!generator_per_s) return CallText("ModeChain").with("matrix", chain.transition(0.0)).text();
-  const auto times_s = sojourn_times_s(*generator_per_s);
-  if (times_s && is_of_sojourn(*generator_per_s, *times_s))
-    return CallText("ModeChain.from_sojourn_s").with("sojourn_s", *times_s).text();
-  return CallText("ModeChain.from_generator").with("generator_per_s", *generator_per_s).text();
+  if (!generator_per_s) return Arguments().with("matrix", chain.transition(0.0));
+  return Arguments("from_generator").with("generator_per_s", *generator_per_s);
 }
 
 using PyImm = PyEstimator<AnyImm>;
 
-/// The call that makes an estimator over a grid of turn rates, up to the rules of the grid.
-CallText grid_call(const char* name, const AnyImm& imm) {
-  return CallText(name)
+/// The arguments of all estimators over a grid of turn rates.
+Arguments grid_arguments(const AnyImm& imm) {
+  return Arguments()
       .with("filter", without_turn(imm.bank().filter(0)))
       .with("chain", imm.chain())
       .with("initial_mode_probability", imm.initial_mode_probability());
 }
 
-std::string imm_text(const PyImm& estimator) {
+Arguments imm_arguments(const PyImm& estimator) {
   const AnyImm& imm = estimator.get();
   std::vector<AnyFilter> filters;
   for (int k = 0; k < imm.bank().size(); ++k) filters.push_back(imm.bank().filter(k));
-  return CallText("Imm")
+  return Arguments()
       .with("filters", filters)
       .with("chain", imm.chain())
-      .with("initial_mode_probability", imm.initial_mode_probability())
-      .text();
+      .with("initial_mode_probability", imm.initial_mode_probability());
 }
 
 /// Turn rates of the models, none where the rate of one is not known.
@@ -88,11 +78,11 @@ std::optional<py::array_t<double>> known_turn_rates(const PyImm& estimator) {
   return py::array_t<double>(static_cast<py::ssize_t>(rates.size()), rates.data());
 }
 
-std::string adaptive_grid_text(const PyEstimator<AnyAdaptiveGridImm>& estimator) {
+Arguments adaptive_grid_arguments(const PyEstimator<AnyAdaptiveGridImm>& estimator) {
   const AnyAdaptiveGridImm& imm = estimator.get();
   const AdaptiveGrid& grid = imm.grid();
   const AdaptiveGrid::Rates initial = grid.initial();
-  return grid_call("AdaptiveGridImm", imm)
+  return grid_arguments(imm)
       .with("max_turn_rate_rad_s", grid.max_turn_rate_rad_s)
       .with("initial_turn_rates_rad_s", std::vector<double>(initial.begin(), initial.end()))
       .with("min_spacing_rad_s", grid.min_spacing_rad_s)
@@ -101,30 +91,27 @@ std::string adaptive_grid_text(const PyEstimator<AnyAdaptiveGridImm>& estimator)
       .with("centre_threshold", grid.centre_threshold)
       .with("centre_gain", grid.centre_gain)
       .with("unlikely_threshold", grid.unlikely_threshold)
-      .with("likely_threshold", grid.likely_threshold)
-      .text();
+      .with("likely_threshold", grid.likely_threshold);
 }
 
-std::string switching_grid_text(const PyEstimator<AnySwitchingGridImm>& estimator) {
+Arguments switching_grid_arguments(const PyEstimator<AnySwitchingGridImm>& estimator) {
   const AnySwitchingGridImm& imm = estimator.get();
   const SwitchingGrid& grid = imm.grid();
-  return grid_call("SwitchingGridImm", imm)
+  return grid_arguments(imm)
       .with("grid_rad_s", grid.grid_rad_s.rates_rad_s())
       .with("threshold", grid.threshold)
       .with("rule", word_of(grid.rule, kRules))
       .with("carry", word_of(grid.carry, kCarries))
-      .with("initial_centre", grid.initial())
-      .text();
+      .with("initial_centre", grid.initial());
 }
 
-std::string likely_model_set_text(const PyEstimator<AnyLikelyModelSetImm>& estimator) {
+Arguments likely_model_set_arguments(const PyEstimator<AnyLikelyModelSetImm>& estimator) {
   const AnyLikelyModelSetImm& imm = estimator.get();
   const LikelyModelSet& set = imm.grid();
-  return grid_call("LikelyModelSetImm", imm)
+  return grid_arguments(imm)
       .with("grid_rad_s", set.grid_rad_s.rates_rad_s())
       .with("unlikely_threshold", set.unlikely_threshold)
-      .with("likely_threshold", set.likely_threshold)
-      .text();
+      .with("likely_threshold", set.likely_threshold);
 }
 
 PyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
@@ -219,7 +206,7 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
   define_copies(adaptive);
   define_filter_estimate(adaptive);
   define_turn_rates(adaptive);
-  adaptive.def("__repr__", &adaptive_grid_text);
+  adaptive.def("_arguments", &adaptive_grid_arguments);
 }
 
 void define_switching_grid(py::module_& m) {
@@ -284,7 +271,7 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
   define_copies(switching);
   define_filter_estimate(switching);
   define_turn_rates(switching);
-  switching.def("__repr__", &switching_grid_text);
+  switching.def("_arguments", &switching_grid_arguments);
 }
 
 void define_likely_model_set(py::module_& m) {
@@ -340,7 +327,7 @@ X. R. Li, Y. Zhang, IEEE Trans. AES-36, 2000: the likely-model set.)");
   define_copies(likely);
   define_filter_estimate(likely);
   define_turn_rates(likely);
-  likely.def("__repr__", &likely_model_set_text);
+  likely.def("_arguments", &likely_model_set_arguments);
 }
 
 }  // namespace
@@ -390,7 +377,7 @@ ValueError
           py::arg("dt_s"), "P(dt), (K, K). Raises ValueError for a step below zero.")
       .def_property_readonly("modes", [](const Chain& chain) { return chain.modes(); })
       .def_property_readonly("continuous", &Chain::continuous)
-      .def("__repr__", &chain_text);
+      .def("_arguments", &chain_arguments);
 
   py::class_<AnyMixture, AnyEstimator>(m, "MultiModelEstimator",
                                        "What estimators of several models share.")
@@ -421,7 +408,7 @@ initial_mode_probability : (K,) array, optional
   define_imm_smoother(imm);
   imm.def("turn_rates_rad_s", &known_turn_rates,
           "(K,) turn rates of the models, positive to starboard; None where one is not known.");
-  imm.def("__repr__", &imm_text);
+  imm.def("_arguments", &imm_arguments);
 
   define_adaptive_grid(m);
   define_switching_grid(m);

@@ -4,7 +4,6 @@
 #include <optional>
 #include <tuple>
 
-#include "support/call_text.hpp"
 #include "support/each.hpp"
 #include "support/types.hpp"
 #include "wakeline/navigation/dead_reckoning.hpp"
@@ -184,12 +183,11 @@ ValueError
     When it is not on the earth.)");
   define_copies(plane);
   plane
-      .def("__repr__",
+      .def("_arguments",
            [](const LocalPlane& p) {
-             return CallText("LocalPlane")
+             return Arguments()
                  .with("latitude_rad", p.reference().latitude_rad)
-                 .with("longitude_rad", p.reference().longitude_rad)
-                 .text();
+                 .with("longitude_rad", p.reference().longitude_rad);
            })
       .def(py::init([](double latitude, double longitude) {
              return LocalPlane(GeoPoint{latitude, longitude});
@@ -684,13 +682,12 @@ ValueError
     When a setting makes no sense.)");
   define_copies(window);
   window
-      .def("__repr__",
+      .def("_arguments",
            [](const DriftWindow<>& w) {
-             return CallText("DriftWindow")
+             return Arguments()
                  .with("max_fixes", w.settings().max_fixes)
                  .with("log_std_mps", w.settings().log_std_mps)
-                 .with("heading_std_rad", w.settings().heading_std_rad)
-                 .text();
+                 .with("heading_std_rad", w.settings().heading_std_rad);
            })
       .def(py::init([](int fixes, double log_std, double heading_std) {
              return DriftWindow<>({fixes, log_std, heading_std});
@@ -761,16 +758,15 @@ ValueError
     When one is negative or not finite.)");
   define_copies(model);
   model
-      .def("__repr__",
+      .def("_arguments",
            [](const DriftModel& one) {
-             return CallText("DriftModel")
+             return Arguments()
                  .with("leeway", one.leeway)
                  .with("leeway_std", one.leeway_std)
                  .with("wind_std_mps", one.wind_std_mps)
                  .with("current_std_mps", one.current_std_mps)
                  .with("residual_std_mps", one.residual_std_mps)
-                 .with("residual_time_s", one.residual_time_s)
-                 .text();
+                 .with("residual_time_s", one.residual_time_s);
            })
       .def(py::init([](double leeway, double leeway_std, double wind_std, double current_std,
                        double residual_std, double residual_time) {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "lanes/lanes.hpp"
-#include "support/call_text.hpp"
+#include "support/arguments.hpp"
 #include "thread_share.hpp"
 
 namespace wakeline::python {

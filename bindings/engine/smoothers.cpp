@@ -4,7 +4,7 @@
 #include <tuple>
 #include <variant>
 
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 #include "support/each.hpp"
 #include "wakeline/filter/adaptive_alpha_beta.hpp"
 #include "wakeline/filter/alpha_beta_smoother.hpp"
@@ -16,20 +16,20 @@ namespace wakeline::python {
 namespace {
 
 /// A smoother of a line or of angles, which says nothing before its first reading; `fresh` is what
-/// a run begins with, `call` the text of the call that made it.
+/// a run begins with, `arguments` are those it was made of.
 template <class OfLine, class OfAngles>
 struct Either {
   using Variant = std::variant<OfLine, OfAngles>;
   Variant smoother;
   Variant fresh;
-  std::string call;
+  Arguments arguments;
   bool started = false;
 
   template <class... Settings>
-  static Either make(CallText call, bool wrapped, const Settings&... settings) {
-    const std::string text = call.with("wrapped", wrapped).text();
-    if (wrapped) return {OfAngles(settings...), OfAngles(settings...), text};
-    return {OfLine(settings...), OfLine(settings...), text};
+  static Either make(Arguments arguments, bool wrapped, const Settings&... settings) {
+    arguments.with("wrapped", wrapped);
+    if (wrapped) return {OfAngles(settings...), OfAngles(settings...), arguments};
+    return {OfLine(settings...), OfLine(settings...), arguments};
   }
 
   /// `update(smoother)` with a reading.
@@ -123,7 +123,7 @@ Returns
 template <class E>
 void define_reading(py::class_<E>& smoother) {
   define_copies(smoother);
-  smoother.def("__repr__", [](const E& e) { return e.call; })
+  smoother.def("_arguments", [](const E& e) { return e.arguments; })
       .def_property_readonly(
           "value", [](const E& e) { return e.said([](const auto& s) { return s.value(); }); },
           "NaN before the first reading")
@@ -190,8 +190,7 @@ alpha : float
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.)");
   plain.def(py::init([](double alpha, bool wrapped) {
-              return Plain::make(CallText("ExponentialSmoother").with("alpha", alpha), wrapped,
-                                 alpha);
+              return Plain::make(Arguments().with("alpha", alpha), wrapped, alpha);
             }),
             py::arg("alpha") = 0.5, py::kw_only(), py::arg("wrapped") = false);
   define_smoother(plain);
@@ -207,9 +206,7 @@ Parameters
 ----------
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.)");
-  adaptive.def(py::init([](bool wrapped) {
-                 return Adaptive::make(CallText("AdaptiveExponentialSmoother"), wrapped);
-               }),
+  adaptive.def(py::init([](bool wrapped) { return Adaptive::make(Arguments(), wrapped); }),
                py::kw_only(), py::arg("wrapped") = false);
   define_smoother(adaptive);
   define_alpha(adaptive);
@@ -241,7 +238,7 @@ Raises
 ValueError
     When a weight is negative.)");
   points.def(py::init([](double before, double after, bool adaptive, bool parabola, bool wrapped) {
-               return Points::make(CallText("ThreePointSmoother")
+               return Points::make(Arguments()
                                        .with("weight_before_s", before)
                                        .with("weight_after_s", after)
                                        .with("adaptive", adaptive)
@@ -347,9 +344,9 @@ max_plots : int
       .def(py::init([](int most) { return RecentMemory{most}; }), py::kw_only(),
            py::arg("max_plots") = 0)
       .def_readonly("max_plots", &RecentMemory::max_plots)
-      .def("__repr__",
+      .def("_arguments",
            [](const RecentMemory& memory) {
-             return CallText("RecentMemory").with("max_plots", memory.max_plots).text();
+             return Arguments().with("max_plots", memory.max_plots);
            })
       .def(
           "gains",
@@ -378,14 +375,13 @@ Raises
 ------
 ValueError
     When a parameter makes no sense or gains are not stable.)");
-  filter.def(
-      py::init([](const Schedule& gains, bool wrapped, double reading_std) {
-        return Filter::make(
-            CallText("AlphaBetaSmoother").with("gains", gains).with("reading_std", reading_std),
-            wrapped, gains, reading_std);
-      }),
-      py::arg_v("gains", GrowingMemory{}, "GrowingMemory()"), py::kw_only(),
-      py::arg("wrapped") = false, py::arg("reading_std") = 1.0);
+  filter.def(py::init([](const Schedule& gains, bool wrapped, double reading_std) {
+               return Filter::make(
+                   Arguments().with("gains", gains).with("reading_std", reading_std), wrapped,
+                   gains, reading_std);
+             }),
+             py::arg_v("gains", GrowingMemory{}, "GrowingMemory()"), py::kw_only(),
+             py::arg("wrapped") = false, py::arg("reading_std") = 1.0);
   define_reading(filter);
   filter
       .def(
@@ -419,9 +415,8 @@ Parameters
 ----------
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.)");
-  adaptive.def(
-      py::init([](bool wrapped) { return Adaptive::make(CallText("AdaptiveAlphaBeta"), wrapped); }),
-      py::kw_only(), py::arg("wrapped") = false);
+  adaptive.def(py::init([](bool wrapped) { return Adaptive::make(Arguments(), wrapped); }),
+               py::kw_only(), py::arg("wrapped") = false);
   define_smoother(adaptive);
   define_beta(adaptive);
 
@@ -448,9 +443,8 @@ Raises
 ValueError
     When a setting makes no sense.)");
   bank.def(py::init([](int most, double memory, bool wrapped) {
-             return Bank::make(
-                 CallText("WindowBank").with("max_readings", most).with("memory", memory), wrapped,
-                 WindowBankSettings{most, memory});
+             return Bank::make(Arguments().with("max_readings", most).with("memory", memory),
+                               wrapped, WindowBankSettings{most, memory});
            }),
            py::kw_only(), py::arg("max_readings") = defaults.max_readings,
            py::arg("memory") = defaults.memory, py::arg("wrapped") = false);

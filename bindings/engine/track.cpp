@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include <map>
 #include <optional>
 
-#include "support/call_text.hpp"
 #include "estimators.hpp"
 #include "lanes/lanes.hpp"
+#include "support/fields.hpp"
+#include "support/types.hpp"
 #include "wakeline/track/tracker.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
@@ -57,99 +57,6 @@ class AnyTracker {
  private:
   std::variant<Tracker<VesselImm>, Tracker<AnyEstimator>> tracker_;
 };
-
-/// A plain struct of settings as a Python class: keyword arguments, attributes, and an error that
-/// names what is unknown.
-template <class Settings>
-class SettingsClass {
- public:
-  SettingsClass(py::module_& m, const char* name, const char* doc) : class_(m, name, doc) {
-    define_copies(class_);
-    class_.def(py::init([](const py::kwargs& values) {
-      py::object settings = py::cast(Settings{});
-      const py::object known = settings.attr("as_dict")();
-      for (const auto& [key, value] : values) {
-        if (!known.contains(key))
-          throw py::type_error("no setting is called " + py::str(key).cast<std::string>());
-        set(settings, key, value, known[key]);
-      }
-      const Settings result = settings.cast<Settings>();
-      if constexpr (requires { result.validate(); }) result.validate();
-      return result;
-    }));
-    class_.def("__eq__", [](const py::object& self, const py::object& other) {
-      return py::isinstance<Settings>(other) &&
-             self.attr("as_dict")().equal(other.attr("as_dict")());
-    });
-  }
-
-  template <class Field>
-  SettingsClass& field(const char* name, Field Settings::*member) {
-    class_.def_readwrite(name, member);
-    names_.push_back(name);
-    return *this;
-  }
-
-  /// A field that is a property of its own.
-  SettingsClass& name(const char* name) {
-    names_.push_back(name);
-    return *this;
-  }
-
-  /// Closes the list of fields.
-  void done() {
-    class_.def(
-        "as_dict",
-        [names = names_](const py::object& self) {
-          py::dict values;
-          for (const std::string& name : names) values[name.c_str()] = self.attr(name.c_str());
-          return values;
-        },
-        "The settings by name.");
-    class_.def("__repr__", [names = names_](const py::object& self) {
-      CallText call(py::type::of(self).attr("__name__").cast<std::string>());
-      for (const std::string& name : names) call.with(name, py::object(self.attr(name.c_str())));
-      return call.text();
-    });
-  }
-
-  py::class_<Settings>& python() { return class_; }
-
- private:
-  static void set(const py::object& settings, const py::handle& key, const py::handle& value,
-                  const py::object& known) {
-    try {
-      settings.attr(key) = value;
-    } catch (const py::error_already_set& error) {
-      if (!error.matches(PyExc_TypeError)) throw;
-      throw py::type_error(py::str("{} must be {}, got {!r}")
-                               .format(key, py::type::of(known).attr("__name__"), value)
-                               .cast<std::string>());
-    }
-  }
-
-  py::class_<Settings> class_;
-  std::vector<std::string> names_;
-};
-
-const std::map<std::string, Association> kAssociations{
-    {"probabilistic", Association::kProbabilistic},
-    {"global_nearest", Association::kGlobalNearest},
-    {"nearest", Association::kNearest}};
-
-std::string association_name(const TrackerConfig& config) {
-  for (const auto& [name, value] : kAssociations)
-    if (value == config.association) return name;
-  return "";
-}
-
-void set_association(TrackerConfig& config, const std::string& name) {
-  const auto found = kAssociations.find(name);
-  if (found == kAssociations.end())
-    throw py::value_error("association must be probabilistic, global_nearest or nearest, got " +
-                          name);
-  config.association = found->second;
-}
 
 const char* status_name(TrackStatus status) {
   switch (status) {
@@ -258,13 +165,12 @@ AnyTracker tracker_with(const Radar& radar, const TrackerConfig& config,
 py::object python_estimator(const VesselImm& imm) { return py::cast(as_any_imm(imm)); }
 py::object python_estimator(const AnyEstimator& estimator) { return to_python(estimator); }
 
-std::string tracker_text(const AnyTracker& any) {
+Arguments tracker_arguments(const AnyTracker& any) {
   return any.visit([](const auto& tracker) {
-    return CallText("Tracker")
+    return Arguments()
         .with("radar", Radar(tracker.radar()))
         .with("config", TrackerConfig(tracker.config()))
-        .with("estimator", python_estimator(tracker.prototype()))
-        .text();
+        .with("estimator", python_estimator(tracker.prototype()));
   });
 }
 
@@ -369,82 +275,24 @@ PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& 
 void define_track(py::module_& parent) {
   py::module_ m = parent.def_submodule("track", "The life of tracks.");
 
-  SettingsClass<Radar> radar(m, "Radar",
-                             "What a console knows of its radar and of the vessels it looks at.");
-  radar.field("range_std_m", &Radar::range_std_m)
-      .field("bearing_std_rad", &Radar::bearing_std_rad)
-      .field("extent_std_m", &Radar::extent_std_m)
-      .field("period_s", &Radar::period_s)
-      .field("max_speed_mps", &Radar::max_speed_mps)
-      .field("bearing_offset_rad", &Radar::bearing_offset_rad)
-      .done();
-  radar.python().def(
-      "position",
-      [](const Radar& r, double range_m, double bearing_rad, const OwnShip& own) {
-        return PyGaussian::from(r.position(range_m, bearing_rad, own));
-      },
-      py::arg("range_m"), py::arg("bearing_rad"), py::arg_v("own", OwnShip{}, "OwnShip()"),
-      "A plot seen from own ship as a position [north, east] with its covariance.");
-
-  SettingsClass<TrackerConfig> config(
-      m, "TrackerConfig", "The rules by which tracks live; one set of defaults for all radars.");
-  config.python().def_property("association", &association_name, &set_association,
-                               "probabilistic, global_nearest or nearest");
-  config.field("detection_probability", &TrackerConfig::detection_probability)
-      .field("gate_probability", &TrackerConfig::gate_probability)
-      .field("clutter_density_per_m2", &TrackerConfig::clutter_density_per_m2)
-      .field("wild_probability", &TrackerConfig::wild_probability)
-      .field("wild_scale", &TrackerConfig::wild_scale)
-      .field("clutter_cell_m", &TrackerConfig::clutter_cell_m)
-      .field("clutter_memory_s", &TrackerConfig::clutter_memory_s)
-      .field("clutter_weight", &TrackerConfig::clutter_weight)
-      .field("visible_time_s", &TrackerConfig::visible_time_s)
-      .field("hidden_time_s", &TrackerConfig::hidden_time_s)
-      .field("initial_existence", &TrackerConfig::initial_existence)
-      .field("free_plot", &TrackerConfig::free_plot)
-      .field("start_gate_sigma", &TrackerConfig::start_gate_sigma)
-      .field("start_speed_factor", &TrackerConfig::start_speed_factor)
-      .field("confirm_existence", &TrackerConfig::confirm_existence)
-      .field("confirm_hits", &TrackerConfig::confirm_hits)
-      .field("confirm_window", &TrackerConfig::confirm_window)
-      .field("survival_time_s", &TrackerConfig::survival_time_s)
-      .field("drop_existence", &TrackerConfig::drop_existence)
-      .field("tentative_misses", &TrackerConfig::tentative_misses)
-      .field("coast_scans", &TrackerConfig::coast_scans)
-      .field("coast_scans_per_hit", &TrackerConfig::coast_scans_per_hit)
-      .field("coast_scans_max", &TrackerConfig::coast_scans_max)
-      .field("shown_scans", &TrackerConfig::shown_scans)
-      .field("drop_position_std_m", &TrackerConfig::drop_position_std_m)
-      .field("drop_speed_factor", &TrackerConfig::drop_speed_factor)
-      .field("duplicate_distance", &TrackerConfig::duplicate_distance)
-      .field("vessel_length_m", &TrackerConfig::vessel_length_m)
-      .field("duplicate_scans", &TrackerConfig::duplicate_scans)
-      .field("max_tracks", &TrackerConfig::max_tracks)
-      .field("max_plots", &TrackerConfig::max_plots)
-      .name("association")
-      .done();
-
-  SettingsClass<VesselModels> models(
-      m, "VesselModels", "The motion models of a tracker: cruising, steady, restless and turning.");
-  models.field("cruising_psd_m2s3", &VesselModels::cruising_psd_m2s3)
-      .field("cruising_course_psd_rad2s", &VesselModels::cruising_course_psd_rad2s)
-      .field("steady_psd_m2s3", &VesselModels::steady_psd_m2s3)
-      .field("steady_course_psd_rad2s", &VesselModels::steady_course_psd_rad2s)
-      .field("restless_psd_m2s3", &VesselModels::restless_psd_m2s3)
-      .field("restless_course_psd_rad2s", &VesselModels::restless_course_psd_rad2s)
-      .field("turning_psd_m2s3", &VesselModels::turning_psd_m2s3)
-      .field("turning_course_psd_rad2s", &VesselModels::turning_course_psd_rad2s)
-      .field("turn_rate_psd_rad2s3", &VesselModels::turn_rate_psd_rad2s3)
-      .field("prior_turn_rate_std_rad_s", &VesselModels::prior_turn_rate_std_rad_s)
-      .field("cruising_probability", &VesselModels::cruising_probability)
-      .field("cruising_sojourn_s", &VesselModels::cruising_sojourn_s)
-      .field("settling_s", &VesselModels::settling_s)
-      .field("steady_sojourn_s", &VesselModels::steady_sojourn_s)
-      .field("restless_sojourn_s", &VesselModels::restless_sojourn_s)
-      .field("turning_sojourn_s", &VesselModels::turning_sojourn_s)
-      .done();
-  models.python().def_static("ships", &VesselModels::ships,
-                             "Of ships under way, which alter course as ships do.");
+  define_struct<Radar>(m, "Radar",
+                       "What a console knows of its radar and of the vessels it looks at.",
+                       {.writable = true})
+      .def(
+          "position",
+          [](const Radar& r, double range_m, double bearing_rad, const OwnShip& own) {
+            return PyGaussian::from(r.position(range_m, bearing_rad, own));
+          },
+          py::arg("range_m"), py::arg("bearing_rad"), py::arg_v("own", OwnShip{}, "OwnShip()"),
+          "A plot seen from own ship as a position [north, east] with its covariance.");
+  define_struct<TrackerConfig>(
+      m, "TrackerConfig", "The rules by which tracks live; one set of defaults for all radars.",
+      {.writable = true});
+  define_struct<VesselModels>(
+      m, "VesselModels", "The motion models of a tracker: cruising, steady, restless and turning.",
+      {.writable = true})
+      .def_static("ships", &VesselModels::ships,
+                  "Of ships under way, which alter course as ships do.");
 
   m.def("vessel_imm", &any_vessel_imm, py::arg("radar"),
         py::arg_v("models", VesselModels{}, "VesselModels()"),
@@ -515,7 +363,8 @@ void define_track(py::module_& parent) {
         return "<TrackTable: " + many(table.track_id.size(), "track") + ">";
       });
 
-  py::class_<AnyTracker>(m, "Tracker", R"(Keeps tracks of all vessels a radar sees, scan by scan.
+  py::class_<AnyTracker> tracker(m, "Tracker",
+                                 R"(Keeps tracks of all vessels a radar sees, scan by scan.
 
 Use it from one thread at a time; trackers share nothing.
 
@@ -531,7 +380,9 @@ estimator : Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm, ModeHisto
 Raises
 ------
 ValueError
-    When a setting makes no sense.)")
+    When a setting makes no sense.)");
+  define_arguments(tracker);
+  tracker
       .def(py::init([](const Radar& r, const TrackerConfig& c, const VesselModels& v,
                        const py::object& estimator) {
              return estimator.is_none() ? AnyTracker(r, c, vessel_imm(r, v))
@@ -648,7 +499,7 @@ ValueError
           [](const AnyTracker& tracker) {
             return tracker.visit([](const auto& one) { return TrackerConfig(one.config()); });
           })
-      .def("__repr__", &tracker_text);
+      .def("_arguments", &tracker_arguments);
 }
 
 }  // namespace wakeline::python

@@ -4,8 +4,6 @@
 // What the bindings of estimators over a grid of turn rates share.
 #pragma once
 
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,21 +15,6 @@
 namespace wakeline::python {
 
 using Chain = ModeChain<kRuntimeModes>;
-
-/// The number that was written, of one that rounding may have moved: the same to 15 digits.
-inline double as_written(double number) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.15g", number);
-  return std::strtod(digits, nullptr);
-}
-
-/// The mean time in each mode of a chain in continuous time, where it leaves every mode.
-inline std::optional<Eigen::VectorXd> sojourn_times_s(const Chain::Matrix& generator_per_s) {
-  const Eigen::VectorXd times_s =
-      (-generator_per_s.diagonal().cwiseInverse()).unaryExpr(&as_written);
-  if (!times_s.allFinite() || !(times_s.array() > 0.0).all()) return std::nullopt;
-  return times_s;
-}
 
 /// `count` filters like `filter`, which must have a known turn rate.
 inline AnyFilterBank turning_bank(const AnyFilter& filter, int count) {

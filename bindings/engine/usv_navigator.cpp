@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "support/call_text.hpp"
+#include "support/types.hpp"
 #include "wakeline/filter/augmented_ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
 
@@ -82,12 +82,12 @@ class PyNavigator {
   }
 
  public:
-  /// `call` is the text of the call that makes an equal one.
+  /// `arguments` make an equal one.
   template <class Navigator>
-  PyNavigator(const Navigator& navigator, const std::string& call)
-      : navigator_(navigator), call_(call) {}
+  PyNavigator(const Navigator& navigator, const Arguments& arguments)
+      : navigator_(navigator), arguments_(arguments) {}
 
-  const std::string& call() const { return call_; }
+  const Arguments& arguments() const { return arguments_; }
 
   void archive(Archive& fields) {
     visit([&](auto& navigator) { navigator.archive(fields); });
@@ -342,19 +342,20 @@ class PyNavigator {
   }
 
   AnyNavigator navigator_;
-  std::string call_;
+  Arguments arguments_;
 };
 
 template <class Model>
 PyNavigator make(const Model& model, const std::string& filter, const UsvOutliers& outliers,
-                 const ImuNoise& unmeasured, const Unscented& unscented, const std::string& call) {
+                 const ImuNoise& unmeasured, const Unscented& unscented,
+                 const Arguments& arguments) {
   if (filter == "ekf")
-    return PyNavigator(UsvNavigator<Model, Ekf>(model, outliers, unmeasured), call);
+    return PyNavigator(UsvNavigator<Model, Ekf>(model, outliers, unmeasured), arguments);
   if (filter == "ukf")
-    return PyNavigator(UsvNavigator<Model, Ukf>(model, outliers, unmeasured, unscented), call);
+    return PyNavigator(UsvNavigator<Model, Ukf>(model, outliers, unmeasured, unscented), arguments);
   if (filter == "augmented_ukf")
     return PyNavigator(UsvNavigator<Model, AugmentedUkf>(model, outliers, unmeasured, unscented),
-                       call);
+                       arguments);
   throw py::value_error("filter must be 'ekf', 'ukf' or 'augmented_ukf', got '" + filter + "'");
 }
 
@@ -437,29 +438,28 @@ ValueError
                        double gate, int rejections, double alpha, double beta, double kappa) {
              const UsvOutliers outliers{ChiSquareGate{gate}, rejections};
              const UsvInput input{{}, {a_std, w_std}, 1.0};
-             const std::string call = CallText("UsvNavigator")
-                                          .with("states", states)
-                                          .with("filter", filter)
-                                          .with("acceleration_std_mps2", a_std)
-                                          .with("yaw_rate_std_rad_s", w_std)
-                                          .with("unmeasured_acceleration_std_mps2", blind_a_std)
-                                          .with("unmeasured_yaw_rate_std_rad_s", blind_w_std)
-                                          .with("acceleration_bias_std_mps2", a_bias)
-                                          .with("gyro_bias_std_rad_s", w_bias)
-                                          .with("current_std_mps", current)
-                                          .with("speed_walk_mps", speed_walk)
-                                          .with("current_walk_mps", current_walk)
-                                          .with("turned_at", turned_at)
-                                          .with("gate_probability", gate)
-                                          .with("rejections", rejections)
-                                          .with("alpha", alpha)
-                                          .with("beta", beta)
-                                          .with("kappa", kappa)
-                                          .text();
+             const Arguments arguments = Arguments()
+                                             .with("states", states)
+                                             .with("filter", filter)
+                                             .with("acceleration_std_mps2", a_std)
+                                             .with("yaw_rate_std_rad_s", w_std)
+                                             .with("unmeasured_acceleration_std_mps2", blind_a_std)
+                                             .with("unmeasured_yaw_rate_std_rad_s", blind_w_std)
+                                             .with("acceleration_bias_std_mps2", a_bias)
+                                             .with("gyro_bias_std_rad_s", w_bias)
+                                             .with("current_std_mps", current)
+                                             .with("speed_walk_mps", speed_walk)
+                                             .with("current_walk_mps", current_walk)
+                                             .with("turned_at", turned_at)
+                                             .with("gate_probability", gate)
+                                             .with("rejections", rejections)
+                                             .with("alpha", alpha)
+                                             .with("beta", beta)
+                                             .with("kappa", kappa);
              const auto build = [&](auto model) {
                model.input = input;
                return make(model, filter, outliers, {blind_a_std, blind_w_std},
-                           {alpha, beta, kappa}, call);
+                           {alpha, beta, kappa}, arguments);
              };
              if (states == 5) return build(UsvMotion{.turned_at = turned_at});
              if (states == 8)
@@ -487,7 +487,7 @@ ValueError
            py::arg("gate_probability") = UsvOutliers{}.gate.probability,
            py::arg("rejections") = UsvOutliers{}.rejections, py::arg("alpha") = Unscented{}.alpha,
            py::arg("beta") = Unscented{}.beta, py::arg("kappa") = Unscented{}.kappa)
-      .def("__repr__", &PyNavigator::call)
+      .def("_arguments", &PyNavigator::arguments)
       .def(
           "start",
           [](PyNavigator& self, const DoubleArray& position, const DoubleArray& velocity,

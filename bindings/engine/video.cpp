@@ -6,7 +6,6 @@
 #include <utility>
 #include <variant>
 
-#include "support/call_text.hpp"
 #include "support/types.hpp"
 #include "wakeline/video/cfar.hpp"
 #include "wakeline/video/land_mask.hpp"
@@ -503,14 +502,13 @@ factor : float
     Of the mean amplitude that a cell must exceed.)");
   define_copies(clutter);
   clutter
-      .def("__repr__",
+      .def("_arguments",
            [](const StaticClutterMap& map) {
-             return CallText("StaticClutterMap")
+             return Arguments()
                  .with("azimuths", map.azimuths())
                  .with("cells", map.cells())
                  .with("time_constant_s", map.time_constant_s())
-                 .with("factor", map.factor())
-                 .text();
+                 .with("factor", map.factor());
            })
       .def(py::init<int, int, double, double>(), py::arg("azimuths"), py::arg("cells"),
            py::arg("time_constant_s"), py::arg("factor") = 1.5)

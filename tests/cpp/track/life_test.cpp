@@ -98,10 +98,10 @@ TEST(Life, FalsePlotsAloneAreNoEvidenceOnAverage) {
   constexpr double kDensity = 1e-4, kHalfSide_m = 300.0, kExistence = 0.999;
   constexpr int kScans = 2000;
   for (const double gate_probability : {0.5, 0.95})
-    for (const double wild_probability : {0.0, 0.2}) {
+    for (const double outlier_probability : {0.0, 0.2}) {
       const TrackerConfig config{.gate_probability = gate_probability,
                                  .clutter_density_per_m2 = kDensity,
-                                 .wild_probability = wild_probability,
+                                 .outlier_probability = outlier_probability,
                                  .clutter_cell_m = 0.0,
                                  .visible_time_s = 0.0,
                                  .initial_existence = 0.0,
@@ -129,7 +129,7 @@ TEST(Life, FalsePlotsAloneAreNoEvidenceOnAverage) {
         ratio += existence / (1.0 - existence) * (1.0 - kExistence) / kExistence / kScans;
         (void)tracker.drop(id);
       }
-      EXPECT_NEAR(ratio, 1.0, 0.1) << gate_probability << ' ' << wild_probability;
+      EXPECT_NEAR(ratio, 1.0, 0.1) << gate_probability << ' ' << outlier_probability;
     }
 }
 

@@ -52,8 +52,8 @@ TEST(TrackerConfig, NamesWhatItRefuses) {
   WAKELINE_EXPECT_REFUSED(detection_probability, -0.1, 1.1, kNan);
   WAKELINE_EXPECT_REFUSED(gate_probability, 0.0, 1.0, kNan);
   WAKELINE_EXPECT_REFUSED(clutter_density_per_m2, 0.0, -1.0, kNan, kInf);
-  WAKELINE_EXPECT_REFUSED(wild_probability, -0.1, 1.0, kNan);
-  WAKELINE_EXPECT_REFUSED(wild_scale, 0.9, kNan, kInf);
+  WAKELINE_EXPECT_REFUSED(outlier_probability, -0.1, 1.0, kNan);
+  WAKELINE_EXPECT_REFUSED(outlier_scale, 0.9, kNan, kInf);
   WAKELINE_EXPECT_REFUSED(clutter_cell_m, -1.0, kNan, kInf);
   WAKELINE_EXPECT_REFUSED(clutter_memory_s, 0.0, 1e-310, kNan);
   WAKELINE_EXPECT_REFUSED(clutter_weight, -1.0, kNan);

@@ -108,9 +108,9 @@ TEST(RadarPlots, HaveTheErrorsThatTheirCovarianceSays) {
 
 TEST(Start, IsAsDoubtfulAsPlotsThatMayBeWild) {
   const test::Boat boat{{1500.0, 800.0}, {5.0, -3.0}};
-  const auto covariance_at_start = [&](double wild_probability) {
-    const TrackerConfig config{.wild_probability = wild_probability,
-                               .wild_scale = 4.0,
+  const auto covariance_at_start = [&](double outlier_probability) {
+    const TrackerConfig config{.outlier_probability = outlier_probability,
+                               .outlier_scale = 4.0,
                                .start_speed_factor = 0.0};
     test::VesselTracker tracker(test::kTestRadar, config, vessel_imm(test::kTestRadar));
     for (const double time_s : {0.0, 2.5}) {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <span>
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
 
@@ -24,19 +24,26 @@ namespace wakeline {
 ///
 /// Source: Bar-Shalom, Li, Multitarget-Multisensor Tracking, 1995, section 3.4 (parametric PDA).
 struct ProbabilisticData {
-  double detection_probability = 0.9;  ///< P_D, that the target is detected
-  double gate_probability = 0.99;      ///< P_G, that its plot is inside the gate
-  /// λ, false plots per unit of measurement volume (per m² for a position): Poisson, the parametric
-  /// form.
+  double detection_probability = 0.9;
+  double gate_probability = 0.99;
   double clutter_density = 1e-6;
+
+  static constexpr auto fields() noexcept {
+    using P = ProbabilisticData;
+    return std::tuple{
+        field("detection_probability", &P::detection_probability, kProbability, "1",
+              "Probability P_D that the target is detected."),
+        field("gate_probability", &P::gate_probability, kProbability, "1",
+              "Probability P_G that its plot is inside the gate."),
+        field("clutter_density", &P::clutter_density, kNotNegative, "1/volume",
+              "False plots λ per unit of measurement volume, per m² for a position: Poisson, the "
+              "parametric form."),
+    };
+  }
 
   /// Throws `std::invalid_argument` when a probability is outside [0, 1] or the density is
   /// negative.
-  void validate() const {
-    require_probability("detection_probability", detection_probability);
-    require_probability("gate_probability", gate_probability);
-    require_not_negative("clutter_density", clutter_density);
-  }
+  void validate() const { validate_fields(*this); }
 
   /// The non-parametric form for an unknown clutter density: λ = m / V, m plots in a gate of volume
   /// V > 0.

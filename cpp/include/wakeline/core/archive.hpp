@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
@@ -68,14 +69,9 @@ class Archive {
     raw(values.data(), sizeof(T) * values.size());
   }
 
-  /// Rules that an object goes by, whose state is that of no other: reading others fails.
+  /// Parameters of an object, numbers or structs with a table of fields: reading others fails.
   template <class... Rules>
   void rules(const Rules&... own) {
-    const auto same = [&](auto rule) {
-      const auto before = rule;
-      (*this)(rule);
-      if (rule != before) fail();
-    };
     (same(own), ...);
   }
 
@@ -83,6 +79,17 @@ class Archive {
   void fail() noexcept { ok_ = false; }
 
  private:
+  template <class Value>
+  void same(const Value& own) {
+    if constexpr (HasFields<Value>) {
+      for_each_field(own, [this](const auto&, const auto& value) { same(value); });
+    } else {
+      Value read = own;
+      (*this)(read);
+      if (read != own) fail();
+    }
+  }
+
   void raw(void* data, std::size_t size) {
     if (!loading_) {
       const auto* begin = static_cast<const std::byte*>(data);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -22,16 +21,16 @@ namespace wakeline {
 #endif
 }
 
-/// Digits of a number in such a message: enough to tell it from one that would do.
-inline constexpr int kMessageDigits = 12;
+/// A number in a message, with digits enough to tell it from one that would do.
+inline std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", value);
+  return text;
+}
 
 /// Refuses in words what was wanted and what came, unless the condition holds.
 inline void require(bool condition, const char* name, const char* wanted, double value) {
-  if (condition) return;
-  std::ostringstream message;
-  message.precision(kMessageDigits);
-  message << name << " must be " << wanted << ", got " << value;
-  refuse(message.str());
+  if (!condition) refuse(std::string(name) + " must be " + wanted + ", got " + number_text(value));
 }
 
 inline void require_not_negative(const char* name, double value) {

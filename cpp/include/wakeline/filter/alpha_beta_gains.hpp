@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
@@ -48,7 +48,17 @@ Scalar counted(Scalar plots, int max_plots) noexcept {
 struct ConstantGains {
   double alpha = 0.5;
   double beta = 0.2;
-  double gamma = 0.0;  ///< for an alpha-beta-gamma filter only
+  double gamma = 0.0;
+
+  static constexpr auto fields() noexcept {
+    using C = ConstantGains;
+    return std::tuple{
+        field("alpha", &C::alpha, kFinite, "1", "Gain of the position."),
+        field("beta", &C::beta, kFinite, "1", "Gain of the velocity, over the step."),
+        field("gamma", &C::gamma, kFinite, "1",
+              "Gain of the acceleration, over half the squared step; 0 for an alpha-beta filter."),
+    };
+  }
 
   template <int Order, class Scalar>
   Vec<Scalar, Order> gains(const GainOccasion<Scalar>&) const noexcept {
@@ -78,8 +88,18 @@ struct ConstantGains {
 /// A missed scan does not count; the step after it takes the time that has gone by. Source: E.
 /// Brookner, Tracking and Kalman Filtering Made Easy, 1998, 5.7.
 struct GrowingMemory {
-  int plots_before = 0;  ///< that the start was made of
-  int max_plots = 0;     ///< the gains stay those of so many; 0 for all
+  int plots_before = 0;
+  int max_plots = 0;
+
+  static constexpr auto fields() noexcept {
+    using G = GrowingMemory;
+    return std::tuple{
+        field("plots_before", &G::plots_before, at_least(0), "plots",
+              "Plots that the start was made of."),
+        field("max_plots", &G::max_plots, at_least(0), "plots",
+              "Plots at which the gains stop falling; 0: never."),
+    };
+  }
 
   template <int Order, class Scalar>
   Vec<Scalar, Order> gains(const GainOccasion<Scalar>& at) const noexcept {
@@ -99,7 +119,7 @@ struct GrowingMemory {
 
   template <int Order>
   void validate() const {
-    require(plots_before >= 0, "plots_before", "0 or more", plots_before);
+    validate_fields(*this);
     require(max_plots == 0 || max_plots >= Order, "max_plots",
             Order == 2 ? "0 or 2 or more" : "0 or 3 or more", max_plots);
   }
@@ -111,6 +131,11 @@ struct GrowingMemory {
 struct BenedictBordner {
   double alpha = 0.5;
 
+  static constexpr auto fields() noexcept {
+    using B = BenedictBordner;
+    return std::tuple{field("alpha", &B::alpha, above_to(0, 1), "1", "Gain of the position.")};
+  }
+
   template <int Order, class Scalar>
   Vec<Scalar, 2> gains(const GainOccasion<Scalar>&) const noexcept {
     return {Scalar(alpha), Scalar(alpha * alpha / (2.0 - alpha))};
@@ -118,7 +143,7 @@ struct BenedictBordner {
 
   template <int Order>
   void validate() const {
-    require(alpha > 0.0 && alpha <= 1.0, "alpha", "above 0 and at most 1", alpha);
+    validate_fields(*this);
   }
 };
 
@@ -129,6 +154,13 @@ struct BenedictBordner {
 /// One theta a reading, however long the step. Source: Brookner 1998, 1.2.6 and 7.2.
 struct CriticallyDamped {
   double theta = 0.5;
+
+  static constexpr auto fields() noexcept {
+    using C = CriticallyDamped;
+    return std::tuple{
+        field("theta", &C::theta, from_to_below(0, 1), "1",
+              "Weight of a reading over that of the next one; 0: only the newest readings count.")};
+  }
 
   template <int Order, class Scalar>
   Vec<Scalar, Order> gains(const GainOccasion<Scalar>&) const noexcept {
@@ -142,7 +174,7 @@ struct CriticallyDamped {
 
   template <int Order>
   void validate() const {
-    require(theta >= 0.0 && theta < 1.0, "theta", "0 or more and below 1", theta);
+    validate_fields(*this);
   }
 };
 
@@ -155,6 +187,13 @@ struct CriticallyDamped {
 /// Kirubarajan, 6.5.2 and 6.5.3.
 struct TrackingIndex {
   double accel_std_mps2 = 0.1;
+
+  static constexpr auto fields() noexcept {
+    using T = TrackingIndex;
+    return std::tuple{field("accel_std_mps2", &T::accel_std_mps2, kPositive, "m/s²",
+                            "Standard deviation of the acceleration, of three states of its "
+                            "change, drawn anew for each step.")};
+  }
 
   template <int Order, class Scalar>
   Vec<Scalar, Order> gains(const GainOccasion<Scalar>& at) const noexcept {
@@ -203,7 +242,7 @@ struct TrackingIndex {
 
   template <int Order>
   void validate() const {
-    require_positive("accel_std_mps2", accel_std_mps2);
+    validate_fields(*this);
   }
 
  private:
@@ -246,6 +285,20 @@ struct RangeDependent {
   double far_alpha = 0.2;
   double far_beta = 0.01;
 
+  static constexpr auto fields() noexcept {
+    using R = RangeDependent;
+    return std::tuple{
+        field("near_range_m", &R::near_range_m, kPositive, "m",
+              "Range up to which the near gains hold."),
+        field("near_alpha", &R::near_alpha, kPositive, "1", "Gain of the position at short range."),
+        field("near_beta", &R::near_beta, kPositive, "1", "Gain of the velocity at short range."),
+        field("far_alpha", &R::far_alpha, kPositive, "1",
+              "Least gain of the position; at most near_alpha."),
+        field("far_beta", &R::far_beta, kPositive, "1",
+              "Least gain of the velocity; at most near_beta."),
+    };
+  }
+
   template <int Order, class Scalar>
   Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
     const Scalar nearness = Scalar(near_range_m) / at_least(at.range_m, Scalar(near_range_m));
@@ -255,14 +308,12 @@ struct RangeDependent {
 
   template <int Order>
   void validate() const {
-    require_positive("near_range_m", near_range_m);
+    validate_fields(*this);
     require(stable_gains(near_alpha, near_beta), "near_alpha and near_beta",
             "positive with 2 alpha + beta below 4, which a stable filter needs",
             2 * near_alpha + near_beta);
-    require(far_alpha > 0.0 && far_alpha <= near_alpha, "far_alpha",
-            "positive and at most near_alpha", far_alpha);
-    require(far_beta > 0.0 && far_beta <= near_beta, "far_beta", "positive and at most near_beta",
-            far_beta);
+    require(far_alpha <= near_alpha, "far_alpha", "at most near_alpha", far_alpha);
+    require(far_beta <= near_beta, "far_beta", "at most near_beta", far_beta);
   }
 };
 

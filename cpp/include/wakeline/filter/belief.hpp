@@ -16,13 +16,6 @@
 
 namespace wakeline {
 
-/// Throws what `model.validate()` throws, where the model has one.
-template <class Model>
-const Model& validated(const Model& model) {
-  if constexpr (requires { model.validate(); }) model.validate();
-  return model;
-}
-
 /// What every filter over one motion model shares: the model, the belief and its start.
 template <class MotionType, class ScalarType>
 class Belief {

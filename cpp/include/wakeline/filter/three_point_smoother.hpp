@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/filter/smoother.hpp"
 
 namespace wakeline {
@@ -44,10 +44,24 @@ struct ThreePoints {
 
 /// How the weights of (22) are chosen.
 struct ThreePointSettings {
-  double weight_before_s = 1.0;  ///< p_-: at this step a neighbour counts as much as the middle
-  double weight_after_s = 1.0;   ///< p_+
-  bool adaptive = false;         ///< (24) instead, over the last five readings
-  bool parabola = true;          ///< the rate is exact for a parabola, else by Simpson's weights
+  double weight_before_s = 1.0;
+  double weight_after_s = 1.0;
+  bool adaptive = false;
+  bool parabola = true;
+
+  static constexpr auto fields() noexcept {
+    using T = ThreePointSettings;
+    return std::tuple{
+        field("weight_before_s", &T::weight_before_s, kNotNegative, "s",
+              "Step at which the reading before counts as much as the middle one."),
+        field("weight_after_s", &T::weight_after_s, kNotNegative, "s",
+              "Step at which the reading after counts as much as the middle one."),
+        field("adaptive", &T::adaptive,
+              "Both weights are fitted to the last five readings instead."),
+        field("parabola", &T::parabola,
+              "The rate is exact for a parabola, else it has Simpson's weights."),
+    };
+  }
 };
 
 /// Each reading smoothed by its neighbours (22), so that the value is that of the reading before
@@ -65,8 +79,7 @@ class ThreePointSmoother {
 
   /// Throws `std::invalid_argument` when a weight makes no sense.
   explicit ThreePointSmoother(const ThreePointSettings& settings = {}) : settings_(settings) {
-    require_not_negative("weight_before_s", settings.weight_before_s);
-    require_not_negative("weight_after_s", settings.weight_after_s);
+    validate_fields(settings);
   }
 
   /// Takes a reading; one of the time of the reading before has no step to weigh by and joins it:

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/filter/belief.hpp"
 
 namespace wakeline {
@@ -27,6 +27,17 @@ struct Unscented {
   double beta = 2.0;
   double kappa = 0.0;
 
+  static constexpr auto fields() noexcept {
+    using U = Unscented;
+    return std::tuple{
+        field("alpha", &U::alpha, kPositive, "1", "Distance of the sigma points from the mean."),
+        field("beta", &U::beta, kFinite, "1",
+              "Weight of the central point in the covariance; 2 suits a Gaussian."),
+        field("kappa", &U::kappa, kFinite, "1",
+              "Second scale of that distance, sqrt(alpha² (n + kappa)) for n states."),
+    };
+  }
+
   /// How far the points stand from the centre, in columns of the factor: sqrt(alpha² (n + kappa)).
   template <class Scalar>
   [[nodiscard]] Scalar spread(int states) const noexcept {
@@ -47,8 +58,7 @@ struct Unscented {
 
   template <class Scalar = double>
   void validate(int states) const {
-    require_positive("alpha", alpha);
-    require_finite("beta", beta);
+    validate_fields(*this);
     require(states + kappa > 0.0, "kappa", "greater than minus the number of states", kappa);
     constexpr bool kDouble = sizeof(RealOf<Scalar>) > 4;
     const double reach = spread<double>(states);

@@ -7,15 +7,25 @@
 #include <cstddef>
 #include <string>
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/filter/smoother.hpp"
 
 namespace wakeline {
 
 /// What a bank of windows remembers.
 struct WindowBankSettings {
-  int max_readings = 32;  ///< of the longest window
-  double memory = 0.92;   ///< what an energy keeps of itself at each reading
+  int max_readings = 32;
+  double memory = 0.92;
+
+  static constexpr auto fields() noexcept {
+    using W = WindowBankSettings;
+    return std::tuple{
+        field("max_readings", &W::max_readings, at_least(2), "readings",
+              "Readings of the longest window."),
+        field("memory", &W::memory, between(0, 1), "1",
+              "Share of its energy that a window keeps at each reading."),
+    };
+  }
 };
 
 /// The least-squares lines through the last 2, 3, ... readings, of which that one speaks that has
@@ -35,10 +45,9 @@ class WindowBank {
   explicit WindowBank(const WindowBankSettings& settings =
                           {.max_readings = std::min(WindowBankSettings{}.max_readings, Capacity)})
       : settings_(settings) {
-    require(settings.max_readings >= 2 && settings.max_readings <= Capacity, "max_readings",
-            ("2 to " + std::to_string(Capacity)).c_str(), settings.max_readings);
-    require(settings.memory >= 0.0 && settings.memory <= 1.0, "memory", "from 0 to 1",
-            settings.memory);
+    validate_fields(settings);
+    require(settings.max_readings <= Capacity, "max_readings",
+            ("at most " + std::to_string(Capacity)).c_str(), settings.max_readings);
   }
 
   /// Takes a reading; one of the time of the reading before joins it: both become their mean, and

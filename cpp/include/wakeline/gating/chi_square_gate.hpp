@@ -8,7 +8,7 @@
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/chi_square.hpp"
 #include "wakeline/core/cholesky.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
@@ -16,7 +16,13 @@ namespace wakeline {
 /// The probability that a gate contains the target's plot; one setting for measurements of every
 /// dimension.
 struct ChiSquareGate {
-  double probability = 0.99;  ///< P_G, that the target's plot is inside the gate; in (0, 1)
+  double probability = 0.99;
+
+  static constexpr auto fields() noexcept {
+    using C = ChiSquareGate;
+    return std::tuple{field("probability", &C::probability, inside(0, 1), "1",
+                            "Probability that the plot of a target is inside the gate.")};
+  }
 
   /// Largest normalised innovation squared (NIS) inside the gate for `dof` measured quantities. NaN
   /// when the setting is invalid or dof is not positive. Computed at each call; a hot loop keeps an
@@ -26,10 +32,7 @@ struct ChiSquareGate {
   }
 
   /// Throws `std::invalid_argument` unless 0 < probability < 1.
-  void validate() const {
-    require(probability > 0.0 && probability < 1.0, "gate probability", "between 0 and 1",
-            probability);
-  }
+  void validate() const { validate_fields(*this); }
 };
 
 /// The gate of an M-dimensional measurement: the ellipsoid νᵀ S⁻¹ ν <= γ, P(χ²_M <= γ) = P_G.

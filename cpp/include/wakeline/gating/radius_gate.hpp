@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "wakeline/core/angle.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/gating/strobe_chord.hpp"
 #include "wakeline/measurement/polar.hpp"
@@ -17,8 +17,14 @@ namespace wakeline {
 struct RadiusGate {
   double radius_m = 100.0;
 
+  static constexpr auto fields() noexcept {
+    using R = RadiusGate;
+    return std::tuple{
+        field("radius_m", &R::radius_m, kPositive, "m", "Radius about the predicted position.")};
+  }
+
   /// Throws `std::invalid_argument` unless the radius is finite and positive.
-  void validate() const { require_positive("radius_m", radius_m); }
+  void validate() const { validate_fields(*this); }
 
   /// True when |plot - predicted| <= radius_m; both [north, east] in metres. False for NaN.
   template <class Scalar>

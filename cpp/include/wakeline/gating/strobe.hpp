@@ -8,7 +8,7 @@
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/cholesky.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/gating/chi_square_gate.hpp"
 #include "wakeline/gating/radius_gate.hpp"
@@ -91,12 +91,18 @@ struct RangeBearingWindow {
   double range_half_m = 100.0;
   double bearing_half_rad = deg(1.0);
 
-  /// Throws `std::invalid_argument` unless both are finite and positive, the bearing at most pi.
-  void validate() const {
-    require_positive("range_half_m", range_half_m);
-    require(bearing_half_rad > 0.0 && bearing_half_rad <= kPi<double>, "bearing_half_rad",
-            "positive and at most pi", bearing_half_rad);
+  static constexpr auto fields() noexcept {
+    using R = RangeBearingWindow;
+    return std::tuple{
+        field("range_half_m", &R::range_half_m, kPositive, "m",
+              "Half the length of the window along range."),
+        field("bearing_half_rad", &R::bearing_half_rad, above_to(0, kPi<double>), "rad",
+              "Half the width of the window in bearing, at most pi."),
+    };
   }
+
+  /// Throws `std::invalid_argument` unless both are finite and positive, the bearing at most pi.
+  void validate() const { validate_fields(*this); }
 
   [[nodiscard]] bool contains(const Vec<double, 2>& predicted_m,
                               const Vec<double, 2>& point_m) const noexcept {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -12,7 +13,7 @@
 #include "wakeline/core/amplitude_image.hpp"
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/cholesky.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/gating/strobe.hpp"
 #include "wakeline/gating/strobe_cells.hpp"
@@ -66,6 +67,12 @@ enum class EchoChoice : std::uint8_t {
   kStrongest,  ///< the one with the largest total weight
 };
 
+constexpr std::array<Word<EchoChoice>, 3> words_of(EchoChoice) noexcept {
+  return {{{"all", EchoChoice::kAll},
+           {"nearest", EchoChoice::kNearest},
+           {"strongest", EchoChoice::kStrongest}}};
+}
+
 /// Selection and weight of the cells in a strobe.
 ///
 /// A cell is used from `least_amplitude` on, with the weight amplitude - pedestal. With noise in
@@ -76,11 +83,21 @@ struct StrobeSettings {
   int pedestal = 0;
   EchoChoice several = EchoChoice::kAll;
 
+  static constexpr auto fields() noexcept {
+    using S = StrobeSettings;
+    return std::tuple{
+        field("least_amplitude", &S::least_amplitude, at_least(1), "counts",
+              "Least amplitude of a cell that counts."),
+        field("pedestal", &S::pedestal, at_least(0), "counts",
+              "Amplitude subtracted from that of a cell to weigh it; below least_amplitude."),
+        field("several", &S::several, "Which of several echoes in the strobe is measured."),
+    };
+  }
+
   /// Throws `std::invalid_argument` unless 0 <= pedestal < least_amplitude.
   void validate() const {
-    require(least_amplitude >= 1, "least_amplitude", "at least 1", least_amplitude);
-    require(pedestal >= 0 && pedestal < least_amplitude, "pedestal",
-            "not negative and below least_amplitude", pedestal);
+    validate_fields(*this);
+    require(pedestal < least_amplitude, "pedestal", "below least_amplitude", pedestal);
   }
 };
 

@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
@@ -15,9 +15,25 @@ struct OwnShip {
   double east_m = 0.0;
   double vnorth_mps = 0.0;
   double veast_mps = 0.0;
-  double position_std_m = 0.0;    ///< error of the position, per axis
-  double velocity_std_mps = 0.0;  ///< error of the velocity, per axis
-  double heading_std_rad = 0.0;   ///< error of the heading, which turns every bearing
+  double position_std_m = 0.0;
+  double velocity_std_mps = 0.0;
+  double heading_std_rad = 0.0;
+
+  static constexpr auto fields() noexcept {
+    using O = OwnShip;
+    return std::tuple{
+        field("north_m", &O::north_m, kFinite, "m", "Position of the antenna to the north."),
+        field("east_m", &O::east_m, kFinite, "m", "Position of the antenna to the east."),
+        field("vnorth_mps", &O::vnorth_mps, kFinite, "m/s", "Velocity to the north."),
+        field("veast_mps", &O::veast_mps, kFinite, "m/s", "Velocity to the east."),
+        field("position_std_m", &O::position_std_m, kNotNegative, "m",
+              "Standard deviation of the position, per axis."),
+        field("velocity_std_mps", &O::velocity_std_mps, kNotNegative, "m/s",
+              "Standard deviation of the velocity, per axis."),
+        field("heading_std_rad", &O::heading_std_rad, kNotNegative, "rad",
+              "Standard deviation of the heading, which turns every bearing."),
+    };
+  }
 
   template <class Scalar>
   Vec<Scalar, 2> position() const noexcept {
@@ -29,15 +45,7 @@ struct OwnShip {
     return {Scalar(vnorth_mps), Scalar(veast_mps)};
   }
 
-  void validate() const {
-    require_finite("own.north_m", north_m);
-    require_finite("own.east_m", east_m);
-    require_finite("own.vnorth_mps", vnorth_mps);
-    require_finite("own.veast_mps", veast_mps);
-    require_not_negative("own.position_std_m", position_std_m);
-    require_not_negative("own.velocity_std_mps", velocity_std_mps);
-    require_not_negative("own.heading_std_rad", heading_std_rad);
-  }
+  void validate() const { validate_fields(*this); }
 };
 
 /// Own ship that carries a sensor, null of a sensor without one.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/measurement/own_ship.hpp"
 #include "wakeline/simd/scalar.hpp"
@@ -109,14 +110,22 @@ struct PolarErrors {
     fix.covariance.diagonal().array() += Scalar(isotropic_variance_m2());
     return fix;
   }
-
-  void validate() const {
-    require_positive("range_std_m", range_std_m);
-    require_positive("bearing_std_rad", bearing_std_rad);
-    require_not_negative("extent_std_m", extent_std_m);
-    require_finite("bearing_offset_rad", bearing_offset_rad);
-    own.validate();
-  }
 };
+
+/// The fields that every radar sensor has.
+template <class Sensor>
+constexpr auto radar_fields() noexcept {
+  using S = Sensor;
+  return std::tuple{
+      field("range_std_m", &S::range_std_m, kPositive, "m", "Standard deviation of the range."),
+      field("bearing_std_rad", &S::bearing_std_rad, kPositive, "rad",
+            "Standard deviation of the bearing."),
+      field("extent_std_m", &S::extent_std_m, kNotNegative, "m",
+            "Wander of the echo over the hull of its vessel, per axis."),
+      field("bearing_offset_rad", &S::bearing_offset_rad, kFinite, "rad",
+            "Bearing read minus true bearing."),
+      field("own", &S::own, "Where the antenna is, and how well that and the heading are known."),
+  };
+}
 
 }  // namespace wakeline

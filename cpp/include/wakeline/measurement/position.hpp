@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/measurement/concept.hpp"
 
 namespace wakeline {
@@ -14,7 +14,13 @@ struct Position {
   static constexpr bool kLinear = true;
   static constexpr bool kDirect = true;
 
-  double position_std_m = 10.0;  ///< per axis
+  double position_std_m = 10.0;
+
+  static constexpr auto fields() noexcept {
+    using P = Position;
+    return std::tuple{field("position_std_m", &P::position_std_m, kPositive, "m",
+                            "Standard deviation of the position, per axis.")};
+  }
 
   template <class Scalar>
   Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
@@ -41,7 +47,7 @@ struct Position {
     return observe(z);
   }
 
-  void validate() const { require_positive("position_std_m", position_std_m); }
+  void validate() const { validate_fields(*this); }
 };
 
 }  // namespace wakeline

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "wakeline/core/fields.hpp"
 #include "wakeline/measurement/concept.hpp"
 #include "wakeline/measurement/polar.hpp"
 
@@ -19,9 +20,11 @@ struct RangeBearing {
 
   double range_std_m = 10.0;
   double bearing_std_rad = deg(1.0);
-  double extent_std_m = 0.0;        ///< wander of the echo over the hull, per axis
-  double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
+  double extent_std_m = 0.0;
+  double bearing_offset_rad = 0.0;
   OwnShip own = {};
+
+  static constexpr auto fields() noexcept { return radar_fields<RangeBearing>(); }
 
   /// z and R = diag(sr² + se², sb² + (se / r)²); se includes the error of own ship's position, sb
   /// that of its heading.
@@ -69,7 +72,7 @@ struct RangeBearing {
     return errors().position(z[0], z[1], true);
   }
 
-  void validate() const { errors().validate(); }
+  void validate() const { validate_fields(*this); }
 
   [[nodiscard]] PolarErrors errors() const noexcept {
     return {range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own};
@@ -88,9 +91,18 @@ struct ConvertedRangeBearing {
   double range_std_m = 10.0;
   double bearing_std_rad = deg(1.0);
   bool unbiased = true;
-  double extent_std_m = 0.0;        ///< wander of the echo over the hull, per axis
-  double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
+  double extent_std_m = 0.0;
+  double bearing_offset_rad = 0.0;
   OwnShip own = {};
+
+  static constexpr auto fields() noexcept {
+    using C = ConvertedRangeBearing;
+    return std::tuple_cat(
+        radar_fields<ConvertedRangeBearing>(),
+        std::tuple{
+            field("unbiased", &C::unbiased,
+                  "Mean and covariance are corrected for the curvature of the bearing error.")});
+  }
 
   /// The plot in north/east.
   template <class Scalar>
@@ -118,7 +130,7 @@ struct ConvertedRangeBearing {
     return observe(z);
   }
 
-  void validate() const { errors().validate(); }
+  void validate() const { validate_fields(*this); }
 
   [[nodiscard]] PolarErrors errors() const noexcept {
     return {range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "wakeline/core/fields.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 
 namespace wakeline {
@@ -16,9 +17,16 @@ struct RangeBearingDoppler {
   double range_std_m = 10.0;
   double bearing_std_rad = deg(1.0);
   double range_rate_std_mps = 1.0;
-  double extent_std_m = 0.0;        ///< wander of the echo over the hull, per axis
-  double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
+  double extent_std_m = 0.0;
+  double bearing_offset_rad = 0.0;
   OwnShip own = {};
+
+  static constexpr auto fields() noexcept {
+    using D = RangeBearingDoppler;
+    return std::tuple_cat(radar_fields<RangeBearingDoppler>(),
+                          std::tuple{field("range_rate_std_mps", &D::range_rate_std_mps, kPositive,
+                                           "m/s", "Standard deviation of the range rate.")});
+  }
 
   /// z and R: R of RangeBearing, and the variance of the range rate including own ship's velocity
   /// error.
@@ -70,10 +78,7 @@ struct RangeBearingDoppler {
     return range_bearing().errors().position(z[0], z[1], true);
   }
 
-  void validate() const {
-    range_bearing().validate();
-    require_positive("range_rate_std_mps", range_rate_std_mps);
-  }
+  void validate() const { validate_fields(*this); }
 
  private:
   [[nodiscard]] RangeBearing range_bearing() const noexcept {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "wakeline/core/fields.hpp"
 #include "wakeline/motion/concept.hpp"
 #include "wakeline/motion/pattern.hpp"
 #include "wakeline/motion/process_noise.hpp"
@@ -29,7 +30,17 @@ struct ConstantAcceleration {
   static constexpr Pattern<6> kPattern{"1xx000 01x000 001000 0001xx 00001x 000001"};
 
   ProcessNoise noise = WhiteJerk{};
-  double prior_accel_std_mps2 = 1.0;  ///< what a start without acceleration assumes of it
+  double prior_accel_std_mps2 = 1.0;
+
+  static constexpr auto fields() noexcept {
+    using C = ConstantAcceleration;
+    return std::tuple{
+        field("noise", &C::noise, "Process noise."),
+        field(
+            "prior_accel_std_mps2", &C::prior_accel_std_mps2, kPositive, "m/s²",
+            "Standard deviation of the acceleration, per axis, for a start that does not know it."),
+    };
+  }
 
   /// F(dt), 6 x 6.
   template <class Scalar>
@@ -51,8 +62,8 @@ struct ConstantAcceleration {
   }
 
   void validate() const {
+    validate_fields(*this);
     noise.validate(true);
-    require_positive("prior_accel_std_mps2", prior_accel_std_mps2);
   }
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "wakeline/core/fields.hpp"
 #include "wakeline/motion/concept.hpp"
 #include "wakeline/motion/pattern.hpp"
 #include "wakeline/motion/process_noise.hpp"
@@ -16,6 +17,11 @@ struct ConstantVelocity {
   static constexpr Pattern<4> kPattern{"1x00 0100 001x 0001"};
 
   ProcessNoise noise = WhiteAcceleration{};
+
+  static constexpr auto fields() noexcept {
+    using C = ConstantVelocity;
+    return std::tuple{field("noise", &C::noise, "Process noise.")};
+  }
 
   /// F(dt), 4 x 4.
   template <class Scalar>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/motion/concept.hpp"
 #include "wakeline/motion/pattern.hpp"
 #include "wakeline/motion/turn.hpp"
@@ -19,8 +20,17 @@ struct KnownTurn {
   static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x0x 0x0x 0x1x 0x0x"};
 
-  Rate turn_rate_rad_s = 0.0;  ///< positive to starboard
+  Rate turn_rate_rad_s = 0.0;
   ProcessNoise noise = WhiteAcceleration{};
+
+  static constexpr auto fields() noexcept {
+    using T = KnownTurn;
+    return std::tuple{
+        field("turn_rate_rad_s", &T::turn_rate_rad_s, kFinite, "rad/s",
+              "Turn rate, positive to starboard."),
+        field("noise", &T::noise, "Process noise."),
+    };
+  }
 
   /// F(dt), 4 x 4.
   template <class Scalar>
@@ -66,12 +76,31 @@ struct CoordinatedTurnRate {
   static constexpr Pattern<5> kPattern{"1x0xx 0x0xx 0x1xx 0x0xx 0000x"};
 
   ProcessNoise noise = WhiteAcceleration{};
-  double turn_rate_psd_rad2s3 = 1e-4;           ///< density of the white noise that drives omega
-  double prior_turn_rate_std_rad_s = deg(3.0);  ///< what a start without turn rate assumes of it
-  double course_psd_rad2s = 0.0;                ///< wander of the course, as in WanderingCourse
-  double max_speed_mps = 30.0;                  ///< speed that this wander grows up to
-  double prior_turn_rate_rad_s = 0.0;  ///< the rate that `prior_turn_rate_std_rad_s` is about
-  double turn_rate_time_s = 0.0;       ///< correlation time in which omega returns to it; 0: never
+  double turn_rate_psd_rad2s3 = 1e-4;
+  double prior_turn_rate_std_rad_s = deg(3.0);
+  double course_psd_rad2s = 0.0;
+  double max_speed_mps = 30.0;
+  double prior_turn_rate_rad_s = 0.0;
+  double turn_rate_time_s = 0.0;
+
+  static constexpr auto fields() noexcept {
+    using C = CoordinatedTurnRate;
+    return std::tuple{
+        field("noise", &C::noise, "Process noise of the acceleration."),
+        field("turn_rate_psd_rad2s3", &C::turn_rate_psd_rad2s3, kNotNegative, "rad²/s³",
+              "Power spectral density of the noise of the turn rate."),
+        field("prior_turn_rate_std_rad_s", &C::prior_turn_rate_std_rad_s, kPositive, "rad/s",
+              "Standard deviation of the turn rate for a start that does not know it."),
+        field("course_psd_rad2s", &C::course_psd_rad2s, kNotNegative, "rad²/s",
+              "Power spectral density of the course noise, which grows with the speed."),
+        field("max_speed_mps", &C::max_speed_mps, kPositive, "m/s",
+              "Speed up to which the course noise grows."),
+        field("prior_turn_rate_rad_s", &C::prior_turn_rate_rad_s, kFinite, "rad/s",
+              "Mean of the turn rate for such a start, to which it returns."),
+        field("turn_rate_time_s", &C::turn_rate_time_s, kNotNegative, "s",
+              "Correlation time in which the turn rate returns to its prior; 0: never."),
+    };
+  }
 
   /// f(x, dt): a turn at the mean of omega over the step.
   template <class Scalar>
@@ -133,13 +162,8 @@ struct CoordinatedTurnRate {
   }
 
   void validate() const {
+    validate_fields(*this);
     noise.validate(false);
-    require_not_negative("turn_rate_psd_rad2s3", turn_rate_psd_rad2s3);
-    require_positive("prior_turn_rate_std_rad_s", prior_turn_rate_std_rad_s);
-    require_finite("prior_turn_rate_rad_s", prior_turn_rate_rad_s);
-    require_not_negative("turn_rate_time_s", turn_rate_time_s);
-    require_not_negative("course_psd_rad2s", course_psd_rad2s);
-    require_positive("max_speed_mps", max_speed_mps);
   }
 
  private:

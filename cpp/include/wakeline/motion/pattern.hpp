@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <sstream>
+#include <string>
 
 #include "wakeline/core/require.hpp"
 #include "wakeline/motion/concept.hpp"
@@ -44,12 +44,9 @@ inline constexpr Pattern<kStatesOf<Motion>> kPatternOf<Motion> = Motion::kPatter
 
 [[noreturn]] inline void refuse_pattern(int row, int column, double wanted, double got,
                                         const char* where, double step_s) {
-  std::ostringstream message;
-  message.precision(kMessageDigits);
-  message << "the kPattern of this motion model must be true: it says " << wanted << " of element ("
-          << row << ", " << column << ") of the " << where << " for a step of " << step_s
-          << " s is " << got;
-  refuse(message.str());
+  refuse("the kPattern of this motion model must be true: it says " + number_text(wanted) +
+         " of element (" + std::to_string(row) + ", " + std::to_string(column) + ") of the " +
+         where + " for a step of " + number_text(step_s) + " s is " + number_text(got));
 }
 
 /// Throws `std::invalid_argument` unless the matrix of a linear model, or the Jacobian of a

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
@@ -12,6 +12,12 @@ namespace wakeline {
 /// with Applications to Tracking and Navigation, 6.2.2.
 struct WhiteAcceleration {
   double psd_m2s3 = 0.1;
+
+  static constexpr auto fields() noexcept {
+    using W = WhiteAcceleration;
+    return std::tuple{field("psd_m2s3", &W::psd_m2s3, kNotNegative, "m²/s³",
+                            "Power spectral density of the acceleration, per axis.")};
+  }
 };
 
 /// A random acceleration per axis, independent in each step and constant during it: Q = G s² Gᵀ, G
@@ -20,12 +26,24 @@ struct WhiteAcceleration {
 /// paper A, equations (1)-(3).
 struct PiecewiseAcceleration {
   double std_mps2 = 0.1;
+
+  static constexpr auto fields() noexcept {
+    using P = PiecewiseAcceleration;
+    return std::tuple{field("std_mps2", &P::std_mps2, kNotNegative, "m/s²",
+                            "Standard deviation of the acceleration of a step, per axis.")};
+  }
 };
 
 /// Continuous white jerk per axis, for states with an acceleration; consistent for any dt. Source:
 /// Bar-Shalom, Li, Kirubarajan, 6.2.3.
 struct WhiteJerk {
   double psd_m2s5 = 0.01;
+
+  static constexpr auto fields() noexcept {
+    using W = WhiteJerk;
+    return std::tuple{field("psd_m2s5", &W::psd_m2s5, kNotNegative, "m²/s⁵",
+                            "Power spectral density of the jerk, per axis.")};
+  }
 };
 
 /// Process noise of a motion model: one of the policies above.

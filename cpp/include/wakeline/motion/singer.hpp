@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "wakeline/core/fields.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 
 namespace wakeline {
@@ -32,8 +33,18 @@ struct Singer {
   static constexpr bool kForPacks = true;
   static constexpr Pattern<6> kPattern{"1xx000 01x000 00x000 0001xx 00001x 00000x"};
 
-  double maneuver_time_s = 20.0;  ///< tau, correlation time of the acceleration
-  double accel_std_mps2 = 0.5;    ///< stationary standard deviation of the acceleration
+  double maneuver_time_s = 20.0;
+  double accel_std_mps2 = 0.5;
+
+  static constexpr auto fields() noexcept {
+    using S = Singer;
+    return std::tuple{
+        field("maneuver_time_s", &S::maneuver_time_s, kPositive, "s",
+              "Correlation time of the acceleration."),
+        field("accel_std_mps2", &S::accel_std_mps2, kPositive, "m/s²",
+              "Stationary standard deviation of the acceleration, per axis."),
+    };
+  }
 
   /// F(dt), 6 x 6.
   template <class Scalar>
@@ -56,10 +67,7 @@ struct Singer {
 
   double prior_variance(Component) const noexcept { return accel_std_mps2 * accel_std_mps2; }
 
-  void validate() const {
-    require_positive("maneuver_time_s", maneuver_time_s);
-    require_positive("accel_std_mps2", accel_std_mps2);
-  }
+  void validate() const { validate_fields(*this); }
 
  private:
   /// Response `[position, velocity, acceleration]` after t to a unit acceleration.

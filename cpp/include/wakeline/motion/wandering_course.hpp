@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "wakeline/core/fields.hpp"
 #include "wakeline/motion/concept.hpp"
 #include "wakeline/motion/pattern.hpp"
 #include "wakeline/motion/process_noise.hpp"
@@ -27,9 +28,21 @@ struct WanderingCourse {
   static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x00 0100 001x 0001"};
 
-  double psd_m2s3 = 0.01;          ///< acceleration at rest
-  double course_psd_rad2s = 0.01;  ///< wander of the course
-  double max_speed_mps = 30.0;     ///< speed that the wander grows up to
+  double psd_m2s3 = 0.01;
+  double course_psd_rad2s = 0.01;
+  double max_speed_mps = 30.0;
+
+  static constexpr auto fields() noexcept {
+    using W = WanderingCourse;
+    return std::tuple{
+        field("psd_m2s3", &W::psd_m2s3, kNotNegative, "m²/s³",
+              "Power spectral density of the acceleration at rest."),
+        field("course_psd_rad2s", &W::course_psd_rad2s, kNotNegative, "rad²/s",
+              "Power spectral density of the course noise, which grows with the speed."),
+        field("max_speed_mps", &W::max_speed_mps, kPositive, "m/s",
+              "Speed up to which the course noise grows."),
+    };
+  }
 
   /// f(x, dt).
   template <class Scalar>
@@ -56,11 +69,7 @@ struct WanderingCourse {
     return q;
   }
 
-  void validate() const {
-    require_not_negative("psd_m2s3", psd_m2s3);
-    require_not_negative("course_psd_rad2s", course_psd_rad2s);
-    require_positive("max_speed_mps", max_speed_mps);
-  }
+  void validate() const { validate_fields(*this); }
 };
 
 }  // namespace wakeline

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <sstream>
+#include <string>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/multimodel/turn_grid_imm.hpp"
 
 namespace wakeline {
@@ -23,17 +24,42 @@ struct AdaptiveGrid {
   using Rates = std::array<double, 3>;
 
   double max_turn_rate_rad_s = deg(5.0);
-  /// Where they begin, none less than the one before it; not printed. Half the maximum to each side
-  /// when left out.
   std::optional<Rates> initial_turn_rates_rad_s = std::nullopt;
-  double min_spacing_rad_s = deg(2.0);      ///< r; not printed
-  double kept_spacing_rad_s = deg(3.0);     ///< no side comes nearer, but for the maximum
-  double least_move_rad_s = deg(0.1);       ///< a grid that would move less stays, which saves time
-  double centre_threshold = 0.8;            ///< t1: a centre less probable than this moves
-  double centre_gain = 0.3;                 ///< how far towards the mean rate: 1 is all the way
-  double unlikely_threshold = 0.25;         ///< t2: a side less probable than this comes nearer
-  double likely_threshold = 0.75;           ///< t3: a side more probable than this goes further
-  double initial_centre_probability = 0.9;  ///< of the centre at a start; not printed
+  double min_spacing_rad_s = deg(2.0);
+  double kept_spacing_rad_s = deg(3.0);
+  double least_move_rad_s = deg(0.1);
+  double centre_threshold = 0.8;
+  double centre_gain = 0.3;
+  double unlikely_threshold = 0.25;
+  double likely_threshold = 0.75;
+  double initial_centre_probability = 0.9;
+
+  static constexpr auto fields() noexcept {
+    using A = AdaptiveGrid;
+    return std::tuple{
+        field("max_turn_rate_rad_s", &A::max_turn_rate_rad_s, kPositive, "rad/s",
+              "Greatest turn rate to either side."),
+        field("initial_turn_rates_rad_s", &A::initial_turn_rates_rad_s,
+              "Turn rates at a start, none less than the one before it; when left out, half the "
+              "greatest to each side and 0."),
+        field("min_spacing_rad_s", &A::min_spacing_rad_s, kPositive, "rad/s",
+              "Spacing r below which a side counts as this far from the centre."),
+        field("kept_spacing_rad_s", &A::kept_spacing_rad_s, kNotNegative, "rad/s",
+              "Least spacing between a side and the centre, but for the greatest turn rate."),
+        field("least_move_rad_s", &A::least_move_rad_s, kNotNegative, "rad/s",
+              "A grid that would move less stays."),
+        field("centre_threshold", &A::centre_threshold, kProbability, "1",
+              "A centre less probable than this, t1, moves."),
+        field("centre_gain", &A::centre_gain, kProbability, "1",
+              "Share of the way to the mean turn rate that the centre moves."),
+        field("unlikely_threshold", &A::unlikely_threshold, kProbability, "1",
+              "A side less probable than this, t2, comes nearer."),
+        field("likely_threshold", &A::likely_threshold, kProbability, "1",
+              "A side more probable than this, t3, moves away."),
+        field("initial_centre_probability", &A::initial_centre_probability, kProbability, "1",
+              "Probability of the centre at a start."),
+    };
+  }
 
   [[nodiscard]] Rates initial() const noexcept {
     return initial_turn_rates_rad_s.value_or(
@@ -79,25 +105,17 @@ struct AdaptiveGrid {
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
   void validate() const {
-    require_positive("max_turn_rate_rad_s", max_turn_rate_rad_s);
-    std::ostringstream within;
-    within.precision(kMessageDigits);
-    within << "within max_turn_rate_rad_s, " << max_turn_rate_rad_s << " to either side";
+    validate_fields(*this);
+    const std::string within =
+        "within max_turn_rate_rad_s, " + number_text(max_turn_rate_rad_s) + " to either side";
     double before = -max_turn_rate_rad_s;
     for (const double rate : initial()) {
       require(std::abs(rate) <= max_turn_rate_rad_s, "every rate of initial_turn_rates_rad_s",
-              within.str().c_str(), rate);
+              within.c_str(), rate);
       require(rate >= before, "every rate of initial_turn_rates_rad_s",
               "not less than the one before it", rate);
       before = rate;
     }
-    require_positive("min_spacing_rad_s", min_spacing_rad_s);
-    require_not_negative("kept_spacing_rad_s", kept_spacing_rad_s);
-    require_not_negative("least_move_rad_s", least_move_rad_s);
-    require_probability("centre_threshold", centre_threshold);
-    require_probability("centre_gain", centre_gain);
-    require_probability("unlikely_threshold", unlikely_threshold);
-    require_probability("likely_threshold", likely_threshold);
     require(unlikely_threshold <= likely_threshold, "unlikely_threshold",
             "at most likely_threshold", unlikely_threshold);
     require_probability("initial_centre_probability", initial_centre_probability);

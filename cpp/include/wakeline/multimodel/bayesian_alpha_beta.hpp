@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <span>
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/multimodel/line_estimator.hpp"
 
 namespace wakeline {
@@ -18,13 +18,30 @@ struct LineWeighing {
   static constexpr int kMaxPlots = 16;
   static constexpr int kLeastOfParabola = 4;  ///< through three plots it would follow their noise
 
-  int min_plots = 2;        ///< of the shortest line
-  int max_plots = 10;       ///< of the longest one, and of the longest parabola
-  bool parabolas = true;    ///< whether there are parabolas too, through four plots and more
-  double sojourn_s = 30.0;  ///< mean time until another one is the right one
-  double longest_line_probability = 0.4;  ///< that it is the longest line; the others are alike
-  double acceleration_std_mps2 = 0.15;  ///< per axis, of a maneuver that began at the last plot but
-                                        ///< one: widens the covariance, not used in weighing
+  int min_plots = 2;
+  int max_plots = 10;
+  bool parabolas = true;
+  double sojourn_s = 30.0;
+  double longest_line_probability = 0.4;
+  double acceleration_std_mps2 = 0.15;
+
+  static constexpr auto fields() noexcept {
+    using L = LineWeighing;
+    return std::tuple{
+        field("min_plots", &L::min_plots, between(2, kMaxPlots), "plots",
+              "Plots of the shortest line."),
+        field("max_plots", &L::max_plots, between(2, kMaxPlots), "plots",
+              "Plots of the longest line and of the longest parabola; at least min_plots."),
+        field("parabolas", &L::parabolas, "There are parabolas through four plots and more, too."),
+        field("sojourn_s", &L::sojourn_s, kPositive, "s",
+              "Mean time until another line or parabola is the right one."),
+        field("longest_line_probability", &L::longest_line_probability, inside(0, 1), "1",
+              "Prior probability of the longest line; the others have equal shares."),
+        field("acceleration_std_mps2", &L::acceleration_std_mps2, kNotNegative, "m/s²",
+              "Standard deviation, per axis, of a maneuver that began at the last plot but one: it "
+              "widens the covariance and does not count in weighing."),
+    };
+  }
 
   [[nodiscard]] int lines() const noexcept { return max_plots - min_plots + 1; }
   /// Plots of the shortest parabola.
@@ -44,15 +61,10 @@ struct LineWeighing {
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
   void validate() const {
-    require(min_plots >= 2, "min_plots", "at least 2", min_plots);
-    require(max_plots >= min_plots && max_plots <= kMaxPlots, "max_plots", "min_plots to 16",
-            max_plots);
+    validate_fields(*this);
+    require(max_plots >= min_plots, "max_plots", "at least min_plots", max_plots);
     require(members() <= kMaxModes, "max_plots", "so few that there are at most 16 members",
             max_plots);
-    require_positive("sojourn_s", sojourn_s);
-    require(longest_line_probability > 0.0 && longest_line_probability < 1.0,
-            "longest_line_probability", "between 0 and 1", longest_line_probability);
-    require_not_negative("acceleration_std_mps2", acceleration_std_mps2);
   }
 };
 
@@ -92,8 +104,7 @@ class BayesianAlphaBeta
 
   /// Saves or restores what is remembered; that of another weighing fails.
   void archive(Archive& fields) {
-    fields.rules(weighing_.min_plots, weighing_.max_plots, weighing_.parabolas, weighing_.sojourn_s,
-                 weighing_.longest_line_probability, weighing_.acceleration_std_mps2);
+    fields.rules(weighing_);
     BayesianAlphaBeta loaded = *this;
     loaded.archive_plots(fields);
     fields(loaded.weight_);

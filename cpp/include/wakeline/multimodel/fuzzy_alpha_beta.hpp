@@ -48,8 +48,7 @@ class FuzzyAlphaBeta
 
   /// Saves or restores what is remembered; that of another criterion fails.
   void archive(Archive& fields) {
-    fields.rules(criterion_.max_plots, criterion_.steepness, criterion_.threshold, criterion_.clip,
-                 criterion_.t_norm, criterion_.hold, criterion_.acceleration_std_mps2);
+    fields.rules(criterion_);
     FuzzyAlphaBeta loaded = *this;
     loaded.archive_plots(fields);
     Judgement& last = loaded.judgement_;

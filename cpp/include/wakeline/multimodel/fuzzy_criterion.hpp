@@ -10,13 +10,17 @@
 #include <span>
 #include <type_traits>
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
 
 /// How the degrees of several conditions make that of all of them together.
 enum class TNorm : std::uint8_t { kProduct, kMinimum };
+
+constexpr std::array<Word<TNorm>, 2> words_of(TNorm) noexcept {
+  return {{{"product", TNorm::kProduct}, {"minimum", TNorm::kMinimum}}};
+}
 
 /// Which of the lines through the last 2 .. `max_plots` plots a target is tracked with: how well
 /// each foretold the newest plot, judged by a zero-order Sugeno machine.
@@ -29,14 +33,31 @@ enum class TNorm : std::uint8_t { kProduct, kMinimum };
 struct FuzzyCriterion {
   static constexpr int kMaxPlots = 16;
 
-  int max_plots = 10;      ///< of the longest line
-  double steepness = 5.0;  ///< a of the membership functions
-  double threshold = 1.5;  ///< c: the ratio that is as good as it is bad
-  double clip = 3.0;       ///< greater ratios count as this
+  int max_plots = 10;
+  double steepness = 5.0;
+  double threshold = 1.5;
+  double clip = 3.0;
   TNorm t_norm = TNorm::kProduct;
-  bool hold = true;  ///< the greater of the last two outputs counts, against single outliers
-  double acceleration_std_mps2 = 0.5;  ///< per axis, of a maneuver that the line chosen has not
-                                       ///< seen yet: widens the covariance, not used in the choice
+  bool hold = true;
+  double acceleration_std_mps2 = 0.5;
+
+  static constexpr auto fields() noexcept {
+    using F = FuzzyCriterion;
+    return std::tuple{
+        field("max_plots", &F::max_plots, between(2, kMaxPlots), "plots",
+              "Plots of the longest line."),
+        field("steepness", &F::steepness, kPositive, "1", "Slope a of the membership functions."),
+        field("threshold", &F::threshold, kPositive, "1",
+              "Ratio c of residuals that is as good as it is bad; less than clip."),
+        field("clip", &F::clip, kPositive, "1", "Greater ratios count as this one."),
+        field("t_norm", &F::t_norm, "How the conditions of a rule are joined."),
+        field("hold", &F::hold,
+              "The greater of the last two outputs counts, against single outliers."),
+        field("acceleration_std_mps2", &F::acceleration_std_mps2, kNotNegative, "m/s²",
+              "Standard deviation, per axis, of a maneuver that the line has not seen yet: it "
+              "widens the covariance and does not count in the choice."),
+    };
+  }
 
   /// Degrees to which the quality of tracking is good and bad.
   template <class Scalar>
@@ -95,15 +116,11 @@ struct FuzzyCriterion {
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
   void validate() const {
-    require(max_plots >= 2 && max_plots <= kMaxPlots, "max_plots", "2 to 16", max_plots);
-    require_positive("steepness", steepness);
-    require_positive("clip", clip);
-    require(threshold > 0.0 && threshold < clip, "threshold", "positive and less than clip",
-            threshold);
+    validate_fields(*this);
+    require(threshold < clip, "threshold", "less than clip", threshold);
     // The product over all lines then stays far above the least number there is.
     require(steepness * std::max(threshold, clip - threshold) <= 40.0, "steepness",
             "such that no membership is below exp(-40) within 0 .. clip", steepness);
-    require_not_negative("acceleration_std_mps2", acceleration_std_mps2);
   }
 };
 

@@ -5,23 +5,45 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 
 namespace wakeline {
 
 /// How the tree of a `ModeHistory` branches, joins and is cut.
 struct HistoryTree {
-  int max_hypotheses = 75;         ///< kept after an update; the number of modes or more
-  int max_branches = 100;          ///< filtered in a scan: what was kept and the switches from it
-  double min_segment_s = 12.0;     ///< a mode that is younger does not end
-  double merge_distance = 1.9;     ///< hypotheses of one mode that are nearer join: Mahalanobis, in
-                                   ///< the covariance of the heavier one; 0 joins none
-  double sibling_distance = 12.0;  ///< the same for those that came into the mode in one scan
-                                   ///< and differ only in what came before
-  double switch_time_spread = 0.15;  ///< uncertainty of when in the scan a switch came: this part
-                                     ///< of the variance of a time uniform in it
-  double negligible_probability = 1e-7;  ///< less is dropped
-  int pseudo_bayes_order = 0;  ///< 0, or n of GPBn, which ignores the distances (and GPB1 all else)
+  int max_hypotheses = 75;
+  int max_branches = 100;
+  double min_segment_s = 12.0;
+  double merge_distance = 1.9;
+  double sibling_distance = 12.0;
+  double switch_time_spread = 0.15;
+  double negligible_probability = 1e-7;
+  int pseudo_bayes_order = 0;
+
+  static constexpr auto fields() noexcept {
+    using H = HistoryTree;
+    return std::tuple{
+        field("max_hypotheses", &H::max_hypotheses, at_least(1), "hypotheses",
+              "Hypotheses kept after an update; at least the number of modes."),
+        field("max_branches", &H::max_branches, at_least(1), "hypotheses",
+              "Hypotheses filtered in a scan: those that were kept and the switches from them."),
+        field("min_segment_s", &H::min_segment_s, kNotNegative, "s",
+              "A mode does not end before this time."),
+        field("merge_distance", &H::merge_distance, kNotNegativeOrInfinite, "sigma²",
+              "Hypotheses of one mode that are nearer are merged, by squared Mahalanobis distance "
+              "in the covariance of the heavier one; 0: none."),
+        field("sibling_distance", &H::sibling_distance, kNotNegativeOrInfinite, "sigma²",
+              "The same for those that entered the mode in one scan and differ only in what came "
+              "before; at least merge_distance."),
+        field("switch_time_spread", &H::switch_time_spread, between(0, 1), "1",
+              "Variance of the time of a switch within its scan, over that of a uniform one."),
+        field("negligible_probability", &H::negligible_probability, from_to_below(0, 1e-2), "1",
+              "Hypotheses of less probability are dropped."),
+        field("pseudo_bayes_order", &H::pseudo_bayes_order, between(0, 8), "1",
+              "Order n of the generalised pseudo-Bayes estimator, which ignores the distances; 0: "
+              "none."),
+    };
+  }
 
   /// The generalised pseudo-Bayes estimator of an order (GPB1, GPB2, ...) over a number of modes:
   /// hypotheses with the same last n - 1 modes join, whatever their distance, and nothing is cut.
@@ -44,20 +66,12 @@ struct HistoryTree {
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
   void validate() const {
-    require(max_hypotheses >= 1, "max_hypotheses", "1 or more", max_hypotheses);
+    validate_fields(*this);
     require(max_branches > max_hypotheses || pseudo_bayes_order > 0, "max_branches",
             "more than max_hypotheses", max_branches);
     require(max_branches >= max_hypotheses, "max_branches", "max_hypotheses or more", max_branches);
-    require_not_negative("min_segment_s", min_segment_s);
-    require(merge_distance >= 0.0, "merge_distance", "not negative", merge_distance);
     require(sibling_distance >= merge_distance, "sibling_distance", "merge_distance or more",
             sibling_distance);
-    require(switch_time_spread >= 0.0 && switch_time_spread <= 1.0, "switch_time_spread", "0 to 1",
-            switch_time_spread);
-    require(negligible_probability >= 0.0 && negligible_probability < 1e-2,
-            "negligible_probability", "0 or more and below 0.01", negligible_probability);
-    require(pseudo_bayes_order >= 0 && pseudo_bayes_order <= 8, "pseudo_bayes_order", "0 to 8",
-            pseudo_bayes_order);
   }
 };
 

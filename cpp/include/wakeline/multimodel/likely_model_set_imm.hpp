@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/in_place_array.hpp"
 #include "wakeline/multimodel/turn_grid_imm.hpp"
 
@@ -19,10 +20,23 @@ namespace wakeline {
 /// Which models of a `LikelyModelSetImm` are active. Source: the model-set rules of X. R. Li, Y.
 /// Zhang, "Multiple-model estimation with variable structure, part V", IEEE Trans. AES-36, 2000.
 struct LikelyModelSet {
-  TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(4.0), 2);  ///< of all models
-  double unlikely_threshold = 0.03;  ///< a model less probable than this leaves
-  double likely_threshold = 0.1;     ///< one at least as probable has its neighbours join it
-  double initial_straight_probability = 0.9;  ///< at a start, of the straightest model
+  TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(4.0), 2);
+  double unlikely_threshold = 0.03;
+  double likely_threshold = 0.1;
+  double initial_straight_probability = 0.9;
+
+  static constexpr auto fields() noexcept {
+    using L = LikelyModelSet;
+    return std::tuple{
+        field("grid_rad_s", &L::grid_rad_s, "Turn rates of all models."),
+        field("unlikely_threshold", &L::unlikely_threshold, kProbability, "1",
+              "A model less probable than this leaves."),
+        field("likely_threshold", &L::likely_threshold, kProbability, "1",
+              "The neighbours of a model at least as probable join it."),
+        field("initial_straight_probability", &L::initial_straight_probability, kProbability, "1",
+              "Probability of the straightest model at a start."),
+    };
+  }
 
   /// The rates of the models to be active, NaN for those at rest, from the rates and mode
   /// probabilities of the last update. The most probable model always has its neighbours with it.
@@ -57,11 +71,9 @@ struct LikelyModelSet {
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
   void validate() const {
-    require_probability("unlikely_threshold", unlikely_threshold);
-    require_probability("likely_threshold", likely_threshold);
+    validate_fields(*this);
     require(unlikely_threshold <= likely_threshold, "unlikely_threshold",
             "at most likely_threshold", unlikely_threshold);
-    require_probability("initial_straight_probability", initial_straight_probability);
   }
 };
 

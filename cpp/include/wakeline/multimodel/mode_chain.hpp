@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <limits>
 #include <optional>
-#include <sstream>
+#include <string>
 #include <string>
 
 #include "wakeline/core/require.hpp"
@@ -167,11 +167,8 @@ class ModeChain {
       for (Eigen::Index j = 0; j < matrix.cols(); ++j)
         require_probability("every element of the mode chain", matrix(i, j));
       if (const double sum = matrix.row(i).sum(); !(std::abs(sum - 1.0) <= 1e-9)) {
-        std::ostringstream message;
-        message.precision(kMessageDigits);
-        message << "row " << i << " of the mode chain must sum to 1, sums to " << sum
-                << " (rows: mode before; columns: mode now)";
-        refuse(message.str());
+        refuse("row " + std::to_string(i) + " of the mode chain must sum to 1, sums to " +
+               number_text(sum) + " (rows: mode before; columns: mode now)");
       }
     }
   }

@@ -255,9 +255,7 @@ class ModeHistory {
   /// Saves or restores the hypotheses; those of a tree that branches, joins or is cut otherwise
   /// fail.
   void archive(Archive& fields) {
-    fields.rules(tree_.max_hypotheses, tree_.max_branches, tree_.min_segment_s,
-                 tree_.merge_distance, tree_.sibling_distance, tree_.switch_time_spread,
-                 tree_.negligible_probability, tree_.pseudo_bayes_order);
+    fields.rules(tree_);
     bool started = started_;
     int count = present().size();
     fields(started);

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/multimodel/turn_grid_imm.hpp"
 
 namespace wakeline {
@@ -25,19 +27,41 @@ enum class SwitchCarry : std::uint8_t {
               ///< estimate and the probability of the leaving one
 };
 
+constexpr std::array<Word<SwitchRule>, 2> words_of(SwitchRule) noexcept {
+  return {{{"symmetric", SwitchRule::kSymmetric}, {"literal", SwitchRule::kLiteral}}};
+}
+constexpr std::array<Word<SwitchCarry>, 2> words_of(SwitchCarry) noexcept {
+  return {{{"slot", SwitchCarry::kSlot}, {"identity", SwitchCarry::kIdentity}}};
+}
+
 /// How the window of a `SwitchingGridImm` moves. The paper's threshold is 0.7, with which the
 /// window often comes too late; by slot it loses what the models know at each move. Source: paper
 /// B, step 1.2.
 struct SwitchingGrid {
   static constexpr int kLeastRates = 3;
 
-  TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(5.0), 2);  ///< of kLeastRates or more
-  double threshold = 0.5;                                       ///< t
-  SwitchRule rule = SwitchRule::kSymmetric;    ///< the printed rule drifts right while undecided
-  SwitchCarry carry = SwitchCarry::kIdentity;  ///< not printed
-  std::optional<int> initial_centre = {};      ///< its index in the grid; the straightest but the
-                                               ///< ends when left out; not printed
-  double initial_centre_probability = 0.9;     ///< at a start; not printed
+  TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(5.0), 2);
+  double threshold = 0.5;
+  SwitchRule rule = SwitchRule::kSymmetric;
+  SwitchCarry carry = SwitchCarry::kIdentity;
+  std::optional<int> initial_centre = {};
+  double initial_centre_probability = 0.9;
+
+  static constexpr auto fields() noexcept {
+    using S = SwitchingGrid;
+    return std::tuple{
+        field("grid_rad_s", &S::grid_rad_s, "Turn rates of the whole grid, three or more."),
+        field("threshold", &S::threshold, kProbability, "1",
+              "Probability t of a side above which the window moves."),
+        field("rule", &S::rule,
+              "When the window moves; the printed rule drifts to starboard while undecided."),
+        field("carry", &S::carry, "What the models take along."),
+        field("initial_centre", &S::initial_centre,
+              "Index of the centre at a start; when left out, the straightest but the ends."),
+        field("initial_centre_probability", &S::initial_centre_probability, kProbability, "1",
+              "Probability of the centre at a start."),
+    };
+  }
 
   [[nodiscard]] int initial() const noexcept {
     return initial_centre.value_or(
@@ -56,11 +80,10 @@ struct SwitchingGrid {
 
   /// Throws `std::invalid_argument` on a parameter that makes no sense.
   void validate() const {
+    validate_fields(*this);
     TurnRateGrid::require_count(grid_rad_s.size(), kLeastRates);
     require(initial() >= 1 && initial() <= grid_rad_s.size() - 2, "initial_centre",
             "the index of a turn rate with one on each side", initial());
-    require_probability("threshold", threshold);
-    require_probability("initial_centre_probability", initial_centre_probability);
   }
 };
 

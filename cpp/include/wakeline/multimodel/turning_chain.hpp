@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "wakeline/core/fields.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
 #include "wakeline/multimodel/turn_rate_grid.hpp"
 
@@ -9,9 +10,20 @@ namespace wakeline {
 
 /// How a vessel goes from one turn rate to another.
 struct TurnHabits {
-  double straight_sojourn_s = 40.0;      ///< mean time on a straight
-  double turn_sojourn_s = 70.0;          ///< mean time in a turn
-  double straighten_probability = 0.85;  ///< that a turn ends in a straight, not in another turn
+  double straight_sojourn_s = 40.0;
+  double turn_sojourn_s = 70.0;
+  double straighten_probability = 0.85;
+
+  static constexpr auto fields() noexcept {
+    using T = TurnHabits;
+    return std::tuple{
+        field("straight_sojourn_s", &T::straight_sojourn_s, kPositive, "s",
+              "Mean time on a straight."),
+        field("turn_sojourn_s", &T::turn_sojourn_s, kPositive, "s", "Mean time in a turn."),
+        field("straighten_probability", &T::straighten_probability, kProbability, "1",
+              "Probability that a turn ends in a straight and not in another turn."),
+    };
+  }
 };
 
 /// The chain between the turn rates of a grid, in continuous time: a straight leads to a turn, a
@@ -21,9 +33,7 @@ struct TurnHabits {
 inline ModeChain<kRuntimeModes> turning_chain(const TurnRateGrid& grid_rad_s,
                                               const TurnHabits& habits,
                                               const ModeVector<double, kRuntimeModes>& weight) {
-  require_positive("straight_sojourn_s", habits.straight_sojourn_s);
-  require_positive("turn_sojourn_s", habits.turn_sojourn_s);
-  require_probability("straighten_probability", habits.straighten_probability);
+  validate_fields(habits);
   grid_rad_s.require_for_each("grid_weight", weight.size());
   const int modes = grid_rad_s.size();
   const int straight = grid_rad_s.straightest();

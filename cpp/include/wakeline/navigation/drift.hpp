@@ -17,7 +17,7 @@
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/archive.hpp"
 #include "wakeline/core/cholesky.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/filter/belief.hpp"
@@ -96,9 +96,20 @@ inline Vec<double, 2> ground_stabilised_mps(const Vec<double, 2>& relative_mps,
 
 /// Parameters of a drift estimate over a window.
 struct DriftWindowSettings {
-  int max_fixes = 20;            ///< that are remembered
-  double log_std_mps = 0.0;      ///< error of one reading of the log
-  double heading_std_rad = 0.0;  ///< error of one reading of the compass
+  int max_fixes = 20;
+  double log_std_mps = 0.0;
+  double heading_std_rad = 0.0;
+
+  static constexpr auto fields() noexcept {
+    using W = DriftWindowSettings;
+    return std::tuple{
+        field("max_fixes", &W::max_fixes, at_least(2), "fixes", "Fixes that are remembered."),
+        field("log_std_mps", &W::log_std_mps, kNotNegative, "m/s",
+              "Standard deviation of a reading of the log."),
+        field("heading_std_rad", &W::heading_std_rad, kNotNegative, "rad",
+              "Standard deviation of a reading of the compass."),
+    };
+  }
 };
 
 /// The drift of a vessel from the differences between observed and reckoned positions over a
@@ -121,10 +132,9 @@ class DriftWindow {
   explicit DriftWindow(
       const Settings& settings = {.max_fixes = std::min(DriftWindowSettings{}.max_fixes, Capacity)})
       : settings_(settings) {
-    require(settings.max_fixes >= 2 && settings.max_fixes <= Capacity, "max_fixes",
-            ("2 to " + std::to_string(Capacity)).c_str(), settings.max_fixes);
-    require_not_negative("log_std_mps", settings.log_std_mps);
-    require_not_negative("heading_std_rad", settings.heading_std_rad);
+    validate_fields(settings);
+    require(settings.max_fixes <= Capacity, "max_fixes",
+            ("at most " + std::to_string(Capacity)).c_str(), settings.max_fixes);
   }
 
   /// Removes all fixes, e.g. after a course alteration.

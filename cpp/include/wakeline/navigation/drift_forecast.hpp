@@ -11,7 +11,7 @@
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/chi_square.hpp"
 #include "wakeline/core/cholesky.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/filter/belief.hpp"
@@ -22,12 +22,30 @@ namespace wakeline {
 /// Drift of an object: v = k U + C + r, U the wind, C the current, both [north, east] m/s, with
 /// their uncertainties.
 struct DriftModel {
-  double leeway = 0.0385;           ///< k
-  double leeway_std = 0.00375;      ///< of k, which stays the same during a forecast
-  double wind_std_mps = 1.5;        ///< per axis, an error that lasts
-  double current_std_mps = 0.1;     ///< per axis, an error that lasts
-  double residual_std_mps = 0.05;   ///< per axis, of r, which wanders (Gauss-Markov) ...
-  double residual_time_s = 1800.0;  ///< ... with this correlation time
+  double leeway = 0.0385;
+  double leeway_std = 0.00375;
+  double wind_std_mps = 1.5;
+  double current_std_mps = 0.1;
+  double residual_std_mps = 0.05;
+  double residual_time_s = 1800.0;
+
+  static constexpr auto fields() noexcept {
+    using D = DriftModel;
+    return std::tuple{
+        field("leeway", &D::leeway, kNotNegative, "1",
+              "Leeway factor k: speed through the water over that of the wind."),
+        field("leeway_std", &D::leeway_std, kNotNegative, "1",
+              "Standard deviation of the factor, which stays the same during a forecast."),
+        field("wind_std_mps", &D::wind_std_mps, kNotNegative, "m/s",
+              "Standard deviation of the wind, per axis, of an error that lasts."),
+        field("current_std_mps", &D::current_std_mps, kNotNegative, "m/s",
+              "Standard deviation of the current, per axis, of an error that lasts."),
+        field("residual_std_mps", &D::residual_std_mps, kNotNegative, "m/s",
+              "Standard deviation of the residual drift, per axis, which wanders (Gauss-Markov)."),
+        field("residual_time_s", &D::residual_time_s, kPositive, "s",
+              "Correlation time of the residual drift."),
+    };
+  }
 
   /// The leeway factor of a kind of object; other parameters have their defaults.
   static DriftModel of(FloatingObject object) noexcept {
@@ -37,14 +55,7 @@ struct DriftModel {
     return model;
   }
 
-  void validate() const {
-    require_not_negative("leeway", leeway);
-    require_not_negative("leeway_std", leeway_std);
-    require_not_negative("wind_std_mps", wind_std_mps);
-    require_not_negative("current_std_mps", current_std_mps);
-    require_not_negative("residual_std_mps", residual_std_mps);
-    require_positive("residual_time_s", residual_time_s);
-  }
+  void validate() const { validate_fields(*this); }
 };
 
 /// The ellipse that contains a Gaussian position with a given probability.

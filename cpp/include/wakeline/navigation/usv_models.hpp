@@ -11,7 +11,7 @@
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/component.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
@@ -42,10 +42,17 @@ struct ImuNoise {
   double acceleration_std_mps2 = 0.004;
   double yaw_rate_std_rad_s = deg(0.033);
 
-  void validate() const {
-    require_not_negative("acceleration_std_mps2", acceleration_std_mps2);
-    require_not_negative("yaw_rate_std_rad_s", yaw_rate_std_rad_s);
+  static constexpr auto fields() noexcept {
+    using I = ImuNoise;
+    return std::tuple{
+        field("acceleration_std_mps2", &I::acceleration_std_mps2, kNotNegative, "m/s²",
+              "Standard deviation of a reading of an accelerometer."),
+        field("yaw_rate_std_rad_s", &I::yaw_rate_std_rad_s, kNotNegative, "rad/s",
+              "Standard deviation of a reading of the gyro."),
+    };
   }
+
+  void validate() const { validate_fields(*this); }
 };
 
 /// Input of a step: a reading with its noise and biases or, without one, zero acceleration and turn
@@ -100,12 +107,29 @@ struct UsvInertialMotion {
                         kHeading};
   }();
 
-  double acceleration_bias_std_mps2 = 0.05;   ///< of the biases at the start
-  double gyro_bias_std_rad_s = deg(0.5);      ///< of the bias at the start
-  double acceleration_bias_walk_mps2 = 1e-6;  ///< std of what a bias gains in 1 s
-  double gyro_bias_walk_rad_s = 1e-6;         ///< std of what the bias gains in 1 s
-  double turned_at = 0.5;                     ///< s: share of the step
-  UsvInput input{};                           ///< of the present step
+  double acceleration_bias_std_mps2 = 0.05;
+  double gyro_bias_std_rad_s = deg(0.5);
+  double acceleration_bias_walk_mps2 = 1e-6;
+  double gyro_bias_walk_rad_s = 1e-6;
+  double turned_at = 0.5;
+
+  static constexpr auto fields() noexcept {
+    using M = UsvInertialMotion;
+    return std::tuple{
+        field("acceleration_bias_std_mps2", &M::acceleration_bias_std_mps2, kPositive, "m/s²",
+              "Standard deviation of the biases of the accelerometers at the start."),
+        field("gyro_bias_std_rad_s", &M::gyro_bias_std_rad_s, kPositive, "rad/s",
+              "Standard deviation of the bias of the gyro at the start."),
+        field("acceleration_bias_walk_mps2", &M::acceleration_bias_walk_mps2, kNotNegative, "m/s²",
+              "Standard deviation of what a bias of the accelerometers gains in 1 s."),
+        field("gyro_bias_walk_rad_s", &M::gyro_bias_walk_rad_s, kNotNegative, "rad/s",
+              "Standard deviation of what the bias of the gyro gains in 1 s."),
+        field("turned_at", &M::turned_at, between(0, 1), "1",
+              "Where in a step the heading is taken that turns its acceleration: 0.5 is the "
+              "middle, 0 the start."),
+    };
+  }
+  UsvInput input{};  ///< of the present step
 
   /// f(x, dt).
   template <class Scalar>
@@ -194,11 +218,7 @@ struct UsvInertialMotion {
   }
 
   void validate() const {
-    require_positive("acceleration_bias_std_mps2", acceleration_bias_std_mps2);
-    require_positive("gyro_bias_std_rad_s", gyro_bias_std_rad_s);
-    require_not_negative("acceleration_bias_walk_mps2", acceleration_bias_walk_mps2);
-    require_not_negative("gyro_bias_walk_rad_s", gyro_bias_walk_rad_s);
-    require(turned_at >= 0.0 && turned_at <= 1.0, "turned_at", "between 0 and 1", turned_at);
+    validate_fields(*this);
     input.noise.validate();
   }
 
@@ -261,12 +281,28 @@ struct UsvCurrentMotion {
                                           kSpeedThroughWater, kGyroBias,        kCurrentNorth,
                                           kCurrentEast};
 
-  double gyro_bias_std_rad_s = deg(0.5);  ///< of the bias at the start
-  double current_std_mps = 0.5;           ///< of the current at the start, per axis
-  double speed_walk_mps = 0.03;           ///< std of what the speed gains in 1 s
-  double current_walk_mps = 0.002;        ///< std of what the current gains in 1 s, per axis
-  double gyro_bias_walk_rad_s = 1e-6;     ///< std of what the bias gains in 1 s
-  UsvInput input{};                       ///< of the present step
+  double gyro_bias_std_rad_s = deg(0.5);
+  double current_std_mps = 0.5;
+  double speed_walk_mps = 0.03;
+  double current_walk_mps = 0.002;
+  double gyro_bias_walk_rad_s = 1e-6;
+
+  static constexpr auto fields() noexcept {
+    using M = UsvCurrentMotion;
+    return std::tuple{
+        field("gyro_bias_std_rad_s", &M::gyro_bias_std_rad_s, kPositive, "rad/s",
+              "Standard deviation of the bias of the gyro at the start."),
+        field("current_std_mps", &M::current_std_mps, kPositive, "m/s",
+              "Standard deviation of the current at the start, per axis."),
+        field("speed_walk_mps", &M::speed_walk_mps, kNotNegative, "m/s",
+              "Standard deviation of what the speed through water gains in 1 s."),
+        field("current_walk_mps", &M::current_walk_mps, kNotNegative, "m/s",
+              "Standard deviation of what the current gains in 1 s, per axis."),
+        field("gyro_bias_walk_rad_s", &M::gyro_bias_walk_rad_s, kNotNegative, "rad/s",
+              "Standard deviation of what the bias of the gyro gains in 1 s."),
+    };
+  }
+  UsvInput input{};  ///< of the present step
 
   /// f(x, dt).
   template <class Scalar>
@@ -367,11 +403,7 @@ struct UsvCurrentMotion {
   }
 
   void validate() const {
-    require_positive("gyro_bias_std_rad_s", gyro_bias_std_rad_s);
-    require_positive("current_std_mps", current_std_mps);
-    require_not_negative("speed_walk_mps", speed_walk_mps);
-    require_not_negative("current_walk_mps", current_walk_mps);
-    require_not_negative("gyro_bias_walk_rad_s", gyro_bias_walk_rad_s);
+    validate_fields(*this);
     input.noise.validate();
   }
 

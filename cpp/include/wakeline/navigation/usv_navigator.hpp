@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "wakeline/core/fields.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/rts_smoother.hpp"
 #include "wakeline/gating/chi_square_gate.hpp"
@@ -20,13 +21,19 @@ namespace wakeline {
 
 /// When own ship's navigator rejects a reading.
 struct UsvOutliers {
-  ChiSquareGate gate{0.999};  ///< a reading whose NIS is outside is rejected
-  int rejections = 10;        ///< of one kind in a row, before the next one is believed
+  ChiSquareGate gate = {0.999};
+  int rejections = 10;
 
-  void validate() const {
-    gate.validate();
-    require(rejections >= 0, "rejections", "zero or more", rejections);
+  static constexpr auto fields() noexcept {
+    using U = UsvOutliers;
+    return std::tuple{
+        field("gate", &U::gate, "A reading outside this gate is rejected."),
+        field("rejections", &U::rejections, at_least(0), "readings",
+              "Readings of one sensor in a row that are rejected before the next one is believed."),
+    };
   }
+
+  void validate() const { validate_fields(*this); }
 };
 
 /// Result of a reading. A rejected one has status `kMissed` and leaves the belief unchanged;

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "wakeline/core/angle.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 
 namespace wakeline {
@@ -14,10 +14,27 @@ namespace wakeline {
 struct Radar {
   double range_std_m = 10.0;
   double bearing_std_rad = deg(1.0);
-  double extent_std_m = 5.0;        ///< wander of an echo over its hull, per axis
-  double period_s = 3.0;            ///< of the antenna
-  double max_speed_mps = 30.0;      ///< of the vessels, with a fifth to spare: tracks above end
-  double bearing_offset_rad = 0.0;  ///< bearing read minus true bearing
+  double extent_std_m = 5.0;
+  double period_s = 3.0;
+  double max_speed_mps = 30.0;
+  double bearing_offset_rad = 0.0;
+
+  static constexpr auto fields() noexcept {
+    using R = Radar;
+    return std::tuple{
+        field("range_std_m", &R::range_std_m, kPositive, "m",
+              "Standard deviation of the range of a plot."),
+        field("bearing_std_rad", &R::bearing_std_rad, kPositive, "rad",
+              "Standard deviation of the bearing of a plot."),
+        field("extent_std_m", &R::extent_std_m, kNotNegative, "m",
+              "Wander of an echo over the hull of its vessel, per axis."),
+        field("period_s", &R::period_s, kPositive, "s", "Time of one turn of the antenna."),
+        field("max_speed_mps", &R::max_speed_mps, kPositive, "m/s",
+              "Speed limit of the vessels, with a fifth to spare: faster tracks are dropped."),
+        field("bearing_offset_rad", &R::bearing_offset_rad, kFinite, "rad",
+              "Bearing read minus true bearing, which is subtracted from every plot."),
+    };
+  }
 
   /// A plot seen from own ship as a position with its covariance.
   [[nodiscard]] Gaussian<2> position(double range_m, double bearing_rad,
@@ -26,22 +43,9 @@ struct Radar {
         .position(range_m, bearing_rad, true);
   }
 
-  /// All settings in order, to be saved.
-  [[nodiscard]] auto settings() noexcept {
-    return std::tie(range_std_m, bearing_std_rad, extent_std_m, period_s, max_speed_mps,
-                    bearing_offset_rad);
-  }
-
   friend bool operator==(const Radar&, const Radar&) = default;
 
-  void validate() const {
-    require_positive("range_std_m", range_std_m);
-    require_positive("bearing_std_rad", bearing_std_rad);
-    require_not_negative("extent_std_m", extent_std_m);
-    require_positive("period_s", period_s);
-    require_positive("max_speed_mps", max_speed_mps);
-    require_finite("bearing_offset_rad", bearing_offset_rad);
-  }
+  void validate() const { validate_fields(*this); }
 };
 
 /// One plot of a scan: when it was seen, where, and from where.

@@ -338,7 +338,7 @@ class Tracker {
     };
     const double moved_m2 = way_covariance(apart_s).trace();
     const auto reach_m = [&](double plot_m2) {
-      const double wild_m2 = config_.wild_variance() * plot_m2 + moved_m2;
+      const double wild_m2 = config_.outlier_variance() * plot_m2 + moved_m2;
       // Generous: the widest mode of an estimator may be some times wider than the mixture.
       const double generous = own_m + std::sqrt(threshold * wild_m2);
       return std::min(generous, modes_.reach_m(track.position(), wild_m2, threshold)) + moved;
@@ -352,14 +352,14 @@ class Tracker {
                   .z = position.mean + dt_s * track.velocity(),
                   .moved_m2 = way_covariance(dt_s)};
       const Mat<double, 2, 2> wild_covariance =
-          config_.wild_variance() * position.covariance + claim.moved_m2;
+          config_.outlier_variance() * position.covariance + claim.moved_m2;
       if (!modes_.may_own(claim.z, wild_covariance, threshold)) return;
       const Evidence<double> wild = evidence(track, claim.z, wild_covariance);
       if (!gate_.contains(wild.least_nis)) return;
       const Mat<double, 2, 2> covariance = position.covariance + claim.moved_m2;
       const Evidence<double> nominal = evidence(track, claim.z, covariance);
-      claim.likelihood = (1.0 - config_.wild_probability) * nominal.likelihood +
-                         config_.wild_probability * wild.likelihood;
+      claim.likelihood = (1.0 - config_.outlier_probability) * nominal.likelihood +
+                         config_.outlier_probability * wild.likelihood;
       if (!claims.takes(claim.likelihood)) return;
       claim.density = density(echoes_[index], track.learned);
       claim.nis = squared_distance(track.kinematics, claim.z, covariance);
@@ -529,9 +529,9 @@ class Tracker {
       const double weight = detected(track) / (claim.density + claimed_by_others);
       const Mat<double, 2, 2>& nominal_m2 = echo.position.covariance;
       readings.fixes[count++] = {Fix{nominal_m2 + claim.moved_m2}, claim.z,
-                                 (1.0 - config_.wild_probability) * weight};
-      readings.fixes[count++] = {Fix{config_.wild_variance() * nominal_m2 + claim.moved_m2},
-                                 claim.z, config_.wild_probability * weight};
+                                 (1.0 - config_.outlier_probability) * weight};
+      readings.fixes[count++] = {Fix{config_.outlier_variance() * nominal_m2 + claim.moved_m2},
+                                 claim.z, config_.outlier_probability * weight};
     }
     return count;
   }
@@ -667,8 +667,8 @@ class Tracker {
 
   /// With the covariance of nominal and wild errors together.
   [[nodiscard]] Gaussian<2> as_it_may_err(const Gaussian<2>& plot) const noexcept {
-    const double w = config_.wild_probability;
-    return {plot.mean, (1.0 - w + w * config_.wild_variance()) * plot.covariance};
+    const double w = config_.outlier_probability;
+    return {plot.mean, (1.0 - w + w * config_.outlier_variance()) * plot.covariance};
   }
 
   void start_track(const FreePlot& earlier, const Echo& echo) noexcept {
@@ -784,16 +784,10 @@ class Tracker {
     std::uint32_t version = kArchiveVersion;
     std::uint64_t models = fingerprint();
     const std::uint64_t own_models = models;
-    Radar radar = radar_;
-    TrackerConfig config = config_;
-    const auto each = [&](auto&... field) { (fields(field), ...); };
     fields(version);
     fields(models);
-    std::apply(each, radar.settings());
-    std::apply(each, config.settings());
-    const bool same =
-        version == kArchiveVersion && models == own_models && radar == radar_ && config == config_;
-    if (!same) fields.fail();
+    if (version != kArchiveVersion || models != own_models) fields.fail();
+    fields.rules(radar_, config_);
     if (!fields.ok()) return;
     fields(time_s_);
     fields(started_);

@@ -20,22 +20,60 @@ namespace wakeline {
 /// enough is taken for a ship again. `ships()` is another set, where ships alter course as ships
 /// do.
 struct VesselModels {
-  double cruising_psd_m2s3 = 1e-4;          ///< acceleration of a cruising vessel at rest
-  double cruising_course_psd_rad2s = 1e-6;  ///< wander of its course
+  double cruising_psd_m2s3 = 1e-4;
+  double cruising_course_psd_rad2s = 1e-6;
   double steady_psd_m2s3 = 0.005;
   double steady_course_psd_rad2s = 0.004;
   double restless_psd_m2s3 = 0.2;
   double restless_course_psd_rad2s = 0.08;
   double turning_psd_m2s3 = 3.0;
   double turning_course_psd_rad2s = 0.05;
-  double turn_rate_psd_rad2s3 = 0.0003;    ///< wander of the rate of turn
-  double prior_turn_rate_std_rad_s = 0.2;  ///< rate of turn before it is known, and in the long run
-  double cruising_probability = 0.95;      ///< of a vessel that is seen for the first time
-  double cruising_sojourn_s = 1500.0;  ///< mean time until a cruising vessel does something else
-  double settling_s = 600.0;           ///< mean time until a steady vessel is taken to cruise
-  double steady_sojourn_s = 300.0;     ///< mean time until it becomes restless or turns
-  double restless_sojourn_s = 100.0;   ///< mean time in each mode
+  double turn_rate_psd_rad2s3 = 0.0003;
+  double prior_turn_rate_std_rad_s = 0.2;
+  double cruising_probability = 0.95;
+  double cruising_sojourn_s = 1500.0;
+  double settling_s = 600.0;
+  double steady_sojourn_s = 300.0;
+  double restless_sojourn_s = 100.0;
   double turning_sojourn_s = 80.0;
+
+  static constexpr auto fields() noexcept {
+    using V = VesselModels;
+    return std::tuple{
+        field("cruising_psd_m2s3", &V::cruising_psd_m2s3, kNotNegative, "m²/s³",
+              "Acceleration noise of a cruising vessel at rest."),
+        field("cruising_course_psd_rad2s", &V::cruising_course_psd_rad2s, kNotNegative, "rad²/s",
+              "Course noise of a cruising vessel."),
+        field("steady_psd_m2s3", &V::steady_psd_m2s3, kNotNegative, "m²/s³",
+              "Acceleration noise of a steady vessel at rest."),
+        field("steady_course_psd_rad2s", &V::steady_course_psd_rad2s, kNotNegative, "rad²/s",
+              "Course noise of a steady vessel."),
+        field("restless_psd_m2s3", &V::restless_psd_m2s3, kNotNegative, "m²/s³",
+              "Acceleration noise of a restless vessel at rest."),
+        field("restless_course_psd_rad2s", &V::restless_course_psd_rad2s, kNotNegative, "rad²/s",
+              "Course noise of a restless vessel."),
+        field("turning_psd_m2s3", &V::turning_psd_m2s3, kNotNegative, "m²/s³",
+              "Acceleration noise of a turning vessel at rest."),
+        field("turning_course_psd_rad2s", &V::turning_course_psd_rad2s, kNotNegative, "rad²/s",
+              "Course noise of a turning vessel."),
+        field("turn_rate_psd_rad2s3", &V::turn_rate_psd_rad2s3, kNotNegative, "rad²/s³",
+              "Noise of the turn rate of a turning vessel."),
+        field("prior_turn_rate_std_rad_s", &V::prior_turn_rate_std_rad_s, kPositive, "rad/s",
+              "Standard deviation of the turn rate before it is known and in the long run."),
+        field("cruising_probability", &V::cruising_probability, kProbability, "1",
+              "Probability that a new vessel is cruising."),
+        field("cruising_sojourn_s", &V::cruising_sojourn_s, kTime, "s",
+              "Mean time until a cruising vessel does something else."),
+        field("settling_s", &V::settling_s, kTime, "s",
+              "Mean time until a steady vessel is taken to cruise."),
+        field("steady_sojourn_s", &V::steady_sojourn_s, kTime, "s",
+              "Mean time until a steady vessel becomes restless or turns."),
+        field("restless_sojourn_s", &V::restless_sojourn_s, kTime, "s",
+              "Mean time for which a vessel is restless."),
+        field("turning_sojourn_s", &V::turning_sojourn_s, kTime, "s",
+              "Mean time for which a vessel turns."),
+    };
+  }
 
   /// Of ships under way: straight for most of an hour, alterations of course within a minute. Three
   /// minutes after one their speed and course are known again (see cpp/docs/theory/a823.md); a boat
@@ -58,24 +96,9 @@ struct VesselModels {
             .turning_sojourn_s = 60.0};
   }
 
-  void validate() const {
-    require_not_negative("cruising_psd_m2s3", cruising_psd_m2s3);
-    require_not_negative("cruising_course_psd_rad2s", cruising_course_psd_rad2s);
-    require_not_negative("steady_psd_m2s3", steady_psd_m2s3);
-    require_not_negative("steady_course_psd_rad2s", steady_course_psd_rad2s);
-    require_not_negative("restless_psd_m2s3", restless_psd_m2s3);
-    require_not_negative("restless_course_psd_rad2s", restless_course_psd_rad2s);
-    require_not_negative("turning_psd_m2s3", turning_psd_m2s3);
-    require_not_negative("turning_course_psd_rad2s", turning_course_psd_rad2s);
-    require_not_negative("turn_rate_psd_rad2s3", turn_rate_psd_rad2s3);
-    require_positive("prior_turn_rate_std_rad_s", prior_turn_rate_std_rad_s);
-    require_probability("cruising_probability", cruising_probability);
-    require_time("cruising_sojourn_s", cruising_sojourn_s);
-    require_time("settling_s", settling_s);
-    require_time("steady_sojourn_s", steady_sojourn_s);
-    require_time("restless_sojourn_s", restless_sojourn_s);
-    require_time("turning_sojourn_s", turning_sojourn_s);
-  }
+  friend bool operator==(const VesselModels&, const VesselModels&) = default;
+
+  void validate() const { validate_fields(*this); }
 
   [[nodiscard]] WanderingCourse cruising(double max_speed_mps) const noexcept {
     return {cruising_psd_m2s3, cruising_course_psd_rad2s, max_speed_mps};

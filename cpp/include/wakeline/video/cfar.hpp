@@ -32,7 +32,7 @@
 #include <vector>
 
 #include "wakeline/core/angle.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/video/kernels.hpp"
 
 namespace wakeline {
@@ -40,30 +40,45 @@ namespace wakeline {
 /// The statistic of the training cells that a cell is compared with.
 enum class CfarKind : std::uint8_t { kCellAveraging, kOrderedStatistic };
 
+constexpr std::array<Word<CfarKind>, 2> words_of(CfarKind) noexcept {
+  return {{{"cell_averaging", CfarKind::kCellAveraging},
+           {"ordered_statistic", CfarKind::kOrderedStatistic}}};
+}
+
 /// Distribution of noise amplitudes: exponential after a square-law detector, Rayleigh after a
 /// linear one.
 enum class Noise : std::uint8_t { kExponential, kRayleigh };
 
 struct CfarSettings {
   CfarKind kind = CfarKind::kCellAveraging;
-  int train_cells = 16;           ///< on each side, 1 to 128
-  int guard_cells = 4;            ///< on each side, next to the cell
-  double threshold_factor = 3.0;  ///< times the mean or the k-th; up to 1000
-  int threshold_offset = 0;       ///< on top of that; what a logarithmic receiver needs
-  double rank = 0.75;             ///< k by the number of training cells; ordered statistic only
-  int least_amplitude = 1;        ///< less is never detected
+  int train_cells = 16;
+  int guard_cells = 4;
+  double threshold_factor = 3.0;
+  int threshold_offset = 0;
+  double rank = 0.75;
+  int least_amplitude = 1;
 
-  void validate() const {
-    require(train_cells >= 1 && train_cells <= 128, "train_cells", "1 to 128", train_cells);
-    require(guard_cells >= 0 && guard_cells <= 4096, "guard_cells", "0 to 4096", guard_cells);
-    require(threshold_factor > 0.0 && threshold_factor <= 1000.0, "threshold_factor",
-            "positive and at most 1000", threshold_factor);
-    require(threshold_offset >= 0 && threshold_offset <= 65535, "threshold_offset", "0 to 65535",
-            threshold_offset);
-    require(rank > 0.0 && rank <= 1.0, "rank", "above 0 and at most 1", rank);
-    require(least_amplitude >= 1 && least_amplitude <= 65535, "least_amplitude", "1 to 65535",
-            least_amplitude);
+  static constexpr auto fields() noexcept {
+    using C = CfarSettings;
+    return std::tuple{
+        field("kind", &C::kind,
+              "What the training cells are compared by: their mean or their k-th smallest."),
+        field("train_cells", &C::train_cells, between(1, 128), "cells",
+              "Training cells on each side."),
+        field("guard_cells", &C::guard_cells, between(0, 4096), "cells",
+              "Cells left out on each side, next to the cell."),
+        field("threshold_factor", &C::threshold_factor, above_to(0, 1000), "1",
+              "Factor of the mean or of the k-th smallest."),
+        field("threshold_offset", &C::threshold_offset, between(0, 65535), "counts",
+              "Added to that; what a logarithmic receiver needs."),
+        field("rank", &C::rank, above_to(0, 1), "1",
+              "k over the number of training cells; of the ordered statistic only."),
+        field("least_amplitude", &C::least_amplitude, between(1, 65535), "counts",
+              "Smaller amplitudes are never detected."),
+    };
   }
+
+  void validate() const { validate_fields(*this); }
 
   /// Rank k of the training cell that is compared, of `count` that exist.
   [[nodiscard]] int rank_of(int count) const noexcept {

@@ -11,7 +11,7 @@
 
 #include "wakeline/core/amplitude_image.hpp"
 #include "wakeline/core/angle.hpp"
-#include "wakeline/core/require.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/video/cfar.hpp"
 #include "wakeline/video/land_mask.hpp"
 #include "wakeline/video/open_echoes.hpp"
@@ -24,30 +24,45 @@ namespace wakeline {
 
 struct PlotExtractorSettings {
   CfarSettings cfar = {};
-  int max_sweep_cells = 4096;       ///< longer sweeps are refused
-  int gap_cells = 0;                ///< that may be missing within an echo, along range
-  int gap_sweeps = 0;               ///< that may be missing within an echo
-  int min_cells = 2;                ///< smaller echoes give no plot
-  int max_cells = 100'000'000;      ///< larger echoes give no plot
-  double max_range_extent_m = 1e6;  ///< longer echoes give no plot
-  double max_bearing_extent_rad = 2 * kPi<double>;  ///< wider echoes give no plot
-  int max_sweeps = 1024;  ///< an echo is closed after so many, and what follows is another one
-  /// Each turn is a picture of its own: echoes of its first sweeps wait for the last ones and are
-  /// joined with them, at the time of these. Without, turns follow each other without a seam.
-  /// `max_sweeps` does not apply.
+  int max_sweep_cells = 4096;
+  int gap_cells = 0;
+  int gap_sweeps = 0;
+  int min_cells = 2;
+  int max_cells = 100'000'000;
+  double max_range_extent_m = 1e6;
+  double max_bearing_extent_rad = 2 * kPi<double>;
+  int max_sweeps = 1024;
   bool closed_circle = false;
 
+  static constexpr auto fields() noexcept {
+    using P = PlotExtractorSettings;
+    return std::tuple{
+        field("cfar", &P::cfar, "Detection along a sweep."),
+        field("max_sweep_cells", &P::max_sweep_cells, between(1, 65536), "cells",
+              "Longer sweeps are rejected."),
+        field("gap_cells", &P::gap_cells, between(0, 64), "cells",
+              "Cells that may be missing within an echo, along range."),
+        field("gap_sweeps", &P::gap_sweeps, between(0, 8), "sweeps",
+              "Sweeps that may be missing within an echo."),
+        field("min_cells", &P::min_cells, at_least(1), "cells", "Smaller echoes give no plot."),
+        field("max_cells", &P::max_cells, at_least(1), "cells",
+              "Larger echoes give no plot; at least min_cells."),
+        field("max_range_extent_m", &P::max_range_extent_m, kPositive, "m",
+              "Longer echoes give no plot."),
+        field("max_bearing_extent_rad", &P::max_bearing_extent_rad, kPositive, "rad",
+              "Wider echoes give no plot."),
+        field("max_sweeps", &P::max_sweeps, at_least(1), "sweeps",
+              "An echo is closed after so many sweeps, and what follows is another one."),
+        field("closed_circle", &P::closed_circle,
+              "Each turn is a separate picture: echoes of its first sweeps wait for the last ones "
+              "and are joined with them, at the time of these, and max_sweeps does not apply. Else "
+              "turns follow each other without a seam."),
+    };
+  }
+
   void validate() const {
-    cfar.validate();
-    require(max_sweep_cells >= 1 && max_sweep_cells <= 65536, "max_sweep_cells", "1 to 65536",
-            max_sweep_cells);
-    require(gap_cells >= 0 && gap_cells <= 64, "gap_cells", "0 to 64", gap_cells);
-    require(gap_sweeps >= 0 && gap_sweeps <= 8, "gap_sweeps", "0 to 8", gap_sweeps);
-    require(min_cells >= 1, "min_cells", "1 or more", min_cells);
+    validate_fields(*this);
     require(max_cells >= min_cells, "max_cells", "not less than min_cells", max_cells);
-    require_positive("max_range_extent_m", max_range_extent_m);
-    require_positive("max_bearing_extent_rad", max_bearing_extent_rad);
-    require(max_sweeps >= 1, "max_sweeps", "1 or more", max_sweeps);
   }
 };
 

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Field tables: a parameter struct lists its fields once, with rule, unit and one sentence each.
+// Validation, archives, Python keywords, docstrings, settings files and the table in the
+// documentation are derived from that list.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <type_traits>
+
+#include "wakeline/core/require.hpp"
+
+namespace wakeline {
+
+/// The interval that a number must be in. NaN is in none.
+struct Rule {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool above_low = false;   ///< `low` itself is excluded
+  bool below_high = false;  ///< `high` itself is excluded
+  bool or_zero = false;     ///< zero is allowed, too
+  const char* words = "";   ///< in place of those made of the bounds
+
+  [[nodiscard]] constexpr bool holds(double value) const noexcept {
+    if (or_zero && value == 0.0) return true;
+    return (above_low ? value > low : value >= low) && (below_high ? value < high : value <= high);
+  }
+
+  friend constexpr bool operator==(const Rule&, const Rule&) = default;
+};
+
+inline constexpr double kLargest = std::numeric_limits<double>::max();
+
+inline constexpr Rule kNumber{.words = "a number"};  ///< infinite ones, too
+inline constexpr Rule kFinite{.low = -kLargest, .high = kLargest, .words = "finite"};
+inline constexpr Rule kPositive{
+    .low = 0.0, .high = kLargest, .above_low = true, .words = "finite and positive"};
+inline constexpr Rule kNotNegative{
+    .low = 0.0, .high = kLargest, .words = "finite and not negative"};
+inline constexpr Rule kNotNegativeOrInfinite{.low = 0.0, .words = "not negative"};
+inline constexpr Rule kProbability{
+    .low = 0.0, .high = 1.0, .words = "a probability between 0 and 1"};
+/// A mean time, whose rate and shares have digits left.
+inline constexpr Rule kTime{.low = 1e-3, .high = 1e12, .words = "0.001 s to 1e12 s"};
+inline constexpr Rule kTimeOrZero{
+    .low = 1e-3, .high = 1e12, .or_zero = true, .words = "0, or 0.001 s to 1e12 s"};
+
+/// Both bounds are allowed.
+constexpr Rule between(double low, double high) noexcept { return {.low = low, .high = high}; }
+/// Neither bound is allowed.
+constexpr Rule inside(double low, double high) noexcept {
+  return {.low = low, .high = high, .above_low = true, .below_high = true};
+}
+/// `low` is allowed, `high` is not.
+constexpr Rule from_to_below(double low, double high) noexcept {
+  return {.low = low, .high = high, .below_high = true};
+}
+/// `high` is allowed, `low` is not.
+constexpr Rule above_to(double low, double high) noexcept {
+  return {.low = low, .high = high, .above_low = true};
+}
+constexpr Rule at_least(double low) noexcept { return {.low = low, .high = kLargest}; }
+
+/// What a rule asks for, to be read after "must be".
+inline std::string to_words(const Rule& rule) {
+  if (*rule.words != '\0') return rule.words;
+  const std::string low = number_text(rule.low), high = number_text(rule.high);
+  const std::string zero = rule.or_zero ? "0, or " : "";
+  if (rule.high == kLargest) return zero + (rule.above_low ? "above " : "at least ") + low;
+  if (!rule.above_low && !rule.below_high) return zero + low + " to " + high;
+  return zero + (rule.above_low ? "above " : "at least ") + low + " and " +
+         (rule.below_high ? "below " : "at most ") + high;
+}
+
+/// What an enumerator is called in settings files and in Python.
+template <class Enum>
+struct Word {
+  const char* text;
+  Enum value;
+};
+
+/// An enumeration whose words are given by a function `words_of(Enum)`, found beside it, that
+/// returns an array of `Word<Enum>`.
+template <class Enum>
+concept NamedEnum = std::is_enum_v<Enum> && requires {
+  words_of(Enum{});
+};
+
+/// The words to choose from: "'all', 'nearest' or 'strongest'".
+template <NamedEnum Enum>
+std::string choices() {
+  constexpr auto words = words_of(Enum{});
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k)
+    text += (k == 0 ? "'" : k + 1 < words.size() ? "', '" : "' or '") + std::string(words[k].text);
+  return text + "'";
+}
+
+/// One field of a parameter struct.
+template <class Struct, class Value>
+struct Field {
+  const char* name;
+  Value Struct::*member;
+  Rule rule;
+  const char* unit;      ///< "" where there is none, "1" for a ratio
+  const char* sentence;  ///< what it is
+};
+
+template <class Struct, class Value>
+constexpr Field<Struct, Value> field(const char* name, Value Struct::*member, const Rule& rule,
+                                     const char* unit, const char* sentence) noexcept {
+  return {name, member, rule, unit, sentence};
+}
+
+/// A truth, an enumeration or another struct, which has no number to be ruled.
+template <class Struct, class Value>
+constexpr Field<Struct, Value> field(const char* name, Value Struct::*member,
+                                     const char* sentence) noexcept {
+  return {name, member, kNumber, "", sentence};
+}
+
+/// A struct with a table of its fields: `static constexpr auto fields()` returns a tuple of
+/// `Field`.
+template <class Struct>
+concept HasFields = requires {
+  Struct::fields();
+};
+
+/// Calls `visit(field, value)` for each field of a struct, in order.
+template <class Struct, class Visit>
+constexpr void for_each_field(Struct& x, Visit&& visit) {
+  std::apply([&](const auto&... entry) { (visit(entry, x.*entry.member), ...); },
+             std::remove_const_t<Struct>::fields());
+}
+
+/// Refuses a number that a rule does not hold for.
+inline void require_rule(const Rule& rule, const std::string& name, double value) {
+  if (!rule.holds(value))
+    refuse(name + " must be " + to_words(rule) + ", got " + number_text(value));
+}
+
+/// Throws `std::invalid_argument` in words that name the first field whose rule does not hold, that
+/// of a struct inside with the name of both: "own.north_m must be finite, got nan".
+template <HasFields Struct>
+void validate_fields(const Struct& x, const std::string& prefix = "") {
+  for_each_field(x, [&]<class Value>(const auto& entry, const Value& value) {
+    if constexpr (std::is_arithmetic_v<Value>) {
+      if (!entry.rule.holds(static_cast<double>(value)))
+        require_rule(entry.rule, prefix + entry.name, static_cast<double>(value));
+    } else if constexpr (NamedEnum<Value>) {
+      bool known = false;
+      for (const auto& word : words_of(value)) known = known || word.value == value;
+      if (!known) refuse(prefix + entry.name + " must be " + choices<Value>());
+    } else if constexpr (HasFields<Value>) {
+      validate_fields(value, prefix + entry.name + ".");
+      if constexpr (requires { value.validate(); }) value.validate();
+    }
+  });
+}
+
+/// Throws what `model.validate()` throws; where there is none, what `validate_fields` does for a
+/// struct with a table.
+template <class Model>
+const Model& validated(const Model& model) {
+  if constexpr (requires { model.validate(); })
+    model.validate();
+  else if constexpr (HasFields<Model>)
+    validate_fields(model);
+  return model;
+}
+
+}  // namespace wakeline
