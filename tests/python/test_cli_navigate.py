@@ -413,7 +413,7 @@ def test_an_instrument_that_good_fixes_refute_is_named_and_moves_nothing(
     line = 3 * begins_s + 1 + ("RMC", "HDT", "VHW").index(kind)
     (reported,) = [line for line in capsys.readouterr().out.splitlines() if "rejected" in line]
     assert reported == (
-        f"note: {what} that do not fit the other readings are rejected: {lasts_s} "
+        f"note: {what} inconsistent with other readings are rejected: {lasts_s} "
         f"(first in line {line})"
     )
     off_m = [column(rows, name) - column(true, name) for name in ("north_m", "east_m")]
@@ -498,7 +498,7 @@ def test_errors_are_those_at_hidden_fixes(tmp_path, every_s):
     ("every_s", "wanted"),
     [
         (20, r"navigator +- +- +\d"),
-        (40, "too short, or its fixes too seldom, to hide satellites"),
+        (40, "too short, or its fixes too rare, to test it"),
     ],
 )
 def test_where_fixes_are_seldom_it_is_said_what_cannot_be_compared(
@@ -557,7 +557,7 @@ def test_a_position_that_jumped_is_in_doubt_until_it_comes_back(tmp_path, capsys
     rows = navigated(tmp_path, moved_north(lines, range(400, 460), 150.0))
     reported = capsys.readouterr().out
     assert (
-        "fixes that do not fit the other readings are rejected: 20 (first in line 1201)" in reported
+        "fixes inconsistent with other readings are rejected: 20 (first in line 1201)" in reported
     )
     assert "the position jumps 2 times" in reported
     status = np.array([row["status"] for row in rows])
@@ -588,7 +588,7 @@ def test_a_position_that_jumped_is_in_doubt_until_fixes_have_fitted_for_a_minute
         assert set(status[3 * 410 : 3 * until_s]) - {"rejected"} == {"jumped"}
         assert set(status[3 * until_s :]) == {"ok"}
     reported = capsys.readouterr().out
-    assert "the position jumps 1 time, to fixes that went on though rejected" in reported
+    assert "the position jumps 1 time, to persistent rejected fixes" in reported
     if way_m > 1000.0:
         assert "first by 50 km in line 1201, where 320 fixes continue" in reported
 
@@ -596,8 +596,8 @@ def test_a_position_that_jumped_is_in_doubt_until_fixes_have_fitted_for_a_minute
 def test_fixes_that_were_rejected_and_moved_the_position_a_little_are_reported(tmp_path, capsys):
     rows = navigated(tmp_path, moved_north(voyage(10), range(400, 600), 35.0))
     reported = re.search(
-        r"fixes that do not fit the other readings are rejected: (\d+) \(first in line 1201\); "
-        r"1 time they went on and moved the position by up to (\d+) m",
+        r"fixes inconsistent with other readings are rejected: (\d+) \(first in line 1201\); "
+        r"1 time they persisted and moved the position by up to (\d+) m",
         capsys.readouterr().out,
     )
     assert int(reported[1]) == sum(row["status"] == "rejected" for row in rows)
@@ -819,7 +819,7 @@ def test_a_clock_set_back_is_reported_where_it_puts_own_ship_at_two_places_at_a_
     ]
     rows = navigated(tmp_path, lines[:900] + again)
     (k,) = np.flatnonzero(np.diff(column(rows, "time_s")) < 0)
-    assert f"own.csv go back 1 time, where the clock was set back (line {k + 3})" in (
+    assert f"own.csv go back 1 time because the clock was set back (line {k + 3})" in (
         capsys.readouterr().out
     )
     notes = []
@@ -1009,7 +1009,10 @@ def test_bad_lines_are_reported_and_nothing_else_is_lost(tmp_path, capsys):
     [
         ("", "wanted"),
         ("north, east\n1, 2\n", "wanted"),
-        (sentence("GPZDA,100000,01,06,2020,00,00") + sentence("HEHDT,40.0,T"), "one sound fix"),
+        (
+            sentence("GPZDA,100000,01,06,2020,00,00") + sentence("HEHDT,40.0,T"),
+            "at least one usable fix",
+        ),
     ],
 )
 def test_what_is_no_log_is_one_clear_line(tmp_path, text, word, capsys):

@@ -230,9 +230,7 @@ def _doubt_notes(legs: Sequence[Leg]) -> Iterator[str]:
         went_on = moves and what == "fixes"
         times = many(moves, "time")
         moved = f"; {times} they persisted and moved the position {by}" if went_on else ""
-        yield (
-            f"{what} inconsistent with other readings are rejected: {_lines(lines)}{moved}"
-        )
+        yield (f"{what} inconsistent with other readings are rejected: {_lines(lines)}{moved}")
     if len(jumps):
         yield (
             f"the position jumps {many(len(jumps), 'time')}, to persistent rejected fixes, "
