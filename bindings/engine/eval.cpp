@@ -1,8 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
+#include <utility>
+
 #include "estimators.hpp"
+#include "support/arguments.hpp"
+#include "support/each.hpp"
 #include "wakeline/eval/consistency.hpp"
 #include "wakeline/eval/cramer_rao_bound.hpp"
+#include "wakeline/eval/gospa.hpp"
 
 namespace wakeline::python {
 namespace {
@@ -43,11 +48,132 @@ py::array_t<double> bound_of(const DoubleArray& transition, const DoubleArray& p
   return result;
 }
 
+/// NEES of errors (..., N) whose covariances are the N x N matrices at `covariance`, one by one.
+template <int N>
+void nees_into(double* out, const double* error, const double* covariance, py::ssize_t count) {
+  using Square = Eigen::Matrix<double, N, N, N == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+  for (py::ssize_t k = 0; k < count; ++k)
+    out[k] = nees<N, double>(Eigen::Map<const Vec<double, N>>(error + k * N),
+                             Mat<double, N, N>(Eigen::Map<const Square>(covariance + k * N * N)));
+}
+
+Array nees_of(const DoubleArray& error, const DoubleArray& covariance) {
+  constexpr int kMost = 9;
+  std::vector<py::ssize_t> shape = shape_of(error);
+  const py::ssize_t size = shape.empty() ? 0 : shape.back();
+  require_shape(size >= 1 && size <= kMost, "error", "(..., N) with N from 1 to 9", error);
+  const std::vector<py::ssize_t> squares = with_last(shape, size);
+  require_shape(shape_of(covariance) == squares, "covariance", shape_text(squares), covariance);
+  shape.pop_back();
+  Array result(shape);
+  const py::gil_scoped_release released;
+  [&]<int... I>(std::integer_sequence<int, I...>) {
+    ((size == I + 1
+          ? nees_into<I + 1>(result.mutable_data(), error.data(), covariance.data(), result.size())
+          : void()),
+     ...);
+  }
+  (std::make_integer_sequence<int, kMost>{});
+  return result;
+}
+
+SetDistance set_distance(const DoubleArray& truth_m, const DoubleArray& tracks_m, double cutoff_m,
+                         double order) {
+  const auto points = [](const char* name, const DoubleArray& array, py::ssize_t axes) {
+    require_shape(array.ndim() == 2 && (axes < 0 || array.shape(1) == axes), name,
+                  axes < 0 ? "(N, D)" : "(N, " + std::to_string(axes) + ")", array);
+    for (py::ssize_t k = 0; k < array.size(); ++k) require_finite(name, array.data()[k]);
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    return Eigen::Map<const Rows>(array.data(), array.shape(0), array.shape(1));
+  };
+  const auto targets = points("truth_m", truth_m, -1);
+  const auto tracks = points("tracks_m", tracks_m, truth_m.shape(1));
+  Gospa gospa({.cutoff_m = cutoff_m, .order = order}, int(targets.rows()), int(tracks.rows()));
+  Eigen::MatrixXd distance(targets.rows(), tracks.rows());
+  for (Eigen::Index i = 0; i < targets.rows(); ++i)
+    for (Eigen::Index j = 0; j < tracks.rows(); ++j)
+      distance(i, j) = (targets.row(i) - tracks.row(j)).norm();
+  return gospa.between(distance);
+}
+
+void define_set_distance(py::module_& m) {
+  py::class_<SetDistance> result(m, "SetDistance",
+                                 R"(GOSPA (alpha = 2) and OSPA of one scan.
+
+The parts are in metres to the power of the order: ``gospa_m ** order = localisation + missed + false_tracks``.)");
+  result.def_readonly("gospa_m", &SetDistance::gospa_m)
+      .def_readonly("localisation", &SetDistance::localisation, "Sum over pairs of d ** order.")
+      .def_readonly("missed", &SetDistance::missed,
+                    "cutoff_m ** order / 2 for each target without a track.")
+      .def_readonly("false_tracks", &SetDistance::false_tracks,
+                    "cutoff_m ** order / 2 for each track without a target.")
+      .def_readonly("ospa_m", &SetDistance::ospa_m, "At most the cut-off.")
+      .def_readonly("pairs", &SetDistance::pairs, "Targets with a track nearer than the cut-off.")
+      .def("__repr__", [](const SetDistance& d) {
+        return "<SetDistance: GOSPA " + std::to_string(d.gospa_m) + " m, OSPA " +
+               std::to_string(d.ospa_m) + " m, " + many(d.pairs, "pair") + ">";
+      });
+  define_pickle(result, &SetDistance::gospa_m, &SetDistance::localisation, &SetDistance::missed,
+                &SetDistance::false_tracks, &SetDistance::ospa_m, &SetDistance::pairs);
+  m.def("set_distance", &set_distance, py::arg("truth_m"), py::arg("tracks_m"),
+        py::arg("cutoff_m") = 50.0, py::arg("order") = 2.0,
+        R"(GOSPA and OSPA: how far a set of tracks is from the set of true targets, in one scan.
+
+With the cut-off c, the order p and the best pairing of targets with tracks,
+``gospa_m ** p = sum of d ** p over pairs + c ** p / 2 for each point without a pair`` and
+``ospa_m ** p = (sum of d ** p over pairs + c ** p (n - pairs)) / n`` for n the size of the larger set; zero where both are empty.
+
+Parameters
+----------
+truth_m : (N, D) array_like
+    True positions.
+tracks_m : (M, D) array_like
+    Estimated positions.
+cutoff_m : float
+    Distance at which a pair is as bad as a missed target and a false track.
+order : float
+    p, at least 1.
+
+Raises
+------
+ValueError
+    When a shape does not fit, a position is not finite, the cut-off is not positive and finite, or the order is below 1 or
+    so high that the cut-off to its power overflows.
+
+References
+----------
+A. S. Rahmathullah, A. F. Garcia-Fernandez, L. Svensson, Generalized Optimal Sub-Pattern Assignment Metric, Fusion 2017;
+D. Schuhmacher, B.-T. Vo, B.-N. Vo, A Consistent Metric for Performance Evaluation of Multi-Object Filters, IEEE Trans. Signal
+Processing 56(8), 2008.)");
+}
+
 }  // namespace
 
 void define_eval(py::module_& parent) {
   py::module_ m =
       parent.def_submodule("eval", "Whether an estimator tells the truth about its errors.");
+  define_set_distance(m);
+  m.def("nees", &nees_of, py::arg("error"), py::arg("covariance"),
+        R"(Normalised estimation error squared ``e' inv(P) e`` of any number of errors.
+
+Of innovations and their covariances it is the NIS. Chi-square with N degrees of freedom where the covariance is right.
+
+Parameters
+----------
+error : (..., N) array_like
+    Estimate minus truth, N from 1 to 9.
+covariance : (..., N, N) array_like
+    Symmetric; its lower triangle is read.
+
+Returns
+-------
+(...) array
+    NaN where the covariance is not positive definite or a number is not finite.
+
+Raises
+------
+ValueError
+    When a shape does not fit.)");
   m.def(
       "consistency_bounds",
       [](double confidence, int dof, long samples) {

@@ -3,6 +3,7 @@
 import dataclasses
 import itertools
 import json
+import pickle
 import re
 
 import numpy as np
@@ -274,62 +275,69 @@ def least_over_pairings(truth, tracks, cutoff, p):
 @settings(deadline=None)
 @given(points(4), points(4), st.sampled_from([1.0, 2.0]))
 def test_gospa_is_the_least_over_all_pairings(truth, tracks, p):
-    got = metrics.gospa(truth, tracks, cutoff_m=40.0, p=p)
-    assert got.value_m**p == pytest.approx(least_over_pairings(truth, tracks, 40.0, p), abs=1e-6)
-    assert got.value_m**p == pytest.approx(got.localisation + got.missed + got.false, abs=1e-6)
+    got = metrics.set_distance(truth, tracks, cutoff_m=40.0, order=p)
+    assert got.gospa_m**p == pytest.approx(least_over_pairings(truth, tracks, 40.0, p), abs=1e-6)
+    assert got.gospa_m**p == pytest.approx(
+        got.localisation + got.missed + got.false_tracks, abs=1e-6
+    )
 
 
 @settings(deadline=None)
 @given(points(4), points(4), points(4))
 def test_gospa_and_ospa_are_metrics(a, b, c):
-    for distance in (lambda x, y: metrics.gospa(x, y).value_m, metrics.ospa):
-        assert distance(a, a) == pytest.approx(0.0, abs=1e-6)
-        assert distance(a, b) == pytest.approx(distance(b, a))
-        assert distance(a, c) <= distance(a, b) + distance(b, c) + 1e-6
+    for name in ("gospa_m", "ospa_m"):
+        aa, ab, ba, bc, ac = (
+            getattr(metrics.set_distance(x, y), name)
+            for x, y in ((a, a), (a, b), (b, a), (b, c), (a, c))
+        )
+        assert aa == pytest.approx(0.0, abs=1e-6)
+        assert ab == pytest.approx(ba)
+        assert ac <= ab + bc + 1e-6
 
 
 @settings(deadline=None)
 @given(points(4), points(4))
 def test_ospa_is_at_most_the_cutoff(truth, tracks):
-    assert 0.0 <= metrics.ospa(truth, tracks, cutoff_m=30.0) <= 30.0 + 1e-9
+    ospa_m = metrics.set_distance(truth, tracks, cutoff_m=30.0).ospa_m
+    assert 0.0 <= ospa_m <= 30.0 + 1e-9
     if len(truth) == 0 and len(tracks):
-        assert metrics.ospa(truth, tracks, cutoff_m=30.0) == pytest.approx(30.0)
+        assert ospa_m == pytest.approx(30.0)
 
 
 def test_ospa_of_one_pair_is_their_distance():
-    assert metrics.ospa([[0.0, 0.0]], [[3.0, 4.0]]) == pytest.approx(5.0)
-    with_one_more = metrics.ospa([[0.0, 0.0]], [[3.0, 4.0], [500.0, 0.0]], cutoff_m=50.0)
-    assert with_one_more == pytest.approx(np.sqrt((25 + 2500) / 2))
+    one = metrics.set_distance([[0.0, 0.0]], [[3.0, 4.0]])
+    assert (one.ospa_m, one.pairs) == (pytest.approx(5.0), 1)
+    with_one_more = metrics.set_distance([[0.0, 0.0]], [[3.0, 4.0], [500.0, 0.0]])
+    assert with_one_more.ospa_m == pytest.approx(np.sqrt((25 + 2500) / 2))
+    assert pickle.loads(pickle.dumps(with_one_more)).gospa_m == with_one_more.gospa_m
 
 
-@pytest.mark.parametrize("metric", [metrics.gospa, metrics.ospa])
-def test_sets_of_the_wrong_shape(metric):
-    with pytest.raises(ValueError, match=r"\(n, d\)"):
-        metric(np.zeros(2), np.zeros((1, 2)))
+def test_sets_of_the_wrong_shape():
+    with pytest.raises(ValueError, match=r"truth_m must have shape \(N, D\), got \(2,\)"):
+        metrics.set_distance(np.zeros(2), np.zeros((1, 2)))
+    with pytest.raises(ValueError, match=r"tracks_m must have shape \(N, 2\), got \(1, 3\)"):
+        metrics.set_distance(np.zeros((1, 2)), np.zeros((1, 3)))
 
 
-@pytest.mark.parametrize("metric", [metrics.gospa, metrics.ospa])
 @pytest.mark.parametrize("value", [np.inf, np.nan])
-def test_points_that_are_nowhere(metric, value):
+def test_points_that_are_nowhere(value):
     point, nowhere = [[0.0, 0.0]], [[0.0, value]]
-    for sets in ((point, nowhere), (nowhere, point), (nowhere, nowhere)):
-        with pytest.raises(ValueError, match="truth_m and tracks_m must be finite"):
-            metric(*sets)
+    for sets, name in (((point, nowhere), "tracks_m"), ((nowhere, point), "truth_m")):
+        with pytest.raises(ValueError, match=f"{name} must be finite, got {value}"):
+            metrics.set_distance(*sets)
 
 
-@pytest.mark.parametrize("metric", [metrics.gospa, metrics.ospa])
 @pytest.mark.parametrize("value", [0.0, np.inf, np.nan])
-@pytest.mark.parametrize("name", ["cutoff_m", "p"])
-def test_cutoffs_and_orders_that_are_invalid(metric, name, value):
-    with pytest.raises(ValueError, match=f"^{name} must be .*finite.*, got {value}"):
-        metric(np.zeros((1, 2)), np.zeros((1, 2)), **{name: value})
+@pytest.mark.parametrize("name", ["cutoff_m", "order"])
+def test_cutoffs_and_orders_that_are_invalid(name, value):
+    with pytest.raises(ValueError, match=f"^{name} must be .*, got {value:g}"):
+        metrics.set_distance(np.zeros((1, 2)), np.zeros((1, 2)), **{name: value})
 
 
-@pytest.mark.parametrize("metric", [metrics.gospa, metrics.ospa])
-@pytest.mark.parametrize(("cutoff_m", "p"), [(50.0, 200.0), (0.3, 1000.0)])
-def test_the_cutoff_to_the_power_of_the_order_must_be_a_number(metric, cutoff_m, p):
-    with pytest.raises(ValueError, match=f"^p must be .*number, got {p}"):
-        metric(np.zeros((1, 2)), np.zeros((0, 2)), cutoff_m, p)
+@pytest.mark.parametrize(("cutoff_m", "order"), [(50.0, 200.0), (0.3, 1000.0)])
+def test_the_cutoff_to_the_power_of_the_order_must_be_a_number(cutoff_m, order):
+    with pytest.raises(ValueError, match=f"^order must be .*overflow, got {order:g}"):
+        metrics.set_distance(np.zeros((1, 2)), np.zeros((0, 2)), cutoff_m, order)
 
 
 # ------------------------------------------------------------------ errors of states
@@ -349,19 +357,28 @@ def test_nees_of_honest_errors_has_the_mean_of_chi_square():
     assert got.mean() == pytest.approx(4.0, abs=4 * np.sqrt(8 / 20_000))
 
 
-def test_nees_says_what_is_wrong():
+@pytest.mark.parametrize("size", range(1, 10))
+def test_nees_is_what_the_inverse_gives(size):
+    rng = np.random.default_rng(size)
+    error, root = rng.normal(size=(2, 3, size)), rng.normal(size=(2, 3, size, size))
+    covariance = root @ np.swapaxes(root, -1, -2) + np.eye(size)
+    expected = np.einsum("rti,rtij,rtj->rt", error, np.linalg.inv(covariance), error)
+    np.testing.assert_allclose(metrics.nees(error, covariance), expected, rtol=1e-9)
+
+
+def test_nees_of_a_covariance_that_is_none_is_nan():
     with pytest.raises(ValueError, match=r"\(3, 2, 2\), got \(2, 2\)"):
         metrics.nees(np.zeros((3, 2)), np.eye(2))
-    with pytest.raises(ValueError, match="positive definite"):
-        metrics.nees(np.zeros(2), np.diag([1.0, -1.0]))
+    with pytest.raises(ValueError, match=r"N from 1 to 9, got \(10,\)"):
+        metrics.nees(np.zeros(10), np.eye(10))
+    honest, wrong = np.eye(2), np.diag([1.0, -1.0])
+    assert np.isnan(metrics.nees(np.zeros((2, 2)), [honest, wrong])).tolist() == [False, True]
 
 
 TAKES = {
     "error": metrics.rmse,
     "time_s": lambda values: metrics.steady_scans(values, [1.0]),
     "curve": lambda values: metrics.share_inside(values, 4, 10),
-    "truth_m": lambda values: metrics.gospa([values], [[1.0, 2.0]]),
-    "covariance": lambda values: metrics.squared_distance(3.0, values),
     "turn_rates_rad_s": lambda values: metrics.right_mode(np.ones((1, 2)), values, [0.0]),
     "start": scenario.Truth,
 }

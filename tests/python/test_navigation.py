@@ -145,6 +145,13 @@ def test_arrays_are_broadcast():
     assert (plane.latitude_rad, plane.longitude_rad) == (0.8, 0.1)
 
 
+def test_a_plane_takes_places_by_the_names_that_have_their_unit():
+    plane = plane_at(0.8, 0.1)
+    for call in (lambda: nav.LocalPlane(0.8, 0.1), lambda: plane.position_m(0.8, 0.1)):
+        with pytest.raises(TypeError, match="latitude_rad"):
+            call()
+
+
 def test_latitudes_in_degrees_are_rejected():
     with pytest.raises(ValueError, match=r"latitude_rad must be from -pi/2 to pi/2, got 46\.5"):
         plane_at(46.5, 30.7)

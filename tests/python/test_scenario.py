@@ -334,8 +334,6 @@ WITH_A_NUMBER = {
     "velocity_std_mps": lambda value: Scenario(
         "one", Truth(START), RadarSimulator(60.0, 0.01, 3.0), 5, velocity_std_mps=value
     ),
-    "cutoff_m": lambda value: metrics.ospa([[0.0, 0.0]], [[0.0, 0.0]], value),
-    "p": lambda value: metrics.gospa([[0.0, 0.0]], [[0.0, 0.0]], p=value),
     "factor": lambda value: metrics.settling_times_s([0.0], [0.0], [], factor=value),
     "share": lambda value: metrics.detection_delays_scans([0.0], [0.0], [], share=value),
     "confidence": lambda value: metrics.share_inside([1.0], 2, 1, confidence=value),

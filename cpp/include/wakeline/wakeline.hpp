@@ -35,7 +35,6 @@
 #include "wakeline/eval/consistency.hpp"
 #include "wakeline/eval/cramer_rao_bound.hpp"
 #include "wakeline/eval/gospa.hpp"
-#include "wakeline/eval/rmse.hpp"
 #include "wakeline/filter/adaptive_alpha_beta.hpp"
 #include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/filter/alpha_beta_gains.hpp"

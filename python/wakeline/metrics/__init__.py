@@ -3,7 +3,9 @@
 States are ``[north, vnorth, east, veast]`` in metres and metres per second.
 """
 
-from .consistency import nees, share_inside, squared_distance
+from wakeline._engine.eval import SetDistance, nees, set_distance
+
+from .consistency import share_inside
 from .curves import (
     SegmentFigures,
     by_segment,
@@ -15,28 +17,25 @@ from .curves import (
 from .modes import right_mode
 from .results import EpisodeScore, Score, Summary, TargetScore
 from .scoring import score
-from .sets import Gospa, gospa, ospa
 from .states import Errors, rmse
 
 __all__ = [
     "EpisodeScore",
     "Errors",
-    "Gospa",
     "Score",
     "SegmentFigures",
+    "SetDistance",
     "Summary",
     "TargetScore",
     "by_segment",
     "detection_delays_scans",
-    "gospa",
     "nees",
-    "ospa",
     "right_mode",
     "rmse",
     "rmse_curve",
     "score",
+    "set_distance",
     "settling_times_s",
     "share_inside",
-    "squared_distance",
     "steady_scans",
 ]

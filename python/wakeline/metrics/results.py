@@ -7,7 +7,8 @@ from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
-from .sets import Gospa
+from wakeline._engine.eval import SetDistance
+
 from .states import Errors, errors_of
 
 
@@ -114,7 +115,7 @@ class EpisodeScore:
         Rows of false tracks; rows near a truth matched to another track.
     unmatched_rows : int
         Ignored track rows: not at a scan's time, or not finite.
-    gospa, gospa_near : list of Gospa
+    gospa, gospa_near : list of SetDistance
         One per scan with truth: of all tracks, and of those within four gates of a truth.
     """
 
@@ -126,8 +127,8 @@ class EpisodeScore:
     false_track_scans: int
     duplicate_track_scans: int
     unmatched_rows: int
-    gospa: list[Gospa] = field(repr=False)
-    gospa_near: list[Gospa] = field(repr=False)
+    gospa: list[SetDistance] = field(repr=False)
+    gospa_near: list[SetDistance] = field(repr=False)
 
     @property
     def summary(self) -> Summary:
@@ -176,8 +177,8 @@ def summary_of(episodes: Sequence[EpisodeScore]) -> Summary:
         false_tracks=sum(episode.false_tracks for episode in episodes),
         false_track_scans_per_scan=ratio(false_rows, scans) or 0.0,
         duplicate_track_scans_per_scan=ratio(duplicate_rows, scans) or 0.0,
-        gospa_m=_mean([g.value_m for episode in episodes for g in episode.gospa]),
-        gospa_near_m=_mean([g.value_m for episode in episodes for g in episode.gospa_near]),
+        gospa_m=_mean([g.gospa_m for episode in episodes for g in episode.gospa]),
+        gospa_near_m=_mean([g.gospa_m for episode in episodes for g in episode.gospa_near]),
     )
 
 

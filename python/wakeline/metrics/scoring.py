@@ -6,12 +6,13 @@ import itertools
 
 import numpy as np
 
+from wakeline import association
 from wakeline._checks import not_negative, plain_numbers
+from wakeline._engine.eval import SetDistance, set_distance
 from wakeline.recording import Episode, Recording, Tracks
 from wakeline.recording.scans import nearest
 
 from .results import EpisodeScore, Score, TargetScore, ratio, summary_of
-from .sets import Gospa, distances, gospa_of, pairs
 from .states import errors_of
 
 _NEAR_GATES = 4.0
@@ -93,8 +94,8 @@ class _EpisodeScorer:
         self.last_id: dict[str, str] = {}
         self.near_ids: set[str] = set()
         self.duplicates = 0
-        self.gospa: list[Gospa] = []
-        self.gospa_near: list[Gospa] = []
+        self.gospa: list[SetDistance] = []
+        self.gospa_near: list[SetDistance] = []
 
     def score(self) -> EpisodeScore:
         for scan in range(len(self.time_s)):
@@ -121,13 +122,13 @@ class _EpisodeScorer:
         ids = list(self.states[scan])
         truth_m = np.array([self.truth[name][scan, 0::2] for name in here])
         track_m = np.array([s[0::2] for s in self.states[scan].values()]).reshape(-1, 2)
-        distance_m = distances(truth_m, track_m)
+        distance_m = _distances(truth_m, track_m)
         nearest_m = distance_m.min(axis=0)
         near = [i for i, d in zip(ids, nearest_m, strict=True) if d < self.gate_m]
         self.near_ids.update(near)
-        self.gospa.append(gospa_of(distance_m, self.gate_m, 2.0))
+        self.gospa.append(set_distance(truth_m, track_m, self.gate_m))
         kept = nearest_m < _NEAR_GATES * self.gate_m
-        self.gospa_near.append(gospa_of(distance_m[:, kept], self.gate_m, 2.0))
+        self.gospa_near.append(set_distance(truth_m, track_m[kept], self.gate_m))
         taken = self._match_scan(scan, here, ids, distance_m)
         self.duplicates += len(set(near) - taken)
 
@@ -137,7 +138,7 @@ class _EpisodeScorer:
         """Match targets to tracks: most pairs, then least cost; returns the matched ids."""
         other = np.array([[self.last_id.get(name) != i for i in ids] for name in here])
         cost = np.where(distance_m < self.gate_m, distance_m + self.bonus_m * other, np.inf)
-        matched = [(here[target], ids[track]) for target, track in pairs(cost)]
+        matched = [(here[target], ids[track]) for target, track in association.assign(cost)]
         for name, track_id in matched:
             self.match[name][scan] = self.last_id[name] = track_id
         return {track_id for _, track_id in matched}
@@ -178,10 +179,15 @@ class _EpisodeScorer:
             return np.ones(len(scans), dtype=bool)
         return np.array(
             [
-                bool((distances(state[np.newaxis, 0::2], scan.position_m) < self.gate_m).any())
+                bool((_distances(state[np.newaxis, 0::2], scan.position_m) < self.gate_m).any())
                 for scan, state in zip(scans, truth, strict=True)
             ]
         )
+
+
+def _distances(a_m: np.ndarray, b_m: np.ndarray) -> np.ndarray:
+    """Distances (n, m) between points (n, 2) and (m, 2)."""
+    return np.hypot(a_m[:, np.newaxis, 0] - b_m[:, 0], a_m[:, np.newaxis, 1] - b_m[:, 1])
 
 
 def _states_by_scan(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wakeline._checks import real_numbers
+from wakeline._engine.core import wrap_angle
 
 _COURSE_MIN_SPEED_MPS = 2.0
 
@@ -61,7 +62,7 @@ def errors_of(estimates: Sequence[np.ndarray], truths: Sequence[np.ndarray]) -> 
     true_speed_mps = np.hypot(truth[:, 1], truth[:, 3])
     speed_error_mps = np.hypot(estimate[:, 1], estimate[:, 3]) - true_speed_mps
     turn = np.arctan2(estimate[:, 3], estimate[:, 1]) - np.arctan2(truth[:, 3], truth[:, 1])
-    turn = np.arctan2(np.sin(turn), np.cos(turn))[true_speed_mps > _COURSE_MIN_SPEED_MPS]
+    turn = wrap_angle(turn[true_speed_mps > _COURSE_MIN_SPEED_MPS])
     return Errors(
         matched=len(error),
         position_rmse_m=float(rmse(distance_m)),

@@ -13,7 +13,8 @@ import numpy as np
 
 from wakeline import core, eval
 from wakeline._brief import many
-from wakeline.metrics import right_mode, squared_distance
+from wakeline.metrics import nees as nees_of
+from wakeline.metrics import right_mode
 from wakeline.scenario import Scenario
 
 from .candidate import Candidate, named
@@ -133,7 +134,7 @@ def _summed(chunk: Chunk, z: np.ndarray, starts: list[core.Gaussian] | None) -> 
     status = _of_each_scan(chunk, result, "status", len(z), "RT")
     error = mean[usable] - chunk.scenario.truth_states
     position_m2 = error[..., 0] ** 2 + error[..., 2] ** 2
-    nees = squared_distance(error, covariance[usable])
+    nees = nees_of(error, covariance[usable])
     nis = _of_each_scan(chunk, result, "nis", len(z), "RT")[usable]
     modes = None
     if getattr(result, "mode_probability", None) is not None:

@@ -81,10 +81,10 @@ TEST(Gospa, AgreesWithExhaustiveSearch) {
     const double half = 0.5 * std::pow(options.cutoff_m, options.order);
     std::vector<bool> used(tracks.size());
     const double expected = exhaustive(targets, tracks, options.order, half, 0, used);
-    EXPECT_NEAR(std::pow(result.gospa, options.order), expected, 1e-9 * (1.0 + expected));
+    EXPECT_NEAR(std::pow(result.gospa_m, options.order), expected, 1e-9 * (1.0 + expected));
     EXPECT_NEAR(result.localisation + result.missed + result.false_tracks, expected,
                 1e-9 * (1.0 + expected));
-    EXPECT_NEAR(result.ospa, exhaustive_ospa(targets, tracks, options), 1e-9);
+    EXPECT_NEAR(result.ospa_m, exhaustive_ospa(targets, tracks, options), 1e-9);
   }
 }
 
@@ -100,14 +100,14 @@ TEST(Gospa, IsAMetric) {
     const auto ba = between(b, a, options);
     const auto bc = between(b, c, options);
     const auto ac = between(a, c, options);
-    EXPECT_EQ(between(a, a, options).gospa, 0.0);
-    EXPECT_EQ(between(a, a, options).ospa, 0.0);
-    EXPECT_NEAR(ab.gospa, ba.gospa, 1e-9);
-    EXPECT_NEAR(ab.ospa, ba.ospa, 1e-9);
+    EXPECT_EQ(between(a, a, options).gospa_m, 0.0);
+    EXPECT_EQ(between(a, a, options).ospa_m, 0.0);
+    EXPECT_NEAR(ab.gospa_m, ba.gospa_m, 1e-9);
+    EXPECT_NEAR(ab.ospa_m, ba.ospa_m, 1e-9);
     EXPECT_EQ(ab.missed, ba.false_tracks);
-    EXPECT_LE(ac.gospa, ab.gospa + bc.gospa + 1e-9);
-    EXPECT_LE(ac.ospa, ab.ospa + bc.ospa + 1e-9);
-    EXPECT_LE(ab.ospa, options.cutoff_m + 1e-9);
+    EXPECT_LE(ac.gospa_m, ab.gospa_m + bc.gospa_m + 1e-9);
+    EXPECT_LE(ac.ospa_m, ab.ospa_m + bc.ospa_m + 1e-9);
+    EXPECT_LE(ab.ospa_m, options.cutoff_m + 1e-9);
   }
 }
 
@@ -119,8 +119,8 @@ TEST(Gospa, DecomposesIntoItsThreeParts) {
   EXPECT_DOUBLE_EQ(result.localisation, 25.0);
   EXPECT_DOUBLE_EQ(result.missed, 50.0);
   EXPECT_DOUBLE_EQ(result.false_tracks, 100.0);
-  EXPECT_DOUBLE_EQ(result.gospa, std::sqrt(175.0));
-  EXPECT_DOUBLE_EQ(result.ospa, std::sqrt(225.0 / 3.0));
+  EXPECT_DOUBLE_EQ(result.gospa_m, std::sqrt(175.0));
+  EXPECT_DOUBLE_EQ(result.ospa_m, std::sqrt(225.0 / 3.0));
 }
 
 TEST(Gospa, KeepsTheLocalisationOfTinyErrorsBesideManyMisses) {
@@ -131,11 +131,11 @@ TEST(Gospa, KeepsTheLocalisationOfTinyErrorsBesideManyMisses) {
 }
 
 TEST(Gospa, TreatsEmptySets) {
-  EXPECT_EQ(between({}, {}).gospa, 0.0);
-  EXPECT_EQ(between({}, {}).ospa, 0.0);
+  EXPECT_EQ(between({}, {}).gospa_m, 0.0);
+  EXPECT_EQ(between({}, {}).ospa_m, 0.0);
   const auto missed = between({{1.0, 2.0}}, {}, {.cutoff_m = 8.0, .order = 2.0});
-  EXPECT_DOUBLE_EQ(missed.gospa, std::sqrt(32.0));
-  EXPECT_DOUBLE_EQ(missed.ospa, 8.0);
+  EXPECT_DOUBLE_EQ(missed.gospa_m, std::sqrt(32.0));
+  EXPECT_DOUBLE_EQ(missed.ospa_m, 8.0);
   EXPECT_EQ(missed.false_tracks, 0.0);
 }
 
@@ -144,7 +144,7 @@ TEST(Gospa, PairsNothingAtTheCutoffNorWithoutADistance) {
   EXPECT_EQ(between(origin, {{0.0, 50.0}}).pairs, 0);
   EXPECT_EQ(between(origin, {{0.0, 49.999}}).pairs, 1);
   EXPECT_EQ(between(origin, {{0.0, std::nan("")}}).pairs, 0);
-  EXPECT_DOUBLE_EQ(between(origin, {{0.0, 50.0}}).gospa, 50.0);
+  EXPECT_DOUBLE_EQ(between(origin, {{0.0, 50.0}}).gospa_m, 50.0);
 }
 
 TEST(Gospa, PointsAndDistancesAgree) {
@@ -157,7 +157,7 @@ TEST(Gospa, PointsAndDistancesAgree) {
       distance(i, j) =
           (targets[static_cast<std::size_t>(i)] - tracks[static_cast<std::size_t>(j)]).norm();
   Gospa gospa({}, 7, 9);
-  EXPECT_EQ(gospa.between(distance).gospa, between(targets, tracks).gospa);
+  EXPECT_EQ(gospa.between(distance).gospa_m, between(targets, tracks).gospa_m);
   EXPECT_EQ(gospa.assignment().column_of_row().size(), 7u);
 }
 
@@ -171,7 +171,7 @@ TEST(Gospa, AUsedWorkspaceTakesNoHeapAndRefusesLargerSets) {
   const long allocations = fence.allocations();
   EXPECT_EQ(allocations, 0);
   EXPECT_EQ(result.pairs, 11);
-  EXPECT_TRUE(std::isnan(too_many.gospa));
+  EXPECT_TRUE(std::isnan(too_many.gospa_m));
 }
 
 TEST(Gospa, RejectsSettingsWithoutAMeaning) {

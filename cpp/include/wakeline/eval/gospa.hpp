@@ -19,11 +19,11 @@ namespace wakeline {
 /// Distance between the true targets and the tracks of one scan. The three parts are p-th powers:
 /// gospa^p = localisation + missed + false_tracks.
 struct SetDistance {
-  double gospa = 0.0;         ///< in the unit of the distances
+  double gospa_m = 0.0;
   double localisation = 0.0;  ///< Σ d^p of the pairs
   double missed = 0.0;        ///< c^p/2 for each target without a track
   double false_tracks = 0.0;  ///< c^p/2 for each track without a target
-  double ospa = 0.0;          ///< in the unit of the distances, at most the cut-off
+  double ospa_m = 0.0;        ///< at most the cut-off
   int pairs = 0;              ///< targets with a track within the cut-off
 };
 
@@ -57,7 +57,7 @@ class Gospa {
     require(options.order >= 1.0 && std::isfinite(options.order), "order", "at least 1",
             options.order);
     cutoff_power_ = std::pow(options.cutoff_m, options.order);
-    require(std::isnormal(cutoff_power_), "order", "such that cutoff_m to its power is a number",
+    require(std::isnormal(cutoff_power_), "order", "such that cutoff_m to its power does not overflow",
             options.order);
   }
 
@@ -105,10 +105,10 @@ class Gospa {
     result.missed = 0.5 * cutoff_power_ * (targets - result.pairs);
     result.false_tracks = 0.5 * cutoff_power_ * (tracks - result.pairs);
     result.localisation = solver_.assignment().pair_cost();
-    result.gospa = root(result.localisation + result.missed + result.false_tracks);
+    result.gospa_m = root(result.localisation + result.missed + result.false_tracks);
     const int larger = std::max(targets, tracks);
     if (larger > 0)
-      result.ospa = root((result.localisation + cutoff_power_ * (larger - result.pairs)) / larger);
+      result.ospa_m = root((result.localisation + cutoff_power_ * (larger - result.pairs)) / larger);
     return result;
   }
 
