@@ -197,7 +197,7 @@ def _whole_run(estimator: Any, z: np.ndarray, sensor: Any) -> Callable[[], Any]:
 
 
 def _run_by_run(estimator: Any, z: np.ndarray, sensor: Any) -> Callable[[], Any]:
-    """One run after the other, each on its own."""
+    """One run after the other."""
     calls = [_whole_run(estimator, one, sensor) for one in z]
     return lambda: [call() for call in calls]
 
@@ -342,7 +342,7 @@ def each(function: Callable[[Any], Any], problems: list[Any]) -> Callable[[], No
 def _gated_costs(
     rng: np.random.Generator, size: int, candidates: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compressed rows of gated distances: of each track its own plot, and others by chance."""
+    """Compressed rows of gated distances: each track's plot, and random others."""
     start, columns, costs = [0], [], []
     for row in range(size):
         others = rng.choice(size, rng.poisson(candidates - 1.0), replace=False)

@@ -264,7 +264,7 @@ def window_outline(
 def screen_raster(
     video: RadarVideo | ScanImage, extent_m: tuple[float, float, float, float], pixels: int
 ) -> NDArray[np.float32]:
-    """Video on a square grid north up: row 0 in the south, NaN where there is no video.
+    """Video on a square grid, north up: row 0 in the south, NaN without video.
 
     A pixel has the largest amplitude of the cell at its center and of all cells with their center
     in it: a small picture loses no cell, a large one has no holes.

@@ -48,7 +48,7 @@ class PlotRows:
     Attributes
     ----------
     table : Table or None
-        The file, to name lines in errors; None when there is no file and so no row.
+        The file, to name lines in errors; None without a file.
     row : ndarray of int (n,)
         Row of the file behind each entry.
     scenario : ndarray of str (n,)

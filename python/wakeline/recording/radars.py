@@ -23,7 +23,7 @@ def load_radar(name: str) -> dict[str, float]:
     Raises
     ------
     ValueError
-        When there is no radar of that name.
+        When no radar has that name.
     """
     if name not in radar_names():
         raise ValueError(f"no radar {name!r}; there are {', '.join(radar_names())}")

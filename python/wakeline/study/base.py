@@ -202,7 +202,7 @@ class Published:
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked of a study; the arguments of :meth:`Study.run`."""
+    """The arguments of :meth:`Study.run`."""
 
     runs: int
     seed: int
@@ -213,23 +213,23 @@ class Request:
 
 @dataclass(frozen=True)
 class Plan:
-    """The work of a study for a request, and what is made of it.
+    """The work of a study for a request, and its results.
 
     Attributes
     ----------
     jobs : mapping of key to callable
-        Independent of each other; what each returns is `done` by its key.
+        Independent jobs; `done` has the result of each by its key.
     rows : callable
-        Rows of the jobs that are done, all or some of them.
+        Makes the rows from all or some of the results.
     result : callable, optional
-        `Report.result` of the same; default all that is done.
+        Makes `Report.result` from them; default: all results.
     pictures, notes : callable, optional
-        Of all that is done and of its rows.
+        Made from all results and their rows.
     in_turn : bool
-        Whether the jobs are run one after another, since each takes all threads itself. One that is
-        interrupted leaves what it has in the attribute ``result`` of its exception.
+        Whether the jobs run one after another, because each uses all threads. The exception of an
+        interrupted job has its partial result as the attribute ``result``.
     runs : int, optional
-        How many runs there are, where it is not the number that was asked for.
+        Number of runs, if it differs from the requested one.
     """
 
     jobs: Mapping[Any, Callable[[], Any]]
@@ -253,9 +253,9 @@ class Study:
     plan : callable
         Takes a :class:`Request`, and options of the study, and returns its :class:`Plan`.
     published : mapping of str to Published
-        Figures of others by source.
+        Published figures by source.
     random : bool
-        Whether anything is drawn at random.
+        Whether the study is random.
     """
 
     name: str
@@ -281,24 +281,24 @@ class Study:
         runs, seed : int
             Of the Monte Carlo runs.
         full : bool
-            Also how sensitive the results are, where the study has it.
+            Also the sensitivity of the results, if the study has it.
         threads : int, optional
-            Default as many as there are processors.
+            Default: the number of processors.
         progress : bool
-            Whether to draw a bar where stderr is a terminal.
+            Whether to draw a bar if stderr is a terminal.
         **options
-            Of the study, see its module.
+            Options of the study; see its module.
 
         Returns
         -------
         Report
-            An exception that ends the work early, KeyboardInterrupt among them, has the attribute
-            ``result``: a report of what was done, without pictures.
+            An exception that ends the work early, also KeyboardInterrupt, has the attribute
+            ``result``: a report of the completed rows, without pictures.
 
         Raises
         ------
         ValueError
-            When a number is not a whole one or too small.
+            When a number is not an integer or too small.
         """
         run_numbers(runs, seed, threads)
         plan = self.plan(Request(runs, seed, full, threads, progress), **options)
@@ -351,10 +351,10 @@ def worked_off(
 
 
 def in_turn(jobs: Mapping[Key, Callable[[], Found]]) -> dict[Key, Found]:
-    """What every job gives, one after another.
+    """Results of all jobs, run one after another.
 
-    What stops it has the attribute ``result``: what those gave that were done, and what that of the
-    same name holds of the one that was stopped.
+    An exception has the attribute ``result``: the results of the completed jobs, and the partial
+    result of the interrupted one.
     """
     done: dict[Key, Found] = {}
     for key, job in jobs.items():

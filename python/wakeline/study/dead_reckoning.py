@@ -7,7 +7,7 @@ steady course with a fix every 30 s, by a line through the differences of observ
 positions or from rates.
 
 Scenarios are ``forecast_4x1s`` to ``forecast_4x10s``, four readings ahead on the voyage, and
-``drift_20``, ``drift_5``, so many fixes after the first.
+``drift_20``, ``drift_5``, with that many fixes after the first.
 """
 
 from __future__ import annotations

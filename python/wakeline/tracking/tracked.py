@@ -194,7 +194,7 @@ def track_episode(
 
 
 def median_step_s(episode: Episode) -> float | None:
-    """Median time between scans, None where there are fewer than two."""
+    """Median time between scans, None with fewer than two."""
     return float(np.median(np.diff(episode.time_s))) if len(episode) > 1 else None
 
 

@@ -11,7 +11,7 @@ from .log import NmeaReport
 
 DAY_S = 86400.0
 
-_DOUBTED = 3  # a time that leaps is rejected when one of as many next sentences returns
+_DOUBTED = 3  # a time that leaps is rejected if one of the next 3 sentences returns
 _LEAP_S, _LEAP_STEPS = 10.0, 5.0
 
 

@@ -4,8 +4,8 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, "Tracking of maneuvering targets us
 structure multiple model algorithm", J. Russian Universities. Radioelectronics, 2023, 26(3), 77-89.
 
 Scenarios are ``example1``, ``example2`` and ``random``, by which the result is a mapping. Each of
-the 24 random scenarios has as many runs as make up `runs`, rounded up. In full it is also run with
-turn rates beside the grid, other noise and thresholds, what is not printed, and a start from plots.
+the 24 random scenarios has its share of `runs`, rounded up. In full it also varies turn rates off
+the grid, noise, thresholds, unprinted parameters, and the start from plots.
 """
 
 from __future__ import annotations
