@@ -9,15 +9,14 @@
 #include "wakeline/track/tracker.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
-namespace wakeline {
+namespace wakeline::python {
+namespace {
 
-/// The usual estimator takes its steps in the lanes of the processor that this runs on.
-template <>
-class SideBySide<VesselImm> {
+/// Steps of the usual estimator in the lanes of this processor.
+class VesselSteps {
  public:
-  explicit SideBySide(const VesselImm& prototype) : one_by_one_(prototype) {
-    if (const python::LaneKernels* kernels = python::lane_kernels())
-      lanes_ = kernels->vessels(prototype);
+  explicit VesselSteps(const VesselImm& prototype) : one_by_one_(prototype) {
+    if (const LaneKernels* kernels = lane_kernels()) lanes_ = kernels->vessels(prototype);
   }
 
   void predict(std::span<PredictionStep<VesselImm>> steps) noexcept {
@@ -29,21 +28,18 @@ class SideBySide<VesselImm> {
 
  private:
   OneByOne<VesselImm> one_by_one_;
-  std::unique_ptr<python::VesselLanes> lanes_;
+  std::unique_ptr<VesselLanes> lanes_;
 };
 
-}  // namespace wakeline
+using VesselTracker = Tracker<VesselImm, VesselSteps>;
 
-namespace wakeline::python {
-namespace {
-
-/// A tracker with whatever estimator.
+/// A tracker with any estimator.
 class AnyTracker {
  public:
   AnyTracker(const Radar& radar, const TrackerConfig& config, const AnyEstimator& estimator)
       : tracker_(Tracker<AnyEstimator>(radar, config, estimator)) {}
   AnyTracker(const Radar& radar, const TrackerConfig& config, const VesselImm& imm)
-      : tracker_(Tracker<VesselImm>(radar, config, imm)) {}
+      : tracker_(VesselTracker(radar, config, imm)) {}
 
   template <class Function>
   decltype(auto) visit(const Function& function) {
@@ -55,7 +51,7 @@ class AnyTracker {
   }
 
  private:
-  std::variant<Tracker<VesselImm>, Tracker<AnyEstimator>> tracker_;
+  std::variant<VesselTracker, Tracker<AnyEstimator>> tracker_;
 };
 
 const char* status_name(TrackStatus status) {
@@ -210,24 +206,24 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
 }
 
 /// (k, K), those of each track.
-template <class Estimator>
-py::array_t<double> turn_rates(const std::vector<const Track<Estimator>*>& tracks,
+template <class AnyTracker>
+py::array_t<double> turn_rates(const AnyTracker& tracker, const std::vector<const Track*>& tracks,
                                py::ssize_t modes) {
   py::array_t<double> rates({static_cast<py::ssize_t>(tracks.size()), modes});
   for (std::size_t k = 0; k < tracks.size(); ++k) {
-    const auto of_track = tracks[k]->estimator.turn_rates_rad_s();
+    const auto of_track = tracker.estimator_of(*tracks[k]).turn_rates_rad_s();
     for (py::ssize_t mode = 0; mode < modes; ++mode)
       rates.mutable_at(static_cast<py::ssize_t>(k), mode) = of_track[mode];
   }
   return rates;
 }
 
-template <class Estimator>
-PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& time_s,
+template <class Estimator, class Steps>
+PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<double>& time_s,
                 bool tentative) {
   if (time_s) require_finite("time_s", *time_s);
-  std::vector<const Track<Estimator>*> wanted;
-  tracker.for_each([&](const Track<Estimator>& track) {
+  std::vector<const Track*> wanted;
+  tracker.for_each([&](const Track& track) {
     if (tentative || track.shown()) wanted.push_back(&track);
   });
   const auto count = static_cast<py::ssize_t>(wanted.size());
@@ -246,7 +242,7 @@ PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& 
                  py::array_t<std::int64_t>(count),
                  {}};
   for (py::ssize_t k = 0; k < count; ++k) {
-    const Track<Estimator>& track = *wanted[static_cast<std::size_t>(k)];
+    const Track& track = *wanted[static_cast<std::size_t>(k)];
     const Gaussian<4> belief = time_s ? tracker.kinematics_at(track, *time_s) : track.kinematics;
     table.track_id.mutable_at(k) = track.id;
     table.status.emplace_back(status_name(track.status));
@@ -255,8 +251,9 @@ PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& 
       table.mean.mutable_at(k, i) = belief.mean[i];
       for (int j = 0; j < 4; ++j) table.covariance.mutable_at(k, i, j) = belief.covariance(i, j);
     }
+    const auto& mode_probability = tracker.estimator_of(track).mode_probability();
     for (py::ssize_t mode = 0; mode < modes; ++mode)
-      table.mode_probability.mutable_at(k, mode) = track.estimator.mode_probability()[mode];
+      table.mode_probability.mutable_at(k, mode) = mode_probability[mode];
     table.nis.mutable_at(k) = track.nis;
     table.existence.mutable_at(k) = track.existence;
     table.visibility.mutable_at(k) = track.visibility;
@@ -266,7 +263,7 @@ PyTracks tracks(const Tracker<Estimator>& tracker, const std::optional<double>& 
   }
   if constexpr (kHasTurnRates<Estimator>)
     if (tracker.prototype().turn_rates_rad_s().size() > 0)
-      table.turn_rate_rad_s = turn_rates(wanted, modes);
+      table.turn_rate_rad_s = turn_rates(tracker, wanted, modes);
   return table;
 }
 

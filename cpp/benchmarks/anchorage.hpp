@@ -72,8 +72,8 @@ class Anchorage {
 };
 
 /// Confirmed tracks that a console shows.
-template <class Estimator>
-int shown(const Tracker<Estimator>& tracker) {
+template <class AnyTracker>
+int shown(const AnyTracker& tracker) {
   int count = 0;
   tracker.for_each([&](const auto& track) { count += track.shown(); });
   return count;

@@ -178,7 +178,7 @@ TEST(BadPlots, ManyOnOneSpotAreOneTarget) {
     expect_sound(tracker);
   }
   int confirmed = 0;
-  tracker.for_each([&](const VesselTrack& track) { confirmed += track.confirmed(); });
+  tracker.for_each([&](const Track& track) { confirmed += track.confirmed(); });
   EXPECT_EQ(confirmed, 1);
   ASSERT_NE(tracker.find(1), nullptr);
   EXPECT_LT((tracker.find(1)->position() - kBoat.at(47.5)).norm(), 60.0);
@@ -266,7 +266,7 @@ void survive(Association association, std::uint64_t seed, bool rotating) {
           << "confirmed in a scan in which it was not seen";
     }
     expect_sound(tracker);
-    for (const VesselTrack* track : tracks_of(tracker, true))
+    for (const Track* track : tracks_of(tracker, true))
       ASSERT_LE(track->speed_mps(), kTestRadar.max_speed_mps);
     if (testing::Test::HasFailure()) return;
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// A tracker takes any estimator with the face of Imm.
+// A tracker takes any estimator with the face of Imm, and any way to step many of them.
 #include "track/scene.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
@@ -35,7 +35,7 @@ void expect_to_hold(const Estimator& prototype) {
     tracker.process(2.5 * scan, plots);
   }
   int near = 0;
-  tracker.for_each([&](const Track<Estimator>& track) {
+  tracker.for_each([&](const Track& track) {
     near += track.confirmed() && (track.position() - turning_boat(59)).norm() < 40.0;
   });
   EXPECT_EQ(near, 1);
@@ -69,18 +69,12 @@ TEST(TrackerEstimators, MovingGrid) {
   expect_to_hold(AdaptiveGridImm(AdaptiveGrid{}, ModeChain<3>::staying(0.9), kTurning));
 }
 
-/// The usual estimator, as one that the tracker knows nothing of.
-struct OneByOne : VesselImm {
-  // NOLINTNEXTLINE(google-explicit-constructor): each of them is one.
-  OneByOne(const VesselImm& imm) : VesselImm(imm) {}
-};
-
 TEST(TrackerEstimators, TracksInLanesAreThoseOfOneAfterTheOther) {
   TrackerConfig config;
   config.max_tracks = 80;
   const VesselImm prototype = vessel_imm(test::kTestRadar);
   test::VesselTracker in_lanes(test::kTestRadar, config, prototype);
-  Tracker<OneByOne> one_by_one(test::kTestRadar, config, prototype);
+  Tracker<VesselImm, OneByOne<VesselImm>> one_by_one(test::kTestRadar, config, prototype);
   test::Sea sea(42);
   std::vector<test::Boat> boats;
   for (int k = 0; k < 45; ++k)
@@ -97,8 +91,8 @@ TEST(TrackerEstimators, TracksInLanesAreThoseOfOneAfterTheOther) {
   }
   ASSERT_GT(in_lanes.size(), 40);
   ASSERT_EQ(in_lanes.size(), one_by_one.size());
-  in_lanes.for_each([&](const test::VesselTrack& track) {
-    const Track<OneByOne>* other = one_by_one.find(track.id);
+  in_lanes.for_each([&](const Track& track) {
+    const Track* other = one_by_one.find(track.id);
     ASSERT_NE(other, nullptr) << track.id;
     EXPECT_EQ(track.status, other->status);
     EXPECT_EQ(track.time_s, other->time_s);

@@ -36,7 +36,7 @@ TEST(Life, AStraightBoatIsConfirmedOnceAndKeepsItsNumber) {
         EXPECT_EQ(confirmed, 0) << "two plots are not enough";
       } else if (k >= 6) {
         ASSERT_EQ(confirmed, 1) << "seed " << seed << ", scan " << k;
-        const VesselTrack* track = tracker.find(1);
+        const Track* track = tracker.find(1);
         ASSERT_NE(track, nullptr);
         EXPECT_LT((track->position() - kBoat.at(time_s)).norm(), 80.0);
       }
@@ -83,15 +83,6 @@ TEST(Life, HoweverSureTheRadarIsATargetThatIsNotSeenIsVisibleWithAProbability) {
     (void)tracker.process(2.5 * (k / 5), {&plot, k % 5 == 0 && k < 20 ? 1u : 0u});
     expect_sound(tracker);
   }
-  VesselTrack track{.estimator = vessel_imm(kTestRadar)};
-  for (const double visibility : {1e-20, 0.0})
-    for (const bool certain : {false, true})
-      for (const double total : {1.0 - 1e-16, 1.0, 0.0}) {
-        track.visibility = visibility;
-        track.existence = 0.5;
-        track.weigh(config, total, certain ? 0.0 : 1.0, certain);
-        EXPECT_TRUE(track.visibility >= 0.0 && track.visibility <= 1.0) << track.visibility;
-      }
 }
 
 TEST(Life, FalsePlotsAloneAreNoEvidenceOnAverage) {
@@ -242,7 +233,7 @@ void expect_held(int first_scans, const std::string& pattern, double speed_mps,
     }
   }
   ASSERT_TRUE(confirmed);
-  const VesselTrack* track = tracker.find(1);
+  const Track* track = tracker.find(1);
   EXPECT_LT((track->position() - boat.at(track->time_s)).norm(), 150.0);
 }
 
@@ -266,7 +257,7 @@ TEST(Life, CoastsThenIsHeldThenLostOnce) {
   }
   ASSERT_NE(tracker.find(1), nullptr);
   EXPECT_EQ(tracker.find(1)->status, TrackStatus::kConfirmed);
-  const double patience = tracker.find(1)->patience(config);
+  const double patience = allowed_misses(config, *tracker.find(1));
   std::vector<TrackEvent> story;
   for (int missed = 1; missed <= 30; ++missed, time_s += 2.5) {
     for (const Event& event : tracker.process(time_s, {}).events) {
@@ -274,7 +265,7 @@ TEST(Life, CoastsThenIsHeldThenLostOnce) {
       EXPECT_LT(event.tentative_id, 0);
       story.push_back(event.kind);
     }
-    const VesselTrack* track = tracker.find(1);
+    const Track* track = tracker.find(1);
     if (track == nullptr) continue;
     EXPECT_LE(missed, patience);
     EXPECT_EQ(track->status,
@@ -330,10 +321,10 @@ TEST(Life, AnEchoThatWandersOverItsSpotIsOneTrackAtRest) {
     std::vector<Plot> plots{sea.plot(kBoat.at(time_s), time_s)};
     if (sea.draw.uniform(0, 1) < 0.9) plots.push_back(sea.plot({-900.0, 300.0}, time_s));
     (void)tracker.process(time_s, plots);
-    for (const VesselTrack* track : tracks_of(tracker, true)) ids.insert(track->id);
+    for (const Track* track : tracks_of(tracker, true)) ids.insert(track->id);
   }
   EXPECT_EQ(ids.size(), 2u);
-  const VesselTrack* rock = track_at(tracker, {-900.0, 300.0});
+  const Track* rock = track_at(tracker, {-900.0, 300.0});
   ASSERT_NE(rock, nullptr);
   EXPECT_LT(rock->speed_mps(), 3.0);
 }

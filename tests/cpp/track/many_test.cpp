@@ -38,8 +38,8 @@ void expect_each_keeps_its_number(const Boat& a, const Boat& b, int scans) {
         }
         const bool first = k == 10, last = k == scans - 1;
         if (!first && !last) continue;
-        const VesselTrack* track_a = track_at(tracker, a.at(time_s));
-        const VesselTrack* track_b = track_at(tracker, b.at(time_s));
+        const Track* track_a = track_at(tracker, a.at(time_s));
+        const Track* track_b = track_at(tracker, b.at(time_s));
         ASSERT_NE(track_a, nullptr);
         ASSERT_NE(track_b, nullptr);
         EXPECT_NE(track_a->id, track_b->id);
@@ -88,11 +88,11 @@ TEST(Many, AShipThatGivesTwoPlotsHasOneTrackOfATrackerThatKnowsHerLength) {
       for (const std::vector<Plot>& plots : ship_and_boat(seed)) {
         (void)tracker.process(time_s, plots);
         time_s += 2.5;
-        for (const VesselTrack* track : tracks_of(tracker, true)) numbers.insert(track->id);
+        for (const Track* track : tracks_of(tracker, true)) numbers.insert(track->id);
       }
       EXPECT_EQ(numbers.size(), length_m > 0.0 ? 2u : 3u) << "seed " << seed;
       EXPECT_EQ(tracks_of(tracker, true).size(), numbers.size());
-      const VesselTrack* ship = track_at(tracker, {1000.0, -440.0 + 7.0 * (time_s - 2.5)}, 60.0);
+      const Track* ship = track_at(tracker, {1000.0, -440.0 + 7.0 * (time_s - 2.5)}, 60.0);
       ASSERT_NE(ship, nullptr);
       EXPECT_NEAR(ship->velocity()[1], 7.0, 1.5);
       EXPECT_NE(track_at(tracker, {400.0 + 10.0 * (time_s - 2.5), 80.0}, 40.0), nullptr);
@@ -115,7 +115,7 @@ TEST(Many, OfTwoTracksOnOneTargetTheOlderNumberStays) {
           ++ended;
         }
       if (k == 15) {
-        const VesselTrack* first = tracker.find(1);
+        const Track* first = tracker.find(1);
         ASSERT_NE(first, nullptr);
         second = tracker.designate(time_s, first->position()[0], first->position()[1], 15.0);
         ASSERT_EQ(second, 2);
@@ -314,7 +314,7 @@ double existence_of_a_start(double clutter_density_per_m2, double cell_m, double
     (void)tracker.process(2.5 * k, {&plot, 1});
     EXPECT_EQ(tracker.size(), k == 1001 ? 1 : 0);
   }
-  tracker.for_each([&](const VesselTrack& track) { existence = track.existence; });
+  tracker.for_each([&](const Track& track) { existence = track.existence; });
   return existence;
 }
 

@@ -26,7 +26,7 @@ TEST(Operator, DesignatesATargetBeforeTheFirstScan) {
   VesselTracker tracker = make_tracker();
   const std::int64_t id = tracker.designate(0.0, kBoat.at(0)[0], kBoat.at(0)[1], 30.0);
   EXPECT_EQ(id, 1);
-  const VesselTrack* track = tracker.find(id);
+  const Track* track = tracker.find(id);
   ASSERT_NE(track, nullptr);
   EXPECT_EQ(track->status, TrackStatus::kConfirmed);
   EXPECT_EQ(track->tentative_id, 0);

@@ -22,7 +22,6 @@ extern template class Tracker<VesselImm>;  // compiled once, in instance_test.cp
 namespace wakeline::test {
 
 using VesselTracker = Tracker<VesselImm>;
-using VesselTrack = VesselTracker::TrackType;
 
 inline const Radar kTestRadar{.range_std_m = 8.0,
                               .bearing_std_rad = deg(0.5),
@@ -83,20 +82,19 @@ class Sea {
   Radar radar_;
 };
 
-inline std::vector<const VesselTrack*> tracks_of(const VesselTracker& tracker,
-                                                 bool confirmed_only) {
-  std::vector<const VesselTrack*> tracks;
-  tracker.for_each([&](const VesselTrack& track) {
+inline std::vector<const Track*> tracks_of(const VesselTracker& tracker, bool confirmed_only) {
+  std::vector<const Track*> tracks;
+  tracker.for_each([&](const Track& track) {
     if (track.confirmed() || !confirmed_only) tracks.push_back(&track);
   });
   return tracks;
 }
 
 /// The confirmed track nearest to a position, and not farther than a gate; null when there is none.
-inline const VesselTrack* track_at(const VesselTracker& tracker, const Vec<double, 2>& position,
-                                   double gate_m = 100.0) {
-  const VesselTrack* nearest = nullptr;
-  for (const VesselTrack* track : tracks_of(tracker, true))
+inline const Track* track_at(const VesselTracker& tracker, const Vec<double, 2>& position,
+                             double gate_m = 100.0) {
+  const Track* nearest = nullptr;
+  for (const Track* track : tracks_of(tracker, true))
     if (const double d = (track->position() - position).norm(); d < gate_m) {
       gate_m = d;
       nearest = track;
@@ -111,7 +109,7 @@ inline std::vector<Event> events_of(const ScanReport& report, TrackEvent kind) {
   return events;
 }
 
-/// The numbers of all tracks by what events have told.
+/// The numbers of all tracks, by the events reported.
 class Ledger {
  public:
   void note(const ScanReport& report) {
@@ -143,13 +141,13 @@ class Ledger {
 
 inline std::set<std::int64_t> ids_of(const VesselTracker& tracker) {
   std::set<std::int64_t> ids;
-  tracker.for_each([&](const VesselTrack& track) { ids.insert(track.id); });
+  tracker.for_each([&](const Track& track) { ids.insert(track.id); });
   return ids;
 }
 
 /// Every number of every track makes sense.
 inline void expect_sound(const VesselTracker& tracker) {
-  tracker.for_each([](const VesselTrack& track) {
+  tracker.for_each([&](const Track& track) {
     EXPECT_TRUE(is_finite(track.kinematics.mean)) << track.id;
     EXPECT_TRUE(is_covariance(track.kinematics.covariance)) << track.id << "\n"
                                                             << track.kinematics.covariance;
@@ -158,8 +156,9 @@ inline void expect_sound(const VesselTracker& tracker) {
     EXPECT_TRUE(std::isnan(track.nis) || (track.nis >= 0.0 && std::isfinite(track.nis)))
         << track.nis;
     EXPECT_TRUE(std::isfinite(track.time_s));
-    EXPECT_NEAR(track.estimator.mode_probability().sum(), 1.0, 1e-9);
-    EXPECT_GE(track.estimator.mode_probability().minCoeff(), 0.0);
+    const auto& mode_probability = tracker.estimator_of(track).mode_probability();
+    EXPECT_NEAR(mode_probability.sum(), 1.0, 1e-9);
+    EXPECT_GE(mode_probability.minCoeff(), 0.0);
     EXPECT_GE(track.scans, track.hits);
     EXPECT_EQ(track.id > 0, track.confirmed());
   });

@@ -47,11 +47,13 @@ TEST(SpeedPrior, KnowsTheVelocityHoweverShortTheTimeBetweenTwoPlots) {
     // Without time between them they are two plots of one place, which tell nothing of a velocity.
     EXPECT_TRUE(matrices_near(belief.mean, Vec<double, 4>(1002.0, 0.0, -1.5, 0.0),
                               {.absolute = 0.02, .relative = 0}))
-        << dt_s << " s\n" << belief.mean;
+        << dt_s << " s\n"
+        << belief.mean;
     EXPECT_TRUE(matrices_near(belief.covariance.diagonal().eval(),
                               Vec<double, 4>(50.0, 400.0, 50.0, 400.0),
                               {.absolute = 0, .relative = 1e-3}))
-        << dt_s << " s\n" << belief.covariance;
+        << dt_s << " s\n"
+        << belief.covariance;
     EXPECT_TRUE(Cholesky<4>(belief.covariance).ok()) << dt_s << " s";
   }
 }
@@ -119,8 +121,7 @@ TEST(Start, IsAsDoubtfulAsPlotsThatMayBeWild) {
     }
     EXPECT_EQ(tracker.size(), 1);
     Mat<double, 4, 4> covariance = Mat<double, 4, 4>::Zero();
-    tracker.for_each(
-        [&](const test::VesselTrack& track) { covariance = track.kinematics.covariance; });
+    tracker.for_each([&](const Track& track) { covariance = track.kinematics.covariance; });
     return covariance;
   };
   EXPECT_TRUE(matrices_near(covariance_at_start(0.2),

@@ -31,7 +31,7 @@ double rmse(const std::function<Plot(Sea&, const Boat&, double)>& see) {
       for (const Boat& boat : boats) plots.push_back(see(sea, boat, start_s));
       (void)tracker.process(start_s + 2.5, plots);
       if (k < 10) continue;
-      for (const VesselTrack* track : tracks_of(tracker, true)) {
+      for (const Track* track : tracks_of(tracker, true)) {
         double least = 1e4;
         for (const Boat& boat : boats)
           least = std::min(least, (track->position() - boat.at(track->time_s)).squaredNorm());
@@ -69,7 +69,7 @@ TEST(RotatingAntenna, TheEstimateIsOfThePlotsTime) {
     if (k < 2) continue;
     EXPECT_EQ(tracks_of(tracker, false).at(0)->time_s, plot.time_s);
   }
-  const VesselTrack& track = *tracker.find(1);
+  const Track& track = *tracker.find(1);
   const Gaussian<4> later = tracker.kinematics_at(track, track.time_s + 10.0);
   EXPECT_NEAR(later.mean[0], track.kinematics.mean[0] + 10.0 * track.kinematics.mean[1], 5.0);
   EXPECT_NEAR(later.mean[2], track.kinematics.mean[2] + 10.0 * track.kinematics.mean[3], 5.0);
@@ -96,7 +96,7 @@ double rmse_with_plots_that_come_again(double late_s) {
       std::vector<Plot> plots{sea.plot(at(time_s), time_s)};
       if (late_s > 0.0) plots.push_back(again.plot(at(time_s - late_s), time_s - late_s));
       (void)tracker.process(time_s, plots);
-      const VesselTrack* track = track_at(tracker, at(time_s), 300.0);
+      const Track* track = track_at(tracker, at(time_s), 300.0);
       if (k < 20 || track == nullptr) continue;
       squared += (track->position() - at(track->time_s)).squaredNorm();
       ++count;

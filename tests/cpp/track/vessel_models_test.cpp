@@ -22,7 +22,7 @@ VesselTracker tracker_of(const VesselModels& models) {
   return VesselTracker(kCoarse, {}, vessel_imm(kCoarse, models));
 }
 
-Vec<double, 2> velocity_of(const VesselTrack& track) {
+Vec<double, 2> velocity_of(const Track& track) {
   return {track.kinematics.mean[1], track.kinematics.mean[3]};
 }
 
@@ -68,7 +68,7 @@ double velocity_error_after_a_minute(const VesselModels& models) {
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
     VesselTracker tracker = tracker_of(models);
-    follow(tracker, ship, seed, 25, [&](double time_s, const VesselTrack* track) {
+    follow(tracker, ship, seed, 25, [&](double time_s, const Track* track) {
       if (time_s < 60.0) return;
       ASSERT_NE(track, nullptr) << "seed " << seed;
       sum += (velocity_of(*track) - ship.velocity_mps(time_s)).squaredNorm();
@@ -90,10 +90,10 @@ TEST(VesselModels, TakeForAShipWhatCruisesAndForCraftWhatMovesLikeIt) {
     double probability = 0.0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       VesselTracker tracker = tracker_of({});
-      follow(tracker, ship, seed, 74, [&](double time_s, const VesselTrack* track) {
+      follow(tracker, ship, seed, 74, [&](double time_s, const Track* track) {
         if (time_s < 180.0) return;
         ASSERT_NE(track, nullptr) << "seed " << seed;
-        probability += track->estimator.mode_probability()[0] / 30;
+        probability += tracker.estimator_of(*track).mode_probability()[0] / 30;
       });
     }
     return probability;
@@ -120,7 +120,7 @@ TEST(VesselModelsOfShips, HoldAShipThatAltersHerCourse) {
   double squared = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     VesselTracker tracker = tracker_of(VesselModels::ships());
-    follow(tracker, ship, seed, 144, [&](double time_s, const VesselTrack* track) {
+    follow(tracker, ship, seed, 144, [&](double time_s, const Track* track) {
       if (time_s < 30.0) return;
       ASSERT_NE(track, nullptr) << "seed " << seed << ", " << time_s << " s";
       EXPECT_EQ(track->id, 1);
@@ -145,7 +145,7 @@ TEST(VesselModels, AVesselAtAnchorStaysAtRestForHours) {
       if (sea.draw.uniform(0, 1) < 0.9) plots.push_back(sea.plot({1500.0, 300.0}, time_s));
       ASSERT_EQ(tracker.process(time_s, plots).status, Status::kOk);
       if (k < 30) continue;
-      const VesselTrack* track = tracker.find(1);
+      const Track* track = tracker.find(1);
       ASSERT_NE(track, nullptr) << period_s << " s, scan " << k;
       squared += track->velocity().squaredNorm() / kScans;
     }

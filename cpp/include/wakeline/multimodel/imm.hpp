@@ -116,18 +116,10 @@ class Imm {
     return step;
   }
 
-  /// What the modes think of a reading, without taking it.
-  template <class Sensor>
-  [[nodiscard]] Evidence<Scalar> evidence(
-      const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
-    Evidence<Scalar> evidence;
-    const Gaussian<Sensor::kMeasurements, Scalar> reading = sensor.observe(z);
-    bank_.for_each([&](int mode, const auto& filter) {
-      evidence.add(probability_[mode], with_model(sensor, [&](const auto& model) {
-                     return filter.compare(model, reading);
-                   }));
-    });
-    return evidence;
+  /// Calls `f(mode, belief)` for each mode in use.
+  template <class Function>
+  void for_each_mode(const Function& function) const noexcept {
+    bank_.for_each_belief(function);
   }
 
   /// Probabilistic data association: every mode takes in all readings that may be the target's own,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -37,6 +38,15 @@ struct UpdateStep {
   std::span<double> share;
   double total = 0.0;
   Gaussian<4> kinematics = {};
+};
+
+/// Takes steps of many estimators with the parameters of one prototype.
+template <class Steps, class Estimator>
+concept EstimatorSteps = std::movable<Steps> && std::constructible_from<Steps, const Estimator&> &&
+    requires(Steps steps, std::span<PredictionStep<Estimator>> predictions,
+             std::span<UpdateStep<Estimator>> updates) {
+  steps.predict(predictions);
+  steps.update(updates);
 };
 
 /// `InLanes<Estimator, Scalar>::of(prototype)` is the same estimator over packs of numbers. It

@@ -40,7 +40,7 @@ class Fading {
 
 }  // namespace detail
 
-/// What a map has taken in of the plots of one target, as if all were where the last one was.
+/// What a map has learned from the plots of one target, as if all were where the last one was.
 struct LearnedPlots {
   Vec<double, 2> position = Vec<double, 2>::Zero();
   double plots = 0.0;  ///< as many as were left of them at `time_s`
@@ -53,12 +53,11 @@ struct LearnedPlots {
   }
 };
 
-/// Where plots come from that belong to no target: the density of false plots over the plane,
-/// learned with a fading memory. Fixed echoes and shore grow dense and so stop to look like
-/// targets.
+/// The density of false plots over the plane, learned with a fading memory. Fixed echoes and shore
+/// grow dense and thus stop looking like targets.
 ///
-/// A grid of cells, bilinear between their centres, in a table of fixed size; where two cells meet
-/// in one place of the table the weaker is forgotten.
+/// A grid of cells, bilinear between their centres, in a table of fixed size; of two cells with the
+/// same place in the table the weaker is forgotten.
 class ClutterMap {
  public:
   /// `cell_m` 0 switches the map off.
@@ -91,13 +90,13 @@ class ClutterMap {
     return per_m2_and_scan(shares * faded(learned, time_s), period_s);
   }
 
-  /// Adds a plot that `add` takes in to those of its target.
+  /// Adds a plot that `add` learns to those of its target.
   void remember(const Vec<double, 2>& position, double time_s, double weight,
                 LearnedPlots& learned) const noexcept {
     learned = {position, faded(learned, time_s) + weight, time_s};
   }
 
-  /// Takes in a plot that is false with probability `weight`.
+  /// Learns a plot that is false with probability `weight`.
   void add(const Vec<double, 2>& position, double time_s, double weight) noexcept {
     if (!enabled()) return;
     for (const Corner& corner : corners(position)) {
@@ -148,7 +147,7 @@ class ClutterMap {
 
   /// Along one axis, from the centre of the cell at the origin, in cells.
   [[nodiscard]] double cells_along(double m) const noexcept {
-    constexpr double kEdge = 1e9;  // cells beyond this index are one, and so is no number
+    constexpr double kEdge = 1e9;  // cells beyond this index are one, and so is NaN
     return std::fmin(std::fmax(m / cell_m_ - 0.5, -kEdge), kEdge);
   }
 

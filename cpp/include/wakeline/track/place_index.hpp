@@ -10,12 +10,11 @@
 
 namespace wakeline {
 
-/// Places that are known more or less well, found by where they are.
+/// Positions with variances, found by where they are.
 ///
-/// How far one has to look for what may belong together depends on the errors of what is looked
-/// for: places with about the same errors make a layer, so that a plot at the horizon, which may be
-/// kilometres off, does not make the search wide for those near the antenna. Memory is taken by the
-/// constructor.
+/// How far a search has to reach depends on the errors of what is searched for. Positions with
+/// about the same errors make a layer, so that a plot at the horizon, which may be kilometres off,
+/// does not widen the search for those near the antenna. Memory is taken by the constructor.
 class PlaceIndex {
  public:
   explicit PlaceIndex(int capacity) {
@@ -30,8 +29,8 @@ class PlaceIndex {
     }
   }
 
-  /// Adds a place, [north, east] m, which must be finite, with a variance; `name` is what it is
-  /// found as.
+  /// Adds a place, [north, east] m, which must be finite, with a variance; it is found
+  /// as `name`.
   void add(const Vec<double, 2>& position, double variance_m2, int name) noexcept {
     Layer& layer = layers_[static_cast<std::size_t>(layer_of(variance_m2))];
     layer.places.add(position, name);

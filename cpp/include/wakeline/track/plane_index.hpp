@@ -13,10 +13,10 @@ namespace wakeline {
 
 /// Points of the plane, found by where they are.
 ///
-/// Of n points each √n, from south to north, make a strip, and each strip is sorted from west to
-/// east: to find the few points near a place takes about log n steps however they lie, be it all in
-/// a harbour but one at the end of the world. Sorting takes n log n. Memory is taken by the
-/// constructor.
+/// Every √n of n points, from south to north, make a strip, and each strip is sorted from west to
+/// east. A search for the few points near a position takes about log n steps for any distribution
+/// of the points, also with all in a harbour but one far off. Sorting takes n log n. Memory is
+/// taken by the constructor.
 class PlaneIndex {
  public:
   explicit PlaneIndex(int capacity) {
@@ -30,7 +30,7 @@ class PlaneIndex {
     south_m_.clear();
   }
 
-  /// Adds a point, [north, east] m, which must be finite; `name` is what it is found as.
+  /// Adds a point, [north, east] m, which must be finite; it is found as `name`.
   void add(const Vec<double, 2>& position, int name) noexcept {
     points_.push_back({position[0], position[1], name});
   }

@@ -9,9 +9,9 @@
 
 namespace wakeline {
 
-/// A belief over `[x, vx, y, vy]` after learning that the velocity is drawn from N(0, std² I): what
-/// a speed limit says of a start from two plots. In Joseph form, as the velocity of two plots that
-/// are no time apart is far wider than the limit.
+/// A belief over `[x, vx, y, vy]` updated with the prior that the velocity is N(0, std² I): the
+/// speed limit in a start from two plots. In Joseph form, as the velocity of two plots of nearly
+/// one time is far wider than the limit.
 inline Gaussian<4> with_speed_prior(const Gaussian<4>& belief, double speed_std_mps) noexcept {
   Mat<double, 2, 4> velocity_rows;
   velocity_rows << belief.covariance.row(1), belief.covariance.row(3);

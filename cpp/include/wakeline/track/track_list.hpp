@@ -6,141 +6,113 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "wakeline/track/track.hpp"
 
 namespace wakeline {
 
-/// A bounded list of tracks, older ones first. Tracks stay where they are in memory, and memory is
-/// taken by the constructor.
-template <class Estimator>
+/// A bounded list of tracks, older ones first. A track keeps its slot, a number below the capacity,
+/// as long as it lives. Memory is taken by the constructor.
 class TrackList {
  public:
-  using TrackType = Track<Estimator>;
-
-  TrackList(int capacity, const Estimator& prototype)
-      : pool_(static_cast<std::size_t>(capacity), TrackType{.estimator = prototype}) {
-    order_.reserve(pool_.size());
+  explicit TrackList(int capacity)
+      : pool_(static_cast<std::size_t>(capacity)), in_use_(pool_.size(), 0) {
+    slots_.reserve(pool_.size());
     vacant_.reserve(pool_.size());
     for (int slot = capacity; slot-- > 0;) vacant_.push_back(slot);
   }
 
-  [[nodiscard]] int size() const noexcept { return static_cast<int>(order_.size()); }
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(slots_.size()); }
   [[nodiscard]] bool full() const noexcept { return vacant_.empty(); }
 
-  /// Calls `f(track)`, or `f(track, slot)` with a number below the capacity that stays the track's.
-  template <class Function>
-  void for_each(Function&& function) {
-    for (const int slot : order_) call(function, at(slot), slot);
-  }
-  template <class Function>
-  void for_each(Function&& function) const {
-    for (const int slot : order_) call(function, at(slot), slot);
+  /// The slots in use, those of older tracks first; valid until a track is opened or removed.
+  [[nodiscard]] std::span<const int> slots() const noexcept { return slots_; }
+  [[nodiscard]] bool in_use(int slot) const noexcept {
+    return in_use_[static_cast<std::size_t>(slot)] != 0;
   }
 
-  /// Calls `f(slots)` for every `Size` tracks or, at the end, fewer.
-  template <std::size_t Size, class Function>
-  void for_each_group(Function&& function) {
-    const std::span<const int> slots(order_);
-    for (std::size_t first = 0; first < slots.size(); first += Size)
-      function(slots.subspan(first, std::min(Size, slots.size() - first)));
-  }
-
-  /// The track of that slot, be it in use or not.
-  [[nodiscard]] TrackType& at(int slot) noexcept { return pool_[static_cast<std::size_t>(slot)]; }
-  [[nodiscard]] const TrackType& at(int slot) const noexcept {
+  /// The track of a slot in use.
+  [[nodiscard]] Track& at(int slot) noexcept { return pool_[static_cast<std::size_t>(slot)]; }
+  [[nodiscard]] const Track& at(int slot) const noexcept {
     return pool_[static_cast<std::size_t>(slot)];
   }
 
-  [[nodiscard]] const TrackType* find(std::int64_t id) const noexcept {
+  /// Null when no track has that number.
+  [[nodiscard]] Track* find(std::int64_t id) noexcept {
     const auto place = locate(id);
-    return place == order_.end() ? nullptr : &at(*place);
+    return place == slots_.end() ? nullptr : &at(*place);
   }
-  [[nodiscard]] TrackType* find(std::int64_t id) noexcept {
+  [[nodiscard]] const Track* find(std::int64_t id) const noexcept {
     const auto place = locate(id);
-    return place == order_.end() ? nullptr : &at(*place);
+    return place == slots_.end() ? nullptr : &at(*place);
   }
 
-  /// Room for a track, at the end of the list; there must be some. Returns its slot.
-  int open() noexcept {
+  /// A new track at the end of the list, which must not be full.
+  Track& open() noexcept {
     const int slot = vacant_.back();
     vacant_.pop_back();
-    order_.push_back(slot);
-    return slot;
+    slots_.push_back(slot);
+    in_use_[static_cast<std::size_t>(slot)] = 1;
+    at(slot) = {};
+    at(slot).slot = slot;
+    return at(slot);
   }
 
-  /// Ends a track; false when there is none of that number.
-  bool remove(std::int64_t id) noexcept {
-    const auto place = locate(id);
-    if (place == order_.end()) return false;
-    remove_slot(*place);
-    return true;
-  }
-
-  /// Ends the track of a slot in use.
-  void remove_slot(int slot) noexcept {
-    at(slot).existence = kEnded;
+  /// Removes the track of a slot in use.
+  void remove(int slot) noexcept {
+    in_use_[static_cast<std::size_t>(slot)] = 0;
     vacant_.push_back(slot);
-    order_.erase(std::find(order_.begin(), order_.end(), slot));
+    slots_.erase(std::find(slots_.begin(), slots_.end(), slot));
   }
 
-  /// Ends the tracks for which the predicate holds, asked in order, after a farewell;
-  /// `ended()` tells those that are gone already.
-  template <class Predicate, class Farewell>
-  void remove_if(Predicate&& predicate, Farewell&& farewell) noexcept {
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < order_.size(); ++k) {
-      const int slot = order_[k];
-      TrackType& track = at(slot);
-      if (predicate(track)) {
-        farewell(track);
-        vacant_.push_back(slot);
-        track.existence = kEnded;
-      } else {
-        order_[kept++] = slot;
-      }
-    }
-    order_.resize(kept);
-  }
-
-  [[nodiscard]] static bool ended(const TrackType& track) noexcept {
-    return track.existence == kEnded;
+  /// Removes the tracks for which the predicate holds, which is called for all in order.
+  template <class Predicate>
+  void remove_if(Predicate&& predicate) noexcept {
+    const auto ends = [&](int slot) {
+      if (!predicate(at(slot))) return false;
+      in_use_[static_cast<std::size_t>(slot)] = 0;
+      vacant_.push_back(slot);
+      return true;
+    };
+    slots_.erase(std::remove_if(slots_.begin(), slots_.end(), ends), slots_.end());
   }
 
   /// Saves or restores the tracks; fails when the bytes are not a list of this capacity.
   void archive(Archive& fields) {
-    fields(order_, pool_.size());
+    fields(slots_, pool_.size());
     fields(vacant_, pool_.size());
-    const auto valid = [&](int slot) { return slot >= 0 && slot < static_cast<int>(pool_.size()); };
-    if (!fields.ok() || order_.size() + vacant_.size() != pool_.size() ||
-        !std::all_of(order_.begin(), order_.end(), valid) ||
-        !std::all_of(vacant_.begin(), vacant_.end(), valid)) {
+    if (!fields.ok() || !is_partition()) {
       fields.fail();
       return;
     }
-    for (const int slot : order_) at(slot).archive(fields);
+    for (const int slot : slots_) {
+      at(slot).archive(fields);
+      at(slot).slot = slot;
+    }
   }
 
  private:
-  static constexpr double kEnded = -1.0;
-
-  template <class Function, class SomeTrack>
-  static void call(Function& function, SomeTrack& track, int slot) {
-    if constexpr (std::is_invocable_v<Function&, SomeTrack&, int>)
-      function(track, slot);
-    else
-      function(track);
+  /// Whether each slot is either in use or vacant, once; notes which are in use.
+  bool is_partition() noexcept {
+    if (slots_.size() + vacant_.size() != pool_.size()) return false;
+    std::fill(in_use_.begin(), in_use_.end(), char{2});
+    for (const auto& [list, mark] : {std::pair(&slots_, char{1}), std::pair(&vacant_, char{0})})
+      for (const int slot : *list) {
+        if (slot < 0 || slot >= static_cast<int>(pool_.size())) return false;
+        in_use_[static_cast<std::size_t>(slot)] = mark;
+      }
+    return std::find(in_use_.begin(), in_use_.end(), char{2}) == in_use_.end();
   }
 
-  [[nodiscard]] auto locate(std::int64_t id) const noexcept {
-    return std::find_if(order_.begin(), order_.end(), [&](int slot) { return at(slot).id == id; });
+  [[nodiscard]] std::vector<int>::const_iterator locate(std::int64_t id) const noexcept {
+    return std::find_if(slots_.begin(), slots_.end(), [&](int slot) { return at(slot).id == id; });
   }
 
-  std::vector<TrackType> pool_;
-  std::vector<int> order_;   ///< slots of the pool in use, older tracks first
-  std::vector<int> vacant_;  ///< the others
+  std::vector<Track> pool_;
+  std::vector<char> in_use_;  ///< by slot
+  std::vector<int> slots_;    ///< in use, of older tracks first
+  std::vector<int> vacant_;
 };
 
 }  // namespace wakeline

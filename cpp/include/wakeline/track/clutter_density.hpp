@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "wakeline/track/clutter_map.hpp"
+#include "wakeline/track/config.hpp"
+#include "wakeline/track/scan_plots.hpp"
+#include "wakeline/track/track_list.hpp"
+
+namespace wakeline {
+
+/// The density of false plots about each plot of a scan: a floor, and what the clutter map has
+/// learned above it. Memory is taken by the constructor.
+class ClutterDensity {
+ public:
+  explicit ClutterDensity(const TrackerConfig& config)
+      : floor_per_m2_(config.clutter_density_per_m2),
+        map_weight_(config.clutter_weight),
+        map_(config.clutter_cell_m, config.clutter_memory_s) {
+    per_m2_.reserve(static_cast<std::size_t>(config.max_plots));
+  }
+
+  /// Evaluates the density at all plots of a scan, `dt_s` after the scan before.
+  void evaluate(const ScanPlots& plots, double dt_s, double period_s) noexcept {
+    // The map as it was when it had learned the scan before: a period later it has faded by one.
+    learned_s_ = plots.scan_s() - std::min(dt_s, period_s);
+    period_s_ = period_s;
+    per_m2_.clear();
+    for (const ScanPlot& plot : plots)
+      per_m2_.push_back(floor_per_m2_ +
+                        map_weight_ * map_.density(plot.position.mean, learned_s_, period_s));
+  }
+
+  /// At a plot of the scan, without the part that the map has learned of a target's own plots: they
+  /// do not make the next one of the same target clutter.
+  [[nodiscard]] double without(const LearnedPlots& own, const ScanPlots& plots,
+                               int plot) const noexcept {
+    const double of_own =
+        map_weight_ * map_.density_of(own, plots[plot].position.mean, learned_s_, period_s_);
+    return std::max(per_m2(plot) - of_own, floor_per_m2_);
+  }
+
+  /// At a plot of the scan.
+  [[nodiscard]] double per_m2(int plot) const noexcept {
+    return per_m2_[static_cast<std::size_t>(plot)];
+  }
+
+  /// Without anything learned.
+  [[nodiscard]] double floor_per_m2() const noexcept { return floor_per_m2_; }
+
+  /// Learns each plot of the scan with the probability that it is clutter, and notes for the tracks
+  /// of these slots how much of that came from their own plots: `plot_of(slot)`, or -1.
+  template <class PlotOf>
+  void learn(const ScanPlots& plots, std::span<const double> clutter_probability,
+             const PlotOf& plot_of, TrackList& tracks, std::span<const int> slots) noexcept {
+    for (int plot = 0; plot < plots.size(); ++plot)
+      map_.add(plots[plot].position.mean, plots.scan_s(),
+               clutter_probability[static_cast<std::size_t>(plot)]);
+    for (const int slot : slots) {
+      const int plot = plot_of(slot);
+      if (plot < 0) continue;
+      LearnedPlots& own = tracks.at(slot).learned;
+      own = with(own, plots, plot, clutter_probability[static_cast<std::size_t>(plot)]);
+    }
+  }
+
+  /// What the map knows of a target's own plots once it has learned this one, too.
+  [[nodiscard]] LearnedPlots with(LearnedPlots own, const ScanPlots& plots, int plot,
+                                  double clutter_probability) const noexcept {
+    map_.remember(plots[plot].position.mean, plots.scan_s(), clutter_probability, own);
+    return own;
+  }
+
+  /// Saves or restores what was learned.
+  void archive(Archive& fields) { map_.archive(fields); }
+
+ private:
+  double floor_per_m2_;
+  double map_weight_;
+  ClutterMap map_;
+  std::vector<double> per_m2_;  ///< of each plot
+  double learned_s_ = 0.0;
+  double period_s_ = 1.0;
+};
+
+}  // namespace wakeline

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "wakeline/core/cholesky.hpp"
+#include "wakeline/track/clutter_density.hpp"
+#include "wakeline/track/track_gate.hpp"
+
+namespace wakeline {
+
+/// A plot that a track may own, with what association weighs.
+struct CandidatePlot : ValidatedPlot {
+  double likelihood;      ///< p(z) of the track, over modes and errors, 1/m²
+  double clutter_per_m2;  ///< density of false plots about it, the track's own left out
+};
+
+/// The likelihood of a validated plot: `(1 - w) N(ν; S) + w N(ν; S_outlier)` over all modes, where
+/// a share w of plots are outliers.
+inline double plot_likelihood(const ValidatedPlot& plot, const ModePositions& modes,
+                              double outlier_probability) noexcept {
+  const double outlier = modes.evidence(plot.z, plot.outlier_r).likelihood;
+  const double nominal = modes.evidence(plot.z, plot.nominal_r).likelihood;
+  return (1.0 - outlier_probability) * nominal + outlier_probability * outlier;
+}
+
+/// The likeliest plots of one track, best first.
+class CandidatePlots {
+ public:
+  static constexpr std::size_t kMost = 8;  ///< plots of one track
+
+  void clear() noexcept { count_ = 0; }
+
+  /// Chooses the likeliest of a track's validated plots, each with the density of clutter about it.
+  void choose(std::span<const ValidatedPlot> validated, const Track& track,
+              const ModePositions& modes, double outlier_probability, const ClutterDensity& clutter,
+              const ScanPlots& plots) noexcept {
+    clear();
+    for (const ValidatedPlot& plot : validated) {
+      const double likelihood = plot_likelihood(plot, modes, outlier_probability);
+      if (admits(likelihood))
+        add({plot, likelihood, clutter.without(track.learned, plots, plot.plot)});
+    }
+  }
+
+  /// Whether a plot of that likelihood is among the likeliest.
+  [[nodiscard]] bool admits(double likelihood) const noexcept {
+    return count_ < kMost || likelihood > plots_.back().likelihood;
+  }
+
+  /// Adds a plot if it is among the likeliest.
+  void add(const CandidatePlot& plot) noexcept {
+    if (!admits(plot.likelihood)) return;
+    std::size_t place = std::min(count_, kMost - 1);
+    for (; place > 0 && plot.likelihood > plots_[place - 1].likelihood; --place)
+      plots_[place] = plots_[place - 1];
+    plots_[place] = plot;
+    count_ = std::min(count_ + 1, kMost);
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return count_; }
+  [[nodiscard]] bool empty() const noexcept { return count_ == 0; }
+  [[nodiscard]] const CandidatePlot& operator[](std::size_t k) const noexcept { return plots_[k]; }
+  [[nodiscard]] const CandidatePlot* begin() const noexcept { return plots_.data(); }
+  [[nodiscard]] const CandidatePlot* end() const noexcept { return plots_.data() + count_; }
+
+ private:
+  std::array<CandidatePlot, kMost> plots_;
+  std::size_t count_ = 0;
+};
+
+/// Normalised innovation squared: d² of a plot with covariance `r` (m²) from the position in a
+/// belief over `[x, vx, y, vy]`.
+inline double innovation_squared(const Gaussian<4>& kinematics, const Vec<double, 2>& z,
+                                 const Mat<double, 2, 2>& r) noexcept {
+  Mat<double, 2, 2> s;
+  s << kinematics.covariance(0, 0), kinematics.covariance(0, 2), kinematics.covariance(2, 0),
+      kinematics.covariance(2, 2);
+  s += r;
+  const Cholesky<2> factor(s);
+  const Vec<double, 2> d(z[0] - kinematics.mean[0], z[1] - kinematics.mean[2]);
+  return factor.ok() ? factor.squared_norm(d) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace wakeline

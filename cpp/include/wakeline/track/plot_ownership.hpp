@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "wakeline/track/association_probabilities.hpp"
+#include "wakeline/track/config.hpp"
+#include "wakeline/track/track.hpp"
+
+namespace wakeline {
+
+/// Whose the plots of a scan are, by the association probabilities of all tracks. Memory is taken
+/// by the constructor.
+class PlotOwnership {
+ public:
+  /// The track that most probably owns a plot, more probably than not.
+  struct Owner {
+    int slot = -1;  ///< -1: none
+    std::int64_t track_id = 0;
+    double probability = 0.5;
+  };
+
+  explicit PlotOwnership(const TrackerConfig& config)
+      : plot_of_track_(static_cast<std::size_t>(config.max_tracks), -1) {
+    const auto plots = static_cast<std::size_t>(config.max_plots);
+    free_.reserve(plots);
+    clutter_.reserve(plots);
+    owner_.reserve(plots);
+  }
+
+  /// Begins a scan of that many plots, which nobody owns.
+  void clear(int plots) noexcept {
+    free_.assign(static_cast<std::size_t>(plots), 1.0);
+    clutter_.assign(static_cast<std::size_t>(plots), 1.0);
+    owner_.assign(static_cast<std::size_t>(plots), {});
+  }
+
+  /// Adds one track, updated, with what association gave it of its candidates.
+  void add(const Track& track, const CandidatePlots& candidates, const AssociationWeights& weights,
+           const AssociationProbabilities& probabilities) noexcept {
+    plot_of_track_[static_cast<std::size_t>(track.slot)] =
+        probabilities.best < 0 ? -1 : candidates[std::size_t(probabilities.best)].plot;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      const auto plot = static_cast<std::size_t>(candidates[k].plot);
+      const double if_target = std::min(probabilities.of_candidate[k], 1.0);
+      const double owned = if_target * track.existence;
+      clutter_[plot] *= 1.0 - if_target;
+      free_[plot] *= weights.assigned && weights.plot[k] > 0.0 ? 0.0 : 1.0 - owned;
+      if (owned > owner_[plot].probability) owner_[plot] = {track.slot, track.id, owned};
+    }
+  }
+
+  /// Of each plot, the probability that no target which is tracked owns it; 0 where it was
+  /// assigned.
+  [[nodiscard]] std::span<const double> free_probability() const noexcept { return free_; }
+  /// Of each plot, the probability that it is clutter to all tracks, even if their targets all
+  /// exist.
+  [[nodiscard]] std::span<const double> clutter_probability() const noexcept { return clutter_; }
+  [[nodiscard]] const Owner& owner(int plot) const noexcept {
+    return owner_[static_cast<std::size_t>(plot)];
+  }
+  /// The plot that the track of a slot most probably owns, or -1.
+  [[nodiscard]] int plot_of(int slot) const noexcept {
+    return plot_of_track_[static_cast<std::size_t>(slot)];
+  }
+
+ private:
+  std::vector<double> free_;        ///< by plot
+  std::vector<double> clutter_;     ///< by plot
+  std::vector<Owner> owner_;        ///< by plot
+  std::vector<int> plot_of_track_;  ///< by slot
+};
+
+}  // namespace wakeline

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "wakeline/core/cholesky.hpp"
+#include "wakeline/track/place_index.hpp"
+#include "wakeline/track/radar.hpp"
+
+namespace wakeline {
+
+/// A plot as a position in the plane.
+struct ScanPlot {
+  Gaussian<2> position;  ///< [north, east], m
+  double time_s;
+  int input;  ///< its index among the plots given to the tracker
+};
+
+/// The usable plots of one scan, found by position. Memory is taken by the constructor.
+class ScanPlots {
+ public:
+  explicit ScanPlots(int max_plots) : index_(max_plots) {
+    plots_.reserve(static_cast<std::size_t>(max_plots));
+  }
+
+  /// Converts plots to positions, up to the capacity, in place of those of the scan before.
+  ///
+  /// Rejects plots that are not finite, behind the antenna, of a bearing so large that it is
+  /// rounded by more than the bearing error, or farther than `slack_s` from the time of the scan.
+  /// One later than the scan has a wrong clock and counts as of the scan's time.
+  void convert(const Radar& radar, std::span<const Plot> plots, double time_s,
+               double slack_s) noexcept {
+    plots_.clear();
+    index_.clear();
+    earliest_s_ = scan_s_ = time_s;
+    constexpr double kRounding = std::numeric_limits<double>::epsilon();
+    const std::size_t count = std::min(plots.size(), plots_.capacity());
+    for (std::size_t k = 0; k < count; ++k) {
+      const Plot& plot = plots[k];
+      const Gaussian<2> position = radar.position(plot.range_m, plot.bearing_rad, plot.own);
+      const bool usable = std::fabs(plot.time_s - time_s) <= slack_s && plot.range_m >= 0.0 &&
+                          kRounding * std::fabs(plot.bearing_rad) <= radar.bearing_std_rad &&
+                          is_finite(position.mean) && Cholesky<2>(position.covariance).ok();
+      if (!usable) continue;
+      const double plot_s = std::min(plot.time_s, time_s);
+      index_.add(position.mean, position.covariance.trace(), size());
+      plots_.push_back({position, plot_s, static_cast<int>(k)});
+      earliest_s_ = std::min(earliest_s_, plot_s);
+    }
+    index_.sort();
+  }
+
+  /// Calls `f(index)` for every plot in a square about a position: `reach_m(variance_m2)` is its
+  /// half side for plots whose covariance has at most that trace.
+  template <class Reach, class Function>
+  void for_each_near(const Vec<double, 2>& position, const Reach& reach_m,
+                     Function&& function) const {
+    index_.for_each_near(position, reach_m, function);
+  }
+
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(plots_.size()); }
+  [[nodiscard]] const ScanPlot& operator[](int index) const noexcept {
+    return plots_[static_cast<std::size_t>(index)];
+  }
+  [[nodiscard]] auto begin() const noexcept { return plots_.begin(); }
+  [[nodiscard]] auto end() const noexcept { return plots_.end(); }
+
+  /// Time of the scan.
+  [[nodiscard]] double scan_s() const noexcept { return scan_s_; }
+  /// No plot is farther from that time.
+  [[nodiscard]] double greatest_lag_s(double time_s) const noexcept {
+    return std::max(scan_s_ - time_s, time_s - earliest_s_);
+  }
+
+ private:
+  std::vector<ScanPlot> plots_;
+  PlaceIndex index_;
+  double earliest_s_ = 0.0;
+  double scan_s_ = 0.0;
+};
+
+}  // namespace wakeline

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "wakeline/gating/chi_square_gate.hpp"
+#include "wakeline/track/config.hpp"
+#include "wakeline/track/mode_positions.hpp"
+#include "wakeline/track/scan_plots.hpp"
+#include "wakeline/track/time_alignment.hpp"
+#include "wakeline/track/track.hpp"
+
+namespace wakeline {
+
+/// A plot inside the gate of a track, at the track's time.
+struct ValidatedPlot {
+  int plot;                     ///< its index in the scan
+  Vec<double, 2> z;             ///< position, m
+  Mat<double, 2, 2> nominal_r;  ///< its covariance, m²,
+  Mat<double, 2, 2> outlier_r;  ///< and that of an outlier
+};
+
+/// Validation: which plots of a scan a track may own. Those within the gate probability of any mode
+/// of its estimator, with the covariance of outliers. Memory is taken by the constructor. Source:
+/// Bar-Shalom, Li, Multitarget-Multisensor Tracking, 1995, 2.3.
+class TrackGate {
+ public:
+  explicit TrackGate(const TrackerConfig& config)
+      : threshold_(EllipsoidalGate<2>(ChiSquareGate{config.gate_probability}).threshold()),
+        outlier_variance_(config.outlier_variance()) {
+    validated_.reserve(static_cast<std::size_t>(config.max_plots));
+  }
+
+  /// The plots inside the gate; valid until the next call.
+  std::span<const ValidatedPlot> validate(const Track& track, const ModePositions& modes,
+                                          const TimeAlignment& alignment,
+                                          const ScanPlots& plots) noexcept {
+    validated_.clear();
+    const auto& p = track.kinematics.covariance;
+    const double own_m = 3.0 * std::sqrt(threshold_ * (p(0, 0) + p(2, 2)));
+    const double apart_s = plots.greatest_lag_s(track.time_s);
+    const double way_m = alignment.longest_way_m(apart_s);
+    const double way_m2 = alignment.added_m2(apart_s).trace();
+    const auto reach_m = [&](double plot_m2) {
+      const double outlier_m2 = outlier_variance_ * plot_m2 + way_m2;
+      // Generous: the widest mode of an estimator may be some times wider than the mixture.
+      const double generous_m = own_m + std::sqrt(threshold_ * outlier_m2);
+      return std::min(generous_m, modes.reach_m(track.position(), outlier_m2, threshold_)) + way_m;
+    };
+    plots.for_each_near(track.position(), reach_m, [&](int index) {
+      const ScanPlot& plot = plots[index];
+      const Mat<double, 2, 2> added_m2 = alignment.added_m2(plot);
+      const ValidatedPlot moved{index, alignment.position(plot),
+                                plot.position.covariance + added_m2,
+                                outlier_variance_ * plot.position.covariance + added_m2};
+      if (modes.gate(moved.z, moved.outlier_r, threshold_)) validated_.push_back(moved);
+    });
+    return validated_;
+  }
+
+  /// γ, the largest squared distance inside the gate.
+  [[nodiscard]] double threshold() const noexcept { return threshold_; }
+
+ private:
+  double threshold_;
+  double outlier_variance_;
+  std::vector<ValidatedPlot> validated_;
+};
+
+}  // namespace wakeline

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/track/clutter_density.hpp"
+
+#include <gtest/gtest.h>
+
+#include "track/stages.hpp"
+
+namespace wakeline {
+namespace {
+
+using namespace test;
+
+const TrackerConfig kConfig{.clutter_density_per_m2 = 1e-7};
+
+TEST(ClutterDensity, IsTheFloorWhereNothingIsLearned) {
+  ClutterDensity clutter(kConfig);
+  const ScanPlots plots = scan_of({plot_at(1000.0, 0.0, 0.0), plot_at(500.0, 500.0, 0.0)}, 0.0);
+  clutter.evaluate(plots, 0.0, 2.5);
+  for (const int plot : {0, 1}) {
+    EXPECT_EQ(clutter.per_m2(plot), 1e-7);
+    EXPECT_EQ(clutter.without({}, plots, plot), 1e-7);
+  }
+}
+
+TEST(ClutterDensity, RisesWhereClutterIsLearnedAndOnlyThere) {
+  ClutterDensity clutter(kConfig);
+  TrackList tracks(1);
+  const std::vector<double> clutter_probability{1.0, 0.0};
+  for (int scan = 0; scan < 20; ++scan) {
+    const ScanPlots plots =
+        scan_of({plot_at(1000.0, 0.0, 2.5 * scan), plot_at(-900.0, 700.0, 2.5 * scan)}, 2.5 * scan);
+    clutter.evaluate(plots, scan > 0 ? 2.5 : 0.0, 2.5);
+    EXPECT_EQ(clutter.per_m2(1), 1e-7) << "what a track owns is not learned";
+    EXPECT_TRUE(scan == 0 || clutter.per_m2(0) > 1e-7);
+    clutter.learn(
+        plots, clutter_probability, [](int) { return -1; }, tracks, tracks.slots());
+  }
+}
+
+TEST(ClutterDensity, OfATrackLeavesOutItsOwnPlots) {
+  ClutterDensity clutter(kConfig);
+  TrackList tracks(1);
+  const int slot = tracks.open().slot;
+  const std::vector<double> clutter_probability{0.7};
+  for (int scan = 0; scan < 10; ++scan) {
+    const ScanPlots plots = scan_of({plot_at(1000.0, 0.0, 2.5 * scan)}, 2.5 * scan);
+    clutter.evaluate(plots, scan > 0 ? 2.5 : 0.0, 2.5);
+    if (scan > 0) {
+      EXPECT_GT(clutter.per_m2(0), 2e-7);
+      EXPECT_NEAR(clutter.without(tracks.at(slot).learned, plots, 0) / 1e-7, 1.0, 1e-6)
+          << "all that was learned is its own";
+    }
+    clutter.learn(
+        plots, clutter_probability, [](int) { return 0; }, tracks, tracks.slots());
+  }
+}
+
+}  // namespace
+}  // namespace wakeline

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/track/duplicates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace wakeline {
+namespace {
+
+constexpr double kThreshold = 6.0;
+
+/// A new track at that place and velocity, with a number if that is above zero.
+Track& open(TrackList& tracks, std::int64_t id, const Vec<double, 4>& mean) {
+  Track& track = tracks.open();
+  track.id = id;
+  track.status = id > 0 ? TrackStatus::kConfirmed : TrackStatus::kTentative;
+  track.existence = 0.5;
+  track.kinematics.mean = mean;
+  track.kinematics.covariance = Vec<double, 4>(100.0, 4.0, 100.0, 4.0).asDiagonal();
+  return track;
+}
+
+std::vector<int> found(Duplicates& duplicates, TrackList& tracks) {
+  const std::span<const int> slots = duplicates.find(tracks, tracks.slots());
+  return {slots.begin(), slots.end()};
+}
+
+TEST(Duplicates, OfTwoTracksOnOneTargetTheSeniorStays) {
+  const TrackerConfig config{.duplicate_scans = 3};
+  TrackList tracks(10);
+  Duplicates duplicates(config, kThreshold);
+  const int senior = open(tracks, 4, {0.0, 5.0, 0.0, 0.0}).slot;
+  const int junior = open(tracks, 7, {3.0, 5.0, -2.0, 0.0}).slot;
+  open(tracks, 2, {500.0, 5.0, 0.0, 0.0});
+  EXPECT_TRUE(found(duplicates, tracks).empty());
+  EXPECT_TRUE(found(duplicates, tracks).empty());
+  EXPECT_EQ(found(duplicates, tracks), std::vector<int>{junior}) << "after three scans in a row";
+  EXPECT_EQ(tracks.at(senior).duplicate_scans, 0);
+}
+
+TEST(Duplicates, TheCountBeginsAnewWhereTheyPart) {
+  TrackList tracks(10);
+  Duplicates duplicates(TrackerConfig{.duplicate_scans = 2}, kThreshold);
+  open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
+  Track& junior = open(tracks, 2, {3.0, 5.0, 0.0, 0.0});
+  EXPECT_TRUE(found(duplicates, tracks).empty());
+  junior.kinematics.mean[0] = 300.0;
+  EXPECT_TRUE(found(duplicates, tracks).empty());
+  junior.kinematics.mean[0] = 3.0;
+  EXPECT_TRUE(found(duplicates, tracks).empty());
+  EXPECT_EQ(found(duplicates, tracks).size(), 1u);
+}
+
+TEST(Duplicates, ATentativeOneGoesAtOnceAndAVelocityTellsTargetsApart) {
+  TrackList tracks(10);
+  Duplicates duplicates(TrackerConfig{}, kThreshold);
+  open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
+  const int same = open(tracks, -3, {3.0, 5.0, 0.0, 0.0}).slot;
+  open(tracks, -4, {0.0, -9.0, 0.0, 0.0});
+  EXPECT_EQ(found(duplicates, tracks), std::vector<int>{same});
+}
+
+// A track that is to be deleted itself is no reason to delete another.
+TEST(Duplicates, OfManyOnOneTargetOneStays) {
+  TrackList tracks(10);
+  Duplicates duplicates(TrackerConfig{}, kThreshold);
+  for (int k = 1; k <= 6; ++k) open(tracks, -k, {double(k), 5.0, 0.0, 0.0});
+  EXPECT_EQ(found(duplicates, tracks).size(), 5u);
+  TrackList chain(10);  // each near the next only
+  for (int k = 1; k <= 3; ++k) open(chain, -k, {9.0 * k, 5.0, 0.0, 0.0});
+  EXPECT_EQ(found(duplicates, chain), std::vector<int>{1});
+}
+
+TEST(Duplicates, OneVesselOfAKnownLengthIsOneTarget) {
+  const auto count = [](double length_m, double speed_mps) {
+    TrackList tracks(10);
+    Duplicates duplicates(TrackerConfig{.vessel_length_m = length_m, .duplicate_scans = 1},
+                          kThreshold);
+    open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
+    open(tracks, 2, {80.0, speed_mps, 0.0, 0.0});
+    return found(duplicates, tracks).size();
+  };
+  EXPECT_EQ(count(0.0, 5.0), 0u);
+  EXPECT_EQ(count(100.0, 5.0), 1u);
+  EXPECT_EQ(count(100.0, -5.0), 0u) << "it goes the other way";
+  EXPECT_EQ(count(70.0, 5.0), 0u);
+}
+
+TEST(Seniority, IsAStrictOrder) {
+  TrackList tracks(10);
+  open(tracks, 3, Vec<double, 4>::Zero());
+  open(tracks, 5, Vec<double, 4>::Zero());
+  open(tracks, -1, Vec<double, 4>::Zero()).existence = 0.9;
+  open(tracks, -2, Vec<double, 4>::Zero()).existence = 0.4;
+  open(tracks, -3, Vec<double, 4>::Zero()).existence = 0.4;
+  for (const int a : tracks.slots())
+    for (const int b : tracks.slots())
+      EXPECT_EQ(is_senior(tracks.at(a), tracks.at(b)), a < b) << a << ' ' << b;
+}
+
+}  // namespace
+}  // namespace wakeline

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/track/existence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace wakeline {
+namespace {
+
+Track track_of(double existence, double visibility) {
+  Track track;
+  track.existence = existence;
+  track.visibility = visibility;
+  return track;
+}
+
+TEST(Existence, FadesByTheMeanTimeToLeave) {
+  const TrackerConfig config{.survival_time_s = 200.0};
+  Track track = track_of(0.8, 1.0);
+  ExistencePrediction(config, 50.0).predict(track);
+  EXPECT_DOUBLE_EQ(track.existence, 0.8 * std::exp(-0.25));
+}
+
+TEST(Existence, OneStepIsAsManySmallOnes) {
+  const TrackerConfig config;
+  Track once = track_of(0.8, 0.9), often = once;
+  ExistencePrediction(config, 30.0).predict(once);
+  for (int k = 0; k < 12; ++k) ExistencePrediction(config, 2.5).predict(often);
+  EXPECT_NEAR(once.existence, often.existence, 1e-12);
+  EXPECT_NEAR(once.visibility, often.visibility, 1e-12);
+}
+
+TEST(Existence, VisibilityTendsToItsLongRun) {
+  const TrackerConfig config{.visible_time_s = 60.0, .hidden_time_s = 40.0};
+  for (const double visibility : {0.0, 1.0}) {
+    Track track = track_of(0.5, visibility);
+    ExistencePrediction(config, 1e4).predict(track);
+    EXPECT_NEAR(track.visibility, 0.6, 1e-12);
+  }
+}
+
+TEST(Existence, FallsByTheMissFactor) {
+  const TrackerConfig config;
+  Track track = track_of(0.8, 1.0);
+  const double missed = Detection(config, 1.0).missed;
+  EXPECT_DOUBLE_EQ(missed, 1.0 - config.detection());
+  update_existence(config, {missed, missed, false}, track);
+  const double odds = track.existence / (1.0 - track.existence);
+  EXPECT_NEAR(odds, 0.8 / 0.2 * missed, 1e-12);
+}
+
+TEST(Existence, RisesByTheLikelihoodRatioOfTheScan) {
+  const TrackerConfig config;
+  Track track = track_of(0.2, 1.0);
+  const double missed = Detection(config, 1.0).missed;
+  update_existence(config, {50.0, missed, false}, track);
+  EXPECT_NEAR(track.existence / (1.0 - track.existence), 0.2 / 0.8 * 50.0, 1e-9);
+}
+
+TEST(Existence, AMissSpeaksAgainstVisibilityAndAPlotForIt) {
+  const TrackerConfig config;
+  Track missed = track_of(0.9, 0.7), seen = missed, assigned = missed;
+  const double none = Detection(config, 0.7).missed;
+  update_existence(config, {none, none, false}, missed);
+  EXPECT_NEAR(missed.visibility, 0.7 * (1.0 - config.detection()) / none, 1e-12) << "Bayes' rule";
+  update_existence(config, {none + 10.0, none, false}, seen);
+  EXPECT_GT(seen.visibility, 0.95);
+  update_existence(config, {10.0, 0.0, true}, assigned);
+  EXPECT_EQ(assigned.visibility, 1.0);
+}
+
+TEST(Existence, VisibilityStaysAProbabilityHoweverSureTheRadarIs) {
+  TrackerConfig config;
+  config.detection_probability = 1.0;
+  config.gate_probability = 1.0 - 1e-15;
+  for (const double visibility : {1e-20, 0.0})
+    for (const bool assigned : {false, true})
+      for (const double total : {1.0 - 1e-16, 1.0, 0.0}) {
+        Track track = track_of(0.5, visibility);
+        update_existence(config, {total, assigned ? 0.0 : 1.0, assigned}, track);
+        EXPECT_TRUE(track.visibility >= 0.0 && track.visibility <= 1.0) << track.visibility;
+      }
+}
+
+TEST(Existence, IsNeverCertain) {
+  const TrackerConfig config;
+  Track track = track_of(0.5, 1.0);
+  for (int k = 0; k < 100; ++k) update_existence(config, {1e9, 0.1, false}, track);
+  EXPECT_LT(track.existence, 1.0);
+  EXPECT_GT(track.existence, 0.9999);
+}
+
+TEST(Detection, OfATargetThatIsNeverVisibleIsNone) {
+  const Detection detection(TrackerConfig{}, 0.0);
+  EXPECT_EQ(detection.detected, 0.0);
+  EXPECT_EQ(detection.missed, 1.0);
+}
+
+}  // namespace
+}  // namespace wakeline

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#include "wakeline/track/life_cycle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace wakeline {
+namespace {
+
+const Radar kRadar{.period_s = 2.5, .max_speed_mps = 25.0};
+
+/// A track that was seen as in the pattern, one letter a scan.
+Track seen(const std::string& pattern, TrackStatus status = TrackStatus::kTentative) {
+  Track track;
+  track.existence = 0.9999;
+  track.status = status;
+  track.kinematics.covariance.setIdentity();
+  track.kinematics.mean.setZero();
+  for (const char letter : pattern) track.count(letter == '1');
+  return track;
+}
+
+TEST(LifeCycle, ConfirmsMOfTheLastNWithThisScanAmongThem) {
+  const TrackerConfig config{.confirm_hits = 3, .confirm_window = 5};
+  EXPECT_TRUE(is_confirmable(config, seen("111")));
+  EXPECT_TRUE(is_confirmable(config, seen("11001")));
+  EXPECT_FALSE(is_confirmable(config, seen("110001"))) << "the first has left the window";
+  EXPECT_FALSE(is_confirmable(config, seen("1110"))) << "not seen in this scan";
+  Track doubtful = seen("11111");
+  doubtful.existence = 0.5;
+  EXPECT_FALSE(is_confirmable(config, doubtful));
+}
+
+TEST(LifeCycle, AConfirmedTrackCoastsThenIsHeldAndComesBack) {
+  const TrackerConfig config{.shown_scans = 2};
+  Track track = seen("111");
+  EXPECT_FALSE(confirm_or_coast(config, track));
+  EXPECT_EQ(track.status, TrackStatus::kConfirmed);
+  const TrackStatus expected[] = {TrackStatus::kCoasting, TrackStatus::kCoasting,
+                                  TrackStatus::kHeld, TrackStatus::kHeld};
+  for (int missed = 1; missed <= 4; ++missed) {
+    track.count(false);
+    EXPECT_EQ(confirm_or_coast(config, track), missed == 1) << "begins to coast once";
+    EXPECT_EQ(track.status, expected[missed - 1]) << missed;
+  }
+  track.count(true);
+  EXPECT_FALSE(confirm_or_coast(config, track));
+  EXPECT_EQ(track.status, TrackStatus::kConfirmed);
+}
+
+TEST(LifeCycle, ATentativeTrackThatIsNotConfirmableStaysTentative) {
+  Track track = seen("10");
+  EXPECT_FALSE(confirm_or_coast(TrackerConfig{}, track));
+  EXPECT_EQ(track.status, TrackStatus::kTentative);
+}
+
+TEST(LifeCycle, AllowsMoreMissesToATrackThatWasSeenMore) {
+  const TrackerConfig config{
+      .tentative_misses = 2, .coast_scans = 3.0, .coast_scans_per_hit = 0.5, .coast_scans_max = 6};
+  EXPECT_EQ(allowed_misses(config, seen("1111")), 2.0);
+  EXPECT_EQ(allowed_misses(config, seen("11", TrackStatus::kConfirmed)), 4.0);
+  EXPECT_EQ(allowed_misses(config, seen(std::string(50, '1'), TrackStatus::kConfirmed)), 6.0);
+  EXPECT_FALSE(is_to_delete(config, kRadar, seen("1100")));
+  EXPECT_TRUE(is_to_delete(config, kRadar, seen("11000")));
+  EXPECT_FALSE(is_to_delete(config, kRadar, seen("110000", TrackStatus::kCoasting)));
+  EXPECT_TRUE(is_to_delete(config, kRadar, seen("1100000", TrackStatus::kCoasting)));
+}
+
+TEST(LifeCycle, DeletesWhatIsDoubtfulTooFastOrLostInPosition) {
+  const TrackerConfig config;
+  EXPECT_FALSE(is_to_delete(config, kRadar, seen("11")));
+  Track doubtful = seen("11"), sure = seen("11", TrackStatus::kConfirmed);
+  doubtful.existence = sure.existence = 0.5 * config.drop_existence;
+  EXPECT_TRUE(is_to_delete(config, kRadar, doubtful));
+  EXPECT_FALSE(is_to_delete(config, kRadar, sure)) << "a confirmed one ends by misses alone";
+  Track fast = seen("11");
+  fast.kinematics.mean[1] = 25.1;
+  EXPECT_TRUE(is_to_delete(config, kRadar, fast));
+  fast.kinematics.mean[1] = 24.9;
+  EXPECT_FALSE(is_to_delete(config, kRadar, fast));
+  Track wide = seen("11");
+  wide.kinematics.covariance *= std::pow(1.01 * config.drop_position_std_m, 2);
+  EXPECT_TRUE(is_to_delete(config, kRadar, wide));
+  wide.plot_m2 = std::pow(config.drop_position_std_m, 2);
+  EXPECT_FALSE(is_to_delete(config, kRadar, wide)) << "its plots are as wide";
+  wide.kinematics.covariance *= std::nan("");
+  EXPECT_TRUE(is_to_delete(config, kRadar, wide));
+}
+
+}  // namespace
+}  // namespace wakeline
