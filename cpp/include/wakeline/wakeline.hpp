@@ -111,6 +111,7 @@
 #include "wakeline/navigation/usv_models.hpp"
 #include "wakeline/navigation/usv_navigator.hpp"
 #include "wakeline/navigation/usv_sensors.hpp"
+#include "wakeline/simd/flatten.hpp"
 #include "wakeline/simd/pack.hpp"
 #include "wakeline/simd/pack_math.hpp"
 #include "wakeline/simd/scalar.hpp"

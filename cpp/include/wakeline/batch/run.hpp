@@ -17,6 +17,7 @@
 #include "wakeline/gating/radius_gate.hpp"
 #include "wakeline/measurement/concept.hpp"
 #include "wakeline/measurement/own_ship.hpp"
+#include "wakeline/simd/flatten.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
@@ -174,8 +175,8 @@ struct Unwatched {
 /// A prediction under a known acceleration, not inlined: few recordings have one, and inlined it
 /// would double the code of the loop.
 template <class Estimator, class Scalar>
-[[gnu::flatten, gnu::noinline]] StatusOf<Scalar> predict_pushed(Estimator& estimator, Scalar dt_s,
-                                                                const double* push_mps2) noexcept {
+[[gnu::noinline]] WAKELINE_FLATTEN StatusOf<Scalar> predict_pushed(
+    Estimator& estimator, Scalar dt_s, const double* push_mps2) noexcept {
   check_takes_acceleration<Estimator>();
   return estimator.predict(dt_s, Vec<Scalar, 2>(push_mps2[0], push_mps2[1]));
 }
@@ -255,10 +256,11 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
 
 /// The same with every call inlined into one function, which is fastest for lanes.
 template <class Estimator, class Sensor>
-[[gnu::flatten, gnu::noinline]] void run_lanes_side_by_side(Estimator& estimator,
-                                                            const Sensor& sensor,
-                                                            const RunInput& in, std::size_t first,
-                                                            const RunOutput& out) noexcept {
+[[gnu::noinline]] WAKELINE_FLATTEN void run_lanes_side_by_side(Estimator& estimator,
+                                                               const Sensor& sensor,
+                                                               const RunInput& in,
+                                                               std::size_t first,
+                                                               const RunOutput& out) noexcept {
   run_side_by_side(estimator, sensor, in, first, out);
 }
 

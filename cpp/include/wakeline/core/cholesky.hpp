@@ -30,22 +30,23 @@ class Cholesky {
     });
     if constexpr (N == 2) {
       compute_2x2(matrix(0, 0), matrix(1, 0), matrix(1, 1));
-      return;
-    }
-    unroll<N>([&](auto column) {
-      constexpr int kColumn = column.value;
-      Scalar pivot = matrix(kColumn, kColumn);
-      unroll<kColumn>([&](int k) { pivot -= lower_(kColumn, k) * lower_(kColumn, k); });
-      ok_ = ok_ && is_variance(pivot);
-      inverse_diagonal_[kColumn] = inverse_sqrt(pivot);
-      lower_(kColumn, kColumn) = pivot * inverse_diagonal_[kColumn];
-      unroll<N - 1 - kColumn>([&](auto below) {
-        constexpr int kRow = kColumn + 1 + below.value;
-        Scalar sum = matrix(kRow, kColumn);
-        unroll<kColumn>([&](int k) { sum -= lower_(kRow, k) * lower_(kColumn, k); });
-        lower_(kRow, kColumn) = sum * inverse_diagonal_[kColumn];
+    } else {
+      unroll<N>([&](auto column) {
+        constexpr int kColumn = column.value;
+        const Scalar* of_column = lower_.data() + kColumn;
+        const Scalar pivot =
+            less_products<kColumn, N>(matrix(kColumn, kColumn), of_column, of_column);
+        ok_ = ok_ && is_variance(pivot);
+        inverse_diagonal_[kColumn] = inverse_sqrt(pivot);
+        lower_(kColumn, kColumn) = pivot * inverse_diagonal_[kColumn];
+        unroll<N - 1 - kColumn>([&](int below) __attribute__((always_inline)) {
+          const int row = kColumn + 1 + below;
+          lower_(row, kColumn) =
+              less_products<kColumn, N>(matrix(row, kColumn), lower_.data() + row, of_column) *
+              inverse_diagonal_[kColumn];
+        });
       });
-    });
+    }
   }
 
   [[nodiscard]] MaskOf<Scalar> ok() const noexcept { return ok_; }
@@ -59,10 +60,10 @@ class Cholesky {
     Mat<Scalar, N, Cols> whitened;
     unroll<N>([&](auto row) {
       constexpr int kRow = row.value;
-      unroll<Cols>([&](int column) {
-        Scalar sum = right(kRow, column);
-        unroll<kRow>([&](int k) { sum -= lower_(kRow, k) * whitened(k, column); });
-        whitened(kRow, column) = sum * inverse_diagonal_[kRow];
+      unroll<Cols>([&](int column) __attribute__((always_inline)) {
+        whitened(kRow, column) = less_products<kRow, 1>(right(kRow, column), lower_.data() + kRow,
+                                                        whitened.data() + N * column) *
+                                 inverse_diagonal_[kRow];
       });
     });
     return whitened;
@@ -97,10 +98,11 @@ class Cholesky {
     Mat<Scalar, Rows, N> whitened;
     unroll<N>([&](auto column) {
       constexpr int kColumn = column.value;
-      unroll<Rows>([&](int row) {
-        Scalar sum = left(row, kColumn);
-        unroll<kColumn>([&](int k) { sum -= lower_(kColumn, k) * whitened(row, k); });
-        whitened(row, kColumn) = sum * inverse_diagonal_[kColumn];
+      unroll<Rows>([&](int row) __attribute__((always_inline)) {
+        whitened(row, kColumn) =
+            less_products<kColumn, Rows>(left(row, kColumn), lower_.data() + kColumn,
+                                         whitened.data() + row) *
+            inverse_diagonal_[kColumn];
       });
     });
     return whitened;
@@ -145,6 +147,16 @@ class Cholesky {
   }
 
  private:
+  /// The sum less the products of the first `Count` elements of a row of L and those of another
+  /// vector, `Stride` apart.
+  template <int Count, int Stride>
+  [[gnu::always_inline]] static Scalar less_products(Scalar sum, const Scalar* of_row,
+                                                     const Scalar* other) noexcept {
+    unroll<Count>([&](int k)
+                      __attribute__((always_inline)) { sum -= of_row[N * k] * other[Stride * k]; });
+    return sum;
+  }
+
   static MaskOf<Scalar> is_variance(Scalar pivot) noexcept {
     return pivot > Scalar(0) && pivot <= Scalar(std::numeric_limits<RealOf<Scalar>>::max());
   }
@@ -196,9 +208,13 @@ Mat<Scalar, N, N> semidefinite_root(const Mat<Scalar, N, N>& matrix) noexcept {
 template <class Derived>
 MaskOf<typename Derived::Scalar> is_finite(const Eigen::MatrixBase<Derived>& matrix) noexcept {
   using Scalar = typename Derived::Scalar;
-  // 0 x is NaN for an infinite or NaN x, and a sum with a NaN is NaN.
-  const Scalar sum = (matrix.array() * Scalar(0)).sum();
-  return sum == Scalar(0);
+  // 0 x is NaN for an infinite or NaN x, and a sum with a NaN is NaN. Two sums, as each addition
+  // waits for the one before.
+  Scalar even = Scalar(0), odd = Scalar(0);
+  for (int column = 0; column < matrix.cols(); ++column)
+    for (int row = 0; row < matrix.rows(); ++row)
+      (row % 2 == 0 ? even : odd) += matrix.derived().coeff(row, column) * Scalar(0);
+  return even + odd == Scalar(0);
 }
 
 /// `kOk` when the mean is `in_range` and the covariance finite, symmetric and positive definite;

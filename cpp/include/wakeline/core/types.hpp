@@ -107,6 +107,34 @@ template <int N, class Scalar, class OfLane>
   }
 }
 
+/// a b of small matrices, as loops: Eigen's product of two is some fifty templates to compile.
+template <class Scalar, int Rows, int Inner, int Cols>
+Mat<Scalar, Rows, Cols> product(const Mat<Scalar, Rows, Inner>& a,
+                                const Mat<Scalar, Inner, Cols>& b) noexcept {
+  Mat<Scalar, Rows, Cols> c;
+  for (int column = 0; column < Cols; ++column)
+    for (int row = 0; row < Rows; ++row) {
+      Scalar sum = a(row, 0) * b(0, column);
+      for (int k = 1; k < Inner; ++k) sum += a(row, k) * b(k, column);
+      c(row, column) = sum;
+    }
+  return c;
+}
+
+/// a bᵀ.
+template <class Scalar, int Rows, int Inner, int Cols>
+Mat<Scalar, Rows, Cols> product_transposed(const Mat<Scalar, Rows, Inner>& a,
+                                           const Mat<Scalar, Cols, Inner>& b) noexcept {
+  Mat<Scalar, Rows, Cols> c;
+  for (int column = 0; column < Cols; ++column)
+    for (int row = 0; row < Rows; ++row) {
+      Scalar sum = a(row, 0) * b(column, 0);
+      for (int k = 1; k < Inner; ++k) sum += a(row, k) * b(column, k);
+      c(row, column) = sum;
+    }
+  return c;
+}
+
 /// Copies the lower triangle to the upper one, so that the matrix is exactly symmetric.
 template <class Scalar, int N>
 [[gnu::always_inline]] inline void mirror_lower(Mat<Scalar, N, N>& matrix) noexcept {

@@ -7,6 +7,7 @@
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/filter/concept.hpp"
 #include "wakeline/motion/pattern.hpp"
+#include "wakeline/simd/flatten.hpp"
 
 namespace wakeline {
 
@@ -33,7 +34,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
   }
 
   /// x = f(x), P = F P Fᵀ + Q.
-  [[gnu::flatten]] StatusOf<Scalar> predict(Scalar dt_s) noexcept {
+  WAKELINE_FLATTEN StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     if (!this->started_) return Status::kNotStarted;
     return predict_from(this->belief_, dt_s);
   }
@@ -58,7 +59,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
 
   /// The same of a reading that the sensor has observed, its likelihood in two parts.
   template <class Sensor>
-  [[gnu::flatten]] Correction<Sensor::kMeasurements, Scalar> compare(
+  WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> compare(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
     if (!this->started_)
       return failed_correction<Sensor::kMeasurements, Scalar>(Status::kNotStarted);
@@ -76,7 +77,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
 
   /// The same by a reading that the sensor has observed, the likelihood in two parts.
   template <class Sensor>
-  [[gnu::flatten]] Correction<Sensor::kMeasurements, Scalar> correct(
+  WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!this->started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
@@ -207,9 +208,12 @@ class Ekf : public Belief<MotionType, ScalarType> {
         innovation.factor.unwhiten_rows(innovation.factor.whiten_rows(innovation.ph));
     Mat<Scalar, kStates, kStates> rest = Mat<Scalar, kStates, kStates>::Identity();
     for (int k = 0; k < innovation.kReads; ++k)
-      rest.col(innovation.kRows[k]) -= gain * innovation.h.col(k);
+      for (int i = 0; i < kStates; ++i)
+        for (int m = 0; m < M; ++m) rest(i, innovation.kRows[k]) -= gain(i, m) * innovation.h(m, k);
     Mat<Scalar, kStates, kStates> p =
-        rest * this->belief_.covariance * rest.transpose() + gain * r * gain.transpose();
+        product_transposed(product(rest, this->belief_.covariance), rest);
+    const Mat<Scalar, kStates, kStates> of_noise = product_transposed(product(gain, r), gain);
+    for (int k = 0; k < p.size(); ++k) p.data()[k] += of_noise.data()[k];
     mirror_lower<Scalar, kStates>(p);
     return p;
   }
@@ -217,7 +221,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
   /// Works out F and Q of a linear model: of F what its pattern leaves open, of Q the lower
   /// triangle, as nothing else counts.
   template <LinearMotionModel Linear>
-  [[gnu::noinline, gnu::flatten]] void keep(const Linear& motion, Scalar dt_s) noexcept {
+  [[gnu::noinline]] WAKELINE_FLATTEN void keep(const Linear& motion, Scalar dt_s) noexcept {
     StepMatrices<kStates, Scalar> matrices = step_matrices(motion, dt_s);
     unroll<kStates * kStates>([&](auto k) {
       constexpr int i = k.value % kStates, j = k.value / kStates;

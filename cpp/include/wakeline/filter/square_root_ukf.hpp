@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "wakeline/filter/unscented.hpp"
+#include "wakeline/simd/flatten.hpp"
 
 namespace wakeline {
 
@@ -111,7 +112,7 @@ class SquareRootUkf {
 
   /// The belief, its covariance as L Lᵀ.
   [[nodiscard]] Gaussian<kStates, Scalar> estimate() const noexcept {
-    Gaussian<kStates, Scalar> belief{mean_, root_ * root_.transpose()};
+    Gaussian<kStates, Scalar> belief{mean_, product_transposed(root_, root_)};
     mirror_lower<Scalar, kStates>(belief.covariance);
     return belief;
   }
@@ -122,19 +123,26 @@ class SquareRootUkf {
   [[nodiscard]] bool started() const noexcept { return started_; }
 
   /// The root of the array [sqrt(w) e_i, sqrt(beta - alpha²) d, Q^(1/2)].
-  /// Not inlined, as is `correct`: beside the sigma points a call is nothing, and each estimator over
-  /// the filter would compile them anew.
-  [[gnu::flatten, gnu::noinline]] StatusOf<Scalar> predict(Scalar dt_s) noexcept {
+  /// Not inlined, as is `correct`: beside the sigma points a call is nothing, and each estimator
+  /// over the filter would compile them anew.
+  [[gnu::noinline]] WAKELINE_FLATTEN StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     using std::sqrt;
     if (!started_) return Status::kNotStarted;
     const StatusOf<Scalar> forward = check_time_step(dt_s);
     if (none(ok(forward))) return forward;
     const MovedPoints<Scalar, kStates> moved(motion_, dt_s, mean_, points());
-    const Vec<Scalar, kStates> shift = weight() * moved.differences.rowwise().sum();
-    Mat<Scalar, kStates, kPoints + 1 + kStates> array;
-    array << sqrt(weight()) * moved.differences, centre_root() * shift,
+    const Vec<Scalar, kStates> shift = weighted_sum(moved.differences);
+    const Mat<Scalar, kStates, kStates> noise =
         semidefinite_root<kStates, Scalar>(process_noise(motion_, mean_, dt_s));
-    const Vec<Scalar, kStates> mean = moved.centre + shift;
+    const Scalar scale = sqrt(weight()), of_centre = centre_root();
+    Mat<Scalar, kStates, kPoints + 1 + kStates> array;
+    Vec<Scalar, kStates> mean;
+    for (int i = 0; i < kStates; ++i) {
+      for (int k = 0; k < kPoints; ++k) array(i, k) = scale * moved.differences(i, k);
+      array(i, kPoints) = of_centre * shift[i];
+      for (int k = 0; k < kStates; ++k) array(i, kPoints + 1 + k) = noise(i, k);
+      mean[i] = moved.centre[i] + shift[i];
+    }
     const Mat<Scalar, kStates, kStates> root = lower_root(array);
     const StatusOf<Scalar> status = first_failure(
         forward,
@@ -168,14 +176,13 @@ class SquareRootUkf {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
-    return with_model(sensor, [&](const auto& model) {
-      return correct(model, sensor.observe(z)).scored();
-    });
+    return with_model(
+        sensor, [&](const auto& model) { return correct(model, sensor.observe(z)).scored(); });
   }
 
   /// The same by a reading that the sensor has observed, the likelihood in two parts.
   template <class Sensor>
-  [[gnu::flatten, gnu::noinline]] Correction<Sensor::kMeasurements, Scalar> correct(
+  [[gnu::noinline]] WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
     using std::sqrt;
     check_sensor<Sensor, SquareRootUkf>();
@@ -183,29 +190,39 @@ class SquareRootUkf {
     if (!started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
     const Mat<Scalar, kStates, kPoints> sigma = points();
     const MeasuredPoints<kComponents, Sensor, Scalar> images(sensor, mean_, sigma);
-    const Vec<Scalar, kM> shift = weight() * images.differences.rowwise().sum();
+    const Vec<Scalar, kM> shift = weighted_sum(images.differences);
+    const Mat<Scalar, kM, kM> noise = semidefinite_root<kM, Scalar>(reading.covariance);
 
+    const Scalar scale = sqrt(weight()), of_centre = centre_root();
     Mat<Scalar, kM + kStates, kPoints + 1 + kM> array =
         Mat<Scalar, kM + kStates, kPoints + 1 + kM>::Zero();
-    array.template topLeftCorner<kM, decltype(images.differences)::ColsAtCompileTime>() =
-        sqrt(weight()) * images.differences;
-    array.template block<kM, 1>(0, kPoints) = centre_root() * shift;
-    array.template topRightCorner<kM, kM>() = semidefinite_root<kM, Scalar>(reading.covariance);
-    array.template bottomLeftCorner<kStates, kPoints>() =
-        sqrt(weight()) * (sigma.colwise() - mean_);
-    const Vec<Scalar, kM> innovation =
-        sensor.residual(reading.mean, Vec<Scalar, kM>(images.centre + shift));
+    Vec<Scalar, kM> predicted;
+    for (int m = 0; m < kM; ++m) {
+      for (int k = 0; k < images.differences.cols(); ++k)
+        array(m, k) = scale * images.differences(m, k);
+      array(m, kPoints) = of_centre * shift[m];
+      for (int k = 0; k < kM; ++k) array(m, kPoints + 1 + k) = noise(m, k);
+      predicted[m] = images.centre[m] + shift[m];
+    }
+    for (int k = 0; k < kPoints; ++k)
+      for (int i = 0; i < kStates; ++i) array(kM + i, k) = scale * (sigma(i, k) - mean_[i]);
+    const Vec<Scalar, kM> innovation = sensor.residual(reading.mean, predicted);
     const Mat<Scalar, kM + kStates, kM + kStates> root = lower_root(array);
-    const Mat<Scalar, kM, kM> s_root = root.template topLeftCorner<kM, kM>();
+    Mat<Scalar, kM, kM> s_root;
+    for (int n = 0; n < kM; ++n)
+      for (int m = 0; m < kM; ++m) s_root(m, n) = root(m, n);
     Correction<kM, Scalar> correction;
     correction.innovation = innovation;
-    correction.innovation_covariance = s_root * s_root.transpose();
+    correction.innovation_covariance = product_transposed(s_root, s_root);
     const Cholesky<kM, Scalar> factor(correction.innovation_covariance);
     const Vec<Scalar, kM> whitened = factor.template whiten<1>(innovation);
     rate(correction, whitened, factor);
-    const Vec<Scalar, kStates> mean =
-        mean_ + root.template bottomLeftCorner<kStates, kM>() * whitened;
-    const Mat<Scalar, kStates, kStates> next = root.template bottomRightCorner<kStates, kStates>();
+    Vec<Scalar, kStates> mean = mean_;
+    Mat<Scalar, kStates, kStates> next;
+    for (int i = 0; i < kStates; ++i) {
+      for (int m = 0; m < kM; ++m) mean[i] += root(kM + i, m) * whitened[m];
+      for (int k = 0; k < kStates; ++k) next(i, k) = root(kM + i, kM + k);
+    }
 
     MaskOf<Scalar> variances = true;
     for (int m = 0; m < kM; ++m) variances = variances && !(reading.covariance(m, m) < Scalar(0));
@@ -226,7 +243,21 @@ class SquareRootUkf {
   static MaskOf<Scalar> has_finite_moments(const Vec<Scalar, kStates>& mean,
                                            const Mat<Scalar, kStates, kStates>& root) noexcept {
     using std::isfinite;
-    return is_finite(mean) && isfinite(Scalar(root.squaredNorm()));
+    Scalar squares = Scalar(0);
+    for (int k = 0; k < root.size(); ++k) squares += root.data()[k] * root.data()[k];
+    return is_finite(mean) && isfinite(squares);
+  }
+
+  /// The weighted sum of the differences of all points from the centre.
+  template <int Rows, int Points>
+  Vec<Scalar, Rows> weighted_sum(const Mat<Scalar, Rows, Points>& differences) const noexcept {
+    Vec<Scalar, Rows> sum;
+    for (int i = 0; i < Rows; ++i) {
+      Scalar of_row = differences(i, 0);
+      for (int k = 1; k < Points; ++k) of_row += differences(i, k);
+      sum[i] = weight() * of_row;
+    }
+    return sum;
   }
 
   void replace(const MaskOf<Scalar>& lanes, const Vec<Scalar, kStates>& mean,

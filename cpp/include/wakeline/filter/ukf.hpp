@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "wakeline/filter/unscented.hpp"
+#include "wakeline/simd/flatten.hpp"
 
 namespace wakeline {
 
@@ -56,9 +57,9 @@ class Ukf : public Belief<MotionType, ScalarType> {
   }
 
   /// The moments of the moved sigma points, and Q.
-  /// Not inlined, as is `correct`: beside the sigma points a call is nothing, and each estimator over
-  /// the filter would compile them anew.
-  [[gnu::flatten, gnu::noinline]] StatusOf<Scalar> predict(Scalar dt_s) noexcept {
+  /// Not inlined, as is `correct`: beside the sigma points a call is nothing, and each estimator
+  /// over the filter would compile them anew.
+  [[gnu::noinline]] WAKELINE_FLATTEN StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     if (!this->started_) return Status::kNotStarted;
     const StatusOf<Scalar> forward = check_time_step(dt_s);
     if (none(ok(forward))) return forward;
@@ -92,14 +93,13 @@ class Ukf : public Belief<MotionType, ScalarType> {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
-    return with_model(sensor, [&](const auto& model) {
-      return correct(model, sensor.observe(z)).scored();
-    });
+    return with_model(
+        sensor, [&](const auto& model) { return correct(model, sensor.observe(z)).scored(); });
   }
 
   /// The same by a reading that the sensor has observed, the likelihood in two parts.
   template <class Sensor>
-  [[gnu::flatten, gnu::noinline]] Correction<Sensor::kMeasurements, Scalar> correct(
+  [[gnu::noinline]] WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
     check_sensor<Sensor, Ukf>();
     constexpr int kM = Sensor::kMeasurements;

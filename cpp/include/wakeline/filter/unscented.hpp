@@ -94,13 +94,15 @@ struct MovedPoints {
               const Mat<Scalar, N, 2 * N>& points) noexcept {
     if constexpr (LinearMotionModel<Motion>) {
       const Mat<Scalar, N, N> f = motion.matrix(dt_s);
-      centre = f * mean;
-      differences = (f * points).colwise() - centre;
+      centre = product(f, mean);
+      differences = product(f, points);
     } else {
       centre = motion.transition(mean, dt_s);
       for (int k = 0; k < 2 * N; ++k)
-        differences.col(k) = motion.transition(Vec<Scalar, N>(points.col(k)), dt_s) - centre;
+        differences.col(k) = motion.transition(Vec<Scalar, N>(points.col(k)), dt_s);
     }
+    for (int k = 0; k < 2 * N; ++k)
+      for (int i = 0; i < N; ++i) differences(i, k) -= centre[i];
   }
 };
 

@@ -95,10 +95,10 @@ class ProcessNoise {
     const Scalar dt2 = dt_s * dt_s;
     const bool piecewise = kind_ == Kind::kPiecewiseAcceleration;
     Mat<Scalar, 2, 2> noise;
-    noise(0, 0) = piecewise ? dt2 * dt2 / 4 : dt2 * dt_s / 3;
-    noise(0, 1) = noise(1, 0) = piecewise ? dt2 * dt_s / 2 : dt2 / 2;
-    noise(1, 1) = piecewise ? dt2 : dt_s;
-    return q * noise;
+    noise(0, 0) = q * (piecewise ? dt2 * dt2 / 4 : dt2 * dt_s / 3);
+    noise(0, 1) = noise(1, 0) = q * (piecewise ? dt2 * dt_s / 2 : dt2 / 2);
+    noise(1, 1) = q * (piecewise ? dt2 : dt_s);
+    return noise;
   }
 
   /// Q of one axis `[position, velocity, acceleration]`.
@@ -106,19 +106,25 @@ class ProcessNoise {
   Mat<Scalar, 3, 3> of_acceleration_axis(Scalar dt_s) const noexcept {
     Mat<Scalar, 3, 3> noise = Mat<Scalar, 3, 3>::Zero();
     if (kind_ == Kind::kWhiteAcceleration) {
-      noise.template topLeftCorner<2, 2>() = of_velocity_axis(dt_s);
+      const Mat<Scalar, 2, 2> axis = of_velocity_axis(dt_s);
+      for (int column = 0; column < 2; ++column)
+        for (int row = 0; row < 2; ++row) noise(row, column) = axis(row, column);
     } else if (kind_ == Kind::kPiecewiseAcceleration) {
-      const Vec<Scalar, 3> gain(dt_s * dt_s / 2, dt_s, Scalar(1));
-      noise = Scalar(strength()) * gain * gain.transpose();
+      const Scalar gain[3] = {dt_s * dt_s / 2, dt_s, Scalar(1)};
+      for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+          noise(row, column) = Scalar(strength()) * gain[row] * gain[column];
     } else {
       const Scalar dt2 = dt_s * dt_s;
       const Scalar dt3 = dt2 * dt_s;
       // clang-format off
-      noise << dt2 * dt3 / 20, dt2 * dt2 / 8, dt3 / 6,
-               dt2 * dt2 / 8,  dt3 / 3,       dt2 / 2,
-               dt3 / 6,        dt2 / 2,       dt_s;
+      const Scalar rows[3][3] = {{dt2 * dt3 / 20, dt2 * dt2 / 8, dt3 / 6},
+                                 {dt2 * dt2 / 8,  dt3 / 3,       dt2 / 2},
+                                 {dt3 / 6,        dt2 / 2,       dt_s}};
       // clang-format on
-      noise *= Scalar(strength());
+      for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+          noise(row, column) = Scalar(strength()) * rows[row][column];
     }
     return noise;
   }

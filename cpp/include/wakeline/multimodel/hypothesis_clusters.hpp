@@ -14,6 +14,7 @@
 #include "wakeline/multimodel/hypothesis_rows.hpp"
 #include "wakeline/multimodel/likeliest.hpp"
 #include "wakeline/multimodel/mixture.hpp"
+#include "wakeline/simd/flatten.hpp"
 
 namespace wakeline {
 
@@ -40,7 +41,7 @@ class HypothesisClusters {
   }
 
   /// Appends the clusters of a mode, in the order of their likeliest members.
-  [[gnu::flatten]] void append_joined(int mode, Rows& to) noexcept {
+  WAKELINE_FLATTEN void append_joined(int mode, Rows& to) noexcept {
     const auto begin = static_cast<std::size_t>(rows_.begin(mode));
     const std::span<const Row> rows = rows_.of_mode(mode);
     if (by_distance())

@@ -15,6 +15,7 @@
 #include "wakeline/filter/belief.hpp"
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
+#include "wakeline/simd/flatten.hpp"
 #include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
@@ -89,7 +90,7 @@ class Imm {
   /// Filtering and mode probabilities: equations (12)-(14) of paper A. The innovation of the step
   /// is that of the moment-matched prediction, its log-likelihood that of the mixture.
   template <class Sensor>
-  [[gnu::flatten]] Step<Sensor::kMeasurements, Scalar> update(
+  WAKELINE_FLATTEN Step<Sensor::kMeasurements, Scalar> update(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_step<kM, Scalar>(Status::kNotStarted);
@@ -197,7 +198,7 @@ class Imm {
 
   /// The moment-matched estimate, over the state where all filters share one, else over `[x, vx, y,
   /// vy]`: equations (15) and (16) of paper A.
-  [[nodiscard, gnu::flatten]] auto estimate() const noexcept {
+  [[nodiscard]] WAKELINE_FLATTEN auto estimate() const noexcept {
     auto sum = bank_.empty_estimate();
     bank_.for_each_belief(
         [&](int mode, const auto& belief) { add_mean(sum, probability_[mode], belief, sum); });
@@ -225,7 +226,7 @@ class Imm {
   friend class ImmSmoother;
 
   template <class... Known>
-  [[gnu::flatten]] StatusOf<Scalar> mix_and_move(Scalar dt_s,
+  WAKELINE_FLATTEN StatusOf<Scalar> mix_and_move(Scalar dt_s,
                                                  const Known&... acceleration_mps2) noexcept {
     if (!started_) return Status::kNotStarted;
     StatusOf<Scalar> status = check_time_step(dt_s);
@@ -350,7 +351,7 @@ class Imm {
   /// The mixed start of one mode: mean and covariance of all beliefs, weighted by where the mode
   /// came from.
   template <class BeliefType>
-  [[gnu::flatten]] BeliefType mixed(int mode, const BeliefType& own) const noexcept {
+  WAKELINE_FLATTEN BeliefType mixed(int mode, const BeliefType& own) const noexcept {
     BeliefType result = zero_like(own);
     bank_.for_each_before(
         [&](int i, const auto& before) { add_mean(result, weight_(i, mode), before, own); });

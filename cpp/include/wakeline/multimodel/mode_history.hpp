@@ -24,6 +24,7 @@
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/multimodel/turn_rate_grid.hpp"
 #include "wakeline/multimodel/uniform_bank.hpp"
+#include "wakeline/simd/flatten.hpp"
 
 namespace wakeline {
 
@@ -403,7 +404,7 @@ class ModeHistory {
 
   /// Corrects the beliefs of a row, which become those of another.
   template <class Sensor, int M>
-  [[gnu::flatten]] Correction<M, Lanes> correct(const Sensor& sensor,
+  WAKELINE_FLATTEN Correction<M, Lanes> correct(const Sensor& sensor,
                                                 const Gaussian<M, Lanes>& reading,
                                                 const Row& before, Row& after) noexcept {
     Filter& filter = filter_of(before);
@@ -415,7 +416,7 @@ class ModeHistory {
 
   /// Predicts all hypotheses. Where one fails none is to be used.
   template <class... Known>
-  [[gnu::flatten]] Status move(Leaves& leaves, Scalar dt_s,
+  WAKELINE_FLATTEN Status move(Leaves& leaves, Scalar dt_s,
                                const Known&... acceleration_mps2) noexcept {
     for (Row& row : leaves.all()) {
       Filter& filter = bank_.filter(row.mode);

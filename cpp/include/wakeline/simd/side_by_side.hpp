@@ -15,6 +15,7 @@
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/simd/flatten.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
@@ -188,7 +189,7 @@ class SideBySide<Estimator> {
     }
   }
 
-  [[gnu::flatten, gnu::noinline]] void predict_row(
+  [[gnu::noinline]] WAKELINE_FLATTEN void predict_row(
       const Row<PredictionStep<Estimator>>& row) noexcept {
     gather(row);
     const auto status = lanes_.predict(lanes_of<Scalar>([&](int k) { return row[k].dt_s; }));
@@ -196,7 +197,8 @@ class SideBySide<Estimator> {
     scatter(row);
   }
 
-  [[gnu::flatten, gnu::noinline]] void update_row(const Row<UpdateStep<Estimator>>& row) noexcept {
+  [[gnu::noinline]] WAKELINE_FLATTEN void update_row(
+      const Row<UpdateStep<Estimator>>& row) noexcept {
     gather(row);
     const std::size_t count = std::min(row[row.count - 1].fixes.size(), kMaxAlternatives);
     for (std::size_t i = 0; i < count; ++i) read(row, i);
