@@ -8,7 +8,7 @@ from typing import Any
 def rebuilt(
     kind: type, factory: str | None, arguments: dict[str, Any], state: bytes | None = None
 ) -> Any:
-    """An object made anew by its type, or a factory of its type, with the state that `save` gave."""
+    """An object made by its type, or a factory of its type, in the state that `save` gave."""
     made = (getattr(kind, factory) if factory else kind)(**arguments)
     if state is not None:
         made.restore(state)
