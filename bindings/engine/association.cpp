@@ -101,7 +101,7 @@ py::array_t<std::int64_t> assign_sparse(const DoubleArray& indptr, const DoubleA
 }  // namespace
 
 void define_association(py::module_& parent) {
-  py::module_ m = parent.def_submodule("association", "Which plot is whose.");
+  py::module_ m = parent.def_submodule("association", "Assignment of plots to tracks.");
   m.def("assign", &assign, py::arg("cost"), R"(Optimal one-to-one assignment.
 
 Parameters
@@ -112,25 +112,24 @@ cost : (rows, columns) array
 Returns
 -------
 (pairs, 2) int array
-    Row and column of each pair, by row: as many pairs as can be, then the least total cost.)");
+    Row and column of each pair, by row: the most pairs possible, at the least total cost.)");
   m.def("assign_sparse", &assign_sparse, py::arg("indptr"), py::arg("indices"), py::arg("data"),
         py::kw_only(), py::arg("unassigned_cost"), py::arg("columns"),
-        R"(Optimal one-to-one assignment of gated pairs, each row at most one.
+        R"(Optimal one-to-one assignment of gated pairs.
 
-Minimises the costs of the pairs plus `unassigned_cost` of the rows left out. Pairs are given as
-the compressed rows of a sparse matrix, as `scipy.sparse.csr_array` holds them; what is not there
-is forbidden.
+Minimizes the costs of the pairs plus `unassigned_cost` of the unassigned rows. Pairs are given as
+the compressed rows of a sparse matrix, as in `scipy.sparse.csr_array`; other pairs are forbidden.
 
 Parameters
 ----------
 indptr : (rows + 1,) int array
     Row r has the candidates `indptr[r]` to `indptr[r + 1] - 1`.
 indices : (candidates,) int array
-    Column of each candidate, at most once a row.
+    Column of each candidate, at most once per row.
 data : (candidates,) array
-    Cost of each, of any sign; inf forbids it.
+    Cost of each candidate, of any sign; inf forbids it.
 unassigned_cost : float or (rows,) array
-    What it costs to leave a row out.
+    Cost of an unassigned row.
 columns : int
 
 Returns

@@ -46,9 +46,9 @@ void define_batch(py::module_& parent) {
   auto m = parent.def_submodule("batch", "Many runs at once: lanes and threads.");
   m.def(
       "lanes", [] { return kernels == nullptr ? 1 : kernels->lanes; },
-      "Runs that go side by side in one register of this processor.");
+      "Runs side by side in one register of this processor.");
   m.def("threads", &thread_limit,
-        "Threads that all calls at one time use together: the environment's WAKELINE_THREADS or "
+        "Threads that all simultaneous calls share: the environment's WAKELINE_THREADS or "
         "OMP_NUM_THREADS, else the processors that the process may run on, unless set.");
   m.def(
       "set_threads",
@@ -58,7 +58,7 @@ void define_batch(py::module_& parent) {
         set_thread_limit(threads);
       },
       py::arg("threads"),
-      "Sets how many threads all calls at one time use together. Results do not depend on it.");
+      "Set the number of threads that all simultaneous calls share. Results do not depend on it.");
 }
 
 }  // namespace wakeline::python

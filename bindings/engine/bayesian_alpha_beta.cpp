@@ -14,28 +14,28 @@ using PyBayesian = PyEstimator<BayesianAlphaBeta<>>;
 void define_bayesian_alpha_beta(py::module_& m) {
   const LineWeighing weighing;
   EstimatorClass<BayesianAlphaBeta<>> bank(
-      m, "BayesianAlphaBeta", R"(Lines and parabolas through the last plots, weighed by Bayes' rule.
+      m, "BayesianAlphaBeta",
+      R"(Lines and parabolas through the last plots, weighted by Bayes' rule.
 
-Each member foretells the next plot with a known error: the plot's own, times one plus the member's noise factor. The plot's
-likelihood is the evidence for it, and from scan to scan a member stays the right one for a while. The estimate is the mixture.
-Does what `FuzzyAlphaBeta` does, many plots on a straight and few in a turn, without its usual residual, which a turn inflates,
-its hold and its hard choice; a parabola holds a turn that lines cut. Has the face of `Imm`, with a mode for each member: lines
-first, shorter before longer, then parabolas.
+Each member predicts the next plot with a known variance: the plot's, times one plus the member's noise factor. The plot's
+likelihood is the evidence, and the right member is a Markov chain. The estimate is the mixture. Like `FuzzyAlphaBeta` it uses
+many plots on a straight and few in a turn, but without its usual residual, which a turn inflates, its hold and its hard choice;
+parabolas follow a turn. Same interface as `Imm`, with one mode per member: lines first, shorter before longer, then parabolas.
 
-Takes the position out of any sensor, and measures innovations in north and east.
+Uses the position of any sensor; innovations are in north and east.
 
 Parameters
 ----------
 min_plots, max_plots : int
-    Of the shortest and the longest line, 2 to 16; at most 16 members in all.
+    Lengths of the shortest and the longest line, 2 to 16; at most 16 members in all.
 parabolas : bool
-    Whether there are parabolas too, through four plots and more.
+    Whether there are also parabolas, through at least four plots.
 sojourn_s : float
-    Mean time until another member is the right one.
+    Mean sojourn of the right member.
 longest_line_probability : float
-    Prior of the longest line; the other members are alike.
+    Prior of the longest line; the other members are equally probable.
 acceleration_std_mps2 : float
-    Per axis, of a maneuver that began at the last plot but one: widens the covariance, not used in weighing.
+    Per axis, of a maneuver since the last plot but one: increases the covariance, not used in the weights.
 
 Raises
 ------
@@ -76,7 +76,7 @@ ValueError
           plots.mutable_at(mode) = rules.plots_of(mode);
         return plots;
       },
-      "(K,) number of plots that each member goes through.");
+      "(K,) number of plots of each member.");
 }
 
 }  // namespace wakeline::python

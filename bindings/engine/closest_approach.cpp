@@ -133,13 +133,13 @@ void define_closest_approach(py::module_& m) {
           [](const ClosestApproaches& all) {
             return all.each([](const ClosestApproach& one) { return one.signed_cpa_m(); });
           },
-          "The same, positive where the ships pass port to port along their relative motion.")
+          "Signed distance, positive if the ships pass port to port along their relative motion.")
       .def_property_readonly(
           "tcpa_s",
           [](const ClosestApproaches& all) {
             return all.each([](const ClosestApproach& one) { return one.tcpa_s(); });
           },
-          "Time until the closest point; negative when it is past, 0 at relative rest.")
+          "Time until the closest point; negative in the past, 0 at relative rest.")
       .def_property_readonly(
           "cpa_std_m",
           [](const ClosestApproaches& all) {
@@ -175,11 +175,10 @@ void define_closest_approach(py::module_& m) {
           },
           py::arg("limit_m"), py::arg("horizon_s") = ClosestApproach::kForever_s,
           R"(Probability that the ships come closer than a limit L between now and a horizon H: that
-|p + v t| < L at some t, 0 <= t <= H, p and v of their joint Gaussian, near relative rest, too. Two
-ships that are known to be at rest are as close as they are now. Beside many draws it is off by
-0.004 in the mean square; by more than 0.02 seldom, but in one of thirty cases where the target is
-now within a tenth of the limit; by 0.08 at most, but that a target whose place is known, closer
-than a hundredth outside the limit, has up to 0.15 too little.
+          |p + v t| < L at some t, 0 <= t <= H, with p and v jointly Gaussian, also near relative rest. The
+          RMS error against random draws is 0.004. Errors above 0.02 are rare, except in one of thirty cases
+          with a target within a tenth of the limit; they are at most 0.08, but up to 0.15 (too small) for a
+          target with a known position less than a hundredth outside the limit.
 
 Parameters
 ----------
@@ -196,22 +195,21 @@ Raises
 ValueError
     When one is negative or NaN.)");
 
-  m.def(
-      "closest_approach", &closest_approaches, py::arg("own"), py::arg("target"),
-      py::arg("own_covariance") = py::none(), py::arg("target_covariance") = py::none(),
-      R"(Where and when ships that hold course and speed are closest: CPA and TCPA with their errors.
+  m.def("closest_approach", &closest_approaches, py::arg("own"), py::arg("target"),
+        py::arg("own_covariance") = py::none(), py::arg("target_covariance") = py::none(),
+        R"(CPA and TCPA of ships at constant velocity, with their errors.
 
     tcpa = -p·v / |v|²,    d = p·n,    cpa = |d|,
 
-p and v the position and velocity of the target relative to own ship, n the unit vector to starboard
-of v. At a relative speed of 1 µm/s or less the range now is the CPA and TCPA is 0.
+with p and v the position and velocity of the target relative to own ship, n the unit vector to
+starboard of v. At a relative speed of at most 1 µm/s the CPA is the present range and TCPA is 0.
 
 Parameters
 ----------
 own, target : (..., 4) array_like
     [x, vx, y, vy], metres and m/s; leading shapes are broadcast against each other.
 own_covariance, target_covariance : (..., 4, 4) array_like, optional
-    Errors, independent of each other; none by default.
+    Covariances of independent errors; default none.
 
 Returns
 -------

@@ -29,19 +29,20 @@ py::object wrapped(const DoubleArray& angle_rad) {
 }  // namespace
 
 void define_core(py::module_& parent) {
-  py::module_ m = parent.def_submodule("core", "Beliefs, statuses, angles and the chi-square law.");
+  py::module_ m =
+      parent.def_submodule("core", "Beliefs, statuses, angles and the chi-square distribution.");
   py::register_exception<FilterError>(m, "FilterError", PyExc_RuntimeError).attr("__doc__") =
-      "An estimator could not be started, predicted or updated; its belief is as it was.";
+      "An estimator could not be started, predicted or updated; its belief is unchanged.";
 
   py::native_enum<Status>(m, "Status", "enum.IntEnum",
-                          "What became of one step: a number, as in the `status` of a run.")
-      .value("ok", Status::kOk, "all was taken")
+                          "Status of one step: a number, as in the `status` of a run.")
+      .value("ok", Status::kOk, "success")
       .value("missed", Status::kMissed, "no measurement in this scan: predicted only")
       .value("not_started", Status::kNotStarted, "the estimator has no belief yet")
       .value("not_finite", Status::kNotFinite, "an input or a result is not finite")
       .value("not_positive_definite", Status::kNotPositiveDefinite,
              "a covariance is not positive definite")
-      .value("negative_time_step", Status::kNegativeTimeStep, "time would run backwards")
+      .value("negative_time_step", Status::kNegativeTimeStep, "the time step is negative")
       .finalize();
 
   py::class_<PyGaussian> gaussian(m, "Gaussian", R"(A Gaussian belief.
@@ -66,8 +67,7 @@ ValueError
         return Arguments().with("mean", g.mean).with("covariance", g.covariance);
       });
 
-  py::class_<PyStep>(m, "Step",
-                     "What one measurement update has found; true where the reading was taken.")
+  py::class_<PyStep>(m, "Step", "Result of a measurement update; true if the reading was accepted.")
       .def("__bool__", [](const PyStep& s) { return s.status == Status::kOk; })
       .def_readonly("status", &PyStep::status)
       .def_property_readonly(
@@ -76,7 +76,7 @@ ValueError
       .def_property_readonly(
           "innovation_covariance",
           [](const PyStep& s) { return to_array(s.innovation_covariance); }, "(M, M)")
-      .def_readonly("nis", &PyStep::nis, "normalised innovation squared")
+      .def_readonly("nis", &PyStep::nis, "normalized innovation squared")
       .def_readonly("log_likelihood", &PyStep::log_likelihood)
       .def(py::pickle([](const PyStep& s) { return fields_of(s); },
                       [](const py::tuple& fields) { return step_of(fields); }))
@@ -86,13 +86,14 @@ ValueError
       });
 
   m.def("wrap_angle", &wrapped, py::arg("angle_rad"),
-        "The same angle in [-pi, pi], rad; of an array each.");
+        "The angle wrapped to [-pi, pi], rad; elementwise for an array.");
   m.def("chi_square_quantile", &chi_square_quantile, py::arg("probability"), py::arg("dof"),
-        "The value that a chi-square variable of `dof` degrees of freedom stays below with "
-        "`probability`; NaN where there is none.");
-  m.def("chi_square_probability", &chi_square_probability, py::arg("value"), py::arg("dof"),
-        "Probability that a chi-square variable of `dof` degrees of freedom stays below `value`; "
-        "NaN where there is no such law.");
+        "Chi-square quantile of `probability` with `dof` degrees of freedom; NaN for invalid "
+        "arguments.");
+  m.def(
+      "chi_square_probability", &chi_square_probability, py::arg("value"), py::arg("dof"),
+      "Probability that a chi-square variable with `dof` degrees of freedom is below `value`; NaN "
+      "for invalid arguments.");
 }
 
 }  // namespace wakeline::python

@@ -150,8 +150,7 @@ Processing 56(8), 2008.)");
 }  // namespace
 
 void define_eval(py::module_& parent) {
-  py::module_ m =
-      parent.def_submodule("eval", "Whether an estimator tells the truth about its errors.");
+  py::module_ m = parent.def_submodule("eval", "Consistency of estimators, and bounds.");
   define_set_distance(m);
   m.def("nees", &nees_of, py::arg("error"), py::arg("covariance"),
         R"(Normalised estimation error squared ``e' inv(P) e`` of any number of errors.
@@ -196,26 +195,26 @@ ValueError
 Parameters
 ----------
 transition, process_noise : (T, 4, 4) array
-    F and Q from the reading before to each reading; the first from the start.
+    F and Q from the previous reading to each reading; the first from the start.
 states : (T, 4) array
     True states [x, vx, y, vy] (m, m/s) at the readings; a row of NaN is a missed scan.
 sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
 start_covariance : (4, 4) array
     Covariance of the prior.
 detection_probability : float
-    Chance p that a reading is made.
+    Probability p of a reading.
 
 Returns
 -------
 (T, 4, 4) array
-    The covariance after each reading that no unbiased estimator beats.
+    The least covariance of an unbiased estimator after each reading.
 
 Raises
 ------
 ValueError
     When a shape does not fit, the prior is not positive definite or p is not from 0 to 1.
 FilterError
-    When a step cannot be done.)");
+    When a step fails.)");
 }
 
 }  // namespace wakeline::python

@@ -128,7 +128,7 @@ void define_filter(py::module_& parent) {
 
   define_run_result(m);
 
-  py::class_<AnyFilter> filter(m, "Filter", "What Kalman, Ekf, Ukf and SquareRootUkf share.");
+  py::class_<AnyFilter> filter(m, "Filter", "Common base of Kalman, Ekf, Ukf and SquareRootUkf.");
   define_face(filter);
   filter.def("_arguments", &filter_arguments);
   filter.def("smooth", &smooth_arrays, py::arg("mean"), py::arg("covariance"), py::arg("dt_s"),
@@ -153,13 +153,13 @@ Raises
 ValueError
     When a shape does not fit.
 FilterError
-    When a covariance is not positive definite, a number not finite or a step below zero.)");
+    When a covariance is not positive definite, a number not finite or a step negative.)");
 
   py::class_<PyKalman, AnyFilter> kalman(
-      m, "Kalman", "The Kalman filter: linear motion and linear sensors, nothing approximated.");
+      m, "Kalman", "The Kalman filter: exact for linear motion and linear sensors.");
   define_plain<AnyLinearMotion>(kalman, &any_kalman);
   py::class_<PyEkf, AnyFilter> ekf(
-      m, "Ekf", "The extended Kalman filter: motion and sensor linearised about the mean.");
+      m, "Ekf", "The extended Kalman filter: motion and sensor linearized about the mean.");
   define_plain<AnyMotion>(ekf, [](const AnyMotion& motion) { return any_filter<Ekf>(motion); });
   py::class_<PyUkf, AnyFilter> ukf(
       m, "Ukf", "The unscented Kalman filter, with the scaled transform's alpha, beta and kappa.");
@@ -168,7 +168,7 @@ FilterError
   });
   py::class_<PySquareRootUkf, AnyFilter> square_root(
       m, "SquareRootUkf",
-      "The unscented Kalman filter on a square root of the covariance, for long runs.");
+      "The unscented Kalman filter with a square root of the covariance, for long runs.");
   define_unscented(square_root, [](const AnyMotion& motion, const Unscented& unscented) {
     return any_filter<SquareRootUkf>(motion, unscented);
   });
@@ -187,7 +187,8 @@ FilterError
         });
       },
       py::arg("sensor"), py::arg("z"), py::arg("speed_std_mps"),
-      "Start over [x, vx, y, vy] from one plot and a velocity of zero with that standard deviation "
+      "Belief over [x, vx, y, vy] from one plot and zero velocity with the given standard "
+      "deviation "
       "per axis.");
   m.def(
       "two_point",
@@ -201,8 +202,8 @@ FilterError
         });
       },
       py::arg("sensor"), py::arg("first"), py::arg("second"), py::arg("dt_s"),
-      "Start over [x, vx, y, vy] from two plots dt_s apart. The own ship of the sensor is where "
-      "the second one was taken, to which it has come at its velocity.");
+      "Belief over [x, vx, y, vy] from two plots dt_s apart. The own ship of the sensor is that of "
+      "the second plot; its velocity gives its position at the first.");
 
   define_alpha_beta(m);
   define_smoothers(m);

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "multimodel.hpp"
-#include "support/types.hpp"
 #include "support/option.hpp"
+#include "support/types.hpp"
 
 namespace wakeline::python {
 namespace {
@@ -103,14 +103,14 @@ FuzzyTrace trace_runs(const PyFuzzy& prototype, const DoubleArray& z, const py::
 void define_fuzzy_alpha_beta(py::module_& m) {
   const FuzzyCriterion criterion;
   py::class_<FuzzyTrace> trace(m, "FuzzyTrace",
-                               "What `FuzzyAlphaBeta.trace` returns: arrays over scans, and over "
-                               "runs where there are several; "
-                               "NaN where nothing was judged.");
+                               "Result of `FuzzyAlphaBeta.trace`: arrays over scans, and over "
+                               "runs if there are several; "
+                               "NaN without residuals.");
   define_pickle(trace, &FuzzyTrace::quality, &FuzzyTrace::sigma_hat_m, &FuzzyTrace::residual_ratios,
                 &FuzzyTrace::rule_strengths, &FuzzyTrace::prediction_m, &FuzzyTrace::innovation_m,
                 &FuzzyTrace::chosen);
-  trace.def_readonly("quality", &FuzzyTrace::quality, "(..., T) output of the machine")
-      .def_readonly("chosen", &FuzzyTrace::chosen, "(..., T) plots of the line chosen")
+  trace.def_readonly("quality", &FuzzyTrace::quality, "(..., T) output of the Sugeno system")
+      .def_readonly("chosen", &FuzzyTrace::chosen, "(..., T) plots of the selected line")
       .def_readonly("sigma_hat_m", &FuzzyTrace::sigma_hat_m, "(..., T)")
       .def_readonly("residual_ratios", &FuzzyTrace::residual_ratios,
                     "(..., T, J - 1) of the lines through 2 .. J plots")
@@ -120,32 +120,31 @@ void define_fuzzy_alpha_beta(py::module_& m) {
 
   EstimatorClass<Fuzzy> fuzzy(
       m, "FuzzyAlphaBeta",
-      R"(The line through the last plots, as many as a fuzzy criterion finds good: many on a straight, few in a turn.
+      R"(A line through the last plots, with their number from a fuzzy criterion: many on a straight, few in a turn.
 
-In each scan the plot is compared with what the lines through the last 2, 3, ... plots foretold. Of each line there is the ratio of
+In each scan the plot is compared with the predictions of the lines through the last 2, 3, ... plots. Each line has the ratio of
 its residual to `sigma_hat_m`, the mean residual of the shortest line since the start; ``bad(ratio) = 1 / (1 + exp(-steepness
-(ratio - threshold)))`` and ``good = 1 - bad``. Rule p of a zero-order Sugeno machine says: where the first p lines are good and
-the rest bad, track with ``max(2, p + 1)`` plots. The estimate is the line through as many plots as the rules say on average.
-Until there are two plots it is the belief at the start, as a Kalman filter keeps it.
-A plot of about the time of the one before, within a sixteenth of a step, joins it and judges nothing.
+(ratio - threshold)))`` and ``good = 1 - bad``. Rule p of a zero-order Sugeno system: if the first p lines are good and the rest
+bad, track with ``max(2, p + 1)`` plots. The estimate is the line through the weighted mean of these numbers of plots. Before
+the second plot it is the initial belief, predicted and updated as in a Kalman filter. A plot within a sixteenth of a step after
+the previous one is merged with it, without an effect on the choice.
 
-Has the face of `Imm`, with one mode for each line. Takes the position out of any sensor, and measures innovations in north and
-east.
+Same interface as `Imm`, with one mode per line. Uses the position of any sensor; innovations are in north and east.
 
 Parameters
 ----------
 max_plots : int
-    Of the longest line, 2 to 16.
+    Length of the longest line, 2 to 16.
 steepness, threshold : float
     Of the membership functions.
 clip : float
-    Greater ratios count as this.
+    Upper limit of the ratios.
 t_norm : {'product', 'minimum'}
-    How degrees are combined.
+    Combination of degrees.
 hold : bool
-    Whether the greater of the last two outputs counts, against single outliers.
+    Whether the greater of the last two outputs is used, against single outliers.
 acceleration_std_mps2 : float
-    Per axis, of a maneuver that began at the last plot but one: widens the covariance, not used in the choice.
+    Per axis, of a maneuver since the last plot but one: increases the covariance, not used in the choice.
 
 Raises
 ------
@@ -184,21 +183,21 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
   });
   fuzzy
       .def_property_readonly("quality", of_kind(&Fuzzy::quality),
-                             "Output of the machine at the last plot, before it is held and "
+                             "Output of the Sugeno system at the last plot, before it is held and "
                              "rounded; NaN without one.")
-      .def_property_readonly("chosen", of_kind(&Fuzzy::chosen), "Plots of the line chosen.")
+      .def_property_readonly("chosen", of_kind(&Fuzzy::chosen), "Plots of the selected line.")
       .def_property_readonly("sigma_hat_m", of_kind(&Fuzzy::sigma_hat_m),
                              "Mean residual of the shortest line since the start; NaN before the "
                              "first one.")
       .def_property_readonly(
           "residual_ratios",
           [](const PyFuzzy& estimator) { return to_array(estimator.get().residual_ratios()); },
-          "Of each line that was judged at the last plot: its residual over `sigma_hat_m`, "
+          "For each line at the last plot: its residual / `sigma_hat_m`, "
           "clipped.")
       .def_property_readonly(
           "rule_strengths",
           [](const PyFuzzy& estimator) { return to_array(estimator.get().rule_strengths()); },
-          "Of each rule of that judgement.")
+          "Strength of each rule.")
       .def_property_readonly(
           "plots_of_mode",
           [](const PyFuzzy& estimator) {
@@ -226,15 +225,16 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
             return std::pair<double, py::array_t<double>>(quality, to_array(strengths));
           },
           py::arg("ratios"),
-          "The machine alone: its output and the strengths (n + 1,) of its rules for the ratios "
-          "(n,), 0 or more, of the lines through 2, 3, ... plots.")
+          "The Sugeno system alone: its output and the strengths (n + 1,) of its rules for the "
+          "ratios "
+          "(n,), not negative, of the lines through 2, 3, ... plots.")
       .def("trace", &trace_runs, py::arg("z"), py::arg("dt_s"), py::arg("sensor"), py::arg("start"),
-           R"(What the criterion sees and does in every scan of whole recordings.
+           R"(Inputs and outputs of the criterion in every scan of whole recordings.
 
 Parameters
 ----------
 z, dt_s, sensor, start
-    As of `run`.
+    As for `run`.
 
 Returns
 -------
@@ -245,7 +245,7 @@ Raises
 ValueError
     When a shape does not fit.
 FilterError
-    When it cannot start.)");
+    When the estimator cannot start.)");
 }
 
 }  // namespace wakeline::python

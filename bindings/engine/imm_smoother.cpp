@@ -43,15 +43,13 @@ RunResult smooth(const PyEstimator<AnyImm>& estimator, const RunArguments& argum
 }  // namespace
 
 void define_imm_smoother(EstimatorClass<AnyImm>& imm) {
-  define_run(
-      imm, "smooth", &smooth,
-      R"(Runs whole recordings and smooths them: what each scan tells knows the scans after it, too.
+  define_run(imm, "smooth", &smooth,
+             R"(Run and smooth whole recordings: each estimate also uses later scans.
 
-Each pair of modes of two scans is a way of its own: carried back by the Rauch-Tung-Striebel
-smoother of its filter, and as likely as it foretold what came. For recordings that are over; takes
-K² predictions and smoothings a scan, one recording after the other on each thread. Where a step is
-so long that nothing can be carried back over it (weeks, of `PiecewiseAcceleration`), what was
-before is smoothed by itself.
+Each pair of modes of two scans is a separate path, smoothed by the Rauch-Tung-Striebel smoother of
+its filter and weighted by how well it predicted the later readings. A scan takes K² predictions and
+smoothings; each thread takes one recording after the other. If a step is too long to smooth across
+(weeks, with `PiecewiseAcceleration`), the part before it is smoothed separately.
 
 Parameters
 ----------
@@ -69,8 +67,8 @@ Raises
 ValueError
     As of `run`.
 FilterError
-    When an estimator cannot start, or a recording cannot be smoothed: a step between two scans is
-    below zero or no number.
+    When an estimator cannot start, or a recording cannot be smoothed because a step between two
+    scans is negative or NaN.
 
 References
 ----------

@@ -128,50 +128,49 @@ void define_mode_history(py::module_& m) {
       py::arg("switch_time_spread") = tree.switch_time_spread,
       py::arg("negligible_probability") = tree.negligible_probability);
   EstimatorClass<AnyModeHistory> history(m, "ModeHistory",
-                                         R"(A tree of histories of turn rates, not mixed.
+                                         R"(A tree of turn-rate histories without mixing.
 
-Each hypothesis is one filter with its own past. A prediction lets every hypothesis keep its turn rate or take another one; an
-update weighs the hypotheses by their likelihood, joins those that have become alike and keeps the likeliest. Has the face of
-`Imm`; `mode_probability` has one number for each turn rate of the grid.
+Each hypothesis is one filter with its history. In a prediction every hypothesis keeps its turn rate or switches to another one; an
+update weights the hypotheses by their likelihood, merges similar ones and keeps the likeliest. Same interface as `Imm`;
+`mode_probability` has one number per turn rate of the grid.
 
 Parameters
 ----------
 filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn, or Ekf, Ukf or SquareRootUkf over CoordinatedTurnRate
-    What every hypothesis is like; its turn rate does not matter. Over CoordinatedTurnRate each learns its own rate: one that
-    comes into a mode begins at the rate of the grid, with `prior_turn_rate_std_rad_s` (the straightest with a tenth of
-    it); what it has learnt is in the state. A fifth of the grid's step, and `turn_rate_psd_rad2s3` of 0, keep the modes
-    apart.
+    Prototype of the hypotheses; its turn rate does not matter. Over CoordinatedTurnRate each hypothesis learns its rate: when it
+    enters a mode, it starts at the rate of the grid with `prior_turn_rate_std_rad_s` (the straightest with a tenth of it); the
+    estimated rate is in the state. A fifth of the grid's step, and `turn_rate_psd_rad2s3` of 0, keep the modes distinct.
 grid_rad_s : (2 to 16,) array, optional
-    Turn rates, rising; -4 to 4 degrees a second in steps of 1 when left out.
+    Increasing turn rates; default -4 to 4 degrees per second in steps of 1.
 grid_std_rad_s : (K,) array, optional
-    Of filters over CoordinatedTurnRate, how far the rate may be off each of the grid when a turn begins, instead of
-    `prior_turn_rate_std_rad_s` and a tenth of it. Next to none (1e-4 rad/s) at rates that vessels are known to turn at, and
-    more at some between them, which learn theirs, is nearly as good as either where either is right.
+    For filters over CoordinatedTurnRate: initial standard deviation of the rate around each rate of the grid, instead of
+    `prior_turn_rate_std_rad_s` and a tenth of it. Nearly zero (1e-4 rad/s) at known rates and more at some between them, which
+    are then learnt, is nearly as good as either alternative where that one is right.
 grid_weight : (K,) array, optional
-    How usual each rate is among turns, as parts of their sum; that of the straightest does not matter. All alike when left out.
+    Relative frequency of each rate among turns; that of the straightest does not matter. Default: all equal.
 straight_sojourn_s, turn_sojourn_s : float
-    Mean time on a straight (the straightest rate of the grid) and in a turn, once it may end. The defaults suit small
+    Mean sojourn on a straight (the straightest rate of the grid) and in a turn, after `min_segment_s`. The defaults suit small
     craft that turn often; ships go straight for minutes.
 straighten_probability : float
-    That a turn ends in a straight; other turns are alike.
+    Probability that a turn ends in a straight; other turns are equally probable.
 chain : ModeChain, optional
     Another chain, instead of those three and `grid_weight`.
 initial_mode_probability : (K,) array, optional
-    What a start begins with; 0.9 for the straightest when left out.
-max_hypotheses : int
-    Kept after an update; K or more.
+    Initial probabilities; default 0.9 for the straightest.
+    max_hypotheses : int
+    Maximum kept after an update; at least K.
 max_branches : int
-    Filtered in a scan, at most 256: what was kept, and the likeliest switches from it that there is room for.
+    Maximum filtered in a scan, at most 256: the kept hypotheses and their likeliest switches.
 min_segment_s : float
-    A turn rate that is younger does not change.
+    Minimum time between switches.
 merge_distance : float
-    Hypotheses of one turn rate that are nearer join, around the heavier one: the Mahalanobis distance in its covariance; 0 joins none.
+    Hypotheses of one turn rate within this Mahalanobis distance (in the covariance of the more probable one) merge; 0: none.
 sibling_distance : float
-    The same for those that came to it in one scan and differ only in what came before; `merge_distance` or more.
+    The same for hypotheses that switched to it in one scan and differ only before that; at least `merge_distance`.
 switch_time_spread : float
-    Uncertainty of when in the scan a switch came: this part, 0 to 1, of the variance of a time uniform in it.
+    Uncertainty of the switch time within a scan: this share, 0 to 1, of the variance of a uniform time.
 negligible_probability : float
-    Hypotheses that have less are dropped.
+    Less probable hypotheses are dropped.
 
 Raises
 ------
@@ -225,15 +224,15 @@ G. A. Ackerson, K. S. Fu, IEEE Trans. Automatic Control 15, 1970; J. K. Tugnait,
             },
             py::arg("filters"), py::arg("chain"), py::arg("initial_mode_probability") = py::none(),
             py::kw_only(), of_the_tree...,
-            R"(A tree whose modes differ in more than their turn rate: in their noise, too.
+            R"(A tree whose modes differ in turn rate and noise.
 
 Parameters
 ----------
 filters : sequence of 1 to 16 filters
-    One for each mode, of one kind (Kalman, Ekf, Ukf or SquareRootUkf), all over CoordinatedTurn or all over
-    CoordinatedTurnRate. Of these, a straight is one about 0 whose `prior_turn_rate_std_rad_s` is next to none and whose
-    `turn_rate_psd_rad2s3` is 0; a hypothesis takes the rate of a mode up when it comes into it, unless the one that it leaves
-    had the same prior.
+    One per mode, of one kind (Kalman, Ekf, Ukf or SquareRootUkf), all over CoordinatedTurn or all over
+    CoordinatedTurnRate. In the latter case a straight has a prior rate of 0, `prior_turn_rate_std_rad_s` of nearly zero and
+    `turn_rate_psd_rad2s3` of 0; a hypothesis adopts the rate of a mode when it enters it, unless the previous mode had the
+    same prior.
 chain : ModeChain
     Of as many modes.
 initial_mode_probability : (K,) array, optional
@@ -244,9 +243,9 @@ max_hypotheses, max_branches, min_segment_s, merge_distance, sibling_distance, s
 Raises
 ------
 TypeError
-    When `filters` is no sequence, or one of them is no filter.
+    When `filters` is not a sequence of filters.
 ValueError
-    When the filters are not alike, or a parameter makes no sense.)");
+    When the filters are of different kinds, or a parameter is invalid.)");
       },
       tree_arguments);
   history.def_static(
@@ -266,9 +265,9 @@ ValueError
       py::arg("order"), py::arg("filter"), py::arg("grid_rad_s") = py::none(), py::kw_only(),
       py::arg("stay_probability") = 0.9, py::arg("chain") = py::none(),
       py::arg("initial_mode_probability") = py::none(),
-      R"(The generalised pseudo-Bayes estimator of an order: GPB1, GPB2, ...
-
-Histories with the same last ``order - 1`` turn rates join in every scan.
+      R"(The generalized pseudo-Bayes estimator of an order: GPB1, GPB2, ...
+      
+      Histories with the same last ``order - 1`` turn rates merge in every scan.
 
 Parameters
 ----------
@@ -295,9 +294,9 @@ Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Naviga
         return std::visit([](const auto& history) { return to_array(turn_rates(history.bank())); },
                           one.get().variant());
       },
-      "(K,) turn rates of the modes, positive to starboard. Those learnt are in the state.");
+      "(K,) turn rates of the modes, positive to starboard. Learnt rates are in the state.");
   history.def_property_readonly("hypothesis_count", of_kind(&AnyModeHistory::hypotheses),
-                                "How many there are at present.");
+                                "Current number of hypotheses.");
 }
 
 }  // namespace wakeline::python

@@ -8,8 +8,8 @@
 
 #include "face.hpp"
 #include "multimodel.hpp"
-#include "support/types.hpp"
 #include "support/option.hpp"
+#include "support/types.hpp"
 #include "turn_grid.hpp"
 
 namespace wakeline::python {
@@ -126,13 +126,13 @@ PyImm make_imm(const std::vector<AnyFilter>& filters, const Chain& chain,
 void define_adaptive_grid(py::module_& m) {
   const AdaptiveGrid grid;
   EstimatorClass<AnyAdaptiveGridImm> adaptive(m, "AdaptiveGridImm",
-                                              R"(Three turn models whose rates move with the target.
+                                              R"(Three turn models with adaptive turn rates.
 
-The turn rates move before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
+The turn rates move before each prediction that follows an update, by its mode probabilities. Same interface as `Imm`.
 
-The printed rule is that of centre_threshold 0.3, centre_gain 1, kept_spacing_rad_s 0 and least_move_rad_s 0. Its grid collapses to half of
-min_spacing_rad_s to each side, where the rates may differ too little to be told apart, and nothing opens it again. The
-defaults keep it open and move its centre with patience.
+The printed rule has centre_threshold 0.3, centre_gain 1, kept_spacing_rad_s 0 and least_move_rad_s 0. Its grid collapses to half of
+min_spacing_rad_s on each side, where the rates may differ too little to be distinguished, and nothing opens it again. The
+defaults keep it open and move its center slowly.
 
 Parameters
 ----------
@@ -213,8 +213,8 @@ void define_switching_grid(py::module_& m) {
   const SwitchingGrid grid;
   EstimatorClass<AnySwitchingGridImm> switching(
       m, "SwitchingGridImm", R"(Three turn models in a window on a fixed grid of turn rates.
-
-The window moves before each prediction that follows an update, with its mode probabilities. Has the face of `Imm`.
+      
+      The window moves before each prediction that follows an update, by its mode probabilities. Same interface as `Imm`.
 
 Parameters
 ----------
@@ -223,15 +223,15 @@ filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
 grid_rad_s : (3 to 16,) array, optional
     Turn rates, rising; 2.5 deg/s apart up to 5 deg/s to each side when left out.
 threshold : float
-    A model more probable than this decides. In the paper 0.7, with which the window often comes too late.
+    A model with a larger probability moves the window. 0.7 in the paper, with which it is often too late.
 rule : 'symmetric' or 'literal'
     Left if the left model is above the threshold, right if the right one is, else stay; or as printed: left if the left
-    one is, stay if the centre is, else right.
+    one is, stay if the center is, else right.
 carry : 'slot' or 'identity'
-    Whether each slot keeps its estimate and probability, or each model that stays does and the entering one begins with
+    Whether each slot keeps its estimate and probability, or each remaining model does and the entering one starts with
     the combined estimate and the probability of the leaving one. Not printed.
 initial_centre : int, optional
-    Index of the window's middle at a start; the straightest rate but the ends when left out. Not printed.
+    Index of the window's center at a start; default the straightest rate except the ends. Not printed.
 stay_probability : float
     Of the models' chain: to stay, the rest to each other model alike.
 chain : ModeChain, optional
@@ -267,7 +267,7 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
       py::arg("stay_probability") = 0.9, py::arg("chain") = py::none(),
       py::arg("initial_mode_probability") = py::none());
   switching.def_property_readonly("centre", of_kind(&AnySwitchingGridImm::centre),
-                                  "Index of the window's middle in the grid.");
+                                  "Index of the window's center in the grid.");
   define_copies(switching);
   define_filter_estimate(switching);
   define_turn_rates(switching);
@@ -278,11 +278,11 @@ void define_likely_model_set(py::module_& m) {
   const LikelyModelSet set;
   EstimatorClass<AnyLikelyModelSetImm> likely(
       m, "LikelyModelSetImm",
-      R"(Turn models that join and leave by their probability.
+      R"(Turn models that become active and inactive by their probability.
 
-All are active at a start. Before each prediction that follows an update the unlikely ones go to rest and the neighbours
-of the likely ones join; the most probable one always has its neighbours with it. Has the face of `Imm`; a model at rest
-has probability 0 and turn rate NaN, and its `filter_estimate` is the belief that it went to rest with.
+All are active at a start. Before each prediction that follows an update the unlikely ones become inactive and the neighbors
+of the likely ones active; the most probable one always has active neighbors. Same interface as `Imm`; an inactive model
+has probability 0 and turn rate NaN, and its `filter_estimate` is its last belief.
 
 Parameters
 ----------
@@ -291,13 +291,13 @@ filter : Kalman, Ekf, Ukf or SquareRootUkf over CoordinatedTurn
 grid_rad_s : (2 to 16,) array, optional
     Turn rates, rising; 2 deg/s apart up to 4 deg/s to each side when left out.
 unlikely_threshold : float
-    A model less probable than this leaves.
+    A model less probable than this becomes inactive.
 likely_threshold : float
-    One at least as probable as this has its neighbours join it.
+    The neighbors of a model at least as probable as this become active.
 stay_probability : float
     Of the models' chain: to stay, the rest to each other active model alike.
 chain : ModeChain, optional
-    Another chain of as many modes, instead of `stay_probability`; what leads to a model at rest goes to the active ones.
+    Another chain of as many modes, instead of `stay_probability`; transitions to inactive models go to the active ones.
 initial_mode_probability : (K,) array, optional
     What a start begins with; 0.9 for the straightest when left out.
 
@@ -344,13 +344,13 @@ Parameters
 matrix : (K, K) array
     Rows sum to 1.
 period_s : float, optional
-    The time the matrix stands for; the chain then depends on the time step. Left out, the matrix is applied once per
+    The time step of the matrix; the chain is then in continuous time. Default: the matrix is applied once per
     prediction.
 
 Raises
 ------
 ValueError
-    When a row is no distribution, or no continuous-time chain has this matrix over the period.)");
+    When a row is not a distribution, or no continuous-time chain has this matrix over the period.)");
   define_copies(chain);
   chain.def(py::init(&make_chain), py::arg("matrix"), py::arg("period_s") = py::none())
       .def_static(
@@ -363,18 +363,20 @@ ValueError
             return Chain::from_sojourn_s(ModeVector<double, kRuntimeModes>(times));
           },
           py::arg("sojourn_s"),
-          "The chain that stays in mode k for sojourn_s[k] seconds on average and leaves to each "
-          "other mode alike.")
-      .def_static("from_generator", &chain_of_generator, py::arg("generator_per_s"),
-                  "The chain in continuous time that goes from mode i to mode j "
-                  "generator_per_s[i, j] times a second; rows sum to 0.")
+          "The chain with a mean sojourn of sojourn_s[k] seconds in mode k and equal transitions "
+          "to "
+          "the other modes.")
+      .def_static(
+          "from_generator", &chain_of_generator, py::arg("generator_per_s"),
+          "The chain in continuous time with the rate generator_per_s[i, j] from mode i to mode j; "
+          "rows sum to 0.")
       .def(
           "transition",
           [](const Chain& chain, double dt_s) {
             require_not_negative("dt_s", dt_s);
             return to_array(chain.transition(dt_s));
           },
-          py::arg("dt_s"), "P(dt), (K, K). Raises ValueError for a step below zero.")
+          py::arg("dt_s"), "P(dt), (K, K). Raises ValueError for a negative step.")
       .def_property_readonly("modes", [](const Chain& chain) { return chain.modes(); })
       .def_property_readonly("continuous", &Chain::continuous)
       .def("_arguments", &chain_arguments);
@@ -407,7 +409,7 @@ initial_mode_probability : (K,) array, optional
   define_filter_estimate(imm);
   define_imm_smoother(imm);
   imm.def("turn_rates_rad_s", &known_turn_rates,
-          "(K,) turn rates of the models, positive to starboard; None where one is not known.");
+          "(K,) turn rates of the models, positive to starboard; None if one is unknown.");
   imm.def("_arguments", &imm_arguments);
 
   define_adaptive_grid(m);

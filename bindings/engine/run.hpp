@@ -110,12 +110,12 @@ void define_run(py::class_<Estimator, Options...>& face, const char* name, const
 /// Adds `RunResult`.
 void define_run_result(py::module_& m);
 
-const char* const kRunDoc = R"(Runs whole recordings.
+const char* const kRunDoc = R"(Run whole recordings.
 
 Parameters
 ----------
 z : (T, M) or (R, T, M) array
-    Readings of one run or of R independent ones; a row of NaN is a missed scan.
+    Readings of one run or of R independent runs; a row of NaN is a missed scan.
 dt_s : float or (T,) array
     Time before each reading, s; the first counts from the start.
 sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
@@ -128,14 +128,14 @@ own_velocity_mps : (T, 2) array, optional
 acceleration_mps2 : (T, 2) array, optional
     Known acceleration, north and east, in the step before each reading.
 gate : RadiusGate, optional
-    A reading farther from the predicted position is missed.
+    A reading farther from the predicted position counts as missed.
 
 Returns
 -------
 RunResult
     mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
-    status (..., T); mode_probability (..., T, K) of several models and turn_rate_rad_s (..., T, K)
-    of models that change theirs, else None. lanes: how many filters were stepped side by side in
+    status (..., T); mode_probability (..., T, K) of multiple-model estimators and turn_rate_rad_s
+    (..., T, K) of adaptive turn rates, else None. lanes: how many filters were stepped side by side in
     one register: recordings of a filter or an Imm, hypotheses of a ModeHistory. It is 1 for a
     single recording, a sensor of range rates and every other estimator.
 
@@ -144,7 +144,7 @@ Raises
 ValueError
     When a shape does not fit, or a sensor of range rates moves without `own_velocity_mps`.
 FilterError
-    When an estimator cannot start. A step that fails later is marked in `status`: a reading that
-    cannot be taken leaves the prediction, a `dt_s` that cannot leaves all as it was.)";
+    When an estimator cannot start. A later step that fails is reported in `status`: an invalid
+    reading leaves the prediction, an invalid `dt_s` leaves the belief unchanged.)";
 
 }  // namespace wakeline::python

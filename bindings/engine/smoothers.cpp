@@ -4,8 +4,8 @@
 #include <tuple>
 #include <variant>
 
-#include "support/types.hpp"
 #include "support/each.hpp"
+#include "support/types.hpp"
 #include "wakeline/filter/adaptive_alpha_beta.hpp"
 #include "wakeline/filter/alpha_beta_smoother.hpp"
 #include "wakeline/filter/exponential_smoother.hpp"
@@ -102,22 +102,22 @@ std::tuple<Array, Array, Array> run_all(const E& either, const DoubleArray& dt_s
   return {value, rate, forecast};
 }
 
-constexpr const char* kRun = R"(Smooths series of readings, each from a fresh start.
+constexpr const char* kRun = R"(Smooth series of readings, each from a fresh start.
 
 Parameters
 ----------
 dt_s : float or (T,) array
-    Steps to the readings; the first one means nothing.
+    Steps to the readings; the first one is ignored.
 reading : (..., T) array
-    NaN where one is missing: time goes on.
+    NaN where missing: time passes.
 ahead_s : float
-    How far to foretell.
+    Prediction horizon.
 
 Returns
 -------
 (value, rate, forecast)
-    Each (..., T): after each reading, and `ahead_s` later; where one is missing, foretold to its
-    time. NaN before the first reading.)";
+    Each (..., T): after each reading, and `ahead_s` later; where a reading is missing, predicted to
+    its time. NaN before the first reading.)";
 
 /// What all smoothers offer.
 template <class E>
@@ -148,7 +148,7 @@ void define_smoother(py::class_<E>& smoother) {
             e.take([&](auto& s) { return s.update(dt_s, reading); });
           },
           py::arg("dt_s"), py::arg("reading"),
-          "Takes a reading, `dt_s` after the one before; the step of the first means nothing.")
+          "Process a reading, `dt_s` after the previous one; the step of the first is ignored.")
       .def(
           "run",
           [](const E& e, const DoubleArray& dt_s, const DoubleArray& reading, double ahead_s) {
@@ -163,7 +163,7 @@ void define_alpha(py::class_<E>& smoother) {
   smoother.def_property_readonly(
       "alpha",
       [](const E& e) { return std::visit([](const auto& s) { return s.alpha(); }, e.smoother); },
-      "the gain last used");
+      "the last gain");
 }
 
 template <class E>
@@ -172,14 +172,13 @@ void define_beta(py::class_<E>& smoother) {
   smoother.def_property_readonly(
       "beta",
       [](const E& e) { return std::visit([](const auto& s) { return s.beta(); }, e.smoother); },
-      "the gain of the rate last used");
+      "the last gain of the rate");
 }
 
 void define_exponential(py::module_& m) {
   using Plain = Either<ExponentialSmoother<Linear>, ExponentialSmoother<Wrapped>>;
-  py::class_<Plain> plain(
-      m, "ExponentialSmoother",
-      R"(Exponential smoothing: x^ += alpha (x - x^), whatever the time step; (21).
+  py::class_<Plain> plain(m, "ExponentialSmoother",
+                          R"(Exponential smoothing: x^ += alpha (x - x^), for any time step; (21).
 
 Its forecast is its value.
 
@@ -200,7 +199,7 @@ wrapped : bool
       Either<AdaptiveExponentialSmoother<Linear>, AdaptiveExponentialSmoother<Wrapped>>;
   py::class_<Adaptive> adaptive(
       m, "AdaptiveExponentialSmoother",
-      R"(Exponential smoothing whose alpha is the part of a jump that the line through the last five readings follows; (23).
+      R"(Exponential smoothing with alpha from the response of the line through the last five readings; (23).
 
 Parameters
 ----------
@@ -217,15 +216,14 @@ void define_three_point(py::module_& m) {
   const ThreePointSettings defaults;
   py::class_<Points> points(
       m, "ThreePointSmoother",
-      R"(Each reading smoothed by its neighbours, at uneven steps; (22), (24), (25).
+      R"(Each reading smoothed with its neighbors, at uneven steps; (22), (24), (25).
 
-The value and the rate are those at the reading before the newest. A reading of the time of the one before joins it: both become
-their mean.
+The value and the rate are those at the reading before the newest. Readings of one time are averaged.
 
 Parameters
 ----------
 weight_before_s, weight_after_s : float
-    p: at this step a neighbour counts as much as the reading itself.
+    p: at this step a neighbor has the same weight as the reading itself.
 adaptive : bool
     Weights by least squares over five readings instead; (24).
 parabola : bool
@@ -255,7 +253,7 @@ ValueError
       [](const Points& e) {
         return std::visit([](const auto& s) { return s.delay_s(); }, e.smoother);
       },
-      "from the time of the value to the newest reading");
+      "time between the value and the newest reading");
 
   const auto three = [](double before, double at, double after, double before_s, double after_s) {
     require_positive("before_s", before_s);
@@ -284,7 +282,7 @@ before, at, after : array_like
 before_s, after_s : array_like
     The steps between them, positive.
 parabola : bool
-    b + f - c, exact for a parabola, else 2/3 c + (b + f) / 6, of less noise; b, f and c the slopes before, after and over all.)");
+    b + f - c, exact for a parabola, else 2/3 c + (b + f) / 6, with less noise; b, f and c are the slopes before, after and overall.)");
 }
 
 template <class R>
@@ -333,7 +331,7 @@ class ScheduledSmoother {
 void define_scheduled(py::module_& m) {
   py::class_<RecentMemory> recent(
       m, "RecentMemory",
-      R"(Gains that draw the least-squares line through all readings with weights 1, 2, 3, ...; (29).
+      R"(Recent memory: the least-squares line through all readings with weights 1, 2, 3, ...; (29).
 
 Parameters
 ----------
@@ -369,7 +367,7 @@ gains : GrowingMemory, RecentMemory, RangeDependent, ConstantGains, BenedictBord
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.
 reading_std : float
-    Error of a reading in its own unit, for a `TrackingIndex`.
+    Standard deviation of a reading, for a `TrackingIndex`.
 
 Raises
 ------
@@ -390,7 +388,7 @@ ValueError
             e.take([&](auto& s) { return s.update(dt_s, reading, range_m); });
           },
           py::arg("dt_s"), py::arg("reading"), py::kw_only(), py::arg("range_m") = 0.0,
-          "Takes a reading, `dt_s` after the one before, of an object at a range.")
+          "Process a reading, `dt_s` after the previous one, of an object at a range.")
       .def(
           "run",
           [](const Filter& e, const DoubleArray& dt_s, const DoubleArray& reading, double ahead_s,
@@ -408,8 +406,8 @@ void define_adaptive(py::module_& m) {
       m, "AdaptiveAlphaBeta",
       R"(The adaptive alpha-beta filter, in two passes over the last five readings; (33).
 
-The first pass has the gains of a growing memory, the second those that ``alpha = sum((x^ - x~) e) / sum(e²)`` and
-``beta = sum(dv e/t) / sum((e/t)²)`` make of it. A reading of the time of the one before joins it: both become their mean.
+The first pass has the gains of a growing memory, the second ``alpha = sum((x^ - x~) e) / sum(e²)`` and
+``beta = sum(dv e/t) / sum((e/t)²)`` over the first. Readings of one time are averaged.
 
 Parameters
 ----------
@@ -424,17 +422,17 @@ wrapped : bool
   const WindowBankSettings defaults;
   py::class_<Bank> bank(
       m, "WindowBank",
-      R"(The least-squares lines through the last 2, 3, ... readings, of which that one speaks that has foretold the readings best.
+      R"(The least-squares lines through the last 2, 3, ... readings; the one with the best recent predictions is used.
 
-Short windows follow a maneuver, long ones rest in between; nothing has to be tuned to the noise or to the maneuvers.
-A reading of the time of the one before joins it, and judges no line: both become their mean.
+Short windows follow a maneuver, long ones reduce noise in between; no tuning is needed. Readings of one time are averaged, without
+an effect on the choice.
 
 Parameters
 ----------
 max_readings : int
-    Of the longest window, 2 to 32.
+    Length of the longest window, 2 to 32.
 memory : float
-    What the energy of a window's innovations keeps of itself at each reading.
+    Factor of the energy of a window's innovations at each reading (fading memory).
 wrapped : bool
     Readings are angles, radians: values are in -pi .. pi.
 
@@ -454,7 +452,7 @@ ValueError
       [](const Bank& e) {
         return std::visit([](const auto& s) { return s.window(); }, e.smoother);
       },
-      "readings of the window that speaks");
+      "readings in the selected window");
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ class PyNavigator {
       if (rate_of_turn && !kHas<decltype(navigator), RateOfTurn>)
         throw no_such_state(navigator, "rate_of_turn", "a gyro bias (states 7 or 8)");
       if (rate_of_turn && !imu)
-        throw py::value_error("rate_of_turn stands beside the gyro of imu, which is not given");
+        throw py::value_error("rate_of_turn must be given together with imu, got imu=None");
       UsvRun run = unread({{"gnss", gnss},
                            {"velocity", velocity},
                            {"compass", compass},
@@ -363,11 +363,10 @@ PyNavigator make(const Model& model, const std::string& filter, const UsvOutlier
 
 void define_usv_navigator(py::module_& m) {
   using Arrays = std::optional<DoubleArray>;
-  py::class_<PyReading, PyStep>(
-      m, "UsvReading", "What a reading has done to the navigator; true where it was taken.")
-      .def_readonly("rejected", &PyReading::rejected, "outside the gate: the belief is as it was")
+  py::class_<PyReading, PyStep>(m, "UsvReading", "Outcome of a reading; true if it was accepted.")
+      .def_readonly("rejected", &PyReading::rejected, "outside the gate: the belief is unchanged")
       .def_readonly("widened", &PyReading::widened,
-                    "outside the gate, but believed after too many rejections in a row")
+                    "outside the gate, but accepted after too many consecutive rejections")
       .def(py::pickle(
           [](const PyReading& r) { return py::make_tuple(fields_of(r), r.rejected, r.widened); },
           [](const py::tuple& fields) {
@@ -375,56 +374,54 @@ void define_usv_navigator(py::module_& m) {
                              fields[2].cast<bool>()};
           }));
 
-  py::class_<UsvRun> run(m, "UsvRun", "What `UsvNavigator.run` returns.");
+  py::class_<UsvRun> run(m, "UsvRun", "Result of `UsvNavigator.run`.");
   define_pickle(run, &UsvRun::mean, &UsvRun::covariance, &UsvRun::nis, &UsvRun::rejected);
   run.def_readonly("mean", &UsvRun::mean, "(T, N)")
       .def_readonly("covariance", &UsvRun::covariance, "(T, N, N)")
       .def_readonly("nis", &UsvRun::nis,
-                    "by sensor: (T,) normalised innovations squared, NaN without a reading")
+                    "by sensor: (T,) normalized innovations squared, NaN without a reading")
       .def_readonly("rejected", &UsvRun::rejected, "by sensor: (T,) True for a rejected outlier");
 
   py::class_<PyNavigator> navigator(
       m, "UsvNavigator",
       R"(Own ship's position, motion and heading by IMU, GNSS, compass and log.
 
-States are [north, east, v_north, v_east, heading] for 5, the same with the biases [forward,
-starboard, gyro] behind for 8, and [north, east, heading, speed through water, gyro bias, current
-north, current east] for 7, which does not use the accelerometer. Metres, seconds, radians; headings
-in [-pi, pi].
+States are [north, east, v_north, v_east, heading] for 5, the same followed by the biases [forward,
+starboard, gyro] for 8, and [north, east, heading, speed through water, gyro bias, current north,
+current east] for 7, which does not use the accelerometers. Metres, seconds, radians; headings in
+[-pi, pi].
 
-A reading whose NIS is outside the gate is rejected. When more than `rejections` of one sensor in a
-row were, it is the belief that is widened, and the reading is taken, unless it is more than a
-million standard deviations off, or positions that are believed meanwhile refute it. Then velocities
-stay rejected, and compass and log may move the current alone, but not beyond what `current_std_mps`
-lets expect, unless it was stronger before. Headings that are believed refute rates of turn.
+A reading whose NIS is outside the gate is rejected. After more than `rejections` consecutive
+rejections of one sensor the covariance is inflated and the reading accepted, unless it is more than
+a million standard deviations off, or positions accepted meanwhile refute it. Then velocities remain
+rejected, and compass and log may move only the current, within the gate of `current_std_mps` unless
+it was stronger before. Accepted headings refute rates of turn.
 
-Every position given is one to it: it does not find that a receiver froze. `recording.read_nmea`
-marks such fixes in a log.
+It does not detect a frozen receiver; `recording.read_nmea` marks such fixes in a log.
 
 Parameters
 ----------
 states : {5, 7, 8}
 filter : {'ekf', 'ukf', 'augmented_ukf'}
-    The extended filter and the unscented one, whose noise of the IMU is added to the covariance, or
-    the unscented one that moves it through the motion as sigma points of its own. All agree where
-    turns between readings are small.
+    The extended and the unscented filter, which add the noise of the IMU to the covariance, or the
+    unscented filter with sigma points for that noise. All agree if turns between readings are small.
 acceleration_std_mps2, yaw_rate_std_rad_s : float
-    Noise of a reading of the IMU, held over a step.
+    Standard deviation of a reading of the IMU, constant over a step.
 unmeasured_acceleration_std_mps2, unmeasured_yaw_rate_std_rad_s : float
-    What the ship may do in a step without a reading of the IMU.
+    Process noise of a step without a reading of the IMU.
 acceleration_bias_std_mps2, gyro_bias_std_rad_s, current_std_mps : float
-    Of biases and current (per axis) at the start, which are zero with these deviations.
+    Initial standard deviations of biases and current (per axis), whose initial means are zero.
 speed_walk_mps, current_walk_mps : float
-    What speed through water and current gain in 1 s, of 7 states.
+    Random walks of speed through water and current over 1 s, for 7 states.
 turned_at : float
-    Where in a step the heading is taken that turns its acceleration, of 5 and 8 states: 0.5 is its
-    middle, 0 its start, as in the paper.
+    Point in a step whose heading rotates the acceleration, for 5 and 8 states: 0.5 is its middle, 0
+    its start, as in the paper.
 gate_probability : float
-    That a good reading is inside the gate.
+    Probability that a good reading is inside the gate.
 rejections : int
-    In a row, before a reading is believed nevertheless; of 0 all are, and nothing is refuted.
+    Consecutive rejections before a reading is accepted; 0: all are accepted, nothing is refuted.
 alpha, beta, kappa : float
-    Of the unscented transforms.
+    Parameters of the unscented transform.
 
 Raises
 ------
@@ -501,9 +498,9 @@ ValueError
           py::arg("position_std_m") = std::vector<double>{8.0, 7.0},
           py::arg("velocity_std_mps") = UsvStart{}.velocity_std_mps,
           py::arg("heading_std_rad") = UsvStart{}.heading_std_rad,
-          "Begins at [north, east] m with a velocity over ground [north, east] m/s and a heading.")
+          "Start at [north, east] m with a velocity over ground [north, east] m/s and a heading.")
       .def("predict", &PyNavigator::predict, py::arg("dt_s"), py::arg("imu") = py::none(),
-           "A step under a reading of the IMU [forward m/s², starboard m/s², yaw rate rad/s], or "
+           "Predict with a reading of the IMU [forward m/s², starboard m/s², yaw rate rad/s], or "
            "without one.")
       .def("update_position", &PyNavigator::update_position, py::arg("position_m"),
            py::arg("gnss_std_m") = std::vector<double>{8.0, 7.0}, "A GNSS position [north, east].")
@@ -515,7 +512,7 @@ ValueError
            py::arg("speed_std_mps") = 0.1, "A speed through water by the log; 7 states.")
       .def("update_rate_of_turn", &PyNavigator::update_rate_of_turn, py::arg("rate_rad_s"),
            py::arg("gyro_rad_s"), py::arg("rate_std_rad_s") = deg(0.1),
-           "A rate of turn beside that of the IMU's gyro at the time; 7 or 8 states.")
+           "A rate of turn at the time of a reading of the IMU's gyro; 7 or 8 states.")
       .def_property_readonly("estimate", &PyNavigator::estimate, "The belief, a Gaussian.")
       .def_property_readonly("started", &PyNavigator::started)
       .def(
@@ -540,7 +537,7 @@ ValueError
           py::arg("compass_std_rad") = deg(1.0), py::arg("velocity_std_mps") = 0.1,
           py::arg("log_std_mps") = 0.1, py::arg("rate_of_turn_std_rad_s") = deg(0.1),
           py::arg("smooth") = false,
-          R"(Navigates along a log, from the belief as it is, which is that of `time_s[0]`.
+          R"(Process a log from the current belief, which is that of `time_s[0]`.
 
 Parameters
 ----------
@@ -551,18 +548,18 @@ imu : (T, 3) array, optional
 gnss, velocity : (T, 2) array, optional
     Position m and velocity over ground m/s, [north, east].
 compass, log, rate_of_turn : (T,) array, optional
-    Heading rad, speed through water m/s (7 states), rate of turn rad/s (7 or 8 states) beside the
-    gyro of `imu`, without whose row it is no reading.
+    Heading rad, speed through water m/s (7 states), rate of turn rad/s (7 or 8 states); the last is
+    ignored in rows without a reading of `imu`.
 imu_std : (T, 2) array, optional
-    Row k is the noise from time k - 1 to time k of [acceleration m/s², yaw rate rad/s], measured or
-    not, in place of the navigator's.
+    Row k is the standard deviation from time k - 1 to time k of [acceleration m/s², yaw rate rad/s],
+    measured or not, instead of the navigator's.
 gnss_std_m, compass_std_rad, velocity_std_mps, log_std_mps, rate_of_turn_std_rad_s : float
     Standard deviations; that of gnss is [north, east].
 smooth : bool
-    Whether the beliefs returned know the readings after them, too, up to one for which the belief
-    was widened: nothing is known across it.
+    Whether the returned beliefs also use later readings, up to one at which the covariance was
+    inflated.
 
-In every array a row that is not finite is no reading; without one of the IMU, the ship coasts.
+In every array a row that is not finite is a missing reading.
 
 Returns
 -------
@@ -571,10 +568,10 @@ UsvRun
 Raises
 ------
 ValueError
-    When shapes do not fit, times decrease, a sensor needs a state that is not there, or
-    `rate_of_turn` comes without `imu`.
+    When shapes do not fit, times decrease, a sensor needs a missing state, or `rate_of_turn` is
+    given without `imu`.
 FilterError
-    When the navigator was not started, or a row makes a step fail; the navigator is as it was then.)");
+    When the navigator was not started, or a step fails; the navigator is then unchanged.)");
 }
 
 }  // namespace wakeline::python

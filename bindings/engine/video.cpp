@@ -21,7 +21,7 @@ const std::map<std::string, CfarKind> kKinds{{"cell_averaging", CfarKind::kCellA
 const std::map<std::string, Noise> kNoises{{"exponential", Noise::kExponential},
                                            {"rayleigh", Noise::kRayleigh}};
 
-/// The meaning of a word; throws ValueError that tells the words there are.
+/// The meaning of a word; throws ValueError with the known words.
 template <class Meaning>
 Meaning meaning(const char* name, const std::map<std::string, Meaning>& words,
                 const std::string& word) {
@@ -366,28 +366,28 @@ void define_cfar(py::module_& m) {
         py::arg("threshold_factor") = d.threshold_factor,
         py::arg("threshold_offset") = d.threshold_offset, py::arg("rank") = d.rank,
         py::arg("least_amplitude") = d.least_amplitude,
-        R"(Which cells stand out from those before and behind them: CFAR along range.
+        R"(Detect cells that exceed their neighbors in range at a constant false alarm rate (CFAR).
 
 Parameters
 ----------
 amplitude : (N, C) array of uint8 or uint16
-    Sweeps, of each its range cells.
+    Range cells of each sweep.
 kind : str
     cell_averaging compares a cell with the mean of its training cells, ordered_statistic with the
     k-th smallest.
 train_cells : int
-    On each side, 1 to 128; at the ends of a sweep those that exist.
+    Training cells on each side, 1 to 128; at the ends of a sweep those that exist.
 guard_cells : int
-    On each side, next to the cell, that are left out.
+    Guard cells on each side, next to the cell, which are excluded.
 threshold_factor : float
-    Times the mean or the k-th; see `threshold_factor`.
+    Multiplies the mean or the k-th smallest; see `threshold_factor`.
 threshold_offset : int
-    On top of that. Video of a logarithmic receiver wants a factor of 1 and an offset; see
+    Added to the product. Video of a logarithmic receiver needs a factor of 1 and an offset; see
     `threshold_offset_db`.
 rank : float
-    k by the number of training cells; ordered_statistic only.
+    k / number of training cells; ordered_statistic only.
 least_amplitude : int
-    Less is never detected.
+    Smaller amplitudes are never detected.
 
 Returns
 -------
@@ -397,9 +397,9 @@ Returns
         py::arg("guard_cells") = d.guard_cells, py::arg("threshold_factor") = d.threshold_factor,
         py::arg("threshold_offset") = d.threshold_offset, py::arg("rank") = d.rank,
         py::arg("least_amplitude") = d.least_amplitude,
-        R"(The amplitudes that cells have to exceed: (N, C) of the amplitudes' type.
+        R"(Thresholds of the cells: (N, C) of the amplitudes' type.
 
-Parameters as of `cfar`.)");
+Parameters as for `cfar`.)");
   m.def(
       "threshold_factor",
       [](double probability, const std::string& noise, const std::string& kind, int train_cells,
@@ -410,7 +410,7 @@ Parameters as of `cfar`.)");
       py::arg("probability"), py::kw_only(), py::arg("noise") = "rayleigh",
       py::arg("kind") = "cell_averaging", py::arg("train_cells") = d.train_cells,
       py::arg("rank") = d.rank,
-      R"(The threshold factor at which noise is detected with a probability.
+      R"(The threshold factor for a given probability of false alarm.
 
 With N = 2 `train_cells`, factor f and p the probability::
 
@@ -419,18 +419,18 @@ With N = 2 `train_cells`, factor f and p the probability::
     ordered_statistic  exponential   p = prod_{i<k} (N - i) / (N - i + f),   k = ceil(rank N)
                        rayleigh      the same with f^2
 
-The second takes a mean of Rayleigh amplitudes for simpler than it is: with 8 to 16 training cells noise is detected
-10 to 30 % more often than a probability of 1e-4 to 1e-6 says. The others are exact.
+The second approximates the distribution of a mean of Rayleigh amplitudes: with 8 to 16 training cells and a
+probability of 1e-4 to 1e-6 false alarms are 10 to 30 % more frequent. The others are exact.
 
 Parameters
 ----------
 probability : float
-    Of a cell of independent noise with all its training cells.
+    For a cell of independent noise with all training cells.
 noise : str
-    How its amplitudes are distributed: exponential behind a square-law detector, rayleigh behind
-    a linear one.
+    Distribution of the amplitudes: exponential after a square-law detector, rayleigh after a
+    linear one.
 kind, train_cells, rank
-    As of `cfar`.)");
+    As for `cfar`.)");
   m.def(
       "false_alarm_probability",
       [](double factor, const std::string& noise, const std::string& kind, int train_cells,
@@ -440,31 +440,31 @@ kind, train_cells, rank
       },
       py::arg("threshold_factor"), py::kw_only(), py::arg("noise") = "rayleigh",
       py::arg("kind") = "cell_averaging", py::arg("train_cells") = d.train_cells,
-      py::arg("rank") = d.rank,
-      "The other way round: the probability at which noise is detected; see `threshold_factor`.");
-  m.def("threshold_offset_db", &threshold_offset_db, py::arg("probability"),
-        R"(How far noise behind a logarithmic receiver exceeds its mean level with a probability.
+      py::arg("rank") = d.rank, "Inverse of `threshold_factor`: the probability of false alarm.");
+  m.def(
+      "threshold_offset_db", &threshold_offset_db, py::arg("probability"),
+      R"(The threshold above the mean level for a logarithmic receiver and a probability of false alarm.
 
-``10 lg(-ln p) + 2.507``, in decibels; times the receiver's steps a decibel it is the
+``10 lg(-ln p) + 2.507`` decibels; multiplied by the receiver's steps per decibel it is the
 `threshold_offset`, with a `threshold_factor` of 1. Exact for many training cells.)");
 }
 
 void define_masks(py::module_& m) {
-  py::class_<LandMask>(m, "LandMask", R"(Areas about the antenna in which nothing is detected.
+  py::class_<LandMask>(m, "LandMask", R"(Areas around the antenna without detections.
 
-Of each direction it knows the ranges that are excluded; a cell that lies in an area by a part is
-excluded.
+It holds the excluded ranges of each direction; a cell that is partly inside an area is excluded.
 
 Parameters
 ----------
 azimuths : int
-    Directions in a turn.)")
+    Directions per revolution.)")
       .def(py::init<int>(), py::arg("azimuths") = 4096)
       .def_property_readonly("azimuths", &LandMask::azimuths)
-      .def("exclude_sector", &LandMask::exclude_sector, py::arg("from_azimuth_rad"),
-           py::arg("to_azimuth_rad"), py::arg("near_m"), py::arg("far_m"),
-           R"(Excludes ranges in the directions clockwise from one azimuth to another, across north
-too; a whole turn where these are a turn apart.)")
+      .def(
+          "exclude_sector", &LandMask::exclude_sector, py::arg("from_azimuth_rad"),
+          py::arg("to_azimuth_rad"), py::arg("near_m"), py::arg("far_m"),
+          R"(Exclude ranges in the directions clockwise from one azimuth to another, also across north;
+           a full revolution if they differ by 2 pi.)")
       .def(
           "exclude_polygon",
           [](LandMask& mask, const DoubleArray& corners_m) {
@@ -476,30 +476,30 @@ too; a whole turn where these are a turn apart.)")
             mask.exclude_polygon(corners);
           },
           py::arg("corners_m"),
-          R"(Excludes the inside of a polygon.
+          R"(Exclude the inside of a polygon.
 
 Parameters
 ----------
 corners_m : (k, 2) array
-    North and east of the antenna, which may lie inside.)")
+    North and east of the antenna, which may be inside.)")
       .def("excludes", &LandMask::excludes, py::arg("azimuth_rad"), py::arg("range_m"),
-           "Whether a place is excluded.");
+           "Whether a position is excluded.");
   py::class_<StaticClutterMap> clutter(m, "StaticClutterMap",
-                                       R"(What always stands there: the mean amplitude of each cell.
+                                       R"(Static clutter: the mean amplitude of each cell.
 
 A cell must exceed `factor` times its mean over the last `time_constant_s`. Land and buoys vanish
-after ``time_constant_s * log(factor / (factor - 1))``, and so does a ship that stays as long.
+after ``time_constant_s * log(factor / (factor - 1))``, and so does a stationary ship.
 
 Parameters
 ----------
 azimuths : int
-    Rows in a turn; of several sweeps in a row the strongest amplitudes are learned.
+    Rows per revolution; of several sweeps in a row the largest amplitudes are learned.
 cells : int
-    Cells of range; cells of sweeps beyond are left alone.
+    Range cells; cells beyond are ignored.
 time_constant_s : float
-    Well above the time in which the slowest ship of interest moves by her own echo.
+    Well above the time in which the slowest ship of interest moves by the size of its echo.
 factor : float
-    Of the mean amplitude that a cell must exceed.)");
+    A cell must exceed this times its mean amplitude.)");
   define_copies(clutter);
   clutter
       .def("_arguments",
@@ -525,15 +525,16 @@ factor : float
 
 void define_plots(py::module_& m) {
   py::class_<PyVideoPlots>(m, "VideoPlots",
-                           "Plots of radar video as arrays, in the order in which "
-                           "their echoes were over.")
+                           "Plots of radar video as arrays, in order of the ends of "
+                           "their echoes.")
       .def_readonly("time_s", &PyVideoPlots::time_s)
       .def_readonly("range_m", &PyVideoPlots::range_m, "(n,) amplitude-weighted means.")
       .def_readonly("bearing_rad", &PyVideoPlots::bearing_rad,
                     "(n,) amplitude-weighted means, clockwise from north, 0 to 2 pi.")
-      .def_readonly("covariance", &PyVideoPlots::covariance,
-                    "(n, 2, 2) of range_m and bearing_rad: weighted spread of the echo by its "
-                    "effective number of cells, and a twelfth of a cell's and a sweep's square.")
+      .def_readonly(
+          "covariance", &PyVideoPlots::covariance,
+          "(n, 2, 2) of range_m and bearing_rad: weighted spread of the echo divided by its "
+          "effective number of cells, plus a twelfth of a cell's and a sweep's square.")
       .def_readonly("range_extent_m", &PyVideoPlots::range_extent_m)
       .def_readonly("bearing_extent_rad", &PyVideoPlots::bearing_extent_rad)
       .def_readonly("peak_amplitude", &PyVideoPlots::peak_amplitude)
@@ -543,52 +544,52 @@ void define_plots(py::module_& m) {
       .def_readonly("touches_last_cell", &PyVideoPlots::touches_last_cell)
       .def_readonly("cut", &PyVideoPlots::cut,
                     "(n,) true where the plot may be a part of an echo: closed at `max_sweeps`, or "
-                    "beside sweeps that are missing.")
+                    "next to missing sweeps.")
       .def("__len__", [](const PyVideoPlots& plots) { return plots.range_m.shape(0); });
   py::class_<ExtractionCounts>(m, "ExtractionCounts",
-                               "What has happened to the sweeps and echoes of an extractor.")
+                               "Counts of the sweeps and echoes of an extractor.")
       .def_readonly("sweeps", &ExtractionCounts::sweeps, "Used.")
-      .def_readonly("gaps", &ExtractionCounts::gaps, "Times that sweeps were missing.")
-      .def_readonly("reversals", &ExtractionCounts::reversals, "Times that the antenna went back.")
+      .def_readonly("gaps", &ExtractionCounts::gaps, "Number of gaps in the sweeps.")
+      .def_readonly("reversals", &ExtractionCounts::reversals,
+                    "Number of steps back of the antenna.")
       .def_readonly("geometry_changes", &ExtractionCounts::geometry_changes,
-                    "Times that start range or cell length changed.")
+                    "Number of changes of start range or cell length.")
       .def_readonly("repeated", &ExtractionCounts::repeated,
-                    "Sweeps refused for they stood where the last one stood.")
-      .def_readonly("too_long", &ExtractionCounts::too_long, "Sweeps refused for their length.")
-      .def_readonly("invalid", &ExtractionCounts::invalid, "Sweeps refused for they made no sense.")
+                    "Sweeps rejected at the azimuth of the last one.")
+      .def_readonly("too_long", &ExtractionCounts::too_long, "Sweeps rejected for their length.")
+      .def_readonly("invalid", &ExtractionCounts::invalid, "Invalid sweeps, rejected.")
       .def_readonly("plots", &ExtractionCounts::plots)
-      .def_readonly("too_small", &ExtractionCounts::too_small, "Echoes that gave no plot.")
-      .def_readonly("too_large", &ExtractionCounts::too_large, "Echoes that gave no plot.")
+      .def_readonly("too_small", &ExtractionCounts::too_small, "Echoes too small for a plot.")
+      .def_readonly("too_large", &ExtractionCounts::too_large, "Echoes too large for a plot.")
       .def_readonly("cut", &ExtractionCounts::cut, "Plots that may be parts of echoes.");
 
   const PlotExtractorSettings d;
   py::class_<AnyPlotExtractor>(m, "PlotExtractor",
-                               R"(Sweeps in, plots out as soon as their echo is over.
+                               R"(Extracts plots from sweeps; a plot is complete when its echo ends.
 
-CFAR along range, then cells that touch are one echo, from sweep to sweep and turn to turn; north
-is a direction as any other. A sweep that is missing closes the echoes it would have touched, as
-does a step back of the antenna and another cell length; a sweep that makes no sense is refused;
-see `counts`. Memory is taken once, whatever the picture.
+CFAR along range; connected cells are one echo, from sweep to sweep and across revolutions. A missing
+sweep closes the echoes it would have touched, and so does a step back of the antenna or a change of
+the cell length; invalid sweeps are rejected; see `counts`. Memory is allocated once.
 
 Parameters
 ----------
 kind, train_cells, guard_cells, threshold_factor, threshold_offset, rank, least_amplitude
     As of `cfar`.
 max_sweep_cells : int
-    Longer sweeps are refused.
+    Longer sweeps are rejected.
 gap_cells, gap_sweeps : int
-    That may be missing within an echo.
+    Gaps allowed within an echo.
 min_cells, max_cells : int
     Smaller and larger echoes give no plot.
 max_range_extent_m, max_bearing_extent_rad : float
     Longer and wider echoes give no plot.
 max_sweeps : int
-    An echo is closed after so many; what follows is another one, and both are marked as `cut`.
+    An echo is closed after this many sweeps; the rest is another echo, and both are marked as `cut`.
 closed_circle : bool
-    Each turn is a picture of its own, whose last sweeps are joined with its first ones. Without,
-    turns follow each other.
+    Each revolution is a separate picture whose last sweeps are connected with its first ones.
+    Otherwise revolutions follow each other.
 land : LandMask, optional
-    Where nothing is detected.
+    Areas without detections.
 clutter : StaticClutterMap, optional
     What always stands there; the extractor learns with a copy.)")
       .def(py::init([](const std::string& kind, int train_cells, int guard_cells, double factor,
@@ -623,34 +624,35 @@ clutter : StaticClutterMap, optional
            py::arg("max_sweeps") = d.max_sweeps, py::arg("closed_circle") = d.closed_circle,
            py::arg("land") = py::none(), py::arg("clutter") = py::none())
       .def("process", &AnyPlotExtractor::process, py::arg("video"),
-           R"(Takes the sweeps of a video; the next one continues where it ends.
+           R"(Process the sweeps of a video, which continue the previous ones.
 
 Returns
 -------
 VideoPlots
-    Of the echoes that were over within.)")
+    Plots of the echoes that ended.)")
       .def("finish", &AnyPlotExtractor::finish,
-           "No sweep will follow: the plots of all open echoes. Then the extractor is ready for "
-           "other sweeps, with the counts and the clutter map that it has.")
+           "Close all open echoes and return their plots. The extractor is then ready for other "
+           "sweeps, with its counts and clutter map.")
       .def("set_land", &AnyPlotExtractor::set_land, py::arg("land"),
-           "Other areas from the next sweep on.")
+           "Replace the areas, from the next sweep on.")
       .def_property_readonly("counts", &AnyPlotExtractor::counts)
       .def_property_readonly("open_echoes", &AnyPlotExtractor::open_echoes,
-                             "Number of echoes that are not over yet.")
+                             "Number of open echoes.")
       .def_property_readonly("clutter", &AnyPlotExtractor::clutter,
                              "A copy of what the extractor has learned of static clutter.");
 }
 
 void define_image(py::module_& m) {
-  py::class_<AnyScanImage>(m, "ScanImage", R"(The picture of the last turn on a regular polar grid.
+  py::class_<AnyScanImage>(m, "ScanImage",
+                           R"(The picture of the last revolution on a regular polar grid.
 
-Sweeps that follow each other and share a row leave the greater amplitude; a row that the beam
-comes back to is written anew.
+Consecutive sweeps in one row leave the larger amplitude; a row to which the beam returns is
+overwritten.
 
 Parameters
 ----------
 sweeps, cells : int
-    Rows in a turn, and range cells of each.
+    Rows per revolution, and range cells of each.
 bits : int
     8 or 16.
 first_azimuth_rad : float
@@ -658,7 +660,7 @@ first_azimuth_rad : float
       .def(py::init<int, int, int, double>(), py::arg("sweeps"), py::arg("cells"), py::kw_only(),
            py::arg("bits") = 8, py::arg("first_azimuth_rad") = 0.0)
       .def("add", &AnyScanImage::add, py::arg("video"),
-           "Takes the sweeps of a video; the number of those that made sense and were taken. "
+           "Add the sweeps of a video; returns the number of valid ones. "
            "Another start range or cell length clears the image first.")
       .def("clear", &AnyScanImage::clear)
       .def_property_readonly("amplitude", &view_of,
@@ -670,7 +672,7 @@ first_azimuth_rad : float
             return image.with_view([](const auto& view) { return view.first_azimuth_rad; });
           })
       .def_property_readonly("azimuth_step_rad", &step_of)
-      .def_property_readonly("azimuth_width_rad", &step_of, "What a row stands for, as of a video.")
+      .def_property_readonly("azimuth_width_rad", &step_of, "Width of a row.")
       .def("__len__",
            [](const AnyScanImage& image) {
              return image.with_view([](const auto& view) { return view.sweeps; });
@@ -691,7 +693,7 @@ first_azimuth_rad : float
               return centres(view.sweeps, [&](int k) { return view.azimuth_rad(k); });
             });
           },
-          "(sweeps,) centres of the rows.")
+          "(sweeps,) centers of the rows.")
       .def_property_readonly(
           "range_m",
           [](const AnyScanImage& image) {
@@ -699,13 +701,13 @@ first_azimuth_rad : float
               return centres(view.cells, [&](int k) { return view.range_m(k); });
             });
           },
-          "(cells,) centres of the cells.");
+          "(cells,) centers of the cells.");
 }
 
 }  // namespace
 
 void define_video(py::module_& parent) {
-  py::module_ m = parent.def_submodule("video", "Radar video to plots.");
+  py::module_ m = parent.def_submodule("video", "Plots from radar video.");
   define_cfar(m);
   define_masks(m);
   define_plots(m);

@@ -212,7 +212,7 @@ azimuth_width_rad, start_range_m, cell_m : float
 Raises
 ------
 ValueError
-    When a sweep cannot be written: too many cells, a length that cannot be told.
+    When a sweep cannot be written: too many cells, or a length that the format cannot represent.
 )doc");
 }
 
@@ -220,11 +220,11 @@ ValueError
 
 void define_video_asterix(py::module_& m) {
   py::class_<PySweeps>(m, "Cat240Sweeps",
-                       R"doc(Sweeps decoded from a piece of a file, a row each.
+                       R"doc(Sweeps decoded from a piece of a file, one per row.
 
-`first` is where the cells of a sweep begin in `octets` (8 bits and fewer, these scaled to 8) or in
-`words` (16 bits). `source` is 256 SAC + SIC, `sequence` -1 and `time_s` NaN where the sender tells
-none. `problems` has the first 100 as (offset, problem, wanted, got).
+`first` is the index of a sweep's first cell in `octets` (8 bits and fewer, scaled to 8) or in `words`
+(16 bits). `source` is 256 SAC + SIC; `sequence` is -1 and `time_s` NaN if missing. `problems` has the
+first 100 as (offset, problem, wanted, got).
 )doc")
       .def_readonly("offset", &PySweeps::offset)
       .def_readonly("source", &PySweeps::source)
@@ -257,22 +257,22 @@ none. `problems` has the first 100 as (offset, problem, wanted, got).
 Parameters
 ----------
 data : bytes
-    What the piece before left over (all but its first `consumed` octets) and what follows.
+    The rest of the previous piece (all but its first `consumed` octets) and what follows.
 last : bool
-    Whether nothing follows.
+    Whether this is the last piece.
 )doc")
       .def_property_readonly(
           "other_blocks", [](const Decoder& self) { return self.reader().other_blocks(); },
           "Blocks of other categories so far.")
       .def_property_readonly(
           "skipped_octets", [](const Decoder& self) { return self.reader().skipped_octets(); },
-          "Octets passed over because of damage so far.");
+          "Octets skipped because of damage so far.");
   py::class_<Encoder> encoder(m, "Cat240Encoder", "Sweeps to ASTERIX category 240.");
   encoder.def(py::init<std::uint8_t, std::uint8_t>(), py::arg("area") = 0, py::arg("system") = 0);
   define_encode<std::uint8_t>(encoder);
   define_encode<std::uint16_t>(encoder);
   encoder.def("encode_summary", &Encoder::encode_summary, py::arg("text"),
-              "The block of a text about the video, at most 255 characters of ASCII.");
+              "The block of a description of the video, at most 255 ASCII characters.");
 }
 
 }  // namespace wakeline::python
