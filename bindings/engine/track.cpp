@@ -281,21 +281,20 @@ void define_track(py::module_& parent) {
             return PyGaussian::from(r.position(range_m, bearing_rad, own));
           },
           py::arg("range_m"), py::arg("bearing_rad"), py::arg_v("own", OwnShip{}, "OwnShip()"),
-          "A plot seen from own ship as a position [north, east] with its covariance.");
+          "A plot from own ship as a position [north, east] with its covariance.");
   define_struct<TrackerConfig>(
       m, "TrackerConfig", "The rules by which tracks live; one set of defaults for all radars.",
       {.writable = true});
   define_struct<VesselModels>(
       m, "VesselModels", "The motion models of a tracker: cruising, steady, restless and turning.",
       {.writable = true})
-      .def_static("ships", &VesselModels::ships,
-                  "Of ships under way, which alter course as ships do.");
+      .def_static("ships", &VesselModels::ships, "Models of merchant ships under way.");
 
   m.def("vessel_imm", &any_vessel_imm, py::arg("radar"),
         py::arg_v("models", VesselModels{}, "VesselModels()"),
-        "The estimator that a tracker uses for this radar unless told otherwise.");
+        "The default estimator of a tracker.");
 
-  py::class_<Event>(m, "Event", "Something that became of a track in a scan.")
+  py::class_<Event>(m, "Event", "A change of a track's status in a scan.")
       .def(py::pickle(
           [](const Event& event) {
             return py::make_tuple(int(event.kind), event.track_id, event.tentative_id,
@@ -313,23 +312,24 @@ void define_track(py::module_& parent) {
           "started, confirmed, coasting or lost")
       .def_readonly("track_id", &Event::track_id)
       .def_readonly("tentative_id", &Event::tentative_id,
-                    "the negative number it had before it was confirmed; 0 for a designated track")
+                    "the negative number before confirmation; 0 for a designated track")
       .def_readonly("time_s", &Event::time_s)
       .def("__repr__", [](const Event& event) {
         return "Event(kind=" + std::string(event_name(event.kind)) +
                ", track_id=" + std::to_string(event.track_id) + ")";
       });
-  py::class_<PyReport> report(m, "ScanReport", "What a scan has brought.");
+  py::class_<PyReport> report(m, "ScanReport", "Result of processing a scan.");
   define_pickle(report, &PyReport::plot_track_id, &PyReport::events, &PyReport::refused_plots);
   report
-      .def_readonly("plot_track_id", &PyReport::plot_track_id,
-                    "(n,) the track each plot most likely belongs to; negative for a tentative "
-                    "one, 0 for none")
+      .def_readonly(
+          "plot_track_id", &PyReport::plot_track_id,
+          "(n,) the track that each plot most likely belongs to; negative for a tentative "
+          "one, 0 for none")
       .def_readonly("events", &PyReport::events)
       .def_readonly(
           "refused_plots", &PyReport::refused_plots,
-          "plots not finite, behind the antenna, of so many turns that the bearing is lost, "
-          "of another time than the scan, or beyond max_plots")
+          "plots that are not finite, have a negative range, a bearing too large to be an angle "
+          "or a time far from the scan's, or exceed max_plots")
       .def("__repr__", [](const PyReport& r) {
         return "<ScanReport: " + many(r.plot_track_id.size(), "plot") + ", " +
                std::to_string(r.refused_plots) + " refused, " +
@@ -347,13 +347,13 @@ void define_track(py::module_& parent) {
       .def_readonly("covariance", &PyTracks::covariance, "(k, 4, 4)")
       .def_readonly("mode_probability", &PyTracks::mode_probability, "(k, K)")
       .def_readonly("turn_rate_rad_s", &PyTracks::turn_rate_rad_s,
-                    "(k, K) of each model, positive to starboard, NaN for one at rest; None where "
+                    "(k, K) of each model, positive to starboard, NaN for an inactive one; None if "
                     "models do not change theirs")
-      .def_readonly("nis", &PyTracks::nis, "(k,) of the likeliest plot; NaN where there was none")
+      .def_readonly("nis", &PyTracks::nis, "(k,) of the likeliest plot; NaN without one")
       .def_readonly("existence", &PyTracks::existence, "(k,)")
       .def_readonly("visibility", &PyTracks::visibility, "(k,)")
       .def_readonly("hits", &PyTracks::hits, "(k,)")
-      .def_readonly("misses", &PyTracks::misses, "(k,) scans in a row without a plot")
+      .def_readonly("misses", &PyTracks::misses, "(k,) consecutive scans without a plot")
       .def_readonly("name", &PyTracks::name, "given by the operator")
       .def("__len__", [](const PyTracks& table) { return table.track_id.size(); })
       .def("__repr__", [](const PyTracks& table) {
@@ -361,7 +361,7 @@ void define_track(py::module_& parent) {
       });
 
   py::class_<AnyTracker> tracker(m, "Tracker",
-                                 R"(Keeps tracks of all vessels a radar sees, scan by scan.
+                                 R"(Tracks all vessels in the plots of a radar, scan by scan.
 
 Use it from one thread at a time; trackers share nothing.
 
@@ -372,12 +372,12 @@ config : TrackerConfig, optional
 models : VesselModels, optional
     Motion models of the estimator.
 estimator : Imm, AdaptiveGridImm, SwitchingGridImm, LikelyModelSetImm, ModeHistory, FuzzyAlphaBeta or BayesianAlphaBeta, optional
-    Another estimator in place of that made of `models`.
+    Estimator to use instead of the one made from `models`.
 
 Raises
 ------
 ValueError
-    When a setting makes no sense.)");
+    When a setting is invalid.)");
   define_arguments(tracker);
   tracker
       .def(py::init([](const Radar& r, const TrackerConfig& c, const VesselModels& v,
@@ -391,7 +391,7 @@ ValueError
            py::arg("bearing_rad"), py::arg("plot_time_s") = py::none(),
            py::arg("own_north_m") = 0.0, py::arg("own_east_m") = 0.0,
            py::arg("heading_std_rad") = 0.0, py::arg("own_position_std_m") = 0.0,
-           R"(Takes in the plots of one scan.
+           R"(Process the plots of one scan.
 
 Parameters
 ----------
@@ -399,11 +399,11 @@ time_s : float
     Time of the scan; not before the last one.
 range_m, bearing_rad : (n,) arrays
 plot_time_s, own_north_m, own_east_m : float or (n,) arrays
-    When each plot was seen, and from where.
+    Time of each plot, and own ship's position at that time.
 heading_std_rad : float
-    Error of own ship's heading.
+    Standard deviation of own ship's heading.
 own_position_std_m : float
-    Error of own ship's position, per axis.
+    Standard deviation of own ship's position, per axis.
 
 Returns
 -------
@@ -412,9 +412,9 @@ ScanReport
 Raises
 ------
 ValueError
-    When a shape does not fit or an error is below zero.
+    When a shape does not fit or a standard deviation is negative.
 FilterError
-    When time runs backwards or is not finite; nothing changed.)")
+    When the time is before the last scan or not finite; the tracker is unchanged.)")
       .def(
           "tracks",
           [](const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {
@@ -442,48 +442,48 @@ FilterError
           },
           py::arg("time_s"), py::arg("north_m"), py::arg("east_m"),
           py::arg("position_std_m") = 50.0,
-          R"(The operator says that there is a target.
+          R"(Start a confirmed track on an operator's designation.
 
 Parameters
 ----------
 time_s : float
-    At most an hour after the last scan; scans go on without plots, too.
+    At most an hour after the last scan.
 north_m, east_m, position_std_m : float
 
 Returns
 -------
 int
-    The track's number, or 0 when there is no room.
+    The track's number, or 0 if there is no room.
 
 Raises
 ------
 ValueError
-    When the time is too far ahead, a number is not finite or the error not above zero.)")
+    When the time is too far ahead, a number is not finite or the standard deviation not positive.)")
       .def(
           "drop",
           [](AnyTracker& tracker, std::int64_t id) {
             return tracker.visit([&](auto& one) { return one.drop(id); });
           },
-          py::arg("track_id"), "Ends a track; False when there is none of that number.")
+          py::arg("track_id"), "End a track; False if no track has that number.")
       .def(
           "rename",
           [](AnyTracker& tracker, std::int64_t id, std::string_view name) {
             return tracker.visit([&](auto& one) { return one.rename(id, name); });
           },
           py::arg("track_id"), py::arg("name"),
-          "Names a track (31 bytes at most are kept); False when there is none of that number.")
+          "Name a track (at most 31 bytes are kept); False if no track has that number.")
       .def(
           "save",
           [](const AnyTracker& tracker) {
             return to_bytes(tracker.visit([](const auto& one) { return one.save(); }));
           },
-          "The whole state as bytes, for a tracker with the same settings on the same kind of "
+          "The complete state as bytes, for a tracker with the same settings on the same kind of "
           "machine.")
       .def(
           "restore",
           [](AnyTracker& tracker, const py::bytes& state) {
             if (!tracker.visit([&](auto& one) { return one.restore(bytes_of(state)); }))
-              throw py::value_error("state is not that of a tracker with the same settings");
+              throw py::value_error("state was saved with different settings");
           },
           py::arg("state"), "Goes on bit for bit where the saved tracker was.")
       .def_property_readonly(

@@ -381,7 +381,7 @@ def test_errors_name_what_is_wrong():
         navigator.run(log["time_s"], log=np.ones(20))
     with pytest.raises(ValueError, match="a rate of turn needs a navigator with a gyro bias"):
         started(log, 5).update_rate_of_turn(0.0, 0.0)
-    with pytest.raises(ValueError, match="rate_of_turn stands beside the gyro of imu"):
+    with pytest.raises(ValueError, match="rate_of_turn must be given together with imu"):
         navigator.run(log["time_s"], rate_of_turn=np.zeros(20))
     with pytest.raises(ValueError, match="compass_std_rad must be finite and positive, got 0"):
         navigator.run(log["time_s"], compass_std_rad=0)
