@@ -483,7 +483,7 @@ ValueError
           "restore",
           [](AnyTracker& tracker, const py::bytes& state) {
             if (!tracker.visit([&](auto& one) { return one.restore(bytes_of(state)); }))
-              throw py::value_error("state was saved with different settings");
+              throw py::value_error("state was not saved by a tracker with the same settings");
           },
           py::arg("state"), "Goes on bit for bit where the saved tracker was.")
       .def_property_readonly(

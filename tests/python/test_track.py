@@ -361,7 +361,7 @@ LATER = scans(21)[20]
 
 @pytest.mark.parametrize("state", [b"", b"no state", STATE + b"\0"])
 def test_what_is_no_state_is_rejected(state):
-    with pytest.raises(ValueError, match="state is not that of a tracker"):
+    with pytest.raises(ValueError, match="state was not saved by a tracker with the same settings"):
         wl.Tracker(RADAR).restore(state)
 
 
