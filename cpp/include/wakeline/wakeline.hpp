@@ -27,6 +27,7 @@
 #include "wakeline/core/chi_square.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/component.hpp"
+#include "wakeline/core/fields.hpp"
 #include "wakeline/core/in_place_array.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/state_belief.hpp"
