@@ -24,6 +24,13 @@ def test_every_setting_of_the_engine_has_a_line_that_explains_it():
         assert names == set(kind().as_dict()), section
 
 
+def test_explanations_are_those_of_the_parameters():
+    text = Settings.default().toml()
+    for kind in (wl.Radar, wl.TrackerConfig, wl.VesselModels, DangerLimits):
+        for field in kind.fields():
+            assert field.sentence in text or field.name == "period_s"
+
+
 def test_the_defaults_are_those_of_the_engine():
     settings = Settings.default()
     assert settings.tracker == wl.TrackerConfig().as_dict()

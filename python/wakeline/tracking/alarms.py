@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +12,24 @@ import wakeline as wl
 from wakeline._checks import fraction, not_negative, number_fields
 from wakeline._units import NAUTICAL_MILE_M
 from wakeline.recording import OwnShipMotion, Tracks
+
+
+class Field(NamedTuple):
+    """A field of parameters, as the ``fields()`` of the engine's parameters describe theirs."""
+
+    name: str
+    type: type
+    default: float
+    unit: str
+    rule: str
+    sentence: str
+
+
+def _limit(default: float, unit: str, rule: str, sentence: str) -> float:
+    return field(default=default, metadata={"unit": unit, "rule": rule, "sentence": sentence})
+
+
+_NOT_NEGATIVE, _PROBABILITY = "finite and not negative", "from 0 to 1"
 
 
 @dataclass(frozen=True)
@@ -23,29 +41,36 @@ class DangerLimits:
     below `clear_probability` for `clear_hold_s`, or when the track ends. The hold time keeps one
     alarm per encounter while the estimate of a distant ship varies.
 
-    Attributes
-    ----------
-    cpa_limit_m, tcpa_limit_s : float
-        Not negative.
-    alarm_probability, clear_probability : float
-        Between 0 and 1, the second not above the first.
-    clear_hold_s : float
-        Not negative.
-    own_velocity_std_mps : float
-        Standard deviation of own ship's velocity per axis, if its covariance is unknown.
-
     Raises
     ------
     ValueError
-        When a value is out of range.
+        When a value is out of range, or `clear_probability` is above `alarm_probability`.
+
+    Attributes
+    ----------
     """
 
-    cpa_limit_m: float = NAUTICAL_MILE_M / 2.0
-    tcpa_limit_s: float = 1200.0
-    alarm_probability: float = 0.5
-    clear_probability: float = 0.3
-    clear_hold_s: float = 60.0
-    own_velocity_std_mps: float = 0.2
+    cpa_limit_m: float = _limit(
+        NAUTICAL_MILE_M / 2.0, "m", _NOT_NEGATIVE, "Distance below which a track is dangerous."
+    )
+    tcpa_limit_s: float = _limit(
+        1200.0, "s", _NOT_NEGATIVE, "Time within which the track comes so close."
+    )
+    alarm_probability: float = _limit(
+        0.5, "1", _PROBABILITY, "With this probability or more, an alarm begins."
+    )
+    clear_probability: float = _limit(
+        0.3, "1", _PROBABILITY, "An alarm ends when the probability stays below this."
+    )
+    clear_hold_s: float = _limit(
+        60.0, "s", _NOT_NEGATIVE, "Time for which it must stay below; shorter gaps end no alarm."
+    )
+    own_velocity_std_mps: float = _limit(
+        0.2,
+        "m/s",
+        _NOT_NEGATIVE,
+        "Standard deviation of own ship's velocity per axis, if its covariance is unknown.",
+    )
 
     def __post_init__(self) -> None:
         not_negative(**asdict(self))
@@ -56,9 +81,20 @@ class DangerLimits:
                 f"{self.alarm_probability}, got {self.clear_probability}"
             )
 
+    @staticmethod
+    def fields() -> tuple[Field, ...]:
+        """The table of the fields: name, type, default, unit, rule and a sentence on each."""
+        return tuple(Field(f.name, float, f.default, **f.metadata) for f in fields(DangerLimits))
+
     def as_dict(self) -> dict[str, float]:
         """The limits by name."""
         return asdict(self)
+
+
+DangerLimits.__doc__ = (DangerLimits.__doc__ or "").rstrip() + "".join(
+    f"\n    {f.name} : float, default {f.default:g}\n        {f.sentence} [{f.unit}; {f.rule}]"
+    for f in DangerLimits.fields()
+)
 
 
 @dataclass(frozen=True)

@@ -32,86 +32,34 @@ class SettingsError(ValueError):
     """Settings cannot be used; the message names file and key."""
 
 
-_RADAR = {
-    "range_std_m": "m, standard deviation of the range of a plot",
-    "bearing_std_deg": "degrees, standard deviation of its bearing",
-    "extent_std_m": "m per axis, wander of an echo over the hull of its vessel",
-    "period_s": "s, one turn of the antenna, which groups plots without a scan number; 0: found",
-    "max_speed_mps": "m/s, of the vessels, with a fifth to spare",
-    "bearing_offset_deg": "degrees, bearing read minus true bearing; taken off every plot",
-}
-
-_TRACKER = {
-    "detection_probability": "0..1, chance that a target which is visible gives a plot in a scan",
-    "gate_probability": "0..1, chance that the plot of a target lies in its gate",
-    "clutter_density_per_m2": "1/m² and scan, false plots where the clutter map knows of none",
-    "outlier_probability": "0..1, share of plots with a wild error",
-    "outlier_scale": "how many times larger that error is",
-    "clutter_cell_m": "m, cell of the clutter map; 0: no map",
-    "clutter_memory_s": "s, fading memory of the clutter map",
-    "clutter_weight": "how far the clutter map is believed; 1: fully",
-    "visible_time_s": "s, mean time until a target is hidden from the radar; 0: never",
-    "hidden_time_s": "s, mean time until a hidden target is seen again",
-    "association": "how plots are given to tracks: probabilistic, global_nearest or nearest",
-    "initial_existence": "0..1, chance that a new pair of plots is a target",
-    "free_plot": "0..1, a plot may start a track when it is no other track's with this chance",
-    "start_gate_sigma": "plot errors by which the speed limit of a start is widened",
-    "start_speed_factor": "expected speed of a start over the radar's speed limit; 0: anything",
-    "confirm_existence": "0..1, a track is confirmed above this probability of existence",
-    "confirm_hits": "plots, and with at least so many of them",
-    "confirm_window": "scans, in so many of its last ones",
-    "survival_time_s": "s, mean time until a target leaves",
-    "drop_existence": "0..1, a tentative track is dropped below this probability of existence",
-    "tentative_misses": "scans, a tentative track is dropped after more of them without a plot",
-    "coast_scans": "scans, a confirmed track is dropped after more of them without a plot,",
-    "coast_scans_per_hit": "scans, with so many more for each plot that it ever had,",
-    "coast_scans_max": "scans, but after this many at the latest",
-    "shown_scans": "scans, a coasting track is shown for so many, then only held in mind",
-    "drop_position_std_m": "m, a track that knows its place worse than this is dropped",
-    "drop_speed_factor": "a track faster than this times the radar's speed limit is dropped",
-    "duplicate_distance": "squared sigmas, two tracks nearer than this are one",
-    "vessel_length_m": "m, an echo nearer to a shown track is of its vessel; 0: of another one",
-    "duplicate_scans": "scans, once they have been so for so many",
-    "max_tracks": "tracks at a time; when full a new one replaces the weakest tentative one",
-    "max_plots": "plots of a scan; those beyond are refused",
-}
-
-_MODELS = {
-    "cruising_psd_m2s3": "m²/s³, acceleration noise of a cruising vessel at rest",
-    "cruising_course_psd_rad2s": "rad²/s, wander of the course of a cruising vessel",
-    "steady_psd_m2s3": "m²/s³, acceleration noise of a steady vessel at rest",
-    "steady_course_psd_rad2s": "rad²/s, wander of the course of a steady vessel",
-    "restless_psd_m2s3": "m²/s³, acceleration noise of a restless vessel at rest",
-    "restless_course_psd_rad2s": "rad²/s, wander of the course of a restless vessel",
-    "turning_psd_m2s3": "m²/s³, acceleration noise of a turning vessel at rest",
-    "turning_course_psd_rad2s": "rad²/s, wander of the course of a turning vessel",
-    "turn_rate_psd_rad2s3": "rad²/s³, wander of the rate of turn",
-    "prior_turn_rate_std_rad_s": "rad/s, rate of turn before it is known",
-    "cruising_probability": "of a vessel that is seen for the first time",
-    "cruising_sojourn_s": "s, mean time until a cruising vessel does something else",
-    "settling_s": "s, mean time until a steady vessel is taken to cruise",
-    "steady_sojourn_s": "s, mean time until a steady vessel becomes restless or turns",
-    "restless_sojourn_s": "s, mean time for which it is restless",
-    "turning_sojourn_s": "s, mean time for which it turns",
-}
-
-_DANGER = {
-    "cpa_limit_m": "m, closer than this a track is dangerous; half a nautical mile",
-    "tcpa_limit_s": "s, when it comes so close within this time",
-    "alarm_probability": "0..1, with this probability or more, an alarm begins,",
-    "clear_probability": "0..1, and it ends where the probability falls below this one",
-    "clear_hold_s": "s, for so long; shorter falls belong to the same alarm",
-    "own_velocity_std_mps": "m/s per axis, error of own ship's velocity where --own has none",
-}
-
-KEYS = {"radar": _RADAR, "tracker": _TRACKER, "models": _MODELS, "danger": _DANGER}
-
 _CLASSES = {
     "radar": wl.Radar,
     "tracker": wl.TrackerConfig,
     "models": wl.VesselModels,
     "danger": DangerLimits,
 }
+_PERIOD = (
+    "Time of an antenna revolution, which groups plots without a scan number; 0: estimated. [s]"
+)
+
+
+def _engine_name(key: str) -> str:
+    return f"{key[:-4]}_rad" if key.endswith("_deg") else key
+
+
+def _explained(section: str) -> dict[str, str]:
+    """What each key of a section means, with its unit and rule, as the parameters say it."""
+    lines = {}
+    for name, _, _, unit, rule, sentence in _CLASSES[section].fields():
+        in_degrees = name.endswith("_rad")
+        key = f"{name[:-4]}_deg" if in_degrees else name
+        unit = "degrees" if in_degrees else unit if unit != "1" else ""
+        lines[key] = f"{sentence} [{'; '.join(filter(None, (unit, rule)))}]"
+    return lines | {"period_s": _PERIOD} if section == "radar" else lines
+
+
+KEYS = {section: _explained(section) for section in _CLASSES}
+
 VESSELS = {"any": wl.VesselModels, "ships": wl.VesselModels.ships}
 _ABOUT = {
     "radar": "What a console knows of its radar, as its plots come.",
@@ -286,23 +234,12 @@ def _check_values(
 ) -> None:
     """Raise SettingsError naming the key that the engine rejects, if there is one."""
     try:
-        _check_engine(section, after)
+        _engine(section, after)
     except ValueError as error:
         for key, value in after.items():
             if value != before[key] and str(error).startswith(f"{_engine_name(key)} "):
                 raise SettingsError(f"{path}: [{section}] {key} = {value!r}: {error}") from None
         raise SettingsError(f"{path}: [{section}]: {error}") from None
-
-
-def _check_engine(section: str, values: dict[str, Value]) -> None:
-    for key, value in values.items():
-        if isinstance(value, float) and not math.isfinite(value):
-            raise ValueError(f"{_engine_name(key)} must be finite, got {value}")
-        if section == "models" and key != "cruising_probability" and not value > 0:
-            raise ValueError(f"{key} must be positive, got {value}")
-    if section == "radar" and values["period_s"] < 0:
-        raise ValueError(f"period_s must not be negative, got {values['period_s']}")
-    _engine(section, values)
 
 
 def _engine(section: str, values: dict[str, Value]) -> Any:
@@ -311,10 +248,6 @@ def _engine(section: str, values: dict[str, Value]) -> Any:
     if section == "radar" and given["period_s"] == 0:
         del given["period_s"]
     return _CLASSES[section](**given)
-
-
-def _engine_name(key: str) -> str:
-    return f"{key[:-4]}_rad" if key.endswith("_deg") else key
 
 
 def _to_engine(key: str, value: Value) -> Value:
