@@ -266,6 +266,11 @@ def test_antenna_revolutions_are_estimated_from_times_and_bearings(tmp_path):
         for b in bearing
     ]
     tracks = tracks_of(tmp_path, rows)
+    time_s, north_m, east_m = np.array(sorted(rows)).T
+    period_s = recording.revolution_s(time_s, np.arctan2(east_m, north_m))
+    assert period_s == pytest.approx(PERIOD_S, rel=0.02)
+    number = recording.scan_numbers(time_s, np.arctan2(east_m, north_m), PERIOD_S)
+    assert np.bincount(number)[1:-1].tolist() == [6] * (number[-1] - 1)
     sizes = [len(scan) for scan in tracks.recording.episodes[0].scans]
     assert sizes[1:-1] == [6] * (len(sizes) - 2)
     assert any("2.5 s" in note for note in tracks.recording.notes)

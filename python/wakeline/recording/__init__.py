@@ -21,6 +21,7 @@ from .own_csv import read_own_ship
 from .plots_csv import read_plots
 from .plots_writer import write_plots
 from .radars import load_radar, radar_names
+from .scans import revolution_s, scan_numbers
 from .tracks_csv import Tracks, read_tracks, write_tracks
 from .truth import TargetTruth
 from .video import RadarVideo
@@ -54,6 +55,8 @@ __all__ = [
     "read_tracks",
     "read_video",
     "replacing",
+    "revolution_s",
+    "scan_numbers",
     "write_plots",
     "write_tracks",
     "write_video",

@@ -78,7 +78,7 @@ def _numbered(
     elif len(listed.number):
         number = grouping.by_list(plots.time_s, listed.time_s, listed.number)
     else:
-        number = grouping.by_turns(plots.time_s, bearing_rad, period_s)
+        number = grouping.scan_numbers(plots.time_s, bearing_rad, period_s)
     order = np.argsort(number, kind="stable")
     return plots.where(order), number[order]
 

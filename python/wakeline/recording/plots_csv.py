@@ -14,7 +14,7 @@ from .episodes import build_episode
 from .model import Episode, OwnShipMotion, Recording
 from .own_csv import OWN_GAP_S, OwnRows, read_own
 from .plot_rows import PlotRows, read_plot_rows, remark
-from .scans import turn_s
+from .scans import revolution_s
 from .truth_csv import read_truth
 
 _MANY, _NEARLY_ALL = 20, 0.9
@@ -134,7 +134,7 @@ def _in_turns(
     notes: list[str],
 ) -> list[Episode]:
     """The episodes with antenna revolutions as scans, if the plots show them."""
-    period_s = _turn_s(episodes)
+    period_s = _revolution_s(episodes)
     turns = episodes if period_s is None else episodes_of(period_s)
     if sum(map(len, turns)) < sum(map(len, episodes)):
         notes.append(
@@ -150,13 +150,13 @@ def _in_turns(
     return episodes
 
 
-def _turn_s(episodes: list[Episode]) -> float | None:
+def _revolution_s(episodes: list[Episode]) -> float | None:
     """Median period of the episodes that have one, None if none has."""
     found = []
     for episode in filter(len, episodes):
         time_s = np.concatenate([scan.plot_time_s for scan in episode.scans])
         bearing_rad = np.concatenate([scan.bearing_rad for scan in episode.scans])
-        found.append(turn_s(time_s, bearing_rad))
+        found.append(revolution_s(time_s, bearing_rad))
     known = [turn for turn in found if turn is not None]
     return float(np.median(known)) if known else None
 

@@ -16,7 +16,7 @@ _NEAR_PERIOD = np.linspace(0.95, 1.05, 11)
 _SEAM_RAD = np.deg2rad(18.0)
 
 
-def by_turns(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float | None) -> np.ndarray:
+def scan_numbers(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float | None) -> np.ndarray:
     """Scan number of each plot, counted from 0: antenna revolutions if the plots show them.
 
     If bearings grow with time as for an antenna that turns clockwise in about `period_s`, a scan
@@ -106,7 +106,7 @@ def _next_begin(time_s: np.ndarray, begins: np.ndarray, first: int, period_s: fl
     return first + 1 + int(gap[0]) if len(gap) else full
 
 
-def turn_s(time_s: np.ndarray, bearing_rad: np.ndarray) -> float | None:
+def revolution_s(time_s: np.ndarray, bearing_rad: np.ndarray) -> float | None:
     """Estimated duration of an antenna revolution, to about 1 %, None if the plots show none.
 
     With a rotating antenna, the bearing of a plot gives its phase in the revolution. The result is

@@ -8,7 +8,7 @@
 
 :func:`track_episode` tracks one episode, :func:`open_recording` opens a recording, and
 :class:`Settings` are the contents of a settings file. :func:`with_alarms` finds the tracks that
-come dangerously close to own ship. :mod:`wakeline.recording.scans` groups plots into scans.
+come dangerously close to own ship. :func:`wakeline.recording.scan_numbers` groups plots into scans.
 """
 
 from __future__ import annotations
