@@ -140,7 +140,7 @@ def test_a_score_of_no_scans_says_why(tmp_path, capsys):
     rows = [(1001.0 + 4.0 * k, "A", *boat(40)[0, 1:]) for k in range(20)]
     truth = write_plots(tmp_path / "truth.csv", rows, "time_s,target,north_m,east_m")
     assert track(plots, "--truth", truth, "--out", tmp_path) == 0
-    reported = "no scan counts: of 40 truth of a target is known in at most 4,"
+    reported = "no scan counts: of 40 scans at most 4 have the truth of a target,"
     assert reported in capsys.readouterr().out
 
 
@@ -152,7 +152,7 @@ def test_tracks_of_a_scenario_without_scans_are_reported_by_their_file(demo, tmp
     recording.write_tracks(tmp_path / "t.csv", lost)
     files = [tmp_path / "t.csv", bundled("autoferry", "truth")]
     message = refused(capsys, "score", *files, "--scans", bundled("autoferry", "scans"))
-    assert f"{tmp_path / 't.csv'}, column scenario: a track is of a scenario without" in message
+    assert f"{tmp_path / 't.csv'}, column scenario: a track belongs to a scenario without" in message
     assert "wanted '2' or '3' or '4' or '5' or '6', got 'none'" in message
 
 
@@ -332,7 +332,7 @@ def test_a_later_scenario_that_fails_leaves_what_was_there_and_what_was_done(
     monkeypatch.setattr(track_command, "track_episode", fails_on_the_second)
     assert track(plots, "--out", out) == 2
     files, error = capsys.readouterr().err.splitlines()
-    assert files.startswith("of the scenarios before: tracks-partial.csv, ")
+    assert files.startswith("of the previous scenarios: tracks-partial.csv, ")
     assert error == "wakeline: the engine gives up"
     assert (out / "tracks.csv").read_bytes() == before
     assert set(read_tracks(out / "tracks-partial.csv").scenario) == {"1"}
@@ -368,7 +368,7 @@ def test_an_own_ship_of_one_position_has_no_velocity(plots_csv, tmp_path, capsys
     rows = [(k, 1000.0 + PERIOD_S * k) for k in range(40)]
     scans = write_plots(tmp_path / "scans.csv", rows, "scan,time_s")
     assert track(plots_csv, "--own", scans, "--out", tmp_path) == 0
-    assert "own ship's velocity is not known" in capsys.readouterr().out
+    assert "own ship's velocity is unknown" in capsys.readouterr().out
 
 
 # Bad input ----------------------------------------------------------------------------------------
@@ -405,8 +405,8 @@ def test_truth_of_another_time_is_rejected(plots_csv, tmp_path, capsys):
     rows = [(5000 + k, "A", 0, 0) for k in range(30)]
     truth = write_plots(tmp_path / "truth.csv", rows, "time_s,target,north_m,east_m")
     message = refused(capsys, "track", plots_csv, "--truth", truth, "--out", tmp_path)
-    assert message.startswith(f"wakeline: {truth}, column time_s: the truth is of another time")
-    assert "wanted times that reach into 1000.0 to 1097.5, got 5000.0 to 5029.0" in message
+    assert message.startswith(f"wakeline: {truth}, column time_s: the truth does not overlap")
+    assert "wanted times within 1000.0 to 1097.5, got 5000.0 to 5029.0" in message
 
 
 def test_plots_without_a_place_are_left_out_with_a_note(tmp_path, capsys):

@@ -75,7 +75,7 @@ def test_every_ship_has_a_track_from_strobe_to_velocity(video, tmp_path, capsys)
     assert row["tracks"] == len(SHIPS)
     reported = capsys.readouterr().out
     assert "harbour" in reported
-    assert "as its echoes are" in reported
+    assert "estimated from its echoes" in reported
 
 
 def test_a_file_may_be_named_by_text(video):
@@ -521,7 +521,7 @@ def test_settings_without_a_radar_leave_its_errors_to_the_video(video, tmp_path,
     config.write_text("[tracker]\nconfirm_hits = 4\n")
     command = ["track", str(video), "--out", str(tmp_path)]
     assert main([*command, "--config", str(config)]) == 0
-    assert "as its echoes are" in capsys.readouterr().out
+    assert "estimated from its echoes" in capsys.readouterr().out
     config.write_text("[radar]\nrange_std_m = 11.0\n")
     assert main([*command, "--config", str(config)]) == 0
     assert "radar of some.toml" in capsys.readouterr().out
