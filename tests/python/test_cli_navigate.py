@@ -1044,7 +1044,7 @@ def test_a_missing_log_is_one_clear_line(tmp_path, capsys):
 def test_pictures_are_drawn(tmp_path, pictures, capsys):
     lines = voyage(8)
     commanded(tmp_path, [*lines[:1080], *lines[-9:]])
-    assert "not drawn are 1 of 2 parts, of fewer than 10 fixes" in capsys.readouterr().out
+    assert "1 of 2 parts not drawn, with fewer than 10 fixes" in capsys.readouterr().out
     for name in ("own_map.png", "own_time.png"):
         assert (tmp_path / name).read_bytes()[:4] == b"\x89PNG"
 

@@ -307,7 +307,7 @@ def test_a_tracker_keeps_its_tracks_with_any_estimator(build):
 
 
 def test_a_tracker_names_the_estimators_it_takes():
-    with pytest.raises(TypeError, match="estimator must be .* got Ekf"):
+    with pytest.raises(TypeError, match=r"estimator must be .* got Ekf"):
         wl.Tracker(TRACKER_RADAR, estimator=EKF)
 
 
