@@ -171,7 +171,7 @@ def _write_pictures(folder: Path, legs: Sequence[own_ship.Leg], name: str) -> li
     drawn = [leg for leg in legs if leg.readings.has_fix.sum() >= _LEAST_DRAWN_FIXES]
     if len(drawn) < len(legs):
         short = f"{len(legs) - len(drawn)} of {many(len(legs), 'part')}"
-        print(f"note: not drawn are {short}, of fewer than {_LEAST_DRAWN_FIXES} fixes")
+        print(f"note: {short} not drawn, with fewer than {_LEAST_DRAWN_FIXES} fixes")
     for number, leg in enumerate(progress(drawn, len(drawn), "drawing"), start=1):
         end = f"-{number}" if len(drawn) > 1 else ""
         files += [folder / f"own_map{end}.png", folder / f"own_time{end}.png"]

@@ -259,9 +259,9 @@ def _moved_m(readings: Readings, done: _Solved, velocity_mps: np.ndarray) -> np.
     outside = done.nis["gnss"] > -2.0 * np.log(1.0 - GATE_PROBABILITY)
     believed = np.flatnonzero(outside & ~done.rejected["gnss"])
     step_s = readings.time_s[believed] - readings.time_s[believed - 1]
-    foretold_m = done.mean[believed - 1, :2] + velocity_mps[believed - 1] * step_s[:, None]
+    predicted_m = done.mean[believed - 1, :2] + velocity_mps[believed - 1] * step_s[:, None]
     moved_m = np.zeros((len(readings.time_s), 2))
-    moved_m[believed] = readings.fix_m[believed] - foretold_m
+    moved_m[believed] = readings.fix_m[believed] - predicted_m
     return moved_m
 
 
