@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "face.hpp"
+#include "support/fields.hpp"
 #include "support/types.hpp"
 
 namespace wakeline::python {
@@ -11,10 +12,11 @@ void require_order(int order) {
     throw py::value_error("order must be 2 or 3 states an axis, got " + std::to_string(order));
 }
 
-/// Adds `gains` to the class of a schedule of so many states an axis.
+/// A schedule of gains in Python, of two states an axis or of three, too.
 template <class Schedule, bool OfThree>
-void define_gains(py::class_<Schedule>& schedule) {
-  define_copies(schedule);
+py::class_<Schedule> define_gains(py::handle scope, const char* name, const char* doc,
+                                  const StructLooks& looks = {}) {
+  auto schedule = define_struct<Schedule>(scope, name, doc, looks);
   schedule.def(
       "gains",
       [](const Schedule& s, int order, std::int64_t reading, double elapsed_s, double std_m,
@@ -41,97 +43,37 @@ void define_gains(py::class_<Schedule>& schedule) {
       py::arg("std_m") = 1.0, py::arg("range_m") = 0.0,
       "[alpha, beta] or, of order 3, [alpha, beta, gamma] for the reading-th reading since the "
       "start, `elapsed_s` after the one before, of error `std_m` along the axis, at a range.");
+  return schedule;
 }
 
 void define_schedules(py::module_& m) {
-  py::class_<ConstantGains> constant(
+  define_gains<ConstantGains, true>(
       m, "ConstantGains",
-      "Gains that stay the same; gamma for an alpha-beta-gamma filter only. A filter refuses those "
-      "that are not stable.");
-  constant
-      .def(py::init([](double alpha, double beta, double gamma) {
-             return ConstantGains{alpha, beta, gamma};
-           }),
-           py::arg("alpha"), py::arg("beta"), py::arg("gamma") = 0.0)
-      .def_readonly("alpha", &ConstantGains::alpha)
-      .def_readonly("beta", &ConstantGains::beta)
-      .def_readonly("gamma", &ConstantGains::gamma)
-      .def("_arguments", [](const ConstantGains& gains) {
-        return Arguments()
-            .with("alpha", gains.alpha)
-            .with("beta", gains.beta)
-            .with("gamma", gains.gamma);
-      });
-  define_gains<ConstantGains, true>(constant);
-
-  py::class_<GrowingMemory> growing(
+      "Constant gains. A filter rejects those that are not stable (`stable_gains`).",
+      {.positional = 3});
+  define_gains<GrowingMemory, true>(
       m, "GrowingMemory",
       R"(Gains that draw the least-squares line (or parabola) through all readings so far.
 
-With regular steps the filter equals that line exactly, whatever the start. A missed scan does not count.
-
-Parameters
-----------
-plots_before : int
-    That the start was made of.
-max_plots : int
-    The gains stay those of so many; 0 for all.)");
-  growing
-      .def(py::init([](int before, int most) {
-             return GrowingMemory{before, most};
-           }),
-           py::kw_only(), py::arg("plots_before") = 0, py::arg("max_plots") = 0)
-      .def_readonly("plots_before", &GrowingMemory::plots_before)
-      .def_readonly("max_plots", &GrowingMemory::max_plots)
-      .def("_arguments", [](const GrowingMemory& memory) {
-        return Arguments()
-            .with("plots_before", memory.plots_before)
-            .with("max_plots", memory.max_plots);
-      });
-  define_gains<GrowingMemory, true>(growing);
-
-  py::class_<BenedictBordner> bordner(m, "BenedictBordner",
-                                      "beta = alpha² / (2 - alpha): the least error after a change "
-                                      "of velocity for the noise that an "
-                                      "alpha lets through.");
-  bordner.def(py::init([](double alpha) { return BenedictBordner{alpha}; }), py::arg("alpha"))
-      .def_readonly("alpha", &BenedictBordner::alpha)
-      .def("_arguments",
-           [](const BenedictBordner& gains) { return Arguments().with("alpha", gains.alpha); });
-  define_gains<BenedictBordner, false>(bordner);
-
-  py::class_<CriticallyDamped> damped(
+With regular steps the filter equals that line exactly, whatever the start. A missed scan does not count.)");
+  define_gains<BenedictBordner, false>(
+      m, "BenedictBordner",
+      "beta = alpha² / (2 - alpha): the least error after a change of velocity for the noise that "
+      "an alpha lets through.",
+      {.positional = 1});
+  define_gains<CriticallyDamped, true>(
       m, "CriticallyDamped",
       "All poles at theta: the least-squares line or parabola with weights theta a reading back "
-      "(fading memory).");
-  damped.def(py::init([](double theta) { return CriticallyDamped{theta}; }), py::arg("theta"))
-      .def_readonly("theta", &CriticallyDamped::theta)
-      .def("_arguments",
-           [](const CriticallyDamped& gains) { return Arguments().with("theta", gains.theta); });
-  define_gains<CriticallyDamped, true>(damped);
-
-  py::class_<TrackingIndex> index(
+      "(fading memory).",
+      {.positional = 1});
+  define_gains<TrackingIndex, true>(
       m, "TrackingIndex",
       R"(Gains of the steady Kalman filter, by the tracking index: accel_std T² / error of the reading.
 
 The error is that of each reading along and across the bearing, so that the gains follow the range by themselves; the index follows
-the step.
-
-Parameters
-----------
-accel_std_mps2 : float
-    Of the acceleration (with three states: its change) drawn anew for each step.
-
-References
-----------
-P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alpha-beta-gamma target trackers, IEEE Trans. AES-20,
-1984.)");
-  index.def(py::init([](double accel) { return TrackingIndex{accel}; }), py::arg("accel_std_mps2"))
-      .def_readonly("accel_std_mps2", &TrackingIndex::accel_std_mps2)
-      .def("_arguments",
-           [](const TrackingIndex& index) {
-             return Arguments().with("accel_std_mps2", index.accel_std_mps2);
-           })
+the step. Source: P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alpha-beta-gamma target trackers,
+IEEE Trans. AES-20, 1984.)",
+      {.positional = 1})
       .def(
           "steady_covariance",
           [](const TrackingIndex& schedule, double period_s, double std_m, int order) {
@@ -145,35 +87,10 @@ P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alp
           py::arg("period_s"), py::arg("std_m"), py::arg("order") = 2,
           "(order, order) covariance of the states of one axis after an update, in the steady "
           "state.");
-  define_gains<TrackingIndex, true>(index);
-
-  const RangeDependent plotter;
-  py::class_<RangeDependent> range(m, "RangeDependent",
-                                   "Gains by the range alone, as a radar plotting aid has them: "
-                                   "beyond `near_range_m` in inverse "
-                                   "proportion to the range, down to those of `far`.");
-  range
-      .def(py::init([](double near_range_m, double near_alpha, double near_beta, double far_alpha,
-                       double far_beta) {
-             return RangeDependent{near_range_m, near_alpha, near_beta, far_alpha, far_beta};
-           }),
-           py::kw_only(), py::arg("near_range_m") = plotter.near_range_m,
-           py::arg("near_alpha") = plotter.near_alpha, py::arg("near_beta") = plotter.near_beta,
-           py::arg("far_alpha") = plotter.far_alpha, py::arg("far_beta") = plotter.far_beta)
-      .def_readonly("near_range_m", &RangeDependent::near_range_m)
-      .def_readonly("near_alpha", &RangeDependent::near_alpha)
-      .def_readonly("near_beta", &RangeDependent::near_beta)
-      .def_readonly("far_alpha", &RangeDependent::far_alpha)
-      .def_readonly("far_beta", &RangeDependent::far_beta)
-      .def("_arguments", [](const RangeDependent& gains) {
-        return Arguments()
-            .with("near_range_m", gains.near_range_m)
-            .with("near_alpha", gains.near_alpha)
-            .with("near_beta", gains.near_beta)
-            .with("far_alpha", gains.far_alpha)
-            .with("far_beta", gains.far_beta);
-      });
-  define_gains<RangeDependent, false>(range);
+  define_gains<RangeDependent, false>(m, "RangeDependent",
+                                      "Gains by the range alone, as a radar plotting aid has them: "
+                                      "beyond `near_range_m` in inverse "
+                                      "proportion to the range, down to those of `far`.");
 
   m.def(
       "stable_gains",

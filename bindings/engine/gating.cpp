@@ -5,8 +5,9 @@
 #include <string>
 #include <variant>
 
-#include "support/types.hpp"
+#include "support/fields.hpp"
 #include "support/option.hpp"
+#include "support/types.hpp"
 #include "wakeline/core/angle.hpp"
 #include "wakeline/gating/chi_square_gate.hpp"
 #include "wakeline/gating/radius_gate.hpp"
@@ -108,19 +109,8 @@ void define_contains(py::class_<Strobe>& strobe) {
 }
 
 void define_strobes(py::module_& m) {
-  py::class_<RadiusGate> circle(m, "RadiusGate",
-                                "A circle of fixed radius about the predicted position.");
-  define_copies(circle);
-  circle
-      .def(py::init([](double radius_m) {
-             const RadiusGate gate{radius_m};
-             gate.validate();
-             return gate;
-           }),
-           py::kw_only(), py::arg("radius_m") = RadiusGate{}.radius_m)
-      .def_readonly("radius_m", &RadiusGate::radius_m)
-      .def("_arguments",
-           [](const RadiusGate& gate) { return Arguments().with("radius_m", gate.radius_m); });
+  auto circle = define_struct<RadiusGate>(m, "RadiusGate",
+                                          "A circle of fixed radius about the predicted position.");
   define_contains(circle);
 
   py::class_<PyCovarianceStrobe> ellipse(m, "CovarianceStrobe",
@@ -162,24 +152,8 @@ ValueError
       });
   define_contains(ellipse);
 
-  py::class_<RangeBearingWindow> window(
+  auto window = define_struct<RangeBearingWindow>(
       m, "RangeBearingWindow", "Ranges and bearings from the antenna near the predicted ones.");
-  define_copies(window);
-  window
-      .def(py::init([](double range_half_m, double bearing_half_rad) {
-             const RangeBearingWindow strobe{range_half_m, bearing_half_rad};
-             strobe.validate();
-             return strobe;
-           }),
-           py::kw_only(), py::arg("range_half_m") = RangeBearingWindow{}.range_half_m,
-           py::arg("bearing_half_rad") = RangeBearingWindow{}.bearing_half_rad)
-      .def_readonly("range_half_m", &RangeBearingWindow::range_half_m)
-      .def_readonly("bearing_half_rad", &RangeBearingWindow::bearing_half_rad)
-      .def("_arguments", [](const RangeBearingWindow& strobe) {
-        return Arguments()
-            .with("range_half_m", strobe.range_half_m)
-            .with("bearing_half_rad", strobe.bearing_half_rad);
-      });
   define_contains(window);
 }
 
@@ -260,24 +234,12 @@ detection".)");
 
 void define_gating(py::module_& parent) {
   py::module_ m = parent.def_submodule("gating", "Where to look for a target's plot.");
-  py::class_<ChiSquareGate> ellipsoid(
+  define_struct<ChiSquareGate>(
       m, "ChiSquareGate",
-      "The ellipsoid that holds the target's own plot with a given probability.");
-  define_copies(ellipsoid);
-  ellipsoid
-      .def(py::init([](double probability) {
-             const ChiSquareGate gate{probability};
-             gate.validate();
-             return gate;
-           }),
-           py::kw_only(), py::arg("probability") = ChiSquareGate{}.probability)
-      .def_readonly("probability", &ChiSquareGate::probability)
+      "The ellipsoid that holds the target's own plot with a given probability.")
       .def("threshold", &ChiSquareGate::threshold, py::arg("dof"),
            "Largest normalised innovation squared inside, for `dof` measured quantities, at least "
-           "1; else NaN.")
-      .def("_arguments", [](const ChiSquareGate& gate) {
-        return Arguments().with("probability", gate.probability);
-      });
+           "1; else NaN.");
   define_strobes(m);
   define_strobe_echo(m);
 }

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "support/each.hpp"
+#include "support/fields.hpp"
 #include "support/types.hpp"
 #include "wakeline/navigation/dead_reckoning.hpp"
 #include "wakeline/navigation/drift.hpp"
@@ -738,57 +739,12 @@ Returns
 // Drift, forecast ---------------------------------------------------------------------------------
 
 void define_drift_forecast(py::module_& m) {
-  const DriftModel defaults;
-  py::class_<DriftModel> model(
+  define_struct<DriftModel>(
       m, "DriftModel",
-      R"(How an object drifts: v = k U + C + r, U the wind, C the current, and what is not known of them.
-
-Parameters
-----------
-leeway, leeway_std : float
-    k and its error, which stays the same during a forecast; those of a dinghy by default.
-wind_std_mps, current_std_mps : float
-    Errors per axis that last.
-residual_std_mps, residual_time_s : float
-    Of r per axis, which wanders (Gauss-Markov) with a correlation time.
-
-Raises
-------
-ValueError
-    When one is negative or not finite.)");
-  define_copies(model);
-  model
-      .def("_arguments",
-           [](const DriftModel& one) {
-             return Arguments()
-                 .with("leeway", one.leeway)
-                 .with("leeway_std", one.leeway_std)
-                 .with("wind_std_mps", one.wind_std_mps)
-                 .with("current_std_mps", one.current_std_mps)
-                 .with("residual_std_mps", one.residual_std_mps)
-                 .with("residual_time_s", one.residual_time_s);
-           })
-      .def(py::init([](double leeway, double leeway_std, double wind_std, double current_std,
-                       double residual_std, double residual_time) {
-             const DriftModel made{leeway,      leeway_std,   wind_std,
-                                   current_std, residual_std, residual_time};
-             made.validate();
-             return made;
-           }),
-           py::kw_only(), py::arg("leeway") = defaults.leeway,
-           py::arg("leeway_std") = defaults.leeway_std,
-           py::arg("wind_std_mps") = defaults.wind_std_mps,
-           py::arg("current_std_mps") = defaults.current_std_mps,
-           py::arg("residual_std_mps") = defaults.residual_std_mps,
-           py::arg("residual_time_s") = defaults.residual_time_s)
+      "How an object drifts: v = k U + C + r, U the wind, C the current, and what is not known of "
+      "them; the leeway is that of a dinghy by default.")
       .def_static("of", &DriftModel::of, py::arg("object"),
-                  "With the leeway of a kind of object, the rest by default.")
-      .def_readonly("leeway", &DriftModel::leeway)
-      .def_readonly("leeway_std", &DriftModel::leeway_std)
-      .def_readonly("wind_std_mps", &DriftModel::wind_std_mps)
-      .def_readonly("current_std_mps", &DriftModel::current_std_mps)
-      .def_readonly("residual_std_mps", &DriftModel::residual_std_mps)
-      .def_readonly("residual_time_s", &DriftModel::residual_time_s);
+                  "With the leeway of a kind of object, the rest by default.");
 
   m.def(
       "drift_forecast",

@@ -86,8 +86,3 @@ def stepwise(estimator, z, dt_s=DT_S, sensor=RADAR, start=START):
             )
         )
     return [np.array(column) for column in zip(*rows, strict=True)]
-
-
-def made_by(text):
-    """What the text of an object makes, where Wakeline's names are known."""
-    return eval(text, vars(wl.filter) | vars(wl))
