@@ -55,6 +55,8 @@ std::string text_of(const py::handle& value) {
 }
 
 void define_arguments(py::handle type) {
+  py::options options;
+  options.enable_function_signatures();
   const auto method = [&](const char* name, auto&& function, const auto&... extra) {
     type.attr(name) = py::cpp_function(std::forward<decltype(function)>(function), py::name(name),
                                        py::is_method(type), extra...);
