@@ -2,20 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "support/fields.hpp"
 #include "support/types.hpp"
-#include "wakeline/filter/belief.hpp"
-#include "wakeline/measurement/position.hpp"
-#include "wakeline/measurement/range_bearing.hpp"
-#include "wakeline/measurement/range_bearing_doppler.hpp"
+#include "wakeline/catalog/sensors.hpp"
 
 namespace wakeline::python {
 namespace {
 
-/// A sensor in Python. Own ship moves, so that a sensor that has one can be written to.
+/// What every sensor offers in Python.
 template <class Sensor>
-void define_sensor(py::handle scope, const char* name, const char* doc) {
+void define_sensor(py::class_<Sensor>& sensor) {
   constexpr int kM = Sensor::kMeasurements;
-  constexpr bool kMoves = requires(const Sensor& one) { one.own; };
-  py::class_<Sensor> sensor = define_struct<Sensor>(scope, name, doc, {.writable = kMoves});
   sensor.def_property_readonly_static(
       "measurements", [](const py::object&) { return kM; }, "numbers per reading, M");
   sensor.def(
@@ -52,15 +47,12 @@ void define_measurement(py::module_& parent) {
   define_struct<OwnShip>(m, "OwnShip",
                          "Where the antenna is when it measures, and how well that is known.",
                          {.writable = true});
-  define_sensor<RangeBearing>(m, "RangeBearing", "A plot [range m, bearing rad] for Ekf and Ukf.");
-  define_sensor<ConvertedRangeBearing>(
-      m, "ConvertedRangeBearing",
-      "A plot [range m, bearing rad] converted to north/east with its covariance: linear.");
-  define_sensor<RangeBearingDoppler>(
-      m, "RangeBearingDoppler",
-      "A plot [range m, bearing rad, range rate m/s], the rate as own ship sees it.");
-  define_sensor<Position>(m, "Position",
-                          "A position [north m, east m] with equal error in every direction.");
+  Sensors::for_each([&]<class Sensor>(std::type_identity<Sensor>) {
+    // Own ship moves, so that a sensor that has one can be written to.
+    constexpr bool kMoves = requires(const Sensor& one) { one.own; };
+    auto sensor = define_struct<Sensor>(m, Sensor::kName, Sensor::kSummary, {.writable = kMoves});
+    define_sensor(sensor);
+  });
 
   m.def("conversion_bias_ratio", py::vectorize(&conversion_bias_ratio), py::arg("range_m"),
         py::arg("range_std_m"), py::arg("bearing_std_rad"),

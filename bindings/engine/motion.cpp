@@ -2,12 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/fields.hpp"
 #include "support/types.hpp"
-#include "wakeline/filter/belief.hpp"
-#include "wakeline/motion/constant_acceleration.hpp"
-#include "wakeline/motion/constant_velocity.hpp"
-#include "wakeline/motion/coordinated_turn.hpp"
-#include "wakeline/motion/singer.hpp"
-#include "wakeline/motion/wandering_course.hpp"
+#include "wakeline/catalog/motions.hpp"
 
 namespace wakeline::python {
 namespace {
@@ -17,11 +12,10 @@ double time_step(double dt_s) {
   return dt_s;
 }
 
-/// A motion model in Python.
+/// What every motion model offers in Python.
 template <class Motion>
-void define_model(py::handle scope, const char* name, const char* doc) {
+void define_model(py::class_<Motion>& model) {
   constexpr int kStates = kStatesOf<Motion>;
-  py::class_<Motion> model = define_struct<Motion>(scope, name, doc);
   model.def_property_readonly_static(
       "states", [](const py::object&) { return kStates; }, "number of states N");
   if constexpr (LinearMotionModel<Motion>) {
@@ -92,23 +86,10 @@ void define_motion(py::module_& parent) {
   py::implicitly_convertible<PiecewiseAcceleration, ProcessNoise>();
   py::implicitly_convertible<WhiteJerk, ProcessNoise>();
 
-  define_model<ConstantVelocity>(m, "ConstantVelocity",
-                                 "Straight and steady: state [x, vx, y, vy] (m, m/s).");
-  define_model<WanderingCourse>(
-      m, "WanderingCourse",
-      "Straight and nearly steady, with an acceleration that grows with the speed: state [x, vx, "
-      "y, vy].");
-  define_model<ConstantAcceleration>(
-      m, "ConstantAcceleration",
-      "Constant acceleration: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).");
-  define_model<CoordinatedTurn>(
-      m, "CoordinatedTurn",
-      "A steady turn at a known rate, positive to starboard: state [x, vx, y, vy].");
-  define_model<CoordinatedTurnRate>(
-      m, "CoordinatedTurnRate",
-      "A turn whose rate is part of the state: [x, vx, y, vy, omega] (m, m/s, rad/s).");
-  define_model<Singer>(m, "Singer",
-                       "Singer's maneuvering target: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).");
+  Motions::for_each([&]<class Motion>(std::type_identity<Motion>) {
+    auto model = define_struct<Motion>(m, Motion::kName, Motion::kSummary);
+    define_model(model);
+  });
 }
 
 }  // namespace wakeline::python

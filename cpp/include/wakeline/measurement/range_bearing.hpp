@@ -14,6 +14,8 @@ inline constexpr double kMinRange_m = 1e-3;
 /// A plot `[range m, bearing rad]` for EKF and UKF.
 /// Source: Bar-Shalom, Li, Kirubarajan, 10.4.1; paper A, equation (6).
 struct RangeBearing {
+  static constexpr const char* kName = "RangeBearing";
+  static constexpr const char* kSummary = "A plot [range m, bearing rad] for Ekf and Ukf.";
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;
   static constexpr bool kLinear = false;
@@ -83,6 +85,9 @@ struct RangeBearing {
 /// linear measurement: the form of the papers. `unbiased` corrects mean and covariance for the
 /// curvature of the bearing error.
 struct ConvertedRangeBearing {
+  static constexpr const char* kName = "ConvertedRangeBearing";
+  static constexpr const char* kSummary =
+      "A plot [range m, bearing rad] converted to north/east with its own covariance: linear.";
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;
   static constexpr bool kLinear = true;

@@ -10,6 +10,9 @@ namespace wakeline {
 /// A plot `[range m, bearing rad, range rate m/s]`. The range rate is relative to own ship, which
 /// moves. Source: Bar-Shalom, Li, Kirubarajan, 10.4.1, with the range rate d·v / r.
 struct RangeBearingDoppler {
+  static constexpr const char* kName = "RangeBearingDoppler";
+  static constexpr const char* kSummary =
+      "A plot [range m, bearing rad, range rate m/s], the rate as seen from own ship.";
   static constexpr int kMeasurements = 3;
   static constexpr auto kReads = kKinematics;
   static constexpr bool kLinear = false;

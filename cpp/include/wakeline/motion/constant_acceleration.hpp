@@ -25,6 +25,9 @@ Mat<Scalar, 6, 6> both_axes(const Mat<Scalar, 3, 3>& axis) noexcept {
 /// Constant acceleration: state `[x, vx, ax, y, vy, ay]`, x' = x + vx dt + ax dt²/2, vx' = vx + ax
 /// dt. Source: Bar-Shalom, Li, Kirubarajan, 6.2.3; paper A, equation (2).
 struct ConstantAcceleration {
+  static constexpr const char* kName = "ConstantAcceleration";
+  static constexpr const char* kSummary =
+      "Constant acceleration: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).";
   static constexpr auto kComponents = kAccelerationKinematics;
   static constexpr bool kForPacks = true;
   static constexpr Pattern<6> kPattern{"1xx000 01x000 001000 0001xx 00001x 000001"};

@@ -16,6 +16,9 @@ namespace wakeline {
 /// Bar-Shalom, Li, Kirubarajan, 11.7.1; paper A, equation (3).
 template <class Rate>
 struct KnownTurn {
+  static constexpr const char* kName = "CoordinatedTurn";
+  static constexpr const char* kSummary =
+      "A steady turn at a known rate, positive to starboard: state [x, vx, y, vy].";
   static constexpr auto kComponents = kKinematics;
   static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x0x 0x0x 0x1x 0x0x"};
@@ -70,6 +73,10 @@ using CoordinatedTurn = KnownTurn<double>;
 /// rest, whose turn rate is not observable, can diverge to half a turn per scan. Source:
 /// Bar-Shalom, Li, Kirubarajan, 11.7.2, 8.2.
 struct CoordinatedTurnRate {
+  static constexpr const char* kName = "CoordinatedTurnRate";
+  static constexpr const char* kSummary =
+      "A turn whose rate is part of the state and wanders: [x, vx, y, vy, omega] (m, m/s, rad/s); "
+      "it returns to the prior rate within `turn_rate_time_s`, or never where that is 0.";
   static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
                                           Component::kVeast, Component::kTurnRate};
   static constexpr bool kForPacks = true;

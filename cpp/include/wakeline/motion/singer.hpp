@@ -29,6 +29,9 @@ Scalar exponential_remainder(Scalar u) noexcept {
 /// standard deviation `accel_std_mps2` per axis. State `[x, vx, ax, y, vy, ay]` (m, m/s, m/s²).
 /// Source: R. A. Singer, IEEE Trans. AES-6, 1970; Bar-Shalom, Li, Kirubarajan, 8.2.
 struct Singer {
+  static constexpr const char* kName = "Singer";
+  static constexpr const char* kSummary =
+      "Singer's maneuvering target: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).";
   static constexpr auto kComponents = kAccelerationKinematics;
   static constexpr bool kForPacks = true;
   static constexpr Pattern<6> kPattern{"1xx000 01x000 00x000 0001xx 00001x 00000x"};
