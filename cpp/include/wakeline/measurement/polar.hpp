@@ -98,9 +98,11 @@ struct PolarErrors {
     return bearing_std_rad * bearing_std_rad + own.heading_std_rad * own.heading_std_rad;
   }
 
-  /// Plot `[range, bearing]` to north/east in the plane, with all errors.
+  /// Plot `[range, bearing]` to north/east in the plane, with all errors. Not inlined: its sines
+  /// and exponentials are long beside a call, and every estimator that takes such a plot has them.
   template <class Scalar>
-  Gaussian<2, Scalar> position(Scalar range_m, Scalar bearing_rad, bool unbiased) const noexcept {
+  [[gnu::noinline, gnu::flatten]] Gaussian<2, Scalar> position(Scalar range_m, Scalar bearing_rad,
+                                                               bool unbiased) const noexcept {
     const Scalar bearing = bearing_rad - Scalar(bearing_offset_rad);
     const Scalar range_var = Scalar(range_variance_m2());
     const Scalar bearing_var = Scalar(bearing_variance_rad2());
