@@ -4,7 +4,9 @@
 // What `ImmSmoother` asks of filters and beliefs that are chosen at run time.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <variant>
 
 #include "wakeline/catalog/filters.hpp"
@@ -50,22 +52,28 @@ inline AnyBelief carried_over(const AnyBelief& own, const AnyBelief& part) noexc
   });
 }
 
-/// As of the filter itself.
-template <class FilterList, class... Known>
-Status smooth_pair(const AnyFilterOf<FilterList>& filter, AnyBelief& belief, const AnyBelief& later,
-                   double dt_s, const Known&... acceleration_mps2) noexcept {
+/// As of the filter itself; under a known acceleration where there is one.
+template <class FilterList>
+Status smooth_pair(const AnyFilterOf<FilterList>& any, AnyBelief& belief, const AnyBelief& later,
+                   double dt_s, std::span<const Vec<double, 2>> acceleration_mps2) noexcept {
   return std::visit(
-      [&]<class Filter>(const Filter& one) {
-        StateBelief<Filter::kComponents, double> fixed;
-        fixed = Gaussian<Filter::kStates>{belief.mean, belief.covariance};
-        const Status status = wakeline::smooth_pair(
-            one, fixed, Gaussian<Filter::kStates>{later.mean, later.covariance}, dt_s,
-            acceleration_mps2...);
-        belief.mean = fixed.mean;
-        belief.covariance = fixed.covariance;
+      [&]<class Filter>(const Filter& filter) {
+        constexpr int kN = Filter::kStates;
+        std::array<Gaussian<kN>, 2> pair{belief.template fixed<kN>(), later.template fixed<kN>()};
+        const Status status =
+            smooth_as(filter, filter.motion(), pair, std::span(&dt_s, 1), acceleration_mps2);
+        belief.mean = pair[0].mean;
+        belief.covariance = pair[0].covariance;
         return status;
       },
-      filter.variant());
+      any.variant());
+}
+
+template <class FilterList, class... Known>
+Status smooth_pair(const AnyFilterOf<FilterList>& any, AnyBelief& belief, const AnyBelief& later,
+                   double dt_s, const Known&... acceleration_mps2) noexcept {
+  const std::array<Vec<double, 2>, sizeof...(Known)> known{acceleration_mps2...};
+  return smooth_pair(any, belief, later, dt_s, std::span<const Vec<double, 2>>(known));
 }
 
 }  // namespace wakeline

@@ -68,6 +68,28 @@ LinearisedMotion<kStatesOf<Motion>, Scalar> linearised(
   return result;
 }
 
+/// One step of the smoother: turns a filtered belief into a smoothed one, by the motion from it to
+/// the smoothed belief `later`. By the number of states alone, so that all filters share it.
+template <int N, class Scalar>
+[[gnu::noinline]] Status smooth_step(const LinearisedMotion<N, Scalar>& motion,
+                                     const Gaussian<N, Scalar>& later,
+                                     Gaussian<N, Scalar>& belief) noexcept {
+  using Matrix = Mat<Scalar, N, N>;
+  const Matrix fp = motion.f * belief.covariance;
+  const Cholesky<N, Scalar> factor(Matrix(fp * motion.f.transpose() + motion.q));
+  if (!factor.ok()) return Status::kNotPositiveDefinite;
+  const Matrix gain = factor.template solve<N>(fp).transpose();
+  const Matrix rest = Matrix::Identity() - gain * motion.f;
+  Gaussian<N, Scalar> smoothed;
+  smoothed.mean = belief.mean + gain * (later.mean - motion.mean);
+  smoothed.covariance = rest * belief.covariance * rest.transpose() +
+                        gain * (later.covariance + motion.q) * gain.transpose();
+  mirror_lower<Scalar, N>(smoothed.covariance);
+  if (!is_finite(smoothed.mean) || !is_finite(smoothed.covariance)) return Status::kNotFinite;
+  belief = smoothed;
+  return Status::kOk;
+}
+
 /// Rauch-Tung-Striebel smoother, in place: turns the filtered beliefs of T scans into smoothed
 /// ones, by the motion as the filter took it.
 ///
@@ -81,28 +103,16 @@ Status smooth_by(const Linearise& linearise, std::span<Gaussian<kStatesOf<Motion
                  std::span<const Scalar> dt_s,
                  std::span<const Vec<Scalar, 2>> acceleration_mps2) noexcept {
   constexpr int kStates = kStatesOf<Motion>;
-  using Matrix = Mat<Scalar, kStates, kStates>;
   for (std::size_t k = beliefs.size(); k-- > 1;) {
-    const Gaussian<kStates, Scalar>& later = beliefs[k];
-    Gaussian<kStates, Scalar>& belief = beliefs[k - 1];
     const Scalar dt = dt_s[k - 1];
     if (const Status forward = check_time_step(dt); forward != Status::kOk) return forward;
-    LinearisedMotion<kStates, Scalar> motion = linearise(belief, dt);
+    LinearisedMotion<kStates, Scalar> motion = linearise(beliefs[k - 1], dt);
     if (motion.status != Status::kOk) return motion.status;
     if (!acceleration_mps2.empty())
       motion.mean += Control::shift(Motion::kComponents, dt, acceleration_mps2[k - 1]);
-    const Matrix fp = motion.f * belief.covariance;
-    const Cholesky<kStates, Scalar> factor(Matrix(fp * motion.f.transpose() + motion.q));
-    if (!factor.ok()) return Status::kNotPositiveDefinite;
-    const Matrix gain = factor.template solve<kStates>(fp).transpose();
-    const Matrix rest = Matrix::Identity() - gain * motion.f;
-    Gaussian<kStates, Scalar> smoothed;
-    smoothed.mean = belief.mean + gain * (later.mean - motion.mean);
-    smoothed.covariance = rest * belief.covariance * rest.transpose() +
-                          gain * (later.covariance + motion.q) * gain.transpose();
-    mirror_lower<Scalar, kStates>(smoothed.covariance);
-    if (!is_finite(smoothed.mean) || !is_finite(smoothed.covariance)) return Status::kNotFinite;
-    belief = smoothed;
+    if (const Status status = smooth_step(motion, beliefs[k], beliefs[k - 1]);
+        status != Status::kOk)
+      return status;
   }
   return Status::kOk;
 }
