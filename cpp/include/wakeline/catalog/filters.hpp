@@ -61,16 +61,6 @@ class AnyFilterOf {
       return correct_by(sensor, reading);
   }
 
-  /// The innovation of a reading that the sensor has observed, without taking it.
-  template <class Sensor>
-  Correction<Sensor::kMeasurements> compare(
-      const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) const noexcept {
-    if constexpr (kIsDirect<Sensor>)
-      return compare_by(Fix{}, reading);
-    else
-      return compare_by(sensor, reading);
-  }
-
   void archive(Archive& fields);
 
   [[nodiscard]] AnyBelief estimate() const noexcept;
@@ -86,9 +76,6 @@ class AnyFilterOf {
   template <class Sensor>
   Correction<Sensor::kMeasurements> correct_by(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept;
-  template <class Sensor>
-  Correction<Sensor::kMeasurements> compare_by(
-      const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) const noexcept;
 
  private:
   Variant filter_;
@@ -275,13 +262,6 @@ template <class Sensor>
 Correction<Sensor::kMeasurements> AnyFilterOf<FilterList>::correct_by(
     const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept {
   return std::visit([&](auto& filter) { return filter.correct(sensor, reading); }, filter_);
-}
-
-template <class FilterList>
-template <class Sensor>
-Correction<Sensor::kMeasurements> AnyFilterOf<FilterList>::compare_by(
-    const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) const noexcept {
-  return std::visit([&](const auto& filter) { return filter.compare(sensor, reading); }, filter_);
 }
 
 template <class FilterList>

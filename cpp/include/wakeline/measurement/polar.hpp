@@ -8,6 +8,7 @@
 #include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/measurement/own_ship.hpp"
+#include "wakeline/simd/flatten.hpp"
 #include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
@@ -101,8 +102,9 @@ struct PolarErrors {
   /// Plot `[range, bearing]` to north/east in the plane, with all errors. Not inlined: its sines
   /// and exponentials are long beside a call, and every estimator that takes such a plot has them.
   template <class Scalar>
-  [[gnu::noinline, gnu::flatten]] Gaussian<2, Scalar> position(Scalar range_m, Scalar bearing_rad,
-                                                               bool unbiased) const noexcept {
+  [[gnu::noinline]] WAKELINE_FLATTEN Gaussian<2, Scalar> position(Scalar range_m,
+                                                                  Scalar bearing_rad,
+                                                                  bool unbiased) const noexcept {
     const Scalar bearing = bearing_rad - Scalar(bearing_offset_rad);
     const Scalar range_var = Scalar(range_variance_m2());
     const Scalar bearing_var = Scalar(bearing_variance_rad2());
