@@ -1,9 +1,16 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
-#include "wakeline/filter/rts_smoother.hpp"
-
 #include "face.hpp"
 #include "support/types.hpp"
+#include "wakeline/catalog/imm_smoother.hpp"
+
+namespace wakeline {
+
+// Compiled in imm_smoother.cpp.
+extern template Status smooth_any_pair(const AnyFilter&, AnyBelief&, const AnyBelief&, double,
+                                       std::span<const Vec<double, 2>>) noexcept;
+
+}  // namespace wakeline
 
 namespace wakeline::python {
 
@@ -77,29 +84,26 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
   py::array_t<double> smooth_mean({scans, states});
   py::array_t<double> smooth_covariance({scans, states, states});
   if (scans == 0) return py::make_tuple(smooth_mean, smooth_covariance);
-  std::visit(
-      [&]<class Filter>(const Filter& model) {
-        constexpr int kN = Filter::kStates;
-        using RowMajor = Eigen::Matrix<double, kN, kN, Eigen::RowMajor>;
-        std::vector<Gaussian<kN>> beliefs(static_cast<std::size_t>(scans));
-        for (std::size_t k = 0; k < beliefs.size(); ++k) {
-          beliefs[k].mean = Eigen::Map<const Vec<double, kN>>(mean.data() + k * kN);
-          beliefs[k].covariance = Eigen::Map<const RowMajor>(covariance.data() + k * kN * kN);
-        }
-        {
-          const py::gil_scoped_release release;
-          require_ok(
-              smooth_as(model, model.motion(), beliefs, std::span<const double>(steps).subspan(1),
-                        std::span<const Vec<double, 2>>(known).subspan(known.empty() ? 0 : 1)),
-              "smooth");
-        }
-        for (std::size_t k = 0; k < beliefs.size(); ++k) {
-          Eigen::Map<Vec<double, kN>>(smooth_mean.mutable_data() + k * kN) = beliefs[k].mean;
-          Eigen::Map<RowMajor>(smooth_covariance.mutable_data() + k * kN * kN) =
-              beliefs[k].covariance;
-        }
-      },
-      filter.variant());
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  std::vector<AnyBelief> beliefs;
+  for (py::ssize_t k = 0; k < scans; ++k)
+    beliefs.push_back(
+        {filter.layout(), Eigen::Map<const Eigen::VectorXd>(mean.data() + k * states, states),
+         Eigen::Map<const RowMajor>(covariance.data() + k * states * states, states, states)});
+  {
+    const py::gil_scoped_release release;
+    for (std::size_t k = beliefs.size(); k-- > 1;) {
+      const auto pushed = std::span<const Vec<double, 2>>(known).subspan(known.empty() ? 0 : k,
+                                                                         known.empty() ? 0 : 1);
+      require_ok(smooth_any_pair(filter, beliefs[k - 1], beliefs[k], steps[k], pushed), "smooth");
+    }
+  }
+  for (py::ssize_t k = 0; k < scans; ++k) {
+    const AnyBelief& belief = beliefs[static_cast<std::size_t>(k)];
+    Eigen::Map<Eigen::VectorXd>(smooth_mean.mutable_data() + k * states, states) = belief.mean;
+    Eigen::Map<RowMajor>(smooth_covariance.mutable_data() + k * states * states, states, states) =
+        belief.covariance;
+  }
   return py::make_tuple(smooth_mean, smooth_covariance);
 }
 

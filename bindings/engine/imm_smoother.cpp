@@ -8,6 +8,13 @@
 #include "wakeline/batch/run_smoothed.hpp"
 #include "wakeline/catalog/imm_smoother.hpp"
 
+namespace wakeline {
+
+template Status smooth_any_pair(const AnyFilter&, AnyBelief&, const AnyBelief&, double,
+                                std::span<const Vec<double, 2>>) noexcept;
+
+}  // namespace wakeline
+
 namespace wakeline::python {
 namespace {
 

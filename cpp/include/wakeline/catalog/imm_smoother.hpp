@@ -52,10 +52,11 @@ inline AnyBelief carried_over(const AnyBelief& own, const AnyBelief& part) noexc
   });
 }
 
-/// As of the filter itself; under a known acceleration where there is one.
+/// As of the filter itself; under a known acceleration where one is given.
 template <class FilterList>
-Status smooth_pair(const AnyFilterOf<FilterList>& any, AnyBelief& belief, const AnyBelief& later,
-                   double dt_s, std::span<const Vec<double, 2>> acceleration_mps2) noexcept {
+Status smooth_any_pair(const AnyFilterOf<FilterList>& any, AnyBelief& belief,
+                       const AnyBelief& later, double dt_s,
+                       std::span<const Vec<double, 2>> acceleration_mps2) noexcept {
   return std::visit(
       [&]<class Filter>(const Filter& filter) {
         constexpr int kN = Filter::kStates;
@@ -73,7 +74,7 @@ template <class FilterList, class... Known>
 Status smooth_pair(const AnyFilterOf<FilterList>& any, AnyBelief& belief, const AnyBelief& later,
                    double dt_s, const Known&... acceleration_mps2) noexcept {
   const std::array<Vec<double, 2>, sizeof...(Known)> known{acceleration_mps2...};
-  return smooth_pair(any, belief, later, dt_s, std::span<const Vec<double, 2>>(known));
+  return smooth_any_pair(any, belief, later, dt_s, std::span<const Vec<double, 2>>(known));
 }
 
 }  // namespace wakeline
