@@ -17,3 +17,9 @@ def test_the_example_runs(example, tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().out
     for picture in tmp_path.glob("*.png"):
         assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_examples_have_the_same_names_in_both_languages():
+    names = {path.stem for path in (ROOT / "cpp/examples").glob("*.cpp")}
+    assert {path.stem for path in EXAMPLES} == names
+    assert len(names) == 6
