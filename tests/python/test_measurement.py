@@ -170,7 +170,7 @@ def test_parameters_that_are_invalid_are_rejected_by_name(build, name, value):
 @pytest.mark.parametrize("value", [-1.0, np.nan, np.inf])
 def test_own_ship_is_not_set_to_what_is_invalid(name, value):
     sensor = wl.RangeBearing(own=wl.OwnShip(north_m=5.0))
-    with pytest.raises(ValueError, match=f"own.{name} must be finite and not negative"):
+    with pytest.raises(ValueError, match=f"{name} must be finite and not negative"):
         setattr(sensor.own, name, value)
     setattr(sensor.own, name, 2.0)
     assert getattr(sensor.own, name) == 2.0

@@ -127,7 +127,7 @@ def test_a_vessel_that_keeps_turning_is_known_as_well_as_believed():
 
 @pytest.mark.parametrize("turned_at", [-0.1, 1.5, np.nan])
 def test_a_heading_outside_the_step_is_rejected(turned_at):
-    with pytest.raises(ValueError, match="turned_at must be between 0 and 1, got"):
+    with pytest.raises(ValueError, match="turned_at must be 0 to 1, got"):
         UsvNavigator(turned_at=turned_at)
 
 
@@ -361,7 +361,7 @@ def test_errors_name_what_is_wrong():
         UsvNavigator(6)
     with pytest.raises(ValueError, match=r"filter must be 'ekf', .* got 'kf'"):
         UsvNavigator(8, "kf")
-    with pytest.raises(ValueError, match="gate probability must be between 0 and 1, got 2"):
+    with pytest.raises(ValueError, match=r"gate\.probability must be above 0 and below 1, got 2"):
         UsvNavigator(gate_probability=2)
     with pytest.raises(wl.FilterError, match="not started"):
         UsvNavigator().run(**sensors(log))
