@@ -122,6 +122,7 @@
 #include "wakeline/track/association_probabilities.hpp"
 #include "wakeline/track/clutter_density.hpp"
 #include "wakeline/track/clutter_map.hpp"
+#include "wakeline/track/compiled.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/duplicates.hpp"
 #include "wakeline/track/existence.hpp"

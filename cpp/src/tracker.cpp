@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// wakeline::tracker: the tracker of vessels, compiled once.
+#include "wakeline/track/compiled.hpp"
+
+#ifdef __AVX__
+#error "wakeline::tracker serves every processor of its kind: compile it without -mavx and -march=native"
+#endif
+
+namespace wakeline {
+
+template class Tracker<VesselImm>;
+
+}  // namespace wakeline
