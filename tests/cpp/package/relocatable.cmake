@@ -3,6 +3,7 @@ file(GLOB_RECURSE installed LIST_DIRECTORIES false "${PREFIX}/*")
 if(NOT installed)
   message(FATAL_ERROR "nothing is installed under ${PREFIX}")
 endif()
+list(FILTER installed EXCLUDE REGEX "\\.a$")  # assertions name the headers they are in
 foreach(path IN LISTS installed)
   file(READ "${path}" text)
   foreach(place IN ITEMS "${SOURCE_DIR}" "${BUILD_DIR}" "${PREFIX}")

@@ -85,27 +85,7 @@ class Tracker {
 
  public:
   /// Throws `std::invalid_argument` on a setting that makes no sense.
-  Tracker(const Radar& radar, const TrackerConfig& config, const Estimator& prototype)
-      : radar_(validated(radar)),
-        config_(validated(config)),
-        prototype_(prototype),
-        steps_(prototype),
-        tracks_(config.max_tracks),
-        estimators_(static_cast<std::size_t>(config.max_tracks), prototype),
-        plots_(config.max_plots),
-        clutter_(config),
-        gate_(config),
-        candidates_(static_cast<std::size_t>(config.max_tracks)),
-        multitarget_(config),
-        assignment_(config),
-        ownership_(config),
-        duplicates_(config, gate_.threshold()),
-        initiation_(radar, config),
-        room_(config.max_tracks) {
-    const auto plots = static_cast<std::size_t>(config.max_plots);
-    plot_track_id_.reserve(plots);
-    events_.reserve(4 * estimators_.size() + plots);
-  }
+  Tracker(const Radar& radar, const TrackerConfig& config, const Estimator& prototype);
 
   Tracker(Tracker&&) noexcept = default;
   Tracker& operator=(Tracker&&) noexcept = default;
@@ -467,6 +447,30 @@ class Tracker {
 };
 
 // Not inline, so that a program with `extern template class Tracker<...>` does not compile them.
+
+template <class Estimator, class Steps>
+Tracker<Estimator, Steps>::Tracker(const Radar& radar, const TrackerConfig& config,
+                                   const Estimator& prototype)
+    : radar_(validated(radar)),
+      config_(validated(config)),
+      prototype_(prototype),
+      steps_(prototype),
+      tracks_(config.max_tracks),
+      estimators_(static_cast<std::size_t>(config.max_tracks), prototype),
+      plots_(config.max_plots),
+      clutter_(config),
+      gate_(config),
+      candidates_(static_cast<std::size_t>(config.max_tracks)),
+      multitarget_(config),
+      assignment_(config),
+      ownership_(config),
+      duplicates_(config, gate_.threshold()),
+      initiation_(radar, config),
+      room_(config.max_tracks) {
+  const auto plots = static_cast<std::size_t>(config.max_plots);
+  plot_track_id_.reserve(plots);
+  events_.reserve(4 * estimators_.size() + plots);
+}
 
 template <class Estimator, class Steps>
 ScanReport Tracker<Estimator, Steps>::process(double time_s, std::span<const Plot> plots) noexcept {
