@@ -68,6 +68,13 @@ void* value_of(const py::handle& type, const py::handle& self) {
 
 py::object get(const FieldRow& row, const void* one) { return row.kind->get(row.of(one)); }
 
+/// A struct inside as a part of its owner, so that setting its fields sets those of the owner.
+py::object part_of(const py::handle& owner, const void* value, const py::handle& type) {
+  const auto* info = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(type.ptr()));
+  return py::reinterpret_steal<py::object>(py::detail::type_caster_generic::cast(
+      value, py::return_value_policy::reference_internal, owner, info, nullptr, nullptr));
+}
+
 void set(const FieldRow& row, void* one, const py::handle& value) {
   const Taken taken = row.kind->set(row.of(one), value);
   if (taken == Taken::kYes) return;
@@ -171,8 +178,13 @@ void define_properties(const py::handle& type, const StructTable& table) {
     std::string doc = row.sentence;
     if (const std::string range = range_text(row); !range.empty()) doc += " " + range;
     doc += " Default " + default_text(value) + ".";
+    const py::handle inner = py::type::handle_of(value);
+    const bool part = *row.kind->annotation == '\0' && py::hasattr(inner, "fields");
     const py::cpp_function getter(
-        [type, &row](const py::object& own) { return get(row, value_of(type, own)); },
+        [type, &row, inner, part](const py::object& own) {
+          const void* one = value_of(type, own);
+          return part ? part_of(own, row.of(one), inner) : get(row, one);
+        },
         py::is_method(type), (self + ") -> " + kind).c_str());
     py::object setter = py::none();
     if (table.writable)
