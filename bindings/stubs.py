@@ -48,9 +48,11 @@ WORDS = [
     (r"-> typing\.Any:", "-> NDArray[np.float64]:"),
     (r"(def conversion_bias_matters\(.*\)) -> NDArray\[np\.float64\]", r"\1 -> NDArray[np.bool_]"),
     (r"(def smooth\(.*\)) -> tuple:", r"\1 -> tuple[NDArray[np.float64], NDArray[np.float64]]:"),
+    (r"(def fields\(\)) -> tuple:", r"\1 -> tuple[tuple[str, type, object, str, str, str], ...]:"),
+    (r"    def _arguments\(self\) -> tuple:\n        (?:\.\.\.|\"\"\"(?:.|\n)*?\"\"\")\n", ""),
     (r"-> tuple:", "-> tuple[float, float]:"),
     (r"-> list:", "-> list[str]:"),
-    (r"-> dict:", "-> dict[str, float | int | str]:"),
+    (r"-> dict:", "-> dict[str, typing.Any]:"),
     (r"def __eq__\(self, \w+: typing\.Any\)", "def __eq__(self, other: object)"),
     (r"def __ne__\(self, \w+: typing\.Any\)", "def __ne__(self, other: object)"),
     (r"\barg0: (WhiteAcceleration|PiecewiseAcceleration|WhiteJerk)", r"policy: \1, /"),
@@ -58,7 +60,7 @@ WORDS = [
     (r"(__hash__: typing\.ClassVar\[None\]) = None", r"\1  # type: ignore[assignment]"),
     (r"    @classmethod\n    def __new__\(cls, value\):\n        \.\.\.\n", ""),
     (r"    def __format__\(self, format_spec\):\n        \.\.\.\n", ""),
-    (r"    @staticmethod\n    def __reduce_ex__\(.*\) -> .*: ?\.*\n(?:        .*\n)*", ""),
+    (r"    def __reduce_ex__\(.*\) -> .*:\n        \.\.\.\n", ""),
     (r"    def __(repr|str)__\(self\) -> str:\n        \.\.\.\n", ""),
 ]
 # A property that can be set is an attribute.
@@ -75,7 +77,7 @@ HOMES = {
         "RangeBearing",
         "RangeBearingDoppler",
     ],
-    "filter": ["Filter", "RunResult"],
+    "filter": ["Estimator", "Filter", "RunResult"],
     "gating": ["RadiusGate"],
     "video": ["ScanImage"],
     "motion": [
@@ -108,19 +110,6 @@ def as_attribute(match: re.Match) -> str:
     return f"    {name}: {kind}\n{told}"
 
 
-def with_settings(text: str, module) -> str:
-    """The keywords that a class of settings takes, in place of ``**kwargs``."""
-
-    def tell(match: re.Match) -> str:
-        settings = getattr(module, match[1])().as_dict()
-        keywords = ", ".join(f"{k}: {type(v).__name__} = {v!r}" for k, v in settings.items())
-        return match[0].replace("**kwargs", f"*, {keywords}")
-
-    return re.sub(
-        r"class (\w+):\n(?:    [^\n]*\n)*?    def __init__\(self, \*\*kwargs\)", tell, text
-    )
-
-
 def imports(noun: str, text: str) -> str:
     """The imports that the stub of a noun needs."""
     lines = []
@@ -145,16 +134,15 @@ def imports(noun: str, text: str) -> str:
     return "\n".join(lines)
 
 
-def tidy(module: ModuleType, text: str) -> str:
+def tidy(noun: str, text: str) -> str:
     """The stub of a noun in our words."""
     for pattern, word in WORDS:
         text = re.sub(pattern, word, text)
     text = re.sub(r"^(import|from) [^\n]*\n", "", text, flags=re.MULTILINE)
     text = re.sub(r"^__all__: list\[str\]", "__all__", text, flags=re.MULTILINE)
-    text = with_settings(text, module)
     text = ATTRIBUTE.sub(as_attribute, text)
     end = text.index('"""', 3) + 4
-    return text[:end] + imports(module.__name__.rpartition(".")[2], text[end:]) + "\n" + text[end:]
+    return text[:end] + imports(noun, text[end:]) + "\n" + text[end:]
 
 
 def engine_in(folder: Path) -> ModuleType:
@@ -178,7 +166,7 @@ def main() -> None:
                 text = f'"""{engine.__doc__}"""\n\nfrom . import {", ".join(nouns)}\n'
                 text += f"\n__all__ = {nouns}\n"
             else:
-                text = tidy(getattr(engine, path.stem), text)
+                text = tidy(path.stem, text)
             (stubs / path.name).write_text(text, encoding="utf-8")
 
 

@@ -1,6 +1,7 @@
 """The stubs of the installed package name and type what the engine has."""
 
 import ast
+import builtins
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
@@ -79,3 +80,16 @@ def test_a_stub_has_the_types_of_arguments_and_results(noun):
             assert ast.unparse(node.returns) not in ("object", "typing.Any"), node.name
         elif isinstance(node, ast.FunctionDef) and node.name == "__init__":
             assert not untyped(node), f"line {node.lineno}: {untyped(node)}"
+
+
+@pytest.mark.parametrize("noun", NOUNS)
+def test_a_stub_defines_or_imports_every_name_it_uses(noun):
+    tree = ast.parse((STUBS / f"{noun}.pyi").read_text())
+    defined = names_in(tree.body) | set(vars(builtins))
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            defined |= {alias.asname or alias.name for alias in node.names}
+        elif isinstance(node, ast.ClassDef):
+            defined |= names_in(node.body)
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    assert used <= defined
