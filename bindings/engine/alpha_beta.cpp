@@ -42,7 +42,8 @@ py::class_<Schedule> define_gains(py::handle scope, const char* name, const char
       py::arg("order") = 2, py::kw_only(), py::arg("reading") = 1, py::arg("elapsed_s") = 1.0,
       py::arg("std_m") = 1.0, py::arg("range_m") = 0.0,
       "[alpha, beta] or, of order 3, [alpha, beta, gamma] for the reading-th reading since the "
-      "start, `elapsed_s` after the one before, of error `std_m` along the axis, at a range.");
+      "start, `elapsed_s` after the previous one, with a standard deviation of `std_m`, at a "
+      "range.");
   return schedule;
 }
 
@@ -53,9 +54,9 @@ void define_schedules(py::module_& m) {
       {.positional = 3});
   define_gains<GrowingMemory, true>(
       m, "GrowingMemory",
-      R"(Gains that draw the least-squares line (or parabola) through all readings so far.
+      R"(Growing memory: the least-squares line (or parabola) through all readings so far.
 
-With regular steps the filter equals that line exactly, whatever the start. A missed scan does not count.)");
+With regular steps the filter equals that line exactly, for any start. A missed scan does not count.)");
   define_gains<BenedictBordner, false>(
       m, "BenedictBordner",
       "beta = alpha² / (2 - alpha): the least error after a change of velocity for the noise that "
@@ -68,10 +69,10 @@ With regular steps the filter equals that line exactly, whatever the start. A mi
       {.positional = 1});
   define_gains<TrackingIndex, true>(
       m, "TrackingIndex",
-      R"(Gains of the steady Kalman filter, by the tracking index: accel_std T² / error of the reading.
+      R"(Gains of the steady Kalman filter, by the tracking index: accel_std T² / standard deviation of the reading.
 
-The error is that of each reading along and across the bearing, so that the gains follow the range by themselves; the index follows
-the step. Source: P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alpha-beta-gamma target trackers,
+The standard deviation is that of each reading along and across the bearing, so that the gains depend on the range; the index
+depends on the step. Source: P. R. Kalata, The tracking index: a generalized parameter for alpha-beta and alpha-beta-gamma target trackers,
 IEEE Trans. AES-20, 1984.)",
       {.positional = 1})
       .def(
@@ -88,8 +89,8 @@ IEEE Trans. AES-20, 1984.)",
           "(order, order) covariance of the states of one axis after an update, in the steady "
           "state.");
   define_gains<RangeDependent, false>(m, "RangeDependent",
-                                      "Gains by the range alone, as a radar plotting aid has them: "
-                                      "beyond `near_range_m` in inverse "
+                                      "Gains by range, as in a radar plotting aid: beyond "
+                                      "`near_range_m` in inverse "
                                       "proportion to the range, down to those of `far`.");
 
   m.def(
@@ -98,7 +99,7 @@ IEEE Trans. AES-20, 1984.)",
         return gamma ? stable_gains(alpha, beta, *gamma) : stable_gains(alpha, beta);
       },
       py::arg("alpha"), py::arg("beta"), py::arg("gamma") = py::none(),
-      "Whether a filter of these gains forgets its errors: alpha > 0, beta > 0, 2 alpha + beta < 4 "
+      "Whether a filter with these gains is stable: alpha > 0, beta > 0, 2 alpha + beta < 4 "
       "and, with gamma, 0 < gamma < 4 alpha beta / (2 - alpha).");
 }
 
@@ -129,18 +130,17 @@ void define_alpha_beta(py::module_& m) {
 
   EstimatorClass<AlphaBetaFilter<2>> line(
       m, "AlphaBeta",
-      R"(The alpha-beta filter over [x, vx, y, vy], its gains by a schedule.
+      R"(The alpha-beta filter over [x, vx, y, vy], with a gain schedule.
 
-``x += alpha e`` and ``vx += beta e / T`` per axis, e the innovation in north and east and T the time since the reading before,
-missed scans included; readings within an eighth of a step are of one time and have one T. Covariance, NIS and likelihood are those
-of such gains where plots and motion are as the models say, so that it may be compared with a Kalman filter. Takes the position out
-of any sensor.
+``x += alpha e`` and ``vx += beta e / T`` per axis, with e the innovation in north and east and T the time since the previous
+reading, including missed scans; readings within an eighth of a step count as simultaneous. Covariance, NIS and likelihood are
+those of these gains under the given noise, so that it can be compared with a Kalman filter. Uses the position of any sensor.
 
 Parameters
 ----------
 gains : ConstantGains, GrowingMemory, BenedictBordner, CriticallyDamped, TrackingIndex or RangeDependent
 noise : ProcessNoise, optional
-    Of a constant velocity, for the covariance; when left out that which a tracking index stands for, else `WhiteAcceleration()`.
+    Process noise for the covariance; default that of the tracking index, else `WhiteAcceleration()`.
 
 Raises
 ------
@@ -155,7 +155,7 @@ ValueError
 
   EstimatorClass<AlphaBetaFilter<3>> parabola(
       m, "AlphaBetaGamma",
-      R"(The alpha-beta-gamma filter over [x, vx, ax, y, vy, ay], its gains by a schedule.
+      R"(The alpha-beta-gamma filter over [x, vx, ax, y, vy, ay], with a gain schedule.
 
 As `AlphaBeta`, and ``ax += gamma e / (2 T²)``.
 
@@ -163,9 +163,9 @@ Parameters
 ----------
 gains : ConstantGains, GrowingMemory, CriticallyDamped or TrackingIndex
 noise : ProcessNoise, optional
-    Of a constant acceleration, for the covariance; when left out that which a tracking index stands for, else `WhiteJerk()`.
+    Process noise for the covariance; default that of the tracking index, else `WhiteJerk()`.
 prior_accel_std_mps2 : float
-    What a start without acceleration assumes of it.
+    Prior standard deviation of the acceleration, for a start without one.
 
 Raises
 ------

@@ -39,14 +39,14 @@ double even_step_rad(const DoubleArray& azimuth_rad, double width_rad) {
   double total = 0.0;
   for (py::ssize_t k = 1; k < sweeps; ++k) total += turned(k);
   const double step = total / static_cast<double>(sweeps - 1);
-  if (!(step > 0.0)) throw py::value_error("video must have sweeps that run clockwise");
+  if (!(step > 0.0)) throw py::value_error("video must have clockwise sweeps");
   double off = 0.0;
   for (py::ssize_t k = 1; k < sweeps; ++k) {
     off += turned(k) - step;
     if (!(std::abs(off) <= 0.25 * step))
       throw py::value_error("video must have sweeps at even steps of azimuth, got sweep " +
                             std::to_string(k) + " " + std::to_string(off) +
-                            " rad off its place; a wakeline.ScanImage puts them there");
+                            " rad off its position; use a wakeline.ScanImage for a regular grid");
   }
   if (static_cast<double>(sweeps) * step > 2 * kPi<double> + 0.5 * step)
     throw py::value_error("video must hold at most one turn, got " +
@@ -105,23 +105,23 @@ void define_contains(py::class_<Strobe>& strobe) {
       [](const Strobe& s, const DoubleArray& predicted_m, const DoubleArray& plot_m) {
         return s.contains(to_position("predicted_m", predicted_m), to_position("plot_m", plot_m));
       },
-      py::arg("predicted_m"), py::arg("plot_m"), "Whether a plot [north, east] lies inside.");
+      py::arg("predicted_m"), py::arg("plot_m"), "Whether a plot [north, east] is inside.");
 }
 
 void define_strobes(py::module_& m) {
-  auto circle = define_struct<RadiusGate>(m, "RadiusGate",
-                                          "A circle of fixed radius about the predicted position.");
+  auto circle = define_struct<RadiusGate>(
+      m, "RadiusGate", "A circle of fixed radius around the predicted position.");
   define_contains(circle);
 
   py::class_<PyCovarianceStrobe> ellipse(m, "CovarianceStrobe",
-                                         R"(The gate of an estimator about the predicted position.
+                                         R"(The gate of an estimator around the predicted position.
 
 Parameters
 ----------
 innovation_covariance_m2 : (2, 2) array
-    Of north and east: what the estimator expects of a plot.
+    Innovation covariance over north and east.
 gate : ChiSquareGate
-    How sure it shall be to hold the plot.
+    Its probability to contain the plot.
 
 Raises
 ------
@@ -144,7 +144,7 @@ ValueError
           "(2, 2)")
       .def_property_readonly(
           "threshold", [](const PyCovarianceStrobe& s) { return s.threshold; },
-          "largest normalised innovation squared inside")
+          "largest normalized innovation squared inside")
       .def("_arguments", [](const PyCovarianceStrobe& s) {
         return Arguments()
             .with("innovation_covariance_m2", s.innovation_covariance_m2)
@@ -153,7 +153,7 @@ ValueError
   define_contains(ellipse);
 
   auto window = define_struct<RangeBearingWindow>(
-      m, "RangeBearingWindow", "Ranges and bearings from the antenna near the predicted ones.");
+      m, "RangeBearingWindow", "A window of range and bearing around the predicted position.");
   define_contains(window);
 }
 
@@ -168,7 +168,7 @@ void define_strobe_echo(py::module_& m) {
       .def_property_readonly(
           "position", [](const StrobeEcho& e) { return PyGaussian::from(e.position()); },
           "north and east from the antenna, m; NaN without a measurement")
-      .def_readonly("range_m", &StrobeEcho::range_m, "of the centre of mass")
+      .def_readonly("range_m", &StrobeEcho::range_m, "of the centroid")
       .def_readonly("bearing_rad", &StrobeEcho::bearing_rad, "clockwise from north, 0 to 2 pi")
       .def_property_readonly(
           "covariance", [](const StrobeEcho& e) { return to_array(e.covariance); },
@@ -177,12 +177,12 @@ void define_strobe_echo(py::module_& m) {
       .def_readonly("peak_amplitude", &StrobeEcho::peak_amplitude)
       .def_readonly("cells", &StrobeEcho::cells, "measured")
       .def_readonly("echoes", &StrobeEcho::echoes,
-                    "that do not touch, measured or not; 0 when there were too many to tell apart")
+                    "separate echoes, measured or not; 0 if there were too many to separate")
       .def_readonly("strobe_cells", &StrobeEcho::strobe_cells,
                     "of the picture inside the strobe, whatever their amplitude")
       .def_readonly("touches_edge", &StrobeEcho::touches_edge,
-                    "what was measured goes on beyond the strobe")
-      .def_readonly("cut", &StrobeEcho::cut, "part of the strobe lies outside the picture")
+                    "the measured echo extends beyond the strobe")
+      .def_readonly("cut", &StrobeEcho::cut, "part of the strobe is outside the picture")
       .def("__repr__", [](const StrobeEcho& e) {
         return std::string("<StrobeEcho: ") + to_string(e.status) +
                ", range_m=" + text_of(e.range_m) + ", bearing_rad=" + text_of(e.bearing_rad) + ">";
@@ -192,37 +192,37 @@ void define_strobe_echo(py::module_& m) {
   m.def("strobe_echo", &lay_strobe, py::arg("video"), py::arg("strobe"), py::arg("predicted_m"),
         py::kw_only(), py::arg("least_amplitude") = settings.least_amplitude,
         py::arg("pedestal") = settings.pedestal, py::arg("several") = "all",
-        R"(The echo in a strobe: the centre of mass of the amplitudes inside.
+        R"(The echo in a strobe: the centroid of the amplitudes inside.
 
-A cell is inside when its centre is. The centre of mass is that of range and bearing, which the
-width of the beam does not shorten. Its covariance is the weighted spread over the effective number
-of cells, plus what the grid rounds away.
+A cell is inside if its center is. The centroid is that of range and bearing, which the width of the
+beam does not bias. Its covariance is the weighted spread divided by the effective number of cells,
+plus the quantization of the grid.
 
 Parameters
 ----------
 video : RadarVideo or ScanImage
-    One turn or less, at even steps of azimuth.
+    At most one revolution, at even steps of azimuth.
 strobe : RadiusGate, CovarianceStrobe or RangeBearingWindow
 predicted_m : (2,) array
     North and east from the antenna.
 least_amplitude : int
-    Cells below it do not count. Set it above the noise, which else draws the centre of mass to the
-    prediction.
+    Cells below it do not count. Set it above the noise, which otherwise biases the centroid towards
+    the prediction.
 pedestal : int
-    Taken from the amplitude of every cell that counts; below `least_amplitude`.
+    Subtracted from the amplitude of every cell that counts; below `least_amplitude`.
 several : {'all', 'nearest', 'strongest'}
-    Which is measured of several echoes that do not touch: the centre of mass of all, the one
-    nearest to the prediction, or the one of the largest weight.
+    Which of several separate echoes is measured: the centroid of all, the one nearest to the
+    prediction, or the one with the largest weight.
 
 Returns
 -------
 StrobeEcho
-    With the status 'invalid' when the prediction is not finite.
+    With the status 'invalid' if the prediction is not finite.
 
 Raises
 ------
 ValueError
-    When a setting makes no sense, or the sweeps do not run clockwise at even steps.
+    When a setting is invalid, or the sweeps are not clockwise at even steps.
 
 References
 ----------
@@ -233,12 +233,12 @@ detection".)");
 }  // namespace
 
 void define_gating(py::module_& parent) {
-  py::module_ m = parent.def_submodule("gating", "Where to look for a target's plot.");
+  py::module_ m = parent.def_submodule("gating", "Gates and strobes for a target's plot.");
   define_struct<ChiSquareGate>(
       m, "ChiSquareGate",
       "The ellipsoid that holds the target's own plot with a given probability.")
       .def("threshold", &ChiSquareGate::threshold, py::arg("dof"),
-           "Largest normalised innovation squared inside, for `dof` measured quantities, at least "
+           "Largest normalized innovation squared inside, for `dof` measured quantities, at least "
            "1; else NaN.");
   define_strobes(m);
   define_strobe_echo(m);

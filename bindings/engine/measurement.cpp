@@ -18,7 +18,7 @@ void define_sensor(py::class_<Sensor>& sensor) {
       [](const Sensor& s, const DoubleArray& z) {
         return PyGaussian::from(s.observe(to_vector<kM>("z", z)));
       },
-      py::arg("z"), "The reading as value and covariance R, converted where the sensor is.");
+      py::arg("z"), "The reading as value and covariance R, converted if the sensor is.");
   sensor.def(
       "position",
       [](const Sensor& s, const DoubleArray& z) {
@@ -30,7 +30,7 @@ void define_sensor(py::class_<Sensor>& sensor) {
       [](const Sensor& s, const DoubleArray& x) {
         return to_array(s.measure(to_vector<kReadsOf<Sensor>>("x", x)));
       },
-      py::arg("x"), "h of the components the sensor reads ([x, y], or [x, vx, y, vy]), (M,).");
+      py::arg("x"), "h of the components that the sensor reads ([x, y], or [x, vx, y, vy]), (M,).");
   sensor.def(
       "jacobian",
       [](const Sensor& s, const DoubleArray& x) {
@@ -42,7 +42,7 @@ void define_sensor(py::class_<Sensor>& sensor) {
 }  // namespace
 
 void define_measurement(py::module_& parent) {
-  py::module_ m = parent.def_submodule("measurement", "What a sensor reports.");
+  py::module_ m = parent.def_submodule("measurement", "Sensors.");
 
   define_struct<OwnShip>(m, "OwnShip",
                          "Where the antenna is when it measures, and how well that is known.",
@@ -60,7 +60,7 @@ void define_measurement(py::module_& parent) {
         "error.");
   m.def("conversion_bias_matters", py::vectorize(&conversion_bias_matters), py::arg("range_m"),
         py::arg("range_std_m"), py::arg("bearing_std_rad"),
-        "True when the plain polar conversion is biased enough to matter: ratio above 0.4.");
+        "Whether the bias of the plain polar conversion matters: ratio above 0.4.");
 }
 
 }  // namespace wakeline::python

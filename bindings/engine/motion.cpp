@@ -66,15 +66,16 @@ py::object AsPython<ProcessNoise>::of(const ProcessNoise& noise) {
 }
 
 void define_motion(py::module_& parent) {
-  py::module_ m = parent.def_submodule("motion", "How a vessel moves.");
+  py::module_ m = parent.def_submodule("motion", "Motion models.");
 
   define_struct<WhiteAcceleration>(
-      m, "WhiteAcceleration", "Continuous white acceleration per axis; Q is right for any dt.");
+      m, "WhiteAcceleration",
+      "Continuous white acceleration per axis; Q is consistent for any dt.");
   define_struct<PiecewiseAcceleration>(
       m, "PiecewiseAcceleration",
-      "Acceleration drawn for each step, Q = G s² Gᵀ: the papers' form.");
+      "Acceleration constant over each step, Q = G s² Gᵀ: the papers' form.");
   define_struct<WhiteJerk>(m, "WhiteJerk",
-                           "Continuous white jerk per axis, for states that hold an acceleration.");
+                           "Continuous white jerk per axis, for states with an acceleration.");
   py::class_<ProcessNoise> noise(m, "ProcessNoise", "One of the process-noise policies.");
   define_copies(noise);
   noise.def(py::init<WhiteAcceleration>(), py::arg("policy"))

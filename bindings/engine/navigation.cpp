@@ -95,7 +95,7 @@ void define_geodesy(py::module_& m) {
       },
       py::arg("latitude_rad"), py::arg("longitude_rad"), py::arg("to_latitude_rad"),
       py::arg("to_longitude_rad"),
-      R"(The shortest line between places on the WGS84 ellipsoid, within 0.1 mm.
+      R"(The shortest line between positions on the WGS84 ellipsoid, within 0.1 mm.
 
 Parameters
 ----------
@@ -105,9 +105,8 @@ latitude_rad, longitude_rad, to_latitude_rad, to_longitude_rad : array_like
 Returns
 -------
 (distance_m, course_rad, arrival_course_rad)
-    Courses clockwise from true north at departure and at the destination. NaN where the places are
-    nearly opposite each other on the earth (within about 0.7 degrees) and the series does not
-    converge.
+    Courses clockwise from true north at departure and at the destination. NaN for nearly antipodal
+    positions (within about 0.7 degrees), where the series does not converge.
 
 Raises
 ------
@@ -131,7 +130,7 @@ T. Vincenty, Direct and inverse solutions of geodesics on the ellipsoid, Survey 
       },
       py::arg("latitude_rad"), py::arg("longitude_rad"), py::arg("course_rad"),
       py::arg("distance_m"),
-      "(latitude_rad, longitude_rad) where geodesics lead that depart on a course.");
+      "(latitude_rad, longitude_rad) of the destinations of geodesics with an initial course.");
 
   m.def(
       "rhumb_line",
@@ -148,8 +147,8 @@ T. Vincenty, Direct and inverse solutions of geodesics on the ellipsoid, Survey 
       },
       py::arg("latitude_rad"), py::arg("longitude_rad"), py::arg("to_latitude_rad"),
       py::arg("to_longitude_rad"),
-      "(distance_m, course_rad) of lines of constant course on the ellipsoid, the shorter way "
-      "round; to or from a pole along the meridian.");
+      "(distance_m, course_rad) of lines of constant course on the ellipsoid, in the shorter "
+      "direction; to or from a pole along the meridian.");
 
   m.def(
       "rhumb_destination",
@@ -164,14 +163,14 @@ T. Vincenty, Direct and inverse solutions of geodesics on the ellipsoid, Survey 
       },
       py::arg("latitude_rad"), py::arg("longitude_rad"), py::arg("course_rad"),
       py::arg("distance_m"),
-      "(latitude_rad, longitude_rad) where lines of constant course lead; NaN beyond a pole.");
+      "(latitude_rad, longitude_rad) of the destinations of rhumb lines; NaN beyond a pole.");
 
   py::class_<LocalPlane> plane(m, "LocalPlane",
-                               R"(The plane of north and east about a place.
+                               R"(The plane of north and east around a reference position.
 
-Distance and course from the reference along the geodesic, as polar coordinates (the azimuthal equidistant projection): what is
-measured from the reference is true to 0.1 mm. Across, at a distance d, the plane is stretched by d² / (6 R²): 1e-5 at 50 km, 4e-5 at
-100 km. Places are given by keyword, in radians: one in degrees would be another place.
+Distance and course from the reference along the geodesic, as polar coordinates (the azimuthal equidistant projection): distances
+from the reference are exact to 0.1 mm. Across that direction, at a distance d, the plane is stretched by d² / (6 R²): 1e-5 at 50 km,
+4e-5 at 100 km. Positions are keyword arguments in radians, because degrees would silently give another position.
 
 Parameters
 ----------
@@ -209,7 +208,7 @@ ValueError
                 latitude, longitude);
           },
           py::kw_only(), py::arg("latitude_rad"), py::arg("longitude_rad"),
-          "[north, east] (..., 2) of places (...); NaN on the other side of the earth.")
+          "[north, east] (..., 2) of positions (...); NaN near the antipode.")
       .def(
           "place",
           [](const LocalPlane& p, const DoubleArray& position_m) {
@@ -234,8 +233,9 @@ ValueError
           },
           py::arg("true_course_rad"), py::kw_only(), py::arg("latitude_rad"),
           py::arg("longitude_rad"),
-          "Directions on the plane of courses from true north at places: meridians lean towards "
-          "each other.")
+          "Directions on the plane of courses from true north at positions, with the convergence "
+          "of "
+          "meridians.")
       .def(
           "true_course_rad",
           [](const LocalPlane& p, const DoubleArray& course, const DoubleArray& latitude,
@@ -249,7 +249,7 @@ ValueError
           },
           py::arg("plane_course_rad"), py::kw_only(), py::arg("latitude_rad"),
           py::arg("longitude_rad"),
-          "Courses from true north at places of directions on the plane.");
+          "Courses from true north at positions, from directions on the plane.");
 }
 
 // Dead reckoning ----------------------------------------------------------------------------------
@@ -291,7 +291,7 @@ void define_dead_reckoning(py::module_& m) {
       [](const DoubleArray& latitude, const DoubleArray& rate, const DoubleArray& dt_s) {
         return each(predict_latitude_rad, latitude, rate, dt_s);
       },
-      py::arg("latitude_rad"), py::arg("rate_rad_s"), py::arg("dt_s"), "Not over a pole; (6).");
+      py::arg("latitude_rad"), py::arg("rate_rad_s"), py::arg("dt_s"), "Not across a pole; (6).");
   m.def(
       "predict_longitude_rad",
       [](const DoubleArray& longitude, const DoubleArray& rate, const DoubleArray& dt_s) {
@@ -339,7 +339,7 @@ void define_dead_reckoning(py::module_& m) {
                            wn, we, dn, de);
       },
       py::arg("through_water"), py::arg("drift"),
-      R"(Motion over ground: motion through the water plus drift, as vectors; (3), and (4) of accelerations.
+      R"(Motion over ground: the vector sum of motion through the water and drift; (3), (4) for accelerations.
 
 Parameters
 ----------
@@ -354,17 +354,16 @@ Returns
 Raises
 ------
 ValueError
-    When one is not of pairs, or the shapes do not go together.)");
+    When an argument does not have pairs, or the shapes do not fit.)");
 
   const TotalDrift none;
   py::class_<TotalDrift>(m, "TotalDrift",
-                         R"(What carries a vessel besides her engine; (3).
+                         R"(Total drift of a vessel; (3).
 
 Parameters
 ----------
 wind_drift_mps, current_mps, residual_mps : (2,) array
-    [north, east] m/s of leeway, of the current of tide, wind and waves, and of what is left
-    unexplained.
+    [north, east] m/s of leeway, of the current of tide, wind and waves, and of the residual.
 
 Raises
 ------
@@ -405,7 +404,7 @@ ValueError
         return to_array(velocity_over_window_mps(window));
       },
       py::arg("time_s"), py::arg("latitude_rad"), py::arg("longitude_rad"),
-      R"(Velocity over ground of a vessel on a rhumb line, by least squares through her first place; (7).
+      R"(Velocity over ground of a vessel on a rhumb line, by least squares from its first position; (7).
 
 Parameters
 ----------
@@ -415,7 +414,7 @@ time_s, latitude_rad, longitude_rad : (N,) array
 Returns
 -------
 (2,) array
-    [north, east] m/s; NaN unless there are two times.)");
+    [north, east] m/s; NaN with fewer than two times.)");
   m.def(
       "velocity_from_rates_mps",
       [](const DoubleArray& latitude_rate, const DoubleArray& longitude_rate,
@@ -454,14 +453,14 @@ latitude_rad, longitude_rad, speed_mps, course_rad, dt_s, drift_speed_mps, drift
 Returns
 -------
 (latitude_rad, longitude_rad)
-    In mid-latitude with the radii of the ellipsoid: within 0.1 m of the rhumb line over 20 km up to
+    By mid-latitude with the radii of the ellipsoid: within 0.1 m of the rhumb line over 20 km up to
     70 degrees. NaN beyond a pole.)");
 }
 
 // Leeway ------------------------------------------------------------------------------------------
 
 void define_leeway(py::module_& m) {
-  py::enum_<FloatingObject>(m, "FloatingObject", "What floats.")
+  py::enum_<FloatingObject>(m, "FloatingObject", "Kind of floating object.")
       .value("buoy", FloatingObject::kBuoy)
       .value("dinghy", FloatingObject::kDinghy)
       .value("launch", FloatingObject::kLaunch)
@@ -472,8 +471,7 @@ void define_leeway(py::module_& m) {
         const LeewayFactor factor = leeway_factor(object);
         return py::make_tuple(factor.least, factor.greatest);
       },
-      py::arg("object"),
-      "Least and greatest share of the wind's speed that an object takes on; (12).");
+      py::arg("object"), "Minimum and maximum leeway factor of an object; (12).");
   m.def(
       "wind_drift_mps",
       [](const DoubleArray& wind, const DoubleArray& factor) {
@@ -496,28 +494,27 @@ void define_leeway(py::module_& m) {
       },
       py::arg("wind_mps"), py::arg("latitude_rad"), py::kw_only(),
       py::arg("factor") = WindCurrent::kDefaultFactor,
-      R"(The current at the surface that a lasting wind makes; (14).
+      R"(The surface current of a steady wind; (14).
 
-``V = k U / sqrt(sin |latitude|)``, 45 degrees to the right of where the wind blows in the northern hemisphere, to the left in the
-southern.
+``V = k U / sqrt(sin |latitude|)``, 45 degrees to the right of the wind in the northern hemisphere, to the left in the southern.
 
 Parameters
 ----------
 wind_mps : (..., 2) array
-    Where the wind blows to, [north, east].
+    Direction and speed to which the wind blows, [north, east].
 latitude_rad : array_like
 factor : float
-    k; observed ones lie from 0.04 (wind of 2 m/s) to 0.012 (20 m/s).
+    k; observed values are from 0.04 (wind of 2 m/s) to 0.012 (20 m/s).
 
 Returns
 -------
 (..., 2) array
-    [north, east] of the water.
+    [north, east] of the current.
 
 Raises
 ------
 ValueError
-    Less than 20 degrees from the equator, where the law fails.)");
+    Less than 20 degrees from the equator, where the formula is invalid.)");
   m.def(
       "stokes_drift_mps",
       [](const DoubleArray& height, const DoubleArray& length) {
@@ -592,7 +589,7 @@ void define_drift(py::module_& m) {
             north, east, speed, course);
       },
       py::arg("ground_velocity_mps"), py::arg("speed_mps"), py::arg("course_rad"),
-      "Velocity over ground (..., 2) less that through the water, (..., 2).");
+      "Velocity over ground (..., 2) minus that through the water, (..., 2).");
   m.def(
       "water_velocity",
       [](double speed, double heading, double log_std, double heading_std) {
@@ -607,7 +604,7 @@ void define_drift(py::module_& m) {
       "Velocity through the water by log and compass, with the covariance of their errors.");
   m.def("ground_velocity_from_marks", &from_marks, py::arg("relative_velocity_mps"),
         py::arg("covariance"),
-        R"(Own velocity over ground by marks that lie still, tracked by radar.
+        R"(Own ship's velocity over ground from fixed marks tracked by radar.
 
 Parameters
 ----------
@@ -618,7 +615,7 @@ covariance : (M, 2, 2) array
 Returns
 -------
 Gaussian
-    Minus their mean, each weighed by its information.
+    Minus their mean, weighted by information.
 
 Raises
 ------
@@ -631,7 +628,7 @@ ValueError
             drift_between(to_gaussian("over_ground", ground), to_gaussian("through_water", water)));
       },
       py::arg("over_ground"), py::arg("through_water"),
-      "Drift of velocities that err independently.");
+      "Drift from two velocities with independent errors.");
   m.def(
       "sea_stabilised_mps",
       [](const DoubleArray& relative, const DoubleArray& speed, const DoubleArray& course) {
@@ -643,8 +640,8 @@ ValueError
             north, east, speed, course);
       },
       py::arg("relative_mps"), py::arg("own_speed_mps"), py::arg("own_course_rad"),
-      "Velocities of targets through the water (..., 2) from those relative to the ship and hers "
-      "by log and compass.");
+      "Velocities of targets through the water (..., 2) from those relative to own ship and own "
+      "ship's by log and compass.");
   m.def(
       "ground_stabilised_mps",
       [](const DoubleArray& relative, const DoubleArray& speed, const DoubleArray& course,
@@ -658,8 +655,7 @@ ValueError
             north, east, speed, course, dn, de);
       },
       py::arg("relative_mps"), py::arg("own_speed_mps"), py::arg("own_course_rad"),
-      py::arg("drift_mps"),
-      "Velocities of targets over ground (..., 2): a mark that lies still has none.");
+      py::arg("drift_mps"), "Velocities of targets over ground (..., 2); zero for a fixed mark.");
 
   const DriftWindowSettings defaults;
   py::class_<DriftWindow<>> window(
@@ -667,15 +663,15 @@ ValueError
       R"(The drift of a vessel over a sliding window of fixes; (16)-(20).
 
 The slope of the line through the differences of observed and reckoned positions, by least squares, with its covariance. The
-differences err by the fixes and by what log and compass sum up to in between, each reading independently of the one before; with no
-error of log and compass the line is the plain one. A lasting error of the log or the compass counts as drift.
+differences have the errors of the fixes and the accumulated, independent errors of log and compass; without errors of log and
+compass the line is the plain one. A constant error of the log or the compass counts as drift.
 
 Parameters
 ----------
 max_fixes : int
-    That are remembered, 2 to 32.
+    Maximum number of fixes, 2 to 32.
 log_std_mps, heading_std_rad : float
-    Errors of one reading of the log and of the compass.
+    Standard deviations of one reading of the log and of the compass.
 
 Raises
 ------
@@ -696,22 +692,21 @@ ValueError
            py::kw_only(), py::arg("max_fixes") = defaults.max_fixes,
            py::arg("log_std_mps") = defaults.log_std_mps,
            py::arg("heading_std_rad") = defaults.heading_std_rad)
-      .def("clear", &DriftWindow<>::clear,
-           "Forgets all fixes: after an alteration, where drift is wanted on the new course alone.")
+      .def("clear", &DriftWindow<>::clear, "Forget all fixes, e.g. after an alteration of course.")
       .def(
           "advance",
           [](DriftWindow<>& w, double dt_s, double speed, double heading) {
             require_ok(w.advance(dt_s, speed, heading), "advance");
           },
           py::arg("dt_s"), py::arg("speed_mps"), py::arg("heading_rad"),
-          "Lets time pass at a speed through the water and a heading.")
+          "Advance time with a speed through the water and a heading.")
       .def(
           "add",
           [](DriftWindow<>& w, const PyGaussian& fix) {
             require_ok(w.add(to_gaussian("fix", fix)), "add");
           },
-          py::arg("fix"), "Takes a fix of the present time, [north, east] m on a plane.")
-      .def_property_readonly("size", &DriftWindow<>::size, "fixes that are remembered")
+          py::arg("fix"), "Process a fix at the present time, [north, east] m on a plane.")
+      .def_property_readonly("size", &DriftWindow<>::size, "number of fixes")
       .def_property_readonly("ready", &DriftWindow<>::ready,
                              "whether there are two fixes of different times")
       .def(
@@ -719,21 +714,21 @@ ValueError
           "[north, east] m/s; zero with an infinite covariance until `ready`.")
       .def("run", &run_window, py::arg("dt_s"), py::arg("speed_mps"), py::arg("heading_rad"),
            py::arg("fix_m"), py::arg("fix_std_m"),
-           R"(The drift after each of a series of fixes, from the first one on.
+           R"(The drift after each of a series of fixes.
 
 Parameters
 ----------
 dt_s, speed_mps, heading_rad : float or (T,) array
-    The step to a fix and what log and compass have said in it; the first step means nothing.
+    The step to a fix and the readings of log and compass in it; the first step is ignored.
 fix_m : (T, 2) array
     NaN where a fix is missing.
 fix_std_m : float or (T,) array
-    Error of a fix per axis.
+    Standard deviation of a fix per axis.
 
 Returns
 -------
 (mean, covariance)
-    (T, 2) and (T, 2, 2), as `drift`.)");
+    (T, 2) and (T, 2, 2), as for `drift`.)");
 }
 
 // Drift, forecast ---------------------------------------------------------------------------------
@@ -744,7 +739,7 @@ void define_drift_forecast(py::module_& m) {
       "How an object drifts: v = k U + C + r, U the wind, C the current, and what is not known of "
       "them; the leeway is that of a dinghy by default.")
       .def_static("of", &DriftModel::of, py::arg("object"),
-                  "With the leeway of a kind of object, the rest by default.");
+                  "The model with the leeway of a kind of object.");
 
   m.def(
       "drift_forecast",
@@ -766,7 +761,7 @@ void define_drift_forecast(py::module_& m) {
       },
       py::arg("model"), py::arg("start"), py::arg("dt_s"), py::arg("wind_mps"),
       py::arg("current_mps"),
-      R"(Where an object that is left to wind and current will be, as a Gaussian that grows.
+      R"(Forecast of the position of a drifting object, as a Gaussian.
 
 Parameters
 ----------
@@ -776,7 +771,7 @@ start : Gaussian
 dt_s : float or (T,) array
     Steps.
 wind_mps, current_mps : (2,) or (T, 2) array
-    During each step: where the air and the water go, [north, east].
+    Velocity of air and water in each step, [north, east].
 
 Returns
 -------
@@ -815,22 +810,23 @@ Returns
       },
       py::arg("model"), py::arg("start"), py::arg("dt_s"), py::arg("wind_mps"),
       py::arg("current_mps"), py::kw_only(), py::arg("count") = 1000, py::arg("seed") = 0,
-      R"(The same forecast as a cloud of objects that might be the one adrift.
+      R"(The same forecast as particles.
 
 Parameters
 ----------
 model, start, dt_s, wind_mps, current_mps
     As for `drift_forecast`.
 count, seed : int
-    The same seed gives the same objects, however many there are.
+    Particle k of a seed does not depend on the count.
 
 Returns
 -------
 (T, count, 2) array
     [north, east] m after each step.)");
 
-  py::class_<UncertaintyEllipse>(m, "UncertaintyEllipse",
-                                 "The area that holds a Gaussian position with a probability.")
+  py::class_<UncertaintyEllipse>(
+      m, "UncertaintyEllipse",
+      "The area that contains a Gaussian position with a given probability.")
       .def(py::init([](const DoubleArray& covariance, double probability) {
              const Gaussian<2> belief{Vec2::Zero(), to_matrix("covariance", covariance, 2, 2)};
              if (!(probability > 0.0 && probability < 1.0))
@@ -854,8 +850,7 @@ Returns
 }  // namespace
 
 void define_navigation(py::module_& parent) {
-  py::module_ m =
-      parent.def_submodule("navigation", "Places on the earth, dead reckoning, leeway and drift.");
+  py::module_ m = parent.def_submodule("navigation", "Geodesy, dead reckoning, leeway and drift.");
   define_geodesy(m);
   define_dead_reckoning(m);
   define_leeway(m);

@@ -125,10 +125,11 @@ constexpr auto radar_fields() noexcept {
       field("bearing_std_rad", &S::bearing_std_rad, kPositive, "rad",
             "Standard deviation of the bearing."),
       field("extent_std_m", &S::extent_std_m, kNotNegative, "m",
-            "Wander of the echo over the hull of its vessel, per axis."),
+            "Standard deviation of the echo's position on the hull, per axis."),
       field("bearing_offset_rad", &S::bearing_offset_rad, kFinite, "rad",
-            "Bearing read minus true bearing."),
-      field("own", &S::own, "Where the antenna is, and how well that and the heading are known."),
+            "Measured minus true bearing."),
+      field("own", &S::own,
+            "Position of the antenna, with its standard deviation and that of the heading."),
   };
 }
 

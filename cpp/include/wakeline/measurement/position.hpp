@@ -10,8 +10,7 @@ namespace wakeline {
 /// A position `[north m, east m]` with the same error in every direction.
 struct Position {
   static constexpr const char* kName = "Position";
-  static constexpr const char* kSummary =
-      "A position [north m, east m] with equal error in every direction.";
+  static constexpr const char* kSummary = "A position [north m, east m] with an isotropic error.";
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;
   static constexpr bool kLinear = true;

@@ -87,7 +87,7 @@ struct RangeBearing {
 struct ConvertedRangeBearing {
   static constexpr const char* kName = "ConvertedRangeBearing";
   static constexpr const char* kSummary =
-      "A plot [range m, bearing rad] converted to north/east with its own covariance: linear.";
+      "A plot [range m, bearing rad] converted to north/east with its covariance: linear.";
   static constexpr int kMeasurements = 2;
   static constexpr auto kReads = kPosition;
   static constexpr bool kLinear = true;

@@ -12,7 +12,7 @@ namespace wakeline {
 struct RangeBearingDoppler {
   static constexpr const char* kName = "RangeBearingDoppler";
   static constexpr const char* kSummary =
-      "A plot [range m, bearing rad, range rate m/s], the rate as seen from own ship.";
+      "A plot [range m, bearing rad, range rate m/s], relative to own ship.";
   static constexpr int kMeasurements = 3;
   static constexpr auto kReads = kKinematics;
   static constexpr bool kLinear = false;

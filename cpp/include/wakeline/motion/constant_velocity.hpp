@@ -13,7 +13,7 @@ namespace wakeline {
 /// Kirubarajan, 6.2.2; paper A, equation (1).
 struct ConstantVelocity {
   static constexpr const char* kName = "ConstantVelocity";
-  static constexpr const char* kSummary = "Straight and steady: state [x, vx, y, vy] (m, m/s).";
+  static constexpr const char* kSummary = "Constant velocity: state [x, vx, y, vy] (m, m/s).";
   static constexpr auto kComponents = kKinematics;
   static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x00 0100 001x 0001"};

@@ -18,7 +18,7 @@ template <class Rate>
 struct KnownTurn {
   static constexpr const char* kName = "CoordinatedTurn";
   static constexpr const char* kSummary =
-      "A steady turn at a known rate, positive to starboard: state [x, vx, y, vy].";
+      "A coordinated turn at a known rate, positive to starboard: state [x, vx, y, vy].";
   static constexpr auto kComponents = kKinematics;
   static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x0x 0x0x 0x1x 0x0x"};
@@ -75,8 +75,8 @@ using CoordinatedTurn = KnownTurn<double>;
 struct CoordinatedTurnRate {
   static constexpr const char* kName = "CoordinatedTurnRate";
   static constexpr const char* kSummary =
-      "A turn whose rate is part of the state and wanders: [x, vx, y, vy, omega] (m, m/s, rad/s); "
-      "it returns to the prior rate within `turn_rate_time_s`, or never where that is 0.";
+      "A coordinated turn with the rate in the state: [x, vx, y, vy, omega] (m, m/s, rad/s); the "
+      "rate returns to its prior with `turn_rate_time_s`, or is a random walk if that is 0.";
   static constexpr std::array kComponents{Component::kNorth, Component::kVnorth, Component::kEast,
                                           Component::kVeast, Component::kTurnRate};
   static constexpr bool kForPacks = true;

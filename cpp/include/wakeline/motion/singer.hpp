@@ -31,7 +31,7 @@ Scalar exponential_remainder(Scalar u) noexcept {
 struct Singer {
   static constexpr const char* kName = "Singer";
   static constexpr const char* kSummary =
-      "Singer's maneuvering target: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).";
+      "Singer's model of a maneuvering target: state [x, vx, ax, y, vy, ay] (m, m/s, m/s²).";
   static constexpr auto kComponents = kAccelerationKinematics;
   static constexpr bool kForPacks = true;
   static constexpr Pattern<6> kPattern{"1xx000 01x000 00x000 0001xx 00001x 00000x"};

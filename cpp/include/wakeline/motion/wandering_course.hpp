@@ -26,8 +26,7 @@ Scalar course_wander_psd(double course_psd_rad2s, double max_speed_mps, Scalar v
 struct WanderingCourse {
   static constexpr const char* kName = "WanderingCourse";
   static constexpr const char* kSummary =
-      "Straight and nearly steady, with an acceleration that grows with the speed: state [x, vx, "
-      "y, vy].";
+      "Nearly constant velocity with course noise that grows with the speed: state [x, vx, y, vy].";
   static constexpr auto kComponents = kKinematics;
   static constexpr bool kForPacks = true;
   static constexpr Pattern<4> kPattern{"1x00 0100 001x 0001"};

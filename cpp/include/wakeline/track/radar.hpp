@@ -27,12 +27,12 @@ struct Radar {
         field("bearing_std_rad", &R::bearing_std_rad, kPositive, "rad",
               "Standard deviation of the bearing of a plot."),
         field("extent_std_m", &R::extent_std_m, kNotNegative, "m",
-              "Wander of an echo over the hull of its vessel, per axis."),
-        field("period_s", &R::period_s, kPositive, "s", "Time of one turn of the antenna."),
+              "Standard deviation of an echo's position on the hull, per axis."),
+        field("period_s", &R::period_s, kPositive, "s", "Antenna revolution."),
         field("max_speed_mps", &R::max_speed_mps, kPositive, "m/s",
               "Speed limit of the vessels, with a fifth to spare: faster tracks are dropped."),
         field("bearing_offset_rad", &R::bearing_offset_rad, kFinite, "rad",
-              "Bearing read minus true bearing, which is subtracted from every plot."),
+              "Measured minus true bearing; subtracted from every plot."),
     };
   }
 
