@@ -324,7 +324,7 @@ TEST(Candidates, RefuseWhatDoesNotFitAndStaySound) {
   EXPECT_FALSE(candidates.add(1, 1.5)) << "full";
   EXPECT_FALSE(candidates.start_row(5.0)) << "full";
   EXPECT_FALSE(candidates.add(1, 1.5)) << "a refused row takes no candidates";
-  EXPECT_EQ(candidates.refused(), 8);
+  EXPECT_EQ(candidates.rejected(), 8);
   EXPECT_EQ(candidates.rows(), 2);
   EXPECT_EQ(candidates.size(), 3);
   GlobalNearestNeighbour<double> solver(2, 4);
@@ -333,7 +333,7 @@ TEST(Candidates, RefuseWhatDoesNotFitAndStaySound) {
 
   candidates.clear(1);
   EXPECT_EQ(candidates.size(), 0);
-  EXPECT_EQ(candidates.refused(), 0);
+  EXPECT_EQ(candidates.rejected(), 0);
   EXPECT_FALSE(candidates.start_row(kInfinity));
   EXPECT_FALSE(candidates.add(0, 1.0));
   EXPECT_TRUE(candidates.start_row(1.0));

@@ -88,7 +88,7 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
   static_assert(
       requires(BankType & bank) { bank.set_active(0, true); },
       "wakeline: the models of a LikelyModelSetImm come and go, so that its bank must be one whose "
-      "filters may rest, such as a UniformBank of a number of filters that is told at run time");
+      "filters may rest, such as a UniformBank of a number of filters given at run time");
 
  public:
   using typename Base::Bank;

@@ -93,7 +93,7 @@ void set_turn_rate(Filter& filter, Rate turn_rate_rad_s) noexcept {
       "(prior_turn_rate_rad_s), as CoordinatedTurnRate does");
   static_assert(
       std::is_convertible_v<Rate, std::decay_t<decltype(filter.motion().turn_rate_rad_s)>>,
-      "wakeline: here each lane has a turn rate of its own; use KnownTurn<Scalar> instead of "
+      "wakeline: each lane has its own turn rate here; use KnownTurn<Scalar> instead of "
       "CoordinatedTurn");
   auto motion = filter.motion();
   motion.turn_rate_rad_s = turn_rate_rad_s;
