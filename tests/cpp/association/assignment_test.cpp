@@ -308,7 +308,7 @@ TEST(NearestNeighbour, TakesTheCheapestPairFirstAndTiesByRowThenColumn) {
   EXPECT_EQ(greedy.assignment().total_cost(), 11.5);
 }
 
-TEST(Candidates, RefuseWhatDoesNotFitAndStaySound) {
+TEST(Candidates, RejectWhatExceedsTheirCapacityAndStayValid) {
   Candidates<double> candidates(2, 3);
   candidates.clear(4);
   EXPECT_FALSE(candidates.add(0, 1.0)) << "no row is open";
@@ -351,7 +351,7 @@ TEST(Candidates, RejectNegativeCapacities) {
   EXPECT_THROW(NearestNeighbour<double>(1, 1, -1), std::invalid_argument);
 }
 
-TEST(Assignment, SolversRefuseAProblemBeyondTheirCapacity) {
+TEST(Assignment, SolversRejectAProblemBeyondTheirCapacity) {
   std::mt19937_64 random(17);
   const auto problem = draw_problem(5, 5, 1.0, 100, random);
   const auto candidates = problem.candidates();
