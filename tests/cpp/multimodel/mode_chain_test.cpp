@@ -155,7 +155,7 @@ TEST(ModeChain, AChainThatRarelyStaysIsReportedAsSuch) {
   EXPECT_NO_THROW(Three(round.transition(1.0), 1.0));
   for (const double period : {1.9, 10.0, 100.0}) {
     const std::string message = complaint([&] { Three(round.transition(period), period); });
-    EXPECT_NE(message.find("or of one that hardly stays over it"), std::string::npos) << message;
+    EXPECT_NE(message.find("or of one that rarely stays over it"), std::string::npos) << message;
   }
 }
 

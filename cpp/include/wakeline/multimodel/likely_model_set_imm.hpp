@@ -86,8 +86,9 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
   using Base = TurnGridImm<BankType>;
   static_assert(
       requires(BankType & bank) { bank.set_active(0, true); },
-      "wakeline: the models of a LikelyModelSetImm come and go, so that its bank must be one whose "
-      "filters may rest, such as a UniformBank of a number of filters given at run time");
+      "wakeline: a LikelyModelSetImm activates and deactivates its models and needs a bank for "
+      "that, "
+      "such as a UniformBank with a number of filters given at run time");
 
  public:
   using typename Base::Bank;

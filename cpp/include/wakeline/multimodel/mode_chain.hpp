@@ -214,7 +214,7 @@ class ModeChain {
     if (!valid || !(transition(period_s) - over_period).isZero(1e-9))
       refuse(
           "this matrix is not the transition of a continuous-time chain over its period, or of one "
-          "that hardly stays over it; leave the period out to apply it once per prediction");
+          "that rarely stays over it; leave out the period to apply it once per prediction");
   }
 
   // Sums in loops, so that their order does not depend on whether K is a template parameter.

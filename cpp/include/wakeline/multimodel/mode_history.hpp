@@ -57,8 +57,8 @@ template <class FilterType, int K = kRuntimeModes, int Capacity = 256>
 class ModeHistory {
   static_assert(
       !requires(const FilterType& filter) { filter.memory(); },
-      "wakeline: a hypothesis of a ModeHistory is a belief alone; a filter that remembers "
-      "more (an alpha-beta filter, where its gains are) cannot be its model");
+      "wakeline: a hypothesis of a ModeHistory is only a belief; a filter with further state "
+      "(an alpha-beta filter and its gain schedule) cannot be its model");
 
  public:
   using Filter = FilterType;
@@ -101,7 +101,7 @@ class ModeHistory {
             tree.max_hypotheses);
     for (int k = 1; k < bank.size(); ++k)
       require(same_prior_rate(0, k) || tree.pseudo_bayes_order != 1, "pseudo_bayes_order",
-              "2 or more where each mode learns a turn rate of its own, as order 1 keeps one "
+              "2 or more where each mode has its own prior turn rate, because order 1 keeps one "
               "belief for all",
               tree.pseudo_bayes_order);
   }
