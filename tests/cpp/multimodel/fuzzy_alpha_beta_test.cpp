@@ -28,7 +28,7 @@ const Position kSensor{.position_std_m = 5.0};
 
 double output(const FuzzyCriterion& criterion, std::vector<double> ratios) {
   std::vector<double> strengths(ratios.size() + 1);
-  return criterion.judge(ratios, strengths);
+  return criterion.evaluate(ratios, strengths);
 }
 
 FuzzyCriterion minimum() { return {.t_norm = TNorm::kMinimum}; }
@@ -51,7 +51,7 @@ TEST(FuzzyCriterion, EveryRuleGivesItsOutput) {
       std::vector<double> ratios(std::size_t(1 + trial % 15));
       for (double& ratio : ratios) ratio = draw.uniform(0, 3);
       std::vector<double> strengths(ratios.size() + 1);
-      const double m = criterion.judge(ratios, strengths);
+      const double m = criterion.evaluate(ratios, strengths);
       double sum = 0.0, total = 0.0;
       for (std::size_t p = 0; p <= ratios.size(); ++p) {
         double strength = 1.0;

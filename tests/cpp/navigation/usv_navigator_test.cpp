@@ -445,11 +445,11 @@ TYPED_TEST(EveryUsvModel, RejectsAnOutlierAndReportsIt) {
   UsvNavigator<TypeParam> navigator;
   navigate(navigator, log);
   const auto before = navigator.estimate();
-  const auto wild = navigator.update(gnss(), Vec2(log.back().fix + Vec2(500, 0)));
-  EXPECT_TRUE(wild.rejected);
-  EXPECT_FALSE(wild);
-  EXPECT_EQ(wild.status, Status::kMissed);
-  EXPECT_GT(wild.nis, 100);
+  const auto outlier = navigator.update(gnss(), Vec2(log.back().fix + Vec2(500, 0)));
+  EXPECT_TRUE(outlier.rejected);
+  EXPECT_FALSE(outlier);
+  EXPECT_EQ(outlier.status, Status::kMissed);
+  EXPECT_GT(outlier.nis, 100);
   EXPECT_TRUE(test::matrices_identical(navigator.estimate().mean, before.mean));
   EXPECT_TRUE(test::matrices_identical(navigator.estimate().covariance, before.covariance));
 }
@@ -722,10 +722,10 @@ void expect_absurd_readings_to_do_nothing(const std::vector<Instant>& log, doubl
     const Instant& now = log[std::size_t(k)];
     ASSERT_EQ(navigator.predict(Scalar(1), now.imu), Status::kOk) << off << " " << k;
     const auto before = navigator.estimate();
-    const bool is_absurd = k >= first && k < last;
-    const Vec2 wild = is_absurd ? Vec2(off, -off / 2) : Vec2(0, 0);
-    const auto fixed = navigator.update(gnss(), Pair((now.fix + wild).cast<Scalar>()));
-    if (is_absurd) {
+    const bool is_implausible = k >= first && k < last;
+    const Vec2 outlier = is_implausible ? Vec2(off, -off / 2) : Vec2(0, 0);
+    const auto fixed = navigator.update(gnss(), Pair((now.fix + outlier).cast<Scalar>()));
+    if (is_implausible) {
       EXPECT_TRUE(fixed.rejected) << off << " " << k;
       EXPECT_GT(fixed.nis, 1e5) << off << " " << k;
       EXPECT_TRUE(test::matrices_identical(navigator.estimate().mean, before.mean));

@@ -154,7 +154,7 @@ class FuzzyAlphaBeta
       next.ratios[k] = select(residual_m > Scalar(0), ratio, Scalar(0));
     }
     const Scalar before = next.quality;
-    next.quality = criterion_.judge<Scalar>({next.ratios.data(), count},
+    next.quality = criterion_.evaluate<Scalar>({next.ratios.data(), count},
                                             {next.strengths.data(), count + 1}, next.lines);
     const Mask holds = Mask(criterion_.hold) && before > next.quality;
     next.chosen = rounded(select(holds, before, next.quality));

@@ -83,13 +83,13 @@ struct FuzzyCriterion {
   /// Output of the system, 2 .. n + 1, for the ratios (n >= 1) of the lines through 2, 3, ... n + 1
   /// plots: the outputs of the n + 1 rules averaged with their strengths, which are written to
   /// `strengths`. O(n).
-  double judge(std::span<const double> ratios, std::span<double> strengths) const noexcept {
-    return judge<double>(ratios, strengths, double(ratios.size()));
+  double evaluate(std::span<const double> ratios, std::span<double> strengths) const noexcept {
+    return evaluate<double>(ratios, strengths, double(ratios.size()));
   }
 
   /// The same for any scalar; each lane of a pack uses the first `lines` ratios.
   template <class Scalar>
-  Scalar judge(std::span<const Scalar> ratios, std::span<Scalar> strengths,
+  Scalar evaluate(std::span<const Scalar> ratios, std::span<Scalar> strengths,
                std::type_identity_t<Scalar> lines) const noexcept {
     std::array<Degrees<Scalar>, kMaxPlots> degree;
     Scalar ahead = Scalar(1);  // degree to which the first p are good
