@@ -208,7 +208,7 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
           },
           "(K,) number of plots that each line goes through.")
       .def(
-          "judge",
+          "evaluate",
           [](const PyFuzzy& estimator, const DoubleArray& ratios) {
             const auto most = static_cast<py::ssize_t>(estimator.get().criterion().max_plots - 1);
             require_shape(ratios.ndim() == 1 && ratios.size() >= 1 && ratios.size() <= most,
@@ -221,7 +221,7 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
             }
             std::vector<double> strengths(lines + 1);
             const double quality =
-                estimator.get().criterion().judge(clipped, {strengths.data(), lines + 1});
+                estimator.get().criterion().evaluate(clipped, {strengths.data(), lines + 1});
             return std::pair<double, py::array_t<double>>(quality, to_array(strengths));
           },
           py::arg("ratios"),

@@ -100,13 +100,13 @@ def test_traces_side_by_side_know_nothing_of_each_other():
 def test_the_machine_gives_the_values_of_its_source():
     rising = [0.5, 0.5, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.0]
     product, minimum = wl.FuzzyAlphaBeta(), wl.FuzzyAlphaBeta(t_norm="minimum")
-    assert product.judge(rising)[0] == pytest.approx(5.499994, abs=1e-6)
-    assert minimum.judge(rising)[0] == pytest.approx(5.464032, abs=1e-6)
-    quality, strengths = product.judge(np.full(9, 1.5))
+    assert product.evaluate(rising)[0] == pytest.approx(5.499994, abs=1e-6)
+    assert minimum.evaluate(rising)[0] == pytest.approx(5.464032, abs=1e-6)
+    quality, strengths = product.evaluate(np.full(9, 1.5))
     assert quality == pytest.approx(5.6)
     np.testing.assert_allclose(strengths, np.full(10, 0.5**9))
     for clipped in (3.0, 1e3, np.inf):
-        assert minimum.judge(np.full(9, clipped))[0] == pytest.approx(2.019812, abs=1e-6)
+        assert minimum.evaluate(np.full(9, clipped))[0] == pytest.approx(2.019812, abs=1e-6)
 
 
 def test_the_hold_lengthens_and_never_shortens():
@@ -195,7 +195,7 @@ def test_arrays_that_do_not_fit_are_rejected():
         fuzzy.trace(np.zeros((5, 2)), dt_s=DT_S, sensor=None, start=START)
     for ratios in (np.zeros(10), [-1.0, 1.0], [np.nan]):
         with pytest.raises(ValueError, match="ratios"):
-            fuzzy.judge(ratios)
+            fuzzy.evaluate(ratios)
 
 
 def test_a_step_that_fails_says_so_and_changes_nothing():

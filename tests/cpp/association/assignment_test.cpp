@@ -308,7 +308,7 @@ TEST(NearestNeighbour, TakesTheCheapestPairFirstAndTiesByRowThenColumn) {
   EXPECT_EQ(greedy.assignment().total_cost(), 11.5);
 }
 
-TEST(Candidates, RefuseWhatDoesNotFitAndStaySound) {
+TEST(Candidates, RejectWhatExceedsTheirCapacityAndStayValid) {
   Candidates<double> candidates(2, 3);
   candidates.clear(4);
   EXPECT_FALSE(candidates.add(0, 1.0)) << "no row is open";
@@ -324,7 +324,7 @@ TEST(Candidates, RefuseWhatDoesNotFitAndStaySound) {
   EXPECT_FALSE(candidates.add(1, 1.5)) << "full";
   EXPECT_FALSE(candidates.start_row(5.0)) << "full";
   EXPECT_FALSE(candidates.add(1, 1.5)) << "a refused row takes no candidates";
-  EXPECT_EQ(candidates.refused(), 8);
+  EXPECT_EQ(candidates.rejected(), 8);
   EXPECT_EQ(candidates.rows(), 2);
   EXPECT_EQ(candidates.size(), 3);
   GlobalNearestNeighbour<double> solver(2, 4);
@@ -333,7 +333,7 @@ TEST(Candidates, RefuseWhatDoesNotFitAndStaySound) {
 
   candidates.clear(1);
   EXPECT_EQ(candidates.size(), 0);
-  EXPECT_EQ(candidates.refused(), 0);
+  EXPECT_EQ(candidates.rejected(), 0);
   EXPECT_FALSE(candidates.start_row(kInfinity));
   EXPECT_FALSE(candidates.add(0, 1.0));
   EXPECT_TRUE(candidates.start_row(1.0));
@@ -351,7 +351,7 @@ TEST(Candidates, RejectNegativeCapacities) {
   EXPECT_THROW(NearestNeighbour<double>(1, 1, -1), std::invalid_argument);
 }
 
-TEST(Assignment, SolversRefuseAProblemBeyondTheirCapacity) {
+TEST(Assignment, SolversRejectAProblemBeyondTheirCapacity) {
   std::mt19937_64 random(17);
   const auto problem = draw_problem(5, 5, 1.0, 100, random);
   const auto candidates = problem.candidates();

@@ -85,7 +85,7 @@ TEST(ProbabilisticData, CertainDetectionWithoutClutterLeavesNoDoubt) {
   EXPECT_EQ(associate<double>(clean, {-20.0}), (std::vector<double>{0.0, 1.0}));
 }
 
-TEST(ProbabilisticData, NoneIsTheTargetsWhenNoneCanBe) {
+TEST(ProbabilisticData, NoPlotIsTheTargetsWhenAllWeightsAreZero) {
   const ProbabilisticData certain{
       .detection_probability = 1.0, .gate_probability = 1.0, .clutter_density = 0.0};
   EXPECT_EQ(associate<double>(certain, {}), (std::vector<double>{1.0}));
@@ -116,7 +116,7 @@ TEST(ProbabilisticData, NonParametricFormCountsThePlotsInTheGate) {
   EXPECT_EQ(pda.with_clutter_from(3, 600.0).detection_probability, pda.detection_probability);
 }
 
-TEST(ProbabilisticData, BadInputIsRefusedAndNothingWritten) {
+TEST(ProbabilisticData, BadInputIsRejectedAndNothingWritten) {
   const ProbabilisticData pda;
   std::vector<double> probability = {7.0, 7.0};
   for (const double bad : {std::nan(""), kInfinity}) {

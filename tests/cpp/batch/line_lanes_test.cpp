@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Estimators that draw lines, in lanes that have plots of their own at times of their own.
+// Line estimators in lanes with different plots and times.
 
 #include <gtest/gtest.h>
 
@@ -154,7 +154,7 @@ struct LineLanes : ::testing::Test {};
 using Cases = ::testing::Types<Fuzzy, FuzzyOfLeast, Bayesian, LongBayesian>;
 TYPED_TEST_SUITE(LineLanes, Cases);
 
-TYPED_TEST(LineLanes, AreEachAnEstimatorOfItsOwn) {
+TYPED_TEST(LineLanes, AreEachASeparateEstimator) {
   const auto all_voyages = voyages(1);
   std::vector<decltype(TypeParam::template make<double>())> alone;
   for (int which = 0; which < kLanes; ++which) {
@@ -181,7 +181,7 @@ TYPED_TEST(LineLanes, AreEachAnEstimatorOfItsOwn) {
   EXPECT_GT(joined, 0);
 }
 
-TYPED_TEST(LineLanes, AreNoneOfTheirNeighboursBusiness) {
+TYPED_TEST(LineLanes, AreIndependentOfTheirNeighbours) {
   auto one = voyages(20), other = voyages(40);
   one[1] = other[1];
   std::vector<std::vector<double>> first;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// A tree whose hypotheses stand in lanes is the tree of one filter after the other.
+// A tree with its hypotheses in lanes equals the tree of scalar filters.
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,8 @@ struct PairOver {
   }
 
  private:
-  /// Last modes and probability of every hypothesis. (Which of two alike comes first is rounding.)
+  /// Last modes and probability of every hypothesis. (Rounding decides which of two similar ones
+  /// comes first.)
   template <class Tree>
   static std::vector<std::pair<std::uint64_t, double>> by_history(const Tree& tree) {
     std::vector<std::pair<std::uint64_t, double>> histories;
@@ -134,7 +135,7 @@ TEST(ModeHistoryInLanes, PseudoBayesOfFirstAndSecondOrder) {
   expect_equal_runs(Pair(HistoryTree::pseudo_bayes(2, 9)));
 }
 
-TEST(ModeHistoryInLanes, WeighsReadingsAlike) {
+TEST(ModeHistoryInLanes, WeightsReadingsTheSameWay) {
   Pair trees{HistoryTree{}};
   trees.start();
   Draw draw(43);
@@ -174,7 +175,7 @@ TEST(ModeHistoryInLanes, AStepThatFailsChangesNothing) {
   EXPECT_TRUE(test::beliefs_identical<4>(tree.estimate(), before));
 }
 
-TEST(ModeHistoryInLanes, GoesOnFromItsArchiveWithTheSameBits) {
+TEST(ModeHistoryInLanes, ContinuesFromItsArchiveWithTheSameBits) {
   Pair trees{HistoryTree{}}, others{HistoryTree{}};
   trees.start();
   Draw draw(44);

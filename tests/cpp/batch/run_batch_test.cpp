@@ -414,7 +414,7 @@ struct BatchGateOfOwn : ::testing::Test {};
 using OwnCases = ::testing::Types<Of<Own>, Of<ImmOfOwn>>;
 TYPED_TEST_SUITE(BatchGateOfOwn, OwnCases);
 
-TYPED_TEST(BatchGateOfOwn, IsWhereItsComponentsSay) {
+TYPED_TEST(BatchGateOfOwn, UsesTheComponentsOfTheState) {
   Dense data(kRuns);
   const Results free = run<TypeParam::template Kind, Lanes>(kRadar, data.in);
   const RadiusGate gate{2000.0};  // of plots 3 km off and more

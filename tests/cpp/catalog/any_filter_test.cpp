@@ -102,7 +102,7 @@ TEST(AnyFilterBank, EqualsTheTrackersEstimatorBitForBit) {
                    ConvertedRangeBearing{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)});
 }
 
-TEST(AnyFilterBank, RefusesNoneAndTooMany) {
+TEST(AnyFilterBank, RejectsNoneAndTooMany) {
   const AnyFilter filter(Ekf{ConstantVelocity{}});
   EXPECT_THROW(AnyFilterBank({}), std::invalid_argument);
   EXPECT_THROW(AnyFilterBank(std::vector<AnyFilter>(kMaxModes + 1, filter)), std::invalid_argument);

@@ -97,7 +97,7 @@ TEST(Cholesky, NormsByOneLaneAreThoseByItsMatrix) {
   }
 }
 
-TEST(Cholesky, RefusesWhatIsNotPositiveDefinite) {
+TEST(Cholesky, RejectsWhatIsNotPositiveDefinite) {
   using Matrix = Mat<double, 3, 3>;
   EXPECT_FALSE(Cholesky<3>(Matrix(Matrix::Zero())).ok());
   EXPECT_FALSE(Cholesky<3>(Matrix(-Matrix::Identity())).ok());
@@ -109,7 +109,7 @@ TEST(Cholesky, RefusesWhatIsNotPositiveDefinite) {
   EXPECT_TRUE(Cholesky<3>(indefinite).ok());
 }
 
-TEST(Cholesky, RefusesWhatIsNotFinite) {
+TEST(Cholesky, RejectsWhatIsNotFinite) {
   for (const double bad : {kNan, kInfinity, -kInfinity})
     for (int column = 0; column < 3; ++column)
       for (int row = column; row < 3; ++row) {
@@ -168,7 +168,7 @@ TEST(IsFinite, FindsAnyElement) {
   EXPECT_FALSE(is_finite(matrix));
 }
 
-TYPED_TEST(CholeskyOf, CheckSaysWhatIsWrongWithABelief) {
+TYPED_TEST(CholeskyOf, CheckReportsWhatIsWrongWithABelief) {
   using Scalar = TypeParam;
   Gaussian<3, Scalar> good;
   good.covariance = Draw(4).definite<3>().template cast<Scalar>();

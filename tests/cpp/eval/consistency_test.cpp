@@ -27,7 +27,7 @@ TYPED_TEST(NeesOf, IsTheSquaredDistanceInSigmas) {
   EXPECT_TRUE(std::isnan(nees<2, TypeParam>(Vector(2, 5), covariance)));
 }
 
-TYPED_TEST(NeesOf, IsNoNumberOfAnErrorThatIsNone) {
+TYPED_TEST(NeesOf, IsNanForAnErrorThatIsNan) {
   using Scalar = TypeParam;
   const Mat<Scalar, 2, 2> covariance = Mat<Scalar, 2, 2>::Identity();
   for (const Scalar bad :
@@ -62,7 +62,7 @@ ConsistencyAverage average_of_drawn(double claim, unsigned seed, int runs) {
   return average;
 }
 
-TEST(ConsistencyAverage, LiesInItsBoundsAsOftenAsTheyPromise) {
+TEST(ConsistencyAverage, IsInItsBoundsWithTheStatedConfidence) {
   constexpr int trials = 1000;
   int inside = 0;
   for (unsigned trial = 0; trial < trials; ++trial) {

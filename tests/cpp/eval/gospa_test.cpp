@@ -161,7 +161,7 @@ TEST(Gospa, PointsAndDistancesAgree) {
   EXPECT_EQ(gospa.assignment().column_of_row().size(), 7u);
 }
 
-TEST(Gospa, AUsedWorkspaceTakesNoHeapAndRefusesLargerSets) {
+TEST(Gospa, AUsedWorkspaceNeedsNoHeapAndRejectsLargerSets) {
   std::mt19937_64 random(44);
   const Points points = draw_points(12, 100.0, random);
   Gospa gospa({}, 11, 12);

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "support/draw.hpp"
-#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 namespace {
@@ -122,7 +122,7 @@ TEST(AlphaBetaLanes, AreTheFiltersOneByOne) {
     expect_lanes_apart<3>(gains);
 }
 
-// A lane that takes the first of two readings alone has taken one, and its schedule goes on.
+// A lane that takes only the first of two readings has taken one; its schedule continues.
 TEST(AlphaBetaLanes, RememberWhatEachHasTakenOfSeveralReadings) {
   const Position sensor{.position_std_m = 30.0};
   const auto track = [&]<class Scalar>(Scalar, bool first_lane) {

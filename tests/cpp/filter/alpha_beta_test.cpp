@@ -358,7 +358,7 @@ TEST(AlphaBetaFilter, BadInputChangesNothing) {
   EXPECT_TRUE(beliefs_identical<4>(filter.estimate(), wanted.estimate()));
 }
 
-TEST(AlphaBetaFilter, RefusesWhatMakesNoSense) {
+TEST(AlphaBetaFilter, RejectsInvalidParameters) {
   EXPECT_THROW(AlphaBeta<>(ConstantGains{1.5, 1.0}), std::invalid_argument);
   EXPECT_THROW(AlphaBeta<>(ConstantGains{0.5, 0.2, 0.1}), std::invalid_argument);
   EXPECT_THROW(AlphaBetaGamma<>(ConstantGains{0.5, 0.2}), std::invalid_argument);
@@ -445,7 +445,7 @@ TEST(AlphaBetaFilter, DoesNotCountAReadingThatOnlyWasTried) {
                             {.absolute = 1e-9, .relative = 1e-12}));
 }
 
-TEST(AlphaBetaFilter, RefusesPlotsWhoseErrorsMakeNoGain) {
+TEST(AlphaBetaFilter, RejectsPlotsWithoutAFiniteGain) {
   for (const Mat<double, 2, 2>& errors : {Mat<double, 2, 2>(Mat<double, 2, 2>::Zero()),
                                           Mat<double, 2, 2>(Mat<double, 2, 2>::Ones())}) {
     auto filter = started(AlphaBeta<>(TrackingIndex{0.3}));

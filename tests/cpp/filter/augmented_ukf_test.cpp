@@ -158,7 +158,7 @@ TEST(AugmentedUkf, HasTheMeanOfDrawsWhereErrorsBendTheWay) {
 
 // What every filter keeps -------------------------------------------------------------------------
 
-TEST(AugmentedUkf, RefusesAStepThatCannotBeDoneAndStaysAsItWas) {
+TEST(AugmentedUkf, RejectsAnImpossibleStepAndStaysUnchanged) {
   AugmentedUkf<UsvCurrentMotion> filter{UsvCurrentMotion{}};
   EXPECT_EQ(filter.predict(1.0), Status::kNotStarted);
   ASSERT_EQ(filter.start(in_a_current()), Status::kOk);

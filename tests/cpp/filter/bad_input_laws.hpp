@@ -40,7 +40,7 @@ TYPED_TEST_P(BadInput, NotStarted) {
   EXPECT_TRUE(this->filter.started());
 }
 
-TYPED_TEST_P(BadInput, StepsOfTimeThatAreNone) {
+TYPED_TEST_P(BadInput, InvalidTimeSteps) {
   EXPECT_EQ(this->filter.predict(this->kNan), Status::kNotFinite);
   EXPECT_EQ(this->filter.predict(this->kInfinity), Status::kNotFinite);
   EXPECT_EQ(this->filter.predict(-this->kInfinity), Status::kNotFinite);
@@ -62,7 +62,7 @@ TYPED_TEST_P(BadInput, NoTimeChangesNothing) {
             rounding);
 }
 
-TYPED_TEST_P(BadInput, PlotsThatAreNone) {
+TYPED_TEST_P(BadInput, InvalidPlots) {
   using Scalar = typename TypeParam::Scalar;
   const auto radar = test::radar_of<TypeParam>(10, 0.01);
   const Vec<Scalar, 2> good = test::plot_of<Scalar>(2990, 4010);
@@ -95,7 +95,7 @@ TYPED_TEST_P(BadInput, InnovationIsTheStepOfTheUpdateNotTaken) {
   EXPECT_EQ(step.log_likelihood, expected.log_likelihood);
 }
 
-TYPED_TEST_P(BadInput, StartsThatAreNone) {
+TYPED_TEST_P(BadInput, InvalidStarts) {
   using Scalar = typename TypeParam::Scalar;
   constexpr int N = TypeParam::kStates;
   Gaussian<N, Scalar> bad = this->before;
@@ -146,7 +146,7 @@ struct Broken {
   }
 };
 
-TYPED_TEST_P(BadInput, SensorsThatAreNone) {
+TYPED_TEST_P(BadInput, InvalidSensors) {
   using Scalar = typename TypeParam::Scalar;
   const Vec<Scalar, 2> z(3000, 4000);
   EXPECT_EQ(this->filter.update(Broken{.seen = double(this->kNan)}, z).status, Status::kNotFinite);
@@ -167,8 +167,8 @@ TYPED_TEST_P(BadInput, AVarianceThatWouldBeNegative) {
   EXPECT_TRUE(test::beliefs_identical<TypeParam::kStates>(this->filter.estimate(), started));
 }
 
-REGISTER_TYPED_TEST_SUITE_P(BadInput, NotStarted, StepsOfTimeThatAreNone, NoTimeChangesNothing,
-                            PlotsThatAreNone, InnovationIsTheStepOfTheUpdateNotTaken,
-                            StartsThatAreNone, SensorsThatAreNone, AVarianceThatWouldBeNegative);
+REGISTER_TYPED_TEST_SUITE_P(BadInput, NotStarted, InvalidTimeSteps, NoTimeChangesNothing,
+                            InvalidPlots, InnovationIsTheStepOfTheUpdateNotTaken, InvalidStarts,
+                            InvalidSensors, AVarianceThatWouldBeNegative);
 
 }  // namespace wakeline

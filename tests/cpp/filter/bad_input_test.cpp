@@ -10,7 +10,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(Double, BadInput, test::EveryFilter, );
 
 /// A transform that asks for less than the covariance of its points: beta below alpha², points
 /// close together.
-TEST(UkfOfNegativeCovariance, IsRefusedAndLeavesTheBelief) {
+TEST(UkfOfNegativeCovariance, IsRejectedAndLeavesTheBelief) {
   Ukf ukf{CoordinatedTurnRate{}, Unscented{.alpha = 1.0, .beta = 0.0, .kappa = -4.5}};
   Gaussian<5> belief;
   belief.mean << 0, 20, 0, 0, 0;
@@ -23,7 +23,7 @@ TEST(UkfOfNegativeCovariance, IsRefusedAndLeavesTheBelief) {
 
 /// Of readings in lanes, one is good, one of a negative variance and one of none that is a number.
 template <template <class, class> class Filter>
-void expect_each_lane_to_say_what_is_wrong() {
+void expect_each_lane_to_report_its_status() {
   using Lanes = Pack<float, 4>;
   Filter<ConstantVelocity, Lanes> filter(ConstantVelocity{});
   Gaussian<4, Lanes> belief;
@@ -40,8 +40,8 @@ void expect_each_lane_to_say_what_is_wrong() {
   }
 }
 
-TEST(EkfInLanes, EachSaysWhatIsWrong) { expect_each_lane_to_say_what_is_wrong<Ekf>(); }
-TEST(UkfInLanes, EachSaysWhatIsWrong) { expect_each_lane_to_say_what_is_wrong<Ukf>(); }
+TEST(EkfInLanes, EachLaneReportsItsStatus) { expect_each_lane_to_report_its_status<Ekf>(); }
+TEST(UkfInLanes, EachLaneReportsItsStatus) { expect_each_lane_to_report_its_status<Ukf>(); }
 
 }  // namespace
 }  // namespace wakeline

@@ -69,7 +69,7 @@ void expect_unmoved_by_failure(const typename Filter::Motion& motion) {
   EXPECT_TRUE(beliefs_identical<Filter::kStates>(filter.estimate(), before));
 }
 
-TEST(KnownAcceleration, PushesEveryFilterAsTheModelSays) {
+TEST(KnownAcceleration, MovesEveryFilterAsModelled) {
   expect_push<Kalman<ConstantVelocity>>({});
   expect_push<Ekf<CoordinatedTurn>>({.turn_rate_rad_s = 0.03});
   expect_push<Ekf<CoordinatedTurnRate>>({});
@@ -106,7 +106,7 @@ void expect_lane_unmoved_by_failure() {
   }
 }
 
-TEST(KnownAcceleration, ThatCannotBeInOneLaneChangesNothingThere) {
+TEST(KnownAcceleration, OutOfRangeInOneLaneChangesNothingThere) {
   expect_lane_unmoved_by_failure<Ekf>();
   expect_lane_unmoved_by_failure<Ukf>();
   expect_lane_unmoved_by_failure<SquareRootUkf>();

@@ -70,7 +70,7 @@ TYPED_TEST_P(LongRun, AnHourWithoutAPlotThenAPreciseOne) {
   }
 }
 
-// A plot far off is a thin ellipse: askew to the axes, neither variance tells how thin.
+// A plot far off is a thin ellipse: oblique to the axes, neither variance shows how thin.
 TYPED_TEST_P(LongRun, AWideBeliefThenAThinPlotAskew) {
   using Scalar = typename TypeParam::Scalar;
   constexpr double kRange_m = 20e3, kRangeStd_m = 1.0;

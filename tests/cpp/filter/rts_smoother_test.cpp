@@ -170,7 +170,7 @@ TEST(RtsSmoother, SmoothsANonlinearMotion) {
 
 const CoordinatedTurnRate kTurning{.noise = WhiteAcceleration{0.05}, .turn_rate_psd_rad2s3 = 1e-4};
 
-/// Filtered beliefs of a vessel that turns, and where she was.
+/// Filtered beliefs of a turning vessel, and its true positions.
 struct Turning {
   CoordinatedTurnRate motion = kTurning;
   std::vector<Gaussian<5>> beliefs;
@@ -280,7 +280,7 @@ TEST(RtsSmoother, LeavesTheRestFilteredWhereItFails) {
   }
 }
 
-TEST(RtsSmoother, RefusesTimeThatRunsBackwards) {
+TEST(RtsSmoother, RejectsNegativeTimeSteps) {
   Voyage run = filtered();
   const std::vector<Gaussian<4>> before = run.beliefs;
   std::array<double, kScans - 1> steps = kSteps;

@@ -61,7 +61,7 @@ TEST(Seam, IsNowhere) {
   expect_the_same_all_round<SquareRootUkf<CoordinatedTurnRate>>(radar);
 }
 
-// Where the belief is as wide as the range is long, sigma points stand all round the radar.
+// Where the belief is as wide as the range is long, sigma points are all round the radar.
 TEST(Seam, WideBeliefNearTheRadarStaysFinite) {
   const RangeBearing radar{.range_std_m = 10, .bearing_std_rad = deg(1)};
   for (const double north : {0.0, -1e-9, -30.0}) {

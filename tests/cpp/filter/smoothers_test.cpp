@@ -106,7 +106,7 @@ TYPED_TEST(EverySmoother, OfAnglesIsThatOfTheUnwrappedOnes) {
   }
 }
 
-TYPED_TEST(EverySmoother, RefusesWhatIsNoReadingAndStaysAsItWas) {
+TYPED_TEST(EverySmoother, RejectsInvalidReadingsAndStaysUnchanged) {
   using Scalar = typename TypeParam::Scalar;
   constexpr Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
   constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
@@ -164,7 +164,7 @@ TYPED_TEST(EverySmoother, StaysFiniteWhateverItTakes) {
   }
 }
 
-TYPED_TEST(EverySmoother, NeedsNoHeapAndStaysFiniteWhenTimeStands) {
+TYPED_TEST(EverySmoother, NeedsNoHeapAndStaysFiniteWithZeroTimeSteps) {
   using Scalar = typename TypeParam::Scalar;
   typename TypeParam::OnAngles smoother;
   const test::NoHeap fence;
@@ -184,7 +184,7 @@ TYPED_TEST(EverySmoother, TakesTwoReadingsOfOneTime) {
   EXPECT_NEAR(double(smoother.forecast(Scalar(0))), 8.0, 1.0);
 }
 
-TYPED_TEST(EverySmoother, GoesOnFromAnArchiveBitForBit) {
+TYPED_TEST(EverySmoother, ContinuesFromAnArchiveBitForBit) {
   using Scalar = typename TypeParam::Scalar;
   for (const int taken : {0, 1, 2, 4, 9, 60}) {
     typename TypeParam::OnAngles saved, restored;
@@ -209,7 +209,7 @@ TYPED_TEST(EverySmoother, GoesOnFromAnArchiveBitForBit) {
   }
 }
 
-TYPED_TEST(EverySmoother, RefusesADamagedArchiveAndStaysAsItWas) {
+TYPED_TEST(EverySmoother, RejectsADamagedArchiveAndStaysUnchanged) {
   using Scalar = typename TypeParam::Scalar;
   typename TypeParam::OnLine smoother, same;
   for (int k = 0; k < 9; ++k) {
@@ -241,7 +241,7 @@ bool takes_ones() {
   return read.ok();
 }
 
-TEST(Smoothers, RefuseCountsThatAreNone) {
+TEST(Smoothers, RejectInvalidCounts) {
   EXPECT_FALSE(takes_ones<AdaptiveExponentialSmoother<>>());
   EXPECT_FALSE(takes_ones<ThreePointSmoother<>>());
   EXPECT_FALSE(takes_ones<AlphaBetaSmoother<>>());
@@ -280,7 +280,7 @@ TYPED_TEST(SmootherOfLines, FollowsALineAtUnevenSteps) {
   }
 }
 
-TYPED_TEST(SmootherOfLines, IsTheSameWhereEachReadingIsToldTwice) {
+TYPED_TEST(SmootherOfLines, IsTheSameWhenEachReadingIsRepeated) {
   typename TypeParam::OnLine twice, once;
   Draw draw(14);
   for (int k = 0; k < 100; ++k) {
@@ -407,7 +407,7 @@ TEST(ThreePointSmoother, SmoothsNoiseAndItsAdaptiveWeightsComeNearTheLine) {
     fixed_error += std::pow(fixed.value() - 0.2 * (k - 1), 2) / n;
     adaptive_error += std::pow(adaptive.value() - 0.2 * (k - 1), 2) / n;
   }
-  EXPECT_NEAR(fixed_error, 1.0 / 3, 0.03);  // three readings alike
+  EXPECT_NEAR(fixed_error, 1.0 / 3, 0.03);  // three equal readings
   EXPECT_LT(adaptive_error, 0.65);  // a line through five would have 0.3, the reading itself 1
 }
 
@@ -470,7 +470,7 @@ TEST(AlphaBetaSmoother, HasTheSchedulesOfThePaper) {
   EXPECT_THROW((AlphaBetaSmoother<>({}, 0.0)), std::invalid_argument);
 }
 
-TEST(AlphaBetaSmoother, RefusesARangeThatIsNoNumberAndStaysAsItWas) {
+TEST(AlphaBetaSmoother, RejectsANanRangeAndStaysUnchanged) {
   AlphaBetaSmoother<RangeDependent> smoother;
   ASSERT_EQ(smoother.update(0, 1, 1e3), Status::kOk);
   EXPECT_EQ(smoother.update(1, 2, std::numeric_limits<double>::quiet_NaN()), Status::kNotFinite);

@@ -97,7 +97,7 @@ TEST(TwoPoint, OwnShipWasElsewhereAtTheFirstPlot) {
   EXPECT_NEAR(belief.mean[3], truth[3], 0.5);
 }
 
-TEST(TwoPoint, OfTwoPlotsAtOneTimeIsRefusedByTheStart) {
+TEST(TwoPoint, OfTwoPlotsAtOneTimeIsRejectedByTheStart) {
   const RangeBearing radar;
   Ekf ekf{CoordinatedTurn{}};
   for (const double separation : {0.0, 10.0})
@@ -108,7 +108,7 @@ TEST(TwoPoint, OfTwoPlotsAtOneTimeIsRefusedByTheStart) {
 }
 
 // An unscented filter keeps the factor of its covariance for the next step.
-TEST(Assign, OfItsOwnBeliefChangesNoBit) {
+TEST(Assign, OfTheSameBeliefChangesNoBit) {
   const RangeBearing radar{.range_std_m = 20, .bearing_std_rad = deg(0.5)};
   const auto expect_same = [&](auto filter) {
     Gaussian<4> begin;

@@ -31,7 +31,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Point polar(double range_m, double bearing_rad) { return range_m * towards(bearing_rad); }
 
-/// A picture of its own memory.
+/// A picture with its memory.
 template <std::unsigned_integral Amplitude = std::uint8_t>
 struct Picture {
   std::vector<Amplitude> memory;
@@ -148,7 +148,7 @@ TEST(Strobe, CovarianceOfARoundErrorIsACircle) {
   }
 }
 
-TEST(Strobe, WhatMakesNoSenseIsRefused) {
+TEST(Strobe, InvalidShapesAreRejected) {
   EXPECT_NO_THROW((CovarianceStrobe{covariance(4, 1, 9), 9.21}.validate()));
   EXPECT_THROW((CovarianceStrobe{covariance(4, 7, 9), 9.21}.validate()), std::invalid_argument);
   EXPECT_THROW((CovarianceStrobe{covariance(kNan, 0, 9), 9.21}.validate()), std::invalid_argument);
@@ -372,7 +372,7 @@ TEST(StrobeEcho, OneOfTwoEchoes) {
   EXPECT_GT(all.covariance(0, 0), nearest.covariance(0, 0));
 }
 
-TEST(StrobeEcho, EchoThatGoesOnBeyondTheStrobe) {
+TEST(StrobeEcho, EchoThatExtendsPastTheStrobe) {
   Round picture;
   picture.blob(100, 120, 2);
   const Point off = picture.image.position(100, 117);
@@ -424,7 +424,7 @@ TEST(StrobeEcho, AllSaturated) {
   EXPECT_EQ(whole.echoes, 1);
 }
 
-TEST(StrobeEcho, TooManyEchoesToTellApart) {
+TEST(StrobeEcho, TooManyEchoesToSeparate) {
   Round picture;
   for (int s = 0; s < 720; s += 2)
     for (int c = 0; c < 200; c += 2) picture.at(s, c) = 100;
@@ -442,7 +442,7 @@ TEST(StrobeEcho, TooManyEchoesToTellApart) {
 
 // The borders of the picture
 
-TEST(StrobeEcho, BeforeTheFirstCellAndBeyondTheLast) {
+TEST(StrobeEcho, BeforeTheFirstCellAndAfterTheLast) {
   Round picture;
   picture.fill(100);
   const auto at = [&](double range_m) {
@@ -477,7 +477,7 @@ TEST(StrobeEcho, BordersOfASector) {
     EXPECT_EQ(at(deg(bearing_deg)).status, StrobeStatus::kOutside) << bearing_deg;
 }
 
-TEST(StrobeEcho, CutSaysThatCellsAreMissing) {
+TEST(StrobeEcho, CutReportsMissingCells) {
   test::Draw draw(8);
   Picture<> picture(20, 10, 1.0, 0.05, 200.0, 20.0);
   picture.fill(1);

@@ -76,7 +76,7 @@ TEST(Conversion, BothAgreeWhereTheBearingIsPrecise) {
                             {.absolute = 0, .relative = 1e-6}));
 }
 
-TEST(Conversion, PlainCovarianceLiesAlongTheBearing) {
+TEST(Conversion, PlainCovarianceIsAlignedWithTheBearing) {
   ConvertedRangeBearing radar{.range_std_m = 30, .bearing_std_rad = deg(1), .unbiased = false};
   const Gaussian<2> north = radar.observe(Vec<double, 2>(1000, 0));
   Mat<double, 2, 2> expected;
@@ -125,7 +125,7 @@ TEST(Conversion, PlainNeedsAnExtentAtTheRadarItself) {
   EXPECT_TRUE(test::is_covariance(radar.observe(z).covariance));
 }
 
-TEST(Conversion, TellsWhenTheBiasMatters) {
+TEST(Conversion, ReportsWhenTheBiasMatters) {
   EXPECT_TRUE(conversion_bias_matters(30e3, 50, deg(3)));
   EXPECT_FALSE(conversion_bias_matters(3e3, 50, deg(1)));
   const double limit = 0.4 * 50 / (deg(3) * deg(3));

@@ -134,7 +134,7 @@ TEST(ShortStep, BringsTheDensityOfTheNoiseWhereTheNoiseActs) {
   EXPECT_TRUE(matrices_near(density(singer), maneuver, {.absolute = 1e-6, .relative = 1e-6}));
 }
 
-TEST(Flow, MovesAsItsDocumentationSays) {
+TEST(Flow, MovesAsDocumented) {
   const Vec<double, 4> straight = ConstantVelocity{}.matrix(2.0) * Vec<double, 4>(10, 3, 20, -4);
   EXPECT_TRUE(matrices_near(straight, Vec<double, 4>(16, 3, 12, -4)));
   Vec<double, 6> x;

@@ -8,18 +8,18 @@
 
 #include "support/matrix_assert.hpp"
 #include "support/refusal.hpp"
-#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/wandering_course.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 namespace {
 
 using test::matrices_near;
 
-/// Velocities that die away, by a matrix of its own under a pattern that is not.
+/// Decaying velocities: its own matrix with an inherited pattern.
 struct Damped : ConstantVelocity {
   template <class Scalar>
   Mat<Scalar, 4, 4> matrix(Scalar dt_s) const noexcept {
@@ -34,12 +34,12 @@ struct DampedAsItSays : Damped {
   static constexpr Pattern<4> kPattern{"1x00 0x00 001x 000x"};
 };
 
-/// The same of which nothing is told.
+/// The same without a pattern.
 struct DampedUntold : Damped {
   static constexpr Pattern<4> kPattern{};
 };
 
-TEST(Pattern, ThatIsNotTrueIsRefusedWithItsElement) {
+TEST(Pattern, ThatIsWrongIsRejectedWithItsElement) {
   const std::string refusal = test::refusal_of([] { return Ekf{Damped{}}; });
   EXPECT_NE(
       refusal.find("it says 1 of element (1, 1) of the matrix, which for a step of 1 s is 0.5"),
@@ -52,14 +52,14 @@ struct OfOneSecond : ConstantVelocity {
   static constexpr Pattern<4> kPattern{"1100 0100 001x 0001"};
 };
 
-TEST(Pattern, OfAnElementThatIsTheStepIsRefused) {
+TEST(Pattern, OfAnElementThatIsTheStepIsRejected) {
   const std::string refusal = test::refusal_of([] { return Ekf{OfOneSecond{}}; });
   EXPECT_NE(refusal.find("it says 1 of element (0, 1) of the matrix, which for a step of 2 s is 2"),
             std::string::npos)
       << refusal;
 }
 
-/// A current that grows to the east, in a Jacobian of its own under a pattern that is not.
+/// A current that grows to the east: its own Jacobian with an inherited pattern.
 struct Sheared : CoordinatedTurnRate {
   template <class Scalar>
   Mat<Scalar, 5, 5> jacobian(const Vec<Scalar, 5>& x, Scalar dt_s) const noexcept {
@@ -74,7 +74,7 @@ struct ShearedAsItSays : Sheared {
   static constexpr Pattern<5> kPattern{"1xxxx 0x0xx 0x1xx 0x0xx 0000x"};
 };
 
-TEST(Pattern, OfAJacobianThatIsNotTrueIsRefusedWithItsElement) {
+TEST(Pattern, OfAWrongJacobianIsRejectedWithItsElement) {
   const std::string refusal = test::refusal_of([] { return Ekf{Sheared{}}; });
   EXPECT_NE(refusal.find("it says 0 of element (0, 2) of the Jacobian, which at [1, 2, ...] for a "
                          "step of 1 s is 0.03"),

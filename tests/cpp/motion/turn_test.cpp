@@ -8,9 +8,9 @@
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
 #include "support/numeric_jacobian.hpp"
-#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 namespace {
@@ -252,7 +252,7 @@ TYPED_TEST(TurnOf, WithoutNoiseOfTheRateIsTheNoiseOfTheTurn) {
   }
 }
 
-/// A turn with a process noise of its own.
+/// A turn with a custom process noise.
 struct OwnNoise : CoordinatedTurn {
   template <class Scalar>
   Mat<Scalar, 4, 4> process_noise(Scalar) const noexcept {

@@ -178,7 +178,7 @@ double forecast_error_m(double behind_s) {
   return std::sqrt(squared / count);
 }
 
-TEST(BayesianAlphaBeta, ForetellsWithTwoRadarsOutOfStepAtLeastAsWellAsWithOne) {
+TEST(BayesianAlphaBeta, PredictsWithTwoUnsynchronisedRadarsAtLeastAsWellAsWithOne) {
   const double alone_m = forecast_error_m(0.0);
   for (const double behind_s : {0.0005, 0.002, 0.005, 0.02, 0.05, 0.15})
     EXPECT_LT(forecast_error_m(behind_s), alone_m) << behind_s << " s behind";
@@ -271,7 +271,7 @@ TEST(BayesianAlphaBeta, APlotOutOfRangeChangesNothing) {
   EXPECT_TRUE(bank.update(vague, turning(12.0)));
 }
 
-TEST(BayesianAlphaBeta, RefusesWhatMakesNoSense) {
+TEST(BayesianAlphaBeta, RejectsInvalidParameters) {
   EXPECT_THROW(Bayesian({.min_plots = 1}), std::invalid_argument);
   EXPECT_THROW(Bayesian({.min_plots = 5, .max_plots = 4}), std::invalid_argument);
   EXPECT_THROW(Bayesian({.max_plots = 17, .parabolas = false}), std::invalid_argument);
@@ -281,7 +281,7 @@ TEST(BayesianAlphaBeta, RefusesWhatMakesNoSense) {
   EXPECT_THROW(Bayesian({.acceleration_std_mps2 = NAN}), std::invalid_argument);
 }
 
-TEST(BayesianAlphaBeta, ArchiveBringsEverythingBackAndRefusesWhatItIsNot) {
+TEST(BayesianAlphaBeta, ArchiveRestoresEverythingAndRejectsOtherArchives) {
   Draw draw(9);
   for (const int scans : {0, 1, 3, 25}) {
     Bayesian bank = started(), restored;

@@ -28,7 +28,7 @@ const Position kSensor{.position_std_m = 5.0};
 
 double output(const FuzzyCriterion& criterion, std::vector<double> ratios) {
   std::vector<double> strengths(ratios.size() + 1);
-  return criterion.judge(ratios, strengths);
+  return criterion.evaluate(ratios, strengths);
 }
 
 FuzzyCriterion minimum() { return {.t_norm = TNorm::kMinimum}; }
@@ -44,14 +44,14 @@ TEST(FuzzyCriterion, GivesTheValuesOfTheSource) {
   EXPECT_NEAR(output(minimum(), std::vector<double>(9, 3.0)), 2.019812, 1e-6);
 }
 
-TEST(FuzzyCriterion, EveryRuleIsWhatItSays) {
+TEST(FuzzyCriterion, EveryRuleGivesItsOutput) {
   Draw draw(21);
   for (const FuzzyCriterion& criterion : {FuzzyCriterion{}, minimum()})
     for (int trial = 0; trial < 200; ++trial) {
       std::vector<double> ratios(std::size_t(1 + trial % 15));
       for (double& ratio : ratios) ratio = draw.uniform(0, 3);
       std::vector<double> strengths(ratios.size() + 1);
-      const double m = criterion.judge(ratios, strengths);
+      const double m = criterion.evaluate(ratios, strengths);
       double sum = 0.0, total = 0.0;
       for (std::size_t p = 0; p <= ratios.size(); ++p) {
         double strength = 1.0;
@@ -78,7 +78,7 @@ TEST(FuzzyCriterion, WorseTrackingNeverLengthensTheLine) {
   }
 }
 
-TEST(FuzzyCriterion, RefusesWhatMakesNoSense) {
+TEST(FuzzyCriterion, RejectsInvalidParameters) {
   EXPECT_THROW(Fuzzy({.max_plots = 1}), std::invalid_argument);
   EXPECT_THROW(Fuzzy({.max_plots = 17}), std::invalid_argument);
   EXPECT_THROW(Fuzzy({.steepness = 0.0}), std::invalid_argument);
@@ -179,7 +179,7 @@ TEST(FuzzyAlphaBeta, IsTheMethodInPlainWords) {
   }
 }
 
-TEST(FuzzyAlphaBeta, PlotsThatAreToldTwiceAreJudgedOnce) {
+TEST(FuzzyAlphaBeta, RepeatedPlotsAreEvaluatedOnce) {
   Draw draw(35);
   Fuzzy once, twice;
   ASSERT_EQ(once.start(test::five_km_off<double>()), Status::kOk);
@@ -313,7 +313,7 @@ TEST(FuzzyAlphaBeta, OneCertainReadingIsAnUpdate) {
       matrices_near(associated.estimate().covariance, plain.estimate().covariance, {1e-9, 1e-12}));
 }
 
-TEST(FuzzyAlphaBeta, ReadingsThatAreRatherNoneOfItsOwnAreAMissedScan) {
+TEST(FuzzyAlphaBeta, ReadingsThatAreProbablyNotItsOwnAreAMissedScan) {
   Fuzzy fuzzy = on_a_straight(12);
   const auto before = fuzzy.estimate();
   const std::array readings{Alternative<Position>{kSensor, {900, 900}, 0.5},
@@ -404,7 +404,7 @@ TEST(FuzzyAlphaBeta, APlotWithoutASquareChangesNothing) {
   }
 }
 
-TEST(FuzzyAlphaBeta, ArchiveBringsEverythingBackAndRefusesWhatItIsNot) {
+TEST(FuzzyAlphaBeta, ArchiveRestoresEverythingAndRejectsOtherArchives) {
   for (const int scans : {0, 1, 3, 25}) {
     Fuzzy fuzzy = on_a_straight(scans), restored;
     Archive written;

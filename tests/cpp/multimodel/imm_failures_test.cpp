@@ -27,7 +27,7 @@ Ekf<ConstantVelocity> straight(double psd = 0.05) {
   return Ekf{ConstantVelocity{.noise = WhiteAcceleration{psd}}};
 }
 
-/// A filter of one's own that can be told to fail.
+/// A custom filter that fails on demand.
 struct Moody : Ekf<ConstantVelocity> {
   using Ekf::Ekf;
   bool refuses_plots = false;
@@ -244,7 +244,7 @@ TEST(ImmFailures, SuccessOfAnImpossibleModeAloneIsAFailure) {
   }
 }
 
-TEST(ImmFailures, APredictionThatFailsInOneFilterIsTakenBackInAll) {
+TEST(ImmFailures, APredictionThatFailsInOneFilterIsUndoneInAll) {
   Moody second{ConstantVelocity{}};
   second.refuses_time = true;
   Imm imm{kChain, straight(), second};
@@ -275,7 +275,7 @@ TEST(ImmFailures, AModeThatDwindlesBeyondNumbersHoldsNothingUp) {
   }
 }
 
-TEST(ImmFailures, APlotFarOffDoesNotSpoilAnotherOfTheSameInstant) {
+TEST(ImmFailures, AFarPlotDoesNotAffectAnotherOfTheSameTime) {
   const auto chain = ModeChain<3>::from_sojourn_s(Vec<double, 3>(60.0, 30.0, 30.0));
   const Position fix{.position_std_m = 2.0};
   for (double away_m = 10.0; away_m < 400.0; away_m += 1.0) {

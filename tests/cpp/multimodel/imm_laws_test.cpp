@@ -306,7 +306,7 @@ TEST(Imm, InitialProbabilitiesOfFewDigitsMoveNoPlace) {
   EXPECT_NEAR(imm.estimate().mean[0], 5e6, 1e-6);
 }
 
-TEST(Imm, InitialProbabilitiesThatAreNoneAreRefused) {
+TEST(Imm, InvalidInitialProbabilitiesAreRejected) {
   Imm imm{ModeChain<2>(kAsymmetric), turning(0.0), turning(3.0)};
   EXPECT_THROW(imm.set_initial_mode_probability(Vec<double, 2>(0.5, 0.6)), std::invalid_argument);
   EXPECT_THROW(imm.set_initial_mode_probability(Vec<double, 2>(1.5, -0.5)), std::invalid_argument);

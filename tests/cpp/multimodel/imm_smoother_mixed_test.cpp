@@ -38,7 +38,7 @@ Turn some_turn() {
   return belief;
 }
 
-TEST(CarriedOver, TakesWhatIsToldAndKeepsHowTheRestFollows) {
+TEST(CarriedOver, TakesTheGivenPartAndKeepsTheConditionalOfTheRest) {
   const Turn own = some_turn();
   Straight told;
   told = Gaussian<4>{Vec<double, 4>(1, 2, 3, 4), Vec<double, 4>(0.1, 0.2, 0.3, 0.4).asDiagonal()};

@@ -45,7 +45,7 @@ Gaussian<4> start() {
 using Turns = Imm<UniformBank<Ekf<CoordinatedTurn>>>;
 using TurnScan = ImmScan<Turns::Bank>;
 
-/// An Imm of turns, each of which goes on with a probability of 0.9.
+/// An Imm of turns, each of which continues with probability 0.9.
 Turns turns(const std::vector<double>& rates_deg_s) {
   std::vector<Ekf<CoordinatedTurn>> filters;
   for (const double rate : rates_deg_s) filters.push_back(turning(rate));
@@ -125,7 +125,7 @@ TEST(Revised, IsThePosteriorOfWhatMadeOneBeliefAnother) {
   EXPECT_NEAR(result.log_evidence, of_prior - of_before, 1e-9);
 }
 
-TEST(Revised, OfItsOwnPriorIsWhatCameOfIt) {
+TEST(Revised, OfTheSamePriorIsItsPosterior) {
   Gaussian<4> after = start();
   after.mean << 3, 8.5, -2, 2.5;
   after.covariance *= 0.4;
@@ -275,7 +275,7 @@ TEST(ImmSmoother, DoesNotMindTheOrderOfModes) {
   }
 }
 
-TEST(ImmSmoother, TellsAStepThatIsNone) {
+TEST(ImmSmoother, ReportsAnInvalidStep) {
   const Voyage voyage(8, 12);
   const Turns imm = turns({0.0, 2.0});
   const auto filtered = recorded(imm, voyage.plots);
@@ -286,7 +286,7 @@ TEST(ImmSmoother, TellsAStepThatIsNone) {
   EXPECT_NE(scans[6].updated.estimate().mean, filtered[6].updated.estimate().mean);
 }
 
-TEST(ImmSmoother, TellsWhyNothingGoesBackOverAStep) {
+TEST(ImmSmoother, ReportsWhyAStepCannotBeSmoothed) {
   // Behind a gap of months a belief may be too wide and too flat to have a factor.
   int hindered = 0;
   for (double gap_s = 1e6; gap_s < 1e9; gap_s *= 1.5) {
@@ -307,7 +307,7 @@ TEST(ImmSmoother, TellsWhyNothingGoesBackOverAStep) {
   EXPECT_GT(hindered, 0);
 }
 
-TEST(ImmSmoother, TellsAnAccelerationThatIsNone) {
+TEST(ImmSmoother, ReportsAnInvalidAcceleration) {
   auto scans = recorded(turns({0.0, 2.0}), Voyage(8, 2).plots);
   const std::array<Vec2, 2> acceleration_mps2{Vec2(0, 0), Vec2(NAN, 0)};
   EXPECT_EQ(ImmSmoother<Turns::Bank>::smooth(scans, acceleration_mps2), Status::kNotFinite);

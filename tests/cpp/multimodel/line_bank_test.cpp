@@ -206,7 +206,7 @@ TEST(LineBank, PlotsOfTwoRadarsOutOfStepBecomeTheirMeanAtTheMeanOfTheirTimes) {
   }
 }
 
-TEST(LineBank, ArchiveBringsEverythingBackAndRefusesWhatItIsNot) {
+TEST(LineBank, ArchiveRestoresEverythingAndRejectsOtherArchives) {
   Draw draw(9);
   Bank bank(7);
   for (int k = 0; k < 11; ++k) {
@@ -297,7 +297,7 @@ TEST(LineBank, IsOfFloatTooAndTouchesNoHeap) {
   EXPECT_NEAR(lines[6].velocity_mps[0], 5.0f, 1e-5f);
 }
 
-TEST(LineBank, RefusesALengthItHasNoRoomFor) {
+TEST(LineBank, RejectsALengthBeyondItsCapacity) {
   EXPECT_THROW(Bank(1), std::invalid_argument);
   EXPECT_THROW(Bank(17), std::invalid_argument);
 }

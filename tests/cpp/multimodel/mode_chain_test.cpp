@@ -52,7 +52,7 @@ TEST(ModeChain, RowsThatDoNotSumToOneAreNamed) {
       << near;
 }
 
-TEST(ModeChain, ElementsThatAreNoProbabilitiesAreRefused) {
+TEST(ModeChain, InvalidProbabilitiesAreRejected) {
   for (const double bad : {-0.1, 1.1, kNan}) {
     const std::string message = complaint([&] { Two(Two::Matrix{{bad, 1.0 - bad}, {0.1, 0.9}}); });
     EXPECT_NE(message.find("mode chain must be a probability"), std::string::npos) << message;
@@ -131,7 +131,7 @@ TEST(ModeChain, WithItsPeriodHasTheMatrixOverIt) {
       matrices_near(Two(Two::Matrix::Identity(), 3.0).transition(99.0), Two::Matrix::Identity()));
 }
 
-TEST(ModeChain, WhatIsNoChainInContinuousTimeIsRefused) {
+TEST(ModeChain, AMatrixWithoutAContinuousTimeChainIsRejected) {
   const auto says_so = [](const auto& matrix) {
     using Chain = ModeChain<std::decay_t<decltype(matrix)>::RowsAtCompileTime>;
     const std::string message = complaint([&] { Chain(matrix, 2.5); });
@@ -149,13 +149,13 @@ TEST(ModeChain, WhatIsNoChainInContinuousTimeIsRefused) {
   EXPECT_THROW(Two(Two::Matrix{{0.9, 0.1}, {0.1, 0.9}}, kNan), std::invalid_argument);
 }
 
-TEST(ModeChain, WhatHardlyStaysOverItsPeriodIsToldAsSuch) {
+TEST(ModeChain, AChainThatRarelyStaysIsReportedAsSuch) {
   const Three round =
       Three::from_generator(Three::Matrix{{-1.0, 1.0, 0.0}, {0.0, -1.0, 1.0}, {1.0, 0.0, -1.0}});
   EXPECT_NO_THROW(Three(round.transition(1.0), 1.0));
   for (const double period : {1.9, 10.0, 100.0}) {
     const std::string message = complaint([&] { Three(round.transition(period), period); });
-    EXPECT_NE(message.find("or of one that hardly stays over it"), std::string::npos) << message;
+    EXPECT_NE(message.find("or of one that rarely stays over it"), std::string::npos) << message;
   }
 }
 
@@ -171,7 +171,7 @@ TEST(ModeChain, ItsGeneratorMakesItAnew) {
   EXPECT_FALSE(Three(kStaying).generator_per_s().has_value());
 }
 
-TEST(ModeChain, WhatIsNoGeneratorIsRefused) {
+TEST(ModeChain, AMatrixThatIsNotAGeneratorIsRejected) {
   const auto says = [](const Two::Matrix& matrix, const char* words) {
     const std::string message = complaint([&] { Two::from_generator(matrix); });
     EXPECT_NE(message.find(words), std::string::npos) << matrix << "\n" << message;
@@ -185,12 +185,12 @@ TEST(ModeChain, WhatIsNoGeneratorIsRefused) {
   EXPECT_NE(complaint([] { Any::from_generator(Any::Matrix::Zero(2, 3)); }), "");
 }
 
-TEST(ModeChain, TellsANumberFromOneThatWouldDo) {
+TEST(ModeChain, PrintsEnoughDigitsInMessages) {
   EXPECT_EQ(complaint([] { (void)Two::staying(1.0 + 2e-8); }),
             "stay_probability must be a probability between 0 and 1, got 1.00000002");
 }
 
-TEST(ModeChain, SojournTimesThatAreNoneAreRefused) {
+TEST(ModeChain, InvalidSojournTimesAreRejected) {
   for (const double bad : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()})
     EXPECT_NE(complaint([&] {
                 (void)Two::from_sojourn_s({10.0, bad});
@@ -203,7 +203,7 @@ TEST(ModeChain, SojournTimesThatAreNoneAreRefused) {
       << "leaves more often than a number can say";
 }
 
-TEST(ModeChain, TooFewOrTooManyModesAreRefused) {
+TEST(ModeChain, TooFewOrTooManyModesAreRejected) {
   using Any = ModeChain<kRuntimeModes>;
   EXPECT_EQ(complaint([] {
               (void)Three::from_sojourn_s({10.0, 20.0});

@@ -11,9 +11,9 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
-#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 namespace {
@@ -271,7 +271,7 @@ TEST(ModeHistoryOfRates, InFloatIsTheSameToItsDigits) {
   });
 }
 
-TEST(ModeHistoryOfRates, GoesOnFromItsArchiveWithTheSameBits) {
+TEST(ModeHistoryOfRates, ContinuesFromItsArchiveWithTheSameBits) {
   Tree tree = tree_of(deg(0.8)), other = tree;
   ASSERT_EQ(tree.start(steaming()), Status::kOk);
   Draw draw(87);
@@ -304,7 +304,7 @@ TEST(ModeHistoryOfRates, EvidenceIsTheLikelihoodOfTheUpdate) {
   EXPECT_NEAR(std::log(evidence.likelihood), step.log_likelihood, 1e-9);
 }
 
-TEST(ModeHistoryOfRates, OneBeliefForAllModesIsRefused) {
+TEST(ModeHistoryOfRates, OneBeliefForAllModesIsRejected) {
   EXPECT_THROW(tree_of(deg(0.8), HistoryTree::pseudo_bayes(1, 3)), std::invalid_argument);
   EXPECT_NO_THROW(tree_of(deg(0.8), HistoryTree::pseudo_bayes(2, 3)));
 }

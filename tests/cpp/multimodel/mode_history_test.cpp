@@ -88,7 +88,7 @@ class Enumeration {
     }
   }
 
-  /// The logarithm of the likelihood of z; all histories go on.
+  /// The logarithm of the likelihood of z; all histories continue.
   double scan(double dt, const Vec<double, 2>& z) {
     const auto p = chain_.transition(dt);
     std::vector<History> next;
@@ -457,7 +457,7 @@ TEST(ModeHistory, APlotWithoutASquareLeavesThePrediction) {
   }
 }
 
-TEST(ModeHistory, HistoriesNearTheLeastNumberSpoilNoneThatIsLikely) {
+TEST(ModeHistory, HistoriesNearUnderflowDoNotAffectProbableOnes) {
   // Of what one plot far off leaves to some of them a reciprocal is beyond numbers.
   const Position sensor{.position_std_m = 2.0};
   for (double away_m = 500.0; away_m < 1000.0; away_m += 20.0) {
@@ -537,7 +537,7 @@ TEST(ModeHistory, ADamagedArchiveChangesNothing) {
   }
 }
 
-TEST(ModeHistory, AnArchiveOfATreeOfOtherRulesIsRefused) {
+TEST(ModeHistory, AnArchiveOfATreeWithOtherParametersIsRejected) {
   Tree tree({}, kTriple, turning_chain(kTriple), turning());
   ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
   Archive writing;
@@ -555,7 +555,7 @@ TEST(ModeHistory, AnArchiveOfATreeOfOtherRulesIsRefused) {
   }
 }
 
-TEST(ModeHistory, GoesOnFromItsArchiveWithTheSameBits) {
+TEST(ModeHistory, ContinuesFromItsArchiveWithTheSameBits) {
   Tree tree({}, kTriple, turning_chain(kTriple), turning());
   ASSERT_EQ(tree.start(test::five_km_off<double>()), Status::kOk);
   Draw draw(77);
@@ -598,7 +598,7 @@ TEST(ModeHistory, DoesNotTouchTheHeap) {
   EXPECT_GT(position, 0.0);
 }
 
-TEST(ModeHistory, ParametersThatMakeNoSenseAreRefused) {
+TEST(ModeHistory, InvalidParametersAreRejected) {
   const Chain chain = turning_chain(kTriple);
   const auto with = [&](HistoryTree tree) { return Tree(tree, kTriple, chain, turning()); };
   EXPECT_THROW(with({.max_hypotheses = 0}), std::invalid_argument);
@@ -625,7 +625,7 @@ TEST(ModeHistory, ParametersThatMakeNoSenseAreRefused) {
   EXPECT_THROW(HistoryTree::pseudo_bayes(2, 0), std::invalid_argument);
 }
 
-TEST(TurningChain, LeavesAsItsHabitsSay) {
+TEST(TurningChain, LeavesWithTheGivenProbabilities) {
   const TurnHabits habits{
       .straight_sojourn_s = 50.0, .turn_sojourn_s = 20.0, .straighten_probability = 0.8};
   const TurnRateGrid grid = TurnRateGrid::evenly(deg(2.0), 2);

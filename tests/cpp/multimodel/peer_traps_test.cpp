@@ -55,7 +55,7 @@ TEST(MayaraTrap, AStartAgainForgetsTheModesToo) {
 }
 
 // robot_localization factorises without asking whether that went well.
-TEST(RobotLocalizationTrap, ACovarianceThatIsNotPositiveDefiniteIsRefusedNotUsed) {
+TEST(RobotLocalizationTrap, ACovarianceThatIsNotPositiveDefiniteIsRejectedNotUsed) {
   Ukf ukf{ConstantVelocity{}};
   Gaussian<4> indefinite;
   indefinite.covariance(0, 1) = indefinite.covariance(1, 0) = 2.0;

@@ -71,7 +71,7 @@ TEST(RunSmoothed, BeforeAPauseOverWhichNothingGoesBackIsSmoothedByItself) {
   EXPECT_GT(by_itself, 0);
 }
 
-TEST(RunSmoothed, TellsAStepThatIsNone) {
+TEST(RunSmoothed, ReportsAnInvalidStep) {
   EXPECT_EQ(smoothed(kScans, -1.0).status, Status::kNegativeTimeStep);
 }
 

@@ -329,7 +329,7 @@ TYPED_TEST(TurnGrids, AStepThatFailsLeavesEverything) {
     const auto before = estimator;
     EXPECT_NE(estimator.predict(-1.0), Status::kOk);
     EXPECT_NE(estimator.predict(kNan), Status::kOk);
-    EXPECT_NE(estimator.predict(1e300), Status::kOk);  // moves the grid, then cannot go on
+    EXPECT_NE(estimator.predict(1e300), Status::kOk);  // moves the grid, then fails
     EXPECT_NE(estimator.predict(3.0, {kNan, 0.0}), Status::kOk);
     EXPECT_FALSE(estimator.update(kRadar, {kNan, 1.0}));
     EXPECT_NE(
@@ -346,7 +346,7 @@ TYPED_TEST(TurnGrids, AStepThatFailsLeavesEverything) {
   EXPECT_TRUE(same_bits(estimator, untouched));
 }
 
-TYPED_TEST(TurnGrids, AnArchiveGoesOnWithTheSameBits) {
+TYPED_TEST(TurnGrids, AnArchiveContinuesWithTheSameBits) {
   auto estimator = TypeParam::build();
   ASSERT_EQ(estimator.start(beginning()), Status::kOk);
   const auto z = plots();
@@ -467,9 +467,9 @@ TYPED_TEST(TurnGrids, AKnownAccelerationPushesEveryModel) {
       matrices_near(pushed.estimate().covariance, free.estimate().covariance, {.absolute = 1e-6}));
 }
 
-// What is refused ---------------------------------------------------------------------------------
+// Invalid input -----------------------------------------------------------------------------------
 
-TEST(TurnGrid, RefusesWhatIsNoGrid) {
+TEST(TurnGrid, RejectsInvalidGrids) {
   EXPECT_THROW(TurnRateGrid({0.1, 0.0}), std::invalid_argument);
   EXPECT_THROW(TurnRateGrid({0.0, 0.0}), std::invalid_argument);
   EXPECT_THROW(TurnRateGrid({0.0}), std::invalid_argument);
@@ -482,7 +482,7 @@ TEST(TurnGrid, RefusesWhatIsNoGrid) {
   EXPECT_THROW(TurnRateGrid::evenly(1.0, std::numeric_limits<int>::max()), std::invalid_argument);
 }
 
-TEST(TurnGrid, SaysWhatWasWantedAndWhatCame) {
+TEST(TurnGrid, ReportsWhatWasExpectedAndWhatCame) {
   EXPECT_EQ(refusal_of([] { return TurnRateGrid({0.0}); }),
             "grid_rad_s must have 2 to 16 turn rates, got 1");
   EXPECT_EQ(refusal_of([] {
@@ -503,7 +503,7 @@ TEST(TurnGrid, SaysWhatWasWantedAndWhatCame) {
             "chain must have 5 modes, one for each model, got 3");
 }
 
-TEST(AdaptiveGrid, RefusesWhatMakesNoSense) {
+TEST(AdaptiveGrid, RejectsInvalidParameters) {
   using Three = AdaptiveGrid::Rates;
   EXPECT_THROW(adaptive({.max_turn_rate_rad_s = 0}), std::invalid_argument);
   EXPECT_THROW(adaptive({.initial_turn_rates_rad_s = Three{-deg(6.0), 0, deg(1.0)}}),
@@ -521,14 +521,14 @@ TEST(AdaptiveGrid, RefusesWhatMakesNoSense) {
       std::invalid_argument);
 }
 
-TEST(SwitchingGrid, RefusesWhatMakesNoSense) {
+TEST(SwitchingGrid, RejectsInvalidParameters) {
   EXPECT_THROW(switching({.grid_rad_s = {0.0, 0.1}}), std::invalid_argument);
   EXPECT_THROW(switching({.threshold = -0.1}), std::invalid_argument);
   EXPECT_THROW(switching({.initial_centre = 0}), std::invalid_argument);
   EXPECT_THROW(switching({.initial_centre = 4}), std::invalid_argument);
 }
 
-TEST(LikelyModelSet, RefusesWhatMakesNoSense) {
+TEST(LikelyModelSet, RejectsInvalidParameters) {
   EXPECT_THROW(likely({.unlikely_threshold = 0.4, .likely_threshold = 0.3}), std::invalid_argument);
   EXPECT_THROW(likely({.likely_threshold = 1.5}), std::invalid_argument);
   EXPECT_THROW(likely({.initial_straight_probability = kNan}), std::invalid_argument);

@@ -12,8 +12,8 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
-#include "wakeline/simd/pack_math.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/simd/pack_math.hpp"
 
 namespace wakeline {
 namespace {
@@ -117,7 +117,7 @@ TEST(VariantBank, AStepThatFailsChangesNothing) {
   EXPECT_TRUE(beliefs_identical<4>(imm.estimate(), before));
 }
 
-TEST(VariantBank, RefusesTooManyAndNone) {
+TEST(VariantBank, RejectsTooManyAndNone) {
   using Few = VariantBank<2, Ekf<ConstantVelocity>>;
   const std::vector<Few::Filter> three(3, Ekf<ConstantVelocity>(kStraight));
   EXPECT_THROW(Few(std::span<const Few::Filter>(three)), std::invalid_argument);

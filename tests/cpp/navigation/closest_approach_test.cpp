@@ -370,7 +370,7 @@ TEST(ProbabilityOfPassing, GrowsWithTheLimitAndTheHorizon) {
   EXPECT_NEAR(coming.probability(926), coming.probability(926, 1e6), 1e-9);
 }
 
-TEST(ClosestApproach, OfWhatIsNoNumberIsNone) {
+TEST(ClosestApproach, OfNanIsNan) {
   const Vec4 own = state({0, 0}, {5, 0});
   for (int k = 0; k < 4; ++k) {
     Vec4 target = state({1000, 200}, {-5, 1});

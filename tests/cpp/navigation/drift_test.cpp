@@ -134,7 +134,7 @@ TEST(DriftWindow, OfErrorsOf4MetresAnAxisNeedsOneFixMore) {
   EXPECT_LT(twenty.rms_kn, 0.030);
 }
 
-TEST(DriftWindow, OfAFixThatSaysNothingIsThatOfTheOthers) {
+TEST(DriftWindow, OfAFixWithoutInformationIsThatOfTheOthers) {
   for (const double std_m : {1e6, 1e9, 1e15}) {
     DriftWindow<> with, without;
     for (int k = 0; k < 6; ++k) {
@@ -155,7 +155,7 @@ TEST(DriftWindow, OfAFixThatSaysNothingIsThatOfTheOthers) {
   }
 }
 
-TEST(DriftWindow, KnowsNothingBeforeTwoTimes) {
+TEST(DriftWindow, IsUnknownBeforeTwoTimes) {
   DriftWindow<> window;
   EXPECT_FALSE(window.ready());
   EXPECT_TRUE(std::isinf(window.drift().covariance(0, 0)));
@@ -175,7 +175,7 @@ TEST(DriftWindow, ThatIsSmallRemembersAsManyFixesAsItHolds) {
   EXPECT_EQ(DriftWindow<32>().settings().max_fixes, DriftWindowSettings{}.max_fixes);
 }
 
-TEST(DriftWindow, RefusesWhatMakesNoSenseAndStaysAsItWas) {
+TEST(DriftWindow, RejectsInvalidInputAndStaysUnchanged) {
   DriftWindow<> window({.log_std_mps = 0.05});
   EXPECT_EQ(window.add({Vec2(0, 0), kIdentity}), Status::kOk);
   EXPECT_EQ(window.advance(10, 5, 1), Status::kOk);
@@ -260,7 +260,7 @@ TEST(Drift, FromFixedMarks) {
   EXPECT_TRUE(std::isnan(ground_velocity_from_marks({}).mean[0]));
 }
 
-TEST(Stabilisation, AMarkThatLiesStillStaysOnTheGroundAndDriftsInTheSea) {
+TEST(Stabilisation, AStationaryMarkIsFixedOverGroundAndDriftsThroughTheWater) {
   const SpeedCourse water{7.0, deg(200)};
   const Vec2 drift(0.4, 0.3), relative = -(water.velocity_mps() + drift);
   EXPECT_LT(ground_stabilised_mps(relative, water, drift).norm(), 1e-12);

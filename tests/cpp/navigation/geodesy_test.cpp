@@ -85,7 +85,7 @@ TEST(Geodesic, OfShortStepsIsTheEllipsoidsCurvature) {
   }
 }
 
-TEST(Geodesic, SaysWhereItDoesNotConverge) {
+TEST(Geodesic, ReportsWhereItDoesNotConverge) {
   for (const GeoPoint& to : {at(0.5, 179.7), at(0, 180), at(0.1, -179.9)}) {
     const GeoLine line = geodesic(at(0, 0), to);
     EXPECT_FALSE(line.found);
@@ -101,7 +101,7 @@ TEST(Geodesic, SaysWhereItDoesNotConverge) {
   }
 }
 
-TEST(Geodesic, OfWhatIsNoNumberIsNotFound) {
+TEST(Geodesic, OfNanIsNotFound) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(geodesic({nan, 0.0}, at(1, 1)).found);
   EXPECT_FALSE(geodesic(at(1, 1), {0.0, nan}).found);
@@ -190,7 +190,7 @@ TEST(LocalPlane, OfAReferenceOnTheDateLine) {
   EXPECT_NEAR(east[1], deg(0.1) * prime_vertical_radius_m(deg(46.5)) * std::cos(deg(46.5)), 0.01);
 }
 
-TEST(LocalPlane, StretchesAcrossAsItSays) {
+TEST(LocalPlane, StretchesAcrossAsDocumented) {
   Draw draw(7);
   for (const double d : {50e3, 100e3, 300e3}) {
     for (int k = 0; k < 50; ++k) {
@@ -218,7 +218,7 @@ TEST(LocalPlane, TurnsCoursesByTheConvergenceOfMeridians) {
   EXPECT_NEAR(std::atan2(wake[1], wake[0]), turned, 1e-4);
 }
 
-TEST(LocalPlane, RefusesWhatIsNotOnTheEarth) {
+TEST(LocalPlane, RejectsPositionsOffTheEarth) {
   EXPECT_THROW(LocalPlane(GeoPoint{1.6, 0.0}), std::invalid_argument);
   EXPECT_THROW(LocalPlane(GeoPoint{NAN, 0.0}), std::invalid_argument);
   EXPECT_THROW(LocalPlane(GeoPoint{0.0, INFINITY}), std::invalid_argument);

@@ -174,7 +174,7 @@ TEST(UncertaintyEllipse, HasTheAxesOfTheCovariance) {
   EXPECT_NEAR(ellipse.area_m2, kPi<double> * scale * scale * major * minor, 1e-6);
 }
 
-TEST(DriftForecast, RefusesWhatMakesNoSense) {
+TEST(DriftForecast, RejectsInvalidParameters) {
   const auto with = [](auto change) {
     DriftModel model;
     change(model);

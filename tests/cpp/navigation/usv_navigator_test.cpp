@@ -311,7 +311,7 @@ TYPED_TEST(EveryUsvModel, HasAProcessNoiseThatIsACovariance) {
   EXPECT_EQ(model.process_noise(x, 0.0).norm(), 0.0);
 }
 
-/// How far her velocity is off at worst without any fix, in four turns of 5 m/s and 5°/s under an
+/// Largest velocity error without any fix, in four turns of 5 m/s and 5°/s under an
 /// IMU whose rows are means over a second.
 double worst_velocity_in_turns_mps(double turned_at) {
   const double speed = 5.0, rate = deg(5.0);
@@ -332,7 +332,7 @@ TEST(UsvInertialMotion, FollowsATurnByTheHeadingInTheMiddleOfAStep) {
   EXPECT_GT(worst_velocity_in_turns_mps(0.0), 0.4);
 }
 
-// Draws of the error of the gyro move her as the noise says.
+// Samples of the gyro error move it as modelled by the noise.
 TEST(UsvInertialMotion, ErrsWhereTheGyroTurnsTheAcceleration) {
   UsvMotion model;
   model.input = {.imu = {0.3, -0.2, 0.08}, .noise = {1e-9, deg(0.5)}};
@@ -440,16 +440,16 @@ TYPED_TEST(EveryUsvModel, CoastsThroughAnOutageAndComesBack) {
   }
 }
 
-TYPED_TEST(EveryUsvModel, RejectsAnOutlierAndSaysSo) {
+TYPED_TEST(EveryUsvModel, RejectsAnOutlierAndReportsIt) {
   const std::vector<Instant> log = mission(13, kBias);
   UsvNavigator<TypeParam> navigator;
   navigate(navigator, log);
   const auto before = navigator.estimate();
-  const auto wild = navigator.update(gnss(), Vec2(log.back().fix + Vec2(500, 0)));
-  EXPECT_TRUE(wild.rejected);
-  EXPECT_FALSE(wild);
-  EXPECT_EQ(wild.status, Status::kMissed);
-  EXPECT_GT(wild.nis, 100);
+  const auto outlier = navigator.update(gnss(), Vec2(log.back().fix + Vec2(500, 0)));
+  EXPECT_TRUE(outlier.rejected);
+  EXPECT_FALSE(outlier);
+  EXPECT_EQ(outlier.status, Status::kMissed);
+  EXPECT_GT(outlier.nis, 100);
   EXPECT_TRUE(test::matrices_identical(navigator.estimate().mean, before.mean));
   EXPECT_TRUE(test::matrices_identical(navigator.estimate().covariance, before.covariance));
 }
@@ -517,7 +517,7 @@ class StraightNorth {
 
 void nothing(Told&) {}
 
-// Good fixes and one wrong instrument: she is where the fixes are, and it is the one rejected.
+// Good fixes and one faulty instrument: the estimate follows the fixes, the instrument is rejected.
 TEST(UsvNavigator, IsNotMovedByAnInstrumentThatGoodFixesRefute) {
   for (const double knots : {15.0, 30.0, 100.0, 199.0})
     for (const int seconds : {15, 100}) {
@@ -570,14 +570,14 @@ TEST(UsvNavigator, BelievesACompassAndALogThatInsistTogether) {
   EXPECT_LT(mean.tail<2>().norm(), 0.3);
 }
 
-/// How a ship that goes north changes her speed, and how often she is told what.
+/// How a ship heading north changes its speed, and how often each sensor reports.
 struct SpeedChange {
   double from_mps, to_mps, acceleration_mps2;
   double dt_s;        ///< between speeds, and headings
   int steps_per_fix;  ///< of 3 m
 };
 
-/// How far from her the place and the current are when all instruments are right.
+/// Errors of position and current when all instruments are right.
 struct Strayed {
   double position_m, current_mps;
 };
@@ -608,7 +608,7 @@ Strayed strayed_of(const SpeedChange& ship) {
   return {farthest_m, navigator.estimate().mean.tail<2>().norm()};
 }
 
-// Fixes fit the belief for a while after she changed her speed, but they do not refute the log and
+// Fixes fit the belief for a while after a change of speed, but they do not refute the log and
 // the velocities that say so, however rare or frequent they are.
 TEST(UsvNavigator, FollowsAVesselThatChangesItsSpeed) {
   for (const double faster_mps : {2.0, 5.0, 9.0}) {
@@ -722,10 +722,10 @@ void expect_absurd_readings_to_do_nothing(const std::vector<Instant>& log, doubl
     const Instant& now = log[std::size_t(k)];
     ASSERT_EQ(navigator.predict(Scalar(1), now.imu), Status::kOk) << off << " " << k;
     const auto before = navigator.estimate();
-    const bool is_absurd = k >= first && k < last;
-    const Vec2 wild = is_absurd ? Vec2(off, -off / 2) : Vec2(0, 0);
-    const auto fixed = navigator.update(gnss(), Pair((now.fix + wild).cast<Scalar>()));
-    if (is_absurd) {
+    const bool is_implausible = k >= first && k < last;
+    const Vec2 outlier = is_implausible ? Vec2(off, -off / 2) : Vec2(0, 0);
+    const auto fixed = navigator.update(gnss(), Pair((now.fix + outlier).cast<Scalar>()));
+    if (is_implausible) {
       EXPECT_TRUE(fixed.rejected) << off << " " << k;
       EXPECT_GT(fixed.nis, 1e5) << off << " " << k;
       EXPECT_TRUE(test::matrices_identical(navigator.estimate().mean, before.mean));
@@ -797,7 +797,7 @@ TYPED_TEST(EveryUsvModel, FindsACurrentThatChangedWhileItCoasted) {
   EXPECT_LT(nees, 4) << "of 2: it owns up to what it has learned anew";
 }
 
-TYPED_TEST(EveryUsvModel, CrossesNorthAndSouthAlike) {
+TYPED_TEST(EveryUsvModel, CrossesNorthAndSouthTheSameWay) {
   constexpr int kRow = index_of(TypeParam::kComponents, kHeading);
   for (const double middle : {0.0, kPi<double>}) {
     UsvNavigator<TypeParam> navigator;
@@ -864,7 +864,7 @@ TYPED_TEST(EveryUsvModel, TouchesNoHeap) {
   EXPECT_TRUE(fine);
 }
 
-TYPED_TEST(EveryUsvModel, RefusesBadInputAndStaysAsItWas) {
+TYPED_TEST(EveryUsvModel, RejectsBadInputAndStaysUnchanged) {
   UsvNavigator<TypeParam> navigator;
   EXPECT_EQ(navigator.predict(1.0, {}), Status::kNotStarted);
   EXPECT_EQ(navigator.update(Compass(), of(0)).status, Status::kNotStarted);
@@ -885,7 +885,7 @@ TYPED_TEST(EveryUsvModel, RefusesBadInputAndStaysAsItWas) {
   EXPECT_THROW(UsvNavigator<TypeParam>(TypeParam{}, {}, ImuNoise{-1, 0}), std::invalid_argument);
 }
 
-TYPED_TEST(EveryUsvModel, GoesOnFromAnArchive) {
+TYPED_TEST(EveryUsvModel, ContinuesFromAnArchive) {
   const std::vector<Instant> log = mission(16, kNoBias);
   UsvNavigator<TypeParam> one, two;
   navigate(one, log);
@@ -912,7 +912,7 @@ TEST(UsvSensors, VelocityInACurrentHasTheJacobianOfItsMeasurement) {
   EXPECT_TRUE(matrices_near(sensor.jacobian(x), numeric, {1e-8, 1e-8}));
 }
 
-TEST(UsvSensors, LogAndVelocityTellTheCurrent) {
+TEST(UsvSensors, LogAndVelocityObserveTheCurrent) {
   UsvNavigator<UsvCurrentMotion> navigator;
   ASSERT_EQ(navigator.start({.velocity_mps = {3, 0}}), Status::kOk);
   for (int k = 0; k < 60; ++k) {
@@ -924,7 +924,7 @@ TEST(UsvSensors, LogAndVelocityTellTheCurrent) {
   EXPECT_TRUE(matrices_near(navigator.estimate().mean.tail<2>(), Vec2(-0.2, 0.4), {0.02, 0}));
 }
 
-TEST(UsvSensors, RateOfTurnTellsTheBiasOfTheGyro) {
+TEST(UsvSensors, RateOfTurnObservesTheBiasOfTheGyro) {
   UsvNavigator<UsvBiasMotion> navigator;
   ASSERT_EQ(navigator.start(UsvStart{}), Status::kOk);
   for (int k = 0; k < 30; ++k) {
@@ -955,7 +955,7 @@ TEST(UsvSensors, GroundVelocityTightensTheVelocity) {
   EXPECT_NEAR(navigator.estimate().mean[3], -0.5, 0.05);
 }
 
-TEST(UsvSensors, RefuseStandardDeviationsThatAreNone) {
+TEST(UsvSensors, RejectInvalidStandardDeviations) {
   EXPECT_THROW(Compass(0).validate(), std::invalid_argument);
   EXPECT_THROW(SpeedLog(-1).validate(), std::invalid_argument);
   EXPECT_THROW(GroundVelocity(kNan).validate(), std::invalid_argument);

@@ -95,7 +95,7 @@ TEST(RateOfTurnBesideTheGyro, LeavesHeadingAndBiasConsistentInACurrent) {
   expect_consistent<UsvNavigator<UsvCurrentMotion>>(noisy_gyro<UsvCurrentMotion>());
 }
 
-TEST(RateOfTurnBesideTheGyro, LeavesHeadingAndBiasConsistentWhereAStepTellsItsOwnNoise) {
+TEST(RateOfTurnBesideTheGyro, LeavesHeadingAndBiasConsistentWhereAStepHasItsOwnNoise) {
   UsvBiasMotion quieter = noisy_gyro<UsvBiasMotion>(), louder = quieter;
   quieter.input.noise.yaw_rate_std_rad_s = kGyroStd / 30;
   louder.input.noise.yaw_rate_std_rad_s = kGyroStd * 30;

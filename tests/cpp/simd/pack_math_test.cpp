@@ -16,7 +16,7 @@ namespace {
 
 using Long = long double;
 
-/// The same number, or no number both.
+/// The same number, or both NaN.
 template <class Real>
 bool is_same(Real a, Real b) {
   return (std::isnan(a) && std::isnan(b)) || (a == b && std::signbit(a) == std::signbit(b));
@@ -67,7 +67,7 @@ class PackMathOf : public ::testing::Test {
   }
 
   /// The function of packs is that of long numbers, rounded, within `bound_ulp`, and is it to the
-  /// sign at zeros, infinities and what is no number.
+  /// sign at zeros, infinities and NaN.
   template <class Function, class Exact>
   void expect_within(Long bound_ulp, const char* name, const Function& function, const Exact& exact,
                      const Numbers& x, const Numbers& y = {}) {

@@ -17,7 +17,7 @@
 namespace wakeline {
 namespace {
 
-/// The same number: zeros of one sign, or no number both.
+/// The same number: zeros of one sign, or both NaN.
 template <class Real>
 bool is_same(Real a, Real b) {
   return (std::isnan(a) && std::isnan(b)) || (a == b && std::signbit(a) == std::signbit(b));
@@ -84,7 +84,7 @@ TYPED_TEST(PackOf, ArithmeticIsThatOfEachLane) {
   });
 }
 
-TYPED_TEST(PackOf, ANumberStandsInEveryLane) {
+TYPED_TEST(PackOf, ANumberIsInEveryLane) {
   using Real = RealOf<TypeParam>;
   const TypeParam a = TypeParam::of([](int k) { return Real(k) + Real(0.5); });
   for (int k = 0; k < kLanesOf<TypeParam>; ++k) {

@@ -32,7 +32,7 @@ UnscentedImm prototype_of(const UnscentedImm*) {
                       Ekf(models.steady(25.0)));
 }
 
-/// Estimators alike, each with its own past and its own step to take.
+/// Estimators with the same parameters, each with its own past and next step.
 template <class Estimator>
 struct Fleet {
   static constexpr std::size_t kMany = 70;  // more than are put in order together
@@ -153,7 +153,7 @@ TYPED_TEST(SideBySideOf, NeighboursChangeNoBit) {
   }
 }
 
-TYPED_TEST(SideBySideOf, AStepThatFailsChangesNothingAndNoNeighbour) {
+TYPED_TEST(SideBySideOf, AFailedStepChangesNothing) {
   Fleet<TypeParam> fleet(9), sound(9);
   SideBySide<TypeParam> side_by_side(fleet.estimators[0]);
   const auto before = bits_of(fleet.estimators[4]);

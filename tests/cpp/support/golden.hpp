@@ -14,7 +14,7 @@
 
 namespace wakeline::test {
 
-/// tests/golden: results of independent references, read by the C++ and the Python tests alike.
+/// tests/golden: results of independent references, read by both the C++ and the Python tests.
 inline const std::filesystem::path kGoldenDir = tests_dir() / "golden";
 /// tests/data: inputs of tests.
 inline const std::filesystem::path kDataDir = tests_dir() / "data";

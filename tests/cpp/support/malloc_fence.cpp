@@ -21,7 +21,7 @@ constinit thread_local long allocation_count = 0;
 
 #if defined(WAKELINE_ADDRESS_SANITIZER)
 
-// The sanitizer owns malloc and tells us of every call.
+// The sanitizer owns malloc and reports every call.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*,
                                                                              std::size_t),
                                                          void (*free_hook)(const volatile void*));

@@ -7,7 +7,7 @@
 
 namespace wakeline::test {
 
-/// What `build` is refused with, or "none".
+/// The message with which `build` fails, or "none".
 template <class Build>
 std::string refusal_of(Build&& build) {
   try {

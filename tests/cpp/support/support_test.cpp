@@ -125,7 +125,7 @@ TEST(NumericJacobian, AgreesWithTheAnalyticOne) {
                             {.absolute = 1e-9, .relative = 1e-9}));
 }
 
-TEST(NumericJacobian, SubtractsAsItIsTold) {
+TEST(NumericJacobian, UsesTheGivenDifference) {
   constexpr double kPi = 3.14159265358979323846;
   const auto bearing = [](const Eigen::Vector2d& p) {
     return Eigen::Matrix<double, 1, 1>{std::atan2(p.y(), p.x())};

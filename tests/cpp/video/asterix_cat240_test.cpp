@@ -120,7 +120,7 @@ Story read(const Bytes& all, std::size_t piece = std::numeric_limits<std::size_t
   Cat240Reader reader;
   std::size_t begin = 0, end = std::min(piece, all.size());
   for (;;) {
-    // A copy of its own, so that the sanitizer sees whoever reads beyond it.
+    // A separate copy, so that the sanitizer detects reads past its end.
     const Bytes part(all.begin() + static_cast<std::ptrdiff_t>(begin),
                      all.begin() + static_cast<std::ptrdiff_t>(end));
     const bool last = end == all.size();
@@ -137,7 +137,7 @@ Story read(const Bytes& all, std::size_t piece = std::numeric_limits<std::size_t
   return story;
 }
 
-TEST(Cat240, Writes_what_the_specification_says) {
+TEST(Cat240, Writes_what_the_specification_requires) {
   const std::vector<std::uint8_t> amplitude{1, 2, 3, 4, 5};
   Cat240Writer writer({25, 7});
   const Bytes block = written(writer, Sweep<std::uint8_t>{.time_s = 1.0,
@@ -230,10 +230,10 @@ TEST(Cat240, Expands_small_cells_to_full_scale) {
   EXPECT_EQ(read(with(3, 2, 3, packed)).amplitude[0], (Row{187, 17, 68}));
   EXPECT_EQ(read(with(4, 2, 2, packed)).amplitude[0], (Row{0xB1, 0x40}));
   EXPECT_EQ(read(with(5, 2, 1, packed)).amplitude[0], (Row{0xB140}));
-  EXPECT_TRUE(std::isnan(read(with(4, 2, 2, packed)).time_s[0]));  // none is told
+  EXPECT_TRUE(std::isnan(read(with(4, 2, 2, packed)).time_s[0]));  // absent
 }
 
-TEST(Cat240, Tells_what_it_cannot_read_and_reads_on) {
+TEST(Cat240, Reports_what_it_cannot_read_and_continues) {
   const std::vector<Bytes> blocks = turn_of(2);
   const auto with = [&](std::size_t at, std::initializer_list<int> octets) {
     Bytes bad = blocks[0];
@@ -284,7 +284,7 @@ TEST(Cat240, A_record_must_have_its_items_once) {
             "I240/050, I240/051 or I240/052");
 }
 
-TEST(Cat240, Reads_several_records_of_a_block_and_what_the_sender_says) {
+TEST(Cat240, Reads_several_records_of_a_block_and_its_summary) {
   Cat240Writer writer({25, 7});
   Bytes room(300);
   ASSERT_EQ(writer.write_summary("harbour radar", std::span<std::byte>(room)), Cat240Written::kOk);
@@ -350,7 +350,7 @@ TEST(Cat240, Garbage_that_leads_past_video_is_no_block_of_another_category) {
   }
 }
 
-TEST(Cat240, Garbage_between_blocks_is_told_and_passed_over) {
+TEST(Cat240, Garbage_between_blocks_is_reported_and_skipped) {
   std::mt19937 random(5);
   const auto blocks = turn_of(8);
   for (int trial = 0; trial < 200; ++trial) {
@@ -392,7 +392,7 @@ TEST(Cat240, Time_goes_on_over_midnight_and_back) {
   EXPECT_EQ(read(all).time_s, times);
 }
 
-TEST(Cat240, Says_why_a_sweep_cannot_be_written) {
+TEST(Cat240, Reports_why_a_sweep_cannot_be_written) {
   Cat240Writer writer;
   Bytes room(Cat240Writer::kRoom);
   const auto amplitude = ramp<std::uint8_t>(65025);

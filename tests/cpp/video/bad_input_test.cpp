@@ -30,7 +30,7 @@ Picture<> one_ship() {
   return picture;
 }
 
-TEST(BadSweep, IsRefusedAsIfItHadNotCome) {
+TEST(BadSweep, IsRejectedAndChangesNothing) {
   const auto picture = one_ship();
   const std::vector<std::function<void(Sweep<>&)>> damages{
       [](auto& s) { s.time_s = kNan; },
@@ -64,7 +64,7 @@ TEST(BadSweep, IsRefusedAsIfItHadNotCome) {
   }
 }
 
-TEST(BadSweep, TooLongIsRefused) {
+TEST(BadSweep, TooLongIsRejected) {
   PlotExtractor<> extractor(every_cell(80));
   const Picture<> longer{360, 81};
   EXPECT_TRUE(extractor.process(longer.sweep(0)).empty());
@@ -73,7 +73,7 @@ TEST(BadSweep, TooLongIsRefused) {
   EXPECT_TRUE(refused(extractor.status()));
 }
 
-TEST(BadSweep, RepeatedIsRefused) {
+TEST(BadSweep, RepeatedIsRejected) {
   const auto picture = one_ship();
   PlotExtractor<> extractor(every_cell(80));
   std::vector<VideoPlot> plots;
@@ -369,7 +369,7 @@ TEST(Memory, IsEnoughForLongSweepsOfNothingButEchoes) {
   EXPECT_EQ(fence.allocations(), 0);
 }
 
-TEST(Settings, ThatMakeNoSenseAreRefused) {
+TEST(Settings, ThatAreInvalidAreRejected) {
   const std::vector<std::function<void(PlotExtractorSettings&)>> damages{
       [](auto& s) { s.max_sweep_cells = 0; },
       [](auto& s) { s.max_sweep_cells = 65537; },

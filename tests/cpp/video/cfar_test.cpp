@@ -202,14 +202,14 @@ TEST(ThresholdFactor, GrowsAsFalseAlarmsGrowRarer) {
   }
 }
 
-TEST(ThresholdFactor, RefusesWhatIsNoProbability) {
+TEST(ThresholdFactor, RejectsInvalidProbabilities) {
   for (const double probability : {0.0, 1.0, -0.1, std::nan("")})
     EXPECT_THROW((void)threshold_factor({}, Noise::kRayleigh, probability), std::invalid_argument);
   EXPECT_THROW((void)threshold_factor({.train_cells = 1}, Noise::kExponential, 1e-9),
                std::invalid_argument);
 }
 
-TEST(CfarSettings, RefusesWhatMakesNoSense) {
+TEST(CfarSettings, RejectsInvalidParameters) {
   EXPECT_THROW(Cfar<>({.train_cells = 0}, 10), std::invalid_argument);
   EXPECT_THROW(Cfar<>({.train_cells = 129}, 10), std::invalid_argument);
   EXPECT_THROW(Cfar<>({.guard_cells = -1}, 10), std::invalid_argument);

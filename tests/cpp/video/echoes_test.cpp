@@ -178,7 +178,7 @@ TEST(VideoPlot, IsTheWeightedMeanOfItsCells) {
   EXPECT_FALSE(plot.touches_first_cell || plot.touches_last_cell || plot.cut);
 }
 
-TEST(VideoPlot, TellsThatItTouchesTheEnds) {
+TEST(VideoPlot, ReportsThatItTouchesTheEnds) {
   Picture<> picture{360, 100};
   picture.at(50, 0) = picture.at(90, 99) = 200;
   const auto plots = extract_plots(picture.image(), every_cell(100));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// What is left out of the picture: land, and what always stands there.
+// Excluded areas (land) and stationary clutter.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -100,7 +100,7 @@ TEST(LandMask, TakesItsCellsOutOfThePicture) {
   EXPECT_EQ(threshold[51], 7);
 }
 
-TEST(LandMask, RefusesWhatMakesNoSense) {
+TEST(LandMask, RejectsInvalidParameters) {
   LandMask mask(360);
   EXPECT_THROW(LandMask(0), std::invalid_argument);
   EXPECT_THROW(LandMask(65537), std::invalid_argument);
@@ -240,7 +240,7 @@ TEST(StaticClutterMap, TimeThatRunsBackLearnsNothing) {
   EXPECT_EQ(map.mean()[3], 0.0f);
 }
 
-TEST(StaticClutterMap, RefusesWhatMakesNoSense) {
+TEST(StaticClutterMap, RejectsInvalidParameters) {
   EXPECT_THROW(StaticClutterMap(0, 10, 30.0), std::invalid_argument);
   EXPECT_THROW(StaticClutterMap(36, 0, 30.0), std::invalid_argument);
   EXPECT_THROW(StaticClutterMap(36, -5, 30.0), std::invalid_argument);

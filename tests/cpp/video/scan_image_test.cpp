@@ -67,7 +67,7 @@ TEST(ScanImage, HoldsTheLastTurn) {
   EXPECT_EQ(image.view().row(100)[5], 200);
 }
 
-TEST(ScanImage, BeginsWhereItIsTold) {
+TEST(ScanImage, BeginsAtTheGivenAzimuth) {
   Picture<> picture{360, 4};
   picture.at(90, 2) = 77;
   ScanImage<> image(360, 4, deg(90));
@@ -76,7 +76,7 @@ TEST(ScanImage, BeginsWhereItIsTold) {
   EXPECT_NEAR(image.view().position(0, 2)[1], picture.start_range_m + 2.5 * picture.cell_m, 1e-9);
 }
 
-TEST(ScanImage, RefusesWhatItCannotHold) {
+TEST(ScanImage, RejectsSweepsThatDoNotFit) {
   ScanImage<> image(360, 50);
   const Picture<> picture{360, 50}, longer{360, 51};
   EXPECT_FALSE(image.add(longer.sweep(0)));

@@ -10,7 +10,7 @@
 #include "wakeline/simd/unroll.hpp"
 
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
-#error "wakeline: -ffast-math and -ffinite-math-only take out the checks for what is not a number"
+#error "wakeline: -ffast-math and -ffinite-math-only remove the checks for NaN"
 #endif
 
 namespace wakeline {

@@ -15,22 +15,22 @@
 
 namespace wakeline {
 
-/// A filter whose gains follow a schedule, not its covariance: alpha-beta over `[x, vx, y, vy]`
-/// (`Order` 2), alpha-beta-gamma over `[x, vx, ax, y, vy, ay]` (3).
+/// A filter with scheduled gains: alpha-beta over `[x, vx, y, vy]` (`Order` 2), alpha-beta-gamma
+/// over `[x, vx, ax, y, vy, ay]` (3).
 ///
 ///     x += alpha e,   vx += beta e / T,   ax += gamma e / (2 T²)
 ///
-/// per axis, e the innovation in north and east and T the time since the reading before, missed
-/// scans included. Where the plot is better along the bearing than across, a schedule that depends
-/// on its error has other gains along than across. Readings of about one time, within an eighth of
-/// a step of the first of them, have one T between them: over the short time between two radars
-/// that are not in step beta / T would be so large that errors grow from turn to turn, whatever the
-/// gains. One of the time of the start corrects the position alone.
+/// per axis, e the innovation in north and east and T the time since the last reading, missed scans
+/// included. Where the plot is more accurate along the bearing than across, a schedule that depends
+/// on its error has different gains along and across. Readings of about the same time, within an
+/// eighth of a step of the first of them, share one T: over the short time between two
+/// unsynchronised radars beta / T would be so large that errors grow with every gain. A reading at
+/// the time of the start corrects the position only.
 ///
-/// The covariance is the true one of such gains when plots and motion are as the models say:
-/// (I - K H) P (I - K H)ᵀ + K R Kᵀ after an update, F P Fᵀ + Q ahead. NIS and likelihood follow
-/// from it, so that the filter may be compared with a Kalman filter or be a model of an `Imm`.
-/// Takes the position out of any sensor that fixes one.
+/// The covariance is the true one for these gains when plots and motion match the models: (I - K H)
+/// P (I - K H)ᵀ + K R Kᵀ after an update, F P Fᵀ + Q after a prediction. NIS and likelihood follow
+/// from it, so the filter can be compared with a Kalman filter or be a model of an `Imm`. Uses the
+/// position of any `PositionSensor`.
 template <int Order, class ScalarType = double>
 class AlphaBetaFilter
     : public Ekf<std::conditional_t<Order == 2, ConstantVelocity, ConstantAcceleration>,
@@ -46,15 +46,16 @@ class AlphaBetaFilter
   using typename Base::Scalar;
   using Schedule = GainSchedule<Order>;
 
-  /// Throws `std::invalid_argument` when a parameter makes no sense.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   AlphaBetaFilter(const Schedule& schedule, const Motion& motion)
       : Base(motion), schedule_(checked(schedule)) {}
 
-  /// With the process noise that a tracking index stands for, else that of a motion by default.
+  /// With the process noise that corresponds to a tracking index, else the default noise of the
+  /// motion model.
   explicit AlphaBetaFilter(const Schedule& schedule)
       : AlphaBetaFilter(schedule, motion_of(checked(schedule))) {}
 
-  /// Begins with a belief over the state or over `[x, vx, y, vy]`, and the schedule anew.
+  /// Starts with a belief over the state or over `[x, vx, y, vy]`, and restarts the schedule.
   template <class BeliefType>
   StatusOf<Scalar> start(const BeliefType& belief) noexcept {
     const StatusOf<Scalar> status = Base::start(belief);
@@ -69,7 +70,7 @@ class AlphaBetaFilter
     return count(Base::predict(dt_s, acceleration_mps2), dt_s);
   }
 
-  /// The innovation of a plot, north and east, and its likelihood, without taking it.
+  /// The innovation [north, east] of a plot and its likelihood, without an update.
   template <class Sensor>
   Step<2, Scalar> innovation(const Sensor& sensor,
                              const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
@@ -77,15 +78,14 @@ class AlphaBetaFilter
     return Base::compare(Fix{}, sensor.position(z)).scored();
   }
 
-  /// The innovation of a position that the sensor has observed and its likelihood in two parts,
-  /// without taking it.
+  /// The innovation of an observed position and its likelihood in two factors, without an update.
   template <class Sensor>
   Correction<2, Scalar> compare(const Sensor&, const Gaussian<2, Scalar>& reading) const noexcept {
     check_reads_position<Sensor>();
     return Base::compare(Fix{}, reading);
   }
 
-  /// Corrects the belief by a plot.
+  /// Updates the belief with a plot.
   template <class Sensor>
   Step<2, Scalar> update(const Sensor& sensor,
                          const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
@@ -93,14 +93,14 @@ class AlphaBetaFilter
     return take(sensor, sensor.position(z)).scored();
   }
 
-  /// The same by a position that the sensor has observed, the likelihood in two parts.
+  /// The same with an observed position; the likelihood in two factors.
   template <class Sensor>
   Correction<2, Scalar> correct(const Sensor& sensor, const Gaussian<2, Scalar>& reading) noexcept {
     check_reads_position<Sensor>();
     return take(sensor, reading);
   }
 
-  /// Saves or restores the belief and where the schedule is.
+  /// Saves or restores the belief and the state of the schedule.
   void archive(Archive& fields) {
     AlphaBetaFilter loaded = *this;
     Occasion& occasion = loaded.occasion_;
@@ -117,13 +117,13 @@ class AlphaBetaFilter
 
   [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }
 
-  /// Where the schedule is: which reading is due, the time since the one before, and whether it has
-  /// come. To be kept and given back where an update is only tried.
+  /// State of the schedule: the number of the current reading, the time since the one before, and
+  /// whether it has been taken. Saved and restored where an update is tried only.
   struct Occasion {
     Scalar reading = Scalar(1);
     Scalar elapsed_s = Scalar(0);
     Scalar since_s = Scalar(0);    ///< since it was taken
-    MaskOf<Scalar> taken = false;  ///< the reading has come; one much later is another one
+    MaskOf<Scalar> taken = false;  ///< the reading has been taken; a later one is the next
 
     friend void assign_where(const MaskOf<Scalar>& condition, Occasion& target,
                              const Occasion& value) noexcept {
@@ -140,8 +140,8 @@ class AlphaBetaFilter
   using Gain = Mat<Scalar, kStates, 2>;
   using AxisGain = Vec<Scalar, Order>;
 
-  /// Part of a step within which readings are of one time: small steps between larger ones make
-  /// the gains of a stable filter, `stable_gains`, grow errors from about a twelfth on.
+  /// Part of a step within which readings count as simultaneous: with small steps between larger
+  /// ones, errors grow under stable gains (`stable_gains`) from about a twelfth on.
   static constexpr double kOneTime = 1.0 / 8;
 
   static const Schedule& checked(const Schedule& schedule) {
@@ -163,7 +163,7 @@ class AlphaBetaFilter
     return status;
   }
 
-  /// A reading comes: where it is later than those before it is another one.
+  /// Starts a reading: the next one where it is later than those before.
   void begin() noexcept {
     const auto later = occasion_.since_s > Scalar(kOneTime) * occasion_.elapsed_s;
     assign_where(occasion_.taken && later, occasion_, {occasion_.reading + 1, occasion_.since_s});
@@ -184,7 +184,7 @@ class AlphaBetaFilter
                   "readings are positions: ConvertedRangeBearing, Position or Fix");
   }
 
-  /// Where the result is not finite nothing changes.
+  /// Changes nothing where the result is not finite.
   template <class Sensor>
   Correction<2, Scalar> take(const Sensor& sensor, const Gaussian<2, Scalar>& plot) noexcept {
     Correction<2, Scalar> correction = Base::compare(Fix{}, plot);
@@ -206,7 +206,7 @@ class AlphaBetaFilter
   /// P becomes (I - K H) P (I - K H)ᵀ + K R Kᵀ.
   static void correct_covariance(Mat<Scalar, kStates, kStates>& p, const Gain& k,
                                  const Mat<Scalar, 2, 2>& r) noexcept {
-    Gain rest = -k;  // columns 0 and Order of I - K H, whose others are those of I
+    Gain rest = -k;  // columns 0 and Order of I - K H; the others are those of I
     rest(0, 0) += Scalar(1);
     rest(Order, 1) += Scalar(1);
     Mat<Scalar, kStates, kStates> a;  // (I - K H) P
@@ -232,7 +232,7 @@ class AlphaBetaFilter
     return sqrt(plot.squaredNorm());
   }
 
-  /// [alpha, beta / T, gamma / (2 T²)] for an error of the plot of `std_m`.
+  /// [alpha, beta / T, gamma / (2 T²)] for a plot error of `std_m`.
   [[nodiscard]] AxisGain axis_gain(Scalar std_m, Scalar range_m) const noexcept {
     const GainOccasion<Scalar> occasion{occasion_.reading, occasion_.elapsed_s, std_m, range_m};
     AxisGain gain = std::visit(
@@ -246,7 +246,7 @@ class AlphaBetaFilter
     return gain;
   }
 
-  /// K: the gains along the short axis of R, and what those along the long one differ by.
+  /// K: the gains along the short axis of R, plus the difference of those along the long axis.
   [[nodiscard]] Gain gain(const Mat<Scalar, 2, 2>& r, Scalar range_m) const noexcept {
     using std::sqrt;
     const Scalar half_sum = (r(0, 0) + r(1, 1)) / 2;

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// The gains of alpha-beta and alpha-beta-gamma filters, and how they are chosen.
+// Gain schedules of alpha-beta and alpha-beta-gamma filters.
 //
-// A filter over `Order` states an axis (2: position and velocity, 3: and acceleration) corrects
-// them by alpha e, beta e / T and gamma e / (2 T²), e the innovation and T the time since the
-// reading before. The gains are a vector [alpha, beta] or [alpha, beta, gamma], without unit.
+// A filter with `Order` states per axis (2: position and velocity, 3: also acceleration) corrects
+// them by alpha e, beta e / T and gamma e / (2 T²), e the innovation and T the time since the last
+// reading. The gains are a dimensionless vector [alpha, beta] or [alpha, beta, gamma].
 #pragma once
 
 #include <cmath>
@@ -18,17 +18,17 @@
 
 namespace wakeline {
 
-/// True where an alpha-beta filter forgets its errors: alpha > 0, beta > 0 and 2 alpha + beta < 4.
+/// True for a stable alpha-beta filter: alpha > 0, beta > 0 and 2 alpha + beta < 4.
 constexpr bool stable_gains(double alpha, double beta) noexcept {
   return alpha > 0.0 && beta > 0.0 && 2.0 * alpha + beta < 4.0;
 }
 
-/// The same of an alpha-beta-gamma filter: besides, 0 < gamma < 4 alpha beta / (2 - alpha).
+/// True for a stable alpha-beta-gamma filter: also 0 < gamma < 4 alpha beta / (2 - alpha).
 constexpr bool stable_gains(double alpha, double beta, double gamma) noexcept {
   return stable_gains(alpha, beta) && gamma > 0.0 && gamma * (2.0 - alpha) < 4.0 * alpha * beta;
 }
 
-/// What a schedule may choose gains by.
+/// The inputs of a gain schedule.
 template <class Scalar = double>
 struct GainOccasion {
   Scalar reading = Scalar(1);    ///< 1 for the first one after the start
@@ -37,14 +37,14 @@ struct GainOccasion {
   Scalar range_m = Scalar(0);    ///< from the sensor
 };
 
-/// How many plots count, of which there may be a most; 0 for all.
+/// The number of plots that count, limited to `most`; 0 for no limit.
 template <class Scalar>
 Scalar counted(Scalar plots, int max_plots) noexcept {
   const Scalar most = Scalar(max_plots);
   return max_plots > 0 ? select(plots < most, plots, most) : plots;
 }
 
-/// Gains that stay the same.
+/// Constant gains.
 struct ConstantGains {
   double alpha = 0.5;
   double beta = 0.2;
@@ -68,7 +68,7 @@ struct ConstantGains {
       return {Scalar(alpha), Scalar(beta), Scalar(gamma)};
   }
 
-  /// Throws `std::invalid_argument` on gains that are not stable.
+  /// Throws `std::invalid_argument` when the gains are not stable.
   template <int Order>
   void validate() const {
     require(stable_gains(alpha, beta), "alpha and beta",
@@ -81,12 +81,12 @@ struct ConstantGains {
   }
 };
 
-/// Gains that draw the least-squares line (or parabola) through all n readings so far: growing
-/// memory. With regular steps the filter equals that line exactly, whatever the start.
+/// Growing memory: the gains of the least-squares line (or parabola) through all n readings so far.
+/// With regular steps the filter equals that line exactly, independent of the start.
 ///     alpha = 2(2n-1) / (n(n+1)),  beta = 6 / (n(n+1));
 ///     alpha = 3(3n²-3n+2) / N,  beta = 18(2n-1) / N,  gamma = 120 / N,  N = n(n+1)(n+2).
-/// A missed scan does not count; the step after it takes the time that has gone by. Source: E.
-/// Brookner, Tracking and Kalman Filtering Made Easy, 1998, 5.7.
+/// A missed scan does not count; the step after it is longer. Source: E. Brookner, Tracking and
+/// Kalman Filtering Made Easy, 1998, 5.7.
 struct GrowingMemory {
   int plots_before = 0;
   int max_plots = 0;
@@ -104,7 +104,7 @@ struct GrowingMemory {
   template <int Order, class Scalar>
   Vec<Scalar, Order> gains(const GainOccasion<Scalar>& at) const noexcept {
     const Scalar n = counted(at.reading + Scalar(plots_before), max_plots);
-    // Fewer plots than a line or parabola needs give it through them, and what it starts with.
+    // Fewer plots than a line or parabola needs: it passes through them and the start.
     const auto one = n < Scalar(2), two = n < Scalar(3);
     if constexpr (Order == 2) {
       const Scalar product = n * (n + 1);
@@ -125,9 +125,8 @@ struct GrowingMemory {
   }
 };
 
-/// beta = alpha² / (2 - alpha): the least error of the velocity after it has changed at once, for
-/// the noise that an alpha lets through. Source: T. R. Benedict, G. W. Bordner, IRE Trans. AC-7,
-/// 1962.
+/// beta = alpha² / (2 - alpha): the least transient error of a velocity step for the noise
+/// reduction of a given alpha. Source: T. R. Benedict, G. W. Bordner, IRE Trans. AC-7, 1962.
 struct BenedictBordner {
   double alpha = 0.5;
 
@@ -147,11 +146,11 @@ struct BenedictBordner {
   }
 };
 
-/// Critically damped: all poles at theta, which is the least-squares line or parabola with weights
-/// theta per reading back (fading memory); 0 takes the newest readings only.
+/// Critically damped: all poles at theta, equal to the least-squares line or parabola with weights
+/// theta per reading back (fading memory); 0 uses the newest readings only.
 ///     alpha = 1 - theta²,  beta = (1 - theta)²;
 ///     alpha = 1 - theta³,  beta = 3/2 (1 - theta)² (1 + theta),  gamma = 2 (1 - theta)³.
-/// One theta a reading, however long the step. Source: Brookner 1998, 1.2.6 and 7.2.
+/// One theta per reading, independent of the step. Source: Brookner 1998, 1.2.6 and 7.2.
 struct CriticallyDamped {
   double theta = 0.5;
 
@@ -178,12 +177,13 @@ struct CriticallyDamped {
   }
 };
 
-/// Gains of the steady Kalman filter, by the tracking index: accel_std T² / error of the reading.
+/// Gains of the steady-state Kalman filter by the tracking index, accel_std T² / error of the
+/// reading.
 ///
-/// The motion they are right for has an acceleration (with three states: a change of acceleration)
-/// of that standard deviation, drawn anew for each step: `PiecewiseAcceleration`. The error is that
-/// of each reading along and across the bearing, so that the gains follow the range by themselves,
-/// and the index follows the step. Source: P. R. Kalata, IEEE Trans. AES-20, 1984; Bar-Shalom, Li,
+/// They are optimal for a motion with a random acceleration (with three states: a change of
+/// acceleration) of that standard deviation in each step, `PiecewiseAcceleration`. The error is
+/// that of each reading along and across the bearing, so that the gains depend on the range, and
+/// the index depends on the step. Source: P. R. Kalata, IEEE Trans. AES-20, 1984; Bar-Shalom, Li,
 /// Kirubarajan, 6.5.2 and 6.5.3.
 struct TrackingIndex {
   double accel_std_mps2 = 0.1;
@@ -200,10 +200,10 @@ struct TrackingIndex {
     return of_index<Order>(Scalar(accel_std_mps2) * at.elapsed_s * at.elapsed_s / at.std_m);
   }
 
-  /// Gains for a tracking index, which is not negative.
+  /// Gains for a tracking index that is not negative.
   ///
-  /// With r = sqrt(1 - alpha), of two states: r = 4 / (index + 4 + sqrt(index² + 8 index)) and beta
-  /// = index r. Of three: index = 2 (1 - r)³ / (r (1 + r)), beta = 2 (1 - r)², gamma = 2 index r.
+  /// With r = sqrt(1 - alpha), two states: r = 4 / (index + 4 + sqrt(index² + 8 index)) and beta =
+  /// index r. Three states: index = 2 (1 - r)³ / (r (1 + r)), beta = 2 (1 - r)², gamma = 2 index r.
   template <int Order, class Scalar>
   static Vec<Scalar, Order> of_index(Scalar index) noexcept {
     const auto [r, w] = root<Order>(index);
@@ -213,8 +213,8 @@ struct TrackingIndex {
       return {w * (1 + r), 2 * w * w, 2 * index * r};
   }
 
-  /// Covariance of the states of one axis after an update, in the steady state of period T and an
-  /// error of the readings of `std_m`.
+  /// Covariance of the states of one axis after an update, in the steady state with period T and
+  /// readings of error `std_m`.
   template <int Order, class Scalar>
   [[nodiscard]] Mat<Scalar, Order, Order> steady_covariance(Scalar period_s,
                                                             Scalar std_m) const noexcept {
@@ -272,12 +272,12 @@ struct TrackingIndex {
   }
 };
 
-/// Gains by the range alone, as a radar plotting aid has them: those of `near` up to
-/// `near_range_m`, beyond it in inverse proportion to the range, down to those of `far`. Source: I.
-/// M. Hannoshyna, T. V. Kalinichenko, P. V. Nikitin, Research of methods of forecasting the
-/// movement, search and tracking of sea objects, equation (30), joined at 20 km, where the printed
-/// alpha jumps. The range is that from own ship where the sensor knows it, else that from the
-/// origin: of a `Fix`, so in a `Tracker`, too.
+/// Gains that depend on the range only, as in a radar plotting aid: those of `near` up to
+/// `near_range_m`, then inversely proportional to the range, down to those of `far`. Source: I. M.
+/// Hannoshyna, T. V. Kalinichenko, P. V. Nikitin, Research of methods of forecasting the movement,
+/// search and tracking of sea objects, equation (30), made continuous at 20 km, where the source's
+/// alpha jumps. The range is from own ship where the sensor has it, else from the origin (a `Fix`,
+/// also in a `Tracker`).
 struct RangeDependent {
   double near_range_m = 20e3;
   double near_alpha = 0.5;
@@ -317,7 +317,7 @@ struct RangeDependent {
   }
 };
 
-/// One of the schedules that there are for so many states an axis.
+/// Any of the schedules for this number of states per axis.
 template <int Order>
 using GainSchedule =
     std::conditional_t<Order == 2,

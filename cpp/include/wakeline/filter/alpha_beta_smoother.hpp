@@ -11,9 +11,9 @@
 
 namespace wakeline {
 
-/// (29): gains that draw the least-squares line through all n readings with weights 1, 2, ..., n:
+/// (29): gains of the least-squares line through all n readings with weights 1, 2, ..., n:
 ///     alpha = 6n / ((n+1)(n+2)),  beta = 12 / ((n+1)(n+2))
-/// (printed with i = n - 1).
+/// (the source uses i = n - 1).
 struct RecentMemory {
   int max_plots = 0;  ///< the gains stay those of so many; 0 for all
 
@@ -30,24 +30,25 @@ struct RecentMemory {
   }
 };
 
-/// One quantity by an alpha-beta filter (26) whose gains follow a schedule: (27) `GrowingMemory{}`,
-/// (28) `GrowingMemory{.plots_before = 1}`, (29) `RecentMemory{}`, (30) `RangeDependent{}`, or any
-/// other of alpha_beta_gains.hpp. The first reading is the first plot.
+/// An alpha-beta filter (26) of one quantity with a gain schedule: (27) `GrowingMemory{}`, (28)
+/// `GrowingMemory{.plots_before = 1}`, (29) `RecentMemory{}`, (30) `RangeDependent{}`, or any other
+/// of alpha_beta_gains.hpp. The first reading is the first plot.
 template <class Schedule = GrowingMemory, class Residual = Linear, class ScalarType = double>
 class AlphaBetaSmoother {
  public:
   using Scalar = ScalarType;
 
-  /// `reading_std` is the error of a reading in its own unit: for `TrackingIndex`, whose
-  /// acceleration is that of the quantity. Throws `std::invalid_argument` when a parameter makes no
-  /// sense.
+  /// `reading_std` is the error of a reading in its own unit, for `TrackingIndex`, whose
+  /// acceleration is then that of the quantity. Throws `std::invalid_argument` when a parameter is
+  /// invalid.
   explicit AlphaBetaSmoother(const Schedule& schedule = {}, double reading_std = 1.0)
       : schedule_(schedule), reading_std_(reading_std) {
     schedule.template validate<2>();
     require_positive("reading_std", reading_std);
   }
 
-  /// Takes a reading, of an object at a range from the radar where the schedule asks for it.
+  /// Adds a reading; `range_m` is the range of the object from the radar, for schedules that need
+  /// it.
   Status update(Scalar dt_s, Scalar reading, Scalar range_m = Scalar(0)) noexcept {
     if (const Status status = check_reading(readings_ == 0, dt_s, reading); status != Status::kOk)
       return status;
@@ -69,7 +70,7 @@ class AlphaBetaSmoother {
     return Residual::normal(line_.value + line_.rate * ahead_s);
   }
 
-  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  /// Saves or restores the state; invalid bytes change nothing.
   void archive(Archive& fields) {
     AlphaBetaSmoother read = *this;
     fields(read.line_);

@@ -8,11 +8,11 @@
 
 namespace wakeline {
 
-/// A motion driven by `kInputs` readings whose errors, of `input_std()` and independent of each
-/// other, go through it: x' = f(x, e, dt) + w, w ~ N(0, W(x, dt)).
+/// A motion driven by `kInputs` measured inputs with independent errors of standard deviation
+/// `input_std()`: x' = f(x, e, dt) + w, w ~ N(0, W(x, dt)).
 ///
-/// `disturbed(e)` is the motion with the errors e added to its readings, and `walk_noise(x, dt_s)`
-/// W, what of its `process_noise` the readings have no part in.
+/// `disturbed(e)` is the motion with the errors e added to its inputs, and `walk_noise(x, dt_s)` is
+/// W, the part of its `process_noise` that does not come from the inputs.
 template <class Motion>
 concept DisturbedMotionModel = NonlinearMotionModel<Motion> &&
     requires(const Motion& motion, const Vec<double, Motion::kInputs>& error,
@@ -23,19 +23,19 @@ concept DisturbedMotionModel = NonlinearMotionModel<Motion> &&
 };
 
 /// The unscented Kalman filter with augmented noise: a prediction moves sigma points of the state
-/// and of the errors of the readings that drive it, 2 (N + kInputs) and the centre, and adds W
-/// alone, so that no noise counts twice. `Ukf`, whose noise is additive, moves 2 N and adds all of
-/// Q. Updates are those of `Ukf`.
+/// and of the input errors, 2 (N + kInputs) and the centre, and adds only W, so that no noise is
+/// counted twice. `Ukf`, with additive noise, moves 2 N points and adds all of Q. Updates are those
+/// of `Ukf`.
 ///
-/// Where the errors enter linearly both are the same but for how far the points stand out, alpha²
-/// (N + kInputs + kappa) here. Source: S. J. Julier, J. K. Uhlmann, Proc. IEEE 92, 2004, section
-/// III; E. A. Wan, R. van der Merwe, 2000.
+/// Where the errors enter linearly both are equal except for the spread of the points, alpha² (N +
+/// kInputs + kappa) here. Source: S. J. Julier, J. K. Uhlmann, Proc. IEEE 92, 2004, section III; E.
+/// A. Wan, R. van der Merwe, 2000.
 template <class MotionType, class ScalarType = double>
 class AugmentedUkf : public Ukf<MotionType, ScalarType> {
   static_assert(DisturbedMotionModel<MotionType>,
-                "wakeline: AugmentedUkf needs a motion model whose readings err: kInputs, "
-                "input_std(), disturbed(error) and walk_noise(x, dt_s) beside what every nonlinear "
-                "one has; see cpp/docs/concepts.md");
+                "wakeline: AugmentedUkf needs a motion model with noisy inputs: kInputs, "
+                "input_std(), disturbed(error) and walk_noise(x, dt_s) in addition to those of a "
+                "nonlinear model; see cpp/docs/concepts.md");
   using Base = Ukf<MotionType, ScalarType>;
 
  public:
@@ -47,7 +47,7 @@ class AugmentedUkf : public Ukf<MotionType, ScalarType> {
   explicit AugmentedUkf(const MotionType& motion, const Unscented& unscented = {})
       : Base(motion, unscented) {}
 
-  /// The moments of the moved sigma points, and W.
+  /// Moments of the moved sigma points, plus W.
   StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     if (!this->started_) return Status::kNotStarted;
     const StatusOf<Scalar> forward = check_time_step(dt_s);
@@ -63,7 +63,7 @@ class AugmentedUkf : public Ukf<MotionType, ScalarType> {
   }
 
  private:
-  /// From the centre's image, those of the mean under each reading's error to either side.
+  /// Images of the mean under each input error of either sign, relative to the centre's image.
   Mat<Scalar, kStates, 2 * kInputs> by_errors(Scalar dt_s,
                                               const Vec<Scalar, kStates>& centre) const noexcept {
     const Vec<double, kInputs> reach =

@@ -16,14 +16,14 @@
 
 namespace wakeline {
 
-/// What every filter over one motion model shares: the model, the belief and its start.
+/// Base of the filters with one motion model: the model, the belief and its start.
 template <class MotionType, class ScalarType>
 class Belief {
   static_assert(MotionModel<MotionType>,
                 "wakeline: this motion model is neither linear (kComponents, matrix(dt_s), "
                 "process_noise(dt_s)) nor "
                 "nonlinear (kComponents, transition(x, dt_s), jacobian(x, dt_s), process_noise(x, "
-                "dt_s)), of the sizes that kComponents tells; see cpp/docs/concepts.md");
+                "dt_s)), with the sizes given by kComponents; see cpp/docs/concepts.md");
 
  public:
   using Motion = MotionType;
@@ -31,10 +31,11 @@ class Belief {
   static constexpr auto kComponents = Motion::kComponents;
   static constexpr int kStates = kStatesOf<Motion>;
 
-  /// Throws `std::invalid_argument` when a parameter of the model makes no sense.
+  /// Throws `std::invalid_argument` when a parameter of the model is invalid.
   explicit Belief(const Motion& motion) : motion_(validated(motion)) { check_components<Motion>(); }
 
-  /// Begins with `belief`; refuses one whose covariance is not symmetric positive definite.
+  /// Starts with `belief`; rejects one that is not finite or whose covariance is not symmetric
+  /// positive definite.
   StatusOf<Scalar> start(const Gaussian<kStates, Scalar>& belief) noexcept {
     const StatusOf<Scalar> status = check(belief);
     if (none(ok(status))) return status;
@@ -44,7 +45,7 @@ class Belief {
     return status;
   }
 
-  /// Begins with a belief over `[x, vx, y, vy]`; the other components get the model's prior.
+  /// Starts with a belief over `[x, vx, y, vy]`; the other components get the model's prior.
   StatusOf<Scalar> start(const Gaussian<4, Scalar>& kinematics) noexcept
       requires(kStates != 4 && holds(kComponents, kKinematics)) {
     return start(lift(motion_, kinematics));
@@ -57,7 +58,7 @@ class Belief {
     return Status::kOk;
   }
 
-  /// The belief, to be replaced by what is written there, unchecked.
+  /// The belief for assignment in place, unchecked.
   [[nodiscard, gnu::always_inline]] Gaussian<kStates, Scalar>& to_assign() noexcept {
     started_ = true;
     return belief_;
@@ -103,7 +104,7 @@ constexpr void check_sensor() noexcept {
   static_assert(
       MeasurementModel<Sensor>,
       "wakeline: this sensor needs kReads, kMeasurements, observe(z), measure(x), jacobian(x) and "
-      "residual(a, b), of the sizes that the first two tell; see cpp/docs/concepts.md");
+      "residual(a, b), with the sizes given by the first two; see cpp/docs/concepts.md");
   if constexpr (MeasurementModel<Sensor>)
     static_assert(
         holds(Filter::kComponents, Sensor::kReads),
@@ -158,9 +159,9 @@ template <class Scalar, int N, int M>
   });
 }
 
-/// True when a posterior variance is lost in the rounding of the prior one, and P - K S Kᵀ will not
-/// do. In `float` that is soon: a thin ellipse askew to the axes loses its short side long before
-/// either variance is small.
+/// True when a posterior variance is lost in the rounding of the prior one, so that P - K S Kᵀ is
+/// not accurate. In `float` this is common: a thin ellipse oblique to the axes loses its short axis
+/// long before either variance is small.
 template <class Scalar, int N>
 [[gnu::always_inline]] inline MaskOf<Scalar> cancels(const Mat<Scalar, N, N>& prior,
                                                      const Mat<Scalar, N, N>& posterior) noexcept {
@@ -170,14 +171,14 @@ template <class Scalar, int N>
   return !safe;
 }
 
-/// Why an innovation covariance has no Cholesky factor.
+/// The reason why an innovation covariance has no Cholesky factor.
 template <class Scalar, int M>
-StatusOf<Scalar> refusal(const Mat<Scalar, M, M>& innovation_covariance) noexcept {
+StatusOf<Scalar> factor_failure(const Mat<Scalar, M, M>& innovation_covariance) noexcept {
   return first_failure(ok_or(is_finite(innovation_covariance), Status::kNotFinite),
                        Status::kNotPositiveDefinite);
 }
 
-/// NIS = |L⁻¹ v|², the peak of the likelihood, and the status of a correction that got so far.
+/// Sets NIS = |L⁻¹ v|², the peak of the likelihood, and the status of a correction.
 template <int M, class Scalar>
 void rate(Correction<M, Scalar>& correction, const Vec<Scalar, M>& whitened,
           const Cholesky<M, Scalar>& factor) noexcept {
@@ -191,20 +192,20 @@ void rate(Correction<M, Scalar>& correction, const Vec<Scalar, M>& whitened,
   correction.nis = whitened[0] * whitened[0];
   unroll<M - 1>([&](int m) { correction.nis += whitened[m + 1] * whitened[m + 1]; });
   correction.peak = RealOf<Scalar>(kScale) * factor.inverse_root_determinant();
-  // Without a branch, of which GCC 12 makes masks that it fails on.
+  // Branch-free, because GCC 12 fails on the masks of a branch.
   constexpr auto kUnknown = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
   const auto definite = factor.ok();
   correction.nis = select(definite, correction.nis, Scalar(kUnknown));
   correction.peak = select(definite, correction.peak, Scalar(0));
-  // First what is most often, as GCC 12 would else join the two masks bit by bit. (NIS is finite
-  // only where S is definite.)
+  // The most frequent case first, because GCC 12 would otherwise join the two masks bit by bit.
+  // (NIS is finite only where S is definite.)
   const auto finite = isfinite(correction.nis);
   correction.status = select(finite, StatusOf<Scalar>(Status::kOk),
                              select(definite, StatusOf<Scalar>(Status::kNotFinite),
-                                    refusal<Scalar, M>(correction.innovation_covariance)));
+                                    factor_failure<Scalar, M>(correction.innovation_covariance)));
 }
 
-/// A correction that could not be done, and why.
+/// A correction that failed with this status.
 template <int M, class Scalar>
 Correction<M, Scalar> failed_correction(const StatusOf<Scalar>& status) noexcept {
   Correction<M, Scalar> correction;

@@ -9,11 +9,10 @@
 
 namespace wakeline {
 
-/// A one-model estimator: owns its belief, and is started, predicted and updated.
+/// A filter with one model: owns its belief and is started, predicted and updated.
 ///
-/// `assign(belief)` replaces the belief as `start` does, without checking that it is one: what
-/// mixing needs. `update(sensor, z)` is a template on the sensor and therefore not part of the
-/// concept.
+/// `assign(belief)` replaces the belief like `start`, without checks, as mixing requires.
+/// `update(sensor, z)` is a template on the sensor and therefore not part of the concept.
 template <class Filter>
 concept BeliefFilter = requires(Filter filter, const Filter& constant,
                                 const Gaussian<Filter::kStates, typename Filter::Scalar>& belief,
@@ -29,13 +28,12 @@ concept BeliefFilter = requires(Filter filter, const Filter& constant,
   constant.motion();
 };
 
-/// True of a filter whose own `predict_from(belief, dt_s)` is to be assigned the belief and to
-/// predict it, in one step. Not of what is derived from such a filter, as that may predict
-/// otherwise.
+/// True for a filter with a `predict_from(belief, dt_s)` that assigns and predicts in one step.
+/// False for classes derived from it, which may predict differently.
 template <class Filter>
 inline constexpr bool kPredictsInOneStep = false;
 
-/// Refuses what cannot be predicted under a known acceleration.
+/// Checks at compile time that the filter can be predicted under a known acceleration.
 template <class Filter>
 constexpr void check_takes_acceleration() noexcept {
   using Scalar = typename Filter::Scalar;
@@ -47,8 +45,8 @@ constexpr void check_takes_acceleration() noexcept {
       "filter; see cpp/docs/concepts.md");
 }
 
-/// Begins a filter anew with a belief, unchecked, and predicts it, under a known acceleration where
-/// one is told. Its own belief is lost where this fails.
+/// Assigns a belief, unchecked, and predicts it, under a known acceleration if one is given. The
+/// filter's previous belief is lost when this fails.
 template <class Filter, class BeliefType, class... Known>
 [[gnu::always_inline]] inline StatusOf<typename Filter::Scalar> predict_from(
     Filter& filter, const BeliefType& belief, typename Filter::Scalar dt_s,

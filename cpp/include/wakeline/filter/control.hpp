@@ -12,10 +12,10 @@
 
 namespace wakeline {
 
-/// A known acceleration: of own ship, or commanded. It acts on a state that has moved already, x +=
-/// G u, u = [north, east] (m/s²), and is constant during the step: G = [dt²/2; dt] per axis, and
-/// [dt²/2; dt; 1] where the acceleration is a state. What a state does not hold is left out.
-/// Source: paper A, equations (1)-(3).
+/// A known acceleration: of own ship, or commanded. It is added after the motion, x += G u, u =
+/// [north, east] (m/s²), constant during the step: G = [dt²/2; dt] per axis, and [dt²/2; dt; 1]
+/// where the acceleration is a state. Components that the state does not have are skipped. Source:
+/// paper A, equations (1)-(3).
 struct Control {
   /// G u, one row for each component.
   template <class Scalar, std::size_t N>

@@ -14,10 +14,10 @@ namespace wakeline {
 /// The extended Kalman filter: motion and sensor linearised about the mean.
 ///
 /// Covariances are updated as P - Wᵀ W with the whitened gain, which keeps them symmetric, and in
-/// Joseph form where a prior so much wider than the plot (after an hour without one) would make
-/// that difference cancel; a variance that comes out negative all the same is refused. F and Q of a
-/// linear model are kept as long as the step stays the same.
-/// Source: Bar-Shalom, Li, Kirubarajan, 5.2.3 (linear) and 10.3.3 (extended).
+/// Joseph form where the prior is so much wider than the plot (after an hour without one) that the
+/// difference would cancel; a negative variance in the result is rejected. F and Q of a linear
+/// model are cached while the step stays the same. Source: Bar-Shalom, Li, Kirubarajan, 5.2.3
+/// (linear) and 10.3.3 (extended).
 template <class MotionType, class ScalarType = double>
 class Ekf : public Belief<MotionType, ScalarType> {
   using Base = Belief<MotionType, ScalarType>;
@@ -28,7 +28,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
   using typename Base::Motion;
   using typename Base::Scalar;
 
-  /// Throws `std::invalid_argument` when a parameter of the motion makes no sense.
+  /// Throws `std::invalid_argument` when a parameter of the motion model is invalid.
   explicit Ekf(const MotionType& motion) : Base(motion) {
     if constexpr (requires { Motion::kPattern; }) require_pattern<Scalar>(motion);
   }
@@ -50,14 +50,14 @@ class Ekf : public Belief<MotionType, ScalarType> {
     if constexpr (LinearMotionModel<Motion>) kept_.step_s = Scalar(-1);
   }
 
-  /// The innovation of a reading and its likelihood, without taking it.
+  /// The innovation of a reading and its likelihood, without an update.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> innovation(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     return compare(sensor, sensor.observe(z)).scored();
   }
 
-  /// The same of a reading that the sensor has observed, its likelihood in two parts.
+  /// The same for an observed reading, with the likelihood in two factors.
   template <class Sensor>
   WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> compare(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
@@ -66,7 +66,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return Innovation<Sensor>(*this, sensor, reading);
   }
 
-  /// Corrects the belief by the reading z of a sensor.
+  /// Updates the belief with the reading z of a sensor.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
@@ -75,7 +75,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
     });
   }
 
-  /// The same by a reading that the sensor has observed, the likelihood in two parts.
+  /// The same with an observed reading; the likelihood in two factors.
   template <class Sensor>
   WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
@@ -94,7 +94,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
     if (all(taken) && none(lost)) [[likely]] {
       copy(next, belief);
     } else {
-      Gaussian<kStates, Scalar> posterior = next;  // so that the other one stays in registers
+      Gaussian<kStates, Scalar> posterior = next;  // a copy, so that `next` stays in registers
       correction.status =
           first_failure(correction.status, take_with_care(posterior, sensor, reading, taken, lost));
     }
@@ -107,7 +107,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
                                                         typename Filter::Scalar dt_s,
                                                         const Known&... acceleration_mps2) noexcept;
 
-  /// Predicts a belief, unchecked, which it begins with. In lanes that fail it keeps its own.
+  /// Predicts from the given belief, unchecked. In lanes that fail the filter's own belief stays.
   [[gnu::always_inline]] StatusOf<Scalar> predict_from(const Gaussian<kStates, Scalar>& belief,
                                                        Scalar dt_s) noexcept {
     this->started_ = true;
@@ -127,8 +127,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
     }
   }
 
-  /// A correction and what an update needs beside it. Locals of this type are not const: GCC keeps
-  /// const ones in memory.
+  /// A correction and the intermediate results that an update needs. Locals of this type are not
+  /// const, because GCC keeps const ones in memory.
   template <class Sensor>
   struct Innovation : Correction<Sensor::kMeasurements, Scalar> {
     static_assert((check_sensor<Sensor, Ekf>(), true));
@@ -146,7 +146,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
       const Gaussian<kStates, Scalar>& belief = filter.belief_;
       Vec<Scalar, kReads> read;
       unroll<kReads>([&](int k) { read[k] = belief.mean[kRows[k]]; });
-      // First, because an arc tangent takes as long as all that follows, which the processor does
+      // First, because an arc tangent takes as long as all the rest, which the processor computes
       // meanwhile.
       this->innovation = sensor.residual(reading.mean, sensor.measure(read));
       h = sensor.jacobian(read);
@@ -158,7 +158,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
     }
   };
 
-  /// Takes x and F P Fᵀ + Q as the belief, where they are finite.
+  /// Assigns x and F P Fᵀ + Q as the belief, where they are finite.
   [[gnu::always_inline]] StatusOf<Scalar> move(
       const StatusOf<Scalar>& forward, const Vec<Scalar, kStates>& x,
       const Patterned<kPatternOf<Motion>, Scalar, kStates>& f,
@@ -182,9 +182,9 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return first_failure(forward, ok_or(finite, Status::kNotFinite));
   }
 
-  /// The posterior P - W Wᵀ of which some lanes are not taken, or in which it is lost: refused
-  /// where a variance comes out negative all the same. Works out the innovation anew, so that the
-  /// hot one stays in registers.
+  /// Handles the rare cases of an update: lanes that are not taken, and a posterior P - W Wᵀ that
+  /// has lost its digits. Rejects a posterior with a negative variance. Recomputes the innovation,
+  /// so that the hot one stays in registers.
   template <class Sensor>
   [[gnu::cold, gnu::noinline]] StatusOf<Scalar> take_with_care(
       Gaussian<kStates, Scalar>& posterior, const Sensor& sensor,
@@ -218,8 +218,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
     return p;
   }
 
-  /// Works out F and Q of a linear model: of F what its pattern leaves open, of Q the lower
-  /// triangle, as nothing else counts.
+  /// Computes F and Q of a linear model: the elements of F that its pattern leaves open, and the
+  /// lower triangle of Q.
   template <LinearMotionModel Linear>
   [[gnu::noinline]] WAKELINE_FLATTEN void keep(const Linear& motion, Scalar dt_s) noexcept {
     StepMatrices<kStates, Scalar> matrices = step_matrices(motion, dt_s);
@@ -244,7 +244,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
 template <class Motion, class Scalar>
 inline constexpr bool kPredictsInOneStep<Ekf<Motion, Scalar>> = true;
 
-/// The Kalman filter: an Ekf whose motion model and sensors are linear, so that nothing is
+/// The Kalman filter: an Ekf with a linear motion model and linear sensors, so that nothing is
 /// approximated.
 template <class MotionType, class ScalarType = double>
 class Kalman : public Ekf<MotionType, ScalarType> {

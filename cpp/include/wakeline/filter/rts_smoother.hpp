@@ -12,8 +12,8 @@
 
 namespace wakeline {
 
-/// A motion as a filter takes it about a belief x ~ N(m, P): to mean + F (x - m) and noise of
-/// covariance Q. `status` tells whether there is one.
+/// A motion linearised about a belief x ~ N(m, P): to mean + F (x - m) with noise covariance Q.
+/// `status` is not `kOk` where there is none.
 template <int N, class Scalar>
 struct LinearisedMotion {
   Status status = Status::kOk;
@@ -22,7 +22,7 @@ struct LinearisedMotion {
   Mat<Scalar, N, N> q;
 };
 
-/// About the mean, by the Jacobian: as an extended filter takes it.
+/// Linearised about the mean by the Jacobian, as in an extended filter.
 template <MotionModel Motion, class Scalar>
 LinearisedMotion<kStatesOf<Motion>, Scalar> linearised(
     const Motion& motion, const Gaussian<kStatesOf<Motion>, Scalar>& belief, Scalar dt_s) noexcept {
@@ -31,14 +31,14 @@ LinearisedMotion<kStatesOf<Motion>, Scalar> linearised(
           .q = process_noise(motion, belief.mean, dt_s)};
 }
 
-/// By the sigma points, as an unscented filter takes it: the line that fits their images best, and
-/// as noise what they are off it. With L the root of P, e+ and e- the images of a pair of points
-/// less that of the centre, s how far the points stand out and w their weight,
+/// Statistical linear regression over the sigma points, as in an unscented filter: the best linear
+/// fit of their images, with the residuals as noise. With L the root of P, e+ and e- the images of
+/// a pair of points relative to that of the centre, s the spread of the points and w their weight,
 ///
 ///     F L = (e+ - e-) / (2 s),   Q += w/2 Σ (e+ + e-) (e+ + e-)ᵀ + (beta - alpha²) d dᵀ,
 ///
-/// whose moments are the filter's own. Source: S. Särkkä, IEEE Trans. AC-53, 2008; I. Arasaratnam,
-/// S. Haykin, R. J. Elliott, Proc. IEEE 95, 2007 (statistical linear regression).
+/// which reproduces the filter's moments. Source: S. Särkkä, IEEE Trans. AC-53, 2008; I.
+/// Arasaratnam, S. Haykin, R. J. Elliott, Proc. IEEE 95, 2007 (statistical linear regression).
 template <MotionModel Motion, class Scalar>
 LinearisedMotion<kStatesOf<Motion>, Scalar> linearised(
     const Motion& motion, const Unscented& unscented,
@@ -91,12 +91,12 @@ template <int N, class Scalar>
 }
 
 /// Rauch-Tung-Striebel smoother, in place: turns the filtered beliefs of T scans into smoothed
-/// ones, by the motion as the filter took it.
+/// ones, with the motion linearised as in the filter.
 ///
-/// `dt_s[k]` leads from scan k to scan k + 1 (T - 1 of them), under `acceleration_mps2[k]` where
-/// the filter was told any; see `Control`. `linearise(belief, dt_s)` gives the motion. The
-/// covariance is kept in a form that stays positive definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q)
-/// Gᵀ. Returns the first failure, with that scan and everything before it left as filtered. Source:
+/// `dt_s[k]` is the step from scan k to scan k + 1 (T - 1 of them), under `acceleration_mps2[k]` if
+/// the filter was given any; see `Control`. `linearise(belief, dt_s)` returns the motion. The
+/// covariance has a form that stays positive definite: (I - G F) P (I - G F)ᵀ + G (Ps + Q) Gᵀ.
+/// Returns the first failure, with that scan and all before it left as filtered. Source:
 /// Bar-Shalom, Li, Kirubarajan, 8.6.
 template <MotionModel Motion, class Scalar, class Linearise>
 Status smooth_by(const Linearise& linearise, std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs,
@@ -117,7 +117,7 @@ Status smooth_by(const Linearise& linearise, std::span<Gaussian<kStatesOf<Motion
   return Status::kOk;
 }
 
-/// Of an extended filter's beliefs.
+/// For the beliefs of an extended filter.
 template <MotionModel Motion, class Scalar>
 Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs,
               std::span<const Scalar> dt_s,
@@ -127,7 +127,7 @@ Status smooth(const Motion& motion, std::span<Gaussian<kStatesOf<Motion>, Scalar
       beliefs, dt_s, acceleration_mps2);
 }
 
-/// Of an unscented filter's.
+/// For the beliefs of an unscented filter.
 template <MotionModel Motion, class Scalar>
 Status smooth(const Motion& motion, const Unscented& unscented,
               std::span<Gaussian<kStatesOf<Motion>, Scalar>> beliefs, std::span<const Scalar> dt_s,
@@ -139,7 +139,7 @@ Status smooth(const Motion& motion, const Unscented& unscented,
       beliefs, dt_s, acceleration_mps2);
 }
 
-/// Of the beliefs of such a filter, whose motion was `motion`.
+/// For the beliefs of a filter with the motion model `motion`.
 template <class Filter, MotionModel Motion>
 Status smooth_as(const Filter& filter, const Motion& motion,
                  std::span<Gaussian<Filter::kStates, typename Filter::Scalar>> beliefs,

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// What smoothers of one quantity (a speed, a course, a latitude) share.
+// Common parts of the smoothers of one quantity (a speed, a course, a latitude).
 //
 // A smoother takes readings one at a time, `update(dt_s, reading)`, and has a `value()`, a `rate()`
-// and a `forecast(ahead_s)`. The time step of the first reading means nothing. A reading that
-// cannot be taken (not finite, time running backwards) gives a status and changes nothing. Its
-// `archive` goes into a smoother of the same settings. Source
-// of the smoothers, if not said otherwise: I. M. Hannoshyna, T. V. Kalinichenko, P. V. Nikitin,
-// Research of methods of forecasting the movement, search and tracking of sea objects, equations
-// (21)-(33) in their corrected form; see cpp/docs/theory/dead_reckoning.md.
+// and a `forecast(ahead_s)`. The time step of the first reading is ignored. A reading that is not
+// in range or whose time step is negative returns a status and changes nothing. An `archive` can be
+// loaded into a smoother with the same settings. Source of the smoothers, unless another is given:
+// I. M. Hannoshyna, T. V. Kalinichenko, P. V. Nikitin, Research of methods of forecasting the
+// movement, search and tracking of sea objects, equations (21)-(33) in their corrected form; see
+// cpp/docs/theory/dead_reckoning.md.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ struct Linear {
   }
 };
 
-/// An angle, radians: 359 degrees to 1 degree is 2 degrees. Values are in -pi .. pi.
+/// An angle, radians: from 359 to 1 degree is 2 degrees. Values are in -pi .. pi.
 struct Wrapped {
   template <class Scalar>
   static Scalar difference(Scalar a, Scalar b) noexcept {
@@ -49,7 +49,7 @@ struct Wrapped {
   }
 };
 
-/// What a smoother offers.
+/// The interface of a smoother.
 template <class T>
 concept Smoother = requires(T smoother, const T& view, typename T::Scalar x, Archive fields) {
   { smoother.update(x, x) }
@@ -71,15 +71,15 @@ Status check_reading(bool first, Scalar dt_s, Scalar reading) noexcept {
   return first ? Status::kOk : check_time_step(dt_s);
 }
 
-/// The last readings, oldest first, each as an offset from the newest, so that an angle among them
-/// goes on through north.
+/// The last readings, oldest first, each relative to the newest, so that a sequence of angles is
+/// continuous through north.
 template <class Residual, int Capacity, class ScalarType>
 class ReadingWindow {
  public:
   using Scalar = ScalarType;
 
-  /// Takes a reading; one of the time of the newest, after which a step tells nothing, joins it:
-  /// both become their mean.
+  /// Adds a reading. One at the time of the newest (dt_s = 0) has no rate: both are replaced by
+  /// their mean.
   Status take(Scalar dt_s, Scalar reading) noexcept {
     return is_of_newest_time(dt_s) ? join(reading) : add(dt_s, reading);
   }
@@ -105,7 +105,7 @@ class ReadingWindow {
     return Status::kOk;
   }
 
-  /// Moves the newest reading half way to another one of its time.
+  /// Moves the newest reading half way to another one of the same time.
   Status join(Scalar reading) noexcept {
     if (const Status status = check_reading(false, Scalar(0), reading); status != Status::kOk)
       return status;
@@ -117,12 +117,12 @@ class ReadingWindow {
 
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] Scalar newest() const noexcept { return newest_; }
-  /// Reading k, oldest first, less the newest.
+  /// Reading k, oldest first, minus the newest.
   [[nodiscard]] Scalar offset(int k) const noexcept { return offset_[std::size_t(k)]; }
   /// Time from reading k - 1 to reading k.
   [[nodiscard]] Scalar gap_s(int k) const noexcept { return gap_s_[std::size_t(k)]; }
 
-  /// Saves or restores the readings; bytes that do not fit change nothing.
+  /// Saves or restores the readings; invalid bytes change nothing.
   void archive(Archive& fields) {
     ReadingWindow read = *this;
     fields(read.offset_);
@@ -140,7 +140,7 @@ class ReadingWindow {
   int size_ = 0;
 };
 
-/// One correction of (26) and what it was made of.
+/// One correction of (26) and its terms.
 template <class Scalar>
 struct AlphaBetaStep {
   Scalar innovation = Scalar(0);   ///< e
@@ -166,7 +166,7 @@ struct AlphaBetaLine {
   }
 };
 
-/// The sums of (33) over steps and the gains that they give.
+/// The sums of (33) over steps, and the resulting gains.
 template <class Scalar>
 struct AdaptiveGains {
   Scalar correction_innovation = Scalar(0);
@@ -183,7 +183,7 @@ struct AdaptiveGains {
     slope_squared += slope * slope;
   }
 
-  /// alpha = sum(dx e) / sum(e²); `otherwise` where nothing has erred, or more than numbers hold.
+  /// alpha = sum(dx e) / sum(e²); `otherwise` where all innovations are zero or a sum overflows.
   [[nodiscard]] Scalar alpha(Scalar otherwise) const noexcept {
     const Scalar ratio = correction_innovation / innovation_squared;
     return std::isfinite(ratio) ? ratio : otherwise;

@@ -9,9 +9,8 @@
 
 namespace wakeline {
 
-/// Lower-triangular L with L Lᵀ = A Aᵀ and a diagonal that is not negative: Householder reflections
-/// from the right, one for each row of A. Source: G. H. Golub, C. F. Van Loan, Matrix
-/// Computations, 5.2.
+/// Lower-triangular L with L Lᵀ = A Aᵀ and a non-negative diagonal: Householder reflections from
+/// the right, one for each row of A. Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 5.2.
 template <class Scalar, int N, int Cols>
 Mat<Scalar, N, N> lower_root(Mat<Scalar, N, Cols> a) noexcept {
   using std::abs, std::sqrt;
@@ -40,10 +39,10 @@ Mat<Scalar, N, N> lower_root(Mat<Scalar, N, Cols> a) noexcept {
   return lower;
 }
 
-/// The unscented Kalman filter on a square root of the covariance, for long unattended runs: the
-/// covariance is L Lᵀ and cannot lose its definiteness. Both steps are one triangularisation of an
-/// array, without any downdate; beta must therefore not be below alpha². Source: R. van der Merwe,
-/// E. A. Wan, ICASSP 2001; the array form after Bar-Shalom, Li, Kirubarajan, 7.4.
+/// The square-root unscented Kalman filter, for long unattended runs: the covariance is L Lᵀ and
+/// stays positive semidefinite. Both steps are one triangularisation of an array, without a
+/// downdate; beta must therefore be at least alpha². Source: R. van der Merwe, E. A. Wan, ICASSP
+/// 2001; the array form after Bar-Shalom, Li, Kirubarajan, 7.4.
 template <class MotionType, class ScalarType = double>
 class SquareRootUkf {
   static_assert(MotionModel<MotionType>, "wakeline: not a motion model; see cpp/docs/concepts.md");
@@ -55,7 +54,7 @@ class SquareRootUkf {
   static constexpr int kStates = kStatesOf<Motion>;
   static constexpr int kPoints = 2 * kStates;
 
-  /// Throws `std::invalid_argument` on parameters that make no sense.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   explicit SquareRootUkf(const MotionType& motion, const Unscented& unscented = {})
       : motion_(validated(motion)), unscented_(unscented) {
     check_components<Motion>();
@@ -64,7 +63,8 @@ class SquareRootUkf {
             unscented.beta);
   }
 
-  /// Begins with `belief`; refuses one whose covariance is not symmetric positive definite.
+  /// Starts with `belief`; rejects one that is not finite or whose covariance is not symmetric
+  /// positive definite.
   StatusOf<Scalar> start(const Gaussian<kStates, Scalar>& belief) noexcept {
     const StatusOf<Scalar> status = check(belief);
     if (none(ok(status))) return status;
@@ -73,7 +73,7 @@ class SquareRootUkf {
     return status;
   }
 
-  /// Begins with a belief over `[x, vx, y, vy]`; the other components get the model's prior.
+  /// Starts with a belief over `[x, vx, y, vy]`; the other components get the model's prior.
   StatusOf<Scalar> start(const Gaussian<4, Scalar>& kinematics) noexcept
       requires(kStates != 4 && holds(kComponents, kKinematics)) {
     return start(lift(motion_, kinematics));
@@ -86,7 +86,7 @@ class SquareRootUkf {
     return ok_or(definite, Status::kNotPositiveDefinite);
   }
 
-  /// Replaces the belief in some lanes, and tells in which of them it could.
+  /// Replaces the belief in some lanes; returns the lanes in which its covariance had a factor.
   MaskOf<Scalar> assign_in(const MaskOf<Scalar>& lanes,
                            const Gaussian<kStates, Scalar>& belief) noexcept {
     const Cholesky<kStates, Scalar> root(belief.covariance);
@@ -95,7 +95,7 @@ class SquareRootUkf {
     return replaced;
   }
 
-  /// The same by that of another one, bit for bit.
+  /// Copies the belief of another filter in some lanes, bit for bit.
   void assign_in(const MaskOf<Scalar>& lanes, const SquareRootUkf& other) noexcept {
     replace(lanes, other.mean_, other.root_);
   }
@@ -110,7 +110,7 @@ class SquareRootUkf {
     fields(started_);
   }
 
-  /// The belief, its covariance as L Lᵀ.
+  /// The belief, with the covariance L Lᵀ.
   [[nodiscard]] Gaussian<kStates, Scalar> estimate() const noexcept {
     Gaussian<kStates, Scalar> belief{mean_, product_transposed(root_, root_)};
     mirror_lower<Scalar, kStates>(belief.covariance);
@@ -157,21 +157,21 @@ class SquareRootUkf {
     return Control::predict(*this, dt_s, acceleration_mps2);
   }
 
-  /// The innovation of a reading and its likelihood, without taking it.
+  /// The innovation of a reading and its likelihood, without an update.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> innovation(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     return compare(sensor, sensor.observe(z)).scored();
   }
 
-  /// The same of a reading that the sensor has observed, its likelihood in two parts.
+  /// The same for an observed reading, with the likelihood in two factors.
   template <class Sensor>
   Correction<Sensor::kMeasurements, Scalar> compare(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
     return SquareRootUkf(*this).correct(sensor, reading);
   }
 
-  /// Corrects the belief by the reading z of a sensor: the root of [sqrt(w) e_z, sqrt(beta -
+  /// Updates the belief with the reading z of a sensor: the root of [sqrt(w) e_z, sqrt(beta -
   /// alpha²) d_z, R^(1/2); sqrt(w) (points - x), 0, 0] is [S^(1/2), 0; K S^(1/2), P^(1/2)].
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
@@ -180,7 +180,7 @@ class SquareRootUkf {
         sensor, [&](const auto& model) { return correct(model, sensor.observe(z)).scored(); });
   }
 
-  /// The same by a reading that the sensor has observed, the likelihood in two parts.
+  /// The same with an observed reading; the likelihood in two factors.
   template <class Sensor>
   [[gnu::noinline]] WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
@@ -239,7 +239,7 @@ class SquareRootUkf {
  private:
   friend struct Control;
 
-  /// Whether a mean and the squares of the rows of a root, the variances, are finite.
+  /// True when a mean and the squared rows of a root, the variances, are finite.
   static MaskOf<Scalar> has_finite_moments(const Vec<Scalar, kStates>& mean,
                                            const Mat<Scalar, kStates, kStates>& root) noexcept {
     using std::isfinite;

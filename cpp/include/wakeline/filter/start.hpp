@@ -10,7 +10,7 @@
 
 namespace wakeline {
 
-/// Belief over `[x, vx, y, vy]` from a position fix and a velocity that is independent of it.
+/// Belief over `[x, vx, y, vy]` from a position and a velocity with their cross-covariance.
 template <class Scalar>
 Gaussian<4, Scalar> kinematics_from(const Gaussian<2, Scalar>& position,
                                     const Gaussian<2, Scalar>& velocity,
@@ -29,7 +29,7 @@ Gaussian<4, Scalar> kinematics_from(const Gaussian<2, Scalar>& position,
   return belief;
 }
 
-/// Start from one plot: its position, and a velocity of zero with standard deviation
+/// One-point start: the position of a plot, and zero velocity with standard deviation
 /// `speed_std_mps` per axis.
 template <PositionSensor Sensor, class Scalar>
 Gaussian<4, Scalar> one_point(const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z,
@@ -39,9 +39,8 @@ Gaussian<4, Scalar> one_point(const Sensor& sensor, const Vec<Scalar, Sensor::kM
   return kinematics_from<Scalar>(sensor.position(z), velocity, Mat<Scalar, 2, 2>::Zero());
 }
 
-/// Start from two position fixes dt apart: the second fix and their difference over dt, with the
-/// covariance that follows: `[R2, R2/dt; R2/dt, (R1 + R2)/dt²]`. Source: Bar-Shalom, Li,
-/// Kirubarajan, 5.5.3.
+/// Two-point start from two positions dt apart: the second one and their difference over dt, with
+/// covariance `[R2, R2/dt; R2/dt, (R1 + R2)/dt²]`. Source: Bar-Shalom, Li, Kirubarajan, 5.5.3.
 template <class Scalar>
 Gaussian<4, Scalar> two_point(const Gaussian<2, Scalar>& first, const Gaussian<2, Scalar>& second,
                               std::type_identity_t<Scalar> dt_s) noexcept {
@@ -50,8 +49,8 @@ Gaussian<4, Scalar> two_point(const Gaussian<2, Scalar>& first, const Gaussian<2
   return kinematics_from<Scalar>(second, velocity, second.covariance / dt_s);
 }
 
-/// Start from two plots of one sensor. Its own ship is where the second plot was taken, to which it
-/// has come at its velocity.
+/// Two-point start from two plots of one sensor. `sensor.own` is own ship at the second plot; its
+/// position at the first one follows from its velocity.
 template <PositionSensor Sensor, class Scalar>
 Gaussian<4, Scalar> two_point(const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& first,
                               const Vec<Scalar, Sensor::kMeasurements>& second,
@@ -62,8 +61,8 @@ Gaussian<4, Scalar> two_point(const Sensor& sensor, const Vec<Scalar, Sensor::kM
   return two_point<Scalar>(before, sensor.position(second), dt_s);
 }
 
-/// The belief over `[x, vx, y, vy]` as the belief over the state of `motion`: components that it
-/// lacks start with the model's prior mean and variance.
+/// Extends a belief over `[x, vx, y, vy]` to the state of `motion`: the other components start with
+/// the model's prior mean and variance.
 template <MotionModel Motion, class Scalar>
 Gaussian<kStatesOf<Motion>, Scalar> lift(const Motion& motion,
                                          const Gaussian<4, Scalar>& kinematics) noexcept {

@@ -10,7 +10,7 @@
 
 namespace wakeline {
 
-/// Three readings about the middle one: how they differ from it and when they were.
+/// Three consecutive readings: differences from the middle one, and times.
 template <class Scalar>
 struct ThreePoints {
   Scalar before = Scalar(0);    ///< x_i-1 - x_i
@@ -24,14 +24,14 @@ struct ThreePoints {
     return (after - before) / (before_s + after_s);
   }
 
-  /// (22) less the middle reading: the mean with weights p_-/t_-, 1, p_+/t_+.
+  /// (22) minus the middle reading: the mean with weights p_-/t_-, 1, p_+/t_+.
   [[nodiscard]] Scalar correction(Scalar weight_before_s, Scalar weight_after_s) const noexcept {
     const Scalar w_before = weight_before_s / before_s, w_after = weight_after_s / after_s;
     return (w_before * before + w_after * after) / (Scalar(1) + w_before + w_after);
   }
 
-  /// (25), five-fold form: 2/3 c + (b + f) / 6, the means of the slopes by Simpson's weights. Less
-  /// noise than the exact form; exact for a parabola at equal steps only.
+  /// (25), five-fold form: 2/3 c + (b + f) / 6, the slopes averaged with Simpson's weights. Less
+  /// noise than the exact form, but exact for a parabola at equal steps only.
   [[nodiscard]] Scalar simpson_rate() const noexcept {
     return whole_slope() * Scalar(2) / 3 + (backward_slope() + forward_slope()) / 6;
   }
@@ -42,7 +42,7 @@ struct ThreePoints {
   }
 };
 
-/// How the weights of (22) are chosen.
+/// The weights of (22).
 struct ThreePointSettings {
   double weight_before_s = 1.0;
   double weight_after_s = 1.0;
@@ -64,26 +64,25 @@ struct ThreePointSettings {
   }
 };
 
-/// Each reading smoothed by its neighbours (22), so that the value is that of the reading before
-/// the newest.
+/// Each reading smoothed with its neighbours (22); the value is that of the reading before the
+/// newest.
 ///
 /// Adaptive weights (24) are P = p / (1 + p_-/t_- + p_+/t_+), P_- on (x_i-1 - x_i)/t_- and P_+ on
-/// (x_i+1 - x_i)/t_+, that by least squares bring the inner readings of a window of five nearest to
-/// the line through it. (As printed the target is the smoother's own output, which any weights
-/// reach.)
+/// (x_i+1 - x_i)/t_+, chosen by least squares to bring the inner readings of a window of five
+/// nearest to the line through it. (The source's target is the smoother's own output, which any
+/// weights reach.)
 template <class Residual = Linear, class ScalarType = double>
 class ThreePointSmoother {
  public:
   using Scalar = ScalarType;
   static constexpr int kWindow = 5;
 
-  /// Throws `std::invalid_argument` when a weight makes no sense.
+  /// Throws `std::invalid_argument` when a weight is invalid.
   explicit ThreePointSmoother(const ThreePointSettings& settings = {}) : settings_(settings) {
     validate_fields(settings);
   }
 
-  /// Takes a reading; one of the time of the reading before has no step to weigh by and joins it:
-  /// both become their mean.
+  /// Adds a reading. Two readings of the same time (dt_s = 0) are replaced by their mean.
   Status update(Scalar dt_s, Scalar reading) noexcept {
     const Status status = readings_.take(dt_s, reading);
     if (status != Status::kOk) return status;
@@ -100,11 +99,11 @@ class ThreePointSmoother {
     return status;
   }
 
-  /// Of the reading before the newest; of the only one, that.
+  /// The value at the reading before the newest; of a single reading, that reading.
   [[nodiscard]] Scalar value() const noexcept { return forecast(-delay_s()); }
-  /// At the same time.
+  /// The rate at the same time.
   [[nodiscard]] Scalar rate() const noexcept { return rate_; }
-  /// From that to the newest reading.
+  /// Time from that to the newest reading.
   [[nodiscard]] Scalar delay_s() const noexcept {
     const int n = readings_.size();
     return n > 1 ? readings_.gap_s(n - 1) : Scalar(0);
@@ -117,7 +116,7 @@ class ThreePointSmoother {
                             rate_ * (delay_s() + ahead_s));
   }
 
-  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  /// Saves or restores the state; invalid bytes change nothing.
   void archive(Archive& fields) {
     ThreePointSmoother read = *this;
     read.readings_.archive(fields);
@@ -127,16 +126,16 @@ class ThreePointSmoother {
   }
 
  private:
-  /// About reading k of the window.
+  /// The three readings about reading k of the window.
   [[nodiscard]] ThreePoints<Scalar> points(int k) const noexcept {
     return {readings_.offset(k - 1) - readings_.offset(k),
             readings_.offset(k + 1) - readings_.offset(k), readings_.gap_s(k),
             readings_.gap_s(k + 1)};
   }
 
-  /// (24), then (22) with those weights.
+  /// (24), then (22) with these weights.
   [[nodiscard]] Scalar adaptive_correction() const noexcept {
-    // The least-squares line through the window, times from its middle reading.
+    // The least-squares line through the window, times relative to its middle reading.
     Scalar t[kWindow] = {}, mean_t = Scalar(0), mean_x = Scalar(0);
     for (int k = 1; k < kWindow; ++k) t[k] = t[k - 1] + readings_.gap_s(k);
     for (int k = 0; k < kWindow; ++k) {
@@ -163,7 +162,7 @@ class ThreePointSmoother {
     const ThreePoints<Scalar> last = points(kWindow - 2);
     const Scalar determinant = uu * ww - uw * uw;
     constexpr Scalar kSafe = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
-    if (!(determinant > kSafe * uu * ww))  // readings on a line: nothing to smooth
+    if (!(determinant > kSafe * uu * ww))  // collinear readings need no smoothing
       return Scalar(0);
     const Scalar p_before = (uy * ww - wy * uw) / determinant;
     const Scalar p_after = (wy * uu - uy * uw) / determinant;

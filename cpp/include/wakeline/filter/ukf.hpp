@@ -10,10 +10,10 @@
 
 namespace wakeline {
 
-/// The unscented Kalman filter. Sigma points are drawn anew for the update, from the predicted
-/// belief. Covariances are updated as P - K S Kᵀ, and from the points themselves where a prior so
-/// much wider than the plot would make that difference cancel. Source: S. J. Julier, J. K. Uhlmann,
-/// Proc. IEEE 92, 2004; parameters as in `Unscented`.
+/// The unscented Kalman filter. The update draws new sigma points from the predicted belief.
+/// Covariances are updated as P - K S Kᵀ, and from the points where the prior is so much wider than
+/// the plot that this difference would cancel. Source: S. J. Julier, J. K. Uhlmann, Proc. IEEE 92,
+/// 2004; parameters as in `Unscented`.
 template <class MotionType, class ScalarType = double>
 class Ukf : public Belief<MotionType, ScalarType> {
   using Base = Belief<MotionType, ScalarType>;
@@ -32,7 +32,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
 
   [[nodiscard]] const Unscented& unscented() const noexcept { return unscented_; }
 
-  /// As of `Belief`: what replaces the belief.
+  /// As in `Belief`: the functions that replace the belief.
   template <class StartType>
   requires requires(Base& base, const StartType& belief) { base.start(belief); }
   StatusOf<Scalar> start(const StartType& belief) noexcept {
@@ -56,9 +56,8 @@ class Ukf : public Belief<MotionType, ScalarType> {
     Base::archive(fields);
   }
 
-  /// The moments of the moved sigma points, and Q.
-  /// Not inlined, as is `correct`: beside the sigma points a call is nothing, and each estimator
-  /// over the filter would compile them anew.
+  /// Moments of the moved sigma points, plus Q. Like `correct` not inlined: a call costs little
+  /// compared with the sigma points, and every estimator would compile them again.
   [[gnu::noinline]] WAKELINE_FLATTEN StatusOf<Scalar> predict(Scalar dt_s) noexcept {
     if (!this->started_) return Status::kNotStarted;
     const StatusOf<Scalar> forward = check_time_step(dt_s);
@@ -75,21 +74,21 @@ class Ukf : public Belief<MotionType, ScalarType> {
     return Control::predict(*this, dt_s, acceleration_mps2);
   }
 
-  /// The innovation of a reading and its likelihood, without taking it.
+  /// The innovation of a reading and its likelihood, without an update.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> innovation(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     return compare(sensor, sensor.observe(z)).scored();
   }
 
-  /// The same of a reading that the sensor has observed, its likelihood in two parts.
+  /// The same for an observed reading, with the likelihood in two factors.
   template <class Sensor>
   Correction<Sensor::kMeasurements, Scalar> compare(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
     return Ukf(*this).correct(sensor, reading);
   }
 
-  /// Corrects the belief by the reading z of a sensor.
+  /// Updates the belief with the reading z of a sensor.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
@@ -97,7 +96,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
         sensor, [&](const auto& model) { return correct(model, sensor.observe(z)).scored(); });
   }
 
-  /// The same by a reading that the sensor has observed, the likelihood in two parts.
+  /// The same with an observed reading; the likelihood in two factors.
   template <class Sensor>
   [[gnu::noinline]] WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
@@ -117,11 +116,12 @@ class Ukf : public Belief<MotionType, ScalarType> {
     correction.innovation_covariance = predicted.covariance + reading.covariance;
     Cholesky<kM, Scalar> factor(correction.innovation_covariance);
     if (none(factor.ok()))
-      return failed_correction<kM, Scalar>(refusal<Scalar, kM>(correction.innovation_covariance));
+      return failed_correction<kM, Scalar>(
+          factor_failure<Scalar, kM>(correction.innovation_covariance));
     Vec<Scalar, kM> whitened = factor.template whiten<1>(correction.innovation);
     rate(correction, whitened, factor);
 
-    // The points of a pair are as far from the mean on one side as on the other.
+    // The points of a pair are equally far from the mean.
     constexpr int kPairs = decltype(images)::kPairs;
     Mat<Scalar, kM, kPairs> apart;
     unroll<kPairs>([&](int k) {
@@ -153,14 +153,14 @@ class Ukf : public Belief<MotionType, ScalarType> {
   }
 
  protected:
-  /// The factor of the covariance, which the last step may have left.
+  /// The factor of the covariance, cached from the last step where possible.
   const Cholesky<kStates, Scalar>& root() noexcept {
     if (!std::exchange(rooted_, true)) root_.compute(this->belief_.covariance);
     return root_;
   }
 
-  /// Takes the moments of moved sigma points, which stand out as those of so many states, and a
-  /// noise on top. `root()` is the factor that the points were made with.
+  /// Assigns the moments of moved sigma points, spread for so many states, plus a noise. `root()`
+  /// is the factor that the points were drawn with.
   template <int Points>
   [[gnu::always_inline]] StatusOf<Scalar> take_moments(
       int states, const Vec<Scalar, kStates>& centre,
@@ -177,7 +177,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
   }
 
  private:
-  /// Takes a belief where nothing has failed and its covariance has a factor, which is kept.
+  /// Assigns a belief where nothing has failed and its covariance has a factor, which is cached.
   StatusOf<Scalar> take(const Gaussian<kStates, Scalar>& next,
                         const StatusOf<Scalar>& so_far) noexcept {
     root_.compute(next.covariance);
@@ -191,8 +191,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
     return status;
   }
 
-  /// P - K S Kᵀ as what the points keep of their spread, Σ w (e_x - K e_z)(e_x - K e_z)ᵀ, with K of
-  /// the rest of S.
+  /// P - K S Kᵀ from the points, Σ w (e_x - K e_z)(e_x - K e_z)ᵀ + K (S - Σ w e_z e_zᵀ) Kᵀ.
   template <class Sensor, int M>
   [[gnu::cold, gnu::noinline]] Mat<Scalar, kStates, kStates> joseph(
       const Sensor& sensor, const Mat<Scalar, kStates, M>& gain,
@@ -227,7 +226,7 @@ class Ukf : public Belief<MotionType, ScalarType> {
 
   Unscented unscented_;
   Cholesky<kStates, Scalar> root_{Mat<Scalar, kStates, kStates>::Identity()};
-  bool rooted_ = false;  ///< whether that is of the belief
+  bool rooted_ = false;  ///< true when `root_` belongs to the belief
 };
 
 }  // namespace wakeline

@@ -9,19 +9,18 @@
 
 namespace wakeline {
 
-/// The scaled unscented transform's three parameters.
+/// The parameters of the scaled unscented transform.
 ///
-/// Sigma points stand at x and x ± sqrt(alpha² (n + kappa)) columns of the Cholesky factor. With
-/// e_i the image of a point less that of the centre and w = 1 / (2 alpha² (n + kappa)), the
-/// weighted mean and covariance of the textbook are, whatever the sign of the centre weight,
+/// Sigma points are x and x ± sqrt(alpha² (n + kappa)) times the columns of the Cholesky factor.
+/// With e_i the image of a point relative to that of the centre and w = 1 / (2 alpha² (n + kappa)),
+/// the weighted mean and covariance are, whatever the sign of the centre weight,
 ///
 ///     d = w Σ e_i,   mean = f(x) + d,   covariance = w Σ e_i e_iᵀ + (beta - alpha²) d dᵀ,
 ///
-/// in which no large weights cancel, and which is positive semidefinite for beta >= alpha². The
-/// rounding of f weighs 1 / alpha² in the mean: points nearer than 1e-4 columns (`float`: 0.1) are
-/// refused, as are those beyond 1e4.
-/// Source: S. J. Julier, "The scaled unscented transformation", ACC 2002; E. A. Wan, R. van der
-/// Merwe, 2000.
+/// without cancellation of large weights, and positive semidefinite for beta >= alpha². The
+/// rounding error of f has weight 1 / alpha² in the mean: points nearer than 1e-4 columns (`float`:
+/// 0.1) are rejected, as are those farther than 1e4. Source: S. J. Julier, "The scaled unscented
+/// transformation", ACC 2002; E. A. Wan, R. van der Merwe, 2000.
 struct Unscented {
   double alpha = 1.0;
   double beta = 2.0;
@@ -38,13 +37,13 @@ struct Unscented {
     };
   }
 
-  /// How far the points stand from the centre, in columns of the factor: sqrt(alpha² (n + kappa)).
+  /// Distance of the points from the centre, in columns of the factor: sqrt(alpha² (n + kappa)).
   template <class Scalar>
   [[nodiscard]] Scalar spread(int states) const noexcept {
     return Scalar(alpha * std::sqrt(states + kappa));
   }
 
-  /// Weight w of each point but the centre.
+  /// Weight w of each point except the centre.
   template <class Scalar>
   [[nodiscard]] Scalar weight(int states) const noexcept {
     return Scalar(1.0 / (2.0 * alpha * alpha * (states + kappa)));
@@ -67,8 +66,8 @@ struct Unscented {
   }
 };
 
-/// The 2 N sigma points about a mean, without the mean itself: pairs, of which pair k differs from
-/// the mean in the rows from k on, as the root is lower triangular.
+/// The 2 N sigma points about a mean, without the mean: pair k differs from the mean in the rows
+/// from k on, because the root is lower triangular.
 template <class Scalar, int N>
 Mat<Scalar, N, 2 * N> sigma_points(const Vec<Scalar, N>& mean, const Mat<Scalar, N, N>& lower,
                                    Scalar spread) noexcept {
@@ -83,7 +82,7 @@ Mat<Scalar, N, 2 * N> sigma_points(const Vec<Scalar, N>& mean, const Mat<Scalar,
   return points;
 }
 
-/// Sigma points after the motion: the centre, and the differences of the others from it.
+/// Sigma points after the motion: the centre, and the others relative to it.
 template <class Scalar, int N>
 struct MovedPoints {
   Vec<Scalar, N> centre;
@@ -106,8 +105,8 @@ struct MovedPoints {
   }
 };
 
-/// Sigma points as a sensor sees them: the centre, and the wrapped differences of the others from
-/// it, up to the last pair that differs from the mean in a row which the sensor reads.
+/// Sigma points in measurement space: the centre, and the wrapped differences of the others from
+/// it, up to the last pair that differs from the mean in a row that the sensor reads.
 template <auto Components, class Sensor, class Scalar>
 struct MeasuredPoints {
   static constexpr int kStates = static_cast<int>(Components.size());
@@ -135,7 +134,7 @@ struct MeasuredPoints {
   }
 };
 
-/// N(mean, covariance) of the images, given the centre's image and the differences e of the others
+/// Mean and covariance of the images, given the centre's image and the differences e of the others
 /// from it.
 template <class Scalar, int M, int Points>
 Gaussian<M, Scalar> unscented_moments(const Unscented& unscented, int states,

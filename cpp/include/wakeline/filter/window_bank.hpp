@@ -12,7 +12,7 @@
 
 namespace wakeline {
 
-/// What a bank of windows remembers.
+/// Parameters of a window bank.
 struct WindowBankSettings {
   int max_readings = 32;
   double memory = 0.92;
@@ -28,20 +28,20 @@ struct WindowBankSettings {
   }
 };
 
-/// The least-squares lines through the last 2, 3, ... readings, of which that one speaks that has
-/// foretold the readings best: the one with the least energy of its innovations,
+/// Least-squares lines through the last 2, 3, ... readings. The result is the line with the best
+/// predictions so far, i.e. the least energy of its innovations,
 ///     E_n = memory E_n + (x - x~_n)².
-/// Short windows follow a maneuver, long ones rest in between; nothing has to be tuned to the noise
-/// or to the maneuvers. A window that is not full yet holds what there is. Cost is one pass over
-/// the longest window, storage in place, no heap.
+/// Short windows win in a maneuver, long ones on a straight; noise and maneuvers need no tuning. A
+/// window that is not full yet uses the readings there are. One pass over the longest window per
+/// reading, storage in place, no heap.
 template <class Residual = Linear, int Capacity = 32, class ScalarType = double>
 class WindowBank {
  public:
   static_assert(Capacity >= 2, "wakeline: a line needs two readings");
   using Scalar = ScalarType;
 
-  /// Throws `std::invalid_argument` when a setting makes no sense. By default windows are no longer
-  /// than there is room for.
+  /// Throws `std::invalid_argument` when a setting is invalid. The default is limited to the
+  /// capacity.
   explicit WindowBank(const WindowBankSettings& settings =
                           {.max_readings = std::min(WindowBankSettings{}.max_readings, Capacity)})
       : settings_(settings) {
@@ -50,8 +50,8 @@ class WindowBank {
             ("at most " + std::to_string(Capacity)).c_str(), settings.max_readings);
   }
 
-  /// Takes a reading; one of the time of the reading before joins it: both become their mean, and
-  /// no line is judged by it, which may be the same reading told twice.
+  /// Adds a reading. Two readings of the same time (dt_s = 0) are replaced by their mean, and the
+  /// energies are not updated, because they may be the same reading.
   Status update(Scalar dt_s, Scalar reading) noexcept {
     const bool judges = readings_.size() > 0 && !readings_.is_of_newest_time(dt_s);
     const Scalar before = readings_.newest();
@@ -67,10 +67,10 @@ class WindowBank {
   [[nodiscard]] Scalar forecast(Scalar ahead_s) const noexcept {
     return Residual::normal(readings_.newest() + line(chosen_).value + rate() * ahead_s);
   }
-  /// Readings of the window that speaks.
+  /// Number of readings in the selected window.
   [[nodiscard]] int window() const noexcept { return std::min(chosen_, readings_.size()); }
 
-  /// Saves or restores what the readings have left; bytes that do not fit change nothing.
+  /// Saves or restores the state; invalid bytes change nothing.
   void archive(Archive& fields) {
     WindowBank read = *this;
     read.readings_.archive(fields);
@@ -82,12 +82,13 @@ class WindowBank {
   }
 
  private:
-  using Line = AlphaBetaLine<Scalar>;  // less the newest reading, at its time
+  using Line = AlphaBetaLine<Scalar>;  // relative to the newest reading, at its time
 
   Line& line(int n) noexcept { return lines_[std::size_t(n - 2)]; }
   [[nodiscard]] const Line& line(int n) const noexcept { return lines_[std::size_t(n - 2)]; }
 
-  /// Adds how the lines have foretold a reading that lies `rise` above the one before, and chooses.
+  /// Updates the energies with the prediction errors of a reading that is `rise` above the one
+  /// before, and selects a window.
   void weigh(Scalar dt_s, Scalar rise) noexcept {
     chosen_ = 2;
     for (int n = 2; n <= settings_.max_readings; ++n) {
@@ -98,7 +99,7 @@ class WindowBank {
     }
   }
 
-  /// The lines through the last 2, 3, ... readings, by sums that grow backwards in time.
+  /// The lines through the last 2, 3, ... readings, by sums accumulated backwards in time.
   void fit() noexcept {
     const int size = readings_.size();
     Scalar age = Scalar(0), mean_age = Scalar(0), mean = Scalar(0);

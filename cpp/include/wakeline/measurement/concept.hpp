@@ -15,7 +15,7 @@ inline constexpr int kReadsOf = static_cast<int>(Sensor::kReads.size());
 
 /// A sensor that declares the sizes of what it reads and reports.
 template <class Sensor>
-concept TellsSizes = requires {
+concept DeclaresSizes = requires {
   Sensor::kReads.size();
   Sensor::kMeasurements;
 };
@@ -30,7 +30,7 @@ concept TellsSizes = requires {
 ///
 /// All functions are templated on the scalar.
 template <class Sensor>
-concept MeasurementModel = TellsSizes<Sensor> &&
+concept MeasurementModel = DeclaresSizes<Sensor> &&
     requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z,
              const Vec<double, kReadsOf<Sensor>>& x) {
   { sensor.observe(z) } -> std::convertible_to<Gaussian<Sensor::kMeasurements>>;

@@ -106,7 +106,7 @@ constexpr void check_components() noexcept {
   constexpr auto kComponents = Motion::kComponents;
   static_assert(differ(kComponents),
                 "wakeline: the kComponents of this motion model name a component twice; those of "
-                "your own are numbered from kUser on; see cpp/docs/concepts.md");
+                "your own are numbered from kUser; see cpp/docs/concepts.md");
   static_assert(kComponents.size() != 4 || !holds(kComponents, kKinematics) ||
                     std::equal(kComponents.begin(), kComponents.end(), kKinematics.begin()),
                 "wakeline: a state of position and velocity alone has the order [x, vx, y, vy] "

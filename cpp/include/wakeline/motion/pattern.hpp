@@ -77,7 +77,7 @@ template <auto kPattern, class Scalar, int N>
 struct Patterned {
   static_assert(
       kPattern.is_valid(),
-      "wakeline: the kPattern of this motion model holds something beside 0, 1 and x; see "
+      "wakeline: the kPattern of this motion model has elements other than 0, 1 and x; see "
       "cpp/docs/concepts.md");
 
   const Mat<Scalar, N, N>& f;

@@ -13,13 +13,14 @@
 
 namespace wakeline {
 
-/// How the three turn rates of an `AdaptiveGridImm` move: left, centre and right in `[-max, max]`.
+/// The motion of the three turn rates of an `AdaptiveGridImm`: left, centre and right in `[-max,
+/// max]`.
 ///
-/// The printed rule is that of centre_threshold 0.3, centre_gain 1, kept_spacing_rad_s 0 and
-/// least_move_rad_s 0. Its grid collapses to half of min_spacing_rad_s to each side, where the
-/// rates may differ too little to be told apart, and nothing opens it again. The defaults keep it
-/// open and move its centre with patience. Source: paper B, step 1.1; centre_gain,
-/// kept_spacing_rad_s and least_move_rad_s are additions.
+/// The paper's rule has centre_threshold 0.3, centre_gain 1, kept_spacing_rad_s 0 and
+/// least_move_rad_s 0. Its grid can collapse to half of min_spacing_rad_s on each side, where the
+/// rates may be too similar to distinguish, and does not open again. The defaults keep it open and
+/// move its centre slowly. Source: paper B, step 1.1; centre_gain, kept_spacing_rad_s and
+/// least_move_rad_s are additions.
 struct AdaptiveGrid {
   using Rates = std::array<double, 3>;
 
@@ -66,8 +67,8 @@ struct AdaptiveGrid {
         Rates{-max_turn_rate_rad_s / 2, 0.0, max_turn_rate_rad_s / 2});
   }
 
-  /// The next rates, given the mode probabilities of the last update: vectors of three numbers, or
-  /// of three packs.
+  /// The next rates, given the mode probabilities of the last update; vectors of three numbers or
+  /// three packs.
   template <class Vector>
   [[nodiscard]] Vector moved(const Vector& rates, const Vector& probability) const noexcept {
     using Number = std::decay_t<decltype(rates[0])>;
@@ -103,7 +104,7 @@ struct AdaptiveGrid {
     return wanted;
   }
 
-  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   void validate() const {
     validate_fields(*this);
     const std::string within =
@@ -122,9 +123,10 @@ struct AdaptiveGrid {
   }
 };
 
-/// Three turn models whose rates move with the target (AGMM): an Imm of three where a fixed grid
-/// needs five or more. Slots keep their estimates and probabilities when the grid moves. Has the
-/// face of `Imm`. Source: paper B, step 1.1; X. R. Li, V. P. Jilkov, IEEE Trans. AES-41, 2005.
+/// Three turn models with rates that follow the target (AGMM): an Imm of three models where a fixed
+/// grid needs five or more. The models keep their estimates and probabilities when the grid moves.
+/// Has the interface of `Imm`. Source: paper B, step 1.1; X. R. Li, V. P. Jilkov, IEEE Trans.
+/// AES-41, 2005.
 template <class BankType>
 class AdaptiveGridImm : public TurnGridImm<BankType> {
   using Base = TurnGridImm<BankType>;
@@ -134,7 +136,7 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
   using typename Base::Scalar;
   static constexpr int kModels = BankType::kModels;
 
-  /// Throws `std::invalid_argument` when a parameter makes no sense or there are not three filters.
+  /// Throws `std::invalid_argument` when a parameter is invalid or there are not three filters.
   AdaptiveGridImm(const AdaptiveGrid& grid, const ModeChain<BankType::kModels>& chain,
                   const BankType& bank)
       : Base(chain, bank, to_vector(validated(grid).initial())), grid_(grid) {
@@ -143,7 +145,7 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
         to_vector({side, grid.initial_centre_probability, side}).template cast<Scalar>());
   }
 
-  /// Over filters like `prototype`, whose turn rate does not matter.
+  /// With copies of `prototype`, whose turn rate is replaced.
   template <class Filter>
   AdaptiveGridImm(const AdaptiveGrid& grid, const ModeChain<3>& chain,
                   const Filter& prototype) requires(BeliefFilter<Filter>)
@@ -158,7 +160,8 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
 
   [[nodiscard]] const AdaptiveGrid& grid() const noexcept { return grid_; }
 
-  /// Saves or restores beliefs, mode probabilities and turn rates; those of another grid fail.
+  /// Saves or restores beliefs, mode probabilities and turn rates; fails with different grid
+  /// parameters.
   void archive(Archive& fields) {
     fields.rules(grid_.max_turn_rate_rad_s, grid_.initial(), grid_.min_spacing_rad_s,
                  grid_.kept_spacing_rad_s, grid_.least_move_rad_s, grid_.centre_threshold,

@@ -13,7 +13,7 @@
 
 namespace wakeline {
 
-/// Which polynomials `BayesianAlphaBeta` weighs, and how long one stays the right one.
+/// The polynomials of a `BayesianAlphaBeta` and their persistence.
 struct LineWeighing {
   static constexpr int kMaxPlots = 16;
   static constexpr int kLeastOfParabola = 4;  ///< through three plots it would follow their noise
@@ -44,22 +44,22 @@ struct LineWeighing {
   }
 
   [[nodiscard]] int lines() const noexcept { return max_plots - min_plots + 1; }
-  /// Plots of the shortest parabola.
+  /// Number of plots of the shortest parabola.
   [[nodiscard]] int first_parabola() const noexcept {
     return std::max(min_plots, kLeastOfParabola);
   }
-  /// Lines and parabolas.
+  /// Number of lines and parabolas.
   [[nodiscard]] int members() const noexcept {
     return lines() + (parabolas ? std::max(max_plots - first_parabola() + 1, 0) : 0);
   }
-  /// Plots of a member: lines come first, shorter before longer.
+  /// Number of plots of a member: lines first, shorter before longer.
   [[nodiscard]] int plots_of(int member) const noexcept {
     return member < lines() ? min_plots + member : first_parabola() + member - lines();
   }
 
   friend bool operator==(const LineWeighing&, const LineWeighing&) = default;
 
-  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   void validate() const {
     validate_fields(*this);
     require(max_plots >= min_plots, "max_plots", "at least min_plots", max_plots);
@@ -68,18 +68,19 @@ struct LineWeighing {
   }
 };
 
-/// Lines and parabolas through the last plots, 2, 3, ... of them, weighed by Bayes' rule.
+/// Lines and parabolas through the last 2, 3, ... plots, weighted by Bayes' rule.
 ///
-/// Does what `FuzzyAlphaBeta` does, many plots on a straight and few in a turn, without its
-/// estimate of the usual residual, which a turn inflates, without a scan's hold, and without a hard
-/// choice. Each member foretells the next plot with a known error: the noise of the plot times
-/// `1 + position_factor`. The likelihood of the plot under each is the evidence for it; from scan
-/// to scan a member stays the right one with probability exp(-dt / sojourn), else any may be, as
-/// its prior says. The estimate is their mixture. A parabola holds a turn that a line cuts.
+/// Like `FuzzyAlphaBeta` it uses many plots on a straight and few in a turn, but without an
+/// estimate of the usual residual, which a turn inflates, without holding the choice for a scan,
+/// and without a hard choice. Each member predicts the next plot with a known error: the noise of
+/// the plot times `1 + position_factor`; the likelihood of the plot is the evidence for it. From
+/// scan to scan a member stays the correct one with probability exp(-dt / sojourn), else it is
+/// drawn from the prior. The estimate is the mixture of the members. A parabola follows a turn that
+/// a line cuts.
 ///
-/// One mode for each member: lines first, shorter before longer, then parabolas; one that lacks
-/// plots has no probability, and before there are any the shortest line has all of it. O(max_plots)
-/// a scan, no heap; the weighing takes one factor of the plot's covariance and no other matrix.
+/// One mode per member: lines first, shorter before longer, then parabolas. A member without enough
+/// plots has probability 0; before there are any plots the shortest line has probability 1.
+/// O(max_plots) per scan, no heap; the only factorisation is that of the plot's covariance.
 template <class ScalarType = double>
 class BayesianAlphaBeta
     : public LineEstimator<BayesianAlphaBeta<ScalarType>, LineWeighing::kMaxPlots, ScalarType> {
@@ -91,7 +92,7 @@ class BayesianAlphaBeta
   using typename Base::Probability;
   using typename Base::Scalar;
 
-  /// Throws `std::invalid_argument` when a parameter makes no sense.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   explicit BayesianAlphaBeta(const LineWeighing& weighing = {})
       : Base(validated(weighing).max_plots, weighing.min_plots, weighing.acceleration_std_mps2),
         weighing_(weighing) {
@@ -102,7 +103,7 @@ class BayesianAlphaBeta
     begin();
   }
 
-  /// Saves or restores what is remembered; that of another weighing fails.
+  /// Saves or restores the state; fails with different parameters.
   void archive(Archive& fields) {
     fields.rules(weighing_);
     BayesianAlphaBeta loaded = *this;
@@ -115,7 +116,7 @@ class BayesianAlphaBeta
     this->refresh();
   }
 
-  /// One number for each member.
+  /// One probability for each member.
   [[nodiscard]] const Probability& mode_probability() const noexcept { return probability_; }
   [[nodiscard]] const LineWeighing& weighing() const noexcept { return weighing_; }
 
@@ -131,20 +132,20 @@ class BayesianAlphaBeta
     weight_ = stay * weight_ + (Scalar(1) - stay) * prior_;
   }
 
-  [[nodiscard]] const Probability& judgement() const noexcept { return weight_; }
-  void set_judgement(const Mask& lanes, const Probability& weight) noexcept {
+  [[nodiscard]] const Probability& evaluation() const noexcept { return weight_; }
+  void set_evaluation(const Mask& lanes, const Probability& weight) noexcept {
     for (Eigen::Index k = 0; k < weight_.size(); ++k)
       weight_[k] = select(lanes, weight[k], weight_[k]);
   }
 
-  /// Bayes' rule over the members that foretold the plot, by N(v; 0, (1 + f) R) but for what all
-  /// share; of the others nothing is known.
-  void judge(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
+  /// Bayes' rule over the members that predicted the plot, with N(v; 0, (1 + f) R) up to a common
+  /// factor; the probability of the others does not change.
+  void evaluate(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
     const Cholesky<2, Scalar> factor(plot.covariance);
     std::array<Likelihood<Scalar>, kMaxModes> likelihood;
-    Scalar foretold = Scalar(0);
+    Scalar predicted = Scalar(0);
     for_each_member([&](int member, const Line<Scalar>& line, const Mask& exists) {
-      foretold += select(exists, weight_[member], Scalar(0));
+      predicted += select(exists, weight_[member], Scalar(0));
       const Scalar spread = Scalar(1) + line.position_factor;
       const Vec<Scalar, 2> innovation = plot.mean - line.position_m;
       likelihood[static_cast<std::size_t>(member)] = {select(exists, Scalar(1) / spread, Scalar(0)),
@@ -154,14 +155,14 @@ class BayesianAlphaBeta
     const auto count = static_cast<std::size_t>(weighing_.members());
     const Scalar logarithm = reweigh<kMaxModes, Scalar>(
         {after.data(), count}, [&](std::size_t member) { return likelihood[member]; });
-    const Mask judged = lanes && factor.ok() && logarithm != Scalar(kImpossible<Scalar>);
+    const Mask evaluated = lanes && factor.ok() && logarithm != Scalar(kImpossible<Scalar>);
     for_each_member([&](int member, const Line<Scalar>&, const Mask& exists) {
-      weight_[member] = select(judged && exists, after[member] * foretold, weight_[member]);
+      weight_[member] = select(evaluated && exists, after[member] * predicted, weight_[member]);
     });
   }
 
-  /// The mixture of the members that have their plots.
-  void settle() noexcept {
+  /// Sets the belief to the mixture of the members with enough plots.
+  void update_belief() noexcept {
     Scalar total = Scalar(0);
     for_each_member([&](int member, const Line<Scalar>&, const Mask& exists) {
       total += select(exists, weight_[member], Scalar(0));
@@ -186,8 +187,8 @@ class BayesianAlphaBeta
 
   void begin_probability() noexcept { probability_ = Probability::Unit(weighing_.members(), 0); }
 
-  /// Calls `f(member, line, exists)` for every member that has its plots in some lane, and
-  /// parabolas as lines.
+  /// Calls `f(member, line, exists)` for every member with enough plots in some lane; parabolas are
+  /// passed as lines.
   template <class Function>
   void for_each_member(Function&& function) const noexcept {
     for (int member = 0; member < weighing_.members(); ++member) {
@@ -204,8 +205,8 @@ class BayesianAlphaBeta
 
   LineWeighing weighing_;
   Probability prior_;
-  Probability weight_;       ///< of all members, those without plots too
-  Probability probability_;  ///< of those with plots
+  Probability weight_;       ///< of all members, including those without enough plots
+  Probability probability_;  ///< of those with enough plots
 };
 
 }  // namespace wakeline

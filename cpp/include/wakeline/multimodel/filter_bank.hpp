@@ -14,7 +14,7 @@
 
 namespace wakeline {
 
-/// Takes the mean and the lower triangle of a belief, which are what mixing reads.
+/// Copies the mean and the lower triangle of a belief, which is what mixing reads.
 template <auto Components, class Scalar, int N>
 [[gnu::always_inline]] inline void keep_lower(const Gaussian<N, Scalar>& belief,
                                               StateBelief<Components, Scalar>& kept) noexcept {
@@ -22,15 +22,15 @@ template <auto Components, class Scalar, int N>
   unroll_lower<N>([&](int i, int j) { kept.covariance(i, j) = belief.covariance(i, j); });
 }
 
-/// Makes a belief of what `keep_lower` has taken.
+/// Completes a belief copied by `keep_lower`.
 template <auto Components, class Scalar>
 void complete(StateBelief<Components, Scalar>& kept) noexcept {
   mirror_lower<Scalar, StateBelief<Components, Scalar>::kStates>(kept.covariance);
 }
 
-/// What `part`, a StateBelief or BeliefView, says of the state of `own`: what only `own` holds is
-/// taken from it, without correlation to the rest. Of `part` the lower triangle is read, in
-/// whatever order its rows are.
+/// `part`, a StateBelief or BeliefView, in the state of `own`: components that only `own` has are
+/// taken from it, uncorrelated with the rest. Reads the lower triangle of `part`, in any order of
+/// rows.
 template <auto To, class Scalar, class Part>
 decltype(auto) in_terms_of(const StateBelief<To, Scalar>& own, const Part& part) noexcept {
   constexpr auto kFrom = Part::kComponents;
@@ -38,18 +38,18 @@ decltype(auto) in_terms_of(const StateBelief<To, Scalar>& own, const Part& part)
     return (part);
   } else {
     constexpr auto kRows = rows_of(kFrom, To);
-    StateBelief<To, Scalar> said = own;
+    StateBelief<To, Scalar> belief = own;
     for (int j = 0; j < own.kStates; ++j) {
-      if (kRows[j] >= 0) said.mean[j] = part.mean[kRows[j]];
+      if (kRows[j] >= 0) belief.mean[j] = part.mean[kRows[j]];
       for (int i = 0; i < own.kStates; ++i) {
         if (kRows[i] >= 0 && kRows[j] >= 0)
-          said.covariance(i, j) =
+          belief.covariance(i, j) =
               part.covariance(std::max(kRows[i], kRows[j]), std::min(kRows[i], kRows[j]));
         else if (kRows[i] >= 0 || kRows[j] >= 0)
-          said.covariance(i, j) = Scalar(0);
+          belief.covariance(i, j) = Scalar(0);
       }
     }
-    return said;
+    return belief;
   }
 }
 
@@ -58,9 +58,9 @@ template <auto To, class Scalar, class Part>
 [[gnu::always_inline]] inline void add_mean(StateBelief<To, Scalar>& sum, Scalar weight,
                                             const Part& part,
                                             const StateBelief<To, Scalar>& own) noexcept {
-  const auto& said = in_terms_of(own, part);
+  const auto& belief = in_terms_of(own, part);
   unroll<StateBelief<To, Scalar>::kStates>(
-      [&](int i) { sum.mean.data()[i] += weight * said.mean.data()[i]; });
+      [&](int i) { sum.mean.data()[i] += weight * belief.mean.data()[i]; });
 }
 
 /// sum.covariance += weight (P + d dᵀ), d = m - sum.mean.
@@ -68,22 +68,22 @@ template <auto To, class Scalar, class Part>
 [[gnu::always_inline]] inline void add_spread(StateBelief<To, Scalar>& sum, Scalar weight,
                                               const Part& part,
                                               const StateBelief<To, Scalar>& own) noexcept {
-  const auto& said = in_terms_of(own, part);
+  const auto& belief = in_terms_of(own, part);
   constexpr int kStates = StateBelief<To, Scalar>::kStates;
   Vec<Scalar, kStates> d;
-  unroll<kStates>([&](int i) { d[i] = said.mean.data()[i] - sum.mean.data()[i]; });
+  unroll<kStates>([&](int i) { d[i] = belief.mean.data()[i] - sum.mean.data()[i]; });
   unroll_lower<kStates>([&](int i, int j) {
-    sum.covariance(i, j) += weight * (said.covariance(i, j) + d[i] * d[j]);
+    sum.covariance(i, j) += weight * (belief.covariance(i, j) + d[i] * d[j]);
   });
   mirror_lower<Scalar, kStates>(sum.covariance);
 }
 
-/// Filters composed at compile time, of any kinds and state sizes, each with room for the belief it
-/// had before a step.
+/// Filters composed at compile time, of any kinds and state sizes, each with its belief before a
+/// step.
 ///
-/// A bank is what a multi-model estimator is built on: `size`, `for_each(f(k, filter, before))`,
+/// A bank is the basis of a multi-model estimator: `size`, `for_each(f(k, filter, before))`,
 /// `for_each_before(f(k, before))` and `empty_estimate`; a bank composed at run time has the same
-/// face.
+/// interface.
 template <class... Filters>
 class FilterBank {
   static_assert(
@@ -97,8 +97,8 @@ class FilterBank {
   static_assert((std::is_same_v<Scalar, typename Filters::Scalar> && ...),
                 "wakeline: the filters of a bank must share one scalar type");
 
-  /// Components of the combined estimate: those of the filters where all agree, else position and
-  /// velocity.
+  /// Components of the combined estimate: those of the filters if all have the same, else position
+  /// and velocity.
   static constexpr auto kComponents = [] {
     constexpr auto kFirst = std::tuple_element_t<0, std::tuple<Filters...>>::kComponents;
     if constexpr ((std::is_same_v<StateBelief<Filters::kComponents, Scalar>,
@@ -123,7 +123,7 @@ class FilterBank {
     visit(*this, [&](int k, const auto& slot) { function(k, slot.filter); });
   }
 
-  /// Calls `f(k, belief)` with the present belief of each filter.
+  /// Calls `f(k, belief)` with the current belief of each filter.
   template <class Function>
   void for_each_belief(Function&& function) const noexcept {
     visit(*this, [&]<class Filter>(int k, const Slot<Filter>& slot) {
@@ -170,8 +170,8 @@ class FilterBank {
     }
   }
 
-  // Filters of one kind in a loop: a step of all of them written out is more code than a processor
-  // keeps at hand.
+  // Filters of one kind are visited in a loop: the unrolled step of all of them exceeds the
+  // instruction cache.
   using First = std::tuple_element_t<0, std::tuple<Filters...>>;
   static constexpr bool kAlike = (std::is_same_v<First, Filters> && ...);
   std::conditional_t<kAlike, std::array<Slot<First>, kModels>, std::tuple<Slot<Filters>...>> slots_;

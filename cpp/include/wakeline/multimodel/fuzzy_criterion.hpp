@@ -15,21 +15,21 @@
 
 namespace wakeline {
 
-/// How the degrees of several conditions make that of all of them together.
+/// Conjunction of the degrees of several conditions.
 enum class TNorm : std::uint8_t { kProduct, kMinimum };
 
 constexpr std::array<Word<TNorm>, 2> words_of(TNorm) noexcept {
   return {{{"product", TNorm::kProduct}, {"minimum", TNorm::kMinimum}}};
 }
 
-/// Which of the lines through the last 2 .. `max_plots` plots a target is tracked with: how well
-/// each foretold the newest plot, judged by a zero-order Sugeno machine.
+/// Chooses with which of the lines through the last 2 .. `max_plots` plots a target is tracked: a
+/// zero-order Sugeno system that rates how well each line predicted the newest plot.
 ///
-/// Of each line there is the ratio L of its residual to the usual one of the shortest line, and
+/// L is the ratio of a line's residual to the usual one of the shortest line, and
 ///     bad(L) = 1 / (1 + exp(-steepness (L - threshold))),   good(L) = 1 - bad(L).
-/// Rule p says: where the first p lines are good and the rest bad, track with max(2, p + 1) plots.
-/// Source: V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuzzy
-/// criterion of maneuver detection.
+/// Rule p: if the first p lines are good and the rest bad, track with max(2, p + 1) plots. Source:
+/// V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuzzy criterion of
+/// maneuver detection.
 struct FuzzyCriterion {
   static constexpr int kMaxPlots = 16;
 
@@ -59,7 +59,7 @@ struct FuzzyCriterion {
     };
   }
 
-  /// Degrees to which the quality of tracking is good and bad.
+  /// Degrees of membership of the tracking quality in good and bad.
   template <class Scalar>
   struct Degrees {
     Scalar good;
@@ -73,52 +73,52 @@ struct FuzzyCriterion {
     return {odds / (Scalar(1) + odds), Scalar(1) / (Scalar(1) + odds)};
   }
 
-  /// Degree of all conditions together.
+  /// Degree of the conjunction of all conditions.
   template <class Scalar>
   [[nodiscard]] Scalar both(Scalar a, Scalar b) const noexcept {
     using std::min;
     return t_norm == TNorm::kProduct ? a * b : min(a, b);
   }
 
-  /// Output of the machine, 2 .. n + 1, for the ratios (n >= 1) of the lines through 2, 3, ... n +
-  /// 1 plots: the mean of what the n + 1 rules say, weighted by their strengths, which are filled
-  /// in. O(n).
-  double judge(std::span<const double> ratios, std::span<double> strengths) const noexcept {
-    return judge<double>(ratios, strengths, double(ratios.size()));
+  /// Output of the system, 2 .. n + 1, for the ratios (n >= 1) of the lines through 2, 3, ... n + 1
+  /// plots: the outputs of the n + 1 rules averaged with their strengths, which are written to
+  /// `strengths`. O(n).
+  double evaluate(std::span<const double> ratios, std::span<double> strengths) const noexcept {
+    return evaluate<double>(ratios, strengths, double(ratios.size()));
   }
 
-  /// The same of any scalar; each lane of a pack has the first `lines` of the ratios.
+  /// The same for any scalar; each lane of a pack uses the first `lines` ratios.
   template <class Scalar>
-  Scalar judge(std::span<const Scalar> ratios, std::span<Scalar> strengths,
+  Scalar evaluate(std::span<const Scalar> ratios, std::span<Scalar> strengths,
                std::type_identity_t<Scalar> lines) const noexcept {
     std::array<Degrees<Scalar>, kMaxPlots> degree;
-    Scalar ahead = Scalar(1);  // how good the first p are together
+    Scalar ahead = Scalar(1);  // degree to which the first p are good
     for (std::size_t p = 0; p < ratios.size(); ++p) {
       degree[p] = degrees(ratios[p]);
       strengths[p] = ahead;
       ahead = select(Scalar(p) < lines, both(ahead, degree[p].good), ahead);
     }
     strengths[ratios.size()] = ahead;
-    Scalar behind = Scalar(1);  // how bad the rest are together
+    Scalar behind = Scalar(1);  // degree to which the rest are bad
     Scalar total = ahead;
     Scalar sum = total * (lines + Scalar(1));
     for (std::size_t p = ratios.size(); p-- > 0;) {
-      const auto judged = Scalar(p) < lines;
-      behind = select(judged, both(behind, degree[p].bad), behind);
-      strengths[p] = select(judged, both(strengths[p], behind), strengths[p]);
-      total += select(judged, strengths[p], Scalar(0));
-      sum += select(judged, strengths[p] * Scalar(std::max<std::size_t>(2, p + 1)), Scalar(0));
+      const auto exists = Scalar(p) < lines;
+      behind = select(exists, both(behind, degree[p].bad), behind);
+      strengths[p] = select(exists, both(strengths[p], behind), strengths[p]);
+      total += select(exists, strengths[p], Scalar(0));
+      sum += select(exists, strengths[p] * Scalar(std::max<std::size_t>(2, p + 1)), Scalar(0));
     }
     return sum / total;
   }
 
   friend bool operator==(const FuzzyCriterion&, const FuzzyCriterion&) = default;
 
-  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   void validate() const {
     validate_fields(*this);
     require(threshold < clip, "threshold", "less than clip", threshold);
-    // The product over all lines then stays far above the least number there is.
+    // Keeps the product over all lines far above underflow.
     require(steepness * std::max(threshold, clip - threshold) <= 40.0, "steepness",
             "such that no membership is below exp(-40) within 0 .. clip", steepness);
   }

@@ -9,7 +9,7 @@
 
 namespace wakeline {
 
-/// How the tree of a `ModeHistory` branches, joins and is cut.
+/// Branching, merging and pruning of the tree of a `ModeHistory`.
 struct HistoryTree {
   int max_hypotheses = 75;
   int max_branches = 100;
@@ -46,8 +46,8 @@ struct HistoryTree {
   }
 
   /// The generalised pseudo-Bayes estimator of an order (GPB1, GPB2, ...) over a number of modes:
-  /// hypotheses with the same last n - 1 modes join, whatever their distance, and nothing is cut.
-  /// Source: Bar-Shalom, Li, Kirubarajan, 11.6.3-11.6.5.
+  /// hypotheses with the same last n - 1 modes are merged, whatever their distance, and nothing is
+  /// pruned. Source: Bar-Shalom, Li, Kirubarajan, 11.6.3-11.6.5.
   static HistoryTree pseudo_bayes(int order, int modes) {
     require(order >= 1 && order <= 8, "pseudo_bayes_order", "1 to 8", order);
     require(modes >= 1 && modes <= 16, "modes", "1 to 16", modes);
@@ -64,7 +64,7 @@ struct HistoryTree {
             .pseudo_bayes_order = order};
   }
 
-  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   void validate() const {
     validate_fields(*this);
     require(max_branches > max_hypotheses || pseudo_bayes_order > 0, "max_branches",

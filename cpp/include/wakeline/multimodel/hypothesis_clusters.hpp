@@ -18,9 +18,9 @@
 
 namespace wakeline {
 
-/// Joins the hypotheses of each mode that are so alike that one can stand for them: around the
-/// likeliest that is in no cluster yet, by moment matching. What is negligible is left out, in any
-/// case what is next to nothing, but never all. Source: D. J. Salmond, SPIE 1305, 1990.
+/// Merges similar hypotheses of each mode by moment matching, around the most probable one that is
+/// in no cluster yet. Negligible hypotheses are dropped, but never all. Source: D. J. Salmond, SPIE
+/// 1305, 1990.
 template <class Rows>
 class HypothesisClusters {
  public:
@@ -69,21 +69,21 @@ class HypothesisClusters {
     return !by_past() && limits_.sibling_distance > 0.0;
   }
 
-  /// Appends what is free and like the hypothesis of a place, in one.
+  /// Appends the cluster of the free hypotheses similar to the one at `place`.
   void append_around(int place, Rows& to) noexcept {
     const Row& own = rows_.row_of(place);
     const int next = to.append(own.mode);
     Row& row = to.row_of(next);
     row.set_past(Rows::lane_of(next), own, Rows::lane_of(place));
-    if (take_alike(place) > 1)
+    if (take_similar(place) > 1)
       join(place, row, Rows::lane_of(next));
     else
       row.set_belief(Rows::lane_of(next), own.belief(Rows::lane_of(place)));
   }
 
-  /// Takes the hypothesis of a place and what is like it out of what is free; they are `taken_`
-  /// then. Returns how many they are.
-  int take_alike(int place) noexcept {
+  /// Marks the free hypotheses similar to the one at `place`, and that one, as `taken_`. Returns
+  /// their number.
+  int take_similar(int place) noexcept {
     const auto own_lane = static_cast<std::size_t>(Rows::lane_of(place));
     const Row& own = rows_.row_of(place);
     const std::span<const Row> rows = rows_.of_mode(own.mode);
@@ -107,7 +107,7 @@ class HypothesisClusters {
     return members;
   }
 
-  /// Moment matching of what is taken, by sums about the mean of the hypothesis of a place.
+  /// Moment matching of the marked hypotheses, by sums about the mean of the one at `place`.
   void join(int place, Row& to, int to_lane) const noexcept {
     const Row& own = rows_.row_of(place);
     const auto own_lane = static_cast<std::size_t>(Rows::lane_of(place));
@@ -144,7 +144,7 @@ class HypothesisClusters {
     to.probability[static_cast<std::size_t>(to_lane)] = sum[0];
   }
 
-  /// How far the means of a row are from one of its mode.
+  /// Differences of the means of a row from the mean of a hypothesis of its mode.
   static Vec<Lanes, kStates> away(const Row& row, const Row& own, std::size_t own_lane) noexcept {
     Vec<Lanes, kStates> d;
     unroll<kStates>([&](auto i) {
@@ -153,7 +153,7 @@ class HypothesisClusters {
     return d;
   }
 
-  /// Which of a row have the same last modes, as a pseudo-Bayes tree wants it.
+  /// The lanes of a row with the same last modes, as required in a pseudo-Bayes tree.
   [[nodiscard]] MaskOf<Lanes> same_past(std::uint64_t modes, const Row& row) const noexcept {
     const int forgotten = 64 - 4 * (limits_.pseudo_bayes_order - 1);
     return lanes_of<Lanes>([&](int k) {
@@ -161,7 +161,7 @@ class HypothesisClusters {
            }) > Lanes(0);
   }
 
-  /// Which of a row are near one of the same mode, by its covariance.
+  /// The lanes of a row near a hypothesis of the same mode, by its covariance.
   [[nodiscard]] MaskOf<Lanes> near(const Row& own, std::size_t own_lane, const Row& row,
                                    const Cholesky<kStates, Lanes>& factor) const noexcept {
     const auto siblings = load<Lanes>(row.segment_s.data()) == Lanes(own.segment_s[own_lane]);
@@ -175,10 +175,10 @@ class HypothesisClusters {
       Scalar(limits_.sibling_distance) * Scalar(limits_.sibling_distance);
   const Lanes squared_merge_distance_ =
       Scalar(limits_.merge_distance) * Scalar(limits_.merge_distance);
-  std::array<Lanes, Rows::kMostRows> weights_;  ///< probability of what is not left out, else 0
-  std::array<unsigned, Rows::kMostRows> free_;  ///< what is in no cluster yet, by lanes
-  // Of the rows of one mode:
-  std::array<unsigned, Rows::kMostRows> taken_;  ///< what is in the cluster, by lanes
+  std::array<Lanes, Rows::kMostRows> weights_;  ///< probability, 0 for dropped ones
+  std::array<unsigned, Rows::kMostRows> free_;  ///< in no cluster yet, a bit per lane
+  // For the rows of one mode:
+  std::array<unsigned, Rows::kMostRows> taken_;  ///< in the current cluster, a bit per lane
   std::array<Cholesky<kStates, Lanes>, Rows::kMostRows> factors_;  ///< of the covariances
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Where a tree of mode histories keeps its hypotheses.
+// Storage of the hypotheses of a tree of mode histories.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace wakeline {
 
-/// Hypotheses of one mode side by side, as many as a filter has lanes or fewer. Lanes left over
-/// repeat the belief of another, and have no probability.
+/// Hypotheses of one mode side by side, up to the number of lanes of a filter. Unused lanes repeat
+/// the belief of another and have probability 0.
 template <int N, class Lanes>
 struct HypothesisRow {
   using Scalar = RealOf<Lanes>;
@@ -26,9 +26,9 @@ struct HypothesisRow {
   int count;
   std::array<std::uint64_t, kLanes> modes;  ///< the last 16, four bits each, the present one lowest
   alignas(Lanes) Numbers probability;
-  alignas(Lanes) Numbers segment_s;  ///< time since it came into its mode
+  alignas(Lanes) Numbers segment_s;  ///< time since it entered its mode
   alignas(Lanes) std::array<Numbers, N> mean;
-  alignas(Lanes) std::array<Numbers, N*(N + 1) / 2> covariance;  ///< its lower triangle, by columns
+  alignas(Lanes) std::array<Numbers, N*(N + 1) / 2> covariance;  ///< lower triangle, by columns
 
   Numbers& of_covariance(int row, int column) noexcept {
     return covariance[static_cast<std::size_t>(row + column * (2 * N - 1 - column) / 2)];
@@ -44,7 +44,7 @@ struct HypothesisRow {
     return load<Lanes>(of_covariance(row, column).data());
   }
 
-  /// All beliefs.
+  /// All beliefs, one per lane.
   [[nodiscard, gnu::always_inline]] Gaussian<N, Lanes> beliefs() const noexcept {
     Gaussian<N, Lanes> lanes;
     unroll<N>([&](int i) { lanes.mean[i] = mean_lanes(i); });
@@ -66,7 +66,7 @@ struct HypothesisRow {
         [&](int i, int j) { store(from.covariance_lanes(i, j), of_covariance(i, j).data()); });
   }
 
-  /// That of one hypothesis.
+  /// The belief of one hypothesis.
   [[nodiscard, gnu::always_inline]] Gaussian<N, Scalar> belief(int k) const noexcept {
     const auto lane = static_cast<std::size_t>(k);
     Gaussian<N, Scalar> one;
@@ -77,7 +77,7 @@ struct HypothesisRow {
     return one;
   }
 
-  /// Gives a belief to lane k; where that is the first one, to all others too.
+  /// Sets the belief of lane k; for the first lane also those of all others.
   [[gnu::always_inline]] void set_belief(int k, const Gaussian<N, Scalar>& one) noexcept {
     if (k == 0) {
       unroll<N>(
@@ -91,7 +91,7 @@ struct HypothesisRow {
     unroll_lower<N>([&](int i, int j) { of_covariance(i, j)[lane] = one.covariance(i, j); });
   }
 
-  /// Says how lane k came to its mode.
+  /// Sets probability and history of lane k.
   void set_past(int k, Scalar its_probability, Scalar in_mode_s, std::uint64_t its_modes) noexcept {
     const auto lane = static_cast<std::size_t>(k);
     probability[lane] = its_probability;
@@ -104,7 +104,7 @@ struct HypothesisRow {
   }
 };
 
-/// At most `Capacity` hypotheses, each mode's in rows of its own, one mode after the other. The
+/// At most `Capacity` hypotheses, in separate rows for each mode, one mode after the other. The
 /// place of a hypothesis is the number of its lane among those of all rows.
 template <int N, class LanesType, int Capacity, int Modes>
 class HypothesisRows {
@@ -124,22 +124,21 @@ class HypothesisRows {
     rows_used_ = size_ = 0;
   }
 
-  /// Makes room for one more, and returns its place. Those of a mode are to be appended one after
-  /// the other.
+  /// Appends a hypothesis and returns its place. Those of a mode must be appended consecutively.
   int append(int mode) noexcept {
     if (at(end_, mode) == at(begin_, mode) || at(rows_, at(end_, mode) - 1).count == kLanes)
       add_row(mode).count = 0;
     ++size_;
     return (rows_used_ - 1) * kLanes + at(rows_, rows_used_ - 1).count++;
   }
-  /// Appends a copy of one of a row.
+  /// Appends a copy of one hypothesis of a row.
   int append(int mode, const Row& from, int of_lane) noexcept {
     const int place = append(mode);
     row_of(place).set_belief(lane_of(place), from.belief(of_lane));
     row_of(place).set_past(lane_of(place), from, of_lane);
     return place;
   }
-  /// Appends the hypotheses of a row, all but their beliefs.
+  /// Appends the hypotheses of a row without their beliefs.
   Row& append_pasts(const Row& from) noexcept {
     Row& row = add_row(from.mode);
     row.count = from.count;
@@ -157,16 +156,16 @@ class HypothesisRows {
     return {rows_.data(), static_cast<std::size_t>(rows_used_)};
   }
 
-  /// Those of a mode.
+  /// The rows of a mode.
   [[nodiscard]] std::span<const Row> of_mode(int mode) const noexcept {
     return all().subspan(static_cast<std::size_t>(begin(mode)),
                          static_cast<std::size_t>(end(mode) - begin(mode)));
   }
-  /// The number of the first row of a mode, and of that behind its last.
+  /// Index of the first row of a mode; `end` is one past its last.
   [[nodiscard]] int begin(int mode) const noexcept { return at(begin_, mode); }
   [[nodiscard]] int end(int mode) const noexcept { return at(end_, mode); }
 
-  /// Hypotheses in all.
+  /// Number of hypotheses.
   [[nodiscard]] int size() const noexcept { return size_; }
 
   [[nodiscard]] Row& row_of(int place) noexcept { return at(rows_, row_number(place)); }
@@ -192,12 +191,12 @@ class HypothesisRows {
   }
 
   std::array<Row, kMostRows> rows_;
-  std::array<int, static_cast<std::size_t>(Modes)> begin_{}, end_{};  ///< of the rows of a mode
+  std::array<int, static_cast<std::size_t>(Modes)> begin_{}, end_{};  ///< rows of each mode
   int rows_used_ = 0;
   int size_ = 0;
 };
 
-/// Copies the likeliest `most` of some hypotheses, in their order.
+/// Copies the `most` most probable hypotheses, in their order.
 template <class Rows>
 void copy_likeliest(const Rows& from, int most, Rows& to) noexcept {
   std::array<int, Rows::kCapacity> places;

@@ -20,15 +20,15 @@
 
 namespace wakeline {
 
-/// The interacting multiple model estimator, over filters of any kinds and state sizes.
+/// The interacting multiple model estimator (IMM), over filters of any kinds and state sizes.
 ///
-/// `predict` mixes and predicts, after which the mode probabilities are those the chain expects; a
-/// missed scan is a `predict` without `update`. `update` weighs each mode by its likelihood, in the
-/// log domain. What a filter cannot know of another's state (the turn rate a straight model lacks)
-/// it keeps from itself in mixing. A filter whose update fails keeps its prediction and has no
-/// weight in that scan; where all fail nothing changes, nor by a reading so large that what two
-/// modes make of it could not be squared, `kNotFinite`. Source: H. A. P. Blom, Y. Bar-Shalom, IEEE
-/// Trans. AC-33, 1988; Bar-Shalom, Li, Kirubarajan, 11.6.6; paper A, (7)-(16).
+/// `predict` mixes and predicts; the mode probabilities are then those predicted by the chain. A
+/// missed scan is a `predict` without `update`. `update` weights each mode by its likelihood, in
+/// the log domain. A component that only some filters have (the turn rate, which a straight model
+/// lacks) is mixed only among those that have it. A filter whose update fails keeps its prediction
+/// and has no weight in that scan; where all fail, nothing changes. A reading that is not
+/// `in_range` returns `kNotFinite`. Source: H. A. P. Blom, Y. Bar-Shalom, IEEE Trans. AC-33, 1988;
+/// Bar-Shalom, Li, Kirubarajan, 11.6.6; paper A, (7)-(16).
 template <class BankType>
 class Imm {
  public:
@@ -55,15 +55,15 @@ class Imm {
              std::to_string(chain.modes()));
   }
 
-  /// Mode probabilities that a start begins with (uniform unless set). Throws unless they sum to 1.
+  /// Sets the mode probabilities at a start (default: uniform). Throws unless they sum to 1.
   void set_initial_mode_probability(const Probability& probability) {
     require_distribution("initial_mode_probability", probability, bank_.size());
     initial_ = made_distribution(probability);
     if (!started_) probability_ = initial_;
   }
 
-  /// Begins every filter with the belief, over their own state or over `[x, vx, y, vy]`. Where one
-  /// refuses it nothing changes.
+  /// Starts every filter with the belief, over its own state or over `[x, vx, y, vy]`. Where one
+  /// rejects it, nothing changes.
   template <class BeliefType>  // not inlined: GCC 12 fails on what its branches leave of a mask
   [[gnu::noinline]] StatusOf<Scalar> start(const BeliefType& belief) noexcept {
     StatusOf<Scalar> status = Status::kOk;
@@ -123,13 +123,13 @@ class Imm {
     bank_.for_each_belief(function);
   }
 
-  /// Probabilistic data association: every mode takes in all readings that may be the target's own,
-  /// each as far as the mode finds it likely, and the belief that none is.
+  /// Probabilistic data association: every mode is updated with all readings that may be the
+  /// target's, weighted by their likelihoods under the mode, and with the hypothesis that none is.
   ///
-  /// `none` and each `weight` are what the hypotheses weigh before their likelihoods (1 - PD PG and
-  /// PD / clutter density of one reading, say). Returns the sum of weight times likelihood over
-  /// modes and hypotheses, and in `share` the part of it that each reading has; 0, and nothing
-  /// changed, when all are impossible. Source: Bar-Shalom, Li, Multitarget-Multisensor Tracking,
+  /// `none` and each `weight` are the weights of the hypotheses before their likelihoods (e.g. 1 -
+  /// PD PG and PD / clutter density). Returns the sum of weight times likelihood over modes and
+  /// hypotheses, and writes the contribution of each reading to `share`; returns 0 and changes
+  /// nothing when all are impossible. Source: Bar-Shalom, Li, Multitarget-Multisensor Tracking,
   /// 1995, 4.5 (IMM-PDA).
   template <class Sensor>
   Scalar update(std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
@@ -157,8 +157,8 @@ class Imm {
     return select(possible, total, Scalar(0));
   }
 
-  /// Takes over what estimators of numbers over the same models believe, all of them started: lane
-  /// k that of `of_lane(k)`.
+  /// Copies the states of scalar estimators over the same models, all started, into the lanes: lane
+  /// k from `of_lane(k)`.
   template <class OfLane>
   [[gnu::always_inline]] void gather(const OfLane& of_lane) noexcept {
     gather_lanes<kModels>([&](int k) { return of_lane(k).probability_.data(); },
@@ -204,7 +204,7 @@ class Imm {
         [&](int mode, const auto& belief) { add_mean(sum, probability_[mode], belief, sum); });
     bank_.for_each_belief(
         [&](int mode, const auto& belief) { add_spread(sum, probability_[mode], belief, sum); });
-    return decltype(sum)(sum);  // a copy, so that the sum itself stays in registers
+    return decltype(sum)(sum);  // a copy, so that the sum stays in registers
   }
 
   [[nodiscard]] const Probability& mode_probability() const noexcept { return probability_; }
@@ -213,7 +213,7 @@ class Imm {
   [[nodiscard]] const ModeChain<kModels>& chain() const noexcept { return chain_; }
   [[nodiscard]] bool started() const noexcept { return started_; }
 
-  /// One of the filters, with its belief.
+  /// One of the filters with its belief.
   template <int Index>
   [[nodiscard]] const auto& filter() const noexcept {
     return bank_.template get<Index>();
@@ -245,7 +245,7 @@ class Imm {
     return status;
   }
 
-  /// Gives every filter back what it was before the step, in the lanes told.
+  /// Restores every filter to its state before the step, in the given lanes.
   [[gnu::cold, gnu::noinline]] void restore(const MaskOf<Scalar>& lanes) noexcept {
     bank_.for_each([&](int, auto& filter, auto& before) {
       complete(before);
@@ -253,7 +253,7 @@ class Imm {
     });
   }
 
-  /// Replaces the belief of a filter in the lanes told, unchecked.
+  /// Replaces the belief of a filter in the given lanes, unchecked.
   template <class Filter, class BeliefType>
   static void assign_in(const MaskOf<Scalar>& lanes, Filter& filter,
                         const BeliefType& belief) noexcept {
@@ -269,13 +269,13 @@ class Imm {
   Probability probability_;
   bool started_ = false;
 
-  /// To be called when models of the bank go to rest or come back.
+  /// To be called when models of the bank are activated or deactivated.
   void active_changed() noexcept { transition_step_s_ = Scalar(-1); }
 
  private:
   static constexpr bool kMayRest = requires(const Bank& bank) { bank.active(0); };
 
-  /// The status of a filter, which does not count in lanes where it is at rest.
+  /// The status of a filter; ignored in lanes where it is inactive.
   StatusOf<Scalar> in_use(int mode, const StatusOf<Scalar>& status) const noexcept {
     if constexpr (kMayRest && kLanesOf<Scalar> != 1)
       return select(bank_.active(mode), status, StatusOf<Scalar>(Status::kOk));
@@ -283,8 +283,8 @@ class Imm {
       return status;
   }
 
-  /// Leaves out the modes at rest: each row stays with the same probability, and where it leaves it
-  /// goes to an active one.
+  /// Removes inactive modes from the transition: the probability of staying is unchanged, that of
+  /// leaving goes to active modes.
   template <class RestingBank>
   void leave_out_resting(const RestingBank& bank) noexcept {
     for (int i = 0; i < bank.size(); ++i) {
@@ -348,8 +348,8 @@ class Imm {
     return expected;
   }
 
-  /// The mixed start of one mode: mean and covariance of all beliefs, weighted by where the mode
-  /// came from.
+  /// The mixed initial belief of one mode: the moments of all beliefs weighted by the mode's
+  /// origin.
   template <class BeliefType>
   WAKELINE_FLATTEN BeliefType mixed(int mode, const BeliefType& own) const noexcept {
     BeliefType result = zero_like(own);

@@ -18,31 +18,31 @@
 
 namespace wakeline {
 
-/// One scan of a recording as an Imm has gone through it.
+/// One scan of a recording processed by an Imm.
 template <class Bank>
 struct ImmScan {
   Imm<Bank> predicted;           ///< after `predict`
-  Imm<Bank> updated;             ///< after what the scan has brought, or none of it
-  typename Bank::Scalar dt_s{};  ///< of the step to it
+  Imm<Bank> updated;             ///< after the update, if there was one
+  typename Bank::Scalar dt_s{};  ///< step to this scan
 };
 
-/// A belief that has learned what later readings say, and how well it foretold them.
+/// A belief revised by later readings, and how well it predicted them.
 template <class BeliefType, class Scalar = double>
 struct Revised {
   Status status = Status::kOk;
   BeliefType belief = {};
-  Scalar log_evidence = Scalar(0);  ///< that of the belief which they were revised from is 0
+  Scalar log_evidence = Scalar(0);  ///< relative to the belief before the revision
 };
 
-/// What readings say that made of one belief another, said to a third one, `prior`: its product
-/// with
+/// The information of later readings, which turned the belief `before` into `after`, applied to a
+/// third one, `prior`: its product with
 ///
 ///     L(x) = after(x) / before(x) = exp(-λ u² / 2 + h u),   λ = 1 / w - 1,   h = m / w,
 ///
-/// along each axis u in which `before` is N(0, 1) and `after` is N(m, w): readings tell of a place
-/// u = m / (1 - w). Where `after` is hardly narrower, or the wider one as joined beliefs may be,
-/// that is anywhere. A prior that is unlike `before` by a deviation or more is told of a place ten
-/// deviations off at most, or twice m.
+/// along each axis u in which `before` is N(0, 1) and `after` is N(m, w). The readings put the
+/// state at u = m / (1 - w); where `after` is hardly narrower than `before`, or wider as merged
+/// beliefs may be, that is unbounded. For a prior that differs from `before` by a standard
+/// deviation or more the position is limited to ten standard deviations, or twice m.
 template <int N, class Scalar>
 Revised<Gaussian<N, Scalar>, Scalar> revised(const Gaussian<N, Scalar>& prior,
                                              const Gaussian<N, Scalar>& before,
@@ -69,22 +69,22 @@ Revised<Gaussian<N, Scalar>, Scalar> revised(const Gaussian<N, Scalar>& prior,
   if (!prior_root.ok()) return result;
   const Vector unlike =
       (d.cwiseAbs() + (c.diagonal() - Vector::Ones()).cwiseAbs()).cwiseMin(Scalar(1));
-  const Vector least_told = (m.cwiseAbs() / Scalar(10)).cwiseMin(Scalar(0.5));
-  const Vector w = axes.eigenvalues().cwiseMin(Vector::Ones() - least_told.cwiseProduct(unlike));
+  const Vector least_loss = (m.cwiseAbs() / Scalar(10)).cwiseMin(Scalar(0.5));
+  const Vector w = axes.eigenvalues().cwiseMin(Vector::Ones() - least_loss.cwiseProduct(unlike));
   const Vector lambda = w.cwiseInverse() - Vector::Ones(), h = m.cwiseQuotient(w);
 
   const Matrix& a = prior_root.lower();
-  const Cholesky<N, Scalar> told(
+  const Cholesky<N, Scalar> information(
       Matrix(Matrix::Identity() + a.transpose() * lambda.asDiagonal() * a));
-  if (!told.ok()) return result;
-  const Matrix posterior_root = told.template whiten_rows<N>(a);
+  if (!information.ok()) return result;
+  const Matrix posterior_root = information.template whiten_rows<N>(a);
   const Vector pull = posterior_root.transpose() * (h - lambda.cwiseProduct(d));
   const Matrix back = root.lower() * turn, spread = back * posterior_root;
   result.belief.mean = before.mean + back * d + spread * pull;
   result.belief.covariance = spread * spread.transpose();
   mirror_lower<Scalar, N>(result.belief.covariance);
   const Scalar of_prior = d.dot(h) - d.cwiseAbs2().dot(lambda) / 2 + pull.squaredNorm() / 2 -
-                          told.log_determinant() / 2;
+                          information.log_determinant() / 2;
   const Scalar of_before = m.dot(h) / 2 + w.array().log().sum() / 2;
   result.log_evidence = of_prior - of_before;
   const bool finite = is_finite(result.belief.mean) && is_finite(result.belief.covariance) &&
@@ -93,7 +93,7 @@ Revised<Gaussian<N, Scalar>, Scalar> revised(const Gaussian<N, Scalar>& prior,
   return result;
 }
 
-/// What a smoothed belief makes of the one that a filter predicted it from.
+/// The smoothed belief before a prediction, given the smoothed one after it.
 template <class Filter, auto Components, class... Known>
 Status smooth_pair(const Filter& filter, StateBelief<Components, typename Filter::Scalar>& belief,
                    const Gaussian<Filter::kStates, typename Filter::Scalar>& later,
@@ -106,8 +106,8 @@ Status smooth_pair(const Filter& filter, StateBelief<Components, typename Filter
   return status;
 }
 
-/// `own` as it is once `part` is what is believed of the components that both hold: the others
-/// follow them as `own` has it. Source: R. C. Jeffrey, The Logic of Decision (his rule).
+/// `own` conditioned on `part` for the components that both have; the other components follow by
+/// their correlation in `own`. Source: R. C. Jeffrey, The Logic of Decision (Jeffrey's rule).
 template <auto To, class Scalar, class Part>
 StateBelief<To, Scalar> carried_over(const StateBelief<To, Scalar>& own,
                                      const Part& part) noexcept {
@@ -143,7 +143,7 @@ StateBelief<To, Scalar> carried_over(const StateBelief<To, Scalar>& own,
   return result;
 }
 
-/// Of a belief over the same components, that.
+/// For a belief over the same components, that belief.
 template <auto Components, class Scalar>
 StateBelief<Components, Scalar> carried_over(const StateBelief<Components, Scalar>&,
                                              const BeliefView<Components, Scalar>& part) noexcept {
@@ -152,26 +152,26 @@ StateBelief<Components, Scalar> carried_over(const StateBelief<Components, Scala
   return result;
 }
 
-/// Smooths a recording that an Imm has gone through, from its end.
+/// Smooths a recording processed by an Imm, backwards.
 ///
-/// A mode i and the mode j after it are a way. Each way's prediction learns what later readings say
-/// of a vessel in mode j (`revised`), is carried back to its start by the filter's own smoother,
-/// and is as likely as it foretold them: what an Imm forgets by mixing, the turn that comes, tells
-/// which way it was. The ways from a mode are joined to its smoothed belief. What only one of two
-/// modes holds enters a way as it enters mixing, and goes back as `carried_over`. Costs K²
-/// predictions and smoothings a scan, and memory. Sources: R. E. Helmick, W. D. Blair, S. A.
-/// Hoffman, IEEE Trans. IT-41, 1995 (ways of two modes, weighed by both sides); N. Nadarajah, R.
-/// Tharmarasa, M. McDonald, T. Kirubarajan, IEEE Trans. AES-48, 2012 (by Rauch-Tung-Striebel
-/// smoothers).
+/// A mode i followed by a mode j is a transition. The prediction of each transition is revised by
+/// what later readings say of mode j (`revised`), carried back to its start by the filter's own
+/// smoother, and weighted by how well it predicted the later readings, which identifies the
+/// transition that an Imm loses in mixing. The transitions from a mode are merged into its smoothed
+/// belief. Components that only one of the two modes has enter a transition as in mixing, and are
+/// carried back by `carried_over`. K² predictions and smoothings per scan, and memory for the
+/// recording. Sources: R. E. Helmick, W. D. Blair, S. A. Hoffman, IEEE Trans. IT-41, 1995
+/// (transitions weighted from both sides); N. Nadarajah, R. Tharmarasa, M. McDonald, T.
+/// Kirubarajan, IEEE Trans. AES-48, 2012 (Rauch-Tung-Striebel smoothers).
 template <class BankType>
 class ImmSmoother {
  public:
   using Bank = BankType;
   using Scalar = typename Bank::Scalar;
 
-  /// Gives the filters of `scans[k].updated` their smoothed beliefs, and it the smoothed mode
-  /// probabilities, from which `estimate()` follows. `acceleration_mps2` is empty, or has one for
-  /// each scan. Returns the first failure, with that scan and everything before it left as it was.
+  /// Replaces the beliefs of the filters of `scans[k].updated` and its mode probabilities by
+  /// smoothed ones, which `estimate()` then uses. `acceleration_mps2` is empty or has one per scan.
+  /// Returns the first failure, with that scan and all before it unchanged.
   static Status smooth(std::span<ImmScan<Bank>> scans,
                        std::span<const Vec<Scalar, 2>> acceleration_mps2 = {}) {
     for (std::size_t k = scans.size(); k-- > 1;) {
@@ -187,15 +187,15 @@ class ImmSmoother {
   using Estimator = Imm<Bank>;
   using Matrix = ModeMatrix<Scalar, Bank::kModels>;
 
-  /// A mode whose filter is of a kind that is chosen at run time.
+  /// A mode with a filter whose kind is chosen at run time.
   template <class Filter>
   struct ModeOf {
     int k;
     operator int() const noexcept { return k; }
   };
 
-  /// Calls `f(k)` for each mode, where filters are of different kinds with a constant, or with a
-  /// `ModeOf` its kind.
+  /// Calls `f(k)` for each mode, with a constant where filters are of different kinds, or with a
+  /// `ModeOf` of its kind.
   template <class Function>
   static void for_each_mode(const Bank& bank, const Function& function) {
     if constexpr (requires { bank.filter(0).index(); })
@@ -221,7 +221,7 @@ class ImmSmoother {
     return std::get<Filter>(bank.filter(k));
   }
 
-  /// The belief of a filter, which knows its components.
+  /// The belief of a filter with its components.
   template <class Filter>
   static auto belief_of(const Filter& filter) {
     if constexpr (requires { Filter::kComponents; }) {
@@ -249,10 +249,10 @@ class ImmSmoother {
       for_each_mode(now.bank_, [&](auto to) {
         using std::log;
         const int i = from, j = to;
-        const Scalar foretold = next.predicted.probability_[j];
+        const Scalar predicted = next.predicted.probability_[j];
         const Scalar prior = now.probability_[i] * weight(i, j) * next.updated.probability_[j];
         weight(i, j) = log(Scalar(0));
-        if (!(prior > Scalar(0)) || !(foretold > Scalar(0))) return;
+        if (!(prior > Scalar(0)) || !(predicted > Scalar(0))) return;
         auto& filter = filter_of(ways[static_cast<std::size_t>(i)].bank_, to);
         const auto own = belief_of(filter);
         auto start = zero_like(own);
@@ -265,13 +265,13 @@ class ImmSmoother {
         if (done(later.status) &&
             done(smooth_pair(filter, start, later.belief, next.dt_s, acceleration_mps2...)) &&
             done(filter.assign(start)))
-          weight(i, j) = log(prior / foretold) + later.log_evidence;
+          weight(i, j) = log(prior / predicted) + later.log_evidence;
       });
     });
     return join(now, ways, weight) ? Status::kOk : first_failure(hindered, Status::kNotFinite);
   }
 
-  /// Gives each mode the ways from it, weighed by the logarithms of their weights. False where
+  /// Merges the transitions from each mode, given the logarithms of their weights. False where
   /// there is none.
   static bool join(Estimator& now, const std::vector<Estimator>& ways, Matrix& weight) {
     using std::exp;

@@ -21,8 +21,8 @@ void for_each_bit(unsigned bits, const Function& function) noexcept {
   for (; bits != 0; bits &= bits - 1) function(std::countr_zero(bits));
 }
 
-/// Writes the places of what has a weight in some rows, the weightiest first, and returns how many
-/// there are. `weights[r - begin]` are those of row r.
+/// Writes the places of the entries with a positive weight, largest first, and returns their
+/// number. `weights[r - begin]` are those of row r.
 template <class Lanes>
 int weightiest_first(std::span<const Lanes> weights, int begin, std::span<int> places) noexcept {
   constexpr int kLanes = kLanesOf<Lanes>;
@@ -41,10 +41,9 @@ int weightiest_first(std::span<const Lanes> weights, int begin, std::span<int> p
   return count;
 }
 
-/// The likeliest of many items that have a probability, as many as there is room for, without a
-/// list of them all: they come twice. First each is counted by the size of its probability; then,
-/// after `cut`, those that may be among the likeliest are added, of which only those of the last
-/// size need an order. Of equal ones the first is kept.
+/// Selects the most probable of many items, up to a capacity, without storing them all. Items are
+/// presented twice: first to be counted by the size of their probability, then, after `cut`, to be
+/// added; only those of the last size class are sorted. Ties keep the first.
 template <class Item>
 class Likeliest {
  public:
@@ -63,7 +62,7 @@ class Likeliest {
     count_ = larger_;
   }
 
-  /// What is less likely need not be added.
+  /// Less probable items need not be added.
   [[nodiscard]] Scalar least() const noexcept { return least_; }
 
   void add(const Item& item) noexcept {
@@ -78,8 +77,8 @@ class Likeliest {
  private:
   using Bits = std::conditional_t<sizeof(Scalar) == 8, std::uint64_t, std::uint32_t>;
   static_assert(sizeof(Bits) == sizeof(Scalar));
-  // Sizes go from 1 down by an eighth of a power of two: the exponent and three bits. All that is
-  // smaller has the last one.
+  // Size classes from 1 down in eighths of a power of two: the exponent and three bits. The last
+  // class has all smaller ones.
   static constexpr int kDropped = std::numeric_limits<Scalar>::digits - 1 - 3;
   static constexpr Bits kOne = std::bit_cast<Bits>(Scalar(1)) >> kDropped;
   static constexpr std::size_t kSizes = 256;
@@ -91,7 +90,7 @@ class Likeliest {
     return std::bit_cast<Scalar>((kOne - static_cast<Bits>(size)) << kDropped);
   }
 
-  /// Those of the last size, the likeliest first.
+  /// Adds to the last class, most probable first.
   void add_to_last(const Item& item) noexcept {
     const std::span<Item> last = items().subspan(larger_);
     const auto likelier = [](const Item& a, const Item& b) {
@@ -109,9 +108,9 @@ class Likeliest {
   std::span<Item> room_;
   std::array<int, kSizes> of_size_{};
   Scalar least_ = Scalar(0);
-  Scalar sure_ = Scalar(0);     ///< likely enough to be kept
-  std::size_t larger_ = 0;      ///< items of larger sizes than the last
-  std::size_t sure_count_ = 0;  ///< of which so many have been added
+  Scalar sure_ = Scalar(0);     ///< items at least this probable are certain to be kept
+  std::size_t larger_ = 0;      ///< number of items in classes above the last
+  std::size_t sure_count_ = 0;  ///< number of these added so far
   std::size_t count_ = 0;
 };
 

@@ -17,8 +17,8 @@
 
 namespace wakeline {
 
-/// Which models of a `LikelyModelSetImm` are active. Source: the model-set rules of X. R. Li, Y.
-/// Zhang, "Multiple-model estimation with variable structure, part V", IEEE Trans. AES-36, 2000.
+/// The active models of a `LikelyModelSetImm`. Source: the model-set rules of X. R. Li, Y. Zhang,
+/// "Multiple-model estimation with variable structure, part V", IEEE Trans. AES-36, 2000.
 struct LikelyModelSet {
   TurnRateGrid grid_rad_s = TurnRateGrid::evenly(deg(4.0), 2);
   double unlikely_threshold = 0.03;
@@ -38,8 +38,8 @@ struct LikelyModelSet {
     };
   }
 
-  /// The rates of the models to be active, NaN for those at rest, from the rates and mode
-  /// probabilities of the last update. The most probable model always has its neighbours with it.
+  /// The turn rates of the models to be active, NaN for inactive ones, from the rates and mode
+  /// probabilities of the last update. The neighbours of the most probable model are always active.
   template <class Rates, class Probability>
   [[nodiscard]] Rates chosen(const Rates& rates, const Probability& mu) const noexcept {
     using Number = std::decay_t<decltype(rates[0])>;
@@ -69,7 +69,7 @@ struct LikelyModelSet {
     return next;
   }
 
-  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   void validate() const {
     validate_fields(*this);
     require(unlikely_threshold <= likely_threshold, "unlikely_threshold",
@@ -77,18 +77,18 @@ struct LikelyModelSet {
   }
 };
 
-/// Turn models that join and leave by their probability: an Imm over the part of a grid of turn
-/// rates that is likely. All are active at a start. A model that joins begins with what the chain
-/// brings it from the others; the chain leaves a model as often as with all of them, but to the
-/// active ones only. Has the face of `Imm`; a model at rest has probability 0, and its filter keeps
-/// the belief that it went to rest with.
+/// Turn models activated and deactivated by their probability: an Imm over the likely part of a
+/// grid of turn rates. All are active at a start. A model is activated with the belief mixed by the
+/// chain from the others; a model is left as often as in the full chain, but for active models
+/// only. Has the interface of `Imm`; an inactive model has probability 0 and keeps its last belief.
 template <class BankType>
 class LikelyModelSetImm : public TurnGridImm<BankType> {
   using Base = TurnGridImm<BankType>;
   static_assert(
       requires(BankType & bank) { bank.set_active(0, true); },
-      "wakeline: the models of a LikelyModelSetImm come and go, so that its bank must be one whose "
-      "filters may rest, such as a UniformBank of a number of filters that is told at run time");
+      "wakeline: a LikelyModelSetImm activates and deactivates its models and needs a bank for "
+      "that, "
+      "such as a UniformBank with a number of filters given at run time");
 
  public:
   using typename Base::Bank;
@@ -97,8 +97,8 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
   using typename Base::Scalar;
   static constexpr int kModels = BankType::kModels;
 
-  /// Throws `std::invalid_argument` when a parameter makes no sense or there is not one filter for
-  /// each turn rate.
+  /// Throws `std::invalid_argument` when a parameter is invalid or the numbers of filters and turn
+  /// rates differ.
   LikelyModelSetImm(const LikelyModelSet& set, const ModeChain<BankType::kModels>& chain,
                     const BankType& bank)
       : Base(chain, bank, validated(set).grid_rad_s.rates_rad_s()), set_(set) {
@@ -109,13 +109,13 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
     this->set_initial_mode_probability(initial);
   }
 
-  /// Over filters like `prototype`, whose turn rate does not matter.
+  /// With copies of `prototype`, whose turn rate is replaced.
   template <class Filter>
   LikelyModelSetImm(const LikelyModelSet& set, const ModeChain<kRuntimeModes>& chain,
                     const Filter& prototype) requires(BeliefFilter<Filter>)
       : LikelyModelSetImm(set, chain, Bank(prototype, set.grid_rad_s.size())) {}
 
-  /// Chooses the models, mixes and predicts.
+  /// Selects the models, mixes and predicts.
   StatusOf<Scalar> predict(Scalar dt_s) noexcept { return step(dt_s); }
   /// The same under a known acceleration, [north, east]; see `Control`.
   StatusOf<Scalar> predict(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
@@ -124,8 +124,8 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
 
   [[nodiscard]] const LikelyModelSet& grid() const noexcept { return set_; }
 
-  /// Saves or restores beliefs, those of models at rest too, mode probabilities and which models
-  /// are active; those of another set fail.
+  /// Saves or restores beliefs, including those of inactive models, mode probabilities and the
+  /// active set; fails with different parameters.
   void archive(Archive& fields) {
     fields.rules(set_.grid_rad_s.size(), set_.grid_rad_s.rates_rad_s(), set_.unlikely_threshold,
                  set_.likely_threshold);
@@ -146,7 +146,7 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
  private:
   using BeliefType = std::decay_t<decltype(std::declval<const BankType&>().empty_estimate())>;
 
-  /// What the models were before some of them joined, and what these went to rest with.
+  /// The models before some were activated, and the last beliefs of these.
   struct Before {
     Rates rates;
     InPlaceArray<BeliefType, static_cast<std::size_t>(kModeCapacity<kModels>)> rested;
@@ -186,7 +186,7 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
       mu[k] = select(left > Scalar(0), select(isnan(now[k]), Scalar(0), mu[k] / total), mu[k]);
   }
 
-  /// Calls `f(k, filter, joined)` for each model that was at rest before and is no more, in the
+  /// Calls `f(k, filter, joined)` for each model that was inactive before and is active now, in the
   /// lanes `joined`.
   template <class Function>
   void for_each_joined(const Rates& before, const Function& function) noexcept {

@@ -17,10 +17,10 @@
 
 namespace wakeline {
 
-/// The least-squares line through the last plots of a target, as it stands at present.
+/// The least-squares line through the last plots of a target, extrapolated to the present.
 ///
-/// Its errors are linear in those of the plots and in the acceleration that a line leaves out, so
-/// that both are known beforehand: per unit variance of the plots, per axis, and per m/s².
+/// Its errors are linear in those of the plots and in the acceleration that a line ignores, so both
+/// are known in advance: per unit variance of the plots, per axis, and per m/s².
 template <class Scalar = double>
 struct Line {
   int plots = 0;
@@ -30,22 +30,23 @@ struct Line {
   Scalar position_factor = Scalar(0);  ///< variance of the position over that of a plot
   Scalar cross_factor = Scalar(0);     ///< covariance of position and velocity over it, 1/s
   Scalar velocity_factor = Scalar(0);  ///< variance of the velocity over it, 1/s²
-  Mat<Scalar, 2, 2> plot_covariance_m2 = Mat<Scalar, 2, 2>::Zero();  ///< mean of the plots'
+  Mat<Scalar, 2, 2> plot_covariance_m2 =
+      Mat<Scalar, 2, 2>::Zero();  ///< mean of the plot covariances
 
-  /// Position (s²) and velocity (s) of the line minus those of a target under 1 m/s² that lasts
-  /// since the oldest plot or longer.
+  /// Position (s²) and velocity (s) of the line minus those of a target with 1 m/s² since the
+  /// oldest plot or longer.
   Vec<Scalar, 2> steady_lag = Vec<Scalar, 2>::Zero();
-  /// The same under 1 m/s² that began at the last plot but one: what no earlier plot can tell.
+  /// The same with 1 m/s² since the last plot but one, which no earlier plot can show.
   Vec<Scalar, 2> onset_lag = Vec<Scalar, 2>::Zero();
 
-  /// Of the parabola through the same plots, three or more: its acceleration, m/s², and the
-  /// variance of that over a plot's, 1/s⁴.
+  /// For the parabola through the same plots, three or more: its acceleration, m/s², and the
+  /// variance of that relative to a plot's, 1/s⁴.
   Vec<Scalar, 2> acceleration_mps2 = Vec<Scalar, 2>::Zero();
   Scalar acceleration_factor = Scalar(0);
-  Scalar onset_acceleration = Scalar(0);  ///< that it sees of the onset's 1 m/s²
+  Scalar onset_acceleration = Scalar(0);  ///< its response to an onset of 1 m/s²
 
-  /// The parabola through the same plots, as it stands at present, in place of the line: the line
-  /// less what it lags behind, which is independent of it.
+  /// The parabola through the same plots, as a line at present: the line minus its lag, which is
+  /// independent of it.
   [[nodiscard]] Line parabola() const noexcept {
     Line curved = *this;
     curved.position_m -= steady_lag[0] * acceleration_mps2;
@@ -59,7 +60,7 @@ struct Line {
   }
 
   /// The line as a belief over `[x, vx, y, vy]`: the noise of its plots, and an acceleration of
-  /// this standard deviation per axis that began at the last plot but one.
+  /// this standard deviation per axis since the last plot but one.
   [[nodiscard]] Gaussian<4, Scalar> belief(Scalar acceleration_std_mps2) const noexcept {
     Gaussian<4, Scalar> belief;
     belief.mean = mean();
@@ -89,7 +90,7 @@ struct Line {
     });
   }
 
-  /// Takes another line through as many plots where the condition holds, lane by lane.
+  /// Assigns another line through the same number of plots where the condition holds.
   friend void assign_where(const MaskOf<Scalar>& condition, Line& target,
                            const Line& value) noexcept {
     const auto take = [&](auto Line::*member) {
@@ -113,18 +114,17 @@ struct Line {
   }
 };
 
-/// Memory of the last plots of a target, and the least-squares line through the last n of them for
-/// every n, all in one pass.
+/// Stores the last plots of a target and computes the least-squares lines through the last n of
+/// them for every n in one pass.
 ///
 /// The pass goes from the newest plot to the oldest with running means, so that every line costs
-/// the same few operations. Plots count with the times they have: steps may be irregular, and a
-/// missed scan is a gap. One that comes within a sixteenth of the step that led to the newest, as
-/// of two radars that are not in step, or within a millisecond, joins it: both become their mean,
-/// at the mean of their times, for the line through two such plots says next to nothing of a
-/// velocity and yet may be kilometres off at the next one. With a regular period T, before the next
-/// plot is taken, the position factor is 2(2n+1)/(n(n-1)) and the steady lag of the position
-/// -T²(n+1)(n+2)/12. Storage is in place, no heap. Each lane of a pack has plots of its own, at
-/// times of its own, and as many as it has taken.
+/// the same few operations. Plots have their own times: steps may be irregular, and a missed scan
+/// is a gap. A plot within a sixteenth of the last step after the newest (two unsynchronised
+/// radars), or within a millisecond, is merged with it: both are replaced by their mean at the mean
+/// of their times, because the line through two such plots has practically no information on the
+/// velocity and may predict kilometres off. With a regular period T, before the next plot is added,
+/// the position factor is 2(2n+1)/(n(n-1)) and the steady lag of the position -T²(n+1)(n+2)/12.
+/// Storage is in place, no heap. Each lane of a pack has its own plots, times and number of plots.
 template <int Capacity = 16, class ScalarType = double>
 class LineBank {
  public:
@@ -132,11 +132,12 @@ class LineBank {
   using Scalar = ScalarType;
   using Mask = MaskOf<Scalar>;
   static constexpr int kCapacity = Capacity;
-  static constexpr double kSameTime_s = 1e-3;    ///< sooner than any radar looks again
-  static constexpr double kSameStep = 1.0 / 16;  ///< part of a step; more than missed scans make
+  static constexpr double kSameTime_s = 1e-3;  ///< shorter than any radar's revisit time
+  static constexpr double kSameStep =
+      1.0 / 16;  ///< part of a step; larger than missed scans produce
   using Lines = std::array<Line<Scalar>, static_cast<std::size_t>(Capacity - 1)>;
 
-  /// A plot that is remembered.
+  /// A stored plot.
   struct Plot {
     Vec<Scalar, 2> position_m = Vec<Scalar, 2>::Zero();
     Mat<Scalar, 2, 2> covariance_m2 = Mat<Scalar, 2, 2>::Zero();
@@ -149,29 +150,28 @@ class LineBank {
     }
   };
 
-  /// What `advance`, but under an acceleration, and `add` change.
+  /// The state changed by `add` and by `advance` without an acceleration.
   struct Latest {
     Plot newest;
     Scalar size;
     Scalar elapsed_s;
-    Mask entered = false;  ///< what `add` has returned
+    Mask entered = false;  ///< return value of `add`
   };
 
-  /// Remembers at most `max_plots`. Throws `std::invalid_argument` unless that is 2 to `Capacity`.
+  /// Stores at most `max_plots`. Throws `std::invalid_argument` unless that is 2 to `Capacity`.
   explicit LineBank(int max_plots = Capacity) : max_plots_(max_plots) {
     require(max_plots >= 2 && max_plots <= Capacity, "max_plots",
             ("2 to " + std::to_string(Capacity)).c_str(), max_plots);
   }
 
-  /// Forgets all plots.
+  /// Removes all plots.
   void clear() noexcept { size_ = elapsed_s_ = Scalar(0); }
 
-  /// Lets time pass.
+  /// Advances the time.
   void advance(Scalar dt_s) noexcept { elapsed_s_ += dt_s; }
 
-  /// The same under a known acceleration, [north, east], constant during the step. The plots move
-  /// to where they would lie had the target always had the velocity that it has now, so that the
-  /// line is exact again.
+  /// The same under a known acceleration, [north, east], constant during the step. The plots are
+  /// moved as if the target always had its present velocity, so that the line is exact again.
   void advance(Scalar dt_s, const Vec<Scalar, 2>& acceleration_mps2) noexcept {
     advance(dt_s);
     Scalar age = elapsed_s_;
@@ -181,8 +181,8 @@ class LineBank {
     }
   }
 
-  /// Remembers a plot of the present time, in the lanes told; true where it is no part of the
-  /// newest.
+  /// Adds a plot of the present time in the given lanes; false where it was merged with the newest
+  /// one.
   Mask add(const Gaussian<2, Scalar>& plot, const Mask& lanes = true) noexcept {
     const Mask joining = lanes && joins();
     if (any(joining)) join(plot, joining);
@@ -191,11 +191,11 @@ class LineBank {
     return enters;
   }
 
-  /// What is needed to take back the next `add` or `advance`.
+  /// The state needed to undo the next `add` or `advance`.
   [[nodiscard]] Latest before_change() const noexcept { return {plots_[0], size_, elapsed_s_}; }
   [[nodiscard]] LineBank before_change(const Vec<Scalar, 2>&) const noexcept { return *this; }
 
-  /// Goes back by that, in the lanes told.
+  /// Undoes it in the given lanes.
   void take_back(const Mask& lanes, const Latest& before) noexcept {
     for (std::size_t k = 1; k < plots_.size(); ++k)
       assign_where(lanes && before.entered, plots_[k - 1], plots_[k]);
@@ -210,31 +210,31 @@ class LineBank {
     elapsed_s_ = select(lanes, before.elapsed_s_, elapsed_s_);
   }
 
-  /// Most plots that are remembered in any lane.
+  /// Largest number of stored plots in any lane.
   [[nodiscard]] int size() const noexcept {
     return static_cast<int>(double(greatest_of_lanes(size_)));
   }
-  /// Whether so many plots are remembered, or more.
+  /// True when at least this many plots are stored.
   [[nodiscard]] Mask holds(int plots) const noexcept { return size_ >= Scalar(plots); }
-  /// Whether a plot of the present time is of that of the newest, too, and joins it.
+  /// True when a plot of the present time would be merged with the newest one.
   [[nodiscard]] Mask joins() const noexcept {
     const Scalar apart_s = at_least(Scalar(kSameStep) * plots_[0].gap_s, Scalar(kSameTime_s));
     return holds(1) && elapsed_s_ < apart_s;
   }
   [[nodiscard]] int max_plots() const noexcept { return max_plots_; }
-  /// Lines that there are: through the last 2, 3, ..., `size()` plots.
+  /// Number of lines: through the last 2, 3, ..., `size()` plots.
   [[nodiscard]] int lines() const noexcept { return std::max(size() - 1, 0); }
-  /// Lines that there are in each lane.
+  /// Number of lines in each lane.
   [[nodiscard]] Scalar lines_of_lanes() const noexcept {
     return at_least(size_ - Scalar(1), Scalar(0));
   }
   /// Time since the newest plot.
   [[nodiscard]] Scalar elapsed_s() const noexcept { return elapsed_s_; }
 
-  /// Fills `lines[0 .. lines() - 1]` with the lines through the last 2, 3, ... plots at present.
-  /// Where a lane lacks the plots, its line is zero.
+  /// Computes the lines through the last 2, 3, ... plots at present into `lines[0 .. lines() - 1]`.
+  /// In a lane without enough plots the line is zero.
   void fit(Lines& lines) const noexcept {
-    const Vec<Scalar, 2> origin = plots_[0].position_m;  // small numbers: nothing cancels
+    const Vec<Scalar, 2> origin = plots_[0].position_m;  // small numbers avoid cancellation
     Sums sums;
     Scalar age = Scalar(0);
     for (const Plot& plot : remembered()) {
@@ -250,7 +250,7 @@ class LineBank {
     }
   }
 
-  /// Saves or restores the plots; a memory of another length, or of times that cannot be, fails.
+  /// Saves or restores the plots; fails for a different length or invalid times.
   void archive(Archive& fields) {
     LineBank bank = *this;
     int size = bank.size();
@@ -271,14 +271,14 @@ class LineBank {
   }
 
  private:
-  /// Means and centred sums over plots of ages a (s before the newest) at places p: what a line
-  /// needs, whatever the time since then.
+  /// Means and centred sums over plots of ages a (s before the newest) at positions p: what a line
+  /// needs, independent of the time since then.
   struct Sums {
     int plots = 0;
     Scalar age = Scalar(0);
     Vec<Scalar, 2> place = Vec<Scalar, 2>::Zero();
     Mat<Scalar, 2, 2> covariance = Mat<Scalar, 2, 2>::Zero();
-    Scalar bow = Scalar(0);  ///< mean of a²/2: the track of 1 m/s²
+    Scalar bow = Scalar(0);  ///< mean of a²/2: the path under 1 m/s²
     Scalar age_age = Scalar(0);
     Vec<Scalar, 2> age_place = Vec<Scalar, 2>::Zero();
     Scalar age_bow = Scalar(0);
@@ -293,7 +293,7 @@ class LineBank {
       const Scalar b = a * a / Scalar(2);
       const Scalar weight = one_over(++plots);
       const Scalar away = a - age;
-      const Scalar older = away - weight * away;  // away from the new mean
+      const Scalar older = away - weight * away;  // relative to the new mean
       age += weight * away;
       age_age += older * away;
       age_place += older * (p - place);
@@ -321,9 +321,9 @@ class LineBank {
       const Scalar slope = -inverse * age_bow;
       const Scalar bend = bow + age * slope;  // of the line at the newest plot
       line.steady_lag = {bend + elapsed * (slope - elapsed / Scalar(2)), slope - elapsed};
-      // Of an acceleration since the second plot, the newest one alone has felt anything.
+      // With an acceleration since the second plot, only the newest one is affected.
       const Scalar second = elapsed + gap;
-      const Scalar pull = age * inverse;  // of the newest plot on the slope
+      const Scalar pull = age * inverse;  // influence of the newest plot on the slope
       const Scalar felt = gap * gap / Scalar(2);
       line.onset_lag = {(share + mean_age * pull) * felt - second * second / Scalar(2),
                         pull * felt - second};
@@ -331,7 +331,7 @@ class LineBank {
         line.acceleration_mps2.setZero();
         line.acceleration_factor = line.onset_acceleration = Scalar(0);
       } else {
-        // Beside a very long gap the bow of the other plots is lost in rounding.
+        // With a very long gap the curvature of the other plots is lost in rounding.
         const Scalar lost = 16 * std::numeric_limits<RealOf<Scalar>>::epsilon() * bow_bow;
         line.acceleration_factor = reciprocal(at_least(bow_bow + slope * age_bow, lost));
         line.acceleration_mps2 = line.acceleration_factor * (bow_place + slope * age_place);
@@ -340,7 +340,7 @@ class LineBank {
     }
   };
 
-  /// The newest plot and the other one become their mean.
+  /// Merges a plot with the newest one.
   void join(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
     Plot& newest = plots_[0];
     const Scalar later_s = elapsed_s_ / Scalar(2);
@@ -350,8 +350,7 @@ class LineBank {
     elapsed_s_ = select(lanes, later_s, elapsed_s_);
   }
 
-  /// All plots become older by one. That for which there is no room stays behind the others, to be
-  /// taken back.
+  /// Shifts the plots by one. The one without room is kept behind the others, for an undo.
   void enter(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
     for (int k = size(); k > 0; --k)
       assign_where(lanes, plots_[static_cast<std::size_t>(k)],
@@ -361,7 +360,7 @@ class LineBank {
     elapsed_s_ = select(lanes, Scalar(0), elapsed_s_);
   }
 
-  /// As many as the fullest lane has.
+  /// The plots of the fullest lane.
   [[nodiscard]] std::span<const Plot> remembered() const noexcept {
     return {plots_.data(), static_cast<std::size_t>(size())};
   }
@@ -369,9 +368,9 @@ class LineBank {
     return {plots_.data(), static_cast<std::size_t>(size())};
   }
 
-  std::array<Plot, static_cast<std::size_t>(Capacity + 1)> plots_{};  ///< the newest first
+  std::array<Plot, static_cast<std::size_t>(Capacity + 1)> plots_{};  ///< newest first
   int max_plots_;
-  Scalar size_ = Scalar(0);       ///< plots that each lane remembers
+  Scalar size_ = Scalar(0);       ///< number of plots stored in each lane
   Scalar elapsed_s_ = Scalar(0);  ///< since the newest plot
 };
 

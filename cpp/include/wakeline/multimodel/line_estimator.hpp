@@ -18,17 +18,16 @@
 
 namespace wakeline {
 
-/// What estimators that track with lines through the last plots share: a start, the plots and their
-/// lines, the face of `Imm`.
+/// Common part of the estimators that track with lines through the last plots: a start, the plots
+/// and their lines, the interface of `Imm`.
 ///
-/// Until there are as many plots as the shortest line needs, the belief that it was started with is
-/// the estimate, as a Kalman filter keeps it: a start needs no plots, and from then on the plots
-/// alone count. Takes the position out of any sensor that fixes one, and measures innovations in
-/// north and east. Steps may be irregular. No heap.
+/// Until there are enough plots for the shortest line, the estimate is the initial belief updated
+/// by a Kalman filter; from then on only the plots count. Uses the position of any
+/// `PositionSensor`; innovations are in north and east. Steps may be irregular. No heap.
 ///
-/// `Derived` has `begin()` for a start, `pass(dt_s)` for the time that passes, `judge(plot, lanes)`
-/// for a plot that the lines have foretold, before it is remembered, `settle()`, which makes of the
-/// lines the belief, and `judgement()`, what it remembers beside the plots.
+/// `Derived` has `begin()` for a start, `pass(dt_s)` for a time step, `evaluate(plot, lanes)` for a
+/// plot that the lines have predicted, before it is stored, `update_belief()`, which computes the
+/// belief from the lines, and `evaluation()`, its state beside the plots.
 template <class Derived, int Capacity, class ScalarType>
 class LineEstimator {
  public:
@@ -40,7 +39,7 @@ class LineEstimator {
   using BeliefType = StateBelief<kComponents, Scalar>;
   using Bank = LineBank<Capacity, Scalar>;
 
-  /// Begins with a belief over `[x, vx, y, vy]`. Where it is none nothing changes.
+  /// Starts with a belief over `[x, vx, y, vy]`. An invalid one changes nothing.
   StatusOf<Scalar> start(const Gaussian<4, Scalar>& belief) noexcept {
     const auto before = memory(bank_);
     const StatusOf<Scalar> status = first_.start(belief);
@@ -52,7 +51,7 @@ class LineEstimator {
     return status;
   }
 
-  /// Moves on along the lines.
+  /// Extrapolates the lines.
   StatusOf<Scalar> predict(Scalar dt_s) noexcept { return move(dt_s); }
 
   /// The same under a known acceleration, [north, east]; see `Control`.
@@ -60,7 +59,7 @@ class LineEstimator {
     return move(dt_s, acceleration_mps2);
   }
 
-  /// Judges the lines by a plot and remembers it.
+  /// Evaluates the lines with a plot and stores it.
   template <class Sensor>
   Step<2, Scalar> update(const Sensor& sensor,
                          const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
@@ -70,14 +69,14 @@ class LineEstimator {
     return any(lost) ? failed_where<2, Scalar>(lost, Status::kNotFinite, step) : step;
   }
 
-  /// The innovation of a plot, north and east, and its likelihood, without taking it.
+  /// The innovation [north, east] of a plot and its likelihood, without an update.
   template <class Sensor>
   Step<2, Scalar> innovation(const Sensor& sensor,
                              const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
     return compare(sensor, z).scored();
   }
 
-  /// The same with its likelihood in two parts.
+  /// The same with the likelihood in two factors.
   template <class Sensor>
   Correction<2, Scalar> compare(const Sensor& sensor,
                                 const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
@@ -96,7 +95,7 @@ class LineEstimator {
     return correction;
   }
 
-  /// What the estimate thinks of a reading, without taking it.
+  /// The likelihood of a reading, without an update.
   template <class Sensor>
   [[nodiscard]] Evidence<Scalar> evidence(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
@@ -105,10 +104,10 @@ class LineEstimator {
     return evidence;
   }
 
-  /// Probabilistic data association, as of `Imm`. The plot that is remembered has the mean and the
-  /// covariance of where the target is by all hypotheses: at one of the readings, or where it was
-  /// predicted. Where it is rather none of the readings, the scan counts as missed, so that no
-  /// line is drawn through predictions.
+  /// Probabilistic data association, as in `Imm`. The stored plot has the mean and covariance of
+  /// the target's position over all hypotheses: at one of the readings, or where it was predicted.
+  /// When the hypothesis of no reading is the most probable one, the scan counts as missed, so that
+  /// no line is fitted to predictions.
   template <class Sensor>
   Scalar update(std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
                 std::span<Scalar> share) noexcept requires(kLanesOf<Scalar> == 1) {
@@ -131,7 +130,7 @@ class LineEstimator {
 
   [[nodiscard]] const BeliefType& estimate() const noexcept { return belief_; }
   [[nodiscard]] bool started() const noexcept { return first_.started(); }
-  /// True once there are the plots that it tracks with.
+  /// True once there are enough plots for a line.
   [[nodiscard]] Mask ready() const noexcept { return bank_.holds(least_plots_); }
   /// The lines through the last 2, 3, ... plots, at present.
   [[nodiscard]] std::span<const Line<Scalar>> lines() const noexcept {
@@ -139,24 +138,24 @@ class LineEstimator {
   }
 
  protected:
-  /// The start, which reckons with `acceleration_std_mps2` per axis, counts until there are
+  /// The initial belief, with `acceleration_std_mps2` per axis, is used until there are
   /// `least_plots`.
   LineEstimator(int max_plots, int least_plots, double acceleration_std_mps2)
       : first_(ConstantVelocity{PiecewiseAcceleration{acceleration_std_mps2}}),
         bank_(max_plots),
         least_plots_(least_plots) {}
 
-  /// Saves or restores start and plots; to be followed by `refresh`.
+  /// Saves or restores the start and the plots; `refresh` must follow.
   void archive_plots(Archive& fields) {
     first_.archive(fields);
     bank_.archive(fields);
   }
 
-  /// The lines, and the belief that follows from them, at present.
+  /// Recomputes the lines and the belief at present.
   void refresh() noexcept {
     bank_.fit(lines_);
     const Mask tracks = ready();
-    if (any(tracks)) derived().settle();
+    if (any(tracks)) derived().update_belief();
     if (!all(tracks)) assign_where<Mask, 4, Scalar>(!tracks, belief_, first_.estimate());
   }
 
@@ -170,25 +169,25 @@ class LineEstimator {
 
   Derived& derived() noexcept { return static_cast<Derived&>(*this); }
 
-  /// What the belief follows from, of the plots those that a step changes.
+  /// The state changed by a step; of the plots only those that a step changes.
   template <class Plots>
   struct Memory {
     Gaussian<4, Scalar> first;
     Plots plots;
-    std::remove_cvref_t<decltype(std::declval<const Derived&>().judgement())> judgement;
+    std::remove_cvref_t<decltype(std::declval<const Derived&>().evaluation())> evaluation;
   };
 
   template <class Plots>
   [[nodiscard]] Memory<Plots> memory(const Plots& plots) const noexcept {
-    return {first_.estimate(), plots, static_cast<const Derived&>(*this).judgement()};
+    return {first_.estimate(), plots, static_cast<const Derived&>(*this).evaluation()};
   }
 
-  /// Goes back to what was remembered, in the lanes told.
+  /// Restores the previous state in the given lanes.
   template <class Plots>
   void take_back(const Mask& lanes, const Memory<Plots>& before) noexcept {
     first_.assign_in(lanes, before.first);
     bank_.take_back(lanes, before.plots);
-    derived().set_judgement(lanes, before.judgement);
+    derived().set_evaluation(lanes, before.evaluation);
     refresh();
   }
 
@@ -210,12 +209,12 @@ class LineEstimator {
     return status;
   }
 
-  /// Judges and remembers a plot, in the lanes told. False, and nothing is changed, where the
-  /// belief would not be finite.
+  /// Evaluates and stores a plot in the given lanes. False, and nothing changed, where the belief
+  /// would not be finite.
   Mask take(const Gaussian<2, Scalar>& plot, const Mask& lanes) noexcept {
     auto before = memory(bank_.before_change());
     const Mask tracks = ready();
-    if (any(lanes && tracks)) derived().judge(plot, lanes && tracks);
+    if (any(lanes && tracks)) derived().evaluate(plot, lanes && tracks);
     if (any(lanes && !tracks)) {
       Gaussian<2, Scalar> reading = plot;
       constexpr auto kNone = std::numeric_limits<RealOf<Scalar>>::quiet_NaN();
@@ -243,7 +242,7 @@ class LineEstimator {
     return position;
   }
 
-  /// The readings and, with probability `none`, the prediction as one plot.
+  /// The readings and, with probability `none`, the prediction, combined into one plot.
   template <class Sensor>
   [[nodiscard]] Gaussian<2, Scalar> joined(std::span<const Alternative<Sensor, Scalar>> readings,
                                            Scalar none,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// What estimators that hold a mixture of Gaussian beliefs share.
+// Common parts of the estimators that hold a mixture of Gaussian beliefs.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace wakeline {
 
-/// One of several readings that may be a target's own, and its weight before its likelihood.
+/// One of several readings that may be the target's, and its weight before its likelihood.
 template <class Sensor, class Scalar = double>
 struct Alternative {
   Sensor sensor;
@@ -27,13 +27,13 @@ struct Alternative {
   Scalar weight;
 };
 
-/// How likely a reading is under all modes, and how near it is to the mode that is nearest.
+/// The likelihood of a reading under all modes, and its smallest NIS.
 template <class Scalar = double>
 struct Evidence {
   Scalar likelihood = Scalar(0);
   Scalar least_nis = std::numeric_limits<RealOf<Scalar>>::infinity();
 
-  /// Adds a part of the mixture, by its innovation.
+  /// Adds a component of the mixture by its innovation.
   template <int M>
   void add(Scalar weight, const Correction<M, Scalar>& correction) noexcept {
     const Likelihood<Scalar> of_part = correction.likelihood();
@@ -42,7 +42,7 @@ struct Evidence {
   }
 };
 
-/// Most readings that one update takes in; more are left out.
+/// Largest number of readings in one update; further ones are ignored.
 inline constexpr std::size_t kMaxAlternatives = 16;
 
 /// The logarithm of zero.
@@ -65,8 +65,8 @@ void require_distribution(const char* name, const Probability& probability, Eige
   }
 }
 
-/// Probabilities that sum to 1 but for the digits they were written with, in each lane, such that
-/// they do: a mean by them of places thousands of kilometres off would be metres off.
+/// Probabilities normalised exactly, in each lane, when their sum differs from 1 by more than
+/// rounding: otherwise a mean of positions thousands of kilometres away would be metres off.
 template <class Probability>
 Probability made_distribution(Probability probability) noexcept {
   using std::abs;
@@ -80,12 +80,12 @@ Probability made_distribution(Probability probability) noexcept {
   return probability;
 }
 
-/// Weights and probabilities below this count as zero: what is divided by them is beyond numbers.
+/// Smaller weights and probabilities count as zero, because a division by them could overflow.
 template <class Scalar>
 inline constexpr RealOf<Scalar> kLeastWeight =
     std::numeric_limits<RealOf<Scalar>>::min() / std::numeric_limits<RealOf<Scalar>>::epsilon();
 
-/// Its part of a total, times 1 / total; what is all of it is 1 to the last bit.
+/// part / total, given scale = 1 / total; exactly 1 for the whole.
 template <class Scalar>
 Scalar part_of(Scalar part, Scalar total, Scalar scale) noexcept {
   return select(part == total, Scalar(1), part * scale);
@@ -99,10 +99,10 @@ template <int M, class Scalar>
   for (int i = 0; i < M; ++i) reading[i] = select(in_range(reading[i]), reading[i], Scalar(kNan));
 }
 
-/// Bayes' rule for the parts of a mixture: weights become weight times likelihood over their sum.
-/// Returns the logarithm of that sum; `kImpossible`, and nothing changed, where no part is
-/// possible. `likelihood_of(k)` gives that of a part, of which there are at most `Capacity`. Where
-/// the parts are packs and `Scalar` is one number, so are all lanes of all parts.
+/// Bayes' rule for the components of a mixture: weights become weight times likelihood over their
+/// sum. Returns the logarithm of that sum; `kImpossible`, and nothing changed, where no component
+/// is possible. `likelihood_of(k)` is the likelihood of a component, of at most `Capacity`. When
+/// the components are packs and `Scalar` is a number, all lanes of all components form one mixture.
 template <std::size_t Capacity, class Scalar, class Part = Scalar, class LikelihoodOf>
 Scalar reweigh(std::span<Part> weights, const LikelihoodOf& likelihood_of) noexcept {
   using std::exp, std::log;
@@ -117,7 +117,7 @@ Scalar reweigh(std::span<Part> weights, const LikelihoodOf& likelihood_of) noexc
   const Scalar nearest = least_to<Scalar>(nearest_part);
   Part sum = Part(0);
   for (std::size_t k = 0; k < weights.size(); ++k) {
-    // Where the prior is zero the likelihood may be beyond exp: 0 times infinity is 0 here.
+    // Where the prior is zero exp may overflow: 0 times infinity is 0 here.
     const Part nearness = exp((Part(nearest) - likelihood_of(k).nis) / 2);
     likely[k] = select(likely[k] > Part(kLeastWeight<Part>), likely[k] * nearness, Part(0));
     sum += likely[k];
@@ -130,8 +130,8 @@ Scalar reweigh(std::span<Part> weights, const LikelihoodOf& likelihood_of) noexc
   return select(possible, log(total) - nearest / 2, Scalar(kImpossible<Scalar>));
 }
 
-/// The step of a mixture: the innovation of the moment-matched prediction, over the parts that
-/// could be updated. Has no likelihood yet. Of packs as `reweigh`.
+/// The step of a mixture: the innovation of the moment-matched prediction, over the components that
+/// could be updated; without the likelihood. Packs as in `reweigh`.
 template <int M, class Scalar, class Part>
 Step<M, Scalar> mixed_step(std::span<const Correction<M, Part>> parts,
                            std::span<const std::type_identity_t<Part>> weights) noexcept {
@@ -171,7 +171,7 @@ Step<M, Scalar> mixed_step(std::span<const Correction<M, Part>> parts,
   return mixed;
 }
 
-/// Why no part of a mixture could be updated; one not started is at rest.
+/// The status when no component could be updated; inactive ones (not started) are ignored.
 template <int M, class Scalar>
 StatusOf<Scalar> failure_of(std::span<const Correction<M, Scalar>> parts) noexcept {
   StatusOf<Scalar> failure = Status::kOk;
@@ -180,8 +180,8 @@ StatusOf<Scalar> failure_of(std::span<const Correction<M, Scalar>> parts) noexce
   return first_failure(failure, Status::kNotFinite);
 }
 
-/// What a filter remembers beside its belief: where its gains are in their schedule. Of most
-/// filters nothing.
+/// The state of a filter beside its belief: the position in a gain schedule. Empty for most
+/// filters.
 struct NoMemory {};
 template <class Mask>
 void assign_where(const Mask&, NoMemory&, const NoMemory&) noexcept {}
@@ -199,16 +199,16 @@ void recall(Filter& filter, const Memory& memory) noexcept {
   if constexpr (requires { filter.recall(memory); }) filter.recall(memory);
 }
 
-/// Replaces the belief of a filter, `before`, by the mixture of what each reading makes of it, and
-/// returns the total weight of that. Adds to `share` what each reading has of it, times
-/// `weight_of_filter`. Of packs as `reweigh`.
+/// Replaces the belief of a filter, `before`, by the mixture of its updates with each reading, and
+/// returns the total weight. Adds the contribution of each reading, times `weight_of_filter`, to
+/// `share`. Packs as in `reweigh`.
 template <class Filter, class BeliefType, class Sensor, class Scalar, class Part>
 Part absorb(Filter& filter, const BeliefType& before,
             std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
             Part weight_of_filter, std::span<Scalar> share) noexcept {
   const std::size_t count = std::min(readings.size(), kMaxAlternatives);
   if (count == 0) return Part(none);
-  // In one pass, as sums about the mean before.
+  // In one pass, by sums about the mean before the update.
   BeliefType origin = before;
   origin.covariance.setZero();
   BeliefType mixture = zero_like(before), spread = origin;

@@ -15,7 +15,7 @@
 
 namespace wakeline {
 
-/// Number of modes that is known only at run time, up to `kMaxModes`.
+/// A number of modes given at run time, up to `kMaxModes`.
 inline constexpr int kRuntimeModes = Eigen::Dynamic;
 inline constexpr int kMaxModes = 16;
 
@@ -27,12 +27,12 @@ using ModeVector = Eigen::Matrix<Scalar, K, 1, 0, kModeCapacity<K>, 1>;
 template <class Scalar, int K>
 using ModeMatrix = Eigen::Matrix<Scalar, K, K, 0, kModeCapacity<K>, kModeCapacity<K>>;
 
-/// The Markov chain between the modes of a multi-model estimator: `chain(i, j) = P(mode j now |
-/// mode i before)`, so rows sum to 1.
+/// The Markov chain of the modes of a multi-model estimator: `chain(i, j) = P(mode j now | mode i
+/// before)`; rows sum to 1.
 ///
-/// Given as a matrix it is applied once per prediction, whatever the time step (the papers' way).
-/// Given as a matrix with its period, or as mean sojourn times, it is a chain in continuous time:
-/// P(dt) = exp(G dt), so that two steps of dt are one of 2 dt. Source: Bar-Shalom, Li,
+/// Given as a matrix, it is applied once per prediction, independent of the time step (the papers'
+/// form). Given as a matrix with its period, or as mean sojourn times, it is a chain in continuous
+/// time: P(dt) = exp(G dt), so that two steps of dt equal one of 2 dt. Source: Bar-Shalom, Li,
 /// Kirubarajan, 11.6.2; for continuous time any text on Markov chains.
 template <int K>
 class ModeChain {
@@ -45,7 +45,8 @@ class ModeChain {
     require_stochastic(matrix_);
   }
 
-  /// The same chain, its number of modes known otherwise. Throws unless there are K of them.
+  /// The same chain with the number of modes as a template parameter or at run time. Throws unless
+  /// there are K of them.
   template <int Other>
   requires(Other != K) explicit ModeChain(const ModeChain<Other>& chain)
       : matrix_(chain.matrix_), continuous_(chain.continuous_) {
@@ -54,9 +55,9 @@ class ModeChain {
              std::to_string(chain.modes()));
   }
 
-  /// The chain whose transition over `period_s` is the matrix. Throws also when no continuous-time
-  /// chain has it, or only one that hardly stays over it: where an eigenvalue is about 0, or 1 or
-  /// more away from 1.
+  /// The continuous-time chain with this transition over `period_s`. Throws also when there is
+  /// none, or only one that rarely stays during the period: where an eigenvalue is about 0, or
+  /// differs from 1 by 1 or more.
   ModeChain(const Matrix& over_period, double period_s) : ModeChain(over_period) {
     require_positive("period_s", period_s);
     matrix_ = logarithm(over_period) / period_s;
@@ -65,7 +66,7 @@ class ModeChain {
   }
 
   /// The chain that stays in mode k for `sojourn_s[k]` seconds on average and leaves to each other
-  /// mode alike.
+  /// mode with the same probability.
   static ModeChain from_sojourn_s(const ModeVector<double, K>& sojourn_s) {
     const Eigen::Index modes = sojourn_s.size();
     Matrix next = Matrix::Constant(modes, modes, 1.0 / static_cast<double>(modes - 1));
@@ -73,8 +74,8 @@ class ModeChain {
     return from_sojourn_s(sojourn_s, next);
   }
 
-  /// The same with `next(i, j) = P(goes to mode j | leaves mode i)`: a distribution in each row,
-  /// zero on the diagonal.
+  /// The same with `next(i, j) = P(to mode j | leaves mode i)`: each row a distribution, zero on
+  /// the diagonal.
   static ModeChain from_sojourn_s(const ModeVector<double, K>& sojourn_s, const Matrix& next) {
     const Eigen::Index modes = sojourn_s.size();
     require_modes("mean sojourn times", modes);
@@ -101,15 +102,15 @@ class ModeChain {
     return from_sojourn_s(times);
   }
 
-  /// The chain in continuous time of a generator G (1/s): `G(i, j)` is how often it goes from mode
-  /// i to mode j, and rows sum to 0. Throws `std::invalid_argument` on any other matrix.
+  /// The continuous-time chain of a generator G (1/s): `G(i, j)` is the rate from mode i to mode j,
+  /// rows sum to 0. Throws `std::invalid_argument` for any other matrix.
   static ModeChain from_generator(const Matrix& generator_per_s) {
     require_generator(generator_per_s);
     return ModeChain(Generator{generator_per_s});
   }
 
   /// The chain that stays with the given probability per prediction and leaves to each other mode
-  /// alike: the papers' 0.9 and 0.1 / (K - 1).
+  /// with the same probability: the papers' 0.9 and 0.1 / (K - 1).
   static ModeChain staying(double stay_probability, Eigen::Index modes = K) {
     require_probability("stay_probability", stay_probability);
     require(modes >= 2 && modes <= kModeCapacity<K>, "modes", "2 to 16", double(modes));
@@ -124,7 +125,7 @@ class ModeChain {
   /// True when the transition depends on the time step.
   [[nodiscard]] bool continuous() const noexcept { return continuous_; }
 
-  /// G (1/s) of a chain in continuous time, else none.
+  /// G (1/s) of a continuous-time chain.
   [[nodiscard]] std::optional<Matrix> generator_per_s() const {
     return continuous_ ? std::optional(matrix_) : std::nullopt;
   }
@@ -145,7 +146,7 @@ class ModeChain {
     if (!matrix_.allFinite()) refuse("every rate of the generator of a mode chain must be finite");
   }
 
-  /// There must be K, or 1 to kMaxModes.
+  /// Throws unless there are K modes, or 1 to kMaxModes.
   static void require_modes(const std::string& what, Eigen::Index count) {
     constexpr int kLeast = K == kRuntimeModes ? 1 : K;
     if (count >= kLeast && count <= kModeCapacity<K>) return;
@@ -185,8 +186,8 @@ class ModeChain {
     }
   }
 
-  /// ln P = -Σ (I - P)ⁿ / n, which converges when every eigenvalue of P lies within 1 of 1, as
-  /// those of a chain that tends to stay do.
+  /// ln P = -Σ (I - P)ⁿ / n, which converges when every eigenvalue of P differs from 1 by less than
+  /// 1, as for a chain that mostly stays.
   static Matrix logarithm(const Matrix& p) {
     const Matrix x = Matrix::Identity(p.rows(), p.cols()) - p;
     Matrix power = x;
@@ -198,7 +199,7 @@ class ModeChain {
     return sum;
   }
 
-  /// Refuses a logarithm that is no generator; clips its rounding.
+  /// Rejects a logarithm that is not a generator; clips rounding errors.
   void clip_generator(double period_s, const Matrix& over_period) {
     bool valid = matrix_.allFinite();
     for (Eigen::Index i = 0; i < modes() && valid; ++i) {
@@ -213,10 +214,10 @@ class ModeChain {
     if (!valid || !(transition(period_s) - over_period).isZero(1e-9))
       refuse(
           "this matrix is not the transition of a continuous-time chain over its period, or of one "
-          "that hardly stays over it; leave the period out to apply it once per prediction");
+          "that rarely stays over it; leave out the period to apply it once per prediction");
   }
 
-  // Sums in loops, whose order does not depend on whether K is known at compile time.
+  // Sums in loops, so that their order does not depend on whether K is a template parameter.
 
   static double row_sum(const Matrix& matrix, Eigen::Index row) noexcept {
     double sum = 0.0;
@@ -232,8 +233,8 @@ class ModeChain {
     return result;
   }
 
-  /// exp(G dt) by uniformisation, whose terms are all positive, on a step halved until it is short,
-  /// then squared back.
+  /// exp(G dt) by uniformisation, whose terms are all positive, over a step halved until it is
+  /// short, then squared.
   Matrix exponential(double dt_s) const noexcept {
     const Matrix identity = Matrix::Identity(modes(), modes());
     const double fastest = -matrix_.diagonal().minCoeff();

@@ -28,41 +28,41 @@
 
 namespace wakeline {
 
-/// A tree of mode histories: each hypothesis is one filter with its own past of modes, and nothing
-/// is mixed.
+/// A tree of mode histories: each hypothesis is a filter with its own sequence of modes; nothing is
+/// mixed.
 ///
-/// `predict` lets every hypothesis stay in its mode or, where its present segment is long enough,
-/// switch to another one; the likeliest switches that there is room for are followed. `update`
-/// weighs each hypothesis by its likelihood, joins those of one mode that have become alike, and
-/// keeps the likeliest. An Imm of the same modes mixes in every scan, and pays for it with the
-/// spread of the mixture.
+/// `predict` lets every hypothesis stay in its mode or, when its present segment is long enough,
+/// switch to another one; the most probable switches within the capacity are followed. `update`
+/// weights each hypothesis by its likelihood, merges similar ones of the same mode and keeps the
+/// most probable. An Imm of the same modes mixes in every scan, which increases its covariance by
+/// the spread of the mixture.
 ///
-/// Where the turn rate is part of the state (`CoordinatedTurnRate`), a mode is a guess of it: a
-/// hypothesis that switches to a mode with another prior rate, or another deviation of it, takes
-/// that up and learns its rate from there. Vessels need not turn at the rates of a grid then.
+/// Where the turn rate is part of the state (`CoordinatedTurnRate`), a mode is a prior of it: a
+/// hypothesis that switches to a mode with a different prior rate or standard deviation restarts
+/// its rate from there. The target need not turn at the rates of a grid then.
 ///
-/// Has the face of `Imm`, over filters of one kind; storage is in place, no
-/// heap: at most `Capacity` hypotheses, twice. In a missed scan the mode probabilities follow the
-/// chain, as far as there is room and except for segments still too short to end.
+/// Has the interface of `Imm`, over filters of one kind; storage is in place, no heap: at most
+/// `Capacity` hypotheses, twice. In a missed scan the mode probabilities follow the chain, within
+/// the capacity and except for segments that are too short to end.
 ///
 /// Over filters of packs (`Ekf<CoordinatedTurn, Pack<double, kNativeLanes<double>>>`) the
-/// hypotheses of a mode are filtered side by side, in the lanes of one filter; the face is that
-/// over filters of numbers, and so are the results, to rounding, which may decide among hypotheses
-/// of equal probability which of them are kept.
+/// hypotheses of a mode are processed in the lanes of one filter. The interface is that over scalar
+/// filters, and the results are equal to rounding, which may decide which of equally probable
+/// hypotheses are kept.
 ///
 /// Source: G. A. Ackerson, K. S. Fu, IEEE Trans. AC-15, 1970 (the tree); J. K. Tugnait, Automatica
-/// 18, 1982 (detection and estimation over it); D. J. Salmond, SPIE 1305, 1990 (joining around the
-/// heaviest).
+/// 18, 1982 (detection and estimation with it); D. J. Salmond, SPIE 1305, 1990 (merging around the
+/// most probable).
 template <class FilterType, int K = kRuntimeModes, int Capacity = 256>
 class ModeHistory {
   static_assert(
       !requires(const FilterType& filter) { filter.memory(); },
-      "wakeline: a hypothesis of a ModeHistory is a belief alone; a filter that remembers "
-      "more (an alpha-beta filter, where its gains are) cannot be its model");
+      "wakeline: a hypothesis of a ModeHistory is only a belief; a filter with further state "
+      "(an alpha-beta filter and its gain schedule) cannot be its model");
 
  public:
   using Filter = FilterType;
-  using Lanes = typename Filter::Scalar;  ///< of hypotheses side by side, or a number of one
+  using Lanes = typename Filter::Scalar;  ///< hypotheses side by side, or a single number
   using Scalar = RealOf<Lanes>;
   static constexpr int kModels = K;
   static constexpr auto kComponents = Filter::kComponents;
@@ -71,18 +71,18 @@ class ModeHistory {
   using Probability = ModeVector<Scalar, K>;
   using BeliefType = StateBelief<kComponents, Scalar>;
 
-  /// A history of modes up to now, and what follows from it.
+  /// A sequence of modes up to now, and the belief given it.
   struct Hypothesis {
     BeliefType belief;
     Scalar probability = Scalar(0);
-    Scalar segment_s = Scalar(0);  ///< time since it came into its mode
+    Scalar segment_s = Scalar(0);  ///< time since it entered its mode
     std::uint64_t modes = 0;       ///< the last 16, four bits each, the present one lowest
 
     [[nodiscard]] int mode() const noexcept { return static_cast<int>(modes & 0xF); }
   };
 
   /// One mode of the chain for each filter of the bank. Throws `std::invalid_argument` when a
-  /// parameter makes no sense or the tree does not fit into `Capacity`.
+  /// parameter is invalid or the tree does not fit into `Capacity`.
   ModeHistory(const HistoryTree& tree, const ModeChain<K>& chain, const Bank& bank)
       : tree_(validated(tree)),
         chain_(chain),
@@ -101,21 +101,21 @@ class ModeHistory {
             tree.max_hypotheses);
     for (int k = 1; k < bank.size(); ++k)
       require(same_prior_rate(0, k) || tree.pseudo_bayes_order != 1, "pseudo_bayes_order",
-              "2 or more where each mode learns a turn rate of its own, as order 1 keeps one "
+              "2 or more where each mode has its own prior turn rate, because order 1 keeps one "
               "belief for all",
               tree.pseudo_bayes_order);
   }
 
-  /// Filters like `prototype` at the turn rates of a grid; of those that learn theirs, the
-  /// straightest has a tenth of the deviation of the prior, as a straight is straight. At a start
-  /// it has a probability of 0.9.
+  /// With copies of `prototype` at the turn rates of a grid. If they estimate their rate, the
+  /// straightest has a tenth of the prior standard deviation. The straightest starts with
+  /// probability 0.9.
   ModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s, const ModeChain<K>& chain,
               const Filter& prototype)
       : ModeHistory(tree, grid_rad_s, usual_deviations(grid_rad_s, prototype), chain, prototype) {}
 
-  /// The same with a deviation for each rate (rad/s): next to none for rates that vessels are known
-  /// to turn at, more for those between them, which are learnt. Throws as above, and unless there
-  /// is one for each rate, positive where filters learn theirs.
+  /// The same with a standard deviation for each rate (rad/s): nearly zero for rates at which
+  /// vessels are known to turn, more for those between. Throws as above, and unless there is one
+  /// for each rate, positive where filters estimate their rate.
   ModeHistory(const HistoryTree& tree, const TurnRateGrid& grid_rad_s,
               const TurnRateGrid::Rates& grid_std_rad_s, const ModeChain<K>& chain,
               const Filter& prototype)
@@ -126,7 +126,7 @@ class ModeHistory {
     probability_ = initial_;
   }
 
-  /// How far off each rate of a grid may be when nothing else is said.
+  /// Default standard deviations of the rates of a grid.
   static TurnRateGrid::Rates usual_deviations(const TurnRateGrid& grid_rad_s,
                                               const Filter& prototype) {
     TurnRateGrid::Rates std_rad_s =
@@ -135,16 +135,16 @@ class ModeHistory {
     return std_rad_s;
   }
 
-  /// Mode probabilities that a start begins with. Throws unless they sum to 1.
+  /// Sets the mode probabilities at a start. Throws unless they sum to 1.
   void set_initial_mode_probability(const Probability& probability) {
     require_distribution("initial_mode_probability", probability, bank_.size());
     initial_ = made_distribution(probability);
     if (!started_) probability_ = initial_;
   }
 
-  /// Begins a hypothesis in every mode with the belief, over the state or over `[x, vx, y, vy]`.
-  /// One over a state with turn rate gives every mode that rate. Where a filter refuses it nothing
-  /// changes.
+  /// Starts a hypothesis in every mode with the belief, over the state or over `[x, vx, y, vy]`. A
+  /// belief over a state with turn rate gives every mode that rate. Where a filter rejects it,
+  /// nothing changes.
   template <class StartType>
   Status start(const StartType& belief) noexcept {
     Leaves& next = spare();
@@ -172,9 +172,10 @@ class ModeHistory {
     return branch_and_move(dt_s, acceleration_mps2);
   }
 
-  /// Corrects every hypothesis by a reading, weighs them, joins and cuts. The innovation of the
-  /// step is that of the moment-matched prediction, its log-likelihood that of the mixture. A
-  /// hypothesis whose update fails is dropped; where all fail nothing changes.
+  /// Updates every hypothesis with a reading, reweights, merges and prunes them. The innovation of
+  /// the step is that of the moment-matched prediction, its log-likelihood that of the mixture. A
+  /// hypothesis whose update fails is dropped; where all fail, nothing changes. A reading that is
+  /// not `in_range` returns `kNotFinite`.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
@@ -202,11 +203,11 @@ class ModeHistory {
     for (std::size_t r = 0; r < weighed.size(); ++r)
       store(weights[r], next.all()[r].probability.data());
     now_ = 1 - now_;
-    settle();
+    prune_and_normalise();
     return step;
   }
 
-  /// What the hypotheses think of a reading, without taking it.
+  /// The likelihood of a reading under all hypotheses, without an update.
   template <class Sensor>
   [[nodiscard]] Evidence<Scalar> evidence(
       const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& z) const noexcept {
@@ -220,8 +221,8 @@ class ModeHistory {
     return {sum_to<Scalar>(evidence.likelihood), least_to<Scalar>(evidence.least_nis)};
   }
 
-  /// Probabilistic data association, as of `Imm`: every hypothesis takes in all readings that may
-  /// be the target's own.
+  /// Probabilistic data association, as in `Imm`: every hypothesis is updated with all readings
+  /// that may be the target's.
   template <class Sensor>
   Scalar update(std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
                 std::span<Scalar> share) noexcept {
@@ -249,12 +250,11 @@ class ModeHistory {
     for (Row& row : next.all())
       store(load<Lanes>(row.probability.data()) / Lanes(total), row.probability.data());
     now_ = 1 - now_;
-    settle();
+    prune_and_normalise();
     return total;
   }
 
-  /// Saves or restores the hypotheses; those of a tree that branches, joins or is cut otherwise
-  /// fail.
+  /// Saves or restores the hypotheses; fails with different tree parameters.
   void archive(Archive& fields) {
     fields.rules(tree_);
     bool started = started_;
@@ -328,7 +328,7 @@ class ModeHistory {
   [[nodiscard]] const Bank& bank() const noexcept { return bank_; }
   [[nodiscard]] bool started() const noexcept { return started_; }
 
-  /// What is believed at present: hypotheses by mode, as a range of them.
+  /// The present hypotheses by mode, as a range.
   [[nodiscard]] auto hypotheses() const noexcept { return Hypotheses{present()}; }
 
  private:
@@ -340,7 +340,7 @@ class ModeHistory {
   using Leaves = HypothesisRows<kStates, Lanes, Capacity, kModeCapacity<K>>;
   using Row = typename Leaves::Row;
 
-  /// The hypotheses of some rows, one by one.
+  /// The hypotheses of several rows, one by one.
   class Hypotheses {
    public:
     class Iterator {
@@ -402,7 +402,7 @@ class ModeHistory {
     return filter;
   }
 
-  /// Corrects the beliefs of a row, which become those of another.
+  /// Updates the beliefs of a row and writes them to another.
   template <class Sensor, int M>
   WAKELINE_FLATTEN Correction<M, Lanes> correct(const Sensor& sensor,
                                                 const Gaussian<M, Lanes>& reading,
@@ -414,7 +414,7 @@ class ModeHistory {
     return correction;
   }
 
-  /// Predicts all hypotheses. Where one fails none is to be used.
+  /// Predicts all hypotheses. After a failure of any none may be used.
   template <class... Known>
   WAKELINE_FLATTEN Status move(Leaves& leaves, Scalar dt_s,
                                const Known&... acceleration_mps2) noexcept {
@@ -428,13 +428,13 @@ class ModeHistory {
     return Status::kOk;
   }
 
-  /// A switch to another mode of the hypothesis at a place.
+  /// A switch of the hypothesis at a place to another mode.
   struct Switch {
     Scalar probability;
     int from;
     int mode;
-    int to = 0;     ///< its place then
-    int next = -1;  ///< the number of the next switch to that mode, or -1
+    int to = 0;     ///< its place after the switch
+    int next = -1;  ///< index of the next switch to that mode, or -1
   };
 
   template <class... Known>
@@ -442,7 +442,7 @@ class ModeHistory {
     if (!started_) return Status::kNotStarted;
     if (const Status status = check_time_step(dt_s); status != Status::kOk) return status;
     if (!pooled() && present().size() > tree_.max_hypotheses) {  // the last scan was missed
-      spare() = present();  // to try first: where a prediction fails nothing is joined
+      spare() = present();  // predicted first: if that fails, nothing is merged
       if (const Status status = move(spare(), dt_s, acceleration_mps2...); status != Status::kOk)
         return status;
       reduce();
@@ -459,7 +459,7 @@ class ModeHistory {
     return Status::kOk;
   }
 
-  /// Every hypothesis stays, those that switch do so too. Beliefs are those before the scan.
+  /// Every hypothesis stays, and those that switch also do that. Beliefs are those before the scan.
   void branch(std::span<Switch> switches, Scalar dt_s, Leaves& next) const noexcept {
     std::array<int, static_cast<std::size_t>(kModeCapacity<K>)> first;  // into each mode
     first.fill(-1);
@@ -482,16 +482,16 @@ class ModeHistory {
       for (int s = at(first, mode); s >= 0; s = at(switches, s).next)
         at(switches, s).to = follow(at(switches, s), next);
     }
-    for (Row& row : next.all()) go_on(row, dt_s);
+    for (Row& row : next.all()) age_segments(row, dt_s);
   }
 
-  /// The likeliest switches that there is room for.
+  /// The most probable switches within the capacity.
   std::span<Switch> likeliest_switches(Scalar dt_s,
                                        std::array<Switch, kCapacity>& room) const noexcept {
     if (pooled() || present().size() >= tree_.max_branches) return {};
     const auto left = static_cast<std::size_t>(tree_.max_branches - present().size());
     Likeliest<Switch> likeliest(std::span<Switch>(room).first(left));
-    std::array<Lanes, Leaves::kMostRows> leaving;  // probabilities of what may switch
+    std::array<Lanes, Leaves::kMostRows> leaving;  // probabilities of leaving
     const std::span<const Row> rows = present().all();
     for (std::size_t r = 0; r < rows.size(); ++r) {
       leaving[r] =
@@ -524,7 +524,7 @@ class ModeHistory {
           row.probability.data());
   }
 
-  /// A hypothesis switches to another mode. Returns its place there.
+  /// Follows a switch. Returns the new place.
   int follow(const Switch& change, Leaves& next) const noexcept {
     const Row& before = present().row_of(change.from);
     const auto lane_before = static_cast<std::size_t>(Leaves::lane_of(change.from));
@@ -538,14 +538,14 @@ class ModeHistory {
     return place;
   }
 
-  /// The hypotheses of a row are in its mode for one more scan.
-  static void go_on(Row& row, Scalar dt_s) noexcept {
+  /// One more scan in the same mode.
+  static void age_segments(Row& row, Scalar dt_s) noexcept {
     store(load<Lanes>(row.segment_s.data()) + Lanes(dt_s), row.segment_s.data());
     for (std::uint64_t& modes : row.modes)
       modes = modes << 4 | static_cast<std::uint64_t>(row.mode);
   }
 
-  /// Keeps the chain's transition over one step, and the ways out of each mode.
+  /// Caches the chain's transition over one step and the exits of each mode.
   void prepare(Scalar dt_s) noexcept {
     transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
     transition_step_s_ = dt_s;
@@ -562,7 +562,7 @@ class ModeHistory {
     }
   }
 
-  /// Modes that a mode is left for with the same probability, a bit for each.
+  /// Modes to which a mode is left with the same probability, a bit each.
   struct Exit {
     Scalar probability;
     unsigned modes;
@@ -575,10 +575,10 @@ class ModeHistory {
     return std::span(at(exits_, mode).exit).first(at(exits_, mode).count);
   }
 
-  /// The first-order pseudo-Bayes estimator has one belief, from which every mode sets out.
+  /// True for the first-order pseudo-Bayes estimator, which has one belief for all modes.
   [[nodiscard]] bool pooled() const noexcept { return tree_.pseudo_bayes_order == 1; }
 
-  /// Probability of a mode by the chain.
+  /// Probability of a mode predicted by the chain.
   [[nodiscard]] Scalar arriving(int mode) const noexcept {
     Scalar sum = Scalar(0);
     for (int before = 0; before < bank_.size(); ++before)
@@ -586,7 +586,7 @@ class ModeHistory {
     return sum;
   }
 
-  /// Whether the present segments are long enough, to the nearest scan.
+  /// True where the present segment is long enough, to the nearest scan.
   [[nodiscard]] MaskOf<Lanes> may_switch(const Row& row, Scalar dt_s) const noexcept {
     return Lanes(Scalar(tree_.min_segment_s <= 0.0 ? 1 : 0)) > Lanes(0) ||
            load<Lanes>(row.segment_s.data()) + Lanes(dt_s / 2) > Lanes(Scalar(tree_.min_segment_s));
@@ -604,7 +604,7 @@ class ModeHistory {
     return bank;
   }
 
-  /// Whether two modes assume the same of a turn rate that is not known.
+  /// True when two modes have the same prior of an unknown turn rate.
   [[nodiscard]] bool same_prior_rate(int a, int b) const noexcept {
     if constexpr (kTurnRateRow < 0) return true;
     const auto& one = bank_.filter(a).motion();
@@ -614,7 +614,7 @@ class ModeHistory {
            prior_variance(one, kRate) == prior_variance(other, kRate);
   }
 
-  /// Takes the mode's prior for what is known of the turn rate.
+  /// Resets the turn rate to the mode's prior.
   void forget_turn_rate(Gaussian<kStates, Scalar>& belief, int mode) const noexcept {
     const auto& motion = bank_.filter(mode).motion();
     belief.mean[kTurnRateRow] = Scalar(prior_mean(motion, Component::kTurnRate));
@@ -624,9 +624,9 @@ class ModeHistory {
         Scalar(prior_variance(motion, Component::kTurnRate));
   }
 
-  /// The switch may have come later in the scan: adds a part of u d, d the way from the mean that
-  /// is without the switch, u uniform over one scan, whose variance is 1/12. A turn rate is that of
-  /// the mode whenever the switch came.
+  /// The switch may have occurred later in the scan: adds a part of u d, d the difference from the
+  /// mean without the switch, u uniform over one scan with variance 1/12. The turn rate is that of
+  /// the mode whenever the switch occurred.
   void spread(const Switch& change, Leaves& next) const noexcept {
     const int mode = present().row_of(change.from).mode;
     const int stayed = change.from + Leaves::kLanes * (next.begin(mode) - present().begin(mode));
@@ -644,15 +644,15 @@ class ModeHistory {
         [&](int i, int j) { row.of_covariance(i, j)[of_lane] += variance * (d[i] * d[j]); });
   }
 
-  /// What follows an update: a tree is cut, and the probabilities sum to 1.
-  void settle() noexcept {
+  /// After an update: prunes the tree and normalises the probabilities.
+  void prune_and_normalise() noexcept {
     if (pooled())
       normalise();
     else
       reduce();
   }
 
-  /// Joins the similar hypotheses of each mode and keeps the likeliest, in that order.
+  /// Merges similar hypotheses of each mode, then keeps the most probable.
   void reduce() noexcept {
     HypothesisClusters clusters(present(), tree_);
     spare().clear();
@@ -665,13 +665,13 @@ class ModeHistory {
     normalise();
   }
 
-  /// Makes the spare hypotheses the present ones.
+  /// Swaps spare and present hypotheses.
   void take() noexcept {
     now_ = 1 - now_;
     normalise();
   }
 
-  /// Gives the hypotheses probabilities that sum to 1.
+  /// Normalises the probabilities.
   void normalise() noexcept {
     Lanes sum = Lanes(0);
     for (const Row& row : present().all()) sum += load<Lanes>(row.probability.data());
@@ -702,7 +702,7 @@ class ModeHistory {
 
   HistoryTree tree_;
   ModeChain<K> chain_;
-  Bank bank_;  ///< each mode's filter; the belief in it is of no hypothesis
+  Bank bank_;  ///< the filter of each mode; its belief is scratch
   Probability initial_;
   Probability probability_;
   ModeMatrix<Scalar, K> transition_;

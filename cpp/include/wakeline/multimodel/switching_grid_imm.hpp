@@ -13,14 +13,14 @@
 
 namespace wakeline {
 
-/// When the window of a `SwitchingGridImm` goes on. With mu of its three models and the threshold
-/// t:
+/// When the window of a `SwitchingGridImm` moves, by the probabilities mu of its three models and
+/// the threshold t.
 enum class SwitchRule : std::uint8_t {
   kSymmetric,  ///< left if mu_left > t, right if mu_right > t, else it stays
   kLiteral,    ///< as printed: left if mu_left > t, stays if mu_centre > t, else right
 };
 
-/// What its models take along.
+/// What happens to the models when the window moves.
 enum class SwitchCarry : std::uint8_t {
   kSlot,      ///< each slot keeps its estimate and probability, under its new turn rate
   kIdentity,  ///< each model that stays keeps them; the entering one begins with the combined
@@ -34,9 +34,9 @@ constexpr std::array<Word<SwitchCarry>, 2> words_of(SwitchCarry) noexcept {
   return {{{"slot", SwitchCarry::kSlot}, {"identity", SwitchCarry::kIdentity}}};
 }
 
-/// How the window of a `SwitchingGridImm` moves. The paper's threshold is 0.7, with which the
-/// window often comes too late; by slot it loses what the models know at each move. Source: paper
-/// B, step 1.2.
+/// Motion of the window of a `SwitchingGridImm`. With the paper's threshold of 0.7 the window often
+/// moves too late; with kSlot it loses the models' information at each move. Source: paper B, step
+/// 1.2.
 struct SwitchingGrid {
   static constexpr int kLeastRates = 3;
 
@@ -68,7 +68,7 @@ struct SwitchingGrid {
         std::max(1, std::min(grid_rad_s.straightest(), grid_rad_s.size() - 2)));
   }
 
-  /// Where the centre goes: -1, 0 or 1, never off the grid.
+  /// Direction of the centre: -1, 0 or 1, within the grid.
   template <class Place, class Probability>
   [[nodiscard]] Place direction(Place centre, const Probability& mu) const noexcept {
     const Place first = 1, last = grid_rad_s.size() - 2;
@@ -78,7 +78,7 @@ struct SwitchingGrid {
                   select(to_right && centre < last, Place(1), Place(0)));
   }
 
-  /// Throws `std::invalid_argument` on a parameter that makes no sense.
+  /// Throws `std::invalid_argument` when a parameter is invalid.
   void validate() const {
     validate_fields(*this);
     TurnRateGrid::require_count(grid_rad_s.size(), kLeastRates);
@@ -87,8 +87,8 @@ struct SwitchingGrid {
   }
 };
 
-/// Three turn models in a window on a fixed grid of turn rates (SGMM), which follows the target.
-/// Has the face of `Imm`. Source: paper B, step 1.2.
+/// Three turn models in a window that follows the target over a fixed grid of turn rates (SGMM).
+/// Has the interface of `Imm`. Source: paper B, step 1.2.
 template <class BankType>
 class SwitchingGridImm : public TurnGridImm<BankType> {
   using Base = TurnGridImm<BankType>;
@@ -99,10 +99,10 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
   using typename Base::Probability;
   using typename Base::Scalar;
   static constexpr int kModels = BankType::kModels;
-  /// A place in the grid, or that of each lane.
+  /// An index in the grid, or one per lane.
   using Place = std::conditional_t<kLanesOf<Scalar> == 1, int, Scalar>;
 
-  /// Throws `std::invalid_argument` when a parameter makes no sense or there are not three filters.
+  /// Throws `std::invalid_argument` when a parameter is invalid or there are not three filters.
   SwitchingGridImm(const SwitchingGrid& grid, const ModeChain<BankType::kModels>& chain,
                    const BankType& bank)
       : Base(chain, bank, window<double>(validated(grid), grid.initial())),
@@ -114,13 +114,13 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
     this->set_initial_mode_probability(initial);
   }
 
-  /// Over filters like `prototype`, whose turn rate does not matter.
+  /// With copies of `prototype`, whose turn rate is replaced.
   template <class Filter>
   SwitchingGridImm(const SwitchingGrid& grid, const ModeChain<3>& chain,
                    const Filter& prototype) requires(BeliefFilter<Filter>)
       : SwitchingGridImm(grid, chain, Bank(prototype)) {}
 
-  /// As of `Imm`; the window is the initial one.
+  /// As in `Imm`; the window is reset to the initial one.
   template <class StartType>
   StatusOf<Scalar> start(const StartType& belief) noexcept {
     const StatusOf<Scalar> status = Base::start(belief);
@@ -135,11 +135,11 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
     return step(dt_s, acceleration_mps2);
   }
 
-  /// Index of the window's middle in the grid.
+  /// Index of the window's centre in the grid.
   [[nodiscard]] Place centre() const noexcept { return centre_; }
   [[nodiscard]] const SwitchingGrid& grid() const noexcept { return grid_; }
 
-  /// Saves or restores beliefs, mode probabilities and the window; those of another grid fail.
+  /// Saves or restores beliefs, mode probabilities and the window; fails with different parameters.
   void archive(Archive& fields) {
     fields.rules(grid_.grid_rad_s.size(), grid_.grid_rad_s.rates_rad_s(), grid_.threshold,
                  grid_.rule, grid_.carry, grid_.initial());
@@ -153,7 +153,7 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
   }
 
  private:
-  /// Turn rates around a place.
+  /// Turn rates of the window about an index.
   template <class Rate>
   static ModeVector<Rate, kModels> window(const SwitchingGrid& grid, const Place& centre) noexcept {
     ModeVector<Rate, kModels> rates(3);
@@ -190,7 +190,7 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
   }
 
   /// Where a direction is not 0, gives each filter the belief of its neighbour in that direction,
-  /// and the last one `entering`; returns the belief that none has any more.
+  /// and the last one `entering`; returns the belief that was dropped.
   BeliefType shifted(const Place& direction, const BeliefType& entering) noexcept {
     const auto to_left = direction < Place(0);
     const auto to_right = direction > Place(0);

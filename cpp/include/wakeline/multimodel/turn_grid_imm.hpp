@@ -8,10 +8,10 @@
 
 namespace wakeline {
 
-/// An Imm whose models change their turn rates between two scans: what the estimators of paper B
-/// share. The grid moves at the beginning of `predict`, once after each update and with the mode
-/// probabilities of that; a missed scan does not move it. A step that fails moves nothing. A model
-/// whose turn rate is NaN is at rest.
+/// An Imm whose models change their turn rates between scans: the common part of the estimators of
+/// paper B. The grid moves at the start of `predict`, once after each update and with its mode
+/// probabilities; a missed scan does not move it. A step that fails moves nothing. A model with
+/// turn rate NaN is inactive.
 template <class BankType>
 class TurnGridImm : public Imm<BankType> {
   using Base = Imm<BankType>;
@@ -23,7 +23,7 @@ class TurnGridImm : public Imm<BankType> {
   static constexpr int kModels = Base::kModels;
   using Rates = ModeVector<TurnRate<Scalar>, kModels>;
 
-  /// As of `Imm`; the grid is the initial one.
+  /// As in `Imm`; the grid is reset to the initial one.
   template <class BeliefType>
   StatusOf<Scalar> start(const BeliefType& belief) noexcept {
     const Rates before = rates_;
@@ -36,7 +36,7 @@ class TurnGridImm : public Imm<BankType> {
     return status;
   }
 
-  /// As of `Imm`.
+  /// As in `Imm`.
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
@@ -45,7 +45,7 @@ class TurnGridImm : public Imm<BankType> {
     return step;
   }
 
-  /// As of `Imm`; the grid moves after it when there was a reading that may be the target's own.
+  /// As in `Imm`; the grid moves afterwards if a reading may be the target's.
   template <class Sensor>
   Scalar update(std::span<const Alternative<Sensor, Scalar>> readings, Scalar none,
                 std::span<Scalar> share) noexcept {
@@ -54,11 +54,11 @@ class TurnGridImm : public Imm<BankType> {
     return total;
   }
 
-  /// Turn rates of the models, rad/s, positive to starboard; NaN for one at rest.
+  /// Turn rates of the models, rad/s, positive to starboard; NaN for an inactive one.
   [[nodiscard]] const Rates& turn_rates_rad_s() const noexcept { return rates_; }
 
  protected:
-  /// Throws `std::invalid_argument` unless there is one filter for each turn rate.
+  /// Throws `std::invalid_argument` unless the numbers of filters and turn rates agree.
   TurnGridImm(const ModeChain<kModels>& chain, const Bank& bank,
               const ModeVector<double, kModels>& initial)
       : Base(chain, bank),
@@ -101,20 +101,20 @@ class TurnGridImm : public Imm<BankType> {
       }
     }
     this->bank_.for_each([&](int k, auto& filter, auto&) {
-      // A model that rests comes back with the rate that it had: no rate is less or more than NaN.
+      // An inactive model is activated with its previous rate: comparisons with NaN are false.
       if (any(rates[k] < rates_[k] || rates[k] > rates_[k])) set_turn_rate(filter, rates[k]);
     });
     rates_ = rates;
   }
 
-  /// The same in the lanes told.
+  /// The same in the given lanes.
   void set_rates(const MaskOf<Scalar>& lanes, const Rates& rates) noexcept {
     Rates next = rates_;
     for (Eigen::Index k = 0; k < rates.size(); ++k) next[k] = select(lanes, rates[k], rates_[k]);
     set_rates(next);
   }
 
-  /// Saves or restores beliefs, mode probabilities and such turn rates.
+  /// Saves or restores beliefs, mode probabilities and valid turn rates.
   template <class Valid>
   void archive_if(Archive& fields, const Valid& valid) {
     Rates rates = rates_;
@@ -128,7 +128,7 @@ class TurnGridImm : public Imm<BankType> {
  private:
   Rates initial_rates_;
   Rates rates_;
-  MaskOf<Scalar> seen_ = false;  ///< there was an update since the grid moved last
+  MaskOf<Scalar> seen_ = false;  ///< there was an update since the last move of the grid
 };
 
 }  // namespace wakeline

@@ -8,13 +8,13 @@
 #include <string>
 #include <type_traits>
 
-#include "wakeline/simd/scalar.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
+#include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
 
-/// Turn rates (rad/s, positive to starboard) in rising order, at most kMaxModes: what the models of
-/// a variable-structure estimator are chosen from.
+/// Turn rates (rad/s, positive to starboard) in increasing order, at most kMaxModes: the models
+/// available to a variable-structure estimator.
 class TurnRateGrid {
  public:
   using Rates = ModeVector<double, kRuntimeModes>;
@@ -23,7 +23,7 @@ class TurnRateGrid {
   TurnRateGrid(std::initializer_list<double> rates_rad_s)
       : TurnRateGrid(std::span<const double>(rates_rad_s.begin(), rates_rad_s.size())) {}
 
-  /// Throws `std::invalid_argument` unless they are 2 to kMaxModes, finite and rising.
+  /// Throws `std::invalid_argument` unless there are 2 to kMaxModes, finite and increasing.
   explicit TurnRateGrid(std::span<const double> rates_rad_s) {
     require_count(static_cast<Eigen::Index>(rates_rad_s.size()), 2);
     rates_.resize(static_cast<Eigen::Index>(rates_rad_s.size()));
@@ -35,14 +35,14 @@ class TurnRateGrid {
     }
   }
 
-  /// Throws `std::invalid_argument` unless a number of rates is `least` to kMaxModes.
+  /// Throws `std::invalid_argument` unless the number of rates is `least` to kMaxModes.
   static void require_count(Eigen::Index count, int least) {
     if (count >= least && count <= kMaxModes) return;
     refuse("grid_rad_s must have " + std::to_string(least) + " to " + std::to_string(kMaxModes) +
            " turn rates, got " + std::to_string(count));
   }
 
-  /// Throws `std::invalid_argument` unless there are as many of something as rates.
+  /// Throws `std::invalid_argument` unless `count` is the number of rates.
   void require_for_each(const char* name, Eigen::Index count) const {
     if (count != rates_.size())
       refuse(std::string(name) + " must have one number for each of the " + std::to_string(size()) +
@@ -66,8 +66,8 @@ class TurnRateGrid {
   double operator[](int k) const noexcept { return rates_[k]; }
   [[nodiscard]] const Rates& rates_rad_s() const noexcept { return rates_; }
 
-  /// The rate that is nearest to straight; of two equally near ones the middle one of the grid, or
-  /// the one to port.
+  /// Index of the rate nearest to zero; of two equally near ones the middle one of the grid, or the
+  /// one to port.
   [[nodiscard]] int straightest() const noexcept {
     int best = (size() - 1) / 2;
     for (int k = 0; k < size(); ++k)
@@ -79,11 +79,11 @@ class TurnRateGrid {
   Rates rates_;
 };
 
-/// A turn rate that may differ from lane to lane: of numbers `double`, which grids are given in.
+/// A turn rate that may differ by lane; `double` for scalar numbers.
 template <class Scalar>
 using TurnRate = std::conditional_t<kLanesOf<Scalar> == 1, double, Scalar>;
 
-/// Gives a filter another turn rate, and leaves its belief.
+/// Sets the turn rate of a filter; its belief is unchanged.
 template <class Filter, class Rate>
 void set_turn_rate(Filter& filter, Rate turn_rate_rad_s) noexcept {
   static_assert(
@@ -93,20 +93,20 @@ void set_turn_rate(Filter& filter, Rate turn_rate_rad_s) noexcept {
       "(prior_turn_rate_rad_s), as CoordinatedTurnRate does");
   static_assert(
       std::is_convertible_v<Rate, std::decay_t<decltype(filter.motion().turn_rate_rad_s)>>,
-      "wakeline: here each lane has a turn rate of its own; use KnownTurn<Scalar> instead of "
+      "wakeline: each lane has its own turn rate here; use KnownTurn<Scalar> instead of "
       "CoordinatedTurn");
   auto motion = filter.motion();
   motion.turn_rate_rad_s = turn_rate_rad_s;
   filter.set_motion(motion);
 }
 
-/// True for a filter that learns its turn rate from a prior.
+/// True for a filter that estimates its turn rate from a prior.
 template <class Filter>
 inline constexpr bool kLearnsTurnRate = requires(const Filter& filter) {
   filter.motion().prior_turn_rate_rad_s;
 };
 
-/// How far off the turn rate may be that a filter expects; 0 of one that knows it.
+/// Standard deviation of the turn rate that a filter assumes; 0 for one with a known rate.
 template <class Filter>
 double turn_rate_std_rad_s(const Filter& filter) noexcept {
   if constexpr (kLearnsTurnRate<Filter>)
@@ -115,8 +115,8 @@ double turn_rate_std_rad_s(const Filter& filter) noexcept {
     return 0.0;
 }
 
-/// Gives a filter the turn rate of a mode: the one that it knows, or the one around which it begins
-/// to learn its own, which may be so far off.
+/// Sets the turn rate of a mode: the known rate, or the mean and standard deviation of the prior of
+/// a filter that estimates it.
 template <class Filter>
 void expect_turn_rate(Filter& filter, double turn_rate_rad_s, double std_rad_s) noexcept {
   if constexpr (kLearnsTurnRate<Filter>) {

@@ -8,7 +8,7 @@
 
 namespace wakeline {
 
-/// How a vessel goes from one turn rate to another.
+/// Statistics of a vessel's turns.
 struct TurnHabits {
   double straight_sojourn_s = 40.0;
   double turn_sojourn_s = 70.0;
@@ -26,10 +26,10 @@ struct TurnHabits {
   }
 };
 
-/// The chain between the turn rates of a grid, in continuous time: a straight leads to a turn, a
-/// turn that does not straighten to another turn, each as often as its weight of all says. The
-/// straightest rate of the grid is the straight; its weight does not matter. Throws
-/// `std::invalid_argument` when a parameter makes no sense.
+/// The continuous-time chain between the turn rates of a grid. A straight is followed by a turn,
+/// and a turn that does not end in a straight by another turn, with probabilities proportional to
+/// the weights. The straightest rate of the grid is the straight; its weight is ignored. Throws
+/// `std::invalid_argument` when a parameter is invalid.
 inline ModeChain<kRuntimeModes> turning_chain(const TurnRateGrid& grid_rad_s,
                                               const TurnHabits& habits,
                                               const ModeVector<double, kRuntimeModes>& weight) {
@@ -57,7 +57,7 @@ inline ModeChain<kRuntimeModes> turning_chain(const TurnRateGrid& grid_rad_s,
   return ModeChain<kRuntimeModes>::from_sojourn_s(sojourn_s, next);
 }
 
-/// The same where all turns are alike.
+/// The same with equal weights.
 inline ModeChain<kRuntimeModes> turning_chain(const TurnRateGrid& grid_rad_s,
                                               const TurnHabits& habits = {}) {
   return turning_chain(grid_rad_s, habits,

@@ -11,9 +11,9 @@
 
 namespace wakeline {
 
-/// Filters of one kind: the face of `FilterBank`, with a number of filters that may be known at run
-/// time only (K = kRuntimeModes, at most kMaxModes); then filters may rest. A filter at rest (in
-/// all lanes) is left out of every `for_each`. Storage is in place: no heap.
+/// Filters of one kind: the interface of `FilterBank`, with a number of filters that may be given
+/// at run time (K = kRuntimeModes, at most kMaxModes); filters may then be inactive. A filter that
+/// is inactive in all lanes is skipped by every `for_each`. Storage is in place: no heap.
 template <class Filter, int K = kRuntimeModes>
 class UniformBank {
   static_assert(
@@ -26,7 +26,7 @@ class UniformBank {
   static constexpr auto kComponents = Filter::kComponents;
   using Scalar = typename Filter::Scalar;
 
-  /// `size` filters like `prototype`. Throws `std::invalid_argument` unless there is room for them.
+  /// `size` copies of `prototype`. Throws `std::invalid_argument` when the size is out of range.
   explicit UniformBank(const Filter& prototype, int size = K)
       : slots_(filled(prototype)), size_(size) {
     active_.fill(true);
@@ -68,7 +68,7 @@ class UniformBank {
       if (const Slot& s = slot(k); in_use(k)) function(k, s.filter);
   }
 
-  /// Calls `f(k, belief)` with the present belief of each filter.
+  /// Calls `f(k, belief)` with the current belief of each filter.
   template <class Function>
   void for_each_belief(Function&& function) const noexcept {
     for_each([&](int k, const Filter& filter) {

@@ -16,7 +16,7 @@
 
 namespace wakeline {
 
-/// A variant with each of some types once.
+/// A variant with each of several types once.
 template <class Variant, class... Types>
 struct VariantOf {
   using Type = Variant;
@@ -27,8 +27,9 @@ struct VariantOf<std::variant<Held...>, Next, Rest...>
                          VariantOf<std::variant<Held...>, Rest...>,
                          VariantOf<std::variant<Held..., Next>, Rest...>> {};
 
-/// Filters chosen at run time, up to `Capacity` of them, each of one of the kinds `Filters`: the
-/// face of `FilterBank`, for what a console reads from its settings. Storage is in place: no heap.
+/// Filters chosen at run time, up to `Capacity`, each of one of the kinds `Filters`: the interface
+/// of `FilterBank`, e.g. for a console that reads its models from its settings. Storage is in
+/// place: no heap.
 template <int Capacity, class... Filters>
 class VariantBank {
  public:
@@ -37,8 +38,8 @@ class VariantBank {
   using Scalar = typename FilterBank<Filters...>::Scalar;
   using Filter = std::variant<Filters...>;
 
-  /// Components of the combined estimate: those of all kinds where they agree, else position and
-  /// velocity.
+  /// Components of the combined estimate: those of the kinds if all have the same, else position
+  /// and velocity.
   static constexpr auto kComponents = FilterBank<Filters...>::kComponents;
 
   /// Throws `std::invalid_argument` unless there are 1 to `Capacity` filters.
@@ -68,7 +69,7 @@ class VariantBank {
       std::visit([&](const auto& filter) { function(k, filter); }, slot(k).filter);
   }
 
-  /// Calls `f(k, belief)` with the present belief of each filter.
+  /// Calls `f(k, belief)` with the current belief of each filter.
   template <class Function>
   void for_each_belief(Function&& function) const noexcept {
     for_each([&]<class Kind>(int k, const Kind& filter) {
@@ -110,7 +111,7 @@ class VariantBank {
     return *slots_[static_cast<std::size_t>(k)];
   }
 
-  std::array<std::optional<Slot>, kCapacity> slots_;  ///< those left over are not copied
+  std::array<std::optional<Slot>, kCapacity> slots_;  ///< unused ones are not copied
   int size_;
 };
 

@@ -208,11 +208,11 @@ class DriftWindow {
       Mat<double, 2, 2> t = to.gap_s * identity;
       Vec<double, 2> d = to.fix.mean - from.fix.mean - to.reckoned_m;
       if (k < size_ - 2) {
-        const Mat<double, 2, 2> told = before.template solve<2>(from.fix.covariance).transpose();
-        rest = told * rest;
+        const Mat<double, 2, 2> overlap = before.template solve<2>(from.fix.covariance).transpose();
+        rest = overlap * rest;
         mirror_lower<double, 2>(rest);
-        t += told * time;
-        d += told * off;
+        t += overlap * time;
+        d += overlap * off;
       }
       rest += to.reckoned_covariance_m2;
       time = t;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Models that come and go, over a bank of which none can rest.
+// Models that are activated and deactivated, in a bank without inactive filters.
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/multimodel/likely_model_set_imm.hpp"
