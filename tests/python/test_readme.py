@@ -48,7 +48,7 @@ def test_files_that_are_named_exist(page):
 
 
 WITHOUT = {
-    "the wild error": ("tracker", {"outlier_probability": 0.0}),
+    "outliers": ("tracker", {"outlier_probability": 0.0}),
     "the clutter map": ("tracker", {"clutter_cell_m": 0.0}),
     "noise that grows with speed": (
         "models",
