@@ -420,7 +420,7 @@ def test_a_view_outlives_the_name_of_its_image():
     [
         ({"kind": "best"}, "kind must be cell_averaging or ordered_statistic, got best"),
         ({"train_cells": 0}, "train_cells must be 1 to 128, got 0"),
-        ({"threshold_factor": -1.0}, "threshold_factor must be positive"),
+        ({"threshold_factor": -1.0}, "threshold_factor must be above 0 and at most 1000"),
         ({"rank": 0.0}, "rank must be above 0"),
         ({"gap_sweeps": 9}, "gap_sweeps must be 0 to 8, got 9"),
         ({"max_sweep_cells": 0}, "max_sweep_cells must be 1 to 65536, got 0"),
