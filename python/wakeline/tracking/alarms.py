@@ -34,7 +34,7 @@ _NOT_NEGATIVE, _PROBABILITY = "finite and not negative", "from 0 to 1"
 
 @dataclass(frozen=True)
 class DangerLimits:
-    """When a track is dangerous.
+    """Limits of a dangerous approach.
 
     An alarm begins when a track will be closer than `cpa_limit_m` within `tcpa_limit_s` with at
     least `alarm_probability`, before its closest approach. It ends when the probability remains

@@ -48,7 +48,7 @@ def _engine_name(key: str) -> str:
 
 
 def _explained(section: str) -> dict[str, str]:
-    """What each key of a section means, with its unit and rule, as the parameters say it."""
+    """The sentence of each key of a section, with its unit and rule, from the field tables."""
     lines = {}
     for name, _, _, unit, rule, sentence in _CLASSES[section].fields():
         in_degrees = name.endswith("_rad")
@@ -62,10 +62,10 @@ KEYS = {section: _explained(section) for section in _CLASSES}
 
 VESSELS = {"any": wl.VesselModels, "ships": wl.VesselModels.ships}
 _ABOUT = {
-    "radar": "What a console knows of its radar, as its plots come.",
-    "tracker": "How tracks live; one set of defaults for all radars.",
-    "models": "How vessels move; the noise of the course matters more the faster they are.",
-    "danger": "When a track is dangerous to own ship, whose motion --own tells.",
+    "radar": "Parameters of the radar.",
+    "tracker": "Parameters of the tracker; one set of defaults for all radars.",
+    "models": "Motion models; course noise grows with the speed.",
+    "danger": "Limits of a dangerous approach to own ship (--own).",
 }
 _MANY = 2**31
 _WHAT = {float: "a number", int: "a whole number", str: "a text"}
