@@ -118,7 +118,7 @@ std::optional<VesselImm> as_vessel_imm(const AnyImm& any) {
 struct PyReport {
   py::array_t<std::int64_t> plot_track_id;
   std::vector<Event> events;
-  int refused_plots;
+  int rejected_plots;
 };
 
 /// Tracks as arrays.
@@ -198,7 +198,7 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
   require_ok(report.status, "process");
   PyReport result{py::array_t<std::int64_t>(count),
                   {report.events.begin(), report.events.end()},
-                  report.refused_plots};
+                  report.rejected_plots};
   std::fill_n(result.plot_track_id.mutable_data(), count, 0);
   std::copy(report.plot_track_id.begin(), report.plot_track_id.end(),
             result.plot_track_id.mutable_data());
@@ -319,7 +319,7 @@ void define_track(py::module_& parent) {
                ", track_id=" + std::to_string(event.track_id) + ")";
       });
   py::class_<PyReport> report(m, "ScanReport", "Result of processing a scan.");
-  define_pickle(report, &PyReport::plot_track_id, &PyReport::events, &PyReport::refused_plots);
+  define_pickle(report, &PyReport::plot_track_id, &PyReport::events, &PyReport::rejected_plots);
   report
       .def_readonly(
           "plot_track_id", &PyReport::plot_track_id,
@@ -327,12 +327,12 @@ void define_track(py::module_& parent) {
           "one, 0 for none")
       .def_readonly("events", &PyReport::events)
       .def_readonly(
-          "refused_plots", &PyReport::refused_plots,
+          "rejected_plots", &PyReport::rejected_plots,
           "plots that are not finite, have a negative range, a bearing too large to be an angle "
           "or a time far from the scan's, or exceed max_plots")
       .def("__repr__", [](const PyReport& r) {
         return "<ScanReport: " + many(r.plot_track_id.size(), "plot") + ", " +
-               std::to_string(r.refused_plots) + " refused, " +
+               std::to_string(r.rejected_plots) + " rejected, " +
                many(static_cast<py::ssize_t>(r.events.size()), "event") + ">";
       });
   py::class_<PyTracks> table(m, "TrackTable", "Tracks as arrays, older ones first.");

@@ -65,11 +65,11 @@ class DoubleArray : public py::array_t<double, py::array::c_style | py::array::f
     if (kind == 'M' || kind == 'm' || kind == 'c')
       throw py::type_error("an array must hold real numbers (times in seconds), got " +
                            py::str(numbers.dtype()).cast<std::string>());
-    if (kind == 'U' || kind == 'S' || kind == 'O') refuse_text(numbers);
+    if (kind == 'U' || kind == 'S' || kind == 'O') reject_text(numbers);
     return numbers;
   }
 
-  static void refuse_text(const py::array& numbers) {
+  static void reject_text(const py::array& numbers) {
     for (const py::handle one : numbers.attr("flat"))
       if (py::isinstance<py::str>(one) || py::isinstance<py::bytes>(one))
         throw Text("an array must hold real numbers, got text such as " +

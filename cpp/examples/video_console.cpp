@@ -116,7 +116,7 @@ int main() {
     time_s = sweep.time_s;
     for (const VideoPlot& plot : extractor.process(sweep))
       plots.push_back({plot.time_s, plot.range_m, plot.bearing_rad, own});
-    if (refused(extractor.status())) std::printf("sweep: %s\n", to_string(extractor.status()));
+    if (rejected(extractor.status())) std::printf("sweep: %s\n", to_string(extractor.status()));
   };
 
   for (int count = 0; count < 20 * kSweeps + 1; ++count) {

@@ -105,7 +105,7 @@ def real_numbers(name: str, values: Any) -> np.ndarray:
     masked = isinstance(values, np.ma.MaskedArray)
     try:
         numbers = np.asarray(values)
-        _refuse_others(numbers)
+        _reject_others(numbers)
         return values.astype(float).filled(np.nan) if masked else numbers.astype(float, copy=False)
     except (TypeError, ValueError) as error:
         raise type(error)(f"{name} must hold real numbers: {error}") from None
@@ -134,7 +134,7 @@ def columns(table: Any, time: str, *names: str, optional: Sequence[str] = ()) ->
         object.__setattr__(table, name, shaped(name, getattr(table, name), len(time_s)))
 
 
-def _refuse_others(numbers: np.ndarray) -> None:
+def _reject_others(numbers: np.ndarray) -> None:
     kind = numbers.dtype.kind
     if kind in "Mmc":
         raise TypeError(f"got {numbers.dtype}")

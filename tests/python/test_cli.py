@@ -78,7 +78,7 @@ def bundled(name, kind):
     return str(BUNDLED / name / f"{kind}.csv")
 
 
-def refused(capsys, *arguments):
+def rejected(capsys, *arguments):
     """The one line with which the command rejects its input."""
     assert main([*map(str, arguments)]) == 2
     captured = capsys.readouterr()
@@ -128,7 +128,7 @@ def test_score_says_what_metrics_says(demo, name, tmp_path, capsys):
 def test_a_score_needs_scans(demo, tmp_path, capsys):
     own = write_plots(tmp_path / "own.csv", [(1495196200 + k, 0, 0) for k in range(340)])
     files = [demo / "joyride" / "tracks.csv", bundled("joyride", "truth"), "--scans", own]
-    message = refused(capsys, "score", *files)
+    message = rejected(capsys, "score", *files)
     assert message == (
         f"wakeline: {own}, line 1: there are no scans; wanted a column scan, or --plots\n"
     )
@@ -151,7 +151,7 @@ def test_tracks_of_a_scenario_without_scans_are_reported_by_their_file(demo, tmp
     )
     recording.write_tracks(tmp_path / "t.csv", lost)
     files = [tmp_path / "t.csv", bundled("autoferry", "truth")]
-    message = refused(capsys, "score", *files, "--scans", bundled("autoferry", "scans"))
+    message = rejected(capsys, "score", *files, "--scans", bundled("autoferry", "scans"))
     assert f"{tmp_path / 't.csv'}, column scenario: " in message
     assert "wanted '2' or '3' or '4' or '5' or '6', got 'none'" in message
 
@@ -305,7 +305,7 @@ def test_files_of_an_earlier_run_that_this_one_does_not_write_are_removed(tmp_pa
 def test_a_run_that_fails_leaves_the_files_of_an_earlier_one(plots_csv, tmp_path, capsys):
     (tmp_path / "map.png").write_text("earlier")
     plots_csv.write_text("time_s,north_m,east_m\n1,2,three\n")
-    refused(capsys, "track", plots_csv, "--out", tmp_path)
+    rejected(capsys, "track", plots_csv, "--out", tmp_path)
     assert (tmp_path / "map.png").exists()
 
 
@@ -386,7 +386,7 @@ def test_plots_that_cannot_be_read_are_rejected(tmp_path, capsys, text, wanted):
     plots = tmp_path / "plots.csv"
     plots.write_text(text)
     out = tmp_path / "out"
-    message = refused(capsys, "track", plots, "--out", out)
+    message = rejected(capsys, "track", plots, "--out", out)
     assert wanted in message
     assert str(plots) in message
     assert not (out / "tracks.csv").exists()
@@ -397,14 +397,14 @@ def test_bad_input_leaves_earlier_files_alone(plots_csv, tmp_path, capsys):
     before = (tmp_path / "tracks.csv").read_bytes()
     plots_csv.write_text("time_s,north_m,east_m\n1,2,three\n")
     capsys.readouterr()
-    refused(capsys, "track", plots_csv, "--out", tmp_path)
+    rejected(capsys, "track", plots_csv, "--out", tmp_path)
     assert (tmp_path / "tracks.csv").read_bytes() == before
 
 
 def test_truth_of_another_time_is_rejected(plots_csv, tmp_path, capsys):
     rows = [(5000 + k, "A", 0, 0) for k in range(30)]
     truth = write_plots(tmp_path / "truth.csv", rows, "time_s,target,north_m,east_m")
-    message = refused(capsys, "track", plots_csv, "--truth", truth, "--out", tmp_path)
+    message = rejected(capsys, "track", plots_csv, "--truth", truth, "--out", tmp_path)
     assert message.startswith(f"wakeline: {truth}, column time_s: the truth does not overlap")
     assert "wanted times within 1000.0 to 1097.5, got 5000.0 to 5029.0" in message
 
@@ -419,13 +419,13 @@ def test_plots_without_a_place_are_left_out_with_a_note(tmp_path, capsys):
 
 
 def test_files_that_are_not_there(tmp_path, capsys):
-    message = refused(capsys, "track", tmp_path / "none.csv", "--out", tmp_path)
+    message = rejected(capsys, "track", tmp_path / "none.csv", "--out", tmp_path)
     assert "none.csv: the file cannot be read" in message
 
 
 def test_an_output_folder_that_is_a_file(plots_csv, tmp_path, capsys):
     (tmp_path / "taken").write_text("mine")
-    assert "taken: File exists" in refused(capsys, "track", plots_csv, "--out", tmp_path / "taken")
+    assert "taken: File exists" in rejected(capsys, "track", plots_csv, "--out", tmp_path / "taken")
     assert (tmp_path / "taken").read_text() == "mine"
 
 
@@ -437,7 +437,7 @@ def test_a_json_that_cannot_be_written_is_reported_before_the_work(
     result = tmp_path / place / "score.json"
     if not result.parent.is_dir():
         pytest.skip("no such folder on this system")
-    message = refused(capsys, "track", plots_csv, "--out", tmp_path / "out", "--json", result)
+    message = rejected(capsys, "track", plots_csv, "--out", tmp_path / "out", "--json", result)
     assert message.startswith(f"wakeline: {result}: ")
     assert not (tmp_path / "out").exists()
 
@@ -461,7 +461,7 @@ def test_a_json_that_would_replace_an_input_is_rejected(
     for name in ("plots.csv", "own.csv", "truth.csv", "tracks.csv", "c.toml"):
         Path(name).write_text("mine")
     result = Path("..", tmp_path.name, file)
-    message = refused(capsys, *arguments, "--json", result)
+    message = rejected(capsys, *arguments, "--json", result)
     assert message == f"wakeline: --json would replace the input {file}\n"
     assert Path(file).read_text() == "mine"
 
@@ -470,7 +470,7 @@ def test_a_json_that_would_replace_an_input_is_rejected(
 def test_plots_that_the_output_would_replace_are_rejected(tmp_path, capsys, name):
     plots = write_plots(tmp_path / name, boat(2))
     before = plots.read_bytes()
-    message = refused(capsys, "track", plots, "--out", tmp_path)
+    message = rejected(capsys, "track", plots, "--out", tmp_path)
     assert message == f"wakeline: --out would replace the input {plots}\n"
     assert plots.read_bytes() == before
 
@@ -478,7 +478,7 @@ def test_plots_that_the_output_would_replace_are_rejected(tmp_path, capsys, name
 @pytest.mark.parametrize("name", ["tracks.csv", "MAP.PNG"])
 def test_a_json_does_not_take_the_place_of_a_result(tmp_path, capsys, name):
     result = tmp_path / ".." / tmp_path.name / name
-    message = refused(capsys, "demo", "--out", tmp_path, "--json", result)
+    message = rejected(capsys, "demo", "--out", tmp_path, "--json", result)
     wanted = f"--json must not have the name of a table or picture in {tmp_path}, got {name}"
     assert message == f"wakeline: {wanted}\n"
     assert not list(tmp_path.iterdir())
@@ -496,7 +496,7 @@ def test_a_json_does_not_take_the_place_of_a_result(tmp_path, capsys, name):
     ],
 )
 def test_a_command_line_that_is_invalid(capsys, arguments, wanted):
-    assert wanted in refused(capsys, *arguments)
+    assert wanted in rejected(capsys, *arguments)
 
 
 def test_a_gate_that_is_invalid(demo, capsys):
@@ -504,7 +504,7 @@ def test_a_gate_that_is_invalid(demo, capsys):
     scans = ["--scans", bundled("joyride", "scans")]
     capsys.readouterr()
     for gate in (-1, 1e-200, 1e300):
-        message = refused(capsys, "score", *files, *scans, "--gate", gate)
+        message = rejected(capsys, "score", *files, *scans, "--gate", gate)
         assert f"gate_m must be positive and finite, from 1e-9 to 1e9, got {float(gate)}" in message
 
 
@@ -579,7 +579,7 @@ def test_too_little_memory_is_no_traceback(plots_csv, tmp_path, capsys, monkeypa
         raise MemoryError(words)
 
     monkeypatch.setattr(track_command, "track_episode", has_no_memory)
-    reported = refused(capsys, "track", plots_csv, "--out", tmp_path)
+    reported = rejected(capsys, "track", plots_csv, "--out", tmp_path)
     assert reported == f"wakeline: {words or 'not enough memory'}\n"
 
 

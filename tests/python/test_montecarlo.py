@@ -245,7 +245,7 @@ def test_who_stops_the_run_calls_the_others_off(monkeypatch, who):
     assert len(calls) < 30
 
 
-def refusing(scene, z, begun, from_call):
+def rejecting(scene, z, begun, from_call):
     """Divides by zero from a call on."""
     begun.append(len(z))
     if len(begun) >= from_call:
@@ -260,7 +260,7 @@ def test_who_rejects_everything_does_so_before_the_others_have_done_their_work()
         calls.append(len(z))
         return IMM(scene, z)
 
-    last = partial(refusing, begun=[], from_call=1)
+    last = partial(rejecting, begun=[], from_call=1)
     with pytest.raises(ZeroDivisionError) as caught:
         run([CASE, SELDOM], {"imm": counted, "last": last}, runs=2500, threads=1)
     assert len(calls) < 50
@@ -268,7 +268,7 @@ def test_who_rejects_everything_does_so_before_the_others_have_done_their_work()
 
 
 def test_who_fails_late_takes_nothing_from_those_that_are_done(result, tmp_path):
-    late = partial(refusing, begun=[], from_call=3)
+    late = partial(rejecting, begun=[], from_call=3)
     with pytest.raises(ZeroDivisionError) as caught:  # on one thread calls have an order
         run([CASE, SELDOM], {"imm": IMM, "late": late}, threads=1)
     kept = caught.value.result

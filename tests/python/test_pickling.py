@@ -248,7 +248,7 @@ def test_what_a_tracker_reports(estimator, way):
         range_m, bearing_rad = row[np.isfinite(row)].reshape(-1, 2).T
         report = tracker.process(DT_S * k, range_m=range_m, bearing_rad=bearing_rad)
         other = WAYS[way](report)
-        assert_equal_fields(other, report, "plot_track_id refused_plots")
+        assert_equal_fields(other, report, "plot_track_id rejected_plots")
         assert_equal_fields_of_all(other.events, report.events)
         events += report.events
     assert {event.kind for event in events} >= {"started", "confirmed"}

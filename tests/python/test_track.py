@@ -397,7 +397,7 @@ def test_plots_that_are_invalid_are_rejected_and_counted():
         bearing_rad=[0.1, 0.1, 0.1, 0.1, np.nan, 0.1],
         plot_time_s=[0.0, 0.0, 0.0, 0.0, 0.0, np.nan],
     )
-    assert report.refused_plots == 5
+    assert report.rejected_plots == 5
     np.testing.assert_array_equal(report.plot_track_id[1:], 0)
 
 
@@ -412,7 +412,7 @@ def test_rejected_plots_leave_no_trace():
             bearing_rad=np.append(scan.bearing_rad, 0.0),
             plot_time_s=np.append(scan.plot_time_s, scan.time_s),
         )
-        assert report.refused_plots == 1
+        assert report.rejected_plots == 1
         tables.append(tracker.tracks(tentative=True))
     assert_same(clean, tables)
 
@@ -447,7 +447,7 @@ def test_ten_thousand_plots_in_a_scan():
             range_m=rng.uniform(100.0, 20_000.0, 10_000),
             bearing_rad=rng.uniform(-np.pi, np.pi, 10_000),
         )
-        assert report.refused_plots == 0
+        assert report.rejected_plots == 0
         assert report.plot_track_id.shape == (10_000,)
     table = tracker.tracks(tentative=True)
     assert len(table) <= tracker.config.max_tracks
@@ -457,7 +457,7 @@ def test_ten_thousand_plots_in_a_scan():
 def test_plots_beyond_the_room_are_rejected_and_counted():
     tracker = wl.Tracker(RADAR, wl.TrackerConfig(max_plots=5))
     report = tracker.process(0.0, range_m=np.full(8, 1e3), bearing_rad=np.linspace(0, 1, 8))
-    assert report.refused_plots == 3
+    assert report.rejected_plots == 3
     assert report.plot_track_id.shape == (8,)
 
 

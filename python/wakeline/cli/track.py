@@ -218,9 +218,9 @@ def _track_lines(parts: Sequence[TrackedEpisode]) -> str:
     rows = sum(len(part.tracks) for part in parts)
     coasting = sum(Counter(part.tracks.status.tolist())["coasting"] for part in parts)
     lines = [f"{many(tracks, 'track')} in {many(rows, 'row')}, {coasting} of them coasting"]
-    refused = sum(part.refused_plots for part in parts)
-    if refused:
-        lines.append(f"note: {many(refused, 'plot')} rejected by the tracker")
+    rejected = sum(part.rejected_plots for part in parts)
+    if rejected:
+        lines.append(f"note: {many(rejected, 'plot')} rejected by the tracker")
     return "\n".join(lines)
 
 
@@ -258,6 +258,6 @@ def _row(scenario: str, parts: Sequence[TrackedEpisode]) -> dict[str, Any]:
         "plots": sum(part.episode.plot_count for part in parts),
         "tracks": sum(len(part.tracks.ids()) for part in parts),
         "track_scans": sum(len(part.tracks) for part in parts),
-        "refused_plots": sum(part.refused_plots for part in parts),
+        "rejected_plots": sum(part.rejected_plots for part in parts),
         "ms_per_scan": elapsed_ms / scans if scans else None,
     }

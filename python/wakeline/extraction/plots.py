@@ -40,7 +40,7 @@ class Extraction:
         self._settings: dict[Kind, dict[str, float]] = {}
         self._above_db = 0
         self._mirrored = False
-        self._refused = 0
+        self._rejected = 0
 
     def plots_of(self, turn: Turn) -> Plots:
         """Plots of the echoes that end in a revolution."""
@@ -59,7 +59,7 @@ class Extraction:
             return Plots(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros((0, 2)))
         plots = self._as_seen(self._extractor.finish())
         counts = self._extractor.counts
-        self._refused += counts.too_long + counts.repeated + counts.invalid
+        self._rejected += counts.too_long + counts.repeated + counts.invalid
         self._extractor = self._kind = None
         return plots
 
@@ -72,9 +72,9 @@ class Extraction:
             )
         if self._mirrored:
             notes.append("the antenna turns anticlockwise")
-        if self._refused:
+        if self._rejected:
             what = "invalid [sweep|sweeps] left out"
-            notes.append(counted(self._refused, what))
+            notes.append(counted(self._rejected, what))
         return notes
 
     def _begin(self, turn: Turn, kind: Kind, block: RadarVideo) -> None:

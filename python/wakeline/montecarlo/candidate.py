@@ -96,9 +96,9 @@ def named(candidate_name: str, scenario: Scenario) -> Iterator[None]:
     try:
         yield
     except (TypeError, ValueError) as error:
-        refusal = TypeError if isinstance(error, TypeError) else ValueError
+        error_type = TypeError if isinstance(error, TypeError) else ValueError
         which = f"candidate {candidate_name!r} on {scenario.name!r}"
-        raise refusal(f"{which}: {error}") from error
+        raise error_type(f"{which}: {error}") from error
 
 
 def description(candidate: Candidate | Callable[..., Any], scenario: Scenario) -> dict[str, str]:

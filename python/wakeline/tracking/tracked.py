@@ -36,7 +36,7 @@ class TrackedEpisode:
     events : list of wakeline.Event
     plot_track_id : list of ndarray of int
         For each scan the track of each plot: 0 none, negative a tentative one.
-    refused_plots : int
+    rejected_plots : int
         Number of plots that the tracker rejected.
     elapsed_s : float
         Time that the tracker needed.
@@ -48,7 +48,7 @@ class TrackedEpisode:
     tracks: Tracks
     events: list[wl.Event]
     plot_track_id: list[np.ndarray]
-    refused_plots: int
+    rejected_plots: int
     elapsed_s: float
     alarms: list[Alarm] | None = None
 
@@ -176,7 +176,7 @@ def track_episode(
     """
     settings = settings or Settings.default()
     tracker = settings.make_tracker(median_step_s(episode))
-    tables, events, plot_track_id, refused = [_columns(tracker.tracks())], [], [], 0
+    tables, events, plot_track_id, rejected = [_columns(tracker.tracks())], [], [], 0
     end_s, began_s = -np.inf, time.perf_counter()
     for scan in progress(episode.scans, len(episode), f"tracking {episode.name}".strip()):
         end_s = max(end_s, scan.time_s, scan.plot_time_s.max(initial=-np.inf))
@@ -184,13 +184,13 @@ def track_episode(
         tables.append(_at(scan.time_s, _columns(tracker.tracks(time_s=scan.time_s))))
         events += report.events
         plot_track_id.append(report.plot_track_id)
-        refused += report.refused_plots
+        rejected += report.rejected_plots
     elapsed_s = time.perf_counter() - began_s
     tracks, alarms = _joined(tables, episode.name if named else None), None
     if own is not None and own.knows_velocity:
         tracks, alarms = with_alarms(tracks, own, settings.danger_limits)
     shown = _without_offset(episode, math.radians(settings.radar["bearing_offset_deg"]))
-    return TrackedEpisode(shown, tracks, events, plot_track_id, refused, elapsed_s, alarms)
+    return TrackedEpisode(shown, tracks, events, plot_track_id, rejected, elapsed_s, alarms)
 
 
 def median_step_s(episode: Episode) -> float | None:

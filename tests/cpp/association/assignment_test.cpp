@@ -323,7 +323,7 @@ TEST(Candidates, RejectWhatExceedsTheirCapacityAndStayValid) {
   EXPECT_TRUE(candidates.add(0, 1.5));
   EXPECT_FALSE(candidates.add(1, 1.5)) << "full";
   EXPECT_FALSE(candidates.start_row(5.0)) << "full";
-  EXPECT_FALSE(candidates.add(1, 1.5)) << "a refused row takes no candidates";
+  EXPECT_FALSE(candidates.add(1, 1.5)) << "a rejected row takes no candidates";
   EXPECT_EQ(candidates.rejected(), 8);
   EXPECT_EQ(candidates.rows(), 2);
   EXPECT_EQ(candidates.size(), 3);

@@ -161,14 +161,14 @@ TYPED_TEST(LineLanes, AreEachASeparateEstimator) {
     alone.push_back(TypeParam::template make<double>());
     ASSERT_EQ(alone.back().start(anywhere<double>()), Status::kOk);
   }
-  int refused = 0, joined = 0;
+  int rejected = 0, joined = 0;
   sail<TypeParam>(all_voyages, [&](int k, const After<Lanes>& lanes) {
     for (int which = 0; which < kLanes; ++which) {
       const auto& scan = all_voyages[std::size_t(which)][std::size_t(k)];
       const auto one = after(alone[std::size_t(which)], k, scan.dt_s, scan.z);
       ASSERT_EQ(lane(lanes.moved, which), one.moved) << k << " of " << which;
       ASSERT_EQ(lane(lanes.taken, which), one.taken) << k << " of " << which;
-      refused += one.moved != Status::kOk || one.taken != Status::kOk;
+      rejected += one.moved != Status::kOk || one.taken != Status::kOk;
       joined += scan.dt_s == 4e-4;
       ASSERT_EQ(lanes.numbers.size(), one.numbers.size());
       for (std::size_t i = 0; i < one.numbers.size(); ++i)
@@ -177,7 +177,7 @@ TYPED_TEST(LineLanes, AreEachASeparateEstimator) {
             << i << " in scan " << k << " of " << which;
     }
   });
-  EXPECT_GT(refused, 10 * kLanes);
+  EXPECT_GT(rejected, 10 * kLanes);
   EXPECT_GT(joined, 0);
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "support/matrix_assert.hpp"
-#include "support/refusal.hpp"
+#include "support/rejection.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
@@ -40,11 +40,11 @@ struct DampedUntold : Damped {
 };
 
 TEST(Pattern, ThatIsWrongIsRejectedWithItsElement) {
-  const std::string refusal = test::refusal_of([] { return Ekf{Damped{}}; });
+  const std::string rejection = test::rejection_of([] { return Ekf{Damped{}}; });
   EXPECT_NE(
-      refusal.find("it says 1 of element (1, 1) of the matrix, which for a step of 1 s is 0.5"),
+      rejection.find("it says 1 of element (1, 1) of the matrix, which for a step of 1 s is 0.5"),
       std::string::npos)
-      << refusal;
+      << rejection;
 }
 
 /// Steady motion under a pattern that takes the step for 1.
@@ -53,10 +53,11 @@ struct OfOneSecond : ConstantVelocity {
 };
 
 TEST(Pattern, OfAnElementThatIsTheStepIsRejected) {
-  const std::string refusal = test::refusal_of([] { return Ekf{OfOneSecond{}}; });
-  EXPECT_NE(refusal.find("it says 1 of element (0, 1) of the matrix, which for a step of 2 s is 2"),
-            std::string::npos)
-      << refusal;
+  const std::string rejection = test::rejection_of([] { return Ekf{OfOneSecond{}}; });
+  EXPECT_NE(
+      rejection.find("it says 1 of element (0, 1) of the matrix, which for a step of 2 s is 2"),
+      std::string::npos)
+      << rejection;
 }
 
 /// A current that grows to the east: its own Jacobian with an inherited pattern.
@@ -75,11 +76,12 @@ struct ShearedAsItSays : Sheared {
 };
 
 TEST(Pattern, OfAWrongJacobianIsRejectedWithItsElement) {
-  const std::string refusal = test::refusal_of([] { return Ekf{Sheared{}}; });
-  EXPECT_NE(refusal.find("it says 0 of element (0, 2) of the Jacobian, which at [1, 2, ...] for a "
-                         "step of 1 s is 0.03"),
-            std::string::npos)
-      << refusal;
+  const std::string rejection = test::rejection_of([] { return Ekf{Sheared{}}; });
+  EXPECT_NE(
+      rejection.find("it says 0 of element (0, 2) of the Jacobian, which at [1, 2, ...] for a "
+                     "step of 1 s is 0.03"),
+      std::string::npos)
+      << rejection;
   EXPECT_NO_THROW(Ekf{ShearedAsItSays{}});
   EXPECT_NO_THROW(Ekf{CoordinatedTurnRate{}});
   EXPECT_NO_THROW((Ekf<CoordinatedTurnRate, Pack<double, 2>>{CoordinatedTurnRate{}}));

@@ -30,16 +30,16 @@ Ekf<ConstantVelocity> straight(double psd = 0.05) {
 /// A custom filter that fails on demand.
 struct Moody : Ekf<ConstantVelocity> {
   using Ekf::Ekf;
-  bool refuses_plots = false;
-  bool refuses_time = false;
+  bool rejects_plots = false;
+  bool rejects_time = false;
 
   Status predict(double dt_s) noexcept {
-    return refuses_time ? Status::kNotPositiveDefinite : Ekf::predict(dt_s);
+    return rejects_time ? Status::kNotPositiveDefinite : Ekf::predict(dt_s);
   }
   template <class Sensor>
   Correction<Sensor::kMeasurements> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept {
-    if (refuses_plots)
+    if (rejects_plots)
       return failed_correction<Sensor::kMeasurements, double>(Status::kNotPositiveDefinite);
     return Ekf::correct(sensor, reading);
   }
@@ -188,10 +188,10 @@ TEST(ImmFailures, AnImpossibleModeStaysImpossible) {
   EXPECT_TRUE(is_finite(imm.estimate().mean));
 }
 
-auto moody_imm(bool first_refuses, bool second_refuses) {
+auto moody_imm(bool first_rejects, bool second_rejects) {
   Moody first{ConstantVelocity{}}, second{ConstantVelocity{.noise = WhiteAcceleration{1.0}}};
-  first.refuses_plots = first_refuses;
-  second.refuses_plots = second_refuses;
+  first.rejects_plots = first_rejects;
+  second.rejects_plots = second_rejects;
   Imm imm{kChain, first, second};
   EXPECT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);
   EXPECT_EQ(imm.predict(2.5), Status::kOk);
@@ -231,7 +231,7 @@ TEST(ImmFailures, SuccessOfAnImpossibleModeAloneIsAFailure) {
   const ModeChain<2> stay(ModeChain<2>::Matrix::Identity());
   for (const int possible : {0, 1}) {
     Moody filters[] = {Moody{ConstantVelocity{}}, Moody{ConstantVelocity{}}};
-    filters[possible].refuses_plots = true;
+    filters[possible].rejects_plots = true;
     Imm imm{stay, filters[0], filters[1]};
     imm.set_initial_mode_probability(possible == 0 ? Vec<double, 2>(1, 0) : Vec<double, 2>(0, 1));
     ASSERT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);
@@ -246,7 +246,7 @@ TEST(ImmFailures, SuccessOfAnImpossibleModeAloneIsAFailure) {
 
 TEST(ImmFailures, APredictionThatFailsInOneFilterIsUndoneInAll) {
   Moody second{ConstantVelocity{}};
-  second.refuses_time = true;
+  second.rejects_time = true;
   Imm imm{kChain, straight(), second};
   ASSERT_EQ(imm.start(test::five_km_off<double>()), Status::kOk);
   const Snapshot before(imm);

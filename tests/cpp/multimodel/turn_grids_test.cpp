@@ -12,7 +12,7 @@
 
 #include "filter/cases.hpp"
 #include "support/malloc_fence.hpp"
-#include "support/refusal.hpp"
+#include "support/rejection.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 using test::matrices_identical;
 using test::matrices_near;
-using test::refusal_of;
+using test::rejection_of;
 
 using Filter = Ekf<CoordinatedTurn>;
 using Rates = ModeVector<double, kRuntimeModes>;
@@ -373,14 +373,14 @@ TYPED_TEST(TurnGrids, AnArchiveContinuesWithTheSameBits) {
     ASSERT_NE(place, bytes.end());
     std::fill_n(place, of_rates.size(), std::byte{0x7f});  // no turn rates
     Archive spoilt(bytes);
-    auto refused = TypeParam::build();
-    refused.archive(spoilt);
+    auto rejected = TypeParam::build();
+    rejected.archive(spoilt);
     EXPECT_FALSE(spoilt.ok());
   }
 }
 
 TEST(TurnGrid, AnArchiveIsOfItsRules) {
-  const auto expect_refused = [](auto estimator, auto... others) {
+  const auto expect_rejected = [](auto estimator, auto... others) {
     ASSERT_EQ(estimator.start(beginning()), Status::kOk);
     Archive saved;
     estimator.archive(saved);
@@ -392,17 +392,17 @@ TEST(TurnGrid, AnArchiveIsOfItsRules) {
     EXPECT_TRUE(restores(estimator));
     EXPECT_FALSE((restores(others) || ...));
   };
-  expect_refused(adaptive(), adaptive({.max_turn_rate_rad_s = deg(5.5)}),
-                 adaptive({.min_spacing_rad_s = deg(2.1)}),
-                 adaptive({.kept_spacing_rad_s = deg(3.1)}), adaptive({.least_move_rad_s = 0.0}),
-                 adaptive({.centre_threshold = 0.7}), adaptive({.centre_gain = 0.4}),
-                 adaptive({.unlikely_threshold = 0.2}), adaptive({.likely_threshold = 0.8}));
-  expect_refused(switching(), switching({.threshold = 0.7}),
-                 switching({.rule = SwitchRule::kLiteral}),
-                 switching({.carry = SwitchCarry::kSlot}),
-                 switching({.grid_rad_s = TurnRateGrid::evenly(deg(5.0), 3), .initial_centre = 2}));
-  expect_refused(likely(), likely({.unlikely_threshold = 0.04}), likely({.likely_threshold = 0.2}),
-                 likely({.grid_rad_s = TurnRateGrid::evenly(deg(4.1), 2)}));
+  expect_rejected(adaptive(), adaptive({.max_turn_rate_rad_s = deg(5.5)}),
+                  adaptive({.min_spacing_rad_s = deg(2.1)}),
+                  adaptive({.kept_spacing_rad_s = deg(3.1)}), adaptive({.least_move_rad_s = 0.0}),
+                  adaptive({.centre_threshold = 0.7}), adaptive({.centre_gain = 0.4}),
+                  adaptive({.unlikely_threshold = 0.2}), adaptive({.likely_threshold = 0.8}));
+  expect_rejected(
+      switching(), switching({.threshold = 0.7}), switching({.rule = SwitchRule::kLiteral}),
+      switching({.carry = SwitchCarry::kSlot}),
+      switching({.grid_rad_s = TurnRateGrid::evenly(deg(5.0), 3), .initial_centre = 2}));
+  expect_rejected(likely(), likely({.unlikely_threshold = 0.04}), likely({.likely_threshold = 0.2}),
+                  likely({.grid_rad_s = TurnRateGrid::evenly(deg(4.1), 2)}));
 }
 
 TYPED_TEST(TurnGrids, AStartForgets) {
@@ -483,20 +483,20 @@ TEST(TurnGrid, RejectsInvalidGrids) {
 }
 
 TEST(TurnGrid, ReportsWhatWasExpectedAndWhatCame) {
-  EXPECT_EQ(refusal_of([] { return TurnRateGrid({0.0}); }),
+  EXPECT_EQ(rejection_of([] { return TurnRateGrid({0.0}); }),
             "grid_rad_s must have 2 to 16 turn rates, got 1");
-  EXPECT_EQ(refusal_of([] {
+  EXPECT_EQ(rejection_of([] {
               return switching({.grid_rad_s = {0.0, 0.1}});
             }),
             "grid_rad_s must have 3 to 16 turn rates, got 2");
   EXPECT_EQ(
-      refusal_of([] {
+      rejection_of([] {
         return adaptive({.max_turn_rate_rad_s = 0.10000001,
                          .initial_turn_rates_rad_s = AdaptiveGrid::Rates{-0.10000002, 0.0, 0.1}});
       }),
       "every rate of initial_turn_rates_rad_s must be within max_turn_rate_rad_s, "
       "0.10000001 to either side, got -0.10000002");
-  EXPECT_EQ(refusal_of([] {
+  EXPECT_EQ(rejection_of([] {
               return LikelyModelSetImm<UniformBank<Filter>>(
                   {}, ModeChain<kRuntimeModes>::staying(0.9, 3), turn());
             }),

@@ -94,7 +94,7 @@ TEST(BadTime, APlotWithAWildClockHarmsNoTrack) {
       std::vector<Plot> plots{sea.plot(kBoat.at(2.5 * k), 2.5 * k)};
       if (k < 24) plots[0].time_s = wrong_s;
       const ScanReport report = tracker.process(2.5 * k, plots);
-      EXPECT_EQ(report.refused_plots, k < 24 ? 1 : 0) << wrong_s;
+      EXPECT_EQ(report.rejected_plots, k < 24 ? 1 : 0) << wrong_s;
       expect_sound(tracker);
     }
     ASSERT_NE(tracker.find(1), nullptr) << wrong_s;
@@ -118,7 +118,7 @@ TEST(BadTime, APlotAheadOfItsScanThrowsNoTrackIntoTheFuture) {
     }
 }
 
-TEST(BadPlots, AreRefusedCountedAndLeaveNoTrace) {
+TEST(BadPlots, AreRejectedCountedAndLeaveNoTrace) {
   Sea sea(5);
   VesselTracker clean = followed(sea);
   Sea same(5);
@@ -150,7 +150,7 @@ TEST(BadPlots, AreRefusedCountedAndLeaveNoTrace) {
     plots.insert(plots.begin() + 7, good);
     const ScanReport report = tracker.process(2.5 * k, plots);
     EXPECT_EQ(report.status, Status::kOk);
-    EXPECT_EQ(report.refused_plots, 18);
+    EXPECT_EQ(report.rejected_plots, 18);
     ASSERT_EQ(report.plot_track_id.size(), 19u);
     for (std::size_t n = 0; n < 19; ++n) EXPECT_EQ(report.plot_track_id[n], n == 7 ? 1 : 0);
     (void)clean.process(2.5 * k, {&good, 1});
@@ -162,7 +162,7 @@ TEST(BadPlots, AtTheRadarItselfAreTaken) {
   VesselTracker tracker = make_tracker();
   for (int k = 0; k < 20; ++k) {
     const Plot plot{.time_s = 2.5 * k, .range_m = 0.0, .bearing_rad = 0.3 * k};
-    EXPECT_EQ(tracker.process(2.5 * k, {&plot, 1}).refused_plots, 0);
+    EXPECT_EQ(tracker.process(2.5 * k, {&plot, 1}).rejected_plots, 0);
     expect_sound(tracker);
   }
   ASSERT_NE(tracker.find(1), nullptr);
@@ -252,7 +252,7 @@ void survive(Association association, std::uint64_t seed, bool rotating) {
     }
     const ScanReport report = tracker.process(time_s, plots);
     ASSERT_EQ(report.status, Status::kOk);
-    EXPECT_EQ(report.refused_plots, bad);
+    EXPECT_EQ(report.rejected_plots, bad);
     ledger.note(report);
     ASSERT_EQ(ledger.ids, ids_of(tracker)) << "scan " << k;
     ASSERT_EQ(report.plot_track_id.size(), plots.size());

@@ -245,7 +245,7 @@ TEST(Room, MorePlotsThanAreTaken) {
     const double time_s = 2.5 * k;
     const ScanReport report = tracker.process(time_s, fleet(sea, 24, time_s));
     EXPECT_EQ(report.status, Status::kOk);
-    EXPECT_EQ(report.refused_plots, 4);
+    EXPECT_EQ(report.rejected_plots, 4);
     EXPECT_EQ(report.plot_track_id.size(), 20u);
   }
   EXPECT_EQ(tracks_of(tracker, true).size(), 20u);
@@ -265,7 +265,7 @@ TEST(Room, TenThousandPlotsInAScan) {
       while (flood && plots.size() < 10'000) plots.push_back(sea.clutter(time_s, 20'000.0));
       const ScanReport report = tracker.process(time_s, plots);
       EXPECT_EQ(report.status, Status::kOk);
-      EXPECT_EQ(report.refused_plots, 0);
+      EXPECT_EQ(report.rejected_plots, 0);
       EXPECT_EQ(report.plot_track_id.size(), plots.size());
     }
     expect_sound(tracker);

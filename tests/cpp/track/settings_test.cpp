@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// Settings that make no sense are refused by a sentence that names them.
+// Settings that make no sense are rejected by a sentence that names them.
 #include <functional>
 #include <limits>
 #include <string>
@@ -18,8 +18,8 @@ using test::make_tracker;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// What refusing says, or nothing.
-std::string refusal(const std::function<void()>& action) {
+/// What rejecting says, or nothing.
+std::string rejection(const std::function<void()>& action) {
   try {
     action();
   } catch (const std::invalid_argument& error) {
@@ -28,27 +28,27 @@ std::string refusal(const std::function<void()>& action) {
   return "";
 }
 
-void expect_refused(const char* name, const std::function<void(TrackerConfig&)>& spoil) {
+void expect_rejected(const char* name, const std::function<void(TrackerConfig&)>& spoil) {
   TrackerConfig config;
   spoil(config);
-  const std::string message = refusal([&] { config.validate(); });
+  const std::string message = rejection([&] { config.validate(); });
   EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u)
       << name << ": '" << message << "'";
-  EXPECT_EQ(refusal([&] { (void)make_tracker(config); }), message) << "the tracker says the same";
+  EXPECT_EQ(rejection([&] { (void)make_tracker(config); }), message) << "the tracker says the same";
 }
 
 TEST(TrackerConfig, TheDefaultsAreValid) {
-  EXPECT_EQ(refusal([] { TrackerConfig{}.validate(); }), "");
-  EXPECT_EQ(refusal([] { Radar{}.validate(); }), "");
+  EXPECT_EQ(rejection([] { TrackerConfig{}.validate(); }), "");
+  EXPECT_EQ(rejection([] { Radar{}.validate(); }), "");
 }
 
-TEST(TrackerConfig, NamesWhatItRefuses) {
+TEST(TrackerConfig, NamesWhatItRejects) {
 #define WAKELINE_EXPECT_REFUSED(field, ...) \
   for (const double value : {__VA_ARGS__})  \
-  expect_refused(#field, [value](TrackerConfig& config) { config.field = value; })
+  expect_rejected(#field, [value](TrackerConfig& config) { config.field = value; })
 #define WAKELINE_EXPECT_REFUSED_COUNT(field, ...) \
   for (const int value : {__VA_ARGS__})           \
-  expect_refused(#field, [value](TrackerConfig& config) { config.field = value; })
+  expect_rejected(#field, [value](TrackerConfig& config) { config.field = value; })
   WAKELINE_EXPECT_REFUSED(detection_probability, -0.1, 1.1, kNan);
   WAKELINE_EXPECT_REFUSED(gate_probability, 0.0, 1.0, kNan);
   WAKELINE_EXPECT_REFUSED(clutter_density_per_m2, 0.0, -1.0, kNan, kInf);
@@ -90,14 +90,14 @@ TEST(TrackerConfig, FieldsListEveryMember) {
       << "a member is missing from fields()";
 }
 
-TEST(RadarSettings, NamesWhatItRefuses) {
+TEST(RadarSettings, NamesWhatItRejects) {
   const auto expect = [](const char* name, const std::function<void(Radar&)>& spoil) {
     Radar radar = kTestRadar;
     spoil(radar);
-    const std::string message = refusal([&] { radar.validate(); });
+    const std::string message = rejection([&] { radar.validate(); });
     EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u)
         << name << ": '" << message << "'";
-    EXPECT_EQ(refusal([&] { (void)test::VesselTracker(radar, {}, vessel_imm(kTestRadar)); }),
+    EXPECT_EQ(rejection([&] { (void)test::VesselTracker(radar, {}, vessel_imm(kTestRadar)); }),
               message);
   };
   for (const double value : {0.0, -1.0, kNan, kInf}) {
@@ -112,11 +112,11 @@ TEST(RadarSettings, NamesWhatItRefuses) {
     expect("bearing_offset_rad", [=](Radar& radar) { radar.bearing_offset_rad = value; });
 }
 
-TEST(VesselModelSettings, NamesWhatItRefuses) {
+TEST(VesselModelSettings, NamesWhatItRejects) {
   const auto expect = [](const char* name, const std::function<void(VesselModels&)>& spoil) {
     VesselModels models;
     spoil(models);
-    const std::string message = refusal([&] { (void)vessel_imm(kTestRadar, models); });
+    const std::string message = rejection([&] { (void)vessel_imm(kTestRadar, models); });
     EXPECT_EQ(message.rfind(std::string(name) + " must be ", 0), 0u)
         << name << ": '" << message << "'";
   };

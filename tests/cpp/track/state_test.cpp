@@ -110,38 +110,39 @@ TEST(Saving, ARestoredTrackerGoesOnBitForBit) {
   }
 }
 
-TEST(Saving, RefusesWhatIsNoStateOfItsOwn) {
+TEST(Saving, RejectsWhatIsNoStateOfItsOwn) {
   VesselTracker tracker = make_tracker(), victim = make_tracker();
   for (const Scan& scan : busy_scans(1, 30)) (void)process(tracker, scan);
   for (const Scan& scan : busy_scans(2, 20)) (void)process(victim, scan);
   const std::vector<std::byte> state = tracker.save(), before = victim.save();
-  const auto expect_refused = [&](const std::vector<std::byte>& bytes, const char* what) {
+  const auto expect_rejected = [&](const std::vector<std::byte>& bytes, const char* what) {
     EXPECT_FALSE(victim.restore(bytes)) << what;
     EXPECT_EQ(victim.save(), before) << what;
   };
-  expect_refused({}, "nothing");
+  expect_rejected({}, "nothing");
   Draw draw(3);
   for (int k = 0; k < 40; ++k) {
     const auto size = static_cast<std::size_t>(draw.uniform(0, static_cast<double>(state.size())));
-    expect_refused({state.begin(), state.begin() + static_cast<std::ptrdiff_t>(size)}, "cut short");
+    expect_rejected({state.begin(), state.begin() + static_cast<std::ptrdiff_t>(size)},
+                    "cut short");
     std::vector<std::byte> flipped = state;
     // Half of the spoiled bytes lie before the clutter map, where numbers of tracks are.
     flipped[k % 2 == 0 ? size : size % 4096] ^= std::byte{static_cast<unsigned char>(1 << (k % 8))};
-    expect_refused(flipped, "one bit turned");
+    expect_rejected(flipped, "one bit turned");
   }
   std::vector<std::byte> longer = state;
   longer.push_back(std::byte{0});
-  expect_refused(longer, "a byte too many");
-  expect_refused(std::vector<std::byte>(state.size(), std::byte{0}), "zeros");
-  expect_refused(std::vector<std::byte>(state.size(), std::byte{0xFF}), "ones");
+  expect_rejected(longer, "a byte too many");
+  expect_rejected(std::vector<std::byte>(state.size(), std::byte{0}), "zeros");
+  expect_rejected(std::vector<std::byte>(state.size(), std::byte{0xFF}), "ones");
 
   TrackerConfig config;
   config.coast_scans = 4.0;
-  expect_refused(make_tracker(config).save(), "another configuration");
+  expect_rejected(make_tracker(config).save(), "another configuration");
   Radar radar = kTestRadar;
   radar.max_speed_mps += 1.0;
-  expect_refused(VesselTracker(kTestRadar, {}, vessel_imm(radar)).save(), "other models");
-  expect_refused(make_tracker({}, radar).save(), "another radar");
+  expect_rejected(VesselTracker(kTestRadar, {}, vessel_imm(radar)).save(), "other models");
+  expect_rejected(make_tracker({}, radar).save(), "another radar");
   EXPECT_TRUE(victim.restore(state));
 }
 

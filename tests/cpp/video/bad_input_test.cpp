@@ -70,7 +70,7 @@ TEST(BadSweep, TooLongIsRejected) {
   EXPECT_TRUE(extractor.process(longer.sweep(0)).empty());
   EXPECT_EQ(extractor.status(), SweepStatus::kTooLong);
   EXPECT_EQ(extractor.counts().too_long, 1);
-  EXPECT_TRUE(refused(extractor.status()));
+  EXPECT_TRUE(rejected(extractor.status()));
 }
 
 TEST(BadSweep, RepeatedIsRejected) {
@@ -347,7 +347,7 @@ TEST(AnySweeps, LoseNoCellAndGiveSensiblePlots) {
                                .cell_m = cell,
                                .amplitude = amplitude}));
       // A cell alone in its sweep has nothing to be compared with.
-      if (!refused(extractor.status()) && cells > 1)
+      if (!rejected(extractor.status()) && cells > 1)
         there += std::ranges::count_if(amplitude, [](int a) { return a > 0; });
     }
     check(extractor.finish());

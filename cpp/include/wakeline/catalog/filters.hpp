@@ -311,7 +311,7 @@ void AnyFilterOf<FilterList>::set_turn_rate(double turn_rate_rad_s) noexcept {
 template <class FilterList>
 AnyFilterBankOf<FilterList>::AnyFilterBankOf(const std::vector<Filter>& filters) {
   if (filters.empty() || filters.size() > kMaxModes)
-    refuse("filters must be 1 to " + std::to_string(kMaxModes) + " filters, got " +
+    reject("filters must be 1 to " + std::to_string(kMaxModes) + " filters, got " +
            std::to_string(filters.size()));
   bool same = true;
   for (const Filter& filter : filters) {

@@ -118,11 +118,11 @@ auto AnyModeHistoryOf<FilterList>::over_filter(
           if constexpr (kLearnsTurnRate<Kind>)
             return ModeHistory<Kind>(tree, grid_rad_s, *grid_std_rad_s, chain, prototype);
           else
-            refuse(
+            reject(
                 "grid_std_rad_s is for a filter over CoordinatedTurnRate, which learns its turn "
                 "rate; this one knows it");
         } else {
-          refuse(
+          reject(
               "filter must be one over CoordinatedTurn, whose turn rate is known, or over "
               "CoordinatedTurnRate, which learns it");
         }
@@ -134,7 +134,7 @@ template <class FilterList>
 auto AnyModeHistoryOf<FilterList>::over_filters(const HistoryTree& tree, const Chain& chain,
                                                 const std::vector<Filter>& filters) -> Variant {
   if (filters.empty() || filters.size() > kMaxModes)
-    refuse("filters must be 1 to " + std::to_string(kMaxModes) + " filters, got " +
+    reject("filters must be 1 to " + std::to_string(kMaxModes) + " filters, got " +
            std::to_string(filters.size()));
   return std::visit(
       [&]<class Kind>(const Kind&) -> Variant {
@@ -143,13 +143,13 @@ auto AnyModeHistoryOf<FilterList>::over_filters(const HistoryTree& tree, const C
           for (std::size_t k = 0; k < filters.size(); ++k) {
             const auto* const filter = std::get_if<Kind>(&filters[k].variant());
             if (filter == nullptr || filters[k].linear() != filters.front().linear())
-              refuse("filters must be of one kind over one motion model; filter " +
+              reject("filters must be of one kind over one motion model; filter " +
                      std::to_string(k) + " differs from the first");
             bank.push_back(*filter);
           }
           return ModeHistory<Kind>(tree, chain, UniformBank<Kind>(std::span<const Kind>(bank)));
         } else {
-          refuse("filters must be over CoordinatedTurn or CoordinatedTurnRate");
+          reject("filters must be over CoordinatedTurn or CoordinatedTurnRate");
         }
       },
       filters.front().variant());

@@ -142,7 +142,7 @@ constexpr void for_each_field(Struct& x, Visit&& visit) {
 /// Refuses a number that a rule does not hold for.
 inline void require_rule(const Rule& rule, const std::string& name, double value) {
   if (!rule.holds(value))
-    refuse(name + " must be " + to_words(rule) + ", got " + number_text(value));
+    reject(name + " must be " + to_words(rule) + ", got " + number_text(value));
 }
 
 /// Throws `std::invalid_argument` in words that name the first field whose rule does not hold, that
@@ -156,7 +156,7 @@ void validate_fields(const Struct& x, const std::string& prefix = "") {
     } else if constexpr (NamedEnum<Value>) {
       bool known = false;
       for (const auto& word : words_of(value)) known = known || word.value == value;
-      if (!known) refuse(prefix + entry.name + " must be " + choices<Value>());
+      if (!known) reject(prefix + entry.name + " must be " + choices<Value>());
     } else if constexpr (HasFields<Value>) {
       validate_fields(value, prefix + entry.name + ".");
       if constexpr (requires { value.validate(); }) value.validate();

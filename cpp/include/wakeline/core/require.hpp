@@ -12,7 +12,7 @@ namespace wakeline {
 
 /// Throws `std::invalid_argument`; where exceptions are switched off, says it on the standard error
 /// and aborts. For constructors only.
-[[noreturn]] inline void refuse(const std::string& message) {
+[[noreturn, gnu::noinline]] inline void reject(const std::string& message) {
 #if defined(__cpp_exceptions)
   throw std::invalid_argument(message);
 #else
@@ -22,15 +22,21 @@ namespace wakeline {
 }
 
 /// A number in a message, with digits enough to tell it from one that would do.
-inline std::string number_text(double value) {
+[[gnu::noinline]] inline std::string number_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.12g", value);
   return text;
 }
 
-/// Refuses in words what was wanted and what came, unless the condition holds.
+/// Rejects a value in words that say what was wanted and what came.
+[[noreturn, gnu::noinline]] inline void reject_value(const char* name, const char* wanted,
+                                                     double value) {
+  reject(std::string(name) + " must be " + wanted + ", got " + number_text(value));
+}
+
+/// Rejects the value unless the condition holds.
 inline void require(bool condition, const char* name, const char* wanted, double value) {
-  if (!condition) refuse(std::string(name) + " must be " + wanted + ", got " + number_text(value));
+  if (!condition) reject_value(name, wanted, value);
 }
 
 inline void require_not_negative(const char* name, double value) {

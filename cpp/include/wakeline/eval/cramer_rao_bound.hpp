@@ -37,7 +37,7 @@ class CramerRaoBound {
   /// symmetric and positive definite.
   explicit CramerRaoBound(const Covariance& start_covariance) : covariance_(start_covariance) {
     if (check(Gaussian<N, Scalar>{Vec<Scalar, N>::Zero(), start_covariance}) != Status::kOk)
-      refuse("start_covariance must be finite, symmetric and positive definite");
+      reject("start_covariance must be finite, symmetric and positive definite");
   }
 
   /// (N x N), over the state of the motion model.

@@ -44,7 +44,7 @@ struct CovarianceStrobe {
   /// Throws `std::invalid_argument` unless S is symmetric positive definite and γ positive.
   void validate() const {
     if (check(Gaussian<2>{.covariance = innovation_covariance_m2}) != Status::kOk)
-      refuse("innovation_covariance_m2 must be finite, symmetric and positive definite");
+      reject("innovation_covariance_m2 must be finite, symmetric and positive definite");
     require_positive("threshold", threshold);
   }
 

@@ -42,9 +42,9 @@ template <class Motion>
 requires requires { Motion::kPattern; }
 inline constexpr Pattern<kStatesOf<Motion>> kPatternOf<Motion> = Motion::kPattern;
 
-[[noreturn]] inline void refuse_pattern(int row, int column, double wanted, double got,
+[[noreturn]] inline void reject_pattern(int row, int column, double wanted, double got,
                                         const char* where, double step_s) {
-  refuse("the kPattern of this motion model must be true: it says " + number_text(wanted) +
+  reject("the kPattern of this motion model must be true: it says " + number_text(wanted) +
          " of element (" + std::to_string(row) + ", " + std::to_string(column) + ") of the " +
          where + " for a step of " + number_text(step_s) + " s is " + number_text(got));
 }
@@ -67,7 +67,7 @@ void require_pattern(const Motion& motion) {
         const char said = kPatternOf<Motion>.element[i][j];
         const double wanted = said == '1';
         if (said != 'x' && any(f(i, j) != Scalar(wanted)))
-          refuse_pattern(i, j, wanted, double(lane(f(i, j), 0)), where, step_s);
+          reject_pattern(i, j, wanted, double(lane(f(i, j), 0)), where, step_s);
       }
   }
 }

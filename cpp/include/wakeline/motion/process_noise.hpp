@@ -85,7 +85,7 @@ class ProcessNoise {
         break;
     }
     if (kind_ == Kind::kWhiteJerk && !holds_acceleration)
-      refuse("white jerk needs an acceleration in the state, this model has none");
+      reject("white jerk needs an acceleration in the state, this model has none");
   }
 
   /// Q of one axis `[position, velocity]`, without a turn.

@@ -51,7 +51,7 @@ class Imm {
         weight_(ModeMatrix<Scalar, kModels>::Zero(bank.size(), bank.size())),
         transition_(weight_) {
     if (chain.modes() != bank.size())
-      refuse("chain must have " + std::to_string(bank.size()) + " modes, one for each model, got " +
+      reject("chain must have " + std::to_string(bank.size()) + " modes, one for each model, got " +
              std::to_string(chain.modes()));
   }
 
@@ -101,8 +101,8 @@ class Imm {
       for (int mode = 0; mode < bank_.size(); ++mode)
         if (none(bank_.active(mode))) ::new (each.place(mode)) Correction<kM, Scalar>();
     bank_.for_each([&](int mode, auto& filter, auto&) {
-      ::new (each.place(mode)) Correction<kM, Scalar>(with_model(
-          sensor, [&](const auto& model) { return filter.correct(model, reading); }));
+      ::new (each.place(mode)) Correction<kM, Scalar>(
+          with_model(sensor, [&](const auto& model) { return filter.correct(model, reading); }));
     });
 
     const auto count = static_cast<std::size_t>(bank_.size());

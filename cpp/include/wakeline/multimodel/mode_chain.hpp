@@ -9,7 +9,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <string>
 
 #include "wakeline/core/require.hpp"
 
@@ -51,7 +50,7 @@ class ModeChain {
   requires(Other != K) explicit ModeChain(const ModeChain<Other>& chain)
       : matrix_(chain.matrix_), continuous_(chain.continuous_) {
     if (K != kRuntimeModes && chain.modes() != K)
-      refuse("a chain of " + std::to_string(K) + " modes was given one of " +
+      reject("a chain of " + std::to_string(K) + " modes was given one of " +
              std::to_string(chain.modes()));
   }
 
@@ -80,7 +79,7 @@ class ModeChain {
     const Eigen::Index modes = sojourn_s.size();
     require_modes("mean sojourn times", modes);
     if (next.rows() != modes || next.cols() != modes)
-      refuse("from_sojourn_s needs one row and column of `next` for each of " +
+      reject("from_sojourn_s needs one row and column of `next` for each of " +
              std::to_string(modes) + " modes, got " + std::to_string(next.rows()) + " x " +
              std::to_string(next.cols()));
     if (modes > 1) require_stochastic(next);
@@ -143,14 +142,14 @@ class ModeChain {
     Matrix matrix;
   };
   explicit ModeChain(const Generator& generator) : matrix_(generator.matrix), continuous_(true) {
-    if (!matrix_.allFinite()) refuse("every rate of the generator of a mode chain must be finite");
+    if (!matrix_.allFinite()) reject("every rate of the generator of a mode chain must be finite");
   }
 
   /// Throws unless there are K modes, or 1 to kMaxModes.
   static void require_modes(const std::string& what, Eigen::Index count) {
     constexpr int kLeast = K == kRuntimeModes ? 1 : K;
     if (count >= kLeast && count <= kModeCapacity<K>) return;
-    refuse("a mode chain needs " +
+    reject("a mode chain needs " +
            (K == kRuntimeModes ? "1 to " + std::to_string(kMaxModes) : std::to_string(K)) + " " +
            what + ", got " + std::to_string(count));
   }
@@ -158,7 +157,7 @@ class ModeChain {
   static void require_square(const Matrix& matrix) {
     require_modes("modes", matrix.rows());
     if (matrix.rows() != matrix.cols())
-      refuse("a mode chain needs a square matrix, got " + std::to_string(matrix.rows()) + " x " +
+      reject("a mode chain needs a square matrix, got " + std::to_string(matrix.rows()) + " x " +
              std::to_string(matrix.cols()));
   }
 
@@ -168,7 +167,7 @@ class ModeChain {
       for (Eigen::Index j = 0; j < matrix.cols(); ++j)
         require_probability("every element of the mode chain", matrix(i, j));
       if (const double sum = matrix.row(i).sum(); !(std::abs(sum - 1.0) <= 1e-9)) {
-        refuse("row " + std::to_string(i) + " of the mode chain must sum to 1, sums to " +
+        reject("row " + std::to_string(i) + " of the mode chain must sum to 1, sums to " +
                number_text(sum) + " (rows: mode before; columns: mode now)");
       }
     }
@@ -212,7 +211,7 @@ class ModeChain {
       matrix_(i, i) = -row_sum(matrix_, i);
     }
     if (!valid || !(transition(period_s) - over_period).isZero(1e-9))
-      refuse(
+      reject(
           "this matrix is not the transition of a continuous-time chain over its period, or of one "
           "that rarely stays over it; leave out the period to apply it once per prediction");
   }

@@ -91,7 +91,7 @@ class ModeHistory {
         probability_(initial_),
         transition_(ModeMatrix<Scalar, K>::Zero(bank.size(), bank.size())) {
     if (chain.modes() != bank.size())
-      refuse("a ModeHistory needs one mode of its chain for each filter, got " +
+      reject("a ModeHistory needs one mode of its chain for each filter, got " +
              std::to_string(chain.modes()) + " modes and " + std::to_string(bank.size()) +
              " filters");
     require(tree.max_branches <= Capacity, "max_branches",
@@ -408,8 +408,8 @@ class ModeHistory {
                                                 const Gaussian<M, Lanes>& reading,
                                                 const Row& before, Row& after) noexcept {
     Filter& filter = filter_of(before);
-    const Correction<M, Lanes> correction = with_model(
-        sensor, [&](const auto& model) { return filter.correct(model, reading); });
+    const Correction<M, Lanes> correction =
+        with_model(sensor, [&](const auto& model) { return filter.correct(model, reading); });
     after.set_beliefs(filter.estimate());
     return correction;
   }

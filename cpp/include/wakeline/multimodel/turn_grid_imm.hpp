@@ -65,7 +65,7 @@ class TurnGridImm : public Imm<BankType> {
         initial_rates_(initial.template cast<TurnRate<Scalar>>()),
         rates_(initial_rates_) {
     if (initial.size() != bank.size())
-      refuse("this estimator needs " + std::to_string(initial.size()) + " filters, got " +
+      reject("this estimator needs " + std::to_string(initial.size()) + " filters, got " +
              std::to_string(bank.size()));
     this->bank_.for_each([&](int k, auto& filter, auto&) { set_turn_rate(filter, rates_[k]); });
   }

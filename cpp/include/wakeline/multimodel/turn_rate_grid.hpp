@@ -38,14 +38,14 @@ class TurnRateGrid {
   /// Throws `std::invalid_argument` unless the number of rates is `least` to kMaxModes.
   static void require_count(Eigen::Index count, int least) {
     if (count >= least && count <= kMaxModes) return;
-    refuse("grid_rad_s must have " + std::to_string(least) + " to " + std::to_string(kMaxModes) +
+    reject("grid_rad_s must have " + std::to_string(least) + " to " + std::to_string(kMaxModes) +
            " turn rates, got " + std::to_string(count));
   }
 
   /// Throws `std::invalid_argument` unless `count` is the number of rates.
   void require_for_each(const char* name, Eigen::Index count) const {
     if (count != rates_.size())
-      refuse(std::string(name) + " must have one number for each of the " + std::to_string(size()) +
+      reject(std::string(name) + " must have one number for each of the " + std::to_string(size()) +
              " turn rates of grid_rad_s, got " + std::to_string(count));
   }
 

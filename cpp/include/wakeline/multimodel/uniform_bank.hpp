@@ -35,7 +35,7 @@ class UniformBank {
 
   /// Throws `std::invalid_argument` unless there are K filters, or 1 to kMaxModes.
   explicit UniformBank(std::span<const Filter> filters)
-      : slots_(filled(filters.empty() ? (refuse("a bank needs filters, got none"), filters.front())
+      : slots_(filled(filters.empty() ? (reject("a bank needs filters, got none"), filters.front())
                                       : filters.front())),
         size_(static_cast<int>(filters.size())) {
     active_.fill(true);
@@ -112,7 +112,7 @@ class UniformBank {
 
   void check_size() const {
     if (K == kRuntimeModes ? size_ < 1 || size_ > kMaxModes : size_ != K)
-      refuse("a bank needs " +
+      reject("a bank needs " +
              (K == kRuntimeModes ? "1 to " + std::to_string(kMaxModes) : std::to_string(K)) +
              " filters, got " + std::to_string(size_));
   }

@@ -44,9 +44,9 @@ class VariantBank {
 
   /// Throws `std::invalid_argument` unless there are 1 to `Capacity` filters.
   explicit VariantBank(std::span<const Filter> filters) : size_(static_cast<int>(filters.size())) {
-    if (filters.empty()) refuse("a bank needs filters, got none");
+    if (filters.empty()) reject("a bank needs filters, got none");
     if (filters.size() > kCapacity)
-      refuse("a bank has room for " + std::to_string(Capacity) + " filters, got " +
+      reject("a bank has room for " + std::to_string(Capacity) + " filters, got " +
              std::to_string(filters.size()));
     for (std::size_t k = 0; k < filters.size(); ++k) slots_[k] = slot_of(filters[k]);
   }

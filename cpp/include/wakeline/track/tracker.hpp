@@ -45,7 +45,7 @@ struct ScanReport {
   std::span<const Event> events;
   /// Not finite, behind the antenna, of so many turns that the bearing is lost, of another time
   /// than the scan, or beyond `max_plots`.
-  int refused_plots = 0;
+  int rejected_plots = 0;
 };
 
 /// What a track can be: an estimator of `double` with the face of `Imm` (an `Imm` of one model is a

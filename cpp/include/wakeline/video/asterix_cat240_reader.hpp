@@ -321,8 +321,8 @@ class Cat240Reader {
 
   bool known_type(std::size_t begin, const Items& items) noexcept {
     const Octets octet = items[cat240::kMessageType];
-    if (octet.empty()) return refuse_count(begin, "I240/000", 0);
-    return is_known(octet) || refuse(Cat240Fault::kMessageType, begin, 2, cat240::number(octet));
+    if (octet.empty()) return reject_count(begin, "I240/000", 0);
+    return is_known(octet) || reject(Cat240Fault::kMessageType, begin, 2, cat240::number(octet));
   }
 
   Cat240Event read_summary(Octets text) noexcept {
@@ -342,40 +342,40 @@ class Cat240Reader {
   bool read_header(std::size_t begin, const Items& items) noexcept {
     using namespace cat240;
     const Choice header = choose(items, kHeaderNano, kHeaderFemto);
-    if (header.count != 1) return refuse_count(begin, "I240/040 or I240/041", header.count);
+    if (header.count != 1) return reject_count(begin, "I240/040 or I240/041", header.count);
     video_.start_azimuth = static_cast<std::uint16_t>(number(header.octets.subspan(0, 2)));
     video_.end_azimuth = static_cast<std::uint16_t>(number(header.octets.subspan(2, 2)));
     video_.start_cell = static_cast<std::uint32_t>(number(header.octets.subspan(4, 4)));
     const std::uint64_t unit_fs = items[kHeaderFemto].empty() ? kFemtosPerNano : 1;
     video_.cell_duration_fs = unit_fs * number(header.octets.subspan(8, 4));
     if (video_.turned() == -kHalfTurn)
-      return refuse(Cat240Fault::kAzimuth, begin, kHalfTurn, kHalfTurn);
-    return video_.cell_duration_fs > 0 || refuse(Cat240Fault::kCellDuration, begin, 1, 0);
+      return reject(Cat240Fault::kAzimuth, begin, kHalfTurn, kHalfTurn);
+    return video_.cell_duration_fs > 0 || reject(Cat240Fault::kCellDuration, begin, 1, 0);
   }
 
   bool read_resolution(std::size_t begin, const Items& items) noexcept {
     const Octets octets = items[cat240::kResolution];
-    if (octets.empty()) return refuse_count(begin, "I240/048", 0);
+    if (octets.empty()) return reject_count(begin, "I240/048", 0);
     if ((octets[0] & std::byte{0x80}) != std::byte{0})
-      return refuse(Cat240Fault::kCompressed, begin, 0, 1);
+      return reject(Cat240Fault::kCompressed, begin, 0, 1);
     const auto resolution = std::to_integer<unsigned>(octets[1]);
     video_.bits = resolution - 1 < 5 ? 1 << (resolution - 1) : 0;
-    return video_.bits > 0 || refuse(Cat240Fault::kResolution, begin, 5, resolution);
+    return video_.bits > 0 || reject(Cat240Fault::kResolution, begin, 5, resolution);
   }
 
   bool read_cells(std::size_t begin, const Items& items) noexcept {
     using namespace cat240;
     const Octets counters = items[kCounters];
     const Choice block = choose(items, kVideoLow, kVideoHigh);
-    if (counters.empty()) return refuse_count(begin, "I240/049", 0);
-    if (block.count != 1) return refuse_count(begin, "I240/050, I240/051 or I240/052", block.count);
+    if (counters.empty()) return reject_count(begin, "I240/049", 0);
+    if (block.count != 1) return reject_count(begin, "I240/050, I240/051 or I240/052", block.count);
     video_.cells = static_cast<std::uint32_t>(number(counters.subspan(2)));
-    if (video_.cells == 0) return refuse(Cat240Fault::kNoCells, begin, 1, 0);
+    if (video_.cells == 0) return reject(Cat240Fault::kNoCells, begin, 1, 0);
     const std::size_t needed =
         (std::size_t{video_.cells} * static_cast<unsigned>(video_.bits) + 7) / 8;
     const Octets room = block.octets.subspan(1);
     const std::size_t held = std::min<std::size_t>(number(counters.first(2)), room.size());
-    if (needed > held) return refuse(Cat240Fault::kCounters, begin, needed, held);
+    if (needed > held) return reject(Cat240Fault::kCounters, begin, needed, held);
     video_.packed = room.first(needed);
     return true;
   }
@@ -426,17 +426,17 @@ class Cat240Reader {
 
   Cat240Event tell(Cat240Fault fault, std::size_t where, std::uint64_t wanted,
                    std::uint64_t came) noexcept {
-    refuse(fault, where, wanted, came);
+    reject(fault, where, wanted, came);
     return Cat240Event::kProblem;
   }
 
-  bool refuse(Cat240Fault fault, std::size_t where, std::uint64_t wanted,
+  bool reject(Cat240Fault fault, std::size_t where, std::uint64_t wanted,
               std::uint64_t came) noexcept {
     problem_ = {fault, base_ + where, "", wanted, came};
     return false;
   }
 
-  bool refuse_count(std::size_t where, const char* item, std::uint64_t came) noexcept {
+  bool reject_count(std::size_t where, const char* item, std::uint64_t came) noexcept {
     problem_ = {Cat240Fault::kItemCount, base_ + where, item, 1, came};
     return false;
   }

@@ -77,7 +77,7 @@ enum class SweepStatus : std::uint8_t {
   kInvalid = 6,          ///< rejected: see `Sweep::valid`
 };
 
-[[nodiscard]] constexpr bool refused(SweepStatus status) noexcept {
+[[nodiscard]] constexpr bool rejected(SweepStatus status) noexcept {
   return status >= SweepStatus::kRepeated;
 }
 
@@ -93,11 +93,11 @@ constexpr const char* to_string(SweepStatus status) noexcept {
     case SweepStatus::kGeometryChanged:
       return "start range or cell length changed";
     case SweepStatus::kRepeated:
-      return "refused: the same azimuth again";
+      return "rejected: the same azimuth again";
     case SweepStatus::kTooLong:
-      return "refused: too many cells";
+      return "rejected: too many cells";
     case SweepStatus::kInvalid:
-      return "refused: not a radar's sweep";
+      return "rejected: not a radar's sweep";
   }
   return "unknown";
 }
@@ -172,7 +172,7 @@ class PlotExtractor {
   std::span<const VideoPlot> process(const Sweep<Amplitude>& sweep) noexcept {
     plots_.clear();
     status_ = admit(sweep);
-    if (refused(status_)) return plots_;
+    if (rejected(status_)) return plots_;
     ++counts_.sweeps;
     const bool first = !running_ || status_ == SweepStatus::kGap;
     remember(sweep);

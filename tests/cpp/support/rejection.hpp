@@ -9,7 +9,7 @@ namespace wakeline::test {
 
 /// The message with which `build` fails, or "none".
 template <class Build>
-std::string refusal_of(Build&& build) {
+std::string rejection_of(Build&& build) {
   try {
     (void)build();
   } catch (const std::invalid_argument& error) {
