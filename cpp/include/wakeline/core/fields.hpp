@@ -139,7 +139,7 @@ constexpr void for_each_field(Struct& x, Visit&& visit) {
              std::remove_const_t<Struct>::fields());
 }
 
-/// Refuses a number that a rule does not hold for.
+/// Rejects a number that breaks the rule.
 inline void require_rule(const Rule& rule, const std::string& name, double value) {
   if (!rule.holds(value))
     reject(name + " must be " + to_words(rule) + ", got " + number_text(value));
