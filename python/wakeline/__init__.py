@@ -70,27 +70,8 @@ from ._engine.gating import (
     RangeBearingWindow,
     strobe_echo,
 )
-from ._engine.measurement import (
-    ConvertedRangeBearing,
-    OwnShip,
-    Position,
-    RangeBearing,
-    RangeBearingDoppler,
-    conversion_bias_matters,
-    conversion_bias_ratio,
-)
-from ._engine.motion import (
-    ConstantAcceleration,
-    ConstantVelocity,
-    CoordinatedTurn,
-    CoordinatedTurnRate,
-    PiecewiseAcceleration,
-    ProcessNoise,
-    Singer,
-    WanderingCourse,
-    WhiteAcceleration,
-    WhiteJerk,
-)
+from ._engine.measurement import *  # noqa: F403
+from ._engine.motion import *  # noqa: F403
 from ._engine.multimodel import (
     AdaptiveGridImm,
     BayesianAlphaBeta,
@@ -166,12 +147,7 @@ __all__ = [
     "BayesianAlphaBeta",
     "BenedictBordner",
     "ChiSquareGate",
-    "ConstantAcceleration",
     "ConstantGains",
-    "ConstantVelocity",
-    "ConvertedRangeBearing",
-    "CoordinatedTurn",
-    "CoordinatedTurnRate",
     "CovarianceStrobe",
     "CriticallyDamped",
     "DriftModel",
@@ -192,21 +168,14 @@ __all__ = [
     "LocalPlane",
     "ModeChain",
     "ModeHistory",
-    "OwnShip",
-    "PiecewiseAcceleration",
     "PlotExtractor",
-    "Position",
-    "ProcessNoise",
     "Radar",
     "RadiusGate",
-    "RangeBearing",
-    "RangeBearingDoppler",
     "RangeBearingWindow",
     "RangeDependent",
     "RecentMemory",
     "RunResult",
     "ScanImage",
-    "Singer",
     "SquareRootUkf",
     "StaticClutterMap",
     "Status",
@@ -220,16 +189,11 @@ __all__ = [
     "UncertaintyEllipse",
     "UsvNavigator",
     "VesselModels",
-    "WanderingCourse",
-    "WhiteAcceleration",
-    "WhiteJerk",
     "WindowBank",
     "chi_square_probability",
     "chi_square_quantile",
     "closest_approach",
     "consistency_bounds",
-    "conversion_bias_matters",
-    "conversion_bias_ratio",
     "dead_reckon",
     "drift_forecast",
     "drift_particles",
@@ -255,4 +219,8 @@ __all__ = [
     "two_point",
     "vessel_imm",
     "wrap_angle",
+]
+# A new motion model or sensor is at the top level without being listed here.
+__all__ += [
+    name for noun in (measurement, motion) for name in vars(noun) if not name.startswith("_")
 ]
