@@ -209,9 +209,9 @@ std::string class_doc(const StructTable& table, const char* doc) {
   std::string text = std::string(doc) + "\n\nParameters\n----------";
   for (const FieldRow& row : table.rows) {
     const py::object value = get(row, one.get());
-    text += "\n" + std::string(row.name) + " : " + type_text(row, value, false) + ", default " +
-            default_text(value) + "\n    " + row.sentence;
-    if (const std::string range = range_text(row); !range.empty()) text += " " + range;
+    text.append("\n").append(row.name).append(" : ").append(type_text(row, value, false));
+    text.append(", default ").append(default_text(value)).append("\n    ").append(row.sentence);
+    if (const std::string range = range_text(row); !range.empty()) text.append(" ").append(range);
   }
   return text;
 }
