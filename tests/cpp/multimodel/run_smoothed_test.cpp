@@ -62,7 +62,7 @@ Smoothed smoothed(std::size_t scans, double pause_s) {
 TEST(RunSmoothed, BeforeAPauseOverWhichNothingGoesBackIsSmoothedByItself) {
   const std::vector<double> before = smoothed(kPause, 3.0).results.mean;
   int by_itself = 0;
-  for (double pause_s = 3.0; pause_s < 1e10; pause_s *= 3.0) {
+  for (double pause_s = 3.0; pause_s < kLargestInput; pause_s *= 3.0) {
     const auto [results, status] = smoothed(kScans, pause_s);
     ASSERT_EQ(status, Status::kOk) << pause_s;
     by_itself += std::equal(before.begin(), before.end(), results.mean.begin());
