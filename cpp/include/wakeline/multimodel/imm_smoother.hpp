@@ -54,7 +54,9 @@ Revised<Gaussian<N, Scalar>, Scalar> revised(const Gaussian<N, Scalar>& prior,
   const Cholesky<N, Scalar> root(before.covariance);
   if (!root.ok()) return result;
   const auto whitened = [&](const Matrix& covariance) -> Matrix {
-    return root.template whiten<N>(Matrix(root.template whiten<N>(covariance).transpose()));
+    Matrix one_side = root.template whiten<N>(covariance);
+    one_side.transposeInPlace();
+    return root.template whiten<N>(one_side);
   };
   const Eigen::SelfAdjointEigenSolver<Matrix> axes(whitened(after.covariance));
   if (axes.info() != Eigen::Success || !(axes.eigenvalues()[0] > Scalar(0))) return result;
