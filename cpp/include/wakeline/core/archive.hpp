@@ -82,7 +82,7 @@ class Archive {
   template <class Value>
   void same(const Value& own) {
     if constexpr (HasFields<Value>) {
-      for_each_field(own, [this](const auto&, const auto& value) { same(value); });
+      for_each_field(own, [this](const auto&, const auto& value) { this->same(value); });
     } else {
       Value read = own;
       (*this)(read);
