@@ -54,8 +54,9 @@ class AnySensorOf {
   decltype(auto) visit_model(Function&& function) const noexcept {
     return std::visit(
         [&]<class Sensor>(const Sensor& sensor) {
+          // A dependent type, so that clang checks the call for direct sensors alone.
           if constexpr (kIsDirect<Sensor>)
-            return function(Fix{});
+            return function(std::conditional_t<kIsDirect<Sensor>, Fix, Sensor>{});
           else
             return function(sensor);
         },
