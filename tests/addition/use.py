@@ -4,6 +4,7 @@ import copy
 import pickle
 
 import numpy as np
+import pytest
 
 import wakeline as wl
 
@@ -28,10 +29,6 @@ assert wl.TrackerConfig().added_margin_m == 2.0
 assert "margin" in wl.TrackerConfig.added_margin_m.__doc__
 assert pickle.loads(pickle.dumps(wl.TrackerConfig(added_margin_m=3.0))).added_margin_m == 3.0
 assert "added_margin_m" in wl.tracking.Settings().toml
-try:
+with pytest.raises(ValueError, match="added_margin_m"):
     wl.TrackerConfig(added_margin_m=-1.0)
-except ValueError as error:
-    assert "added_margin_m" in str(error)
-else:
-    raise AssertionError("a negative margin passed")
 print("a motion model, a sensor and a setting were added and used")
