@@ -28,7 +28,7 @@ assert np.isfinite(imm.run(z, dt_s=1.0, sensor=sensor, start=start).mean).all()
 assert wl.TrackerConfig().added_margin_m == 2.0
 assert "margin" in wl.TrackerConfig.added_margin_m.__doc__
 assert pickle.loads(pickle.dumps(wl.TrackerConfig(added_margin_m=3.0))).added_margin_m == 3.0
-assert "added_margin_m" in wl.tracking.Settings().toml
+assert "added_margin_m" in wl.tracking.Settings.default().toml()
 with pytest.raises(ValueError, match="added_margin_m"):
     wl.TrackerConfig(added_margin_m=-1.0)
 print("a motion model, a sensor and a setting were added and used")
