@@ -43,8 +43,9 @@ int main() {
     if (!navigator.update(compass, Vec<double, 1>(heading_read_rad))) return 1;
     if (!navigator.update(log, Vec<double, 1>(speed_read_mps))) return 1;
     if (second <= kFixesUntil_s) {
-      const Vec<double, 2> fix_m(truth_m[0] + gnss.position_std_m * normal(random),
-                                 truth_m[1] + gnss.position_std_m * normal(random));
+      Vec<double, 2> fix_m = truth_m;
+      fix_m[1] += gnss.position_std_m * normal(random);
+      fix_m[0] += gnss.position_std_m * normal(random);
       if (!navigator.update(gnss, fix_m)) return 1;
       reckoned_m = fix_m;
     } else {
