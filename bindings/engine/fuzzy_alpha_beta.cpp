@@ -16,8 +16,6 @@ using PyFuzzy = PyEstimator<Fuzzy>;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-constexpr Word<TNorm> kTNorms[] = {{"product", TNorm::kProduct}, {"minimum", TNorm::kMinimum}};
-
 py::array_t<double> to_array(std::span<const double> values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
@@ -160,7 +158,7 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
                                                   .steepness = steepness,
                                                   .threshold = threshold,
                                                   .clip = clip,
-                                                  .t_norm = to_option("t_norm", t_norm, kTNorms),
+                                                  .t_norm = to_option<TNorm>("t_norm", t_norm),
                                                   .hold = hold,
                                                   .acceleration_std_mps2 = acceleration}));
             }),
@@ -177,7 +175,7 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
         .with("steepness", rules.steepness)
         .with("threshold", rules.threshold)
         .with("clip", rules.clip)
-        .with("t_norm", word_of(rules.t_norm, kTNorms))
+        .with("t_norm", word_of(rules.t_norm))
         .with("hold", rules.hold)
         .with("acceleration_std_mps2", rules.acceleration_std_mps2);
   });

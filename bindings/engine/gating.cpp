@@ -72,14 +72,11 @@ AmplitudeImage<Amplitude> to_image(const py::object& video, const py::array& amp
 
 // Strobes -----------------------------------------------------------------------------------------
 
-constexpr Word<EchoChoice> kChoices[] = {{"all", EchoChoice::kAll},
-                                         {"nearest", EchoChoice::kNearest},
-                                         {"strongest", EchoChoice::kStrongest}};
-
 StrobeEcho lay_strobe(const py::object& video, const AnyStrobe& strobe,
                       const DoubleArray& predicted_m, int least_amplitude, int pedestal,
                       const std::string& several) {
-  const StrobeSettings settings{least_amplitude, pedestal, to_option("several", several, kChoices)};
+  const StrobeSettings settings{least_amplitude, pedestal,
+                                to_option<EchoChoice>("several", several)};
   settings.validate();
   const Vec<double, 2> predicted = to_position("predicted_m", predicted_m);
   const auto is_a = [&](const char* module, const char* name) {

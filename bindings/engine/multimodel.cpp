@@ -15,11 +15,6 @@
 namespace wakeline::python {
 namespace {
 
-constexpr Word<SwitchRule> kRules[] = {{"symmetric", SwitchRule::kSymmetric},
-                                       {"literal", SwitchRule::kLiteral}};
-constexpr Word<SwitchCarry> kCarries[] = {{"slot", SwitchCarry::kSlot},
-                                          {"identity", SwitchCarry::kIdentity}};
-
 Chain make_chain(const DoubleArray& matrix, const std::optional<double>& period_s) {
   require_shape(matrix.ndim() == 2 && matrix.shape(0) == matrix.shape(1) && matrix.shape(0) > 0 &&
                     matrix.shape(0) <= kMaxModes,
@@ -100,8 +95,8 @@ Arguments switching_grid_arguments(const PyEstimator<AnySwitchingGridImm>& estim
   return grid_arguments(imm)
       .with("grid_rad_s", grid.grid_rad_s.rates_rad_s())
       .with("threshold", grid.threshold)
-      .with("rule", word_of(grid.rule, kRules))
-      .with("carry", word_of(grid.carry, kCarries))
+      .with("rule", word_of(grid.rule))
+      .with("carry", word_of(grid.carry))
       .with("initial_centre", grid.initial());
 }
 
@@ -255,8 +250,8 @@ Le Minh Hoang, A. A. Konovalov, Dao Van Luc, J. Russian Universities. Radioelect
         const SwitchingGrid grid{.grid_rad_s = rates ? to_grid(*rates, SwitchingGrid::kLeastRates)
                                                      : SwitchingGrid{}.grid_rad_s,
                                  .threshold = threshold,
-                                 .rule = to_option("rule", rule, kRules),
-                                 .carry = to_option("carry", carry, kCarries),
+                                 .rule = to_option<SwitchRule>("rule", rule),
+                                 .carry = to_option<SwitchCarry>("carry", carry),
                                  .initial_centre = centre};
         return PyEstimator<AnySwitchingGridImm>(with_initial(
             AnySwitchingGridImm(grid, chain_of(chain, stay, 3), turning_bank(filter, 3)), initial));

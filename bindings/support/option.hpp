@@ -4,36 +4,27 @@
 // Options that Python knows by words.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "support/types.hpp"
+#include "wakeline/core/fields.hpp"
 
 namespace wakeline::python {
 
-/// What Python calls an option.
-template <class Option>
-struct Word {
-  const char* text;
-  Option option;
-};
-
-/// Throws ValueError for another word: "several must be 'all', 'nearest' or 'strongest', got
-/// 'few'".
-template <class Option, std::size_t N>
-Option to_option(const char* name, const std::string& word, const Word<Option> (&words)[N]) {
-  std::string wanted;
-  for (std::size_t k = 0; k < N; ++k) {
-    if (word == words[k].text) return words[k].option;
-    wanted += (k == 0 ? "'" : k + 1 < N ? ", '" : " or '") + std::string(words[k].text) + "'";
-  }
-  throw py::value_error(std::string(name) + " must be " + wanted + ", got '" + word + "'");
+/// The option of that word. Throws ValueError for another word: "several must be 'all', 'nearest'
+/// or 'strongest', got 'few'".
+template <NamedEnum Option>
+Option to_option(const char* name, const std::string& given) {
+  for (const auto& word : words_of(Option{}))
+    if (given == word.text) return word.value;
+  throw py::value_error(std::string(name) + " must be " + choices<Option>() + ", got '" + given +
+                        "'");
 }
 
-template <class Option, std::size_t N>
-std::string word_of(Option option, const Word<Option> (&words)[N]) {
-  for (const Word<Option>& word : words)
-    if (word.option == option) return word.text;
+template <NamedEnum Option>
+std::string word_of(Option option) {
+  for (const auto& word : words_of(option))
+    if (word.value == option) return word.text;
   return "";
 }
 
