@@ -16,6 +16,7 @@
 namespace wakeline::python {
 
 void define_closest_approach(py::module_& navigation);
+void define_search(py::module_& navigation);
 void define_usv_navigator(py::module_& navigation);
 
 namespace {
@@ -483,14 +484,18 @@ void define_leeway(py::module_& m) {
       py::arg("wind_mps"), py::arg("factor"),
       "Drift (..., 2) of an object in a wind that blows to [north, east] (..., 2); (12), (13).");
   m.def(
+      "wind_current_factor",
+      [](const DoubleArray& wind_mps) { return each(wind_current_factor, wind_mps); },
+      py::arg("wind_mps"),
+      "The factor k of (14) by the wind speed: 0.04 at 2 m/s, 0.012 at 20 m/s, a power law "
+      "between.");
+  m.def(
       "wind_current_mps",
-      [](const DoubleArray& wind, const DoubleArray& latitude, double factor) {
+      [](const DoubleArray& wind, const DoubleArray& latitude, const DoubleArray& factor) {
         const auto [north, east] = components("wind_mps", wind);
-        return each_vector(
-            [&](double n, double e, double a) {
-              return WindCurrent(a, factor).velocity_mps(Vec2(n, e));
-            },
-            north, east, latitude);
+        return each_vector([](double n, double e, double a,
+                              double k) { return WindCurrent(a, k).velocity_mps(Vec2(n, e)); },
+                           north, east, latitude, factor);
       },
       py::arg("wind_mps"), py::arg("latitude_rad"), py::kw_only(),
       py::arg("factor") = WindCurrent::kDefaultFactor,
@@ -503,8 +508,8 @@ Parameters
 wind_mps : (..., 2) array
     Direction and speed to which the wind blows, [north, east].
 latitude_rad : array_like
-factor : float
-    k; observed values are from 0.04 (wind of 2 m/s) to 0.012 (20 m/s).
+factor : array_like
+    k; observed values are from 0.04 (wind of 2 m/s) to 0.012 (20 m/s), see wind_current_factor.
 
 Returns
 -------
@@ -857,6 +862,7 @@ void define_navigation(py::module_& parent) {
   define_drift(m);
   define_drift_forecast(m);
   define_closest_approach(m);
+  define_search(m);
   define_usv_navigator(m);
 }
 
