@@ -127,6 +127,7 @@ from . import (  # noqa: E402, F401
     plot,
     recording,
     scenario,
+    search,
     study,
     tracking,
 )
@@ -209,6 +210,7 @@ __all__ = [
     "recording",
     "rhumb_line",
     "scenario",
+    "search",
     "set_threads",
     "stable_gains",
     "strobe_echo",

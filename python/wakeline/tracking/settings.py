@@ -168,7 +168,7 @@ def read_settings(
     if isinstance(config, wl.TrackerConfig):
         settings = replace(settings, tracker=config.as_dict())
     elif config is not None and not isinstance(config, Settings):
-        for section, values in _read_toml(Path(config)).items():
+        for section, values in read_toml(Path(config)).items():
             if section not in KEYS:
                 raise SettingsError(f"{config}: unknown section {section}; {_one_of(KEYS)}")
             settings = _changed(settings, section, values, config)
@@ -194,7 +194,7 @@ def _read_radar(name: str | Path) -> Any:
         raise SettingsError(
             f"radar must be a file or one of {', '.join(radar_names())}, got {str(name)!r}"
         )
-    document = _read_toml(path)
+    document = read_toml(path)
     if list(document) == ["radar"]:
         return document["radar"]
     sections = [key for key, value in document.items() if isinstance(value, dict)]
@@ -268,7 +268,8 @@ def _as_in_file(section: str, parameters: Any) -> dict[str, Value]:
     return values
 
 
-def _read_toml(path: Path) -> dict[str, Any]:
+def read_toml(path: Path) -> dict[str, Any]:
+    """A TOML file as a dict; SettingsError if it cannot be read as such."""
     try:
         return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except UnicodeDecodeError:
