@@ -15,7 +15,7 @@ from typing import NoReturn, TextIO
 from wakeline import FilterError, __version__
 from wakeline.recording.files import check_writable
 
-from . import bench, demo, navigate, outputs, score, study, track
+from . import bench, demo, navigate, outputs, score, search, study, track
 
 _BAD_INPUT = 2
 _INTERRUPTED = 130
@@ -90,7 +90,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         title="commands", required=True, metavar="COMMAND", parser_class=_Parser
     )
-    for command in (demo, track, navigate, score, study, bench):
+    for command in (demo, track, navigate, search, score, study, bench):
         command.add_to(commands)
     return parser
 

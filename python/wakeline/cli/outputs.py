@@ -101,10 +101,17 @@ def can_draw() -> bool:
 
 
 def write_json(
-    path: Path, name: str, rows: list[dict[str, Any]], *, seed: int | None = None, runs: int = 1
+    path: Path,
+    name: str,
+    rows: list[dict[str, Any]],
+    *,
+    seed: int | None = None,
+    runs: int = 1,
+    **more: Any,
 ) -> None:
-    """Write machine-readable results; `seed` is None if nothing is random."""
+    """Write machine-readable results, and more by name; `seed` is None if nothing is random."""
     results = {"name": name, "version": __version__, "seed": seed, "runs": runs, "rows": rows}
+    results |= more
     with replacing(path) as fresh:
         fresh.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 

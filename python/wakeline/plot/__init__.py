@@ -25,6 +25,7 @@ from .own_ship import (
     speed_over_time,
 )
 from .ppi import circle_outline, echo, ppi, screen, screen_raster, window_outline
+from .search import drift_view, plan_view, pos_panel, probability_view, search_figures
 from .style import (
     INK,
     MUTED,
@@ -60,6 +61,7 @@ __all__ = [
     "dress",
     "dress_map",
     "drift_over_time",
+    "drift_view",
     "echo",
     "ellipse_outline",
     "error_panel",
@@ -75,12 +77,16 @@ __all__ = [
     "own_map_figure",
     "own_time_figure",
     "paths_view",
+    "plan_view",
+    "pos_panel",
     "ppi",
     "probability_panel",
+    "probability_view",
     "ranking_panel",
     "save",
     "screen",
     "screen_raster",
+    "search_figures",
     "speed_over_time",
     "speed_panel",
     "steps_panel",
