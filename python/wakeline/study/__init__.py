@@ -17,6 +17,7 @@ from . import (
     dead_reckoning,
     fuzzy_alpha_beta,
     imm,
+    search,
     solent,
     usv_navigation,
     variable_structure,
@@ -35,6 +36,7 @@ __all__ = [
     "imm",
     "load",
     "names",
+    "search",
     "solent",
     "usv_navigation",
     "variable_structure",
@@ -50,6 +52,7 @@ _STUDIES = {
         a823,
         ais_forecast,
         dead_reckoning,
+        search,
         usv_navigation,
     )
 }
