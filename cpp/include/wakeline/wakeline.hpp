@@ -29,6 +29,7 @@
 #include "wakeline/core/component.hpp"
 #include "wakeline/core/fields.hpp"
 #include "wakeline/core/in_place_array.hpp"
+#include "wakeline/core/principal_axes.hpp"
 #include "wakeline/core/require.hpp"
 #include "wakeline/core/state_belief.hpp"
 #include "wakeline/core/status.hpp"

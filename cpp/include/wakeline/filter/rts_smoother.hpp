@@ -55,16 +55,19 @@ LinearisedMotion<kStatesOf<Motion>, Scalar> linearised(
   const MovedPoints<Scalar, kStates> moved(
       motion, dt_s, belief.mean, sigma_points<Scalar, kStates>(belief.mean, root.lower(), spread));
   Mat<Scalar, kStates, kStates> slope, bend;
-  for (int k = 0; k < kStates; ++k) {
-    const auto ahead = moved.differences.col(2 * k), behind = moved.differences.col(2 * k + 1);
-    slope.col(k) = (ahead - behind) / (2 * spread);
-    bend.col(k) = ahead + behind;
-  }
-  const Vec<Scalar, kStates> shift = weight * bend.rowwise().sum();
+  Vec<Scalar, kStates> shift = Vec<Scalar, kStates>::Zero();
+  for (int k = 0; k < kStates; ++k)
+    for (int i = 0; i < kStates; ++i) {
+      const Scalar ahead = moved.differences(i, 2 * k), behind = moved.differences(i, 2 * k + 1);
+      slope(i, k) = (ahead - behind) / (2 * spread);
+      bend(i, k) = ahead + behind;
+      shift[i] += weight * bend(i, k);
+    }
   result.mean = moved.centre + shift;
   result.f = root.template unwhiten_rows<kStates>(slope);
-  result.q = process_noise(motion, belief.mean, dt_s) + weight / 2 * bend * bend.transpose() +
-             unscented.template centre_correction<Scalar>() * shift * shift.transpose();
+  result.q = process_noise(motion, belief.mean, dt_s) +
+             weight / 2 * product_transposed(bend, bend) +
+             unscented.template centre_correction<Scalar>() * product_transposed(shift, shift);
   return result;
 }
 
@@ -75,15 +78,16 @@ template <int N, class Scalar>
                                      const Gaussian<N, Scalar>& later,
                                      Gaussian<N, Scalar>& belief) noexcept {
   using Matrix = Mat<Scalar, N, N>;
-  const Matrix fp = motion.f * belief.covariance;
-  const Cholesky<N, Scalar> factor(Matrix(fp * motion.f.transpose() + motion.q));
+  const Matrix pf = product_transposed(belief.covariance, motion.f);
+  const Cholesky<N, Scalar> factor(Matrix(product(motion.f, pf) + motion.q));
   if (!factor.ok()) return Status::kNotPositiveDefinite;
-  const Matrix gain = factor.template solve<N>(fp).transpose();
-  const Matrix rest = Matrix::Identity() - gain * motion.f;
+  const Matrix gain = factor.template unwhiten_rows<N>(factor.template whiten_rows<N>(pf));
+  const Matrix rest = Matrix::Identity() - product(gain, motion.f);
+  const Matrix added = later.covariance + motion.q;
   Gaussian<N, Scalar> smoothed;
-  smoothed.mean = belief.mean + gain * (later.mean - motion.mean);
-  smoothed.covariance = rest * belief.covariance * rest.transpose() +
-                        gain * (later.covariance + motion.q) * gain.transpose();
+  smoothed.mean = belief.mean + product(gain, Vec<Scalar, N>(later.mean - motion.mean));
+  smoothed.covariance = product_transposed(product(rest, belief.covariance), rest) +
+                        product_transposed(product(gain, added), gain);
   mirror_lower<Scalar, N>(smoothed.covariance);
   if (!is_finite(smoothed.mean) || !is_finite(smoothed.covariance)) return Status::kNotFinite;
   belief = smoothed;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "wakeline/core/cholesky.hpp"
+#include "wakeline/core/principal_axes.hpp"
 #include "wakeline/filter/rts_smoother.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
@@ -47,6 +47,8 @@ template <int N, class Scalar>
 Revised<Gaussian<N, Scalar>, Scalar> revised(const Gaussian<N, Scalar>& prior,
                                              const Gaussian<N, Scalar>& before,
                                              const Gaussian<N, Scalar>& after) noexcept {
+  using std::abs;
+  using std::log;
   using Vector = Vec<Scalar, N>;
   using Matrix = Mat<Scalar, N, N>;
   Revised<Gaussian<N, Scalar>, Scalar> result;
@@ -54,41 +56,53 @@ Revised<Gaussian<N, Scalar>, Scalar> revised(const Gaussian<N, Scalar>& prior,
   const Cholesky<N, Scalar> root(before.covariance);
   if (!root.ok()) return result;
   const auto whitened = [&](const Matrix& covariance) -> Matrix {
-    Matrix one_side = root.template whiten<N>(covariance);
-    one_side.transposeInPlace();
-    return root.template whiten<N>(one_side);
+    return root.template whiten<N>(root.template whiten_rows<N>(covariance));
   };
-  const Eigen::SelfAdjointEigenSolver<Matrix> axes(whitened(after.covariance));
-  if (axes.info() != Eigen::Success || !(axes.eigenvalues()[0] > Scalar(0))) return result;
-  const Matrix& turn = axes.eigenvectors();
+  const auto [width, axes] = principal_axes<N, Scalar>(whitened(after.covariance));
+  // Narrower than that against the widest axis is rounding.
+  const Scalar least = N * std::numeric_limits<Scalar>::epsilon() * width.maxCoeff();
+  for (int k = 0; k < N; ++k)
+    if (!(width[k] > least)) return result;
   const auto along_axes = [&](const Vector& mean) -> Vector {
-    return turn.transpose() * root.template whiten<1>(Vector(mean - before.mean));
+    return product(axes, root.template whiten<1>(Vector(mean - before.mean)));
   };
   const Vector m = along_axes(after.mean);
   const Vector d = along_axes(prior.mean);
-  const Matrix c = turn.transpose() * whitened(prior.covariance) * turn;
+  const Matrix c = product_transposed(product(axes, whitened(prior.covariance)), axes);
   const Cholesky<N, Scalar> prior_root(c);
   if (!prior_root.ok()) return result;
-  const Vector unlike =
-      (d.cwiseAbs() + (c.diagonal() - Vector::Ones()).cwiseAbs()).cwiseMin(Scalar(1));
-  const Vector least_loss = (m.cwiseAbs() / Scalar(10)).cwiseMin(Scalar(0.5));
-  const Vector w = axes.eigenvalues().cwiseMin(Vector::Ones() - least_loss.cwiseProduct(unlike));
-  const Vector lambda = w.cwiseInverse() - Vector::Ones(), h = m.cwiseQuotient(w);
-
   const Matrix& a = prior_root.lower();
-  const Cholesky<N, Scalar> information(
-      Matrix(Matrix::Identity() + a.transpose() * lambda.asDiagonal() * a));
+
+  Vector lambda, pull;
+  Scalar twice_evidence = Scalar(0);
+  for (int k = 0; k < N; ++k) {
+    const Scalar unlike = std::min(Scalar(abs(d[k]) + abs(c(k, k) - 1)), Scalar(1));
+    const Scalar least_loss = std::min(Scalar(abs(m[k]) / 10), Scalar(0.5));
+    const Scalar w = std::min(width[k], Scalar(1 - least_loss * unlike));
+    const Scalar h = m[k] / w;
+    lambda[k] = 1 / w - 1;
+    pull[k] = h - lambda[k] * d[k];
+    twice_evidence += (2 * d[k] - m[k]) * h - d[k] * d[k] * lambda[k] - log(w);
+  }
+  Matrix precision = Matrix::Identity();
+  for (int column = 0; column < N; ++column)
+    for (int row = 0; row < N; ++row)
+      for (int k = 0; k < N; ++k) precision(row, column) += a(k, row) * lambda[k] * a(k, column);
+  const Cholesky<N, Scalar> information(precision);
   if (!information.ok()) return result;
   const Matrix posterior_root = information.template whiten_rows<N>(a);
-  const Vector pull = posterior_root.transpose() * (h - lambda.cwiseProduct(d));
-  const Matrix back = root.lower() * turn, spread = back * posterior_root;
-  result.belief.mean = before.mean + back * d + spread * pull;
-  result.belief.covariance = spread * spread.transpose();
+  const Matrix back = product_transposed(root.lower(), axes);
+  const Matrix spread = product(back, posterior_root);
+  Vector shift;
+  for (int k = 0; k < N; ++k) {
+    shift[k] = Scalar(0);
+    for (int i = 0; i < N; ++i) shift[k] += posterior_root(i, k) * pull[i];
+    twice_evidence += shift[k] * shift[k];
+  }
+  result.belief.mean = before.mean + product(back, d) + product(spread, shift);
+  result.belief.covariance = product_transposed(spread, spread);
   mirror_lower<Scalar, N>(result.belief.covariance);
-  const Scalar of_prior = d.dot(h) - d.cwiseAbs2().dot(lambda) / 2 + pull.squaredNorm() / 2 -
-                          information.log_determinant() / 2;
-  const Scalar of_before = m.dot(h) / 2 + w.array().log().sum() / 2;
-  result.log_evidence = of_prior - of_before;
+  result.log_evidence = (twice_evidence - information.log_determinant()) / 2;
   const bool finite = is_finite(result.belief.mean) && is_finite(result.belief.covariance) &&
                       std::isfinite(result.log_evidence);
   result.status = finite ? Status::kOk : Status::kNotFinite;
@@ -139,8 +153,8 @@ StateBelief<To, Scalar> carried_over(const StateBelief<To, Scalar>& own,
   const Cholesky<kShared, Scalar> factor(before);
   if (!factor.ok()) return result;
   const Mat<Scalar, kN, kShared> gain = factor.unwhiten_rows(factor.whiten_rows(with_shared));
-  result.mean += gain * shift;
-  result.covariance += gain * change * gain.transpose();
+  result.mean += product(gain, shift);
+  result.covariance += product_transposed(product(gain, change), gain);
   mirror_lower<Scalar, kN>(result.covariance);
   return result;
 }
