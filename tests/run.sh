@@ -19,5 +19,5 @@ cmake --preset "$preset" --log-level=WARNING ${CI:+-DWAKELINE_WARNINGS_AS_ERRORS
 cmake --build --preset "$preset" --parallel "$jobs"
 ctest --preset "$preset" --parallel "$jobs"
 if [[ $preset == dev ]]; then
-  "$python" -m pytest --numprocesses "$jobs" --dist worksteal --durations 20
+  "$python" -m pytest --numprocesses "$jobs" --dist loadfile --durations 20
 fi

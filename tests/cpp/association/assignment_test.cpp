@@ -18,7 +18,7 @@
 #include "wakeline/association/global_nearest_neighbour.hpp"
 #include "wakeline/association/nearest_neighbour.hpp"
 
-namespace wakeline {
+namespace wakeline::assignment_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -458,4 +458,4 @@ TEST(AssignDense, TreatsEqualCostsAndForbiddenRows) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::assignment_test

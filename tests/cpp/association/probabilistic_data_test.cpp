@@ -18,7 +18,7 @@
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/cholesky.hpp"
 
-namespace wakeline {
+namespace wakeline::probabilistic_data_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -242,4 +242,4 @@ TEST(ProbabilisticDataUpdate, TakesNoHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::probabilistic_data_test

@@ -16,7 +16,7 @@
 #include "wakeline/multimodel/fuzzy_alpha_beta.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
-namespace wakeline {
+namespace wakeline::line_lanes_test {
 namespace {
 
 using test::Draw;
@@ -220,4 +220,4 @@ TYPED_TEST(LineLanes, OneThatCannotStartStaysAsItWas) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::line_lanes_test

@@ -22,7 +22,7 @@
 #include "wakeline/multimodel/turning_chain.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
-namespace wakeline {
+namespace wakeline::mode_history_lanes_test {
 namespace {
 
 using test::Draw;
@@ -230,4 +230,4 @@ TEST(ModeHistoryInLanes, DoesNotTouchTheHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::mode_history_lanes_test

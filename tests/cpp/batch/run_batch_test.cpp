@@ -26,7 +26,7 @@
 #include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
 
-namespace wakeline {
+namespace wakeline::run_batch_test {
 namespace {
 
 using Results = test::RunResults;
@@ -487,4 +487,4 @@ TEST(BatchLinear, AWidePriorIsJosephsInItsLaneOnly) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::run_batch_test

@@ -11,7 +11,7 @@
 #include "support/matrix_assert.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
-namespace wakeline {
+namespace wakeline::any_filter_test {
 namespace {
 
 using test::matrices_identical;
@@ -109,4 +109,4 @@ TEST(AnyFilterBank, RejectsNoneAndTooMany) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::any_filter_test

@@ -10,7 +10,7 @@
 #include "wakeline/core/state_belief.hpp"
 #include "wakeline/multimodel/filter_bank.hpp"
 
-namespace wakeline {
+namespace wakeline::belief_test {
 namespace {
 
 using test::matrices_identical;
@@ -76,4 +76,4 @@ TEST(StateLayouts, AreThoseOfTheMotionModelsEachOnce) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::belief_test

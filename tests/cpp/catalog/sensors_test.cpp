@@ -8,7 +8,7 @@
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 
-namespace wakeline {
+namespace wakeline::sensors_test {
 namespace {
 
 using test::matrices_identical;
@@ -50,4 +50,4 @@ TEST(AnySensorOf, IsCarriedByOwnShip) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::sensors_test

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace wakeline {
+namespace wakeline::angle_test {
 namespace {
 
 template <class Scalar>
@@ -100,4 +100,4 @@ TEST(Units, DegreesAndKnots) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::angle_test

@@ -7,7 +7,7 @@
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 
-namespace wakeline {
+namespace wakeline::archive_test {
 namespace {
 
 TEST(Archive, GivesBackWhatItWasGiven) {
@@ -57,4 +57,4 @@ TEST(Archive, AByteThatIsNoTruthFails) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::archive_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace wakeline {
+namespace wakeline::chi_square_test {
 namespace {
 
 constexpr double kDofs[] = {0.3, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 9.0, 31.0, 32.5, 100.0, 1e3, 1e5};
@@ -121,4 +121,4 @@ TEST(ChiSquare, EdgesAreDefined) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::chi_square_test

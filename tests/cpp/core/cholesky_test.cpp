@@ -12,7 +12,7 @@
 #include "support/matrix_assert.hpp"
 #include "wakeline/simd/pack.hpp"
 
-namespace wakeline {
+namespace wakeline::cholesky_test {
 namespace {
 
 using test::Draw;
@@ -194,4 +194,4 @@ TYPED_TEST(CholeskyOf, CheckReportsWhatIsWrongWithABelief) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::cholesky_test

@@ -9,7 +9,7 @@
 
 #include "wakeline/core/status.hpp"
 
-namespace wakeline {
+namespace wakeline::component_test {
 namespace {
 
 constexpr Component kDrag{static_cast<int>(Component::kUser) + 1};
@@ -47,4 +47,4 @@ TEST(StepResult, IsTrueOnlyWhenItSucceeded) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::component_test

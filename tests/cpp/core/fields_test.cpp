@@ -10,7 +10,7 @@
 
 #include "wakeline/core/archive.hpp"
 
-namespace wakeline {
+namespace wakeline::fields_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -138,4 +138,4 @@ TEST(Fields, AnArchiveOfOtherParametersFails) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::fields_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace wakeline {
+namespace wakeline::consistency_test {
 namespace {
 
 template <class Scalar>
@@ -117,4 +117,4 @@ TEST(ConsistencyAverage, AFailedCovarianceCannotHide) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::consistency_test

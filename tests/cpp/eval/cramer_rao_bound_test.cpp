@@ -16,7 +16,7 @@
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 
-namespace wakeline {
+namespace wakeline::cramer_rao_bound_test {
 namespace {
 
 using State = Vec<double, 4>;
@@ -161,4 +161,4 @@ TEST(CramerRaoBound, DoesNotTouchTheHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::cramer_rao_bound_test

@@ -14,7 +14,7 @@
 
 #include "support/malloc_fence.hpp"
 
-namespace wakeline {
+namespace wakeline::gospa_test {
 namespace {
 
 using Points = std::vector<Vec<double, 2>>;
@@ -183,4 +183,4 @@ TEST(Gospa, RejectsSettingsWithoutAMeaning) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::gospa_test

@@ -15,7 +15,7 @@
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
-namespace wakeline {
+namespace wakeline::alpha_beta_lanes_test {
 namespace {
 
 constexpr int kLanes = kNativeLanes<double>;
@@ -157,4 +157,4 @@ TEST(AlphaBetaLanes, RememberWhatEachHasTakenOfSeveralReadings) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::alpha_beta_lanes_test

@@ -13,7 +13,7 @@
 #include "wakeline/measurement/range_bearing_doppler.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
-namespace wakeline {
+namespace wakeline::alpha_beta_test {
 namespace {
 
 using test::beliefs_identical;
@@ -545,4 +545,4 @@ TEST(AlphaBetaFilter, HoldsWhatThePlotKnowsOfAWidePriorInFloatToo) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::alpha_beta_test

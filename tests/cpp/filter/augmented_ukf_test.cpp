@@ -15,7 +15,7 @@
 #include "wakeline/motion/constant_velocity.hpp"
 #include "wakeline/navigation/usv_models.hpp"
 
-namespace wakeline {
+namespace wakeline::augmented_ukf_test {
 namespace {
 
 using test::Draw;
@@ -198,4 +198,4 @@ TEST(AugmentedUkf, UpdatesByItsOwnPredictionAndTouchesNoHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::augmented_ukf_test

@@ -3,7 +3,7 @@
 #include "filter/bad_input_laws.hpp"
 #include "wakeline/measurement/position.hpp"
 
-namespace wakeline {
+namespace wakeline::bad_input_test {
 namespace {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Double, BadInput, test::EveryFilter, );
@@ -44,4 +44,4 @@ TEST(EkfInLanes, EachLaneReportsItsStatus) { expect_each_lane_to_report_its_stat
 TEST(UkfInLanes, EachLaneReportsItsStatus) { expect_each_lane_to_report_its_status<Ukf>(); }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::bad_input_test

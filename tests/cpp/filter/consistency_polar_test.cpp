@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "filter/consistency_laws.hpp"
 
-namespace wakeline {
+namespace wakeline::consistency_polar_test {
 namespace {
 
 using test::expect_consistent;
@@ -50,4 +50,4 @@ TEST(Consistency, DopplerFromAMovingShip) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::consistency_polar_test

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "filter/consistency_laws.hpp"
 
-namespace wakeline {
+namespace wakeline::consistency_test {
 namespace {
 
 using test::expect_consistent;
@@ -21,4 +21,4 @@ TEST(Consistency, LinearMotionAndSensor) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::consistency_test

@@ -9,7 +9,7 @@
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
-namespace wakeline {
+namespace wakeline::control_test {
 namespace {
 
 using test::beliefs_identical;
@@ -128,4 +128,4 @@ TEST(KnownAcceleration, OfAShipThatThrustsIsItsPath) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::control_test

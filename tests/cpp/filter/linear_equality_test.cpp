@@ -19,7 +19,7 @@
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 
-namespace wakeline {
+namespace wakeline::linear_equality_test {
 namespace {
 
 using test::covariance_difference;
@@ -237,4 +237,4 @@ TEST(Unscented, SquareOfANormalVariable) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::linear_equality_test

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "filter/long_run_laws.hpp"
 
-namespace wakeline {
+namespace wakeline::long_run_float_test {
 namespace {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Float, LongRun, test::EveryFloatFilter, );
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::long_run_float_test

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "filter/long_run_laws.hpp"
 
-namespace wakeline {
+namespace wakeline::long_run_test {
 namespace {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Double, LongRun, test::EveryFilter, );
@@ -44,4 +44,4 @@ TEST(Gap, PosteriorOfThePlotIsThatOfExactArithmetic) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::long_run_test

@@ -5,7 +5,7 @@
 #include "wakeline/filter/rts_smoother.hpp"
 #include "wakeline/measurement/position.hpp"
 
-namespace wakeline {
+namespace wakeline::no_heap_test {
 namespace {
 
 template <class Filter>
@@ -45,4 +45,4 @@ TEST(SmootherHeap, IsNotTouched) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::no_heap_test

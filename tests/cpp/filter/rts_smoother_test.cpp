@@ -19,7 +19,7 @@
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 
-namespace wakeline {
+namespace wakeline::rts_smoother_test {
 namespace {
 
 using test::Draw;
@@ -302,4 +302,4 @@ TEST(RtsSmoother, OfNothingAndOfOneScan) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::rts_smoother_test

@@ -8,7 +8,7 @@
 #include "filter/cases.hpp"
 #include "wakeline/measurement/range_bearing_doppler.hpp"
 
-namespace wakeline {
+namespace wakeline::seam_test {
 namespace {
 
 template <class Filter, class Sensor>
@@ -84,4 +84,4 @@ TEST(Seam, WideBeliefNearTheRadarStaysFinite) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::seam_test

@@ -19,7 +19,7 @@
 #include "wakeline/filter/three_point_smoother.hpp"
 #include "wakeline/filter/window_bank.hpp"
 
-namespace wakeline {
+namespace wakeline::smoothers_test {
 namespace {
 
 using test::Draw;
@@ -542,4 +542,4 @@ TEST(WindowBank, OfOneWindowIsItsLine) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::smoothers_test

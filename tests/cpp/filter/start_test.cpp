@@ -13,7 +13,7 @@
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 
-namespace wakeline {
+namespace wakeline::start_test {
 namespace {
 
 using test::Draw;
@@ -182,4 +182,4 @@ TEST(Lift, HappensInAStartWithFourComponents) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::start_test

@@ -11,7 +11,7 @@
 #include "wakeline/gating/chi_square_gate.hpp"
 #include "wakeline/gating/radius_gate.hpp"
 
-namespace wakeline {
+namespace wakeline::gating_test {
 namespace {
 
 template <class Scalar>
@@ -87,4 +87,4 @@ TEST(RadiusGate, IsACircleWithItsEdge) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::gating_test

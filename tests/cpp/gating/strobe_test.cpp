@@ -22,7 +22,7 @@
 #include "wakeline/gating/strobe_echo.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 
-namespace wakeline {
+namespace wakeline::strobe_test {
 namespace {
 
 using Point = Vec<double, 2>;
@@ -635,4 +635,4 @@ TEST(StrobeEcho, LosesItWhenTooNarrow) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::strobe_test

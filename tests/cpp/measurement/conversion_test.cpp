@@ -12,7 +12,7 @@
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/measurement/range_bearing_doppler.hpp"
 
-namespace wakeline {
+namespace wakeline::conversion_test {
 namespace {
 
 using test::Draw;
@@ -214,4 +214,4 @@ TEST(SensorParameters, AWrongOneIsNamed) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::conversion_test

@@ -11,7 +11,7 @@
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/measurement/range_bearing_doppler.hpp"
 
-namespace wakeline {
+namespace wakeline::jacobians_test {
 namespace {
 
 using test::Draw;
@@ -154,4 +154,4 @@ TYPED_TEST(AtTheRadar, EverythingIsFinite) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::jacobians_test

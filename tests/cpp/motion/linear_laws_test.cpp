@@ -16,7 +16,7 @@
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/singer.hpp"
 
-namespace wakeline {
+namespace wakeline::linear_laws_test {
 namespace {
 
 using test::covariance_difference;
@@ -145,4 +145,4 @@ TEST(Flow, MovesAsDocumented) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::linear_laws_test

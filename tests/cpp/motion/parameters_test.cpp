@@ -11,7 +11,7 @@
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/singer.hpp"
 
-namespace wakeline {
+namespace wakeline::parameters_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -98,4 +98,4 @@ TEST(MotionParameters, PriorOfWhatAStartDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::parameters_test

@@ -14,7 +14,7 @@
 #include "wakeline/motion/wandering_course.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
-namespace wakeline {
+namespace wakeline::pattern_test {
 namespace {
 
 using test::matrices_near;
@@ -109,4 +109,4 @@ TEST(Pattern, LeavesNothingOutThatCounts) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::pattern_test

@@ -9,7 +9,7 @@
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
 
-namespace wakeline {
+namespace wakeline::singer_test {
 namespace {
 
 using test::covariance_difference;
@@ -90,4 +90,4 @@ TYPED_TEST(SingerOf, ExponentialRemainders) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::singer_test

@@ -12,7 +12,7 @@
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
-namespace wakeline {
+namespace wakeline::turn_test {
 namespace {
 
 using test::covariance_difference;
@@ -272,4 +272,4 @@ TEST(CoordinatedTurn, BothMatricesTogetherAreEachAlone) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::turn_test

@@ -14,7 +14,7 @@
 #include "support/malloc_fence.hpp"
 #include "wakeline/measurement/position.hpp"
 
-namespace wakeline {
+namespace wakeline::bayesian_alpha_beta_test {
 namespace {
 
 using test::beliefs_identical;
@@ -340,4 +340,4 @@ TEST(BayesianAlphaBeta, IsOfFloatToo) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::bayesian_alpha_beta_test

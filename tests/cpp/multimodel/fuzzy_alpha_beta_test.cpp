@@ -15,7 +15,7 @@
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/measurement/range_bearing_doppler.hpp"
 
-namespace wakeline {
+namespace wakeline::fuzzy_alpha_beta_test {
 namespace {
 
 using test::beliefs_identical;
@@ -512,4 +512,4 @@ TEST(FuzzyAlphaBeta, NeedsTheGateOfAnIndependentImplementation) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::fuzzy_alpha_beta_test

@@ -12,7 +12,7 @@
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
 
-namespace wakeline {
+namespace wakeline::golden_grids_test {
 namespace {
 
 using Filter = Kalman<CoordinatedTurn>;
@@ -93,4 +93,4 @@ TEST(GoldenGrids, SwitchingGrid) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::golden_grids_test

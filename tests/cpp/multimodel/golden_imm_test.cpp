@@ -11,7 +11,7 @@
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
-namespace wakeline {
+namespace wakeline::golden_imm_test {
 namespace {
 
 TEST(GoldenImm, FiveModelsOfKnownTurnRates) {
@@ -56,4 +56,4 @@ TEST(GoldenImm, FiveModelsOfKnownTurnRates) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::golden_imm_test

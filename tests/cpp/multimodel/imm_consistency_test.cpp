@@ -14,7 +14,7 @@
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
-namespace wakeline {
+namespace wakeline::imm_consistency_test {
 namespace {
 
 TEST(ImmConsistency, NeesAndModesOnItsOwnModel) {
@@ -68,4 +68,4 @@ TEST(ImmConsistency, NeesAndModesOnItsOwnModel) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::imm_consistency_test

@@ -11,7 +11,7 @@
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
-namespace wakeline {
+namespace wakeline::imm_failures_test {
 namespace {
 
 using test::beliefs_identical;
@@ -306,4 +306,4 @@ TEST(ImmFailures, WeightsNearTheLeastNumberAreZero) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::imm_failures_test

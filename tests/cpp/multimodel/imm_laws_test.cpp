@@ -8,7 +8,7 @@
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
-namespace wakeline {
+namespace wakeline::imm_laws_test {
 namespace {
 
 using test::beliefs_identical;
@@ -318,4 +318,4 @@ TEST(Imm, InvalidInitialProbabilitiesAreRejected) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::imm_laws_test

@@ -7,7 +7,7 @@
 #include "filter/cases.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
-namespace wakeline {
+namespace wakeline::imm_mixed_test {
 namespace {
 
 using test::matrices_near;
@@ -160,4 +160,4 @@ TEST(MixedImm, InFloat) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::imm_mixed_test

@@ -18,7 +18,7 @@
 #include "wakeline/multimodel/imm_smoother.hpp"
 #include "wakeline/multimodel/variant_bank.hpp"
 
-namespace wakeline {
+namespace wakeline::imm_smoother_mixed_test {
 namespace {
 
 using test::Draw;
@@ -139,4 +139,4 @@ TEST(ImmSmoother, OfABankComposedAtRunTimeGivesTheBitsOfAFilterBank) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::imm_smoother_mixed_test

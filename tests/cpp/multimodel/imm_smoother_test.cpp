@@ -19,7 +19,7 @@
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/multimodel/uniform_bank.hpp"
 
-namespace wakeline {
+namespace wakeline::imm_smoother_test {
 namespace {
 
 using test::Draw;
@@ -314,4 +314,4 @@ TEST(ImmSmoother, ReportsAnInvalidAcceleration) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::imm_smoother_test

@@ -14,16 +14,13 @@
 
 namespace wakeline {
 
-using Straight = Kalman<ConstantVelocity>;
-using Turning = Ekf<CoordinatedTurnRate>;
-
 template class Kalman<ConstantVelocity>;
 template class Ekf<CoordinatedTurnRate>;
 template class Ukf<CoordinatedTurnRate>;
 template class SquareRootUkf<CoordinatedTurnRate>;
-template class Imm<FilterBank<Straight, Turning>>;
-template class Imm<UniformBank<Straight, 3>>;
-template class Imm<UniformBank<Straight>>;
-template class Imm<VariantBank<4, Straight, Turning>>;
+template class Imm<FilterBank<Kalman<ConstantVelocity>, Ekf<CoordinatedTurnRate>>>;
+template class Imm<UniformBank<Kalman<ConstantVelocity>, 3>>;
+template class Imm<UniformBank<Kalman<ConstantVelocity>>>;
+template class Imm<VariantBank<4, Kalman<ConstantVelocity>, Ekf<CoordinatedTurnRate>>>;
 
 }  // namespace wakeline

@@ -15,7 +15,7 @@
 #include "wakeline/simd/pack_math.hpp"
 #include "wakeline/multimodel/hypothesis_rows.hpp"
 
-namespace wakeline {
+namespace wakeline::likeliest_test {
 namespace {
 
 using test::Draw;
@@ -165,4 +165,4 @@ TEST(HypothesisRows, LanesLeftOverRepeatABelief) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::likeliest_test

@@ -14,7 +14,7 @@
 #include "support/malloc_fence.hpp"
 #include "support/matrix_assert.hpp"
 
-namespace wakeline {
+namespace wakeline::line_bank_test {
 namespace {
 
 using test::Draw;
@@ -303,4 +303,4 @@ TEST(LineBank, RejectsALengthBeyondItsCapacity) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::line_bank_test

@@ -10,7 +10,7 @@
 
 #include "support/matrix_assert.hpp"
 
-namespace wakeline {
+namespace wakeline::mode_chain_test {
 namespace {
 
 using test::matrices_near;
@@ -224,4 +224,4 @@ TEST(ModeChain, TooFewOrTooManyModesAreRejected) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::mode_chain_test

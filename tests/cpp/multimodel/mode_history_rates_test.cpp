@@ -15,7 +15,7 @@
 #include "wakeline/multimodel/turning_chain.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
-namespace wakeline {
+namespace wakeline::mode_history_rates_test {
 namespace {
 
 using test::beliefs_identical;
@@ -322,4 +322,4 @@ TEST(CoordinatedTurnRate, StartsAboutItsPriorRate) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::mode_history_rates_test

@@ -13,7 +13,7 @@
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 
-namespace wakeline {
+namespace wakeline::mode_history_test {
 namespace {
 
 using test::beliefs_identical;
@@ -641,4 +641,4 @@ TEST(TurningChain, LeavesWithTheGivenProbabilities) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::mode_history_test

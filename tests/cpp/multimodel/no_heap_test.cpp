@@ -4,7 +4,7 @@
 #include "support/malloc_fence.hpp"
 #include "wakeline/multimodel/imm.hpp"
 
-namespace wakeline {
+namespace wakeline::no_heap_test {
 namespace {
 
 template <class ImmType>
@@ -45,4 +45,4 @@ TEST(ChainHeap, RuntimeChainNeedsNone) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::no_heap_test

@@ -27,6 +27,7 @@ template Step<2, float> Ukf<CoordinatedTurnRate, float>::update(const Position&,
 template Step<2, float> SquareRootUkf<CoordinatedTurnRate, float>::update(
     const Position&, const Vec<float, 2>&) noexcept;
 
+namespace peer_traps_test {
 namespace {
 
 // mayara clones an estimator with fresh filters and old mode probabilities.
@@ -69,4 +70,5 @@ TEST(RobotLocalizationTrap, ACovarianceThatIsNotPositiveDefiniteIsRejectedNotUse
 }
 
 }  // namespace
+}  // namespace peer_traps_test
 }  // namespace wakeline

@@ -17,7 +17,7 @@
 #include "wakeline/measurement/position.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 
-namespace wakeline {
+namespace wakeline::run_smoothed_test {
 namespace {
 
 using Filter = Ekf<CoordinatedTurn>;
@@ -76,4 +76,4 @@ TEST(RunSmoothed, ReportsAnInvalidStep) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::run_smoothed_test

@@ -17,7 +17,7 @@
 #include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
 
-namespace wakeline {
+namespace wakeline::turn_grids_test {
 namespace {
 
 using test::matrices_identical;
@@ -536,4 +536,4 @@ TEST(LikelyModelSet, RejectsInvalidParameters) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::turn_grids_test

@@ -15,7 +15,7 @@
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
-namespace wakeline {
+namespace wakeline::variant_bank_test {
 namespace {
 
 using test::beliefs_identical;
@@ -139,4 +139,4 @@ TEST(VariantBank, DoesNotTouchTheHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::variant_bank_test

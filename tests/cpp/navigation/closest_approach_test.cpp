@@ -11,7 +11,7 @@
 #include "support/malloc_fence.hpp"
 #include "wakeline/core/angle.hpp"
 
-namespace wakeline {
+namespace wakeline::closest_approach_test {
 namespace {
 
 using Vec2 = Vec<double, 2>;
@@ -398,4 +398,4 @@ TEST(ClosestApproach, IsFoundWithoutTheHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::closest_approach_test

@@ -9,7 +9,7 @@
 
 #include "support/draw.hpp"
 
-namespace wakeline {
+namespace wakeline::dead_reckoning_test {
 namespace {
 
 using test::Draw;
@@ -117,4 +117,4 @@ TEST(VelocityFromRates, UndoesDeadReckoning) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::dead_reckoning_test

@@ -12,7 +12,7 @@
 #include "support/draw.hpp"
 #include "support/malloc_fence.hpp"
 
-namespace wakeline {
+namespace wakeline::drift_test {
 namespace {
 
 using test::Draw;
@@ -282,4 +282,4 @@ TEST(WaterVelocity, HasTheCovarianceOfItsReadings) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::drift_test

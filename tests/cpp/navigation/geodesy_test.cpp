@@ -11,7 +11,7 @@
 #include "support/draw.hpp"
 #include "support/malloc_fence.hpp"
 
-namespace wakeline {
+namespace wakeline::geodesy_test {
 namespace {
 
 using test::Draw;
@@ -233,4 +233,4 @@ TEST(Geodesy, NeedsNoHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::geodesy_test

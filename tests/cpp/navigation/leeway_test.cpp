@@ -13,7 +13,7 @@
 #include "wakeline/navigation/dead_reckoning.hpp"
 #include "wakeline/navigation/drift_forecast.hpp"
 
-namespace wakeline {
+namespace wakeline::leeway_test {
 namespace {
 
 using Vec2 = Vec<double, 2>;
@@ -205,4 +205,4 @@ TEST(DriftForecast, NeedsNoHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::leeway_test

@@ -19,7 +19,7 @@
 #include "wakeline/filter/augmented_ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
 
-namespace wakeline {
+namespace wakeline::usv_navigator_test {
 namespace {
 
 using test::Draw;
@@ -964,4 +964,4 @@ TEST(UsvSensors, RejectInvalidStandardDeviations) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::usv_navigator_test

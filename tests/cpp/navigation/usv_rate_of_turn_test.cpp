@@ -15,7 +15,7 @@
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/navigation/usv_navigator.hpp"
 
-namespace wakeline {
+namespace wakeline::usv_rate_of_turn_test {
 namespace {
 
 using Vec2 = Vec<double, 2>;
@@ -170,4 +170,4 @@ TEST(RateOfTurnBesideTheGyro, IsSmoothedInACurrent) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::usv_rate_of_turn_test

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-namespace wakeline {
+namespace wakeline::pack_math_test {
 namespace {
 
 using Long = long double;
@@ -243,4 +243,4 @@ TYPED_TEST(PackMathOf, LanesDoNotInfluenceEachOther) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::pack_math_test

@@ -14,7 +14,7 @@
 
 #include "wakeline/core/types.hpp"
 
-namespace wakeline {
+namespace wakeline::pack_test {
 namespace {
 
 /// The same number: zeros of one sign, or both NaN.
@@ -327,4 +327,4 @@ TEST(Pack, TemplatesSeeItAsANumber) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::pack_test

@@ -14,7 +14,7 @@
 #include "support/matrix_assert.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
-namespace wakeline {
+namespace wakeline::side_by_side_test {
 namespace {
 
 using test::Draw;
@@ -191,4 +191,4 @@ TYPED_TEST(SideBySideOf, TakesNoHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::side_by_side_test

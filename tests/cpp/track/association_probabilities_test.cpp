@@ -9,7 +9,7 @@
 #include "track/stages.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
-namespace wakeline {
+namespace wakeline::association_probabilities_test {
 namespace {
 
 using namespace test;
@@ -98,4 +98,4 @@ TEST(TrackReadings, AreOfTheHypothesesOnly) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::association_probabilities_test

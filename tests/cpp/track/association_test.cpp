@@ -9,7 +9,7 @@
 #include "support/draw.hpp"
 #include "track/stages.hpp"
 
-namespace wakeline {
+namespace wakeline::association_test {
 namespace {
 
 using namespace test;
@@ -159,4 +159,4 @@ TEST(PlotAssignment, ConfirmedTracksChooseFirst) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::association_test

@@ -6,7 +6,7 @@
 
 #include "track/scene.hpp"
 
-namespace wakeline {
+namespace wakeline::bad_input_test {
 namespace {
 
 using namespace test;
@@ -281,4 +281,4 @@ TEST(Fuzz, EveryNumberStaysSound) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::bad_input_test

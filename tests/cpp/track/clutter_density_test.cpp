@@ -6,7 +6,7 @@
 
 #include "track/stages.hpp"
 
-namespace wakeline {
+namespace wakeline::clutter_density_test {
 namespace {
 
 using namespace test;
@@ -57,4 +57,4 @@ TEST(ClutterDensity, OfATrackLeavesOutItsOwnPlots) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::clutter_density_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace wakeline {
+namespace wakeline::clutter_map_test {
 namespace {
 
 using Place = Vec<double, 2>;
@@ -139,4 +139,4 @@ TEST(ClutterMap, SavesAndRestores) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::clutter_map_test

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace wakeline {
+namespace wakeline::duplicates_test {
 namespace {
 
 constexpr double kThreshold = 6.0;
@@ -101,4 +101,4 @@ TEST(Seniority, IsAStrictOrder) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::duplicates_test

@@ -7,7 +7,7 @@
 #include "wakeline/multimodel/mode_history.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
 
-namespace wakeline {
+namespace wakeline::estimators_test {
 namespace {
 
 using Turning = Ekf<CoordinatedTurn>;
@@ -104,4 +104,4 @@ TEST(TrackerEstimators, TracksInLanesAreThoseOfOneAfterTheOther) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::estimators_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace wakeline {
+namespace wakeline::existence_test {
 namespace {
 
 Track track_of(double existence, double visibility) {
@@ -99,4 +99,4 @@ TEST(Detection, OfATargetThatIsNeverVisibleIsNone) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::existence_test

@@ -6,7 +6,7 @@
 
 #include "track/stages.hpp"
 
-namespace wakeline {
+namespace wakeline::initiation_test {
 namespace {
 
 using namespace test;
@@ -76,4 +76,4 @@ TEST(Initiation, TwoPlotsOfOneMomentOrTooFarApartInTimeStartNone) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::initiation_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace wakeline {
+namespace wakeline::life_cycle_test {
 namespace {
 
 const Radar kRadar{.period_s = 2.5, .max_speed_mps = 25.0};
@@ -91,4 +91,4 @@ TEST(LifeCycle, DeletesWhatIsDoubtfulTooFastOrLostInPosition) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::life_cycle_test

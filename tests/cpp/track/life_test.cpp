@@ -7,7 +7,7 @@
 
 #include "track/scene.hpp"
 
-namespace wakeline {
+namespace wakeline::life_test {
 namespace {
 
 using namespace test;
@@ -330,4 +330,4 @@ TEST(Life, AnEchoThatWandersOverItsSpotIsOneTrackAtRest) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::life_test

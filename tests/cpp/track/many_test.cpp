@@ -7,7 +7,7 @@
 
 #include "track/scene.hpp"
 
-namespace wakeline {
+namespace wakeline::many_test {
 namespace {
 
 using namespace test;
@@ -330,4 +330,4 @@ TEST(Many, AFalsePlotInEveryScanIsADensityOfOnePerCellButForTheStartsOwn) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::many_test

@@ -10,7 +10,7 @@
 
 #include "wakeline/track/vessel_models.hpp"
 
-namespace wakeline {
+namespace wakeline::mode_positions_test {
 namespace {
 
 /// The likelihood and the least distance of a fix by asking each mode in turn.
@@ -99,4 +99,4 @@ TEST(ModePositions, AskAnEstimatorThatDoesNotShowItsModes) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::mode_positions_test

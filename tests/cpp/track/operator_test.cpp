@@ -7,7 +7,7 @@
 
 #include "track/scene.hpp"
 
-namespace wakeline {
+namespace wakeline::operator_test {
 namespace {
 
 using namespace test;
@@ -177,4 +177,4 @@ TEST(Operator, ANewTrackHasNoNameOfAnOldOne) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::operator_test

@@ -10,7 +10,7 @@
 
 #include "support/draw.hpp"
 
-namespace wakeline {
+namespace wakeline::place_index_test {
 namespace {
 
 struct Place {
@@ -81,4 +81,4 @@ TEST(PlaceIndex, ForgetsWhenCleared) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::place_index_test

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace wakeline {
+namespace wakeline::plane_index_test {
 namespace {
 
 using Place = Vec<double, 2>;
@@ -92,4 +92,4 @@ TEST(PlaneIndex, ForgetsWhenCleared) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::plane_index_test

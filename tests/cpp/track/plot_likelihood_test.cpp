@@ -8,7 +8,7 @@
 #include "track/stages.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
-namespace wakeline {
+namespace wakeline::plot_likelihood_test {
 namespace {
 
 using namespace test;
@@ -60,4 +60,4 @@ TEST(InnovationSquared, IsOneWithinOneStandardDeviationAlongAnAxis) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::plot_likelihood_test

@@ -6,7 +6,7 @@
 
 #include "track/stages.hpp"
 
-namespace wakeline {
+namespace wakeline::plot_ownership_test {
 namespace {
 
 using namespace test;
@@ -79,4 +79,4 @@ TEST(PlotOwnership, ATrackWithoutPlotsOwnsNone) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::plot_ownership_test

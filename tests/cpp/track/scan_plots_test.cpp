@@ -8,7 +8,7 @@
 
 #include "track/stages.hpp"
 
-namespace wakeline {
+namespace wakeline::scan_plots_test {
 namespace {
 
 using namespace test;
@@ -68,4 +68,4 @@ TEST(ScanPlots, AreFoundByPosition) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::scan_plots_test

@@ -9,7 +9,7 @@
 
 #include "track/scene.hpp"
 
-namespace wakeline {
+namespace wakeline::settings_test {
 namespace {
 
 using test::kTestRadar;
@@ -151,4 +151,4 @@ TEST(VesselModelSettings, NamesWhatItRejects) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::settings_test

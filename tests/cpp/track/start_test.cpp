@@ -13,7 +13,7 @@
 #include "track/scene.hpp"
 #include "wakeline/track/radar.hpp"
 
-namespace wakeline {
+namespace wakeline::start_test {
 namespace {
 
 using test::matrices_near;
@@ -130,4 +130,4 @@ TEST(Start, IsAsDoubtfulAsPlotsThatMayBeWild) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::start_test

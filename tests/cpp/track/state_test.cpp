@@ -8,7 +8,7 @@
 #include "support/matrix_assert.hpp"
 #include "track/scene.hpp"
 
-namespace wakeline {
+namespace wakeline::state_test {
 namespace {
 
 using namespace test;
@@ -219,4 +219,4 @@ TEST(TrackerHeap, IsNotTouchedAfterStart) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::state_test

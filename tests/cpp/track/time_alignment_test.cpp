@@ -7,7 +7,7 @@
 #include "support/matrix_assert.hpp"
 #include "track/stages.hpp"
 
-namespace wakeline {
+namespace wakeline::time_alignment_test {
 namespace {
 
 using namespace test;
@@ -49,4 +49,4 @@ TEST(ExpectedTime, IsThatOfTheNearestPlotElseOfTheScan) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::time_alignment_test

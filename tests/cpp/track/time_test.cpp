@@ -6,7 +6,7 @@
 
 #include "track/scene.hpp"
 
-namespace wakeline {
+namespace wakeline::time_test {
 namespace {
 
 using namespace test;
@@ -148,4 +148,4 @@ TEST(MovingOwnShip, MakesNoDifference) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::time_test

@@ -10,7 +10,7 @@
 #include "track/stages.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
-namespace wakeline {
+namespace wakeline::track_gate_test {
 namespace {
 
 using namespace test;
@@ -103,4 +103,4 @@ TEST(TrackGate, IsEmptyWithoutPlotsNear) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::track_gate_test

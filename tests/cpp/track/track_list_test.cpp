@@ -6,7 +6,7 @@
 
 #include "wakeline/track/track_room.hpp"
 
-namespace wakeline {
+namespace wakeline::track_list_test {
 namespace {
 
 TEST(TrackList, KeepsOlderTracksFirstAndEachInItsSlot) {
@@ -93,4 +93,4 @@ TEST(TrackRoom, AConfirmedTrackIsNeverDeletedForANewOne) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::track_list_test

@@ -4,7 +4,7 @@
 // What the motion models of a tracker are for: small craft nearby, and ships miles away.
 #include "track/scene.hpp"
 
-namespace wakeline {
+namespace wakeline::vessel_models_test {
 namespace {
 
 using namespace test;
@@ -175,4 +175,4 @@ TEST(VesselModels, BelieveInNoVesselThatGoesFullCircleBetweenTwoScans) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::vessel_models_test

@@ -20,7 +20,7 @@
 #include "wakeline/video/asterix_cat240_reader.hpp"
 #include "wakeline/video/asterix_cat240_writer.hpp"
 
-namespace wakeline {
+namespace wakeline::asterix_cat240_test {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -522,4 +522,4 @@ TEST(Cat240, Every_fault_has_words) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::asterix_cat240_test

@@ -12,7 +12,7 @@
 #include "support/malloc_fence.hpp"
 #include "video/pictures.hpp"
 
-namespace wakeline {
+namespace wakeline::bad_input_test {
 namespace {
 
 using test::every_cell;
@@ -392,4 +392,4 @@ TEST(Settings, ThatAreInvalidAreRejected) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::bad_input_test

@@ -13,7 +13,7 @@
 
 #include "support/malloc_fence.hpp"
 
-namespace wakeline {
+namespace wakeline::cfar_test {
 namespace {
 
 template <class Amplitude>
@@ -222,4 +222,4 @@ TEST(CfarSettings, RejectsInvalidParameters) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::cfar_test

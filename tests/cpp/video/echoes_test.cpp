@@ -9,7 +9,7 @@
 
 #include "video/pictures.hpp"
 
-namespace wakeline {
+namespace wakeline::echoes_test {
 namespace {
 
 using test::every_cell;
@@ -396,4 +396,4 @@ TEST(Streaming, ClosesTheCircleOfEachTurn) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::echoes_test

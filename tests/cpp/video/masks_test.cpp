@@ -11,7 +11,7 @@
 
 #include "video/pictures.hpp"
 
-namespace wakeline {
+namespace wakeline::masks_test {
 namespace {
 
 using test::Picture;
@@ -250,4 +250,4 @@ TEST(StaticClutterMap, RejectsInvalidParameters) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::masks_test

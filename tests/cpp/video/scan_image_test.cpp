@@ -11,7 +11,7 @@
 #include "support/malloc_fence.hpp"
 #include "video/pictures.hpp"
 
-namespace wakeline {
+namespace wakeline::scan_image_test {
 namespace {
 
 using test::Picture;
@@ -109,4 +109,4 @@ TEST(ScanImage, NeedsNoHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::scan_image_test
