@@ -58,7 +58,9 @@ Revised<Gaussian<N, Scalar>, Scalar> revised(const Gaussian<N, Scalar>& prior,
   const auto whitened = [&](const Matrix& covariance) -> Matrix {
     return root.template whiten<N>(root.template whiten_rows<N>(covariance));
   };
-  const auto [width, axes] = principal_axes<N, Scalar>(whitened(after.covariance));
+  const auto principal = principal_axes<N, Scalar>(whitened(after.covariance));
+  const Vector& width = principal.variance;
+  const Matrix& axes = principal.axes;
   // Narrower than that against the widest axis is rounding.
   const Scalar least = N * std::numeric_limits<Scalar>::epsilon() * width.maxCoeff();
   for (int k = 0; k < N; ++k)
