@@ -199,6 +199,147 @@ def test_a_radar_around_places_sees_them_all_in_cells_of_the_whole():
         assert part.start_range_m % 6.0 == 0.0
 
 
+# Windows ------------------------------------------------------------------------------------------
+
+SAILING = Truth([6000.0 * np.cos(1.12), -4.0, 6000.0 * np.sin(1.12), 3.0])
+
+
+def sea_radar(**settings):
+    sea = SeaClutter(clutter_to_noise_db=20.0, decay=0.0, upwind_downwind_db=0.0, shape=1.0)
+    return radar(sea=sea, cells=400, sector_rad=(1.0, 1.3), **settings)
+
+
+def places_of(window, simulator):
+    """First sweep and first cell of a window in the picture."""
+    sweep = (window.azimuth_rad[0] - simulator.grid.azimuth_rad[0]) / STEP
+    cell = (window.start_range_m - simulator.start_range_m) / simulator.cell_m
+    assert sweep == pytest.approx(round(sweep), abs=1e-6)
+    assert cell == pytest.approx(round(cell), abs=1e-6)
+    return round(sweep), round(cell)
+
+
+def spread(windows, simulator):
+    """(T, N, C) power of every cell, NaN outside of the window."""
+    whole = np.full((len(windows), *simulator.grid.shape), np.nan)
+    for picture, window in zip(whole, windows, strict=True):
+        sweep, cell = places_of(window, simulator)
+        sweeps, cells = window.amplitude.shape
+        picture[sweep : sweep + sweeps, cell : cell + cells] = power(window, simulator)
+    return whole
+
+
+def follow(simulator, scans, margin_m, seed=1, targets=(), around=SAILING):
+    looks = simulator.windows({0: targets}, scans, seed, around=around, margin_m=margin_m)
+    return [look[0] for look in looks]
+
+
+def test_a_window_as_large_as_the_picture_is_the_picture():
+    land = Land(where=[[(4000.0, 4000.0), (4000.0, 6000.0), (2500.0, 6000.0)]], shape=1.0)
+    simulator = sea_radar(land=land)
+    boat = VideoTarget(truth=SAILING, length_m=15.0, beam_m=4.0)
+    windows = follow(simulator, 3, 1e5, targets=[boat])
+    for window, turn in zip(windows, simulator.turns([boat], 3, seed=1), strict=True):
+        np.testing.assert_array_equal(window.amplitude, turn.amplitude)
+        np.testing.assert_array_equal(window.azimuth_rad, turn.azimuth_rad)
+        np.testing.assert_array_equal(window.time_s, turn.time_s)
+        assert window.start_range_m == turn.start_range_m
+
+
+def test_a_window_follows_its_vessel_and_shows_its_echo_as_the_picture_does():
+    simulator = radar(cells=400, sector_rad=(1.0, 1.3), snr_db=50.0, noise_rms=1.0)
+    boat = VideoTarget(truth=SAILING, length_m=15.0, beam_m=4.0)
+    windows = follow(simulator, 40, 150.0, targets=[boat])
+    shapes = {window.amplitude.shape for window in windows}
+    assert len(shapes) == 1
+    for window, turn in zip(windows, simulator.turns([boat], 40, seed=1), strict=True):
+        sweep, cell = places_of(window, simulator)
+        sweeps, cells = window.amplitude.shape
+        part = turn.amplitude[sweep : sweep + sweeps, cell : cell + cells]
+        difference = window.amplitude.astype(int) - part.astype(int)
+        assert part.max() > 100
+        assert np.abs(difference).max() < 12  # of noise alone
+        state = SAILING.state_at(window.time_s.mean())[0]
+        assert window.range_m.mean() == pytest.approx(np.hypot(state[0], state[2]), abs=6.0)
+
+
+@pytest.mark.parametrize("shape", [0.5, 2.0])
+def test_clutter_in_a_window_has_the_statistics_of_the_picture(shape):
+    """Moments, correlation within a scan, and patches that stay where they are between scans."""
+    simulator = sea_radar()
+    simulator = replace(simulator, sea=replace(simulator.sea, shape=shape, correlation_s=6.0))
+    measured = []
+    for seed in range(3):
+        windows = spread(follow(simulator, 30, 200.0, seed=2 * seed), simulator)
+        pictures = np.array([power(v, simulator) for v in simulator.turns((), 30, 2 * seed + 1)])
+        measured.append([statistics_of(windows), statistics_of(pictures)])
+    in_windows, in_pictures = np.mean(measured, axis=0)
+    np.testing.assert_allclose(in_windows[0], in_pictures[0], rtol=0.06)
+    np.testing.assert_allclose(in_windows[1:], in_pictures[1:], rtol=0.2, atol=0.02)
+
+
+def statistics_of(power_of_cells):
+    """Mean power, and relative to it the variance and correlations over cells and scans."""
+    mean = np.nanmean(power_of_cells)
+    off = power_of_cells / mean - 1.0
+    return [
+        mean,
+        np.nanmean(off**2),
+        np.nanmean(off[:, 3:] * off[:, :-3]),
+        np.nanmean(off[:, :, 6:] * off[:, :, :-6]),
+        np.nanmean(off[1:] * off[:-1]),
+        np.nanmean(off[2:] * off[:-2]),
+    ]
+
+
+def test_land_in_a_window_is_that_of_the_picture():
+    land = Land(
+        where=lambda north, east: east > 4000.0, clutter_to_noise_db=60.0, decay=0.0, fluctuation=0
+    )
+    simulator = radar(land=land, cells=400, sector_rad=(1.0, 1.3), noise_rms=1.0)
+    (turn,) = simulator.turns((), 1, seed=1)
+    (window,) = follow(simulator, 1, 150.0)
+    sweep, cell = places_of(window, simulator)
+    sweeps, cells = window.amplitude.shape
+    part = turn.amplitude[sweep : sweep + sweeps, cell : cell + cells].astype(int)
+    assert part.max() > 300
+    assert np.abs(window.amplitude - part).max() < 12
+
+
+def test_cases_have_the_same_sea_and_the_same_craft():
+    simulator = sea_radar()
+    boat = VideoTarget(truth=SAILING, length_m=15.0, beam_m=4.0)
+    beside = replace(boat, truth=Truth(SAILING.state_at(0.0)[0] + [0.0, 0.0, 80.0, 0.0]))
+    cases = {"alone": [boat], "met": [boat, beside], "nobody": []}
+    looks = list(simulator.windows(cases, 3, seed=4, around=SAILING, margin_m=150.0))
+    for case, targets in cases.items():
+        own = follow(simulator, 3, 150.0, seed=4, targets=targets)
+        for look, window in zip(looks, own, strict=True):
+            np.testing.assert_array_equal(look[case].amplitude, window.amplitude)
+    assert (looks[0]["met"].amplitude != looks[0]["alone"].amplitude).any()
+
+
+@pytest.mark.parametrize("veast_mps", [-15.0, 15.0])
+@pytest.mark.parametrize("sector", [(-0.2, 0.2), (6.1, 0.2), None])
+def test_a_window_follows_across_north(veast_mps, sector):
+    simulator = radar(cells=400, sector_rad=sector)
+    craft = Truth([6000.0, 0.0, -10.0 * veast_mps, veast_mps])
+    windows = follow(simulator, 7, 150.0, around=craft)
+    for window in windows:
+        middle = len(window) // 2
+        north_m, _, east_m, _ = craft.state_at(window.time_s[middle])[0]
+        off_rad = np.arctan2(east_m, north_m) - window.azimuth_rad[middle]
+        reach = (off_rad + np.pi) % TURN - np.pi
+        assert abs(reach) < (0.6 if sector else 0.5 * len(window) + 1.0) * STEP
+
+
+def test_a_window_needs_a_vessel_in_the_picture_and_a_margin():
+    away = Truth([-6000.0, 0.0, 0.0, 0.0])
+    with pytest.raises(ValueError, match="around must be a vessel inside the simulated picture"):
+        follow(sea_radar(), 1, 100.0, around=away)
+    with pytest.raises(ValueError, match="margin_m"):
+        follow(sea_radar(), 1, 0.0)
+
+
 # Sea clutter --------------------------------------------------------------------------------------
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,13 +23,14 @@ from wakeline.recording import RadarVideo
 from ..radar import start_of
 from .clutter import Land, SeaClutter, amplitude_of_db
 from .fields import GammaTexture, PatchyField, PolarGrid, Speckle, complex_normal
-from .target import VideoTarget
+from .target import AnyMotion, VideoTarget
 
 _TURN_RAD = 2.0 * np.pi
 _RESPONSE_STDS = 4.5
 _PIECES_IN_HILL = 4.0
 _PASSES = np.array([-1, 0, 1, 2])
 _PASS_STEPS = 20
+_WINDOW_STEPS = 3
 _PASS_TOLERANCE_S = 1e-9
 RECEIVERS = ("linear", "logarithmic")
 
@@ -292,6 +294,63 @@ class RadarVideoSimulator:
         antenna = _Antenna(self, np.random.default_rng(seed))
         return (antenna.turn(targets, start_time_s + k * self.period_s) for k in range(scans))
 
+    def windows(
+        self,
+        cases: Mapping[Hashable, Targets],
+        scans: int,
+        seed: np.random.Generator | int = 0,
+        *,
+        around: AnyMotion,
+        margin_m: float,
+        start_time_s: float | None = None,
+    ) -> Iterator[dict[Hashable, RadarVideo]]:
+        """Consecutive revolutions in a window that moves with a vessel, by set of targets.
+
+        Only the cells of the window are simulated, with the statistics of the full picture: noise
+        and speckle, which are independent in each revolution, are drawn in the window only; the
+        patches of the sea, which persist, and the land are drawn for the entire picture. All cases
+        have the same noise and clutter, and a target has the same echo in each case in which it has
+        the same position in the list.
+
+        Parameters
+        ----------
+        cases : mapping of key to targets
+        scans : int
+            Number of revolutions.
+        seed : int or numpy.random.Generator
+        around : Truth, or any object with ``state_at``
+            The center of the window; near the edge of the picture the window stays inside.
+        margin_m : float
+            Half the length of the window in range, and half its width across the beam at the
+            picture's nearest range; wider farther out.
+        start_time_s : float, optional
+            Time at which the first revolution begins; default the latest start of the truths.
+
+        Returns
+        -------
+        iterator of dict
+            The window of each revolution by case.
+
+        Raises
+        ------
+        ValueError
+            When the number of scans is negative, the margin is not positive, or the vessel is
+            unknown or outside of the picture.
+        """
+        listed = {key: _listed(targets) for key, targets in cases.items()}
+        whole_number("scans", scans, 0)
+        positive(margin_m=margin_m)
+        everyone = [target for targets in listed.values() for target in targets]
+        start_time_s = _start_s(everyone, start_time_s)
+        antenna = _Antenna(self, np.random.default_rng(seed))
+        follower = _Follower(self, around, margin_m)
+
+        def window(begin_s: float) -> dict[Hashable, RadarVideo]:
+            looks = antenna.looks(list(listed.values()), begin_s, follower.window(begin_s))
+            return dict(zip(listed, looks, strict=True))
+
+        return (window(start_time_s + k * self.period_s) for k in range(scans))
+
     def received(self, amplitude: NDArray[np.float32]) -> NDArray[np.uint8] | NDArray[np.uint16]:
         """Receiver output for amplitudes relative to the noise's root mean square."""
         if self.receiver == "linear":
@@ -344,6 +403,65 @@ class RadarVideoSimulator:
         return mean if self._shade is None else mean * self._shade
 
 
+class _Echo(NamedTuple):
+    """What a target adds to a part of the picture."""
+
+    sweeps: slice
+    cells: slice
+    field: NDArray[np.complex64]
+
+
+class _Window(NamedTuple):
+    """A part of the picture, and the speckle of that size."""
+
+    sweeps: slice
+    cells: slice
+    grid: PolarGrid
+    speckle: Speckle
+
+    @classmethod
+    def whole(cls, radar: RadarVideoSimulator) -> _Window:
+        return cls(slice(None), slice(None), radar.grid, radar._speckle)
+
+
+class _Follower:
+    """A window of constant size around a vessel."""
+
+    def __init__(self, radar: RadarVideoSimulator, around: AnyMotion, margin_m: float) -> None:
+        grid = radar.grid
+        self._radar, self._around = radar, around
+        reach = margin_m / np.array([grid.range_m[0] * grid.step_rad, grid.cell_m])
+        self._size = np.minimum(2 * np.ceil(reach).astype(int) + 1, grid.shape)
+        sweeps, cells = self._size
+        self._speckle = Speckle(
+            replace(grid, azimuth_rad=grid.azimuth_rad[:sweeps], range_m=grid.range_m[:cells]),
+            radar.beam_std_rad,
+            radar.pulse_std_m,
+        )
+
+    def window(self, begin_s: float) -> _Window:
+        """That of the revolution that begins at a time."""
+        grid = self._radar.grid
+        azimuth_rad = middle_rad = 0.5 * (grid.azimuth_rad[0] + grid.azimuth_rad[-1])
+        for _ in range(_WINDOW_STEPS):
+            seen_s = begin_s + self._radar.period_s * azimuth_rad / _TURN_RAD
+            north_m, _, east_m, _ = self._around.state_at(seen_s)[0]
+            off_rad = np.arctan2(east_m, north_m) - middle_rad
+            azimuth_rad = middle_rad + (off_rad + np.pi) % _TURN_RAD - np.pi
+        sweep = (azimuth_rad - grid.azimuth_rad[0]) / grid.step_rad
+        place = np.array([sweep, (np.hypot(north_m, east_m) - grid.range_m[0]) / grid.cell_m])
+        if not ((place > -0.5) & (place < np.array(grid.shape) - 0.5)).all():
+            raise ValueError(
+                f"around must be a vessel inside the simulated picture, and is not in the "
+                f"revolution from {begin_s} s"
+            )
+        middle = np.rint(place).astype(int)
+        first = np.clip(middle - self._size // 2, 0, np.array(grid.shape) - self._size)
+        sweeps, cells = (slice(f, f + n) for f, n in zip(first, self._size, strict=True))
+        part = replace(grid, azimuth_rad=grid.azimuth_rad[sweeps], range_m=grid.range_m[cells])
+        return _Window(sweeps, cells, part, self._speckle)
+
+
 class _Antenna:
     """The clutter's state from one revolution to the next."""
 
@@ -356,35 +474,57 @@ class _Antenna:
             self._raise_land()
 
     def turn(self, targets: Sequence[VideoTarget], start_time_s: float) -> RadarVideo:
-        radar, grid = self._radar, self._radar.grid
-        field = complex_normal(self._rng, grid.shape)
-        if radar.sea is not None or radar.land is not None:
-            self._add_clutter(field)
-        for number, target in enumerate(targets):
-            self._add_target(field, number, target, start_time_s)
-        self._turn += 1
-        return RadarVideo(
-            radar.received(np.abs(field)),
-            np.mod(grid.azimuth_rad, _TURN_RAD),
-            start_time_s + radar.period_s * grid.azimuth_rad / _TURN_RAD,
-            grid.step_rad,
-            radar.start_range_m,
-            radar.cell_m,
-        )
+        (video,) = self.looks([targets], start_time_s, _Window.whole(self._radar))
+        return video
 
-    def _add_clutter(self, field: NDArray[np.complex64]) -> None:
+    def looks(
+        self, cases: Sequence[Sequence[VideoTarget]], start_time_s: float, window: _Window
+    ) -> list[RadarVideo]:
+        """The window in one revolution, with the targets of each case."""
+        radar = self._radar
+        background = complex_normal(self._rng, window.grid.shape)
+        if radar.sea is not None or radar.land is not None:
+            self._add_clutter(background, window)
+        azimuth_rad = np.mod(window.grid.azimuth_rad, _TURN_RAD)
+        time_s = start_time_s + radar.period_s * window.grid.azimuth_rad / _TURN_RAD
+        start_range_m = radar.start_range_m + (window.cells.start or 0) * radar.cell_m
+        echoes: dict[tuple[int, int], list[_Echo]] = {}
+        videos = []
+        for targets in cases:
+            field = background if len(cases) == 1 else background.copy()
+            for number, target in enumerate(targets):
+                key = (number, id(target))
+                if key not in echoes:
+                    echoes[key] = list(self._echoes(window, number, target, start_time_s))
+                for echo in echoes[key]:
+                    field[echo.sweeps, echo.cells] += echo.field
+            videos.append(
+                RadarVideo(
+                    radar.received(np.abs(field)),
+                    azimuth_rad,
+                    time_s,
+                    window.grid.step_rad,
+                    start_range_m,
+                    radar.cell_m,
+                )
+            )
+        self._turn += 1
+        return videos
+
+    def _add_clutter(self, field: NDArray[np.complex64], window: _Window) -> None:
         """This revolution's speckle times the textures of sea and land, and the constant land."""
-        speckle = self._radar._speckle.draw(self._rng)
-        strength = self._sea_strength() if self._radar.sea is not None else None
+        part = window.sweeps, window.cells
+        speckle = window.speckle.draw(self._rng)
+        strength = self._sea_strength(part) if self._radar.sea is not None else None
         if self._radar.land is not None:
-            field += self._steady_land
-            moving = self._moving_land
+            field += self._steady_land[part]
+            moving = self._moving_land[part]
             strength = moving if strength is None else np.hypot(strength, moving)
         speckle *= strength
         field += speckle
 
-    def _sea_strength(self) -> NDArray[np.float32]:
-        """Root of the sea's power in each cell, its patches one period older.
+    def _sea_strength(self, part: tuple[slice, slice]) -> NDArray[np.float32]:
+        """Root of the sea's power in each cell of a part, the patches one period older.
 
         The Gaussian field behind the texture is a first-order autoregression, so that the
         correlation of the texture falls to 1 / e in the correlation time.
@@ -399,7 +539,7 @@ class _Antenna:
             self._sea_field *= np.float32(keep)
             fresh *= np.float32(np.sqrt(1.0 - keep**2))
             self._sea_field += fresh
-        return texture.amplitude(self._sea_field) * radar._sea_amplitude
+        return texture.amplitude(self._sea_field[part]) * radar._sea_amplitude[part]
 
     def _raise_land(self) -> None:
         """Draw the land: the constant part of its echo, and the power of the rest."""
@@ -416,35 +556,33 @@ class _Antenna:
         self._steady_land *= np.float32(np.sqrt(1.0 - land.fluctuation))
         self._moving_land = strength * np.float32(np.sqrt(land.fluctuation))
 
-    def _add_target(
-        self,
-        field: NDArray[np.complex64],
-        number: int,
-        target: VideoTarget,
-        start_time_s: float,
-    ) -> None:
+    def _echoes(
+        self, window: _Window, number: int, target: VideoTarget, start_time_s: float
+    ) -> Iterator[_Echo]:
         """The echo of every pass of the beam over the target within this revolution.
 
         Passes are numbered from the first revolution, and the number seeds the phases: an echo
         across north has its parts in two revolutions.
         """
-        state, azimuth_rad = _at_passes(
-            target, start_time_s + self._radar.period_s * _PASSES, self._radar.period_s
-        )
+        period_s = self._radar.period_s
+        state, azimuth_rad = _at_passes(target.truth, start_time_s + period_s * _PASSES, period_s)
         for k in np.flatnonzero(np.isfinite(state).all(axis=1)):
-            self._add_echo(field, number, target, state[k], float(azimuth_rad[k]), int(_PASSES[k]))
+            offset = int(_PASSES[k])
+            echo = self._echo(window, number, target, state[k], float(azimuth_rad[k]), offset)
+            if echo is not None:
+                yield echo
 
-    def _add_echo(
+    def _echo(
         self,
-        field: NDArray[np.complex64],
+        window: _Window,
         number: int,
         target: VideoTarget,
         state: NDArray[np.float64],
         azimuth_rad: float,
         offset: int,
-    ) -> None:
+    ) -> _Echo | None:
         """Response of the scatterers in beam and pulse: the product (sweeps, S) (S, cells)."""
-        radar, grid = self._radar, self._radar.grid
+        radar, grid = self._radar, window.grid
         place = target.scatterers_at(state)
         range_m = np.abs(place)
         off_rad = np.angle(place * np.exp(-1j * azimuth_rad))
@@ -452,17 +590,17 @@ class _Antenna:
         sweeps = _within(grid.azimuth_rad, centre_rad, _RESPONSE_STDS * radar.beam_std_rad)
         cells = _within(grid.range_m, range_m, _RESPONSE_STDS * radar.pulse_std_m)
         if sweeps.start == sweeps.stop or cells.start == cells.stop:
-            return
+            return None
         turn_key = self._turn if target.swerling in (2, 4) else 0
         rng = np.random.default_rng([self._passes_seed, number, self._turn + offset + 1, turn_key])
         amplitude = target.fluctuations(rng, sweeps.stop - sweeps.start)
         amplitude = amplitude * np.sqrt(self._power(target, state) / len(place))
         beam = _gaussian(grid.azimuth_rad[sweeps, None] - centre_rad, radar.beam_std_rad)
         pulse = _gaussian(grid.range_m[cells] - range_m[:, None], radar.pulse_std_m)
-        echo = (amplitude * beam) @ pulse
+        field = (amplitude * beam) @ pulse
         if radar._shade is not None:
-            echo *= radar._shade[sweeps, cells]
-        field[sweeps, cells] += echo.astype(np.complex64)
+            field *= radar._shade[window.sweeps, window.cells][sweeps, cells]
+        return _Echo(sweeps, cells, field.astype(np.complex64))
 
     def _power(self, target: VideoTarget, state: NDArray[np.float64]) -> float:
         """Mean signal-to-noise ratio; a range below one cell counts as one cell."""
@@ -474,22 +612,22 @@ class _Antenna:
 
 
 def _at_passes(
-    target: VideoTarget, begin_s: NDArray[np.float64], period_s: float
+    motion: AnyMotion, begin_s: NDArray[np.float64], period_s: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """States (n, 4) and azimuths at which the beam passes the target, by start of revolution.
+    """States (n, 4) and azimuths at which the beam passes a vessel, by start of revolution.
 
     Solves ``time = begin + period * azimuth(time) / turn`` by fixed-point iteration, from an
     azimuth between 0 and 2 pi; it contracts if the target's azimuth changes slower than the
     antenna's.
     """
-    state = target.truth.state_at(begin_s)
+    state = motion.state_at(begin_s)
     azimuth_rad = np.arctan2(state[:, 2], state[:, 0]) % _TURN_RAD
     time_s = begin_s
     for _ in range(_PASS_STEPS):
         before_s, time_s = time_s, begin_s + period_s * azimuth_rad / _TURN_RAD
         if not (abs(time_s - before_s) > _PASS_TOLERANCE_S).any():
             break
-        state = target.truth.state_at(time_s)
+        state = motion.state_at(time_s)
         fresh_rad = np.arctan2(state[:, 2], state[:, 0])
         azimuth_rad = azimuth_rad + (fresh_rad - azimuth_rad + np.pi) % _TURN_RAD - np.pi
     return state, azimuth_rad
