@@ -10,7 +10,13 @@ import wakeline as wl
 from wakeline import study
 from wakeline.scenario import HardTurn, hard_turns
 from wakeline.study import fuzzy_alpha_beta
-from wakeline.study.fuzzy_alpha_beta import on_video
+from wakeline.study.fuzzy_alpha_beta import dense, on_video
+from wakeline.study.fuzzy_alpha_beta.dense import Ending
+from wakeline.study.fuzzy_alpha_beta.estimators import (
+    PAPER_MEMBERSHIPS,
+    fitted_memberships,
+    training_error_m,
+)
 
 RUNS = 200
 
@@ -150,3 +156,122 @@ def test_a_hard_turn_is_what_it_says():
 def test_a_hard_turn_that_is_invalid_is_rejected(field, value):
     with pytest.raises(ValueError, match=field):
         HardTurn(**({"speed_mps": 10.0, "radius_m": 300.0} | {field: value}))
+
+
+# Fitted memberships -------------------------------------------------------------------------------
+
+
+def test_fitted_memberships_have_the_least_training_error_nearby():
+    fitted = fitted_memberships(10)
+    training = [(turn, turn.draw(10, 0x7EA1)) for turn in hard_turns().values()]
+    least = training_error_m(fitted, training)
+    assert least < training_error_m(PAPER_MEMBERSHIPS, training)
+    for name in fitted:
+        for factor in (0.8, 1.25):
+            beside = fitted | {name: factor * fitted[name]}
+            assert training_error_m(beside, training) >= least
+
+
+def test_fitted_memberships_need_less_gate_and_cost_accuracy_on_the_straight(report):
+    for case in hard_turns():
+        paper, fitted = report.row(case, "fuzzy"), report.row(case, "fuzzy_fitted")
+        assert fitted["gate_median_m"] < paper["gate_median_m"]
+        assert fitted["straight_rms_m"] > paper["straight_rms_m"]
+
+
+# Dense traffic ------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def meetings():
+    """A few runs with a narrow and two wide gates."""
+    return [
+        dense.meet(seed, kinds=["passing", "abreast"], distances_m=(30, 100), gates_m=(14, 35, 50))
+        for seed in range(4)
+    ]
+
+
+def captured(meetings, case, gate_m):
+    """Number of captures, of all estimators."""
+    return sum(
+        found == Ending.CAPTURED
+        for run in meetings
+        for (of, _, gate), found in run.items()
+        if (of, gate) == (case, gate_m)
+    )
+
+
+def test_a_lone_craft_is_never_captured(meetings):
+    assert all(captured(meetings, dense.ALONE, gate_m) == 0 for gate_m in (14, 35, 50))
+    assert any(found == Ending.HELD for run in meetings for found in run.values())
+
+
+def test_captures_grow_with_the_gate(meetings):
+    assert captured(meetings, "abreast_30m", 14) < captured(meetings, "abreast_30m", 35)
+    assert captured(meetings, "passing_30m", 14) < captured(meetings, "passing_30m", 50)
+
+
+def test_captures_grow_as_the_neighbor_comes_closer(meetings):
+    assert captured(meetings, "abreast_100m", 35) < captured(meetings, "abreast_30m", 35)
+
+
+def test_a_neighbor_out_of_reach_of_a_narrow_strobe_changes_nothing(meetings):
+    for run in meetings:
+        for name in fuzzy_alpha_beta.LABELS:
+            assert run["passing_100m", name, 14] == run[dense.ALONE, name, 14]
+
+
+@pytest.mark.parametrize("kind", dense.KINDS)
+@pytest.mark.parametrize("seed", range(4))
+def test_a_neighbor_is_as_near_as_it_says_and_comes_from_afar(kind, seed):
+    craft = dense.SITUATION.truth(np.random.default_rng(seed))
+    meets_s = 75.0
+    other = dense.neighbor(kind, craft, 30.0, meets_s)
+    time_s = np.arange(0.0, 240.0, 0.5)
+    apart_m = np.linalg.norm((craft.state_at(time_s) - other.state_at(time_s))[:, ::2], axis=1)
+    assert apart_m.min() == pytest.approx(30.0, abs=1e-6)
+    assert apart_m[time_s == meets_s] == pytest.approx(30.0, abs=1e-6)
+    assert apart_m[0] > 2.0 * on_video.ACQUIRED_WITH_M
+    assert apart_m[-1] > 300.0
+    together = apart_m[(time_s >= 45.0) & (time_s <= 120.0)]
+    assert (np.ptp(together) < 1e-6) == (kind == "abreast")
+
+
+def test_an_ending_is_lost_after_three_misses_else_of_the_nearer_craft():
+    craft_m, other_m = np.zeros(2), np.array([100.0, 0.0])
+    loop = on_video.Loop(None, 14.0)
+    for place_m, found in (
+        ([10.0, 0.0], Ending.HELD),
+        ([90.0, 0.0], Ending.CAPTURED),
+        ([0.0, 100.0], Ending.LOST),
+    ):
+        loop.estimate_m.append(np.array(place_m))
+        assert dense.ending(loop, craft_m, other_m) == found
+    loop.misses = 3
+    assert dense.ending(loop, craft_m, other_m) == Ending.LOST
+
+
+def test_the_needed_gate_is_the_narrowest_that_holds_a_lone_craft():
+    def run(*held):
+        return {
+            (dense.ALONE, "imm", gate_m): Ending.HELD if ok else Ending.LOST
+            for gate_m, ok in zip(dense.GATES_M, held, strict=True)
+        }
+
+    some = run(False, False, True, True, True, False, False, False)
+    fewer = run(False, False, False, True, False, False, False, False)
+    none = run(*[False] * 8)
+    assert dense.Shares({0: some}).needed_gate_m("imm") == dense.GATES_M[2]
+    assert dense.Shares({0: some, 1: fewer}).needed_gate_m("imm") == dense.GATES_M[3]
+    assert dense.Shares({0: some, 1: fewer, 2: none}).needed_gate_m("imm") == dense.GATES_M[3]
+
+
+def test_rows_of_dense_traffic_have_the_gate_that_the_estimator_needs(report):
+    for kind in dense.KINDS:
+        for distance_m in dense.DISTANCES_M:
+            for name in fuzzy_alpha_beta.LABELS:
+                row = report.row(dense.case_of(kind, distance_m), name)
+                alone = report.row(dense.ALONE, name)
+                assert row["gate_m"] == alone["gate_m"] in dense.GATES_M
+                assert 0.0 <= row["capture_probability"] + row["loss_probability"] <= 1.0
+                assert alone["capture_probability"] == 0.0

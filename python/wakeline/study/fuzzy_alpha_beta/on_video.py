@@ -27,8 +27,9 @@ LEAST_AMPLITUDE = 40  # above all but one in a hundred cells of the sea
 SENSOR = wl.ConvertedRangeBearing(range_std_m=2.2, bearing_std_rad=2.5 / RANGE_M)
 _SNR_DB, _CLUTTER_TO_NOISE_DB = 12.0, 4.0
 _BEAM_CELLS = 3.0
-_ACQUIRED_WITH_M = 45.0
+ACQUIRED_WITH_M = 45.0
 _MARGIN_M = 120.0
+_UNKNOWN = np.full(2, np.nan)
 
 
 @dataclass
@@ -40,9 +41,10 @@ class Loop:
     estimator : object
     gate_m : float
         Radius of the strobe.
-    predicted_m, measured_m, estimate_m : list of (2,) arrays
-        North and east: center of the strobe, centroid in it (NaN without one), and the estimate
-        afterwards.
+    predicted_m, estimate_m : list of (2,) arrays
+        North and east: center of the strobe, and the estimate afterwards.
+    echoes : list of (2,) arrays
+        Range and bearing of the centroid in the strobe; NaN without one.
     misses : int
         Current number of consecutive misses.
     """
@@ -50,7 +52,7 @@ class Loop:
     estimator: Any
     gate_m: float
     predicted_m: list[np.ndarray] = field(default_factory=list)
-    measured_m: list[np.ndarray] = field(default_factory=list)
+    echoes: list[np.ndarray] = field(default_factory=list)
     estimate_m: list[np.ndarray] = field(default_factory=list)
     misses: int = 0
 
@@ -58,23 +60,43 @@ class Loop:
     def lost(self) -> bool:
         return self.misses >= LOST_AFTER
 
+    @property
+    def measured_m(self) -> np.ndarray:
+        """(T, 2) north and east of the centroids."""
+        return curves.place_m(np.array(self.echoes))
+
+    def begin(self, start: wl.Gaussian) -> Loop:
+        """Start the estimator."""
+        self.estimator.start(start)
+        return self
+
     def take(self, turn: RadarVideo, period_s: float) -> None:
         """Predict, place the strobe on a revolution, and update with the plot in it."""
-        unknown = np.full(2, np.nan)
         if self.lost:
-            self.predicted_m.append(unknown)
-            self.measured_m.append(unknown)
-            self.estimate_m.append(unknown)
+            for scans in (self.predicted_m, self.echoes, self.estimate_m):
+                scans.append(_UNKNOWN)
             return
         self.estimator.predict(period_s)
-        ahead_m = place_of(self.estimator)
-        echo = strobe(turn, ahead_m, self.gate_m)
+        self.predicted_m.append(place_of(self.estimator))
+        echo = strobe(turn, self.predicted_m[-1], self.gate_m)
         if echo is not None:
             self.estimator.update(SENSOR, echo)
         self.misses = 0 if echo is not None else self.misses + 1
-        self.predicted_m.append(ahead_m)
-        self.measured_m.append(unknown if echo is None else curves.place_m(echo))
+        self.echoes.append(_UNKNOWN if echo is None else echo)
         self.estimate_m.append(place_of(self.estimator))
+
+
+class Acquisition:
+    """The first two plots, from wide strobes around the truth: an operator designates the craft."""
+
+    def __init__(self) -> None:
+        self._plots: list[np.ndarray] = []
+
+    def start(self, turn: RadarVideo, craft_m: np.ndarray, period_s: float) -> wl.Gaussian | None:
+        """Take a revolution; the start once two in a row have an echo."""
+        plot = strobe(turn, craft_m, ACQUIRED_WITH_M)
+        self._plots = [] if plot is None else [*self._plots, plot]
+        return wl.two_point(SENSOR, *self._plots, period_s) if len(self._plots) == 2 else None
 
 
 @dataclass(frozen=True)
@@ -101,40 +123,41 @@ class VideoRun:
         return np.linalg.norm(np.array(self.loops[name].estimate_m) - self.truth[:, ::2], axis=-1)
 
 
-def follow(situation: HardTurn, gate_m: float, seed: int) -> VideoRun:
-    """Simulate a recording and let every estimator track the craft in it.
+def follow(situation: HardTurn, gate_m: float, seed: int, margin_m: float = _MARGIN_M) -> VideoRun:
+    """Simulate the picture around the craft and let every estimator track it.
 
-    The first two plots come from wide strobes around the truth, as if an operator designated the
-    craft.
+    The margin is that of the picture around the craft.
     """
-    scene = video_scene(situation, seed)
-    truth = scene.targets["craft"].truth
+    scene = video_scene(situation, seed, margin_m)
+    craft = scene.targets["craft"]
     period_s = situation.period_s
+    acquisition = Acquisition()
     loops: dict[str, Loop] = {}
     time_s: list[float] = []
-    plots: list[np.ndarray] = []
-    for turn in scene.turns(len(situation.time_s), seed):
+    looks = scene.radar.windows(
+        {"craft": [craft]}, len(situation.time_s), seed, around=craft.truth, margin_m=margin_m
+    )
+    for look in looks:
+        turn = look["craft"]
         now_s = float(turn.time_s.mean())
-        if len(plots) < 2:
-            plots.append(strobe(turn, truth.state_at(now_s)[0, ::2], _ACQUIRED_WITH_M))
-            if plots[-1] is None:
-                plots.clear()
-            elif len(plots) == 2:
-                start = wl.two_point(SENSOR, *plots, period_s)
-                for name, estimator in estimators().items():
-                    estimator.start(start)
-                    loops[name] = Loop(estimator, gate_m)
+        if not loops:
+            start = acquisition.start(turn, craft.truth.state_at(now_s)[0, ::2], period_s)
+            if start is not None:
+                loops = {
+                    name: Loop(estimator, gate_m).begin(start)
+                    for name, estimator in estimators().items()
+                }
             continue
         time_s.append(now_s)
         for loop in loops.values():
             loop.take(turn, period_s)
-    return VideoRun(np.array(time_s), truth.state_at(np.array(time_s)), loops, turn)
+    return VideoRun(np.array(time_s), craft.truth.state_at(np.array(time_s)), loops, turn)
 
 
-def video_scene(situation: HardTurn, seed: int) -> VideoScene:
+def video_scene(situation: HardTurn, seed: int, margin_m: float = _MARGIN_M) -> VideoScene:
     """The small craft in sea clutter, so near that its echo fits into the strobe."""
     near = replace(situation, range_m=RANGE_M)
-    scene = small_craft_scene(seed, situation=near, margin_m=_MARGIN_M, beam_cells=_BEAM_CELLS)
+    scene = small_craft_scene(seed, situation=near, margin_m=margin_m, beam_cells=_BEAM_CELLS)
     sea = replace(scene.radar.sea, clutter_to_noise_db=_CLUTTER_TO_NOISE_DB)
     return replace(scene, radar=replace(scene.radar, snr_db=_SNR_DB, sea=sea))
 
@@ -153,4 +176,4 @@ def strobe(turn: RadarVideo, around_m: np.ndarray, radius_m: float) -> np.ndarra
 
 def place_of(estimator: Any) -> np.ndarray:
     """North and east of an estimate."""
-    return estimator.estimate().mean[[0, 2]]
+    return estimator.estimate().mean[::2]

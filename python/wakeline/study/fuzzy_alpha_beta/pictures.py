@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,6 +14,8 @@ from wakeline.scenario import HardTurn, HardTurnRuns
 from wakeline.study import curves
 from wakeline.study.base import Picture
 
+from . import dense
+from .dense import Ending, Frame, Shares
 from .estimators import LABELS, estimators
 
 if TYPE_CHECKING:
@@ -30,7 +32,12 @@ TITLES = {
     "20mps_r600": "20 m/s, 600 m",
 }
 _ECHO_SCANS, _ECHO_STROBE_M = 12, 22.0
-_FILM_REACH_M = 300.0
+FILM_REACH_M = 300.0
+_ARGUED = ("abreast", 30)
+_MEETING_S = (30.0, 110.0, 141.0)
+_MEETING_REACH_M = 100.0
+_MEETING_AMPLITUDES = (0.0, 160.0)
+_STROBE_COLORS = {"fuzzy": "#FF9F40", "imm": "#40E0FF"}
 _COLORS = dict(zip(LABELS, plot.PALETTE, strict=False))
 
 
@@ -41,8 +48,9 @@ def pictures(
     gates_m: np.ndarray,
     losses: Mapping[Of, np.ndarray],
     films: Mapping[str, Sequence[VideoRun]],
+    shares: Shares,
 ) -> tuple[Picture, ...]:
-    """The paper's figures, then the required gates and the losses."""
+    """The paper's figures, the required gates, the losses, and the dense traffic."""
     traced = {case: _trace(scenarios[case], runs) for case, runs in drawn.items()}
     return (
         Picture(
@@ -103,7 +111,51 @@ def pictures(
             for case, runs in films.items()
             if runs
         ),
+        *(_of_dense_traffic(shares) if shares else ()),
     )
+
+
+def _of_dense_traffic(shares: Shares) -> Iterator[Picture]:
+    """The paper's argument, the captures of every case, and one of them on the picture."""
+    case = dense.case_of(*_ARGUED)
+    yield Picture(
+        "fuzzy-dense",
+        "A gate must be wide enough for the turn and too narrow for the neighbor",
+        (
+            partial(_draw_ends, shares=shares, case=dense.ALONE, how=Ending.LOST),
+            partial(_draw_ends, shares=shares, case=case, how=Ending.CAPTURED),
+            partial(_draw_ends, shares=shares, case=case, how=Ending.HELD),
+        ),
+        size_in=(7.2, 7.6),
+    )
+    yield Picture(
+        "fuzzy-dense-captures",
+        "Share of strobes captured by the neighbor over the gate radius",
+        tuple(
+            partial(_draw_captures, shares=shares, kind=kind, distance_m=distance_m)
+            for distance_m in dense.DISTANCES_M
+            for kind in dense.KINDS
+        ),
+        size_in=(9.6, 9.0),
+        columns=len(dense.KINDS),
+    )
+    told = {"fuzzy": shares.needed_gate_m("fuzzy"), "imm": shares.needed_gate_m("imm")}
+    wanted = {"fuzzy": Ending.CAPTURED, "imm": Ending.HELD}
+    for number, run in zip(shares.seeds, shares.runs, strict=True):
+        if all(run[case, name, told[name]] == wanted[name] for name in told):
+            frames = dense.film(number, *_ARGUED, told)
+            yield Picture(
+                "fuzzy-dense-video",
+                "A neighbor abreast at 30 m: the wide strobe goes with it, the narrow one stays",
+                tuple(
+                    partial(_draw_meeting, frames=frames, at_s=at_s, gates_m=told)
+                    for at_s in _MEETING_S
+                ),
+                size_in=(10.4, 4.4),
+                columns=len(_MEETING_S),
+                shared=False,
+            )
+            break
 
 
 class _Trace(NamedTuple):
@@ -241,7 +293,7 @@ def _draw_film(ax: Axes, film: VideoRun) -> Axes:
     """The last revolution around the craft, with the strobes of the last scans."""
     loop = film.loops["fuzzy_improved"]
     north_m, east_m = film.truth[-1, ::2]
-    measured_m = np.array(loop.measured_m)
+    measured_m = loop.measured_m
     known = [place_m for place_m in loop.predicted_m if np.isfinite(place_m).all()]
     return plot.ppi(
         film.last,
@@ -249,10 +301,88 @@ def _draw_film(ax: Axes, film: VideoRun) -> Axes:
         plots=measured_m[np.isfinite(measured_m[:, 0])],
         strobes=[plot.circle_outline(place_m, loop.gate_m) for place_m in known],
         extent_m=(
-            east_m - _FILM_REACH_M,
-            east_m + _FILM_REACH_M,
-            north_m - _FILM_REACH_M,
-            north_m + _FILM_REACH_M,
+            east_m - FILM_REACH_M,
+            east_m + FILM_REACH_M,
+            north_m - FILM_REACH_M,
+            north_m + FILM_REACH_M,
         ),
         rings=False,
     )
+
+
+_HOW = {
+    Ending.LOST: "lost, alone",
+    Ending.CAPTURED: "captured",
+    Ending.HELD: "held",
+}
+
+
+def _draw_shares(ax: Axes, shares: Shares, case: str, how: Ending) -> Axes:
+    """Curves over the gate, with a dot at the gate that each estimator needs."""
+    for name, label in LABELS.items():
+        curve = shares.curve(case, name, how)
+        ax.plot(dense.GATES_M, curve, color=_COLORS[name], linewidth=1.6, label=label)
+        needed_m = shares.needed_gate_m(name)
+        ax.plot(
+            needed_m,
+            shares.share(case, name, needed_m, how),
+            "o",
+            color=_COLORS[name],
+            markersize=7,
+            markeredgecolor="white",
+            clip_on=False,
+            zorder=4,
+        )
+    ax.set(xlabel="gate radius (m)", xlim=(dense.GATES_M[0] - 1, dense.GATES_M[-1] + 1))
+    ax.set_ylim(-0.03, 1.03)
+    return plot.dress(ax)
+
+
+def _draw_ends(ax: Axes, shares: Shares, case: str, how: Ending) -> Axes:
+    _draw_shares(ax, shares, case, how)
+    if case == dense.ALONE:
+        ax.axhline(dense.ALLOWED_LOSS, color=plot.MUTED, linewidth=1.0, linestyle="--")
+        ax.set_ylabel("lost\nalone, with a hard turn")
+        return plot.name_lines(ax)
+    kind, distance_m = _ARGUED
+    ax.set_ylabel(f"{_HOW[how]}\n{kind}, {distance_m:g} m")
+    return ax
+
+
+def _draw_captures(ax: Axes, shares: Shares, kind: str, distance_m: float) -> Axes:
+    _draw_shares(ax, shares, dense.case_of(kind, distance_m), Ending.CAPTURED)
+    if kind == dense.KINDS[0]:
+        ax.set_ylabel(f"captured, {distance_m:g} m")
+    if distance_m == dense.DISTANCES_M[0]:
+        ax.set_title(kind, fontsize=plot.TEXT_PT + 1, color=plot.INK)
+        if kind == dense.KINDS[0]:
+            ax.legend(fontsize=plot.TEXT_PT - 1, frameon=False, labelcolor=plot.INK)
+    return ax
+
+
+def _draw_meeting(
+    ax: Axes, frames: Sequence[Frame], at_s: float, gates_m: Mapping[str, float]
+) -> Axes:
+    """The picture around both craft, with their true positions and the strobes."""
+    frame = min(frames, key=lambda frame: abs(frame.turn.time_s.mean() - at_s))
+    north_m, east_m = 0.5 * (frame.craft_m + frame.other_m)
+    reach_m = _MEETING_REACH_M
+    plot.ppi(
+        frame.turn,
+        ax,
+        extent_m=(east_m - reach_m, east_m + reach_m, north_m - reach_m, north_m + reach_m),
+        amplitude_range=_MEETING_AMPLITUDES,
+        rings=False,
+    )
+    for place_m, mark, label in ((frame.craft_m, "+", "craft"), (frame.other_m, "x", "neighbor")):
+        ax.plot(*place_m[::-1], mark, color="white", markersize=9, markeredgewidth=1.8, label=label)
+    for name, color in _STROBE_COLORS.items():
+        outline_m = plot.circle_outline(frame.strobes_m[name], gates_m[name])
+        label = f"{LABELS[name]}, {gates_m[name]:g} m"
+        ax.plot(outline_m[:, 1], outline_m[:, 0], color=color, linewidth=2.0, label=label)
+    ax.set(xticks=[], yticks=[], xlabel="", ylabel="")
+    ax.set_title(f"{frame.turn.time_s.mean():.0f} s", fontsize=plot.TEXT_PT + 1, color=plot.INK)
+    if frame.turn.time_s.mean() < _MEETING_S[0] + 5.0:
+        legend = ax.legend(loc="lower left", fontsize=plot.TEXT_PT - 1, labelcolor="white")
+        legend.get_frame().set(facecolor="black", alpha=0.6, linewidth=0)
+    return ax
