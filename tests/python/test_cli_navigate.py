@@ -5,6 +5,7 @@ import json
 import re
 import sys
 import tracemalloc
+import warnings
 from importlib import resources
 
 import numpy as np
@@ -1034,6 +1035,41 @@ def test_a_variation_that_is_none_is_one_clear_line(tmp_path, variation, capsys)
     assert f"--variation: wanted degrees from -180 to 180, got '{variation}'" in error
     assert "variation_deg" not in error
     assert error.count("\n") == 1
+
+
+def test_the_date_and_the_variation_given_override_the_log(tmp_path, capsys):
+    lines = [line.replace("010620", "151000") for line in fixes_alone(60, 6.0)]
+    clock = [sentence(f"GPZDA,10{t // 60:02d}{t % 60:02d},15,10,2000,00,00") for t in range(60)]
+    lines = [line for t in range(60) for line in (clock[t], *lines[3 * t : 3 * t + 3])]
+    rows = commanded(tmp_path, lines, "--date", "2020-06-01", "--variation", "3")
+    assert float(rows[0]["time_s"]) == pytest.approx(1590969600 + 36000, abs=1.0)
+    assert "2020-06-01, is used instead of 2000-10-15" in capsys.readouterr().out
+    assert main(["navigate", str(tmp_path / "some.nmea"), "--date", "1 June"]) == 2
+    assert "--date: wanted a date such as" in capsys.readouterr().err
+
+
+def test_many_parts_are_drawn_in_part(tmp_path, pictures, capsys):
+    lines = [
+        line
+        for start in range(0, 14 * 600, 600)
+        for t in range(start, start + 12)
+        for line in [sentence(f"GPGGA,{clock_text(t)},5030.0,N,00230.0,E,1,08,1.0,,M,,M,,")]
+    ]
+    commanded(tmp_path, lines)
+    assert len(list(tmp_path.glob("own_map*.png"))) == 10
+    assert "of 14 parts those 10 with most fixes are drawn" in capsys.readouterr().out
+
+
+def clock_text(second):
+    return f"{10 + second // 3600:02d}{second // 60 % 60:02d}{second % 60:02d}"
+
+
+def test_a_ship_at_her_berth_is_drawn_without_warnings(tmp_path, pictures):
+    fix = "5430.829,N,01010.244,E,00.0,000,220726,,,A"
+    lines = [sentence(f"IIRMC,{clock_text(t)},A,{fix}") for t in range(30)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        commanded(tmp_path, lines)
 
 
 def test_a_missing_log_is_one_clear_line(tmp_path, capsys):

@@ -520,7 +520,7 @@ def test_the_variation_is_that_of_the_sentence_of_rmc_or_the_one_given(log):
     assert np.degrees(read.compass.variation_rad) == pytest.approx([2, 2, -1, 2])
     assert np.degrees(read.heading.heading_rad) == pytest.approx([102, 102, 99, 102])
     read = log(rmc(10), compass, sentence("HDG,359.5,,,1.0,W"), variation_deg=-3.0)
-    assert np.degrees(read.heading.heading_rad) == pytest.approx([97, 358.5])
+    assert np.degrees(read.heading.heading_rad) == pytest.approx([97, 356.5])
     read = log(rmc(10), compass, compass)
     assert np.isnan(read.compass.variation_rad).all()
     assert np.isnan(read.compass.heading_rad).all()
@@ -741,13 +741,14 @@ def test_lines_that_cannot_be_used_are_counted_and_kept_by_kind(log):
     ("body", "kind", "words"),
     [
         ("RMC,126000,A,4630.0,N,00640.0,E,,,210508,,,A", "range", "field 1"),
-        ("RMC,12000,A,4630.0,N,00640.0,E,,,210508,,,A", "field", "hhmmss"),
+        ("RMC,1200000,A,4630.0,N,00640.0,E,,,210508,,,A", "field", "hhmmss"),
         ("RMC,120000,A,9030.0,N,00640.0,E,,,210508,,,A", "range", "0 to 90"),
-        ("RMC,120000,A,4660.0,N,00640.0,E,,,210508,,,A", "range", "minutes"),
-        ("RMC,120000,A,463.0,N,00640.0,E,,,210508,,,A", "field", "ddmm.mm"),
+        ("RMC,120000,A,4660.1,N,00640.0,E,,,210508,,,A", "range", "minutes"),
+        ("RMC,120000,A,463.0,N,00640.0,E,,,210508,,,A", "range", "minutes"),
+        ("RMC,120000,A,046300.0,N,00640.0,E,,,210508,,,A", "field", "ddmm.mm"),
         ("RMC,120000,A,4630.0,,00640.0,E,,,210508,,,A", "field", "N or S"),
         ("RMC,120000,A,4630.0,N,18000.1,E,,,210508,,,A", "range", "0 to 180"),
-        ("GGA,120000,4630.0,N,00660.0,E,1,,,,,,,,", "range", "minutes"),
+        ("GGA,120000,4630.0,N,00661.0,E,1,,,,,,,,", "range", "minutes"),
         ("GLL,4630.0,N,nan,E,120000,A", "field", "dddmm.mm"),
         ("ZDA,126000,21,05,2008,00,00", "range", "field 1"),
     ],

@@ -9,6 +9,7 @@ import argparse
 import io
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import NoReturn, TextIO
 
@@ -42,7 +43,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = _parser().parse_args(argv)
         if arguments.json is not None:
             _check_json(arguments)
-        arguments.run(arguments)
+        with warnings.catch_warnings():
+            if not sys.warnoptions:
+                warnings.simplefilter("ignore", UserWarning)  # of libraries, about their code
+            arguments.run(arguments)
         if sys.stdout is not None:
             sys.stdout.flush()
     except SystemExit as done:  # --help and --version

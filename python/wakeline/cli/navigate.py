@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import datetime
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -20,6 +21,7 @@ from . import outputs, report
 
 _OWN, _PROBLEMS = "own.csv", "problems.csv"
 _LEAST_DRAWN_FIXES = 10
+_MOST_DRAWN_LEGS = 10
 _SMOOTHED = (
     "smoothed: own.csv and pictures also use later readings, up to a gap or to rejected "
     "readings that persisted"
@@ -49,8 +51,14 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "--variation",
         type=_variation_deg,
         metavar="DEG",
-        help="magnetic variation, positive east, if the log has none; default: estimated from "
-        "velocities over ground, which needs alterations of course",
+        help="magnetic variation, positive east; overrides the log; default: that of the log, else "
+        "estimated from velocities over ground, which needs alterations of course",
+    )
+    parser.add_argument(
+        "--date",
+        type=_date,
+        metavar="YYYY-MM-DD",
+        help="day of the first sentence; overrides the log",
     )
     parser.add_argument(
         "--smooth",
@@ -75,6 +83,14 @@ def _variation_deg(text: str) -> float:
     return variation_deg
 
 
+def _date(text: str) -> datetime.date:
+    try:
+        return datetime.date.fromisoformat(text)
+    except ValueError:
+        wanted = "wanted a date such as 2026-08-15"
+        raise argparse.ArgumentTypeError(f"{wanted}, got {text!r}") from None
+
+
 def inputs(arguments: argparse.Namespace) -> list[Path]:
     """The input file of the command line."""
     return [arguments.log]
@@ -84,7 +100,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
     tables = (arguments.out / _OWN, arguments.out / _PROBLEMS)
     outputs.check_no_input("--out", tables, inputs(arguments))
-    log = read_nmea(arguments.log, variation_deg=arguments.variation)
+    log = read_nmea(arguments.log, variation_deg=arguments.variation, date=arguments.date)
     outputs.make_folder(arguments.out)
     print(_input_lines(log), flush=True)
     problems = _write_problems(arguments.out / _PROBLEMS, log)
@@ -166,12 +182,16 @@ def _write_problems(path: Path, log: NavigationLog) -> list[Path]:
 
 
 def _write_pictures(folder: Path, legs: Sequence[own_ship.Leg], name: str) -> list[Path]:
-    """Write the map and the panels over time, one pair a leg that is not too short for it."""
+    """Write the map and the panels over time, one pair a leg, of the legs with most fixes."""
     files = []
     drawn = [leg for leg in legs if leg.readings.has_fix.sum() >= _LEAST_DRAWN_FIXES]
     if len(drawn) < len(legs):
         short = f"{len(legs) - len(drawn)} of {many(len(legs), 'part')}"
         print(f"note: {short} not drawn, with fewer than {_LEAST_DRAWN_FIXES} fixes")
+    if len(drawn) > _MOST_DRAWN_LEGS:
+        print(f"note: of {len(drawn)} parts those {_MOST_DRAWN_LEGS} with most fixes are drawn")
+        most = np.argsort([-leg.readings.has_fix.sum() for leg in drawn], kind="stable")
+        drawn = [drawn[k] for k in sorted(most[:_MOST_DRAWN_LEGS])]
     for number, leg in enumerate(progress(drawn, len(drawn), "drawing"), start=1):
         end = f"-{number}" if len(drawn) > 1 else ""
         files += [folder / f"own_map{end}.png", folder / f"own_time{end}.png"]

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from wakeline.own_ship import Leg
 
 _ARROWS = 24
+_LEAST_KM = 0.005  # from the middle of a map to its edge
 _LONGEST = 0.1  # arrow, as a share of the width of the map
 
 
@@ -82,7 +83,17 @@ def own_map(
             at = known[np.linspace(0, len(known) - 1, min(_ARROWS, len(known))).astype(int)]
             across_km = np.ptp(way[placed], axis=0).max()
             _arrows(ax, way[at], current_mps[at] / KNOT_MPS, _LONGEST * across_km)
+    _widen(ax, np.concatenate([way, fix_m / 1e3]))
     return name_lines(dress_map(ax))
+
+
+def _widen(ax: Axes, places_km: np.ndarray) -> None:
+    """Show some metres around places (n, 2), which may be one spot."""
+    places_km = places_km[np.isfinite(places_km).all(axis=1)]
+    if len(places_km):
+        north_km, east_km = 0.5 * (places_km.min(axis=0) + places_km.max(axis=0))
+        for around_km in (-_LEAST_KM, _LEAST_KM):
+            ax.update_datalim([(east_km + around_km, north_km + around_km)])
 
 
 def _arrows(ax: Axes, from_km: np.ndarray, drift_kn: np.ndarray, longest_km: float) -> None:

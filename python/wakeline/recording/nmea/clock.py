@@ -7,12 +7,11 @@ import math
 
 import numpy as np
 
+from .beside import DAY_S, Beside
 from .log import NmeaReport
-
-DAY_S = 86400.0
+from .sources import leap_s, usual_step_s, wrapped_s
 
 _DOUBTED = 3  # a time that leaps is rejected if one of the next 3 sentences returns
-_LEAP_S, _LEAP_STEPS = 10.0, 5.0
 
 
 class Clock:
@@ -21,18 +20,20 @@ class Clock:
     **Day.** A time of day differs from the previous one by less than half a day, which continues
     it over midnight. The day is that of the nearest sentence with a date.
 
-    **Leaps.** If a time is before the last one or a leap after it (10 s, or five usual steps where
-    these are longer), the next three timed sentences decide. If one of them continues from the
-    previous clock, rather than from the time in doubt, that was a late sentence (before the last
-    one by up to `reorder_s`) or a wrong time. If none does, there was a gap, or the clock was set
-    back. A date is wrong if the previous date returns within three dated sentences, or from
-    midnight on if it does not change there, until it changes.
+    **Leaps.** A time before the last one by up to `reorder_s` is late. If a time is farther before
+    it, or a leap after it (10 s, or five usual steps where these are longer), the next three timed
+    sentences decide. If one of them continues from the previous clock, rather than from the time in
+    doubt, that was a wrong time; so it was if the log ends before three others, unless it is a leap
+    ahead. If none does, there was a gap, or the clock was set back; up to three times before the
+    first of these are wrong. A date is wrong if the previous date returns within three dated
+    sentences, or from midnight on if it does not change there, until it changes.
 
     **Sections.** A section begins where the clock was set back. Within a section times increase:
     late sentences are sorted. A clock set back by about `reorder_s` or less looks like late
     sentences.
 
-    **Lines** between two timed sentences are equally spaced in time. If a gap has fewer lines than
+    **Lines** between two timed sentences are equally spaced in time, or as the times beside them
+    are where these advance as the clock does, to within `reorder_s`. If a gap has fewer lines than
     usual, so that the log itself must have stopped, they have the usual spacing after the previous
     sentence; so do lines before the first and after the last.
 
@@ -41,11 +42,13 @@ class Clock:
     line, time_of_day_s, day : array_like (n,)
         Line, time of day, and days since 1970 or NaN, of each timed sentence, in order; n >= 1.
     first_day : float
-        Days since 1970 of the first sentence, if none has a date; NaN if unknown, in which case the
-        dates of sentences with a wrong time are used.
+        Days since 1970 of the first sentence, whatever its date; NaN for the dates of sentences, or
+        if none of those with a right time has one, of those with a wrong time.
     reorder_s : float
     report : NmeaReport
         Wrong times and dates are added to it.
+    beside : Beside, optional
+        Times beside the sentences.
 
     Attributes
     ----------
@@ -53,20 +56,41 @@ class Clock:
         UTC seconds, NaN for a wrong time; since the midnight before the first if no day is known.
     dated : bool
         Whether a day is known.
+    first_day : float
+        Days since 1970 of the first right time; 0 if unknown.
+    moved_days : float
+        Days from the date of the log to the one given.
     set_back_lines : ndarray of int (k,)
         First line of each section but the first.
     """
 
-    def __init__(self, line, time_of_day_s, day, first_day, reorder_s: float, report: NmeaReport):
+    def __init__(
+        self,
+        line,
+        time_of_day_s,
+        day,
+        first_day: float,
+        reorder_s: float,
+        report: NmeaReport,
+        beside: Beside | None = None,
+    ) -> None:
         self._line = np.asarray(line, dtype=np.int64)
         clock_s, day = np.asarray(time_of_day_s, dtype=float), np.asarray(day, dtype=float)
-        usual_s = _usual_step_s(clock_s)
-        self._leap_s = max(_LEAP_S, _LEAP_STEPS * usual_s)
-        unrolled_s, wrong, set_back = _unrolled_s(clock_s, usual_s, self._leap_s, reorder_s)
+        usual_s = usual_step_s(clock_s)
+        self._leap_s = leap_s(usual_s)
+        self._beside, self._reorder_s = beside, reorder_s
+        unrolled_s, wrong, set_back = _unrolled_s(clock_s, day, usual_s, self._leap_s, reorder_s)
         believed = np.where(wrong, np.nan, day)
-        knows_day = math.isfinite(first_day) or bool(np.isfinite(believed).any())
-        self.dated = knows_day or bool(np.isfinite(day).any())
-        day_offset = _day_offset(unrolled_s, clock_s, believed if knows_day else day, first_day)
+        knows_day = bool(np.isfinite(believed).any())
+        self.dated = bool(math.isfinite(first_day) or np.isfinite(day).any())
+        day_offset = _day_offset(unrolled_s, clock_s, believed if knows_day else day)
+        self.first_day = float(day_offset[np.argmin(wrong)])
+        self.moved_days = 0.0
+        if math.isfinite(first_day):
+            moved_days = first_day - self.first_day
+            day_offset, day = day_offset + moved_days, day + moved_days
+            self.moved_days = moved_days if np.isfinite(day).any() else 0.0
+            self.first_day = first_day
         for k in np.flatnonzero(wrong):
             report.add(int(line[k]), "time", "the time leaps, and the next ones do not confirm it")
         off_days = day - day_offset - _midnights(unrolled_s, clock_s)
@@ -84,12 +108,41 @@ class Clock:
 
     def at_line(self, line: np.ndarray) -> np.ndarray:
         """Times (m,) of lines (m,)."""
+        order = np.argsort(line, kind="stable")
+        line = line[order]
+        edges = [0, *np.searchsorted(line, self.set_back_lines).tolist(), len(line)]
         time_s = np.empty(len(line))
-        section = self.section(line)
-        for number, (anchor_line, anchor_s) in enumerate(self._anchors):
-            here = section == number
-            time_s[here] = np.interp(line[here], anchor_line, anchor_s)
-        return time_s
+        for number, (start, end) in enumerate(itertools.pairwise(edges)):
+            here = line[start:end]
+            time_s[start:end] = np.interp(here, *self._anchors[number])
+            if self._beside is not None:
+                stamped_s = self._by_stamps(here, *self._news[number])
+                time_s[start:end] = np.where(np.isnan(stamped_s), time_s[start:end], stamped_s)
+        in_order = np.empty(len(line))
+        in_order[order] = time_s
+        return in_order
+
+    def _by_stamps(
+        self, line: np.ndarray, anchor_line: np.ndarray, anchor_s: np.ndarray
+    ) -> np.ndarray:
+        """Times (m,) of lines (m,) by the times beside them; NaN where these do not fit."""
+        ahead_s = anchor_s - self._beside.at(anchor_line)
+        known = np.isfinite(ahead_s)
+        if not known.any():
+            return np.full(len(line), np.nan)
+        anchor_line, anchor_s, ahead_s = anchor_line[known], anchor_s[known], ahead_s[known]
+        after = np.searchsorted(anchor_line, line)
+        before, after = np.maximum(after - 1, 0), np.minimum(after, len(anchor_line) - 1)
+        time_s = self._beside.at(line) + np.interp(line, anchor_line, ahead_s)
+        inside = (line >= anchor_line[0]) & (line <= anchor_line[-1])
+        clipped_s = np.clip(time_s, anchor_s[before], np.maximum(anchor_s[before], anchor_s[after]))
+        fits = np.abs(ahead_s[after] - ahead_s[before]) <= self._reorder_s
+        return np.where(fits, np.where(inside, clipped_s, time_s), np.nan)
+
+    def near(self, line: np.ndarray, time_of_day_s: np.ndarray) -> np.ndarray:
+        """Times (m,) of lines (m,) with a time of day that does not make the clock."""
+        time_s = self.at_line(line)
+        return time_s + wrapped_s(time_of_day_s - time_s)
 
     def last_timed(self, line: np.ndarray) -> np.ndarray:
         """Times (m,) of the last timed sentence before each line (m,), NaN without one."""
@@ -113,7 +166,9 @@ class Clock:
         section = self.section(self._line)
         ends = [*self.set_back_lines.tolist(), last_line + 1]
         starts = [1, *self.set_back_lines.tolist()]
-        news = [self._new_times(section == number) for number in range(len(ends))]
+        bounds = np.searchsorted(section, np.arange(len(ends) + 1))
+        news = [self._new_times(slice(a, b)) for a, b in itertools.pairwise(bounds)]
+        self._news = news
         steps = [(np.diff(a), np.diff(t)) for a, t in news]
         pace_s = np.concatenate([dt / da for da, dt in steps])
         usual = np.concatenate([dt for _, dt in steps]) <= self._leap_s
@@ -129,61 +184,61 @@ class Clock:
         after = np.searchsorted(self._line[believed], line)
         return np.array([float(line)]), self.time_s[believed][[after]]
 
-    def _new_times(self, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _new_times(self, chosen: slice) -> tuple[np.ndarray, np.ndarray]:
         """Lines and times of the sentences that first give a later time."""
-        chosen = chosen & np.isfinite(self.time_s)
-        if not chosen.any():
-            return np.zeros(0), np.zeros(0)
         line, time_s = self._line[chosen], self.time_s[chosen]
+        line, time_s = line[np.isfinite(time_s)], time_s[np.isfinite(time_s)]
+        if len(line) == 0:
+            return np.zeros(0), np.zeros(0)
         latest_s = np.maximum.accumulate(time_s)
         new = np.append(True, np.diff(latest_s) > 0)
         new[1:] &= np.diff(line) > 0
         return line[new].astype(float), latest_s[new]
 
 
-def _usual_step_s(clock_s: np.ndarray) -> float:
-    """The usual step between times of day (n,), over any number of days, in any order."""
-    since_s = np.cumsum(_wrapped(np.diff(clock_s, prepend=clock_s[:1])))
-    steps_s = np.diff(np.unique(np.rint(1e3 * since_s))) / 1e3
-    return float(np.median(steps_s)) if len(steps_s) else 0.0
-
-
 def _unrolled_s(
-    clock_s: np.ndarray, usual_s: float, leap_s: float, reorder_s: float
+    clock_s: np.ndarray, day: np.ndarray, usual_s: float, leap_s: float, reorder_s: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times (n,) from the midnight before the first; masks (n,) of wrong ones and of set backs."""
     unrolled_s = clock_s.copy()
     wrong, set_back = np.zeros((2, len(clock_s)), dtype=bool)
-    last_s, doubted = float(clock_s[0]), []
+    last_s, doubted, first, utc_s = float(clock_s[0]), [], 0, DAY_S * day + clock_s
+
+    def back(k: int) -> bool:
+        later = utc_s[k] > np.max(utc_s[first:k], where=np.isfinite(day[first:k]), initial=-np.inf)
+        return unrolled_s[k] < last_s and not (later and np.isfinite(day[first:k]).any())
+
     for k, time_s in enumerate(clock_s.tolist()):
-        step_s = _wrapped(time_s - last_s)
-        goes_on = 0.0 <= step_s <= leap_s
+        step_s = wrapped_s(time_s - last_s)
+        goes_on = -reorder_s <= step_s <= leap_s
         unrolled_s[k] = last_s + step_s
         if doubted:
             before_s = float(unrolled_s[doubted[-1]])
-            from_doubted_s = _wrapped(time_s - before_s)
+            from_doubted_s = wrapped_s(time_s - before_s)
             if abs(from_doubted_s - usual_s) < abs(step_s - usual_s):
                 goes_on = False
                 unrolled_s[k] = before_s + from_doubted_s
         if goes_on:
-            off_s = unrolled_s[doubted] - last_s
-            wrong[doubted] = (off_s > 0) | (off_s < -reorder_s)
-            last_s, doubted = float(unrolled_s[k]), []
+            wrong[doubted] = True
+            last_s, doubted = max(last_s, float(unrolled_s[k])), []
         else:
             doubted.append(k)
             if len(doubted) > _DOUBTED:
-                set_back[doubted[0]] = unrolled_s[doubted[0]] < last_s
-                last_s, doubted = float(unrolled_s[k]), []
+                start = doubted[0]
+                if start - first <= _DOUBTED and back(start):
+                    wrong[first:start] = True
+                else:
+                    set_back[start] = unrolled_s[start] < last_s
+                last_s, doubted, first = float(unrolled_s[k]), [], start
+    wrong[[k for k in doubted if back(k)]] = True
     return clock_s + DAY_S * _midnights(unrolled_s, clock_s), wrong, set_back
 
 
-def _day_offset(
-    unrolled_s: np.ndarray, clock_s: np.ndarray, day: np.ndarray, first_day: float
-) -> np.ndarray:
-    """Days (n,) to add to unrolled times."""
+def _day_offset(unrolled_s: np.ndarray, clock_s: np.ndarray, day: np.ndarray) -> np.ndarray:
+    """Days (n,) to add to unrolled times; zeros without a date."""
     dated = np.flatnonzero(np.isfinite(day))
     if len(dated) == 0:
-        return np.full(len(day), np.nan_to_num(first_day))
+        return np.zeros(len(day))
     given = _over_midnight((day - _midnights(unrolled_s, clock_s))[dated], day[dated])
     edges = [0, *(np.flatnonzero(np.diff(given) != 0) + 1).tolist(), len(given)]
     for (a, b), (_, c) in itertools.pairwise(itertools.pairwise(edges)):
@@ -229,8 +284,3 @@ def _extended(
     time_s = np.insert(time_s, stopped + 1, resumed_s)
     before_s, after_s = pace_s * (line[1] - first_line), pace_s * (last_line - line[-2])
     return line, np.concatenate([[time_s[0] - before_s], time_s, [time_s[-1] + after_s]])
-
-
-def _wrapped(step_s):
-    """A step of the time of day, from minus to plus half a day."""
-    return (step_s + DAY_S / 2) % DAY_S - DAY_S / 2

@@ -6,6 +6,7 @@ Times are UTC seconds since 1970, angles radians clockwise from north, speeds m/
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -406,24 +407,28 @@ class NavigationLog:
             When it is negative.
         """
         at_least(0, max_gap_s=max_gap_s)
-        all_series = self.series.values()
-        time_s = np.concatenate([s.time_s for s in all_series])
-        section = self._section(np.concatenate([s.line for s in all_series]))
-        parts = []
-        for number in np.unique(section):
-            heard_s = np.unique(time_s[section == number])
-            cuts = np.flatnonzero(np.diff(heard_s) > max_gap_s)
-            starts, ends = heard_s[[0, *(cuts + 1)]], heard_s[[*cuts, -1]]
-            parts += [self._part(number, a, b) for a, b in zip(starts, ends, strict=True)]
-        return parts
+        of_series = {name: self._section(s.line) for name, s in self.series.items()}
+        section = np.concatenate(list(of_series.values()))
+        time_s = np.concatenate([s.time_s for s in self.series.values()])
+        order = np.lexsort((time_s, section))
+        section, time_s = section[order], time_s[order]
+        cuts = np.flatnonzero((np.diff(time_s) > max_gap_s) | (np.diff(section) > 0)) + 1
+        edges = [0, *cuts.tolist(), len(section)]
+        return [
+            self._part(of_series, section[start], time_s[start], time_s[end - 1])
+            for start, end in itertools.pairwise(edges)
+            if start < end
+        ]
 
-    def _part(self, section: int, start_s: float, end_s: float) -> NavigationLog:
-        inside = {
-            name: s.rows(
-                (self._section(s.line) == section) & (s.time_s >= start_s) & (s.time_s <= end_s)
-            )
-            for name, s in self.series.items()
-        }
+    def _part(
+        self, of_series: dict[str, np.ndarray], section: int, start_s: float, end_s: float
+    ) -> NavigationLog:
+        inside = {}
+        for name, s in self.series.items():
+            low, high = np.searchsorted(of_series[name], [section, section + 1])
+            time_s = s.time_s[low:high]
+            first = low + np.searchsorted(time_s, start_s)
+            inside[name] = s.rows(slice(first, low + np.searchsorted(time_s, end_s, side="right")))
         return dataclasses.replace(self, **inside, set_back_lines=np.zeros(0, dtype=np.int64))
 
     def _section(self, line: np.ndarray) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import datetime
+import itertools
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,6 +18,7 @@ from wakeline._units import KNOT_MPS
 from ..errors import RecordingError, octets_of
 from ..not_text import instead_of_text
 from ..reach import jumps_m, unreachable
+from .beside import DAY_S, Beside, times_beside
 from .clock import Clock
 from .log import (
     SERIES,
@@ -28,8 +30,10 @@ from .log import (
     NmeaReport,
     Series,
     TrueHeading,
+    WaterSpeed,
 )
-from .sentence import Sentence, sentences
+from .sentence import Sentence, lines_of, sentences
+from .sources import ClockStands, Timed, choose, date_notes
 
 # Priority of the sentences that give the same time.
 _BEST_FIRST = ("GGA", "GNS", "RMC", "GLL", "VTG")
@@ -47,6 +51,7 @@ _MAX_RATE_DEG_MIN = 10_000.0
 _STILL_MPS = 1.0 * KNOT_MPS  # below, a vessel at rest and a moving one look the same
 _FROZEN_M = 50.0
 _AT_ZERO_DEG = 1e-4
+_SAME_VARIATION_DEG = 0.05
 _BLIND_S = 60.0
 _SILENT_S = 10.0
 _UNMARKED_FIX = (False, False)  # frozen, suspect: found when all are read
@@ -64,22 +69,29 @@ def read_nmea(
     """Read an NMEA 0183 log of own ship's instruments.
 
     **Sentences**: RMC, GGA, GNS, GLL, VTG, HDT, HDG, HDM, THS, VHW, VBW, ROT and ZDA of any talker,
-    upper or lower case; others are counted. A checksum is optional but must be correct. Text before
-    the ``$`` of a line, such as a time stamp or a TAG block, is skipped. An empty field is NaN. No
-    line is fatal: problems are counted by kind in the report and listed with their lines.
+    upper or lower case; others are counted. A checksum is optional but must be correct. Leading
+    zeros of times, dates and positions may be missing, and minutes may be 60. An empty field is
+    NaN. No line is fatal: problems are counted by kind in the report and listed with their lines.
 
     **Times** are those of the sentences (RMC, GGA, GNS, GLL, ZDA), with dates from RMC and ZDA, and
     continue over midnight:
 
+    - If sentences have different clocks, the one that carries the voyage counts; clocks in local
+    time are corrected, and the sentences of others dropped. Notes report each conflict with both
+    times. The rule is that of ``wakeline.recording.nmea.sources.choose``.
+    - Times beside the sentences (the ``c:`` of a TAG block, the stamp of a logger or a column of a
+    recorder, before or after the sentence) count if no sentence has a time or their clock
+    stands; otherwise they place readings without a time.
     - Without a date, a step is less than half a day.
-    - A time before the last or a leap after it (10 s, or five usual steps where these are longer)
-    is wrong if one of the next three timed sentences continues from the previous clock; its
-    sentence is dropped, unless it was only late by up to `reorder_s`. Otherwise there is a gap,
-    or the clock was set back. Dates are checked in the same way, but only the date is dropped.
-    If only dropped sentences have dates, these dates are used.
-    - Readings without a time are equally spaced by lines between the timed sentences around them;
-    where the log itself stopped between them, they have the usual spacing after the first. The
-    first VTG after a timed sentence has that time, because it belongs to its fix.
+    - A time before the last by up to `reorder_s` is late. A time farther before it or a leap after
+    it (10 s, or five usual steps where these are longer) is wrong if one of the next three timed
+    sentences continues from the previous clock, or if the log ends before three others; its
+    sentence is dropped. Otherwise there is a gap, or the clock was set back. Dates are checked in
+    the same way, but only the date is dropped. If only dropped sentences have dates, these dates
+    are used. A date that may be 1024 weeks early is noted.
+    - Other readings without a time are equally spaced by lines between the timed sentences around
+    them; where the log itself stopped between them, they have the usual spacing after the first.
+    The first VTG after a timed sentence has that time, because it belongs to its fix.
 
     **Fixes** of one time are one fix: the valid one, in the order GGA, GNS, RMC, GLL. Fixes are
     marked, never dropped: not `valid` (status V, quality 0); `frozen`, where the position is
@@ -90,8 +102,9 @@ def read_nmea(
     not fixes. Speeds over ground are `frozen` where speed and course are constant with the
     position of frozen or suspect fixes.
 
-    **Headings**: magnetic headings (HDG with its deviation, HDM) are a separate series, with the
-    variation of the sentence, else of the previous RMC (or else the first), else `variation_deg`.
+    **Headings**: magnetic headings (HDG with its deviation, HDM) are a separate series, with
+    `variation_deg`, else the variation of the sentence, else of the previous RMC (or else the
+    first). With a sign, E or nothing may follow a variation.
     They also serve as true headings where the variation is known and there is no true one within
     10 s. Headings in VHW count only if the log has no others of their kind.
 
@@ -100,10 +113,10 @@ def read_nmea(
     path : str or Path
         The log.
     variation_deg : float, optional
-        Magnetic variation if the log does not give it, positive east.
+        Magnetic variation, positive east. It overrides that of the log.
     date : datetime.date, optional
-        Day of the first timed sentence, if no accepted sentence has a date; a datetime counts by
-        its day.
+        Day of the first timed sentence. It overrides the date of the log, whose later dates are
+        moved alike; a datetime counts by its day.
     reorder_s : float
         Sentences that are late by up to this are sorted; a clock that goes back farther was set.
     max_speed_mps : float
@@ -116,7 +129,8 @@ def read_nmea(
     Raises
     ------
     RecordingError
-        When the file cannot be read, or has no sentence with a time, or none with a reading.
+        When the file cannot be read, has no time or only a clock that stands, or no sentence with a
+        reading.
     TypeError
         When `date` is not a date or another parameter is not a number.
     ValueError
@@ -130,17 +144,29 @@ def read_nmea(
             raise ValueError(f"variation_deg must be from -180 to 180, got {variation_deg}")
     first_day, path, report = _day(date), Path(path), NmeaReport()
     octets, rows = octets_of(path, wanted=f"a log of {_SENTENCES}"), _Rows()
-    for sentence in sentences(octets, report):
+    lines = lines_of(octets)
+    for sentence in sentences(lines, report):
         rows.read(sentence)
         for kind, reason in sentence.faults:
             report.add(sentence.line, kind, reason)
-    if not rows.timed:
+    beside = times_beside(lines)
+    if not rows.timed and beside is None:
         raise _nothing_read(path, octets, report, "no sentence with a time could be read")
-    clock = Clock(*zip(*rows.timed, strict=True), first_day, reorder_s, report)
+    try:
+        times = _Times(rows, beside, first_day, reorder_s, report)
+    except ClockStands as stands:
+        raise RecordingError(
+            path,
+            f"{stands}, so that no position has a time",
+            wanted="a clock that advances, or a time beside each sentence",
+        ) from None
+    clock = times.clock
     report.examples.sort(key=_line)
-    series = {name: _series(kind, rows.of[name], clock, report) for name, kind in SERIES.items()}
+    series = {name: _series(kind, rows.of[name], times, report) for name, kind in SERIES.items()}
     invalid_notes = [*_empty_notes(rows.empty), *_invalid_notes(series)]
-    series["compass"] = _with_variation(series["compass"], rows.variation, variation_deg)
+    series["compass"], overridden = _with_variation(
+        series["compass"], rows.variation, variation_deg
+    )
     series["heading"] = _true_headings(series["heading"], series["compass"], clock)
     series["fixes"] = _marked(series, clock, max_speed_mps)
     series["ground"] = _marked_ground(series, clock)
@@ -155,7 +181,10 @@ def read_nmea(
         report=report,
         notes=notes,
     )
-    remarks = [*_notes(log), *invalid_notes, *_jump_notes(log, max_speed_mps)]
+    remarks = [*times.notes, *overridden]
+    if clock.dated:
+        remarks += date_notes(clock.first_day, clock.moved_days)
+    remarks += [*_notes(log), *invalid_notes, *_jump_notes(log, max_speed_mps)]
     notes += [f"{path.name}: {note}" for note in remarks]
     return log
 
@@ -196,7 +225,11 @@ class _Rows:
 
     Attributes
     ----------
-    timed : list of (line, time of day, days since 1970)
+    timed : list of tuple
+        Of each sentence with a time: line, time of day, days since 1970, address, and the latitude
+        and longitude of a valid fix that is not at 0/0.
+    before_vtg : dict of int to int
+        For lines of VTG the index in `timed` of the sentence before it, of the same talker.
     variation : list of (line, radians)
     of : dict of str to list of tuple
         For each series rows of line, sentence, index in `timed` or None, valid, and its values.
@@ -205,7 +238,8 @@ class _Rows:
     """
 
     def __init__(self) -> None:
-        self.timed: list[tuple[int, float, float]] = []
+        self.timed: list[tuple[int, float, float, str, float, float]] = []
+        self.before_vtg: dict[int, int] = {}
         self.variation: list[tuple[int, float]] = []
         self.of: dict[str, list[tuple]] = {name: [] for name in SERIES}
         self.empty: dict[str, list[int]] = {}
@@ -218,11 +252,21 @@ class _Rows:
         if names and not s.faults and before == [len(self.of[name]) for name in names]:
             self.empty.setdefault(s.kind, []).append(s.line)
 
-    def stamp(self, s: Sentence, time_of_day_s: float, day: float = math.nan) -> int | None:
+    def stamp(
+        self,
+        s: Sentence,
+        time_of_day_s: float,
+        day: float = math.nan,
+        *,
+        valid: bool = False,
+        place_deg: tuple[float, float] = (math.nan, math.nan),
+    ) -> int | None:
         """Note a time; its index in `timed`, or None for an empty field."""
         if math.isnan(time_of_day_s):
             return None
-        self.timed.append((s.line, time_of_day_s, day))
+        if not valid or max(map(abs, place_deg)) < _AT_ZERO_DEG:
+            place_deg = math.nan, math.nan
+        self.timed.append((s.line, time_of_day_s, day, s.address, *place_deg))
         return len(self.timed) - 1
 
     def add_where_known(
@@ -245,7 +289,7 @@ def _rmc(s: Sentence, rows: _Rows) -> None:
         return
     status, quality = s.letter(1, "AV"), _quality(s, 11)
     valid = not s.faults and status == "A" and quality not in _NOT_MEASURED
-    stamp = rows.stamp(s, time_s, s.day(8))
+    stamp = rows.stamp(s, time_s, s.day(8), valid=valid, place_deg=place)
     _add_fix(rows, s, stamp, valid, place, quality)
     speed = _knots(s, 6), s.angle_rad(7)
     rows.add_where_known("ground", s, valid, *speed, stamp=stamp, marks=_UNMARKED_GROUND)
@@ -276,7 +320,8 @@ def _add_fix_with_hdop(
     rows: _Rows, s: Sentence, time_s: float, place_deg: tuple[float, float], quality: int
 ) -> None:
     valid = quality not in (*_NOT_MEASURED, _NOT_SAID)
-    _add_fix(rows, s, rows.stamp(s, time_s), valid, place_deg, quality, s.number(7, 0.0, 1000.0))
+    stamp = rows.stamp(s, time_s, valid=valid, place_deg=place_deg)
+    _add_fix(rows, s, stamp, valid, place_deg, quality, s.number(7, 0.0, 1000.0))
 
 
 def _gll(s: Sentence, rows: _Rows) -> None:
@@ -285,7 +330,8 @@ def _gll(s: Sentence, rows: _Rows) -> None:
         return
     status, quality = s.letter(5, "AV"), _quality(s, 6)
     valid = not s.faults and status != "V" and quality not in _NOT_MEASURED
-    _add_fix(rows, s, rows.stamp(s, time_s), valid, place, quality)
+    stamp = rows.stamp(s, time_s, valid=valid, place_deg=place)
+    _add_fix(rows, s, stamp, valid, place, quality)
 
 
 def _add_fix(
@@ -303,6 +349,8 @@ def _add_fix(
 
 
 def _vtg(s: Sentence, rows: _Rows) -> None:
+    if rows.timed and rows.timed[-1][3][:-3] == s.address[:-3]:
+        rows.before_vtg[s.line] = len(rows.timed) - 1
     quality = _quality(s, 8)
     valid = not s.faults and quality not in _NOT_MEASURED
     speed_mps = _speed_mps(s, 4) if s.says(5, "N") else _kmh(s, 6)
@@ -397,21 +445,99 @@ def _kmh(s: Sentence, k: int) -> float:
     return s.number(k, -2 * _MAX_SPEED_KN, 2 * _MAX_SPEED_KN) / 3.6
 
 
+# ------------------------------------------------------------------ times
+
+
+class _Times:
+    """The times of the readings of a log.
+
+    Attributes
+    ----------
+    clock : Clock
+        That of the sentences chosen for it, or of the times beside them.
+    notes : list of str
+        Conflicts between clocks and dates.
+    """
+
+    def __init__(
+        self,
+        rows: _Rows,
+        beside: Beside | None,
+        first_day: float,
+        reorder_s: float,
+        report: NmeaReport,
+    ) -> None:
+        self.notes: list[str] = []
+        self._line, clock_s, day, address, *place_deg = (
+            map(np.array, zip(*rows.timed, strict=True)) if rows.timed else np.zeros((6, 0))
+        )
+        timed = Timed(self._line, clock_s, day, address, np.column_stack(place_deg))
+        self._time_s = np.full(len(self._line), np.nan)
+        rules = first_day, reorder_s, report
+        choice = choose(timed, beside, reorder_s) if rows.timed else None
+        if choice is None or choice.by_stamps:
+            untimed = [f"no sentence has a time: {beside.what} count"]
+            zone = [] if beside.utc else [f"{beside.what} have no zone and are taken as UTC"]
+            self.notes += [*(choice.notes if choice else untimed), *zone]
+            midnight = np.floor(beside.time_s / DAY_S)
+            clock_s = beside.time_s - DAY_S * midnight
+            day = midnight if beside.dated else np.full(len(midnight), np.nan)
+            self.clock = Clock(beside.line, clock_s, day, *rules, beside)
+        else:
+            for k, reason in choice.rejected.items():
+                report.add(int(self._line[k]), "time", reason)
+            self.notes += choice.notes
+            used, kept, clock_s, day = choice.used, choice.kept, choice.clock_s, choice.day
+            self.clock = Clock(self._line[used], clock_s[used], day[used], *rules, beside)
+            self._time_s[used] = self.clock.time_s
+            self._time_s[kept] = self.clock.near(self._line[kept], clock_s[kept])
+        self._rejected = np.zeros(len(self._line), dtype=bool)
+        self._rejected[list(choice.rejected) if choice else []] = True
+        self._untimed = ~self._rejected & np.isnan(self._time_s)
+        if choice is not None and not choice.by_stamps:
+            self._untimed &= ~choice.used
+        self._before_vtg = rows.before_vtg
+
+    def of(self, line: np.ndarray, sentence: np.ndarray, stamp: tuple) -> np.ndarray:
+        """Times (n,) of rows; NaN where that of the sentence is wrong."""
+        own = np.array([-1 if k is None else k for k in stamp], dtype=np.int64)
+        vtg = np.flatnonzero(sentence == "VTG")
+        of_fix_s = np.full(len(line), np.nan)
+        of_fix_s[vtg] = self._last_timed(line[vtg])
+        of_fix_s[vtg[1:][of_fix_s[vtg[1:]] == of_fix_s[vtg[:-1]]]] = np.nan
+        time_s = np.where(np.isnan(of_fix_s), self.clock.at_line(line), of_fix_s)
+        before = np.array([self._before_vtg.get(k, -1) for k in line[vtg].tolist()], dtype=np.int64)
+        time_s[vtg[before >= 0][self._rejected[before[before >= 0]]]] = np.nan
+        timed = own >= 0
+        timed[timed] = ~self._untimed[own[timed]]
+        time_s[timed] = self._time_s[own[timed]]
+        return time_s
+
+    def _last_timed(self, line: np.ndarray) -> np.ndarray:
+        """Times (m,) of the last timed sentence before each line (m,), NaN without one."""
+        believed = np.isfinite(self._time_s)
+        if not believed.any():
+            return np.full(len(line), np.nan)
+        before = np.searchsorted(self._line[believed], line, side="right") - 1
+        return np.where(before < 0, np.nan, self._time_s[believed][before])
+
+
 # ------------------------------------------------------------------ series
 
 _BASE = ("time_s", "valid", "sentence", "line")
 _DTYPE = {"quality": np.int64, "frozen": bool, "suspect": bool}
 
 
-def _series(kind: type[Series], rows: list[tuple], clock: Clock, report: NmeaReport) -> Series:
+def _series(kind: type[Series], rows: list[tuple], times: _Times, report: NmeaReport) -> Series:
     """Rows with their times, in order; fixes and ground speeds one per time."""
+    clock = times.clock
     names = [f.name for f in dataclasses.fields(kind) if f.name not in _BASE]
     line, sentence, stamp, valid, *values = (
         zip(*rows, strict=True) if rows else [()] * (4 + len(names))
     )
     line, sentence = np.array(line, dtype=np.int64), np.array(sentence, dtype="<U3")
     series = kind(
-        time_s=_times(line, sentence, stamp, clock),
+        time_s=times.of(line, sentence, stamp),
         valid=np.array(valid, dtype=bool),
         sentence=sentence,
         line=line,
@@ -423,16 +549,6 @@ def _series(kind: type[Series], rows: list[tuple], clock: Clock, report: NmeaRep
     series = series.rows(np.isfinite(series.time_s))
     series = series.rows(np.lexsort((series.line, series.time_s, clock.section(series.line))))
     return _one_a_time(series, clock, report) if kind in (Fixes, GroundSpeed) else series
-
-
-def _times(line: np.ndarray, sentence: np.ndarray, stamp: tuple, clock: Clock) -> np.ndarray:
-    """Times (n,) of rows; NaN where that of the sentence is wrong."""
-    own = np.array([-1 if k is None else k for k in stamp], dtype=np.int64)
-    of_fix_s = np.where(sentence == "VTG", clock.last_timed(line), np.nan)
-    vtg = np.flatnonzero(sentence == "VTG")
-    of_fix_s[vtg[1:][of_fix_s[vtg[1:]] == of_fix_s[vtg[:-1]]]] = np.nan
-    without_s = np.where(np.isnan(of_fix_s), clock.at_line(line), of_fix_s)
-    return np.where(own >= 0, clock.time_s[own], without_s)
 
 
 def _one_a_time(series: Series, clock: Clock, report: NmeaReport) -> Series:
@@ -467,18 +583,38 @@ def _differ(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def _with_variation(
     compass: MagneticHeading, given: list[tuple[int, float]], given_deg: float | None
-) -> MagneticHeading:
-    """Magnetic headings with the variation of other sentences, or the one given, where unknown."""
+) -> tuple[MagneticHeading, list[str]]:
+    """Magnetic headings with the variation given, or else that of the log, and notes."""
     compass = _others_than_vhw(compass)
+    if given_deg is not None:
+        return _with_given_variation(compass, given, given_deg)
     if given:
         line, given_rad = map(np.array, zip(*given, strict=True))
         known_rad = given_rad[np.maximum(np.searchsorted(line, compass.line, side="right") - 1, 0)]
     else:
-        known_rad = np.nan if given_deg is None else math.radians(given_deg)
+        known_rad = np.nan
     unknown = np.isnan(compass.variation_rad)
-    return dataclasses.replace(
-        compass, variation_rad=np.where(unknown, known_rad, compass.variation_rad)
-    )
+    variation_rad = np.where(unknown, known_rad, compass.variation_rad)
+    return dataclasses.replace(compass, variation_rad=variation_rad), []
+
+
+def _with_given_variation(
+    compass: MagneticHeading, of_rmc: list[tuple[int, float]], given_deg: float
+) -> tuple[MagneticHeading, list[str]]:
+    """Magnetic headings with the variation given, and a note if the log has another one."""
+    of_log = of_rmc + list(zip(compass.line.tolist(), compass.variation_rad.tolist(), strict=True))
+    other = [
+        (line, math.degrees(rad))
+        for line, rad in of_log
+        if abs(math.degrees(rad) - given_deg) > _SAME_VARIATION_DEG
+    ]
+    notes = []
+    if other:
+        line, log_deg = min(other)
+        instead = f"instead of {log_deg:+.1f}° in the log (first in line {line})"
+        notes = [f"the variation given, {given_deg:+.1f}°, is used {instead}"]
+    variation_rad = np.full(len(compass), math.radians(given_deg))
+    return dataclasses.replace(compass, variation_rad=variation_rad), notes
 
 
 def _true_headings(heading: TrueHeading, compass: MagneticHeading, clock: Clock) -> TrueHeading:
@@ -487,11 +623,10 @@ def _true_headings(heading: TrueHeading, compass: MagneticHeading, clock: Clock)
     known = compass.rows(np.isfinite(compass.variation_rad))
     if not heading.valid.any() and len(known):
         heading = heading.rows(heading.valid)
-    own, other = clock.section(heading.line), clock.section(known.line)
     silent = np.ones(len(known), dtype=bool)
-    for number in np.unique(other):
-        given_s = heading.time_s[heading.valid & (own == number)]
-        silent[other == number] = _far(known.time_s[other == number], given_s, _SILENT_S)
+    for own, other in zip(*_by_section(clock, heading, known), strict=True):
+        given_s = heading.time_s[own][heading.valid[own]]
+        silent[other] = _far(known.time_s[other], given_s, _SILENT_S)
     joined = _joined(heading, known.rows(silent))
     return joined.rows(np.lexsort((joined.line, joined.time_s, clock.section(joined.line))))
 
@@ -521,13 +656,13 @@ def _others_than_vhw(series: Series) -> Series:
 def _marked(series: dict[str, Series], clock: Clock, max_speed_mps: float) -> Fixes:
     """The fixes, with frozen and suspect ones marked."""
     fixes = series["fixes"]
-    section = clock.section(fixes.line)
     frozen, suspect = np.zeros(len(fixes), dtype=bool), _at_zero(fixes)
-    for number in np.unique(section):
-        here = np.flatnonzero(section == number)
-        speed_mps = _speed_at(fixes.time_s[here], _of_section(series, clock, number))
+    of_sections = _by_section(clock, fixes, series["ground"], series["water"])
+    for here, ground, water in zip(*of_sections, strict=True):
+        time_s, place = fixes.time_s[here], np.arange(len(fixes))[here]
+        speed_mps = _speed_at(time_s, series["ground"].rows(ground), series["water"].rows(water))
         frozen[here] = _frozen(fixes.rows(here), speed_mps) & ~suspect[here]
-        placed = here[fixes.valid[here] & ~suspect[here]]
+        placed = place[fixes.valid[here] & ~suspect[here]]
         position_m = _earth_centred_m(fixes.rows(placed))
         suspect[placed] = unreachable(fixes.time_s[placed], position_m, max_speed_mps)
     return dataclasses.replace(fixes, frozen=frozen, suspect=suspect)
@@ -539,19 +674,16 @@ def _marked_ground(series: dict[str, Series], clock: Clock) -> GroundSpeed:
     same_place = _repeats(fixes.latitude_deg, fixes.longitude_deg)
     stuck = fixes.rows(same_place & (fixes.frozen | fixes.suspect))
     frozen = _repeats(ground.speed_mps, ground.course_rad)
-    section = clock.section(ground.line)
-    for number in np.unique(section):
-        here = section == number
-        stuck_s = stuck.time_s[clock.section(stuck.line) == number]
-        frozen[here] &= np.isin(ground.time_s[here], stuck_s)
+    for here, there in zip(*_by_section(clock, ground, stuck), strict=True):
+        frozen[here] &= np.isin(ground.time_s[here], stuck.time_s[there])
     return dataclasses.replace(ground, frozen=frozen)
 
 
-def _of_section(series: dict[str, Series], clock: Clock, number: int) -> dict[str, Series]:
-    return {
-        name: series[name].rows(clock.section(series[name].line) == number)
-        for name in ("ground", "water")
-    }
+def _by_section(clock: Clock, *series: Series) -> list[list[slice]]:
+    """For each series its rows of each section, which are in order."""
+    number = np.arange(len(clock.set_back_lines) + 2)
+    edges = [np.searchsorted(clock.section(s.line), number).tolist() for s in series]
+    return [[slice(a, b) for a, b in itertools.pairwise(of_one)] for of_one in edges]
 
 
 def _at_zero(fixes: Fixes) -> np.ndarray:
@@ -560,12 +692,11 @@ def _at_zero(fixes: Fixes) -> np.ndarray:
     )
 
 
-def _speed_at(time_s: np.ndarray, series: dict[str, Series]) -> np.ndarray:
+def _speed_at(time_s: np.ndarray, ground: GroundSpeed, water: WaterSpeed) -> np.ndarray:
     """Speeds (n,) over ground, or else through the water, or zero without either."""
     speed_mps = np.zeros(len(time_s))
-    for name, values in (("water", "ahead_mps"), ("ground", "speed_mps")):
-        readings = series[name]
-        readings = readings.rows(readings.valid & np.isfinite(getattr(readings, values)))
+    for series, values in ((water, "ahead_mps"), (ground, "speed_mps")):
+        readings = series.rows(series.valid & np.isfinite(getattr(series, values)))
         given = ~_far(time_s, readings.time_s, _BLIND_S)
         given_mps = np.abs(getattr(readings, values))
         speed_mps[given] = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import reduce
 from operator import xor
 
@@ -33,10 +33,7 @@ _PIECE = re.compile(rb"[$!][^$\\\r\n]*")
 _CHECKSUM = {b"%02X" % value: value for value in range(256)}
 _PRINTABLE = bytes(range(0x20, 0x7F))
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)").fullmatch
-_CLOCK = re.compile(r"(\d\d)(\d\d)(\d\d(?:\.\d*)?)").fullmatch
-_LATITUDE = re.compile(r"(\d\d)(\d\d(?:\.\d*)?)").fullmatch
-_LONGITUDE = re.compile(r"(\d\d\d)(\d\d(?:\.\d*)?)").fullmatch
-_DATE = re.compile(r"(\d\d)(\d\d)(\d\d)").fullmatch
+_PACKED = re.compile(r"\d+(?:\.\d*)?").fullmatch
 _DAY_0 = datetime.date(1970, 1, 1).toordinal()
 _GPS_YEAR = 1980
 _FIRST_YEAR = 80  # two-digit years from here on are of the last century
@@ -46,21 +43,25 @@ class Sentence:
     """A valid sentence and its fields, counted from 0 after the address.
 
     Every reader returns NaN for an empty field, and for one that cannot be read, which is added to
-    `faults`.
+    `faults`. Times, dates and positions may lack leading zeros, except in the last field, which may
+    be cut.
 
     Parameters
     ----------
     line : int
+    address : str
+        Talker and kind, such as ``GPRMC``.
     kind : str
         The three letters after the talker.
     body : str
         Fields separated by commas.
     """
 
-    __slots__ = ("_written", "faults", "fields", "kind", "line")
+    __slots__ = ("_written", "address", "faults", "fields", "kind", "line")
 
-    def __init__(self, line: int, kind: str, body: str) -> None:
+    def __init__(self, line: int, address: str, kind: str, body: str) -> None:
         self.line = line
+        self.address = address
         self.kind = kind
         self._written = body
         self.fields = [field.strip() for field in body.upper().split(",")]
@@ -111,37 +112,37 @@ class Sentence:
         return math.radians(self.number(k, 0.0, 360.0) % 360.0)
 
     def signed_rad(self, k: int) -> float:
-        """An angle in degrees with E or W in the next field, as radians positive east."""
-        angle_deg = self.number(k, 0.0, 180.0)
+        """An angle in degrees, as radians positive east.
+
+        The next field is E or W; with a sign it is E or empty.
+        """
+        signed = self.text(k)[:1] in ("+", "-")
+        angle_deg = self.number(k, -180.0 if signed else 0.0, 180.0)
         side = self.letter(k + 1, "EW")
         if math.isnan(angle_deg):
             return math.nan
-        if not side:
+        if signed and side == "W":
+            return self._fault("field", k, "no sign beside W")
+        if not (side or signed):
             return self._fault("field", k + 1, "E or W")
-        return math.radians(angle_deg if side == "E" else -angle_deg)
+        return math.radians(-angle_deg if side == "W" else angle_deg)
 
     def time_of_day_s(self, k: int) -> float:
         """Seconds since midnight; 60 s are allowed for a leap second."""
-        text = self.text(k)
-        if not text:
+        packed = self._packed(k, 6, "hhmmss")
+        if not packed:
             return math.nan
-        match = _CLOCK(text)
-        if match is None:
-            return self._fault("field", k, "hhmmss")
-        hour, minute, second = int(match[1]), int(match[2]), float(match[3])
+        hour, minute, second = int(packed[:2]), int(packed[2:4]), float(packed[4:])
         if not (hour < 24 and minute < 60 and second < 61):
             return self._fault("range", k, "a time of day")
         return 3600.0 * hour + 60.0 * minute + second
 
     def day(self, k: int) -> float:
         """Days since 1970 of a date ddmmyy."""
-        text = self.text(k)
-        if not text:
+        packed = self._packed(k, 6, "ddmmyy")
+        if not packed:
             return math.nan
-        match = _DATE(text)
-        if match is None:
-            return self._fault("field", k, "ddmmyy")
-        day, month, year = map(int, match.groups())
+        day, month, year = int(packed[:2]), int(packed[2:4]), int(packed[4:6])
         return self._day(k, year + (1900 if year >= _FIRST_YEAR else 2000), month, day)
 
     def day_in_fields(self, k: int) -> float:
@@ -155,24 +156,36 @@ class Sentence:
     def place_deg(self, k: int) -> tuple[float, float]:
         """Latitude and longitude of four fields: ddmm.mm, N or S, dddmm.mm, E or W."""
         return (
-            self._degrees(k, _LATITUDE, "ddmm.mm", "NS", 90.0),
-            self._degrees(k + 2, _LONGITUDE, "dddmm.mm", "EW", 180.0),
+            self._degrees(k, "ddmm.mm", "NS", 90.0),
+            self._degrees(k + 2, "dddmm.mm", "EW", 180.0),
         )
 
-    def _degrees(self, k: int, form, wanted: str, sides: str, limit_deg: float) -> float:
-        text, side = self.text(k), self.letter(k + 1, sides)
-        if not text:
+    def _degrees(self, k: int, form: str, sides: str, limit_deg: float) -> float:
+        """Degrees and minutes; the two digits before the point are minutes, which may be 60."""
+        width = form.index(".")
+        packed, side = self._packed(k, width, form), self.letter(k + 1, sides)
+        if not packed:
             return math.nan
-        match = form(text)
-        if match is None:
-            return self._fault("field", k, wanted)
         if not side:
             return self._fault("field", k + 1, " or ".join(sides))
-        minutes = float(match[2])
-        if minutes >= 60.0:
-            return self._fault("range", k, "minutes below 60")
-        value = self._within(int(match[1]) + minutes / 60.0, k, 0.0, limit_deg)
+        degrees, minutes = int(packed[: width - 2]), float(packed[width - 2 :])
+        if minutes > 60.0:
+            return self._fault("range", k, "minutes up to 60")
+        value = self._within(degrees + minutes / 60.0, k, 0.0, limit_deg)
         return value if side == sides[0] else -value
+
+    def _packed(self, k: int, width: int, form: str) -> str:
+        """A number of `width` digits before its point, completed where leading zeros are left out.
+
+        '' if it is empty or cannot be read.
+        """
+        text = self.text(k)
+        missing = width - len(text.partition(".")[0])
+        whole = missing == 0 or (missing > 0 and k + 1 < len(self.fields))
+        if text and not (whole and _PACKED(text)):
+            self._fault("field", k, form)
+            return ""
+        return text and text.rjust(len(text) + missing, "0")
 
     def _day(self, k: int, year: int, month: int, day: int) -> float:
         try:
@@ -189,7 +202,13 @@ class Sentence:
         return math.nan
 
 
-def sentences(octets: bytes, report: NmeaReport) -> list[Sentence]:
+def lines_of(octets: bytes) -> list[bytes]:
+    """The lines of a log."""
+    lines = _LINE_END.split(octets)
+    return lines[:-1] if lines[-1] == b"" else lines
+
+
+def sentences(lines: Sequence[bytes], report: NmeaReport) -> list[Sentence]:
     """The valid sentences of the kinds in `FIELDS`, in order; problems are added to `report`.
 
     A sentence begins at ``$`` (one of another kind also at ``!``) and ends with its line or where
@@ -199,15 +218,14 @@ def sentences(octets: bytes, report: NmeaReport) -> list[Sentence]:
 
     Parameters
     ----------
-    octets : bytes
-        The log.
+    lines : sequence of bytes
+        The lines of the log.
     report : NmeaReport
     """
     found: list[Sentence] = []
-    unchecked: list[tuple[int, str, bytes]] = []
+    unchecked: list[tuple[int, str, str, bytes]] = []
     with_checksum: set[str] = set()
-    lines = _LINE_END.split(octets)
-    report.lines = len(lines) - (lines[-1] == b"")
+    report.lines = len(lines)
     for line, text in enumerate(lines, 1):
         pieces = _PIECE.findall(text)
         if not pieces and text.strip():
@@ -218,23 +236,23 @@ def sentences(octets: bytes, report: NmeaReport) -> list[Sentence]:
                 report.add(line, *fault)
                 continue
             star = piece.rfind(b"*")
-            kind, body = _parted(piece[1:] if star < 0 else piece[1:star])
+            address, kind, body = _parted(piece[1:] if star < 0 else piece[1:star])
             if star < 0:
-                unchecked.append((line, kind, body))
+                unchecked.append((line, address, kind, body))
                 continue
             with_checksum.add(kind)
             report.sentences[kind] += 1
             if kind in FIELDS:
-                found.append(Sentence(line, kind, body.decode("ascii")))
+                found.append(Sentence(line, address, kind, body.decode("ascii")))
     found += _whole(unchecked, with_checksum, report)
     return sorted(found, key=lambda sentence: sentence.line)
 
 
 def _whole(
-    unchecked: list[tuple[int, str, bytes]], with_checksum: set[str], report: NmeaReport
+    unchecked: list[tuple[int, str, str, bytes]], with_checksum: set[str], report: NmeaReport
 ) -> Iterator[Sentence]:
     """Sentences without a checksum that seem to be whole."""
-    for line, kind, body in unchecked:
+    for line, address, kind, body in unchecked:
         if kind in with_checksum:
             report.add(line, "cut", f"{kind} has no checksum although others of the file have one")
             continue
@@ -244,7 +262,7 @@ def _whole(
             continue
         report.sentences[kind] += 1
         if kind in FIELDS:
-            yield Sentence(line, kind, body.decode("ascii"))
+            yield Sentence(line, address, kind, body.decode("ascii"))
 
 
 def _unsound(piece: bytes) -> tuple[str, str] | None:
@@ -263,16 +281,16 @@ def _unsound(piece: bytes) -> tuple[str, str] | None:
     address = body.partition(b",")[0].strip()
     if not (address.isalnum() and len(address) >= 3):
         return "address", f"wanted talker and kind, {_got(piece)}"
-    if piece[:1] == b"!" and _parted(body)[0] in FIELDS:
+    if piece[:1] == b"!" and _parted(body)[1] in FIELDS:
         return "address", f"wanted $ at the start, {_got(piece)}"
     return None
 
 
-def _parted(body: bytes) -> tuple[str, bytes]:
-    """The letters after the talker, or the whole address of a proprietary sentence; and fields."""
+def _parted(body: bytes) -> tuple[str, str, bytes]:
+    """The address, its letters after the talker (all of a proprietary one), and the fields."""
     address, _, fields = body.rstrip().partition(b",")
     text = address.decode("ascii").strip().upper()
-    return (text[2:] if len(text) == 5 and text[0] != "P" else text), fields
+    return text, (text[2:] if len(text) == 5 and text[0] != "P" else text), fields
 
 
 def _got(text: str | bytes) -> str:
