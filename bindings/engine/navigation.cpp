@@ -16,6 +16,7 @@
 namespace wakeline::python {
 
 void define_closest_approach(py::module_& navigation);
+void define_encounter_watch(py::module_& navigation);
 void define_search(py::module_& navigation);
 void define_usv_navigator(py::module_& navigation);
 
@@ -862,6 +863,7 @@ void define_navigation(py::module_& parent) {
   define_drift(m);
   define_drift_forecast(m);
   define_closest_approach(m);
+  define_encounter_watch(m);
   define_search(m);
   define_usv_navigator(m);
 }

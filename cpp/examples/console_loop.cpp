@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// The loop of a radar console: plots in, scan by scan, tracks out.
+// The loop of a radar console: plots in, scan by scan, tracks and dangerous encounters out.
 //
 //   console_loop SCANS.csv PLOTS.csv
 //
@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "wakeline/navigation/encounter_watch.hpp"
 #include "wakeline/track/tracker.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
@@ -92,7 +93,7 @@ std::vector<Scan> read_scans(const std::string& scans_path, const std::string& p
   return scans;
 }
 
-/// Eight boats on straight courses among false plots.
+/// Eight boats on straight courses among false plots; one comes back past the others.
 std::vector<Scan> made_up_scans() {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
@@ -102,7 +103,8 @@ std::vector<Scan> made_up_scans() {
     Scan scan{2.5 * k, {}};
     for (int boat = 0; boat < 8; ++boat) {
       if (uniform(random) > 0.9) continue;
-      const double course = boat * 0.8, distance = 500.0 + 6.0 * scan.time_s;
+      const double course = boat * 0.8;
+      const double distance = boat == 7 ? 1200.0 - 6.0 * scan.time_s : 500.0 + 6.0 * scan.time_s;
       const double north = distance * std::cos(course), east = distance * std::sin(course);
       scan.plots.push_back({scan.time_s, std::hypot(north, east) + 8 * normal(random),
                             std::atan2(east, north) + deg(0.5) * normal(random)});
@@ -121,12 +123,21 @@ int main(int argc, char** argv) try {
       .range_std_m = 8.0, .bearing_std_rad = deg(0.6), .period_s = 2.5, .max_speed_mps = 25.0};
   const std::vector<Scan> scans = argc > 2 ? read_scans(argv[1], argv[2]) : made_up_scans();
   Tracker tracker(radar, TrackerConfig{}, vessel_imm(radar));
+  EncounterWatch watch(DangerLimits{.cpa_limit_m = 200.0, .tcpa_limit_s = 300.0});
+  std::vector<WatchedVessel> vessels;
+  vessels.reserve(static_cast<std::size_t>(watch.max_vessels()));
 
   const long before = allocations;
   double worst_us = 0.0, total_us = 0.0;
   for (const Scan& scan : scans) {
     const auto start = std::chrono::steady_clock::now();
     const ScanReport report = tracker.process(scan.time_s, scan.plots);
+    vessels.clear();
+    tracker.for_each([&](const auto& track) {
+      if (track.shown() && vessels.size() < vessels.capacity())
+        vessels.push_back({track.id, tracker.kinematics_at(track, scan.time_s)});
+    });
+    const EncounterReport danger = watch.update(scan.time_s, vessels);
     const double us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     worst_us = std::max(worst_us, us);
@@ -135,6 +146,18 @@ int main(int argc, char** argv) try {
       if (event.kind == TrackEvent::kConfirmed)
         std::printf("%10.1f s  track %lld confirmed\n", event.time_s,
                     static_cast<long long>(event.track_id));
+    for (const EncounterEvent& event : danger.events) {
+      const Encounter& one = event.encounter;
+      const auto first = static_cast<long long>(one.approach.first);
+      const auto second = static_cast<long long>(one.approach.second);
+      if (event.change == EncounterChange::kBegan)
+        std::printf("%10.1f s  tracks %lld and %lld: %.0f m in %.0f s, %.0f %%\n", scan.time_s,
+                    first, second, one.approach.cpa_m(), one.approach.tcpa_s,
+                    100.0 * one.approach.probability);
+      else
+        std::printf("%10.1f s  tracks %lld and %lld: over, closest %.0f m\n", scan.time_s, first,
+                    second, one.least_range_m);
+    }
   }
   tracker.for_each([](const auto& track) {
     if (!track.shown()) return;

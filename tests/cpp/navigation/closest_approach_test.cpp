@@ -380,6 +380,18 @@ TEST(ClosestApproach, OfNanIsNan) {
     EXPECT_TRUE(std::isnan(approach.tcpa_s()));
     EXPECT_TRUE(std::isnan(approach.probability(500, 1200)));
   }
+  // Of ships at relative rest, too, of which the place or the velocity is not finite.
+  for (const double wrong : {double(NAN), HUGE_VAL})
+    for (int k = 0; k < 4; ++k) {
+      Vec4 together = state({1000, 200}, {5, 0});
+      together[k] = wrong;
+      const auto approach = closest_approach(own, together);
+      EXPECT_TRUE(std::isnan(approach.cpa_m())) << k;
+      EXPECT_TRUE(std::isnan(approach.tcpa_s())) << k;
+      EXPECT_TRUE(std::isnan(approach.cpa_std_m())) << k;
+      EXPECT_TRUE(std::isnan(approach.tcpa_std_s())) << k;
+      EXPECT_TRUE(std::isnan(approach.probability(500, 1200))) << k;
+    }
   const ClosestApproach near({state({400, 0}, {-1, 0}), errors(50, 0.1)});
   ASSERT_GT(near.probability(500, 600), 0.5);
   EXPECT_TRUE(std::isnan(near.probability(NAN, 600)));

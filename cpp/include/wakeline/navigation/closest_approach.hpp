@@ -35,10 +35,17 @@ namespace wakeline {
 class ClosestApproach {
  public:
   /// `relative` is target minus own ship over [x, vx, y, vy] in the plane of north and east; its
-  /// covariance may be semidefinite, zero for known states. NaN inputs give NaN results.
+  /// covariance may be semidefinite, zero for known states. Of a state that is not finite all
+  /// results are NaN.
   explicit ClosestApproach(const Gaussian<4>& relative) noexcept
       : mean_(relative.mean), state_covariance_(relative.covariance) {
     const Vec2 position_m(mean_[0], mean_[2]), velocity_mps(mean_[1], mean_[3]);
+    if (!is_finite(mean_)) {
+      constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+      signed_cpa_m_ = tcpa_s_ = kNaN;
+      covariance_.setConstant(kNaN);
+      return;
+    }
     const double speed2 = velocity_mps.squaredNorm();
     at_rest_ = speed2 <= kRest_mps * kRest_mps;
     if (at_rest_) {

@@ -17,8 +17,8 @@
 namespace wakeline::detail {
 inline namespace WAKELINE_INSTRUCTION_SET {
 
-constexpr int kSlices = 4;
-constexpr int kSlicesAtOnce = std::min(kSlices, kNativeLanes<double>);
+constexpr int kFewSlices = 4, kManySlices = 8;
+constexpr int kSlicesAtOnce = std::min(kFewSlices, kNativeLanes<double>);
 using Slices = Pack<double, kSlicesAtOnce>;
 
 /// P(Z < z) of a standard normal variable, and sqrt(2 pi) times its density.
@@ -64,10 +64,16 @@ struct GivenOffset {
   }
 };
 
+/// P(|x| < L) of a Gaussian x.
+inline double within_limit(double limit_m, double mean_m, double std_m) noexcept {
+  if (std_m == 0.0) return std::abs(mean_m) < limit_m ? 1.0 : 0.0;
+  return normal_below((limit_m - mean_m) / std_m) - normal_below((-limit_m - mean_m) / std_m);
+}
+
 /// ∫ P(x, half chord at x) p(x) dx over a disc of radius L, x Gaussian along a diameter: the mean
 /// of P over slices x = L sin f, equal in f and offset by the fraction `stagger` of their width.
 template <class OnChord>
-double within_disc(double limit_m, double mean_m, double std_m, double stagger,
+double within_disc(double limit_m, double mean_m, double std_m, int slices, double stagger,
                    const OnChord& on_chord) noexcept {
   constexpr double kSigmas = 3.5;  // the integral beyond is negligible
   if (std_m == 0.0) {
@@ -77,13 +83,12 @@ double within_disc(double limit_m, double mean_m, double std_m, double stagger,
   }
   const double low = std::max(-limit_m, mean_m - kSigmas * std_m);
   const double high = std::min(limit_m, mean_m + kSigmas * std_m);
-  const double mass =
-      normal_below((limit_m - mean_m) / std_m) - normal_below((-limit_m - mean_m) / std_m);
+  const double mass = within_limit(limit_m, mean_m, std_m);
   if (!(high > low) || mass == 0.0) return 0.0;
   const double first = std::asin(low / limit_m);
-  const double width = (std::asin(high / limit_m) - first) / kSlices;
+  const double width = (std::asin(high / limit_m) - first) / slices;
   Slices sum = 0.0, weights = 0.0;
-  for (int from = 0; from < kSlices; from += kSlicesAtOnce) {
+  for (int from = 0; from < slices; from += kSlicesAtOnce) {
     const auto [sine, cosine] =
         sin_cos(Slices::of([&](int k) { return first + (from + k + stagger) * width; }));
     const Slices x = limit_m * sine, z = (x - mean_m) * (1.0 / std_m);
@@ -146,10 +151,7 @@ inline double probability_within(double limit_m, const Vec<double, 2>& position_
   const auto on_chord = [&](Slices, Slices half_chord_m) {
     return along.probability_below(half_chord_m, 0.0) - along.probability_below(-half_chord_m, 0.0);
   };
-  double sum = 0.0;
-  for (const double stagger : {0.125, 0.375, 0.625, 0.875})
-    sum += within_disc(limit_m, mean[1], ellipse.std[1], stagger, on_chord);
-  return sum / 4;
+  return within_disc(limit_m, mean[1], ellipse.std[1], 2 * kManySlices, 0.5, on_chord);
 }
 
 /// Position and velocity in independent errors: v = A w, p = p0 + G (w - mean(w)) + e, w and e
@@ -170,6 +172,8 @@ class PassingProbability {
     if (!moves_) return;
     const PrincipalAxes ellipse(velocity);
     const Vec2 std = ellipse.std.cwiseMax(kLeastError * std::sqrt(size2));
+    const double sigmas = velocity_mps.norm() / std[0];
+    directions_ = sigmas > kKnown ? 1 : sigmas > kFairlyKnown ? kFewDirections : kDirections;
     root_ = ellipse.axes * std.asDiagonal();
     const Vec2 inverse = std.cwiseInverse();
     whitened_ = inverse.asDiagonal() * (ellipse.axes.transpose() * velocity_mps);
@@ -180,9 +184,14 @@ class PassingProbability {
   /// Sum of `now` and `later`.
   [[nodiscard]] double operator()(double limit_m, double horizon_s) const noexcept {
     if (std::isinf(limit_m)) return limit_m > 0.0 ? 1.0 : 0.0;
-    const double now = probability_within(limit_m, position_m_, position_covariance_);
+    const double outside_m = position_m_.norm() - limit_m;
+    const double certain_m = kCertain * std::sqrt(std::max(position_covariance_.trace(), 0.0));
+    if (outside_m < -certain_m) return 1.0;
+    const bool outside = outside_m > certain_m;
+    const double now =
+        outside ? 0.0 : probability_within(limit_m, position_m_, position_covariance_);
     if (!moves_) return now;
-    return std::min(now + later(limit_m, horizon_s), 1.0);
+    return std::min(now + later(limit_m, horizon_s, outside ? directions_ : kDirections), 1.0);
   }
 
  private:
@@ -190,27 +199,34 @@ class PassingProbability {
   using Mat2 = Mat<double, 2, 2>;
 
   static constexpr int kDirections = 32;
+  static constexpr int kFewDirections = 12;
+  static constexpr double kKnown = 12.0;       ///< sigmas of a velocity of one direction
+  static constexpr double kFairlyKnown = 5.0;  ///< and of one of few directions
+  static constexpr double kCertain = 6.0;      ///< sigmas beyond which nothing is expected
   static constexpr double kLeastError = 1e-8;  ///< relative to a velocity without error
   static constexpr double kSpread = 0.4;       ///< spread of directions, relative to their spacing
 
-  /// The probability to be outside now and to enter later.
-  [[nodiscard]] double later(double limit_m, double horizon_s) const noexcept {
+  /// The probability to be outside now and to enter later, summed over directions of the velocity.
+  [[nodiscard]] double later(double limit_m, double horizon_s, int directions) const noexcept {
     const double distance = whitened_.norm();
     const Vec2 ahead = distance > 0.0 ? Vec2(whitened_ / distance) : Vec2(1.0, 0.0);
     const Vec2 aside(-ahead[1], ahead[0]);
+    if (directions == 1)
+      return towards(ahead, aside, Length(distance, distance, 1.0, 0.0), 1.0 / distance,
+                     kManySlices, 0.5, limit_m, horizon_s);
     const double half_turn = std::numbers::pi;
     const double widest =
         distance > 0.0 ? std::min(4.0 / distance * (1.0 + 1.0 / distance), half_turn) : half_turn;
-    const double step = 2.0 * widest / kDirections, spread = kSpread * step;
+    const double step = 2.0 * widest / directions, spread = kSpread * step;
     const double blurred = std::min(spread * distance, 0.7);
     const double narrowed = distance / std::sqrt(1.0 - blurred * blurred);
     double sum = 0.0, weights = 0.0;
-    for (int k = 0; k < kDirections; ++k) {
+    for (int k = 0; k < directions; ++k) {
       const double psi = (k + 0.5) * step - widest, c = std::cos(psi), s = std::sin(psi);
       if (distance * c < -5.0) continue;  // probability below one in a million
       const Length length(distance, narrowed, c, s);
       sum += length.weight * towards(c * ahead + s * aside, c * aside - s * ahead, length, spread,
-                                     stagger(k), limit_m, horizon_s);
+                                     kFewSlices, stagger(k), limit_m, horizon_s);
       weights += length.weight;
     }
     return sum / weights;
@@ -237,7 +253,7 @@ class PassingProbability {
   ///
   /// First order in the errors, second order in the direction.
   [[nodiscard]] double towards(const Vec2& c, const Vec2& by_psi, const Length& length,
-                               double spread, double stagger, double limit_m,
+                               double spread, int slices, double stagger, double limit_m,
                                double horizon_s) const noexcept {
     const bool ever = horizon_s > kLargestInput;
     const double reach_s = ever ? 0.0 : horizon_s;
@@ -260,6 +276,13 @@ class PassingProbability {
                        of_to_go.by_turn - turned.dot(u) * reach_s};
 
     const double d_variance = squared(of_d) + std::max(n.dot(rest_ * n), 0.0) + 2.0 * bend * bend;
+    const double along_variance = std::max(u.dot(rest_ * u), 0.0);
+    const double left = to_go - speed_mps * reach_s;
+    const double left_certain = kCertain * std::sqrt(squared(of_left) + along_variance);
+    if (!ever && left - limit_m > left_certain) return 0.0;  // too far to come in time
+    if (to_go - limit_m > kCertain * std::sqrt(squared(of_to_go) + along_variance) &&
+        (ever || left < -left_certain))  // outside now, and past the closest point in time
+      return within_limit(limit_m, d, std::sqrt(d_variance));
     const double arc = to_go * turn_rad * turn_rad / 2.0;
     const auto given_d = [&](double mean, const Ways& of) noexcept {
       const double common = product(of_d, of) - n.dot(rest_ * u);
@@ -269,7 +292,7 @@ class PassingProbability {
         way.slope = common / d_variance;
         way.curve = -arc * by_turn / d_variance;
       }
-      const double variance = squared(of) + std::max(u.dot(rest_ * u), 0.0) - way.slope * common;
+      const double variance = squared(of) + along_variance - way.slope * common;
       way.std = std::sqrt(std::max(variance, 0.0));
       if (way.std > 0.0 && length_std > 0.0)
         way.skewness = length.third *
@@ -277,12 +300,12 @@ class PassingProbability {
       return way;
     };
     const GivenOffset way = given_d(to_go, of_to_go);
-    const GivenOffset left = given_d(to_go - speed_mps * reach_s, of_left);
+    const GivenOffset way_left = given_d(left, of_left);
     return within_disc(
-        limit_m, d, std::sqrt(d_variance), stagger, [&](Slices x, Slices half_chord_m) {
+        limit_m, d, std::sqrt(d_variance), slices, stagger, [&](Slices x, Slices half_chord_m) {
           const Slices from_mean = x - d;
           const Slices in_time =
-              ever ? Slices(1.0) : left.probability_below(half_chord_m, from_mean);
+              ever ? Slices(1.0) : way_left.probability_below(half_chord_m, from_mean);
           return max(in_time - way.probability_below(half_chord_m, from_mean), Slices(0.0));
         });
   }
@@ -296,6 +319,7 @@ class PassingProbability {
   Vec2 position_m_;
   Mat2 position_covariance_;
   bool moves_ = false;
+  int directions_ = kDirections;    ///< that are enough for a target outside now
   Mat2 root_, by_velocity_, rest_;  ///< A, G, the covariance of e
   Vec2 whitened_;                   ///< the mean of w
 };
