@@ -21,11 +21,9 @@ struct DampedVelocity {
 
   static constexpr auto fields() noexcept {
     using D = DampedVelocity;
-    return std::tuple{
-        field("decay_time_s", &D::decay_time_s, kPositive, "s",
-              "Time in which the velocity falls to 1/e."),
-        field("noise", &D::noise, "Process noise."),
-    };
+    return field_table(field("decay_time_s", &D::decay_time_s, kPositive, "s",
+                             "Time in which the velocity falls to 1/e."),
+                       field("noise", &D::noise, "Process noise."));
   }
 
   template <class Scalar>

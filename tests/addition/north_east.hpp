@@ -20,10 +20,9 @@ struct NorthEast {
 
   static constexpr auto fields() noexcept {
     using N = NorthEast;
-    return std::tuple{
+    return field_table(
         field("north_std_m", &N::north_std_m, kPositive, "m", "Standard deviation of the north."),
-        field("east_std_m", &N::east_std_m, kPositive, "m", "Standard deviation of the east."),
-    };
+        field("east_std_m", &N::east_std_m, kPositive, "m", "Standard deviation of the east."));
   }
 
   template <class Scalar>

@@ -25,7 +25,7 @@ struct Inner {
   double weight_kg = 2.0;
 
   static constexpr auto fields() noexcept {
-    return std::tuple{field("weight_kg", &Inner::weight_kg, kPositive, "kg", "Weight.")};
+    return field_table(field("weight_kg", &Inner::weight_kg, kPositive, "kg", "Weight."));
   }
   friend bool operator==(const Inner&, const Inner&) = default;
 };
@@ -38,13 +38,11 @@ struct Outer {
   Inner inner = {};
 
   static constexpr auto fields() noexcept {
-    return std::tuple{
-        field("length_m", &Outer::length_m, kNotNegative, "m", "Length."),
-        field("count", &Outer::count, between(1, 5), "pieces", "Pieces."),
-        field("open", &Outer::open, "Whether it is open."),
-        field("colour", &Outer::colour, "Colour."),
-        field("inner", &Outer::inner, "What is inside."),
-    };
+    return field_table(field("length_m", &Outer::length_m, kNotNegative, "m", "Length."),
+                       field("count", &Outer::count, between(1, 5), "pieces", "Pieces."),
+                       field("open", &Outer::open, "Whether it is open."),
+                       field("colour", &Outer::colour, "Colour."),
+                       field("inner", &Outer::inner, "What is inside."));
   }
   friend bool operator==(const Outer&, const Outer&) = default;
 

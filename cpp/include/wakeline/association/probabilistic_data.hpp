@@ -30,15 +30,14 @@ struct ProbabilisticData {
 
   static constexpr auto fields() noexcept {
     using P = ProbabilisticData;
-    return std::tuple{
+    return field_table(
         field("detection_probability", &P::detection_probability, kProbability, "1",
               "Probability P_D that the target is detected."),
         field("gate_probability", &P::gate_probability, kProbability, "1",
               "Probability P_G that its plot is inside the gate."),
         field("clutter_density", &P::clutter_density, kNotNegative, "1/volume",
               "False plots λ per unit of measurement volume, per m² for a position: Poisson, the "
-              "parametric form."),
-    };
+              "parametric form."));
   }
 
   /// Throws `std::invalid_argument` when a probability is outside [0, 1] or the density is

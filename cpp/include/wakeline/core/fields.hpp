@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <tuple>
 #include <type_traits>
 
 #include "wakeline/core/require.hpp"
@@ -125,8 +124,22 @@ constexpr Field<Struct, Value> field(const char* name, Value Struct::*member,
   return {name, member, kNumber, "", sentence};
 }
 
-/// A struct with a table of its fields: `static constexpr auto fields()` returns a tuple of
-/// `Field`.
+/// A table of fields, and of other tables: a function that calls another for each `Field` in order.
+/// (A `std::tuple` of them would be a hundred templates for each struct.)
+template <class... Entries>
+constexpr auto field_table(const Entries&... entries) noexcept {
+  return [=](auto&& visit) {
+    const auto visit_entry = [&](const auto& entry) {
+      if constexpr (requires { entry.member; })
+        visit(entry);
+      else
+        entry(visit);
+    };
+    (visit_entry(entries), ...);
+  };
+}
+
+/// A struct with a table of its fields: `static constexpr auto fields()` returns a `field_table`.
 template <class Struct>
 concept HasFields = requires {
   Struct::fields();
@@ -135,8 +148,7 @@ concept HasFields = requires {
 /// Calls `visit(field, value)` for each field of a struct, in order.
 template <class Struct, class Visit>
 constexpr void for_each_field(Struct& x, Visit&& visit) {
-  std::apply([&](const auto&... entry) { (visit(entry, x.*entry.member), ...); },
-             std::remove_const_t<Struct>::fields());
+  std::remove_const_t<Struct>::fields()([&](const auto& entry) { visit(entry, x.*entry.member); });
 }
 
 /// Rejects a number that breaks the rule.

@@ -52,12 +52,11 @@ struct ConstantGains {
 
   static constexpr auto fields() noexcept {
     using C = ConstantGains;
-    return std::tuple{
+    return field_table(
         field("alpha", &C::alpha, kFinite, "1", "Gain of the position."),
         field("beta", &C::beta, kFinite, "1", "Gain of the velocity, over the step."),
         field("gamma", &C::gamma, kFinite, "1",
-              "Gain of the acceleration, over half the squared step; 0 for an alpha-beta filter."),
-    };
+              "Gain of the acceleration, over half the squared step; 0 for an alpha-beta filter."));
   }
 
   template <int Order, class Scalar>
@@ -93,12 +92,10 @@ struct GrowingMemory {
 
   static constexpr auto fields() noexcept {
     using G = GrowingMemory;
-    return std::tuple{
-        field("plots_before", &G::plots_before, at_least(0), "plots",
-              "Plots that the start was made of."),
-        field("max_plots", &G::max_plots, at_least(0), "plots",
-              "Plots at which the gains stop falling; 0: never."),
-    };
+    return field_table(field("plots_before", &G::plots_before, at_least(0), "plots",
+                             "Plots that the start was made of."),
+                       field("max_plots", &G::max_plots, at_least(0), "plots",
+                             "Plots at which the gains stop falling; 0: never."));
   }
 
   template <int Order, class Scalar>
@@ -132,7 +129,7 @@ struct BenedictBordner {
 
   static constexpr auto fields() noexcept {
     using B = BenedictBordner;
-    return std::tuple{field("alpha", &B::alpha, above_to(0, 1), "1", "Gain of the position.")};
+    return field_table(field("alpha", &B::alpha, above_to(0, 1), "1", "Gain of the position."));
   }
 
   template <int Order, class Scalar>
@@ -156,9 +153,9 @@ struct CriticallyDamped {
 
   static constexpr auto fields() noexcept {
     using C = CriticallyDamped;
-    return std::tuple{
+    return field_table(
         field("theta", &C::theta, from_to_below(0, 1), "1",
-              "Weight of a reading over that of the next one; 0: only the newest readings count.")};
+              "Weight of a reading over that of the next one; 0: only the newest readings count."));
   }
 
   template <int Order, class Scalar>
@@ -190,9 +187,9 @@ struct TrackingIndex {
 
   static constexpr auto fields() noexcept {
     using T = TrackingIndex;
-    return std::tuple{field("accel_std_mps2", &T::accel_std_mps2, kPositive, "m/s²",
-                            "Standard deviation of the acceleration, of three states of its "
-                            "change, drawn anew for each step.")};
+    return field_table(field("accel_std_mps2", &T::accel_std_mps2, kPositive, "m/s²",
+                             "Standard deviation of the acceleration, of three states of its "
+                             "change, drawn anew for each step."));
   }
 
   template <int Order, class Scalar>
@@ -287,7 +284,7 @@ struct RangeDependent {
 
   static constexpr auto fields() noexcept {
     using R = RangeDependent;
-    return std::tuple{
+    return field_table(
         field("near_range_m", &R::near_range_m, kPositive, "m",
               "Range up to which the near gains hold."),
         field("near_alpha", &R::near_alpha, kPositive, "1", "Gain of the position at short range."),
@@ -295,8 +292,7 @@ struct RangeDependent {
         field("far_alpha", &R::far_alpha, kPositive, "1",
               "Least gain of the position; at most near_alpha."),
         field("far_beta", &R::far_beta, kPositive, "1",
-              "Least gain of the velocity; at most near_beta."),
-    };
+              "Least gain of the velocity; at most near_beta."));
   }
 
   template <int Order, class Scalar>

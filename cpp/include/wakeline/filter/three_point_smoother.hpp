@@ -51,16 +51,14 @@ struct ThreePointSettings {
 
   static constexpr auto fields() noexcept {
     using T = ThreePointSettings;
-    return std::tuple{
-        field("weight_before_s", &T::weight_before_s, kNotNegative, "s",
-              "Step at which the reading before counts as much as the middle one."),
-        field("weight_after_s", &T::weight_after_s, kNotNegative, "s",
-              "Step at which the reading after counts as much as the middle one."),
-        field("adaptive", &T::adaptive,
-              "Both weights are fitted to the last five readings instead."),
-        field("parabola", &T::parabola,
-              "The rate is exact for a parabola, else it has Simpson's weights."),
-    };
+    return field_table(field("weight_before_s", &T::weight_before_s, kNotNegative, "s",
+                             "Step at which the reading before counts as much as the middle one."),
+                       field("weight_after_s", &T::weight_after_s, kNotNegative, "s",
+                             "Step at which the reading after counts as much as the middle one."),
+                       field("adaptive", &T::adaptive,
+                             "Both weights are fitted to the last five readings instead."),
+                       field("parabola", &T::parabola,
+                             "The rate is exact for a parabola, else it has Simpson's weights."));
   }
 };
 

@@ -28,13 +28,12 @@ struct Unscented {
 
   static constexpr auto fields() noexcept {
     using U = Unscented;
-    return std::tuple{
+    return field_table(
         field("alpha", &U::alpha, kPositive, "1", "Distance of the sigma points from the mean."),
         field("beta", &U::beta, kFinite, "1",
               "Weight of the central point in the covariance; 2 suits a Gaussian."),
         field("kappa", &U::kappa, kFinite, "1",
-              "Second scale of that distance, sqrt(alpha² (n + kappa)) for n states."),
-    };
+              "Second scale of that distance, sqrt(alpha² (n + kappa)) for n states."));
   }
 
   /// Distance of the points from the centre, in columns of the factor: sqrt(alpha² (n + kappa)).

@@ -19,12 +19,10 @@ struct WindowBankSettings {
 
   static constexpr auto fields() noexcept {
     using W = WindowBankSettings;
-    return std::tuple{
-        field("max_readings", &W::max_readings, at_least(2), "readings",
-              "Readings of the longest window."),
-        field("memory", &W::memory, between(0, 1), "1",
-              "Share of its energy that a window keeps at each reading."),
-    };
+    return field_table(field("max_readings", &W::max_readings, at_least(2), "readings",
+                             "Readings of the longest window."),
+                       field("memory", &W::memory, between(0, 1), "1",
+                             "Share of its energy that a window keeps at each reading."));
   }
 };
 

@@ -20,8 +20,8 @@ struct ChiSquareGate {
 
   static constexpr auto fields() noexcept {
     using C = ChiSquareGate;
-    return std::tuple{field("probability", &C::probability, inside(0, 1), "1",
-                            "Probability that the plot of a target is inside the gate.")};
+    return field_table(field("probability", &C::probability, inside(0, 1), "1",
+                             "Probability that the plot of a target is inside the gate."));
   }
 
   /// Largest normalised innovation squared (NIS) inside the gate for `dof` measured quantities. NaN

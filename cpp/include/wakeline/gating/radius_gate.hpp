@@ -19,8 +19,8 @@ struct RadiusGate {
 
   static constexpr auto fields() noexcept {
     using R = RadiusGate;
-    return std::tuple{
-        field("radius_m", &R::radius_m, kPositive, "m", "Radius about the predicted position.")};
+    return field_table(
+        field("radius_m", &R::radius_m, kPositive, "m", "Radius about the predicted position."));
   }
 
   /// Throws `std::invalid_argument` unless the radius is finite and positive.

@@ -93,12 +93,10 @@ struct RangeBearingWindow {
 
   static constexpr auto fields() noexcept {
     using R = RangeBearingWindow;
-    return std::tuple{
-        field("range_half_m", &R::range_half_m, kPositive, "m",
-              "Half the length of the window along range."),
-        field("bearing_half_rad", &R::bearing_half_rad, above_to(0, kPi<double>), "rad",
-              "Half the width of the window in bearing, at most pi."),
-    };
+    return field_table(field("range_half_m", &R::range_half_m, kPositive, "m",
+                             "Half the length of the window along range."),
+                       field("bearing_half_rad", &R::bearing_half_rad, above_to(0, kPi<double>),
+                             "rad", "Half the width of the window in bearing, at most pi."));
   }
 
   /// Throws `std::invalid_argument` unless both are finite and positive, the bearing at most pi.

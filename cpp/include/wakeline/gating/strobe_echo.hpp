@@ -85,13 +85,12 @@ struct StrobeSettings {
 
   static constexpr auto fields() noexcept {
     using S = StrobeSettings;
-    return std::tuple{
+    return field_table(
         field("least_amplitude", &S::least_amplitude, at_least(1), "counts",
               "Least amplitude of a cell that counts."),
         field("pedestal", &S::pedestal, at_least(0), "counts",
               "Amplitude subtracted from that of a cell to weigh it; below least_amplitude."),
-        field("several", &S::several, "Which of several echoes in the strobe is measured."),
-    };
+        field("several", &S::several, "Which of several echoes in the strobe is measured."));
   }
 
   /// Throws `std::invalid_argument` unless 0 <= pedestal < least_amplitude.

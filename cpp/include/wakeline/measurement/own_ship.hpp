@@ -21,7 +21,7 @@ struct OwnShip {
 
   static constexpr auto fields() noexcept {
     using O = OwnShip;
-    return std::tuple{
+    return field_table(
         field("north_m", &O::north_m, kFinite, "m", "Position of the antenna to the north."),
         field("east_m", &O::east_m, kFinite, "m", "Position of the antenna to the east."),
         field("vnorth_mps", &O::vnorth_mps, kFinite, "m/s", "Velocity to the north."),
@@ -31,8 +31,7 @@ struct OwnShip {
         field("velocity_std_mps", &O::velocity_std_mps, kNotNegative, "m/s",
               "Standard deviation of the velocity, per axis."),
         field("heading_std_rad", &O::heading_std_rad, kNotNegative, "rad",
-              "Standard deviation of the heading, which turns every bearing."),
-    };
+              "Standard deviation of the heading, which turns every bearing."));
   }
 
   template <class Scalar>

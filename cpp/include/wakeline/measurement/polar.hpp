@@ -120,7 +120,7 @@ struct PolarErrors {
 template <class Sensor>
 constexpr auto radar_fields() noexcept {
   using S = Sensor;
-  return std::tuple{
+  return field_table(
       field("range_std_m", &S::range_std_m, kPositive, "m", "Standard deviation of the range."),
       field("bearing_std_rad", &S::bearing_std_rad, kPositive, "rad",
             "Standard deviation of the bearing."),
@@ -129,8 +129,7 @@ constexpr auto radar_fields() noexcept {
       field("bearing_offset_rad", &S::bearing_offset_rad, kFinite, "rad",
             "Measured minus true bearing."),
       field("own", &S::own,
-            "Position of the antenna, with its standard deviation and that of the heading."),
-  };
+            "Position of the antenna, with its standard deviation and that of the heading."));
 }
 
 }  // namespace wakeline

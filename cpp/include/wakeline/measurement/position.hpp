@@ -20,8 +20,8 @@ struct Position {
 
   static constexpr auto fields() noexcept {
     using P = Position;
-    return std::tuple{field("position_std_m", &P::position_std_m, kPositive, "m",
-                            "Standard deviation of the position, per axis.")};
+    return field_table(field("position_std_m", &P::position_std_m, kPositive, "m",
+                             "Standard deviation of the position, per axis."));
   }
 
   template <class Scalar>

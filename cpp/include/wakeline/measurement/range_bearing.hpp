@@ -102,11 +102,10 @@ struct ConvertedRangeBearing {
 
   static constexpr auto fields() noexcept {
     using C = ConvertedRangeBearing;
-    return std::tuple_cat(
-        radar_fields<ConvertedRangeBearing>(),
-        std::tuple{
-            field("unbiased", &C::unbiased,
-                  "Mean and covariance are corrected for the curvature of the bearing error.")});
+    return field_table(
+        radar_fields<C>(),
+        field("unbiased", &C::unbiased,
+              "Mean and covariance are corrected for the curvature of the bearing error."));
   }
 
   /// The plot in north/east.

@@ -26,9 +26,9 @@ struct RangeBearingDoppler {
 
   static constexpr auto fields() noexcept {
     using D = RangeBearingDoppler;
-    return std::tuple_cat(radar_fields<RangeBearingDoppler>(),
-                          std::tuple{field("range_rate_std_mps", &D::range_rate_std_mps, kPositive,
-                                           "m/s", "Standard deviation of the range rate.")});
+    return field_table(radar_fields<D>(),
+                       field("range_rate_std_mps", &D::range_rate_std_mps, kPositive, "m/s",
+                             "Standard deviation of the range rate."));
   }
 
   /// z and R: R of RangeBearing, and the variance of the range rate including own ship's velocity

@@ -37,12 +37,10 @@ struct ConstantAcceleration {
 
   static constexpr auto fields() noexcept {
     using C = ConstantAcceleration;
-    return std::tuple{
-        field("noise", &C::noise, "Process noise."),
-        field(
-            "prior_accel_std_mps2", &C::prior_accel_std_mps2, kPositive, "m/s²",
-            "Standard deviation of the acceleration, per axis, for a start that does not know it."),
-    };
+    return field_table(field("noise", &C::noise, "Process noise."),
+                       field("prior_accel_std_mps2", &C::prior_accel_std_mps2, kPositive, "m/s²",
+                             "Standard deviation of the acceleration, per axis, for a start that "
+                             "does not know it."));
   }
 
   /// F(dt), 6 x 6.

@@ -22,7 +22,7 @@ struct ConstantVelocity {
 
   static constexpr auto fields() noexcept {
     using C = ConstantVelocity;
-    return std::tuple{field("noise", &C::noise, "Process noise.")};
+    return field_table(field("noise", &C::noise, "Process noise."));
   }
 
   /// F(dt), 4 x 4.

@@ -28,11 +28,9 @@ struct KnownTurn {
 
   static constexpr auto fields() noexcept {
     using T = KnownTurn;
-    return std::tuple{
-        field("turn_rate_rad_s", &T::turn_rate_rad_s, kFinite, "rad/s",
-              "Turn rate, positive to starboard."),
-        field("noise", &T::noise, "Process noise."),
-    };
+    return field_table(field("turn_rate_rad_s", &T::turn_rate_rad_s, kFinite, "rad/s",
+                             "Turn rate, positive to starboard."),
+                       field("noise", &T::noise, "Process noise."));
   }
 
   /// F(dt), 4 x 4.
@@ -92,7 +90,7 @@ struct CoordinatedTurnRate {
 
   static constexpr auto fields() noexcept {
     using C = CoordinatedTurnRate;
-    return std::tuple{
+    return field_table(
         field("noise", &C::noise, "Process noise of the acceleration."),
         field("turn_rate_psd_rad2s3", &C::turn_rate_psd_rad2s3, kNotNegative, "rad²/s³",
               "Power spectral density of the noise of the turn rate."),
@@ -105,8 +103,7 @@ struct CoordinatedTurnRate {
         field("prior_turn_rate_rad_s", &C::prior_turn_rate_rad_s, kFinite, "rad/s",
               "Mean of the turn rate for such a start, to which it returns."),
         field("turn_rate_time_s", &C::turn_rate_time_s, kNotNegative, "s",
-              "Correlation time in which the turn rate returns to its prior; 0: never."),
-    };
+              "Correlation time in which the turn rate returns to its prior; 0: never."));
   }
 
   /// f(x, dt): a turn at the mean of omega over the step.

@@ -15,8 +15,8 @@ struct WhiteAcceleration {
 
   static constexpr auto fields() noexcept {
     using W = WhiteAcceleration;
-    return std::tuple{field("psd_m2s3", &W::psd_m2s3, kNotNegative, "m²/s³",
-                            "Power spectral density of the acceleration, per axis.")};
+    return field_table(field("psd_m2s3", &W::psd_m2s3, kNotNegative, "m²/s³",
+                             "Power spectral density of the acceleration, per axis."));
   }
 };
 
@@ -29,8 +29,8 @@ struct PiecewiseAcceleration {
 
   static constexpr auto fields() noexcept {
     using P = PiecewiseAcceleration;
-    return std::tuple{field("std_mps2", &P::std_mps2, kNotNegative, "m/s²",
-                            "Standard deviation of the acceleration of a step, per axis.")};
+    return field_table(field("std_mps2", &P::std_mps2, kNotNegative, "m/s²",
+                             "Standard deviation of the acceleration of a step, per axis."));
   }
 };
 
@@ -41,8 +41,8 @@ struct WhiteJerk {
 
   static constexpr auto fields() noexcept {
     using W = WhiteJerk;
-    return std::tuple{field("psd_m2s5", &W::psd_m2s5, kNotNegative, "m²/s⁵",
-                            "Power spectral density of the jerk, per axis.")};
+    return field_table(field("psd_m2s5", &W::psd_m2s5, kNotNegative, "m²/s⁵",
+                             "Power spectral density of the jerk, per axis."));
   }
 };
 

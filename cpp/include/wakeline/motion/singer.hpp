@@ -41,12 +41,10 @@ struct Singer {
 
   static constexpr auto fields() noexcept {
     using S = Singer;
-    return std::tuple{
-        field("maneuver_time_s", &S::maneuver_time_s, kPositive, "s",
-              "Correlation time of the acceleration."),
-        field("accel_std_mps2", &S::accel_std_mps2, kPositive, "m/s²",
-              "Stationary standard deviation of the acceleration, per axis."),
-    };
+    return field_table(field("maneuver_time_s", &S::maneuver_time_s, kPositive, "s",
+                             "Correlation time of the acceleration."),
+                       field("accel_std_mps2", &S::accel_std_mps2, kPositive, "m/s²",
+                             "Stationary standard deviation of the acceleration, per axis."));
   }
 
   /// F(dt), 6 x 6.

@@ -37,14 +37,13 @@ struct WanderingCourse {
 
   static constexpr auto fields() noexcept {
     using W = WanderingCourse;
-    return std::tuple{
+    return field_table(
         field("psd_m2s3", &W::psd_m2s3, kNotNegative, "m²/s³",
               "Power spectral density of the acceleration at rest."),
         field("course_psd_rad2s", &W::course_psd_rad2s, kNotNegative, "rad²/s",
               "Power spectral density of the course noise, which grows with the speed."),
         field("max_speed_mps", &W::max_speed_mps, kPositive, "m/s",
-              "Speed up to which the course noise grows."),
-    };
+              "Speed up to which the course noise grows."));
   }
 
   /// f(x, dt).

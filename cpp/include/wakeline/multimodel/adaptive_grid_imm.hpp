@@ -37,7 +37,7 @@ struct AdaptiveGrid {
 
   static constexpr auto fields() noexcept {
     using A = AdaptiveGrid;
-    return std::tuple{
+    return field_table(
         field("max_turn_rate_rad_s", &A::max_turn_rate_rad_s, kPositive, "rad/s",
               "Greatest turn rate to either side."),
         field("initial_turn_rates_rad_s", &A::initial_turn_rates_rad_s,
@@ -58,8 +58,7 @@ struct AdaptiveGrid {
         field("likely_threshold", &A::likely_threshold, kProbability, "1",
               "A side more probable than this, t3, moves away."),
         field("initial_centre_probability", &A::initial_centre_probability, kProbability, "1",
-              "Probability of the centre at a start."),
-    };
+              "Probability of the centre at a start."));
   }
 
   [[nodiscard]] Rates initial() const noexcept {

@@ -27,7 +27,7 @@ struct LineWeighing {
 
   static constexpr auto fields() noexcept {
     using L = LineWeighing;
-    return std::tuple{
+    return field_table(
         field("min_plots", &L::min_plots, between(2, kMaxPlots), "plots",
               "Plots of the shortest line."),
         field("max_plots", &L::max_plots, between(2, kMaxPlots), "plots",
@@ -39,8 +39,7 @@ struct LineWeighing {
               "Prior probability of the longest line; the others have equal shares."),
         field("acceleration_std_mps2", &L::acceleration_std_mps2, kNotNegative, "m/s²",
               "Standard deviation, per axis, of a maneuver that began at the last plot but one: it "
-              "widens the covariance and does not count in weighing."),
-    };
+              "widens the covariance and does not count in weighing."));
   }
 
   [[nodiscard]] int lines() const noexcept { return max_plots - min_plots + 1; }

@@ -43,7 +43,7 @@ struct FuzzyCriterion {
 
   static constexpr auto fields() noexcept {
     using F = FuzzyCriterion;
-    return std::tuple{
+    return field_table(
         field("max_plots", &F::max_plots, between(2, kMaxPlots), "plots",
               "Plots of the longest line."),
         field("steepness", &F::steepness, kPositive, "1", "Slope a of the membership functions."),
@@ -55,8 +55,7 @@ struct FuzzyCriterion {
               "The greater of the last two outputs counts, against single outliers."),
         field("acceleration_std_mps2", &F::acceleration_std_mps2, kNotNegative, "m/s²",
               "Standard deviation, per axis, of a maneuver that the line has not seen yet: it "
-              "widens the covariance and does not count in the choice."),
-    };
+              "widens the covariance and does not count in the choice."));
   }
 
   /// Degrees of membership of the tracking quality in good and bad.
@@ -90,7 +89,7 @@ struct FuzzyCriterion {
   /// The same for any scalar; each lane of a pack uses the first `lines` ratios.
   template <class Scalar>
   Scalar evaluate(std::span<const Scalar> ratios, std::span<Scalar> strengths,
-               std::type_identity_t<Scalar> lines) const noexcept {
+                  std::type_identity_t<Scalar> lines) const noexcept {
     std::array<Degrees<Scalar>, kMaxPlots> degree;
     Scalar ahead = Scalar(1);  // degree to which the first p are good
     for (std::size_t p = 0; p < ratios.size(); ++p) {

@@ -22,7 +22,7 @@ struct HistoryTree {
 
   static constexpr auto fields() noexcept {
     using H = HistoryTree;
-    return std::tuple{
+    return field_table(
         field("max_hypotheses", &H::max_hypotheses, at_least(1), "hypotheses",
               "Hypotheses kept after an update; at least the number of modes."),
         field("max_branches", &H::max_branches, at_least(1), "hypotheses",
@@ -41,8 +41,7 @@ struct HistoryTree {
               "Hypotheses of less probability are dropped."),
         field("pseudo_bayes_order", &H::pseudo_bayes_order, between(0, 8), "1",
               "Order n of the generalised pseudo-Bayes estimator, which ignores the distances; 0: "
-              "none."),
-    };
+              "none."));
   }
 
   /// The generalised pseudo-Bayes estimator of an order (GPB1, GPB2, ...) over a number of modes:

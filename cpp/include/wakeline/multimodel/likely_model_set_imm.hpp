@@ -27,15 +27,14 @@ struct LikelyModelSet {
 
   static constexpr auto fields() noexcept {
     using L = LikelyModelSet;
-    return std::tuple{
+    return field_table(
         field("grid_rad_s", &L::grid_rad_s, "Turn rates of all models."),
         field("unlikely_threshold", &L::unlikely_threshold, kProbability, "1",
               "A model less probable than this leaves."),
         field("likely_threshold", &L::likely_threshold, kProbability, "1",
               "The neighbours of a model at least as probable join it."),
         field("initial_straight_probability", &L::initial_straight_probability, kProbability, "1",
-              "Probability of the straightest model at a start."),
-    };
+              "Probability of the straightest model at a start."));
   }
 
   /// The turn rates of the models to be active, NaN for inactive ones, from the rates and mode

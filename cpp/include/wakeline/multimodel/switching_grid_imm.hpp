@@ -49,7 +49,7 @@ struct SwitchingGrid {
 
   static constexpr auto fields() noexcept {
     using S = SwitchingGrid;
-    return std::tuple{
+    return field_table(
         field("grid_rad_s", &S::grid_rad_s, "Turn rates of the whole grid, three or more."),
         field("threshold", &S::threshold, kProbability, "1",
               "Probability t of a side above which the window moves."),
@@ -59,8 +59,7 @@ struct SwitchingGrid {
         field("initial_centre", &S::initial_centre,
               "Index of the centre at a start; when left out, the straightest but the ends."),
         field("initial_centre_probability", &S::initial_centre_probability, kProbability, "1",
-              "Probability of the centre at a start."),
-    };
+              "Probability of the centre at a start."));
   }
 
   [[nodiscard]] int initial() const noexcept {

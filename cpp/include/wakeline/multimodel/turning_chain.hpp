@@ -16,13 +16,12 @@ struct TurnHabits {
 
   static constexpr auto fields() noexcept {
     using T = TurnHabits;
-    return std::tuple{
+    return field_table(
         field("straight_sojourn_s", &T::straight_sojourn_s, kPositive, "s",
               "Mean time on a straight."),
         field("turn_sojourn_s", &T::turn_sojourn_s, kPositive, "s", "Mean time in a turn."),
         field("straighten_probability", &T::straighten_probability, kProbability, "1",
-              "Probability that a turn ends in a straight and not in another turn."),
-    };
+              "Probability that a turn ends in a straight and not in another turn."));
   }
 };
 

@@ -102,13 +102,12 @@ struct DriftWindowSettings {
 
   static constexpr auto fields() noexcept {
     using W = DriftWindowSettings;
-    return std::tuple{
+    return field_table(
         field("max_fixes", &W::max_fixes, at_least(2), "fixes", "Fixes that are remembered."),
         field("log_std_mps", &W::log_std_mps, kNotNegative, "m/s",
               "Standard deviation of a reading of the log."),
         field("heading_std_rad", &W::heading_std_rad, kNotNegative, "rad",
-              "Standard deviation of a reading of the compass."),
-    };
+              "Standard deviation of a reading of the compass."));
   }
 };
 

@@ -31,7 +31,7 @@ struct DriftModel {
 
   static constexpr auto fields() noexcept {
     using D = DriftModel;
-    return std::tuple{
+    return field_table(
         field("leeway", &D::leeway, kNotNegative, "1",
               "Leeway factor k: speed through the water over that of the wind."),
         field("leeway_std", &D::leeway_std, kNotNegative, "1",
@@ -43,8 +43,7 @@ struct DriftModel {
         field("residual_std_mps", &D::residual_std_mps, kNotNegative, "m/s",
               "Standard deviation of the residual drift, per axis, which wanders (Gauss-Markov)."),
         field("residual_time_s", &D::residual_time_s, kPositive, "s",
-              "Correlation time of the residual drift."),
-    };
+              "Correlation time of the residual drift."));
   }
 
   /// The leeway factor of a kind of object; other parameters have their defaults.

@@ -44,12 +44,10 @@ struct ImuNoise {
 
   static constexpr auto fields() noexcept {
     using I = ImuNoise;
-    return std::tuple{
-        field("acceleration_std_mps2", &I::acceleration_std_mps2, kNotNegative, "m/s²",
-              "Standard deviation of a reading of an accelerometer."),
-        field("yaw_rate_std_rad_s", &I::yaw_rate_std_rad_s, kNotNegative, "rad/s",
-              "Standard deviation of a reading of the gyro."),
-    };
+    return field_table(field("acceleration_std_mps2", &I::acceleration_std_mps2, kNotNegative,
+                             "m/s²", "Standard deviation of a reading of an accelerometer."),
+                       field("yaw_rate_std_rad_s", &I::yaw_rate_std_rad_s, kNotNegative, "rad/s",
+                             "Standard deviation of a reading of the gyro."));
   }
 
   void validate() const { validate_fields(*this); }
@@ -115,7 +113,7 @@ struct UsvInertialMotion {
 
   static constexpr auto fields() noexcept {
     using M = UsvInertialMotion;
-    return std::tuple{
+    return field_table(
         field("acceleration_bias_std_mps2", &M::acceleration_bias_std_mps2, kPositive, "m/s²",
               "Standard deviation of the biases of the accelerometers at the start."),
         field("gyro_bias_std_rad_s", &M::gyro_bias_std_rad_s, kPositive, "rad/s",
@@ -126,8 +124,7 @@ struct UsvInertialMotion {
               "Standard deviation of what the bias of the gyro gains in 1 s."),
         field("turned_at", &M::turned_at, between(0, 1), "1",
               "Where in a step the heading is taken that turns its acceleration: 0.5 is the "
-              "middle, 0 the start."),
-    };
+              "middle, 0 the start."));
   }
   UsvInput input{};  ///< of the present step
 
@@ -289,7 +286,7 @@ struct UsvCurrentMotion {
 
   static constexpr auto fields() noexcept {
     using M = UsvCurrentMotion;
-    return std::tuple{
+    return field_table(
         field("gyro_bias_std_rad_s", &M::gyro_bias_std_rad_s, kPositive, "rad/s",
               "Standard deviation of the bias of the gyro at the start."),
         field("current_std_mps", &M::current_std_mps, kPositive, "m/s",
@@ -299,8 +296,7 @@ struct UsvCurrentMotion {
         field("current_walk_mps", &M::current_walk_mps, kNotNegative, "m/s",
               "Standard deviation of what the current gains in 1 s, per axis."),
         field("gyro_bias_walk_rad_s", &M::gyro_bias_walk_rad_s, kNotNegative, "rad/s",
-              "Standard deviation of what the bias of the gyro gains in 1 s."),
-    };
+              "Standard deviation of what the bias of the gyro gains in 1 s."));
   }
   UsvInput input{};  ///< of the present step
 

@@ -26,11 +26,11 @@ struct UsvOutliers {
 
   static constexpr auto fields() noexcept {
     using U = UsvOutliers;
-    return std::tuple{
+    return field_table(
         field("gate", &U::gate, "A reading outside this gate is rejected."),
-        field("rejections", &U::rejections, at_least(0), "readings",
-              "Readings of one sensor in a row that are rejected before the next one is believed."),
-    };
+        field(
+            "rejections", &U::rejections, at_least(0), "readings",
+            "Readings of one sensor in a row that are rejected before the next one is believed."));
   }
 
   void validate() const { validate_fields(*this); }

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <tuple>
 
 #include "wakeline/core/fields.hpp"
 
@@ -72,7 +71,7 @@ struct TrackerConfig {
 
   static constexpr auto fields() noexcept {
     using C = TrackerConfig;
-    return std::tuple{
+    return field_table(
         field("detection_probability", &C::detection_probability, kProbability, "1",
               "Probability PD that a visible target gives a plot in a scan."),
         field("gate_probability", &C::gate_probability, inside(0, 1), "1",
@@ -144,8 +143,7 @@ struct TrackerConfig {
               "Room for tracks; when full, a new track replaces the weakest tentative one or is "
               "not started."),
         field("max_plots", &C::max_plots, between(1, 10'000'000), "plots",
-              "Room for the plots of a scan; those beyond it are rejected."),
-    };
+              "Room for the plots of a scan; those beyond it are rejected."));
   }
 
   /// PD PG: a visible target gives a plot, and that in its gate. Where there are outliers the gate

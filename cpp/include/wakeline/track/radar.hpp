@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <tuple>
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/fields.hpp"
@@ -21,7 +20,7 @@ struct Radar {
 
   static constexpr auto fields() noexcept {
     using R = Radar;
-    return std::tuple{
+    return field_table(
         field("range_std_m", &R::range_std_m, kPositive, "m",
               "Standard deviation of the range of a plot."),
         field("bearing_std_rad", &R::bearing_std_rad, kPositive, "rad",
@@ -32,8 +31,7 @@ struct Radar {
         field("max_speed_mps", &R::max_speed_mps, kPositive, "m/s",
               "Speed limit of the vessels, with a fifth to spare: faster tracks are dropped."),
         field("bearing_offset_rad", &R::bearing_offset_rad, kFinite, "rad",
-              "Measured minus true bearing; subtracted from every plot."),
-    };
+              "Measured minus true bearing; subtracted from every plot."));
   }
 
   /// A plot seen from own ship as a position with its covariance.

@@ -39,7 +39,7 @@ struct VesselModels {
 
   static constexpr auto fields() noexcept {
     using V = VesselModels;
-    return std::tuple{
+    return field_table(
         field("cruising_psd_m2s3", &V::cruising_psd_m2s3, kNotNegative, "m²/s³",
               "Acceleration noise of a cruising vessel at rest."),
         field("cruising_course_psd_rad2s", &V::cruising_course_psd_rad2s, kNotNegative, "rad²/s",
@@ -71,8 +71,7 @@ struct VesselModels {
         field("restless_sojourn_s", &V::restless_sojourn_s, kTime, "s",
               "Mean time for which a vessel is restless."),
         field("turning_sojourn_s", &V::turning_sojourn_s, kTime, "s",
-              "Mean time for which a vessel turns."),
-    };
+              "Mean time for which a vessel turns."));
   }
 
   /// Of ships under way: straight for most of an hour, alterations of course within a minute. Three

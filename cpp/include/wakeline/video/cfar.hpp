@@ -60,7 +60,7 @@ struct CfarSettings {
 
   static constexpr auto fields() noexcept {
     using C = CfarSettings;
-    return std::tuple{
+    return field_table(
         field("kind", &C::kind,
               "What the training cells are compared by: their mean or their k-th smallest."),
         field("train_cells", &C::train_cells, between(1, 128), "cells",
@@ -74,8 +74,7 @@ struct CfarSettings {
         field("rank", &C::rank, above_to(0, 1), "1",
               "k over the number of training cells; of the ordered statistic only."),
         field("least_amplitude", &C::least_amplitude, between(1, 65535), "counts",
-              "Smaller amplitudes are never detected."),
-    };
+              "Smaller amplitudes are never detected."));
   }
 
   void validate() const { validate_fields(*this); }

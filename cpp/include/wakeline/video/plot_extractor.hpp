@@ -36,7 +36,7 @@ struct PlotExtractorSettings {
 
   static constexpr auto fields() noexcept {
     using P = PlotExtractorSettings;
-    return std::tuple{
+    return field_table(
         field("cfar", &P::cfar, "Detection along a sweep."),
         field("max_sweep_cells", &P::max_sweep_cells, between(1, 65536), "cells",
               "Longer sweeps are rejected."),
@@ -56,8 +56,7 @@ struct PlotExtractorSettings {
         field("closed_circle", &P::closed_circle,
               "Each turn is a separate picture: echoes of its first sweeps wait for the last ones "
               "and are joined with them, at the time of these, and max_sweeps does not apply. Else "
-              "turns follow each other without a seam."),
-    };
+              "turns follow each other without a seam."));
   }
 
   void validate() const {
