@@ -525,3 +525,21 @@ def test_settings_without_a_radar_leave_its_errors_to_the_video(video, tmp_path,
     config.write_text("[radar]\nrange_std_m = 11.0\n")
     assert main([*command, "--config", str(config)]) == 0
     assert "radar of some.toml" in capsys.readouterr().out
+
+
+def test_azimuths_from_the_bow_of_a_ship_that_turns(tmp_path, capsys):
+    def from_bow(turn):
+        heading_rad = np.deg2rad(300.0 + turn.time_s)
+        return replace(turn, azimuth_rad=(turn.azimuth_rad - heading_rad) % (2.0 * np.pi))
+
+    video, own = tmp_path / "bow.cat240", tmp_path / "own.csv"
+    write_video(video, map(from_bow, simulator().turns(SHIPS, SCANS, seed=1)))
+    rows = [f"{t},0,0,{(300 + t) % 360}" for t in range(-2, int(SCANS * PERIOD_S) + 3)]
+    own.write_text("\n".join(["time_s,north_m,east_m,heading_deg", *rows]))
+    tracked(video, tmp_path, "--own", str(own))
+    assert "--azimuth bow" in capsys.readouterr().out
+    tracks = tracked(video, tmp_path, "--own", str(own), "--azimuth", "bow")
+    assert "--azimuth" not in capsys.readouterr().out
+    for name in SHIPS:
+        _, position_m, _ = track_of(tracks, name)
+        assert position_m[-5:].max() < 25.0

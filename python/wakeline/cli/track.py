@@ -13,6 +13,7 @@ from typing import Any
 from wakeline import FilterError, metrics
 from wakeline._brief import many
 from wakeline.recording import Recording, radar_names
+from wakeline.recording.azimuths import AZIMUTHS
 from wakeline.tracking import (
     VESSELS,
     DangerLimits,
@@ -50,7 +51,8 @@ run that this run does not write are removed.
 _COLUMNS = """\
 columns, separated by commas, recognized by name in any order:
   RECORDING  time_s (UTC seconds or ISO 8601); range_m or range_nm and
-             bearing_deg or bearing_rad from true north, or north_m and east_m;
+             bearing_deg or bearing_rad from true north (or from the bow with
+             --azimuth bow), or north_m and east_m;
              optional scan, scenario, own_north_m, own_east_m
   --own      time_s, north_m, east_m; optional scan, scenario, vnorth_mps,
              veast_mps, heading_deg, vnorth_var_m2s2, vnorth_veast_cov_m2s2,
@@ -80,6 +82,13 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--own", type=Path, metavar="SCANS.csv", help="own ship, and the list of scans"
+    )
+    parser.add_argument(
+        "--azimuth",
+        choices=AZIMUTHS,
+        default="north",
+        help="origin of bearings and azimuths: north (default), or the bow, to which heading_deg "
+        "of --own is added",
     )
     parser.add_argument("--truth", type=Path, metavar="TRUTH.csv", help="truth, drawn and scored")
     parser.add_argument(
@@ -117,7 +126,11 @@ def run(arguments: argparse.Namespace) -> None:
         raise ValueError("track needs a recording (see wakeline track --help)")
     outputs.check_no_input("--out", outputs.of_tracking(arguments.out), inputs(arguments))
     recording = open_recording(
-        arguments.plots, arguments.own, arguments.truth, period_s=settings.period_s
+        arguments.plots,
+        arguments.own,
+        arguments.truth,
+        period_s=settings.period_s,
+        azimuth=arguments.azimuth,
     )
     known = settings.knowing(recording.radar)
     radar = _radar_text(arguments, settings, known, recording)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,7 +20,14 @@ from wakeline.recording import (
     VideoReport,
     read_video,
 )
+from wakeline.recording.azimuths import (
+    azimuth_notes,
+    check_azimuth,
+    headings_at,
+    turned_to_north,
+)
 from wakeline.recording.own_csv import OWN_GAP_S, OwnRows, read_own_track
+from wakeline.recording.units import period_notes
 
 from .plots import Extraction, Plots, joined
 from .turns import judged, turns
@@ -51,21 +58,29 @@ class VideoRecording(Recording):
 
 
 def read_plots_of_video(
-    path: str | Path, own_path: str | Path | None = None, *, period_s: float | None = None
+    path: str | Path,
+    own_path: str | Path | None = None,
+    *,
+    period_s: float | None = None,
+    azimuth: str = "north",
 ) -> VideoRecording:
     """Read radar video and extract plots, one antenna revolution per scan.
 
     An incomplete revolution at either end of the recording is dropped. A new episode begins where
     the clock was set back. Without `own_path` the radar is at the origin. Video has only the time
     of day; its date is that of own ship's track. Without a time of day, `period_s` is the duration
-    of a revolution.
+    of a revolution. Azimuths count from `azimuth`, "north" or "bow", to which the heading of own
+    ship's file is added; a note says if they look like those from the other one.
 
     Raises
     ------
     RecordingError
         When the file has no radar video, or own ship's position is unknown at a plot, or own ship's
-        file has several scenarios.
+        file has several scenarios or lacks the heading.
+    ValueError
+        When `azimuth` is unknown, or "bow" without own ship's file.
     """
+    check_azimuth(azimuth, own_path)
     path = Path(path)
     report = VideoReport()
     extraction = Extraction()
@@ -96,11 +111,17 @@ def read_plots_of_video(
         parts = [[seen.later(days_s) for seen in part] for part in parts]
         _check_covered(rows, parts, path)
         ship = rows.ship()
+    episodes = _episodes(parts, ship, notes)
+    if azimuth == "bow":
+        episodes = [turned_to_north(episode, own_path) for episode in episodes]
+        heading_rad = headings_at(ship, last.time_s + days_s, own_path)
+        last = replace(last, azimuth_rad=last.azimuth_rad + heading_rad)
+    notes += [*period_notes(episodes, period_s), *azimuth_notes(episodes, azimuth)]
     radar = {
         "range_std_m": _UNSEEN * float(std[0]),
         "bearing_std_deg": float(np.degrees(_UNSEEN * float(std[1]))),
     }
-    return VideoRecording(path.stem, _episodes(parts, ship, notes), notes, radar, last=last)
+    return VideoRecording(path.stem, episodes, notes, radar, last=last)
 
 
 class _Seen(NamedTuple):

@@ -14,6 +14,7 @@ from wakeline._units import NAUTICAL_MILE_M
 from .errors import RecordingError
 from .scans import repeated
 from .table import TIME_NAMES, Table
+from .units import unit_notes
 
 COLUMNS = {
     "time_s": TIME_NAMES,
@@ -132,6 +133,9 @@ def read_plot_rows(path: str | Path, notes: list[str]) -> PlotRows:
         polar=polar,
         own_m=_own_beside(table),
     )
+    if polar:
+        names = [_name_of(table, quantity) for quantity in ("range", "bearing")]
+        notes += [f"{table.path.name}: {note}" for note in unit_notes(place, *names)]
     if len(rows) == 0:
         notes.append(f"{table.path.name}: no plots")
     if rows.scan is None:
@@ -173,6 +177,11 @@ def _places(table: Table, notes: list[str]) -> tuple[np.ndarray, bool]:
     place = np.column_stack(columns)
     place[~np.isfinite(place).all(axis=1)] = np.nan
     return place, not cartesian
+
+
+def _name_of(table: Table, quantity: str) -> str:
+    """Name in the file of the column of ranges or bearings."""
+    return next(table.name(c) for c in COLUMNS if c.startswith(quantity) and c in table)
 
 
 def _at_most_one(table: Table, columns: Sequence[str]) -> None:

@@ -10,12 +10,14 @@ import numpy as np
 
 from wakeline._checks import above_zero
 
+from .azimuths import azimuth_notes, check_azimuth, turned_to_north
 from .episodes import build_episode
 from .model import Episode, OwnShipMotion, Recording
 from .own_csv import OWN_GAP_S, OwnRows, read_own
 from .plot_rows import PlotRows, read_plot_rows, remark
 from .scans import revolution_s
 from .truth_csv import read_truth
+from .units import period_notes
 
 _MANY, _NEARLY_ALL = 20, 0.9
 _FAR_M = 300e3
@@ -29,6 +31,7 @@ def read_plots(
     own: tuple[float, float] = (0.0, 0.0),
     period_s: float | None = None,
     own_gap_s: float = OWN_GAP_S,
+    azimuth: str = "north",
     name: str | None = None,
 ) -> Recording:
     """Read radar plots, and own ship and truth if there are files of them.
@@ -57,8 +60,9 @@ def read_plots(
 
     **Dropped with a note**: plots without a finite position (the scan remains) and repeated rows.
     Without scan numbers, times that go back by more than a minute get a note, too. So do plots that
-    are mostly more than 300 km from own ship, as in a national grid without its position. A file
-    with only a header has no plots; that is not an error.
+    are mostly more than 300 km from own ship, as in a national grid without its position, numbers
+    that look like those of another unit, and bearings that look like those from the other origin.
+    A file with only a header has no plots; that is not an error.
 
     Parameters
     ----------
@@ -77,6 +81,8 @@ def read_plots(
         Duration of an antenna revolution, within 5 %.
     own_gap_s : float
         Longest step of the own-ship file that is interpolated across.
+    azimuth : str
+        Origin of bearings: "north", or "bow", to which the heading of the own-ship file is added.
     name : str, optional
         Name of the recording; default the stem of the file.
 
@@ -89,7 +95,8 @@ def read_plots(
     RecordingError
         When a file cannot be read as described; the message names file, line and column.
     ValueError
-        When neither plots nor own ship is given, or a parameter is not positive.
+        When neither plots nor own ship is given, a parameter is invalid, or azimuths from the bow
+        come without own ship's file or without bearings.
     """
     if plots_path is None and own_path is None:
         raise ValueError("plots_path or own_path must be given, got neither")
@@ -97,6 +104,7 @@ def read_plots(
         if value is None:
             continue
         above_zero(**{label: value})
+    check_azimuth(azimuth, own_path)
     notes: list[str] = []
     plots = PlotRows.none() if plots_path is None else read_plot_rows(plots_path, notes)
     remark(plots, np.isnan(plots.place[:, 0]), "without a finite position left out", notes)
@@ -112,7 +120,13 @@ def read_plots(
     episodes = episodes_of(period_s)
     if period_s is None and plots.scan is None and (own_rows is None or own_rows.scan is None):
         episodes = _in_turns(episodes, episodes_of, notes)
+    if azimuth == "bow":
+        if not plots.polar:
+            raise ValueError(f"azimuths from the bow need bearings, which {plots_path} has not")
+        episodes = [turned_to_north(episode, own_path) for episode in episodes]
     _note_far(episodes, notes)
+    notes += period_notes(episodes, period_s)
+    notes += azimuth_notes(episodes, azimuth) if plots.polar else []
     recording = Recording(name or Path(plots_path or own_path).stem, episodes, notes)
     return recording if truth_path is None else _with_truth(recording, truth_path)
 

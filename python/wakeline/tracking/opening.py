@@ -23,6 +23,7 @@ def open_recording(
     truth: str | Path | None = None,
     *,
     period_s: float | None = None,
+    azimuth: str = "north",
 ) -> Recording:
     """Open a recording.
 
@@ -40,12 +41,16 @@ def open_recording(
         Time of an antenna revolution. Groups plots without a scan number, and replaces missing
         times of video.
 
+    azimuth : str
+        Origin of the azimuths in a file: "north", or "bow" with own ship's heading.
+
     Raises
     ------
     RecordingError
         When a file cannot be read.
     ValueError
-        When `truth` is given for anything but plots in a file.
+        When `truth` is given for anything but plots in a file, or `azimuth` is invalid, or "bow"
+        for a recording that is open.
     TypeError
         When `own` is not a file where it must be one.
     """
@@ -56,12 +61,14 @@ def open_recording(
     if truth is not None and (path is None or from_video):
         raise ValueError(f"truth goes with a file of plots, got {recording} with {truth}")
     if path is None:
+        if azimuth != "north":
+            raise ValueError(f"azimuth {azimuth!r} is for recordings in a file")
         return recording if own is None else _with_own(recording, own)
     if isinstance(own, OwnShipMotion):
         raise TypeError(f"own must be a file for the recording in {path}, got {own!r}")
     if from_video:
-        return read_plots_of_video(path, own, period_s=period_s)
-    return read_plots(path, own, truth, period_s=period_s)
+        return read_plots_of_video(path, own, period_s=period_s, azimuth=azimuth)
+    return read_plots(path, own, truth, period_s=period_s, azimuth=azimuth)
 
 
 def _with_own(recording: Recording, own: OwnShipMotion | str | Path) -> Recording:

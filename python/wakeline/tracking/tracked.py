@@ -96,6 +96,7 @@ def track_recording(
     vessels: wl.VesselModels | str | None = None,
     own: OwnShipMotion | str | Path | None = None,
     config: Settings | wl.TrackerConfig | str | Path | None = None,
+    azimuth: str = "north",
 ) -> TrackedRecording:
     """Track a recording: plots in, tracks out.
 
@@ -119,6 +120,8 @@ def track_recording(
     config : Settings, TrackerConfig, str or Path, optional
         All settings, parameters of the tracker, or a TOML file in the form that
         ``wakeline track --print-config`` prints.
+    azimuth : str
+        Origin of the azimuths in a file: "north", or "bow" with own ship's heading in `own`.
 
     Returns
     -------
@@ -144,7 +147,7 @@ def track_recording(
     ['1']
     """
     settings = read_settings(config, radar, vessels)
-    opened = open_recording(recording, own, period_s=settings.period_s)
+    opened = open_recording(recording, own, period_s=settings.period_s, azimuth=azimuth)
     if not isinstance(radar, wl.Radar):
         settings = settings.knowing(opened.radar)
     watched, named = own is not None, has_names(opened)
