@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "wakeline/core/fields.hpp"
@@ -31,7 +30,7 @@ struct DangerLimits {
 
   static constexpr auto fields() noexcept {
     using D = DangerLimits;
-    return std::tuple{
+    return field_table(
         field("cpa_limit_m", &D::cpa_limit_m, between(0, 1e6), "m",
               "Distance below which an approach is dangerous."),
         field("tcpa_limit_s", &D::tcpa_limit_s, between(0, 1e5), "s",
@@ -51,8 +50,7 @@ struct DangerLimits {
               "A vessel that is first dangerous closer than this to own ship is an echo of own "
               "ship."),
         field("own_velocity_std_mps", &D::own_velocity_std_mps, between(0, 100), "m/s",
-              "Standard deviation of own ship's velocity per axis, if its covariance is unknown."),
-    };
+              "Standard deviation of own ship's velocity per axis, if its covariance is unknown."));
   }
 
   friend bool operator==(const DangerLimits&, const DangerLimits&) = default;
