@@ -166,11 +166,21 @@ def test_parameters_that_are_invalid_are_rejected_by_name(build, name, value):
         build(value)
 
 
+@pytest.mark.parametrize("sensor", ["RangeBearing", "ConvertedRangeBearing", "RangeBearingDoppler"])
+@pytest.mark.parametrize("value", [45.0, 90.0])
+def test_degrees_where_radians_are_wanted_are_rejected(sensor, value):
+    for build in (getattr(wl, sensor), wl.Radar):
+        with pytest.raises(ValueError, match="bearing_std_rad must be .* in radians"):
+            build(bearing_std_rad=value)
+    with pytest.raises(ValueError, match="heading_std_rad must be .* in radians"):
+        wl.OwnShip(heading_std_rad=value)
+
+
 @pytest.mark.parametrize("name", ["position_std_m", "velocity_std_mps", "heading_std_rad"])
 @pytest.mark.parametrize("value", [-1.0, np.nan, np.inf])
 def test_own_ship_is_not_set_to_what_is_invalid(name, value):
     sensor = wl.RangeBearing(own=wl.OwnShip(north_m=5.0))
-    with pytest.raises(ValueError, match=f"{name} must be finite and not negative"):
+    with pytest.raises(ValueError, match=f"{name} must be "):
         setattr(sensor.own, name, value)
     setattr(sensor.own, name, 2.0)
     assert getattr(sensor.own, name) == 2.0

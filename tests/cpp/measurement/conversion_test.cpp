@@ -195,6 +195,10 @@ TEST(SensorParameters, AWrongOneIsNamed) {
   EXPECT_EQ(complaint(ConvertedRangeBearing{}), "");
   EXPECT_EQ(complaint(Position{}), "");
   const double nan = std::nan("");
+  for (const double degrees : {45.0, 90.0}) {
+    EXPECT_NE(complaint(RangeBearing{.bearing_std_rad = degrees}).find("in radians"),
+              std::string::npos);
+  }
   for (const double bad : {-1.0, 0.0, nan}) {
     EXPECT_NE(complaint(RangeBearing{.range_std_m = bad}).find("range_std_m"), std::string::npos);
     EXPECT_NE(complaint(ConvertedRangeBearing{.bearing_std_rad = bad}).find("bearing_std_rad"),

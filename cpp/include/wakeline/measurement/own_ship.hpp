@@ -4,10 +4,19 @@
 
 #include <type_traits>
 
+#include "wakeline/core/angle.hpp"
 #include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 
 namespace wakeline {
+
+/// Standard deviations of angles. A larger one than half a turn is in degrees.
+inline constexpr Rule kAngleStd{.low = 0.0,
+                                .high = kPi<double>,
+                                .above_low = true,
+                                .words = "positive and at most pi, in radians"};
+inline constexpr Rule kAngleStdOrZero{
+    .low = 0.0, .high = kPi<double>, .words = "0 to pi, in radians"};
 
 /// Position and velocity of the antenna at the time of a measurement, with their errors.
 struct OwnShip {
@@ -30,7 +39,7 @@ struct OwnShip {
               "Standard deviation of the position, per axis."),
         field("velocity_std_mps", &O::velocity_std_mps, kNotNegative, "m/s",
               "Standard deviation of the velocity, per axis."),
-        field("heading_std_rad", &O::heading_std_rad, kNotNegative, "rad",
+        field("heading_std_rad", &O::heading_std_rad, kAngleStdOrZero, "rad",
               "Standard deviation of the heading, which turns every bearing."));
   }
 

@@ -122,7 +122,7 @@ constexpr auto radar_fields() noexcept {
   using S = Sensor;
   return field_table(
       field("range_std_m", &S::range_std_m, kPositive, "m", "Standard deviation of the range."),
-      field("bearing_std_rad", &S::bearing_std_rad, kPositive, "rad",
+      field("bearing_std_rad", &S::bearing_std_rad, kAngleStd, "rad",
             "Standard deviation of the bearing."),
       field("extent_std_m", &S::extent_std_m, kNotNegative, "m",
             "Standard deviation of the echo's position on the hull, per axis."),

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/fields.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
@@ -23,7 +22,7 @@ struct Radar {
     return field_table(
         field("range_std_m", &R::range_std_m, kPositive, "m",
               "Standard deviation of the range of a plot."),
-        field("bearing_std_rad", &R::bearing_std_rad, kPositive, "rad",
+        field("bearing_std_rad", &R::bearing_std_rad, kAngleStd, "rad",
               "Standard deviation of the bearing of a plot."),
         field("extent_std_m", &R::extent_std_m, kNotNegative, "m",
               "Standard deviation of an echo's position on the hull, per axis."),
