@@ -28,6 +28,7 @@ _PLAIN_LABELS = {
     "clairvoyant": "clairvoyant",
     "agmm_printed": "AGMM as printed",
     "sgmm_printed": "SGMM as printed",
+    "sgmm_symmetric": "SGMM, symmetric rule",
 }
 LABELS = _PLAIN_LABELS | {
     f"{key}_converted": f"{label}, converted" for key, label in _PLAIN_LABELS.items()
@@ -36,6 +37,7 @@ COLORS = dict(zip(_PLAIN_LABELS.values(), plot.PALETTE, strict=False)) | {
     "clairvoyant": plot.INK,
     "AGMM as printed": plot.PALETTE[2],
     "SGMM as printed": plot.PALETTE[3],
+    "SGMM, symmetric rule": plot.PALETTE[4],
 }
 
 POLAR, CONVERTED = "polar", "converted"
@@ -111,11 +113,20 @@ def sgmm(setting: Setting, form: str) -> Candidate:
 
 
 def sgmm_printed(setting: Setting, form: str, **options: Any) -> Candidate:
-    """The same on the IMM's five rates with the paper's threshold, estimates kept by place."""
-    printed = {"threshold": 0.7, "carry": "slot"}
+    """The same by the printed rule, on the IMM's five rates with the paper's threshold.
+
+    The rule is not symmetric: the window moves right while undecided. Estimates are kept by place,
+    which is not printed.
+    """
+    printed = {"threshold": 0.7, "rule": "literal", "carry": "slot"}
     grid_rad_s = np.deg2rad(setting.imm5_deg_s)
     window = wl.SwitchingGridImm(_turning(form), grid_rad_s, **(printed | options))
     return Candidate(window, form)
+
+
+def sgmm_symmetric(setting: Setting, form: str, **options: Any) -> Candidate:
+    """The same by the rule that is likely meant: the window moves only to a likely side."""
+    return sgmm_printed(setting, form, **({"rule": "symmetric"} | options))
 
 
 def likely_model_set(setting: Setting, form: str) -> Candidate:
@@ -193,9 +204,10 @@ _TABLE: dict[str, Callable[[Setting, str], Candidate]] = {
     "agmm_printed": agmm_printed,
     "sgmm": sgmm,
     "sgmm_printed": sgmm_printed,
+    "sgmm_symmetric": sgmm_symmetric,
     "likely_model_set": likely_model_set,
     "mode_history": mode_history,
     "mode_history_known": mode_history_known,
     "mode_history_rates": mode_history_rates,
 }
-_CONVERTED = ("imm5", "agmm", "agmm_printed", "sgmm", "sgmm_printed")
+_CONVERTED = ("imm5", "agmm", "agmm_printed", "sgmm", "sgmm_printed", "sgmm_symmetric")

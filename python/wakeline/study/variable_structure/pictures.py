@@ -24,7 +24,7 @@ from .candidates import (
     agmm_printed,
     centre_rates,
     estimators,
-    sgmm_printed,
+    sgmm_symmetric,
 )
 from .sweeps import NOISES, RATES, robustness_name
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _DRAWN_RUNS = 100
 _SHOWN = {
     "": ("imm5", "agmm", "sgmm", "mode_history"),
-    "-printed": ("imm5", "agmm_printed", "sgmm_printed"),
+    "-printed": ("imm5", "agmm_printed", "sgmm_printed", "sgmm_symmetric"),
 }
 _IN_ROBUSTNESS = (
     *("imm5", "imm9", "agmm", "sgmm"),
@@ -78,7 +78,7 @@ class _Influence:
 
 
 _INFLUENCES = (
-    _Influence("t", "threshold", (0.3, 0.7, 0.9), "SGMM", sgmm_printed),
+    _Influence("t", "threshold", (0.3, 0.7, 0.9), "SGMM", sgmm_symmetric),
     _Influence("t1", "centre_threshold", (0.3, 0.7), "AGMM", agmm_printed),
 )
 

@@ -80,7 +80,8 @@ def _variants(setting: Setting) -> dict[str, Candidate]:
     """The printed rules, with other thresholds and other unprinted parameters.
 
     Rates of AGMM are in degrees per second, first probabilities those of `FIRST`. `agmm_kept` and
-    `agmm_patient` each have one of two additions to the rules in the library's defaults.
+    `agmm_patient` each have one of two additions to the rules in the library's defaults. Variants
+    of SGMM have the symmetric rule, but those called literal.
     """
     first = {name: {"initial_mode_probability": given} for name, given in FIRST.items()}
     adaptive = {
@@ -96,7 +97,7 @@ def _variants(setting: Setting) -> dict[str, Candidate]:
         "agmm_patient": {"centre_threshold": 0.8, "centre_gain": 0.3},
     }
     switching = {
-        "sgmm_printed": {},
+        "sgmm_symmetric": {},
         **{f"sgmm_t_{t:g}": {"threshold": t} for t in (0.3, 0.5, 0.7, 0.9)},
         **{f"sgmm_first_{name}": given for name, given in first.items()},
         "sgmm_identity": {"carry": "identity"},
@@ -110,7 +111,7 @@ def _variants(setting: Setting) -> dict[str, Candidate]:
             for name, given in adaptive.items()
         },
         **{
-            name: candidates.sgmm_printed(setting, POLAR, **given)
+            name: candidates.sgmm_symmetric(setting, POLAR, **given)
             for name, given in switching.items()
         },
     }
@@ -126,7 +127,7 @@ def moves(runs: int, seed: int) -> str:
         example, setting = scenario.named(name), SETTINGS[name]
         z = example.draw(runs, seed)
         kinds = {
-            f"SGMM t = {t:g}": candidates.sgmm_printed(setting, POLAR, threshold=t)
+            f"SGMM t = {t:g}": candidates.sgmm_symmetric(setting, POLAR, threshold=t)
             for t in (0.3, 0.7, 0.87, 0.9)
         } | {
             f"AGMM t1 = {t1:g}": candidates.agmm_printed(setting, POLAR, centre_threshold=t1)
