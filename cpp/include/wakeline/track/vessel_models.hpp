@@ -155,6 +155,9 @@ using VesselImm = Imm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf
 
 /// The estimator of a tracker for this radar. Throws `std::invalid_argument` on a setting that
 /// makes no sense.
+#if defined(WAKELINE_COMPILED_TRACKER) && !defined(__AVX__)  // as in compiled.hpp
+VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {});
+#else
 inline VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {}) {
   radar.validate();
   models.validate();
@@ -165,5 +168,6 @@ inline VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {})
   imm.set_initial_mode_probability(models.initial_mode_probability());
   return imm;
 }
+#endif
 
 }  // namespace wakeline
