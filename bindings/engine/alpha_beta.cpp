@@ -106,7 +106,7 @@ IEEE Trans. AES-20, 1984.)",
 template <int Order>
 using PyAlphaBeta = PyEstimator<AlphaBetaFilter<Order>>;
 
-/// The filter with the process noise given, else that which its schedule stands for.
+/// The filter with the process noise given, else that of its gain schedule.
 template <int Order>
 PyAlphaBeta<Order> make(const GainSchedule<Order>& gains, const std::optional<ProcessNoise>& noise,
                         [[maybe_unused]] double prior_accel_std_mps2) {

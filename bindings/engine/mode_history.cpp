@@ -236,7 +236,7 @@ filters : sequence of 1 to 16 filters
 chain : ModeChain
     Of as many modes.
 initial_mode_probability : (K,) array, optional
-    What a start begins with; all alike when left out.
+    Mode probabilities at a start; equal by default.
 max_hypotheses, max_branches, min_segment_s, merge_distance, sibling_distance, switch_time_spread, negligible_probability
     As of the class.
 
@@ -276,7 +276,7 @@ order : int
 filter, grid_rad_s, chain, initial_mode_probability
     As of the class.
 stay_probability : float
-    Of the turn rates' chain where none is given: to stay, the rest to each other one alike.
+    Of the turn rates' chain where none is given: to stay; the rest is shared equally by the others.
 
 Raises
 ------

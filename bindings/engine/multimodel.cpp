@@ -153,7 +153,7 @@ unlikely_threshold : float
 likely_threshold : float
     Where a side is the most probable, and more than this, it goes twice as far.
 stay_probability : float
-    Of the models' chain: to stay, the rest to each other model alike.
+    Of the models' chain: to stay; the rest is shared equally by the other models.
 chain : ModeChain, optional
     Another chain of three modes, instead of `stay_probability`.
 initial_mode_probability : (3,) array, optional
@@ -228,7 +228,7 @@ carry : 'slot' or 'identity'
 initial_centre : int, optional
     Index of the window's center at a start; default the straightest rate except the ends. Not printed.
 stay_probability : float
-    Of the models' chain: to stay, the rest to each other model alike.
+    Of the models' chain: to stay; the rest is shared equally by the other models.
 chain : ModeChain, optional
     Another chain of three modes, instead of `stay_probability`.
 initial_mode_probability : (3,) array, optional
@@ -290,7 +290,7 @@ unlikely_threshold : float
 likely_threshold : float
     The neighbors of a model at least as probable as this become active.
 stay_probability : float
-    Of the models' chain: to stay, the rest to each other active model alike.
+    Of the models' chain: to stay; the rest is shared equally by the other active models.
 chain : ModeChain, optional
     Another chain of as many modes, instead of `stay_probability`; transitions to inactive models go to the active ones.
 initial_mode_probability : (K,) array, optional

@@ -19,9 +19,15 @@ AnyBelief parse_start(const py::handle& item, StateLayout layout) {
 
 /// Throws where own ship moves under a sensor of range rates that has it at rest.
 void require_own_velocity(const AnySensor& any, const RunInput& in) {
-  const auto* sensor = std::get_if<RangeBearingDoppler>(&any);
-  if (sensor == nullptr || in.own_m == nullptr || in.own_mps != nullptr) return;
-  if (sensor->own.vnorth_mps != 0.0 || sensor->own.veast_mps != 0.0) return;
+  const bool without = std::visit(
+      [](const auto& sensor) {
+        if constexpr (requires { sensor.range_rate_std_mps; })
+          return sensor.own.vnorth_mps == 0.0 && sensor.own.veast_mps == 0.0;
+        else
+          return false;
+      },
+      any);
+  if (!without || in.own_m == nullptr || in.own_mps != nullptr) return;
   for (std::size_t k = 2; k < 2 * in.scans; ++k)
     if (in.own_m[k] != in.own_m[k - 2])
       throw py::value_error(

@@ -591,7 +591,7 @@ closed_circle : bool
 land : LandMask, optional
     Areas without detections.
 clutter : StaticClutterMap, optional
-    What always stands there; the extractor learns with a copy.)")
+    Static clutter; the extractor learns with a copy.)")
       .def(py::init([](const std::string& kind, int train_cells, int guard_cells, double factor,
                        int offset, double rank, int least_amplitude, int max_sweep_cells,
                        int gap_cells, int gap_sweeps, int min_cells, int max_cells,

@@ -21,7 +21,7 @@ namespace wakeline {
 #endif
 }
 
-/// A number in a message, with digits enough to tell it from one that would do.
+/// A number in a message, with digits enough to distinguish it from one that is allowed.
 [[gnu::noinline]] inline std::string number_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.12g", value);

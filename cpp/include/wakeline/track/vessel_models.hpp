@@ -10,7 +10,7 @@
 
 namespace wakeline {
 
-/// The motion models that a tracker uses unless told otherwise: cruising, steady, restless and
+/// The motion models that a tracker uses by default: cruising, steady, restless and
 /// turning. Their noise grows with the square of the speed, so that one set serves a drifting ferry
 /// and a boat at play.
 ///
@@ -120,8 +120,8 @@ struct VesselModels {
                 turn_rate_psd_rad2s3 > 0.0 ? 2.0 * prior_variance / turn_rate_psd_rad2s3 : 0.0};
   }
 
-  /// Who stops cruising is in the modes of craft as often as craft are; these go over to each other
-  /// alike, and a steady vessel to cruising besides.
+  /// Who stops cruising is in the modes of craft as often as craft are; these change to each other
+  /// at equal rates, and a steady vessel also to cruising.
   [[nodiscard]] ModeChain<4> chain() const {
     const Vec<double, 3> rate_per_s = 1.0 / craft_sojourn_s();
     Mat<double, 4, 4> generator_per_s = Mat<double, 4, 4>::Zero();

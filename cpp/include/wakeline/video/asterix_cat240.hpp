@@ -141,7 +141,7 @@ constexpr const char* to_string(Cat240Fault fault) noexcept {
     case Cat240Fault::kResolution:
       return "the resolution of the video cannot be read";
     case Cat240Fault::kCounters:
-      return "a sweep tells of more cells than it holds";
+      return "a sweep announces more cells than it holds";
     case Cat240Fault::kNoCells:
       return "a sweep without cells";
     case Cat240Fault::kAzimuth:

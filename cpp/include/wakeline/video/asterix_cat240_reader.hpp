@@ -137,7 +137,7 @@ class Cat240Reader {
     const std::size_t block = position_;
     position_ += kBlockHeader;
     at_ = At::kRecord;
-    return length > left ? tell(Cat240Fault::kTruncated, block, length, left) : kGoOn;
+    return length > left ? fault_event(Cat240Fault::kTruncated, block, length, left) : kGoOn;
   }
 
   Cat240Event pass_block(std::size_t end) noexcept {
@@ -300,9 +300,9 @@ class Cat240Reader {
                                         std::size_t limit) const noexcept {
     if (form.length == cat240::Length::kFixed) return form.octets;
     if (at >= limit) return 1;
-    const auto told = std::to_integer<std::size_t>(octets_[at]);
-    if (form.length == cat240::Length::kRepeated) return 1 + told * form.octets;
-    return std::max<std::size_t>(told, 1);
+    const auto given = std::to_integer<std::size_t>(octets_[at]);
+    if (form.length == cat240::Length::kRepeated) return 1 + given * form.octets;
+    return std::max<std::size_t>(given, 1);
   }
 
   Cat240Event interpret(std::size_t begin, const Record& record) noexcept {
@@ -421,11 +421,11 @@ class Cat240Reader {
     const std::size_t block = position_;
     skip_to(position_ + 1);
     at_ = At::kNowhere;
-    return tell(fault, block, wanted, came);
+    return fault_event(fault, block, wanted, came);
   }
 
-  Cat240Event tell(Cat240Fault fault, std::size_t where, std::uint64_t wanted,
-                   std::uint64_t came) noexcept {
+  Cat240Event fault_event(Cat240Fault fault, std::size_t where, std::uint64_t wanted,
+                          std::uint64_t came) noexcept {
     reject(fault, where, wanted, came);
     return Cat240Event::kProblem;
   }
