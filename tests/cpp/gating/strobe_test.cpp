@@ -634,5 +634,69 @@ TEST(StrobeEcho, LosesItWhenTooNarrow) {
   EXPECT_LT(scans_held(1.5, error_m), 60);
 }
 
+// Strobes of several tracks
+
+TEST(Rivals, EachCellBelongsToOneStrobe) {
+  test::Draw draw(11);
+  for (int run = 0; run < 20; ++run) {
+    Round picture;
+    picture.sprinkle(draw, 0.4);
+    std::vector<Point> centres;
+    std::vector<double> radii;
+    const Point middle = polar(1200.0, draw.uniform(-4, 4));
+    for (int k = 0; k < 3; ++k) {
+      centres.push_back(middle + Point(draw.uniform(-80, 80), draw.uniform(-80, 80)));
+      radii.push_back(draw.uniform(20, 120));
+    }
+    double shares = 0.0, whole = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::vector<RivalStrobe> rivals;
+      for (std::size_t r = 0; r < 3; ++r)
+        if (r != k) rivals.push_back({centres[r], radii[r], r < k});
+      const StrobeEcho echo = strobe_echo(picture.image, RadiusGate{radii[k]}, centres[k],
+                                          {.least_share = 0.0}, rivals);
+      shares += echo.total_amplitude;
+    }
+    for (int sweep = 0; sweep < picture.image.sweeps; ++sweep)
+      for (int cell = 0; cell < picture.image.cells; ++cell)
+        for (std::size_t k = 0; k < 3; ++k)
+          if ((picture.image.position(sweep, cell) - centres[k]).norm() <= radii[k]) {
+            whole += picture.at(sweep, cell);
+            break;
+          }
+    EXPECT_EQ(shares, whole) << run;
+  }
+}
+
+TEST(Rivals, AnEchoNearAnotherCentreIsNotMeasured) {
+  Round picture;
+  picture.blob(0, 100, 2);
+  const Point echo = picture.image.position(0, 100);
+  const Point near = echo + Point(8.0, 3.0), far = echo + Point(-60.0, 0.0);
+  const RadiusGate strobe{90.0};
+  const RivalStrobe at_near{near, 90.0, false}, at_far{far, 90.0, false};
+  const StrobeEcho own = strobe_echo(picture.image, strobe, near, {}, std::span(&at_far, 1));
+  EXPECT_EQ(own.status, StrobeStatus::kOk);
+  EXPECT_FALSE(own.shared);
+  EXPECT_LT((own.position().mean - echo).norm(), 0.5) << "all of it, for it has nearly all";
+  const StrobeEcho others = strobe_echo(picture.image, strobe, far, {}, std::span(&at_near, 1));
+  EXPECT_EQ(others.status, StrobeStatus::kEmpty);
+}
+
+TEST(Rivals, AnEchoBetweenTwoCentresIsShared) {
+  Round picture;
+  for (int cell = 92; cell <= 108; ++cell) picture.blob(0, cell, 1);
+  const Point left = picture.image.position(0, 94), right = picture.image.position(0, 106);
+  const RivalStrobe at_left{left, 100.0, false}, at_right{right, 100.0, true};
+  const StrobeEcho a =
+      strobe_echo(picture.image, RadiusGate{100.0}, left, {}, std::span(&at_right, 1));
+  const StrobeEcho b =
+      strobe_echo(picture.image, RadiusGate{100.0}, right, {}, std::span(&at_left, 1));
+  EXPECT_TRUE(a.shared);
+  EXPECT_TRUE(b.shared);
+  EXPECT_LT((a.position().mean - left).norm(), 15.0);
+  EXPECT_LT((b.position().mean - right).norm(), 15.0);
+}
+
 }  // namespace
 }  // namespace wakeline::strobe_test

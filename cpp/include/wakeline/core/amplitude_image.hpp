@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
+#include <utility>
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/types.hpp"
@@ -17,6 +19,8 @@ namespace wakeline {
 /// amplitudes of its range cells from the antenna outwards. Does not own the memory.
 template <std::unsigned_integral Amplitude = std::uint8_t>
 struct AmplitudeImage {
+  static constexpr bool kEvenSteps = true;
+
   const Amplitude* amplitudes = nullptr;  ///< (sweeps, cells), row-major
   int sweeps = 0;
   int cells = 0;
@@ -51,5 +55,26 @@ struct AmplitudeImage {
     return range_m(cell) * Vec<double, 2>(std::cos(azimuth), std::sin(azimuth));
   }
 };
+
+/// A polar picture: an `AmplitudeImage`, or sweeps at uneven steps with the same members.
+template <class Image>
+concept PolarPicture = requires(const Image& image, int k) {
+  { Image::kEvenSteps } -> std::convertible_to<bool>;
+  { image.sweeps } -> std::convertible_to<int>;
+  { image.cells } -> std::convertible_to<int>;
+  { image.first_azimuth_rad } -> std::convertible_to<double>;
+  { image.azimuth_step_rad } -> std::convertible_to<double>;
+  { image.start_range_m } -> std::convertible_to<double>;
+  { image.cell_m } -> std::convertible_to<double>;
+  { image.full_circle() } -> std::same_as<bool>;
+  { image.azimuth_rad(k) } -> std::same_as<double>;
+  { image.range_m(k) } -> std::same_as<double>;
+  image.row(k).data();
+};
+
+/// The type of its amplitudes.
+template <PolarPicture Image>
+using AmplitudeOf =
+    std::remove_const_t<typename decltype(std::declval<const Image&>().row(0))::element_type>;
 
 }  // namespace wakeline

@@ -24,13 +24,15 @@ struct CellSpan {
 
 /// The cells of a picture whose centres are inside a strobe, sweep by sweep: one span of cells for
 /// each sweep within reach of the strobe. Keeps references.
-template <class Amplitude, StrobeShape Strobe>
+template <PolarPicture Image, StrobeShape Strobe>
 class StrobeCells {
  public:
-  StrobeCells(const AmplitudeImage<Amplitude>& image, const Strobe& strobe,
-              const Vec<double, 2>& predicted_m) noexcept
+  StrobeCells(const Image& image, const Strobe& strobe, const Vec<double, 2>& predicted_m) noexcept
       : image_(image), strobe_(strobe), predicted_m_(predicted_m), full_(image.full_circle()) {
-    find_rows();
+    if constexpr (Image::kEvenSteps)
+      find_rows();
+    else
+      rows_ = image.sweeps;
   }
 
   /// Number of sweeps that the strobe may reach; consecutive rows are adjacent sweeps of the
@@ -116,7 +118,7 @@ class StrobeCells {
     }
   }
 
-  const AmplitudeImage<Amplitude>& image_;
+  const Image& image_;
   const Strobe& strobe_;
   const Vec<double, 2>& predicted_m_;
   bool full_;

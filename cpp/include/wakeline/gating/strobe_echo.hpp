@@ -15,6 +15,7 @@
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
+#include "wakeline/gating/rival_strobe.hpp"
 #include "wakeline/gating/strobe.hpp"
 #include "wakeline/gating/strobe_cells.hpp"
 #include "wakeline/gating/strobe_labels.hpp"
@@ -82,6 +83,7 @@ struct StrobeSettings {
   int least_amplitude = 1;
   int pedestal = 0;
   EchoChoice several = EchoChoice::kAll;
+  double least_share = 0.25;
 
   static constexpr auto fields() noexcept {
     using S = StrobeSettings;
@@ -90,7 +92,10 @@ struct StrobeSettings {
               "Least amplitude of a cell that counts."),
         field("pedestal", &S::pedestal, at_least(0), "counts",
               "Amplitude subtracted from that of a cell to weigh it; below least_amplitude."),
-        field("several", &S::several, "Which of several echoes in the strobe is measured."));
+        field("several", &S::several, "Which of several echoes in the strobe is measured."),
+        field("least_share", &S::least_share, between(0, 0.5), "1",
+              "Share of an echo's weight that a strobe must have of an echo shared with rivals. "
+              "With less of it the echo is the rivals', with all but less of it the strobe's."));
   }
 
   /// Throws `std::invalid_argument` unless 0 <= pedestal < least_amplitude.
@@ -115,7 +120,13 @@ struct StrobeEcho {
       0;  ///< number of echoes in the strobe, measured or not; 0 when they cannot be separated
   int strobe_cells = 0;       ///< cells of the picture inside the strobe, whatever their amplitude
   bool touches_edge = false;  ///< the measured echo extends past the strobe
+  bool shared = false;        ///< only a part of the echo was measured: the other is a rival's
   bool cut = false;           ///< part of the strobe is outside the picture
+
+  /// Share of the cells of the strobe that were measured: near 1 for an echo that fills it.
+  [[nodiscard]] double filled() const noexcept {
+    return strobe_cells > 0 ? double(cells) / strobe_cells : 0.0;
+  }
 
   explicit operator bool() const noexcept { return status <= StrobeStatus::kCrowded; }
 
@@ -136,16 +147,18 @@ struct StrobeEcho {
 namespace detail {
 
 /// Evaluates one strobe on one picture.
-template <int kEchoes, class Amplitude, class Strobe>
+template <int kEchoes, class Image, class Strobe>
 class StrobeEvaluation {
- public:
+  using Amplitude = AmplitudeOf<Image>;
   static_assert(sizeof(Amplitude) <= 2, "amplitudes are of 8 or 16 bits");
 
-  StrobeEvaluation(const AmplitudeImage<Amplitude>& image, const Strobe& strobe,
-                   const Vec<double, 2>& predicted_m, const StrobeSettings& settings) noexcept
+ public:
+  StrobeEvaluation(const Image& image, const Strobe& strobe, const Vec<double, 2>& predicted_m,
+                   const StrobeSettings& settings, std::span<const RivalStrobe> rivals) noexcept
       : image_(image),
         settings_(settings),
         predicted_m_(predicted_m),
+        rivals_(rivals),
         cells_(image, strobe, predicted_m),
         range_m_(predicted_m.norm()),
         bearing_rad_(std::atan2(predicted_m[1], predicted_m[0])) {}
@@ -155,10 +168,8 @@ class StrobeEvaluation {
     for (int row = 0; row < cells_.rows(); ++row) add_sweep(cells_.sweep(row), echo);
     if (cells_.closes()) labels_.close_circle();
     echo.cut = echo.cut || cells_.cut_sideways();
-    if (all_.cells > 0)
-      report(echo);
-    else
-      report_empty(echo);
+    if (all_.all.cells > 0) report(echo);
+    if (echo.status == StrobeStatus::kInvalid) report_empty(echo);
     return echo;
   }
 
@@ -177,14 +188,38 @@ class StrobeEvaluation {
       if (!counts(row[cell])) continue;
       const int first = cell;
       while (cell < span.last && counts(row[cell + 1])) ++cell;
-      const StrobeSums sums = sum_run(sweep, first, cell, span);
+      const ClaimedSums sums = claimed(sweep, first, cell, span);
       all_ += sums;
       labels_.add(first, cell, sums);
     }
   }
 
-  [[nodiscard]] StrobeSums sum_run(int sweep, int first, int last,
-                                   const CellSpan& span) const noexcept {
+  /// The sums over a run; those over cells without a rival run by run.
+  [[nodiscard]] ClaimedSums claimed(int sweep, int first, int last,
+                                    const CellSpan& span) const noexcept {
+    ClaimedSums sums{sum_run(sweep, first, last), {}};
+    sums.all.extends_outside = continues(sweep, first, last, span) ||
+                               continues_beside(cells_.beside(sweep, -1), first, last) ||
+                               continues_beside(cells_.beside(sweep, 1), first, last);
+    if (rivals_.empty()) {
+      sums.own = sums.all;
+      return sums;
+    }
+    const Vec<double, 2> u = towards(image_.azimuth_rad(sweep));
+    const auto own = [&](int cell) {
+      return !is_rivals(image_.range_m(cell) * u, predicted_m_, rivals_);
+    };
+    for (int cell = first; cell <= last; ++cell) {
+      if (!own(cell)) continue;
+      const int from = cell;
+      while (cell < last && own(cell + 1)) ++cell;
+      sums.own += sum_run(sweep, from, cell);
+    }
+    sums.own.extends_outside = sums.all.extends_outside;
+    return sums;
+  }
+
+  [[nodiscard]] StrobeSums sum_run(int sweep, int first, int last) const noexcept {
     const Amplitude* row = image_.row(sweep).data();
     const Vec<double, 2> u = towards(image_.azimuth_rad(sweep) - bearing_rad_);
     StrobeSums sums{};
@@ -203,9 +238,6 @@ class StrobeEvaluation {
     sums.range_along = sums.range * u[0];
     sums.range_across = sums.range * u[1];
     sums.cells = last - first + 1;
-    sums.extends_outside = continues(sweep, first, last, span) ||
-                           continues_beside(cells_.beside(sweep, -1), first, last) ||
-                           continues_beside(cells_.beside(sweep, 1), first, last);
     return sums;
   }
 
@@ -222,11 +254,28 @@ class StrobeEvaluation {
     return sweep >= 0 && continues(sweep, first, last, cells_.span(sweep));
   }
 
+  /// An echo, or a branch of one, that is not the rivals'.
+  [[nodiscard]] bool is_own(int echo) const noexcept {
+    return labels_.is_whole(echo) && labels_.sums(echo).own.cells > 0 &&
+           labels_.sums(echo).share() >= settings_.least_share;
+  }
+
+  [[nodiscard]] bool is_shared(const ClaimedSums& sums) const noexcept {
+    return sums.share() < 1.0 - settings_.least_share;
+  }
+
+  /// What is measured of an echo that is not the rivals': all, or the own part of a shared one.
+  [[nodiscard]] const StrobeSums& measured(const ClaimedSums& sums) const noexcept {
+    return is_shared(sums) ? sums.own : sums.all;
+  }
+
   /// The echo to be measured; there is at least one.
   [[nodiscard]] int chosen() const noexcept {
-    int best = 0;
-    for (int echo = 1; echo < labels_.size(); ++echo)
-      if (labels_.is_whole(echo) && preferred(labels_.sums(echo), labels_.sums(best))) best = echo;
+    int best = -1;
+    for (int echo = 0; echo < labels_.size(); ++echo)
+      if (is_own(echo) &&
+          (best < 0 || preferred(measured(labels_.sums(echo)), measured(labels_.sums(best)))))
+        best = echo;
     return best;
   }
 
@@ -242,9 +291,21 @@ class StrobeEvaluation {
 
   void report(StrobeEcho& echo) const noexcept {
     if (!labels_.full())
-      for (int k = 0; k < labels_.size(); ++k) echo.echoes += labels_.is_whole(k);
+      for (int k = 0; k < labels_.size(); ++k) echo.echoes += is_own(k);
     const bool one_of_several = echo.echoes > 1 && settings_.several != EchoChoice::kAll;
-    const StrobeSums& sums = one_of_several ? labels_.sums(chosen()) : all_;
+    StrobeSums sums{};
+    if (labels_.full() || (rivals_.empty() && !one_of_several)) {
+      sums = all_.own;
+      echo.shared = all_.own.cells < all_.all.cells;
+    } else {
+      const int only = one_of_several ? chosen() : -1;
+      for (int k = 0; k < labels_.size(); ++k) {
+        if (!is_own(k) || (one_of_several && k != only)) continue;
+        sums += measured(labels_.sums(k));
+        echo.shared = echo.shared || is_shared(labels_.sums(k));
+      }
+    }
+    if (sums.cells == 0) return;
     measure(sums, echo);
     echo.status = labels_.full()      ? StrobeStatus::kCrowded
                   : echo.echoes > 1   ? StrobeStatus::kSeveralEchoes
@@ -271,19 +332,20 @@ class StrobeEvaluation {
     echo.status = outside ? StrobeStatus::kOutside : StrobeStatus::kEmpty;
   }
 
-  const AmplitudeImage<Amplitude>& image_;
+  const Image& image_;
   const StrobeSettings& settings_;
   const Vec<double, 2>& predicted_m_;
-  StrobeCells<Amplitude, Strobe> cells_;
+  std::span<const RivalStrobe> rivals_;
+  StrobeCells<Image, Strobe> cells_;
   double range_m_;
   double bearing_rad_;
-  StrobeSums all_{};
+  ClaimedSums all_{};
   StrobeLabels<kEchoes> labels_;
 };
 
 /// True when the geometry of a picture is finite and its steps are positive.
-template <class Amplitude>
-bool is_valid(const AmplitudeImage<Amplitude>& image) noexcept {
+template <PolarPicture Image>
+bool is_valid(const Image& image) noexcept {
   return image.azimuth_step_rad > 0.0 && std::isfinite(image.azimuth_step_rad) &&
          image.cell_m > 0.0 && std::isfinite(image.cell_m) &&
          std::isfinite(image.first_azimuth_rad) && std::isfinite(image.start_range_m);
@@ -305,20 +367,27 @@ bool is_valid(const AmplitudeImage<Amplitude>& image) noexcept {
 ///     R = S / n + diag(cell², step²) / 12.
 ///
 /// Cells that share an edge or a corner belong to one echo. Up to `kEchoes` echoes are separated;
-/// this bounds the memory, 132 bytes each on the stack. A strobe smaller than the distance of two
+/// this bounds the memory, 230 bytes each on the stack. A strobe smaller than the distance of two
 /// cells may contain no cell centre and is then empty.
+///
+/// With strobes of other tracks, `rivals`, a cell inside several strobes belongs to the one with
+/// the nearest centre. An echo of which this strobe has all but less than `least_share` of the
+/// weight is measured as a whole; one of which it has less than that is the rivals' and is ignored;
+/// of any other only the cells of this strobe are measured, and the echo is `shared`.
 ///
 /// Source: Grinyak, Trofimov, "Multi-model tracking of moving vessels with a fuzzy criterion of
 /// maneuver detection".
-template <int kEchoes = 256, std::unsigned_integral Amplitude, StrobeShape Strobe>
-[[nodiscard]] StrobeEcho strobe_echo(const AmplitudeImage<Amplitude>& image, const Strobe& strobe,
+template <int kEchoes = 256, PolarPicture Image, StrobeShape Strobe>
+[[nodiscard]] StrobeEcho strobe_echo(const Image& image, const Strobe& strobe,
                                      const Vec<double, 2>& predicted_m,
-                                     const StrobeSettings& settings = {}) noexcept {
+                                     const StrobeSettings& settings = {},
+                                     std::span<const RivalStrobe> rivals = {}) noexcept {
   if (!is_finite(predicted_m) || !detail::is_valid(image) ||
       !(strobe.half_angle_rad(predicted_m) >= 0.0))
     return {};
   if (image.sweeps <= 0 || image.cells <= 0) return {.status = StrobeStatus::kOutside, .cut = true};
-  return detail::StrobeEvaluation<kEchoes, Amplitude, Strobe>(image, strobe, predicted_m, settings)
+  return detail::StrobeEvaluation<kEchoes, Image, Strobe>(image, strobe, predicted_m, settings,
+                                                          rivals)
       .evaluate();
 }
 

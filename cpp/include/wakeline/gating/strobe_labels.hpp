@@ -28,7 +28,7 @@ class StrobeLabels {
   }
 
   /// Adds cells `first` to `last` of the sweep; runs are added in order of range.
-  void add(int first, int last, const StrobeSums& sums) noexcept {
+  void add(int first, int last, const ClaimedSums& sums) noexcept {
     int echo = kNone;
     before_.for_each_connected(first, last, 0, [&](int label) { echo = join(echo, label); });
     if (echo == kNone) echo = open();
@@ -54,7 +54,7 @@ class StrobeLabels {
   /// the first has the sums of all, and only that one `is_whole`.
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] bool is_whole(int echo) const noexcept { return at(echo).root == echo; }
-  [[nodiscard]] const StrobeSums& sums(int echo) const noexcept { return at(echo).sums; }
+  [[nodiscard]] const ClaimedSums& sums(int echo) const noexcept { return at(echo).sums; }
 
  private:
   static constexpr int kNone = -1;
@@ -69,7 +69,7 @@ class StrobeLabels {
 
   struct Echo {
     int root;
-    StrobeSums sums;
+    ClaimedSums sums;
   };
 
   /// Row 0 is kept; of the others the last two.

@@ -64,4 +64,19 @@ struct StrobeSums {
   [[nodiscard]] double effective_cells() const noexcept { return weight * weight / squares; }
 };
 
+/// The sums over all cells of an echo, and over those that no rival strobe has.
+struct ClaimedSums {
+  StrobeSums all;
+  StrobeSums own;
+
+  ClaimedSums& operator+=(const ClaimedSums& other) noexcept {
+    all += other.all;
+    own += other.own;
+    return *this;
+  }
+
+  /// Share of the echo's weight in cells that no rival has.
+  [[nodiscard]] double share() const noexcept { return own.weight / all.weight; }
+};
+
 }  // namespace wakeline::detail

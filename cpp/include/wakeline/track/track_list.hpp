@@ -14,9 +14,10 @@ namespace wakeline {
 
 /// A bounded list of tracks, older ones first. A track keeps its slot, a number below the capacity,
 /// as long as it lives. Memory is taken by the constructor.
-class TrackList {
+template <class Track>
+class TrackListOf {
  public:
-  explicit TrackList(int capacity)
+  explicit TrackListOf(int capacity)
       : pool_(static_cast<std::size_t>(capacity)), in_use_(pool_.size(), 0) {
     slots_.reserve(pool_.size());
     vacant_.reserve(pool_.size());
@@ -114,5 +115,7 @@ class TrackList {
   std::vector<int> slots_;    ///< in use, of older tracks first
   std::vector<int> vacant_;
 };
+
+using TrackList = TrackListOf<Track>;
 
 }  // namespace wakeline

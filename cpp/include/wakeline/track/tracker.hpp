@@ -30,6 +30,7 @@
 #include "wakeline/track/radar.hpp"
 #include "wakeline/track/scan_plots.hpp"
 #include "wakeline/track/time_alignment.hpp"
+#include "wakeline/track/track_estimator.hpp"
 #include "wakeline/track/track_gate.hpp"
 #include "wakeline/track/track_list.hpp"
 #include "wakeline/track/track_room.hpp"
@@ -45,21 +46,6 @@ struct ScanReport {
   /// Not finite, behind the antenna, of so many turns that the bearing is lost, of another time
   /// than the scan, or beyond `max_plots`.
   int rejected_plots = 0;
-};
-
-/// What a track can be: an estimator of `double` with the face of `Imm` (an `Imm` of one model is a
-/// single filter). It shows its modes by `for_each_mode(f(mode, belief))` and `mode_probability()`,
-/// or compares a fix with them itself by `evidence(sensor, z)`.
-template <class Estimator>
-concept TrackEstimator = std::copyable<Estimator> &&
-    requires(Estimator estimator, const Estimator& constant, std::span<double> share,
-             std::span<const Alternative<Fix>> readings, Archive& fields) {
-  { estimator.start(Gaussian<4>{}) } -> std::same_as<Status>;
-  { estimator.predict(1.0) } -> std::same_as<Status>;
-  { estimator.update(readings, 1.0, share) } -> std::same_as<double>;
-  requires HasModePositions<Estimator>;
-  constant.estimate();
-  estimator.archive(fields);
 };
 
 /// Keeps tracks of all vessels a radar sees, scan by scan.
@@ -377,27 +363,10 @@ class Tracker {
       events_.push_back({kind, track.id, track.tentative_id, time_s_});
   }
 
-  /// Distinguishes estimators of different models or chains, by their estimates after a slow start
-  /// and after fast ones, two time steps and a reading.
-  [[nodiscard]] std::uint64_t fingerprint() const {
-    Archive fields;
-    const Alternative<Fix> reading{Fix{}, {101.0, 199.0}, 1.0};
-    for (const double speed_mps : {5.0, 15.0, 40.0, 200.0}) {
-      Estimator estimator = prototype_;
-      double share = 0.0;
-      (void)estimator.start(
-          Gaussian<4>{{100.0, speed_mps, 200.0, -3.0}, Mat<double, 4, 4>::Identity()});
-      for (const double dt_s : {1.0, 2.5}) (void)estimator.predict(dt_s);
-      (void)estimator.update(std::span(&reading, 1), 1.0, std::span(&share, 1));
-      estimator.archive(fields);
-    }
-    return checksum(fields.bytes());
-  }
-
   /// Saves or restores; the settings are compared, not restored.
   void archive(Archive& fields) {
     std::uint32_t version = kArchiveVersion;
-    std::uint64_t models = fingerprint();
+    std::uint64_t models = fingerprint(prototype_);
     const std::uint64_t own_models = models;
     fields(version);
     fields(models);
@@ -538,24 +507,15 @@ std::int64_t Tracker<Estimator, Steps>::designate(double time_s, double north_m,
 
 template <class Estimator, class Steps>
 std::vector<std::byte> Tracker<Estimator, Steps>::save() const {
-  Archive fields;
-  const_cast<Tracker*>(this)->archive(fields);  // writing changes nothing
-  std::uint64_t sum = checksum(fields.bytes());
-  fields(sum);
-  return fields.bytes();
+  return saved_state([this](Archive& fields) {
+    const_cast<Tracker*>(this)->archive(fields);  // writing changes nothing
+  });
 }
 
 template <class Estimator, class Steps>
 bool Tracker<Estimator, Steps>::restore(std::span<const std::byte> bytes) {
-  std::uint64_t sum = 0;
-  if (bytes.size() < sizeof(sum)) return false;
-  const std::span<const std::byte> state = bytes.first(bytes.size() - sizeof(sum));
-  std::memcpy(&sum, bytes.data() + state.size(), sizeof(sum));
-  if (sum != checksum(state)) return false;
   Tracker other(radar_, config_, prototype_);
-  Archive fields(state);
-  other.archive(fields);
-  if (!fields.ok() || !fields.at_end()) return false;
+  if (!read_state(bytes, [&](Archive& fields) { other.archive(fields); })) return false;
   *this = std::move(other);
   return true;
 }

@@ -88,17 +88,13 @@ class LandMask {
   /// Raises the thresholds of excluded cells to the largest amplitude, which none exceeds.
   template <class Amplitude>
   void lift(const Sweep<Amplitude>& sweep, std::span<Amplitude> threshold) const noexcept {
-    if (excluded_.empty()) return;
-    const double cells = static_cast<double>(threshold.size());
-    const auto cell = [&](double range_m) noexcept {
-      return std::clamp((range_m - sweep.start_range_m) / sweep.cell_m, 0.0, cells);
-    };
-    for (const Ranges& ranges : excluded_[rows().of(sweep.azimuth_rad)]) {
-      const auto first = static_cast<std::size_t>(cell(ranges.near_m));
-      const auto last = static_cast<std::size_t>(std::ceil(cell(ranges.far_m)));
-      for (std::size_t i = first; i < last; ++i)
-        threshold[i] = std::numeric_limits<Amplitude>::max();
-    }
+    set(sweep, threshold, std::numeric_limits<Amplitude>::max());
+  }
+
+  /// Sets the amplitudes of excluded cells, of a copy of the sweep's, to zero.
+  template <class Amplitude>
+  void blank(const Sweep<Amplitude>& sweep, std::span<Amplitude> amplitude) const noexcept {
+    set(sweep, amplitude, Amplitude{0});
   }
 
  private:
@@ -106,6 +102,21 @@ class LandMask {
     double near_m;
     double far_m;
   };
+
+  template <class Amplitude>
+  void set(const Sweep<Amplitude>& sweep, std::span<Amplitude> cell_values,
+           Amplitude value) const noexcept {
+    if (excluded_.empty()) return;
+    const double cells = static_cast<double>(cell_values.size());
+    const auto cell = [&](double range_m) noexcept {
+      return std::clamp((range_m - sweep.start_range_m) / sweep.cell_m, 0.0, cells);
+    };
+    for (const Ranges& ranges : excluded_[rows().of(sweep.azimuth_rad)]) {
+      const auto first = static_cast<std::size_t>(cell(ranges.near_m));
+      const auto last = static_cast<std::size_t>(std::ceil(cell(ranges.far_m)));
+      for (std::size_t i = first; i < last; ++i) cell_values[i] = value;
+    }
+  }
 
   void require_directions() const {
     require(!excluded_.empty(), "azimuths", "1 to 65536 to exclude an area", 0);
