@@ -170,9 +170,9 @@ def test_parameters_that_are_invalid_are_rejected_by_name(build, name, value):
 @pytest.mark.parametrize("value", [45.0, 90.0])
 def test_degrees_where_radians_are_wanted_are_rejected(sensor, value):
     for build in (getattr(wl, sensor), wl.Radar):
-        with pytest.raises(ValueError, match="bearing_std_rad must be .* in radians"):
+        with pytest.raises(ValueError, match=r"bearing_std_rad must be .* in radians"):
             build(bearing_std_rad=value)
-    with pytest.raises(ValueError, match="heading_std_rad must be .* in radians"):
+    with pytest.raises(ValueError, match=r"heading_std_rad must be .* in radians"):
         wl.OwnShip(heading_std_rad=value)
 
 

@@ -219,6 +219,35 @@ def test_stamps_in_utc_decide_between_clocks_that_are_else_alike(log):
     check_voyage(read)
 
 
+@pytest.mark.parametrize("dated", [True, False])
+@pytest.mark.parametrize("start_s", [0, 3 * 3600, 16 * 3600])
+def test_times_before_the_first_fix_that_do_not_lead_to_it_are_wrong(log, dated, start_s):
+    waiting = [
+        sentence(f"GPRMC,{clock(start_s + t)},V,,,,,,,{'060180' if dated else ''},,,N")
+        for t in range(50)
+    ]
+    read = log([*waiting, *map(rmc, range(SECONDS))])
+    check_voyage(read)
+    assert read.report.problems["time"] == 50
+    waiting = [sentence(f"GPRMC,{clock(NOON_S + t)},V,,,,,,,,,,N") for t in range(-50, 0)]
+    assert log([*waiting, *map(rmc, range(SECONDS))]).report.problems == {}
+
+
+def test_stamps_in_utc_show_local_time_and_give_the_date(log):
+    local = [f"{NOON_S + t + 0.4:.1f} {gll(t, offset_s=7200.0)}" for t in range(SECONDS)]
+    check_voyage(log(local))
+    undated = [f"{NOON_S + t + 0.4:.1f} {gga(t)}" for t in range(SECONDS)]
+    check_voyage(log(undated))
+
+
+def test_one_of_two_clocks_that_stands_has_the_times_of_the_stamps(log):
+    lines = both(standing(SECONDS), [gga(t + 0.5) for t in range(SECONDS)])
+    lines = [f"{NOON_S + t / 2:.1f} {line}" for t, line in enumerate(lines)]
+    read = log(lines)
+    np.testing.assert_allclose(read.fixes.time_s, NOON_S + np.arange(2 * SECONDS) / 2)
+    assert len(read.ground) == SECONDS
+
+
 # ------------------------------------------------------------------ clocks that stand
 
 

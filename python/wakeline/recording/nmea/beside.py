@@ -29,6 +29,7 @@ _COMPACT = re.compile(
 _SINCE_1970 = re.compile(r"(?<![\d.])(\d{9,10}(?:\.\d+)?|\d{13}(?:\.\d+)?|\d{16}|\d{19})(?![\d.])")
 _TIME_OF_DAY = re.compile(rf"(?<![\d:]){_CLOCK}(?![\d:])")
 _SINCE_START = re.compile(r"^[\s\"'\[(]*(\d{1,7}\.\d+)(?:[\s\"'\]),;]|$)")
+_LEAST_SHARE = 0.05
 _EPOCHS_PER_S = {9: 1.0, 10: 1.0, 13: 1e3, 16: 1e6, 19: 1e9}
 
 
@@ -66,7 +67,7 @@ class Beside(NamedTuple):
 
 
 def times_beside(lines: Iterable[bytes]) -> Beside | None:
-    """The times beside the sentences of a log; None if fewer than half of its lines have one.
+    """The times beside the sentences of a log; None if fewer than 5 % of them have one.
 
     Of several forms the one of most lines counts.
 
@@ -91,7 +92,7 @@ def times_beside(lines: Iterable[bytes]) -> Beside | None:
             address = sentence[0].partition(b",")[0]
             found.setdefault(name, []).append((number, address, stamp))
     name = max(found, key=lambda name: len(found[name]), default=None)
-    if name is None or 2 * len(found[name]) < count:
+    if name is None or len(found[name]) < _LEAST_SHARE * count:
         return None
     line, address, stamps = zip(*found[name], strict=True)
     time_s, utc = _FORMS[name].read(stamps)

@@ -18,8 +18,9 @@ _LIVE_CHAINS = 4  # of one address at a time
 _AGREEING = 0.8  # least share of the sentences
 _ZONE_S = 900.0  # offsets of local times are multiples of it
 _LATEST_REPEAT_S = 600.0
-_SAME_PLACE_DEG = 1e-3
+_CLEARLY = 0.5
 _STAMPS_AGREE_S = 60.0
+_STAMPS_STEADY_S = 5.0
 _STANDING = 10  # least number of sentences
 _MISSING = 3.0  # usual steps that may be missing where a minute repeats
 _ROLLOVER_DAYS = 7.0 * 1024.0
@@ -97,23 +98,32 @@ def choose(timed: Timed, beside: Beside | None, reorder_s: float) -> Choice:
     lie, within `reorder_s`, between the times of the other one around them. Sources that agree are
     one clock.
 
-    **Choice.** The clock that carries the voyage counts: the one with valid fixes away from 0/0 in
-    at least half as many minutes as any other. Among such clocks the first of these that differs
-    decides: it advances; its position changes; it agrees with times beside the sentences that are
-    in UTC; it has a date; its year is the latest that is not in the future; the number of minutes
-    with fixes, of agreeing addresses, of sentences.
+    **Choice.** Of the clocks that advance the one that carries the voyage counts: it has valid
+    fixes away from 0/0 in at least half as many minutes as any other. Among such clocks the first
+    of these that differs decides: its position changes; it agrees with times beside the sentences
+    that are in UTC; it is that of a satellite receiver (its talker begins with G); it has a date;
+    its year is the latest that is not in the future; the number of minutes with fixes, of agreeing
+    addresses, of sentences.
 
     **Other clocks** are reported, with both times.
 
-    - A source that is late by up to ten minutes and has the same positions at the same times
-      repeats another one, which counts. Its fixes are kept, but it does not time other lines.
+    - A source that is late by up to ten minutes repeats another one, which counts, if its
+      positions are nearer to those of the same time than to those of the lines around them. Its
+      fixes are kept, but it does not time other lines.
     - A source that is off by a multiple of 15 minutes, advances and has valid fixes, or is a ZDA,
       is in local time. It is corrected.
+    - The readings of a source that stands and has fixes are placed by times beside the sentences,
+      or by lines if the chosen clock has no fixes.
     - Any other time is wrong: its sentence is dropped.
+
+    - Times without a fix before the first fix are wrong unless they lead to it.
+
+    A clock without a date that is off stamps in UTC by a multiple of 15 minutes is corrected, too.
 
     **Dates.** Where sources that agree in time have different dates, the date nearest to those
     beside the sentences counts, else one that is not 1024 weeks before another, else the one of
-    most sentences. A date that is 1024 weeks before those beside the sentences is corrected.
+    most sentences. A date that is 1024 weeks before those beside the sentences is corrected. If
+    no sentence has one, the dates beside the sentences count, or those of other clocks.
 
     **Clocks that stand.** If a minute repeats (08:02:59 is followed by 08:02:00, at least twice) or
     the whole clock stands, the times beside the sentences count. Without these, minutes are
@@ -147,7 +157,9 @@ def choose(timed: Timed, beside: Beside | None, reorder_s: float) -> Choice:
     choice.used[chosen] = True
     for clock in clocks[1:]:
         for source in clock:
-            _judge(timed, chosen, source, reorder_s, choice)
+            _judge(timed, chosen, source, beside, reorder_s, choice)
+    _leave_out_start(timed, chosen, reorder_s, choice)
+    _settle_zone(timed, chosen, beside, choice)
     _settle_dates(timed, clocks, chosen, beside, choice)
     _settle_standing(timed, chosen, beside, choice)
     return choice
@@ -237,7 +249,8 @@ def _chains(clock_s: np.ndarray, reorder_s: float) -> np.ndarray:
 
 def _usual_of_alternating_s(clock_s: np.ndarray) -> float:
     """The usual step of a clock among those that alternate."""
-    medians_s = []
+    steps_s = np.diff(np.unique(clock_s))
+    medians_s = [float(np.median(steps_s))] if len(steps_s) else []
     for apart in range(1, _LIVE_CHAINS + 1):
         steps_s = np.abs(wrapped_s(clock_s[apart:] - clock_s[:-apart]))
         medians_s += [float(np.median(steps_s[steps_s > 0]))] if steps_s.any() else []
@@ -308,10 +321,11 @@ def _weight(
     day = day[np.isfinite(day)]
     year = float(np.median(day)) // _YEAR_DAYS if len(day) else -1.0
     return (
+        len(chosen) == 1 or len(np.unique(timed.clock_s[chosen])) > 1,
         minutes > 0 and 2 * minutes >= most,
-        len(np.unique(timed.clock_s[chosen])) > 1,
         _place_changes(timed, chosen),
         beside is not None and beside.utc and _follows(timed, chosen, beside),
+        bool(np.char.startswith(timed.address[chosen].astype(str), "G").any()),
         len(day) > 0,
         year if year <= (_today() + 1.0) // _YEAR_DAYS else -1.0,
         minutes,
@@ -335,7 +349,12 @@ def _today() -> float:
 
 
 def _judge(
-    timed: Timed, chosen: np.ndarray, source: np.ndarray, reorder_s: float, choice: Choice
+    timed: Timed,
+    chosen: np.ndarray,
+    source: np.ndarray,
+    beside: Beside | None,
+    reorder_s: float,
+    choice: Choice,
 ) -> None:
     """Keep, correct or reject a source that does not agree with the chosen clock."""
     off_s = _offsets_s(timed, chosen, source)
@@ -351,7 +370,10 @@ def _judge(
         f"{_moment(timed, source[0])} in line {timed.line[source[0]]}, where "
         f"{timed.address[used[0]]} has {_moment(timed, used[0])}"
     )
-    if _is_late(timed, chosen, source):
+    untimed = beside is not None or not timed.has_fix[chosen].any()
+    if not alive and untimed and _place_changes(timed, source):
+        choice.notes.append(f"the clock of {name} stands ({both}): its times are not used")
+    elif _is_late(timed, chosen, source):
         choice.kept[source] = True
         choice.notes.append(
             f"{name} repeats fixes of {timed.address[used[0]]} {-usual_s:.3g} s late "
@@ -377,6 +399,40 @@ def _judge(
         )
 
 
+def _leave_out_start(timed: Timed, chosen: np.ndarray, reorder_s: float, choice: Choice) -> None:
+    """Reject times before the first fix that do not lead to it: those of a receiver without one."""
+    fixed = np.flatnonzero(timed.has_fix[chosen])
+    start = chosen[: fixed[0]] if len(fixed) else chosen[:0]
+    start = start[~np.char.endswith(timed.address[start].astype(str), "ZDA")]
+    if len(start) == 0:
+        return
+    first = chosen[fixed[0]]
+    step_s = wrapped_s(timed.clock_s[first] - timed.clock_s[start[-1]])
+    days = timed.day[first] - timed.day[start[-1]]
+    if -reorder_s <= step_s <= leap_s(usual_step_s(timed.clock_s[chosen])) and not abs(days) > 1.0:
+        return
+    choice.used[start] = False
+    for k in start.tolist():
+        choice.rejected[k] = (
+            f"wanted a time that leads to {_moment(timed, first)} of the first fix in line "
+            f"{timed.line[first]}, got {_moment(timed, k)}"
+        )
+
+
+def _settle_zone(timed: Timed, chosen: np.ndarray, beside: Beside | None, choice: Choice) -> None:
+    """Correct a clock without a date that is in local time by stamps in UTC."""
+    if beside is None or not beside.utc or np.isfinite(timed.day[chosen]).any():
+        return
+    off_s = _known(wrapped_s(timed.clock_s[chosen] - beside.at(timed.line[chosen])))
+    zone_s = _ZONE_S * np.rint(np.median(off_s) / _ZONE_S)
+    if zone_s and abs(np.median(off_s) - zone_s) <= _STAMPS_STEADY_S:
+        choice.clock_s = (choice.clock_s - zone_s) % DAY_S
+        choice.notes.append(
+            f"{timed.address[chosen[0]]} is {_hours(zone_s)} off {beside.what}, as local time is "
+            f"({_clock(timed.clock_s[chosen[0]])} in line {timed.line[chosen[0]]}): corrected"
+        )
+
+
 def _is_late(timed: Timed, chosen: np.ndarray, source: np.ndarray) -> bool:
     """Whether a source repeats others some seconds or minutes later."""
     usual_s = float(np.median(_offsets_s(timed, chosen, source)))
@@ -384,17 +440,27 @@ def _is_late(timed: Timed, chosen: np.ndarray, source: np.ndarray) -> bool:
 
 
 def _repeats(timed: Timed, chosen: np.ndarray, source: np.ndarray) -> bool:
-    """Whether most fixes of a source have the place of an earlier line at the same time."""
+    """Whether most fixes of a source have the place of an earlier line at the same time.
+
+    It is at most half as far, in the median, as the place of the fix next to it in the log.
+    """
     mine, its = (k[timed.has_fix[k]] for k in (source, chosen))
     earlier = dict(zip(_milliseconds(timed, its[::-1]), its[::-1].tolist(), strict=True))
     first = map(earlier.get, _milliseconds(timed, mine))
-    same = [
-        other is not None
-        and other < k
-        and bool(np.abs(timed.place_deg[k] - timed.place_deg[other]).max() <= _SAME_PLACE_DEG)
+    pairs = [
+        (k, other)
         for k, other in zip(mine.tolist(), first, strict=True)
+        if other is not None and other < k
     ]
-    return 2 * sum(same) > len(mine)
+    if not 2 * len(pairs) > len(mine):
+        return False
+    again, first = np.array(pairs).T
+    beside = its[_nearest(timed.line[its], timed.line[again])]
+    off_deg = [
+        np.abs(timed.place_deg[k] - timed.place_deg[again]).max(axis=1) for k in (first, beside)
+    ]
+    same_time_deg, same_line_deg = np.median(off_deg, axis=1)
+    return bool(same_time_deg < _CLEARLY * same_line_deg)
 
 
 def _milliseconds(timed: Timed, chosen: np.ndarray) -> list[int]:
@@ -415,6 +481,11 @@ def _settle_dates(
     dated = [[s[np.isfinite(timed.day[s])] for s in clock] for clock in clocks]
     sources = [s for s in dated[0] if len(s)]
     if not sources:
+        if beside is not None and beside.dated:
+            days = (beside.at(timed.line[chosen]) - choice.clock_s[chosen]) / DAY_S
+            choice.day[chosen] = np.rint(days)
+            choice.notes.append(f"no sentence has a date that counts: {beside.what} have it")
+            return
         for source in (s for clock in dated[1:] for s in clock if len(s)):
             user = chosen[_nearest(timed.line[chosen], timed.line[source])]
             utc_s = DAY_S * choice.day[source] + choice.clock_s[source]
