@@ -19,6 +19,7 @@ void define_closest_approach(py::module_& navigation);
 void define_encounter_watch(py::module_& navigation);
 void define_search(py::module_& navigation);
 void define_usv_navigator(py::module_& navigation);
+void define_waypoint_follower(py::module_& navigation);
 
 namespace {
 
@@ -866,6 +867,7 @@ void define_navigation(py::module_& parent) {
   define_encounter_watch(m);
   define_search(m);
   define_usv_navigator(m);
+  define_waypoint_follower(m);
 }
 
 }  // namespace wakeline::python

@@ -40,6 +40,10 @@ struct ReadingStd {
   double compass_rad, velocity_mps, log_mps, rate_of_turn_rad_s;
 };
 
+bool all_finite(const double* row, int count) {
+  return std::all_of(row, row + count, [](double x) { return std::isfinite(x); });
+}
+
 /// A sensor's readings, one row a time, NaN where there is none; empty when it was not there.
 struct Column {
   std::optional<DoubleArray> values;
@@ -58,9 +62,7 @@ struct Column {
   [[nodiscard]] const double* at(py::ssize_t k) const {
     if (!values) return nullptr;
     const double* row = values->data() + k * width;
-    for (int i = 0; i < width; ++i)
-      if (!std::isfinite(row[i])) return nullptr;
-    return row;
+    return all_finite(row, width) ? row : nullptr;
   }
 };
 
@@ -144,6 +146,31 @@ class PyNavigator {
             Vec<double, 1>(rate_rad_s)));
       else
         throw no_such_state(navigator, "a rate of turn", "a gyro bias (states 7 or 8)");
+    });
+  }
+
+  int states() const {
+    return std::visit([](const auto& navigator) { return navigator.kStates; }, navigator_);
+  }
+
+  /// Predicts by a row of the IMU and takes the fix and the heading at the end of the step; each
+  /// row that is not finite is missing. Writes the belief into `mean` and `covariance`.
+  void step(double dt_s, const double* imu, const double* fix, const double* heading,
+            const ReadingStd& std, double* mean, double* covariance) {
+    visit([&](auto& navigator) {
+      require_ok(
+          all_finite(imu, 3) ? navigator.predict(dt_s, to_imu(imu)) : navigator.predict(dt_s),
+          "predict");
+      const auto accept = [](const auto& reading, const char* what) {
+        if (!reading.rejected) require_ok(reading.status, what);
+      };
+      if (all_finite(fix, 2))
+        accept(navigator.update(gnss(std.gnss_m), Vec<double, 2>(fix[0], fix[1])), "gnss");
+      if (all_finite(heading, 1))
+        accept(navigator.update(Compass(std.compass_rad), Vec<double, 1>(heading[0])), "compass");
+      const auto& belief = navigator.estimate();
+      std::copy_n(belief.mean.data(), navigator.kStates, mean);
+      std::copy_n(belief.covariance.data(), belief.covariance.size(), covariance);  // symmetric
     });
   }
 
@@ -344,6 +371,36 @@ class PyNavigator {
   AnyNavigator navigator_;
   Arguments arguments_;
 };
+
+using Array = py::array_t<double>;
+
+/// One step of R navigators with the same states: beliefs (R, N) and (R, N, N).
+std::pair<Array, Array> step_navigators(const std::vector<PyNavigator*>& navigators, double dt_s,
+                                        const DoubleArray& imu, const DoubleArray& gnss,
+                                        const DoubleArray& compass, const ReadingStd& std) {
+  const auto runs = static_cast<py::ssize_t>(navigators.size());
+  const auto rows_of = [&](const char* name, const DoubleArray& rows, py::ssize_t width) {
+    const std::vector<py::ssize_t> wanted =
+        width == 1 ? std::vector{runs} : std::vector{runs, width};
+    require_shape(shape_of(rows) == wanted, name, shape_text(wanted), rows);
+  };
+  rows_of("imu", imu, 3);
+  rows_of("gnss", gnss, 2);
+  rows_of("compass", compass, 1);
+  const py::ssize_t n = runs == 0 ? 0 : navigators[0]->states();
+  for (const PyNavigator* navigator : navigators)
+    if (navigator->states() != n)
+      throw py::value_error("navigators must have the same number of states, got " +
+                            std::to_string(n) + " and " + std::to_string(navigator->states()));
+  Array mean({runs, n}), covariance({runs, n, n});
+  double *to_mean = mean.mutable_data(), *to_covariance = covariance.mutable_data();
+  const py::gil_scoped_release no_python;
+  for (py::ssize_t r = 0; r < runs; ++r)
+    navigators[std::size_t(r)]->step(dt_s, imu.data() + 3 * r, gnss.data() + 2 * r,
+                                     compass.data() + r, std, to_mean + n * r,
+                                     to_covariance + n * n * r);
+  return {std::move(mean), std::move(covariance)};
+}
 
 template <class Model>
 PyNavigator make(const Model& model, const std::string& filter, const UsvOutliers& outliers,
@@ -572,6 +629,52 @@ ValueError
     given without `imu`.
 FilterError
     When the navigator was not started, or a step fails; the navigator is then unchanged.)");
+
+  m.def(
+      "step_navigators",
+      [](const std::vector<PyNavigator*>& navigators, double dt_s, const DoubleArray& imu,
+         const DoubleArray& gnss, const DoubleArray& compass, const DoubleArray& gnss_std,
+         double compass_std) {
+        const ReadingStd std{to_vector("gnss_std_m", gnss_std, 2), compass_std, {}, {}, {}};
+        for (const double each : std.gnss_m) require_positive("gnss_std_m", each);
+        require_positive("compass_std_rad", compass_std);
+        return step_navigators(navigators, dt_s, imu, gnss, compass, std);
+      },
+      py::arg("navigators"), py::arg("dt_s"), py::arg("imu"), py::arg("gnss"), py::arg("compass"),
+      py::kw_only(), py::arg("gnss_std_m") = std::vector<double>{8.0, 7.0},
+      py::arg("compass_std_rad") = deg(1.0),
+      R"(One step of many navigators: `predict`, then the readings at the end of the step.
+
+A simulation in closed loop steps all its runs at once with it; a log as a whole is the work of
+`UsvNavigator.run`, which gives the same beliefs.
+
+Parameters
+----------
+navigators : sequence of UsvNavigator
+    R started navigators with the same number N of states.
+dt_s : float
+imu : (R, 3) array
+    Means over the step: [forward m/s², starboard m/s², yaw rate rad/s].
+gnss : (R, 2) array
+    Positions m, [north, east].
+compass : (R,) array
+    Headings rad.
+gnss_std_m, compass_std_rad : float
+    Standard deviations; that of gnss is [north, east].
+
+In every array a row that is not finite is a missing reading.
+
+Returns
+-------
+(mean, covariance)
+    (R, N) and (R, N, N).
+
+Raises
+------
+ValueError
+    When shapes do not fit, or the navigators differ in the number of states.
+FilterError
+    When a navigator was not started, or a step fails; those before it have made their step.)");
 }
 
 }  // namespace wakeline::python
