@@ -1,4 +1,4 @@
-"""``wakeline navigate``: own ship's solution from a log of its instruments."""
+"""``wakeline navigate``: own ship's solution from a log of its instruments, or of an IMU."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 from wakeline import own_ship, plot
 from wakeline._brief import counted, many
 from wakeline._progress import progress
-from wakeline.recording import NavigationLog, read_nmea, replacing
+from wakeline.recording import NavigationLog, RecordingError, read_imu, read_nmea, replacing
 
 from . import outputs, report
 
@@ -37,16 +37,27 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     """Add the command to the program."""
     parser = commands.add_parser(
         "navigate",
-        help="own ship's solution from an NMEA 0183 log",
+        help="own ship's solution from an NMEA 0183 log or an IMU log",
         description="Reads NMEA 0183, fuses fixes, speeds, headings and rates of turn, and writes "
-        "own.csv and pictures. Parts separated by a gap of a minute are independent. Then "
-        "satellites are hidden for a minute at a time, and the prediction errors are reported. "
+        "own.csv and pictures. A log whose name ends in .csv is that of an IMU: a time, "
+        "forward_mps2, starboard_mps2, yaw_rate_deg_s, and lat_deg, lon_deg and heading_deg or an "
+        "NMEA 0183 log beside it (--nmea); its biases are estimated. Parts separated by a gap of a "
+        "minute are independent. Then satellites are hidden for a minute at a time, and the "
+        "prediction errors are reported. "
         "Problems in the log are counted and listed in problems.csv; none is fatal. The status in "
         "own.csv is ok, coasting (no accepted fix for five seconds), rejected (a fix was rejected) "
         "or jumped (persistent rejected fixes moved the position by over 50 m; until it returns or "
         "all fixes have been accepted for a minute).",
     )
-    parser.add_argument("log", type=Path, metavar="LOG.nmea", help="sentences, one per line")
+    parser.add_argument(
+        "log", type=Path, metavar="LOG", help="sentences, one per line; or .csv with rows of an IMU"
+    )
+    parser.add_argument(
+        "--nmea",
+        type=Path,
+        metavar="LOG.nmea",
+        help="beside an IMU log: what it has no columns for",
+    )
     parser.add_argument(
         "--variation",
         type=_variation_deg,
@@ -59,6 +70,13 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         type=_date,
         metavar="YYYY-MM-DD",
         help="day of the first sentence; overrides the log",
+    )
+    parser.add_argument(
+        "--fix-std",
+        type=_metres_above_zero,
+        metavar="M",
+        default=own_ship.FIX_STD_M,
+        help="standard deviation of a fix, per axis; default %(default)g m",
     )
     parser.add_argument(
         "--smooth",
@@ -91,20 +109,41 @@ def _date(text: str) -> datetime.date:
         raise argparse.ArgumentTypeError(f"{wanted}, got {text!r}") from None
 
 
+def _metres_above_zero(text: str) -> float:
+    try:
+        metres = float(text)
+    except ValueError:
+        metres = np.nan
+    if not 0.0 < metres < np.inf:
+        raise argparse.ArgumentTypeError(f"wanted metres above 0, got {text!r}")
+    return metres
+
+
 def inputs(arguments: argparse.Namespace) -> list[Path]:
-    """The input file of the command line."""
-    return [arguments.log]
+    """The input files of the command line."""
+    return [arguments.log, *([arguments.nmea] if arguments.nmea else [])]
+
+
+def _read(arguments: argparse.Namespace) -> NavigationLog:
+    given = {"variation_deg": arguments.variation, "date": arguments.date}
+    if arguments.log.suffix.lower() == ".csv":
+        return read_imu(arguments.log, arguments.nmea, **given)
+    if arguments.nmea is not None:
+        raise RecordingError(
+            *(arguments.log, "--nmea goes with an IMU log"), wanted="a name that ends in .csv"
+        )
+    return read_nmea(arguments.log, **given)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
     tables = (arguments.out / _OWN, arguments.out / _PROBLEMS)
     outputs.check_no_input("--out", tables, inputs(arguments))
-    log = read_nmea(arguments.log, variation_deg=arguments.variation, date=arguments.date)
+    log = _read(arguments)
     outputs.make_folder(arguments.out)
     print(_input_lines(log), flush=True)
     problems = _write_problems(arguments.out / _PROBLEMS, log)
-    voyage = own_ship.navigate_log(log, smooth=arguments.smooth)
+    voyage = own_ship.navigate_log(log, smooth=arguments.smooth, fix_std_m=arguments.fix_std)
     for note in voyage.notes:
         print(f"note: {note}", flush=True)
     files = [arguments.out / _OWN, *problems]

@@ -6,8 +6,9 @@
 >>> track.position_m.shape == (len(track.time_s), 2)
 True
 
-Without an IMU the state is predicted between readings with the rate of turn, if the log has it.
-With heading and speed through water the state has seven components, including the current; without
+With an IMU (`recording.read_imu`) the state has eight components: position, velocity, heading and
+its biases. Without one it is predicted between readings with the rate of turn, if the log has it.
+With heading and speed through water it has seven components then, including the current; without
 either it has five. If the log has the speed across the hull, the heading and speed of the state are
 those of the motion through the water, which differs from the heading by the leeway.
 """
@@ -15,6 +16,7 @@ those of the motion through the water, which differs from the heading by the lee
 from __future__ import annotations
 
 from .coasting import HORIZONS_S, hold_out, medians, without_hidden
+from .instruments import FIX_STD_M
 from .left_out import rejected_lines, unused, zero_speeds
 from .magnetic import ANY_OFFSET, NO_OFFSET, MagneticOffset, magnetic_offset, wants_offset
 from .readings import Readings, readings_of
@@ -23,6 +25,7 @@ from .voyage import Leg, Voyage, navigate_log, write_own
 
 __all__ = [
     "ANY_OFFSET",
+    "FIX_STD_M",
     "HORIZONS_S",
     "JUMP_M",
     "NO_OFFSET",

@@ -32,6 +32,9 @@ def unused(part: NavigationLog) -> dict[str, np.ndarray]:
         "speeds through the water across the hull alone": water.line[np.isnan(water.ahead_mps)],
         "speeds over ground by log that lack a heading or a side": bottom.line[~over_ground],
         "rates of turn without a heading": turn.line if blind else nothing,
+        "speeds through the water and rates of turn beside an IMU": (
+            np.concatenate([water.line, turn.line]) if len(part.imu) else nothing
+        ),
     }
 
 

@@ -8,9 +8,11 @@ import numpy as np
 
 import wakeline as wl
 from wakeline._brief import brief, many, span
+from wakeline._checks import positive
 from wakeline.recording import NavigationLog
 
-from .instruments import leeway_rad, over_ground_mps, speed_and_course, true_headings
+from .imu import averaged, of_steps
+from .instruments import FIX_STD_M, leeway_rad, over_ground_mps, speed_and_course, true_headings
 from .magnetic import NO_OFFSET, MagneticOffset, wants_offset
 from .times import at
 
@@ -25,7 +27,9 @@ class Readings(NamedTuple):
     water, 0 if unknown, ``bottom_mps`` (T, 2) north and east over ground by a bottom-tracking log,
     ``turn_rate_rad_s`` (T,) to starboard. Directions are relative to the plane's north; they exceed
     true directions by ``lean_rad`` (T,). ``offset_std_rad`` is the standard deviation of the error
-    common to all headings.
+    common to all headings, ``fix_std_m`` that of a fix, per axis. ``imu`` (T, 3) is [forward m/s²,
+    starboard m/s², yaw rate rad/s], the mean of the step that ends at each time, in steps of at
+    least 0.1 s.
     """
 
     plane: wl.navigation.LocalPlane
@@ -39,6 +43,8 @@ class Readings(NamedTuple):
     turn_rate_rad_s: np.ndarray
     lean_rad: np.ndarray
     offset_std_rad: float
+    fix_std_m: float
+    imu: np.ndarray
 
     def __repr__(self) -> str:
         return brief(self, many(len(self.time_s), "time"), span(self.time_s))
@@ -64,6 +70,11 @@ class Readings(NamedTuple):
         return np.isfinite(self.fix_m[:, 0])
 
     @property
+    def has_imu(self) -> bool:
+        """Whether there are readings of an IMU."""
+        return bool(np.isfinite(self.imu).any())
+
+    @property
     def knows_water(self) -> bool:
         """Whether heading and speed through water are available."""
         return bool(np.isfinite(self.heading_rad).any() and np.isfinite(self.log_mps).any())
@@ -73,16 +84,20 @@ def readings_of(
     part: NavigationLog,
     offset: MagneticOffset = NO_OFFSET,
     plane: wl.navigation.LocalPlane | None = None,
+    *,
+    fix_std_m: float = FIX_STD_M,
 ) -> Readings:
     """The readings of a log, with `offset` added to headings of unknown variation.
 
-    The plane is by default tangent to the earth at the first fix.
+    The plane is by default tangent to the earth at the first fix. `fix_std_m` is the standard
+    deviation of a fix, per axis.
 
     Raises
     ------
     ValueError
-        When there is no usable fix, or the clock was set back.
+        When there is no usable fix, the clock was set back, or `fix_std_m` is not positive.
     """
+    positive(fix_std_m=fix_std_m)
     fixes = part.fixes_in_order("set of readings")
     ground, water = part.ground.sound(), part.water.sound()
     plane = plane or fixes.plane()
@@ -107,7 +122,8 @@ def readings_of(
         (bottom.time_s, over_ground_mps(bottom, *headings)),
         (turn.time_s, turn.turn_rate_rad_s),
     )
-    time_s = np.unique(np.concatenate([times for times, _ in series]))
+    imu_s, imu = averaged(part.imu.sound())
+    time_s = np.unique(np.concatenate([imu_s, *(times for times, _ in series)]))
     time_s = time_s[time_s >= fixes.time_s[0]]
     fix, velocity, heading, log, over_bottom, turn_rate = (at(time_s, *one) for one in series)
     leeway = leeway_rad(water, time_s)
@@ -123,6 +139,8 @@ def readings_of(
         turn_rate_rad_s=turn_rate,
         lean_rad=lean_rad(time_s),
         offset_std_rad=offset.std_rad if wants_offset(part) else 0.0,
+        fix_std_m=fix_std_m,
+        imu=of_steps(time_s, imu_s, imu),
     )
 
 

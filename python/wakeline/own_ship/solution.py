@@ -16,15 +16,16 @@ from .magnetic import CURRENT_STD_MPS
 from .readings import Readings, made_good_mps
 from .times import NEAR_S, at, between, first
 
-FIX_STD_M = 3.0
 COMPASS_STD_RAD = np.deg2rad(4.0)  # of a small craft in waves
 LOG_STD_MPS = 0.15
 START_STD_M = 100.0  # at the first fix, which the filter then processes like any other
 START_SPEED_STD_MPS, ANY_SPEED_STD_MPS = 1.0, 20.0  # with a velocity over ground, and without
+START_HEADING_STD_RAD, ANY_HEADING_STD_RAD = np.deg2rad([10.0, 30.0])  # with a heading, and without
 # Random walks over one second, whatever the steps:
 VELOCITY_WALK_MPS, SPEED_WALK_MPS, CURRENT_WALK_MPS = 0.4, 0.1, 0.02
 HEADING_WALK_RAD = np.deg2rad(10.0)  # without a rate of turn
 TURNED_WALK_RAD = np.deg2rad(2.0)  # with a rate of turn, which lags
+IMU_WALK_MPS, IMU_WALK_RAD = 0.02, np.deg2rad(0.05)  # of velocity and heading, with an IMU
 LONGEST_STEP_S, MOST_STEPS = 2.0, 100  # between two readings, however far apart
 GATE_PROBABILITY = 0.999
 
@@ -56,6 +57,9 @@ class OwnTrack:
     position_m2, velocity_m2s2 : ndarray (T, 2, 2)
         Covariances.
     heading_std_rad : ndarray (T,)
+    imu_bias, imu_bias_std : ndarray (T, 3)
+        Of an IMU, and their standard deviations: [forward m/s², starboard m/s², yaw rate rad/s];
+        NaN without one.
     drift_std_mps : ndarray (T,)
         Largest standard deviation of the current over all directions.
     status : ndarray of str (T,)
@@ -79,6 +83,8 @@ class OwnTrack:
     position_m2: np.ndarray
     velocity_m2s2: np.ndarray
     heading_std_rad: np.ndarray
+    imu_bias: np.ndarray
+    imu_bias_std: np.ndarray
     drift_std_mps: np.ndarray
     status: np.ndarray
     jump_m: np.ndarray
@@ -101,10 +107,13 @@ class OwnTrack:
 def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
     """The solution at every reading since the first fix.
 
+    With an IMU it has eight states, with its biases, and an unscented filter; otherwise an extended
+    one of seven states with the current, or of five.
+
     A smoothed solution also uses later readings, up to one that was rejected until readings of its
     kind persisted. The rejected readings are the filter's.
     """
-    states = 7 if readings.knows_water else 5
+    states = 8 if readings.has_imu else 7 if readings.knows_water else 5
     done = _run(states, readings)
     moved_m = _moved_m(readings, done, _velocity(done.mean, states)[0])
     if smooth:
@@ -115,8 +124,11 @@ def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
     velocity, slope = _velocity(mean, states)
     latitude, longitude = readings.plane.place(mean[:, :2])
     heading_std = np.sqrt(covariance[:, row, row] + readings.offset_std_rad**2)
-    known = np.isfinite(readings.heading_rad).any()
+    known = readings.has_imu or np.isfinite(readings.heading_rad).any()
     unknown = np.full(len(mean), np.nan)
+    bias, bias_std = np.full((2, len(mean), 3), np.nan)
+    if states == 8:
+        bias, bias_std = mean[:, 5:], np.sqrt(np.diagonal(covariance, axis1=1, axis2=2)[:, 5:])
     return OwnTrack(
         time_s=readings.time_s,
         latitude_deg=np.degrees(latitude),
@@ -129,6 +141,8 @@ def navigate(readings: Readings, *, smooth: bool = False) -> OwnTrack:
         position_m2=covariance[:, :2, :2],
         velocity_m2s2=slope @ covariance @ np.swapaxes(slope, 1, 2),
         heading_std_rad=heading_std if known else unknown,
+        imu_bias=bias,
+        imu_bias_std=bias_std,
         drift_std_mps=_drift_std_mps(done, readings.offset_std_rad) if states == 7 else unknown,
         status=_status(readings, done.rejected["gnss"], moved_m),
         jump_m=np.hypot(*moved_m.T),
@@ -151,16 +165,17 @@ def _run(states: int, readings: Readings, *, smooth: bool = False) -> _Solved:
     def spread(values: np.ndarray) -> np.ndarray:
         return at(time_s, readings.time_s, values)
 
-    turning = _turning(readings, time_s)
+    within = np.searchsorted(rows, np.arange(len(time_s)))  # the step that each one divides
+    imu = readings.imu[within] if states == 8 else _turning(readings, time_s)
     done = _navigator(states, readings).run(
         time_s,
-        imu=turning,
+        imu=imu,
         gnss=spread(readings.fix_m),
         compass=spread(readings.way_rad),
         velocity=spread(readings.over_ground_mps),
         log=spread(readings.way_mps) if states == 7 else None,
-        imu_std=_motion_std(time_s, np.isfinite(turning[:, 2])),
-        gnss_std_m=[FIX_STD_M, FIX_STD_M],
+        imu_std=_motion_std(time_s, np.isfinite(imu[:, 2]), states),
+        gnss_std_m=[readings.fix_std_m, readings.fix_std_m],
         compass_std_rad=COMPASS_STD_RAD,
         velocity_std_mps=VELOCITY_STD_MPS,
         log_std_mps=LOG_STD_MPS,
@@ -188,6 +203,7 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
     """Start from the first seconds of readings; without a heading, with the course made good."""
     navigator = wl.UsvNavigator(
         states,
+        "ukf" if states == 8 else "ekf",
         speed_walk_mps=SPEED_WALK_MPS,
         current_walk_mps=CURRENT_WALK_MPS,
         current_std_mps=CURRENT_STD_MPS,
@@ -200,13 +216,14 @@ def _navigator(states: int, readings: Readings) -> wl.UsvNavigator:
     under_way = np.hypot(*made_good) > UNDER_WAY_MPS
     course = np.arctan2(made_good[1], made_good[0]) if under_way else first(readings.way_rad, 0.0)
     heading = first(readings.way_rad[soon], course)
+    knows_heading = states != 8 or np.isfinite(readings.way_rad).any()
     navigator.start(
         first(readings.fix_m, np.zeros(2)),
         velocity if knows_velocity else np.zeros(2),
         float(heading),
         position_std_m=[START_STD_M, START_STD_M],
         velocity_std_mps=START_SPEED_STD_MPS if knows_velocity else ANY_SPEED_STD_MPS,
-        heading_std_rad=np.deg2rad(10.0),
+        heading_std_rad=START_HEADING_STD_RAD if knows_heading else ANY_HEADING_STD_RAD,
     )
     return navigator
 
@@ -219,20 +236,20 @@ def _turning(readings: Readings, time_s: np.ndarray) -> np.ndarray:
     return np.column_stack([np.zeros((len(rate), 2)), rate])
 
 
-def _motion_std(time_s: np.ndarray, given: np.ndarray) -> np.ndarray:
+def _motion_std(time_s: np.ndarray, given: np.ndarray, states: int) -> np.ndarray:
     """Standard deviations (T, 2) of acceleration and turn rate per step that give the walks.
 
-    `given` (T,) is whether the step has a rate of turn.
+    `given` (T,) is whether the step has a rate of turn, with 8 states also accelerations.
     """
-    heading_walk_rad = np.where(given, TURNED_WALK_RAD, HEADING_WALK_RAD)
-    walk = np.column_stack([np.full(len(time_s), VELOCITY_WALK_MPS), heading_walk_rad])
+    measured = [IMU_WALK_MPS, IMU_WALK_RAD] if states == 8 else [VELOCITY_WALK_MPS, TURNED_WALK_RAD]
+    walk = np.where(given[:, None], measured, [VELOCITY_WALK_MPS, HEADING_WALK_RAD])
     return walk / np.sqrt(np.diff(time_s, prepend=-np.inf))[:, None]
 
 
 def _velocity(mean: np.ndarray, states: int) -> tuple[np.ndarray, np.ndarray]:
     """Velocity over ground (T, 2) and its slope in the state (T, 2, N)."""
     slope = np.zeros((len(mean), 2, states))
-    if states == 5:
+    if states != 7:
         slope[:, [0, 1], [2, 3]] = 1.0
         return mean[:, 2:4], slope
     ahead = np.column_stack([np.cos(mean[:, 2]), np.sin(mean[:, 2])])

@@ -17,6 +17,7 @@ from wakeline.recording import NavigationLog, replacing
 from wakeline.recording.reach import plane_stretch
 
 from .coasting import hold_out, without_hidden
+from .instruments import FIX_STD_M
 from .left_out import rejected_lines, unused, zero_speeds
 from .magnetic import ANY_OFFSET, NO_OFFSET, MagneticOffset, magnetic_offset, wants_offset
 from .readings import Readings, readings_of
@@ -27,6 +28,10 @@ _COLUMNS = (
     *("heading_deg", "set_deg", "drift_mps", "drift_std_mps"),
     *("north_var_m2", "north_east_cov_m2", "east_var_m2"),
     *("vnorth_var_m2s2", "vnorth_veast_cov_m2s2", "veast_var_m2s2", "heading_std_deg", "status"),
+)
+_BIAS_COLUMNS = (
+    *("forward_bias_mps2", "starboard_bias_mps2", "gyro_bias_deg_s"),
+    *("forward_bias_std_mps2", "starboard_bias_std_mps2", "gyro_bias_std_deg_s"),
 )
 _SHOWN_ROWS = 5
 _FAR_M = 1000e3
@@ -64,7 +69,10 @@ class Voyage:
         if any(wants_offset(leg.part) for leg in self.legs):
             seen = [without_hidden(leg.part, leg.readings) for leg in self.legs]
             offset = magnetic_offset(seen) or ANY_OFFSET
-            of_legs = [readings_of(leg.part, offset, leg.readings.plane) for leg in self.legs]
+            of_legs = [
+                readings_of(leg.part, offset, leg.readings.plane, fix_std_m=leg.readings.fix_std_m)
+                for leg in self.legs
+            ]
         joined: dict[str, dict[float, list[np.ndarray]]] = {}
         for readings in progress(of_legs, len(of_legs), "hiding satellites"):
             for name, errors in hold_out(readings).items():
@@ -76,21 +84,25 @@ class Voyage:
         }
 
 
-def navigate_log(log: NavigationLog, *, smooth: bool = False) -> Voyage:
+def navigate_log(
+    log: NavigationLog, *, smooth: bool = False, fix_std_m: float = FIX_STD_M
+) -> Voyage:
     """Navigate a whole log; parts separated by a gap of a minute are independent.
 
     Parameters
     ----------
     log : NavigationLog
-        From :func:`wakeline.recording.read_nmea`.
+        From :func:`wakeline.recording.read_nmea`, or :func:`wakeline.recording.read_imu`.
     smooth : bool
         Whether each time also uses later readings, up to a gap or to a rejected reading that
         persisted.
+    fix_std_m : float
+        Standard deviation of a fix, per axis.
 
     Raises
     ------
     ValueError
-        When the log has no usable fix.
+        When the log has no usable fix, or `fix_std_m` is not positive.
 
     Examples
     --------
@@ -112,15 +124,17 @@ def navigate_log(log: NavigationLog, *, smooth: bool = False) -> Voyage:
     fixed = [part for part in parts if len(part.fixes.sound())]
     legs = []
     for part in progress(fixed, len(fixed), "navigating"):
-        readings = readings_of(part, offset, plane)
+        readings = readings_of(part, offset, plane, fix_std_m=fix_std_m)
         legs.append(Leg(part, readings, navigate(readings, smooth=smooth)))
-    return Voyage(legs, [*notes, *_doubt_notes(legs), *_order_notes(legs)])
+    notes += [*_bias_notes(legs), *_doubt_notes(legs), *_order_notes(legs)]
+    return Voyage(legs, notes)
 
 
 def write_own(path: str | Path, tracks: Sequence[OwnTrack]) -> None:
     """Write solutions as an own-ship file, which ``wakeline track --own`` takes.
 
-    `path` is replaced only when the new file is complete.
+    With an IMU further columns have its biases. `path` is replaced only when the new file is
+    complete.
 
     Parameters
     ----------
@@ -132,13 +146,14 @@ def write_own(path: str | Path, tracks: Sequence[OwnTrack]) -> None:
     path = Path(path)
     with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(_COLUMNS)
-        rows = (row for track in tracks for row in _csv_rows(track))
+        has_imu = any(np.isfinite(track.imu_bias).any() for track in tracks)
+        writer.writerow((*_COLUMNS, *_BIAS_COLUMNS) if has_imu else _COLUMNS)
+        rows = (row for track in tracks for row in _csv_rows(track, has_imu))
         total = sum(len(track.time_s) for track in tracks)
         writer.writerows(progress(rows, total, f"writing {path.name}"))
 
 
-def _csv_rows(track: OwnTrack) -> Iterator[list[Any]]:
+def _csv_rows(track: OwnTrack, has_imu: bool) -> Iterator[list[Any]]:
     place, speed = track.position_m2, track.velocity_m2s2
     numbers = np.column_stack(
         [
@@ -153,15 +168,22 @@ def _csv_rows(track: OwnTrack) -> Iterator[list[Any]]:
         ]
     )
     where = np.column_stack([track.latitude_deg, track.longitude_deg])
-    columns = (track.time_s, where, track.position_m, numbers, track.status)
-    for time_s, where_deg, place_m, row, status in zip(*columns, strict=True):
+    biases = np.column_stack([track.imu_bias, track.imu_bias_std])[:, : 6 * has_imu]
+    biases[:, 2::3] = np.degrees(biases[:, 2::3])
+    columns = (track.time_s, where, track.position_m, numbers, track.status, biases)
+    for time_s, where_deg, place_m, row, status, bias in zip(*columns, strict=True):
         yield [
             f"{time_s:.3f}",
             *(f"{value:.8f}" for value in where_deg),
             *(f"{value:.3f}" for value in place_m),
-            *("" if np.isnan(value) else f"{value:.6g}" for value in row),
+            *map(_cell, row),
             status,
+            *map(_cell, bias),
         ]
+
+
+def _cell(value: float) -> str:
+    return "" if np.isnan(value) else f"{value:.6g}"
 
 
 def _magnetic_offset(
@@ -217,6 +239,19 @@ def _far_notes(log: NavigationLog, plane: wl.LocalPlane) -> Iterator[str]:
             f"stretched by {percent:.3g} % across the line to them, and speeds and drift with it: "
             "split the log before that"
         )
+
+
+def _bias_notes(legs: Sequence[Leg]) -> Iterator[str]:
+    """The biases of the IMU at the end of the last leg that has them."""
+    for leg in legs[::-1]:
+        bias, std = leg.track.imu_bias[-1], leg.track.imu_bias_std[-1]
+        if np.isfinite(bias).all():
+            forward, starboard = (
+                f"{b:+.3f} ± {s:.3f}" for b, s in zip(bias[:2], std, strict=False)
+            )
+            gyro = f"{np.degrees(bias[2]):+.3f} ± {np.degrees(std[2]):.3f} °/s"
+            yield f"biases of the IMU: forward {forward}, starboard {starboard} m/s², gyro {gyro}"
+            return
 
 
 def _doubt_notes(legs: Sequence[Leg]) -> Iterator[str]:

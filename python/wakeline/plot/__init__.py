@@ -17,6 +17,7 @@ from .comparison import (
 )
 from .maps import ellipse_outline, map, map_view
 from .own_ship import (
+    biases_over_time,
     course_over_time,
     drift_over_time,
     own_map,
@@ -54,6 +55,7 @@ __all__ = [
     "MUTED",
     "PALETTE",
     "TEXT_PT",
+    "biases_over_time",
     "circle_outline",
     "course_over_time",
     "course_panel",

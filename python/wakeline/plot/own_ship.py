@@ -1,7 +1,9 @@
-"""Own ship's solution: its path, and speed, course and drift over time."""
+"""Own ship's solution: its path, and speed, course, drift and biases over time."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -180,6 +182,32 @@ def drift_over_time(
     return name_lines(_over_time(from_zero(ax), "drift (kn)"))
 
 
+def biases_over_time(
+    ax: Axes,
+    time_s: np.ndarray,
+    bias: Mapping[str, np.ndarray],
+    std: Mapping[str, np.ndarray],
+    ylabel: str,
+) -> Axes:
+    """Biases of an IMU by name over time, with two standard deviations; returns `ax`."""
+    time_s = shaped("time_s", time_s, None)
+    minutes = (time_s - (time_s[0] if len(time_s) else 0.0)) / 60.0
+    low, high = [], []
+    for color, (name, values) in zip((PALETTE[0], PALETTE[1]), bias.items(), strict=False):
+        values = shaped(f"bias of {name}", values, len(time_s))
+        spread = 2.0 * shaped(f"std of {name}", std[name], len(time_s))
+        ax.fill_between(
+            minutes, values - spread, values + spread, color=color, alpha=0.18, linewidth=0
+        )
+        ax.plot(minutes, values, color=color, linewidth=1.2, label=name)
+        settled = len(values) // 10  # the wide beginning would hide the rest
+        low.append(np.min((values - 2.0 * spread)[settled:], initial=np.inf))
+        high.append(np.max((values + 2.0 * spread)[settled:], initial=-np.inf))
+    if len(time_s):
+        ax.set_ylim(min(low), max(high))
+    return name_lines(_over_time(ax, ylabel))
+
+
 def own_map_figure(leg: Leg, *, name: str = "own ship") -> Figure:
     """A figure of one :func:`own_map`: a leg of a voyage and its fixes."""
     fig, track = figure(7.2, 6.4), leg.track
@@ -196,15 +224,45 @@ def own_map_figure(leg: Leg, *, name: str = "own ship") -> Figure:
 
 
 def own_time_figure(leg: Leg) -> Figure:
-    """A figure of speed, course and, where the current is known, drift over time."""
+    """A figure of speed, course and, where known, drift or the biases of an IMU over time."""
     track, readings = leg.track, leg.readings
-    knows_drift = bool(np.isfinite(track.current_mps).any())
-    fig = figure(7.2, 6.8 if knows_drift else 4.6)
-    panels = fig.subplots(2 + knows_drift, 1, sharex=True)
-    speed_over_time(panels[0], track.time_s, np.hypot(*track.velocity_mps.T), readings.log_mps)
-    course_over_time(panels[1], track.time_s, track.course_rad, track.heading_rad)
-    for ax in panels[2:]:
-        drift_over_time(ax, track.time_s, track.current_mps, readings.time_s[readings.has_fix])
+    time_s = track.time_s
+    views = [
+        partial(
+            speed_over_time,
+            time_s=time_s,
+            over_ground_mps=np.hypot(*track.velocity_mps.T),
+            through_water_mps=readings.log_mps,
+        ),
+        partial(
+            course_over_time,
+            time_s=time_s,
+            course_rad=track.course_rad,
+            heading_rad=track.heading_rad,
+        ),
+    ]
+    if np.isfinite(track.current_mps).any():
+        fix_s = readings.time_s[readings.has_fix]
+        current_mps = track.current_mps
+        views.append(
+            partial(drift_over_time, time_s=time_s, current_mps=current_mps, fix_time_s=fix_s)
+        )
+    if readings.has_imu:
+        for names, ylabel, unit in (
+            ({"forward": 0, "starboard": 1}, "bias (m/s²)", 1.0),
+            ({"gyro": 2}, "bias (°/s)", np.degrees(1.0)),
+        ):
+            bias, std = (
+                {name: unit * values[:, k] for name, k in names.items()}
+                for values in (track.imu_bias, track.imu_bias_std)
+            )
+            views.append(
+                partial(biases_over_time, time_s=time_s, bias=bias, std=std, ylabel=ylabel)
+            )
+    fig = figure(7.2, 0.2 + 2.2 * len(views))
+    panels = fig.subplots(len(views), 1, sharex=True)
+    for ax, view in zip(panels, views, strict=True):
+        view(ax)
     for ax in panels[:-1]:
         ax.set_xlabel("")
     fig.align_ylabels(panels)

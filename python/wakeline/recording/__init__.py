@@ -15,6 +15,7 @@ from .ais_csv import AisRecording, AisTrack, read_ais
 from .asterix_video import VideoReport, is_video, read_video, write_video
 from .errors import RecordingError
 from .files import replacing
+from .imu_csv import read_imu, write_imu
 from .model import Episode, OwnShipMotion, Recording, Scan
 from .nmea import NavigationLog, NmeaProblem, NmeaReport, read_nmea
 from .own_csv import read_own_ship
@@ -44,11 +45,13 @@ __all__ = [
     "is_video",
     "load",
     "load_ais",
+    "load_imu",
     "load_navigation",
     "load_radar",
     "names",
     "radar_names",
     "read_ais",
+    "read_imu",
     "read_nmea",
     "read_own_ship",
     "read_plots",
@@ -57,6 +60,7 @@ __all__ = [
     "replacing",
     "revolution_s",
     "scan_numbers",
+    "write_imu",
     "write_plots",
     "write_tracks",
     "write_video",
@@ -117,6 +121,15 @@ def load_navigation(*, variation_deg: float | None = None) -> NavigationLog:
     """
     with resources.as_file(_data() / "irene") as folder:
         return read_nmea(folder / "irene.nmea", variation_deg=variation_deg)
+
+
+def load_imu() -> NavigationLog:
+    """The bundled log of an IMU with GNSS and compass: a simulated mission of 6 minutes.
+
+    ``scenario.USV_EXAMPLE.write_log`` makes it; one minute of it is without GNSS.
+    """
+    with resources.as_file(_data() / "usv") as folder:
+        return read_imu(folder / "usv.csv")
 
 
 def _data():

@@ -213,6 +213,25 @@ class RateOfTurn(Series):
     turn_rate_rad_s: np.ndarray
 
 
+@dataclass(frozen=True, repr=False)
+class ImuReadings(Series):
+    """Readings of an inertial measurement unit, gravity removed (`read_imu`; NMEA 0183 has none).
+
+    Each is the mean since the reading before it.
+
+    Attributes
+    ----------
+    forward_mps2, starboard_mps2 : ndarray (n,)
+        Acceleration along and across the hull.
+    yaw_rate_rad_s : ndarray (n,)
+        Positive to starboard.
+    """
+
+    forward_mps2: np.ndarray
+    starboard_mps2: np.ndarray
+    yaw_rate_rad_s: np.ndarray
+
+
 @dataclass(frozen=True)
 class NmeaProblem:
     """A problem in a log.
@@ -295,6 +314,7 @@ class NavigationLog:
     water : WaterSpeed
     bottom : BottomTrack
     turn : RateOfTurn
+    imu : ImuReadings
     dated : bool
         Whether the log or the caller gives the day; otherwise times count from the midnight before
         the first.
@@ -313,6 +333,7 @@ class NavigationLog:
     water: WaterSpeed
     bottom: BottomTrack
     turn: RateOfTurn
+    imu: ImuReadings
     dated: bool
     set_back_lines: np.ndarray
     report: NmeaReport
@@ -444,4 +465,5 @@ SERIES = {
     "water": WaterSpeed,
     "bottom": BottomTrack,
     "turn": RateOfTurn,
+    "imu": ImuReadings,
 }
