@@ -14,7 +14,7 @@ import pytest
 from wakeline import _progress, own_ship
 from wakeline.cli import main
 from wakeline.navigation import LocalPlane
-from wakeline.own_ship import coasting, solution
+from wakeline.own_ship import coasting
 from wakeline.recording import read_nmea
 from wakeline.recording.own_csv import read_own
 
@@ -158,7 +158,7 @@ def test_the_bundled_log_coasts_better_than_on_a_straight(tmp_path, capsys):
 @pytest.mark.parametrize("water", [True, False])
 def test_the_first_fix_is_taken_once(tmp_path, water):
     first = navigated(tmp_path, voyage(minutes=1, water=water))[0]
-    np.testing.assert_allclose(float(first["north_var_m2"]), solution.FIX_STD_M**2, rtol=0.01)
+    np.testing.assert_allclose(float(first["north_var_m2"]), own_ship.FIX_STD_M**2, rtol=0.01)
 
 
 def test_set_and_drift_come_out(tmp_path):

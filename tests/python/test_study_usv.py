@@ -11,12 +11,19 @@ from wakeline import study
 from wakeline.cli import main
 from wakeline.scenario import Obstacle, UsvMission
 from wakeline.study import usv_navigation as usv
+from wakeline.study.usv_closed_loop import CLOSED_METRICS
 
 RUNS = 40
 SCENARIOS = [f"current_{current}" for current in (0.5, 0.3, 0.15, 0.7, 1.0)]
 ESTIMATORS = [
     *("gnss_compass", "ukf5_known_bias", "ukf5_no_bias", "ukf8", "ekf8", "ukf7_current"),
     *("smoother8", "bound8", "smoother_bound8"),
+]
+LOOPS = [f"loop_{name}" for name in ("current_0.5", "tide", "outages", "multipath", "iron")]
+LOOPS += ["loop_iron_calibrated", "loop_all"]
+PILOTS = [
+    *("truth", "gnss_compass", "ukf5_known_bias", "ukf5_no_bias", "ukf8", "ekf8", "ukf7_current"),
+    "ukf8_uncompensated",
 ]
 ERRORS = ("north_mse_m2", "east_mse_m2", "heading_mse_deg2")
 
@@ -145,11 +152,14 @@ def test_numbers_of_a_mission_that_are_none_are_rejected(name, value, wanted):
 
 
 def test_rows_have_the_scenarios_the_estimators_and_the_metrics(small):
-    assert list(dict.fromkeys(row["scenario"] for row in small.rows)) == SCENARIOS
-    for scene in SCENARIOS:
-        assert [r["estimator"] for r in small.rows if r["scenario"] == scene] == ESTIMATORS
+    assert list(dict.fromkeys(row["scenario"] for row in small.rows)) == SCENARIOS + LOOPS
+    for scene in SCENARIOS + LOOPS:
+        names = [r["estimator"] for r in small.rows if r["scenario"] == scene]
+        correlated = ["ukf8_correlated"] if scene in ("loop_multipath", "loop_all") else []
+        assert names == (ESTIMATORS if scene in SCENARIOS else PILOTS + correlated)
     for row in small.rows:
-        assert tuple(row)[2:] == usv.METRICS
+        metrics = usv.METRICS if row["scenario"] in SCENARIOS else CLOSED_METRICS
+        assert tuple(row)[2:] == metrics
         assert all(value is None or np.isfinite(value) for value in list(row.values())[2:])
     assert "usv-navigation" in study.names()
 
@@ -248,15 +258,22 @@ def test_the_paper_stands_below_ours(small):
 
 def test_pictures_are_drawn(small, tmp_path):
     files = small.save_pictures(tmp_path)
-    assert [f.stem for f in files] == ["usv-mission", "usv-errors", "usv-biases"]
+    assert [f.stem for f in files] == [
+        *("usv-mission", "usv-errors", "usv-biases"),
+        *("usv-closed-loop", "usv-cross-track", "usv-compass"),
+    ]
     assert all(f.read_bytes().startswith(b"\x89PNG") for f in files)
 
 
 @pytest.mark.parametrize("seed", [0, 3])
 def test_what_is_found_of_a_bias_is_seen_all_the_time(seed):
     pytest.importorskip("matplotlib")
-    (picture,) = (one for one in usv.run(1, seed).pictures if one.name == "usv-biases")
-    for ax in picture.draw().axes:
+    from wakeline import plot
+
+    mission = usv.missions()[usv.SHOWN]
+    beliefs = usv.navigate(usv.ESTIMATORS[usv.DEFAULT], mission, mission.draw(1, [seed, 0]), 0)
+    for axis in range(3):
+        ax = usv._draw_bias(plot.figure().add_subplot(), mission, beliefs, axis)
         low, high = ax.get_ylim()
         found = ax.lines[0].get_ydata()
         assert low <= found.min()
@@ -268,5 +285,5 @@ def test_the_command_writes_the_rows(no_pictures, tmp_path, capsys):
     assert main(["study", "run", "usv-navigation", "--runs", "1", "--json", str(file)]) == 0
     found = json.loads(file.read_text())
     assert found["name"] == "usv-navigation"
-    assert len(found["rows"]) == len(SCENARIOS) * len(ESTIMATORS)
+    assert len(found["rows"]) == len(SCENARIOS) * len(ESTIMATORS) + len(LOOPS) * len(PILOTS) + 2
     assert "ukf8" in capsys.readouterr().out

@@ -29,7 +29,7 @@ class Readings(NamedTuple):
     true directions by ``lean_rad`` (T,). ``offset_std_rad`` is the standard deviation of the error
     common to all headings, ``fix_std_m`` that of a fix, per axis. ``imu`` (T, 3) is [forward m/s²,
     starboard m/s², yaw rate rad/s], the mean of the step that ends at each time, in steps of at
-    least 0.1 s.
+    least 0.1 s; None without an IMU.
     """
 
     plane: wl.navigation.LocalPlane
@@ -43,8 +43,8 @@ class Readings(NamedTuple):
     turn_rate_rad_s: np.ndarray
     lean_rad: np.ndarray
     offset_std_rad: float
-    fix_std_m: float
-    imu: np.ndarray
+    fix_std_m: float = FIX_STD_M
+    imu: np.ndarray | None = None
 
     def __repr__(self) -> str:
         return brief(self, many(len(self.time_s), "time"), span(self.time_s))
@@ -72,7 +72,7 @@ class Readings(NamedTuple):
     @property
     def has_imu(self) -> bool:
         """Whether there are readings of an IMU."""
-        return bool(np.isfinite(self.imu).any())
+        return self.imu is not None and bool(np.isfinite(self.imu).any())
 
     @property
     def knows_water(self) -> bool:

@@ -16,7 +16,7 @@ from .radar import RadarSimulator
 from .scenario import AnyTruth, Scenario
 from .track_truth import TrackTruth, smoothed
 from .truth import Segment, Truth, segments_from_table
-from .usv_mission import Obstacle, UsvLogs, UsvMission, UsvVoyage
+from .usv_mission import USV_EXAMPLE, Obstacle, UsvLogs, UsvMission, UsvPassage, UsvVoyage
 from .video import (
     Land,
     RadarVideoSimulator,
@@ -30,6 +30,7 @@ from .video import (
 from .voyage import Voyage, VoyageReadings, reckoning_voyage
 
 __all__ = [
+    "USV_EXAMPLE",
     "AnyTruth",
     "HardTurn",
     "HardTurnRuns",
@@ -44,6 +45,7 @@ __all__ = [
     "Truth",
     "UsvLogs",
     "UsvMission",
+    "UsvPassage",
     "UsvVoyage",
     "VideoScene",
     "VideoTarget",

@@ -4,7 +4,8 @@
 Andreeva, V. V. Khanychev): a mission of 800 m by 800 m in a current, an unscented Kalman filter of
 five states. Ours also estimates the biases of the IMU, and is compared with the Cramér-Rao bound.
 
-Scenarios are ``current_0.5`` and so on, in m/s. In full also the paper's filter with its figures of
+Scenarios are ``current_0.5`` and so on, in m/s; those that begin with ``loop_`` are steered by the
+estimates (`usv_closed_loop`). In full also the paper's filter with its figures of
 the IMU as variances, ours with accelerations rotated by the heading at the start of a step, and
 with augmented noise.
 """
@@ -23,6 +24,8 @@ from wakeline import plot
 from wakeline.scenario import UsvLogs, UsvMission, UsvVoyage
 
 from .base import Picture, Plan, Published, Request, Rows, Study
+from .usv_closed_loop import ClosedLoop, closed_loops, closed_pictures
+from .usv_estimators import ESTIMATORS, IN_FULL, Estimator, motion_of, navigator_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,10 +69,11 @@ filter starts at the true position, the bound averages over initial errors: over
 filter may be below it, and the second half is the fair comparison. ukf5_known_bias, the paper's
 filter, is given the biases; ukf8 estimates them. ukf7_current assumes that speed through water and
 current never change, the bound does not. Errors hardly depend on the current; that the paper's fall
-with it is chance."""
+with it is chance. In scenarios that begin with loop_ the estimator steers: the cross-track error is
+the distance from the planned path, a success arrives without touching an obstacle."""
 
 
-# The missions and the estimators ------------------------------------------------------------------
+# The missions -------------------------------------------------------------------------------------
 
 
 def missions() -> dict[str, UsvMission]:
@@ -86,60 +90,14 @@ def missions() -> dict[str, UsvMission]:
     }
 
 
-class Estimator(NamedTuple):
-    """A navigator and its options.
-
-    Attributes
-    ----------
-    states : int
-    filter : str
-    options : mapping
-        Of `wl.UsvNavigator`.
-    known_bias : bool
-        Whether the biases are subtracted from its IMU's readings.
-    smooth : bool
-    """
-
-    states: int
-    filter: str
-    options: Mapping[str, float] = {}
-    known_bias: bool = False
-    smooth: bool = False
-
-
-# The paper rejects nothing.
-_NO_GATE = {"gate_probability": 1.0 - 1e-12, "rejections": 0}
-_STEADY = {"speed_walk_mps": 1e-4, "current_walk_mps": 1e-4}
-# The paper's figures of the IMU as printed: variances.
-_PRINTED = {
-    "acceleration_std_mps2": np.sqrt(0.004),
-    "yaw_rate_std_rad_s": np.deg2rad(np.sqrt(0.033)),
-}
-
-ESTIMATORS = {
-    "ukf5_known_bias": Estimator(5, "ukf", known_bias=True),
-    "ukf5_no_bias": Estimator(5, "ukf", _NO_GATE),
-    "ukf8": Estimator(8, "ukf"),
-    "ekf8": Estimator(8, "ekf"),
-    "ukf7_current": Estimator(7, "ukf", _STEADY),
-    "smoother8": Estimator(8, "ekf", smooth=True),
-}
-IN_FULL = {
-    "ukf5_printed_noise": Estimator(5, "ukf", _PRINTED, known_bias=True),
-    "ukf8_turned_at_start": Estimator(8, "ukf", {"turned_at": 0.0}),
-    "augmented_ukf8": Estimator(8, "augmented_ukf"),
-}
-
-
 def navigate(estimator: Estimator, mission: UsvMission, logs: UsvLogs, run: int) -> Any:
     """The beliefs of an estimator along a run, an `UsvRun`.
 
     It starts at the true position and heading, with the velocity through the water.
     """
     truth = mission.voyage
-    heading = truth.heading_rad[0]
-    navigator = wl.UsvNavigator(estimator.states, estimator.filter, **estimator.options)
-    navigator.start(truth.position_m[0], truth.velocity_mps[0] - mission.current, heading)
+    through_water = truth.velocity_mps[0] - mission.current
+    navigator = navigator_of(estimator, truth.position_m[0], through_water, truth.heading_rad[0])
     return navigator.run(
         truth.time_s,
         logs.imu[run] - np.array(mission.imu_bias) * estimator.known_bias,
@@ -202,26 +160,6 @@ def raw(mission: UsvMission, logs: UsvLogs) -> Outcome:
         axis=-1,
     )
     return Outcome(np.mean(_shown(error[:, 1:]) ** 2, axis=0))
-
-
-def motion_of(mean: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(T, 5) and (T, 5, 5) of [north, east, v_north, v_east, heading] from any belief.
-
-    With 7 states the velocity over ground is the sum of that through the water and the current.
-    """
-    if mean.shape[1] != 7:
-        return mean[:, :5], covariance[:, :5, :5]
-    heading, speed = mean[:, 2], mean[:, 3]
-    ahead = np.stack([np.cos(heading), np.sin(heading)], axis=1)
-    across = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
-    by_state = np.zeros((len(mean), 5, 7))
-    by_state[:, [0, 1, 4], [0, 1, 2]] = 1.0
-    by_state[:, 2:4, 2] = speed[:, None] * across
-    by_state[:, 2:4, 3] = ahead
-    by_state[:, [2, 3], [5, 6]] = 1.0
-    velocity = speed[:, None] * ahead + mean[:, 5:]
-    motion = np.column_stack([mean[:, :2], velocity, heading])
-    return motion, by_state @ covariance @ by_state.transpose(0, 2, 1)
 
 
 def _motion(truth: UsvVoyage) -> np.ndarray:
@@ -303,7 +241,7 @@ def _step(
 
 def _plan(request: Request) -> Plan:
     chosen = ESTIMATORS | (IN_FULL if request.full else {})
-    jobs: dict[tuple[str, str], Callable[[], Outcome]] = {}
+    jobs: dict[tuple[str, str], Callable[[], Outcome | ClosedLoop]] = {}
     for k, (scene, mission) in enumerate(missions().items()):
         logs = mission.draw(request.runs, [request.seed, k])
         least = bound(mission)
@@ -312,6 +250,7 @@ def _plan(request: Request) -> Plan:
             jobs[scene, name] = partial(evaluate, estimator, mission, logs)
         jobs[scene, "bound8"] = least.outcome
         jobs[scene, "smoother_bound8"] = partial(least.outcome, smoothed=True)
+    jobs |= closed_loops(request.runs, request.seed)
     return Plan(
         jobs=jobs,
         rows=_rows,
@@ -322,14 +261,14 @@ def _plan(request: Request) -> Plan:
 
 STUDY = Study(
     "usv-navigation",
-    "an unmanned vessel by IMU, GNSS and compass: biases known, ignored and estimated",
+    "an unmanned vessel by IMU, GNSS and compass: biases ignored and estimated, in closed loop",
     _plan,
     published={"paper": PAPER, "reference": REFERENCE},
 )
 run = STUDY.run
 
 
-def _rows(done: Mapping[tuple[str, str], Outcome]) -> Rows:
+def _rows(done: Mapping[tuple[str, str], Outcome | ClosedLoop]) -> Rows:
     return [
         {"scenario": scene, "estimator": name} | outcome.figures()
         for (scene, name), outcome in done.items()
@@ -382,6 +321,7 @@ def _pictures(done: Mapping[tuple[str, str], Outcome], seed: int) -> tuple[Pictu
             ),
             size_in=(7.2, 6.4),
         ),
+        *closed_pictures(done, seed),
     )
 
 
