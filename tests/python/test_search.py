@@ -412,6 +412,24 @@ def test_wind_from_a_file_is_a_series_or_a_field(tmp_path):
         read(tmp_path, text, wind="time_h,speed_mps,from_deg\n0,6,270\n12,,300\n")
 
 
+def test_earlier_sorties_without_success_update_the_cloud(tmp_path):
+    before = read(tmp_path)
+    cloud = before.cloud(2000)
+    plan = ws.naive_plan(before.units, cloud)
+    ws.write_routes(tmp_path / "routes.csv", plan, before)
+    more = '[[searched]]\nfile = "routes.csv"\nsweep_width_m = 700\n'
+    after = read(tmp_path, SCENARIO + more)
+    expected = cloud.searched(plan.potential(cloud)).weight
+    found = after.cloud(2000)
+    assert found.weight == pytest.approx(expected / expected.sum(), abs=2e-6)
+    assert plan.pos(found) < plan.pos(cloud)
+    with pytest.raises(SettingsError, match="searched 1"):
+        read(tmp_path, SCENARIO + more + 'unit = "frigate"')
+    (tmp_path / "routes.csv").write_text("time_h,lat_deg,lon_deg\n2,50,-4\n1,50,-4\n")
+    with pytest.raises(wl.recording.RecordingError, match=r"routes\.csv"):
+        read(tmp_path, SCENARIO + more)
+
+
 # The command -------------------------------------------------------------------------------------
 
 

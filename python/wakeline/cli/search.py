@@ -127,12 +127,12 @@ def _sorties(scenario: ws.SearchScenario, cloud: ws.Cloud, plan: ws.Plan) -> lis
 
     POC is that of the object not found by the sorties before; POS sums to that of the plan.
     """
-    described = []
+    described, whole = [], cloud
     for sortie in plan.sorties:
         unit, pattern, poc = sortie.unit, sortie.pattern, sortie.poc(cloud)
         before = cloud.weight.sum()
         cloud = cloud.searched(sortie.potential(cloud, plan.law))
-        met = unit.intercept(cloud)
+        met = unit.intercept(whole)
         along_m, across_m = pattern.sides_m
         time_s, position_m = ws.route_points(sortie)
         degrees = scenario.degrees(position_m)

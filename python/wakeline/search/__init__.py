@@ -18,7 +18,7 @@ from .drift import Cloud, SearchObject, drift, on_land
 from .environment import Environment, Flow, Tide
 from .optimizer import optimized_plan
 from .patterns import PATTERNS, Pattern, datum_square
-from .plan import DETECTION_LAWS, Plan, Sortie, Unit, naive_plan, success
+from .plan import DETECTION_LAWS, Plan, Sortie, Track, Unit, naive_plan, success
 from .routes import route_points, write_gpx, write_routes
 from .scenario import SearchScenario, example_names, read_scenario
 
@@ -35,6 +35,7 @@ __all__ = [
     "SearchScenario",
     "Sortie",
     "Tide",
+    "Track",
     "Unit",
     "datum_square",
     "drift",

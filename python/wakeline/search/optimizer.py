@@ -109,6 +109,8 @@ def _planned(
         others = [sortie for j, sortie in sorties.items() if j != k]
         cloud = whole if k in sorties else regions[k]
         rest = cloud.searched(Plan(tuple(others), law).potential(cloud))
+        if not rest.weight.any():  # a share of no particle, or all are found
+            rest = whole
         known = [kind for kind in kinds if k not in sorties or sorties[k].pattern.kind == kind]
         found = [
             _best_sortie(units[k], rest, law, kind, others, sorties.get(k), rng) for kind in known
@@ -147,7 +149,7 @@ def _best_sortie(
     else:
         first = [before.pattern]
     results = sorted(map(tried, first), key=lambda one: -one[1])[:_BEST_KEPT]
-    size_m = np.sqrt(np.trace(cloud.covariance_m2(unit.start_s)))
+    size_m = _spread_m(unit, cloud, unit.start_s)
     best, pos = max(
         (_improved(*one, tried, size_m, rng) for one in results if one[0] is not None),
         key=lambda one: one[1],
@@ -169,8 +171,10 @@ def _set_apart(unit: Unit, pattern: Pattern, others: Sequence[Sortie]) -> Patter
         if hit is None:
             break
         away_m = pattern.center_m - hit.pattern.center_m
-        step_m = _PUSH * min(sortie.pattern.sides_m)
-        push_m = step_m * away_m / max(np.hypot(*away_m), 1.0)
+        if np.hypot(*away_m) < 1.0:
+            away_m = np.array([np.cos(pattern.orientation_rad), np.sin(pattern.orientation_rad)])
+        step_m = _PUSH * max(min(sortie.pattern.sides_m), min(hit.pattern.sides_m))
+        push_m = step_m * away_m / np.hypot(*away_m)
         pattern = replace(pattern, center_m=pattern.center_m + push_m)
         sortie = Sortie.on(unit, pattern)
         if sortie is None:
@@ -191,7 +195,7 @@ def _first_patterns(
     chosen = rng.choice(len(cloud), _FIRST_TRIES, p=cloud.weight / cloud.weight.sum())
     places_m = cloud.at(middle_s)[chosen]
     axis_rad = _long_axis_rad(cloud, middle_s)
-    spread_m = np.sqrt(np.trace(cloud.covariance_m2(middle_s)))
+    spread_m = _spread_m(unit, cloud, middle_s)
     for k, place_m in enumerate(places_m):
         yield Pattern(
             kind,
@@ -204,6 +208,11 @@ def _first_patterns(
             leg_count(length_m, unit.sweep_width_m, _aspect(kind, rng)),
             mirrored=bool(rng.random() < 0.5),
         )
+
+
+def _spread_m(unit: Unit, cloud: Cloud, time_s: float) -> float:
+    """Size of what a unit searches: the cloud at a time, blurred by the sweep width."""
+    return np.sqrt(np.trace(cloud.covariance_m2(time_s)) + unit.sweep_width_m**2)
 
 
 def _long_axis_rad(cloud: Cloud, time_s: float) -> float:

@@ -87,23 +87,50 @@ class Unit:
 
 
 @dataclass(frozen=True)
-class Sortie:
-    """A unit on a pattern.
+class Track:
+    """A track on which an object is looked for.
+
+    Attributes
+    ----------
+    time_s : (K,) array
+        At its turning points, in order.
+    position_m : (K, 2) array
+        [north, east].
+    sweep_width_m : float
+    """
+
+    time_s: np.ndarray
+    position_m: np.ndarray
+    sweep_width_m: float
+
+    def potential(
+        self, cloud: Cloud, law: str, from_s: float = -np.inf, until_s: float = np.inf
+    ) -> np.ndarray:
+        """-log of the probability (n,) that each particle is missed, between two times."""
+        first_s, last_s = max(from_s, self.time_s[0]), min(until_s, self.time_s[-1])
+        if not first_s < last_s:
+            return np.zeros(len(cloud))
+        grid_s = cloud.time_s
+        time_s = np.concatenate([[first_s, last_s], self.time_s, grid_s])
+        time_s = np.unique(time_s[(first_s <= time_s) & (time_s <= last_s)])
+        unit_m = np.column_stack([np.interp(time_s, self.time_s, p) for p in self.position_m.T])
+        return navigation.detection_potential(
+            law, self.sweep_width_m, time_s, unit_m, grid_s, cloud.position_m
+        )
+
+
+@dataclass(frozen=True)
+class Sortie(Track):
+    """A unit on a pattern, from the commence search point on.
 
     Attributes
     ----------
     unit : Unit
     pattern : Pattern
-    time_s : (K,) array
-        At its turning points, from the commence search point on.
-    position_m : (K, 2) array
-        [north, east].
     """
 
     unit: Unit
     pattern: Pattern
-    time_s: np.ndarray
-    position_m: np.ndarray
 
     @classmethod
     def on(cls, unit: Unit, pattern: Pattern) -> Sortie | None:
@@ -118,7 +145,7 @@ class Sortie:
         begin_s = unit.start_s + np.hypot(*(points_m[0] - unit.position_m)) / unit.transit_mps
         run_m = np.append(0.0, np.cumsum(np.hypot(*np.diff(points_m, axis=0).T)))
         time_s = begin_s + run_m / unit.search_mps
-        return cls(unit, pattern, np.minimum(time_s, unit.end_s), points_m)
+        return cls(np.minimum(time_s, unit.end_s), points_m, unit.sweep_width_m, unit, pattern)
 
     @property
     def coverage(self) -> float:
@@ -130,21 +157,6 @@ class Sortie:
         """Share of the object's probability in the area at the middle of the sortie."""
         middle_m = cloud.at(0.5 * (self.time_s[0] + self.time_s[-1]))
         return float(cloud.weight @ self.pattern.holds(middle_m))
-
-    def potential(
-        self, cloud: Cloud, law: str, from_s: float = -np.inf, until_s: float = np.inf
-    ) -> np.ndarray:
-        """-log of the probability (n,) that each particle is missed, between two times."""
-        first_s, last_s = max(from_s, self.time_s[0]), min(until_s, self.time_s[-1])
-        if not first_s < last_s:
-            return np.zeros(len(cloud))
-        grid_s = cloud.time_s
-        time_s = np.concatenate([[first_s, last_s], self.time_s, grid_s])
-        time_s = np.unique(time_s[(first_s <= time_s) & (time_s <= last_s)])
-        unit_m = np.column_stack([np.interp(time_s, self.time_s, p) for p in self.position_m.T])
-        return navigation.detection_potential(
-            law, self.unit.sweep_width_m, time_s, unit_m, grid_s, cloud.position_m
-        )
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import datetime
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -19,11 +19,11 @@ from wakeline.tracking.settings import SettingsError, read_toml
 from .drift import Cloud, SearchObject, drift, on_land
 from .environment import Environment, Flow, Tide
 from .patterns import PATTERNS
-from .plan import DETECTION_LAWS, Unit
+from .plan import DETECTION_LAWS, Track, Unit
 
 _S_PER_H = 3600.0
 _MPS_PER_KN = 1852.0 / 3600.0
-_LONGEST_H = 1000.0
+_LONGEST_H = 240.0
 _FASTEST_MPS = 100.0
 
 
@@ -45,6 +45,8 @@ class SearchScenario:
         To choose from.
     law : str
         Of detection, one of `DETECTION_LAWS`.
+    searched : tuple of Track
+        Of earlier sorties without success.
     time : datetime, optional
         Of the last known position.
     """
@@ -57,17 +59,18 @@ class SearchScenario:
     land: tuple[np.ndarray, ...] = ()
     patterns: tuple[str, ...] = tuple(PATTERNS)
     law: str = "inverse_cube"
+    searched: tuple[Track, ...] = ()
     time: datetime.datetime | None = None
 
     @property
     def until_s(self) -> float:
         """When the last unit leaves."""
-        return max(unit.end_s for unit in self.units)
+        return max([unit.end_s for unit in self.units] + [one.time_s[-1] for one in self.searched])
 
     def cloud(self, count: int = 5000, seed: int = 0, step_s: float | None = None) -> Cloud:
-        """The drift of the object until the last unit leaves; see `drift`."""
+        """The drift until the last unit leaves of an object that `searched` missed; see `drift`."""
         step = {} if step_s is None else {"step_s": step_s}
-        return drift(
+        cloud = drift(
             self.search_object,
             self.environment,
             self.until_s,
@@ -76,6 +79,12 @@ class SearchScenario:
             land=self.land,
             **step,
         )
+        if not self.searched:
+            return cloud
+        missed = cloud.searched(sum(one.potential(cloud, self.law) for one in self.searched))
+        if not missed.weight.any():
+            raise ValueError("searched must leave a place where the object can be, got none")
+        return replace(missed, weight=missed.weight / missed.weight.sum())
 
     def degrees(self, position_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Latitudes and longitudes (...) of positions (..., 2)."""
@@ -125,8 +134,9 @@ def _scenario(path: Path) -> SearchScenario:
     tides = tuple(_tide(section) for section in top.sections("tide"))
     land = tuple(_land(section, plane) for section in top.sections("land"))
     units = tuple(_unit(section, plane) for section in top.sections("unit"))
-    if not units:
-        raise SettingsError(f"{path}: at least one [[unit]] is needed")
+    names = [unit.name for unit in units]
+    if not units or len(set(names)) < len(names):
+        raise SettingsError(f"{path}: [[unit]] must be one or more of different names, got {names}")
     search_object = SearchObject(
         kind=found.word("kind", navigation.leeway_kinds()),
         position_std_m=found.number("position_std_m", 0.0, 1e6, default=0.0),
@@ -165,6 +175,9 @@ def _scenario(path: Path) -> SearchScenario:
         land=land,
         patterns=top.words("patterns", PATTERNS),
         law=top.word("detection", DETECTION_LAWS, default="inverse_cube"),
+        searched=tuple(
+            track for one in top.sections("searched") for track in _tracks(one, plane, path)
+        ),
         time=found.time("time"),
     )
     top.close()
@@ -192,6 +205,34 @@ def _unit(section: _Section, plane: LocalPlane) -> Unit:
         * section.number("search_speed_kn", 0.0, 600.0, default=speed_kn, above=True),
         sweep_width_m=section.number("sweep_width_m", 0.0, 1e5, above=True),
     )
+
+
+def _tracks(section: _Section, plane: LocalPlane, path: Path) -> Iterator[Track]:
+    """Tracks of the units in a file of routes, without the way to the commence search point."""
+    names = ("unit", "point", "time_h", "lat_deg", "lon_deg")
+    table = Table(path.parent / section.text("file"), {name: (name,) for name in names})
+    table.require(*names[2:])
+    sweep_width_m = section.number("sweep_width_m", 0.0, 1e5, above=True)
+    limits = {"time_h": (0.0, 2 * _LONGEST_H), "lat_deg": _LATITUDE, "lon_deg": _LONGITUDE}
+    columns = {name: table.numbers(name) for name in limits}
+    for name, (least, most) in limits.items():
+        good = (least <= columns[name]) & (columns[name] <= most)
+        table.check(name, good, f"a number from {least:g} to {most:g}")
+    whose = np.array(table.text("unit") if "unit" in table else [""] * len(table))
+    chosen = section.text("unit") if section.given("unit") else None
+    on_task = table.numbers("point") > 0 if "point" in table else np.ones(len(table), bool)
+    position_m = plane.position_m(
+        latitude_rad=np.radians(columns["lat_deg"]), longitude_rad=np.radians(columns["lon_deg"])
+    )
+    found = [name for name in dict.fromkeys(whose.tolist()) if chosen in (None, name)]
+    if not found:
+        raise section.error("unit", "a unit of the file with rows", chosen)
+    for name in found:
+        rows = np.flatnonzero((whose == name) & on_task)
+        time_s = _S_PER_H * columns["time_h"][rows]
+        if len(rows) < 2 or not (np.diff(time_s) > 0).all():
+            table.check("time_h", whose != name, f"two or more increasing times of {name!r}")
+        yield Track(time_s, position_m[rows], sweep_width_m)
 
 
 def _place(section: _Section, plane: LocalPlane) -> np.ndarray:

@@ -49,10 +49,8 @@ _HEADS = {
     "ns_per_step": "ns a step",
 }
 _UNITS = {"mps": "m/s", "deg": "°", "arcmin": "′"}
-_DIGITS = {
-    **{"m": 1, "s": 0, "deg": 1, "deg2": 3, "step": 0, "arcmin": 4, "drift_rms_kn": 3},
-    **{"pos_predicted": 3, "pos_found": 3, "found_runs": 0},
-}
+_DIGITS = {"m": 1, "s": 0, "deg": 1, "deg2": 3, "step": 0, "arcmin": 4, "drift_rms_kn": 3}
+_DIGITS |= {"pos_predicted": 3, "pos_found": 3, "found_runs": 0}
 
 
 @dataclass(frozen=True)
