@@ -49,7 +49,7 @@ class Allocation:
 
     def pos(self, cloud: Cloud) -> float:
         """Probability of success."""
-        return float(cloud.weight @ self.pod(cloud))
+        return min(1.0, float(cloud.weight @ self.pod(cloud)))
 
     def pos_over_time(self, cloud: Cloud) -> np.ndarray:
         """POS (K + 1,) until each of `time_s`."""
@@ -69,7 +69,8 @@ def greedy_bound(plan: Plan, cloud: Cloud) -> Allocation:
     last_s = max(sortie.time_s[-1] for sortie in plan.sorties)
     time_s = np.linspace(first_s, last_s, max(2, round((last_s - first_s) / _SLICE_S) + 1))
     middle_s = 0.5 * (time_s[1:] + time_s[:-1])
-    north_m, east_m = map_cells(cloud, first_s, last_s)
+    narrowest_m = min(sortie.sweep_width_m for sortie in plan.sorties)
+    north_m, east_m = map_cells(cloud, first_s, last_s, narrowest_m)
     cell_m2 = (north_m[1] - north_m[0]) * (east_m[1] - east_m[0])
     table = np.linspace(0.0, _MOST_COVERAGE, 401)
     pods = navigation.parallel_track_pod(plan.law, table)
@@ -105,15 +106,19 @@ def greedy_bound(plan: Plan, cloud: Cloud) -> Allocation:
     return Allocation(time_s, north_m, east_m, coverage.reshape(shape), plan.law)
 
 
-def map_cells(cloud: Cloud, first_s: float, last_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """Edges of square cells, north and east, with some 40 particles each in the middle of a cloud
-    between two times, and room for all."""
+def map_cells(
+    cloud: Cloud, first_s: float, last_s: float, least_m: float = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Edges of square cells, north and east, for a cloud between two times.
+
+    A cell in the middle has some 40 particles, and sides of `least_m` or more.
+    """
     middle_s = 0.5 * (first_s + last_s)
     core_m2 = 4.0 * np.pi * np.sqrt(max(np.linalg.det(cloud.covariance_m2(middle_s)), 1.0))
     side_m = np.sqrt(core_m2 * _PARTICLES_A_CELL / len(cloud))
     places_m = np.concatenate([cloud.at(t) for t in (first_s, middle_s, last_s)])
     low_m, high_m = places_m.min(axis=0), places_m.max(axis=0)
-    side_m = max(side_m, (high_m - low_m).max() / 400)
+    side_m = max(side_m, least_m, (high_m - low_m).max() / 400)
     north_m, east_m = (
         low + side_m * np.arange(int((high - low) / side_m) + 2)
         for low, high in zip(low_m, high_m, strict=True)

@@ -25,6 +25,7 @@ _STEP_SHRINKS = 0.95
 _ROUNDS = 2
 _PUSHES = 12
 _PUSH = 0.25
+_FINEST_SPACING = 0.25
 _REJECTED = -1.0
 
 
@@ -134,7 +135,7 @@ def _best_sortie(
     """
 
     def tried(pattern: Pattern) -> tuple[Sortie | None, float]:
-        sortie = Sortie.on(unit, pattern) if _is_possible(pattern) else None
+        sortie = Sortie.on(unit, pattern) if _is_possible(unit, pattern) else None
         if sortie is None or not is_regular(sortie.pattern):
             return None, _REJECTED
         if any(_overlap(sortie, other) for other in others):
@@ -250,8 +251,11 @@ def _improved(
     return sortie, pos
 
 
-def _is_possible(pattern: Pattern) -> bool:
-    """Whether the turning points exist: a sweep has legs of positive length."""
+def _is_possible(unit: Unit, pattern: Pattern) -> bool:
+    """Whether a sweep has legs of positive length, and no pattern is finer than is of use."""
+    finest_m = unit.sweep_width_m * (1.0 if pattern.kind == "sector" else _FINEST_SPACING)
+    if pattern.spacing_m < finest_m:
+        return False
     if pattern.kind in ("parallel_sweep", "creeping_line"):
         return pattern.length_m > (2 * pattern.legs - 1) * pattern.spacing_m
     return True

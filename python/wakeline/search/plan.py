@@ -199,7 +199,7 @@ class Plan:
 
 def success(cloud: Cloud, potential: np.ndarray) -> float:
     """Probability that an object of the cloud is found: the sum of POC times POD."""
-    return float(cloud.weight @ -np.expm1(-potential))
+    return min(1.0, float(cloud.weight @ -np.expm1(-potential)))
 
 
 def naive_plan(

@@ -16,7 +16,7 @@
 #include "wakeline/navigation/search/intercept.hpp"
 #include "wakeline/navigation/search/leeway_table.hpp"
 
-namespace wakeline {
+namespace wakeline::search_test {
 namespace {
 
 using Vec2 = Vec<double, 2>;
@@ -208,4 +208,4 @@ TEST(Search, DoesNotUseTheHeap) {
 }
 
 }  // namespace
-}  // namespace wakeline
+}  // namespace wakeline::search_test
