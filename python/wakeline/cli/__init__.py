@@ -16,10 +16,9 @@ from typing import NoReturn, TextIO
 from wakeline import FilterError, __version__
 from wakeline.recording.files import check_writable
 
-from . import bench, demo, navigate, outputs, score, search, study, track
+from . import bench, demo, interrupt, navigate, outputs, score, search, study, track
 
 _BAD_INPUT = 2
-_INTERRUPTED = 130
 _NOBODY_READS = 141
 
 
@@ -39,6 +38,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         or is interrupted, an earlier line names the files of the previous scenarios.
     """
     _degrade(sys.stdout)
+    if argv is None:
+        with interrupt.ended_by_interrupt():
+            return _run(sys.argv[1:])
+    return _run(argv)
+
+
+def _run(argv: Sequence[str]) -> int:
     try:
         arguments = _parser().parse_args(argv)
         if arguments.json is not None:
@@ -52,8 +58,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SystemExit as done:  # --help and --version
         return int(done.code or 0)
     except KeyboardInterrupt:
-        print("wakeline: interrupted", file=sys.stderr)
-        return _INTERRUPTED
+        interrupt.report()
+        return interrupt.INTERRUPTED
     except BrokenPipeError:
         _close_output()
         return _NOBODY_READS

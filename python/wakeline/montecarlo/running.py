@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import pickle
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -19,6 +18,7 @@ except ImportError:
 
 from wakeline import _progress
 from wakeline._checks import listed, run_numbers
+from wakeline._pool import thread_pool
 from wakeline.scenario import Scenario
 
 from .candidate import Candidate, description, named
@@ -207,7 +207,7 @@ def _check_can_be_sent(name: str, candidate: Any) -> None:
 def _worked_off(chunks: list[Chunk], threads: int | None, client: Any) -> Iterator[Sums]:
     """Sums of the chunks in their order."""
     if client is None:
-        with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
+        with thread_pool(threads) as pool:
             yield from _gathered([pool.submit(sums_of, chunk) for chunk in chunks])
     elif isinstance(client, ThreadPoolExecutor):
         yield from _gathered([client.submit(sums_of, chunk) for chunk in chunks])

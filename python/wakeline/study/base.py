@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,6 +13,7 @@ import numpy as np
 from wakeline import plot
 from wakeline._brief import brief, many
 from wakeline._checks import run_numbers
+from wakeline._pool import thread_pool
 from wakeline._progress import progress as reported
 
 if TYPE_CHECKING:
@@ -340,7 +339,7 @@ def worked_off(
 
     try:
         with (
-            ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool,
+            thread_pool(threads) as pool,
             closing(pool.map(work_off, jobs)) as ends,
         ):
             for _ in reported(ends, len(jobs), "running") if progress else ends:
