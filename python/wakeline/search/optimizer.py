@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from wakeline._checks import entropy
+from wakeline._progress import progress as reported
 
 from .drift import Cloud
 from .patterns import PATTERNS, Pattern, is_regular, leg_count
@@ -38,6 +39,8 @@ def optimized_plan(
     law: str = "inverse_cube",
     kinds: Iterable[str] = tuple(PATTERNS),
     seed: int = 0,
+    *,
+    progress: bool = False,
 ) -> Plan:
     """Patterns whose place, orientation, size and track spacing maximize POS for a drifting cloud.
 
@@ -57,6 +60,8 @@ def optimized_plan(
         Patterns to choose from.
     seed : int
         Of the random tries.
+    progress : bool
+        Whether to draw a bar if stderr is a terminal.
 
     Raises
     ------
@@ -66,7 +71,23 @@ def optimized_plan(
     kinds = tuple(kinds)
     rng = np.random.default_rng(entropy(seed, "search plan"))
     tried = cloud.part(slice(_TRIED_PARTICLES))
-    plans = [_planned(units, regions, law, kinds, rng) for regions in _regions(units, tried)]
+    splits = list(_regions(units, tried))
+    sorties: list[dict[int, Sortie]] = [{} for _ in splits]
+    order = sorted(range(len(units)), key=lambda k: units[k].start_s)
+    turns = order * (_ROUNDS if len(units) > 1 else 1)
+    steps = [(*split, k) for split in zip(splits, sorties, strict=True) for k in turns]
+    for regions, planned, k in reported(steps, len(steps), "planning") if progress else steps:
+        others = [sortie for j, sortie in planned.items() if j != k]
+        share = tried if k in planned else regions[k]
+        rest = share.searched(Plan(tuple(others), law).potential(tried))
+        if not rest.weight.any():  # a share of no particle, or all are found
+            rest = tried
+        known = [planned[k].pattern.kind] if k in planned else kinds
+        found = [
+            _best_sortie(units[k], rest, law, kind, others, planned.get(k), rng) for kind in known
+        ]
+        planned[k] = max(found, key=lambda one: one[1])[0]
+    plans = [Plan(tuple(one[k] for k in range(len(units))), law) for one in sorties]
     plans += [naive_plan(units, cloud, law, kind) for kind in kinds]
     return max(plans, key=lambda one: one.pos(cloud))
 
@@ -91,33 +112,6 @@ def _regions(units: Sequence[Unit], cloud: Cloud) -> Iterator[list[Cloud]]:
         below[order] = np.cumsum(cloud.weight[order]) / cloud.weight.sum()
         whose = np.searchsorted(np.cumsum(efforts_m2) / efforts_m2.sum(), below - 1e-9)
         yield [replace(cloud, weight=cloud.weight * (whose == k)) for k in range(len(units))]
-
-
-def _planned(
-    units: Sequence[Unit],
-    regions: Sequence[Cloud],
-    law: str,
-    kinds: Sequence[str],
-    rng: np.random.Generator,
-) -> Plan:
-    """Sorties for the regions, then improved in turn on what the others leave of the whole."""
-    whole = regions[0]
-    if regions[1:] and regions[1] is not whole:
-        whole = replace(whole, weight=sum(region.weight for region in regions))
-    sorties: dict[int, Sortie] = {}
-    order = sorted(range(len(units)), key=lambda k: units[k].start_s)
-    for k in order * (_ROUNDS if len(units) > 1 else 1):
-        others = [sortie for j, sortie in sorties.items() if j != k]
-        cloud = whole if k in sorties else regions[k]
-        rest = cloud.searched(Plan(tuple(others), law).potential(cloud))
-        if not rest.weight.any():  # a share of no particle, or all are found
-            rest = whole
-        known = [kind for kind in kinds if k not in sorties or sorties[k].pattern.kind == kind]
-        found = [
-            _best_sortie(units[k], rest, law, kind, others, sorties.get(k), rng) for kind in known
-        ]
-        sorties[k] = max(found, key=lambda one: one[1])[0]
-    return Plan(tuple(sorties[k] for k in range(len(units))), law)
 
 
 def _best_sortie(
