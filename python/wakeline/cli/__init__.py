@@ -66,6 +66,8 @@ def _run(argv: Sequence[str]) -> int:
     except (ValueError, OSError, FilterError, MemoryError) as error:
         print(f"wakeline: {_one_line(error)}", file=sys.stderr)
         return _BAD_INPUT
+    finally:
+        outputs.release_folders()
     return 0
 
 

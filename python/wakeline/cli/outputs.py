@@ -12,6 +12,11 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
+try:
+    import fcntl
+except ImportError:  # not POSIX
+    fcntl = None  # type: ignore[assignment]
+
 from wakeline import __version__, plot
 from wakeline._progress import progress
 from wakeline.extraction import VideoRecording
@@ -26,11 +31,59 @@ _PICTURES = ("map", "time")
 _MOST_OCTETS = 120  # of a scenario in a file name, which some file systems limit to 143
 
 
+_TEMPORARY = re.compile(r"\.\w.*-[0-9a-f]{8}\.(csv|png|json)")
+_held: dict[Path, int] = {}  # folders of this command, with a descriptor each that has the lock
+
+
 def make_folder(folder: Path) -> None:
-    """Fail before the work if nothing can be written."""
+    """Make the folder of outputs this command's own; fail before the work if that is impossible.
+
+    Temporary files that a killed command has left there are removed.
+
+    Raises
+    ------
+    ValueError
+        When another command writes to the folder.
+    OSError
+        When nothing can be written there.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     if not os.access(folder, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
+    if _lock(folder):
+        for file in folder.iterdir():
+            if _TEMPORARY.fullmatch(file.name) and file.is_file():
+                file.unlink(missing_ok=True)
+
+
+def release_folders() -> None:
+    """Let other commands write to the folders of this one."""
+    while _held:
+        os.close(_held.popitem()[1])
+
+
+def _lock(folder: Path) -> bool:
+    """Whether the folder is this command's own; False where the system has no such locks."""
+    folder = folder.resolve()
+    if fcntl is None or folder in _held:
+        return folder in _held
+    try:
+        descriptor = os.open(folder, os.O_RDONLY)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        raise ValueError(
+            f"another wakeline command writes to {folder}: wait for its end, or give --out "
+            "another folder"
+        ) from None
+    except OSError:
+        os.close(descriptor)
+        return False
+    _held[folder] = descriptor
+    return True
 
 
 def check_no_input(option: str, outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
