@@ -302,15 +302,15 @@ def _dense_rows(shares: dense.Shares, full: bool) -> Rows:
 
 def _fit_note() -> str:
     fitted = fitted_memberships()
-    return f"""The fitted memberships have the slope {fitted["steepness"]:.2f} and the threshold
-{fitted["threshold"]:.2f}, those with the least mean square innovation on a training set; the
-paper's are 5 and 1.5."""
+    slope, threshold = fitted["steepness"], fitted["threshold"]
+    return f"""Fitted memberships: slope {slope:.2f}, threshold {threshold:.2f}, with the least mean square
+innovation on a training set; the paper's are 5 and 1.5."""
 
 
 def _video_note(runs: int) -> str:
     return f"""Runs on video: {runs} of each scenario; errors there are those of the runs that keep
-the track. Met by a neighbor, each estimator has the narrowest gate that loses a lone craft in less
-than 3 % of the runs."""
+the track. Met by a neighbor, each estimator has the narrowest gate that loses a lone craft in at
+most 3 % of the runs, else the one that loses it least often."""
 
 
 def _median_worst(error_m: np.ndarray) -> float:
