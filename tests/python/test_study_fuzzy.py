@@ -23,7 +23,7 @@ RUNS = 200
 
 @pytest.fixture(scope="module")
 def report():
-    return fuzzy_alpha_beta.run(RUNS, seed=1, video_runs=1)
+    return fuzzy_alpha_beta.run(RUNS, seed=1, full=True, video_runs=1)
 
 
 def test_it_is_listed():
@@ -273,5 +273,7 @@ def test_rows_of_dense_traffic_have_the_gate_that_the_estimator_needs(report):
                 row = report.row(dense.case_of(kind, distance_m), name)
                 alone = report.row(dense.ALONE, name)
                 assert row["gate_m"] == alone["gate_m"] in dense.GATES_M
+                at_gate = report.row(f"{row['scenario']}_gate_{row['gate_m']:g}m", name)
+                assert at_gate | {"scenario": row["scenario"]} == row
                 assert 0.0 <= row["capture_probability"] + row["loss_probability"] <= 1.0
                 assert alone["capture_probability"] == 0.0

@@ -303,8 +303,8 @@ def _dense_rows(shares: dense.Shares, full: bool) -> Rows:
 def _fit_note() -> str:
     fitted = fitted_memberships()
     slope, threshold = fitted["steepness"], fitted["threshold"]
-    return f"""Fitted memberships: slope {slope:.2f}, threshold {threshold:.2f}, with the least mean square
-innovation on a training set; the paper's are 5 and 1.5."""
+    return f"""Fitted memberships: slope {slope:.2f} and threshold {threshold:.2f}, with the least
+mean square innovation on a training set; the paper's are 5 and 1.5."""
 
 
 def _video_note(runs: int) -> str:

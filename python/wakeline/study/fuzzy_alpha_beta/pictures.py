@@ -310,13 +310,6 @@ def _draw_film(ax: Axes, film: VideoRun) -> Axes:
     )
 
 
-_HOW = {
-    Ending.LOST: "lost, alone",
-    Ending.CAPTURED: "captured",
-    Ending.HELD: "held",
-}
-
-
 def _draw_shares(ax: Axes, shares: Shares, case: str, how: Ending) -> Axes:
     """Curves over the gate, with a dot at the gate that each estimator needs."""
     for name, label in LABELS.items():
@@ -345,7 +338,7 @@ def _draw_ends(ax: Axes, shares: Shares, case: str, how: Ending) -> Axes:
         ax.set_ylabel("lost\nalone, with a hard turn")
         return plot.name_lines(ax)
     kind, distance_m = _ARGUED
-    ax.set_ylabel(f"{_HOW[how]}\n{kind}, {distance_m:g} m")
+    ax.set_ylabel(f"{how.name.lower()}\n{kind}, {distance_m:g} m")
     return ax
 
 
@@ -375,7 +368,9 @@ def _draw_meeting(
         rings=False,
     )
     for place_m, mark, label in ((frame.craft_m, "+", "craft"), (frame.other_m, "x", "neighbor")):
-        ax.plot(*place_m[::-1], mark, color="white", markersize=9, markeredgewidth=1.8, label=label)
+        for color, width in (("black", 4.0), ("white", 1.8)):
+            shown = {"color": color, "markersize": 9, "markeredgewidth": width}
+            ax.plot(*place_m[::-1], mark, label=label if color == "white" else None, **shown)
     for name, color in _STROBE_COLORS.items():
         outline_m = plot.circle_outline(frame.strobes_m[name], gates_m[name])
         label = f"{LABELS[name]}, {gates_m[name]:g} m"
