@@ -178,6 +178,26 @@ def test_warm_up_follows_the_plots():
     assert target.initiation_scans == 2
 
 
+@given(st.sampled_from([0.2, 0.25, 0.4, 1.0]), st.randoms())
+def test_of_rows_near_a_scan_the_nearest_in_time_counts(step_s, random):
+    time_s = np.arange(-0.5, TIME_S[-1] + 0.5, step_s)
+    rows = list(range(len(time_s)))
+    random.shuffle(rows)
+    zero = 0 * time_s
+    states = np.column_stack([10 * time_s, zero + 10, zero, zero])
+    tracks = Tracks(["A"] * len(rows), time_s[rows], states[rows])
+    away_s = np.abs(time_s[:, np.newaxis] - TIME_S).min(axis=0)
+    wanted_m = 10 * np.sqrt(np.mean(away_s[5:] ** 2))
+    got = overall([tracks], episode_of(NORTHBOUND)).errors
+    assert got.position_rmse_m == pytest.approx(wanted_m, abs=1e-9)
+
+
+def test_of_two_tracks_as_near_the_order_of_rows_decides_nothing():
+    tracks = [track(name, NORTHBOUND, offset=(m, 0, 0, 0)) for name, m in (("A", 9), ("B", -9))]
+    one, other = (overall(rows, episode_of(NORTHBOUND)).errors for rows in (tracks, tracks[::-1]))
+    assert one == other
+
+
 def test_rows_at_no_scan_or_not_finite_are_counted():
     rows = track("A", NORTHBOUND)
     late = dataclasses.replace(rows, time_s=rows.time_s + 0.9)

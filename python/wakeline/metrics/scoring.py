@@ -32,7 +32,8 @@ def score(
     Parameters
     ----------
     tracks : Tracks
-        One row per confirmed track and scan.
+        One row per confirmed track and scan; of several rows of a track near a scan (a quarter of
+        the period, at most 0.5 s) the nearest in time counts.
     recording : Recording or Episode
         Scans, plots and truth. In an episode without plots every scan with truth counts as
         supported by plots.
@@ -193,16 +194,21 @@ def _distances(a_m: np.ndarray, b_m: np.ndarray) -> np.ndarray:
 def _states_by_scan(
     tracks: Tracks, scan_time_s: np.ndarray
 ) -> tuple[list[dict[str, np.ndarray]], int]:
-    """State by track id for each scan, and the number of rows without a scan."""
+    """State by track id for each scan, and the number of rows without a scan.
+
+    Of several rows of a track near a scan the nearest in time counts, of equals the earlier. The
+    tracks of a scan are in order of their ids, so that the order of rows does not matter.
+    """
     states: list[dict[str, np.ndarray]] = [{} for _ in scan_time_s]
     if len(scan_time_s) == 0:
         return states, len(tracks)
     period_s = float(np.median(np.diff(scan_time_s))) if len(scan_time_s) > 1 else 1.0
     scan = nearest(scan_time_s, tracks.time_s)
-    taken = np.abs(scan_time_s[scan] - tracks.time_s) <= min(0.25 * period_s, 0.5)
-    taken &= np.isfinite(tracks.state).all(axis=1)
-    for k in np.flatnonzero(taken):
-        states[scan[k]][str(tracks.track_id[k])] = tracks.state[k]
+    away_s = np.abs(scan_time_s[scan] - tracks.time_s)
+    taken = (away_s <= min(0.25 * period_s, 0.5)) & np.isfinite(tracks.state).all(axis=1)
+    for k in np.lexsort((tracks.time_s, away_s, tracks.track_id)):
+        if taken[k]:
+            states[scan[k]].setdefault(str(tracks.track_id[k]), tracks.state[k])
     return states, int(np.count_nonzero(~taken))
 
 
