@@ -41,7 +41,7 @@ ProblemTuple in_words(const Cat240Problem& problem) {
 
 /// What the columns of a decoded piece are made of.
 struct Sweeps {
-  std::vector<std::int64_t> offset, source, sequence, cells, bits, first;
+  std::vector<std::int64_t> offset, source, sequence, cells, bits, first, compressed;
   std::vector<double> azimuth_rad, azimuth_width_rad, time_s, start_range_m, cell_m;
   std::vector<std::uint8_t> octets;
   std::vector<std::uint16_t> words;
@@ -52,7 +52,10 @@ struct Sweeps {
     sequence.push_back(video.sequence);
     cells.push_back(video.cells);
     bits.push_back(video.bits);
-    if (video.fits<std::uint8_t>())
+    compressed.push_back(video.compressed ? static_cast<std::int64_t>(video.packed.size()) : 0);
+    if (video.compressed)
+      add_compressed(video);
+    else if (video.fits<std::uint8_t>())
       add_cells(video, octets);
     else
       add_cells(video, words);
@@ -63,7 +66,18 @@ struct Sweeps {
   void add_cells(const Cat240Video& video, std::vector<Amplitude>& amplitudes) {
     const std::size_t begin = amplitudes.size();
     amplitudes.resize(begin + video.cells);
-    const auto sweep = video.unpack(std::span<Amplitude>(amplitudes).subspan(begin));
+    add_sweep(begin, video.unpack(std::span<Amplitude>(amplitudes).subspan(begin)));
+  }
+
+  void add_compressed(const Cat240Video& video) {
+    const std::size_t begin = octets.size();
+    for (const std::byte octet : video.packed)
+      octets.push_back(std::to_integer<std::uint8_t>(octet));
+    add_sweep(begin, video.unpack(std::span<std::uint8_t>()));
+  }
+
+  template <class Amplitude>
+  void add_sweep(std::size_t begin, const Sweep<Amplitude>& sweep) {
     first.push_back(static_cast<std::int64_t>(begin));
     azimuth_rad.push_back(sweep.azimuth_rad);
     azimuth_width_rad.push_back(sweep.azimuth_width_rad);
@@ -74,7 +88,7 @@ struct Sweeps {
 };
 
 struct PySweeps {
-  py::array_t<std::int64_t> offset, source, sequence, cells, bits, first;
+  py::array_t<std::int64_t> offset, source, sequence, cells, bits, first, compressed;
   py::array_t<double> azimuth_rad, azimuth_width_rad, time_s, start_range_m, cell_m;
   py::array_t<std::uint8_t> octets;
   py::array_t<std::uint16_t> words;
@@ -90,6 +104,7 @@ struct PySweeps {
     cells = to_numpy(std::move(sweeps.cells));
     bits = to_numpy(std::move(sweeps.bits));
     first = to_numpy(std::move(sweeps.first));
+    compressed = to_numpy(std::move(sweeps.compressed));
     azimuth_rad = to_numpy(std::move(sweeps.azimuth_rad));
     azimuth_width_rad = to_numpy(std::move(sweeps.azimuth_width_rad));
     time_s = to_numpy(std::move(sweeps.time_s));
@@ -138,6 +153,24 @@ class Decoder {
 
   Cat240Reader reader_;
 };
+
+/// The cells in octets of a record, None if they are too few.
+py::object unpack(const py::bytes& octets, std::uint32_t cells, int bits) {
+  Cat240Video video;
+  video.bits = bits;
+  video.cells = cells;
+  video.compressed = true;
+  video = video.decompressed(octets_of(octets));
+  if (video.compressed) return py::none();
+  if (video.fits<std::uint8_t>()) {
+    std::vector<std::uint8_t> room(cells);
+    static_cast<void>(video.unpack(std::span(room)));
+    return to_numpy(std::move(room));
+  }
+  std::vector<std::uint16_t> room(cells);
+  static_cast<void>(video.unpack(std::span(room)));
+  return to_numpy(std::move(room));
+}
 
 class Encoder {
  public:
@@ -223,7 +256,8 @@ void define_video_asterix(py::module_& m) {
                        R"doc(Sweeps decoded from a piece of a file, one per row.
 
 `first` is the index of a sweep's first cell in `octets` (8 bits and fewer, scaled to 8) or in `words`
-(16 bits). `source` is 256 SAC + SIC; `sequence` is -1 and `time_s` NaN if missing. `problems` has the
+(16 bits). Where `compressed` is not 0 it is a number of octets from there on; decompress them and
+call `Cat240Decoder.unpack`. `source` is 256 SAC + SIC; `sequence` is -1 and `time_s` NaN if missing. `problems` has the
 first 100 as (offset, problem, wanted, got).
 )doc")
       .def_readonly("offset", &PySweeps::offset)
@@ -232,6 +266,7 @@ first 100 as (offset, problem, wanted, got).
       .def_readonly("cells", &PySweeps::cells)
       .def_readonly("bits", &PySweeps::bits)
       .def_readonly("first", &PySweeps::first)
+      .def_readonly("compressed", &PySweeps::compressed)
       .def_readonly("azimuth_rad", &PySweeps::azimuth_rad)
       .def_readonly("azimuth_width_rad", &PySweeps::azimuth_width_rad)
       .def_readonly("time_s", &PySweeps::time_s)
@@ -260,6 +295,20 @@ data : bytes
     The rest of the previous piece (all but its first `consumed` octets) and what follows.
 last : bool
     Whether this is the last piece.
+)doc")
+      .def_static("unpack", &unpack, py::arg("octets"), py::arg("cells"), py::arg("bits"),
+                  R"doc(The cells of a sweep from its decompressed octets.
+
+Parameters
+----------
+octets : bytes
+cells, bits : int
+    Number of cells, and bits of each: 1, 2, 4, 8 or 16.
+
+Returns
+-------
+(cells,) array of uint8 or uint16, or None
+    None for too few octets.
 )doc")
       .def_property_readonly(
           "other_blocks", [](const Decoder& self) { return self.reader().other_blocks(); },

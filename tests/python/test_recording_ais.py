@@ -194,7 +194,6 @@ def test_parts_are_cut_at_gaps(tmp_path):
         ([row(0, sog="fast")], ["line 2", "SOG", "fast"]),
         ([row(0, mmsi="")], ["line 2", "mmsi"]),
         ([row(0).replace("2026-05-01", "May")], ["line 2", "Time"]),
-        (["1777636800000,211,54,10,0,5"], ["line 2", "Time", "seconds", "not milliseconds"]),
         ([row(0, latitude=91)], ["no report has a position"]),
     ],
 )
@@ -211,10 +210,9 @@ def test_files_and_parameters_that_are_invalid(tmp_path):
     with pytest.raises(RecordingError, match="mmsi"):
         read_ais(written(tmp_path, "12:00,54,10", head="Time,Latitude,Longitude"))
     packed = tmp_path / "ais.csv.gz"
-    packed.write_bytes(gzip.compress(HEAD.encode()))
-    with pytest.raises(RecordingError, match="compressed by gzip, decompress it first"):
-        read_ais(packed)
     path = written(tmp_path, row(0))
+    packed.write_bytes(gzip.compress(path.read_bytes()))
+    assert repr(read_ais(packed)) == repr(read_ais(path))
     for name in ("min_step_s", "max_speed_mps"):
         for wrong in (0.0, np.nan):
             with pytest.raises(ValueError, match=name):

@@ -1,8 +1,10 @@
 """Recorded radar video: what is written comes back, and what is said about each bad file."""
 
+import gzip
 import pickle
 import re
 import struct
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -275,17 +277,32 @@ def record(
     ticks=None,
     sac_sic=(0, 0),
     compressed=0,
+    first_cell=0,
 ):
     """One data block, put together by hand."""
     parts = -(-len(cells) // 4)
     body = bytes([0xEB, 0xC0 if ticks is None else 0xC8, *sac_sic, 2])
-    body += struct.pack(">IHHII", sequence, *(a % 65536 for a in azimuth), 0, duration_ns)
+    body += struct.pack(">IHHII", sequence, *(a % 65536 for a in azimuth), first_cell, duration_ns)
     body += bytes([compressed, resolution])
     body += struct.pack(">H", len(cells))
     body += (len(cells) if count is None else count).to_bytes(3, "big")
     body += bytes([parts]) + cells.ljust(4 * parts, b"\0")
     body += b"" if ticks is None else ticks.to_bytes(3, "big")
     return b"\xf0" + struct.pack(">H", len(body) + 3) + body
+
+
+@pytest.mark.parametrize("compress", [zlib.compress, gzip.compress, lambda o: zlib.compress(o)[2:]])
+@pytest.mark.parametrize("cells", [bytes(range(200)), bytes(200), b"\1\2"])
+def test_compressed_video_is_read_as_what_was_compressed(path, cells, compress):
+    for resolution, count in ((1, 8 * len(cells)), (4, len(cells)), (5, len(cells) // 2)):
+        plain = record(cells=cells, resolution=resolution, count=count, ticks=0)
+        packed = record(
+            cells=compress(cells), resolution=resolution, count=count, ticks=0, compressed=128
+        )
+        (wanted,), _ = read(path, plain)
+        (got,), report = read(path, packed)
+        assert got.amplitude.tolist() == wanted.amplitude.tolist()
+        assert report.notes == []
 
 
 def test_small_cells_are_scaled_to_full_scale(path):
@@ -396,6 +413,122 @@ def test_a_sender_that_begins_anew_is_followed(path):
     assert (report.late, report.missing, report.time_jumps) == (0, 0, 1)
 
 
+def sweeps_in_parts(turns, parts, *, order=range, without=()):
+    """Sweeps of 24 cells, 64 a turn, each in some records; and the same in one record each."""
+    whole, apart = [], []
+    for k in range(64 * turns):
+        cells = bytes((3 * k + c) % 251 for c in range(24))
+        azimuth = (1024 * k, 1024 * k + 1024)
+        whole.append(record(cells=cells, azimuth=azimuth, sequence=k, ticks=10 * k))
+        size = 24 // parts
+        for p in order(parts):
+            if (k, p) in without:
+                cells = cells[: p * size] + bytes(size) + cells[(p + 1) * size :]
+                whole[-1] = record(cells=cells, azimuth=azimuth, sequence=k, ticks=10 * k)
+                continue
+            part = cells[p * size : (p + 1) * size]
+            given = {"azimuth": azimuth, "ticks": 10 * k, "first_cell": p * size}
+            apart.append(record(cells=part, sequence=len(apart), **given))
+    return b"".join(whole), b"".join(apart)
+
+
+def assert_same_video(got, wanted):
+    assert [len(v) for v in got] == [len(v) for v in wanted]
+    for one, other in zip(got, wanted, strict=True):
+        assert one.amplitude.tolist() == other.amplitude.tolist()
+        assert one.time_s.tolist() == other.time_s.tolist()
+        assert one.azimuth_rad.tolist() == other.azimuth_rad.tolist()
+        assert (one.start_range_m, one.cell_m) == (other.start_range_m, other.cell_m)
+
+
+@pytest.mark.parametrize("parts", [2, 3, 4, 8])
+@pytest.mark.parametrize("order", [range, lambda n: reversed(range(n))])
+def test_a_sweep_in_parts_is_one_sweep(path, parts, order):
+    whole, apart = sweeps_in_parts(2, parts, order=order)
+    wanted, _ = read(path, whole)
+    got, report = read(path, apart)
+    assert_same_video(got, wanted)
+    assert report.notes == []
+
+
+def test_a_part_that_is_lost_is_zero_and_said(path):
+    whole, apart = sweeps_in_parts(2, 4, without={(20, 0), (31, 2), (70, 3)})
+    wanted, _ = read(path, whole)
+    got, report = read(path, apart)
+    assert_same_video(got, wanted)
+    assert report.notes == ["3 sweeps lack one of their parts"]
+
+
+@pytest.mark.parametrize("burst", [1, 2, 16])
+def test_of_two_range_scales_in_turn_one_is_read_and_said(path, burst):
+    def sweeps(scales):
+        octets = []
+        for k in range(0, 256, burst):
+            for duration_ns in scales:
+                for j in range(k, k + burst):
+                    azimuth = (1024 * j, 1024 * j + 1024)
+                    octets.append(
+                        record(
+                            cells=bytes([j, duration_ns, 7]),
+                            azimuth=azimuth,
+                            sequence=len(octets),
+                            ticks=10 * j,
+                            duration_ns=duration_ns,
+                        )
+                    )
+        return b"".join(octets)
+
+    def amplitudes(videos):
+        return [row for video in videos for row in video.amplitude.tolist()]
+
+    for scales in ((100, 200), (200, 100)):
+        for chosen, range_scale_m in ((200, None), (200, 1e9), (100, 1.0)):
+            (*wanted,), _ = read(path, sweeps([chosen]))
+            (*got,), report = read(path, sweeps(scales), range_scale_m=range_scale_m)
+            assert amplitudes(got) == amplitudes(wanted)
+            (note,) = report.notes
+            assert "256 sweeps" in note
+            assert f"{3 * (300 - chosen) * 0.149896:.0f} m" in note
+
+
+def test_a_change_of_range_scale_is_no_other_scale(path):
+    octets = b"".join(
+        record(
+            azimuth=(1024 * k, 1024 * k + 1024),
+            sequence=k,
+            ticks=10 * k,
+            duration_ns=100 if k // 200 % 2 else 200,
+        )
+        for k in range(800)
+    )
+    _, report = read(path, octets)
+    assert (report.sweeps, report.notes) == (800, [])
+
+
+@pytest.mark.parametrize("begin", [0, 40, 100])
+def test_a_time_of_day_that_stands_is_said_and_the_period_used(path, begin):
+    def sweeps(ticks):
+        return b"".join(
+            record(azimuth=(1024 * k, 1024 * k + 1024), sequence=k, ticks=ticks(k))
+            for k in range(256)
+        )
+
+    def moves(k):
+        return 10 * k
+
+    standing = sweeps(lambda k: moves(min(k, begin)))
+    wanted, _ = read(path, sweeps(moves))
+    got, report = read(path, standing, period_s=64 * 10 / 128)
+    time_s, wanted_s = (np.concatenate([v.time_s for v in videos]) for videos in (got, wanted))
+    np.testing.assert_allclose(time_s, wanted_s, atol=10 / 128)
+    assert len(time_s) == 256
+    (note,) = report.notes
+    assert "a time of day that stands" in note
+    if begin == 0:
+        with pytest.raises(RecordingError, match=r"period_s.*stands in 256 sweeps"):
+            read(path, standing)
+
+
 def test_times_that_step_back_a_little_are_held(path):
     octets = b"".join(
         record(azimuth=(128 * k, 128 * k + 128), sequence=k, ticks=ticks)
@@ -409,7 +542,7 @@ def test_times_that_step_back_a_little_are_held(path):
 @pytest.mark.parametrize(
     ("bad", "words"),
     [
-        ({"compressed": 128}, "compressed; wanted cells as they are, got compressed ones"),
+        ({"compressed": 128}, "compressed video .* wanted zlib data of 4 cells of 8 bits, got"),
         ({"resolution": 6}, "cannot be read; wanted 1 to 5 .*, got 6"),
         ({"count": 0}, "without cells; wanted at least 1 cell, got 0"),
         ({"count": 5}, "more cells than it holds; wanted 5 octets, got 4"),
@@ -480,12 +613,14 @@ def test_a_file_without_video_is_an_error(path, octets, got):
     assert got in str(caught.value)
 
 
-def test_packed_video_is_named_and_no_video(path):
+def test_a_damaged_file_of_gzip_is_named_and_no_video(path):
     like_a_summary = b"\xf0\x00\x11\xd0\x01\x02\x01\tby chance"
     packed = b"\x1f\x8b" + bytes(9) + like_a_summary + bytes(50)
-    with pytest.raises(RecordingError, match="got a file compressed by gzip, decompress it first"):
+    with pytest.raises(RecordingError, match="damaged by gzip"):
         read(path, packed)
-    assert not recording.is_video(path)
+    packed = gzip.compress(bytes(50) + like_a_summary)
+    with pytest.raises(RecordingError, match="no radar video"):
+        read(path, packed[:-9])
 
 
 def test_a_file_that_is_not_there_is_an_error(path):

@@ -43,6 +43,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--gate", type=float, default=50.0, metavar="M", help="m, largest distance (default 50)"
     )
+    outputs.add_columns(parser)
     parser.add_argument("--json", type=Path, metavar="F", help="write the score as JSON")
     parser.set_defaults(run=run, inputs=inputs)
 
@@ -84,12 +85,14 @@ def _plots(arguments: argparse.Namespace) -> Path | None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
-    recording = read_plots(_plots(arguments), arguments.scans, arguments.truth)
+    columns = dict(arguments.columns)
+    plots = _plots(arguments)
+    recording = read_plots(plots, arguments.scans, arguments.truth, columns=columns)
     if not any(map(len, recording)):
         raise RecordingError(
             arguments.scans, "there are no scans", line=1, wanted="a column scan, or --plots"
         )
-    tracks = read_tracks(arguments.tracks)
+    tracks = read_tracks(arguments.tracks, columns=columns, notes=recording.notes)
     _check_scenarios(arguments.tracks, tracks, recording)
     watched = _Watched(recording.name, recording.episodes, recording.notes)
     score = metrics.score(tracks, watched, gate_m=arguments.gate)

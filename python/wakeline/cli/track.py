@@ -78,7 +78,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         nargs="?",
         type=Path,
         metavar="RECORDING",
-        help="radar plots as CSV, or radar video: ASTERIX category 240",
+        help="radar plots as CSV, or radar video: ASTERIX category 240, also in a network capture "
+        "(pcap) or compressed (gzip)",
     )
     parser.add_argument(
         "--own", type=Path, metavar="SCANS.csv", help="own ship, and the list of scans"
@@ -91,6 +92,14 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "of --own is added",
     )
     parser.add_argument("--truth", type=Path, metavar="TRUTH.csv", help="truth, drawn and scored")
+    outputs.add_columns(parser)
+    parser.add_argument(
+        "--range-scale",
+        type=float,
+        metavar="M",
+        help="of radar video with several range scales in turn, the one to track, by its range in "
+        "metres (default the longest)",
+    )
     parser.add_argument(
         "--radar",
         metavar="NAME|F.toml",
@@ -131,6 +140,8 @@ def run(arguments: argparse.Namespace) -> None:
         arguments.truth,
         period_s=settings.period_s,
         azimuth=arguments.azimuth,
+        range_scale_m=arguments.range_scale,
+        columns=dict(arguments.columns),
     )
     known = settings.knowing(recording.radar)
     radar = _radar_text(arguments, settings, known, recording)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -63,14 +63,18 @@ def read_plots_of_video(
     *,
     period_s: float | None = None,
     azimuth: str = "north",
+    range_scale_m: float | None = None,
+    columns: Mapping[str, str] | None = None,
 ) -> VideoRecording:
     """Read radar video and extract plots, one antenna revolution per scan.
 
     An incomplete revolution at either end of the recording is dropped. A new episode begins where
     the clock was set back. Without `own_path` the radar is at the origin. Video has only the time
-    of day; its date is that of own ship's track. Without a time of day, `period_s` is the duration
-    of a revolution. Azimuths count from `azimuth`, "north" or "bow", to which the heading of own
-    ship's file is added; a note says if they look like those from the other one.
+    of day; its date is that of own ship's track. Without a time of day, or with one that stands,
+    `period_s` is the duration of a revolution. Azimuths count from `azimuth`, "north" or "bow", to
+    which the heading of own ship's file is added; a note says if they look like those from the
+    other one. Of several range scales in turn the one nearest to `range_scale_m` is read, by
+    default the longest. `columns` names columns of own ship's file.
 
     Raises
     ------
@@ -86,7 +90,7 @@ def read_plots_of_video(
     extraction = Extraction()
     parts: list[list[_Seen]] = []
     begun = 0
-    blocks = read_video(path, period_s=period_s, report=report)
+    blocks = read_video(path, period_s=period_s, range_scale_m=range_scale_m, report=report)
     for turn in counted(judged(turns(blocks)), "turns"):
         if not turn.whole:
             begun += 1
@@ -106,7 +110,7 @@ def read_plots_of_video(
         notes.append(f"{begun} incomplete revolution{'s' * (begun > 1)} left out")
     ship = OwnShipMotion.fixed()
     if own_path is not None:
-        rows = read_own_track(own_path, notes)
+        rows = read_own_track(own_path, notes, columns)
         days_s = _days_s(rows, parts)
         parts = [[seen.later(days_s) for seen in part] for part in parts]
         _check_covered(rows, parts, path)
@@ -178,7 +182,6 @@ def _check_covered(own: OwnRows, parts: Sequence[Sequence[_Seen]], path: Path) -
     """Own ship's position must be known at each plot and at the end of each revolution."""
     turns = [np.append(seen.plots.time_s, seen.end_s) for part in parts for seen in part]
     time_s = np.sort(np.concatenate(turns))
-    lost = own.lacks(time_s, OWN_GAP_S)
-    if lost is not None:
-        k, got = lost
-        raise own.not_known(path, time_s[k], got)
+    lost, got = own.lacks(time_s, OWN_GAP_S)
+    if lost.any():
+        raise own.not_known(path, time_s[np.argmax(lost)], got)

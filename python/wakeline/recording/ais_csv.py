@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -16,16 +17,38 @@ from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
 from .reach import plane_stretch, unreachable
-from .table import TIME_NAMES, Table
+from .table import TIME_NAMES, Table, is_missing
 
 COLUMNS = {
-    "time": (*TIME_NAMES, "basedatetime", "base_date_time"),
-    "mmsi": ("mmsi",),
+    "time": (
+        *TIME_NAMES,
+        "t",
+        "basedatetime",
+        "base_date_time",
+        "date_time",
+        "date_time_utc",
+        "datetime_utc",
+        "timestamp_utc",
+        "received_at",
+    ),
+    "mmsi": ("mmsi", "sourcemmsi", "source_mmsi", "shipid", "ship_id", "vessel_id"),
     "latitude": ("latitude_degrees", "latitude_deg", "latitude", "lat_deg", "lat"),
-    "longitude": ("longitude_degrees", "longitude_deg", "longitude", "lon_deg", "lon"),
-    "cog": ("cog_degrees", "cog_deg", "cog", "course_over_ground"),
-    "sog": ("sog_knots", "sog_kn", "sog", "speed_over_ground"),
+    "longitude": ("longitude_degrees", "longitude_deg", "longitude", "lon_deg", "lon", "long"),
+    "cog": (
+        *("cog_degrees", "cog_deg", "cog"),
+        *("course_over_ground", "courseoverground", "course_deg", "course"),
+    ),
+    "sog": (
+        *("sog_knots", "sog_kn", "sog"),
+        *("speed_over_ground", "speedoverground", "speed_knots", "speed_kn"),
+    ),
+    "sog_mps": ("sog_mps", "speed_mps"),
+    "speed": ("speed",),
 }
+_KNOTS_BY = ("t", ("shipid", "ship_id", "vessel_id"))  # names of the Piraeus set, in knots
+_LIKE_MOTION = re.compile(r"speed|sog|velocity|course|cog|heading_over_ground", re.IGNORECASE)
+_UNITS_MPS = {"m/s": 1.0, "knots": KNOT_MPS, "km/h": 1.0 / 3.6, "tenths of a knot": 0.1 * KNOT_MPS}
+_UNIT_WITHIN, _LEAST_STEPS, _LONGEST_STEP_S = 1.25, 3, 600.0
 
 _FAR_M = 500e3  # where the plane stretches distances by a thousandth
 
@@ -143,15 +166,22 @@ def read_ais(
     origin_deg: tuple[float, float] | None = None,
     min_step_s: float = 1.0,
     max_speed_mps: float = 40.0,
+    columns: Mapping[str, str] | None = None,
 ) -> AisRecording:
     """Read AIS position reports.
 
     Columns, by these or similar names: ``Time`` (UTC), ``MMSI``, ``Latitude_degrees``,
-    ``Longitude_degrees`` (WGS84) and, optionally, ``COG_degrees`` (true) and ``SOG_knots``. Rows
-    need not be sorted. The AIS values for "not available" (latitude 91, longitude 181, course 360,
-    speed 102.3, and 102.2 for "or higher") and impossible courses and speeds are missing values.
-    Dropped are reports without a position, late reports (the earlier one of two reports closer
-    together than `min_step_s`), and positions that the vessel cannot reach at `max_speed_mps`.
+    ``Longitude_degrees`` (WGS84) and, optionally, ``COG_degrees`` (true) and ``SOG_knots`` or
+    ``SOG_mps``. The names in the sets of the Danish Maritime Authority, MarineCadastre, Brest,
+    Kystverket, Piraeus and Global Fishing Watch are known. A ``speed`` without a unit is in the one
+    in which it agrees with the positions; without such a unit it is not used. Notes report it, and
+    other columns that look like a speed or course. Rows need not be sorted.
+
+    The AIS values for "not available" (latitude 91, longitude 181, course 360, speed 102.3, and
+    102.2 for "or higher") and impossible courses and speeds are missing values. Dropped are rows
+    that cannot be read, reports without a position, late reports (the earlier one of two reports
+    closer together than `min_step_s`), and positions that the vessel cannot reach at
+    `max_speed_mps`.
 
     The plane is for one area: a note reports positions more than 500 km from its origin, and by how
     much distances across are too long there.
@@ -167,6 +197,9 @@ def read_ais(
         Minimum time between reports of a vessel; more frequent ones are thinned.
     max_speed_mps : float
         Maximum speed of a vessel.
+    columns : dict of str to str, optional
+        Names of columns in this file and which of the names above they are, such as
+        ``{"ship": "mmsi", "v": "SOG_mps"}``.
 
     Returns
     -------
@@ -175,8 +208,8 @@ def read_ais(
     Raises
     ------
     RecordingError
-        When the file cannot be read, a column is missing, or a cell is invalid; the message names
-        file, line and column.
+        When the file cannot be read, a column is missing, or more than a tenth of the rows cannot
+        be read; the message names file, line and column.
     ValueError
         When a parameter is not positive or the origin is not on the earth.
     """
@@ -186,20 +219,22 @@ def read_ais(
             "origin_deg must be a latitude from -90 to 90 and a longitude from -180 to 180, "
             f"got {origin_deg}"
         )
-    table = Table(path, COLUMNS)
+    notes: list[str] = []
+    table = Table(path, COLUMNS, notes, columns)
+    table.require_named(columns)
     table.require("time", "mmsi", "latitude", "longitude")
     time_s = table.times("time")
-    mmsi = np.array(table.text("mmsi"))
-    table.check("mmsi", np.char.str_len(mmsi) > 0 if len(mmsi) else np.zeros(0), "a number")
+    mmsi = np.array([number.removesuffix(".0") for number in table.text("mmsi")], dtype=str)
+    table.check("mmsi", [not is_missing(number) for number in mmsi.tolist()], "a number")
     latitude_deg = _coordinate(table, "latitude", 90.0, _NO_LATITUDE_DEG)
     longitude_deg = _coordinate(table, "longitude", 180.0, _NO_LONGITUDE_DEG)
-    notes: list[str] = []
     cog_deg = _over_ground(table, "cog", _NO_COURSE_DEG, _LARGEST_COURSE_DEG, notes)
-    sog_kn = _over_ground(table, "sog", _NO_SPEED_KN, _LARGEST_SPEED_KN, notes)
-    placed = np.isfinite(latitude_deg) & np.isfinite(longitude_deg)
+    speed_mps = _speeds_mps(table, notes)
+    sound = table.kept()
+    placed = np.isfinite(latitude_deg) & np.isfinite(longitude_deg) & sound
     if not placed.any():
         raise RecordingError(table.path, "no report has a position", wanted="at least one")
-    _note(notes, table, ~placed, "report", "without a position")
+    _note(notes, table, sound & ~placed, "report", "without a position")
     if origin_deg is None:
         origin_deg = _median_deg(latitude_deg[placed], longitude_deg[placed])
     plane = LocalPlane(
@@ -210,9 +245,13 @@ def read_ais(
     course_rad = plane.plane_course_rad(np.radians(cog_deg), **place)
     opposite = placed & np.isnan(north_m)
     _note(notes, table, opposite, "report", "on the other side of the earth from the origin")
+    vessels = list(_rows_by_vessel(mmsi, time_s, np.flatnonzero(placed & ~opposite)))
+    if "speed" in table and not np.isfinite(speed_mps).any():
+        speed_mps = _unitless(table, vessels, time_s, north_m, east_m, notes)
+    _note_unknown(table, notes)
     tracks: dict[str, AisTrack] = {}
     late, jumped = np.zeros(len(table), dtype=bool), np.zeros(len(table), dtype=bool)
-    for number, row in _rows_by_vessel(mmsi, time_s, np.flatnonzero(placed & ~opposite)):
+    for number, row in vessels:
         soon = _too_soon(time_s[row], min_step_s)
         late[row[soon]] = True
         row = row[~soon]
@@ -220,13 +259,62 @@ def read_ais(
         jumped[row[far]] = True
         row = row[~far]
         tracks[number] = AisTrack(
-            number, time_s[row], north_m[row], east_m[row], course_rad[row], sog_kn[row] * KNOT_MPS
+            number, time_s[row], north_m[row], east_m[row], course_rad[row], speed_mps[row]
         )
     _note_far(notes, table, np.where(late | jumped, 0.0, np.hypot(north_m, east_m)))
     _note(notes, table, late, "report", f"less than {min_step_s:g} s before the next of the vessel")
     way = f"out of reach of the vessel at {max_speed_mps:g} m/s"
     _note(notes, table, jumped, "report", way)
     return AisRecording(plane, tracks, notes)
+
+
+def _speeds_mps(table: Table, notes: list[str]) -> np.ndarray:
+    """Speeds (n,) over ground from a column with a unit; NaN without one."""
+    if "sog_mps" in table:
+        largest_mps = _LARGEST_SPEED_KN * KNOT_MPS
+        return _over_ground(table, "sog_mps", _NO_SPEED_KN * KNOT_MPS, largest_mps, notes)
+    time, vessels = _KNOTS_BY
+    piraeus = table.name("time") == time and table.name("mmsi") in vessels
+    knots = "speed" if piraeus and "speed" in table else "sog"
+    return KNOT_MPS * _over_ground(table, knots, _NO_SPEED_KN, _LARGEST_SPEED_KN, notes)
+
+
+def _unitless(
+    table: Table,
+    vessels: Sequence[tuple[str, np.ndarray]],
+    time_s: np.ndarray,
+    north_m: np.ndarray,
+    east_m: np.ndarray,
+    notes: list[str],
+) -> np.ndarray:
+    """Speeds (n,) in the unit in which they agree with the steps between positions."""
+    speed, ratios = table.numbers("speed"), []
+    for _, row in vessels:
+        step_s, given = np.diff(time_s[row]), 0.5 * (speed[row][1:] + speed[row][:-1])
+        way_m = np.hypot(np.diff(north_m[row]), np.diff(east_m[row]))
+        steps = (step_s > 0.0) & (step_s < _LONGEST_STEP_S) & (given > 1.0)
+        ratios.append(way_m[steps] / (step_s * given)[steps])
+    ratio = np.concatenate(ratios)
+    name, found = table.name("speed"), float(np.median(ratio)) if len(ratio) else np.nan
+    for unit, factor in _UNITS_MPS.items():
+        if len(ratio) >= _LEAST_STEPS and factor / _UNIT_WITHIN < found < factor * _UNIT_WITHIN:
+            notes.append(f"{table.path.name}: {name} is in {unit}, as the positions show")
+            return np.where(speed >= 0.0, factor * speed, np.nan)
+    notes.append(
+        f"{table.path.name}: no speed is used, because the unit of {name} is not known; name it "
+        f"with columns: {name}=SOG_knots or {name}=SOG_mps"
+    )
+    return np.full(len(speed), np.nan)
+
+
+def _note_unknown(table: Table, notes: list[str]) -> None:
+    """Note columns that are not known but look like speed or course."""
+    alike = [name for name in table.unknown() if _LIKE_MOTION.search(name)]
+    if alike and not ("cog" in table and {"sog", "sog_mps", "speed"} & set(table.columns)):
+        notes.append(
+            f"{table.path.name}: {', '.join(alike)} not used; if it is the course or speed over "
+            f"ground, name it with columns: {alike[0]}=COG_degrees, SOG_knots or SOG_mps"
+        )
 
 
 def _rows_by_vessel(
@@ -246,7 +334,7 @@ def _coordinate(table: Table, column: str, largest_deg: float, missing_deg: floa
     absent = np.isnan(values) | (values == missing_deg)
     good = absent | (np.abs(values) <= largest_deg)
     table.check(column, good, f"a number from {-largest_deg:g} to {largest_deg:g}")
-    return np.where(absent, np.nan, values)
+    return np.where(absent | ~good, np.nan, values)
 
 
 def _over_ground(
@@ -258,7 +346,7 @@ def _over_ground(
     values = table.numbers(column)
     good = np.isnan(values) | (np.abs(values) <= largest)
     table.check(column, good, f"a number from 0 to {largest:g}")
-    odd = (values < 0.0) | (values > _NO_COURSE_DEG)
+    odd = good & ((values < 0.0) | (values > _NO_COURSE_DEG))
     _note(notes, table, odd, "value", f"of {table.name(column)} impossible for a vessel")
     return np.where((values < 0.0) | (values >= missing), np.nan, values)
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import collections
+import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +19,9 @@ from wakeline._brief import counted, many
 from wakeline._checks import finite, positive
 from wakeline._engine.video import Cat240Decoder, Cat240Encoder, Cat240Sweeps
 
+from .containers import Contents, instead_of_text, octets_of, video_of
 from .errors import RecordingError
 from .files import replacing
-from .not_text import packed
 from .video import Beam, RadarVideo
 
 _PIECE = 1 << 22  # octets read at once
@@ -31,6 +35,9 @@ _HELD_S = 1.0
 _PAUSE_S = 60.0
 _ASTRAY_RAD = 0.2
 _BELOW = {"azimuth_rad": 1e6, "time_s": 1e15, "start_range_m": 1e9, "cell_m": 1e6}  # to be written
+_NEAR = 256  # sweeps
+_MOST_SWITCHES = 8  # of the range scale in as many sweeps, if scales are not sent in turn
+_MOST_PARTS = 64  # of a sweep
 _ABUT = 1.5  # sweeps farther apart, or nearer, by this factor do not have the given width
 
 
@@ -45,6 +52,8 @@ class VideoReport:
     ----------
     sweeps : int
         Number of sweeps read.
+    contents : Contents
+        The container of the video, such as a network capture.
     source : (int, int) or None
         Area and system code (SAC, SIC) of the radar that was read.
     summaries : list of str
@@ -65,6 +74,14 @@ class VideoReport:
         Dropped sweeps: a repetition, or one that arrived after a later one.
     untimed : int
         Dropped sweeps without a time of day.
+    standing : int
+        Sweeps at a time of day that stands for a revolution, which is not used.
+    incomplete : int
+        Sweeps without one of their parts, whose cells are zero.
+    other_scales : Counter
+        Dropped sweeps of other range scales, sent in turn, by range in metres.
+    scale_m : float
+        Range of the scale that was read instead.
     held : int
         Sweeps whose time goes back by less than a second; they get the previous time.
     time_jumps : int
@@ -77,6 +94,7 @@ class VideoReport:
     """
 
     sweeps: int = 0
+    contents: Contents = field(default_factory=Contents)
     source: tuple[int, int] | None = None
     summaries: list[str] = field(default_factory=list)
     problems: int = 0
@@ -88,6 +106,10 @@ class VideoReport:
     repeated: int = 0
     late: int = 0
     untimed: int = 0
+    standing: int = 0
+    incomplete: int = 0
+    other_scales: collections.Counter[float] = field(default_factory=collections.Counter)
+    scale_m: float = 0.0
     held: int = 0
     time_jumps: int = 0
     reversals: int = 0
@@ -104,6 +126,8 @@ class VideoReport:
             (self.repeated, "[sweep that repeats|sweeps that repeat] the one before left out"),
             (self.late, "[sweep that comes|sweeps that come] late left out"),
             (self.untimed, "[sweep|sweeps] without a time of day left out"),
+            (self.standing, "[sweep has|sweeps have] a time of day that stands, which is not used"),
+            (self.incomplete, "[sweep lacks one of its|sweeps lack one of their] parts"),
             (self.held, "[sweep|sweeps] whose time goes back, set to the previous time"),
             (self.time_jumps, "[jump|jumps] of time"),
             (self.reversals, "[reversal|reversals] of the antenna"),
@@ -112,28 +136,33 @@ class VideoReport:
         notes = [counted(count, what) for count, what in words if count]
         if self.problems:
             notes[0] += f" (first: {self.first_problem})"
-        return notes
+        if self.other_scales:
+            others = " m, ".join(f"{range_m:.0f}" for range_m in sorted(self.other_scales))
+            notes.append(
+                f"range scales are sent in turn: that of {self.scale_m:.0f} m is used, and "
+                f"{many(self.other_scales.total(), 'sweep')} of {others} m left out; choose with "
+                "range_scale_m (--range-scale)"
+            )
+        return self.contents.notes + notes
 
 
 def is_video(path: str | Path) -> bool:
     """Whether a file begins as ASTERIX radar video or has some in its first 512 KiB.
 
-    Summaries alone do not count in a compressed file, whose octets may look like them by chance.
+    The file may be compressed, a network capture, or in the final format of ASTERIX.
 
     Raises
     ------
     OSError
-        When the file cannot be opened.
+        When there is no such file.
+    RecordingError
+        When the file cannot be read.
     """
-    head = _head(path)
+    Path(path).stat()
+    head, last = next(_pieces(video_of(path, Contents()), _HEAD))
     begins = len(head) > 3 and head[0] == 240 and head[1:3] > b"\x00\x04" and head[3] >= 0xC0
-    found = Cat240Decoder().decode(head, last=len(head) < _HEAD)
-    return bool(begins or len(found.offset) or (found.summaries and not packed(head)))
-
-
-def _head(path: str | Path) -> bytes:
-    with Path(path).open("rb") as file:
-        return file.read(_HEAD)
+    found = Cat240Decoder().decode(head[:_HEAD], last=last and len(head) <= _HEAD)
+    return bool(begins or len(found.offset) or found.summaries)
 
 
 def read_video(
@@ -143,12 +172,15 @@ def read_video(
     source: tuple[int, int] | None = None,
     midnight_s: float = 0.0,
     period_s: float | None = None,
+    range_scale_m: float | None = None,
     report: VideoReport | None = None,
 ) -> Iterator[RadarVideo]:
     """Read recorded radar video in blocks of at most one revolution, in bounded memory.
 
-    The file is a sequence of ASTERIX category 240 data blocks; ``cpp/docs/video_files.md``
-    describes what is read and how damage is handled. A new block begins where the antenna passes
+    The file is a sequence of ASTERIX category 240 data blocks, may be compressed (gzip, bzip2, xz),
+    in ASTERIX final format, or a network capture (pcap, pcapng); ``cpp/docs/video_files.md``
+    describes what is read and how damage is handled. Consecutive messages of one azimuth with
+    different cells are one sweep. A new block begins where the antenna passes
     north or, for a sector scan, where the beam goes back; where start range, length or number of
     cells or the bits of a cell change, where the width of sweeps changes by more than half, and
     where time jumps. A revolution of more than 128 MiB is split. The azimuth is the true bearing.
@@ -169,7 +201,11 @@ def read_video(
         UTC seconds of the midnight before the first sweep, because records contain only the time of
         day. Later midnights are counted.
     period_s : float, optional
-        Duration of a revolution, for files without a time of day: the first sweep then has time 0.
+        Duration of a revolution, for sweeps without a time of day, or with one that stands for a
+        revolution; without an earlier time the first sweep has time 0.
+    range_scale_m : float, optional
+        Where sweeps of several range scales are sent in turn, those with the range nearest to this
+        are read; default those of the longest range.
     report : VideoReport, optional
         Filled while reading.
 
@@ -183,16 +219,18 @@ def read_video(
         When the file cannot be opened or contains no readable sweep; with `strict`, at the first
         fault. The message names file, octet, what was expected and what came.
     ValueError
-        When `period_s` is not positive, `midnight_s` is not finite or `source` is not two octets.
+        When `period_s` or `range_scale_m` is not positive, `midnight_s` is not finite or `source`
+        is not two octets.
     """
     finite(midnight_s=midnight_s)
-    if period_s is not None:
-        positive(period_s=period_s)
+    for name, value in (("period_s", period_s), ("range_scale_m", range_scale_m)):
+        if value is not None:
+            positive(**{name: value})
     if source is not None:
         _check_source(source)
     report = VideoReport() if report is None else report
     report.source = None if source is None else tuple(source)
-    order = _Order(report, midnight_s, period_s)
+    order = _Order(report, midnight_s, period_s, range_scale_m)
     return _blocks(Path(path), order, strict)
 
 
@@ -270,7 +308,8 @@ def _check_writable(video: RadarVideo) -> None:
 def _blocks(path: Path, order: _Order, strict: bool) -> Iterator[RadarVideo]:
     report = order.report
     block = _Block()
-    sweeps = (row for decoded in _decoded(path, report, strict) for row in _rows(decoded))
+    decoded = _decoded(path, report, strict)
+    sweeps = (row for piece in decoded for row in _rows(path, piece, report, strict))
     for sweep, begins in order.kept(sweeps):
         if begins or block.ends_before(sweep):
             yield from block.videos()
@@ -285,14 +324,18 @@ def _nothing(path: Path, order: _Order) -> RecordingError:
     report = order.report
     if report.untimed:
         wanted, got = "I240/140, or period_s given", f"{many(report.untimed, 'sweep')} without"
+        if report.standing:
+            got = f"a time of day that stands in {many(report.standing, 'sweep')}"
         return RecordingError(path, "no sweep has a time of day", wanted=wanted, got=got)
     if order.other is not None:
         got = f"{report.other_source} of others, first of {order.other}"
         wanted = f"sweeps of source {report.source}"
         return RecordingError(path, "no video of this radar", wanted=wanted, got=got)
     got = "nothing" if report.first_problem is None else f"this: {report.first_problem}"
-    if path.is_file():  # a pipe is not read again
-        got = packed(_head(path)) or got
+    if report.contents.form and not report.contents.used:
+        got = str(report.contents)
+    elif path.is_file():  # a pipe is not read again
+        got = instead_of_text(octets_of(path)[:_HEAD]) or got
     return RecordingError(path, "no radar video", wanted="sweeps of ASTERIX category 240", got=got)
 
 
@@ -300,41 +343,47 @@ def _decoded(path: Path, report: VideoReport, strict: bool) -> Iterator[Cat240Sw
     """The sweeps of the file, piece by piece."""
     decoder = Cat240Decoder()
     rest = b""
-    try:
-        with path.open("rb") as file:
-            for piece, last in _pieces(file):
-                data = rest + piece
-                sweeps = decoder.decode(data, last)
-                rest = data[sweeps.consumed :]
-                _take_note(path, sweeps, report, strict)
-                report.skipped_octets = decoder.skipped_octets
-                report.other_blocks = decoder.other_blocks
-                yield sweeps
-    except OSError as error:
-        raise RecordingError(path, f"the file cannot be read ({error.strerror})") from error
+    for piece, last in _pieces(video_of(path, report.contents), _PIECE):
+        data = rest + piece
+        sweeps = decoder.decode(data, last)
+        rest = data[sweeps.consumed :]
+        _take_note(path, sweeps, report, strict)
+        report.skipped_octets = decoder.skipped_octets
+        report.other_blocks = decoder.other_blocks
+        yield sweeps
 
 
-def _pieces(file: BinaryIO) -> Iterator[tuple[bytes, bool]]:
-    """The pieces of the file, each with whether it is the last."""
-    piece = file.read(_PIECE)
-    while True:
-        following = file.read(_PIECE)
-        yield piece, not following
-        if not following:
-            return
-        piece = following
+def _pieces(octets: Iterable[bytes], least: int) -> Iterator[tuple[bytes, bool]]:
+    """The octets in pieces of a length or more, each with whether it is the last."""
+    held, waiting, size = b"", [], 0
+    for part in octets:
+        waiting.append(part)
+        size += len(part)
+        if size >= least:
+            if held:
+                yield held, False
+            held, waiting, size = b"".join(waiting), [], 0
+    if held and size:
+        yield held, False
+        held = b""
+    yield held or b"".join(waiting), True
 
 
 def _take_note(path: Path, sweeps: Cat240Sweeps, report: VideoReport, strict: bool) -> None:
     for text in (octets.decode("ascii", "replace") for octets in sweeps.summaries):
         if text not in report.summaries and len(report.summaries) < 100:
             report.summaries.append(text)
-    report.problems += sweeps.problem_count
-    if sweeps.problems and report.first_problem is None:
+    if sweeps.problems:
         offset, problem, wanted, got = sweeps.problems[0]
-        report.first_problem = RecordingError(path, problem, offset=offset, wanted=wanted, got=got)
-        if strict:
-            raise report.first_problem
+        error = RecordingError(path, problem, offset=offset, wanted=wanted, got=got)
+        _count_problem(error, report, strict, sweeps.problem_count)
+
+
+def _count_problem(error: RecordingError, report: VideoReport, strict: bool, count: int) -> None:
+    report.problems += count
+    report.first_problem = report.first_problem or error
+    if strict:
+        raise error
 
 
 class _Sweep(NamedTuple):
@@ -372,15 +421,77 @@ class _Sweep(NamedTuple):
             for far in (_Sweep._turned_far, _Sweep._jumps)
         )
 
+    @property
+    def begin(self) -> int:
+        """Number of cells between the antenna and the first."""
+        return round(self.geometry[0] / self.geometry[1])
+
+    @property
+    def end(self) -> int:
+        """Number of cells between the antenna and the end of the last."""
+        return self.begin + len(self.amplitude)
+
+    @property
+    def scale(self) -> _Scale:
+        return _Scale(*self.geometry, len(self.amplitude), self.amplitude.dtype.itemsize)
+
+    def is_part_beside(self, parts: Sequence[_Sweep]) -> bool:
+        """Whether it has other cells of the sweep that these are parts of."""
+        first, most = parts[0], _MOST_PARTS * len(self.amplitude)
+        return (
+            self.azimuth_rad == first.azimuth_rad
+            and self.geometry[1] == first.geometry[1]
+            and self.amplitude.dtype == first.amplitude.dtype
+            and all(part.end <= self.begin or self.end <= part.begin for part in parts)
+            and all(abs(part.begin - self.begin) < most for part in parts)
+        )
+
+    def joined(self, parts: Sequence[_Sweep], begin: int, end: int) -> _Sweep:
+        """The sweep with the cells of all its parts, from `begin` to `end`."""
+        if len(self.amplitude) == end - begin:
+            return self
+        amplitude = np.zeros(end - begin, self.amplitude.dtype)
+        for part in parts:
+            amplitude[part.begin - begin : part.end - begin] = part.amplitude
+        nearest_m = min(part.geometry[0] for part in parts)
+        start_m = nearest_m if min(part.begin for part in parts) == begin else begin * self.cell_m
+        return self._replace(geometry=(start_m, self.cell_m), amplitude=amplitude)
+
+    @property
+    def cell_m(self) -> float:
+        return self.geometry[1]
+
     def _turned_far(self, since: _Sweep) -> bool:
-        way_rad = (self.azimuth_rad - since.azimuth_rad + math.pi) % _TURN - math.pi
-        return abs(way_rad) > _ASTRAY_RAD
+        return abs(_turn_rad(since.azimuth_rad, self.azimuth_rad)) > _ASTRAY_RAD
 
     def _jumps(self, since: _Sweep) -> bool:
         return _jumps(self.time_s - since.time_s)
 
 
-def _rows(sweeps: Cat240Sweeps) -> Iterator[_Sweep]:
+class _Scale(NamedTuple):
+    """The cells of a sweep."""
+
+    start_range_m: float
+    cell_m: float
+    cells: int
+    octets: int
+
+    @property
+    def range_m(self) -> float:
+        return self.start_range_m + self.cells * self.cell_m
+
+
+def _switches(sweeps: Iterable[_Sweep]) -> int:
+    """How often the range scale changes."""
+    scales = [sweep.scale for sweep in sweeps]
+    return sum(a != b for a, b in itertools.pairwise(scales))
+
+
+def _turn_rad(before_rad: float, now_rad: float) -> float:
+    return (now_rad - before_rad + math.pi) % _TURN - math.pi
+
+
+def _rows(path: Path, sweeps: Cat240Sweeps, report: VideoReport, strict: bool) -> Iterator[_Sweep]:
     columns = (
         sweeps.source,
         sweeps.sequence,
@@ -391,22 +502,56 @@ def _rows(sweeps: Cat240Sweeps) -> Iterator[_Sweep]:
         sweeps.cell_m,
         sweeps.first,
         sweeps.cells,
-        sweeps.bits > 8,
+        sweeps.bits,
+        sweeps.compressed,
     )
     octets, words = sweeps.octets, sweeps.words
-    for *given, start, cell, first, cells, wide in zip(*(c.tolist() for c in columns), strict=True):
-        amplitude = (words if wide else octets)[first : first + cells]
-        yield _Sweep(*given, (start, cell), amplitude.copy())  # lets the piece go
+    rows = enumerate(zip(*(c.tolist() for c in columns), strict=True))
+    for row, (*given, start, cell, first, cells, bits, compressed) in rows:
+        if compressed:
+            amplitude = _decompressed(octets[first : first + compressed].tobytes(), cells, bits)
+        else:
+            amplitude = (words if bits > 8 else octets)[first : first + cells].copy()
+        if amplitude is None:
+            error = RecordingError(
+                path,
+                "the compressed video cannot be read",
+                offset=int(sweeps.offset[row]),
+                wanted=f"zlib data of {many(cells, 'cell')} of {bits} bits",
+                got=f"other {many(compressed, 'octet')}",
+            )
+            _count_problem(error, report, strict, 1)
+            continue
+        yield _Sweep(*given, (start, cell), amplitude)  # a copy lets the piece go
+
+
+def _decompressed(octets: bytes, cells: int, bits: int) -> NDArray | None:
+    """The cells of a sweep compressed by zlib, with its header or without; None if it is not."""
+    for form in (zlib.MAX_WBITS | 32, -zlib.MAX_WBITS):
+        with suppress(zlib.error):
+            whole = zlib.decompressobj(form).decompress(octets, (cells * bits + 7) // 8)
+            amplitude = Cat240Decoder.unpack(whole, cells, bits)
+            if amplitude is not None:
+                return amplitude
+    return None
 
 
 class _Order:
     """Which sweeps are kept, and when they were received."""
 
-    def __init__(self, report: VideoReport, midnight_s: float, period_s: float | None) -> None:
+    def __init__(
+        self,
+        report: VideoReport,
+        midnight_s: float,
+        period_s: float | None,
+        range_scale_m: float | None,
+    ) -> None:
         self.report = report
         self.other: tuple[int, int] | None = None  # the first other radar
         self._midnight_s = midnight_s
         self._period_s = period_s
+        self._range_scale_m = range_scale_m
+        self._known = midnight_s, 0.0  # the last time of day, and the way of the beam until then
         self._before: _Sweep | None = None
         self._time_s: float | None = None
         self._beam = Beam()
@@ -415,7 +560,8 @@ class _Order:
         """The sweeps to keep, with their absolute time, and whether a block begins with each."""
         begins = False
         ours = self._steady(filter(self._is_ours, sweeps), _Sweep.counts_ahead)
-        for sweep in self._steady(filter(self._is_next, ours), _Sweep.strays):
+        whole = self._of_one_scale(self._timed(self._whole(filter(self._is_next, ours))))
+        for sweep in self._steady(whole, _Sweep.strays):
             begins |= self._beam.begins_turn(sweep.azimuth_rad)
             self.report.reversals = self._beam.reversals
             time_s = self._time_of(sweep)
@@ -467,10 +613,94 @@ class _Order:
         self._before = sweep
         return True
 
+    def _whole(self, messages: Iterable[_Sweep]) -> Iterator[_Sweep]:
+        """Sweeps made of the messages of one azimuth; cells that are not there are zero."""
+        parts: list[_Sweep] = []
+        extent: dict[float, tuple[int, int]] = {}  # of sweeps in parts, by the length of cells
+        for message in itertools.chain(messages, [None]):
+            if parts and (message is None or not message.is_part_beside(parts)):
+                cell_m = parts[0].geometry[1]
+                known = extent.get(cell_m)
+                begin = min(part.begin for part in parts)
+                end = max(part.end for part in parts)
+                if known is not None and known[0] <= begin and end <= known[1]:
+                    begin, end = known
+                    held = sum(len(part.amplitude) for part in parts)
+                    self.report.incomplete += held < end - begin
+                elif len(parts) > 1:
+                    extent[cell_m] = begin, end
+                yield parts[0].joined(parts, begin, end)
+                parts = []
+            if message is not None:
+                parts.append(message)
+
+    def _timed(self, sweeps: Iterable[_Sweep]) -> Iterator[_Sweep]:
+        """The sweeps, without the time of day where it stands for a revolution."""
+        held: list[_Sweep] = []
+        before, turned_rad = None, 0.0
+        for sweep in sweeps:
+            if before is not None and sweep.time_s == before.time_s:
+                turned_rad += abs(_turn_rad(before.azimuth_rad, sweep.azimuth_rad))
+            else:
+                yield from held
+                held, turned_rad = [], 0.0
+            before = sweep
+            held.append(sweep)
+            if turned_rad > _TURN:
+                self.report.standing += len(held)
+                yield from (each._replace(time_s=math.nan) for each in held)
+                held = []
+        yield from held
+
+    def _of_one_scale(self, sweeps: Iterable[_Sweep]) -> Iterator[_Sweep]:
+        """The sweeps of one range scale where several are sent in turn.
+
+        A scale is sent in turn with another if that was sent shortly before and after the sweep.
+        """
+        waiting: collections.deque[_Sweep] = collections.deque()
+        coming: collections.Counter[_Scale] = collections.Counter()
+        seen: dict[_Scale, int] = {}
+        sweeps = iter(sweeps)
+        for index in itertools.count():
+            for sweep in itertools.islice(sweeps, _NEAR - len(waiting)):
+                waiting.append(sweep)
+                coming[sweep.scale] += 1
+            if not waiting:
+                return
+            if index == 0 and _switches(waiting) > _MOST_SWITCHES:
+                seen = dict.fromkeys(coming, 0)
+            ends = len(waiting) < _NEAR and bool(self.report.other_scales)
+            sweep = waiting.popleft()
+            scale = sweep.scale
+            coming[scale] -= 1
+            seen[scale] = index
+            in_turn = [
+                other
+                for other, last in seen.items()
+                if index - last < _NEAR and (coming[other] or ends) and self._prefers(other, scale)
+            ]
+            if in_turn:
+                self.report.other_scales[scale.range_m] += 1
+                self.report.scale_m = max(in_turn, key=self._preference).range_m
+            else:
+                yield sweep
+
+    def _prefers(self, scale: _Scale, to: _Scale) -> bool:
+        return self._preference(scale) > self._preference(to)
+
+    def _preference(self, scale: _Scale) -> tuple[float, float]:
+        wanted_m = self._range_scale_m
+        nearness = scale.range_m if wanted_m is None else -abs(scale.range_m - wanted_m)
+        return nearness, -scale.cell_m
+
     def _time_of(self, sweep: _Sweep) -> float:
-        if self._period_s is not None and math.isnan(sweep.time_s):
-            return self._midnight_s + self._beam.turned_rad / _TURN * self._period_s
-        return self._midnight_s + sweep.time_s
+        time_s, turned_rad = sweep.time_s, self._beam.turned_rad
+        if self._period_s is not None and math.isnan(time_s):
+            known_s, known_rad = self._known
+            return known_s + (turned_rad - known_rad) / _TURN * self._period_s
+        if not math.isnan(time_s):
+            self._known = self._midnight_s + time_s, turned_rad
+        return self._midnight_s + time_s
 
     def _in_order(self, time_s: float) -> tuple[float, bool]:
         before, self._time_s = self._time_s, time_s

@@ -6,10 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wakeline._brief import many
+
 from . import scans as grouping
 from .model import Episode, OwnShipMotion, Scan
 from .own_csv import OwnRows
 from .plot_rows import PlotRows
+from .table import MOST_BAD
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,7 @@ def build_episode(
     fixed: OwnShipMotion,
     period_s: float | None,
     own_gap_s: float,
+    notes: list[str],
 ) -> Episode:
     """One scenario's scans and own ship.
 
@@ -36,22 +40,23 @@ def build_episode(
     scenario : str
         Its name.
     plots : PlotRows
-        Rows of all scenarios; positions that are not finite are NaN.
+        Its rows; positions that are not finite are NaN.
     own : OwnRows or None
-        Rows of all scenarios.
+        Its rows.
     fixed : OwnShipMotion
         Own ship if neither file has its position.
     period_s, own_gap_s : float
         As for ``read_plots``.
+    notes : list of str
+        Notes are added to it.
 
     Raises
     ------
     RecordingError
-        When scan times do not increase, or own ship's position is unknown at a plot.
+        When scan times do not increase, or own ship's position is unknown at more than a tenth of
+        the plots.
     """
-    own = None if own is None else own.part(scenario)
     listed = _listed_scans(own)
-    plots = plots.where(plots.scenario == scenario)
     plots = plots.where(np.argsort(plots.time_s, kind="stable"))
     plots, number = _numbered(plots, listed, _bearing_rad(plots, own, fixed), period_s)
     scans = _all_scans(listed, plots, number)
@@ -59,7 +64,10 @@ def build_episode(
     _check_scan_times(scans, plots, number, own)
     placed = np.isfinite(plots.place).all(axis=1)
     plots, number = plots.where(placed), number[placed]
-    own_m, ship = _own_ship(plots, own, fixed, own_gap_s)
+    if own is not None and own.has_position:
+        covered = _covered(plots, own.by_time(), own_gap_s, notes)
+        plots, number = plots.where(covered), number[covered]
+    own_m, ship = _own_ship(plots, own, fixed)
     return Episode(scenario, _scans(scans, number, _plot_columns(plots, own_m)), ship)
 
 
@@ -146,13 +154,11 @@ def _check_scan_times(
 
 
 def _own_ship(
-    plots: PlotRows, own: OwnRows | None, fixed: OwnShipMotion, own_gap_s: float
+    plots: PlotRows, own: OwnRows | None, fixed: OwnShipMotion
 ) -> tuple[np.ndarray, OwnShipMotion]:
     """Own position (n, 2) at each plot, and own ship's track."""
     if own is not None and own.has_position:
-        rows = own.by_time()
-        _check_covered(plots, rows, own_gap_s)
-        ship = _track(rows, fixed)
+        ship = _track(own.by_time(), fixed)
         return ship.position_at(plots.time_s) if plots.own_m is None else plots.own_m, ship
     if plots.own_m is not None and len(plots):
         time_s, first = np.unique(plots.time_s, return_index=True)
@@ -160,19 +166,24 @@ def _own_ship(
     return fixed.position_at(plots.time_s), fixed
 
 
-def _check_covered(plots: PlotRows, own: OwnRows, own_gap_s: float) -> None:
-    """Own ship's position must be known at each plot; `own` is sorted by time."""
-    lost = own.lacks(plots.time_s, own_gap_s)
-    if lost is None:
-        return
-    k, got = lost
-    raise own.not_known(
-        plots.table.path,
-        plots.time_s[k],
-        got,
-        line=plots.table.line(plots.row[k]),
-        column=plots.table.name("time_s"),
-    )
+def _covered(plots: PlotRows, own: OwnRows, own_gap_s: float, notes: list[str]) -> np.ndarray:
+    """Mask (n,) of the plots at which own ship's position is known; `own` is sorted by time."""
+    lost, got = own.lacks(plots.time_s, own_gap_s)
+    if lost.any():
+        k = int(np.argmax(lost))
+        error = own.not_known(
+            plots.table.path,
+            plots.time_s[k],
+            got,
+            line=plots.table.line(plots.row[k]),
+            column=plots.table.name("time_s"),
+        )
+        if np.count_nonzero(lost) > MOST_BAD * len(lost):
+            raise error
+        count = many(np.count_nonzero(lost), "plot")
+        name = plots.table.path.name
+        notes.append(f"{name}: {count} left out (first: {error.place_and_reason})")
+    return ~lost
 
 
 def _plot_columns(plots: PlotRows, own_m: np.ndarray) -> dict[str, np.ndarray]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+_PLACES = ("line", "column", "offset", "wanted", "got")
+
 
 class RecordingError(ValueError):
     """A recording cannot be read.
@@ -47,8 +49,17 @@ class RecordingError(ValueError):
         super().__init__(self._sentence())
 
     def __reduce__(self):
-        names = ("line", "column", "offset", "wanted", "got")
-        return _rebuild, (self.path, self.problem, {name: getattr(self, name) for name in names})
+        return _rebuild, (self.path, self.problem, {name: getattr(self, name) for name in _PLACES})
+
+    @property
+    def place_and_reason(self) -> str:
+        """The message without the file."""
+        return str(self).removeprefix(f"{self.path}, ").removeprefix(f"{self.path}: ")
+
+    def remarked(self, remark: str) -> RecordingError:
+        """The same error with a remark on the problem, in parentheses."""
+        places = {name: getattr(self, name) for name in _PLACES}
+        return RecordingError(self.path, f"{self.problem} ({remark})", **places)
 
     def _sentence(self) -> str:
         place = [str(self.path)]
@@ -68,12 +79,3 @@ class RecordingError(ValueError):
 
 def _rebuild(path: Path, problem: str, places: dict) -> RecordingError:
     return RecordingError(path, problem, **places)
-
-
-def octets_of(path: str | Path, wanted: str | None = None) -> bytes:
-    """Contents of a file; RecordingError, with what was expected, if it cannot be read."""
-    try:
-        return Path(path).read_bytes()
-    except OSError as error:
-        problem = f"the file cannot be read ({error.strerror})"
-        raise RecordingError(path, problem, wanted=wanted) from error

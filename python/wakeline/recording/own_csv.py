@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +13,8 @@ from wakeline._brief import many
 
 from .errors import RecordingError
 from .model import OwnShipMotion
+from .plot_rows import number_scans
+from .scans import grouped, repeated
 from .table import TIME_NAMES, Table
 
 OWN_GAP_S = 10.0  # longest step that is interpolated across by default
@@ -63,14 +67,21 @@ class OwnRows:
         """Whether the file has own ship's position."""
         return "north_m" in self.columns
 
-    def part(self, scenario: str) -> OwnRows:
-        """Rows of one scenario; all rows when the file has no scenario column."""
-        return self if self.scenario is None else self._where(self.scenario == scenario)
+    def parts(self, scenarios: Sequence[str]) -> dict[str, OwnRows]:
+        """Rows of each scenario; all rows for each when the file has no scenario column."""
+        if self.scenario is None:
+            return dict.fromkeys(scenarios, self)
+        none = dict.fromkeys(scenarios, self._where(np.zeros(0, dtype=int)))
+        return none | {name: self._where(rows) for name, rows in grouped(self.scenario)}
+
+    @property
+    def placed(self) -> np.ndarray:
+        """Mask (n,) of the rows with a finite position."""
+        return np.isfinite(self.columns["north_m"]) & np.isfinite(self.columns["east_m"])
 
     def by_time(self) -> OwnRows:
         """Rows with a finite position, sorted by time; of equal times the last in the file."""
-        placed = np.isfinite(self.columns["north_m"]) & np.isfinite(self.columns["east_m"])
-        rows = self._where(np.flatnonzero(placed))
+        rows = self._where(self.placed)
         rows = rows._where(np.argsort(rows.time_s, kind="stable"))
         return rows._where(np.append(np.diff(rows.time_s) > 0, True)[: len(rows.time_s)])
 
@@ -78,32 +89,25 @@ class OwnRows:
         """These sorted rows as own ship's track."""
         return OwnShipMotion(time_s=self.time_s, **self.columns)
 
-    def lacks(self, time_s: np.ndarray, own_gap_s: float) -> tuple[int, str] | None:
-        """The first of times (n,) that these sorted rows do not cover, and what they have.
+    def lacks(self, time_s: np.ndarray, own_gap_s: float) -> tuple[np.ndarray, str]:
+        """Mask of the times (n,) that these sorted rows do not cover, and what they have instead.
 
         A time may be at most one median step outside of them, and not in a step longer than
-        `own_gap_s`. None if all are covered.
+        `own_gap_s`. The text is that for the first of them.
         """
-        if len(time_s) == 0:
-            return None
         if len(self.row) == 0:
-            return 0, "no position at all"
-        step_s = np.diff(self.time_s)
-        margin_s = min(float(np.median(step_s)), own_gap_s) if len(step_s) else 0.0
-        start_s, end_s = self.time_s[0] - margin_s, self.time_s[-1] + margin_s
-        outside = (time_s < start_s) | (time_s > end_s)
-        if outside.any():
-            return int(np.argmax(outside)), f"positions from {self.time_s[0]} to {self.time_s[-1]}"
-        if len(step_s) == 0:
-            return None
-        after = np.clip(np.searchsorted(self.time_s, time_s), 1, len(step_s))
-        inside = (time_s > self.time_s[after - 1]) & (time_s < self.time_s[after])
-        lost = inside & (step_s[after - 1] > own_gap_s)
-        if not lost.any():
-            return None
-        k = int(np.argmax(lost))
-        line = self.table.line(self.row[after[k] - 1])
-        return k, f"a gap of {step_s[after[k] - 1]:g} s after its line {line}"
+            return np.ones(len(time_s), dtype=bool), "no position at all"
+        step_s = np.append(np.diff(self.time_s), 0.0)
+        margin_s = min(float(np.median(step_s[:-1])), own_gap_s) if len(step_s) > 1 else 0.0
+        outside = (time_s < self.time_s[0] - margin_s) | (time_s > self.time_s[-1] + margin_s)
+        before = np.clip(np.searchsorted(self.time_s, time_s) - 1, 0, len(step_s) - 1)
+        inside = (time_s > self.time_s[before]) & (step_s[before] > own_gap_s) & ~outside
+        inside &= ~np.isin(time_s, self.time_s)
+        k = int(np.argmax(outside | inside)) if len(time_s) else 0
+        if not inside.any() or outside[k]:
+            return outside | inside, f"positions from {self.time_s[0]} to {self.time_s[-1]}"
+        line = self.table.line(self.row[before[k]])
+        return outside | inside, f"a gap of {step_s[before[k]]:g} s after its line {line}"
 
     def not_known(
         self, path: str | Path, time_s: float, got: str, **place: int | str
@@ -128,7 +132,9 @@ class OwnRows:
         )
 
 
-def read_own(path: str | Path, notes: list[str]) -> OwnRows:
+def read_own(
+    path: str | Path, notes: list[str], columns: Mapping[str, str] | None = None
+) -> OwnRows:
     """Read an own-ship file.
 
     Columns: a time; ``own_north_m, own_east_m`` (or ``north_m, east_m``); where known
@@ -143,14 +149,16 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
         The file.
     notes : list of str
         Notes are added to it.
+    columns : dict of str to str, optional
+        Names of columns in this file and what they are.
 
     Raises
     ------
     RecordingError
-        When a column is missing, a cell cannot be read, a covariance is invalid, a scan is listed
-        twice, or no row follows the header.
+        When a column is missing, no row follows the header, or more than a tenth of the rows cannot
+        be read, have an invalid covariance, or list a scan again.
     """
-    table = Table(path, COLUMNS)
+    table = Table(path, COLUMNS, notes, columns)
     table.require("time_s")
     if len(table) == 0:
         raise RecordingError(
@@ -164,13 +172,20 @@ def read_own(path: str | Path, notes: list[str]) -> OwnRows:
         time_s=table.times("time_s"),
         columns=_motion(table, notes),
     )
-    _check_scans_once(rows)
+    if rows.scan is not None:
+        scan = number_scans(table, rows.scenario, rows.scan, rows.time_s, within=False)
+        rows = dataclasses.replace(rows, scan=scan)
+        _reject_repeats(rows)
+    rows = rows._where(table.kept())
+    _note_without_position(rows, notes)
     _note_order(rows, notes)
     _note_jumped(table, notes)
     return rows
 
 
-def read_own_track(path: str | Path, notes: list[str]) -> OwnRows:
+def read_own_track(
+    path: str | Path, notes: list[str], columns: Mapping[str, str] | None = None
+) -> OwnRows:
     """Read an own-ship file that holds one track: rows with a position, in order of time.
 
     Raises
@@ -178,7 +193,7 @@ def read_own_track(path: str | Path, notes: list[str]) -> OwnRows:
     RecordingError
         When the file cannot be read, has no positions, or has those of several scenarios.
     """
-    rows = read_own(path, notes)
+    rows = read_own(path, notes, columns)
     if not rows.has_position:
         raise RecordingError(
             path,
@@ -199,15 +214,22 @@ def read_own_track(path: str | Path, notes: list[str]) -> OwnRows:
     return rows.by_time()
 
 
-def read_own_ship(path: str | Path) -> OwnShipMotion:
+def read_own_ship(path: str | Path, *, columns: Mapping[str, str] | None = None) -> OwnShipMotion:
     """Read own ship's track from a file, as :func:`read_plots` describes it.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    columns : dict of str to str, optional
+        Names of columns in this file and what they are.
 
     Raises
     ------
     RecordingError
         When the file cannot be read, has no positions, or has those of several scenarios.
     """
-    return read_own_track(path, []).ship()
+    return read_own_track(path, [], columns).ship()
 
 
 def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
@@ -216,14 +238,6 @@ def _motion(table: Table, notes: list[str]) -> dict[str, np.ndarray]:
         return {}
     table.require("north_m", "east_m")
     motion = {"north_m": table.ways_m("north_m"), "east_m": table.ways_m("east_m")}
-    lost = ~(np.isfinite(motion["north_m"]) & np.isfinite(motion["east_m"]))
-    if lost.any():
-        first = table.line(int(np.argmax(lost)))
-        rows = many(np.count_nonzero(lost), "row")
-        notes.append(
-            f"{table.path.name}: {rows} without a finite own-ship position "
-            f"left out (first in line {first})"
-        )
     motion |= {c: table.speeds_mps(c) for c in ("vnorth_mps", "veast_mps") if c in table}
     if "heading_deg" in table:
         motion["heading_rad"] = np.deg2rad(table.numbers("heading_deg"))
@@ -255,8 +269,18 @@ def _note_jumped(table: Table, notes: list[str]) -> None:
         )
 
 
+def _note_without_position(rows: OwnRows, notes: list[str]) -> None:
+    lost = ~rows.placed if rows.has_position else np.zeros(0, dtype=bool)
+    if lost.any():
+        count = many(np.count_nonzero(lost), "row")
+        notes.append(
+            f"{rows.table.path.name}: {count} without a finite own-ship position left out (first "
+            f"in line {rows.table.line(rows.row[np.argmax(lost)])})"
+        )
+
+
 def _note_order(rows: OwnRows, notes: list[str]) -> None:
-    parts = [rows] if rows.scenario is None else map(rows.part, np.unique(rows.scenario))
+    parts = rows.parts([""]).values()
     back = np.concatenate([part.row[1:][np.diff(part.time_s) < 0] for part in parts])
     if len(back):
         notes.append(
@@ -266,14 +290,8 @@ def _note_order(rows: OwnRows, notes: list[str]) -> None:
         )
 
 
-def _check_scans_once(rows: OwnRows) -> None:
-    if rows.scan is None:
-        return
-    seen = set()
-    scenarios = rows.scenario if rows.scenario is not None else np.full(len(rows.scan), "")
-    for row, key in enumerate(zip(scenarios.tolist(), rows.scan.tolist(), strict=True)):
-        if key in seen:
-            raise rows.table.error(
-                row, "scan", "each scan listed once", problem="a scan is listed twice"
-            )
-        seen.add(key)
+def _reject_repeats(rows: OwnRows) -> None:
+    scenario = rows.scenario if rows.scenario is not None else np.zeros(len(rows.scan), dtype=str)
+    sound = np.flatnonzero(rows.table.sound)
+    again = sound[repeated(np.unique(scenario[sound], return_inverse=True)[1], rows.scan[sound])]
+    rows.table.reject(again, "scan", "each scan listed once", "a scan is listed twice")

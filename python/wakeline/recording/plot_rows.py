@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import dataclasses
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from wakeline._brief import counted
 from wakeline._units import NAUTICAL_MILE_M
 
 from .errors import RecordingError
-from .scans import repeated
+from .scans import grouped, out_of_order, repeated, unwrapped
 from .table import TIME_NAMES, Table
 from .units import unit_notes
 
@@ -104,7 +105,9 @@ class PlotRows:
         )
 
 
-def read_plot_rows(path: str | Path, notes: list[str]) -> PlotRows:
+def read_plot_rows(
+    path: str | Path, notes: list[str], columns: Mapping[str, str] | None = None
+) -> PlotRows:
     """Read the rows of a plots file.
 
     Parameters
@@ -112,14 +115,17 @@ def read_plot_rows(path: str | Path, notes: list[str]) -> PlotRows:
     path : str or Path
         The file.
     notes : list of str
-        Notes are added to it: times that go back, repeated rows (dropped), no plots.
+        Notes are added to it: rows that cannot be read (dropped), times that go back, repeated rows
+        (dropped), no plots.
+    columns : dict of str to str, optional
+        Names of columns in this file and what they are.
 
     Raises
     ------
     RecordingError
-        When a column is missing or a cell cannot be read or is invalid.
+        When a column is missing or more than a tenth of the rows cannot be read.
     """
-    table = Table(path, COLUMNS)
+    table = Table(path, COLUMNS, notes, columns)
     table.require("time_s")
     place, polar = _places(table, notes)
     scenario = table.text("scenario") if "scenario" in table else [""] * len(table)
@@ -133,14 +139,43 @@ def read_plot_rows(path: str | Path, notes: list[str]) -> PlotRows:
         polar=polar,
         own_m=_own_beside(table),
     )
+    if rows.scan is not None:
+        scan = number_scans(table, rows.scenario, rows.scan, rows.time_s, within=True)
+        rows = dataclasses.replace(rows, scan=scan)
+    rows = rows.where(table.kept())
     if polar:
         names = [_name_of(table, quantity) for quantity in ("range", "bearing")]
-        notes += [f"{table.path.name}: {note}" for note in unit_notes(place, *names)]
+        notes += [f"{table.path.name}: {note}" for note in unit_notes(rows.place, *names)]
     if len(rows) == 0:
         notes.append(f"{table.path.name}: no plots")
     if rows.scan is None:
         remark(rows, _set_back(rows), _PUT_IN_ORDER, notes)
     return _without_repeats(rows, notes)
+
+
+def number_scans(
+    table: Table,
+    scenario: np.ndarray | None,
+    scan: np.ndarray,
+    time_s: np.ndarray,
+    *,
+    within: bool,
+) -> np.ndarray:
+    """Scan numbers (n,) by scenario, continued where their counter begins again.
+
+    Rows whose times contradict the numbers of the others are marked in the table, if they are few.
+    With `within` a scan may have several rows.
+    """
+    scan = scan.copy()
+    sound = np.flatnonzero(table.sound)
+    names = np.zeros(len(scan), dtype=str) if scenario is None else scenario
+    for _, part in grouped(names[sound]):
+        rows = sound[part]
+        scan[rows] = unwrapped(scan[rows], time_s[rows])
+        astray = rows[out_of_order(scan[rows], time_s[rows], within=within)]
+        wanted = "times that increase with the scan numbers"
+        table.reject(astray, "time_s", wanted, "the time does not fit the scan")
+    return scan
 
 
 def remark(rows: PlotRows, chosen: np.ndarray, what: str, notes: list[str]) -> None:

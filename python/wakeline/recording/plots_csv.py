@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from .episodes import build_episode
 from .model import Episode, OwnShipMotion, Recording
 from .own_csv import OWN_GAP_S, OwnRows, read_own
 from .plot_rows import PlotRows, read_plot_rows, remark
-from .scans import revolution_s
+from .scans import grouped, revolution_s
 from .truth_csv import read_truth
 from .units import period_notes
 
@@ -33,6 +33,7 @@ def read_plots(
     own_gap_s: float = OWN_GAP_S,
     azimuth: str = "north",
     name: str | None = None,
+    columns: Mapping[str, str] | None = None,
 ) -> Recording:
     """Read radar plots, and own ship and truth if there are files of them.
 
@@ -58,7 +59,9 @@ def read_plots(
     own-ship file, else it is the fixed position `own`. A plot may be at most one median step of
     the own-ship file outside its record.
 
-    **Dropped with a note**: plots without a finite position (the scan remains) and repeated rows.
+    **Dropped with a note**: plots without a finite position (the scan remains), repeated rows, and
+    rows of any of the files that cannot be read or whose time contradicts their scan number, up to
+    a tenth of the rows. A scan number that begins again, such as 0 after 255, is continued.
     Without scan numbers, times that go back by more than a minute get a note, too. So do plots that
     are mostly more than 300 km from own ship, as in a national grid without its position, numbers
     that look like those of another unit, and bearings that look like those from the other origin.
@@ -85,6 +88,9 @@ def read_plots(
         Origin of bearings: "north", or "bow", to which the heading of the own-ship file is added.
     name : str, optional
         Name of the recording; default the stem of the file.
+    columns : dict of str to str, optional
+        Names of columns in these files and which of the names above they are, such as
+        ``{"rho": "range_m", "theta": "bearing_deg"}``.
 
     Returns
     -------
@@ -106,15 +112,28 @@ def read_plots(
         above_zero(**{label: value})
     check_azimuth(azimuth, own_path)
     notes: list[str] = []
-    plots = PlotRows.none() if plots_path is None else read_plot_rows(plots_path, notes)
+    plots = PlotRows.none() if plots_path is None else read_plot_rows(plots_path, notes, columns)
     remark(plots, np.isnan(plots.place[:, 0]), "without a finite position left out", notes)
-    own_rows = None if own_path is None else read_own(own_path, notes)
+    own_rows = None if own_path is None else read_own(own_path, notes, columns)
     fixed = OwnShipMotion.fixed(*own)
+
+    scenarios = _scenarios(plots, own_rows)
+    parts = {name: plots.where(rows) for name, rows in grouped(plots.scenario)}
+    none = plots.where(np.zeros(0, dtype=int))
+    own_parts = {} if own_rows is None else own_rows.parts(scenarios)
 
     def episodes_of(period_s: float | None) -> list[Episode]:
         return [
-            build_episode(scenario, plots, own_rows, fixed, period_s, own_gap_s)
-            for scenario in _scenarios(plots, own_rows)
+            build_episode(
+                scenario,
+                parts.get(scenario, none),
+                own_parts.get(scenario),
+                fixed,
+                period_s,
+                own_gap_s,
+                notes,
+            )
+            for scenario in scenarios
         ]
 
     episodes = episodes_of(period_s)
@@ -127,8 +146,9 @@ def read_plots(
     _note_far(episodes, notes)
     notes += period_notes(episodes, period_s)
     notes += azimuth_notes(episodes, azimuth) if plots.polar else []
+    notes[:] = dict.fromkeys(notes)
     recording = Recording(name or Path(plots_path or own_path).stem, episodes, notes)
-    return recording if truth_path is None else _with_truth(recording, truth_path)
+    return recording if truth_path is None else _with_truth(recording, truth_path, columns)
 
 
 def _note_far(episodes: list[Episode], notes: list[str]) -> None:
@@ -189,8 +209,10 @@ def _scenarios(plots: PlotRows, own: OwnRows | None) -> list[str]:
     return scenarios
 
 
-def _with_truth(recording: Recording, path: str | Path) -> Recording:
-    truth = read_truth(path, recording)
+def _with_truth(
+    recording: Recording, path: str | Path, columns: Mapping[str, str] | None
+) -> Recording:
+    truth = read_truth(path, recording, columns)
     pairs = zip(recording.episodes, truth, strict=True)
     return dataclasses.replace(
         recording, episodes=[dataclasses.replace(episode, truth=t) for episode, t in pairs]

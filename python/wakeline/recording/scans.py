@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator
+
 import numpy as np
+
+from .table import MOST_BAD
+
+_COUNTERS = (100, 256, 360, 1000, 1024, 4096, 10_000, 1 << 16, 1_000_000, 1 << 24, 1 << 32)
 
 _GAP_PERIODS = 0.5
 _SCAN_PERIODS = 0.95
@@ -156,6 +164,58 @@ def nearest(sorted_time_s: np.ndarray, time_s: np.ndarray) -> np.ndarray:
     before = np.maximum(after - 1, 0)
     nearer = np.abs(sorted_time_s[before] - time_s) <= np.abs(sorted_time_s[after] - time_s)
     return np.where(nearer, before, after)
+
+
+def grouped(names: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    """Each of the names (n,), in order of the first, with the indices of its rows."""
+    unique, first, group = np.unique(names, return_index=True, return_inverse=True)
+    rows = np.split(np.argsort(group, kind="stable"), np.cumsum(np.bincount(group))[:-1])
+    for k in np.argsort(first).tolist():
+        yield str(unique[k]), rows[k]
+
+
+def unwrapped(number: np.ndarray, time_s: np.ndarray) -> np.ndarray:
+    """Scan numbers (n,) that continue where a counter begins again; others as they are.
+
+    The counter begins again where, in order of time, the number falls by more than half of its
+    range; it then counts to the first of the usual numbers, such as 256, above all numbers.
+    """
+    if len(number) == 0:
+        return number
+    order = np.argsort(time_s, kind="stable")
+    step = np.diff(number[order], prepend=number[order[0]])
+    half = 0.5 * np.ptp(number)
+    turns = np.cumsum((step < -half) * 1 - (step > half))
+    modulus = next((count for count in _COUNTERS if count > number.max()), int(number.max()) + 1)
+    longer = np.empty_like(number)
+    longer[order] = number[order] + turns * modulus
+    falls, still_falls = (np.count_nonzero(np.diff(n[order]) < 0) for n in (number, longer))
+    return longer if still_falls < falls and number.min() >= 0 else number
+
+
+def out_of_order(number: np.ndarray, time_s: np.ndarray, *, within: bool) -> np.ndarray:
+    """Mask (n,) of the fewest rows without which times increase with the scan numbers.
+
+    With `within` rows of one scan may have different or equal times. None are marked if more than
+    a tenth would be.
+    """
+    astray = np.zeros(len(number), dtype=bool)
+    order = np.lexsort((time_s, number))
+    keys = list(zip(time_s[order].tolist(), (-number[order] * within).tolist(), strict=True))
+    if all(a <= b if within else a < b for a, b in itertools.pairwise(keys)):
+        return astray
+    ends: list[tuple] = []  # of the longest sequences of each length
+    length = []
+    for key in keys:
+        place = bisect_right(ends, key) if within else bisect_left(ends, key)
+        ends[place : place + 1] = [key]
+        length.append(place + 1)
+    left = len(ends)
+    astray[:] = True
+    for k in reversed(range(len(keys))):
+        if length[k] == left:
+            astray[order[k]], left = False, left - 1
+    return astray & (np.count_nonzero(astray) <= MOST_BAD * len(astray))
 
 
 def repeated(*columns: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from wakeline._checks import real_numbers, shaped
 
 from .errors import RecordingError
 from .files import replacing
-from .table import Table
+from .table import TIME_NAMES, Table
 
 _FIRST = ("time_s", "north_m", "east_m", "vnorth_mps", "veast_mps")
 COVARIANCE_COLUMNS = (
@@ -159,23 +159,38 @@ class Tracks:
 _COLUMNS = tuple(column.name for column in fields(Tracks))
 
 
-def read_tracks(path: str | Path) -> Tracks:
+def read_tracks(
+    path: str | Path,
+    *,
+    columns: Mapping[str, str] | None = None,
+    notes: list[str] | None = None,
+) -> Tracks:
     """Read a tracks file.
 
     Columns: ``track_id, time_s, north_m, east_m, vnorth_mps, veast_mps``; optionally all covariance
     terms, ``mode_1`` onwards, ``status``, ``nis``, ``cpa_m``, ``tcpa_s``, ``cpa_probability``,
     ``scenario``. Other columns are ignored. Numbers may be NaN, times may not. A file with only a
-    header has no rows.
+    header has no rows. Rows that cannot be read are left out.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    columns : dict of str to str, optional
+        Names of columns in this file and which of the columns above they are.
+    notes : list of str, optional
+        Notes are added to it.
 
     Raises
     ------
     RecordingError
-        When a column is missing or a cell cannot be read.
+        When a column is missing or more than a tenth of the rows cannot be read.
     """
-    table = Table(path, {name: (name,) for name in _NAMES})
+    meanings = {name: (name,) for name in _NAMES} | {"time_s": TIME_NAMES}
+    table = Table(path, meanings, [] if notes is None else notes, columns)
     table.require("track_id", *_FIRST)
     number = table.numbers
-    return Tracks(
+    tracks = Tracks(
         track_id=np.array(table.text("track_id"), dtype=str),
         time_s=table.times("time_s"),
         state=_state(table),
@@ -186,6 +201,7 @@ def read_tracks(path: str | Path) -> Tracks:
         scenario=np.array(table.text("scenario"), dtype=str) if "scenario" in table else None,
         **{name: number(name) for name in APPROACH_COLUMNS if name in table},
     )
+    return tracks.where(table.kept())
 
 
 def write_tracks(path: str | Path, tracks: Tracks) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +26,9 @@ COLUMNS = {
 _VELOCITY = ("vnorth_mps", "veast_mps")
 
 
-def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetTruth]]:
+def read_truth(
+    path: str | Path, recording: Recording, columns: Mapping[str, str] | None = None
+) -> list[dict[str, TargetTruth]]:
     """Read the truth of each episode of a recording.
 
     Columns: a time, ``target``, ``north_m``, ``east_m``; optionally ``vnorth_mps``, ``veast_mps``,
@@ -39,6 +42,8 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
         The file.
     recording : Recording
         Its episodes receive the rows, its notes the remarks.
+    columns : dict of str to str, optional
+        Names of columns in this file and what they are.
 
     Returns
     -------
@@ -48,10 +53,10 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
     Raises
     ------
     RecordingError
-        When a column is missing, a cell cannot be read, no row follows the header, or no row is
-        within the time of the recording.
+        When a column is missing, more than a tenth of the rows cannot be read, no row follows the
+        header, or no row is within the time of the recording.
     """
-    table = Table(path, COLUMNS)
+    table = Table(path, COLUMNS, recording.notes, columns)
     table.require("time_s", "target", "north_m", "east_m")
     if len(table) == 0:
         raise RecordingError(table.path, "no row follows the header", line=1, wanted="truth rows")
@@ -62,7 +67,8 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
     target = np.array(table.text("target"))
     table.check("target", np.char.str_len(target) > 0, "a name or number")
     scenario = np.array(table.text("scenario") if "scenario" in table else [""] * len(table))
-    kept = _kept(table, state, scenario, recording)
+    sound = table.kept()
+    kept = sound & _kept(table, sound, state, scenario, recording)
     episode = recording.episode_of(scenario[kept], time_s[kept])
     _check_overlap(table, time_s[kept], episode, recording)
     return [
@@ -72,10 +78,14 @@ def read_truth(path: str | Path, recording: Recording) -> list[dict[str, TargetT
 
 
 def _kept(
-    table: Table, state: np.ndarray, scenario: np.ndarray, recording: Recording
+    table: Table,
+    sound: np.ndarray,
+    state: np.ndarray,
+    scenario: np.ndarray,
+    recording: Recording,
 ) -> np.ndarray:
-    """Mask (n,) of the valid rows; the others get a note."""
-    finite = np.isfinite(state[:, :2]).all(axis=1)
+    """Mask (n,) of the valid ones of the `sound` rows; the others get a note."""
+    finite = ~sound | np.isfinite(state[:, :2]).all(axis=1)
     names = [episode.name for episode in recording]
     known = np.isin(scenario, ["", *names]) | (names == [""])
     reasons = ((finite, "without a finite position"), (known, "of scenarios without scans"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,6 +25,8 @@ def open_recording(
     *,
     period_s: float | None = None,
     azimuth: str = "north",
+    range_scale_m: float | None = None,
+    columns: Mapping[str, str] | None = None,
 ) -> Recording:
     """Open a recording.
 
@@ -31,7 +34,8 @@ def open_recording(
     ----------
     recording : Recording, str or Path
         A recording, the name of a bundled one, or a file of plots (CSV) or radar video (ASTERIX
-        category 240). A file takes precedence over a bundled recording of the same name.
+        category 240, also in a network capture or in ASTERIX final format), which may be compressed
+        (gzip, bzip2, xz). A file takes precedence over a bundled recording of the same name.
     own : OwnShipMotion, str or Path, optional
         Own ship, or its file. For plots and video in a file it must be a file, and the radar is
         there; in a recording that is open it replaces own ship, and plots stay where they are.
@@ -40,7 +44,11 @@ def open_recording(
     period_s : float, optional
         Time of an antenna revolution. Groups plots without a scan number, and replaces missing
         times of video.
-
+    range_scale_m : float, optional
+        The range scale to read of video with several in turn; default the longest.
+    columns : dict of str to str, optional
+        Names of columns in files of plots, own ship and truth and what they are, as for
+        :func:`wakeline.recording.read_plots`.
     azimuth : str
         Origin of the azimuths in a file: "north", or "bow" with own ship's heading.
 
@@ -67,8 +75,15 @@ def open_recording(
     if isinstance(own, OwnShipMotion):
         raise TypeError(f"own must be a file for the recording in {path}, got {own!r}")
     if from_video:
-        return read_plots_of_video(path, own, period_s=period_s, azimuth=azimuth)
-    return read_plots(path, own, truth, period_s=period_s, azimuth=azimuth)
+        return read_plots_of_video(
+            path,
+            own,
+            period_s=period_s,
+            azimuth=azimuth,
+            range_scale_m=range_scale_m,
+            columns=columns,
+        )
+    return read_plots(path, own, truth, period_s=period_s, azimuth=azimuth, columns=columns)
 
 
 def _with_own(recording: Recording, own: OwnShipMotion | str | Path) -> Recording:

@@ -109,7 +109,7 @@ enum class Cat240Fault : std::uint8_t {
   kItemLength = 5,          ///< an item extends past its block
   kItemCount = 6,           ///< an item is missing, or two are present where one is allowed
   kMessageType = 7,         ///< neither video nor summary
-  kCompressed = 8,          ///< cells are compressed in a sender-specific way
+  kCompressed = 8,          ///< cells are compressed in an unknown way
   kResolution = 9,          ///< unsupported number of bits per cell
   kCounters = 10,           ///< more cells than octets for them
   kNoCells = 11,            ///< video without cells
@@ -137,7 +137,7 @@ constexpr const char* to_string(Cat240Fault fault) noexcept {
     case Cat240Fault::kMessageType:
       return "a message of an unknown type";
     case Cat240Fault::kCompressed:
-      return "the video is compressed";
+      return "the compressed video cannot be read";
     case Cat240Fault::kResolution:
       return "the resolution of the video cannot be read";
     case Cat240Fault::kCounters:
@@ -178,7 +178,7 @@ inline std::string wanted_text(const Cat240Problem& problem) {
     case Cat240Fault::kMessageType:
       return "1 (summary) or 2 (video)";
     case Cat240Fault::kCompressed:
-      return "cells as they are";
+      return "zlib data of all cells";
     case Cat240Fault::kResolution:
       return "1 to " + number + " (1, 2, 4, 8 or 16 bits a cell)";
     case Cat240Fault::kNoCells:
@@ -201,7 +201,7 @@ inline std::string came_text(const Cat240Problem& problem) {
     case Cat240Fault::kFieldSpecification:
       return number + " or more";
     case Cat240Fault::kCompressed:
-      return "compressed ones";
+      return "others";
     default:
       return number;
   }
@@ -220,7 +220,23 @@ struct Cat240Video {
   std::uint64_t cell_duration_fs = 0;  ///< round trip
   int bits = 8;                        ///< per cell
   std::uint32_t cells = 0;
-  std::span<const std::byte> packed;  ///< the octets occupied by the cells
+  bool compressed = false;            ///< see `decompressed`
+  std::span<const std::byte> packed;  ///< the octets occupied by the cells, or compressed ones
+
+  /// Octets occupied by the cells, not compressed.
+  [[nodiscard]] std::size_t octets() const noexcept {
+    return (std::size_t{cells} * static_cast<unsigned>(bits) + 7) / 8;
+  }
+
+  /// The same with its cells in `octets`, decompressed from `packed` by the caller; the format does
+  /// not define how, and senders use zlib. Remains compressed if there are too few octets.
+  [[nodiscard]] Cat240Video decompressed(std::span<const std::byte> octets) const noexcept {
+    Cat240Video video = *this;
+    if (octets.size() < this->octets()) return video;
+    video.packed = octets.first(this->octets());
+    video.compressed = false;
+    return video;
+  }
 
   /// Azimuth steps from start to end; negative for an antenna that turns anticlockwise.
   [[nodiscard]] int turned() const noexcept {
@@ -254,7 +270,7 @@ struct Cat240Video {
   ///
   /// Cells of 1, 2 and 4 bits are scaled by 255, 85 and 17, so that full scale stays full scale;
   /// the first cell of an octet is in the high bits. Returns a sweep without amplitudes when they
-  /// do not fit `room` or its type.
+  /// do not fit `room` or its type, or are compressed.
   template <std::unsigned_integral Amplitude>
   requires(sizeof(Amplitude) <= 2) Sweep<Amplitude> unpack(std::span<Amplitude> room)
   const noexcept {
@@ -264,7 +280,7 @@ struct Cat240Video {
                            .start_range_m = start_range_m(),
                            .cell_m = cell_m(),
                            .amplitude = {}};
-    if (!fits<Amplitude>() || room.size() < cells) return sweep;
+    if (compressed || !fits<Amplitude>() || room.size() < cells) return sweep;
     room = room.first(cells);
     if constexpr (sizeof(Amplitude) == 2) {
       for (std::size_t k = 0; k < cells; ++k)

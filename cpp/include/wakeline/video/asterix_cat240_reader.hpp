@@ -356,8 +356,7 @@ class Cat240Reader {
   bool read_resolution(std::size_t begin, const Items& items) noexcept {
     const Octets octets = items[cat240::kResolution];
     if (octets.empty()) return reject_count(begin, "I240/048", 0);
-    if ((octets[0] & std::byte{0x80}) != std::byte{0})
-      return reject(Cat240Fault::kCompressed, begin, 0, 1);
+    video_.compressed = (octets[0] & std::byte{0x80}) != std::byte{0};
     const auto resolution = std::to_integer<unsigned>(octets[1]);
     video_.bits = resolution - 1 < 5 ? 1 << (resolution - 1) : 0;
     return video_.bits > 0 || reject(Cat240Fault::kResolution, begin, 5, resolution);
@@ -371,10 +370,10 @@ class Cat240Reader {
     if (block.count != 1) return reject_count(begin, "I240/050, I240/051 or I240/052", block.count);
     video_.cells = static_cast<std::uint32_t>(number(counters.subspan(2)));
     if (video_.cells == 0) return reject(Cat240Fault::kNoCells, begin, 1, 0);
-    const std::size_t needed =
-        (std::size_t{video_.cells} * static_cast<unsigned>(video_.bits) + 7) / 8;
     const Octets room = block.octets.subspan(1);
-    const std::size_t held = std::min<std::size_t>(number(counters.first(2)), room.size());
+    const std::size_t given = number(counters.first(2));
+    const std::size_t held = std::min<std::size_t>(given, room.size());
+    const std::size_t needed = video_.compressed ? given : video_.octets();
     if (needed > held) return reject(Cat240Fault::kCounters, begin, needed, held);
     video_.packed = room.first(needed);
     return true;

@@ -15,8 +15,8 @@ from wakeline._brief import counted, many
 from wakeline._checks import above_zero, at_least, plain_numbers
 from wakeline._units import KNOT_MPS
 
-from ..errors import RecordingError, octets_of
-from ..not_text import instead_of_text
+from ..containers import instead_of_text, sentences_of
+from ..errors import RecordingError
 from ..reach import jumps_m, unreachable
 from .beside import DAY_S, Beside, times_beside
 from .clock import Clock
@@ -143,7 +143,7 @@ def read_nmea(
         if not abs(variation_deg) <= 180:
             raise ValueError(f"variation_deg must be from -180 to 180, got {variation_deg}")
     first_day, path, report = _day(date), Path(path), NmeaReport()
-    octets, rows = octets_of(path, wanted=f"a log of {_SENTENCES}"), _Rows()
+    octets, rows = sentences_of(path, wanted=f"a log of {_SENTENCES}"), _Rows()
     lines = lines_of(octets)
     for sentence in sentences(lines, report):
         rows.read(sentence)
