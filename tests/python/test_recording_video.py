@@ -605,7 +605,11 @@ def test_no_octets_upset_the_reader(tmp_path_factory, data, file):
 
 @pytest.mark.parametrize(
     ("octets", "got"),
-    [(b"", "got nothing"), (b"time_s,north_m\n1,2\n", "got this"), (bytes(1000), "got this")],
+    [
+        (b"", "got nothing"),
+        (b"time_s,north_m\n1,2\n", "got this"),
+        (bytes(1000), "got binary data"),
+    ],
 )
 def test_a_file_without_video_is_an_error(path, octets, got):
     with pytest.raises(RecordingError, match="no radar video; wanted sweeps of ASTERIX") as caught:

@@ -35,8 +35,8 @@ _HELD_S = 1.0
 _PAUSE_S = 60.0
 _ASTRAY_RAD = 0.2
 _BELOW = {"azimuth_rad": 1e6, "time_s": 1e15, "start_range_m": 1e9, "cell_m": 1e6}  # to be written
-_NEAR = 256  # sweeps
-_MOST_SWITCHES = 8  # of the range scale in as many sweeps, if scales are not sent in turn
+_NEAR = 64  # sweeps
+_MOST_SWITCHES = 2  # of the range scale in as many sweeps, if scales are not sent in turn
 _MOST_PARTS = 64  # of a sweep
 _ABUT = 1.5  # sweeps farther apart, or nearer, by this factor do not have the given width
 

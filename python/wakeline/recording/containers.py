@@ -135,8 +135,9 @@ def instead_of_text(octets: bytes) -> str | None:
     named = next((name for magic, name in _BINARY.items() if octets.startswith(magic)), None)
     if named is None and _controls(octets):
         named = _capture_in(octets) or _asterix_in(octets) or _UNKNOWN
-        utf_16 = octets.startswith((b"\xff\xfe", b"\xfe\xff"))
-        if utf_16 or (b"\0\0" in (octets[0:4:2], octets[1:4:2]) and named is _UNKNOWN):
+        marked = octets.startswith((b"\xff\xfe", b"\xfe\xff"))
+        zeros = [octets[k:4:2] == b"\0\0" for k in (0, 1)]
+        if named is _UNKNOWN and (marked or zeros[0] != zeros[1]):
             named = "text in UTF-16, save it as UTF-8 first"
     return named
 

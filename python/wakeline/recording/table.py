@@ -218,6 +218,11 @@ class Table:
             )
         return self.sound
 
+    def require_sound(self) -> None:
+        """Raise the first problem, if there is one."""
+        for error in (*self._misfits, *self._bad.values()):
+            raise error
+
     @property
     def sound(self) -> np.ndarray:
         """Mask (n,) of the rows that are not marked until now."""

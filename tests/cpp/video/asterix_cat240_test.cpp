@@ -233,6 +233,25 @@ TEST(Cat240, Expands_small_cells_to_full_scale) {
   EXPECT_TRUE(std::isnan(read(with(4, 2, 2, packed)).time_s[0]));  // absent
 }
 
+TEST(Cat240, Leaves_decompression_to_its_user) {
+  Bytes block = turn_of(1)[0];
+  block[24] = std::byte{0x80};
+  block[27] = std::byte{7};  // octets of compressed data
+  Cat240Reader reader;
+  reader.feed(block);
+  ASSERT_EQ(reader.next(), Cat240Event::kVideo);
+  const Cat240Video video = reader.video();
+  EXPECT_TRUE(video.compressed);
+  EXPECT_EQ(video.packed.size(), 7u);
+  std::vector<std::uint8_t> room(video.cells);
+  EXPECT_TRUE(video.unpack(std::span(room)).amplitude.empty());
+  const Bytes cells(video.octets(), std::byte{5});
+  EXPECT_TRUE(video.decompressed(std::span(cells).first(cells.size() - 1)).compressed);
+  const auto sweep = video.decompressed(cells).unpack(std::span(room));
+  ASSERT_EQ(sweep.amplitude.size(), video.cells);
+  EXPECT_EQ(sweep.amplitude.back(), 5);
+}
+
 TEST(Cat240, Reports_what_it_cannot_read_and_continues) {
   const std::vector<Bytes> blocks = turn_of(2);
   const auto with = [&](std::size_t at, std::initializer_list<int> octets) {
@@ -252,7 +271,6 @@ TEST(Cat240, Reports_what_it_cannot_read_and_continues) {
   expect(with(7, {3}), Cat240Fault::kMessageType, 2, 3);
   expect(with(12, {0, 0, 0x80, 0}), Cat240Fault::kAzimuth, 32768, 32768);
   expect(with(20, {0, 0, 0, 0}), Cat240Fault::kCellDuration, 1, 0);
-  expect(with(24, {0x80}), Cat240Fault::kCompressed, 0, 1);
   expect(with(25, {0}), Cat240Fault::kResolution, 5, 0);
   expect(with(25, {6}), Cat240Fault::kResolution, 5, 6);
   expect(with(28, {0, 0, 0}), Cat240Fault::kNoCells, 1, 0);
