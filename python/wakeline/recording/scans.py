@@ -177,16 +177,15 @@ def grouped(names: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
 def unwrapped(number: np.ndarray, time_s: np.ndarray) -> np.ndarray:
     """Scan numbers (n,) that continue where a counter begins again; others as they are.
 
-    The counter begins again where, in order of time, the number falls by more than half of its
-    range; it then counts to the first of the usual numbers, such as 256, above all numbers.
+    The counter has the first of the usual ranges, such as 256, that holds all numbers. It begins
+    again where, in order of time, the number falls by more than half of that range.
     """
     if len(number) == 0:
         return number
     order = np.argsort(time_s, kind="stable")
     step = np.diff(number[order], prepend=number[order[0]])
-    half = 0.5 * np.ptp(number)
-    turns = np.cumsum((step < -half) * 1 - (step > half))
     modulus = next((count for count in _COUNTERS if count > number.max()), int(number.max()) + 1)
+    turns = np.cumsum((step < -modulus // 2) * 1 - (step > modulus // 2))
     longer = np.empty_like(number)
     longer[order] = number[order] + turns * modulus
     falls, still_falls = (np.count_nonzero(np.diff(n[order]) < 0) for n in (number, longer))

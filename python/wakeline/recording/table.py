@@ -248,7 +248,7 @@ class Table:
         bad = [*self._misfits, *self._bad.values()]
         rows = len(self) + len(self._misfits)
         if len(bad) > MOST_BAD * rows:
-            raise bad[0].remarked(f"{len(bad)} of {many(rows, 'row')}")
+            raise bad[0].remarked(f"{len(bad)} of {many(rows, 'row')}") if len(bad) > 1 else bad[0]
 
     def _at_most(self, most: float, column: str, wanted: str) -> np.ndarray:
         """Cells of a column as floats (n,); finite ones are at most `most` in magnitude."""
