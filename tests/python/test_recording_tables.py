@@ -25,7 +25,7 @@ def table(head, row, rows=ROWS):
     return [head, *(row.format(k=k, t=2.5 * k) for k in range(rows))]
 
 
-PLOTS = table("scan,time_s,range_m,bearing_deg", "{k},{t},{k}.5,10")
+PLOTS = table("scan,time_s,range_m,bearing_deg", "{k},{t},9{k:02d}.5,10")
 OWN = table("scan,time_s,north_m,east_m", "{k},{t},{k},0")
 TRUTH = table("time_s,target,north_m,east_m", "{t},a,{k},0")
 TRACKS = table("track_id,time_s,north_m,east_m,vnorth_mps,veast_mps", "7,{t},{k},0,1,2")
@@ -144,7 +144,7 @@ def test_a_counter_that_begins_again_continues(bits, turns, plots, jitter):
 
 def test_a_counter_wraps_in_plots_and_own_ship_alike(file):
     scans = [(k + 250) % 256 for k in range(ROWS)]
-    plots = [PLOTS[0], *(f"{s},{2.5 * k},5,0" for k, s in enumerate(scans))]
+    plots = [PLOTS[0], *(f"{s},{2.5 * k},{500 + k},0" for k, s in enumerate(scans))]
     own = [OWN[0], *(f"{s},{2.5 * k},{k},0" for k, s in enumerate(scans))]
     got = read_plots(file("\n".join(plots)), file("\n".join(own), "own.csv"))
     (episode,) = got.episodes
