@@ -61,8 +61,8 @@ class Table:
         The file, or one that is compressed by gzip, bzip2 or xz.
     meanings : dict of str to sequence of str
         For each column the names that a file may use. Other columns are ignored.
-    notes : list of str
-        Notes are added to it.
+    notes : list of str, optional
+        Notes are added to it. Without it the first row that cannot be read is an error.
     columns : dict of str to str, optional
         Names of columns in this file and what they are: one of the names in `meanings`.
 
@@ -77,13 +77,14 @@ class Table:
         self,
         path: str | Path,
         meanings: Mapping[str, Sequence[str]],
-        notes: list[str],
+        notes: list[str] | None = None,
         columns: Mapping[str, str] | None = None,
     ) -> None:
         self.path = Path(path)
         self._meanings = meanings
-        self._notes = notes
-        lines = _lines(self.path, notes)
+        self._most_bad = 0.0 if notes is None else MOST_BAD
+        self._notes = [] if notes is None else notes
+        lines = _lines(self.path, self._notes)
         meaning = {_plain(name): column for column, names in meanings.items() for name in names}
         meaning |= dict(zip(meanings, meanings, strict=True))
         renamed = {
@@ -194,6 +195,8 @@ class Table:
         for row in np.flatnonzero(~np.asarray(good, dtype=bool)).tolist():
             if row not in self._bad:
                 self._bad[row] = self.error(row, column, wanted)
+                if not self._most_bad:
+                    raise self._bad[row]
 
     def reject(self, rows: np.ndarray, column: str, wanted: str, problem: str) -> None:
         """Mark rows for a problem of theirs beside other rows."""
@@ -217,11 +220,6 @@ class Table:
                 f"(first: {first.place_and_reason})"
             )
         return self.sound
-
-    def require_sound(self) -> None:
-        """Raise the first problem, if there is one."""
-        for error in (*self._misfits, *self._bad.values()):
-            raise error
 
     @property
     def sound(self) -> np.ndarray:
@@ -247,7 +245,7 @@ class Table:
     def _check_share(self) -> None:
         bad = [*self._misfits, *self._bad.values()]
         rows = len(self) + len(self._misfits)
-        if len(bad) > MOST_BAD * rows:
+        if len(bad) > self._most_bad * rows:
             raise bad[0].remarked(f"{len(bad)} of {many(rows, 'row')}") if len(bad) > 1 else bad[0]
 
     def _at_most(self, most: float, column: str, wanted: str) -> np.ndarray:
@@ -292,7 +290,7 @@ class Table:
                 rows.append(row)
             elif line.startswith("#"):
                 continue
-            elif number == last and len(row) < width and rows:
+            elif number == last and len(row) < width and rows and self._most_bad:
                 self._notes.append(
                     f"{self.path.name}: the last row is cut off and left out (line {number})"
                 )

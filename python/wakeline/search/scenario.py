@@ -288,27 +288,25 @@ def _velocity_mps(speed_mps: np.ndarray, direction_deg: np.ndarray, direction: s
 def _flow_file(path: Path, direction: str, plane: LocalPlane) -> Flow:
     """A series, or with columns of latitude and longitude a field on a grid of them."""
     names = ("time_h", "lat_deg", "lon_deg", "speed_mps", direction)
-    table = Table(path, {name: (name,) for name in names}, [])
+    table = Table(path, {name: (name,) for name in names})
     table.require("time_h", "speed_mps", direction)
     columns = {name: table.numbers(name) for name in names if name in table}
     for name, values in columns.items():
         table.check(name, np.isfinite(values), "a number")
     table.check("speed_mps", abs(columns["speed_mps"]) <= _FASTEST_MPS, "at most 100 m/s")
-    table.require_sound()
     velocity_mps = _velocity_mps(columns["speed_mps"], columns[direction], direction)
     lines = [np.unique(columns[name]) for name in names[:3] if name in columns]
     size = tuple(map(len, lines))
     wanted = "each time once" if len(lines) == 1 else "each place of the grid once at each time"
     if len(lines) == 2 or not len(table) or np.prod(size) != len(table):
-        raise table.error(0, "time_h", wanted)
+        table.check("time_h", np.zeros(max(len(table), 1), bool), wanted)
     place = tuple(
         np.searchsorted(line, columns[name])
         for line, name in zip(lines, (n for n in names[:3] if n in columns), strict=True)
     )
     ordered_mps = np.full((*size, 2), np.nan)
     ordered_mps[place] = velocity_mps
-    if not np.isfinite(ordered_mps).all():
-        raise table.error(0, "time_h", wanted)
+    table.check("time_h", np.full(len(table), np.isfinite(ordered_mps).all()), wanted)
     time_s = _S_PER_H * lines[0]
     if len(lines) == 1:
         return Flow(time_s, ordered_mps)
