@@ -206,7 +206,7 @@ def test_without_matplotlib_the_tracks_are_written_all_the_same(
     assert track(plots_csv, "--out", tmp_path / "out") == 0
     assert "pip install 'wakeline[plot]'" in capsys.readouterr().out
     files = sorted(path.name for path in (tmp_path / "out").iterdir())
-    assert files == ["events.csv", "plots_tracks.csv", "tracks.csv"]
+    assert files == ["encounters.csv", "events.csv", "plots_tracks.csv", "tracks.csv"]
 
 
 def test_track_with_truth_scores_as_well(tmp_path, capsys):
@@ -299,7 +299,7 @@ def test_files_of_an_earlier_run_that_this_one_does_not_write_are_removed(tmp_pa
         (out / name).write_text("earlier")
     assert track(one, "--out", out) == 0
     left = sorted(path.name for path in out.iterdir())
-    assert left == sorted(["tracks.csv", "events.csv", "plots_tracks.csv", *mine])
+    assert left == sorted(["tracks.csv", "events.csv", "encounters.csv", "plots_tracks.csv", *mine])
 
 
 def test_a_run_that_fails_leaves_the_files_of_an_earlier_one(plots_csv, tmp_path, capsys):

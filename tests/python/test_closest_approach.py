@@ -107,6 +107,8 @@ def test_what_is_not_a_number_gives_none():
     approach = closest_approach(np.zeros(4), [[np.nan, 1.0, 1.0, 1.0], [9.0, -1.0, 1.0, 0.0]])
     assert np.isnan(approach.cpa_m).tolist() == [True, False]
     assert np.isnan(approach.probability(5.0)).tolist() == [True, False]
+    lost = closest_approach([0.0, 5.0, 0.0, 0.0], [np.nan, 5.0, 100.0, 0.0])  # at relative rest
+    assert np.isnan([lost.cpa_m, lost.tcpa_s, lost.cpa_std_m, lost.tcpa_std_s]).all()
 
 
 @pytest.mark.parametrize(

@@ -12,12 +12,9 @@ from wakeline import metrics, recording, scenario
 from wakeline.cli import main
 from wakeline.recording import OwnShipMotion, RecordingError, Tracks, read_tracks
 from wakeline.tracking import (
-    DangerLimits,
     Settings,
     open_recording,
     track_episode,
-    with_alarms,
-    with_closest_approach,
     write_tables,
 )
 
@@ -316,73 +313,6 @@ def approaching(probability, tcpa_s=60.0):
     )
 
 
-def alarms_of(tracks, *, range_m=2000.0, **limits):
-    """The alarms of tracks at a distance from own ship, which is at rest."""
-    own = OwnShipMotion(np.array([0.0, 1.0]), np.full(2, range_m), np.zeros(2))
-    return with_alarms(tracks, own, DangerLimits(**limits))
-
-
-def test_an_alarm_does_not_flicker():
-    tracks, alarms = alarms_of(
-        approaching([0.1, 0.49, 0.5, 0.31, 0.6, 0.31, 0.29, 0.49, 0.9]), clear_hold_s=0.0
-    )
-    assert tracks.alarmed.tolist() == [False] * 2 + [True] * 4 + [False] * 2 + [True]
-    assert [(alarm.begin_s, alarm.end_s) for alarm in alarms] == [(20.0, 50.0), (80.0, 80.0)]
-    assert "at 20.0 s: CPA 300 m (0.16 NM), TCPA 1.0 min, 50 %" in str(alarms[0])
-
-
-@pytest.mark.parametrize(("range_m", "inside"), [(500.0, True), (950.0, False)])
-def test_an_alarm_of_a_ship_inside_the_limit_gives_its_distance(range_m, inside):
-    (alarm,) = alarms_of(approaching([0.9], tcpa_s=1830.0), range_m=range_m).alarms
-    assert alarm.range_m == range_m
-    assert alarm.inside == inside
-    assert ("inside already, 500 m (0.27 NM) off; CPA 300 m" in str(alarm)) == inside
-
-
-@pytest.mark.parametrize(("below", "count"), [(6, 1), (7, 2)])
-def test_an_alarm_ends_when_the_probability_stays_low(below, count):
-    tracks, alarms = alarms_of(approaching([0.9, *[0.1] * below, 0.6, 0.1, 0.3, *[0.0] * 9]))
-    assert len(alarms) == count
-    assert alarms[0].begin_s == 0.0
-    assert alarms[-1].end_s == 10.0 * (below + 3)
-    assert tracks.alarmed.sum() == (below + 4 if count == 1 else 4)
-
-
-def test_an_alarm_begins_only_while_the_closest_point_is_ahead():
-    assert alarms_of(approaching([0.9, 0.9], tcpa_s=-1.0)).alarms == []
-    tracks, _ = alarms_of(approaching([0.9] * 3, tcpa_s=np.array([-5.0, 5.0, -5.0])))
-    assert tracks.alarmed.tolist() == [False, True, True]
-
-
-def test_probabilities_that_are_nan_raise_no_alarm():
-    tracks, _ = alarms_of(approaching([np.nan, 0.9, np.nan, np.nan]))
-    assert tracks.alarmed.tolist() == [False, True, False, False]
-    assert alarms_of(approaching([])).alarms == []
-
-
-def test_an_alarm_ends_when_the_ship_is_past():
-    time_s = np.arange(1000.0, 1500.0, 5.0)
-    own = OwnShipMotion(time_s, 5.0 * (time_s - 1000.0), 0.0 * time_s)
-    state = np.column_stack(
-        [4000.0 - 6.0 * (time_s - 1000.0), 0 * time_s - 6.0, 0 * time_s + 50.0, 0 * time_s]
-    )
-    covariance = np.broadcast_to(np.diag([25.0, 0.01, 25.0, 0.01]), (len(time_s), 4, 4))
-    tracks = Tracks(["1"] * len(time_s), time_s, state, covariance=covariance)
-    (alarm,) = with_alarms(tracks, own, DangerLimits(cpa_limit_m=150.0)).alarms
-    meeting_s = 1000.0 + 4000.0 / 11.0
-    assert meeting_s <= alarm.end_s < meeting_s + 30.0
-
-
-def test_a_closest_approach_needs_a_covariance_and_a_velocity():
-    tracks = Tracks(["1"], [0.0], np.zeros((1, 4)))
-    moving = OwnShipMotion(np.arange(2.0), np.zeros(2), np.zeros(2))
-    with pytest.raises(ValueError, match="tracks must have a covariance"):
-        with_closest_approach(tracks, moving)
-    known = dataclasses.replace(tracks, covariance=np.eye(4)[np.newaxis])
-    with pytest.raises(ValueError, match="own must have a velocity"):
-        with_closest_approach(known, OwnShipMotion.fixed())
-
-
 SCANS, SCAN_S = 120, 3.0
 
 
@@ -421,7 +351,7 @@ def test_the_ship_head_on_raises_an_alarm_and_the_other_does_not(encounter):
     np.testing.assert_allclose(settled.time_s + settled.tcpa_s, meeting_s, atol=10.0)
     assert np.all(settled.cpa_probability[settled.time_s < meeting_s - 10.0] > 0.9)
     (alarm,) = tracks.alarms
-    assert alarm.track_id == near.track_id[0]
+    assert (alarm.first, alarm.second) == ("own", near.track_id[0])
     assert 1000.0 < alarm.begin_s < 1060.0
     distance_m = 4000.0 - 11.0 * (alarm.begin_s - 1000.0)
     assert alarm.range_m == pytest.approx(distance_m, abs=30.0)

@@ -152,7 +152,7 @@ def write_pictures(folder: Path, tracks: TrackedRecording) -> list[Path]:
         modes = part.tracks.mode_probability.shape[1]
         names = MODE_NAMES if modes == len(MODE_NAMES) else None
         figures = (
-            plot.map(part.tracks, part.episode),
+            plot.map(part.tracks, part.episode, encounters=part.encounters),
             plot.time_figure(part.episode, part.tracks, mode_names=names),
         )
         for stem, figure in zip(_PICTURES, figures, strict=True):

@@ -6,7 +6,7 @@ import argparse
 import math
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from wakeline.recording.azimuths import AZIMUTHS
 from wakeline.tracking import (
     VESSELS,
     DangerLimits,
+    Encounter,
     Settings,
     TrackedEpisode,
     TrackedRecording,
@@ -30,12 +31,13 @@ from wakeline.tracking import (
 
 from . import outputs, report
 
-_MOST_ALARMS = 20
+_MOST_ALARMS, _MOST_ENCOUNTERS = 20, 10
 
 _ABOUT = """\
 Tracks the plots of a recording and writes tracks.csv, events.csv,
-plots_tracks.csv and pictures; with --own also the closest approach of each
-track, and alarms.csv. Plots are extracted from radar video first, with
+plots_tracks.csv, encounters.csv (vessels that come dangerously close to each
+other) and pictures; with --own also the closest approach of each track, and
+alarms.csv, the encounters with own ship. Plots are extracted from radar video first, with
 thresholds and plot errors estimated from it, and its last revolution is drawn
 as ppi.png. Video has the time of day only; its date is that of --own. Where its
 clock is set back a scenario begins: part-2 and so on.
@@ -184,7 +186,7 @@ def track_into(
 ) -> TrackedRecording:
     """Track every episode, write tables into `folder`, and print a report.
 
-    Pictures of an earlier run are removed. With `danger`, close approaches raise alarms.
+    Pictures of an earlier run are removed. With `danger`, own ship is watched, too.
     """
     outputs.make_folder(folder)
     print(_input_lines(recording, settings, radar), flush=True)
@@ -204,6 +206,8 @@ def track_into(
     print(_track_lines(parts))
     if danger:
         print(_alarm_lines(parts, settings.danger_limits))
+    for line in _encounter_lines(parts, settings.danger_limits):
+        print(line)
     print(f"written to {folder}: {_listed(files)}", flush=True)
     return TrackedRecording.of(recording, parts, settings)
 
@@ -253,14 +257,32 @@ def _alarm_lines(parts: Sequence[TrackedEpisode], limits: DangerLimits) -> str:
     if not known:
         return "note: no closest approaches, because own ship's velocity is unknown"
     alarms = [(part.episode.name, alarm) for part in known for alarm in part.alarms]
-    within = f"{limits.cpa_limit_m:.0f} m within {limits.tcpa_limit_s / 60.0:g} min"
     plural = "" if len(alarms) == 1 else "s"
-    lines = [f"{len(alarms) or 'no'} alarm{plural} of tracks closer than {within}"]
-    for name, alarm in alarms[:_MOST_ALARMS]:
-        lines.append(f"  {f'{name}, ' if name else ''}{alarm}")
-    if len(alarms) > _MOST_ALARMS:
-        lines.append(f"  and {len(alarms) - _MOST_ALARMS} more in alarms.csv")
-    return "\n".join(lines)
+    head = f"{len(alarms) or 'no'} alarm{plural} of tracks {_closer(limits)}"
+    return "\n".join([head, *_listed_encounters(alarms, _MOST_ALARMS, "alarms.csv")])
+
+
+def _encounter_lines(parts: Sequence[TrackedEpisode], limits: DangerLimits) -> list[str]:
+    """The encounters of tracks with each other, if there are any."""
+    encounters = [(p.episode.name, one) for p in parts for one in p.encounters]
+    encounters = [(name, one) for name, one in encounters if not one.with_own_ship]
+    if not encounters:
+        return []
+    head = f"{many(len(encounters), 'encounter')} of tracks with each other, {_closer(limits)}"
+    return [head, *_listed_encounters(encounters, _MOST_ENCOUNTERS, "encounters.csv")]
+
+
+def _closer(limits: DangerLimits) -> str:
+    return f"closer than {limits.cpa_limit_m:.0f} m within {limits.tcpa_limit_s / 60.0:g} min"
+
+
+def _listed_encounters(
+    encounters: Sequence[tuple[str, Encounter]], most: int, file: str
+) -> Iterator[str]:
+    for name, one in encounters[:most]:
+        yield f"  {f'{name}, ' if name else ''}{one}"
+    if len(encounters) > most:
+        yield f"  and {len(encounters) - most} more in {file}"
 
 
 def _listed(files: Sequence[Path]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,11 +33,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Annotation
 
+    from wakeline.tracking import Encounter
+
 CHI_SQUARE_95_2DOF = -2.0 * float(np.log(0.05))
 _ID_OFFSET_PT = 11.0
 _DANGER_PT = 5.4
 _DANGER_CORE_PT = 3.0
 _RING_PT = 11.0
+_MOST_ENCOUNTERS = 6
 _WATER_AROUND = 0.12
 _FLATTEST = 0.75
 _GRID_LINES = 10
@@ -49,6 +52,7 @@ def map_view(
     episode: Episode | None = None,
     tracks: Tracks | None = None,
     *,
+    encounters: Sequence[Encounter] = (),
     ellipse_every: int = 5,
     whole: bool = False,
     legend: bool = True,
@@ -66,6 +70,9 @@ def map_view(
         one, and, with a covariance, the 95 % ellipse of every `ellipse_every`-th row. Rows under an
         alarm have a red edge, with a ring and the closest approach at the start; where labels would
         overlap, the closest approach has the label.
+    encounters : sequence of Encounter
+        Of these tracks: the six closest have red edges, and a line between the two vessels where
+        they were closest.
     ellipse_every : int
         0 for no ellipses.
     whole : bool
@@ -94,8 +101,8 @@ def map_view(
         ids[track_id] = _draw_track(ax, track, track_id, color, "track" if k == 0 else None)
     if tracks is not None:
         ax.add_artist(LoneLabels([ids[track_id] for track_id in by_length(tracks)]))
-    if tracks is not None and tracks.alarmed is not None:
-        _draw_danger(ax, tracks)
+    if tracks is not None:
+        _draw_danger(ax, tracks, encounters)
     ax.set_aspect("equal", adjustable="box")
     ax.ticklabel_format(useOffset=False, style="plain")
     _set_window(ax, episode, tracks, whole)
@@ -111,6 +118,7 @@ def map(
     tracks: Tracks | None = None,
     recording: Recording | Episode | None = None,
     *,
+    encounters: Sequence[Encounter] | None = None,
     ellipse_every: int = 5,
     whole: bool = False,
 ) -> Figure:
@@ -121,6 +129,8 @@ def map(
     tracks : Tracks, optional
     recording : Recording or Episode, optional
         Plots, own ship and truth, drawn below the tracks.
+    encounters : sequence of Encounter, optional
+        As for :func:`map_view`; by default those of a :class:`~wakeline.tracking.TrackedRecording`.
     ellipse_every, whole
         As for :func:`map_view`.
 
@@ -131,6 +141,9 @@ def map(
     """
     if not isinstance(recording, Recording):
         recording = Recording("", [recording])
+    watched = [part.encounters for part in getattr(tracks, "episodes", ())]
+    if encounters is not None or len(watched) != len(recording):
+        watched = [encounters or ()] * len(recording)
     home = None
     if tracks is not None and len(recording) > 1:
         named = np.full(len(tracks), "") if tracks.scenario is None else tracks.scenario
@@ -141,7 +154,8 @@ def map(
     for k, episode in enumerate(recording):
         ax = fig.add_subplot(rows, columns, k + 1)
         shown = tracks if home is None else tracks.where(home == k)
-        map_view(ax, episode, shown, ellipse_every=ellipse_every, whole=whole)
+        how = {"ellipse_every": ellipse_every, "whole": whole}
+        map_view(ax, episode, shown, encounters=watched[k], **how)
         if len(recording) > 1:
             ax.set_title(plain(episode.name), fontsize=TEXT_PT, color=INK, loc="right")
     return fig
@@ -262,40 +276,81 @@ def _draw_track(
     )
 
 
-def _draw_danger(ax: Axes, tracks: Tracks) -> None:
-    """The dangerous part of each track, with a ring and the closest approach at its start."""
-    from matplotlib.patheffects import Normal, Stroke
-
+def _draw_danger(ax: Axes, tracks: Tracks, encounters: Sequence[Encounter]) -> None:
+    """The dangerous parts of tracks, alarms by own ship, and where others were closest."""
     from .labels import ClearLabels
+
+    alarmed = np.zeros(len(tracks), dtype=bool) if tracks.alarmed is None else tracks.alarmed
+    others = [one for one in encounters if not one.with_own_ship]
+    closest = sorted(others, key=lambda one: one.least_range_m)[:_MOST_ENCOUNTERS]
+    during = alarmed.copy()
+    for one in closest:
+        in_time = (one.begin_s <= tracks.time_s) & (tracks.time_s <= one.end_s)
+        during |= in_time & np.isin(tracks.track_id, (one.first, one.second))
+    _draw_edges(ax, tracks, during, "danger" if len(closest) == len(others) else "closest dangers")
+    threats = [
+        _draw_alarm(ax, tracks.where(tracks.track_id == track_id))
+        for track_id in tracks.where(alarmed).ids()
+    ]
+    threats += [threat for one in closest for threat in _draw_closest(ax, tracks, one)]
+    nearest_first = [text for _, text in sorted(threats, key=lambda threat: threat[0])]
+    if nearest_first:
+        ax.add_artist(ClearLabels(nearest_first, clear_pt=_RING_PT / 2.0))
+
+
+def _draw_edges(ax: Axes, tracks: Tracks, during: np.ndarray, label: str) -> None:
+    """A red edge along rows of tracks."""
+    from matplotlib.patheffects import Normal, Stroke
 
     core = [Normal(), Stroke(linewidth=_DANGER_CORE_PT, foreground="white")]
     edge = {"linewidth": _DANGER_PT, "path_effects": core, "solid_capstyle": "round"}
-    ring = {"markersize": _RING_PT, "markerfacecolor": "none", "markeredgewidth": 1.8}
-    threats, label, alarmed = [], "danger", tracks.alarmed
-    for track_id in tracks.where(alarmed).ids():
+    for track_id in tracks.where(during).ids():
         mine = tracks.track_id == track_id
         _, north_m, east_m = with_gaps(
             tracks.time_s[mine],
-            *(np.where(alarmed, way_m, np.nan)[mine] for way_m in (tracks.north_m, tracks.east_m)),
+            *(np.where(during, way_m, np.nan)[mine] for way_m in (tracks.north_m, tracks.east_m)),
         )
         ax.plot(east_m, north_m, color=DANGER, label=label, zorder=3.5, **edge)
         label = None
-        first = tracks.where(np.flatnonzero(mine & alarmed)[:1])
-        place = (first.east_m[0], first.north_m[0])
-        ax.plot(*place, color=DANGER, marker="o", **ring, zorder=6)
-        text = ax.annotate(
-            plain(_threat(first)),
-            place,
-            xytext=(0.0, 0.0),
-            textcoords="offset points",
-            color=DANGER,
-            fontsize=TEXT_PT - 1,
-            path_effects=halo(),
-            zorder=7,
-        )
-        threats.append((0.0 if first.cpa_m is None else first.cpa_m[0], text))
-    nearest_first = [text for _, text in sorted(threats, key=lambda threat: threat[0])]
-    ax.add_artist(ClearLabels(nearest_first, clear_pt=_RING_PT / 2.0))
+
+
+def _draw_alarm(ax: Axes, track: Tracks) -> tuple[float, Annotation]:
+    """A ring and the closest approach to own ship, at the start of the alarm."""
+    ring = {"markersize": _RING_PT, "markerfacecolor": "none", "markeredgewidth": 1.8}
+    first = track.where(np.flatnonzero(track.alarmed)[:1])
+    place = (first.east_m[0], first.north_m[0])
+    ax.plot(*place, color=DANGER, marker="o", **ring, zorder=6)
+    return 0.0 if first.cpa_m is None else first.cpa_m[0], _label(ax, place, _threat(first))
+
+
+def _draw_closest(
+    ax: Axes, tracks: Tracks, encounter: Encounter
+) -> Iterator[tuple[float, Annotation]]:
+    """A line between two vessels where they were closest, with that distance."""
+    ends = []
+    for track_id in (encounter.first, encounter.second):
+        rows = np.flatnonzero(tracks.track_id == track_id)
+        if len(rows) == 0:
+            return
+        row = rows[np.argmin(np.abs(tracks.time_s[rows] - encounter.least_range_s))]
+        ends.append((tracks.east_m[row], tracks.north_m[row]))
+    line = {"linewidth": 1.0, "marker": "o", "markersize": 3.0, "zorder": 6.5}
+    ax.plot(*zip(*ends, strict=True), color=DANGER, **line)
+    distance = f"{encounter.first}\u2013{encounter.second}: {encounter.least_range_m:.0f} m"
+    yield encounter.least_range_m, _label(ax, tuple(np.mean(ends, axis=0)), distance)
+
+
+def _label(ax: Axes, place: tuple[float, float], text: str) -> Annotation:
+    return ax.annotate(
+        plain(text),
+        place,
+        xytext=(0.0, 0.0),
+        textcoords="offset points",
+        color=DANGER,
+        fontsize=TEXT_PT - 1,
+        path_effects=halo(),
+        zorder=7,
+    )
 
 
 def _threat(row: Tracks) -> str:

@@ -69,7 +69,8 @@ class Tracks:
         Closest approach to own ship: distance, time until then (negative: in the past), and the
         probability of a distance below a limit.
     alarmed : ndarray of bool (n,) or None
-        Rows under an alarm (:func:`wakeline.tracking.with_alarms`); not written to files of tracks.
+        Rows in an encounter with own ship (:func:`wakeline.tracking.watch_tracks`); not written to
+        files of tracks.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Tracking of whole recordings: settings, tracks, alarms.
+"""Tracking of whole recordings: settings, tracks, dangerous encounters.
 
 :func:`track_recording` is all that most programs need:
 
@@ -7,13 +7,21 @@
 1
 
 :func:`track_episode` tracks one episode, :func:`open_recording` opens a recording, and
-:class:`Settings` are the contents of a settings file. :func:`with_alarms` finds the tracks that
-come dangerously close to own ship. :func:`wakeline.recording.scan_numbers` groups plots into scans.
+:class:`Settings` are the contents of a settings file. :func:`watch_tracks` finds the vessels that
+come dangerously close to each other or to own ship. :func:`wakeline.recording.scan_numbers` groups
+plots into scans.
 """
 
 from __future__ import annotations
 
-from .alarms import Alarm, DangerLimits, Watched, with_alarms, with_closest_approach
+from .encounters import (
+    DangerLimits,
+    DangerZone,
+    Encounter,
+    Watched,
+    watch_tracks,
+    with_closest_approach,
+)
 from .opening import open_recording
 from .settings import VESSELS, Settings, SettingsError, read_settings
 from .tables import write_tables
@@ -30,8 +38,9 @@ from .tracked import (
 __all__ = [
     "MODE_NAMES",
     "VESSELS",
-    "Alarm",
     "DangerLimits",
+    "DangerZone",
+    "Encounter",
     "Settings",
     "SettingsError",
     "TrackedEpisode",
@@ -43,7 +52,7 @@ __all__ = [
     "read_settings",
     "track_episode",
     "track_recording",
-    "with_alarms",
+    "watch_tracks",
     "with_closest_approach",
     "write_tables",
 ]

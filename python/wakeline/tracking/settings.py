@@ -10,7 +10,7 @@ import json
 import math
 import reprlib
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from typing import Any
 import wakeline as wl
 from wakeline.recording import load_radar, radar_names
 
-from .alarms import DangerLimits
+from .encounters import DangerLimits, DangerZone
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -65,8 +65,12 @@ _ABOUT = {
     "radar": "Parameters of the radar.",
     "tracker": "Parameters of the tracker; one set of defaults for all radars.",
     "models": "Motion models; course noise grows with the speed.",
-    "danger": "Limits of a dangerous approach to own ship (--own).",
+    "danger": "Limits of a dangerous approach of two vessels, own ship (--own) or tracks.",
 }
+_ZONES = """\
+# Areas with separate limits: each a section [[zone]] with a name, outline_m, the
+# corners [north, east] of a polygon, and any keys of [danger].
+"""
 _MANY = 2**31
 _WHAT = {float: "a number", int: "a whole number", str: "a text"}
 
@@ -79,12 +83,15 @@ class Settings:
     ----------
     radar, tracker, models, danger : dict of str to float, int or str
         Complete; the keys are those of `KEYS`.
+    zones : tuple of dict
+        Areas with separate limits of danger: ``name``, ``outline_m`` and any keys of `danger`.
     """
 
     radar: dict[str, Value]
     tracker: dict[str, Value]
     models: dict[str, Value]
     danger: dict[str, Value]
+    zones: tuple[dict[str, Any], ...] = ()
 
     @classmethod
     def default(cls) -> Settings:
@@ -129,9 +136,15 @@ class Settings:
         """Limits of danger."""
         return _engine("danger", self.danger)
 
+    @property
+    def danger_zones(self) -> list[DangerZone]:
+        """Areas with separate limits of danger."""
+        return [_zone(self.danger, **zone) for zone in self.zones]
+
     def toml(self) -> str:
         """Every setting with a line of explanation; reading it gives the same settings."""
-        return "\n".join(line for section in KEYS for line in self._section(section))
+        sections = "\n".join(line for section in KEYS for line in self._section(section))
+        return f"{sections}\n{_ZONES}{''.join(map(_zone_text, self.zones))}"
 
     def _section(self, section: str) -> Iterator[str]:
         yield f"# {_ABOUT[section]}"
@@ -169,9 +182,14 @@ def read_settings(
         settings = replace(settings, tracker=config.as_dict())
     elif config is not None and not isinstance(config, Settings):
         for section, values in read_toml(Path(config)).items():
+            if section == "zone":
+                settings = replace(settings, zones=_read_zones(values, config))
+                continue
             if section not in KEYS:
-                raise SettingsError(f"{config}: unknown section {section}; {_one_of(KEYS)}")
+                known = _one_of([*KEYS, "zone"])
+                raise SettingsError(f"{config}: unknown section {section}; {known}")
             settings = _changed(settings, section, values, config)
+        _check_zones(settings, config)
     if isinstance(radar, wl.Radar):
         settings = replace(settings, radar=_as_in_file("radar", radar))
     elif radar is not None:
@@ -218,6 +236,47 @@ def _changed(settings: Settings, section: str, values: Any, path: str | Path) ->
     after = before | {k: float(v) if type(before[k]) is float else v for k, v in values.items()}
     _check_values(path, section, before, after)
     return replace(settings, **{section: after})
+
+
+def _read_zones(zones: Any, path: str | Path) -> tuple[dict[str, Any], ...]:
+    """Zones with keys that are known, and values of their types."""
+    if not isinstance(zones, list) or not all(isinstance(zone, dict) for zone in zones):
+        raise SettingsError(f"{path}: zones must be sections [[zone]]")
+    for place, zone in _places(zones):
+        for key, value in zone.items():
+            if key not in ("name", "outline_m", *KEYS["danger"]):
+                known = _one_of(("name", "outline_m", *KEYS["danger"]))
+                raise SettingsError(f"{path}: unknown key {key} in {place}; {known}")
+            if key != "outline_m":
+                _check_type(path, f"{place} {key}", value, str if key == "name" else float)
+        for key in ("name", "outline_m"):
+            if key not in zone:
+                raise SettingsError(f"{path}: {place} needs {key}")
+    return tuple(zones)
+
+
+def _check_zones(settings: Settings, path: str | Path) -> None:
+    """Raise SettingsError naming the zone that the engine rejects, if there is one."""
+    for place, zone in _places(settings.zones):
+        try:
+            _zone(settings.danger, **zone)
+        except (ValueError, TypeError) as error:
+            raise SettingsError(f"{path}: {place}: {error}") from None
+
+
+def _places(zones: Sequence[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Each zone, and what messages call it."""
+    for k, zone in enumerate(zones, 1):
+        yield f"[[zone]] {k}", zone
+
+
+def _zone(danger: dict[str, Value], name: str, outline_m: Any, **limits: float) -> DangerZone:
+    """The engine's zone; what it does not limit is limited as everywhere."""
+    return DangerZone(name, outline_m, _engine("danger", danger | limits))
+
+
+def _zone_text(zone: dict[str, Any]) -> str:
+    return "\n[[zone]]\n" + "".join(f"{key} = {json.dumps(value)}\n" for key, value in zone.items())
 
 
 def _check_type(path: str | Path, place: str, value: Any, wanted: type) -> None:

@@ -1,26 +1,29 @@
-"""Tracks, events, plots and alarms as files."""
+"""Tracks, events, plots and encounters as files."""
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Sequence
+from dataclasses import fields
 from pathlib import Path
 
 from wakeline.recording import Tracks, replacing, write_tracks
 
+from .encounters import Encounter
 from .tracked import TrackedEpisode
 
-TABLES = ("tracks", "events", "plots_tracks", "alarms")
+TABLES = ("tracks", "events", "plots_tracks", "encounters", "alarms")
+_OF_ENCOUNTER = tuple(column.name for column in fields(Encounter))
 _OF_ALARM = ("track_id", "begin_s", "end_s", "cpa_m", "tcpa_s", "cpa_probability", "range_m")
 
 
 def write_tables(
     folder: str | Path, episodes: Sequence[TrackedEpisode], suffix: str = ""
 ) -> list[Path]:
-    """Write ``tracks.csv``, ``events.csv``, ``plots_tracks.csv`` and, with alarms, ``alarms.csv``.
+    """Write ``tracks.csv``, ``events.csv``, ``plots_tracks.csv`` and ``encounters.csv``.
 
-    Each file is replaced only when the new one is complete. Without alarms an earlier
-    ``alarms.csv`` is removed.
+    Encounters with own ship, if it was watched, are in ``alarms.csv``, too; otherwise an earlier
+    ``alarms.csv`` is removed. Each file is replaced only when the new one is complete.
 
     Parameters
     ----------
@@ -36,19 +39,22 @@ def write_tables(
     list of Path
         The files.
     """
-    tracks, events, plots, alarms = (Path(folder, f"{stem}{suffix}.csv") for stem in TABLES)
+    files = [Path(folder, f"{stem}{suffix}.csv") for stem in TABLES]
+    tracks, events, plots, encounters, alarms = files
     scenario = ["scenario"] if any(part.tracks.scenario is not None for part in episodes) else []
     write_tracks(tracks, Tracks.joined([part.tracks for part in episodes]))
     head = ["time_s", "event", "track_id", "tentative_id", *scenario]
     _write_csv(events, head, (row for part in episodes for row in _event_rows(part)))
     head = ["scan", "time_s", "north_m", "east_m", "track_id", *scenario]
     _write_csv(plots, head, (row for part in episodes for row in _plot_rows(part)))
+    head = [*_OF_ENCOUNTER, *scenario]
+    _write_csv(encounters, head, (row for part in episodes for row in _encounter_rows(part)))
     if all(part.alarms is None for part in episodes):
         alarms.unlink(missing_ok=True)
-        return [tracks, events, plots]
+        return files[:-1]
     head = [*_OF_ALARM, *scenario]
     _write_csv(alarms, head, (row for part in episodes for row in _alarm_rows(part)))
-    return [tracks, events, plots, alarms]
+    return files
 
 
 def _event_rows(part: TrackedEpisode) -> Iterable[list]:
@@ -65,10 +71,16 @@ def _plot_rows(part: TrackedEpisode) -> Iterable[list]:
             yield [scan.number, *row, *scenario]
 
 
+def _encounter_rows(part: TrackedEpisode) -> Iterable[list]:
+    scenario = _scenario(part)
+    for one in part.encounters:
+        yield [*(getattr(one, name) for name in _OF_ENCOUNTER), *scenario]
+
+
 def _alarm_rows(part: TrackedEpisode) -> Iterable[list]:
     scenario = _scenario(part)
     for alarm in part.alarms or ():
-        yield [*(getattr(alarm, name) for name in _OF_ALARM), *scenario]
+        yield [alarm.second, *(getattr(alarm, name) for name in _OF_ALARM[1:]), *scenario]
 
 
 def _scenario(part: TrackedEpisode) -> list[str]:

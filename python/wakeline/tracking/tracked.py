@@ -1,11 +1,11 @@
-"""A recording through the tracker: tracks, events, alarms, and the track of each plot."""
+"""A recording through the tracker: tracks, events, encounters, and the track of each plot."""
 
 from __future__ import annotations
 
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ import wakeline as wl
 from wakeline._progress import progress
 from wakeline.recording import Episode, OwnShipMotion, Recording, Scan, Tracks
 
-from .alarms import Alarm, with_alarms
+from .encounters import Encounter, watch_tracks
 from .opening import open_recording
 from .settings import Settings, read_settings
 
@@ -40,8 +40,10 @@ class TrackedEpisode:
         Number of plots that the tracker rejected.
     elapsed_s : float
         Time that the tracker needed.
-    alarms : list of Alarm or None
-        None if not requested or own ship's velocity is unknown.
+    encounters : list of Encounter
+        Dangerous encounters of any two vessels, in order of start.
+    watches_own : bool
+        Whether own ship was one of them: it was requested, and its velocity is known.
     """
 
     episode: Episode
@@ -50,12 +52,18 @@ class TrackedEpisode:
     plot_track_id: list[np.ndarray]
     rejected_plots: int
     elapsed_s: float
-    alarms: list[Alarm] | None = None
+    encounters: list[Encounter] = field(default_factory=list)
+    watches_own: bool = False
+
+    @property
+    def alarms(self) -> list[Encounter] | None:
+        """The encounters with own ship, None if it was not watched."""
+        return [one for one in self.encounters if one.with_own_ship] if self.watches_own else None
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class TrackedRecording(Tracks):
-    """The tracks of a recording: a table of all rows, with events and alarms by episode.
+    """The tracks of a recording: a table of all rows, with events and encounters by episode.
 
     Attributes
     ----------
@@ -84,8 +92,13 @@ class TrackedRecording(Tracks):
         )
 
     @property
-    def alarms(self) -> list[Alarm]:
-        """The alarms of all episodes, in their order."""
+    def encounters(self) -> list[Encounter]:
+        """The dangerous encounters of all episodes, in their order."""
+        return [one for tracked in self.episodes for one in tracked.encounters]
+
+    @property
+    def alarms(self) -> list[Encounter]:
+        """Those with own ship."""
         return [alarm for tracked in self.episodes for alarm in tracked.alarms or ()]
 
 
@@ -115,8 +128,9 @@ def track_recording(
     vessels : VesselModels or str, optional
         Motion models, or "any" (default) or "ships" (merchant ships under way).
     own : OwnShipMotion, str or Path, optional
-        Own ship, or its file. With it each row has the closest approach to own ship, and the result
-        has alarms. For a recording in a file it must be a file, and the radar is there.
+        Own ship, or its file. With it each row has the closest approach to own ship, and own ship
+        is one of the vessels whose encounters are in the result. For a recording in a file it must
+        be a file, and the radar is there.
     config : Settings, TrackerConfig, str or Path, optional
         All settings, parameters of the tracker, or a TOML file in the form that
         ``wakeline track --print-config`` prints.
@@ -126,8 +140,8 @@ def track_recording(
     Returns
     -------
     TrackedRecording
-        A table of tracks (:class:`wakeline.recording.Tracks`) with events, alarms and the tracks of
-        plots beside it.
+        A table of tracks (:class:`wakeline.recording.Tracks`) with events, encounters and the
+        tracks of plots beside it.
 
     Raises
     ------
@@ -172,7 +186,7 @@ def track_episode(
     episode : Episode
     settings : Settings, optional
     own : OwnShipMotion, optional
-        Own ship for closest approaches and alarms, if its velocity is known; usually
+        Own ship for closest approaches and encounters, if its velocity is known; usually
         ``episode.own``.
     named : bool
         Whether the tracks carry the name of the episode as their scenario.
@@ -189,11 +203,14 @@ def track_episode(
         plot_track_id.append(report.plot_track_id)
         rejected += report.rejected_plots
     elapsed_s = time.perf_counter() - began_s
-    tracks, alarms = _joined(tables, episode.name if named else None), None
-    if own is not None and own.knows_velocity:
-        tracks, alarms = with_alarms(tracks, own, settings.danger_limits)
+    if own is not None and not own.knows_velocity:
+        own = None
+    tracks = _joined(tables, episode.name if named else None)
+    tracks, encounters = watch_tracks(tracks, own, settings.danger_limits, settings.danger_zones)
     shown = _without_offset(episode, math.radians(settings.radar["bearing_offset_deg"]))
-    return TrackedEpisode(shown, tracks, events, plot_track_id, rejected, elapsed_s, alarms)
+    return TrackedEpisode(
+        shown, tracks, events, plot_track_id, rejected, elapsed_s, encounters, own is not None
+    )
 
 
 def median_step_s(episode: Episode) -> float | None:
