@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "support/fields.hpp"
@@ -66,25 +67,32 @@ struct PyEncounterReport {
 const Approach& approach_of(const Approach& one) { return one; }
 const Approach& approach_of(const Encounter& one) { return one.approach; }
 
-/// A table of one number for each row.
-template <class Row, class F>
-void column(py::class_<Table<Row>>& type, const char* name, F f, const char* doc) {
-  using Value = std::decay_t<decltype(f(Row{}))>;
+/// An array (n,) of what a function gives for each row, or for its approach.
+template <class Value, class Row, class Of>
+void column(py::class_<Table<Row>>& type, const char* name, Value (*f)(const Of&),
+            const char* doc) {
   type.def_property_readonly(
       name,
       [f](const Table<Row>& table) {
-        return table.template each<Value>({}, [f](const Row& row, Value* to) { *to = f(row); });
+        return table.template each<Value>({}, [f](const Row& row, Value* to) {
+          if constexpr (std::is_same_v<Of, Row>)
+            *to = f(row);
+          else
+            *to = f(approach_of(row));
+        });
       },
       doc);
 }
 
-template <class Row, class F>
-void place(py::class_<Table<Row>>& type, const char* name, F f, const char* doc) {
+/// An array (n, 2) of positions.
+template <class Row>
+void place(py::class_<Table<Row>>& type, const char* name, Vec<double, 2> Approach::*member,
+           const char* doc) {
   type.def_property_readonly(
       name,
-      [f](const Table<Row>& table) {
-        return table.template each<double>({2}, [f](const Row& row, double* to) {
-          std::copy_n(f(approach_of(row)).data(), 2, to);
+      [member](const Table<Row>& table) {
+        return table.template each<double>({2}, [member](const Row& row, double* to) {
+          std::copy_n((approach_of(row).*member).data(), 2, to);
         });
       },
       doc);
@@ -101,29 +109,27 @@ py::class_<Table<Row>> define_table(py::module_& m, const char* name, const char
            })
       .def(
           py::pickle([](const Table<Row>& table) { return table.state(); }, &Table<Row>::of_state));
-  const auto of = [&](const char* column_name, auto f, const char* about) {
-    column(
-        type, column_name, [f](const Row& row) { return f(approach_of(row)); }, about);
-  };
-  of(
-      "first", [](const Approach& a) { return a.first; }, "(n,) a vessel; 0 is own ship");
-  of(
-      "second", [](const Approach& a) { return a.second; }, "(n,) the other, of a larger number");
-  of(
-      "zone", [](const Approach& a) { return std::int64_t{a.zone}; },
+  using A = Approach;
+  using Number = std::int64_t;
+  column(
+      type, "first", +[](const A& a) { return a.first; }, "(n,) a vessel; 0 is own ship");
+  column(
+      type, "second", +[](const A& a) { return a.second; }, "(n,) the other, of a larger number");
+  column(
+      type, "zone", +[](const A& a) { return Number{a.zone}; },
       "(n,) index of the zone whose limits apply, -1 for the general ones");
-  of(
-      "range_m", [](const Approach& a) { return a.range_m; }, "(n,) distance");
-  of(
-      "cpa_m", [](const Approach& a) { return a.cpa_m(); }, "(n,) distance at the closest point");
-  of(
-      "signed_cpa_m", [](const Approach& a) { return a.signed_cpa_m; },
+  column(
+      type, "range_m", +[](const A& a) { return a.range_m; }, "(n,) distance");
+  column(
+      type, "cpa_m", +[](const A& a) { return a.cpa_m(); }, "(n,) distance at the closest point");
+  column(
+      type, "signed_cpa_m", +[](const A& a) { return a.signed_cpa_m; },
       "(n,) the same, positive where the vessels pass port to port");
-  of(
-      "tcpa_s", [](const Approach& a) { return a.tcpa_s; },
+  column(
+      type, "tcpa_s", +[](const A& a) { return a.tcpa_s; },
       "(n,) time until the closest point; negative in the past");
-  of(
-      "probability", [](const Approach& a) { return a.probability; },
+  column(
+      type, "probability", +[](const A& a) { return a.probability; },
       "(n,) probability to come closer than the limit within the time limit");
   type.def_property_readonly(
       "covariance",
@@ -133,12 +139,9 @@ py::class_<Table<Row>> define_table(py::module_& m, const char* name, const char
         });
       },
       "(n, 2, 2) of [signed_cpa_m, tcpa_s], of first order");
-  place(
-      type, "first_at_cpa_m", [](const Approach& a) -> const auto& { return a.first_at_cpa_m; },
-      "(n, 2) [north, east] of the first vessel at the closest point");
-  place(
-      type, "second_at_cpa_m", [](const Approach& a) -> const auto& { return a.second_at_cpa_m; },
-      "(n, 2) of the second one");
+  place(type, "first_at_cpa_m", &A::first_at_cpa_m,
+        "(n, 2) [north, east] of the first vessel at the closest point");
+  place(type, "second_at_cpa_m", &A::second_at_cpa_m, "(n, 2) of the second one");
   return type;
 }
 
@@ -250,28 +253,28 @@ ValueError
   py::class_<Encounters> encounters = define_table<Encounter>(
       m, "EncounterTable", "Dangerous encounters as arrays; what changes is of `time_s`.");
   column(
-      encounters, "encounter_id", [](const Encounter& one) { return one.id; },
+      encounters, "encounter_id", +[](const Encounter& one) { return one.id; },
       "(n,) positive, never used again");
   column(
-      encounters, "acknowledged", [](const Encounter& one) { return one.acknowledged; },
+      encounters, "acknowledged", +[](const Encounter& one) { return one.acknowledged; },
       "(n,) whether the operator knows it");
   column(
-      encounters, "dangerous", [](const Encounter& one) { return one.dangerous(); },
+      encounters, "dangerous", +[](const Encounter& one) { return one.dangerous(); },
       "(n,) whether the danger continues; False in the hold time");
   column(
-      encounters, "begin_s", [](const Encounter& one) { return one.begin_s; },
+      encounters, "begin_s", +[](const Encounter& one) { return one.begin_s; },
       "(n,) first update with danger");
   column(
-      encounters, "last_s", [](const Encounter& one) { return one.last_s; },
+      encounters, "last_s", +[](const Encounter& one) { return one.last_s; },
       "(n,) last update with danger");
   column(
-      encounters, "time_s", [](const Encounter& one) { return one.time_s; },
+      encounters, "time_s", +[](const Encounter& one) { return one.time_s; },
       "(n,) last update that had both vessels");
   column(
-      encounters, "least_range_m", [](const Encounter& one) { return one.least_range_m; },
+      encounters, "least_range_m", +[](const Encounter& one) { return one.least_range_m; },
       "(n,) smallest distance of all updates so far");
   column(
-      encounters, "least_range_s", [](const Encounter& one) { return one.least_range_s; },
+      encounters, "least_range_s", +[](const Encounter& one) { return one.least_range_s; },
       "(n,) its time");
 
   py::class_<PyEncounterReport> report(m, "EncounterReport", "Result of an update.");
