@@ -679,6 +679,9 @@ max_fixes : int
     Maximum number of fixes, 2 to 32.
 log_std_mps, heading_std_rad : float
     Standard deviations of one reading of the log and of the compass.
+alteration_mps : float
+    Change of the velocity through the water since a fix that ends the line at that fix; 0: none does. The step is left out,
+    another line with the same slope begins at the fix after it.
 
 Raises
 ------
@@ -691,14 +694,16 @@ ValueError
              return Arguments()
                  .with("max_fixes", w.settings().max_fixes)
                  .with("log_std_mps", w.settings().log_std_mps)
-                 .with("heading_std_rad", w.settings().heading_std_rad);
+                 .with("heading_std_rad", w.settings().heading_std_rad)
+                 .with("alteration_mps", w.settings().alteration_mps);
            })
-      .def(py::init([](int fixes, double log_std, double heading_std) {
-             return DriftWindow<>({fixes, log_std, heading_std});
+      .def(py::init([](int fixes, double log_std, double heading_std, double alteration) {
+             return DriftWindow<>({fixes, log_std, heading_std, alteration});
            }),
            py::kw_only(), py::arg("max_fixes") = defaults.max_fixes,
            py::arg("log_std_mps") = defaults.log_std_mps,
-           py::arg("heading_std_rad") = defaults.heading_std_rad)
+           py::arg("heading_std_rad") = defaults.heading_std_rad,
+           py::arg("alteration_mps") = defaults.alteration_mps)
       .def("clear", &DriftWindow<>::clear, "Forget all fixes, e.g. after an alteration of course.")
       .def(
           "advance",
@@ -714,8 +719,10 @@ ValueError
           },
           py::arg("fix"), "Process a fix at the present time, [north, east] m on a plane.")
       .def_property_readonly("size", &DriftWindow<>::size, "number of fixes")
-      .def_property_readonly("ready", &DriftWindow<>::ready,
-                             "whether there are two fixes of different times")
+      .def_property_readonly(
+          "ready", &DriftWindow<>::ready,
+          "whether there are two fixes of different times without an alteration in "
+          "between")
       .def(
           "drift", [](const DriftWindow<>& w) { return PyGaussian::from(w.drift()); },
           "[north, east] m/s; zero with an infinite covariance until `ready`.")

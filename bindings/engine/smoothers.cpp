@@ -404,17 +404,28 @@ void define_adaptive(py::module_& m) {
   using Adaptive = Either<AdaptiveAlphaBeta<Linear>, AdaptiveAlphaBeta<Wrapped>>;
   py::class_<Adaptive> adaptive(
       m, "AdaptiveAlphaBeta",
-      R"(The adaptive alpha-beta filter, in two passes over the last five readings; (33).
+      R"(The adaptive alpha-beta filter, in two passes over the last readings; (33).
 
 The first pass has the gains of a growing memory, the second ``alpha = sum((x^ - x~) e) / sum(e²)`` and
 ``beta = sum(dv e/t) / sum((e/t)²)`` over the first. Readings of one time are averaged.
 
 Parameters
 ----------
+window : int
+    Readings of both passes, 3 to 16.
 wrapped : bool
-    Readings are angles, radians: values are in -pi .. pi.)");
-  adaptive.def(py::init([](bool wrapped) { return Adaptive::make(Arguments(), wrapped); }),
-               py::kw_only(), py::arg("wrapped") = false);
+    Readings are angles, radians: values are in -pi .. pi.
+
+Raises
+------
+ValueError
+    When the window has fewer or more readings.)");
+  adaptive.def(py::init([](int window, bool wrapped) {
+                 return Adaptive::make(Arguments().with("window", window), wrapped,
+                                       AdaptiveAlphaBetaSettings{window});
+               }),
+               py::kw_only(), py::arg("window") = AdaptiveAlphaBetaSettings{}.window,
+               py::arg("wrapped") = false);
   define_smoother(adaptive);
   define_beta(adaptive);
 

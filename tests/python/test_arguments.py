@@ -277,6 +277,7 @@ def test_sensors_schedules_and_settings(thing):
         ("AlphaBetaSmoother", {"gains": wl.TrackingIndex(0.1), "reading_std": 2.0}),
         ("AlphaBetaSmoother", {"gains": wl.RecentMemory(max_plots=4)}),
         ("AdaptiveAlphaBeta", {}),
+        ("AdaptiveAlphaBeta", {"window": 9}),
         ("WindowBank", {"max_readings": 7, "memory": 0.5}),
     ],
 )

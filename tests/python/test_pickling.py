@@ -159,7 +159,7 @@ def test_a_tracker_continues_bit_for_bit(estimator):
         wl.TrackerConfig(confirm_hits=4),
         wl.VesselModels.ships(),
         wl.navigation.DriftModel(leeway=0.05, residual_time_s=900.0),
-        wl.navigation.DriftWindow(max_fixes=7, log_std_mps=0.1),
+        wl.navigation.DriftWindow(max_fixes=7, log_std_mps=0.1, alteration_mps=0.5),
         wl.motion.ProcessNoise(wl.WhiteJerk(psd_m2s5=0.1)),
         wl.motion.ProcessNoise(wl.PiecewiseAcceleration(std_mps2=0.2)),
         wl.video.StaticClutterMap(8, 16, 60.0, factor=1.25),
@@ -266,11 +266,13 @@ def assert_equal_fields_of_all(events, wanted):
 
 @pytest.mark.parametrize("way", WAYS)
 def test_a_window_of_drift_continues_bit_for_bit(way):
-    window = wl.navigation.DriftWindow(max_fixes=5, log_std_mps=0.1, heading_std_rad=0.01)
+    window = wl.navigation.DriftWindow(
+        max_fixes=5, log_std_mps=0.1, heading_std_rad=0.01, alteration_mps=0.3
+    )
 
     def sail(one, first, last):
         for k in range(first, last):
-            one.advance(10.0, 4.0, 0.3 + 0.01 * k)
+            one.advance(10.0, 4.0 if k < 14 else 4.5, 0.3 + 0.01 * k)
             if k % 2:
                 fix = [40.0 * k + np.sin(k), 12.0 * k + np.cos(k)]
                 one.add(wl.Gaussian(fix, 25.0 * np.eye(2)))

@@ -13,6 +13,7 @@ from wakeline.study import dead_reckoning as reckoning
 
 KNOT = 1852.0 / 3600.0
 RUNS = 12
+STEPS = ("4x1s", "4x3s", "4x10s")
 FORECASTS = ("forecast_4x1s", "forecast_4x3s", "forecast_4x10s")
 QUANTITIES = ("speed_rms_kn", "course_rms_deg")
 PLACE = ("latitude_rms_arcmin", "longitude_rms_arcmin")
@@ -82,9 +83,27 @@ def test_rows_are_those_of_the_design(report):
         *("last_value", "alpha_beta_w5", "adaptive_two_pass", "adaptive_one_pass"),
         *("window_bank", "kalman", "combined"),
     ]
-    wanted = [(case, name) for case in FORECASTS for name in forecasts]
+    formulas = [
+        *(f"gains_{n}" for n in ("28_w5", "29_w5", "30")),
+        *(f"gains_{n}_growing" for n in (27, 28, 29)),
+        *("exponential", "adaptive_exponential", "three_point", "adaptive_three_point"),
+    ]
+    composed = [f"combined_{how}" for how in ("printed", "mid_interval", "mean_drift", "both")]
+    wanted = [(c, name) for c in FORECASTS for name in (*forecasts, *formulas, *composed)]
+    slow = [name for name in forecasts if name != "combined"] + formulas
+    wanted += [(f"near_zero_{step}", name) for step in STEPS for name in slow]
+    wanted += [
+        (f"{phase}_4x3s", f"line_w{n}")
+        for phase in ("steady", "maneuver")
+        for n in (2, 3, 6, 10, 15)
+    ]
     wanted += [
         (case, name) for case in ("drift_20", "drift_5") for name in ("vector_line", "rates")
+    ]
+    wanted += [
+        (f"drift_maneuvers_{step}", name)
+        for step in ("3s", "30s")
+        for name in ("vector_line", "vector_line_ended", "rates")
     ]
     assert [(row["scenario"], row["estimator"]) for row in report.rows] == wanted
     for row in report.rows:
@@ -172,7 +191,7 @@ def test_in_one_pass_the_gains_never_adapt_and_the_rows_are_those_of_fixed_gains
     truth = scenario.reckoning_voyage(dt_s)
     read = truth.read(runs=3, seed=4)
     metric = "speed_rms_kn"
-    row = reckoning.judge(dt_s, read, "adaptive_one_pass")[metric]
+    row = reckoning.judge(dt_s, read, "adaptive_one_pass")["forecast"][metric]
     found, *gains = reckoning.one_pass(metric, dt_s, read.speed_mps)
     for gain in gains:
         assert np.ptp(gain[:, 100:], axis=-1).max() < 1e-6  # through every maneuver
@@ -185,7 +204,117 @@ def test_in_one_pass_the_gains_never_adapt_and_the_rows_are_those_of_fixed_gains
         np.testing.assert_allclose(forecast[100:], same[100:], atol=1e-3 * KNOT)
 
 
+@pytest.mark.parametrize("window", [3, 5])
+@pytest.mark.parametrize("seed", range(5))
+def test_the_gains_33_are_between_those_that_they_are_averaged_from(window, seed):
+    """So the paper's beta of up to 1.3 cannot come from (33) over a pass with (27)."""
+    n = np.arange(2, window + 1)
+    alpha, beta = 2 * (2 * n - 1) / (n * (n + 1)), 6 / (n * (n + 1))
+    rng = np.random.default_rng(seed)
+    smoother = wf.AdaptiveAlphaBeta(window=window)
+    for k, reading in enumerate(np.cumsum(rng.standard_normal(60)) * rng.uniform(0, 5)):
+        smoother.update(2.0, reading)
+        if k >= window:
+            assert alpha.min() - 1e-9 <= smoother.alpha <= alpha.max() + 1e-9
+            assert beta.min() - 1e-9 <= smoother.beta <= beta.max() + 1e-9
+
+
+# The other claims ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("dt_s", [1.0, 3.0, 10.0])
+def test_combined_dead_reckoning_with_the_drift_of_the_instant_is_first_order(dt_s):
+    """(11) adds to the motion through the water what (18)-(20) subtracted it from."""
+    read = scenario.reckoning_voyage(dt_s).read(runs=100, seed=0)
+    found = reckoning.paper_combined(dt_s, read)
+    assert reckoning.difference_arcmin(found) < 4e-8
+    for name in ("combined_mid_interval", "combined_mean_drift", "combined_both"):
+        off = found[name][0] - found["first_order"][0]
+        assert 60 * np.degrees(np.abs(off).max()) > 1e-4
+
+
+def test_the_combined_model_gains_only_by_averages_and_forecasts(report):
+    for case in FORECASTS:
+        first_order, printed, mean, both = (
+            report.row(case, name)["latitude_rms_arcmin"]
+            for name in (
+                "adaptive_two_pass",
+                "combined_printed",
+                "combined_mean_drift",
+                "combined_both",
+            )
+        )
+        assert printed == pytest.approx(first_order, rel=1e-6)
+        assert mean < 0.9 * first_order
+        assert both < 0.75 * first_order
+
+
+def test_no_fixed_schedule_is_best_everywhere_and_27_is_nowhere(report):
+    names = {"27": "alpha_beta_w5", "28": "gains_28_w5", "29": "gains_29_w5", "30": "gains_30"}
+    best = {
+        (case, metric): min(names, key=lambda n: report.row(case, names[n])[metric])
+        for case in FORECASTS
+        for metric in (*QUANTITIES, *PLACE)
+    }
+    assert {best[case, m] for case in FORECASTS[:2] for m in (*QUANTITIES, *PLACE)} == {"30"}
+    assert {best[FORECASTS[2], m] for m in (*QUANTITIES, *PLACE)} == {"29"}
+    for n in (27, 28, 29):  # of the whole voyage
+        assert report.row("forecast_4x3s", f"gains_{n}_growing")["speed_rms_kn"] > 1.0
+
+
+def test_smoothers_without_a_rate_are_no_match_where_the_quantity_moves(report):
+    for name in ("exponential", "adaptive_exponential"):
+        for case in FORECASTS:
+            line, ours = report.row(case, "alpha_beta_w5"), report.row(case, name)
+            assert all(ours[m] > 1.4 * line[m] for m in ("course_rms_deg", *PLACE))
+        near, line = (report.row("near_zero_4x1s", n) for n in (name, "alpha_beta_w5"))
+        assert all(near[m] < 0.8 * line[m] for m in (*QUANTITIES, *PLACE))
+
+
+def test_series_are_worst_near_zero_speed_and_as_bad_elsewhere(report):
+    rates = ("alpha_beta_w5", "adaptive_two_pass", "adaptive_one_pass", "window_bank", "kalman")
+    for name in ("three_point", "adaptive_three_point"):
+        for step in STEPS[:2]:
+            near = report.row(f"near_zero_{step}", name)["speed_rms_kn"]
+            others = [report.row(f"near_zero_{step}", n)["speed_rms_kn"] for n in rates]
+            assert near > 1.3 * max(others)
+        slow, whole = (
+            report.row(f"{part}_4x1s", name)["speed_rms_kn"] for part in ("near_zero", "forecast")
+        )
+        assert slow == pytest.approx(whole, rel=0.1)
+
+
+def test_long_windows_are_for_a_steady_ship_and_short_ones_for_maneuvers(report):
+    speed = {
+        (phase, n): report.row(f"{phase}_4x3s", f"line_w{n}")["speed_rms_kn"]
+        for phase in ("steady", "maneuver")
+        for n in (3, 6, 10, 15)
+    }
+    assert speed["steady", 15] < speed["steady", 10] < speed["steady", 6] < speed["steady", 3]
+    assert speed["maneuver", 6] < min(speed["maneuver", n] for n in (3, 15))
+
+
+def test_a_line_that_ends_at_alterations_needs_no_frequent_log(report):
+    through, ended, rates = (
+        report.row("drift_maneuvers_30s", name)["drift_rms_kn"]
+        for name in ("vector_line", "vector_line_ended", "rates")
+    )
+    assert ended < 0.4 * min(through, rates)
+    often = report.row("drift_maneuvers_3s", "vector_line")["drift_rms_kn"]
+    assert often < 0.05
+
+
 # How it is made -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("window", [2, 5, 15])
+def test_the_fixed_weights_of_a_line_are_least_squares(window):
+    readings = np.random.default_rng(3).standard_normal((2, 30))
+    ahead = reckoning.line_forecast("speed_rms_kn", readings, window)
+    assert np.isnan(ahead[:, : window - 1]).all()
+    for k in range(window - 1, 30):
+        line = np.polyfit(np.arange(window) - window + 1, readings[1, k - window + 1 : k + 1], 1)
+        assert ahead[1, k] == pytest.approx(np.polyval(line, 4.0), abs=1e-9)
 
 
 def test_a_kalman_filter_without_process_noise_is_the_line_of_least_squares():
@@ -232,9 +361,13 @@ def test_every_picture_can_be_drawn(report, tmp_path):
         "course",
         "latitude",
         "longitude",
+        *(f"every-{quantity}" for quantity in ("speed", "course", "latitude", "longitude")),
         "rates",
         "forecast",
+        "combined",
+        "windows",
         "drift",
+        "drift-maneuvers",
     )
     assert [file.stem for file in files] == [f"reckoning-{name}" for name in names]
     assert all(file.stat().st_size > 5000 for file in files)

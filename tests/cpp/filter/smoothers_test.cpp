@@ -497,6 +497,24 @@ TEST(AdaptiveAlphaBeta, GoesThroughAManeuverFasterThanAtRest) {
   EXPECT_GT(turn, 0.7);
 }
 
+TEST(AdaptiveAlphaBeta, LooksBackNoFurtherThanItsWindow) {
+  for (const int window : {3, 5, 16}) {
+    AdaptiveAlphaBeta<> after_noise({.window = window}), fresh({.window = window});
+    Draw draw(9);
+    for (int k = 0; k < 30; ++k) ASSERT_EQ(after_noise.update(1, draw.normal()), Status::kOk);
+    for (int k = 0; k < window; ++k) {
+      const double reading = draw.normal();
+      ASSERT_EQ(after_noise.update(1, reading), Status::kOk);
+      ASSERT_EQ(fresh.update(1, reading), Status::kOk);
+    }
+    EXPECT_NEAR(after_noise.value(), fresh.value(), 1e-12);
+    EXPECT_NEAR(after_noise.rate(), fresh.rate(), 1e-12);
+    EXPECT_NEAR(after_noise.alpha(), fresh.alpha(), 1e-12);
+  }
+  EXPECT_THROW(AdaptiveAlphaBeta<>({.window = 2}), std::invalid_argument);
+  EXPECT_THROW(AdaptiveAlphaBeta<>({.window = 17}), std::invalid_argument);
+}
+
 TEST(AdaptiveAlphaBeta, TwoReadingsOfOneTimeAreTheirMean) {
   expect_mean_of_two(AdaptiveAlphaBeta<Wrapped>(), AdaptiveAlphaBeta<Wrapped>());
 }

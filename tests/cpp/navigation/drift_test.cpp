@@ -155,6 +155,58 @@ TEST(DriftWindow, OfAFixWithoutInformationIsThatOfTheOthers) {
   }
 }
 
+TEST(DriftWindow, LeavesOutTheStepsInWhichTheShipAlters) {
+  const Vec2 drift(0.3, -0.5);
+  const double seconds = 30;
+  DriftWindow<> ended({.alteration_mps = 0.5}), through;
+  Vec2 position = Vec2::Zero();
+  SpeedCourse ship{5.0, deg(10)};
+  EXPECT_EQ(ended.add({position, kIdentity}), Status::kOk);
+  EXPECT_EQ(through.add({position, kIdentity}), Status::kOk);
+  for (int k = 1; k < 18; ++k) {
+    const SpeedCourse before = ship;
+    if (k % 6 == 3) ship = {k == 9 ? 7.0 : 5.0, ship.course_rad + deg(50)};
+    // Log and gyro are read at the end of a step only, the ship has altered in its middle.
+    position += seconds * (0.5 * (before.velocity_mps() + ship.velocity_mps()) + drift);
+    for (auto* window : {&ended, &through}) {
+      EXPECT_EQ(window->advance(seconds, ship.speed_mps, ship.course_rad), Status::kOk);
+      EXPECT_EQ(window->add({position, kIdentity}), Status::kOk);
+    }
+    EXPECT_LT((ended.drift().mean - drift).norm(), 1e-9) << k;
+    if (k > 2) {
+      EXPECT_GT((through.drift().mean - drift).norm(), 0.05) << k;
+    }
+  }
+}
+
+TEST(DriftWindow, OfSeveralLinesHasTheirCommonSlope) {
+  Draw draw(5);
+  DriftWindow<> window({.alteration_mps = 0.5});
+  Vec2 product = Vec2::Zero();
+  double squared = 0;
+  EXPECT_EQ(window.add({20 * draw.normals<2>(), 16 * kIdentity}), Status::kOk);
+  window.clear();
+  for (const int fixes : {5, 2, 6}) {  // each line at another speed
+    std::vector<double> times;
+    std::vector<Vec2> differences;
+    for (int k = 0; k < fixes; ++k) {
+      const double dt = draw.uniform(10, 60);
+      EXPECT_EQ(window.advance(dt, fixes, 0.0), Status::kOk);
+      times.push_back(k == 0 ? 0.0 : times.back() + dt);
+      differences.push_back(20 * draw.normals<2>());
+      const Vec2 reckoned(fixes * times.back(), 0.0);
+      EXPECT_EQ(window.add({reckoned + differences.back(), 16 * kIdentity}), Status::kOk);
+    }
+    double mean_t = 0, tt = 0;
+    for (const double t : times) mean_t += t / fixes;
+    for (const double t : times) tt += (t - mean_t) * (t - mean_t);
+    product += tt * line_slope(times, differences);
+    squared += tt;
+  }
+  EXPECT_LT((window.drift().mean - product / squared).norm(), 1e-9);
+  EXPECT_NEAR(window.drift().covariance(0, 0) * squared / 16, 1.0, 1e-9);
+}
+
 TEST(DriftWindow, IsUnknownBeforeTwoTimes) {
   DriftWindow<> window;
   EXPECT_FALSE(window.ready());
@@ -190,6 +242,7 @@ TEST(DriftWindow, RejectsInvalidInputAndStaysUnchanged) {
   EXPECT_THROW(DriftWindow<>({.max_fixes = 1}), std::invalid_argument);
   EXPECT_THROW(DriftWindow<>({.max_fixes = 33}), std::invalid_argument);
   EXPECT_THROW(DriftWindow<>({.log_std_mps = -1}), std::invalid_argument);
+  EXPECT_THROW(DriftWindow<>({.alteration_mps = -1}), std::invalid_argument);
 }
 
 TEST(DriftWindow, RejectsNumbersOutOfRange) {

@@ -166,9 +166,9 @@ struct AlphaBetaLine {
   }
 };
 
-/// The sums of (33) over steps, and the resulting gains.
+/// The sums of (33) over steps, and the gains that follow from them.
 template <class Scalar>
-struct AdaptiveGains {
+struct GainSums {
   Scalar correction_innovation = Scalar(0);
   Scalar innovation_squared = Scalar(0);
   Scalar change_slope = Scalar(0);

@@ -99,6 +99,7 @@ struct DriftWindowSettings {
   int max_fixes = 20;
   double log_std_mps = 0.0;
   double heading_std_rad = 0.0;
+  double alteration_mps = 0.0;
 
   static constexpr auto fields() noexcept {
     using W = DriftWindowSettings;
@@ -107,7 +108,10 @@ struct DriftWindowSettings {
         field("log_std_mps", &W::log_std_mps, kNotNegative, "m/s",
               "Standard deviation of a reading of the log."),
         field("heading_std_rad", &W::heading_std_rad, kNotNegative, "rad",
-              "Standard deviation of a reading of the compass."));
+              "Standard deviation of a reading of the compass."),
+        field("alteration_mps", &W::alteration_mps, kNotNegative, "m/s",
+              "Change of the velocity through the water since a fix that ends the line there; "
+              "0: none does."));
   }
 };
 
@@ -119,6 +123,10 @@ struct DriftWindowSettings {
 /// therefore have a block-tridiagonal covariance, R_k + R_k+1 + Q next to -R_k, for which the slope
 /// is optimal. Without errors of log and compass it is the ordinary line. A constant error of log
 /// or compass appears as drift. Storage is in place, no heap.
+///
+/// With `alteration_mps` a line ends at the fix before an alteration of course or speed and another
+/// begins at the fix after it: the step between is left out, since log and compass are read too
+/// seldom to reckon the way through it. The lines of the window share one slope.
 template <int Capacity = 32>
 class DriftWindow {
  public:
@@ -149,6 +157,10 @@ class DriftWindow {
     if (!in_range(speed_mps) || !in_range(heading_rad)) return Status::kNotFinite;
     const Gaussian<2> water =
         water_velocity(speed_mps, heading_rad, settings_.log_std_mps, settings_.heading_std_rad);
+    if (!step_.begun) step_.begin(water.mean);
+    const double change_mps = (water.mean - step_.begun_mps).norm();
+    step_.altered |= settings_.alteration_mps > 0.0 && change_mps > settings_.alteration_mps;
+    now_mps_ = water.mean;
     step_.gap_s += dt_s;
     step_.reckoned_m += dt_s * water.mean;
     step_.reckoned_covariance_m2 += dt_s * dt_s * water.covariance;
@@ -163,7 +175,9 @@ class DriftWindow {
     size_ = std::min(size_ + 1, settings_.max_fixes);
     step_.fix = fix;
     latest(0) = step_;
+    const bool under_way = step_.begun;
     step_ = {};
+    if (under_way) step_.begin(now_mps_);
     return Status::kOk;
   }
 
@@ -171,6 +185,7 @@ class DriftWindow {
   void archive(Archive& fields) {
     for (Fixed& fixed : fixes_) fixed.archive(fields);
     step_.archive(fields);
+    fields(now_mps_);
     fields(size_);
     fields(newest_);
     const int most = settings_.max_fixes;
@@ -181,10 +196,10 @@ class DriftWindow {
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
 
-  /// True when there are two fixes of different times.
+  /// True when there are two fixes of different times without an alteration in between.
   [[nodiscard]] bool ready() const noexcept {
     double span_s = 0.0;
-    for (int k = 0; k + 1 < size_; ++k) span_s += latest(k).gap_s;
+    for (int k = 0; k + 1 < size_; ++k) span_s += latest(k).altered ? 0.0 : latest(k).gap_s;
     return span_s > 0.0;
   }
 
@@ -202,11 +217,17 @@ class DriftWindow {
     Mat<double, 2, 2> time = Mat<double, 2, 2>::Zero();
     Vec<double, 2> off = Vec<double, 2>::Zero();
     Cholesky<2> before;
+    bool continued = false;
     for (int k = size_ - 2; k >= 0; --k) {
       const Fixed &from = latest(k + 1), &to = latest(k);
+      if (to.altered) {
+        rest = to.fix.covariance;
+        continued = false;
+        continue;
+      }
       Mat<double, 2, 2> t = to.gap_s * identity;
       Vec<double, 2> d = to.fix.mean - from.fix.mean - to.reckoned_m;
-      if (k < size_ - 2) {
+      if (continued) {
         const Mat<double, 2, 2> overlap = before.template solve<2>(from.fix.covariance).transpose();
         rest = overlap * rest;
         mirror_lower<double, 2>(rest);
@@ -216,6 +237,7 @@ class DriftWindow {
       rest += to.reckoned_covariance_m2;
       time = t;
       off = d;
+      continued = true;
       before.compute(Mat<double, 2, 2>(rest + to.fix.covariance));
       information += time.transpose() * before.template solve<2>(time);
       weighted += time.transpose() * before.template solve<1>(off);
@@ -235,6 +257,14 @@ class DriftWindow {
     double gap_s = 0.0;
     Vec<double, 2> reckoned_m = Vec<double, 2>::Zero();
     Mat<double, 2, 2> reckoned_covariance_m2 = Mat<double, 2, 2>::Zero();
+    Vec<double, 2> begun_mps = Vec<double, 2>::Zero();  ///< through the water, at the fix before
+    bool begun = false;
+    bool altered = false;
+
+    void begin(const Vec<double, 2>& water_mps) noexcept {
+      begun_mps = water_mps;
+      begun = true;
+    }
 
     void archive(Archive& fields) {
       fields(fix.mean);
@@ -242,6 +272,9 @@ class DriftWindow {
       fields(gap_s);
       fields(reckoned_m);
       fields(reckoned_covariance_m2);
+      fields(begun_mps);
+      fields(begun);
+      fields(altered);
     }
   };
 
@@ -262,7 +295,8 @@ class DriftWindow {
 
   Settings settings_;
   std::array<Fixed, static_cast<std::size_t>(Capacity)> fixes_{};
-  Fixed step_;  ///< since the newest fix
+  Fixed step_;                                       ///< since the newest fix
+  Vec<double, 2> now_mps_ = Vec<double, 2>::Zero();  ///< the last reading
   int size_ = 0;
   int newest_ = 0;
 };
