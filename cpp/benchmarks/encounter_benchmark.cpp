@@ -90,7 +90,9 @@ void all_pairs(benchmark::State& state) {
 }
 
 void sizes(benchmark::internal::Benchmark* benchmark) {
-  benchmark->ArgNames({"vessels", "km", "under_way"})->Unit(benchmark::kMillisecond);
+  benchmark->ArgNames({"vessels", "km", "under_way"})
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(40);
   benchmark->Args({100, 20, 100})
       ->Args({1000, 40, 30})
       ->Args({1000, 40, 100})

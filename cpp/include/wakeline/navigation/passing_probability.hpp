@@ -142,6 +142,12 @@ struct PrincipalAxes {
   }
 };
 
+/// Of all directions.
+inline double largest_variance(const Mat<double, 2, 2>& covariance) noexcept {
+  return covariance.trace() / 2 +
+         std::hypot((covariance(0, 0) - covariance(1, 1)) / 2, covariance(1, 0));
+}
+
 /// P(|p| < L).
 inline double probability_within(double limit_m, const Vec<double, 2>& position_m,
                                  const Mat<double, 2, 2>& covariance) noexcept {
@@ -185,13 +191,14 @@ class PassingProbability {
   [[nodiscard]] double operator()(double limit_m, double horizon_s) const noexcept {
     if (std::isinf(limit_m)) return limit_m > 0.0 ? 1.0 : 0.0;
     const double outside_m = position_m_.norm() - limit_m;
-    const double certain_m = kCertain * std::sqrt(std::max(position_covariance_.trace(), 0.0));
+    const double certain_m = kCertain * std::sqrt(largest_variance(position_covariance_));
     if (outside_m < -certain_m) return 1.0;
     const bool outside = outside_m > certain_m;
     const double now =
         outside ? 0.0 : probability_within(limit_m, position_m_, position_covariance_);
     if (!moves_) return now;
-    return std::min(now + later(limit_m, horizon_s, outside ? directions_ : kDirections), 1.0);
+    const int directions = outside ? directions_ : kDirections;
+    return std::min(now + later(limit_m, horizon_s, directions), 1.0);
   }
 
  private:
@@ -202,7 +209,7 @@ class PassingProbability {
   static constexpr int kFewDirections = 12;
   static constexpr double kKnown = 12.0;       ///< sigmas of a velocity of one direction
   static constexpr double kFairlyKnown = 5.0;  ///< and of one of few directions
-  static constexpr double kCertain = 6.0;      ///< sigmas beyond which nothing is expected
+  static constexpr double kCertain = 4.5;      ///< sigmas beyond which nothing is expected
   static constexpr double kLeastError = 1e-8;  ///< relative to a velocity without error
   static constexpr double kSpread = 0.4;       ///< spread of directions, relative to their spacing
 
