@@ -88,10 +88,22 @@ IEEE Trans. AES-20, 1984.)",
           py::arg("period_s"), py::arg("std_m"), py::arg("order") = 2,
           "(order, order) covariance of the states of one axis after an update, in the steady "
           "state.");
-  define_gains<RangeDependent, false>(m, "RangeDependent",
-                                      "Gains by range, as in a radar plotting aid: beyond "
-                                      "`near_range_m` in inverse "
-                                      "proportion to the range, down to those of `far`.");
+  define_gains<RangeDependent, false>(
+      m, "RangeDependent",
+      R"(Gains by range, as in a radar plotting aid: those of `near`, beyond their range in inverse proportion to it, down to `far`.
+
+With D in km, ``alpha = 20 / D`` within 0.2 .. 0.5 and ``beta = 4 / D`` within 0.01 .. 0.2. Source: Hannoshyna, Kalinichenko, Nikitin, (30).)");
+  define_gains<RecentMemory, false>(
+      m, "RecentMemory",
+      R"(Recent memory: the least-squares line through all readings with weights 1, 2, 3, ....
+
+Source: Hannoshyna, Kalinichenko, Nikitin, (29).)");
+  define_struct<AdaptiveGains>(
+      m, "AdaptiveGains",
+      R"(Gains from the last plots: those of a growing memory over a window, each weighted with the squared innovation that it met.
+
+Noise alone makes them about 0.74 and 0.37 with a window of five; a maneuver changes them little. For `AlphaBeta`; of one
+quantity see `AdaptiveAlphaBeta`. Source: Hannoshyna, Kalinichenko, Nikitin, (33), in two passes.)");
 
   m.def(
       "stable_gains",
@@ -138,7 +150,7 @@ those of these gains under the given noise, so that it can be compared with a Ka
 
 Parameters
 ----------
-gains : ConstantGains, GrowingMemory, BenedictBordner, CriticallyDamped, TrackingIndex or RangeDependent
+gains : ConstantGains, GrowingMemory, RecentMemory, AdaptiveGains, BenedictBordner, CriticallyDamped, TrackingIndex or RangeDependent
 noise : ProcessNoise, optional
     Process noise for the covariance; default that of the tracking index, else `WhiteAcceleration()`.
 

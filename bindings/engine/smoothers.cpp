@@ -329,32 +329,6 @@ class ScheduledSmoother {
 };
 
 void define_scheduled(py::module_& m) {
-  py::class_<RecentMemory> recent(
-      m, "RecentMemory",
-      R"(Recent memory: the least-squares line through all readings with weights 1, 2, 3, ...; (29).
-
-Parameters
-----------
-max_plots : int
-    The gains stay those of so many; 0 for all.)");
-  define_copies(recent);
-  recent
-      .def(py::init([](int most) { return RecentMemory{most}; }), py::kw_only(),
-           py::arg("max_plots") = 0)
-      .def_readonly("max_plots", &RecentMemory::max_plots)
-      .def("_arguments",
-           [](const RecentMemory& memory) {
-             return Arguments().with("max_plots", memory.max_plots);
-           })
-      .def(
-          "gains",
-          [](const RecentMemory& schedule, std::int64_t reading) {
-            schedule.validate<2>();
-            require(reading >= 1, "reading", "1 or more", static_cast<double>(reading));
-            return to_array(schedule.gains<2, double>({.reading = static_cast<double>(reading)}));
-          },
-          py::kw_only(), py::arg("reading") = 1, "[alpha, beta] for the reading-th reading.");
-
   using Filter = Either<ScheduledSmoother<Linear>, ScheduledSmoother<Wrapped>>;
   py::class_<Filter> filter(
       m, "AlphaBetaSmoother",

@@ -125,7 +125,10 @@ def test_doppler_readings_give_their_position():
 def test_gains_can_be_asked_for():
     np.testing.assert_allclose(wl.GrowingMemory().gains(reading=2), [1.0, 1.0])
     np.testing.assert_allclose(wl.BenedictBordner(0.5).gains(), [0.5, 0.25 / 1.5])
-    np.testing.assert_allclose(wl.RangeDependent().gains(range_m=40e3), [0.25, 0.1])
+    for range_km in (5.0, 20.0, 30.0, 40.0, 60.0, 150.0, 900.0):
+        printed = np.clip(20.0 / range_km, 0.2, 0.5), np.clip(4.0 / range_km, 0.01, 0.2)
+        np.testing.assert_allclose(wl.RangeDependent().gains(range_m=1e3 * range_km), printed)
+    np.testing.assert_allclose(wl.RecentMemory().gains(reading=9), [54 / 110, 12 / 110])
     assert wl.TrackingIndex(0.1).gains(3, elapsed_s=3.0, std_m=10.0).shape == (3,)
     assert wl.stable_gains(0.5, 0.2)
     assert not wl.stable_gains(1.5, 1.0)

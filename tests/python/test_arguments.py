@@ -32,7 +32,9 @@ SCHEDULES = {
     "BenedictBordner": wl.BenedictBordner(0.4),
     "CriticallyDamped": wl.CriticallyDamped(0.7),
     "TrackingIndex": wl.TrackingIndex(0.3),
-    "RangeDependent": wl.RangeDependent(near_range_m=1e4),
+    "RangeDependent": wl.RangeDependent(beta_range_m=1e4),
+    "RecentMemory": wl.RecentMemory(plots_before=2, max_plots=5),
+    "AdaptiveGains": wl.filter.AdaptiveGains(window=6),
 }
 OF_ALL_KINDS = {
     **{name: make() for name, make in ESTIMATORS.items()},
@@ -259,7 +261,6 @@ OWN = wl.OwnShip(north_m=10.0, veast_mps=-2.0, heading_std_rad=0.01)
         wl.TrackerConfig(association="nearest"),
         wl.VesselModels.ships(),
         *SCHEDULES.values(),
-        wl.RecentMemory(max_plots=5),
     ],
     ids=lambda thing: type(thing).__name__,
 )

@@ -84,7 +84,7 @@ ESTIMATORS = {
     "fuzzy": wl.FuzzyAlphaBeta(),
     "fuzzy_of_six": wl.FuzzyAlphaBeta(max_plots=6, hold=False),
     "bayesian": wl.BayesianAlphaBeta(),
-    "alpha_beta": wl.AlphaBeta(wl.RangeDependent(near_range_m=6e3)),
+    "alpha_beta": wl.AlphaBeta(wl.RangeDependent(alpha_range_m=6e3, beta_range_m=6e3)),
     "alpha_beta_gamma": wl.AlphaBetaGamma(wl.TrackingIndex(0.5)),
     "imm_of_many_kinds": imm(
         wl.Ekf(wl.WanderingCourse()),

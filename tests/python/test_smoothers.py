@@ -135,7 +135,7 @@ def test_the_schedules_are_those_of_the_paper():
     with pytest.raises(ValueError, match="reading_std"):
         wf.AlphaBetaSmoother(reading_std=0.0)
     far = wf.AlphaBetaSmoother(wf.RangeDependent()).run(1.0, [0.0, 1.0], range_m=40e3)
-    assert far[0][1] == pytest.approx(0.25)
+    assert far[0][1] == pytest.approx(0.5)  # 20 / D
     with pytest.raises(wl.FilterError, match="not finite"):
         wf.AlphaBetaSmoother(wf.RangeDependent()).run(1.0, [0.0, 1.0], range_m=np.nan)
 

@@ -114,7 +114,8 @@ void expect_lanes_apart(const GainSchedule<Order>& gains) {
 TEST(AlphaBetaLanes, AreTheFiltersOneByOne) {
   for (const GainSchedule<2>& gains : std::initializer_list<GainSchedule<2>>{
            ConstantGains{}, GrowingMemory{.max_plots = 9}, BenedictBordner{}, CriticallyDamped{0.6},
-           TrackingIndex{0.3}, RangeDependent{.near_range_m = 4.9e3}})
+           TrackingIndex{0.3}, RangeDependent{.alpha_range_m = 4.9e3, .beta_range_m = 4.9e3},
+           RecentMemory{.max_plots = 9}, AdaptiveGains{}, AdaptiveGains{.window = 8}})
     expect_lanes_apart<2>(gains);
   for (const GainSchedule<3>& gains :
        std::initializer_list<GainSchedule<3>>{ConstantGains{0.6, 0.3, 0.05}, GrowingMemory{},

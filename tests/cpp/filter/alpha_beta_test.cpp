@@ -26,8 +26,8 @@ const Position kSensor{.position_std_m = 10.0};
 template <int Order>
 std::vector<GainSchedule<Order>> every_schedule() {
   if constexpr (Order == 2)
-    return {ConstantGains{},       GrowingMemory{},    BenedictBordner{},
-            CriticallyDamped{0.6}, TrackingIndex{0.3}, RangeDependent{}};
+    return {ConstantGains{},    GrowingMemory{},  BenedictBordner{}, CriticallyDamped{0.6},
+            TrackingIndex{0.3}, RangeDependent{}, RecentMemory{},    AdaptiveGains{}};
   else
     return {ConstantGains{0.6, 0.3, 0.05}, GrowingMemory{}, CriticallyDamped{0.6},
             TrackingIndex{0.1}};
@@ -224,14 +224,96 @@ TEST(RangeDependent, IsThatOfAPlottingAid) {
     return RangeDependent{}.gains<2>(GainOccasion<double>{.range_m = range_m});
   };
   EXPECT_EQ(at(5e3), (Vec<double, 2>(0.5, 0.2)));
-  EXPECT_TRUE(matrices_near(at(40e3), Vec<double, 2>(0.25, 0.1)));  // 10 / D, 4 / D
+  EXPECT_TRUE(matrices_near(at(40e3), Vec<double, 2>(0.5, 0.1)));  // 20 / D, 4 / D
+  EXPECT_TRUE(matrices_near(at(50e3), Vec<double, 2>(0.4, 0.08)));
   EXPECT_TRUE(matrices_near(at(100e3), Vec<double, 2>(0.2, 0.04)));
   EXPECT_EQ(at(900e3), (Vec<double, 2>(0.2, 0.01)));
 }
 
+TEST(RecentMemory, IsTheLineWithWeightsThatGrow) {
+  Draw draw(17);
+  auto filter = started(AlphaBeta<>(RecentMemory{}));
+  std::vector<Vec<double, 2>> readings;
+  for (int n = 1; n <= 60; ++n) {
+    readings.push_back(draw.normals<2>());
+    ASSERT_EQ(filter.predict(1.0), Status::kOk);
+    ASSERT_TRUE(filter.update(kSensor, readings.back()));
+    if (n < 2) continue;
+    Eigen::MatrixXd design(n, 2), values(n, 2);
+    for (int k = 0; k < n; ++k) {
+      const double root = std::sqrt(k + 1.0);
+      design.row(k) << root, root * double(k - n + 1);
+      values.row(k) = root * readings[std::size_t(k)].transpose();
+    }
+    const Mat<double, 2, 2> wanted = design.colPivHouseholderQr().solve(values);
+    const auto& mean = filter.estimate().mean;
+    const Mat<double, 2, 2> actual{{mean[0], mean[2]}, {mean[1], mean[3]}};
+    ASSERT_TRUE(matrices_near(actual, wanted, {.absolute = 1e-9, .relative = 0})) << n;
+  }
+}
+
+TEST(AdaptiveGains, OfThreePlotsAreThoseOfTheThirdOne) {
+  Draw draw(18);
+  auto adaptive = started(AlphaBeta<>(AdaptiveGains{.window = 3}));
+  auto constant = started(AlphaBeta<>(ConstantGains{5.0 / 6, 1.0 / 2}));
+  for (int k = 0; k < 40; ++k) {
+    const Vec<double, 2> z = 50.0 * draw.normals<2>();
+    for (auto* filter : {&adaptive, &constant}) {
+      ASSERT_EQ(filter->predict(2.0), Status::kOk);
+      ASSERT_TRUE(filter->update(kSensor, z));
+    }
+    if (k < 2) {
+      ASSERT_EQ(constant.assign(adaptive.estimate()), Status::kOk);
+      continue;
+    }
+    ASSERT_TRUE(matrices_near(adaptive.estimate().mean, constant.estimate().mean, {1e-9, 1e-12}));
+  }
+}
+
+// To an observer who moves and looks another way a target has the same gains.
+TEST(AdaptiveGains, DependNeitherOnTheSpeedNorOnTheAxes) {
+  Draw draw(19);
+  Mat<double, 2, 2> turn;
+  turn << std::cos(0.7), -std::sin(0.7), std::sin(0.7), std::cos(0.7);
+  const Vec<double, 2> velocity(12.0, -7.0);
+  auto filter = started(AlphaBeta<>(AdaptiveGains{})), moved = filter;
+  for (double t = 0; t < 100;) {
+    const double dt_s = draw.uniform(1.0, 4.0);
+    t += dt_s;
+    const Vec<double, 2> z(3e3 + draw.normal() * 20, 4e3 + draw.normal() * 20);
+    ASSERT_EQ(filter.predict(dt_s), Status::kOk);
+    ASSERT_EQ(moved.predict(dt_s), Status::kOk);
+    ASSERT_TRUE(filter.update(kSensor, z));
+    ASSERT_TRUE(moved.update(kSensor, Vec<double, 2>(turn * z + t * velocity)));
+    if (t < 20) continue;  // the start, which is not moved
+    const auto &here = filter.estimate().mean, &there = moved.estimate().mean;
+    const Vec<double, 2> rate = turn * Vec<double, 2>(here[1], here[3]) + velocity;
+    EXPECT_TRUE(matrices_near(Vec<double, 2>(there[1], there[3]), rate, {1e-6, 0}));
+  }
+}
+
+TEST(AdaptiveGains, OfNoiseAreAboutThreeQuarters) {
+  Draw draw(20);
+  auto filter = started(AlphaBeta<>(AdaptiveGains{}));
+  double alpha = 0, beta = 0;
+  constexpr int kScans = 4000, kBegun = 10;
+  for (int k = 0; k < kScans; ++k) {
+    ASSERT_EQ(filter.predict(1.0), Status::kOk);
+    const auto before = filter.estimate().mean;
+    const auto step = filter.update(kSensor, Vec<double, 2>(10.0 * draw.normals<2>()));
+    ASSERT_TRUE(step);
+    if (k < kBegun) continue;
+    const auto& mean = filter.estimate().mean;
+    alpha += (mean[0] - before[0]) / step.innovation[0] / (kScans - kBegun);
+    beta += (mean[1] - before[1]) / step.innovation[0] / (kScans - kBegun);
+  }
+  EXPECT_NEAR(alpha, 0.74, 0.01);
+  EXPECT_NEAR(beta, 0.37, 0.01);
+}
+
 TEST(RangeDependent, MeasuresTheRangeFromOwnShip) {
   RangeBearing radar{.range_std_m = 10, .bearing_std_rad = 0.001};
-  radar.own.north_m = -50e3;
+  radar.own.north_m = -150e3;
   const auto alpha = [](const auto& sensor, const Vec<double, 2>& z) {
     auto filter = started(AlphaBeta<>(RangeDependent{}));
     (void)filter.predict(3.0);
@@ -369,6 +451,9 @@ TEST(AlphaBetaFilter, RejectsInvalidParameters) {
   EXPECT_THROW(AlphaBeta<>(GrowingMemory{.plots_before = -1}), std::invalid_argument);
   EXPECT_THROW(AlphaBetaGamma<>(GrowingMemory{.max_plots = 2}), std::invalid_argument);
   EXPECT_THROW(AlphaBeta<>(RangeDependent{.far_alpha = 0.6}), std::invalid_argument);
+  EXPECT_THROW(AlphaBeta<>(RecentMemory{.max_plots = 1}), std::invalid_argument);
+  EXPECT_THROW(AlphaBeta<>(AdaptiveGains{.window = 2}), std::invalid_argument);
+  EXPECT_THROW(AlphaBeta<>(AdaptiveGains{.window = 9}), std::invalid_argument);
 }
 
 TEST(AlphaBetaFilter, TakesThePositionOutOfAnySensorAndAKnownAcceleration) {

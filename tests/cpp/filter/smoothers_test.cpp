@@ -459,11 +459,12 @@ TEST(AlphaBetaSmoother, HasTheSchedulesOfThePaper) {
     EXPECT_EQ(gains(GrowingMemory{.plots_before = 1}, i), gains(GrowingMemory{}, i + 1));
     EXPECT_NEAR(gains(RecentMemory{}, i)[1], 12 / ((n + 1) * (n + 2)), 1e-12);
   }
-  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 19e3)[0], 0.5);
-  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 40e3)[0], 0.25);  // 10/D
-  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 80e3)[0], 0.2);
-  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 40e3)[1], 0.1);  // 4/D
-  EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 500e3)[1], 0.01);
+  for (const double range_km : {1.0, 19.0, 20.0, 35.0, 40.0, 60.0, 99.0, 150.0, 390.0, 500.0}) {
+    EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 1e3 * range_km)[0],
+                     std::clamp(20 / range_km, 0.2, 0.5));
+    EXPECT_DOUBLE_EQ(gains(RangeDependent{}, 5, 1e3 * range_km)[1],
+                     std::clamp(4 / range_km, 0.01, 0.2));
+  }
   EXPECT_EQ(gains(RecentMemory{.max_plots = 4}, 100), gains(RecentMemory{}, 4));
   EXPECT_THROW((AlphaBetaSmoother<RecentMemory>({.max_plots = 1})), std::invalid_argument);
   EXPECT_THROW((AlphaBetaSmoother<ConstantGains>({.alpha = 2})), std::invalid_argument);

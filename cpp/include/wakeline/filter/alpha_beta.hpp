@@ -8,12 +8,70 @@
 
 #include "wakeline/filter/alpha_beta_gains.hpp"
 #include "wakeline/filter/ekf.hpp"
-#include "wakeline/measurement/own_ship.hpp"
 #include "wakeline/measurement/fix.hpp"
+#include "wakeline/measurement/own_ship.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
 
 namespace wakeline {
+
+/// The last plots of a target, for `AdaptiveGains`.
+template <class Scalar>
+struct RecentPlots {
+  static constexpr int kMost = AdaptiveGains::kMostPlots;
+  /// [north, east, time since the plot before], newest first.
+  Mat<Scalar, 3, kMost> plots = Mat<Scalar, 3, kMost>::Zero();
+  Scalar count = Scalar(0);
+
+  void add(const Vec<Scalar, 2>& plot_m, Scalar gap_s) noexcept {
+    for (int k = kMost - 1; k > 0; --k) plots.col(k) = plots.col(k - 1);
+    plots.col(0) << plot_m, gap_s;
+    count = counted(count + Scalar(1), kMost);
+  }
+
+  /// [alpha, beta] of (33) over the last `window` plots: one pass with the gains (27).
+  [[nodiscard]] Vec<Scalar, 2> response(int window) const noexcept {
+    using Two = Vec<Scalar, 2>;
+    const Scalar size = counted(count, window);
+    Two value = Two::Zero(), rate = Two::Zero();
+    Two product = Two::Zero(), squared = Two::Zero();
+    for (int k = window - 1; k >= 0; --k) {
+      const Scalar n = at_least(size - Scalar(k), Scalar(1));  // the n-th plot of the window
+      const Two gains = GrowingMemory{}.gains<2>(GainOccasion<Scalar>{.reading = n});
+      const Scalar dt_s = plots(2, k);
+      const auto later = dt_s > Scalar(0);
+      const Scalar per_s = select(later, Scalar(1) / select(later, dt_s, Scalar(1)), Scalar(0));
+      const Two predicted = value + rate * dt_s;
+      const Two innovation = plots.col(k).template head<2>() - predicted;
+      value = predicted + gains[0] * innovation;
+      rate += gains[1] * per_s * innovation;
+      const Scalar weight = select(n > Scalar(2), innovation.squaredNorm(), Scalar(0));
+      const Two weights(weight, weight * per_s * per_s);
+      product += gains.cwiseProduct(weights);
+      squared += weights;
+    }
+    // The line through the first two plots, and where all lie on it.
+    const Two begun = GrowingMemory{}.gains<2>(GainOccasion<Scalar>{.reading = counted(size, 2)});
+    const auto ratio = [&](int k) {
+      const auto judged = squared[k] > Scalar(0);
+      return select(judged, product[k] / select(judged, squared[k], Scalar(1)), begun[k]);
+    };
+    return {ratio(0), ratio(1)};
+  }
+
+  void archive(Archive& fields) {
+    fields(plots);
+    fields(count);
+    if (!(count >= Scalar(0))) fields.fail();
+  }
+
+  friend void assign_where(const MaskOf<Scalar>& condition, RecentPlots& target,
+                           const RecentPlots& value) noexcept {
+    for (int k = 0; k < 3 * kMost; ++k)
+      target.plots.data()[k] = select(condition, value.plots.data()[k], target.plots.data()[k]);
+    target.count = select(condition, value.count, target.count);
+  }
+};
 
 /// A filter with scheduled gains: alpha-beta over `[x, vx, y, vy]` (`Order` 2), alpha-beta-gamma
 /// over `[x, vx, ax, y, vy, ay]` (3).
@@ -109,6 +167,7 @@ class AlphaBetaFilter
     fields(occasion.elapsed_s);
     fields(occasion.since_s);
     fields(occasion.taken);
+    occasion.recent.archive(fields);
     if (!(occasion.reading >= Scalar(1)) || !(occasion.elapsed_s >= Scalar(0)) ||
         !(occasion.since_s >= Scalar(0)))
       fields.fail();
@@ -124,6 +183,7 @@ class AlphaBetaFilter
     Scalar elapsed_s = Scalar(0);
     Scalar since_s = Scalar(0);    ///< since it was taken
     MaskOf<Scalar> taken = false;  ///< the reading has been taken; a later one is the next
+    RecentPlots<Scalar> recent;    ///< empty unless gains are adaptive
 
     friend void assign_where(const MaskOf<Scalar>& condition, Occasion& target,
                              const Occasion& value) noexcept {
@@ -131,6 +191,7 @@ class AlphaBetaFilter
       target.elapsed_s = select(condition, value.elapsed_s, target.elapsed_s);
       target.since_s = select(condition, value.since_s, target.since_s);
       target.taken = (condition && value.taken) || (!condition && target.taken);
+      assign_where(condition, target.recent, value.recent);
     }
   };
   [[nodiscard]] const Occasion& memory() const noexcept { return occasion_; }
@@ -166,7 +227,11 @@ class AlphaBetaFilter
   /// Starts a reading: the next one where it is later than those before.
   void begin() noexcept {
     const auto later = occasion_.since_s > Scalar(kOneTime) * occasion_.elapsed_s;
-    assign_where(occasion_.taken && later, occasion_, {occasion_.reading + 1, occasion_.since_s});
+    const auto next = occasion_.taken && later;
+    occasion_.reading += select(next, Scalar(1), Scalar(0));
+    occasion_.elapsed_s = select(next, occasion_.since_s, occasion_.elapsed_s);
+    occasion_.since_s = select(next, Scalar(0), occasion_.since_s);
+    occasion_.taken = occasion_.taken && !later;
   }
 
   template <class Sensor>
@@ -190,7 +255,8 @@ class AlphaBetaFilter
     Correction<2, Scalar> correction = Base::compare(Fix{}, plot);
     if (none(ok(correction.status))) return correction;
     begin();
-    const Gain k = gain(plot.covariance, range(sensor, plot.mean));
+    RecentPlots<Scalar> recent = occasion_.recent;
+    const Gain k = gain(plot.covariance, range(sensor, plot.mean), response(plot.mean, recent));
     Gaussian<kStates, Scalar> next = this->belief_;
     shift(next.mean, k, correction.innovation);
     correct_covariance(next.covariance, k, plot.covariance);
@@ -199,8 +265,28 @@ class AlphaBetaFilter
         ok_or(is_finite(next.mean) && is_finite(next.covariance), Status::kNotFinite));
     const MaskOf<Scalar> taken = ok(correction.status);
     assign_where(taken, this->belief_, next);
+    if (adaptive_gains() != nullptr) assign_where(taken, occasion_.recent, recent);
     occasion_.taken = occasion_.taken || taken;
     return correction;
+  }
+
+  const AdaptiveGains* adaptive_gains() const noexcept {
+    if constexpr (Order == 2)
+      return std::get_if<AdaptiveGains>(&schedule_);
+    else
+      return nullptr;
+  }
+
+  /// [alpha, beta] of (33) with a plot, which is added to `recent` unless it is of the same time as
+  /// the newest; ones for schedules that do not adapt.
+  Vec<Scalar, 2> response(const Vec<Scalar, 2>& plot_m,
+                          RecentPlots<Scalar>& recent) const noexcept {
+    const AdaptiveGains* adaptive = adaptive_gains();
+    if (adaptive == nullptr) return Vec<Scalar, 2>::Ones();
+    RecentPlots<Scalar> more = recent;
+    more.add(plot_m, occasion_.elapsed_s);
+    assign_where(!occasion_.taken, recent, more);
+    return recent.response(adaptive->window);
   }
 
   /// P becomes (I - K H) P (I - K H)ᵀ + K R Kᵀ.
@@ -233,8 +319,10 @@ class AlphaBetaFilter
   }
 
   /// [alpha, beta / T, gamma / (2 T²)] for a plot error of `std_m`.
-  [[nodiscard]] AxisGain axis_gain(Scalar std_m, Scalar range_m) const noexcept {
-    const GainOccasion<Scalar> occasion{occasion_.reading, occasion_.elapsed_s, std_m, range_m};
+  [[nodiscard]] AxisGain axis_gain(Scalar std_m, Scalar range_m,
+                                   const Vec<Scalar, 2>& response) const noexcept {
+    const GainOccasion<Scalar> occasion{occasion_.reading, occasion_.elapsed_s, std_m, range_m,
+                                        response};
     AxisGain gain = std::visit(
         [&](const auto& schedule) -> AxisGain { return schedule.template gains<Order>(occasion); },
         schedule_);
@@ -247,7 +335,8 @@ class AlphaBetaFilter
   }
 
   /// K: the gains along the short axis of R, plus the difference of those along the long axis.
-  [[nodiscard]] Gain gain(const Mat<Scalar, 2, 2>& r, Scalar range_m) const noexcept {
+  [[nodiscard]] Gain gain(const Mat<Scalar, 2, 2>& r, Scalar range_m,
+                          const Vec<Scalar, 2>& response) const noexcept {
     using std::sqrt;
     const Scalar half_sum = (r(0, 0) + r(1, 1)) / 2;
     const Scalar half_difference = (r(0, 0) - r(1, 1)) / 2;
@@ -255,7 +344,7 @@ class AlphaBetaFilter
     const Scalar longest = half_sum + spread;  // variances along the axes of R
     const Scalar product = r(0, 0) * r(1, 1) - r(1, 0) * r(1, 0);
     const Scalar shortest = select(product > Scalar(0), product / longest, Scalar(0));
-    const AxisGain along = axis_gain(sqrt(shortest), range_m);
+    const AxisGain along = axis_gain(sqrt(shortest), range_m, response);
     const auto uneven = spread > Scalar(0);
     Mat<Scalar, 2, 2> onto_long = Mat<Scalar, 2, 2>::Zero();  // projection on the long axis
     AxisGain more = AxisGain::Zero();
@@ -263,7 +352,7 @@ class AlphaBetaFilter
       const Scalar scale = Scalar(1) / select(uneven, 2 * spread, Scalar(1));
       const auto onto = [&](Scalar part) { return select(uneven, part * scale, Scalar(0)); };
       onto_long << onto(longest - r(1, 1)), onto(r(1, 0)), onto(r(1, 0)), onto(longest - r(0, 0));
-      more = axis_gain(sqrt(longest), range_m) - along;
+      more = axis_gain(sqrt(longest), range_m, response) - along;
     }
     Gain k;
     for (int axis = 0; axis < 2; ++axis) {

@@ -35,6 +35,8 @@ struct GainOccasion {
   Scalar elapsed_s = Scalar(1);  ///< since the reading before, or the start
   Scalar std_m = Scalar(1);      ///< error of the reading along the axis
   Scalar range_m = Scalar(0);    ///< from the sensor
+  /// [alpha, beta] that the last readings call for, (33); see `AdaptiveGains`.
+  Vec<Scalar, 2> response = Vec<Scalar, 2>::Ones();
 };
 
 /// The number of plots that count, limited to `most`; 0 for no limit.
@@ -119,6 +121,37 @@ struct GrowingMemory {
     validate_fields(*this);
     require(max_plots == 0 || max_plots >= Order, "max_plots",
             Order == 2 ? "0 or 2 or more" : "0 or 3 or more", max_plots);
+  }
+};
+
+/// Recent memory: the gains of the least-squares line through all n readings with weights
+/// 1, 2, ..., n, which forgets sooner than `GrowingMemory`:
+///     alpha = 6n / ((n+1)(n+2)),  beta = 12 / ((n+1)(n+2)).
+/// Source: I. M. Hannoshyna, T. V. Kalinichenko, P. V. Nikitin, Research of methods of forecasting
+/// the movement, search and tracking of sea objects, equation (29), printed with i = n - 1.
+struct RecentMemory {
+  int plots_before = 0;
+  int max_plots = 0;
+
+  static constexpr auto fields() noexcept {
+    using R = RecentMemory;
+    return field_table(field("plots_before", &R::plots_before, at_least(0), "plots",
+                             "Plots that the start was made of."),
+                       field("max_plots", &R::max_plots, at_least(0), "plots",
+                             "Plots at which the gains stop falling; 0: never."));
+  }
+
+  template <int Order, class Scalar>
+  Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
+    const Scalar n = counted(at.reading + Scalar(plots_before), max_plots);
+    const Scalar product = (n + 1) * (n + 2);
+    return {6 * n / product, select(n < Scalar(2), Scalar(0), 12 / product)};
+  }
+
+  template <int Order>
+  void validate() const {
+    validate_fields(*this);
+    require(max_plots == 0 || max_plots >= Order, "max_plots", "0 or 2 or more", max_plots);
   }
 };
 
@@ -269,14 +302,16 @@ struct TrackingIndex {
   }
 };
 
-/// Gains that depend on the range only, as in a radar plotting aid: those of `near` up to
-/// `near_range_m`, then inversely proportional to the range, down to those of `far`. Source: I. M.
-/// Hannoshyna, T. V. Kalinichenko, P. V. Nikitin, Research of methods of forecasting the movement,
-/// search and tracking of sea objects, equation (30), made continuous at 20 km, where the source's
-/// alpha jumps. The range is from own ship where the sensor has it, else from the origin (a `Fix`,
-/// also in a `Tracker`).
+/// Gains that depend on the range only, as in a radar plotting aid: each is that of `near` up to
+/// its range, then inversely proportional to the range, down to that of `far`. By default, with D
+/// in km,
+///     alpha = 20 / D  within 0.2 .. 0.5,  beta = 4 / D  within 0.01 .. 0.2.
+/// Source: I. M. Hannoshyna, T. V. Kalinichenko, P. V. Nikitin, Research of methods of forecasting
+/// the movement, search and tracking of sea objects, equation (30) with its caps. The range is from
+/// own ship where the sensor has it, else from the origin (a `Fix`, also in a `Tracker`).
 struct RangeDependent {
-  double near_range_m = 20e3;
+  double alpha_range_m = 40e3;
+  double beta_range_m = 20e3;
   double near_alpha = 0.5;
   double near_beta = 0.2;
   double far_alpha = 0.2;
@@ -285,8 +320,10 @@ struct RangeDependent {
   static constexpr auto fields() noexcept {
     using R = RangeDependent;
     return field_table(
-        field("near_range_m", &R::near_range_m, kPositive, "m",
-              "Range up to which the near gains hold."),
+        field("alpha_range_m", &R::alpha_range_m, kPositive, "m",
+              "Range up to which the gain of the position is near_alpha."),
+        field("beta_range_m", &R::beta_range_m, kPositive, "m",
+              "Range up to which the gain of the velocity is near_beta."),
         field("near_alpha", &R::near_alpha, kPositive, "1", "Gain of the position at short range."),
         field("near_beta", &R::near_beta, kPositive, "1", "Gain of the velocity at short range."),
         field("far_alpha", &R::far_alpha, kPositive, "1",
@@ -297,9 +334,11 @@ struct RangeDependent {
 
   template <int Order, class Scalar>
   Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
-    const Scalar nearness = Scalar(near_range_m) / at_least(at.range_m, Scalar(near_range_m));
-    return {at_least(Scalar(near_alpha) * nearness, Scalar(far_alpha)),
-            at_least(Scalar(near_beta) * nearness, Scalar(far_beta))};
+    const auto gain = [&](double up_to_m, double near, double far) {
+      const Scalar nearness = Scalar(up_to_m) / at_least(at.range_m, Scalar(up_to_m));
+      return at_least(Scalar(near) * nearness, Scalar(far));
+    };
+    return {gain(alpha_range_m, near_alpha, far_alpha), gain(beta_range_m, near_beta, far_beta)};
   }
 
   template <int Order>
@@ -313,12 +352,40 @@ struct RangeDependent {
   }
 };
 
+/// Gains from the last readings, (33): those of `GrowingMemory` over a window, each weighted with
+/// the squared innovation that it met,
+///     alpha = sum((x^ - x~) e) / sum(e²),  beta = sum(dv e/T) / sum((e/T)²).
+/// Noise alone makes them about 0.74 and 0.37 with a window of five; a maneuver changes them
+/// little. The second reading of the window is left out: its innovation is the motion of the
+/// target, on whose speed the gains would depend. Source: I. M. Hannoshyna, T. V. Kalinichenko,
+/// P. V. Nikitin, Research of methods of forecasting the movement, search and tracking of sea
+/// objects, equation (33), in two passes; see cpp/docs/theory/dead_reckoning.md.
+struct AdaptiveGains {
+  static constexpr int kMostPlots = 8;
+  int window = 5;
+
+  static constexpr auto fields() noexcept {
+    return field_table(field("window", &AdaptiveGains::window, between(3, kMostPlots), "plots",
+                             "Plots that the gains come from, the newest among them."));
+  }
+
+  template <int Order, class Scalar>
+  Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
+    return at.response;
+  }
+
+  template <int Order>
+  void validate() const {
+    validate_fields(*this);
+  }
+};
+
 /// Any of the schedules for this number of states per axis.
 template <int Order>
 using GainSchedule =
     std::conditional_t<Order == 2,
                        std::variant<ConstantGains, GrowingMemory, BenedictBordner, CriticallyDamped,
-                                    TrackingIndex, RangeDependent>,
+                                    TrackingIndex, RangeDependent, RecentMemory, AdaptiveGains>,
                        std::variant<ConstantGains, GrowingMemory, CriticallyDamped, TrackingIndex>>;
 
 }  // namespace wakeline

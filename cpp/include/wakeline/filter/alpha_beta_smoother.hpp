@@ -11,25 +11,6 @@
 
 namespace wakeline {
 
-/// (29): gains of the least-squares line through all n readings with weights 1, 2, ..., n:
-///     alpha = 6n / ((n+1)(n+2)),  beta = 12 / ((n+1)(n+2))
-/// (the source uses i = n - 1).
-struct RecentMemory {
-  int max_plots = 0;  ///< the gains stay those of so many; 0 for all
-
-  template <int Order, class Scalar>
-  Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
-    const Scalar n = counted(at.reading, max_plots);
-    if (n < Scalar(2)) return {Scalar(1), Scalar(0)};
-    return {6 * n / ((n + 1) * (n + 2)), 12 / ((n + 1) * (n + 2))};
-  }
-
-  template <int Order>
-  void validate() const {
-    require(max_plots == 0 || max_plots >= Order, "max_plots", "0 or 2 or more", max_plots);
-  }
-};
-
 /// An alpha-beta filter (26) of one quantity with a gain schedule: (27) `GrowingMemory{}`, (28)
 /// `GrowingMemory{.plots_before = 1}`, (29) `RecentMemory{}`, (30) `RangeDependent{}`, or any other
 /// of alpha_beta_gains.hpp. The first reading is the first plot.
