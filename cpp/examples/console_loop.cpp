@@ -93,7 +93,7 @@ std::vector<Scan> read_scans(const std::string& scans_path, const std::string& p
   return scans;
 }
 
-/// Eight boats on straight courses among false plots; one comes back past the others.
+/// Eight boats on straight courses among false plots; one comes back past another.
 std::vector<Scan> made_up_scans() {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
@@ -103,8 +103,9 @@ std::vector<Scan> made_up_scans() {
     Scan scan{2.5 * k, {}};
     for (int boat = 0; boat < 8; ++boat) {
       if (uniform(random) > 0.9) continue;
-      const double course = boat * 0.8;
-      const double distance = boat == 7 ? 1200.0 - 6.0 * scan.time_s : 500.0 + 6.0 * scan.time_s;
+      const bool returns = boat == 7;
+      const double course = returns ? 3 * 0.8 + 0.03 : boat * 0.8;
+      const double distance = returns ? 1800.0 - 6.0 * scan.time_s : 500.0 + 6.0 * scan.time_s;
       const double north = distance * std::cos(course), east = distance * std::sin(course);
       scan.plots.push_back({scan.time_s, std::hypot(north, east) + 8 * normal(random),
                             std::atan2(east, north) + deg(0.5) * normal(random)});
