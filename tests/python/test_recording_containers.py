@@ -274,6 +274,7 @@ def test_lines_over_tcp_are_whole_and_once(tmp_path, seed):
 
 
 def assert_same_fixes(one, other):
+    assert one.report.problems == other.report.problems
     assert one.fixes.time_s.tolist() == other.fixes.time_s.tolist()
     assert one.fixes.latitude_deg.tolist() == other.fixes.latitude_deg.tolist()
 

@@ -340,6 +340,7 @@ def _stamped(lines: bytes, time_s: float | None) -> bytes:
     return b"".join(
         line if _TAGGED.match(line) else b"\\%s*%02X\\%s" % (tag, checksum, line)
         for line in lines.removeprefix(b"UdPbC\0").splitlines(keepends=True)
+        if line.strip()
     )
 
 
