@@ -10,6 +10,9 @@
 #include "wakeline/track/vessel_models.hpp"
 
 namespace wakeline::python {
+
+void define_strobe_tracker(py::module_& track);  // strobe_tracker.cpp
+
 namespace {
 
 /// Steps of the usual estimator in the lanes of this processor.
@@ -497,6 +500,8 @@ ValueError
             return tracker.visit([](const auto& one) { return TrackerConfig(one.config()); });
           })
       .def("_arguments", &tracker_arguments);
+
+  define_strobe_tracker(m);
 }
 
 }  // namespace wakeline::python

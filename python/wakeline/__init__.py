@@ -99,7 +99,16 @@ from ._engine.navigation import (
     geodesic,
     rhumb_line,
 )
-from ._engine.track import Event, Radar, Tracker, TrackerConfig, VesselModels, vessel_imm
+from ._engine.track import (
+    Event,
+    Radar,
+    StrobeTracker,
+    StrobeTrackerConfig,
+    Tracker,
+    TrackerConfig,
+    VesselModels,
+    vessel_imm,
+)
 from ._engine.video import LandMask, PlotExtractor, ScanImage, StaticClutterMap
 
 # The engine's nouns, importable as modules of the package.
@@ -187,6 +196,8 @@ __all__ = [
     "StaticClutterMap",
     "Status",
     "Step",
+    "StrobeTracker",
+    "StrobeTrackerConfig",
     "SwitchingGridImm",
     "ThreePointSmoother",
     "Tracker",

@@ -34,10 +34,11 @@ struct StrobeTrack {
   TrackStatus status = TrackStatus::kTentative;
   double time_s = 0.0;          ///< of the estimate: when the beam last passed the vessel
   Gaussian<4> kinematics = {};  ///< of the estimate, `[x, vx, y, vy]`
-  int hits = 0;                 ///< turns with an echo
-  int misses = 0;               ///< turns in a row without one
-  Strobe strobe = {};           ///< the one that the beam will pass next
-  Strobe last = {};             ///< the one read last
+  double nis = std::numeric_limits<double>::quiet_NaN();  ///< of the last echo
+  int hits = 0;                                           ///< turns with an echo
+  int misses = 0;                                         ///< turns in a row without one
+  Strobe strobe = {};                                     ///< the one that the beam will pass next
+  Strobe last = {};                                       ///< the one read last
 
   // Angles of the beam, unwrapped
   double pass_rad = 0.0;  ///< at which it passes the centre of the strobe
@@ -65,6 +66,7 @@ struct StrobeTrack {
     fields(time_s);
     fields(kinematics.mean);
     fields(kinematics.covariance);
+    fields(nis);
     fields(hits);
     fields(misses);
     strobe.archive(fields);

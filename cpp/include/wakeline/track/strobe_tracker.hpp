@@ -20,6 +20,7 @@
 #include "wakeline/gating/radius_gate.hpp"
 #include "wakeline/gating/strobe_echo.hpp"
 #include "wakeline/measurement/own_ship.hpp"
+#include "wakeline/track/plot_likelihood.hpp"
 #include "wakeline/track/radar.hpp"
 #include "wakeline/track/strobe_config.hpp"
 #include "wakeline/track/strobe_track.hpp"
@@ -300,9 +301,12 @@ class StrobeTracker {
     Estimator& estimator = estimators_[static_cast<std::size_t>(track.slot)];
     if (advance(estimator, time_s - track.time_s) != Status::kOk) return false;
     track.time_s = time_s;
+    track.nis = kNaN;
     if (echo) {
       seen_ = radar_.position(echo.range_m, echo.bearing_rad, own);
       const Alternative<Fix> reading{Fix{seen_.covariance}, seen_.mean, 1.0};
+      track.nis =
+          innovation_squared(kinematics_of(estimator.estimate()), seen_.mean, seen_.covariance);
       double share = 0.0;
       if (!(estimator.update(std::span(&reading, 1), 0.0, std::span(&share, 1)) > 0.0) &&
           estimator.start(at_rest(seen_)) != Status::kOk)
