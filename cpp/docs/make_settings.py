@@ -16,6 +16,7 @@ SECTIONS = {
     "radar": wl.Radar,
     "tracker": wl.TrackerConfig,
     "models": wl.VesselModels,
+    "strobes": wl.StrobeTrackerConfig,
     "danger": wl.DangerLimits,
 }
 

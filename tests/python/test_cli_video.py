@@ -543,3 +543,66 @@ def test_azimuths_from_the_bow_of_a_ship_that_turns(tmp_path, capsys):
     for name in SHIPS:
         _, position_m, _ = track_of(tracks, name)
         assert position_m[-5:].max() < 25.0
+
+
+def strobe_tracked(video, folder, *options):
+    command = ["track", str(video), "--method", "strobe", "--out", str(folder), *options]
+    assert main(command) == 0
+    return read_tracks(folder / "tracks.csv")
+
+
+def test_strobes_follow_every_ship(video, tmp_path, capsys):
+    tracks = strobe_tracked(video, tmp_path)
+    assert len(tracks.ids()) == len(SHIPS)
+    for name in SHIPS:
+        rows, position_m, velocity_mps = track_of(tracks, name)
+        assert rows.sum() >= SCANS - 6
+        assert position_m[-5:].max() < 25.0
+        assert velocity_mps[-1] < 2.5
+    plots = (tmp_path / "plots_tracks.csv").read_text().splitlines()
+    assert sum(line.endswith((",1", ",2")) for line in plots) >= 2 * (SCANS - 6)
+
+
+def test_strobes_follow_whom_the_operator_points_at(video, tmp_path, capsys):
+    wanted = tmp_path / "wanted.csv"
+    first_s = read_plots_of_video(video).episodes[0].scans[0].time_s
+    where_m = SHIPS["far"].truth.state_at(first_s)[0, ::2]
+    wanted.write_text(f"time_s,north_m,east_m\n{first_s},{where_m[0]},{where_m[1]}\n")
+    tracks = strobe_tracked(video, tmp_path, "--acquire", str(wanted))
+    assert tracks.ids() == ["1"]
+    rows, position_m, _ = track_of(tracks, "far")
+    assert rows.all()
+    assert position_m[-1] < 15.0
+
+
+def test_the_screen_shows_the_strobes_around_the_plots(video, tmp_path, monkeypatch, pictures):
+    drawn = {}
+    monkeypatch.setattr(PPI, "ppi", lambda shown, axes, **kinds: drawn.update(kinds, video=shown))
+    monkeypatch.setattr(plot, "save", lambda figure, file: file.write_bytes(b""))
+    strobe_tracked(video, tmp_path)
+    assert len(drawn["strobes"]) == len(SHIPS)
+    for outline in drawn["strobes"]:
+        center_m = outline[:-1].mean(axis=0)
+        radius_m = np.hypot(*(outline[0] - center_m))
+        assert np.hypot(*(drawn["plots"] - center_m).T).min() < radius_m
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--acquire", "nowhere.csv"], "--method strobe"),
+        (["--method", "strobe", "--acquire", "nowhere.csv"], "nowhere.csv"),
+        (["--method", "strobe", "--truth", "truth.csv"], "--truth"),
+    ],
+)
+def test_options_of_strobes_that_do_not_fit(video, tmp_path, capsys, options, words):
+    assert main(["track", str(video), "--out", str(tmp_path), *options]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_a_designation_that_cannot_be_read_names_the_line(video, tmp_path, capsys):
+    wanted = tmp_path / "wanted.csv"
+    wanted.write_text("time_s,north_m,east_m\n1,2,3\n1,x,3\n")
+    command = ["track", str(video), "--method", "strobe", "--acquire", str(wanted)]
+    assert main([*command, "--out", str(tmp_path)]) == 2
+    assert "line 3" in capsys.readouterr().err

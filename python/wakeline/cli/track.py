@@ -6,7 +6,7 @@ import argparse
 import math
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from wakeline.tracking import (
     Settings,
     TrackedEpisode,
     TrackedRecording,
+    follow_video,
     has_names,
     median_step_s,
     open_recording,
@@ -42,6 +43,10 @@ thresholds and plot errors estimated from it, and its last revolution is drawn
 as ppi.png. Video has the time of day only; its date is that of --own. Where its
 clock is set back a scenario begins: part-2 and so on.
 
+With --method strobe, each vessel of radar video is measured in a strobe around
+its predicted position; plots are then what was measured in the strobes. Vessels
+are acquired from extracted plots, or where --acquire points.
+
 Plots without a scan number are grouped by antenna revolution (period_s of
 --radar, else estimated).
 
@@ -59,6 +64,7 @@ columns, separated by commas, recognized by name in any order:
   --own      time_s, north_m, east_m; optional scan, scenario, vnorth_mps,
              veast_mps, heading_deg, vnorth_var_m2s2, vnorth_veast_cov_m2s2,
              veast_var_m2s2, status; own.csv of wakeline navigate has this form
+  --acquire  time_s, north_m, east_m; optional position_std_m
   --truth    time_s, target, north_m, east_m; optional vnorth_mps, veast_mps,
              scenario
   --radar    keys of a TOML file: range_std_m, bearing_std_deg, extent_std_m,
@@ -115,6 +121,18 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "way); overrides [models] of --config",
     )
     parser.add_argument(
+        "--method",
+        choices=("plots", "strobe"),
+        default="plots",
+        help="of tracking radar video: extracted plots (default), or a strobe on each vessel",
+    )
+    parser.add_argument(
+        "--acquire",
+        type=Path,
+        metavar="FILE",
+        help="CSV of vessels to be acquired, with --method strobe; default: from extracted plots",
+    )
+    parser.add_argument(
         "--config", type=Path, metavar="F.toml", help="settings, in the form of --print-config"
     )
     parser.add_argument(
@@ -136,18 +154,11 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.plots is None:
         raise ValueError("track needs a recording (see wakeline track --help)")
     outputs.check_no_input("--out", outputs.of_tracking(arguments.out), inputs(arguments))
-    recording = open_recording(
-        arguments.plots,
-        arguments.own,
-        arguments.truth,
-        period_s=settings.period_s,
-        azimuth=arguments.azimuth,
-        range_scale_m=arguments.range_scale,
-        columns=dict(arguments.columns),
-    )
+    recording, track = _opened(arguments, settings)
     known = settings.knowing(recording.radar)
     radar = _radar_text(arguments, settings, known, recording)
-    tracks = track_into(arguments.out, recording, known, radar, danger=arguments.own is not None)
+    danger = arguments.own is not None
+    tracks = track_into(arguments.out, recording, known, radar, danger=danger, track=track)
     rows = _rows(tracks.episodes, arguments.plots.name)
     if arguments.truth is not None:
         score = metrics.score(tracks, tracks.recording)
@@ -159,9 +170,40 @@ def run(arguments: argparse.Namespace) -> None:
     draw_into(arguments.out, tracks)
 
 
+def _opened(
+    arguments: argparse.Namespace, settings: Settings
+) -> tuple[Recording, Callable[..., TrackedEpisode]]:
+    """The recording, and what tracks an episode of it."""
+    path, own = arguments.plots, arguments.own
+    if arguments.method == "plots":
+        if arguments.acquire is not None:
+            raise ValueError("--acquire goes with --method strobe")
+        opened = open_recording(
+            path,
+            own,
+            arguments.truth,
+            period_s=settings.period_s,
+            azimuth=arguments.azimuth,
+            range_scale_m=arguments.range_scale,
+            columns=dict(arguments.columns),
+        )
+        return opened, track_episode
+    if arguments.truth is not None:
+        raise ValueError("--truth goes with plots, not with --method strobe")
+    return follow_video(
+        path,
+        settings,
+        own=own,
+        acquire=arguments.acquire,
+        azimuth=arguments.azimuth,
+        range_scale_m=arguments.range_scale,
+        columns=dict(arguments.columns),
+    )
+
+
 def inputs(arguments: argparse.Namespace) -> list[Path]:
     """The input files of the command line."""
-    files = [arguments.plots, arguments.own, arguments.truth, arguments.config]
+    files = [arguments.plots, arguments.own, arguments.truth, arguments.config, arguments.acquire]
     if arguments.radar is not None and arguments.radar not in radar_names():
         files.append(Path(arguments.radar))
     return [file for file in files if file is not None]
@@ -182,7 +224,13 @@ def _radar_text(
 
 
 def track_into(
-    folder: Path, recording: Recording, settings: Settings, radar: str, *, danger: bool = False
+    folder: Path,
+    recording: Recording,
+    settings: Settings,
+    radar: str,
+    *,
+    danger: bool = False,
+    track: Callable[..., TrackedEpisode] = track_episode,
 ) -> TrackedRecording:
     """Track every episode, write tables into `folder`, and print a report.
 
@@ -194,7 +242,7 @@ def track_into(
     try:
         for episode in recording:
             own, named = episode.own if danger else None, has_names(recording)
-            parts.append(track_episode(episode, settings, own=own, named=named))
+            parts.append(track(episode, settings, own=own, named=named))
     except (ValueError, FilterError, MemoryError, KeyboardInterrupt):
         if parts:
             files = write_tables(folder, parts, outputs.PARTIAL)

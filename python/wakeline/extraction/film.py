@@ -65,6 +65,7 @@ def read_plots_of_video(
     azimuth: str = "north",
     range_scale_m: float | None = None,
     columns: Mapping[str, str] | None = None,
+    extraction: Extraction | None = None,
 ) -> VideoRecording:
     """Read radar video and extract plots, one antenna revolution per scan.
 
@@ -74,7 +75,8 @@ def read_plots_of_video(
     `period_s` is the duration of a revolution. Azimuths count from `azimuth`, "north" or "bow", to
     which the heading of own ship's file is added; a note says if they look like those from the
     other one. Of several range scales in turn the one nearest to `range_scale_m` is read, by
-    default the longest. `columns` names columns of own ship's file.
+    default the longest. `columns` names columns of own ship's file. Plots are made by
+    `extraction`, or another object with its methods.
 
     Raises
     ------
@@ -87,7 +89,7 @@ def read_plots_of_video(
     check_azimuth(azimuth, own_path)
     path = Path(path)
     report = VideoReport()
-    extraction = Extraction()
+    extraction = extraction or Extraction()
     parts: list[list[_Seen]] = []
     begun = 0
     blocks = read_video(path, period_s=period_s, range_scale_m=range_scale_m, report=report)
@@ -102,8 +104,6 @@ def read_plots_of_video(
         last = turn.longest
     _finish(parts, extraction)
     variance = np.concatenate([seen.plots.variance for part in parts for seen in part])
-    least = np.array([last.cell_m, last.azimuth_width_rad]) ** 2 / 12.0
-    std = np.sqrt(np.maximum(np.median(variance, axis=0) if len(variance) else least, least))
     notes = [f"summary of the sender: {text}" for text in report.summaries]
     notes += [*report.notes, *extraction.notes()]
     if begun:
@@ -111,21 +111,28 @@ def read_plots_of_video(
     ship = OwnShipMotion.fixed()
     if own_path is not None:
         rows = read_own_track(own_path, notes, columns)
-        days_s = _days_s(rows, parts)
-        parts = [[seen.later(days_s) for seen in part] for part in parts]
+        shift_s = days_s(rows, (parts[0][0].end_s + parts[-1][-1].end_s) / 2.0)
+        parts = [[seen.later(shift_s) for seen in part] for part in parts]
         _check_covered(rows, parts, path)
         ship = rows.ship()
     episodes = _episodes(parts, ship, notes)
     if azimuth == "bow":
         episodes = [turned_to_north(episode, own_path) for episode in episodes]
-        heading_rad = headings_at(ship, last.time_s + days_s, own_path)
+        heading_rad = headings_at(ship, last.time_s + shift_s, own_path)
         last = replace(last, azimuth_rad=last.azimuth_rad + heading_rad)
     notes += [*period_notes(episodes, period_s), *azimuth_notes(episodes, azimuth)]
-    radar = {
+    radar = radar_of(variance, last)
+    return VideoRecording(path.stem, episodes, notes, radar, last=last)
+
+
+def radar_of(variance: np.ndarray, video: RadarVideo) -> dict[str, float]:
+    """Errors of plots from the variances (n, 2) of their echoes in range and bearing."""
+    least = np.array([video.cell_m, video.azimuth_width_rad]) ** 2 / 12.0
+    std = np.sqrt(np.maximum(np.median(variance, axis=0) if len(variance) else least, least))
+    return {
         "range_std_m": _UNSEEN * float(std[0]),
         "bearing_std_deg": float(np.degrees(_UNSEEN * float(std[1]))),
     }
-    return VideoRecording(path.stem, episodes, notes, radar, last=last)
 
 
 class _Seen(NamedTuple):
@@ -170,11 +177,10 @@ def _scans(part: Sequence[_Seen], ship: OwnShipMotion) -> list[Scan]:
     ]
 
 
-def _days_s(own: OwnRows, parts: Sequence[Sequence[_Seen]]) -> float:
-    """Days to add to the time of day so that the middles of video and own ship's track agree."""
+def days_s(own: OwnRows, middle_s: float) -> float:
+    """Days to add to a time of day so that it is nearest to the middle of own ship's track."""
     if len(own.time_s) == 0:
         return 0.0
-    middle_s = (parts[0][0].end_s + parts[-1][-1].end_s) / 2.0
     return _DAY_S * round(((own.time_s[0] + own.time_s[-1]) / 2.0 - middle_s) / _DAY_S)
 
 

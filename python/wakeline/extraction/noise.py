@@ -10,10 +10,11 @@ _WINDOW_CELLS = 32
 
 
 class Noise(NamedTuple):
-    """Standard deviation of the amplitude, and skewness, of the noise of a picture."""
+    """Standard deviation, skewness and mean of the amplitude of the noise of a picture."""
 
     std: float
     skewness: float
+    mean: float
 
 
 def noise_of(amplitude: np.ndarray) -> Noise | None:
@@ -32,4 +33,5 @@ def noise_of(amplitude: np.ndarray) -> Noise | None:
     quiet = lit[(mean[lit] >= low) & (mean[lit] <= high)]
     away = pieces[quiet] - mean[quiet, None]
     std = float(np.sqrt(np.mean(away**2)))
-    return Noise(std, float(np.mean(away**3)) / std**3) if std > 0 else None
+    skewness = float(np.mean(away**3)) / std**3 if std > 0 else 0.0
+    return Noise(std, skewness, float(mean[quiet].mean())) if std > 0 else None

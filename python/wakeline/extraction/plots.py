@@ -78,7 +78,7 @@ class Extraction:
         return notes
 
     def _begin(self, turn: Turn, kind: Kind, block: RadarVideo) -> None:
-        self._mirrored = (_sense(block) or _sense(turn.longest)) < 0.0
+        self._mirrored = (sense(block) or sense(turn.longest)) < 0.0
         if kind not in self._settings:
             alike = [other for other in turn.blocks if Kind.of(other).fits(kind)]
             settings, above_db = settings_for(self._clockwise(max(alike, key=len)), kind)
@@ -89,7 +89,7 @@ class Extraction:
 
     def _turns_back(self, block: RadarVideo) -> bool:
         """Whether the antenna's direction changes with this block."""
-        return _sense(block) * (-1.0 if self._mirrored else 1.0) < 0.0
+        return sense(block) * (-1.0 if self._mirrored else 1.0) < 0.0
 
     def _clockwise(self, video: RadarVideo) -> RadarVideo:
         """The video, mirrored if the antenna turns anticlockwise."""
@@ -101,7 +101,7 @@ class Extraction:
         return Plots(plots.time_s, plots.range_m, np.mod(bearing_rad, 2 * np.pi), variance)
 
 
-def _sense(video: RadarVideo) -> float:
+def sense(video: RadarVideo) -> float:
     """1 if the antenna turns clockwise, -1 anticlockwise, 0 with too few sweeps."""
     if len(video) < _SWEEPS_FOR_DIRECTION:
         return 0.0

@@ -62,6 +62,17 @@ def settings_for(turn: RadarVideo, kind: Kind) -> tuple[dict[str, float], int]:
     return settings, above_db
 
 
+def threshold_above(noise: Noise | None, false_alarms: float, above_db: float) -> int:
+    """The amplitude that noise exceeds with a probability, raised by so many dB."""
+    if noise is None:
+        return 1
+    if noise.skewness < _LOGARITHMIC_BELOW:
+        offset_db = wl.video.threshold_offset_db(false_alarms) + above_db
+        return int(noise.mean + noise.std / _RAYLEIGH_SPREAD_DB * offset_db) + 1
+    factor = wl.video.threshold_factor(false_alarms, train_cells=_MOST_TRAIN_CELLS)
+    return int(noise.mean * factor * 10 ** (above_db / 20)) + 1
+
+
 def _settings(kind: Kind, noise: Noise | None, above_db: float) -> dict[str, float]:
     """Settings for windows of this length and a receiver of this kind."""
     if noise is not None and noise.skewness < _LOGARITHMIC_BELOW:

@@ -114,7 +114,8 @@ def screen(tracks: TrackedRecording) -> Figure:
     """Draw the last revolution of radar video: echoes, plots, strobes, and the tracks.
 
     Positions are relative to own ship at the end of the revolution, without the bearing offset of
-    the radar. A strobe contains the next plot of a track with a probability of 99 %.
+    the radar. The strobes are those in which the plots were measured; without strobes a region that
+    contains the next plot of a track with a probability of 99 % is drawn.
 
     Parameters
     ----------
@@ -137,6 +138,13 @@ def screen(tracks: TrackedRecording) -> Figure:
     scan, last = episode.scans[-1], tracks.episodes[-1].tracks
     north_m, east_m = episode.own.position_at(scan.time_s)[0]
     last = replace(last, state=last.state - [north_m, 0.0, east_m, 0.0])
+    if tracks.episodes[-1].strobes_m is None:
+        strobes = _strobes(last.where(last.time_s == scan.time_s), recording.plot_std)
+    else:
+        strobes = [
+            circle_outline(np.subtract(centre_m, [north_m, east_m]), radius_m)
+            for *centre_m, radius_m in tracks.episodes[-1].strobes_m
+        ]
     offset_rad = np.deg2rad(tracks.settings.radar["bearing_offset_deg"])
     range_m, bearing_rad = scan.range_bearing.T
     fig = figure(8.6, 8.6)
@@ -144,7 +152,7 @@ def screen(tracks: TrackedRecording) -> Figure:
         replace(recording.last, azimuth_rad=recording.last.azimuth_rad - offset_rad),
         fig.add_subplot(),
         plots=range_m[:, None] * np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)]),
-        strobes=_strobes(last.where(last.time_s == scan.time_s), recording.plot_std),
+        strobes=strobes,
         tracks=last,
     )
     return fig

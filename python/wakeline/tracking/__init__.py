@@ -24,6 +24,7 @@ from .encounters import (
 )
 from .opening import open_recording
 from .settings import VESSELS, Settings, SettingsError, read_settings
+from .strobes import Designation, follow_video, read_designations
 from .tables import write_tables
 from .tracked import (
     MODE_NAMES,
@@ -40,15 +41,18 @@ __all__ = [
     "VESSELS",
     "DangerLimits",
     "DangerZone",
+    "Designation",
     "Encounter",
     "Settings",
     "SettingsError",
     "TrackedEpisode",
     "TrackedRecording",
     "Watched",
+    "follow_video",
     "has_names",
     "median_step_s",
     "open_recording",
+    "read_designations",
     "read_settings",
     "track_episode",
     "track_recording",

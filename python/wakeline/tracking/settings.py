@@ -36,6 +36,7 @@ _CLASSES = {
     "radar": wl.Radar,
     "tracker": wl.TrackerConfig,
     "models": wl.VesselModels,
+    "strobes": wl.StrobeTrackerConfig,
     "danger": DangerLimits,
 }
 _PERIOD = (
@@ -65,6 +66,7 @@ _ABOUT = {
     "radar": "Parameters of the radar.",
     "tracker": "Parameters of the tracker; one set of defaults for all radars.",
     "models": "Motion models; course noise grows with the speed.",
+    "strobes": "Parameters of --method strobe; default radii and least amplitude are estimated.",
     "danger": "Limits of a dangerous approach of two vessels, own ship (--own) or tracks.",
 }
 _ZONES = """\
@@ -81,7 +83,7 @@ class Settings:
 
     Attributes
     ----------
-    radar, tracker, models, danger : dict of str to float, int or str
+    radar, tracker, models, strobes, danger : dict of str to float, int or str
         Complete; the keys are those of `KEYS`.
     zones : tuple of dict
         Areas with separate limits of danger: ``name``, ``outline_m`` and any keys of `danger`.
@@ -90,6 +92,7 @@ class Settings:
     radar: dict[str, Value]
     tracker: dict[str, Value]
     models: dict[str, Value]
+    strobes: dict[str, Value]
     danger: dict[str, Value]
     zones: tuple[dict[str, Any], ...] = ()
 
@@ -113,13 +116,28 @@ class Settings:
 
     def make_tracker(self, period_s: float | None = None) -> wl.Tracker:
         """A new tracker; `period_s` is that of the antenna if the settings do not give it."""
-        radar = dict(self.radar)
-        radar["period_s"] = self.period_s or period_s or 0.0
         return wl.Tracker(
-            _engine("radar", radar),
-            _engine("tracker", self.tracker),
-            _engine("models", self.models),
+            self._radar(period_s), _engine("tracker", self.tracker), _engine("models", self.models)
         )
+
+    def make_strobe_tracker(
+        self, period_s: float, bits: int = 8, **estimated: float
+    ) -> wl.StrobeTracker:
+        """A new tracker on radar video; estimated parameters replace those by default."""
+        default = _defaults("strobes")
+        open_ones = {k: v for k, v in estimated.items() if self.strobes[k] == default[k]}
+        if "radius_m" not in open_ones:
+            open_ones.pop("max_radius_m", None)
+        radar = self._radar(period_s)
+        return wl.StrobeTracker(
+            radar,
+            _engine("strobes", self.strobes | open_ones),
+            wl.vessel_imm(radar, _engine("models", self.models)),
+            bits=bits,
+        )
+
+    def _radar(self, period_s: float | None) -> wl.Radar:
+        return _engine("radar", self.radar | {"period_s": self.period_s or period_s or 0.0})
 
     def knowing(self, radar: Mapping[str, Value]) -> Settings:
         """These settings with the radar parameters of a recording.

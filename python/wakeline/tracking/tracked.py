@@ -44,6 +44,8 @@ class TrackedEpisode:
         Dangerous encounters of any two vessels, in order of start.
     watches_own : bool
         Whether own ship was one of them: it was requested, and its velocity is known.
+    strobes_m : ndarray (n, 3) or None
+        North, east and radius of the strobes of the last revolution; None without strobes.
     """
 
     episode: Episode
@@ -54,6 +56,7 @@ class TrackedEpisode:
     elapsed_s: float
     encounters: list[Encounter] = field(default_factory=list)
     watches_own: bool = False
+    strobes_m: np.ndarray | None = None
 
     @property
     def alarms(self) -> list[Encounter] | None:
@@ -193,23 +196,49 @@ def track_episode(
     """
     settings = settings or Settings.default()
     tracker = settings.make_tracker(median_step_s(episode))
-    tables, events, plot_track_id, rejected = [_columns(tracker.tracks())], [], [], 0
+    tables, events, plot_track_id, rejected = [columns_of(tracker.tracks())], [], [], 0
     end_s, began_s = -np.inf, time.perf_counter()
     for scan in progress(episode.scans, len(episode), f"tracking {episode.name}".strip()):
         end_s = max(end_s, scan.time_s, scan.plot_time_s.max(initial=-np.inf))
         report = _process(tracker, end_s, scan)
-        tables.append(_at(scan.time_s, _columns(tracker.tracks(time_s=scan.time_s))))
+        tables.append(_at(scan.time_s, columns_of(tracker.tracks(time_s=scan.time_s))))
         events += report.events
         plot_track_id.append(report.plot_track_id)
         rejected += report.rejected_plots
     elapsed_s = time.perf_counter() - began_s
+    return tracked_episode(
+        episode,
+        settings,
+        tables,
+        events=events,
+        plot_track_id=plot_track_id,
+        rejected_plots=rejected,
+        elapsed_s=elapsed_s,
+        own=own,
+        named=named,
+    )
+
+
+def tracked_episode(
+    episode: Episode,
+    settings: Settings,
+    tables: Sequence[dict[str, np.ndarray]],
+    *,
+    events: list[wl.Event],
+    plot_track_id: list[np.ndarray],
+    rejected_plots: int = 0,
+    elapsed_s: float = 0.0,
+    own: OwnShipMotion | None = None,
+    named: bool = False,
+) -> TrackedEpisode:
+    """The result of an episode from the columns of its tracks at each scan."""
     if own is not None and not own.knows_velocity:
         own = None
     tracks = _joined(tables, episode.name if named else None)
     tracks, encounters = watch_tracks(tracks, own, settings.danger_limits, settings.danger_zones)
     shown = _without_offset(episode, math.radians(settings.radar["bearing_offset_deg"]))
     return TrackedEpisode(
-        shown, tracks, events, plot_track_id, rejected, elapsed_s, encounters, own is not None
+        shown, tracks, events, plot_track_id, rejected_plots, elapsed_s, encounters, own is not None
     )
 
 
@@ -242,7 +271,8 @@ def _process(tracker: wl.Tracker, end_s: float, scan: Scan) -> wl.track.ScanRepo
     )
 
 
-def _columns(table: wl.track.TrackTable) -> dict[str, np.ndarray]:
+def columns_of(table: wl.track.TrackTable | wl.track.StrobeTrackTable) -> dict[str, np.ndarray]:
+    """The columns of a table of tracks as arrays."""
     return {name: np.asarray(getattr(table, name)) for name in _COLUMNS}
 
 
