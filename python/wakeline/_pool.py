@@ -12,7 +12,7 @@ from contextlib import contextmanager
 def thread_pool(threads: int | None) -> Iterator[ThreadPoolExecutor]:
     """A pool of threads, by default one per processor.
 
-    On KeyboardInterrupt, or when a generator is closed, tasks that have not begun are cancelled, and
+    On KeyboardInterrupt, or when a generator is closed, tasks that have not begun are cancelled and
     those that run are left to themselves.
     """
     pool = ThreadPoolExecutor(threads or os.cpu_count() or 1)

@@ -394,7 +394,7 @@ def test_run_prints_the_table_and_writes_json(tmp_path, capsys, no_pictures):
     written = json.loads(result.read_text())
     assert set(written) == {"name", "version", "seed", "runs", "rows"}
     assert (written["name"], written["seed"], written["runs"]) == ("imm", 0, 2)
-    assert len(written["rows"]) == 8
+    assert {row["estimator"] for row in written["rows"]} >= {"imm2", "imm3", "clairvoyant", "bound"}
     text = capsys.readouterr().out
     for word in ("imm: 2 runs, seed 0", "mean m/s", "reference", "95.3", "bound"):
         assert word in text

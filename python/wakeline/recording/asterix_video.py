@@ -36,7 +36,7 @@ _PAUSE_S = 60.0
 _ASTRAY_RAD = 0.2
 _BELOW = {"azimuth_rad": 1e6, "time_s": 1e15, "start_range_m": 1e9, "cell_m": 1e6}  # to be written
 _NEAR = 64  # sweeps
-_MOST_SWITCHES = 2  # of the range scale in as many sweeps, if scales are not sent in turn
+_MOST_RETURNS = 1  # to a range scale in as many sweeps, if scales are not sent in turn
 _MOST_PARTS = 64  # of a sweep
 _ABUT = 1.5  # sweeps farther apart, or nearer, by this factor do not have the given width
 
@@ -468,12 +468,13 @@ class _Sweep(NamedTuple):
         return _jumps(self.time_s - since.time_s)
 
 
-class _Scale(NamedTuple):
+@dataclass(frozen=True)
+class _Scale:
     """The cells of a sweep."""
 
     start_range_m: float
     cell_m: float
-    cells: int
+    cells: int = field(compare=False)  # a sweep of the same cells may be longer or shorter
     octets: int
 
     @property
@@ -481,10 +482,10 @@ class _Scale(NamedTuple):
         return self.start_range_m + self.cells * self.cell_m
 
 
-def _switches(sweeps: Iterable[_Sweep]) -> int:
-    """How often the range scale changes."""
-    scales = [sweep.scale for sweep in sweeps]
-    return sum(a != b for a, b in itertools.pairwise(scales))
+def _returns(sweeps: Iterable[_Sweep]) -> int:
+    """How often the range scale changes back to one that was sent before."""
+    scales = [scale for scale, _ in itertools.groupby(sweep.scale for sweep in sweeps)]
+    return len(scales) - len(set(scales))
 
 
 def _turn_rad(before_rad: float, now_rad: float) -> float:
@@ -667,7 +668,7 @@ class _Order:
                 coming[sweep.scale] += 1
             if not waiting:
                 return
-            if index == 0 and _switches(waiting) > _MOST_SWITCHES:
+            if index == 0 and _returns(waiting) > _MOST_RETURNS:
                 seen = dict.fromkeys(coming, 0)
             ends = len(waiting) < _NEAR and bool(self.report.other_scales)
             sweep = waiting.popleft()
@@ -677,7 +678,10 @@ class _Order:
             in_turn = [
                 other
                 for other, last in seen.items()
-                if index - last < _NEAR and (coming[other] or ends) and self._prefers(other, scale)
+                if other != scale
+                and index - last < _NEAR
+                and (coming[other] or ends)
+                and self._prefers(other, scale)
             ]
             if in_turn:
                 self.report.other_scales[scale.range_m] += 1

@@ -254,7 +254,8 @@ def _velocity_m2s2(table: Table) -> np.ndarray:
     for column, variance in zip(VELOCITY_COVARIANCE[::2], (north, east), strict=True):
         sound = np.isnan(variance) | ((variance >= 0.0) & np.isfinite(variance))
         table.check(column, sound, "a finite variance, not negative")
-    too_large = np.abs(cross) > np.sqrt(north) * np.sqrt(east) * (1.0 + _ROUNDED)
+    with np.errstate(invalid="ignore"):  # rows with a negative variance are left out already
+        too_large = np.abs(cross) > np.sqrt(north) * np.sqrt(east) * (1.0 + _ROUNDED)
     table.check(VELOCITY_COVARIANCE[1], ~too_large, "a covariance within those of its variances")
     return np.stack([north, cross, cross, east], axis=1).reshape(-1, 2, 2)
 
