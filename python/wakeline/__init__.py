@@ -40,6 +40,7 @@ from ._engine.eval import consistency_bounds
 from ._engine.filter import (
     AdaptiveAlphaBeta,
     AdaptiveExponentialSmoother,
+    AdaptiveGains,
     AlphaBeta,
     AlphaBetaGamma,
     AlphaBetaSmoother,
@@ -153,6 +154,7 @@ except _PackageNotFoundError:  # run from a checkout that is not installed
 __all__ = [
     "AdaptiveAlphaBeta",
     "AdaptiveExponentialSmoother",
+    "AdaptiveGains",
     "AdaptiveGridImm",
     "AlphaBeta",
     "AlphaBetaGamma",
