@@ -41,6 +41,8 @@ WORDS = [
         r"\1 -> NDArray[np.uint8] | NDArray[np.uint16]",
     ),
     (r"filters: collections\.abc\.Sequence", "filters: Sequence[Filter]"),
+    (r"collections\.abc\.Sequence\[", "Sequence["),
+    (r"\bplots: typing\.Any", "plots: VideoPlots"),
     (
         r"(def (?:mode_probability|turn_rate_rad_s)\(self\)) -> typing\.Any",
         r"\1 -> NDArray[np.float64] | None",
@@ -79,7 +81,7 @@ HOMES = {
     ],
     "filter": ["Estimator", "Filter", "RunResult"],
     "gating": ["RadiusGate"],
-    "video": ["ScanImage"],
+    "video": ["ScanImage", "VideoPlots"],
     "motion": [
         "ConstantAcceleration",
         "ConstantVelocity",
