@@ -12,6 +12,7 @@
 #include "support/fields.hpp"
 #include "support/types.hpp"
 #include "support/video.hpp"
+#include "trackers.hpp"
 
 namespace wakeline::python {
 
@@ -53,46 +54,6 @@ class AnyStrobeTracker {
   Variant tracker_;
 };
 
-const char* name_of(TrackStatus status) {
-  return status == TrackStatus::kTentative   ? "tentative"
-         : status == TrackStatus::kConfirmed ? "confirmed"
-                                             : "coasting";
-}
-
-/// An array (n,) of what `value(row)` gives for each row.
-template <class T, class Rows, class Value>
-py::array_t<T> column_of(const Rows& rows, const Value& value) {
-  py::array_t<T> column(static_cast<py::ssize_t>(rows.size()));
-  T* to = column.mutable_data();
-  for (const auto& row : rows) *to++ = value(row);
-  return column;
-}
-
-/// The same (n, N) of vectors.
-template <int N, class Rows, class Value>
-py::array_t<double> vectors_of(const Rows& rows, const Value& value) {
-  py::array_t<double> column({static_cast<py::ssize_t>(rows.size()), py::ssize_t{N}});
-  double* to = column.mutable_data();
-  for (const auto& row : rows) {
-    const Vec<double, N> vector = value(row);
-    to = std::copy_n(vector.data(), N, to);
-  }
-  return column;
-}
-
-/// The same (n, N, N) of matrices.
-template <int N, class Rows, class Value>
-py::array_t<double> covariances_of(const Rows& rows, const Value& value) {
-  py::array_t<double> column(
-      {static_cast<py::ssize_t>(rows.size()), py::ssize_t{N}, py::ssize_t{N}});
-  double* to = column.mutable_data();
-  for (const auto& row : rows) {
-    const Mat<double, N, N>& matrix = value(row);  // symmetric
-    to = std::copy_n(matrix.data(), N * N, to);
-  }
-  return column;
-}
-
 /// What was found in strobes, as arrays.
 struct PyReadings {
   py::array_t<std::int64_t> track_id, cells, echoes;
@@ -119,7 +80,7 @@ PyReadings to_table(const std::vector<StrobeReading>& readings, std::vector<Even
           numbers([](const R& r) { return r.radius_m; }),
           numbers([](const R& r) { return r.echo.range_m; }),
           numbers([](const R& r) { return r.echo.bearing_rad; }),
-          covariances_of<2>(
+          matrices_of<2>(
               readings, [](const R& r) -> const auto& { return r.echo.covariance; }),
           vectors_of<2>(readings, [](const R& r) { return r.position_m.mean; }),
           std::move(status),
@@ -141,65 +102,39 @@ struct PyStrobeTracks {
 
 template <class Tracker>
 PyStrobeTracks tracks(const Tracker& tracker, const std::optional<double>& time_s, bool tentative) {
-  if (time_s) require_finite("time_s", *time_s);
-  std::vector<StrobeTrack> wanted;
-  tracker.for_each([&](const StrobeTrack& track) {
-    if (tentative || track.confirmed()) wanted.push_back(track);
-  });
-  const auto count = static_cast<py::ssize_t>(wanted.size());
-  const py::ssize_t modes = tracker.prototype().mode_probability().size();
-  py::array_t<double> mode_probability({count, modes});
-  std::vector<std::string> status;
-  for (py::ssize_t k = 0; k < count; ++k) {
-    StrobeTrack& track = wanted[static_cast<std::size_t>(k)];
-    const auto& probability = tracker.estimator_of(track).mode_probability();
-    for (py::ssize_t mode = 0; mode < modes; ++mode)
-      mode_probability.mutable_at(k, mode) = probability[mode];
-    if (time_s) {
-      track.kinematics = tracker.kinematics_at(track, *time_s);
-      track.time_s = std::max(*time_s, track.time_s);
-    }
-    status.emplace_back(name_of(track.status));
-  }
   using T = StrobeTrack;
-  return {column_of<std::int64_t>(wanted, [](const T& t) { return t.id; }),
-          column_of<std::int64_t>(wanted, [](const T& t) { return t.hits; }),
-          column_of<std::int64_t>(wanted, [](const T& t) { return t.misses; }),
+  const std::vector<StrobeTrack> wanted = tracks_at<StrobeTrack>(
+      tracker, time_s, [&](const StrobeTrack& track) { return tentative || track.confirmed(); });
+  const auto numbers = [&](const auto& value) { return column_of<double>(wanted, value); };
+  const auto counts = [&](const auto& value) { return column_of<std::int64_t>(wanted, value); };
+  std::vector<std::string> status;
+  for (const StrobeTrack& track : wanted) status.emplace_back(status_name(track.status));
+  return {counts([](const T& t) { return t.id; }),
+          counts([](const T& t) { return t.hits; }),
+          counts([](const T& t) { return t.misses; }),
           std::move(status),
-          column_of<double>(wanted, [](const T& t) { return t.time_s; }),
+          numbers([](const T& t) { return t.time_s; }),
           vectors_of<4>(wanted, [](const T& t) { return t.kinematics.mean; }),
-          covariances_of<4>(
+          matrices_of<4>(
               wanted, [](const T& t) -> const auto& { return t.kinematics.covariance; }),
-          mode_probability,
-          column_of<double>(wanted, [](const T& t) { return t.nis; }),
+          of_each_mode(tracker, wanted, [](const auto& one) { return one.mode_probability(); }),
+          numbers([](const T& t) { return t.nis; }),
           vectors_of<2>(wanted, [](const T& t) { return t.strobe.centre_m; }),
-          column_of<double>(wanted, [](const T& t) { return t.strobe.radius_m; }),
-          column_of<double>(wanted, [](const T& t) { return t.strobe.time_s; })};
+          numbers([](const T& t) { return t.strobe.radius_m; }),
+          numbers([](const T& t) { return t.strobe.time_s; })};
 }
 
 /// Own ship at each of some times: given as one number or one for each.
-class OwnPositions {
- public:
-  OwnPositions(const py::object& north_m, const py::object& east_m, py::ssize_t count)
-      : north_m_(column("own_north_m", north_m, count)),
-        east_m_(column("own_east_m", east_m, count)) {}
+struct OwnPositions {
+  DoubleArray north_m, east_m;
+
+  OwnPositions(const py::object& north, const py::object& east, py::ssize_t count)
+      : north_m(column("own_north_m", north, count)), east_m(column("own_east_m", east, count)) {}
 
   /// Needs no Python.
   [[nodiscard]] OwnShip at(py::ssize_t k) const {
-    return {.north_m = north_m_.data()[north_m_.size() > 1 ? k : 0],
-            .east_m = east_m_.data()[east_m_.size() > 1 ? k : 0]};
+    return {.north_m = north_m.data()[k], .east_m = east_m.data()[k]};
   }
-
- private:
-  static DoubleArray column(const char* name, const py::object& values, py::ssize_t count) {
-    DoubleArray array = DoubleArray::ensure(values);
-    if (!array) throw py::type_error(std::string(name) + " must be a number or an array");
-    require_shape(array.ndim() == 0 || (array.ndim() == 1 && array.shape(0) == count), name,
-                  "() or " + shape_text({count}), array);
-    return array;
-  }
-
-  DoubleArray north_m_, east_m_;
 };
 
 PyReadings process(AnyStrobeTracker& tracker, const py::object& video, const py::object& north_m,
@@ -317,8 +252,8 @@ void define_strobe_tracker(py::module_& m) {
                                      {.writable = true});
   define_tables(m);
 
-  py::class_<AnyStrobeTracker>(m, "StrobeTracker",
-                               R"(Tracks vessels on radar video, each by a strobe.
+  py::class_<AnyStrobeTracker> tracker(m, "StrobeTracker",
+                                       R"(Tracks vessels on radar video, each by a strobe.
 
 A vessel is acquired by the operator (`designate`) or from extracted plots (`acquire`). In each turn
 a strobe is laid on the picture around the predicted position; as soon as the beam has passed it, the
@@ -351,18 +286,14 @@ ValueError
 References
 ----------
 Grinyak, Trofimov, "Multi-model tracking of moving vessels with a fuzzy criterion of maneuver
-detection". Arbitration, radii and acquisition are ours.)")
+detection". Arbitration, radii and acquisition are ours.)");
+  tracker
       .def(py::init([](const Radar& radar, const StrobeTrackerConfig& config,
                        const py::object& estimator, const std::optional<LandMask>& land, int bits) {
              if (bits != 8 && bits != 16)
                throw py::value_error("bits must be 8 or 16, got " + std::to_string(bits));
-             if (!estimator.is_none() && !is_a<AnyMixture>(estimator))
-               throw py::type_error(
-                   "estimator must be one of several models (MultiModelEstimator), got " +
-                   class_name(estimator));
-             const AnyEstimator any = estimator.is_none()
-                                          ? AnyEstimator(BayesianAlphaBeta<>{})
-                                          : AnyEstimator(estimator.cast<const AnyMixture&>());
+             const AnyEstimator any =
+                 estimator.is_none() ? AnyEstimator(BayesianAlphaBeta<>{}) : to_mixture(estimator);
              return AnyStrobeTracker(radar, config, any, land.value_or(LandMask()), bits);
            }),
            py::arg("radar"), py::arg_v("config", StrobeTrackerConfig{}, "StrobeTrackerConfig()"),
@@ -448,41 +379,11 @@ ValueError
           "of "
           "when the beam passed it, or predicted to `time_s` where that is later.")
       .def(
-          "drop",
-          [](AnyStrobeTracker& tracker, std::int64_t id) {
-            return tracker.visit([&](auto& one) { return one.drop(id); });
-          },
-          py::arg("track_id"), "End a track; False if no track has that number.")
-      .def(
           "set_land",
           [](AnyStrobeTracker& tracker, const LandMask& land) {
             tracker.visit([&](auto& one) { one.set_land(land); });
           },
           py::arg("land"), "Replace the excluded areas, from the next sweep on.")
-      .def(
-          "save",
-          [](const AnyStrobeTracker& tracker) {
-            return to_bytes(tracker.visit([](const auto& one) { return one.save(); }));
-          },
-          "The complete state without the excluded areas as bytes, for a tracker with the same "
-          "settings on the same kind of machine.")
-      .def(
-          "restore",
-          [](AnyStrobeTracker& tracker, const py::bytes& state) {
-            if (!tracker.visit([&](auto& one) { return one.restore(bytes_of(state)); }))
-              throw py::value_error("state was not saved by a tracker with the same settings");
-          },
-          py::arg("state"), "Goes on bit for bit where the saved tracker was.")
-      .def_property_readonly(
-          "radar",
-          [](const AnyStrobeTracker& tracker) {
-            return tracker.visit([](const auto& one) { return Radar(one.radar()); });
-          })
-      .def_property_readonly(
-          "config",
-          [](const AnyStrobeTracker& tracker) {
-            return tracker.visit([](const auto& one) { return StrobeTrackerConfig(one.config()); });
-          })
       .def("__len__",
            [](const AnyStrobeTracker& tracker) {
              return tracker.visit([](const auto& one) { return one.size(); });
@@ -491,6 +392,9 @@ ValueError
         return "<StrobeTracker: " +
                many(tracker.visit([](const auto& one) { return one.size(); }), "track") + ">";
       });
+  define_keeping(tracker,
+                 "The complete state without the excluded areas as bytes, for a tracker with the "
+                 "same settings on the same kind of machine.");
 }
 
 }  // namespace wakeline::python

@@ -6,6 +6,7 @@
 #include "lanes/lanes.hpp"
 #include "support/fields.hpp"
 #include "support/types.hpp"
+#include "trackers.hpp"
 #include "wakeline/track/tracker.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
@@ -56,20 +57,6 @@ class AnyTracker {
  private:
   std::variant<VesselTracker, Tracker<AnyEstimator>> tracker_;
 };
-
-const char* status_name(TrackStatus status) {
-  switch (status) {
-    case TrackStatus::kTentative:
-      return "tentative";
-    case TrackStatus::kConfirmed:
-      return "confirmed";
-    case TrackStatus::kCoasting:
-      return "coasting";
-    case TrackStatus::kHeld:
-      return "held";
-  }
-  return "";
-}
 
 const char* event_name(TrackEvent event) {
   switch (event) {
@@ -134,28 +121,10 @@ struct PyTracks {
   std::vector<std::string> name;
 };
 
-/// A column given as one number for all plots or one for each.
-DoubleArray column(const char* name, const py::object& values, py::ssize_t plots) {
-  const DoubleArray array = values.is_none() ? DoubleArray() : DoubleArray::ensure(values);
-  if (!array || values.is_none())
-    throw py::type_error(std::string(name) + " must be a number or an array, got " +
-                         py::repr(values).cast<std::string>());
-  if (array.ndim() == 0) {
-    DoubleArray filled(plots);
-    std::fill_n(filled.mutable_data(), plots, *array.data());
-    return filled;
-  }
-  require_shape(array.ndim() == 1 && array.shape(0) == plots, name, shape_text({plots}), array);
-  return array;
-}
-
 /// A tracker with an estimator given by hand.
 AnyTracker tracker_with(const Radar& radar, const TrackerConfig& config,
                         const py::object& estimator) {
-  if (!is_a<AnyMixture>(estimator))
-    throw py::type_error("estimator must be one of several models (MultiModelEstimator), got " +
-                         class_name(estimator));
-  const AnyEstimator& any = estimator.cast<const AnyMixture&>();
+  const AnyEstimator& any = to_mixture(estimator);
   if (const auto* imm = std::get_if<AnyImm>(&any.variant()))
     if (const auto vessel = as_vessel_imm(*imm)) return AnyTracker(radar, config, *vessel);
   return AnyTracker(radar, config, any);
@@ -208,65 +177,37 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
   return result;
 }
 
-/// (k, K), those of each track.
-template <class AnyTracker>
-py::array_t<double> turn_rates(const AnyTracker& tracker, const std::vector<const Track*>& tracks,
-                               py::ssize_t modes) {
-  py::array_t<double> rates({static_cast<py::ssize_t>(tracks.size()), modes});
-  for (std::size_t k = 0; k < tracks.size(); ++k) {
-    const auto of_track = tracker.estimator_of(*tracks[k]).turn_rates_rad_s();
-    for (py::ssize_t mode = 0; mode < modes; ++mode)
-      rates.mutable_at(static_cast<py::ssize_t>(k), mode) = of_track[mode];
-  }
-  return rates;
-}
-
 template <class Estimator, class Steps>
 PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<double>& time_s,
                 bool tentative) {
-  if (time_s) require_finite("time_s", *time_s);
-  std::vector<const Track*> wanted;
-  tracker.for_each([&](const Track& track) {
-    if (tentative || track.shown()) wanted.push_back(&track);
-  });
-  const auto count = static_cast<py::ssize_t>(wanted.size());
-  const py::ssize_t modes = tracker.prototype().mode_probability().size();
-  PyTracks table{py::array_t<std::int64_t>(count),
-                 {},
-                 py::array_t<double>(count),
-                 py::array_t<double>({count, py::ssize_t{4}}),
-                 py::array_t<double>({count, py::ssize_t{4}, py::ssize_t{4}}),
-                 py::array_t<double>({count, modes}),
-                 py::array_t<double>(count),
-                 py::array_t<double>(count),
-                 py::array_t<double>(count),
-                 py::none(),
-                 py::array_t<std::int64_t>(count),
-                 py::array_t<std::int64_t>(count),
-                 {}};
-  for (py::ssize_t k = 0; k < count; ++k) {
-    const Track& track = *wanted[static_cast<std::size_t>(k)];
-    const Gaussian<4> belief = time_s ? tracker.kinematics_at(track, *time_s) : track.kinematics;
-    table.track_id.mutable_at(k) = track.id;
+  using T = Track;
+  const std::vector<Track> wanted = tracks_at<Track>(
+      tracker, time_s, [&](const Track& track) { return tentative || track.shown(); });
+  const auto numbers = [&](const auto& value) { return column_of<double>(wanted, value); };
+  const auto counts = [&](const auto& value) { return column_of<std::int64_t>(wanted, value); };
+  PyTracks table{
+      counts([](const T& t) { return t.id; }),
+      {},
+      numbers([](const T& t) { return t.time_s; }),
+      vectors_of<4>(wanted, [](const T& t) { return t.kinematics.mean; }),
+      matrices_of<4>(
+          wanted, [](const T& t) -> const auto& { return t.kinematics.covariance; }),
+      of_each_mode(tracker, wanted, [](const auto& one) { return one.mode_probability(); }),
+      numbers([](const T& t) { return t.nis; }),
+      numbers([](const T& t) { return t.existence; }),
+      numbers([](const T& t) { return t.visibility; }),
+      py::none(),
+      counts([](const T& t) { return t.hits; }),
+      counts([](const T& t) { return t.misses; }),
+      {}};
+  for (const Track& track : wanted) {
     table.status.emplace_back(status_name(track.status));
-    table.time_s.mutable_at(k) = time_s ? std::max(*time_s, track.time_s) : track.time_s;
-    for (int i = 0; i < 4; ++i) {
-      table.mean.mutable_at(k, i) = belief.mean[i];
-      for (int j = 0; j < 4; ++j) table.covariance.mutable_at(k, i, j) = belief.covariance(i, j);
-    }
-    const auto& mode_probability = tracker.estimator_of(track).mode_probability();
-    for (py::ssize_t mode = 0; mode < modes; ++mode)
-      table.mode_probability.mutable_at(k, mode) = mode_probability[mode];
-    table.nis.mutable_at(k) = track.nis;
-    table.existence.mutable_at(k) = track.existence;
-    table.visibility.mutable_at(k) = track.visibility;
-    table.hits.mutable_at(k) = track.hits;
-    table.misses.mutable_at(k) = track.misses;
     table.name.emplace_back(track.label());
   }
   if constexpr (kHasTurnRates<Estimator>)
     if (tracker.prototype().turn_rates_rad_s().size() > 0)
-      table.turn_rate_rad_s = turn_rates(tracker, wanted, modes);
+      table.turn_rate_rad_s =
+          of_each_mode(tracker, wanted, [](const auto& one) { return one.turn_rates_rad_s(); });
   return table;
 }
 
@@ -463,43 +404,17 @@ Raises
 ValueError
     When the time is too far ahead, a number is not finite or the standard deviation not positive.)")
       .def(
-          "drop",
-          [](AnyTracker& tracker, std::int64_t id) {
-            return tracker.visit([&](auto& one) { return one.drop(id); });
-          },
-          py::arg("track_id"), "End a track; False if no track has that number.")
-      .def(
           "rename",
           [](AnyTracker& tracker, std::int64_t id, std::string_view name) {
             return tracker.visit([&](auto& one) { return one.rename(id, name); });
           },
           py::arg("track_id"), py::arg("name"),
           "Name a track (at most 31 bytes are kept); False if no track has that number.")
-      .def(
-          "save",
-          [](const AnyTracker& tracker) {
-            return to_bytes(tracker.visit([](const auto& one) { return one.save(); }));
-          },
-          "The complete state as bytes, for a tracker with the same settings on the same kind of "
-          "machine.")
-      .def(
-          "restore",
-          [](AnyTracker& tracker, const py::bytes& state) {
-            if (!tracker.visit([&](auto& one) { return one.restore(bytes_of(state)); }))
-              throw py::value_error("state was not saved by a tracker with the same settings");
-          },
-          py::arg("state"), "Goes on bit for bit where the saved tracker was.")
-      .def_property_readonly(
-          "radar",
-          [](const AnyTracker& tracker) {
-            return tracker.visit([](const auto& one) { return Radar(one.radar()); });
-          })
-      .def_property_readonly(
-          "config",
-          [](const AnyTracker& tracker) {
-            return tracker.visit([](const auto& one) { return TrackerConfig(one.config()); });
-          })
       .def("_arguments", &tracker_arguments);
+  define_keeping(
+      tracker,
+      "The complete state as bytes, for a tracker with the same settings on the same kind "
+      "of machine.");
 
   define_strobe_tracker(m);
 }

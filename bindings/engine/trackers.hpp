@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// What the bindings of trackers share. `AnyTracker` is one of several trackers, which `visit` calls
+// a function with; a tracker is one of them.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "estimators.hpp"
+#include "wakeline/track/track.hpp"
+
+namespace wakeline::python {
+
+inline const char* status_name(TrackStatus status) {
+  switch (status) {
+    case TrackStatus::kTentative:
+      return "tentative";
+    case TrackStatus::kConfirmed:
+      return "confirmed";
+    case TrackStatus::kCoasting:
+      return "coasting";
+    case TrackStatus::kHeld:
+      return "held";
+  }
+  return "";
+}
+
+/// The estimator of tracks behind a Python one.
+inline const AnyEstimator& to_mixture(const py::handle& estimator) {
+  if (!is_a<AnyMixture>(estimator))
+    throw py::type_error("estimator must be one of several models (MultiModelEstimator), got " +
+                         class_name(estimator));
+  return estimator.cast<const AnyMixture&>();
+}
+
+/// A column given as one number for all rows or one for each.
+inline DoubleArray column(const char* name, const py::object& values, py::ssize_t rows) {
+  const DoubleArray array = values.is_none() ? DoubleArray() : DoubleArray::ensure(values);
+  if (!array || values.is_none())
+    throw py::type_error(std::string(name) + " must be a number or an array, got " +
+                         py::repr(values).cast<std::string>());
+  if (array.ndim() == 0) {
+    DoubleArray filled(rows);
+    std::fill_n(filled.mutable_data(), rows, *array.data());
+    return filled;
+  }
+  require_shape(array.ndim() == 1 && array.shape(0) == rows, name, shape_text({rows}), array);
+  return array;
+}
+
+/// An array (n,) of what `value(row)` gives for each row.
+template <class T, class Rows, class Value>
+py::array_t<T> column_of(const Rows& rows, const Value& value) {
+  py::array_t<T> column(static_cast<py::ssize_t>(rows.size()));
+  T* to = column.mutable_data();
+  for (const auto& row : rows) *to++ = value(row);
+  return column;
+}
+
+/// The same (n, N) of vectors.
+template <int N, class Rows, class Value>
+py::array_t<double> vectors_of(const Rows& rows, const Value& value) {
+  py::array_t<double> column({static_cast<py::ssize_t>(rows.size()), py::ssize_t{N}});
+  double* to = column.mutable_data();
+  for (const auto& row : rows) {
+    const Vec<double, N> vector = value(row);
+    to = std::copy_n(vector.data(), N, to);
+  }
+  return column;
+}
+
+/// The same (n, N, N) of matrices.
+template <int N, class Rows, class Value>
+py::array_t<double> matrices_of(const Rows& rows, const Value& value) {
+  py::array_t<double> column(
+      {static_cast<py::ssize_t>(rows.size()), py::ssize_t{N}, py::ssize_t{N}});
+  double* to = column.mutable_data();
+  for (const auto& row : rows) {
+    Eigen::Map<Eigen::Matrix<double, N, N, Eigen::RowMajor>> matrix(to);
+    matrix = value(row);
+    to += N * N;
+  }
+  return column;
+}
+
+/// Copies of the tracks for which `is_wanted` holds, older ones first: each as it is, or predicted
+/// to `time_s` where that is later.
+template <class Track, class Tracker, class IsWanted>
+std::vector<Track> tracks_at(const Tracker& tracker, const std::optional<double>& time_s,
+                             const IsWanted& is_wanted) {
+  if (time_s) require_finite("time_s", *time_s);
+  std::vector<Track> tracks;
+  tracker.for_each([&](const Track& track) {
+    if (!is_wanted(track)) return;
+    Track& copy = tracks.emplace_back(track);
+    if (!time_s) return;
+    copy.kinematics = tracker.kinematics_at(track, *time_s);
+    copy.time_s = std::max(*time_s, track.time_s);
+  });
+  return tracks;
+}
+
+/// (n, K), what `of_modes(estimator)` gives for the K modes of each track.
+template <class Tracker, class Track, class OfModes>
+py::array_t<double> of_each_mode(const Tracker& tracker, const std::vector<Track>& tracks,
+                                 const OfModes& of_modes) {
+  const py::ssize_t modes = tracker.prototype().mode_probability().size();
+  py::array_t<double> table({static_cast<py::ssize_t>(tracks.size()), modes});
+  double* to = table.mutable_data();
+  for (const Track& track : tracks) {
+    const auto& numbers = of_modes(tracker.estimator_of(track));
+    to = std::copy_n(numbers.data(), modes, to);
+  }
+  return table;
+}
+
+/// Adds drop, save, restore, radar and config to the class of a tracker.
+template <class AnyTracker>
+void define_keeping(py::class_<AnyTracker>& type, const char* save_doc) {
+  type.def(
+          "drop",
+          [](AnyTracker& tracker, std::int64_t id) {
+            return tracker.visit([&](auto& one) { return one.drop(id); });
+          },
+          py::arg("track_id"), "End a track; False if no track has that number.")
+      .def(
+          "save",
+          [](const AnyTracker& tracker) {
+            return to_bytes(tracker.visit([](const auto& one) { return one.save(); }));
+          },
+          save_doc)
+      .def(
+          "restore",
+          [](AnyTracker& tracker, const py::bytes& state) {
+            if (!tracker.visit([&](auto& one) { return one.restore(bytes_of(state)); }))
+              throw py::value_error("state was not saved by a tracker with the same settings");
+          },
+          py::arg("state"), "Continue bit for bit from the saved tracker.")
+      .def_property_readonly(
+          "radar",
+          [](const AnyTracker& tracker) {
+            return tracker.visit([](const auto& one) { return Radar(one.radar()); });
+          })
+      .def_property_readonly("config", [](const AnyTracker& tracker) {
+        return tracker.visit(
+            [](const auto& one) { return std::decay_t<decltype(one.config())>(one.config()); });
+      });
+}
+
+}  // namespace wakeline::python
