@@ -82,6 +82,23 @@ struct ConstantGains {
   }
 };
 
+/// The fields of schedules over the readings so far.
+template <class Memory>
+constexpr auto memory_fields() noexcept {
+  return field_table(field("plots_before", &Memory::plots_before, at_least(0), "plots",
+                           "Plots that the start was made of."),
+                     field("max_plots", &Memory::max_plots, at_least(0), "plots",
+                           "Plots at which the gains stop falling; 0: never."));
+}
+
+/// Throws `std::invalid_argument` when a field, or a limit below the order, makes no sense.
+template <int Order, class Memory>
+void validate_memory(const Memory& memory) {
+  validate_fields(memory);
+  require(memory.max_plots == 0 || memory.max_plots >= Order, "max_plots",
+          Order == 2 ? "0 or 2 or more" : "0 or 3 or more", memory.max_plots);
+}
+
 /// Growing memory: the gains of the least-squares line (or parabola) through all n readings so far.
 /// With regular steps the filter equals that line exactly, independent of the start.
 ///     alpha = 2(2n-1) / (n(n+1)),  beta = 6 / (n(n+1));
@@ -92,13 +109,7 @@ struct GrowingMemory {
   int plots_before = 0;
   int max_plots = 0;
 
-  static constexpr auto fields() noexcept {
-    using G = GrowingMemory;
-    return field_table(field("plots_before", &G::plots_before, at_least(0), "plots",
-                             "Plots that the start was made of."),
-                       field("max_plots", &G::max_plots, at_least(0), "plots",
-                             "Plots at which the gains stop falling; 0: never."));
-  }
+  static constexpr auto fields() noexcept { return memory_fields<GrowingMemory>(); }
 
   template <int Order, class Scalar>
   Vec<Scalar, Order> gains(const GainOccasion<Scalar>& at) const noexcept {
@@ -118,9 +129,7 @@ struct GrowingMemory {
 
   template <int Order>
   void validate() const {
-    validate_fields(*this);
-    require(max_plots == 0 || max_plots >= Order, "max_plots",
-            Order == 2 ? "0 or 2 or more" : "0 or 3 or more", max_plots);
+    validate_memory<Order>(*this);
   }
 };
 
@@ -133,13 +142,7 @@ struct RecentMemory {
   int plots_before = 0;
   int max_plots = 0;
 
-  static constexpr auto fields() noexcept {
-    using R = RecentMemory;
-    return field_table(field("plots_before", &R::plots_before, at_least(0), "plots",
-                             "Plots that the start was made of."),
-                       field("max_plots", &R::max_plots, at_least(0), "plots",
-                             "Plots at which the gains stop falling; 0: never."));
-  }
+  static constexpr auto fields() noexcept { return memory_fields<RecentMemory>(); }
 
   template <int Order, class Scalar>
   Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
@@ -150,8 +153,7 @@ struct RecentMemory {
 
   template <int Order>
   void validate() const {
-    validate_fields(*this);
-    require(max_plots == 0 || max_plots >= Order, "max_plots", "0 or 2 or more", max_plots);
+    validate_memory<Order>(*this);
   }
 };
 

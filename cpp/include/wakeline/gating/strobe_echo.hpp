@@ -74,6 +74,21 @@ constexpr std::array<Word<EchoChoice>, 3> words_of(EchoChoice) noexcept {
            {"strongest", EchoChoice::kStrongest}}};
 }
 
+/// The fields of what evaluates strobes.
+template <class Settings>
+constexpr auto strobe_echo_fields() noexcept {
+  using S = Settings;
+  return field_table(
+      field("least_amplitude", &S::least_amplitude, at_least(1), "counts",
+            "Least amplitude of a cell that counts: above the noise."),
+      field("pedestal", &S::pedestal, at_least(0), "counts",
+            "Amplitude subtracted from that of a cell to weigh it; below least_amplitude."),
+      field("several", &S::several, "Which of several echoes in a strobe is measured."),
+      field("least_share", &S::least_share, between(0, 0.5), "1",
+            "Share of an echo's weight that a strobe must have of an echo shared with rivals. "
+            "With less of it the echo is the rivals', with all but less of it the strobe's."));
+}
+
 /// Selection and weight of the cells in a strobe.
 ///
 /// A cell is used from `least_amplitude` on, with the weight amplitude - pedestal. With noise in
@@ -85,18 +100,7 @@ struct StrobeSettings {
   EchoChoice several = EchoChoice::kAll;
   double least_share = 0.25;
 
-  static constexpr auto fields() noexcept {
-    using S = StrobeSettings;
-    return field_table(
-        field("least_amplitude", &S::least_amplitude, at_least(1), "counts",
-              "Least amplitude of a cell that counts."),
-        field("pedestal", &S::pedestal, at_least(0), "counts",
-              "Amplitude subtracted from that of a cell to weigh it; below least_amplitude."),
-        field("several", &S::several, "Which of several echoes in the strobe is measured."),
-        field("least_share", &S::least_share, between(0, 0.5), "1",
-              "Share of an echo's weight that a strobe must have of an echo shared with rivals. "
-              "With less of it the echo is the rivals', with all but less of it the strobe's."));
-  }
+  static constexpr auto fields() noexcept { return strobe_echo_fields<StrobeSettings>(); }
 
   /// Throws `std::invalid_argument` unless 0 <= pedestal < least_amplitude.
   void validate() const {

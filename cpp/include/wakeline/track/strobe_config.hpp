@@ -29,14 +29,7 @@ struct StrobeTrackerConfig {
   static constexpr auto fields() noexcept {
     using S = StrobeTrackerConfig;
     return field_table(
-        field("least_amplitude", &S::least_amplitude, at_least(1), "counts",
-              "Least amplitude of a cell that counts: above the noise."),
-        field("pedestal", &S::pedestal, at_least(0), "counts",
-              "Amplitude subtracted from that of a cell to weigh it; below least_amplitude."),
-        field("several", &S::several, "Which of several echoes in a strobe is measured."),
-        field("least_share", &S::least_share, between(0, 0.5), "1",
-              "Least share of an echo that a strobe measures where strobes overlap: with less the "
-              "echo belongs to the other strobe."),
+        strobe_echo_fields<S>(),
         field("radius_m", &S::radius_m, kPositive, "m",
               "Radius of the strobe of a track that is seen in every turn."),
         field("max_radius_m", &S::max_radius_m, kPositive, "m",
