@@ -1,4 +1,6 @@
-"""What the tests of the engine share: a vessel, a radar that sees it, estimators of every kind."""
+"""What several tests share: a vessel, a radar that sees it, estimators of every kind."""
+
+import struct
 
 import numpy as np
 
@@ -86,3 +88,13 @@ def stepwise(estimator, z, dt_s=DT_S, sensor=RADAR, start=START):
             )
         )
     return [np.array(column) for column in zip(*rows, strict=True)]
+
+
+def blocks_of(octets):
+    """The data blocks of a sound file."""
+    blocks = []
+    while octets:
+        (length,) = struct.unpack(">H", octets[1:3])
+        blocks.append(octets[:length])
+        octets = octets[length:]
+    return blocks

@@ -17,3 +17,15 @@ def no_pictures(request, monkeypatch):
 @pytest.fixture
 def pictures():
     pytest.importorskip("matplotlib")
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Writes text to a named file in a fresh folder and gives its path."""
+
+    def write(text, name="plots.csv"):
+        path = tmp_path / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    return write

@@ -20,18 +20,6 @@ from wakeline.scenario import RadarSimulator, Truth
 OWN = "scan,time_s,own_north_m,own_east_m\n0,0,0,0\n1,2,20,0\n2,4,40,0\n"
 
 
-@pytest.fixture
-def file(tmp_path):
-    """Writes text to a named file in a fresh folder and gives its path."""
-
-    def write(text, name="plots.csv"):
-        path = tmp_path / name
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return path
-
-    return write
-
-
 def only(read):
     """The single episode of a recording."""
     (episode,) = read.episodes

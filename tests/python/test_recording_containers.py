@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cases import blocks_of
 from wakeline import recording
 from wakeline.recording import RadarVideo, RecordingError, VideoReport, containers, read_nmea
 
@@ -29,15 +30,6 @@ def blocks(tmp_path_factory):
     path = tmp_path_factory.mktemp("video") / "radar.cat240"
     recording.write_video(path, video())
     return blocks_of(path.read_bytes())
-
-
-def blocks_of(octets):
-    blocks = []
-    while octets:
-        (length,) = struct.unpack(">H", octets[1:3])
-        blocks.append(octets[:length])
-        octets = octets[length:]
-    return blocks
 
 
 def sentences(count=60):

@@ -11,16 +11,6 @@ from wakeline.recording import RecordingError, read_ais, read_plots, read_tracks
 ROWS = 40
 
 
-@pytest.fixture
-def file(tmp_path):
-    def write(text, name="plots.csv"):
-        path = tmp_path / name
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return path
-
-    return write
-
-
 def table(head, row, rows=ROWS):
     return [head, *(row.format(k=k, t=2.5 * k) for k in range(rows))]
 

@@ -17,19 +17,6 @@ from wakeline.recording import (
     write_tracks,
 )
 
-
-@pytest.fixture
-def file(tmp_path):
-    """Writes text to a named file in a fresh folder and gives its path."""
-
-    def write(text, name):
-        path = tmp_path / name
-        path.write_text(text)
-        return path
-
-    return write
-
-
 PLOTS = "scan,time_s,north_m,east_m\n0,0,1,1\n1,2,1,1\n"
 
 

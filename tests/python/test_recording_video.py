@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cases import blocks_of
 from wakeline import recording
 from wakeline.recording import RadarVideo, RecordingError, VideoReport
 
@@ -43,16 +44,6 @@ def path(tmp_path):
 def octets_of(path, videos, **settings):
     recording.write_video(path, videos, **settings)
     return path.read_bytes()
-
-
-def blocks_of(octets):
-    """The data blocks of a sound file."""
-    blocks = []
-    while octets:
-        (length,) = struct.unpack(">H", octets[1:3])
-        blocks.append(octets[:length])
-        octets = octets[length:]
-    return blocks
 
 
 def read(path, octets=None, **settings):
