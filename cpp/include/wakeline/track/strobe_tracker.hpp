@@ -163,7 +163,7 @@ class StrobeTracker {
   /// Beside a strobe, in widths: the sweep there shows whether an echo continues outside.
   static constexpr double kMargin = 1.5;
   static constexpr double kSpeedTolerance = 1.2;  ///< of the speed limit, as `Radar` says
-  static constexpr int kEchoes = 64;              ///< that are told apart in a strobe
+  static constexpr int kEchoes = 64;              ///< that are distinguished in a strobe
 
   // The beam --------------------------------------------------------------------------------------
 

@@ -139,16 +139,16 @@ def _of_dense_traffic(shares: Shares) -> Iterator[Picture]:
         size_in=(9.6, 9.0),
         columns=len(dense.KINDS),
     )
-    told = {"fuzzy": shares.needed_gate_m("fuzzy"), "imm": shares.needed_gate_m("imm")}
+    needed_m = {"fuzzy": shares.needed_gate_m("fuzzy"), "imm": shares.needed_gate_m("imm")}
     wanted = {"fuzzy": Ending.CAPTURED, "imm": Ending.HELD}
     for number, run in zip(shares.seeds, shares.runs, strict=True):
-        if all(run[case, name, told[name]] == wanted[name] for name in told):
-            frames = dense.film(number, *_ARGUED, told)
+        if all(run[case, name, needed_m[name]] == wanted[name] for name in needed_m):
+            frames = dense.film(number, *_ARGUED, needed_m)
             yield Picture(
                 "fuzzy-dense-video",
                 "A neighbor abreast at 30 m: the wide strobe goes with it, the narrow one stays",
                 tuple(
-                    partial(_draw_meeting, frames=frames, at_s=at_s, gates_m=told)
+                    partial(_draw_meeting, frames=frames, at_s=at_s, gates_m=needed_m)
                     for at_s in _MEETING_S
                 ),
                 size_in=(10.4, 4.4),
