@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from typing import NoReturn, TextIO
 
 from wakeline import FilterError, __version__
-from wakeline.recording.files import check_writable
+from wakeline.recording.files import check_writable, remove_begun
 
 from . import bench, demo, interrupt, navigate, outputs, score, search, study, track
 
@@ -79,6 +79,7 @@ def _check_json(arguments: argparse.Namespace) -> None:
         outputs.check_no_result("--json", arguments.json, arguments.out)
     arguments.json.parent.mkdir(parents=True, exist_ok=True)
     check_writable(arguments.json)
+    remove_begun(arguments.json)
 
 
 def _degrade(output: TextIO) -> None:

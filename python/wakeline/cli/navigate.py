@@ -16,10 +16,11 @@ from wakeline import own_ship, plot
 from wakeline._brief import counted, many
 from wakeline._progress import progress
 from wakeline.recording import NavigationLog, RecordingError, read_imu, read_nmea, replacing
+from wakeline.recording.files import replacing_together
 
 from . import outputs, report
 
-_OWN, _PROBLEMS = "own.csv", "problems.csv"
+_OWN, _PROBLEMS, _FAILED = "own.csv", "problems.csv", f"problems{outputs.PARTIAL}.csv"
 _LEAST_DRAWN_FIXES = 10
 _MOST_DRAWN_LEGS = 10
 _SMOOTHED = (
@@ -137,21 +138,25 @@ def _read(arguments: argparse.Namespace) -> NavigationLog:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
-    tables = (arguments.out / _OWN, arguments.out / _PROBLEMS)
+    tables = [arguments.out / name for name in (_OWN, _PROBLEMS, _FAILED)]
     outputs.check_no_input("--out", tables, inputs(arguments))
     log = _read(arguments)
     outputs.make_folder(arguments.out)
     print(_input_lines(log), flush=True)
-    problems = _write_problems(arguments.out / _PROBLEMS, log)
-    voyage = own_ship.navigate_log(log, smooth=arguments.smooth, fix_std_m=arguments.fix_std)
+    earlier = [*tables, *_pictures(arguments.out)]
+    try:
+        voyage = own_ship.navigate_log(log, smooth=arguments.smooth, fix_std_m=arguments.fix_std)
+    except ValueError:
+        _write_problems(arguments.out / _FAILED, log)
+        raise
+    with replacing_together(arguments.out, earlier) as fresh:
+        files = [fresh / _OWN, *_write_problems(fresh / _PROBLEMS, log)]
+        own_ship.write_own(files[0], [leg.track for leg in voyage.legs])
     for note in voyage.notes:
         print(f"note: {note}", flush=True)
-    files = [arguments.out / _OWN, *problems]
-    own_ship.write_own(files[0], [leg.track for leg in voyage.legs])
     if outputs.can_draw():
         name = "own ship, smoothed" if arguments.smooth else "own ship"
         files += _write_pictures(arguments.out, voyage.legs, name)
-    outputs.remove_stale(_earlier_pictures(arguments.out), files)
     if arguments.smooth:
         print(_SMOOTHED)
     errors = voyage.hold_out()
@@ -205,10 +210,9 @@ def _rows(errors: dict[str, dict[float, np.ndarray]], file: str) -> list[dict[st
 
 
 def _write_problems(path: Path, log: NavigationLog) -> list[Path]:
-    """Write the problems of the log and report the file; without problems remove the file."""
+    """Write the problems of the log, if there are any, and report the file."""
     problems, count = log.report.examples, sum(log.report.problems.values())
     if count == 0:
-        path.unlink(missing_ok=True)
         return []
     with replacing(path) as fresh, fresh.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -239,6 +243,6 @@ def _write_pictures(folder: Path, legs: Sequence[own_ship.Leg], name: str) -> li
     return files
 
 
-def _earlier_pictures(folder: Path) -> Iterator[Path]:
+def _pictures(folder: Path) -> Iterator[Path]:
     names = re.compile(r"own_(map|time)(-\d+)?\.png")
     return (file for file in folder.iterdir() if names.fullmatch(file.name))

@@ -22,6 +22,7 @@ from wakeline import __version__, plot
 from wakeline._progress import progress
 from wakeline.extraction import VideoRecording
 from wakeline.recording import replacing
+from wakeline.recording.files import settle
 from wakeline.tracking import MODE_NAMES, TrackedRecording
 from wakeline.tracking.tables import TABLES
 
@@ -31,8 +32,6 @@ PARTIAL = "-partial"
 _PICTURES = ("map", "time")
 _MOST_OCTETS = 120  # of a scenario in a file name, which some file systems limit to 143
 
-
-_TEMPORARY = re.compile(r"\.\w.*-[0-9a-f]{8}\.(csv|png|json)")
 _held: dict[Path, int] = {}  # folders of this command, with a descriptor each that has the lock
 
 
@@ -58,7 +57,7 @@ def _pair(text: str) -> tuple[str, str]:
 def make_folder(folder: Path) -> None:
     """Make the folder of outputs this command's own; fail before the work if that is impossible.
 
-    Temporary files that a killed command has left there are removed.
+    What a killed command was writing there is moved in if it was complete, else removed.
 
     Raises
     ------
@@ -71,9 +70,7 @@ def make_folder(folder: Path) -> None:
     if not os.access(folder, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
     if _lock(folder):
-        for file in folder.iterdir():
-            if _TEMPORARY.fullmatch(file.name) and file.is_file():
-                file.unlink(missing_ok=True)
+        settle(folder)
 
 
 def release_folders() -> None:
@@ -123,23 +120,22 @@ def check_no_result(option: str, output: Path, folder: Path) -> None:
         )
 
 
+def partial_tables(folder: Path) -> set[Path]:
+    """The tables of an earlier run of tracking that ended early."""
+    return {folder / f"{stem}{PARTIAL}.csv" for stem in TABLES}
+
+
 def of_tracking(folder: Path) -> set[Path]:
     """The files that an earlier run of tracking may have left in `folder`.
 
     Pictures are those of the scenarios in its ``plots_tracks.csv``, so that a user's file with a
     similar name does not count.
     """
-    tables = {f"{stem}{suffix}.csv" for stem in TABLES for suffix in ("", PARTIAL)}
+    tables = {f"{stem}.csv" for stem in TABLES}
     ends = {"", *(f"-{name}" for name in _file_names(_scenarios_in(folder / "plots_tracks.csv")))}
     pictures = {f"{stem}{end}.png" for stem in _PICTURES for end in ends}
-    return {folder / name for name in tables | pictures | {"ppi.png"}}
-
-
-def remove_stale(earlier: Iterable[Path], files: Iterable[Path]) -> None:
-    """Remove files of an earlier run that this one did not write."""
-    for file in set(earlier) - set(files):
-        if os.path.lexists(file):  # False for a name that is too long for the disk
-            file.unlink(missing_ok=True)
+    named = {folder / name for name in tables | pictures | {"ppi.png"}}
+    return named | partial_tables(folder)
 
 
 def write_pictures(folder: Path, tracks: TrackedRecording) -> list[Path]:

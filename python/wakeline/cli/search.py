@@ -10,12 +10,13 @@ import numpy as np
 
 from wakeline import navigation, plot
 from wakeline import search as ws
+from wakeline.recording.files import replacing_together
 
 from . import outputs, report
 
 _SEED = 0
 _PLANNED, _JUDGED = 2000, 8000
-_PICTURES = ("probability", "drift", "plan", "pos")
+_PICTURES = ("probability.png", "drift.png", "plan.png", "pos.png")
 _TABLE, _GPX = "routes.csv", "routes.gpx"
 _ELLIPSE = 0.9
 _DATUM_STEP_S = 3600.0
@@ -68,15 +69,16 @@ def run(arguments: argparse.Namespace) -> None:
     print(f"\n{report.aligned(_table(sorties), left=2)}\n")
     print("POS: " + ", ".join(f"{name} {100 * value:.1f} %" for name, value in pos.items()))
 
-    files = [arguments.out / _TABLE, arguments.out / _GPX]
-    ws.write_routes(files[0], plan, scenario)
-    ws.write_gpx(files[1], plan, scenario)
-    if outputs.can_draw():
-        figures = plot.search_figures(scenario, judged, plan, naive, bound)
-        for name, figure in figures.items():
-            files.append(arguments.out / f"{name}.png")
-            plot.save(figure, files[-1])
-    outputs.remove_stale((arguments.out / f"{name}.png" for name in _PICTURES), files)
+    earlier = [arguments.out / name for name in (_TABLE, _GPX, *_PICTURES)]
+    with replacing_together(arguments.out, earlier) as fresh:
+        files = [fresh / _TABLE, fresh / _GPX]
+        ws.write_routes(files[0], plan, scenario)
+        ws.write_gpx(files[1], plan, scenario)
+        if outputs.can_draw():
+            figures = plot.search_figures(scenario, judged, plan, naive, bound)
+            for name, figure in figures.items():
+                files.append(fresh / f"{name}.png")
+                plot.save(figure, files[-1])
     print(f"written to {arguments.out}: {', '.join(file.name for file in files)}")
     if not outputs.can_draw():
         print(outputs.HOW_TO_GET_PICTURES)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from wakeline import study
 from wakeline._brief import many
+from wakeline.recording.files import replacing_together
 
 from . import outputs, report
 
@@ -79,7 +80,9 @@ def run_study(arguments: argparse.Namespace) -> None:
     if not outputs.can_draw():
         print(f"\n{outputs.HOW_TO_GET_PICTURES}")
         return
-    files = done.save_pictures(arguments.out, progress=True)
+    drawn = [arguments.out / f"{picture.name}.png" for picture in done.pictures]
+    with replacing_together(arguments.out, drawn) as fresh:
+        files = done.save_pictures(fresh, progress=True)
     print(f"\nwritten to {arguments.out}: {', '.join(file.name for file in files)}")
 
 

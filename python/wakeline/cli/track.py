@@ -14,6 +14,7 @@ from wakeline import FilterError, metrics
 from wakeline._brief import many
 from wakeline.recording import Recording, radar_names
 from wakeline.recording.azimuths import AZIMUTHS
+from wakeline.recording.files import replacing_together
 from wakeline.tracking import (
     VESSELS,
     DangerLimits,
@@ -234,7 +235,7 @@ def track_into(
 ) -> TrackedRecording:
     """Track every episode, write tables into `folder`, and print a report.
 
-    Pictures of an earlier run are removed. With `danger`, own ship is watched, too.
+    The files of an earlier run are replaced together. With `danger`, own ship is watched, too.
     """
     outputs.make_folder(folder)
     print(_input_lines(recording, settings, radar), flush=True)
@@ -245,12 +246,12 @@ def track_into(
             parts.append(track(episode, settings, own=own, named=named))
     except (ValueError, FilterError, MemoryError, KeyboardInterrupt):
         if parts:
-            files = write_tables(folder, parts, outputs.PARTIAL)
+            with replacing_together(folder, outputs.partial_tables(folder)) as fresh:
+                files = write_tables(fresh, parts, outputs.PARTIAL)
             print(f"of the previous scenarios: {_listed(files)}", file=sys.stderr)
         raise
-    earlier = outputs.of_tracking(folder)
-    files = write_tables(folder, parts)
-    outputs.remove_stale(earlier, files)
+    with replacing_together(folder, outputs.of_tracking(folder)) as fresh:
+        files = write_tables(fresh, parts)
     print(_track_lines(parts))
     if danger:
         print(_alarm_lines(parts, settings.danger_limits))
