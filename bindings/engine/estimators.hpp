@@ -16,7 +16,7 @@
 
 namespace wakeline::python {
 
-/// A Kalman, Ekf, Ukf or SquareRootUkf.
+/// A Kalman, Ekf, Ukf, SquareRootUkf or AlphaBeta.
 template <>
 struct AsPython<AnyFilter> {
   static py::object of(const AnyFilter& filter);
@@ -98,10 +98,13 @@ auto visit_sensor(const py::handle& sensor, Function&& function) {
 inline std::vector<AnyFilter> to_filters(const py::sequence& sequence) {
   std::vector<AnyFilter> filters;
   for (py::handle item : sequence) {
-    if (!is_a<AnyFilter>(item))
-      throw py::type_error("filters must be Kalman, Ekf, Ukf or SquareRootUkf, got " +
+    if (is_a<AnyFilter>(item))
+      filters.push_back(item.cast<const AnyFilter&>());
+    else if (is_a<PyEstimator<AlphaBeta<>>>(item))
+      filters.emplace_back(item.cast<const PyEstimator<AlphaBeta<>>&>().get());
+    else
+      throw py::type_error("filters must be Kalman, Ekf, Ukf, SquareRootUkf or AlphaBeta, got " +
                            class_name(item));
-    filters.push_back(item.cast<const AnyFilter&>());
   }
   return filters;
 }
@@ -124,14 +127,17 @@ PyStep to_step(const AnyStep<M>& step) {
   return {step.status, step.innovation, step.innovation_covariance, step.nis, step.log_likelihood};
 }
 
-/// Throws ValueError when a Kalman filter is given a sensor that is not linear.
+/// Throws ValueError when a Kalman filter, or one of several models an alpha-beta filter, is given
+/// a sensor that is not linear.
 template <class Estimator>
 void require_linear(const Estimator& estimator, const AnySensor& sensor) {
   const bool linear =
       std::visit([]<class Sensor>(const Sensor&) { return Sensor::kLinear; }, sensor);
   if (!linear && estimator.linear())
     throw py::value_error(
-        "sensor must be linear for Kalman: use ConvertedRangeBearing or Position, or Ekf or Ukf");
+        "sensor must be linear for Kalman and, among filters, AlphaBeta: use ConvertedRangeBearing "
+        "or "
+        "Position, or Ekf or Ukf");
 }
 
 /// A known acceleration, (2,) array or None.

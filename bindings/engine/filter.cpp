@@ -120,6 +120,9 @@ template <class Motion>
 py::object as_python(const AnyFilter& any, const SquareRootUkf<Motion>&) {
   return py::cast(PySquareRootUkf{any});
 }
+py::object as_python(const AnyFilter&, const AlphaBeta<>& filter) {
+  return py::cast(PyEstimator<AlphaBeta<>>(filter));
+}
 
 }  // namespace
 

@@ -391,7 +391,7 @@ ValueError
 Parameters
 ----------
 filters : sequence of K filters
-    Of any kinds and state sizes.
+    `Kalman`, `Ekf`, `Ukf`, `SquareRootUkf` and `AlphaBeta`, over any states.
 chain : ModeChain
 initial_mode_probability : (K,) array, optional
     What a start begins with; uniform when left out.)");

@@ -137,8 +137,8 @@ struct OwnPositions {
   }
 };
 
-PyReadings process(AnyStrobeTracker& tracker, const py::object& video, const py::object& north_m,
-                   const py::object& east_m) {
+PyReadings process_sweeps(AnyStrobeTracker& tracker, const py::object& video,
+                          const py::object& north_m, const py::object& east_m) {
   return with_video(video, [&]<class Amplitude>(const Video<Amplitude>& sweeps) {
     auto& one = tracker.of_amplitude<Amplitude>();
     const OwnPositions own(north_m, east_m, sweeps.size());
@@ -299,8 +299,8 @@ detection". Arbitration, radii and acquisition are ours.)");
            py::arg("radar"), py::arg_v("config", StrobeTrackerConfig{}, "StrobeTrackerConfig()"),
            py::arg("estimator") = py::none(), py::kw_only(), py::arg("land") = py::none(),
            py::arg("bits") = 8)
-      .def("process", &process, py::arg("video"), py::kw_only(), py::arg("own_north_m") = 0.0,
-           py::arg("own_east_m") = 0.0,
+      .def("process", &process_sweeps, py::arg("video"), py::kw_only(),
+           py::arg("own_north_m") = 0.0, py::arg("own_east_m") = 0.0,
            R"(Process the sweeps of a video, which continue the previous ones.
 
 Parameters

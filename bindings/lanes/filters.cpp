@@ -27,8 +27,9 @@ bool run_turns(const std::vector<Turn>& filters, const AnyImm& any,
 /// Extended Kalman filters of known turns, or of none. With the number of models known at compile
 /// time, three and five, the usual ones, take a tenth less.
 bool run_turns(const AnyImm& any, const LaneRecordings& recordings) {
-  const auto filters =
-      filters_as<Turn>(any.bank(), [](const auto& filter) { return in_lanes(filter); });
+  const auto filters = filters_as<Turn>(
+      any.bank(),
+      [](const auto& filter) -> decltype(in_lanes(filter)) { return in_lanes(filter); });
   switch (filters.size()) {
     case 0:
       return false;
@@ -71,7 +72,7 @@ struct OfLayout {
   struct Has : std::bool_constant<kLayoutOf<typename Filter::Motion> == Layout> {};
 };
 
-using Packed = Distinct<Mapped<InLanesOf, Selected<IsForPacks, Filters>>>;
+using Packed = Distinct<Mapped<InLanesOf, Selected<IsForPacks, MotionFilters>>>;
 
 /// Over each layout but that of position and velocity alone.
 template <int... Layout>
@@ -87,7 +88,7 @@ bool run_alike(std::integer_sequence<int, Layout...>, const AnyImm& any,
 bool run_filter(const AnyFilter& any, const LaneRecordings& recordings) {
   return std::visit(
       [&]<class Filter>(const Filter& filter) {
-        if constexpr (kForPacks<typename InLanesOf<Filter>::Motion>)
+        if constexpr (requires { requires kForPacks<typename InLanesOf<Filter>::Motion>; })
           return run_from<Filter::kStates>(in_lanes(filter), recordings);
         else
           return false;

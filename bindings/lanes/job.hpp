@@ -44,6 +44,10 @@ auto in_lanes(const SquareRootUkf<Motion>& filter) {
       lane_motion(filter.motion()), filter.unscented());
 }
 
+/// Its gains are not of packs.
+template <int Order>
+void in_lanes(const AlphaBetaFilter<Order>&) = delete;
+
 template <class Filter>
 using InLanesOf = decltype(in_lanes(std::declval<const Filter&>()));
 

@@ -8,9 +8,9 @@
 #include "wakeline/core/archive.hpp"
 
 namespace wakeline::python {
-namespace {
-
 std::string name_of(py::handle type) { return py::cast<std::string>(type.attr("__name__")); }
+
+namespace {
 
 /// "Singer(maneuver_time_s=20.0, accel_std_mps2=0.5)".
 std::string shown(const py::object& one) {

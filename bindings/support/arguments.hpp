@@ -19,6 +19,9 @@ class ProcessNoise;
 
 namespace wakeline::python {
 
+/// The name of a class.
+std::string name_of(py::handle type);
+
 /// A value as Python gets it among the arguments, where `py::cast` would not give what the call
 /// takes.
 template <class Value>

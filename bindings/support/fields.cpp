@@ -8,8 +8,6 @@
 namespace wakeline::python {
 namespace {
 
-std::string name_of(py::handle type) { return py::cast<std::string>(type.attr("__name__")); }
-
 /// "10.0", "0.0174533", "'probabilistic'", "OwnShip()".
 std::string default_text(const py::object& value) {
   if (py::isinstance<py::float_>(value)) {

@@ -1,5 +1,7 @@
 """Alpha-beta filters: their laws are tested in C++; here what Python adds."""
 
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -120,6 +122,54 @@ def test_doppler_readings_give_their_position():
     ours = wl.AlphaBeta(index).run(with_rate, dt_s=DT_S, sensor=sensor, start=START)
     plain = wl.AlphaBeta(index).run(z, dt_s=DT_S, sensor=RADAR, start=START)
     np.testing.assert_array_equal(ours.mean, plain.mean)
+
+
+def alternatives():
+    gains = wl.ConstantGains(0.25, 0.04), wl.ConstantGains(0.6, 0.25)
+    return wl.Imm([wl.AlphaBeta(one) for one in gains], wl.ModeChain.from_sojourn_s([60.0, 60.0]))
+
+
+def test_one_model_of_an_imm_is_the_filter_itself():
+    one, z = FILTERS["line-constant"], readings(30, seed=2)
+    imm = wl.Imm([one], wl.ModeChain([[1.0]]))
+    ours, alone = (e.run(z, dt_s=DT_S, sensor=CONVERTED, start=START) for e in (imm, one))
+    np.testing.assert_array_equal(ours.mean, alone.mean)
+    np.testing.assert_array_equal(ours.covariance, alone.covariance)
+
+
+def test_a_vessel_that_alters_is_followed_by_the_larger_gains():
+    time_s = np.arange(0.0, 300.0, 3.0)
+    after_s = np.maximum(time_s - 150.0, 0.0)
+    truth = np.column_stack([2000.0 + 8.0 * time_s, 1000.0 + 4.0 * time_s + 0.03 * after_s**2])
+    z = truth + np.random.default_rng(0).normal(0.0, 20.0, truth.shape)
+    sensor = wl.Position(position_std_m=20.0)
+    start = wl.Gaussian([2000.0, 8.0, 1000.0, 4.0], np.diag([400.0, 4.0, 400.0, 4.0]))
+    found = alternatives().run(z, dt_s=3.0, sensor=sensor, start=start)
+    assert found.mode_probability[60:, 1].mean() > 1.5 * found.mode_probability[20:50, 1].mean()
+    again = pickle.loads(pickle.dumps(alternatives()))
+    np.testing.assert_array_equal(
+        again.run(z, dt_s=3.0, sensor=sensor, start=start).mean, found.mean
+    )
+
+
+def test_among_several_models_it_needs_a_position():
+    with pytest.raises(ValueError, match="AlphaBeta"):
+        alternatives().run(readings(3, seed=1), dt_s=DT_S, sensor=RADAR, start=START)
+
+
+def test_a_tracker_can_keep_its_tracks_with_it():
+    rng = np.random.default_rng(1)
+    tracker = wl.Tracker(wl.Radar(period_s=3.0), estimator=alternatives())
+    for time_s in np.arange(0.0, 120.0, 3.0):
+        plot = np.array([2000.0, 1000.0]) + time_s * np.array([8.0, 4.0]) + rng.normal(0, 5.0, 2)
+        tracker.process(
+            time_s,
+            range_m=[np.hypot(*plot)],
+            bearing_rad=[np.arctan2(plot[1], plot[0])],
+        )
+    (mean,) = tracker.tracks().mean
+    np.testing.assert_allclose(mean[[0, 2]], [2936.0, 1468.0], atol=25.0)
+    np.testing.assert_allclose(mean[[1, 3]], [8.0, 4.0], atol=2.0)
 
 
 def test_gains_can_be_asked_for():

@@ -201,11 +201,12 @@ def test_what_has_been_added_up_is_kept_no_longer():
     kept = []
 
     def count(done, total):
-        gc.collect()
-        kept.append(sum(isinstance(one, Sums) for one in gc.get_objects()))
+        if done % 8 == 0:
+            gc.collect()
+            kept.append(sum(isinstance(one, Sums) for one in gc.get_objects()))
 
     run([CASE, SELDOM], BOTH, runs=250, client=InTurn(), progress=count)
-    assert len(kept) == 40
+    assert len(kept) == 5
     assert max(kept) < 8
 
 
@@ -659,11 +660,12 @@ def test_files_that_hold_no_result(result, tmp_path):
             Result.load(wrong)
     content = whole.read_bytes()
     # A damaged byte is found out, or does no damage: where the files begin, and in their list.
-    for k in [*range(160), *range(len(content) - 1200, len(content), 3)]:
-        for bits in (0xFF, 0x01, 0x08):
-            wrong.write_bytes(content[:k] + bytes([content[k] ^ bits]) + content[k + 1 :])
-            with contextlib.suppress(ValueError):
-                Result.load(wrong)
+    rng = np.random.default_rng(0)
+    for k in [*range(0, 160, 2), *range(len(content) - 1200, len(content), 9)]:
+        bits = rng.integers(1, 256)
+        wrong.write_bytes(content[:k] + bytes([content[k] ^ bits]) + content[k + 1 :])
+        with contextlib.suppress(ValueError):
+            Result.load(wrong)
     for arrays in ({"x": np.zeros(3)}, {"header": np.array('{"format": "other"}')}):
         np.savez(wrong, **arrays)
         with pytest.raises(

@@ -1,14 +1,12 @@
 """The study of an unmanned vessel's navigation: mission, sensors and results."""
 
 import dataclasses
-import json
 
 import numpy as np
 import pytest
 
 import wakeline as wl
 from wakeline import study
-from wakeline.cli import main
 from wakeline.scenario import Obstacle, UsvMission
 from wakeline.study import usv_navigation as usv
 from wakeline.study.usv_closed_loop import CLOSED_METRICS
@@ -164,10 +162,6 @@ def test_rows_have_the_scenarios_the_estimators_and_the_metrics(small):
     assert "usv-navigation" in study.names()
 
 
-def test_the_study_is_the_same_for_a_seed(small):
-    assert usv.run(2, 3, threads=1).rows == small.rows
-
-
 def test_filters_unscented_and_extended_agree(small):
     for scene in SCENARIOS:
         one, two = (errors(small.row(scene, name)) for name in ("ukf8", "ekf8"))
@@ -278,12 +272,3 @@ def test_what_is_found_of_a_bias_is_seen_all_the_time(seed):
         found = ax.lines[0].get_ydata()
         assert low <= found.min()
         assert found.max() <= high
-
-
-def test_the_command_writes_the_rows(no_pictures, tmp_path, capsys):
-    file = tmp_path / "usv.json"
-    assert main(["study", "run", "usv-navigation", "--runs", "1", "--json", str(file)]) == 0
-    found = json.loads(file.read_text())
-    assert found["name"] == "usv-navigation"
-    assert len(found["rows"]) == len(SCENARIOS) * len(ESTIMATORS) + len(LOOPS) * len(PILOTS) + 2
-    assert "ukf8" in capsys.readouterr().out

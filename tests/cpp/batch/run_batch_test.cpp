@@ -21,7 +21,6 @@
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/singer.hpp"
-#include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/imm.hpp"
 #include "wakeline/multimodel/likely_model_set_imm.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
@@ -110,32 +109,13 @@ auto turning(const Grid& grid) {
   return Estimator<std::decay_t<decltype(bank)>>(grid, ModeChain<3>::staying(0.9), bank);
 }
 
-const AdaptiveGrid kAdaptive{
-    .min_spacing_rad_s = deg(1.0), .kept_spacing_rad_s = deg(1.0), .centre_threshold = 0.99};
 const SwitchingGrid kSwitching{.grid_rad_s = TurnRateGrid::evenly(deg(2.0), 4)};
 const LikelyModelSet kLikely{.unlikely_threshold = 0.1, .likely_threshold = 0.3};
-
-template <class Scalar>
-struct Adaptive {
-  static constexpr std::size_t kModels = 3;
-  static auto make() { return turning<AdaptiveGridImm, Scalar>(kAdaptive); }
-};
 
 template <class Scalar>
 struct Switching {
   static constexpr std::size_t kModels = 3;
   static auto make() { return turning<SwitchingGridImm, Scalar>(kSwitching); }
-};
-
-template <class Scalar>
-struct LiteralSwitching {
-  static constexpr std::size_t kModels = 3;
-  static auto make() {
-    return turning<SwitchingGridImm, Scalar>(
-        SwitchingGrid{.grid_rad_s = TurnRateGrid::evenly(deg(2.0), 4),
-                      .rule = SwitchRule::kLiteral,
-                      .carry = SwitchCarry::kSlot});
-  }
 };
 
 /// Models that rest in some lanes and not in others.
@@ -149,27 +129,9 @@ struct Likely {
 };
 
 template <class Scalar>
-struct EkfTurnRate {
-  static constexpr std::size_t kModels = 0;
-  static auto make() { return Ekf<CoordinatedTurnRate, Scalar>(CoordinatedTurnRate{}); }
-};
-
-template <class Scalar>
-struct EkfSinger {
-  static constexpr std::size_t kModels = 0;
-  static auto make() { return Ekf<Singer, Scalar>(Singer{}); }
-};
-
-template <class Scalar>
 struct UkfTurnRate {
   static constexpr std::size_t kModels = 0;
   static auto make() { return Ukf<CoordinatedTurnRate, Scalar>(CoordinatedTurnRate{}); }
-};
-
-template <class Scalar>
-struct SquareRootTurnRate {
-  static constexpr std::size_t kModels = 0;
-  static auto make() { return SquareRootUkf<CoordinatedTurnRate, Scalar>(CoordinatedTurnRate{}); }
 };
 
 template <class Scalar>
@@ -242,9 +204,8 @@ struct Of {
   template <class Scalar>
   using Kind = KindType<Scalar>;
 };
-using Cases = ::testing::Types<Of<Imm3>, Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>,
-                               Of<Likely>, Of<EkfTurnRate>, Of<EkfSinger>, Of<UkfTurnRate>,
-                               Of<SquareRootTurnRate>, Of<SquareRootImm>, Of<GammaOfIndex>>;
+using Cases = ::testing::Types<Of<Imm3>, Of<Switching>, Of<Likely>, Of<UkfTurnRate>,
+                               Of<SquareRootImm>, Of<GammaOfIndex>>;
 TYPED_TEST_SUITE(Batch, Cases);
 
 TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
@@ -257,14 +218,9 @@ TYPED_TEST(Batch, LanesAreTheRunsOneByOne) {
   expect_near(lanes, one_by_one);
 }
 
-template <class Case>
-struct Grids : ::testing::Test {};
-using GridCases = ::testing::Types<Of<Adaptive>, Of<Switching>, Of<LiteralSwitching>>;
-TYPED_TEST_SUITE(Grids, GridCases);
-
 // Not in every run: the printed rule of the switching grid loses a vessel now and then.
-TYPED_TEST(Grids, FollowTheVessel) {
-  const Results lanes = run<TypeParam::template Kind, Lanes>(kRadar, Dense(kRuns).in);
+TEST(Grid, FollowsTheVessel) {
+  const Results lanes = run<Switching, Lanes>(kRadar, Dense(kRuns).in);
   std::size_t follow = 0;
   for (std::size_t run = 0; run < kRuns; ++run) {
     const double* first = &lanes.rates[run * kScans * 3];

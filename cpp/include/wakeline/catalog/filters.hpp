@@ -12,6 +12,7 @@
 #include "wakeline/catalog/belief.hpp"
 #include "wakeline/catalog/motions.hpp"
 #include "wakeline/catalog/type_list.hpp"
+#include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/filter/ukf.hpp"
@@ -22,8 +23,8 @@
 namespace wakeline {
 
 /// One of some filters over some motion models, chosen at run time. Each call dispatches once and
-/// then runs the template of that filter, with the same bits. A linear one is a Kalman filter: an
-/// `Ekf` for linear motion and linear sensors.
+/// then runs the template of that filter, with the same bits. A linear one takes linear sensors
+/// only: a Kalman filter, which is an `Ekf` of linear motion, or an alpha-beta filter.
 ///
 /// Members are defined out of class, so that a program may compile them once (`extern template`).
 template <class FilterList>
@@ -33,7 +34,7 @@ class AnyFilterOf {
   using Variant = AsVariant<FilterList>;
 
   explicit AnyFilterOf(const Variant& filter, bool linear = false)
-      : filter_(filter), linear_(linear) {}
+      : filter_(filter), linear_(linear || std::holds_alternative<AlphaBeta<>>(filter)) {}
 
   /// Begins with a belief over the filter's state or over `[x, vx, y, vy]`.
   Status start(const AnyBelief& belief) noexcept;
@@ -51,7 +52,8 @@ class AnyFilterOf {
   }
 
   /// Corrects the belief by a reading that the sensor has observed. Of a direct sensor only the
-  /// reading matters, so that one instantiation serves all.
+  /// reading matters, so that one instantiation serves all. An alpha-beta filter misses those of
+  /// any other.
   template <class Sensor>
   Correction<Sensor::kMeasurements> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept {
@@ -94,9 +96,12 @@ template <class... Motion>
 struct FiltersOver<TypeList<Motion...>> {
   using Type = TypeList<Ekf<Motion>..., Ukf<Motion>..., SquareRootUkf<Motion>...>;
 };
-using Filters = typename FiltersOver<Motions>::Type;
+using MotionFilters = typename FiltersOver<Motions>::Type;
 
-/// One of the filters over one of the motion models of the catalogue.
+/// Those over the motion models of the catalogue, and the alpha-beta filter.
+using Filters = Joined<MotionFilters, TypeList<AlphaBeta<>>>;
+
+/// One of the filters of the catalogue.
 using AnyFilter = AnyFilterOf<Filters>;
 
 /// Makes a filter over a motion model, with the parameters that such a filter has.
@@ -185,15 +190,22 @@ class AnyFilterBankOf {
 using AnyFilterBank = AnyFilterBankOf<Filters>;
 using AnyImm = Imm<AnyFilterBank>;
 
-/// The filters of a bank as `convert` gives them, where it takes all of them and gives a `Kind`;
-/// else none.
+/// True where a value makes a `Kind` without loss: not where it is of a class derived from it.
+template <class Kind, class Value>
+inline constexpr bool kMakes = std::is_constructible_v<Kind, const Value&> &&
+                               (std::is_same_v<Kind, Value> || !std::is_base_of_v<Kind, Value>);
+
+/// The filters of a bank as `convert` gives them, where it takes all of them and they make a
+/// `Kind`; else none.
 template <class Kind, class FilterList, class Convert = std::identity>
 std::vector<Kind> filters_as(const AnyFilterBankOf<FilterList>& bank, const Convert& convert = {}) {
   std::vector<Kind> filters;
   for (int k = 0; k < bank.size(); ++k) {
     const bool taken = std::visit(
         [&](const auto& filter) {
-          if constexpr (requires { filters.push_back(convert(filter)); }) {
+          if constexpr (requires {
+                          requires kMakes<Kind, std::decay_t<decltype(convert(filter))>>;
+                        }) {
             filters.push_back(convert(filter));
             return true;
           } else {
@@ -261,7 +273,16 @@ template <class FilterList>
 template <class Sensor>
 Correction<Sensor::kMeasurements> AnyFilterOf<FilterList>::correct_by(
     const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept {
-  return std::visit([&](auto& filter) { return filter.correct(sensor, reading); }, filter_);
+  return std::visit(
+      [&]<class Filter>(Filter& filter) {
+        Correction<Sensor::kMeasurements> result;
+        if constexpr (!kIsDirect<Sensor> && std::is_same_v<Filter, AlphaBeta<>>)
+          result.status = Status::kMissed;
+        else
+          result = filter.correct(sensor, reading);
+        return result;
+      },
+      filter_);
 }
 
 template <class FilterList>
