@@ -339,9 +339,12 @@ int
           [](AnyStrobeTracker& tracker, double time_s, double north_m, double east_m,
              double position_std_m, double own_north_m, double own_east_m) {
             require_finite("time_s", time_s);
-            require_finite("north_m", north_m);
-            require_finite("east_m", east_m);
+            require_in_range("north_m", north_m);
+            require_in_range("east_m", east_m);
             require_positive("position_std_m", position_std_m);
+            require_in_range("position_std_m", position_std_m);
+            require_in_range("own_north_m", own_north_m);
+            require_in_range("own_east_m", own_east_m);
             const OwnShip own{.north_m = own_north_m, .east_m = own_east_m};
             return tracker.visit([&](auto& one) {
               return one.designate(time_s, north_m, east_m, position_std_m, own);
@@ -368,7 +371,7 @@ int
 Raises
 ------
 ValueError
-    When a number is not finite or the standard deviation not positive.)")
+    When a number is not finite or beyond 1e9, or the standard deviation not positive.)")
       .def(
           "tracks",
           [](const AnyStrobeTracker& tracker, const std::optional<double>& time_s, bool tentative) {
@@ -377,7 +380,14 @@ ValueError
           py::arg("time_s") = py::none(), py::arg("tentative") = false,
           "The confirmed and coasting tracks (with `tentative` all), a StrobeTrackTable: each as "
           "of "
-          "when the beam passed it, or predicted to `time_s` where that is later.")
+          "when the beam passed it, or at `time_s`: predicted to it, or moved back to it at "
+          "constant velocity.")
+      .def(
+          "drop",
+          [](AnyStrobeTracker& tracker, std::int64_t id) {
+            return tracker.visit([&](auto& one) { return one.drop(id); });
+          },
+          py::arg("track_id"), "End a track; False if no track has that number.")
       .def(
           "set_land",
           [](AnyStrobeTracker& tracker, const LandMask& land) {

@@ -58,20 +58,6 @@ class AnyTracker {
   std::variant<VesselTracker, Tracker<AnyEstimator>> tracker_;
 };
 
-const char* event_name(TrackEvent event) {
-  switch (event) {
-    case TrackEvent::kStarted:
-      return "started";
-    case TrackEvent::kConfirmed:
-      return "confirmed";
-    case TrackEvent::kCoasting:
-      return "coasting";
-    case TrackEvent::kLost:
-      return "lost";
-  }
-  return "";
-}
-
 using Course = Ekf<WanderingCourse>;
 using Turn = Ekf<CoordinatedTurnRate>;
 
@@ -142,6 +128,14 @@ Arguments tracker_arguments(const AnyTracker& any) {
   });
 }
 
+/// Raises FilterError where a scan of that time is rejected as too far ahead.
+void require_time(const AnyTracker& tracker, double time_s) {
+  const double latest_s = tracker.visit([](const auto& one) { return one.latest_time_s(); });
+  if (std::isfinite(time_s) && time_s > latest_s)
+    throw FilterError("process: time_s must be at most " + std::to_string(latest_s) +
+                      ", an hour after the last scan, got " + std::to_string(time_s));
+}
+
 PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
                  const DoubleArray& bearing_rad, const py::object& plot_time_s,
                  const py::object& own_north_m, const py::object& own_east_m,
@@ -162,6 +156,7 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
                         .east_m = east.data()[k],
                         .position_std_m = own_position_std_m,
                         .heading_std_rad = heading_std_rad}};
+  require_time(tracker, time_s);
   ScanReport report;
   {
     const py::gil_scoped_release release;
@@ -182,7 +177,8 @@ PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<do
                 bool tentative) {
   using T = Track;
   const std::vector<Track> wanted = tracks_at<Track>(
-      tracker, time_s, [&](const Track& track) { return tentative || track.shown(); });
+      tracker, time_s || !tracker.started() ? time_s : tracker.time_s(),
+      [&](const Track& track) { return !track.hushed && (tentative || track.active()); });
   const auto numbers = [&](const auto& value) { return column_of<double>(wanted, value); };
   const auto counts = [&](const auto& value) { return column_of<std::int64_t>(wanted, value); };
   PyTracks table{
@@ -241,26 +237,39 @@ void define_track(py::module_& parent) {
   py::class_<Event>(m, "Event", "A change of a track's status in a scan.")
       .def(py::pickle(
           [](const Event& event) {
-            return py::make_tuple(int(event.kind), event.track_id, event.tentative_id,
-                                  event.time_s);
+            return py::make_tuple(int(event.kind), event.track_id, event.tentative_id, event.time_s,
+                                  int(event.reason));
           },
           [](const py::tuple& fields) {
             const auto kind = fields[0].cast<int>();
-            if (kind < int(TrackEvent::kStarted) || kind > int(TrackEvent::kLost))
+            const auto reason = fields[4].cast<int>();
+            if (kind < int(TrackEvent::kStarted) || kind > int(TrackEvent::kFull) ||
+                reason < int(LossReason::kNone) || reason > int(LossReason::kFailed))
               throw py::value_error("state is not that of an event");
             return Event{TrackEvent(kind), fields[1].cast<std::int64_t>(),
-                         fields[2].cast<std::int64_t>(), fields[3].cast<double>()};
+                         fields[2].cast<std::int64_t>(), fields[3].cast<double>(),
+                         LossReason(reason)};
           }))
       .def_property_readonly(
-          "kind", [](const Event& event) { return event_name(event.kind); },
-          "started, confirmed, coasting or lost")
-      .def_readonly("track_id", &Event::track_id)
+          "kind", [](const Event& event) { return to_string(event.kind); },
+          "started, confirmed, coasting or lost; full where max_tracks is reached, again only when "
+          "there has been room in between")
+      .def_property_readonly(
+          "reason", [](const Event& event) { return to_string(event.reason); },
+          "why a track was lost: missed (without a plot for too long), doubtful (a tentative track "
+          "whose target hardly exists), too_fast (above the speed limit), uncertain (its position "
+          "is not known well enough), duplicate (a senior track follows the same target), "
+          "displaced (a tentative track that made room) or failed (the estimator cannot follow the "
+          "measurements); empty for other events")
+      .def_readonly("track_id", &Event::track_id, "0 of full")
       .def_readonly("tentative_id", &Event::tentative_id,
                     "the negative number before confirmation; 0 for a designated track")
       .def_readonly("time_s", &Event::time_s)
       .def("__repr__", [](const Event& event) {
-        return "Event(kind=" + std::string(event_name(event.kind)) +
-               ", track_id=" + std::to_string(event.track_id) + ")";
+        const std::string reason = to_string(event.reason);
+        return "Event(kind=" + std::string(to_string(event.kind)) +
+               ", track_id=" + std::to_string(event.track_id) +
+               (reason.empty() ? ")" : ", reason=" + reason + ")");
       });
   py::class_<PyReport> report(m, "ScanReport", "Result of processing a scan.");
   define_pickle(report, &PyReport::plot_track_id, &PyReport::events, &PyReport::rejected_plots);
@@ -270,10 +279,10 @@ void define_track(py::module_& parent) {
           "(n,) the track that each plot most likely belongs to; negative for a tentative "
           "one, 0 for none")
       .def_readonly("events", &PyReport::events)
-      .def_readonly(
-          "rejected_plots", &PyReport::rejected_plots,
-          "plots that are not finite, have a negative range, a bearing too large to be an angle "
-          "or a time far from the scan's, or exceed max_plots")
+      .def_readonly("rejected_plots", &PyReport::rejected_plots,
+                    "plots that are not finite or out of range, have a negative range, a bearing "
+                    "too large to be an angle "
+                    "or a time far from the scan's, or exceed max_plots")
       .def("__repr__", [](const PyReport& r) {
         return "<ScanReport: " + many(r.plot_track_id.size(), "plot") + ", " +
                std::to_string(r.rejected_plots) + " rejected, " +
@@ -340,7 +349,7 @@ ValueError
 Parameters
 ----------
 time_s : float
-    Time of the scan; not before the last one.
+    Time of the scan; not before the last one nor after `latest_time_s`.
 range_m, bearing_rad : (n,) arrays
 plot_time_s, own_north_m, own_east_m : float or (n,) arrays
     Time of each plot, and own ship's position at that time.
@@ -358,40 +367,62 @@ Raises
 ValueError
     When a shape does not fit or a standard deviation is negative.
 FilterError
-    When the time is before the last scan or not finite; the tracker is unchanged.)")
+    When the time is not finite, before the last scan or after `latest_time_s`; the tracker is
+    unchanged.)")
       .def(
           "tracks",
           [](const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {
             return tracker.visit([&](const auto& one) { return tracks(one, time_s, tentative); });
           },
           py::arg("time_s") = py::none(), py::arg("tentative") = false,
-          "The confirmed and coasting tracks (with `tentative` all), a TrackTable: as of the last "
-          "scan, or predicted to `time_s` where that is later.")
+          R"(The confirmed and coasting tracks (with `tentative` all), at one time.
+
+Parameters
+----------
+time_s : float, optional
+    Default: the time of the last scan; before the first one each track has the time for which it
+    was designated. A track is predicted to it, or moved back at constant velocity where its plot
+    was later. NaN where it is so far ahead that a prediction fails.
+tentative : bool
+    Whether tentative and held tracks are included.
+
+Returns
+-------
+TrackTable
+
+Raises
+------
+ValueError
+    When the time is not finite.)")
       .def(
           "designate",
           [](AnyTracker& tracker, double time_s, double north_m, double east_m,
              double position_std_m) {
             require_finite("time_s", time_s);
             const double latest_s =
-                tracker.visit([](const auto& one) { return one.latest_designation_s(); });
+                tracker.visit([](const auto& one) { return one.latest_time_s(); });
             require(
                 time_s <= latest_s, "time_s",
                 ("at most " + std::to_string(latest_s) + ", an hour after the last scan").c_str(),
                 time_s);
-            require_finite("north_m", north_m);
-            require_finite("east_m", east_m);
+            require_in_range("north_m", north_m);
+            require_in_range("east_m", east_m);
             require_positive("position_std_m", position_std_m);
+            require_in_range("position_std_m", position_std_m);
             return tracker.visit(
                 [&](auto& one) { return one.designate(time_s, north_m, east_m, position_std_m); });
           },
           py::arg("time_s"), py::arg("north_m"), py::arg("east_m"),
           py::arg("position_std_m") = 50.0,
-          R"(Start a confirmed track on an operator's designation.
+          R"(Confirm the track at a position, or start a confirmed one, on an operator's designation.
+
+Of several tracks whose gate the position is in, the nearest is confirmed, in standard deviations; a
+hushed one is shown again. A new track begins at rest.
 
 Parameters
 ----------
 time_s : float
-    At most an hour after the last scan.
+    At most `latest_time_s`, an hour after the last scan.
 north_m, east_m, position_std_m : float
 
 Returns
@@ -402,14 +433,41 @@ int
 Raises
 ------
 ValueError
-    When the time is too far ahead, a number is not finite or the standard deviation not positive.)")
+    When the time is too far ahead, a number is not finite or beyond 1e9, or the standard deviation
+    not positive.)")
       .def(
           "rename",
           [](AnyTracker& tracker, std::int64_t id, std::string_view name) {
+            if (!is_utf8(name)) throw py::value_error("name must be UTF-8 text, got other bytes");
             return tracker.visit([&](auto& one) { return one.rename(id, name); });
           },
           py::arg("track_id"), py::arg("name"),
-          "Name a track (at most 31 bytes are kept); False if no track has that number.")
+          "Name a track (at most 31 bytes of UTF-8 are kept); False if no track has that number.")
+      .def(
+          "drop",
+          [](AnyTracker& tracker, std::int64_t id, bool hush) {
+            return tracker.visit([&](auto& one) { return one.drop(id, hush); });
+          },
+          py::arg("track_id"), py::kw_only(), py::arg("hush") = false,
+          R"(End a track; False if no track has that number.
+
+With `hush` its vessel is followed in silence, so that it does not start again under another number:
+the track is not in `tracks`, has no events and no plots reported, until its vessel is lost, it is
+designated or dropped again.)")
+      .def_property_readonly(
+          "time_s",
+          [](const AnyTracker& tracker) {
+            return tracker.visit([](const auto& one) { return one.time_s(); });
+          },
+          "Time of the last scan; 0 before the first.")
+      .def_property_readonly(
+          "latest_time_s",
+          [](const AnyTracker& tracker) {
+            return tracker.visit([](const auto& one) { return one.latest_time_s(); });
+          },
+          "Until when a scan is processed and a target can be designated: an hour after the last "
+          "scan, or ever before the first one. A radar that was silent for longer goes on by a "
+          "scan without plots an hour after the last one.")
       .def("_arguments", &tracker_arguments);
   define_keeping(
       tracker,

@@ -88,8 +88,13 @@ py::array_t<double> matrices_of(const Rows& rows, const Value& value) {
   return column;
 }
 
-/// Copies of the tracks for which `is_wanted` holds, older ones first: each as it is, or predicted
-/// to `time_s` where that is later.
+/// Rejects a number that is not finite or beyond `kLargestInput`.
+inline void require_in_range(const char* name, double value) {
+  require(in_range(value), name, "finite and at most 1e9 in magnitude", value);
+}
+
+/// Copies of the tracks for which `is_wanted` holds, older ones first: each as it is, or at
+/// `time_s`.
 template <class Track, class Tracker, class IsWanted>
 std::vector<Track> tracks_at(const Tracker& tracker, const std::optional<double>& time_s,
                              const IsWanted& is_wanted) {
@@ -100,7 +105,7 @@ std::vector<Track> tracks_at(const Tracker& tracker, const std::optional<double>
     Track& copy = tracks.emplace_back(track);
     if (!time_s) return;
     copy.kinematics = tracker.kinematics_at(track, *time_s);
-    copy.time_s = std::max(*time_s, track.time_s);
+    copy.time_s = *time_s;
   });
   return tracks;
 }
@@ -119,16 +124,10 @@ py::array_t<double> of_each_mode(const Tracker& tracker, const std::vector<Track
   return table;
 }
 
-/// Adds drop, save, restore, radar and config to the class of a tracker.
+/// Adds save, restore, radar and config to the class of a tracker.
 template <class AnyTracker>
 void define_keeping(py::class_<AnyTracker>& type, const char* save_doc) {
   type.def(
-          "drop",
-          [](AnyTracker& tracker, std::int64_t id) {
-            return tracker.visit([&](auto& one) { return one.drop(id); });
-          },
-          py::arg("track_id"), "End a track; False if no track has that number.")
-      .def(
           "save",
           [](const AnyTracker& tracker) {
             return to_bytes(tracker.visit([](const auto& one) { return one.save(); }));

@@ -261,7 +261,7 @@ def test_what_a_tracker_reports(estimator, way):
 def assert_equal_fields_of_all(events, wanted):
     assert len(events) == len(wanted)
     for event, same in zip(events, wanted, strict=True):
-        assert_equal_fields(event, same, "kind track_id tentative_id time_s")
+        assert_equal_fields(event, same, "kind track_id tentative_id time_s reason")
 
 
 @pytest.mark.parametrize("way", WAYS)

@@ -187,6 +187,59 @@ def test_tracks_at_a_later_time_are_predictions():
     np.testing.assert_array_equal(tracker.tracks().mean, now.mean)  # looking changes nothing
 
 
+def test_all_tracks_are_of_the_time_of_the_last_scan():
+    tracker = wl.Tracker(RADAR)
+    for k in range(20):  # 15 m/s, seen as each turn begins; the turn ends 2.4 s later
+        time_s = PERIOD_S * k
+        tracker.process(
+            time_s + 2.4,
+            range_m=[1000.0 + 15.0 * time_s, 2000.0],
+            bearing_rad=[0.0, 1.0],
+            plot_time_s=[time_s, time_s + 1.0],
+        )
+    table = tracker.tracks()
+    assert list(table.time_s) == [tracker.time_s] * 2
+    np.testing.assert_allclose(table.mean[0, [0, 2]], [1748.5, 0.0], atol=2.0)
+    back = tracker.tracks(time_s=PERIOD_S * 19)
+    assert list(back.time_s) == [PERIOD_S * 19] * 2
+    np.testing.assert_allclose(back.mean[0, [0, 2]], [1712.5, 0.0], atol=2.0)
+
+
+def test_a_track_above_the_speed_limit_is_held_or_lost_for_that_reason():
+    for speed_mps, lost in ((25.5, []), (33.0, ["too_fast"])):
+        tracker, range_m, reasons = wl.Tracker(RADAR), 1500.0, []
+        for k in range(60):
+            range_m += PERIOD_S * (speed_mps if 25 <= k < 45 else 15.0)
+            for event in tracker.process(PERIOD_S * k, range_m=[range_m], bearing_rad=[0.3]).events:
+                assert bool(event.reason) == (event.kind == "lost")
+                if event.kind == "lost" and event.track_id > 0:
+                    reasons.append(event.reason)
+        assert reasons == lost
+
+
+def test_events_of_lost_tracks_have_a_reason():
+    tracker = tracker_after()
+    events = []
+    for _ in range(40):
+        report = tracker.process(tracker.time_s + PERIOD_S, range_m=[], bearing_rad=[])
+        events += [event for event in report.events if event.kind == "lost"]
+    assert {event.reason for event in events if event.track_id > 0} == {"missed"}
+    assert all("missed" in repr(event) for event in events if event.track_id > 0)
+
+
+def test_a_full_tracker_says_so_once():
+    tracker = wl.Tracker(RADAR, wl.TrackerConfig(max_tracks=3))
+    bearing_rad = np.linspace(0.0, 3.0, 5)
+    kinds = [
+        event.kind
+        for k in range(10)
+        for event in tracker.process(
+            PERIOD_S * k, range_m=np.full(5, 2e3), bearing_rad=bearing_rad
+        ).events
+    ]
+    assert kinds.count("full") == 1
+
+
 @pytest.mark.parametrize("association", ["probabilistic", "global_nearest", "nearest"])
 def test_every_association_tracks(association):
     tracker = wl.Tracker(RADAR, wl.TrackerConfig(association=association))
@@ -211,6 +264,36 @@ def test_a_designated_track_is_there_at_once_and_ends_when_dropped():
     assert len(tracker.tracks(tentative=True)) == 0
 
 
+def test_designating_a_tracked_vessel_confirms_its_track():
+    for count in (2, 20):
+        tracker = wl.Tracker(RADAR)
+        for k in range(count):
+            tracker.process(PERIOD_S * k, range_m=[2000.0 + 5.0 * k], bearing_rad=[0.0])
+        time_s = PERIOD_S * (count - 1)
+        assert tracker.designate(time_s, 2010.0 + 5.0 * (count - 1), 10.0) == 1
+        for k in range(count, count + 10):
+            tracker.process(PERIOD_S * k, range_m=[2000.0 + 5.0 * k], bearing_rad=[0.0])
+        assert list(tracker.tracks(tentative=True).track_id) == [1]
+
+
+def test_a_vessel_dropped_with_hush_does_not_come_back_until_it_is_designated():
+    def scan(k):
+        return tracker.process(PERIOD_S * k, range_m=[2000.0 + 5.0 * k], bearing_rad=[0.0])
+
+    tracker = wl.Tracker(RADAR)
+    for k in range(10):
+        scan(k)
+    assert not tracker.drop(7, hush=True)
+    assert tracker.drop(1, hush=True)
+    for k in range(10, 40):
+        report = scan(k)
+        assert not report.events
+        assert list(report.plot_track_id) == [0]
+        assert len(tracker.tracks(tentative=True)) == 0
+    assert tracker.designate(PERIOD_S * 39, 2195.0, 0.0) == 1
+    assert list(tracker.tracks().track_id) == [1]
+
+
 def test_a_designated_track_takes_the_plots_that_come():
     truth = Truth([1500.0, 4.0, -800.0, 3.0])
     tracker = wl.Tracker(RADAR)
@@ -230,8 +313,8 @@ def test_a_target_far_ahead_of_the_last_scan_is_not_designated():
         tracker.designate(3701.0, 1000.0, 0.0)
     assert tracker.save() == before
     assert tracker.designate(3700.0, 1000.0, 0.0) == 1
-    tracker.process(9000.0, **no_plots)
-    assert tracker.designate(9000.0, 1000.0, 0.0) == 2
+    tracker.process(3700.0, **no_plots)
+    assert tracker.designate(7300.0, 1000.0, 0.0) == 2
 
 
 def test_an_error_of_own_ships_place_is_one_of_all_plots():
@@ -260,6 +343,24 @@ def test_names_are_the_operators():
     assert not tracker.rename(track_id + 1, "nobody")
 
 
+@settings(max_examples=100)
+@given(st.binary(max_size=40))
+def test_a_name_of_bytes_is_utf_8_or_rejected(name):
+    tracker = wl.Tracker(RADAR)
+    track_id = tracker.designate(0.0, 1000.0, 0.0)
+    try:
+        text = name.decode()
+    except UnicodeDecodeError:
+        with pytest.raises(ValueError, match="name must be UTF-8"):
+            tracker.rename(track_id, name)
+        assert tracker.tracks().name == [""]
+    else:
+        assert tracker.rename(track_id, name)
+        kept = tracker.tracks().name[0]
+        assert text.startswith(kept)
+        assert len(kept.encode()) <= 31
+
+
 def test_a_name_is_cut_between_letters():
     tracker = wl.Tracker(RADAR)
     track_id = tracker.designate(0.0, 1000.0, 0.0)
@@ -276,6 +377,9 @@ def test_a_name_is_cut_between_letters():
         {"north_m": 0.0, "east_m": 0.0, "position_std_m": -1.0},
         {"north_m": 0.0, "east_m": 0.0, "position_std_m": np.inf},
         {"time_s": np.nan, "north_m": 0.0, "east_m": 0.0},
+        {"north_m": 1e300, "east_m": 0.0},
+        {"north_m": 0.0, "east_m": -2e9},
+        {"north_m": 0.0, "east_m": 0.0, "position_std_m": 1e200},
     ],
 )
 def test_a_designation_that_is_invalid_is_rejected(place):
@@ -381,6 +485,26 @@ def test_a_time_that_is_not_finite_is_an_error(time_s):
     tracker = wl.Tracker(RADAR)
     with pytest.raises(wl.FilterError, match="finite"):
         tracker.process(time_s, range_m=[], bearing_rad=[])
+
+
+def test_a_scan_far_ahead_is_an_error_that_changes_nothing():
+    tracker = tracker_after()
+    before, time_s = tracker.save(), tracker.time_s
+    assert tracker.latest_time_s == time_s + 3600.0
+    for ahead_s in (3600.1, 1e9):
+        with pytest.raises(wl.FilterError, match="an hour after the last scan"):
+            tracker.process(time_s + ahead_s, range_m=[], bearing_rad=[])
+    assert tracker.save() == before
+    tracker.process(tracker.latest_time_s, range_m=[], bearing_rad=[])
+
+
+@pytest.mark.parametrize("own", [{"own_north_m": 1e308}, {"own_east_m": -1e300}])
+def test_plots_of_an_own_ship_out_of_range_are_rejected(own):
+    tracker = tracker_after()
+    for k in range(5):
+        report = tracker.process(tracker.time_s + PERIOD_S, range_m=[1e3], bearing_rad=[0.1], **own)
+        assert report.rejected_plots == 1, k
+    assert np.isfinite(tracker.tracks(tentative=True).mean).all()
 
 
 @pytest.mark.parametrize("wrong", [-0.01, np.nan, np.inf])

@@ -34,6 +34,7 @@
 #include "wakeline/core/state_belief.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
+#include "wakeline/core/utf8.hpp"
 #include "wakeline/eval/consistency.hpp"
 #include "wakeline/eval/cramer_rao_bound.hpp"
 #include "wakeline/eval/gospa.hpp"

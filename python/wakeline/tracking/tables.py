@@ -43,7 +43,7 @@ def write_tables(
     tracks, events, plots, encounters, alarms = files
     scenario = ["scenario"] if any(part.tracks.scenario is not None for part in episodes) else []
     write_tracks(tracks, Tracks.joined([part.tracks for part in episodes]))
-    head = ["time_s", "event", "track_id", "tentative_id", *scenario]
+    head = ["time_s", "event", "track_id", "tentative_id", "reason", *scenario]
     _write_csv(events, head, (row for part in episodes for row in _event_rows(part)))
     head = ["scan", "time_s", "north_m", "east_m", "track_id", *scenario]
     _write_csv(plots, head, (row for part in episodes for row in _plot_rows(part)))
@@ -60,7 +60,14 @@ def write_tables(
 def _event_rows(part: TrackedEpisode) -> Iterable[list]:
     scenario = _scenario(part)
     for event in part.events:
-        yield [event.time_s, event.kind, event.track_id, event.tentative_id, *scenario]
+        yield [
+            event.time_s,
+            event.kind,
+            event.track_id,
+            event.tentative_id,
+            event.reason,
+            *scenario,
+        ]
 
 
 def _plot_rows(part: TrackedEpisode) -> Iterable[list]:

@@ -200,8 +200,11 @@ def track_episode(
     end_s, began_s = -np.inf, time.perf_counter()
     for scan in progress(episode.scans, len(episode), f"tracking {episode.name}".strip()):
         end_s = max(end_s, scan.time_s, scan.plot_time_s.max(initial=-np.inf))
+        while end_s > tracker.latest_time_s:  # the radar was silent
+            silence = tracker.process(tracker.latest_time_s, range_m=[], bearing_rad=[])
+            events += silence.events
         report = _process(tracker, end_s, scan)
-        tables.append(_at(scan.time_s, columns_of(tracker.tracks(time_s=scan.time_s))))
+        tables.append(columns_of(tracker.tracks(time_s=scan.time_s)))
         events += report.events
         plot_track_id.append(report.plot_track_id)
         rejected += report.rejected_plots
@@ -274,20 +277,6 @@ def _process(tracker: wl.Tracker, end_s: float, scan: Scan) -> wl.track.ScanRepo
 def columns_of(table: wl.track.TrackTable | wl.track.StrobeTrackTable) -> dict[str, np.ndarray]:
     """The columns of a table of tracks as arrays."""
     return {name: np.asarray(getattr(table, name)) for name in _COLUMNS}
-
-
-def _at(time_s: float, column: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The columns of tracks at a time; later ones are moved back at constant velocity."""
-    back_s = np.minimum(time_s - column["time_s"], 0.0)
-    if not back_s.any():
-        return column
-    step = np.tile(np.eye(4), (len(back_s), 1, 1))
-    step[:, 0, 1] = step[:, 2, 3] = back_s
-    return column | {
-        "time_s": np.minimum(column["time_s"], time_s),
-        "mean": np.einsum("kij,kj->ki", step, column["mean"]),
-        "covariance": step @ column["covariance"] @ step.swapaxes(1, 2),
-    }
 
 
 def _joined(tables: Sequence[dict[str, np.ndarray]], scenario: str | None) -> Tracks:

@@ -25,35 +25,35 @@ Track seen(const std::string& pattern, TrackStatus status = TrackStatus::kTentat
 
 TEST(LifeCycle, ConfirmsMOfTheLastNWithThisScanAmongThem) {
   const TrackerConfig config{.confirm_hits = 3, .confirm_window = 5};
-  EXPECT_TRUE(is_confirmable(config, seen("111")));
-  EXPECT_TRUE(is_confirmable(config, seen("11001")));
-  EXPECT_FALSE(is_confirmable(config, seen("110001"))) << "the first has left the window";
-  EXPECT_FALSE(is_confirmable(config, seen("1110"))) << "not seen in this scan";
+  EXPECT_TRUE(is_confirmable(config, kRadar, seen("111")));
+  EXPECT_TRUE(is_confirmable(config, kRadar, seen("11001")));
+  EXPECT_FALSE(is_confirmable(config, kRadar, seen("110001"))) << "the first has left the window";
+  EXPECT_FALSE(is_confirmable(config, kRadar, seen("1110"))) << "not seen in this scan";
   Track doubtful = seen("11111");
   doubtful.existence = 0.5;
-  EXPECT_FALSE(is_confirmable(config, doubtful));
+  EXPECT_FALSE(is_confirmable(config, kRadar, doubtful));
 }
 
 TEST(LifeCycle, AConfirmedTrackCoastsThenIsHeldAndComesBack) {
   const TrackerConfig config{.shown_scans = 2};
   Track track = seen("111");
-  EXPECT_FALSE(confirm_or_coast(config, track));
+  EXPECT_FALSE(confirm_or_coast(config, kRadar, track));
   EXPECT_EQ(track.status, TrackStatus::kConfirmed);
   const TrackStatus expected[] = {TrackStatus::kCoasting, TrackStatus::kCoasting,
                                   TrackStatus::kHeld, TrackStatus::kHeld};
   for (int missed = 1; missed <= 4; ++missed) {
     track.count(false);
-    EXPECT_EQ(confirm_or_coast(config, track), missed == 1) << "begins to coast once";
+    EXPECT_EQ(confirm_or_coast(config, kRadar, track), missed == 1) << "begins to coast once";
     EXPECT_EQ(track.status, expected[missed - 1]) << missed;
   }
   track.count(true);
-  EXPECT_FALSE(confirm_or_coast(config, track));
+  EXPECT_FALSE(confirm_or_coast(config, kRadar, track));
   EXPECT_EQ(track.status, TrackStatus::kConfirmed);
 }
 
 TEST(LifeCycle, ATentativeTrackThatIsNotConfirmableStaysTentative) {
   Track track = seen("10");
-  EXPECT_FALSE(confirm_or_coast(TrackerConfig{}, track));
+  EXPECT_FALSE(confirm_or_coast(TrackerConfig{}, kRadar, track));
   EXPECT_EQ(track.status, TrackStatus::kTentative);
 }
 
@@ -63,31 +63,54 @@ TEST(LifeCycle, AllowsMoreMissesToATrackThatWasSeenMore) {
   EXPECT_EQ(allowed_misses(config, seen("1111")), 2.0);
   EXPECT_EQ(allowed_misses(config, seen("11", TrackStatus::kConfirmed)), 4.0);
   EXPECT_EQ(allowed_misses(config, seen(std::string(50, '1'), TrackStatus::kConfirmed)), 6.0);
-  EXPECT_FALSE(is_to_delete(config, kRadar, seen("1100")));
-  EXPECT_TRUE(is_to_delete(config, kRadar, seen("11000")));
-  EXPECT_FALSE(is_to_delete(config, kRadar, seen("110000", TrackStatus::kCoasting)));
-  EXPECT_TRUE(is_to_delete(config, kRadar, seen("1100000", TrackStatus::kCoasting)));
+  const auto reason = [&](const Track& track) { return reason_to_delete(config, kRadar, track); };
+  EXPECT_EQ(reason(seen("1100")), LossReason::kNone);
+  EXPECT_EQ(reason(seen("11000")), LossReason::kMissed);
+  EXPECT_EQ(reason(seen("110000", TrackStatus::kCoasting)), LossReason::kNone);
+  EXPECT_EQ(reason(seen("1100000", TrackStatus::kCoasting)), LossReason::kMissed);
 }
 
 TEST(LifeCycle, DeletesWhatIsDoubtfulTooFastOrLostInPosition) {
   const TrackerConfig config;
-  EXPECT_FALSE(is_to_delete(config, kRadar, seen("11")));
+  const auto reason = [&](const Track& track) { return reason_to_delete(config, kRadar, track); };
+  EXPECT_EQ(reason(seen("11")), LossReason::kNone);
   Track doubtful = seen("11"), sure = seen("11", TrackStatus::kConfirmed);
   doubtful.existence = sure.existence = 0.5 * config.drop_existence;
-  EXPECT_TRUE(is_to_delete(config, kRadar, doubtful));
-  EXPECT_FALSE(is_to_delete(config, kRadar, sure)) << "a confirmed one ends by misses alone";
+  EXPECT_EQ(reason(doubtful), LossReason::kDoubtful);
+  EXPECT_EQ(reason(sure), LossReason::kNone) << "a confirmed one ends by misses alone";
   Track fast = seen("11");
   fast.kinematics.mean[1] = 25.1;
-  EXPECT_TRUE(is_to_delete(config, kRadar, fast));
+  EXPECT_EQ(reason(fast), LossReason::kTooFast);
   fast.kinematics.mean[1] = 24.9;
-  EXPECT_FALSE(is_to_delete(config, kRadar, fast));
+  EXPECT_EQ(reason(fast), LossReason::kNone);
   Track wide = seen("11");
   wide.kinematics.covariance *= std::pow(1.01 * config.drop_position_std_m, 2);
-  EXPECT_TRUE(is_to_delete(config, kRadar, wide));
+  EXPECT_EQ(reason(wide), LossReason::kUncertain);
   wide.plot_m2 = std::pow(config.drop_position_std_m, 2);
-  EXPECT_FALSE(is_to_delete(config, kRadar, wide)) << "its plots are as wide";
+  EXPECT_EQ(reason(wide), LossReason::kNone) << "its plots are as wide";
   wide.kinematics.covariance *= std::nan("");
-  EXPECT_TRUE(is_to_delete(config, kRadar, wide));
+  EXPECT_EQ(reason(wide), LossReason::kUncertain);
+}
+
+TEST(LifeCycle, TheSpeedLimitGovernsStartsAndEndsATrackThatIsCertainlyAboveIt) {
+  const TrackerConfig config;
+  const auto reason = [&](const Track& track) { return reason_to_delete(config, kRadar, track); };
+  Track track = seen("11111", TrackStatus::kConfirmed);
+  track.kinematics.mean << 0.0, 16.0, 0.0, -22.0;  // 27.2 m/s
+  const Vec<double, 2> along = track.velocity().normalized();
+  for (const double std_mps : {0.5, 0.7, 0.76, 2.0}) {
+    // Wide across the course, which says nothing about the speed.
+    Mat<double, 2, 2> covariance = 100.0 * Mat<double, 2, 2>::Identity();
+    covariance += (std_mps * std_mps - 100.0) * along * along.transpose();
+    const auto rows = Eigen::seqN(1, Eigen::fix<2>, Eigen::fix<2>);
+    track.kinematics.covariance(rows, rows) = covariance;
+    const bool certain = track.speed_mps() - 25.0 > 3.0 * std_mps;
+    EXPECT_EQ(reason(track), certain ? LossReason::kTooFast : LossReason::kNone) << std_mps;
+  }
+  Track start = seen("111");
+  EXPECT_TRUE(is_confirmable(config, kRadar, start));
+  start.kinematics.mean[3] = 25.1;
+  EXPECT_FALSE(is_confirmable(config, kRadar, start)) << "however uncertain";
 }
 
 }  // namespace

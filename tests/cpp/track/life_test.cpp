@@ -264,6 +264,8 @@ TEST(Life, CoastsThenIsHeldThenLostOnce) {
       EXPECT_EQ(event.track_id, 1);
       EXPECT_LT(event.tentative_id, 0);
       story.push_back(event.kind);
+      EXPECT_EQ(event.reason,
+                event.kind == TrackEvent::kLost ? LossReason::kMissed : LossReason::kNone);
     }
     const Track* track = tracker.find(1);
     if (track == nullptr) continue;
@@ -310,6 +312,47 @@ TEST(Life, NothingAboveTheSpeedLimitIsEverConfirmed) {
     }
     EXPECT_TRUE(tracks_of(tracker, true).empty());
   }
+}
+
+/// A boat that has the speed of 15 m/s but for 50 s; the limit is 25 m/s.
+ScanReport sprint(VesselTracker& tracker, Sea& sea, int k, double speed_mps, double& north_m) {
+  north_m += 2.5 * (k >= 25 && k < 45 ? speed_mps : 15.0);
+  const Plot plot = sea.plot({north_m, 0.0}, 2.5 * k);
+  return tracker.process(2.5 * k, {&plot, 1});
+}
+
+TEST(Life, ATrackAboveTheSpeedLimitIsHeldUntilItIsCertainlyTooFastAndThenLostForThatReason) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (const double speed_mps : {25.5, 33.0}) {
+      Sea sea(seed);
+      VesselTracker tracker = make_tracker();
+      double north_m = 500.0;
+      std::vector<Event> lost;
+      for (int k = 0; k < 60; ++k) {
+        const ScanReport report = sprint(tracker, sea, k, speed_mps, north_m);
+        for (const Event& event : events_of(report, TrackEvent::kLost))
+          if (event.track_id > 0) lost.push_back(event);
+      }
+      ASSERT_EQ(lost.size(), speed_mps > 30.0 ? 1u : 0u) << seed << ' ' << speed_mps;
+      for (const Event& event : lost) EXPECT_EQ(event.reason, LossReason::kTooFast);
+      EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{speed_mps > 30.0 ? 2 : 1});
+    }
+  }
+}
+
+TEST(Life, AFullTrackerSaysSoOnce) {
+  TrackerConfig config;
+  config.max_tracks = 3;
+  VesselTracker tracker = make_tracker(config);
+  std::vector<int> full;
+  for (int k = 0; k < 40; ++k) {
+    std::vector<Plot> plots;
+    for (int n = 0; n < (k < 10 ? 5 : k < 30 ? 1 : 5); ++n)
+      plots.push_back(exact_plot({1000.0 * n + 500.0, 300.0}, 2.5 * k));
+    for (const Event& event : tracker.process(2.5 * k, plots).events)
+      if (event.kind == TrackEvent::kFull) full.push_back(k);
+  }
+  EXPECT_EQ(full, (std::vector<int>{1, 31}));
 }
 
 TEST(Life, AnEchoThatWandersOverItsSpotIsOneTrackAtRest) {

@@ -76,7 +76,7 @@ TEST(Operator, ATargetFarAheadOfTheClockIsNotDesignated) {
   EXPECT_EQ(tracker.designate(1.7e9, 500.0, 500.0, 20.0), 1) << "no clock yet";
   (void)tracker.drop(1);
   (void)tracker.process(100.0, {});
-  const double latest_s = tracker.latest_designation_s();
+  const double latest_s = tracker.latest_time_s();
   EXPECT_EQ(latest_s, 3700.0);
   const auto before = tracker.save();
   for (const double time_s : {std::nextafter(latest_s, 1e9), 1e4, 1e300})
@@ -112,6 +112,10 @@ TEST(Operator, WhatMakesNoSenseIsNotDesignated) {
     EXPECT_EQ(tracker.designate(0.0, 0.0, 0.0, bad), 0);
   }
   for (const double std : {0.0, -10.0, 1e200}) EXPECT_EQ(tracker.designate(0.0, 0.0, 0.0, std), 0);
+  for (const double far : {1e10, -1e300, std::numeric_limits<double>::max()}) {
+    EXPECT_EQ(tracker.designate(0.0, far, 0.0, 10.0), 0) << far;
+    EXPECT_EQ(tracker.designate(0.0, 0.0, far, 10.0), 0) << far;
+  }
   EXPECT_EQ(tracker.save(), before);
   EXPECT_EQ(tracker.process(1.0, {}).status, Status::kOk);
 }
@@ -174,6 +178,91 @@ TEST(Operator, ANewTrackHasNoNameOfAnOldOne) {
   EXPECT_TRUE(tracker.drop(1));
   ASSERT_EQ(tracker.designate(0.0, 100.0, 0.0, 10.0), 2);
   EXPECT_EQ(tracker.find(2)->label(), "");
+}
+
+TEST(Operator, PointingAtATrackedVesselConfirmsTheTrackThatIsThere) {
+  for (const int scans : {2, 3, 20}) {
+    Sea sea(5);
+    VesselTracker tracker = make_tracker();
+    follow(tracker, sea, 0, scans);
+    ASSERT_EQ(tracker.size(), 1);
+    const std::int64_t before = tracks_of(tracker, false).front()->id;
+    const Vec<double, 2> place = kBoat.at(2.5 * (scans - 1)) + Vec<double, 2>(15.0, -10.0);
+    const double time_s = 2.5 * (scans - 1) + 0.7;
+    EXPECT_EQ(tracker.designate(time_s, place[0], place[1], 30.0), 1) << scans;
+    EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1});
+    EXPECT_EQ(tracker.find(1)->status, TrackStatus::kConfirmed);
+    EXPECT_EQ(tracker.find(1)->tentative_id, before < 0 ? before : -1);
+    EXPECT_GT(tracker.find(1)->speed_mps(), 0.0) << "the track that was there";
+    follow(tracker, sea, scans, scans + 20);
+    EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1}) << scans;
+  }
+}
+
+TEST(Operator, PointsAtTheNearerOfTwoAndNotAtOneFarOff) {
+  VesselTracker tracker = make_tracker();
+  const std::int64_t one = tracker.designate(0.0, 1000.0, 0.0, 10.0);
+  const std::int64_t other = tracker.designate(0.0, 1060.0, 0.0, 10.0);
+  EXPECT_EQ(one, 1);
+  EXPECT_EQ(other, 2);
+  EXPECT_EQ(tracker.designate(0.0, 1015.0, 0.0, 30.0), one);
+  EXPECT_EQ(tracker.designate(0.0, 1045.0, 0.0, 30.0), other);
+  EXPECT_EQ(tracker.designate(0.0, 1200.0, 0.0, 30.0), 3);
+  EXPECT_EQ(tracker.designate(100.0, 1000.0, 0.0, 10.0), 4) << "of another time";
+}
+
+TEST(Operator, PointingAtAHeldVesselShowsItAgain) {
+  Sea sea(6);
+  VesselTracker tracker = make_tracker();
+  follow(tracker, sea, 0, 20);
+  double time_s = 47.5;
+  for (int k = 0; k < 6; ++k) (void)tracker.process(time_s += 2.5, {});
+  ASSERT_EQ(tracker.find(1)->status, TrackStatus::kHeld);
+  EXPECT_EQ(tracker.designate(time_s, kBoat.at(time_s)[0], kBoat.at(time_s)[1], 50.0), 1);
+  EXPECT_TRUE(tracker.find(1)->shown());
+  EXPECT_EQ(tracker.size(), 1);
+}
+
+TEST(Operator, AVesselDroppedWithHushStaysSilentUntilItIsPointedAt) {
+  Sea sea(7);
+  VesselTracker tracker = make_tracker();
+  follow(tracker, sea, 0, 20);
+  EXPECT_FALSE(tracker.drop(9, true));
+  EXPECT_TRUE(tracker.drop(1, true));
+  for (int k = 20; k < 60; ++k) {
+    const Plot plot = sea.plot(kBoat.at(2.5 * k), 2.5 * k);
+    const ScanReport report = tracker.process(2.5 * k, {&plot, k % 7 == 0 ? 0u : 1u});
+    EXPECT_TRUE(report.events.empty()) << k;
+    for (const std::int64_t id : report.plot_track_id) EXPECT_EQ(id, 0);
+    tracker.for_each([](const Track& track) { EXPECT_FALSE(track.shown()); });
+  }
+  VesselTracker restored = make_tracker();
+  ASSERT_TRUE(restored.restore(tracker.save()));
+  EXPECT_FALSE(restored.find(1)->shown());
+  const Vec<double, 2> place = kBoat.at(2.5 * 59);
+  EXPECT_EQ(tracker.designate(2.5 * 59, place[0], place[1], 30.0), 1);
+  EXPECT_TRUE(tracker.find(1)->shown());
+  EXPECT_TRUE(tracker.drop(1));
+  EXPECT_EQ(tracker.size(), 0);
+}
+
+TEST(Operator, AHushedVesselThatIsGoneIsForgotten) {
+  Sea sea(8);
+  VesselTracker tracker = make_tracker();
+  follow(tracker, sea, 0, 20);
+  EXPECT_TRUE(tracker.drop(1, true));
+  double time_s = 47.5;
+  for (int k = 0; k < 30; ++k) EXPECT_TRUE(tracker.process(time_s += 2.5, {}).events.empty());
+  EXPECT_EQ(tracker.size(), 0);
+}
+
+TEST(Operator, NamesAreUtf8) {
+  VesselTracker tracker = make_tracker();
+  ASSERT_EQ(tracker.designate(0.0, 100.0, 0.0, 10.0), 1);
+  EXPECT_TRUE(tracker.rename(1, "F\u00e4hre 7"));
+  for (const char* bytes : {"\xff", "a\xc3", "\xc0\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80"})
+    EXPECT_FALSE(tracker.rename(1, bytes));
+  EXPECT_EQ(tracker.find(1)->label(), "F\u00e4hre 7");
 }
 
 }  // namespace

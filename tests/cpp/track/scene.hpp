@@ -132,7 +132,12 @@ class Ledger {
         case TrackEvent::kLost:
           EXPECT_EQ(ids.erase(event.track_id), 1u) << event.track_id << " was not known";
           break;
+        case TrackEvent::kFull:
+          EXPECT_EQ(event.track_id, 0);
+          break;
       }
+      EXPECT_EQ(event.reason != LossReason::kNone, event.kind == TrackEvent::kLost)
+          << to_string(event.kind) << " for the reason " << to_string(event.reason);
     }
   }
 

@@ -159,7 +159,7 @@ TEST(StrobeTracker, FollowsACircleWithAnImm) { expect_follows(vessel_imm(kRadar)
 TEST(StrobeTracker, ReadsAStrobeWhenTheBeamHasPassedIt) {
   Sea sea({straight({900.0, -50.0}, {0.0, 9.0})});  // across north
   Bayesian tracker = make_tracker();
-  tracker.designate(0.0, 900.0, -50.0, 5.0);
+  (void)tracker.designate(0.0, 900.0, -50.0, 5.0);
   double before_s = -0.01 * kRadar.period_s;
   for (int k = 0; k < 12 * kSweeps; ++k) {
     for (const StrobeReading& reading : tracker.process(sea.sweep(k)).readings) {
@@ -181,7 +181,7 @@ TEST(StrobeTracker, MeasuresWhatAStrobeOnThePictureMeasures) {
   const StrobeTrackerConfig config{
       .least_amplitude = 30, .pedestal = 10, .several = EchoChoice::kAll};
   Bayesian tracker = make_tracker(config);
-  tracker.designate(0.0, 700.0, 500.0, 10.0);
+  (void)tracker.designate(0.0, 700.0, 500.0, 10.0);
   for (int turn = 0; turn < 5; ++turn) {
     std::vector<std::uint8_t> picture;
     std::vector<StrobeReading> readings;

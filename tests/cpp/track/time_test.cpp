@@ -75,7 +75,30 @@ TEST(RotatingAntenna, TheEstimateIsOfThePlotsTime) {
   EXPECT_NEAR(later.mean[2], track.kinematics.mean[2] + 10.0 * track.kinematics.mean[3], 5.0);
   EXPECT_GT(later.covariance(0, 0), track.kinematics.covariance(0, 0));
   EXPECT_TRUE(is_covariance(later.covariance));
-  EXPECT_EQ(tracker.kinematics_at(track, track.time_s - 1.0).mean, track.kinematics.mean);
+  EXPECT_EQ(tracker.kinematics_at(track, track.time_s).mean, track.kinematics.mean);
+  const Gaussian<4> back = tracker.kinematics_at(track, track.time_s - 1.0);
+  EXPECT_NEAR(back.mean[0], track.kinematics.mean[0] - track.kinematics.mean[1], 1e-9);
+  EXPECT_NEAR(back.mean[2], track.kinematics.mean[2] - track.kinematics.mean[3], 1e-9);
+}
+
+TEST(RotatingAntenna, AllTracksAreKnownAtTheTimeOfTheScan) {
+  VesselTracker tracker = make_tracker();
+  const std::vector<Boat> boats{{{1000.0, 0.0}, {15.0, 0.0}}, {{-1500.0, 300.0}, {0.0, 8.0}}};
+  for (int k = 0; k < 20; ++k) {
+    std::vector<Plot> plots;
+    for (std::size_t n = 0; n < boats.size(); ++n) {
+      const double seen_s = 2.5 * k + 0.5 * static_cast<double>(n);
+      plots.push_back(exact_plot(boats[n].at(seen_s), seen_s));
+    }
+    (void)tracker.process(2.5 * k + 2.4, plots);
+  }
+  ASSERT_EQ(tracks_of(tracker, true).size(), 2u);
+  for (const Track* track : tracks_of(tracker, true)) {
+    const Gaussian<4> now = tracker.kinematics_at(*track, tracker.time_s());
+    const Boat& boat = boats[track->position()[0] > 0.0 ? 0 : 1];
+    EXPECT_LT((Vec<double, 2>(now.mean[0], now.mean[2]) - boat.at(tracker.time_s())).norm(), 3.0);
+    EXPECT_GT((track->position() - boat.at(tracker.time_s())).norm(), 10.0);
+  }
 }
 
 /// Error of the position of a boat in a steady turn, m, each of whose plots comes again so much

@@ -130,8 +130,10 @@ struct TrackerConfig {
               "A track with a larger standard deviation of its position is dropped; the limit is "
               "raised to two plot errors and, for a confirmed track, to what a vessel runs in "
               "`coast_scans`."),
-        field("drop_speed_factor", &C::drop_speed_factor, kPositive, "1",
-              "A track faster than this times the speed limit of the radar is dropped."),
+        field(
+            "drop_speed_factor", &C::drop_speed_factor, kPositive, "1",
+            "Factor on the speed limit of the radar, above which a tentative track is dropped, and "
+            "a confirmed one by three standard deviations of its speed."),
         field("duplicate_distance", &C::duplicate_distance, kNotNegative, "sigma²",
               "Two tracks nearer than this, in squared sigmas of their difference, are one."),
         field("vessel_length_m", &C::vessel_length_m, kNotNegative, "m",

@@ -50,7 +50,7 @@ inline bool same_target(const Gaussian<4>& a, const Gaussian<4>& b, double limit
 /// plots, each of which may be another echo, and is not compared.
 inline bool same_vessel(const Track& known, const Track& other, double length_m,
                         double limit) noexcept {
-  if (!known.shown()) return false;
+  if (!known.active()) return false;
   if (!((known.position() - other.position()).squaredNorm() < length_m * length_m)) return false;
   if (!other.confirmed()) return true;
   const Cholesky<2> factor(known.velocity_covariance() + other.velocity_covariance());

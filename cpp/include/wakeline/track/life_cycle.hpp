@@ -13,11 +13,19 @@
 
 namespace wakeline {
 
-/// M of the last N scans had a plot, this one too, and existence is beyond doubt.
-inline bool is_confirmable(const TrackerConfig& config, const Track& track) noexcept {
+/// The speed above which no track starts.
+inline double speed_limit_mps(const TrackerConfig& config, const Radar& radar) noexcept {
+  return config.drop_speed_factor * radar.max_speed_mps;
+}
+
+/// M of the last N scans had a plot, this one too, existence is beyond doubt, and the speed within
+/// the limit.
+inline bool is_confirmable(const TrackerConfig& config, const Radar& radar,
+                           const Track& track) noexcept {
   const std::uint32_t window =
       config.confirm_window >= 32 ? ~0u : (1u << config.confirm_window) - 1u;
   return track.misses == 0 && track.existence > config.confirm_existence &&
+         !(track.speed_mps() > speed_limit_mps(config, radar)) &&
          std::popcount(track.history & window) >= config.confirm_hits;
 }
 
@@ -30,26 +38,29 @@ inline double allowed_misses(const TrackerConfig& config, const Track& track) no
 
 /// Confirms a track, or lets a confirmed one coast, by the scans counted. True when it has just
 /// begun to coast.
-inline bool confirm_or_coast(const TrackerConfig& config, Track& track) noexcept {
+inline bool confirm_or_coast(const TrackerConfig& config, const Radar& radar,
+                             Track& track) noexcept {
   const bool was_confirmed = track.confirmed();
-  if (was_confirmed || is_confirmable(config, track))
+  if (was_confirmed || is_confirmable(config, radar, track))
     track.status = track.misses == 0                    ? TrackStatus::kConfirmed
                    : track.misses <= config.shown_scans ? TrackStatus::kCoasting
                                                         : TrackStatus::kHeld;
   return was_confirmed && track.misses == 1;
 }
 
-/// Whether a track is to be deleted: missed for too long, doubtful, too fast, or lost in position.
-inline bool is_to_delete(const TrackerConfig& config, const Radar& radar,
-                         const Track& track) noexcept {
-  const bool missed = track.misses > allowed_misses(config, track);
-  const bool doubtful = !track.confirmed() && track.existence < config.drop_existence;
-  const bool too_fast = track.speed_mps() > config.drop_speed_factor * radar.max_speed_mps;
+/// Why a track is to be deleted, or `kNone`.
+inline LossReason reason_to_delete(const TrackerConfig& config, const Radar& radar,
+                                   const Track& track) noexcept {
+  if (track.misses > allowed_misses(config, track)) return LossReason::kMissed;
+  if (!track.confirmed() && track.existence < config.drop_existence) return LossReason::kDoubtful;
+  if (exceeds_speed(track.kinematics, speed_limit_mps(config, radar),
+                    track.confirmed() ? kSpeedSigmas : 0.0))
+    return LossReason::kTooFast;
   // A confirmed track is kept through a silence in which the target may move this far.
   const double run_m = radar.max_speed_mps * radar.period_s * config.coast_scans;
   const double allowed_std_m = std::max({config.drop_position_std_m, 2.0 * std::sqrt(track.plot_m2),
                                          track.confirmed() ? run_m : 0.0});
-  return missed || doubtful || too_fast || !(track.position_std_m() <= allowed_std_m);
+  return track.position_std_m() <= allowed_std_m ? LossReason::kNone : LossReason::kUncertain;
 }
 
 }  // namespace wakeline

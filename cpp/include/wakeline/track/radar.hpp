@@ -27,8 +27,10 @@ struct Radar {
         field("extent_std_m", &R::extent_std_m, kNotNegative, "m",
               "Standard deviation of an echo's position on the hull, per axis."),
         field("period_s", &R::period_s, kPositive, "s", "Antenna revolution."),
-        field("max_speed_mps", &R::max_speed_mps, kPositive, "m/s",
-              "Speed limit of the vessels, with a fifth to spare: faster tracks are dropped."),
+        field(
+            "max_speed_mps", &R::max_speed_mps, kPositive, "m/s",
+            "Speed limit of the vessels: no faster track starts, and a confirmed one is lost above "
+            "it by three standard deviations of its speed."),
         field("bearing_offset_rad", &R::bearing_offset_rad, kFinite, "rad",
               "Measured minus true bearing; subtracted from every plot."));
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "wakeline/core/cholesky.hpp"
+#include "wakeline/core/status.hpp"
 #include "wakeline/track/place_index.hpp"
 #include "wakeline/track/radar.hpp"
 
@@ -31,9 +32,10 @@ class ScanPlots {
 
   /// Converts plots to positions, up to the capacity, in place of those of the scan before.
   ///
-  /// Rejects plots that are not finite, behind the antenna, of a bearing so large that it is
-  /// rounded by more than the bearing error, or farther than `slack_s` from the time of the scan.
-  /// One later than the scan has a wrong clock and counts as of the scan's time.
+  /// Rejects plots that are not finite, at a place or with an error beyond `kLargestInput`, behind
+  /// the antenna, of a bearing so large that it is rounded by more than the bearing error, or
+  /// farther than `slack_s` from the time of the scan. One later than the scan has a wrong clock
+  /// and counts as of the scan's time.
   void convert(const Radar& radar, std::span<const Plot> plots, double time_s,
                double slack_s) noexcept {
     plots_.clear();
@@ -46,7 +48,9 @@ class ScanPlots {
       const Gaussian<2> position = radar.position(plot.range_m, plot.bearing_rad, plot.own);
       const bool usable = std::fabs(plot.time_s - time_s) <= slack_s && plot.range_m >= 0.0 &&
                           kRounding * std::fabs(plot.bearing_rad) <= radar.bearing_std_rad &&
-                          is_finite(position.mean) && Cholesky<2>(position.covariance).ok();
+                          in_range(position.mean) &&
+                          in_range(std::sqrt(position.covariance.trace())) &&
+                          Cholesky<2>(position.covariance).ok();
       if (!usable) continue;
       const double plot_s = std::min(plot.time_s, time_s);
       index_.add(position.mean, position.covariance.trace(), size());

@@ -84,11 +84,11 @@ class StrobeTracker {
   StrobeReport process(const Sweep<Amplitude>& sweep, const OwnShip& own = {}) noexcept;
 
   /// Starts a confirmed track at rest, by the operator's word. Returns its number, or 0 when there
-  /// is no room, a number is not finite, the standard deviation not positive or the time more than
-  /// a period after the last sweep. A tracker that is full deletes its newest tentative track,
-  /// without an event.
-  std::int64_t designate(double time_s, double north_m, double east_m, double position_std_m,
-                         const OwnShip& own = {}) noexcept;
+  /// is no room, a number is not finite or out of range, the standard deviation not positive or the
+  /// time more than a period after the last sweep. A tracker that is full deletes its newest
+  /// tentative track, without an event.
+  [[nodiscard]] std::int64_t designate(double time_s, double north_m, double east_m,
+                                       double position_std_m, const OwnShip& own = {}) noexcept;
 
   /// Starts tentative tracks at plots of the turn at hand that are neither in a strobe nor
   /// excluded; returns their number. There is no event until they are confirmed or lost.
@@ -110,10 +110,11 @@ class StrobeTracker {
     return estimators_[static_cast<std::size_t>(track.slot)];
   }
 
-  /// The belief of a track of this tracker at a time that is not before its estimate; NaN where the
-  /// time is not finite or so far ahead that the prediction fails.
+  /// The belief of a track of this tracker at a time, before its estimate at constant velocity; NaN
+  /// where the time is not finite or so far ahead that the prediction fails.
   [[nodiscard]] Gaussian<4> kinematics_at(const StrobeTrack& track, double time_s) const noexcept {
-    if (time_s <= track.time_s) return track.kinematics;
+    if (time_s <= track.time_s)
+      return at_constant_velocity(track.kinematics, time_s - track.time_s);
     Estimator ahead = estimator_of(track);
     if (ahead.predict(time_s - track.time_s) == Status::kOk) return kinematics_of(ahead.estimate());
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -162,13 +163,12 @@ class StrobeTracker {
   static constexpr double kGap = 1.5;           ///< widths
   /// Beside a strobe, in widths: the sweep there shows whether an echo continues outside.
   static constexpr double kMargin = 1.5;
-  static constexpr double kSpeedTolerance = 1.2;  ///< of the speed limit, as `Radar` says
-  static constexpr int kEchoes = 64;              ///< that are distinguished in a strobe
+  static constexpr int kEchoes = 64;  ///< that are distinguished in a strobe
 
   // The beam --------------------------------------------------------------------------------------
 
   [[nodiscard]] SweepStatus admit(const Sweep<Amplitude>& sweep, const OwnShip& own) noexcept {
-    if (!sweep.valid() || !is_finite(own.position<double>())) return SweepStatus::kInvalid;
+    if (!sweep.valid() || !in_range(own.position<double>())) return SweepStatus::kInvalid;
     if (sweep.amplitude.size() > static_cast<std::size_t>(config_.max_sweep_cells))
       return SweepStatus::kTooLong;
     if (!running_) {
@@ -280,16 +280,18 @@ class StrobeTracker {
         recent_.from(track.from_rad), RadiusGate{strobe.radius_m}, centre, echo_, rivals_);
     const double passed_rad = echo ? unwrapped(echo.bearing_rad, track.pass_rad) : track.pass_rad;
     const double time_s = std::max(recent_.time_s(passed_rad), track.time_s);
-    const bool sound = take(track, time_s, echo, own);
+    LossReason reason = take(track, time_s, echo, own) ? LossReason::kNone : LossReason::kFailed;
     count(track, bool(echo));
-    const bool keeps =
-        sound && is_kept(track) &&
-        lay(track, config_.next_radius_m(strobe.radius_m, bool(echo)), track.pass_rad + kTurn, own);
+    if (reason == LossReason::kNone) reason = reason_to_end(track);
+    if (reason == LossReason::kNone &&
+        !lay(track, config_.next_radius_m(strobe.radius_m, bool(echo)), track.pass_rad + kTurn,
+             own))
+      reason = LossReason::kFailed;
     if (readings_.size() < readings_.capacity())
       readings_.push_back({track.id, time_s, strobe.centre_m, strobe.radius_m, echo, seen_,
                            bool(echo) && echo.filled() >= config_.fill_share});
-    if (!keeps) announce(TrackEvent::kLost, track);
-    return keeps;
+    if (reason != LossReason::kNone) announce(TrackEvent::kLost, track, reason);
+    return reason == LossReason::kNone;
   }
 
   /// Brings the estimate to the time of the strobe and updates it by the echo. An estimator that
@@ -329,15 +331,19 @@ class StrobeTracker {
     }
   }
 
-  [[nodiscard]] bool is_kept(const StrobeTrack& track) const noexcept {
-    const int allowed = track.confirmed() ? config_.lost_after : 1;
-    return track.misses < allowed && !(track.misses == 0 && track.hits >= config_.confirm_hits &&
-                                       track.speed_mps() > kSpeedTolerance * radar_.max_speed_mps);
+  /// Why a track ends, or `kNone`.
+  [[nodiscard]] LossReason reason_to_end(const StrobeTrack& track) const noexcept {
+    if (track.misses >= (track.confirmed() ? config_.lost_after : 1)) return LossReason::kMissed;
+    const bool is_known = track.misses == 0 && track.hits >= config_.confirm_hits;
+    return is_known && exceeds_speed(track.kinematics, radar_.max_speed_mps, kSpeedSigmas)
+               ? LossReason::kTooFast
+               : LossReason::kNone;
   }
 
-  void announce(TrackEvent kind, const StrobeTrack& track) noexcept {
+  void announce(TrackEvent kind, const StrobeTrack& track,
+                LossReason reason = LossReason::kNone) noexcept {
     if (events_.size() < events_.capacity())
-      events_.push_back({kind, track.id, track.tentative_id, time_s_});
+      events_.push_back({kind, track.id, track.tentative_id, time_s_, reason});
   }
 
   // Acquisition -----------------------------------------------------------------------------------
@@ -525,7 +531,8 @@ std::int64_t StrobeTracker<Estimator, Amplitude>::designate(double time_s, doubl
   if (running_ && time_s > time_s_ + radar_.period_s) return 0;
   const Gaussian<2> position{{north_m, east_m},
                              position_std_m * position_std_m * Mat<double, 2, 2>::Identity()};
-  if (!is_finite(position.mean) || !is_finite(position.covariance)) return 0;
+  if (!in_range(position.mean) || !in_range(position_std_m) || !in_range(own.position<double>()))
+    return 0;
   if (tracks_.full() && !make_room()) return 0;
   StrobeTrack* track = open(position, time_s, next_pass_rad(position.mean, own), own);
   if (track == nullptr) return 0;
@@ -541,7 +548,7 @@ int StrobeTracker<Estimator, Amplitude>::acquire(std::span<const VideoPlot> plot
   for (const VideoPlot& plot : plots) {
     if (!running_ || land_.excludes(plot.bearing_rad, plot.range_m)) continue;
     const Gaussian<2> position = radar_.position(plot.range_m, plot.bearing_rad, own);
-    if (!is_finite(position.mean) || !(plot.time_s <= time_s_) ||
+    if (!in_range(position.mean) || !(plot.time_s <= time_s_) ||
         is_tracked(position.mean, plot.time_s))
       continue;
     const double passed_rad =

@@ -22,16 +22,95 @@ enum class TrackStatus : std::uint8_t {
   kHeld,       ///< a target not seen for longer: kept, but not shown
 };
 
-enum class TrackEvent : std::uint8_t { kStarted, kConfirmed, kCoasting, kLost };
+enum class TrackEvent : std::uint8_t {
+  kStarted,
+  kConfirmed,
+  kCoasting,
+  kLost,
+  kFull,  ///< `max_tracks` is reached; again only when there has been room in between
+};
+
+constexpr const char* to_string(TrackEvent event) noexcept {
+  switch (event) {
+    case TrackEvent::kStarted:
+      return "started";
+    case TrackEvent::kConfirmed:
+      return "confirmed";
+    case TrackEvent::kCoasting:
+      return "coasting";
+    case TrackEvent::kLost:
+      return "lost";
+    case TrackEvent::kFull:
+      return "full";
+  }
+  return "unknown";
+}
+
+/// Why a track was lost.
+enum class LossReason : std::uint8_t {
+  kNone,       ///< it was not lost
+  kMissed,     ///< without a plot for too long
+  kDoubtful,   ///< a tentative track whose target hardly exists
+  kTooFast,    ///< above the speed limit of the radar
+  kUncertain,  ///< the position is not known well enough
+  kDuplicate,  ///< a senior track follows the same target
+  kDisplaced,  ///< a tentative track that made room for a more probable one
+  kFailed,     ///< the estimator cannot follow the measurements
+};
+
+constexpr const char* to_string(LossReason reason) noexcept {
+  switch (reason) {
+    case LossReason::kNone:
+      return "";
+    case LossReason::kMissed:
+      return "missed";
+    case LossReason::kDoubtful:
+      return "doubtful";
+    case LossReason::kTooFast:
+      return "too_fast";
+    case LossReason::kUncertain:
+      return "uncertain";
+    case LossReason::kDuplicate:
+      return "duplicate";
+    case LossReason::kDisplaced:
+      return "displaced";
+    case LossReason::kFailed:
+      return "failed";
+  }
+  return "unknown";
+}
 
 /// A change in the life of a track. A tentative track has a negative number; when it is confirmed
 /// it gets the next positive one, for good.
 struct Event {
   TrackEvent kind;
-  std::int64_t track_id;
+  std::int64_t track_id;      ///< 0 of `kFull`
   std::int64_t tentative_id;  ///< the number before it was confirmed; 0 for a designated track
   double time_s;
+  LossReason reason = LossReason::kNone;  ///< of a lost track
 };
+
+/// A belief over `[x, vx, y, vy]` moved in time, also backwards, at constant velocity.
+inline Gaussian<4> at_constant_velocity(const Gaussian<4>& kinematics, double dt_s) noexcept {
+  Mat<double, 4, 4> step = Mat<double, 4, 4>::Identity();
+  step(0, 1) = step(2, 3) = dt_s;
+  return {step * kinematics.mean, step * kinematics.covariance * step.transpose()};
+}
+
+/// Whether the speed in a belief over `[x, vx, y, vy]` is above a limit by that many of its
+/// standard deviations.
+inline bool exceeds_speed(const Gaussian<4>& kinematics, double limit_mps, double sigmas) noexcept {
+  const Vec<double, 2> velocity(kinematics.mean[1], kinematics.mean[3]);
+  const double speed_mps = velocity.norm();
+  if (!(speed_mps > limit_mps)) return false;
+  const auto rows = Eigen::seqN(1, Eigen::fix<2>, Eigen::fix<2>);
+  const Mat<double, 2, 2> covariance = kinematics.covariance(rows, rows);
+  const Vec<double, 2> along = velocity / speed_mps;
+  return speed_mps - limit_mps > sigmas * std::sqrt(along.dot(covariance * along));
+}
+
+/// By so many standard deviations a confirmed track exceeds the speed limit before it is lost.
+inline constexpr double kSpeedSigmas = 3.0;
 
 /// What a tracker knows of a target, besides the estimator that follows its motion.
 struct Track {
@@ -52,12 +131,15 @@ struct Track {
   int duplicate_scans = 0;    ///< in a row that a senior track was on the same target
   double plot_m2 = 0.0;       ///< variance of its last plot, per axis (mean of both)
   LearnedPlots learned = {};  ///< what the clutter map has learned of its own plots
+  bool hushed = false;        ///< followed, but neither shown nor reported: the operator's word
 
   [[nodiscard]] bool confirmed() const noexcept { return status != TrackStatus::kTentative; }
   /// Confirmed, and not silent for so long that it is only held.
-  [[nodiscard]] bool shown() const noexcept {
+  [[nodiscard]] bool active() const noexcept {
     return status == TrackStatus::kConfirmed || status == TrackStatus::kCoasting;
   }
+  /// Active, and not hushed.
+  [[nodiscard]] bool shown() const noexcept { return active() && !hushed; }
   [[nodiscard]] double speed_mps() const noexcept {
     return std::hypot(kinematics.mean[1], kinematics.mean[3]);
   }
@@ -105,6 +187,7 @@ struct Track {
     fields(duplicate_scans);
     fields(plot_m2);
     learned.archive(fields);
+    fields(hushed);
   }
 };
 

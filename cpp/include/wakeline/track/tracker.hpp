@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "wakeline/core/utf8.hpp"
 #include "wakeline/simd/side_by_side.hpp"
 #include "wakeline/track/association.hpp"
 #include "wakeline/track/association_probabilities.hpp"
@@ -38,13 +39,13 @@
 namespace wakeline {
 
 /// The result of a scan. The spans are valid until the next call.
-struct ScanReport {
+struct [[nodiscard]] ScanReport {
   Status status = Status::kOk;
   std::span<const std::int64_t>
       plot_track_id;  ///< of each plot up to `max_plots` the track it belongs to, or 0
   std::span<const Event> events;
-  /// Not finite, behind the antenna, of so many turns that the bearing is lost, of another time
-  /// than the scan, or beyond `max_plots`.
+  /// Not finite, out of range, behind the antenna, of so many turns that the bearing is lost, of
+  /// another time than the scan, or beyond `max_plots`.
   int rejected_plots = 0;
 };
 
@@ -76,10 +77,12 @@ class Tracker {
   Tracker& operator=(Tracker&&) noexcept = default;
 
   /// Processes the plots of one scan, a whole turn of the antenna that ends at `time_s`: a track
-  /// without a plot has missed it. Rejects a scan that is before the last one.
+  /// without a plot has missed it. Rejects a scan that is before the last one
+  /// (`kNegativeTimeStep`) or after `latest_time_s()` (`kNotFinite`): nothing changes.
   ScanReport process(double time_s, std::span<const Plot> plots) noexcept;
 
-  /// Calls `f(track)` for every track, tentative ones too, older ones first.
+  /// Calls `f(track)` for every track, tentative and hushed ones too, older ones first. Each has
+  /// the estimate of its own time; `kinematics_at` has all at one.
   template <class Function>
   void for_each(Function&& function) const {
     for (const int slot : tracks_.slots()) function(tracks_.at(slot));
@@ -95,34 +98,44 @@ class Tracker {
     return estimators_[static_cast<std::size_t>(track.slot)];
   }
 
-  /// The belief of a track of this tracker at a time that is not before its estimate; NaN where the
-  /// time is not finite or so far ahead that the prediction fails.
+  /// The belief of a track of this tracker at a time such as `time_s()`, before its estimate at
+  /// constant velocity; NaN where the time is not finite or so far ahead that the prediction fails.
   [[nodiscard]] Gaussian<4> kinematics_at(const Track& track, double time_s) const noexcept;
 
-  /// Until when a target can be designated: an hour after the last scan, or ever before the first
-  /// one. A time further ahead is of another clock, and the track would wait for it without plots.
-  [[nodiscard]] double latest_designation_s() const noexcept {
+  /// Until when a scan is processed and a target can be designated: an hour after the last scan, or
+  /// ever before the first one. A time further ahead is of another clock. A radar that was silent
+  /// for longer goes on by a scan without plots an hour after the last one.
+  [[nodiscard]] double latest_time_s() const noexcept {
     return started_ ? time_s_ + kLongestSilence_s : std::numeric_limits<double>::infinity();
   }
 
-  /// Starts a confirmed track at rest, by the operator's word. Returns its number, or 0 when there
-  /// is no room, the position is not finite or the time is too far ahead. Where the tracker is
-  /// full, the weakest tentative track is deleted, without an event.
-  std::int64_t designate(double time_s, double north_m, double east_m,
-                         double position_std_m) noexcept;
+  /// Confirms the track in whose gate the operator points, or starts a confirmed one at rest.
+  ///
+  /// Returns its number, or 0 when there is no room, a number is not finite or out of range or the
+  /// time is too far ahead. Of several tracks the nearest is confirmed, in standard deviations; it
+  /// is hushed no more. Where the tracker is full, the weakest tentative track is deleted for a new
+  /// one, without an event.
+  [[nodiscard]] std::int64_t designate(double time_s, double north_m, double east_m,
+                                       double position_std_m) noexcept;
 
-  /// Deletes a track; false when there is none of that number.
-  bool drop(std::int64_t id) noexcept {
-    const Track* track = tracks_.find(id);
-    if (track != nullptr) tracks_.remove(track->slot);
-    return track != nullptr;
+  /// Deletes a track; false when there is none of that number. With `hush` its vessel is followed
+  /// in silence, so that it does not start again under another number: the track is not shown, has
+  /// no events and no plots reported, until its vessel is lost, it is designated or dropped again.
+  bool drop(std::int64_t id, bool hush = false) noexcept {
+    Track* track = tracks_.find(id);
+    if (track == nullptr) return false;
+    if (hush)
+      track->hushed = true;
+    else
+      tracks_.remove(track->slot);
+    return true;
   }
 
   /// Names a track (31 bytes at most are kept, of UTF-8 whole letters); false when there is none of
-  /// that number.
+  /// that number or the name is not UTF-8.
   bool rename(std::int64_t id, std::string_view name) noexcept {
     Track* track = tracks_.find(id);
-    if (track == nullptr) return false;
+    if (track == nullptr || !is_utf8(name)) return false;
     std::size_t length = std::min(name.size(), track->name.size() - 1);
     const auto inside_letter = [&](std::size_t k) { return (name[k] & 0xC0) == 0x80; };
     while (length > 0 && length < name.size() && inside_letter(length)) --length;
@@ -143,15 +156,19 @@ class Tracker {
   [[nodiscard]] const Radar& radar() const noexcept { return radar_; }
   [[nodiscard]] const TrackerConfig& config() const noexcept { return config_; }
 
-  /// Time of the last scan.
+  /// Whether there was a scan.
+  [[nodiscard]] bool started() const noexcept { return started_; }
+
+  /// Time of the last scan; 0 before the first.
   [[nodiscard]] double time_s() const noexcept { return time_s_; }
 
  private:
   static constexpr double kDesignatedExistence = 0.999;
   /// A plot that many periods from its scan has a wrong clock.
   static constexpr double kClockPeriods = 10.0;
-  static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar, before a designation
-  static constexpr std::uint32_t kArchiveVersion = 5;
+  static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
+  static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
+  static constexpr std::uint32_t kArchiveVersion = 6;
   static constexpr std::size_t kGroup = 32;  ///< tracks that are stepped together
 
   /// Calls `f(slots)` for a few tracks at a time, which stay in the cache from stage to stage.
@@ -277,21 +294,21 @@ class Tracker {
   /// Whether a track was designated for a time to which the scans have not come yet: until then it
   /// misses none.
   [[nodiscard]] bool is_awaited(const Track& track) const noexcept {
-    return track.time_s > time_s_ && track.time_s <= latest_designation_s();
+    return track.time_s > time_s_ && track.time_s <= latest_time_s();
   }
 
   void confirm_and_delete() noexcept {
     tracks_.remove_if([&](Track& track) {
-      if (confirm_or_coast(config_, track)) announce(TrackEvent::kCoasting, track);
-      const bool ends = is_to_delete(config_, radar_, track);
-      if (ends) announce(TrackEvent::kLost, track);
-      return ends;
+      if (confirm_or_coast(config_, radar_, track)) announce(TrackEvent::kCoasting, track);
+      const LossReason reason = reason_to_delete(config_, radar_, track);
+      if (reason != LossReason::kNone) announce(TrackEvent::kLost, track, reason);
+      return reason != LossReason::kNone;
     });
   }
 
   void delete_duplicates() noexcept {
     for (const int slot : duplicates_.find(tracks_, tracks_.slots())) {
-      announce(TrackEvent::kLost, tracks_.at(slot));
+      announce(TrackEvent::kLost, tracks_.at(slot), LossReason::kDuplicate);
       tracks_.remove(slot);
     }
   }
@@ -330,7 +347,8 @@ class Tracker {
     if (estimator.start(start.belief) != Status::kOk) return nullptr;
     if (tracks_.full()) {
       const int weakest = room_.make_room();
-      if (!is_new(tracks_.at(weakest))) announce(TrackEvent::kLost, tracks_.at(weakest));
+      if (!is_new(tracks_.at(weakest)))
+        announce(TrackEvent::kLost, tracks_.at(weakest), LossReason::kDisplaced);
       tracks_.remove(weakest);
     }
     Track& track = tracks_.open();
@@ -346,6 +364,17 @@ class Tracker {
     return &track;
   }
 
+  /// Makes a track one that the operator has seen.
+  void confirm_designated(Track& track) noexcept {
+    track.existence = std::max(track.existence, kDesignatedExistence);
+    track.hits = std::max(track.hits, config_.confirm_hits);
+    track.scans = std::max(track.scans, track.hits);
+    track.misses = 0;
+    track.hushed = false;
+    track.status = TrackStatus::kConfirmed;
+    if (track.id <= 0) track.id = next_id_++;
+  }
+
   /// Reports whose the plots are, by the numbers that the tracks have now.
   void report_owners(std::size_t count) noexcept {
     plot_track_id_.assign(count, 0);
@@ -353,14 +382,42 @@ class Tracker {
       const PlotOwnership::Owner& owner = ownership_.owner(plot);
       if (owner.slot < 0 || !tracks_.in_use(owner.slot)) continue;
       const Track& track = tracks_.at(owner.slot);
+      if (track.hushed) continue;
       if (track.id == owner.track_id || track.tentative_id == owner.track_id)
         plot_track_id_[static_cast<std::size_t>(plots_[plot].input)] = track.id;
     }
   }
 
-  void announce(TrackEvent kind, const Track& track) noexcept {
-    if (events_.size() < events_.capacity())
-      events_.push_back({kind, track.id, track.tentative_id, time_s_});
+  /// Reports that `max_tracks` is reached, once until there is room again.
+  void report_room() noexcept {
+    if (tracks_.full() && !full_ && events_.size() < events_.capacity())
+      events_.push_back({TrackEvent::kFull, 0, 0, time_s_});
+    full_ = tracks_.full();
+  }
+
+  /// The track nearest to a position at a time, in standard deviations, if it is in its gate; null
+  /// without one.
+  Track* track_at(const Gaussian<2>& position, double time_s) noexcept {
+    Track* nearest = nullptr;
+    double least = gate_.threshold();
+    for (const int slot : tracks_.slots()) {
+      Track& track = tracks_.at(slot);
+      const double dt_s = time_s - track.time_s;
+      if (std::abs(dt_s) > kPointedPeriods * radar_.period_s) continue;
+      const double distance = innovation_squared(at_constant_velocity(track.kinematics, dt_s),
+                                                 position.mean, position.covariance);
+      if (distance <= least) {
+        least = distance;
+        nearest = &track;
+      }
+    }
+    return nearest;
+  }
+
+  void announce(TrackEvent kind, const Track& track,
+                LossReason reason = LossReason::kNone) noexcept {
+    if (events_.size() < events_.capacity() && !track.hushed)
+      events_.push_back({kind, track.id, track.tentative_id, time_s_, reason});
   }
 
   /// Saves or restores; the settings are compared, not restored.
@@ -375,6 +432,7 @@ class Tracker {
     if (!fields.ok()) return;
     fields(time_s_);
     fields(started_);
+    fields(full_);
     fields(next_id_);
     fields(next_tentative_id_);
     clutter_.archive(fields);
@@ -393,6 +451,7 @@ class Tracker {
   std::vector<Estimator> estimators_;  ///< by slot
   double time_s_ = 0.0;
   bool started_ = false;
+  bool full_ = false;  ///< since the event that says so
   std::int64_t next_id_ = 1;
   std::int64_t next_tentative_id_ = -1;
   std::int64_t newest_before_ = 0;  ///< number of the newest tentative track before this scan
@@ -437,7 +496,7 @@ Tracker<Estimator, Steps>::Tracker(const Radar& radar, const TrackerConfig& conf
       room_(config.max_tracks) {
   const auto plots = static_cast<std::size_t>(config.max_plots);
   plot_track_id_.reserve(plots);
-  events_.reserve(4 * estimators_.size() + plots);
+  events_.reserve(4 * estimators_.size() + plots + 1);
 }
 
 template <class Estimator, class Steps>
@@ -446,6 +505,7 @@ ScanReport Tracker<Estimator, Steps>::process(double time_s, std::span<const Plo
   plot_track_id_.clear();
   if (!std::isfinite(time_s)) return {Status::kNotFinite, {}, {}, 0};
   if (started_ && time_s < time_s_) return {Status::kNegativeTimeStep, {}, {}, 0};
+  if (time_s > latest_time_s()) return {Status::kNotFinite, {}, {}, 0};
   const double dt_s = started_ ? time_s - time_s_ : 0.0;
   time_s_ = time_s;
   started_ = true;
@@ -470,6 +530,7 @@ ScanReport Tracker<Estimator, Steps>::process(double time_s, std::span<const Plo
       plots_, ownership_.clutter_probability(), [&](int slot) { return ownership_.plot_of(slot); },
       tracks_, tracks_.slots());
   initiate();
+  report_room();
 
   report_owners(std::min(plots.size(), static_cast<std::size_t>(config_.max_plots)));
   return {Status::kOk, plot_track_id_, events_, static_cast<int>(plots.size()) - plots_.size()};
@@ -478,7 +539,7 @@ ScanReport Tracker<Estimator, Steps>::process(double time_s, std::span<const Plo
 template <class Estimator, class Steps>
 Gaussian<4> Tracker<Estimator, Steps>::kinematics_at(const Track& track,
                                                      double time_s) const noexcept {
-  if (time_s <= track.time_s) return track.kinematics;
+  if (time_s <= track.time_s) return at_constant_velocity(track.kinematics, time_s - track.time_s);
   Estimator ahead = estimator_of(track);
   if (ahead.predict(time_s - track.time_s) == Status::kOk) return kinematics_of(ahead.estimate());
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -488,10 +549,14 @@ Gaussian<4> Tracker<Estimator, Steps>::kinematics_at(const Track& track,
 template <class Estimator, class Steps>
 std::int64_t Tracker<Estimator, Steps>::designate(double time_s, double north_m, double east_m,
                                                   double position_std_m) noexcept {
-  if (!std::isfinite(time_s) || time_s > latest_designation_s()) return 0;
-  if (!(position_std_m > 0.0)) return 0;
+  if (!std::isfinite(time_s) || time_s > latest_time_s()) return 0;
   const Gaussian<2> position{{north_m, east_m},
                              position_std_m * position_std_m * Mat<double, 2, 2>::Identity()};
+  if (!in_range(position.mean) || !(position_std_m > 0.0) || !in_range(position_std_m)) return 0;
+  if (Track* known = track_at(position, time_s)) {
+    confirm_designated(*known);
+    return known->id;
+  }
   const Gaussian<4> belief =
       kinematics_from<double>(position, initiation_.prior_velocity(), Mat<double, 2, 2>::Zero());
   room_.reset();
@@ -499,9 +564,8 @@ std::int64_t Tracker<Estimator, Steps>::designate(double time_s, double north_m,
   Track* track = open({belief, time_s, kDesignatedExistence, {}});
   if (track == nullptr) return 0;
   track->tentative_id = 0;
-  track->scans = track->hits = config_.confirm_hits;
-  track->status = TrackStatus::kConfirmed;
-  track->id = next_id_++;
+  track->scans = track->hits = 0;
+  confirm_designated(*track);
   return track->id;
 }
 
