@@ -88,17 +88,31 @@ TEST(Fields, RulesReadAsWhatMustBe) {
   EXPECT_EQ(to_words(from_to_below(0, 0.5)), "at least 0 and below 0.5");
   EXPECT_EQ(to_words(above_to(0, 1)), "above 0 and at most 1");
   EXPECT_EQ(to_words(at_least(2)), "at least 2");
+  EXPECT_EQ(to_words(between(1.5e-12, 1e15)), "1.5e-12 to 1e15");
   EXPECT_EQ(choices<Colour>(), "'red' or 'green'");
+}
+
+TEST(Fields, ARuleWithoutABoundHasThatOfTheUnit) {
+  for (const Rule& rule : {kFinite, kPositive, kNotNegative, at_least(3)})
+    for (const char* unit : {"m", "rad", "m²/s³", "scans"}) {
+      const Rule finite = within(rule, unit);
+      EXPECT_LT(finite.high * finite.high, 1e30) << unit;
+      EXPECT_GT(finite.low, -1e15) << unit;
+      EXPECT_EQ(finite.holds(0.0), rule.holds(0.0)) << unit;
+      EXPECT_TRUE(finite.holds(4.0)) << unit;
+    }
+  EXPECT_FALSE(within(kPositive, "m").holds(1e-300));
+  EXPECT_EQ(within(between(1, 5), "m"), between(1, 5));
+  EXPECT_TRUE(within(kNotNegativeOrInfinite, "sigma²").holds(kInfinity));
 }
 
 TEST(Fields, TheFirstWrongOneIsNamed) {
   EXPECT_EQ(message_of({}), "");
-  EXPECT_EQ(message_of({.length_m = -2.5}), "length_m must be finite and not negative, got -2.5");
-  EXPECT_EQ(message_of({.length_m = kNaN, .count = 9}),
-            "length_m must be finite and not negative, got nan");
+  EXPECT_EQ(message_of({.length_m = -2.5}), "length_m must be 0 to 1e9, got -2.5");
+  EXPECT_EQ(message_of({.length_m = kNaN, .count = 9}), "length_m must be 0 to 1e9, got nan");
   EXPECT_EQ(message_of({.count = 9}), "count must be 1 to 5, got 9");
   EXPECT_EQ(message_of({.colour = Colour(7)}), "colour must be 'red' or 'green'");
-  EXPECT_EQ(message_of({.inner = {0.0}}), "inner.weight_kg must be finite and positive, got 0");
+  EXPECT_EQ(message_of({.inner = {0.0}}), "inner.weight_kg must be 1e-9 to 1e9, got 0");
 }
 
 TEST(Fields, RulesOfSeveralFieldsComeAfterThoseOfEach) {

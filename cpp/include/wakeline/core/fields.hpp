@@ -9,8 +9,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "wakeline/core/require.hpp"
@@ -66,10 +68,65 @@ constexpr Rule above_to(double low, double high) noexcept {
 }
 constexpr Rule at_least(double low) noexcept { return {.low = low, .high = kLargest}; }
 
+/// The largest magnitude of a quantity by its unit: beyond what a radar, a vessel or a study has,
+/// and such that squares and products of several quantities are finite.
+struct UnitLimit {
+  std::string_view unit;
+  double most;
+};
+inline constexpr std::array<UnitLimit, 16> kUnitLimits{{
+    {"1", 1e6},
+    {"m", 1e9},
+    {"m/s", 1e6},
+    {"m/s²", 1e6},
+    {"m²/s³", 1e9},
+    {"m²/s⁵", 1e9},
+    {"rad", 10.0},
+    {"rad/s", 1e3},
+    {"rad²/s", 1e3},
+    {"rad²/s³", 1e3},
+    {"s", 1e12},
+    {"1/m²", 1e3},
+    {"1/volume", 1e9},
+    {"sigma", 1e3},
+    {"sigma²", 1e6},
+    {"counts", 65535.0},
+}};
+inline constexpr double kLargestCount = 1e9;  ///< of plots, scans, readings and the like
+/// The least of a quantity that must be positive: its square and the inverse of that have digits.
+inline constexpr double kLeastPositive = 1e-9;
+
+/// The rule of a field in that unit; where it has no bound, that of the unit.
+constexpr Rule within(Rule rule, std::string_view unit) noexcept {
+  double most = kLargestCount;
+  for (const UnitLimit& limit : kUnitLimits)
+    if (limit.unit == unit) most = limit.most;
+  if (rule.low == -kLargest) rule.low = -most;
+  if (rule.high != kLargest) return rule;
+  rule.high = most;
+  rule.words = "";
+  if (rule.low == 0.0 && rule.above_low) {
+    rule.low = kLeastPositive;
+    rule.above_low = false;
+  }
+  return rule;
+}
+
+/// "1e9", "0.001", "6.28319".
+[[gnu::noinline]] inline std::string bound_text(double bound) {
+  char number[32];
+  std::snprintf(number, sizeof number, "%.6g", bound);
+  std::string text = number;
+  const std::size_t exponent = text.find('e');
+  if (exponent == std::string::npos) return text;
+  const std::size_t sign = exponent + 1, digits = text.find_first_not_of("+-0", sign);
+  return text.substr(0, sign) + (text[sign] == '-' ? "-" : "") + text.substr(digits);
+}
+
 /// What a rule asks for, to be read after "must be".
 inline std::string to_words(const Rule& rule) {
   if (*rule.words != '\0') return rule.words;
-  const std::string low = number_text(rule.low), high = number_text(rule.high);
+  const std::string low = bound_text(rule.low), high = bound_text(rule.high);
   const std::string zero = rule.or_zero ? "0, or " : "";
   if (rule.high == kLargest) return zero + (rule.above_low ? "above " : "at least ") + low;
   if (!rule.above_low && !rule.below_high) return zero + low + " to " + high;
@@ -101,7 +158,7 @@ std::string choices() {
   return text + "'";
 }
 
-/// One field of a parameter struct.
+/// One field of a parameter struct. Its rule is a finite range.
 template <class Struct, class Value>
 struct Field {
   const char* name;
@@ -114,7 +171,7 @@ struct Field {
 template <class Struct, class Value>
 constexpr Field<Struct, Value> field(const char* name, Value Struct::*member, const Rule& rule,
                                      const char* unit, const char* sentence) noexcept {
-  return {name, member, rule, unit, sentence};
+  return {name, member, within(rule, unit), unit, sentence};
 }
 
 /// A truth, an enumeration or another struct, which has no number to be ruled.
@@ -145,10 +202,14 @@ concept HasFields = requires {
   Struct::fields();
 };
 
+/// The table of a struct, made by the compiler.
+template <HasFields Struct>
+inline constexpr auto kFieldsOf = Struct::fields();
+
 /// Calls `visit(field, value)` for each field of a struct, in order.
 template <class Struct, class Visit>
 constexpr void for_each_field(Struct& x, Visit&& visit) {
-  std::remove_const_t<Struct>::fields()([&](const auto& entry) { visit(entry, x.*entry.member); });
+  kFieldsOf<std::remove_const_t<Struct>>([&](const auto& entry) { visit(entry, x.*entry.member); });
 }
 
 /// Rejects a number that breaks the rule.

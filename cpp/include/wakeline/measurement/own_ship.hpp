@@ -11,10 +11,8 @@
 namespace wakeline {
 
 /// Standard deviations of angles. A larger one than half a turn is in degrees.
-inline constexpr Rule kAngleStd{.low = 0.0,
-                                .high = kPi<double>,
-                                .above_low = true,
-                                .words = "positive and at most pi, in radians"};
+inline constexpr Rule kAngleStd{
+    .low = kLeastPositive, .high = kPi<double>, .words = "1e-9 to pi, in radians"};
 inline constexpr Rule kAngleStdOrZero{
     .low = 0.0, .high = kPi<double>, .words = "0 to pi, in radians"};
 

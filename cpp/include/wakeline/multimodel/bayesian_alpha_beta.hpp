@@ -33,7 +33,7 @@ struct LineWeighing {
         field("max_plots", &L::max_plots, between(2, kMaxPlots), "plots",
               "Plots of the longest line and of the longest parabola; at least min_plots."),
         field("parabolas", &L::parabolas, "There are parabolas through four plots and more, too."),
-        field("sojourn_s", &L::sojourn_s, kPositive, "s",
+        field("sojourn_s", &L::sojourn_s, kTime, "s",
               "Mean time until another line or parabola is the right one."),
         field("longest_line_probability", &L::longest_line_probability, inside(0, 1), "1",
               "Prior probability of the longest line; the others have equal shares."),

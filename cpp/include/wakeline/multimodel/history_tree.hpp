@@ -23,9 +23,9 @@ struct HistoryTree {
   static constexpr auto fields() noexcept {
     using H = HistoryTree;
     return field_table(
-        field("max_hypotheses", &H::max_hypotheses, at_least(1), "hypotheses",
+        field("max_hypotheses", &H::max_hypotheses, between(1, 10'000), "hypotheses",
               "Hypotheses kept after an update; at least the number of modes."),
-        field("max_branches", &H::max_branches, at_least(1), "hypotheses",
+        field("max_branches", &H::max_branches, between(1, 100'000), "hypotheses",
               "Hypotheses filtered in a scan: those that were kept and the switches from them."),
         field("min_segment_s", &H::min_segment_s, kNotNegative, "s",
               "A mode does not end before this time."),

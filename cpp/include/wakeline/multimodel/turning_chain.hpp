@@ -17,9 +17,8 @@ struct TurnHabits {
   static constexpr auto fields() noexcept {
     using T = TurnHabits;
     return field_table(
-        field("straight_sojourn_s", &T::straight_sojourn_s, kPositive, "s",
-              "Mean time on a straight."),
-        field("turn_sojourn_s", &T::turn_sojourn_s, kPositive, "s", "Mean time in a turn."),
+        field("straight_sojourn_s", &T::straight_sojourn_s, kTime, "s", "Mean time on a straight."),
+        field("turn_sojourn_s", &T::turn_sojourn_s, kTime, "s", "Mean time in a turn."),
         field("straighten_probability", &T::straighten_probability, kProbability, "1",
               "Probability that a turn ends in a straight and not in another turn."));
   }

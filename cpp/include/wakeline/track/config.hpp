@@ -71,22 +71,23 @@ struct TrackerConfig {
 
   static constexpr auto fields() noexcept {
     using C = TrackerConfig;
+    constexpr Rule kScans = between(0, 1'000'000), kCell{.low = 1.0, .high = 1e6, .or_zero = true};
     return field_table(
         field("detection_probability", &C::detection_probability, kProbability, "1",
               "Probability PD that a visible target gives a plot in a scan."),
         field("gate_probability", &C::gate_probability, inside(0, 1), "1",
               "Probability PG that the plot of a target is in its gate."),
-        field("clutter_density_per_m2", &C::clutter_density_per_m2, kPositive, "1/m²",
+        field("clutter_density_per_m2", &C::clutter_density_per_m2, between(1e-15, 1), "1/m²",
               "False plots per area and scan where the clutter map has found none."),
         field("outlier_probability", &C::outlier_probability, from_to_below(0, 1), "1",
               "Share of plots whose error is an outlier."),
-        field("outlier_scale", &C::outlier_scale, at_least(1), "1",
+        field("outlier_scale", &C::outlier_scale, between(1, 1000), "1",
               "Standard deviation of an outlier over that of a usual plot."),
-        field("clutter_cell_m", &C::clutter_cell_m, kNotNegative, "m",
+        field("clutter_cell_m", &C::clutter_cell_m, kCell, "m",
               "Side of a cell of the clutter map; 0: no map."),
         field("clutter_memory_s", &C::clutter_memory_s, kTime, "s",
               "Fading memory of the clutter map."),
-        field("clutter_weight", &C::clutter_weight, kNotNegative, "1",
+        field("clutter_weight", &C::clutter_weight, between(0, 1000), "1",
               "Weight of the clutter map; 1: its density counts in full."),
         field("visible_time_s", &C::visible_time_s, kTimeOrZero, "s",
               "Mean time until a target is hidden from the radar; 0: never."),
@@ -100,14 +101,14 @@ struct TrackerConfig {
               "Probability that two plots a speed limit apart are a target."),
         field("free_plot", &C::free_plot, kProbability, "1",
               "A plot starts a track when it belongs to no other with this probability."),
-        field("start_gate_sigma", &C::start_gate_sigma, kNotNegative, "sigma",
+        field("start_gate_sigma", &C::start_gate_sigma, between(0, 1000), "sigma",
               "Plot errors by which the speed limit of a start is widened."),
-        field("start_speed_factor", &C::start_speed_factor, kNotNegative, "1",
+        field("start_speed_factor", &C::start_speed_factor, between(0, 1000), "1",
               "Prior speed of a start over the speed limit of the radar; 0: no prior."),
         field("confirm_existence", &C::confirm_existence, kProbability, "1",
               "A track is confirmed above this probability of existence, with `confirm_hits` of "
               "its last `confirm_window` scans."),
-        field("confirm_hits", &C::confirm_hits, at_least(1), "plots",
+        field("confirm_hits", &C::confirm_hits, between(1, 32), "plots",
               "Plots that a track needs to be confirmed."),
         field("confirm_window", &C::confirm_window, between(1, 32), "scans",
               "Last scans in which these plots are counted; `confirm_hits` or more."),
@@ -115,36 +116,36 @@ struct TrackerConfig {
               "Mean time until a target leaves."),
         field("drop_existence", &C::drop_existence, kProbability, "1",
               "A track below this probability of existence is dropped."),
-        field("tentative_misses", &C::tentative_misses, at_least(0), "scans",
+        field("tentative_misses", &C::tentative_misses, kScans, "scans",
               "A tentative track is dropped after more misses in a row."),
-        field("coast_scans", &C::coast_scans, kNotNegative, "scans",
+        field("coast_scans", &C::coast_scans, kScans, "scans",
               "A confirmed track is dropped after more misses in a row than this and "
               "`coast_scans_per_hit` together."),
-        field("coast_scans_per_hit", &C::coast_scans_per_hit, kNotNegative, "scans",
+        field("coast_scans_per_hit", &C::coast_scans_per_hit, kScans, "scans",
               "Further misses allowed for each plot that the track has had."),
-        field("coast_scans_max", &C::coast_scans_max, at_least(0), "scans",
+        field("coast_scans_max", &C::coast_scans_max, kScans, "scans",
               "Upper limit of the misses in a row of a confirmed track."),
-        field("shown_scans", &C::shown_scans, at_least(0), "scans",
+        field("shown_scans", &C::shown_scans, kScans, "scans",
               "A coasting track is shown for this many scans, then held without being shown."),
-        field("drop_position_std_m", &C::drop_position_std_m, kPositive, "m",
+        field("drop_position_std_m", &C::drop_position_std_m, between(0.1, 1e9), "m",
               "A track with a larger standard deviation of its position is dropped; the limit is "
               "raised to two plot errors and, for a confirmed track, to what a vessel runs in "
               "`coast_scans`."),
         field(
-            "drop_speed_factor", &C::drop_speed_factor, kPositive, "1",
+            "drop_speed_factor", &C::drop_speed_factor, between(0.1, 1e6), "1",
             "Factor on the speed limit of the radar, above which a tentative track is dropped, and "
             "a confirmed one by three standard deviations of its speed."),
         field("duplicate_distance", &C::duplicate_distance, kNotNegative, "sigma²",
               "Two tracks nearer than this, in squared sigmas of their difference, are one."),
-        field("vessel_length_m", &C::vessel_length_m, kNotNegative, "m",
+        field("vessel_length_m", &C::vessel_length_m, between(0, 1e4), "m",
               "A track nearer than this to a shown one, at the same velocity, is another echo of "
               "its vessel; 0: each vessel has one echo."),
-        field("duplicate_scans", &C::duplicate_scans, at_least(1), "scans",
+        field("duplicate_scans", &C::duplicate_scans, between(1, 1'000'000), "scans",
               "Scans for which two tracks must be so near before one is removed."),
-        field("max_tracks", &C::max_tracks, between(1, 1'000'000), "tracks",
+        field("max_tracks", &C::max_tracks, between(1, 100'000), "tracks",
               "Room for tracks; when full, a new track replaces the weakest tentative one or is "
               "not started."),
-        field("max_plots", &C::max_plots, between(1, 10'000'000), "plots",
+        field("max_plots", &C::max_plots, between(1, 1'000'000), "plots",
               "Room for the plots of a scan; those beyond it are rejected."));
   }
 

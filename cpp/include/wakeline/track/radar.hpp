@@ -20,15 +20,15 @@ struct Radar {
   static constexpr auto fields() noexcept {
     using R = Radar;
     return field_table(
-        field("range_std_m", &R::range_std_m, kPositive, "m",
+        field("range_std_m", &R::range_std_m, between(1e-3, 1e5), "m",
               "Standard deviation of the range of a plot."),
         field("bearing_std_rad", &R::bearing_std_rad, kAngleStd, "rad",
               "Standard deviation of the bearing of a plot."),
-        field("extent_std_m", &R::extent_std_m, kNotNegative, "m",
+        field("extent_std_m", &R::extent_std_m, between(0, 1e4), "m",
               "Standard deviation of an echo's position on the hull, per axis."),
-        field("period_s", &R::period_s, kPositive, "s", "Antenna revolution."),
+        field("period_s", &R::period_s, between(0.01, 3600), "s", "Antenna revolution."),
         field(
-            "max_speed_mps", &R::max_speed_mps, kPositive, "m/s",
+            "max_speed_mps", &R::max_speed_mps, between(0.1, 1e4), "m/s",
             "Speed limit of the vessels: no faster track starts, and a confirmed one is lost above "
             "it by three standard deviations of its speed."),
         field("bearing_offset_rad", &R::bearing_offset_rad, kFinite, "rad",

@@ -30,11 +30,11 @@ struct StrobeTrackerConfig {
     using S = StrobeTrackerConfig;
     return field_table(
         strobe_echo_fields<S>(),
-        field("radius_m", &S::radius_m, kPositive, "m",
+        field("radius_m", &S::radius_m, between(1, 1e6), "m",
               "Radius of the strobe of a track that is seen in every turn."),
-        field("max_radius_m", &S::max_radius_m, kPositive, "m",
+        field("max_radius_m", &S::max_radius_m, between(1, 1e6), "m",
               "Largest radius, of a new track or after misses; at least radius_m."),
-        field("growth", &S::growth, at_least(1), "1",
+        field("growth", &S::growth, between(1, 100), "1",
               "Factor of the radius after a turn without an echo."),
         field("shrinkage", &S::shrinkage, above_to(0, 1), "1",
               "Factor of a radius above radius_m after a turn with an echo."),
