@@ -49,5 +49,40 @@ TEST(Consistency, DopplerFromAMovingShip) {
   expect_consistent(Ukf{motion}, radar, lifted<4>(motion), 400, 20, 2.5);
 }
 
+/// A belief whose mean is so far from the antenna, and so uncertain.
+Gaussian<4> about_antenna(double north_m, double position_std_m) {
+  Gaussian<4> start;
+  start.mean[0] = north_m;
+  start.covariance.diagonal() << position_std_m * position_std_m, 9.0,
+      position_std_m * position_std_m, 9.0;
+  return start;
+}
+
+// At the antenna the derivatives of range and bearing are none, beside it they are useless.
+TEST(Consistency, EkfThatStartsAtTheAntenna) {
+  const ConstantVelocity motion{.noise = WhiteAcceleration{0.01}};
+  const RangeBearing radar{.range_std_m = 15, .bearing_std_rad = deg(0.5)};
+  const RangeBearingDoppler doppler{
+      .range_std_m = 15, .bearing_std_rad = deg(0.5), .range_rate_std_mps = 0.5};
+  for (const double north_m : {0.0, 5e-4, 1.0, 3000.0, 6000.0, 9000.0}) {
+    SCOPED_TRACE(north_m);
+    expect_consistent(Ekf{motion}, radar, about_antenna(north_m, 3000.0), 200, 20, 2.5);
+    expect_consistent(Ekf{motion}, doppler, about_antenna(north_m, 3000.0), 200, 20, 2.5);
+  }
+}
+
+// A plot at no range at all has no place to be linearised about either.
+TEST(Consistency, EkfAtTheAntennaTakesAPlotThere) {
+  Ekf filter{ConstantVelocity{}};
+  const RangeBearing radar{};
+  ASSERT_EQ(filter.start(about_antenna(0.0, 1000.0)), Status::kOk);
+  for (int k = 0; k < 5; ++k) {
+    ASSERT_EQ(filter.predict(3.0), Status::kOk);
+    ASSERT_TRUE(filter.update(radar, Vec<double, 2>(0.0, 0.3)));
+  }
+  EXPECT_LT(filter.estimate().mean.norm(), 5 * radar.range_std_m);
+  EXPECT_LT(filter.estimate().covariance(0, 0), 1e4);
+}
+
 }  // namespace
 }  // namespace wakeline::consistency_polar_test

@@ -36,6 +36,12 @@ struct Rule {
   friend constexpr bool operator==(const Rule&, const Rule&) = default;
 };
 
+/// The square of a standard deviation; NaN of one that breaks its rule, so that a step with it
+/// fails.
+constexpr double variance(const Rule& rule, double std) noexcept {
+  return rule.holds(std) ? std * std : std::numeric_limits<double>::quiet_NaN();
+}
+
 inline constexpr double kLargest = std::numeric_limits<double>::max();
 
 inline constexpr Rule kNumber{.words = "a number"};  ///< infinite ones, too

@@ -16,8 +16,10 @@ namespace wakeline {
 /// Covariances are updated as P - Wᵀ W with the whitened gain, which keeps them symmetric, and in
 /// Joseph form where the prior is so much wider than the plot (after an hour without one) that the
 /// difference would cancel; a negative variance in the result is rejected. F and Q of a linear
-/// model are cached while the step stays the same. Source: Bar-Shalom, Li, Kirubarajan, 5.2.3
-/// (linear) and 10.3.3 (extended).
+/// model are cached while the step stays the same. Where a sensor bends too much within the belief
+/// (`BendingSensor`: a belief about the antenna itself), it is linearised about the reading instead
+/// of the mean, and the innovation is that of the line. Source: Bar-Shalom, Li, Kirubarajan, 5.2.3
+/// (linear), 10.3.3 (extended) and 10.5.2 (linearised anew, as the iterated filter).
 template <class MotionType, class ScalarType = double>
 class Ekf : public Belief<MotionType, ScalarType> {
   using Base = Belief<MotionType, ScalarType>;
@@ -70,9 +72,8 @@ class Ekf : public Belief<MotionType, ScalarType> {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
-    return with_model(sensor, [&](const auto& model) {
-      return correct(model, sensor.observe(z)).scored();
-    });
+    return with_model(
+        sensor, [&](const auto& model) { return correct(model, sensor.observe(z)).scored(); });
   }
 
   /// The same with an observed reading; the likelihood in two factors.
@@ -150,11 +151,39 @@ class Ekf : public Belief<MotionType, ScalarType> {
       // meanwhile.
       this->innovation = sensor.residual(reading.mean, sensor.measure(read));
       h = sensor.jacobian(read);
+      if constexpr (BendingSensor<Sensor>) {
+        Vec<Scalar, kReads> variance;
+        unroll<kReads>([&](int k) { variance[k] = belief.covariance(kRows[k], kRows[k]); });
+        const MaskOf<Scalar> bends = sensor.bends(read, variance);
+        if (any(bends)) [[unlikely]] {
+          const Line line = line_at_reading(sensor, read, Vec<Scalar, kM>(reading.mean));
+          assign_where(bends, this->innovation, line.innovation);
+          assign_where(bends, h, line.h);
+        }
+      }
       this->innovation_covariance = reading.covariance;
       project<Sensor, kRows>(belief.covariance, h, ph, this->innovation_covariance);
       factor.compute(this->innovation_covariance);
       whitened = factor.template whiten<1>(this->innovation);
       rate(*this, whitened, factor);
+    }
+
+   private:
+    struct Line {
+      Vec<Scalar, kM> innovation;
+      Mat<Scalar, kM, kReads> h;
+    };
+
+    /// z - h(a) - H(a) (x - a) and H(a), with a the reading's place. By value, so that what the hot
+    /// path passes stays in registers.
+    [[gnu::cold, gnu::noinline]] static Line line_at_reading(const Sensor& sensor,
+                                                             Vec<Scalar, kReads> x,
+                                                             Vec<Scalar, kM> z) noexcept {
+      const Vec<Scalar, kReads> a = sensor.moved_to(x, z);
+      Line line{sensor.residual(z, sensor.measure(a)), sensor.jacobian(a)};
+      for (int m = 0; m < kM; ++m)
+        for (int k = 0; k < kReads; ++k) line.innovation[m] += line.h(m, k) * (a[k] - x[k]);
+      return line;
     }
   };
 

@@ -43,6 +43,20 @@ concept MeasurementModel = DeclaresSizes<Sensor> &&
 template <class Sensor>
 concept LinearMeasurementModel = MeasurementModel<Sensor> && Sensor::kLinear;
 
+/// A sensor whose h may bend so much within a belief that the derivatives at its mean are useless,
+/// as those of range and bearing do about the antenna:
+///
+/// - `bends(x_r, variance)`: where it does, for a belief of this mean and these variances;
+/// - `moved_to(x_r, z)`: the components x_r with those that the reading z determines.
+///
+/// There an `Ekf` takes h and its derivatives at the second.
+template <class Sensor>
+concept BendingSensor = requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z,
+                                 const Vec<double, kReadsOf<Sensor>>& x) {
+  { sensor.bends(x, x) } -> std::convertible_to<bool>;
+  { sensor.moved_to(x, z) } -> SameSize<Vec<double, kReadsOf<Sensor>>>;
+};
+
 /// True for a sensor that declares with `static constexpr bool kDirect = true` that `measure`
 /// returns the components it reads: its `jacobian` is the identity.
 template <class Sensor>
@@ -53,8 +67,8 @@ inline constexpr bool kIsDirect<Sensor> = true;
 
 /// A sensor that measures a position: `position(z) -> Gaussian<2>`, north and east in metres.
 template <class Sensor>
-concept PositionSensor =
-    requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z) {
+concept PositionSensor = requires(const Sensor& sensor,
+                                  const Vec<double, Sensor::kMeasurements>& z) {
   { sensor.position(z) } -> std::convertible_to<Gaussian<2>>;
 };
 

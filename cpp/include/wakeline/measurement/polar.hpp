@@ -89,14 +89,16 @@ struct PolarErrors {
 
   /// Variance per axis (m²) independent of range: echo extent and own position.
   [[nodiscard]] double isotropic_variance_m2() const noexcept {
-    return extent_std_m * extent_std_m + own.position_std_m * own.position_std_m;
+    return variance(kNotNegative, extent_std_m) + own.position_std_m * own.position_std_m;
   }
 
-  [[nodiscard]] double range_variance_m2() const noexcept { return range_std_m * range_std_m; }
+  [[nodiscard]] double range_variance_m2() const noexcept {
+    return variance(kPositive, range_std_m);
+  }
 
   /// Variance of the true bearing (rad²): radar and heading.
   [[nodiscard]] double bearing_variance_rad2() const noexcept {
-    return bearing_std_rad * bearing_std_rad + own.heading_std_rad * own.heading_std_rad;
+    return variance(kAngleStd, bearing_std_rad) + own.heading_std_rad * own.heading_std_rad;
   }
 
   /// Plot `[range, bearing]` to north/east in the plane, with all errors. Not inlined: its sines

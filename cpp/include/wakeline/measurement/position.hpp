@@ -26,7 +26,7 @@ struct Position {
 
   template <class Scalar>
   Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
-    return {z, Scalar(position_std_m * position_std_m) * Mat<Scalar, 2, 2>::Identity()};
+    return {z, Scalar(variance(kPositive, position_std_m)) * Mat<Scalar, 2, 2>::Identity()};
   }
 
   template <class Scalar>

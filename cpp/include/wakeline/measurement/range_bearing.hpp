@@ -11,6 +11,11 @@ namespace wakeline {
 /// Smallest range (m) used in derivatives, which are singular at the antenna.
 inline constexpr double kMinRange_m = 1e-3;
 
+/// Distance from the antenna, in standard deviations of the position (the root of the trace of its
+/// covariance), within which derivatives at the mean are useless. With less an EKF that starts at
+/// two to three of them is wrong by tens of its standard deviations.
+inline constexpr double kBendingStds = 4.0;
+
 /// A plot `[range m, bearing rad]` for EKF and UKF.
 /// Source: Bar-Shalom, Li, Kirubarajan, 10.4.1; paper A, equation (6).
 struct RangeBearing {
@@ -66,6 +71,22 @@ struct RangeBearing {
   template <class Scalar>
   Vec<Scalar, 2> residual(const Vec<Scalar, 2>& a, const Vec<Scalar, 2>& b) const noexcept {
     return {a[0] - b[0], wrap_angle<Scalar>(a[1] - b[1])};
+  }
+
+  /// True within `kBendingStds` of the antenna.
+  template <class Scalar>
+  MaskOf<Scalar> bends(const Vec<Scalar, 2>& position,
+                       const Vec<Scalar, 2>& variance) const noexcept {
+    const Vec<Scalar, 2> d = position - own.position<Scalar>();
+    const Scalar spread2 = Scalar(kBendingStds * kBendingStds) * (variance[0] + variance[1]);
+    return d[0] * d[0] + d[1] * d[1] < spread2;
+  }
+
+  /// The position of the plot, at least one standard deviation of the range from the antenna.
+  template <class Scalar>
+  Vec<Scalar, 2> moved_to(const Vec<Scalar, 2>&, const Vec<Scalar, 2>& z) const noexcept {
+    return own.position<Scalar>() +
+           at_least(z[0], Scalar(range_std_m)) * towards(Scalar(z[1] - Scalar(bearing_offset_rad)));
   }
 
   /// The plot in north/east, for starts and gates.

@@ -38,7 +38,7 @@ struct RangeBearingDoppler {
     Gaussian<3, Scalar> reading{z, Mat<Scalar, 3, 3>::Zero()};
     reading.covariance.template topLeftCorner<2, 2>() =
         range_bearing().observe(Vec<Scalar, 2>(z.template head<2>())).covariance;
-    reading.covariance(2, 2) = Scalar(range_rate_std_mps * range_rate_std_mps +
+    reading.covariance(2, 2) = Scalar(variance(kPositive, range_rate_std_mps) +
                                       own.velocity_std_mps * own.velocity_std_mps);
     return reading;
   }
@@ -74,6 +74,23 @@ struct RangeBearingDoppler {
   template <class Scalar>
   Vec<Scalar, 3> residual(const Vec<Scalar, 3>& a, const Vec<Scalar, 3>& b) const noexcept {
     return {a[0] - b[0], wrap_angle<Scalar>(a[1] - b[1]), a[2] - b[2]};
+  }
+
+  /// Where range and bearing do.
+  template <class Scalar>
+  MaskOf<Scalar> bends(const Vec<Scalar, 4>& kinematics,
+                       const Vec<Scalar, 4>& variance) const noexcept {
+    return range_bearing().bends(Vec<Scalar, 2>(kinematics[0], kinematics[2]),
+                                 Vec<Scalar, 2>(variance[0], variance[2]));
+  }
+
+  /// The position of the plot with the velocity as it is.
+  template <class Scalar>
+  Vec<Scalar, 4> moved_to(const Vec<Scalar, 4>& kinematics,
+                          const Vec<Scalar, 3>& z) const noexcept {
+    const Vec<Scalar, 2> position = range_bearing().moved_to(
+        Vec<Scalar, 2>(kinematics[0], kinematics[2]), Vec<Scalar, 2>(z[0], z[1]));
+    return {position[0], kinematics[1], position[1], kinematics[3]};
   }
 
   template <class Scalar>
