@@ -321,16 +321,77 @@ TEST(BatchStatus, AStartThatIsNotDefiniteFailsInItsLaneOnly) {
     EXPECT_EQ(lane(status, k), k == 1 ? Status::kNotPositiveDefinite : Status::kOk);
 }
 
-TEST(BatchGate, OutsideIsMissed) {
+/// How many scans have a status.
+std::ptrdiff_t count(const Results& results, Status status) {
+  return std::count(results.status.begin(), results.status.end(),
+                    static_cast<std::uint8_t>(status));
+}
+
+TEST(BatchGate, OutsideIsGated) {
   Dense data(kRuns);
+  const std::ptrdiff_t missed = count(run<Imm3, Lanes>(kRadar, data.in), Status::kMissed);
   const RadiusGate gate{150.0};
   data.in.gate = &gate;
   const Results lanes = run<Imm3, Lanes>(kRadar, data.in);
   const Results one_by_one = run<Imm3, double>(kRadar, data.in);
   expect_near(lanes, one_by_one);
-  EXPECT_NE(std::count(lanes.status.begin(), lanes.status.end(),
-                       static_cast<std::uint8_t>(Status::kMissed)),
-            0);
+  EXPECT_EQ(count(lanes, Status::kMissed), missed);
+  EXPECT_GT(count(lanes, Status::kGated), 0);
+}
+
+/// With wild readings: one alone in run 1, and in run 2 all from scan 60 on, 2 km off.
+Dense with_outliers() {
+  Dense data(kRuns);
+  data.z[2 * (1 * kScans + 30)] += 800.0;
+  for (std::size_t scan = 60; scan < kScans; ++scan) data.z[2 * (2 * kScans + scan)] += 2000.0;
+  return data;
+}
+
+TEST(BatchGate, AReadingOutsideTheEllipsoidLeavesThePrediction) {
+  Dense data = with_outliers();
+  data.link();
+  const ChiSquareGate gate{0.9999};
+  data.in.nis_gate = &gate;
+  const Results lanes = run<Imm3, Lanes>(kRadar, data.in);
+  expect_near(lanes, run<Imm3, double>(kRadar, data.in));
+  EXPECT_EQ(Status(lanes.status[kScans + 30]), Status::kGated);
+  EXPECT_TRUE(std::isnan(lanes.nis[kScans + 30]));
+  for (std::size_t scan = 60; scan < kScans; ++scan)
+    EXPECT_NE(Status(lanes.status[2 * kScans + scan]), Status::kOk);
+  for (const double nis : lanes.nis) EXPECT_FALSE(nis > gate.threshold(2));
+
+  // The gated reading is as one that was never made.
+  Dense without = with_outliers();
+  without.z[2 * (kScans + 30)] = without.z[2 * (kScans + 30) + 1] = kNaN;
+  without.link();
+  without.in.nis_gate = &gate;
+  const Results missed = run<Imm3, Lanes>(kRadar, without.in);
+  EXPECT_EQ(missed.mean, lanes.mean);
+  EXPECT_EQ(missed.modes, lanes.modes);
+}
+
+TEST(BatchGate, OpensAfterReadingsOutsideInARow) {
+  constexpr int kAfter = 4;
+  const ChiSquareGate ellipsoid{0.9999};
+  const RadiusGate circle{800.0};
+  for (const bool by_nis : {true, false}) {
+    Dense data = with_outliers();
+    data.link();
+    data.in.reopen_after = kAfter;
+    data.in.nis_gate = by_nis ? &ellipsoid : nullptr;
+    data.in.gate = by_nis ? nullptr : &circle;
+    const Results lanes = run<Imm3, Lanes>(kRadar, data.in);
+    expect_near(lanes, run<Imm3, double>(kRadar, data.in));
+    int gated = 0;
+    for (std::size_t scan = 60; scan < kScans; ++scan) {
+      const auto status = static_cast<Status>(lanes.status[2 * kScans + scan]);
+      gated += status == Status::kGated;
+      EXPECT_TRUE(status != Status::kOk || gated >= kAfter) << scan;
+    }
+    EXPECT_EQ(Status(lanes.status[2 * kScans + kScans - 2]), Status::kOk)
+        << "the track is where the readings are";
+    EXPECT_LT(gated, 3 * kAfter);
+  }
 }
 
 /// Straight motion beside something of one's own, positions first.

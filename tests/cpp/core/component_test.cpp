@@ -31,8 +31,8 @@ TEST(Component, RowsOfWhatIsWanted) {
 
 TEST(StatusText, EveryStatusHasItsOwnWords) {
   std::set<std::string> texts;
-  for (int k = 0; k <= 6; ++k) texts.insert(to_string(static_cast<Status>(k)));
-  EXPECT_EQ(texts.size(), 7u) << "six statuses and \"unknown\"";
+  for (int k = 0; k <= 7; ++k) texts.insert(to_string(static_cast<Status>(k)));
+  EXPECT_EQ(texts.size(), 8u) << "seven statuses and \"unknown\"";
   EXPECT_TRUE(texts.contains("unknown"));
 }
 

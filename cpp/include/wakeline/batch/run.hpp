@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "wakeline/batch/threads.hpp"
@@ -14,6 +15,7 @@
 #include "wakeline/core/state_belief.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/filter/concept.hpp"
+#include "wakeline/gating/chi_square_gate.hpp"
 #include "wakeline/gating/radius_gate.hpp"
 #include "wakeline/measurement/concept.hpp"
 #include "wakeline/measurement/own_ship.hpp"
@@ -31,8 +33,10 @@ struct RunInput {
   const double* own_m = nullptr;              ///< (T, 2) north and east of own ship, or null
   const double* own_mps = nullptr;            ///< (T, 2) velocity of own ship, or null
   const double* acceleration_mps2 = nullptr;  ///< (T, 2) known acceleration, or null
-  const RadiusGate* gate =
-      nullptr;  ///< for a `PositionSensor`: a plot outside counts as missed; or null
+  const RadiusGate* gate = nullptr;  ///< of a `PositionSensor`, about its prediction; or null
+  const ChiSquareGate* nis_gate = nullptr;  ///< of the innovation; or null
+  /// Readings outside the gate in a row, after which it stays open until one is inside; 0: never.
+  int reopen_after = 0;
 };
 
 /// Destination of the results of N states and K models, in the caller's memory.
@@ -164,6 +168,38 @@ auto estimated_position(const Estimator& estimator) noexcept {
     return position_of(belief).mean;
 }
 
+/// The gates of several runs side by side, each with its readings outside in a row.
+template <class Scalar>
+class RunGate {
+ public:
+  explicit RunGate(const RunInput& in) noexcept : in_(in) {}
+
+  /// True where so many readings in a row were outside that the next one is used wherever it is.
+  [[nodiscard]] MaskOf<Scalar> open() const noexcept {
+    return outside_in_a_row_ >= Scalar(RealOf<Scalar>(in_.reopen_after)) && in_.reopen_after > 0;
+  }
+
+  /// True of a normalised innovation squared of `dof` numbers inside `nis_gate`; false for NaN.
+  [[nodiscard]] MaskOf<Scalar> contains(const Scalar& nis, int dof) noexcept {
+    if (dof != dof_) {
+      dof_ = dof;
+      threshold_ = in_.nis_gate->threshold(dof);
+    }
+    return nis <= Scalar(RealOf<Scalar>(threshold_));
+  }
+
+  void note(const MaskOf<Scalar>& read, const MaskOf<Scalar>& outside) noexcept {
+    outside_in_a_row_ =
+        select(read, select(outside, outside_in_a_row_ + Scalar(1), Scalar(0)), outside_in_a_row_);
+  }
+
+ private:
+  const RunInput& in_;
+  Scalar outside_in_a_row_ = Scalar(0);
+  int dof_ = 0;
+  double threshold_ = 0.0;
+};
+
 /// An observer of a run that does nothing.
 struct Unwatched {
   template <class Estimator>
@@ -200,6 +236,8 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
                  kHasTurnRates<Estimator> && out.turn_rate_rad_s != nullptr ? out.models : 0),
       innovation(lanes, out.innovation, kM), nis(lanes, out.nis, 1),
       log_likelihood(lanes, out.log_likelihood, 1);
+  RunGate<Scalar> gate(in);
+  std::optional<Estimator> before;  // the update, which a gate may undo
   for (std::size_t scan = 0; scan < in.scans; ++scan) {
     const Scalar dt_s = in.dt_s[scan];
     StatusOf<Scalar> status = in.acceleration_mps2 != nullptr
@@ -214,26 +252,42 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
       missed = missed && z[m] != z[m];
     }
     const Sensor seen = seen_from(sensor, in, scan);
+    const Mask read = ok(status) && !missed;
+    const Mask open = gate.open();
+    Mask outside = false;
     if constexpr (PositionSensor<Sensor>)
       if (in.gate != nullptr)
-        missed = missed || !in.gate->template contains<Scalar>(estimated_position(estimator),
-                                                               seen.position(z).mean);
-    const Mask predicted = ok(status);
+        outside = read && !in.gate->template contains<Scalar>(estimated_position(estimator),
+                                                              seen.position(z).mean);
+    if (in.nis_gate != nullptr) before = estimator;
+    Mask used = read && (open || !outside);
     Step<kM, Scalar> step = failed_step<kM, Scalar>(Status::kMissed);
     step.innovation.setConstant(kNaN);
     step.log_likelihood = kNaN;
-    if (any(predicted && !missed)) {
+    while (any(used)) {
       // A NaN reading changes nothing in its lane.
-      for (int m = 0; m < kM; ++m) z[m] = select(predicted && !missed, z[m], kNaN);
+      for (int m = 0; m < kM; ++m) z[m] = select(used, z[m], kNaN);
       const auto taken = estimator.update(seen, z);
-      const Mask done = ok(taken.status) && predicted && !missed;
-      // Some estimators use only the position of a reading.
+      const Mask done = ok(taken.status) && used;
+      if (in.nis_gate != nullptr) {
+        // Some estimators use only the position of a reading.
+        const Mask beyond = done && !gate.contains(taken.nis, int(taken.innovation.size()));
+        outside = outside || beyond;
+        if (any(beyond && !open)) {
+          estimator = *before;
+          used = used && (open || !beyond);
+          continue;
+        }
+      }
       for (int m = 0; m < taken.innovation.size(); ++m)
         step.innovation[m] = select(done, taken.innovation[m], kNaN);
       step.nis = select(done, taken.nis, kNaN);
       step.log_likelihood = select(done, taken.log_likelihood, kNaN);
       step.status = select(missed, step.status, taken.status);
+      break;
     }
+    step.status = select(outside && !open, StatusOf<Scalar>(Status::kGated), step.status);
+    gate.note(read, outside);
     status = first_failure(status, step.status);
     watch.updated(scan, estimator);
 

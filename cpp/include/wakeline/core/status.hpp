@@ -14,13 +14,14 @@
 namespace wakeline {
 
 /// Result of one step. With any value but `kOk` nothing was changed.
-enum class Status : std::uint8_t {
-  kOk = 0,
-  kMissed = 1,               ///< no measurement in this scan: predicted only
-  kNotStarted = 2,           ///< the estimator has no belief yet
-  kNotFinite = 3,            ///< an input or a result is not finite, or an input is out of range
-  kNotPositiveDefinite = 4,  ///< a covariance is not positive definite
-  kNegativeTimeStep = 5,     ///< the time step is negative
+enum class [[nodiscard]] Status : std::uint8_t{
+    kOk = 0,
+    kMissed = 1,               ///< no measurement in this scan: predicted only
+    kNotStarted = 2,           ///< the estimator has no belief yet
+    kNotFinite = 3,            ///< an input or a result is not finite, or an input is out of range
+    kNotPositiveDefinite = 4,  ///< a covariance is not positive definite
+    kNegativeTimeStep = 5,     ///< the time step is negative
+    kGated = 6,                ///< the measurement is outside the gate: predicted only
 };
 
 /// The status in words, for messages and logs.
@@ -38,6 +39,8 @@ constexpr const char* to_string(Status status) noexcept {
       return "covariance not positive definite";
     case Status::kNegativeTimeStep:
       return "negative time step";
+    case Status::kGated:
+      return "gated: measurement outside the gate";
   }
   return "unknown";
 }
@@ -57,7 +60,7 @@ constexpr Status first_failure_of_lanes(Status status) noexcept { return status;
 
 /// A `Status` for each lane of a pack.
 template <class Scalar>
-class LaneStatus {
+class [[nodiscard]] LaneStatus {
  public:
   LaneStatus() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): the same in every lane.
