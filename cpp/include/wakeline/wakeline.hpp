@@ -4,6 +4,8 @@
 // All of Wakeline.
 #pragma once
 
+#include "wakeline/core/environment.hpp"
+
 #include "wakeline/association/assign_dense.hpp"
 #include "wakeline/association/assignment.hpp"
 #include "wakeline/association/candidates.hpp"
@@ -35,6 +37,7 @@
 #include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/core/utf8.hpp"
+#include "wakeline/core/version.hpp"
 #include "wakeline/eval/consistency.hpp"
 #include "wakeline/eval/cramer_rao_bound.hpp"
 #include "wakeline/eval/gospa.hpp"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "wakeline/core/environment.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>

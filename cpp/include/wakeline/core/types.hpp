@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "wakeline/core/environment.hpp"
+
 #include <Eigen/Core>
 #include <concepts>
 #include <type_traits>
 
 #include "wakeline/simd/scalar.hpp"
 #include "wakeline/simd/unroll.hpp"
-
-#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
-#error "wakeline: -ffast-math and -ffinite-math-only remove the checks for NaN"
-#endif
 
 namespace wakeline {
 

@@ -336,9 +336,9 @@ struct RangeDependent {
 
   template <int Order, class Scalar>
   Vec<Scalar, 2> gains(const GainOccasion<Scalar>& at) const noexcept {
-    const auto gain = [&](double up_to_m, double near, double far) {
+    const auto gain = [&](double up_to_m, double nearest, double least) {
       const Scalar nearness = Scalar(up_to_m) / at_least(at.range_m, Scalar(up_to_m));
-      return at_least(Scalar(near) * nearness, Scalar(far));
+      return at_least(Scalar(nearest) * nearness, Scalar(least));
     };
     return {gain(alpha_range_m, near_alpha, far_alpha), gain(beta_range_m, near_beta, far_beta)};
   }

@@ -6,6 +6,8 @@
 // echo is complete: a strobe is evaluated at once on the stack, video is streamed.
 #pragma once
 
+#include "wakeline/core/environment.hpp"
+
 #include <span>
 
 namespace wakeline::detail {

@@ -98,7 +98,7 @@ class HypothesisClusters {
         if (by_past())
           alike |= free & bits_of(same_past(own.modes[own_lane], rows[r]));
         else if (joins)
-          alike |= free & bits_of(near(own, own_lane, rows[r], factors_[own_row]));
+          alike |= free & bits_of(nearby(own, own_lane, rows[r], factors_[own_row]));
       }
       taken_[r] = alike;
       free &= ~alike;
@@ -162,8 +162,8 @@ class HypothesisClusters {
   }
 
   /// The lanes of a row near a hypothesis of the same mode, by its covariance.
-  [[nodiscard]] MaskOf<Lanes> near(const Row& own, std::size_t own_lane, const Row& row,
-                                   const Cholesky<kStates, Lanes>& factor) const noexcept {
+  [[nodiscard]] MaskOf<Lanes> nearby(const Row& own, std::size_t own_lane, const Row& row,
+                                     const Cholesky<kStates, Lanes>& factor) const noexcept {
     const auto siblings = load<Lanes>(row.segment_s.data()) == Lanes(own.segment_s[own_lane]);
     return factor.squared_norms(away(row, own, own_lane), static_cast<int>(own_lane)) <
            select(siblings, squared_sibling_distance_, squared_merge_distance_);

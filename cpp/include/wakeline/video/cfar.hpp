@@ -281,22 +281,22 @@ class Cfar {
 
   void average(std::span<const Amplitude> amplitude, Amplitude* threshold) noexcept {
     const int cells = static_cast<int>(amplitude.size());
-    const int near = settings_.guard_cells;
-    const int far = near + settings_.train_cells;
+    const int guard = settings_.guard_cells;
+    const int reach = guard + settings_.train_cells;
     detail::running_sums(amplitude, sums_.data());
-    const int inner_first = std::min(far, cells);
-    const int inner_last = std::max(inner_first, cells - far);
+    const int inner_first = std::min(reach, cells);
+    const int inner_last = std::max(inner_first, cells - reach);
     for (int i = 0; i < inner_first; ++i) threshold[i] = average_at_edge(i, cells);
     average_inside(inner_first, inner_last, threshold);
     for (int i = inner_last; i < cells; ++i) threshold[i] = average_at_edge(i, cells);
   }
 
   [[nodiscard]] Amplitude average_at_edge(int i, int cells) const noexcept {
-    const int near = settings_.guard_cells;
-    const int far = near + settings_.train_cells;
-    const int left_first = std::max(i - far, 0), left_last = std::max(i - near, 0);
-    const int right_first = std::min(i + near + 1, cells);
-    const int right_last = std::min(i + far + 1, cells);
+    const int guard = settings_.guard_cells;
+    const int reach = guard + settings_.train_cells;
+    const int left_first = std::max(i - reach, 0), left_last = std::max(i - guard, 0);
+    const int right_first = std::min(i + guard + 1, cells);
+    const int right_last = std::min(i + reach + 1, cells);
     const int count = left_last - left_first + right_last - right_first;
     if (count == 0) return kMost;
     const Sum* sums = sums_.data();
@@ -305,25 +305,25 @@ class Cfar {
     return limited(std::uint64_t{sum} * weight_[static_cast<std::size_t>(count)] >> kPlaces);
   }
 
-  /// Cells from `far` on, where all training cells exist.
+  /// Cells from `reach` on, where all training cells exist.
   void average_inside(int first, int last, Amplitude* threshold) const noexcept {
     if (first >= last) return;
-    const int near = settings_.guard_cells;
-    const int far = near + settings_.train_cells;
+    const int guard = settings_.guard_cells;
+    const int reach = guard + settings_.train_cells;
     const std::uint32_t weight = weight_.back();
     if (weight > std::numeric_limits<std::uint16_t>::max()) {
-      for (int i = first; i < last; ++i) threshold[i] = average_at_edge(i, last + far);
+      for (int i = first; i < last; ++i) threshold[i] = average_at_edge(i, last + reach);
       return;
     }
     detail::mean_thresholds<Amplitude, Sum, Product>(
-        sums_.data(), settings_.train_cells, far + near + 1, static_cast<std::uint16_t>(weight),
+        sums_.data(), settings_.train_cells, reach + guard + 1, static_cast<std::uint16_t>(weight),
         floor(), last - first, threshold + first);
   }
 
   void order(std::span<const Amplitude> amplitude, Amplitude* threshold) noexcept {
     const int cells = static_cast<int>(amplitude.size());
-    const int near = settings_.guard_cells;
-    const int far = near + settings_.train_cells;
+    const int guard = settings_.guard_cells;
+    const int reach = guard + settings_.train_cells;
     const Amplitude* a = amplitude.data();
     std::conditional_t<kNarrow, detail::SlidingHistogram, detail::SortedWindow> window;
     int count = 0;
@@ -337,18 +337,18 @@ class Cfar {
       window.erase(a[i]);
       --count;
     };
-    for (int i = near + 1; i < far; ++i) enter(i);  // all of cell 0 except the last
+    for (int i = guard + 1; i < reach; ++i) enter(i);  // all of cell 0 except the last
     for (int i = 0; i < cells; ++i) {
-      enter(i + far);
-      enter(i - near - 1);
+      enter(i + reach);
+      enter(i - guard - 1);
       if (count == 0) {
         threshold[i] = kMost;
       } else {
         const int k = rank_[static_cast<std::size_t>(count)];
         threshold[i] = limited(std::uint64_t{window.kth(k)} * weight_.front() >> kPlaces);
       }
-      leave(i + near + 1);
-      leave(i - far);
+      leave(i + guard + 1);
+      leave(i - reach);
     }
   }
 

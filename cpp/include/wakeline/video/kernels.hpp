@@ -5,6 +5,8 @@
 // instructions of every 64-bit x86. Both give the same bits.
 #pragma once
 
+#include "wakeline/core/environment.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
