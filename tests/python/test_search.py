@@ -262,7 +262,7 @@ def test_the_plan_is_never_worse_than_the_naive_one_nor_better_than_the_bound(la
 
 
 def test_units_that_search_at_the_same_time_have_areas_of_their_own():
-    cloud = still_cloud(2000, std_m=6000.0)
+    cloud = still_cloud(800, std_m=6000.0)
     units = [
         unit(),
         unit(name="second", start_s=HOUR),
