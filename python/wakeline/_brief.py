@@ -1,4 +1,4 @@
-"""Short reprs of objects with many numbers."""
+"""Short texts: reprs of objects with many numbers, counts, quotations."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+_MOST_QUOTED = 80
+_LONG_QUOTE = re.compile(r"""(['"])(?=((?:(?!\1).){81,})\1)\2\1""", re.DOTALL)
 _EITHER = re.compile(r"\[([^][|]*)\|([^][|]*)\]")
 
 
@@ -13,6 +15,21 @@ def brief(thing: Any, *facts: str, name: str = "") -> str:
     """``<Recording 'joyride': 115 scans, 147 plots>``, as ``__repr__`` should say it."""
     title = f"{type(thing).__name__} {name!r}" if name else type(thing).__name__
     return f"<{title}: {', '.join(filter(None, facts))}>"
+
+
+def cut(text: str) -> str:
+    """Text of a user or a file as messages quote it: at most 80 characters."""
+    return text if len(text) <= _MOST_QUOTED else f"{text[: _MOST_QUOTED - 3]}..."
+
+
+def quoted(value: Any) -> str:
+    """The repr of a value of a user or a file as messages quote it: at most 80 characters."""
+    return cut(repr(value))
+
+
+def with_short_quotes(message: str) -> str:
+    """A message whose quotations have at most 80 characters."""
+    return _LONG_QUOTE.sub(lambda quote: f"{quote[1]}{cut(quote[2])}{quote[1]}", message)
 
 
 def many(count: int, noun: str) -> str:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from wakeline._brief import brief, many, span
+from wakeline._brief import brief, cut, many, quoted, span
 from wakeline._checks import columns, in_a_row, real_numbers, shaped
 from wakeline._engine.core import wrap_angle
 
@@ -309,15 +309,19 @@ class Recording:
         scenario = np.asarray(scenario, dtype=str)
         if len(self.episodes) == 1:
             return np.zeros(len(scenario), dtype=int)
-        index = self._episode_by_time(real_numbers("time_s", time_s))
         known = {episode.name: k for k, episode in enumerate(self.episodes)}
-        for name in np.unique(scenario[scenario != ""]):
-            if name not in known:
-                raise ValueError(
-                    f"scenario {str(name)!r} is not in recording {self.name!r}, "
-                    f"which has {', '.join(map(repr, known))}"
-                )
-            index[scenario == name] = known[name]
+        names, which = np.unique(scenario, return_inverse=True)
+        lost = [name for name in names.tolist() if name and name not in known]
+        if lost:
+            raise ValueError(
+                f"scenario {quoted(lost[0])} is not in recording {self.name!r}, "
+                f"which has {cut(', '.join(map(repr, known)))}"
+            )
+        index = np.array([known.get(name, 0) for name in names.tolist()], dtype=int)[which]
+        unnamed = scenario == ""
+        time_s = real_numbers("time_s", time_s)
+        if unnamed.any():
+            index[unnamed] = self._episode_by_time(time_s[unnamed])
         return index
 
     def _episode_by_time(self, time_s: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -166,12 +167,12 @@ def nearest(sorted_time_s: np.ndarray, time_s: np.ndarray) -> np.ndarray:
     return np.where(nearer, before, after)
 
 
-def grouped(names: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
-    """Each of the names (n,), in order of the first, with the indices of its rows."""
+def grouped(names: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
+    """Each of the names or numbers (n,), in order of the first, with the indices of its rows."""
     unique, first, group = np.unique(names, return_index=True, return_inverse=True)
     rows = np.split(np.argsort(group, kind="stable"), np.cumsum(np.bincount(group))[:-1])
     for k in np.argsort(first).tolist():
-        yield str(unique[k]), rows[k]
+        yield unique[k].item(), rows[k]
 
 
 def unwrapped(number: np.ndarray, time_s: np.ndarray) -> np.ndarray:

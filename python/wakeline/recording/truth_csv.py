@@ -11,6 +11,7 @@ from wakeline._brief import many
 
 from .errors import RecordingError
 from .model import Recording
+from .scans import grouped
 from .table import TIME_NAMES, Table
 from .truth import TargetTruth
 
@@ -71,9 +72,12 @@ def read_truth(
     kept = sound & _kept(table, sound, state, scenario, recording)
     episode = recording.episode_of(scenario[kept], time_s[kept])
     _check_overlap(table, time_s[kept], episode, recording)
+    rows = dict(grouped(episode))
+    none = np.zeros(0, dtype=int)
+    target, time_s, state = target[kept], time_s[kept], state[kept]
     return [
-        _targets(target[kept][mine], time_s[kept][mine], state[kept][mine])
-        for mine in (episode == k for k in range(len(recording)))
+        _targets(target[mine], time_s[mine], state[mine])
+        for mine in (rows.get(k, none) for k in range(len(recording)))
     ]
 
 
@@ -103,10 +107,9 @@ def _check_overlap(
     table: Table, time_s: np.ndarray, episode: np.ndarray, recording: Recording
 ) -> None:
     """Truth must overlap the time of an episode, if there are scans and rows."""
+    scenes = recording.episodes
     spans = [
-        (own.time_s[[0, -1]], time_s[episode == k])
-        for k, own in enumerate(recording)
-        if len(own) and (episode == k).any()
+        (scenes[k].time_s[[0, -1]], time_s[rows]) for k, rows in grouped(episode) if len(scenes[k])
     ]
     if spans and all(rows.max() < begin or rows.min() > end for (begin, end), rows in spans):
         (begin, end), rows = spans[0]
