@@ -12,6 +12,7 @@ import sys as _sys
 from importlib.metadata import PackageNotFoundError as _PackageNotFoundError
 from importlib.metadata import version as _version
 
+from . import _starting as _starting  # first, so that Ctrl-C ends the command while it imports
 from ._engine import (
     association,
     batch,

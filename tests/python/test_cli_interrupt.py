@@ -62,6 +62,24 @@ def test_the_first_ctrl_c_ends_a_command(kind, tmp_path):
     assert time.monotonic() - begun < 10.0, "60 s without the watch"
 
 
+@pytest.mark.parametrize("module", ["_starting", "_engine", "recording", "cli.track"])
+def test_ctrl_c_ends_a_command_that_is_still_imported(module):
+    command = subprocess.Popen(
+        [sys.executable, "-X", "importtime", "-m", "wakeline", "study", "list"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    for line in command.stderr:  # each module when it is imported
+        if line.rpartition("|")[2].strip() == f"wakeline.{module}":
+            break
+    command.send_signal(signal.SIGINT)
+    _, error = command.communicate(timeout=30)
+    assert command.returncode == 130
+    assert "Traceback" not in error
+    assert error.endswith("wakeline: interrupted\n")
+
+
 LOG = "$GPRMC,120000,A,5430.0000,N,01030.0000,E,6.00,60.0,150826,,,A\n"
 
 
