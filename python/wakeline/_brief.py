@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 _MOST_QUOTED = 80
-_LONG_QUOTE = re.compile(r"""(['"])(?=((?:(?!\1).){81,})\1)\2\1""", re.DOTALL)
+_LONG_QUOTE = re.compile(r"""(?<!\w)(['"])(?=((?:(?!\1).){81,})\1)\2\1(?!\w)""", re.DOTALL)
 _EITHER = re.compile(r"\[([^][|]*)\|([^][|]*)\]")
 
 

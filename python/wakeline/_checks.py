@@ -9,13 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from wakeline._brief import cut, quoted
+
 MOST_RUNS = 10**7
 
 
 def whole_number(name: str, value: Any, least: int) -> None:
     """ValueError unless the named argument is an integer, at least `least`."""
     if not isinstance(value, (int, np.integer)) or value < least:
-        raise ValueError(f"{name} must be a whole number, at least {least}, got {value!r}")
+        raise ValueError(f"{name} must be a whole number, at least {least}, got {quoted(value)}")
 
 
 def plain_numbers(**values: Any) -> None:
@@ -23,7 +25,7 @@ def plain_numbers(**values: Any) -> None:
     for name, value in values.items():
         single = isinstance(value, np.ndarray) and value.shape == () and value.dtype.kind in "buif"
         if not (single or isinstance(value, Real)):
-            raise TypeError(f"{name} must be a number, got {value!r}")
+            raise TypeError(f"{name} must be a number, got {quoted(value)}")
 
 
 def number_fields(settings: Any, *names: str) -> dict[str, Any]:
@@ -65,7 +67,7 @@ def _require(wanted: str, holds: Callable[[Any], Any], values: dict[str, Any]) -
     plain_numbers(**values)
     for name, value in values.items():
         if not holds(value):
-            raise ValueError(f"{name} must be {wanted}, got {value}")
+            raise ValueError(f"{name} must be {wanted}, got {cut(str(value))}")
 
 
 def listed(name: str, sequence: Any, of_what: str) -> list[Any]:
@@ -73,7 +75,7 @@ def listed(name: str, sequence: Any, of_what: str) -> list[Any]:
     try:
         return list(sequence)
     except TypeError:
-        raise TypeError(f"{name} must be a sequence of {of_what}, got {sequence!r}") from None
+        raise TypeError(f"{name} must be a sequence of {of_what}, got {quoted(sequence)}") from None
 
 
 def run_numbers(runs: Any, seed: Any, threads: Any) -> None:
@@ -128,7 +130,7 @@ def columns(table: Any, time: str, *names: str, optional: Sequence[str] = ()) ->
     """
     time_s = shaped(time, getattr(table, time), None)
     if not (np.isfinite(time_s).all() and (np.diff(time_s) >= 0).all()):
-        raise ValueError(f"{time} must be finite and in order, got {time_s}")
+        raise ValueError(f"{time} must be finite and in order, got {cut(str(time_s))}")
     given = [name for name in optional if getattr(table, name) is not None]
     for name in (time, *names, *given):
         object.__setattr__(table, name, shaped(name, getattr(table, name), len(time_s)))
@@ -141,7 +143,7 @@ def _reject_others(numbers: np.ndarray) -> None:
     text = (one for one in numbers.flat if isinstance(one, (str, bytes)))
     example = next(text, None) if kind in "USO" else None
     if example is not None:
-        raise TypeError(f"got text such as {str(example)!r}")
+        raise TypeError(f"got text such as {quoted(str(example))}")
 
 
 def in_a_row(name: str, values: Any) -> np.ndarray:

@@ -1,7 +1,11 @@
 """Settings as TOML: a file keeps them exactly, and errors name file, section and key."""
 
 import math
+import os
+import subprocess
+import sys
 
+import numpy as np
 import pytest
 
 import wakeline as wl
@@ -149,7 +153,11 @@ def test_a_radar_of_ones_own(tmp_path, head):
         ("[models]\ncruising_probability = 2.0", "[models] cruising_probability = 2.0"),
         ("[radar\n", "not TOML"),
         (f"a = {5000 * '['}", "not TOML"),
-        (f"[radar]\nrange_std_m{5000 * '.a'} = 1", "range_std_m must be a number, got {'a': "),
+        (f"[radar]\nrange_std_m{5 * '.a'} = 1", "range_std_m must be a number, got {'a': "),
+        (f"[radar]\nrange_std_m{50_000 * '.a'} = 1", "too many parts: range_std_m.a"),
+        (f"[{50_000 * 'a.'}b]", "too many parts: a.a"),
+        ("x = {" + 50_000 * '"a" . ' + "b = 1}", 'too many parts: "a" . "a"'),
+        (f"#{2**20 * '-'}", "too long for settings"),
     ],
 )
 def test_what_is_wrong_is_named(tmp_path, text, wanted):
@@ -214,3 +222,110 @@ def test_whose_radar_holds_is_reported(tmp_path, capsys, text, wanted):
     files = [str(plots), "--config", str(tmp_path / "mine.toml"), "--out", str(tmp_path / "out")]
     assert main(["track", *files]) == 0
     assert wanted in capsys.readouterr().out
+
+
+LONG = 100_000 * "q"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{LONG} = 1",
+        f"[{LONG}]\n[{LONG}]\n",
+        f"[tracker]\n{LONG} = 1",
+        f"[tracker]\nassociation = '{LONG}'",
+        f"[tracker]\nmax_tracks = '{LONG}'",
+        f"[[zone]]\n{LONG} = 1",
+        f"[[zone]]\nname = 'a'\noutline_m = '{LONG}'",
+        f"zone = '{LONG}'",
+    ],
+)
+def test_messages_quote_little(tmp_path, text):
+    with pytest.raises(SettingsError) as caught:
+        read(tmp_path, text)
+    assert "mine.toml" in str(caught.value)
+    assert 81 * "q" not in str(caught.value)
+    with pytest.raises(SettingsError) as caught:
+        read_settings(vessels=LONG)
+    assert 81 * "q" not in str(caught.value)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="no such device")  # noqa: PTH110
+@pytest.mark.parametrize("arguments", [["--config"], ["--radar"], [], ["--method", "strobe"]])
+def test_a_device_without_end_is_not_read_for_ever(tmp_path, capsys, arguments):
+    assert main(["track", "--out", str(tmp_path), *arguments, "/dev/zero"]) == 2
+    assert capsys.readouterr().err.startswith("wakeline: /dev/zero")
+
+
+EXTREMES = (1.7e308, 1e30, 1e12, 1e6, 1e-6, 1e-12, 1e-300, 0.0, -1.0)
+
+
+@pytest.mark.parametrize("section", ["radar", "tracker", "models"])
+def test_settings_at_extremes_are_rejected_or_give_finite_tracks(section):
+    kinds = {"radar": wl.Radar, "tracker": wl.TrackerConfig, "models": wl.VesselModels}
+    bearing_rad = np.array([0.3, -1.0])
+    rejected = 0
+    for field in kinds[section].fields():
+        for value in EXTREMES if field.type is float else ():
+            try:
+                given = {name: kind() for name, kind in kinds.items()}
+                given[section] = kinds[section](**{field.name: value})
+            except ValueError as error:
+                assert str(error).startswith(field.name)  # noqa: PT017
+                rejected += 1
+                continue
+            tracker = wl.Tracker(given["radar"], given["tracker"], given["models"])
+            period_s = given["radar"].period_s
+            for k in range(8):
+                range_m = np.array([2000.0, 3000.0]) + 10.0 * min(period_s, 60.0) * k
+                tracker.process(k * period_s, range_m=range_m, bearing_rad=bearing_rad)
+                tracks = tracker.tracks(tentative=True)
+                assert np.isfinite(tracks.mean).all(), (field.name, value)
+                assert np.isfinite(tracks.covariance).all(), (field.name, value)
+    assert rejected > 4
+
+
+def test_every_setting_has_a_range():
+    for kind in (wl.Radar, wl.TrackerConfig, wl.VesselModels, wl.StrobeTrackerConfig, DangerLimits):
+        for field in kind.fields():
+            for value in (1.7e308, -1.7e308, math.nan, math.inf) if field.type is float else ():
+                with pytest.raises(ValueError, match=field.name):
+                    kind(**{field.name: value})
+            for value in (2**31 - 1, -1) if field.type is int else ():
+                with pytest.raises(ValueError, match=field.name):
+                    kind(**{field.name: value})
+
+
+def memory_of(program):
+    """Octets that the last line of a program takes."""
+    *before, last = program
+    page = "int(open('/proc/self/statm').read().split()[1]) * 4096"
+    text = "\n".join([*before, f"before = {page}", last, f"print({page} - before)"])
+    return int(subprocess.check_output([sys.executable, "-c", text], text=True))
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="Linux")  # noqa: PTH110
+@pytest.mark.parametrize(
+    ("method", "text"),
+    [
+        ("plots", "[tracker]\nmax_tracks = 30000"),
+        ("plots", "[tracker]\nmax_plots = 1000000"),
+        ("strobe", "[strobes]\nmax_tracks = 10000"),
+        ("strobe", "[strobes]\nmax_sweep_cells = 16384\nmax_strobe_sweeps = 8192"),
+    ],
+)
+def test_the_memory_of_a_tracker_is_said(tmp_path, method, text):
+    settings = read(tmp_path, text)
+    make = "make_tracker" if method == "plots" else "make_strobe_tracker"
+    taken = memory_of(
+        [
+            "from wakeline.tracking import read_settings",
+            f"settings = read_settings({str(tmp_path / 'mine.toml')!r})",
+            f"tracker = settings.{make}(2.5)",
+        ]
+    )
+    assert settings.memory_octets(method) == pytest.approx(taken, rel=0.3)
+    notes = settings.memory_notes(method)
+    assert bool(notes) == (settings.memory_octets(method) >= 100e6)
+    assert all(f"{settings.memory_octets(method) / 1e6:.0f} MB" in note for note in notes)
+    assert Settings.default().memory_notes(method) == []

@@ -13,7 +13,8 @@ import warnings
 from collections.abc import Sequence
 from typing import NoReturn, TextIO
 
-from wakeline import FilterError, __version__
+from wakeline import FilterError, __version__, _starting
+from wakeline._brief import with_short_quotes
 from wakeline.recording.files import check_writable, remove_begun
 
 from . import bench, demo, interrupt, navigate, outputs, score, search, study, track
@@ -46,6 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str]) -> int:
     try:
+        _starting.started()
         arguments = _parser().parse_args(argv)
         if arguments.json is not None:
             _check_json(arguments)
@@ -112,7 +114,7 @@ def _one_line(error: Exception) -> str:
     if isinstance(error, OSError) and error.strerror:
         place = f"{error.filename}: " if error.filename is not None else ""
         return f"{place}{error.strerror}"
-    message = " ".join(str(error).split())
+    message = " ".join(with_short_quotes(str(error)).split())
     if isinstance(error, MemoryError):
         return message or "not enough memory"
     return message

@@ -28,6 +28,7 @@ from wakeline.tracking.tables import TABLES
 
 HOW_TO_GET_PICTURES = "no pictures without matplotlib: pip install 'wakeline[plot]'"
 PARTIAL = "-partial"
+MOST_DRAWN = 20  # episodes; the pictures of one take a second
 
 _PICTURES = ("map", "time")
 _MOST_OCTETS = 120  # of a scenario in a file name, which some file systems limit to 143
@@ -139,11 +140,12 @@ def of_tracking(folder: Path) -> set[Path]:
 
 
 def write_pictures(folder: Path, tracks: TrackedRecording) -> list[Path]:
-    """Write ``map.png`` and ``time.png`` of each episode, and ``ppi.png`` of radar video."""
+    """Write ``map.png`` and ``time.png`` of the first episodes, ``ppi.png`` of radar video."""
     files = []
     parts = tracks.episodes
-    named = zip(parts, _file_names(part.episode.name for part in parts), strict=True)
-    for part, name in progress(named, len(parts), "drawing"):
+    named = list(zip(parts, _file_names(part.episode.name for part in parts), strict=True))
+    drawn = named[:MOST_DRAWN]
+    for part, name in progress(drawn, len(drawn), "drawing"):
         end = f"-{name}" if len(parts) > 1 else ""
         modes = part.tracks.mode_probability.shape[1]
         names = MODE_NAMES if modes == len(MODE_NAMES) else None

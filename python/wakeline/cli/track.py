@@ -51,10 +51,10 @@ are acquired from extracted plots, or where --acquire points.
 Plots without a scan number are grouped by antenna revolution (period_s of
 --radar, else estimated).
 
-Each value of a scenario column is tracked from a fresh start. If one of several
-scenarios fails, the files of the previous ones are written with -partial in
-their names, and files of an earlier run are kept; otherwise files of an earlier
-run that this run does not write are removed.
+Each value of a scenario column is tracked from a fresh start; the first 20 are
+drawn. If one of several scenarios fails, the files of the previous ones are
+written with -partial in their names, and files of an earlier run are kept;
+otherwise files of an earlier run that this run does not write are removed.
 """
 _COLUMNS = """\
 columns, separated by commas, recognized by name in any order:
@@ -157,6 +157,7 @@ def run(arguments: argparse.Namespace) -> None:
     outputs.check_no_input("--out", outputs.of_tracking(arguments.out), inputs(arguments))
     recording, track = _opened(arguments, settings)
     known = settings.knowing(recording.radar)
+    recording.notes.extend(known.memory_notes(arguments.method))
     radar = _radar_text(arguments, settings, known, recording)
     danger = arguments.own is not None
     tracks = track_into(arguments.out, recording, known, radar, danger=danger, track=track)
@@ -262,10 +263,13 @@ def track_into(
 
 
 def draw_into(folder: Path, tracks: TrackedRecording) -> None:
-    """Draw every episode and print the files; last, because it takes longest."""
+    """Draw the first episodes and print the files; last, because it takes longest."""
     if not outputs.can_draw():
         print(outputs.HOW_TO_GET_PICTURES)
         return
+    if len(tracks.episodes) > outputs.MOST_DRAWN:
+        which = f"the first {outputs.MOST_DRAWN} of {len(tracks.episodes)} scenarios"
+        print(f"note: {which} are drawn", flush=True)
     print(f"drawn in {folder}: {_listed(outputs.write_pictures(folder, tracks))}")
 
 

@@ -27,6 +27,7 @@ from .video import Beam, RadarVideo
 _PIECE = 1 << 22  # octets read at once
 _HEAD = 1 << 19  # octets that identify the format of a file
 _MOST = 1 << 27  # octets of amplitudes in a block
+_MOST_WITHOUT = 1 << 26  # octets without a block at the begin of a file
 _TURN = 2 * math.pi
 _STEP = _TURN / 65536  # of azimuth in the format
 _LATE = 64  # messages; a count that goes back further has restarted
@@ -342,7 +343,7 @@ def _nothing(path: Path, order: _Order) -> RecordingError:
 def _decoded(path: Path, report: VideoReport, strict: bool) -> Iterator[Cat240Sweeps]:
     """The sweeps of the file, piece by piece."""
     decoder = Cat240Decoder()
-    rest = b""
+    rest, found = b"", False
     for piece, last in _pieces(video_of(path, report.contents), _PIECE):
         data = rest + piece
         sweeps = decoder.decode(data, last)
@@ -351,6 +352,9 @@ def _decoded(path: Path, report: VideoReport, strict: bool) -> Iterator[Cat240Sw
         report.skipped_octets = decoder.skipped_octets
         report.other_blocks = decoder.other_blocks
         yield sweeps
+        found = found or bool(len(sweeps.offset) or decoder.other_blocks)
+        if not found and decoder.skipped_octets > _MOST_WITHOUT:
+            return
 
 
 def _pieces(octets: Iterable[bytes], least: int) -> Iterator[tuple[bytes, bool]]:

@@ -19,6 +19,7 @@ from wakeline._brief import many
 from .errors import RecordingError
 
 _READ = 1 << 18  # octets
+_MOST_BINARY = 1 << 24
 _LARGEST_PACKET = 1 << 18
 _MOST_FRAGMENTS = 4096
 
@@ -104,8 +105,11 @@ class Contents:
 
 
 def octets_of(path: str | Path, wanted: str | None = None) -> bytes:
-    """Contents of a file, decompressed; RecordingError, with what was expected, on failure."""
-    return b"".join(_decompressed(Path(path), wanted))
+    """Contents of a file of text, decompressed; of binary data at most the first 16 MiB.
+
+    RecordingError, with what was expected, on failure.
+    """
+    return b"".join(_until_binary(_decompressed(Path(path), wanted)))
 
 
 def sentences_of(path: str | Path, wanted: str) -> bytes:
@@ -119,7 +123,8 @@ def sentences_of(path: str | Path, wanted: str) -> bytes:
         When the file cannot be read, or is a capture without such lines.
     """
     contents = Contents()
-    octets = b"".join(_unpacked(_decompressed(Path(path), wanted), _sentences_in, contents))
+    pieces = _unpacked(_decompressed(Path(path), wanted), _sentences_in, contents)
+    octets = b"".join(_until_binary(pieces))
     if contents.form and not contents.used:
         raise RecordingError(path, "no sentence in any packet", wanted=wanted, got=str(contents))
     return octets
@@ -140,6 +145,17 @@ def instead_of_text(octets: bytes) -> str | None:
         if named is _UNKNOWN and (marked or zeros[0] != zeros[1]):
             named = "text in UTF-16, save it as UTF-8 first"
     return named
+
+
+def _until_binary(pieces: Iterable[bytes]) -> Iterator[bytes]:
+    """The pieces of a text; of binary data, which may be without end, enough to name it."""
+    size, binary = 0, False
+    for piece in pieces:
+        binary = binary or (size == 0 and _controls(piece))
+        size += len(piece)
+        yield piece
+        if binary and size >= _MOST_BINARY:
+            return
 
 
 def _controls(octets: bytes) -> bool:

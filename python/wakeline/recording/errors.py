@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from wakeline._brief import cut, with_short_quotes
+
 _PLACES = ("line", "column", "offset", "wanted", "got")
 
 
@@ -25,7 +27,8 @@ class RecordingError(ValueError):
     wanted, got : str, optional
         What was expected there, and what the file has.
 
-    All parameters are attributes; ``str(error)`` is one line made of them.
+    All parameters are attributes; ``str(error)`` is one line made of them, in which a quotation
+    has at most 80 characters.
     """
 
     def __init__(
@@ -66,14 +69,14 @@ class RecordingError(ValueError):
         if self.line is not None:
             place.append(f"line {self.line}")
         if self.column is not None:
-            place.append(f"column {self.column}")
+            place.append(f"column {cut(self.column)}")
         if self.offset is not None:
             place.append(f"octet {self.offset}")
         sentence = f"{', '.join(place)}: {self.problem}"
         if self.wanted is not None:
             sentence += f"; wanted {self.wanted}"
         if self.got is not None:
-            sentence += f", got {self.got}"
+            sentence += f", got {with_short_quotes(self.got)}"
         return sentence
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wakeline._brief import counted
+from wakeline._brief import counted, cut
 from wakeline._units import NAUTICAL_MILE_M
 
 from .errors import RecordingError
@@ -207,7 +207,7 @@ def _places(table: Table, notes: list[str]) -> tuple[np.ndarray, bool]:
             "a column is missing",
             line=1,
             wanted=_MEASUREMENT_WANTED,
-            got=", ".join(table.header),
+            got=cut(", ".join(table.header)),
         )
     place = np.column_stack(columns)
     place[~np.isfinite(place).all(axis=1)] = np.nan

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from wakeline._brief import many
+from wakeline._brief import cut, many
 
 from .containers import instead_of_text, octets_of
 from .errors import RecordingError
@@ -119,7 +119,7 @@ class Table:
         plain = {_plain(name) for name in self.header}
         for name in columns or {}:
             if _plain(name) not in plain:
-                got = ", ".join(self.header)
+                got = cut(", ".join(self.header))
                 raise RecordingError(self.path, "a column is missing", wanted=name, got=got)
 
     def require(self, *columns: str) -> None:
@@ -132,7 +132,7 @@ class Table:
                     line=self._header_line,
                     column=column,
                     wanted=f"{' or '.join(self._meanings[column])}; name others with columns",
-                    got=", ".join(self.header),
+                    got=cut(", ".join(self.header)),
                 )
 
     def name(self, column: str) -> str:
@@ -269,7 +269,7 @@ class Table:
                     line=self._header_line,
                     column=name,
                     wanted=f"one column for {column}",
-                    got=f"{self.header[place[column]]} and {name}",
+                    got=f"{cut(self.header[place[column]])} and {cut(name)}",
                 )
             place[column] = k
         return place

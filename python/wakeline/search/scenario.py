@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from wakeline import LocalPlane, navigation
+from wakeline._brief import cut, quoted
 from wakeline.recording.table import Table
 from wakeline.tracking.settings import SettingsError, read_toml
 
@@ -118,9 +119,8 @@ def read_scenario(source: str | Path) -> SearchScenario:
         with resources.as_file(bundled) as path:
             return _scenario(path)
     if not Path(source).exists():
-        raise SettingsError(
-            f"scenario must be a file or one of {', '.join(example_names())}, got {str(source)!r}"
-        )
+        known = ", ".join(example_names())
+        raise SettingsError(f"scenario must be a file or one of {known}, got {quoted(str(source))}")
     return _scenario(Path(source))
 
 
@@ -136,7 +136,7 @@ def _scenario(path: Path) -> SearchScenario:
     units = tuple(_unit(section, plane) for section in top.sections("unit"))
     names = [unit.name for unit in units]
     if not units or len(set(names)) < len(names):
-        raise SettingsError(f"{path}: [[unit]] must be one or more of different names, got {names}")
+        raise top.error("unit", "one or more tables [[unit]] of different names", names)
     search_object = SearchObject(
         kind=found.word("kind", navigation.leeway_kinds()),
         position_std_m=found.number("position_std_m", 0.0, 1e6, default=0.0),
@@ -329,13 +329,14 @@ class _Section:
 
     def __init__(self, path: Path, title: str, values: Any) -> None:
         if not isinstance(values, dict):
-            raise SettingsError(f"{path}: {title} must be a table, got {values!r}")
+            raise SettingsError(f"{path}: {title} must be a table, got {quoted(values)}")
         self.title = title
         self._path, self._values, self._used = path, values, {}
 
     def error(self, key: str, wanted: str, got: Any) -> SettingsError:
         """An error about the value of a key."""
-        return SettingsError(f"{self._path}: {self._place(key)} must be {wanted}, got {got!r}")
+        place = f"{self._path}: {self._place(key)}"
+        return SettingsError(f"{place} must be {wanted}, got {quoted(got)}")
 
     def given(self, *keys: str) -> bool:
         """Whether the table has one of the keys."""
@@ -411,8 +412,9 @@ class _Section:
         """Raise SettingsError if there is a key that nothing has asked for."""
         for key in self._values:
             if key not in self._used:
+                known = ", ".join(self._used)
                 raise SettingsError(
-                    f"{self._path}: unknown key {self._place(key)}; known: {', '.join(self._used)}"
+                    f"{self._path}: unknown key {cut(self._place(key))}; known: {known}"
                 )
         for used in self._used.values():
             for section in used if isinstance(used, list) else [used]:

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import json
 import math
-import reprlib
+import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import wakeline as wl
+from wakeline._brief import cut, quoted, with_short_quotes
 from wakeline.recording import load_radar, radar_names
 
 from .encounters import DangerLimits, DangerZone
@@ -74,6 +77,12 @@ _ZONES = """\
 # corners [north, east] of a polygon, and any keys of [danger].
 """
 _MANY = 2**31
+_MOST_OCTETS = 2**20
+_TRACKER_OCTETS = 3800, 65  # of a track, and of a plot of a scan
+_STROBE_OCTETS = 13500  # of a track
+_MUCH_OCTETS = 100e6
+_PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*"""
+_DEEP_KEY = re.compile(rf"(?<![\w-])(?:{_PART}){{20,}}")  # costs its square
 _WHAT = {float: "a number", int: "a whole number", str: "a text"}
 
 
@@ -135,6 +144,26 @@ class Settings:
             wl.vessel_imm(radar, _engine("models", self.models)),
             bits=bits,
         )
+
+    def memory_octets(self, method: str = "plots", bits: int = 8) -> int:
+        """About the octets of a tracker by its room; `method` as on the command line."""
+        if method == "plots":
+            room = self.tracker["max_tracks"], self.tracker["max_plots"]
+            return round(sum(np.multiply(room, _TRACKER_OCTETS)))
+        picture = self.strobes["max_sweep_cells"] * self.strobes["max_strobe_sweeps"]
+        return round(self.strobes["max_tracks"] * _STROBE_OCTETS + picture * bits / 8)
+
+    def memory_notes(self, method: str = "plots") -> list[str]:
+        """A note on the memory of a tracker if it takes much."""
+        octets = self.memory_octets(method)
+        if octets < _MUCH_OCTETS:
+            return []
+        section, names = {
+            "plots": ("tracker", ("max_tracks", "max_plots")),
+            "strobe": ("strobes", ("max_tracks", "max_sweep_cells", "max_strobe_sweeps")),
+        }[method]
+        room = ", ".join(f"{name} = {getattr(self, section)[name]}" for name in names)
+        return [f"a tracker with {room} takes about {octets / 1e6:.0f} MB of memory"]
 
     def _radar(self, period_s: float | None) -> wl.Radar:
         return _engine("radar", self.radar | {"period_s": self.period_s or period_s or 0.0})
@@ -205,7 +234,7 @@ def read_settings(
                 continue
             if section not in KEYS:
                 known = _one_of([*KEYS, "zone"])
-                raise SettingsError(f"{config}: unknown section {section}; {known}")
+                raise SettingsError(f"{config}: unknown section {cut(section)}; {known}")
             settings = _changed(settings, section, values, config)
         _check_zones(settings, config)
     if isinstance(radar, wl.Radar):
@@ -216,7 +245,7 @@ def read_settings(
         settings = replace(settings, models=vessels.as_dict())
     elif vessels is not None:
         if vessels not in VESSELS:
-            raise SettingsError(f"vessels must be {' or '.join(VESSELS)}, got {vessels!r}")
+            raise SettingsError(f"vessels must be {' or '.join(VESSELS)}, got {quoted(vessels)}")
         settings = replace(settings, models=VESSELS[vessels]().as_dict())
     return settings
 
@@ -228,7 +257,7 @@ def _read_radar(name: str | Path) -> Any:
     path = Path(name)
     if not path.exists():
         raise SettingsError(
-            f"radar must be a file or one of {', '.join(radar_names())}, got {str(name)!r}"
+            f"radar must be a file or one of {', '.join(radar_names())}, got {quoted(str(name))}"
         )
     document = read_toml(path)
     if list(document) == ["radar"]:
@@ -236,7 +265,7 @@ def _read_radar(name: str | Path) -> Any:
     sections = [key for key, value in document.items() if isinstance(value, dict)]
     if sections:
         raise SettingsError(
-            f"{path}: a radar file must have only keys of [radar], got {', '.join(sections)}; "
+            f"{path}: a radar file must have only keys of [radar], got {cut(', '.join(sections))}; "
             "use --config for settings of several sections"
         )
     return document
@@ -249,7 +278,8 @@ def _changed(settings: Settings, section: str, values: Any, path: str | Path) ->
     before = getattr(settings, section)
     for key, value in values.items():
         if key not in before:
-            raise SettingsError(f"{path}: unknown key {key} in [{section}]; {_one_of(before)}")
+            unknown = f"unknown key {cut(key)} in [{section}]"
+            raise SettingsError(f"{path}: {unknown}; {_one_of(before)}")
         _check_type(path, f"[{section}] {key}", value, type(before[key]))
     after = before | {k: float(v) if type(before[k]) is float else v for k, v in values.items()}
     _check_values(path, section, before, after)
@@ -264,7 +294,7 @@ def _read_zones(zones: Any, path: str | Path) -> tuple[dict[str, Any], ...]:
         for key, value in zone.items():
             if key not in ("name", "outline_m", *KEYS["danger"]):
                 known = _one_of(("name", "outline_m", *KEYS["danger"]))
-                raise SettingsError(f"{path}: unknown key {key} in {place}; {known}")
+                raise SettingsError(f"{path}: unknown key {cut(key)} in {place}; {known}")
             if key != "outline_m":
                 _check_type(path, f"{place} {key}", value, str if key == "name" else float)
         for key in ("name", "outline_m"):
@@ -279,7 +309,7 @@ def _check_zones(settings: Settings, path: str | Path) -> None:
         try:
             _zone(settings.danger, **zone)
         except (ValueError, TypeError) as error:
-            raise SettingsError(f"{path}: {place}: {error}") from None
+            raise SettingsError(f"{path}: {place}: {with_short_quotes(str(error))}") from None
 
 
 def _places(zones: Sequence[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -300,10 +330,10 @@ def _zone_text(zone: dict[str, Any]) -> str:
 def _check_type(path: str | Path, place: str, value: Any, wanted: type) -> None:
     good = (int, float) if wanted is float else wanted
     if isinstance(value, bool) or not isinstance(value, good):
-        raise SettingsError(f"{path}: {place} must be {_WHAT[wanted]}, got {reprlib.repr(value)}")
+        raise SettingsError(f"{path}: {place} must be {_WHAT[wanted]}, got {quoted(value)}")
     below = _MANY if wanted is int else sys.float_info.max
     if isinstance(value, int) and not abs(value) < below:
-        raise SettingsError(f"{path}: {place} must be below {below}, got {value}")
+        raise SettingsError(f"{path}: {place} must be below {below}, got {quoted(value)}")
 
 
 def _check_values(
@@ -313,10 +343,12 @@ def _check_values(
     try:
         _engine(section, after)
     except ValueError as error:
+        reason = with_short_quotes(str(error))
         for key, value in after.items():
-            if value != before[key] and str(error).startswith(f"{_engine_name(key)} "):
-                raise SettingsError(f"{path}: [{section}] {key} = {value!r}: {error}") from None
-        raise SettingsError(f"{path}: [{section}]: {error}") from None
+            if value != before[key] and reason.startswith(f"{_engine_name(key)} "):
+                place = f"{path}: [{section}] {key}"
+                raise SettingsError(f"{place} = {quoted(value)}: {reason}") from None
+        raise SettingsError(f"{path}: [{section}]: {reason}") from None
 
 
 def _engine(section: str, values: dict[str, Value]) -> Any:
@@ -346,15 +378,31 @@ def _as_in_file(section: str, parameters: Any) -> dict[str, Value]:
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """A TOML file as a dict; SettingsError if it cannot be read as such."""
+    """A TOML file of at most a megabyte as a dict; SettingsError if it cannot be read as such."""
+    with path.open("rb") as file:  # which may be a pipe, or a device without end
+        octets = file.read(_MOST_OCTETS + 1)
+    if len(octets) > _MOST_OCTETS:
+        raise SettingsError(f"{path}: too long for settings; wanted at most {_MOST_OCTETS} octets")
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        text = octets.decode("utf-8-sig")
+        deep = _DEEP_KEY.search(text)
+        if deep:
+            raise SettingsError(f"{path}: a key has too many parts: {cut(deep[0])}")
+        return tomllib.loads(text.replace("\r\n", "\n").replace("\r", "\n"))
     except UnicodeDecodeError:
         raise SettingsError(f"{path}: not text in UTF-8") from None
+    except SettingsError:
+        raise
     except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
-        raise SettingsError(f"{path}: not TOML: {error}") from None
+        raise SettingsError(f"{path}: not TOML: {_in_short(str(error))}") from None
     except RecursionError:
         raise SettingsError(f"{path}: not TOML: nested too deep") from None
+
+
+def _in_short(error: str) -> str:
+    """The message of a parser with at most 80 characters before the place."""
+    end = error.rfind(" (at ")
+    return f"{cut(error[:end])}{error[end:]}" if end > 0 else cut(error)
 
 
 def _one_of(names: Iterable[str]) -> str:

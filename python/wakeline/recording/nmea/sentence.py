@@ -9,6 +9,8 @@ from collections.abc import Iterator, Sequence
 from functools import reduce
 from operator import xor
 
+from wakeline._brief import quoted
+
 from .log import NmeaReport
 
 # A sentence without a checksum must have at least this many fields.
@@ -297,4 +299,4 @@ def _got(text: str | bytes) -> str:
     if not text:
         return "got an empty field"
     shown = text if isinstance(text, str) else text.rstrip().decode("latin-1")
-    return f"got {shown[:100]!r}"
+    return f"got {quoted(shown)}"
