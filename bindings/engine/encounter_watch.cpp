@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/fields.hpp"
+#include "support/thread_lock.hpp"
 #include "support/types.hpp"
 
 namespace wakeline::python {
@@ -160,7 +161,12 @@ py::array_t<double> outline_of(const DangerZone& zone) {
   return outline;
 }
 
-PyEncounterReport update(EncounterWatch& watch, double time_s,
+/// A watch that several threads may use.
+struct PyWatch : EncounterWatch, ThreadLock {
+  using EncounterWatch::EncounterWatch;
+};
+
+PyEncounterReport update(PyWatch& watch, double time_s,
                          const py::array_t<std::int64_t, py::array::c_style>& id,
                          const DoubleArray& mean, const DoubleArray& covariance) {
   require_shape(id.ndim() == 1, "vessel_id", "(n,)", id);
@@ -182,6 +188,7 @@ PyEncounterReport update(EncounterWatch& watch, double time_s,
     throw py::value_error("vessel_id must be different for each vessel, got " +
                           std::to_string(*twice) + " twice");
   PyEncounterReport result;
+  const auto hold = watch.hold();  // the report is the watch's memory
   EncounterReport report;
   {
     const py::gil_scoped_release release;
@@ -296,8 +303,8 @@ ValueError
                many(r.approaches.size(), "approach that matters") + ">";
       });
 
-  py::class_<EncounterWatch> watch(m, "EncounterWatch",
-                                   R"(Finds the vessels that come dangerously close to each other.
+  py::class_<PyWatch> watch(m, "EncounterWatch",
+                            R"(Finds the vessels that come dangerously close to each other.
 
 An approach can matter when its closest point is ahead within the time limit, the probability of
 coming closer than the limit is at least 0.01, the vessels move relative to each other by three
@@ -320,7 +327,7 @@ ValueError
   define_arguments(watch);
   watch
       .def(py::init([](const DangerLimits& limits, std::vector<DangerZone> zones, int max_vessels) {
-             return EncounterWatch(limits, std::move(zones), max_vessels);
+             return PyWatch(limits, std::move(zones), max_vessels);
            }),
            py::arg_v("limits", DangerLimits{}, "DangerLimits()"),
            py::arg_v("zones", std::vector<DangerZone>{}, "()"), py::arg("max_vessels") = 1000)
@@ -351,27 +358,39 @@ FilterError
     When the time is before the last one or not finite; nothing is changed.)")
       .def_property_readonly(
           "encounters",
-          [](const EncounterWatch& one) {
+          [](const PyWatch& one) {
+            const auto hold = one.hold();
             return Encounters{{one.encounters().begin(), one.encounters().end()}};
           },
           "EncounterTable of those that have not ended, by their vessels' numbers.")
-      .def("acknowledge", &EncounterWatch::acknowledge, py::arg("encounter_id"),
-           "Mark an encounter as known to the operator; False if none has that number.")
       .def(
-          "save", [](const EncounterWatch& one) { return to_bytes(one.save()); },
+          "acknowledge",
+          [](PyWatch& one, std::int64_t id) {
+            const auto hold = one.hold();
+            return one.acknowledge(id);
+          },
+          py::arg("encounter_id"),
+          "Mark an encounter as known to the operator; False if none has that number.")
+      .def(
+          "save",
+          [](const PyWatch& one) {
+            const auto hold = one.hold();
+            return to_bytes(one.save());
+          },
           "The complete state as bytes, for a watch with the same limits, zones and room.")
       .def(
           "restore",
-          [](EncounterWatch& one, const py::bytes& state) {
+          [](PyWatch& one, const py::bytes& state) {
+            const auto hold = one.hold();
             if (!one.restore(bytes_of(state)))
               throw py::value_error("state was not saved by a watch with the same limits");
           },
           py::arg("state"), "Continues bit for bit where the saved watch was.")
       .def_property_readonly("limits",
-                             [](const EncounterWatch& one) { return DangerLimits(one.limits()); })
-      .def_property_readonly("zones", [](const EncounterWatch& one) { return one.zones(); })
-      .def_property_readonly("max_vessels", &EncounterWatch::max_vessels)
-      .def("_arguments", [](const EncounterWatch& one) {
+                             [](const PyWatch& one) { return DangerLimits(one.limits()); })
+      .def_property_readonly("zones", [](const PyWatch& one) { return one.zones(); })
+      .def_property_readonly("max_vessels", &PyWatch::max_vessels)
+      .def("_arguments", [](const PyWatch& one) {
         return Arguments()
             .with("limits", one.limits())
             .with("zones", one.zones())

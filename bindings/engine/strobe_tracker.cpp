@@ -10,6 +10,7 @@
 
 #include "estimators.hpp"
 #include "support/fields.hpp"
+#include "support/thread_lock.hpp"
 #include "support/types.hpp"
 #include "support/video.hpp"
 #include "trackers.hpp"
@@ -31,13 +32,17 @@ class AnyStrobeTracker {
                                  radar, config, estimator, land))) {}
 
   template <class Function>
-  decltype(auto) visit(const Function& function) {
+  auto visit(const Function& function) {
+    const auto hold = lock();
     return std::visit(function, tracker_);
   }
   template <class Function>
-  decltype(auto) visit(const Function& function) const {
+  auto visit(const Function& function) const {
+    const auto hold = lock();
     return std::visit(function, tracker_);
   }
+
+  [[nodiscard]] ThreadLock::Hold lock() const { return lock_.hold(); }
 
   template <class Amplitude>
   StrobeTracker<AnyEstimator, Amplitude>& of_amplitude() {
@@ -52,6 +57,7 @@ class AnyStrobeTracker {
   using Variant = std::variant<StrobeTracker<AnyEstimator, std::uint8_t>,
                                StrobeTracker<AnyEstimator, std::uint16_t>>;
   Variant tracker_;
+  ThreadLock lock_;
 };
 
 /// What was found in strobes, as arrays.
@@ -140,8 +146,9 @@ struct OwnPositions {
 PyReadings process_sweeps(AnyStrobeTracker& tracker, const py::object& video,
                           const py::object& north_m, const py::object& east_m) {
   return with_video(video, [&]<class Amplitude>(const Video<Amplitude>& sweeps) {
-    auto& one = tracker.of_amplitude<Amplitude>();
     const OwnPositions own(north_m, east_m, sweeps.size());
+    const auto hold = tracker.lock();
+    auto& one = tracker.of_amplitude<Amplitude>();
     std::vector<StrobeReading> readings;
     std::vector<Event> events;
     std::int64_t rejected_sweeps = 0;

@@ -5,6 +5,7 @@
 #include "estimators.hpp"
 #include "lanes/lanes.hpp"
 #include "support/fields.hpp"
+#include "support/thread_lock.hpp"
 #include "support/types.hpp"
 #include "trackers.hpp"
 #include "wakeline/track/tracker.hpp"
@@ -46,16 +47,21 @@ class AnyTracker {
       : tracker_(VesselTracker(radar, config, imm)) {}
 
   template <class Function>
-  decltype(auto) visit(const Function& function) {
+  auto visit(const Function& function) {
+    const auto hold = lock();
     return std::visit(function, tracker_);
   }
   template <class Function>
-  decltype(auto) visit(const Function& function) const {
+  auto visit(const Function& function) const {
+    const auto hold = lock();
     return std::visit(function, tracker_);
   }
 
+  [[nodiscard]] ThreadLock::Hold lock() const { return lock_.hold(); }
+
  private:
   std::variant<VesselTracker, Tracker<AnyEstimator>> tracker_;
+  ThreadLock lock_;
 };
 
 using Course = Ekf<WanderingCourse>;
@@ -156,6 +162,7 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
                         .east_m = east.data()[k],
                         .position_std_m = own_position_std_m,
                         .heading_std_rad = heading_std_rad}};
+  const auto hold = tracker.lock();  // the report is the tracker's memory
   require_time(tracker, time_s);
   ScanReport report;
   {
@@ -316,7 +323,7 @@ void define_track(py::module_& parent) {
   py::class_<AnyTracker> tracker(m, "Tracker",
                                  R"(Tracks all vessels in the plots of a radar, scan by scan.
 
-Use it from one thread at a time; trackers share nothing.
+Calls from several threads are made one after the other; trackers share nothing.
 
 Parameters
 ----------

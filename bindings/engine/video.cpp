@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "support/thread_lock.hpp"
 #include "support/types.hpp"
 #include "support/video.hpp"
 #include "wakeline/video/cfar.hpp"
@@ -147,6 +148,7 @@ class AnyPlotExtractor {
 
   PyVideoPlots process(const py::object& video) {
     return with_video(video, [&]<class Amplitude>(const Video<Amplitude>& sweeps) {
+      const auto hold = lock_.hold();
       PlotExtractor<Amplitude>& extractor = of_amplitude<Amplitude>();
       std::vector<VideoPlot> plots;
       {
@@ -181,12 +183,14 @@ class AnyPlotExtractor {
   }
 
   [[nodiscard]] StaticClutterMap clutter() {
+    const auto hold = lock_.hold();
     StaticClutterMap map = clutter_;
     if_running([&](auto& extractor) { map = extractor.clutter(); });
     return map;
   }
 
   void set_land(const LandMask& land) {
+    const auto hold = lock_.hold();
     land_ = land;
     if_running([&](auto& extractor) { extractor.set_land(land); });
   }
@@ -205,6 +209,7 @@ class AnyPlotExtractor {
 
   template <class Use>
   void if_running(Use&& use) {
+    const auto hold = lock_.hold();
     std::visit(
         [&]<class Extractor>(Extractor& extractor) {
           if constexpr (!std::is_same_v<Extractor, std::monostate>) use(extractor);
@@ -217,6 +222,7 @@ class AnyPlotExtractor {
   StaticClutterMap clutter_;
   std::variant<std::monostate, PlotExtractor<std::uint8_t>, PlotExtractor<std::uint16_t>>
       extractor_;
+  ThreadLock lock_;
 };
 
 // The picture
@@ -242,6 +248,7 @@ class AnyScanImage {
         throw py::value_error(sizeof(Amplitude) == 1
                                   ? "amplitude must be of uint16 as the image, got uint8"
                                   : "amplitude must be of uint8 as the image, got uint16");
+      const auto hold = lock_.hold();
       const py::ssize_t count = sweeps.size();
       py::ssize_t taken = 0;
       const py::gil_scoped_release release;
@@ -251,17 +258,20 @@ class AnyScanImage {
   }
 
   void clear() {
+    const auto hold = lock_.hold();
     std::visit([](auto& image) { image.clear(); }, image_);
   }
 
   /// Calls `use(view)`.
   template <class Use>
   auto with_view(Use&& use) const {
+    const auto hold = lock_.hold();
     return std::visit([&](const auto& image) { return use(image.view()); }, image_);
   }
 
  private:
   std::variant<ScanImage<std::uint8_t>, ScanImage<std::uint16_t>> image_;
+  ThreadLock lock_;
 };
 
 double step_of(const AnyScanImage& image) {

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "support/thread_lock.hpp"
 #include "support/types.hpp"
 #include "wakeline/video/asterix_cat240_reader.hpp"
 #include "wakeline/video/asterix_cat240_writer.hpp"
@@ -122,6 +123,7 @@ class Decoder {
     PySweeps result;
     Sweeps sweeps;
     {
+      const auto hold = lock_.hold();
       const py::gil_scoped_release release;
       read(octets, last, sweeps, result);
     }
@@ -129,7 +131,14 @@ class Decoder {
     return result;
   }
 
-  [[nodiscard]] const Cat240Reader& reader() const { return reader_; }
+  [[nodiscard]] auto other_blocks() const {
+    const auto hold = lock_.hold();
+    return reader_.other_blocks();
+  }
+  [[nodiscard]] auto skipped_octets() const {
+    const auto hold = lock_.hold();
+    return reader_.skipped_octets();
+  }
 
  private:
   static constexpr std::size_t kToldProblems = 100;  ///< so that a file of nothing else stays small
@@ -152,6 +161,7 @@ class Decoder {
   }
 
   Cat240Reader reader_;
+  ThreadLock lock_;
 };
 
 /// The cells in octets of a record, None if they are too few.
@@ -310,12 +320,10 @@ Returns
 (cells,) array of uint8 or uint16, or None
     None for too few octets.
 )doc")
-      .def_property_readonly(
-          "other_blocks", [](const Decoder& self) { return self.reader().other_blocks(); },
-          "Blocks of other categories so far.")
-      .def_property_readonly(
-          "skipped_octets", [](const Decoder& self) { return self.reader().skipped_octets(); },
-          "Octets skipped because of damage so far.");
+      .def_property_readonly("other_blocks", &Decoder::other_blocks,
+                             "Blocks of other categories so far.")
+      .def_property_readonly("skipped_octets", &Decoder::skipped_octets,
+                             "Octets skipped because of damage so far.");
   py::class_<Encoder> encoder(m, "Cat240Encoder", "Sweeps to ASTERIX category 240.");
   encoder.def(py::init<std::uint8_t, std::uint8_t>(), py::arg("area") = 0, py::arg("system") = 0);
   define_encode<std::uint8_t>(encoder);

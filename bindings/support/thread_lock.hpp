@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Calls on one object from several threads.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <mutex>
+
+namespace wakeline::python {
+
+/// Serialises the calls on an object of which some release the GIL: each call holds the lock from
+/// its first access to the object until its results are copied.
+class ThreadLock {
+ public:
+  using Hold = std::unique_lock<std::recursive_mutex>;
+
+  ThreadLock() = default;
+  ThreadLock(const ThreadLock& /*of another object*/) noexcept {}
+  ThreadLock& operator=(const ThreadLock&) noexcept { return *this; }
+
+  /// Waits without the GIL, which the thread that has the lock needs in order to finish.
+  [[nodiscard]] Hold hold() const {
+    Hold hold(mutex_, std::try_to_lock);
+    if (hold) return hold;
+    if (PyGILState_Check()) {
+      const pybind11::gil_scoped_release release;
+      hold.lock();
+    } else {
+      hold.lock();
+    }
+    return hold;
+  }
+
+ private:
+  mutable std::recursive_mutex mutex_;
+};
+
+}  // namespace wakeline::python
