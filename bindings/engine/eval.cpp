@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "estimators.hpp"
 #include "support/arguments.hpp"
@@ -88,12 +90,23 @@ SetDistance set_distance(const DoubleArray& truth_m, const DoubleArray& tracks_m
   };
   const auto targets = points("truth_m", truth_m, -1);
   const auto tracks = points("tracks_m", tracks_m, truth_m.shape(1));
-  Gospa gospa({.cutoff_m = cutoff_m, .order = order}, int(targets.rows()), int(tracks.rows()));
-  Eigen::MatrixXd distance(targets.rows(), tracks.rows());
-  for (Eigen::Index i = 0; i < targets.rows(); ++i)
-    for (Eigen::Index j = 0; j < tracks.rows(); ++j)
-      distance(i, j) = (targets.row(i) - tracks.row(j)).norm();
-  return gospa.between(distance);
+  // Tracks by their first coordinate: those of a target's pairs follow each other.
+  std::vector<std::pair<double, int>> sorted;
+  for (int k = 0; k < tracks.rows(); ++k)
+    sorted.emplace_back(tracks.cols() > 0 ? tracks(k, 0) : 0.0, k);
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<Gospa::Pair> pairs;
+  for (int k = 0; k < targets.rows(); ++k) {
+    const double at = targets.cols() > 0 ? targets(k, 0) : 0.0;
+    auto near = std::lower_bound(sorted.begin(), sorted.end(), std::pair(at - cutoff_m, 0));
+    for (; near != sorted.end() && near->first <= at + cutoff_m; ++near) {
+      const double distance = (targets.row(k) - tracks.row(near->second)).norm();
+      if (distance < cutoff_m) pairs.push_back({k, near->second, distance});
+    }
+  }
+  return Gospa({.cutoff_m = cutoff_m, .order = order}, int(targets.rows()), int(tracks.rows()),
+               int(pairs.size()))
+      .between(int(targets.rows()), int(tracks.rows()), pairs);
 }
 
 void define_set_distance(py::module_& m) {

@@ -159,6 +159,16 @@ TEST(Gospa, PointsAndDistancesAgree) {
   Gospa gospa({}, 7, 9);
   EXPECT_EQ(gospa.between(distance).gospa_m, between(targets, tracks).gospa_m);
   EXPECT_EQ(gospa.assignment().column_of_row().size(), 7u);
+
+  std::vector<Gospa::Pair> pairs;
+  for (int i = 0; i < 7; ++i)
+    for (int j = 0; j < 9; ++j)
+      if (distance(i, j) < 50.0) pairs.push_back({i, j, distance(i, j)});
+  const int count = static_cast<int>(pairs.size());
+  const auto sparse = Gospa({}, 7, 9, count).between(7, 9, pairs);
+  EXPECT_EQ(sparse.gospa_m, gospa.between(distance).gospa_m);
+  EXPECT_EQ(sparse.ospa_m, gospa.between(distance).ospa_m);
+  EXPECT_TRUE(std::isnan(Gospa({}, 7, 9, count - 1).between(7, 9, pairs).gospa_m));
 }
 
 TEST(Gospa, AUsedWorkspaceNeedsNoHeapAndRejectsLargerSets) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "wakeline/association/candidates.hpp"
 #include "wakeline/association/global_nearest_neighbour.hpp"
@@ -46,20 +47,22 @@ class Gospa {
     double order = 2.0;  ///< p >= 1
   };
 
+  /// A target and a track closer than the cut-off.
+  struct Pair {
+    int target, track;
+    double distance_m;
+  };
+
   /// Allocates all memory for up to this many targets and tracks. Throws `std::invalid_argument`
   /// when the cut-off is not positive, the order is below 1 or so large that c^p overflows or
   /// underflows, or a capacity is negative.
   Gospa(const Options& options, int target_capacity, int track_capacity)
-      : options_(options),
-        candidates_(Candidates<double>::dense(target_capacity, track_capacity)),
-        solver_(target_capacity, track_capacity) {
-    require_positive("cutoff_m", options.cutoff_m);
-    require(options.order >= 1.0 && std::isfinite(options.order), "order", "at least 1",
-            options.order);
-    cutoff_power_ = std::pow(options.cutoff_m, options.order);
-    require(std::isnormal(cutoff_power_), "order", "such that cutoff_m to its power does not overflow",
-            options.order);
+      : Gospa(options, Candidates<double>::dense(target_capacity, track_capacity), track_capacity) {
   }
+
+  /// The same for at most that many pairs below the cut-off.
+  Gospa(const Options& options, int target_capacity, int track_capacity, int pair_capacity)
+      : Gospa(options, Candidates<double>(target_capacity, pair_capacity), track_capacity) {}
 
   [[nodiscard]] const Options& options() const noexcept { return options_; }
 
@@ -68,6 +71,19 @@ class Gospa {
   [[nodiscard]] SetDistance between(const Eigen::Ref<const Matrix>& distance) noexcept {
     return measure(static_cast<int>(distance.rows()), static_cast<int>(distance.cols()),
                    [&](int target, int track) { return distance(target, track); });
+  }
+
+  /// From the pairs below the cut-off, in order of targets. All NaN when there are more targets,
+  /// tracks or pairs than the capacities.
+  [[nodiscard]] SetDistance between(int targets, int tracks, std::span<const Pair> pairs) noexcept {
+    candidates_.clear(tracks);
+    auto pair = pairs.begin();
+    for (int target = 0; target < targets; ++target) {
+      candidates_.start_row(cutoff_power_);
+      for (; pair != pairs.end() && pair->target == target; ++pair)
+        candidates_.add(pair->track, std::pow(pair->distance_m, options_.order));
+    }
+    return assigned(targets, tracks);
   }
 
   /// From points by Euclidean distance. All NaN when a set is larger than its capacity.
@@ -88,6 +104,18 @@ class Gospa {
   }
 
  private:
+  Gospa(const Options& options, Candidates<double> candidates, int track_capacity)
+      : options_(options),
+        candidates_(std::move(candidates)),
+        solver_(candidates_.row_capacity(), track_capacity) {
+    require_positive("cutoff_m", options.cutoff_m);
+    require(options.order >= 1.0 && std::isfinite(options.order), "order", "at least 1",
+            options.order);
+    cutoff_power_ = std::pow(options.cutoff_m, options.order);
+    require(std::isnormal(cutoff_power_), "order",
+            "such that cutoff_m to its power does not overflow", options.order);
+  }
+
   template <class Distance>
   SetDistance measure(int targets, int tracks, const Distance& distance) noexcept {
     candidates_.clear(tracks);
@@ -98,7 +126,13 @@ class Gospa {
         if (d < options_.cutoff_m) candidates_.add(track, std::pow(d, options_.order));
       }
     }
-    if (candidates_.rows() != targets || !solver_.solve(candidates_)) return not_measured();
+    return assigned(targets, tracks);
+  }
+
+  /// The distance by the best pairing of the candidates.
+  [[nodiscard]] SetDistance assigned(int targets, int tracks) noexcept {
+    const bool fits = candidates_.rows() == targets && candidates_.rejected() == 0;
+    if (!fits || !solver_.solve(candidates_)) return not_measured();
 
     SetDistance result;
     result.pairs = solver_.assignment().pairs();
@@ -108,7 +142,8 @@ class Gospa {
     result.gospa_m = root(result.localisation + result.missed + result.false_tracks);
     const int larger = std::max(targets, tracks);
     if (larger > 0)
-      result.ospa_m = root((result.localisation + cutoff_power_ * (larger - result.pairs)) / larger);
+      result.ospa_m =
+          root((result.localisation + cutoff_power_ * (larger - result.pairs)) / larger);
     return result;
   }
 
