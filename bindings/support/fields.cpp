@@ -8,6 +8,14 @@
 namespace wakeline::python {
 namespace {
 
+/// A value of the caller as messages quote it, in at most 80 characters.
+std::string quoted(const py::handle& value) {
+  constexpr py::ssize_t kMost = 80;
+  const py::str text = py::repr(value);
+  if (PyUnicode_GetLength(text.ptr()) <= kMost) return text.cast<std::string>();
+  return text[py::slice(0, kMost - 3, 1)].cast<std::string>() + "...";
+}
+
 /// "10.0", "0.0174533", "'probabilistic'", "OwnShip()".
 std::string default_text(const py::object& value) {
   if (py::isinstance<py::float_>(value)) {
@@ -58,7 +66,7 @@ py::detail::value_and_holder holder_of(const py::handle& self) {
 void* value_of(const py::handle& type, const py::handle& self) {
   if (!py::isinstance(self, type))
     throw py::type_error("self must be " + name_of(type) + ", got " +
-                         py::repr(self).cast<std::string>());
+                         quoted(self));
   void* one = holder_of(self).value_ptr();
   if (one == nullptr) throw py::type_error(name_of(type) + ".__init__ was not called");
   return one;
@@ -79,7 +87,7 @@ void set(const FieldRow& row, void* one, const py::handle& value) {
   std::string expected = row.kind->expected();
   if (expected.empty()) expected = type_text(row, get(row, one), false);
   const std::string message = std::string(row.name) + " must be " + expected + ", got " +
-                              py::repr(value).cast<std::string>();
+                              quoted(value);
   if (taken == Taken::kWrongValue) throw py::value_error(message);
   throw py::type_error(message);
 }
