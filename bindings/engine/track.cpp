@@ -134,49 +134,106 @@ Arguments tracker_arguments(const AnyTracker& any) {
   });
 }
 
+/// The radar, also of a list of one.
+Radar one_of(const std::variant<Radar, std::vector<Radar>>& radar) {
+  if (const auto* one = std::get_if<Radar>(&radar)) return *one;
+  const auto& list = std::get<std::vector<Radar>>(radar);
+  require(list.size() == 1, "radar", "one Radar, as several are not joined into one picture yet",
+          static_cast<int>(list.size()));
+  return list.front();
+}
+
 /// Raises FilterError where a scan of that time is rejected as too far ahead.
-void require_time(const AnyTracker& tracker, double time_s) {
+void require_time(const AnyTracker& tracker, const char* what, double time_s) {
   const double latest_s = tracker.visit([](const auto& one) { return one.latest_time_s(); });
   if (std::isfinite(time_s) && time_s > latest_s)
-    throw FilterError("process: time_s must be at most " + std::to_string(latest_s) +
+    throw FilterError(std::string(what) + ": time_s must be at most " + std::to_string(latest_s) +
                       ", an hour after the last scan, got " + std::to_string(time_s));
+}
+
+/// Plots from columns; `own(k)` is own ship of each.
+template <class Own>
+std::vector<Plot> plots_of(double time_s, const DoubleArray& range_m,
+                           const DoubleArray& bearing_rad, const py::object& plot_time_s,
+                           const std::optional<DoubleArray>& covariance, const Own& own) {
+  require_shape(range_m.ndim() == 1, "range_m", "(n,)", range_m);
+  const py::ssize_t count = range_m.shape(0);
+  const DoubleArray bearing = column("bearing_rad", bearing_rad, count);
+  const DoubleArray time = column(
+      "plot_time_s", plot_time_s.is_none() ? py::object(py::float_(time_s)) : plot_time_s, count);
+  if (covariance)
+    require_shape(covariance->ndim() == 3 && covariance->shape(0) == count &&
+                      covariance->shape(1) == 2 && covariance->shape(2) == 2,
+                  "covariance", shape_text({count, 2, 2}), *covariance);
+  std::vector<Plot> plots(static_cast<std::size_t>(count));
+  for (std::size_t k = 0; k < plots.size(); ++k) {
+    plots[k] = {time.data()[k], range_m.data()[k], bearing.data()[k], own(k)};
+    if (covariance)
+      plots[k].covariance = Eigen::Map<const Eigen::Matrix<double, 2, 2, Eigen::RowMajor>>(
+          covariance->data() + 4 * k);
+  }
+  return plots;
+}
+
+/// The report of `process` over so many plots.
+template <class Process>
+PyReport reported(std::size_t plots, const char* what, const Process& process) {
+  ScanReport report;
+  {
+    const py::gil_scoped_release release;
+    report = process();
+  }
+  require_ok(report.status, what);
+  PyReport result{py::array_t<std::int64_t>(static_cast<py::ssize_t>(plots)),
+                  {report.events.begin(), report.events.end()},
+                  report.rejected_plots};
+  std::fill_n(result.plot_track_id.mutable_data(), plots, 0);
+  std::copy(report.plot_track_id.begin(), report.plot_track_id.end(),
+            result.plot_track_id.mutable_data());
+  return result;
 }
 
 PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
                  const DoubleArray& bearing_rad, const py::object& plot_time_s,
                  const py::object& own_north_m, const py::object& own_east_m,
-                 double heading_std_rad, double own_position_std_m) {
+                 double heading_std_rad, double own_position_std_m,
+                 const std::optional<DoubleArray>& covariance) {
   require_shape(range_m.ndim() == 1, "range_m", "(n,)", range_m);
   require_not_negative("heading_std_rad", heading_std_rad);
   require_not_negative("own_position_std_m", own_position_std_m);
-  const py::ssize_t count = range_m.shape(0);
-  const DoubleArray bearing = column("bearing_rad", bearing_rad, count);
-  const DoubleArray time = column(
-      "plot_time_s", plot_time_s.is_none() ? py::object(py::float_(time_s)) : plot_time_s, count);
-  const DoubleArray north = column("own_north_m", own_north_m, count);
-  const DoubleArray east = column("own_east_m", own_east_m, count);
-  std::vector<Plot> plots(static_cast<std::size_t>(count));
-  for (std::size_t k = 0; k < plots.size(); ++k)
-    plots[k] = {time.data()[k], range_m.data()[k], bearing.data()[k],
-                OwnShip{.north_m = north.data()[k],
-                        .east_m = east.data()[k],
-                        .position_std_m = own_position_std_m,
-                        .heading_std_rad = heading_std_rad}};
+  const DoubleArray north = column("own_north_m", own_north_m, range_m.shape(0));
+  const DoubleArray east = column("own_east_m", own_east_m, range_m.shape(0));
+  const std::vector<Plot> plots =
+      plots_of(time_s, range_m, bearing_rad, plot_time_s, covariance, [&](std::size_t k) {
+        return OwnShip{.north_m = north.data()[k],
+                       .east_m = east.data()[k],
+                       .position_std_m = own_position_std_m,
+                       .heading_std_rad = heading_std_rad};
+      });
   const auto hold = tracker.lock();  // the report is the tracker's memory
-  require_time(tracker, time_s);
-  ScanReport report;
-  {
-    const py::gil_scoped_release release;
-    report = tracker.visit([&](auto& one) { return one.process(time_s, plots); });
-  }
-  require_ok(report.status, "process");
-  PyReport result{py::array_t<std::int64_t>(count),
-                  {report.events.begin(), report.events.end()},
-                  report.rejected_plots};
-  std::fill_n(result.plot_track_id.mutable_data(), count, 0);
-  std::copy(report.plot_track_id.begin(), report.plot_track_id.end(),
-            result.plot_track_id.mutable_data());
-  return result;
+  require_time(tracker, "process", time_s);
+  return reported(plots.size(), "process", [&] {
+    return tracker.visit([&](auto& one) { return one.process(time_s, plots); });
+  });
+}
+
+PyReport sector(AnyTracker& tracker, int radar, double from_rad, double to_rad, double time_s,
+                const DoubleArray& range_m, const DoubleArray& bearing_rad,
+                const py::object& plot_time_s, const OwnShip& own,
+                const std::optional<DoubleArray>& covariance) {
+  require(radar == 0, "radar", "0, the index of the tracker's radar", radar);
+  require_finite("from_rad", from_rad);
+  require_finite("to_rad", to_rad);
+  require(!std::isnan(Beam::width_rad(from_rad, to_rad)), "to_rad",
+          "from nothing to a turn after from_rad, clockwise", to_rad);
+  own.validate();
+  const std::vector<Plot> plots = plots_of(time_s, range_m, bearing_rad, plot_time_s, covariance,
+                                           [&](std::size_t) { return own; });
+  const auto hold = tracker.lock();  // the report is the tracker's memory
+  require_time(tracker, "sector", time_s);
+  const Sector part{radar, from_rad, to_rad, time_s, plots, own};
+  return reported(plots.size(), "sector",
+                  [&] { return tracker.visit([&](auto& one) { return one.sector(part); }); });
 }
 
 template <class Estimator, class Steps>
@@ -320,14 +377,15 @@ void define_track(py::module_& parent) {
         return "<TrackTable: " + many(table.track_id.size(), "track") + ">";
       });
 
-  py::class_<AnyTracker> tracker(m, "Tracker",
-                                 R"(Tracks all vessels in the plots of a radar, scan by scan.
+  py::class_<AnyTracker> tracker(
+      m, "Tracker",
+      R"(Tracks all vessels in the plots of a radar, turn by turn or sector by sector.
 
 Calls from several threads are made one after the other; trackers share nothing.
 
 Parameters
 ----------
-radar : Radar
+radar : Radar or list of one Radar
 config : TrackerConfig, optional
 models : VesselModels, optional
     Motion models of the estimator.
@@ -340,8 +398,9 @@ ValueError
     When a setting is invalid.)");
   define_arguments(tracker);
   tracker
-      .def(py::init([](const Radar& r, const TrackerConfig& c, const VesselModels& v,
-                       const py::object& estimator) {
+      .def(py::init([](const std::variant<Radar, std::vector<Radar>>& radar, const TrackerConfig& c,
+                       const VesselModels& v, const py::object& estimator) {
+             const Radar r = one_of(radar);
              return estimator.is_none() ? AnyTracker(r, c, vessel_imm(r, v))
                                         : tracker_with(r, c, estimator);
            }),
@@ -351,7 +410,8 @@ ValueError
            py::arg("bearing_rad"), py::arg("plot_time_s") = py::none(),
            py::arg("own_north_m") = 0.0, py::arg("own_east_m") = 0.0,
            py::arg("heading_std_rad") = 0.0, py::arg("own_position_std_m") = 0.0,
-           R"(Process the plots of one scan.
+           py::arg("covariance") = py::none(),
+           R"(Process the plots of one scan, a whole turn of the antenna.
 
 Parameters
 ----------
@@ -364,6 +424,9 @@ heading_std_rad : float
     Standard deviation of own ship's heading.
 own_position_std_m : float
     Standard deviation of own ship's position, per axis.
+covariance : (n, 2, 2) array, optional
+    Of range and bearing of each plot, such as that of `VideoPlots`, in place of the radar's errors;
+    zero: the radar's.
 
 Returns
 -------
@@ -375,6 +438,46 @@ ValueError
     When a shape does not fit or a standard deviation is negative.
 FilterError
     When the time is not finite, before the last scan or after `latest_time_s`; the tracker is
+    unchanged.)")
+      .def("sector", &sector, py::kw_only(), py::arg("radar") = 0, py::arg("from_rad"),
+           py::arg("to_rad"), py::arg("time_s"), py::arg("range_m"), py::arg("bearing_rad"),
+           py::arg("plot_time_s") = py::none(), py::arg_v("own", OwnShip{}, "OwnShip()"),
+           py::arg("covariance") = py::none(),
+           R"(Process a part of the antenna's turn.
+
+Tracks whose gate the beam has passed are updated or have missed, once a turn; others, and plots that
+may be theirs, wait for the next sector. Where sectors leave a gap, tracks are neither updated nor
+miss; a track that the beam has not passed for two periods coasts by time, a miss a period. Where
+sectors overlap the beam does not go back.
+
+Parameters
+----------
+radar : int
+    0, the index of the tracker's radar.
+from_rad, to_rad : float
+    The beam went clockwise from one bearing, as the radar measures it, to the other; a turn apart:
+    a whole turn, as `process` takes it. Equal: time passes.
+time_s : float
+    At the end of the sector; not before the last one nor after `latest_time_s`.
+range_m, bearing_rad : (n,) arrays
+plot_time_s : float or (n,) array
+    Time of each plot.
+own : OwnShip
+    At the end of the sector.
+covariance : (n, 2, 2) array, optional
+    Of range and bearing of each plot, as in `process`.
+
+Returns
+-------
+ScanReport
+    The track of a plot that waits is 0.
+
+Raises
+------
+ValueError
+    When the radar is not known, the angles are no sector, a shape does not fit or own ship is invalid.
+FilterError
+    When the time is not finite, before the last sector or after `latest_time_s`; the tracker is
     unchanged.)")
       .def(
           "tracks",

@@ -5,6 +5,9 @@
 // percentiles and the worst, and whether memory is asked for once it runs.
 //
 //     latency [association] [targets false_plots scans]...
+//     latency sectors
+//
+// The second prints the wait from a plot to its updated track where turns come in sectors.
 //
 // with association `probabilistic` (unless told otherwise), `global_nearest` or `nearest`. Times
 // are by the wall clock and, less what other programs took of the processor, by that of the thread.
@@ -16,6 +19,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <random>
 #include <string_view>
 #include <vector>
 
@@ -85,6 +90,72 @@ void measure(Association association, int targets, int false_plots, int scans) {
   print_percentiles("thread", thread_ms);
 }
 
+/// Vessels that go to and fro around own ship, seen by an antenna of 24 turns a minute in sectors:
+/// the wait from a plot until its track is updated, and the time of a turn.
+void measure_sectors(int targets, int false_plots, int sectors, int turns) {
+  constexpr double kPeriod_s = 2.5, kTurn = Beam::kTurn;
+  const Radar radar{.range_std_m = 8.0,
+                    .bearing_std_rad = deg(0.5),
+                    .period_s = kPeriod_s,
+                    .max_speed_mps = 25.0};
+  Tracker tracker(radar, TrackerConfig{.max_tracks = 2 * targets + 100}, vessel_imm(radar));
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  struct Vessel {
+    double range_m, bearing_rad, speed_mps;
+  };
+  std::vector<Vessel> vessels;
+  for (int k = 0; k < targets; ++k)
+    vessels.push_back({20000.0 * std::sqrt(0.01 + uniform(random)), kTurn * uniform(random),
+                       8.0 * normal(random)});
+  std::vector<double> wait_ms, turn_ms;
+  std::map<std::int64_t, double> updated_s;
+  std::vector<Plot> plots, seen;
+  for (int turn = 0; turn < turns; ++turn) {
+    plots.clear();
+    const auto add = [&](double range_m, double bearing_rad) {
+      plots.push_back({(turn + compass_angle(bearing_rad) / kTurn) * kPeriod_s,
+                       range_m + radar.range_std_m * normal(random),
+                       bearing_rad + radar.bearing_std_rad * normal(random),
+                       {}});
+    };
+    for (const Vessel& vessel : vessels)
+      if (uniform(random) < 0.9)
+        add(vessel.range_m + 100.0 * std::sin(vessel.speed_mps * turn * kPeriod_s / 100.0),
+            vessel.bearing_rad);
+    for (int k = 0; k < false_plots; ++k)
+      add(20000.0 * std::sqrt(uniform(random)), kTurn * uniform(random));
+    double cpu_ms = 0.0;
+    for (int sector = 0; sector < sectors; ++sector) {
+      const double from_rad = kTurn * sector / sectors, to_rad = kTurn * (sector + 1) / sectors;
+      const double time_s = (turn + (sector + 1.0) / sectors) * kPeriod_s;
+      seen.clear();
+      for (const Plot& plot : plots)
+        if (compass_angle(plot.bearing_rad) >= from_rad &&
+            compass_angle(plot.bearing_rad) < to_rad) {
+          seen.push_back(plot);
+          seen.back().time_s = (turn + compass_angle(plot.bearing_rad) / kTurn) * kPeriod_s;
+        }
+      const double began_ms = now_ms(CLOCK_THREAD_CPUTIME_ID);
+      (void)tracker.sector({0, from_rad, to_rad, time_s, seen});
+      cpu_ms += now_ms(CLOCK_THREAD_CPUTIME_ID) - began_ms;
+      tracker.for_each([&](const Track& track) {
+        double& before_s = updated_s[track.tentative_id];
+        if (track.shown() && track.misses == 0 && track.time_s > before_s && turn >= 10)
+          wait_ms.push_back(1e3 * (time_s - track.time_s));
+        before_s = track.time_s;
+      });
+    }
+    if (turn >= 10) turn_ms.push_back(cpu_ms);
+  }
+  std::printf("%d targets, %d false plots, %d sectors a turn of %.1f s, %d tracks shown\n", targets,
+              false_plots, sectors, kPeriod_s, bench::shown(tracker));
+  std::printf("  %-7s %9s %9s %9s %9s %9s\n", "ms", "least", "median", "99 %", "99.9 %", "worst");
+  print_percentiles("wait", wait_ms);
+  print_percentiles("turn", turn_ms);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -94,6 +165,10 @@ int main(int argc, char** argv) {
     const std::string_view name = argv[next++];
     if (name == "global_nearest") association = Association::kGlobalNearest;
     if (name == "nearest") association = Association::kNearest;
+  }
+  if (argc > 1 && std::string_view(argv[1]) == "sectors") {
+    for (const int sectors : {1, 8, 16, 32, 64}) measure_sectors(1000, 500, sectors, 60);
+    return 0;
   }
   if (next == argc) {
     measure(association, 100, 60, 10000);

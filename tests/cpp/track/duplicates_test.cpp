@@ -9,7 +9,7 @@
 namespace wakeline::duplicates_test {
 namespace {
 
-constexpr double kThreshold = 6.0;
+constexpr double kThreshold = 6.0, kPeriod_s = 2.5;
 
 /// A new track at that place and velocity, with a number if that is above zero.
 Track& open(TrackList& tracks, std::int64_t id, const Vec<double, 4>& mean) {
@@ -30,7 +30,7 @@ std::vector<int> found(Duplicates& duplicates, TrackList& tracks) {
 TEST(Duplicates, OfTwoTracksOnOneTargetTheSeniorStays) {
   const TrackerConfig config{.duplicate_scans = 3};
   TrackList tracks(10);
-  Duplicates duplicates(config, kThreshold);
+  Duplicates duplicates(config, kPeriod_s, kThreshold);
   const int senior = open(tracks, 4, {0.0, 5.0, 0.0, 0.0}).slot;
   const int junior = open(tracks, 7, {3.0, 5.0, -2.0, 0.0}).slot;
   open(tracks, 2, {500.0, 5.0, 0.0, 0.0});
@@ -42,7 +42,7 @@ TEST(Duplicates, OfTwoTracksOnOneTargetTheSeniorStays) {
 
 TEST(Duplicates, TheCountBeginsAnewWhereTheyPart) {
   TrackList tracks(10);
-  Duplicates duplicates(TrackerConfig{.duplicate_scans = 2}, kThreshold);
+  Duplicates duplicates(TrackerConfig{.duplicate_scans = 2}, kPeriod_s, kThreshold);
   open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
   Track& junior = open(tracks, 2, {3.0, 5.0, 0.0, 0.0});
   EXPECT_TRUE(found(duplicates, tracks).empty());
@@ -55,7 +55,7 @@ TEST(Duplicates, TheCountBeginsAnewWhereTheyPart) {
 
 TEST(Duplicates, ATentativeOneGoesAtOnceAndAVelocityTellsTargetsApart) {
   TrackList tracks(10);
-  Duplicates duplicates(TrackerConfig{}, kThreshold);
+  Duplicates duplicates(TrackerConfig{}, kPeriod_s, kThreshold);
   open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
   const int same = open(tracks, -3, {3.0, 5.0, 0.0, 0.0}).slot;
   open(tracks, -4, {0.0, -9.0, 0.0, 0.0});
@@ -65,7 +65,7 @@ TEST(Duplicates, ATentativeOneGoesAtOnceAndAVelocityTellsTargetsApart) {
 // A track that is to be deleted itself is no reason to delete another.
 TEST(Duplicates, OfManyOnOneTargetOneStays) {
   TrackList tracks(10);
-  Duplicates duplicates(TrackerConfig{}, kThreshold);
+  Duplicates duplicates(TrackerConfig{}, kPeriod_s, kThreshold);
   for (int k = 1; k <= 6; ++k) open(tracks, -k, {double(k), 5.0, 0.0, 0.0});
   EXPECT_EQ(found(duplicates, tracks).size(), 5u);
   TrackList chain(10);  // each near the next only
@@ -77,7 +77,7 @@ TEST(Duplicates, OneVesselOfAKnownLengthIsOneTarget) {
   const auto count = [](double length_m, double speed_mps) {
     TrackList tracks(10);
     Duplicates duplicates(TrackerConfig{.vessel_length_m = length_m, .duplicate_scans = 1},
-                          kThreshold);
+                          kPeriod_s, kThreshold);
     open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
     open(tracks, 2, {80.0, speed_mps, 0.0, 0.0});
     return found(duplicates, tracks).size();
@@ -86,6 +86,20 @@ TEST(Duplicates, OneVesselOfAKnownLengthIsOneTarget) {
   EXPECT_EQ(count(100.0, 5.0), 1u);
   EXPECT_EQ(count(100.0, -5.0), 0u) << "it goes the other way";
   EXPECT_EQ(count(70.0, 5.0), 0u);
+}
+
+TEST(Duplicates, TwoTracksAreComparedAtOneTime) {
+  TrackList tracks(10);
+  Duplicates duplicates(TrackerConfig{}, kPeriod_s, kThreshold);
+  open(tracks, 1, {0.0, 20.0, 0.0, 0.0});
+  Track& there = open(tracks, -1, {50.0, 20.0, 0.0, 0.0});
+  Track& here = open(tracks, -2, {0.0, 20.0, 0.0, 0.0});
+  there.time_s = here.time_s = 2.5;
+  EXPECT_EQ(found(duplicates, tracks), std::vector<int>{there.slot});
+  tracks.remove(there.slot);
+  here.time_s = 3600.0;
+  here.kinematics.mean[0] = 72000.0;
+  EXPECT_TRUE(found(duplicates, tracks).empty()) << "too far apart in time to be compared";
 }
 
 TEST(Seniority, IsAStrictOrder) {

@@ -32,7 +32,7 @@ void expect_to_hold(const Estimator& prototype) {
     std::vector<Plot> plots{sea.plot(turning_boat(scan), 2.5 * scan)};
     if (scan % 7 == 6) plots.clear();
     plots.push_back(sea.clutter(2.5 * scan, 3000.0));
-    tracker.process(2.5 * scan, plots);
+    (void)tracker.process(2.5 * scan, plots);
   }
   int near = 0;
   tracker.for_each([&](const Track& track) {

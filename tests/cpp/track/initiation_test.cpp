@@ -17,6 +17,7 @@ struct Scene {
   ClutterDensity clutter{config};
   PlotOwnership ownership{config};
   TrackInitiation initiation{kStageRadar, config};
+  double beam_rad = 0.0;
 
   explicit Scene(const TrackerConfig& with = {}) : config(with) {}
 
@@ -33,7 +34,7 @@ struct Scene {
     }
     std::vector<TrackStart> starts;
     initiation.initiate(
-        scan, ownership, clutter, [&](double) { return room; },
+        scan, ownership, clutter, beam_rad += 6.283185307179586, true, [&](double) { return room; },
         [&](const TrackStart& start) { starts.push_back(start); });
     return starts;
   }

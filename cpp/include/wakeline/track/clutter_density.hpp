@@ -53,14 +53,16 @@ class ClutterDensity {
   /// Without anything learned.
   [[nodiscard]] double floor_per_m2() const noexcept { return floor_per_m2_; }
 
-  /// Learns each plot of the scan with the probability that it is clutter, and notes for the tracks
-  /// of these slots how much of that came from their own plots: `plot_of(slot)`, or -1.
+  /// Learns each plot of the scan that does not wait with the probability that it is clutter, and
+  /// notes for the tracks of these slots how much of that came from their own plots:
+  /// `plot_of(slot)`, or -1.
   template <class PlotOf>
   void learn(const ScanPlots& plots, std::span<const double> clutter_probability,
              const PlotOf& plot_of, TrackList& tracks, std::span<const int> slots) noexcept {
     for (int plot = 0; plot < plots.size(); ++plot)
-      map_.add(plots[plot].position.mean, plots.scan_s(),
-               clutter_probability[static_cast<std::size_t>(plot)]);
+      if (!plots[plot].waits)
+        map_.add(plots[plot].position.mean, plots.scan_s(),
+                 clutter_probability[static_cast<std::size_t>(plot)]);
     for (const int slot : slots) {
       const int plot = plot_of(slot);
       if (plot < 0) continue;

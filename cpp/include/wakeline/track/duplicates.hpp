@@ -46,12 +46,14 @@ inline bool same_target(const Gaussian<4>& a, const Gaussian<4>& b, double limit
 
 /// Whether another track may be of the same vessel as a known one that is shown, by another of its
 /// echoes: nearer to it than its length, m, at a velocity whose squared distance, in standard
-/// deviations of the difference, is at most the limit. The velocity of a tentative track is of two
+/// deviations of the difference, is at most the limit. `then` is the belief of the known one at the
+/// time of the other. The velocity of a tentative track is of two
 /// plots, each of which may be another echo, and is not compared.
-inline bool same_vessel(const Track& known, const Track& other, double length_m,
-                        double limit) noexcept {
+inline bool same_vessel(const Track& known, const Gaussian<4>& then, const Track& other,
+                        double length_m, double limit) noexcept {
   if (!known.active()) return false;
-  if (!((known.position() - other.position()).squaredNorm() < length_m * length_m)) return false;
+  const Vec<double, 2> position(then.mean[0], then.mean[2]);
+  if (!((position - other.position()).squaredNorm() < length_m * length_m)) return false;
   if (!other.confirmed()) return true;
   const Cholesky<2> factor(known.velocity_covariance() + other.velocity_covariance());
   return factor.ok() && factor.squared_norm(known.velocity() - other.velocity()) <= limit;
@@ -60,8 +62,9 @@ inline bool same_vessel(const Track& known, const Track& other, double length_m,
 /// Finds tracks that are on the same target as a senior one. Memory is taken by the constructor.
 class Duplicates {
  public:
-  Duplicates(const TrackerConfig& config, double velocity_threshold)
-      : distance_(config.duplicate_distance),
+  Duplicates(const TrackerConfig& config, double period_s, double velocity_threshold)
+      : longest_s_(2.0 * period_s),
+        distance_(config.duplicate_distance),
         length_m_(config.vessel_length_m),
         scans_(config.duplicate_scans),
         velocity_threshold_(velocity_threshold),
@@ -73,7 +76,7 @@ class Duplicates {
   /// Which tracks of these slots are to be deleted, in order: tentative ones at once, those with a
   /// number after some scans in a row, which it counts. Valid until the next call.
   std::span<const int> find(TrackList& tracks, std::span<const int> slots) noexcept {
-    index(tracks);
+    index(tracks, slots);
     found_.clear();
     for (const int slot : slots) {
       Track& track = tracks.at(slot);
@@ -87,14 +90,43 @@ class Duplicates {
   }
 
  private:
-  void index(const TrackList& tracks) noexcept {
+  /// Indexes the tracks that may be on the target of one of the slots.
+  void index(const TrackList& tracks, std::span<const int> slots) noexcept {
     positions_.clear();
+    if (slots.empty()) return;
+    double widest = 0.0, fastest_mps = 0.0;
+    double begin_s = tracks.at(slots.front()).time_s, end_s = begin_s;
     for (const int slot : tracks.slots()) {
       const Track& track = tracks.at(slot);
       ends_[static_cast<std::size_t>(slot)] = 0;
-      if (is_finite(track.position())) positions_.add(track.position(), widest_m2(track), slot);
+      widest = std::max(widest, widest_m2(track));
+      fastest_mps = std::max(fastest_mps, track.velocity().cwiseAbs().maxCoeff());
+      begin_s = std::min(begin_s, track.time_s);
+      end_s = std::max(end_s, track.time_s);
+    }
+    way_m_ = fastest_mps * std::min(end_s - begin_s, longest_s_);
+    Vec<double, 2> south_west = tracks.at(slots.front()).position(), north_east = south_west;
+    for (const int slot : slots) {
+      south_west = south_west.cwiseMin(tracks.at(slot).position());
+      north_east = north_east.cwiseMax(tracks.at(slot).position());
+    }
+    const Vec<double, 2> reach = Vec<double, 2>::Constant(reach_m(2.0 * widest));
+    south_west -= reach;
+    north_east += reach;
+    for (const int slot : tracks.slots()) {
+      const Track& track = tracks.at(slot);
+      const Vec<double, 2> position = track.position();
+      if (is_finite(position) && (position.array() >= south_west.array()).all() &&
+          (position.array() <= north_east.array()).all())
+        positions_.add(position, widest_m2(track), slot);
     }
     positions_.sort();
+  }
+
+  /// Tracks whose variances sum to that are not on one target farther apart, each at its own time;
+  /// a little more for rounding.
+  [[nodiscard]] double reach_m(double variance_m2) const noexcept {
+    return 1.001 * std::max(std::sqrt(distance_ * variance_m2), length_m_) + way_m_;
   }
 
   /// Variance of the position along the axis where it is larger.
@@ -104,27 +136,30 @@ class Duplicates {
 
   /// Whether a senior track, which is not to be deleted itself, is on the same target.
   [[nodiscard]] bool has_senior(const TrackList& tracks, const Track& track) const noexcept {
-    // `same_target` calls no two tracks farther apart one; a little more for rounding.
-    const auto reach_m = [&](double other_m2) {
-      const double same_m = std::sqrt(distance_ * (widest_m2(track) + other_m2));
-      return 1.001 * std::max(same_m, length_m_);
-    };
+    const auto reach = [&](double other_m2) { return reach_m(widest_m2(track) + other_m2); };
     bool found = false;
-    positions_.for_each_near(track.position(), reach_m, [&](int slot) {
+    positions_.for_each_near(track.position(), reach, [&](int slot) {
       const Track& other = tracks.at(slot);
-      found = found || (&other != &track && ends_[static_cast<std::size_t>(slot)] == 0 &&
-                        is_senior(other, track) &&
-                        (same_target(other.kinematics, track.kinematics, distance_) ||
-                         same_vessel(other, track, length_m_, velocity_threshold_)));
+      if (found || &other == &track || ends_[static_cast<std::size_t>(slot)] != 0 ||
+          !is_senior(other, track))
+        return;
+      const double dt_s = track.time_s - other.time_s;
+      if (std::abs(dt_s) > longest_s_) return;
+      const Gaussian<4> then =
+          dt_s == 0.0 ? other.kinematics : at_constant_velocity(other.kinematics, dt_s);
+      found = same_target(then, track.kinematics, distance_) ||
+              same_vessel(other, then, track, length_m_, velocity_threshold_);
     });
     return found;
   }
 
+  double longest_s_;  ///< between the times of two tracks that are compared
   double distance_;
   double length_m_;
   int scans_;
   double velocity_threshold_;
   PlaceIndex positions_;
+  double way_m_ = 0.0;      ///< of the fastest track between the times of two
   std::vector<char> ends_;  ///< by slot, whether it is among those found
   std::vector<int> found_;
 };

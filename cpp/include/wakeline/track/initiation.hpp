@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "wakeline/core/angle.hpp"
 #include "wakeline/core/archive.hpp"
 #include "wakeline/track/clutter_density.hpp"
 #include "wakeline/track/config.hpp"
@@ -25,21 +26,23 @@ namespace wakeline {
 struct FreePlot {
   Gaussian<2> position;
   double time_s;
+  double beam_rad;  ///< as in `ScanPlot`
 };
 
-/// The free plots of the scan before, found by position. Memory is taken by the constructor.
+/// The free plots of the turn before, found by position. Memory is taken by the constructor.
 class FreePlots {
  public:
   explicit FreePlots(int max_plots)
-      : capacity_(static_cast<std::size_t>(max_plots)), index_(max_plots) {
+      : capacity_(3 * static_cast<std::size_t>(max_plots)), index_(3 * max_plots) {
     plots_.reserve(capacity_);
   }
 
-  /// Calls `f(earlier)` for every plot that a target under the speed limit can have given at most
-  /// `longest_s` before it gave `later`.
+  /// Calls `f(earlier)` for every plot that a target under the speed limit can have given in the
+  /// turn before, by the angle of the beam or by time, and at most `longest_s` before it gave
+  /// `later`.
   template <class Function>
-  void for_each_before(const ScanPlot& later, double max_speed_mps, double sigmas, double longest_s,
-                       Function&& function) const {
+  void for_each_before(const ScanPlot& later, double max_speed_mps, double period_s, double sigmas,
+                       double longest_s, Function&& function) const {
     const double way_m = max_speed_mps * std::clamp(later.time_s - earliest_s_, 0.0, longest_s);
     const double variance_m2 = later.position.covariance.trace();
     const auto reach_m = [&](double earlier_m2) {
@@ -48,42 +51,56 @@ class FreePlots {
     index_.for_each_near(later.position.mean, reach_m, [&](int k) {
       const FreePlot& plot = plots_[static_cast<std::size_t>(k)];
       const double dt_s = later.time_s - plot.time_s;
-      if (dt_s > 0.0 && dt_s <= longest_s &&
+      constexpr double kTurn = 2 * kPi<double>;
+      const bool turn_before = !(std::abs(later.beam_rad - plot.beam_rad - kTurn) > kTurn / 2) ||
+                               std::abs(dt_s - period_s) < 0.5 * period_s;
+      if (turn_before && dt_s > 0.0 && dt_s <= longest_s &&
           within_speed_limit(plot.position, later.position, dt_s, max_speed_mps, sigmas))
         function(plot);
     });
   }
 
-  /// Keeps the plots that are free with more than the least probability, in place of those before.
-  void replace(const ScanPlots& plots, std::span<const double> free_probability,
-               double least) noexcept {
-    plots_.clear();
-    for (int k = 0; k < plots.size(); ++k)
-      if (free_probability[static_cast<std::size_t>(k)] > least)
-        plots_.push_back({plots[k].position, plots[k].time_s});
-    sort();
+  /// Adds the plots that do not wait and are free with more than the least probability.
+  void add(const ScanPlots& plots, std::span<const double> free_probability,
+           double least) noexcept {
+    for (int k = 0; k < plots.size() && plots_.size() < capacity_; ++k)
+      if (free_probability[static_cast<std::size_t>(k)] > least && !plots[k].waits)
+        plots_.push_back({plots[k].position, plots[k].time_s, plots[k].beam_rad});
   }
+
+  /// Drops the plots up to an angle of the beam.
+  void drop_before(double beam_rad) noexcept {
+    std::erase_if(plots_, [&](const FreePlot& plot) { return !(plot.beam_rad > beam_rad); });
+    found_ = 0;
+  }
+
+  /// Has those found that there are now.
+  void sort() noexcept { sort(plots_.size()); }
 
   /// Saves or restores the plots.
   void archive(Archive& fields) {
     auto count = static_cast<std::uint64_t>(plots_.size());
     fields(count);
-    if (count > capacity_) fields.fail();
+    auto found = static_cast<std::uint64_t>(found_);
+    fields(found);
+    if (count > capacity_ || found > count) fields.fail();
     if (!fields.ok()) return;
     plots_.resize(static_cast<std::size_t>(count));
     for (FreePlot& plot : plots_) {
       fields(plot.position.mean);
       fields(plot.position.covariance);
       fields(plot.time_s);
+      fields(plot.beam_rad);
     }
-    sort();
+    if (fields.loading()) sort(static_cast<std::size_t>(found));
   }
 
  private:
-  void sort() noexcept {
+  void sort(std::size_t found) noexcept {
+    found_ = found;
     index_.clear();
     earliest_s_ = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < plots_.size(); ++k) {
+    for (std::size_t k = 0; k < found_; ++k) {
       const FreePlot& plot = plots_[k];
       index_.add(plot.position.mean, plot.position.covariance.trace(), static_cast<int>(k));
       earliest_s_ = std::min(earliest_s_, plot.time_s);
@@ -93,7 +110,8 @@ class FreePlots {
 
   std::size_t capacity_;
   std::vector<FreePlot> plots_;
-  PlaceIndex index_;  ///< of `plots_`
+  std::size_t found_ = 0;  ///< the first of them
+  PlaceIndex index_;       ///< of these
   double earliest_s_ = std::numeric_limits<double>::infinity();
 };
 
@@ -101,6 +119,7 @@ class FreePlots {
 struct TrackStart {
   Gaussian<4> belief;  ///< `[x, vx, y, vy]`
   double time_s;
+  double beam_rad;       ///< angle of the beam at that time, unwrapped
   double existence;      ///< probability
   LearnedPlots learned;  ///< what the clutter map has learned of its plots
 };
@@ -113,26 +132,28 @@ class TrackInitiation {
       : config_(config), radar_(radar), before_(config.max_plots) {}
 
   /// Calls `start(TrackStart)` for every pair, as long as `has_room(existence)`; then keeps the
-  /// free plots for the next scan.
+  /// free plots for the next turn. Plots that wait are left out. The beam has passed that angle,
+  /// and a whole turn or a sector.
   template <class HasRoom, class Start>
   void initiate(const ScanPlots& plots, const PlotOwnership& ownership,
-                const ClutterDensity& clutter, const HasRoom& has_room, const Start& start) {
+                const ClutterDensity& clutter, double beam_rad, bool whole_turn,
+                const HasRoom& has_room, const Start& start) {
     const double longest_s = std::max(config_.coast_scans_max, kLeastScans) * radar_.period_s;
     for (int k = 0; k < plots.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
-      if (!(ownership.free_probability()[at] > config_.free_plot)) continue;
+      if (plots[k].waits || !(ownership.free_probability()[at] > config_.free_plot)) continue;
       if (!has_room(existence(clutter.per_m2(k), clutter))) continue;
       const auto pair = [&](const FreePlot& earlier) {
         const LearnedPlots own{earlier.position.mean, 1.0, earlier.time_s};
         const double probability = existence(clutter.without(own, plots, k), clutter);
         if (!has_room(probability)) return;
-        start(TrackStart{belief(earlier, plots[k]), plots[k].time_s, probability,
+        start(TrackStart{belief(earlier, plots[k]), plots[k].time_s, plots[k].beam_rad, probability,
                          clutter.with(own, plots, k, ownership.clutter_probability()[at])});
       };
-      before_.for_each_before(plots[k], radar_.max_speed_mps, config_.start_gate_sigma, longest_s,
-                              pair);
+      before_.for_each_before(plots[k], radar_.max_speed_mps, radar_.period_s,
+                              config_.start_gate_sigma, longest_s, pair);
     }
-    before_.replace(plots, ownership.free_probability(), config_.free_plot);
+    keep_free(plots, ownership, beam_rad, whole_turn);
   }
 
   /// What is believed of a velocity before it is measured.
@@ -143,9 +164,25 @@ class TrackInitiation {
   }
 
   /// Saves or restores the free plots of the scan before.
-  void archive(Archive& fields) { before_.archive(fields); }
+  void archive(Archive& fields) {
+    before_.archive(fields);
+    fields(sorted_rad_);
+  }
 
  private:
+  /// Free plots pair with those of the turn before alone, so that they are sorted in after a part
+  /// of a turn, and dropped after two.
+  void keep_free(const ScanPlots& plots, const PlotOwnership& ownership, double beam_rad,
+                 bool whole_turn) noexcept {
+    constexpr double kTurn = 2 * kPi<double>;
+    const bool sorts = whole_turn || beam_rad - sorted_rad_ >= kTurn / 4;
+    if (sorts) before_.drop_before(beam_rad - (whole_turn ? 1.0 : 2.25) * kTurn);
+    before_.add(plots, ownership.free_probability(), config_.free_plot);
+    if (!sorts) return;
+    before_.sort();
+    sorted_rad_ = beam_rad;
+  }
+
   static constexpr int kLeastScans = 2;  ///< so far apart two plots of a start may be at least
 
   /// Probability of existence, which falls with the density of clutter.
@@ -171,6 +208,7 @@ class TrackInitiation {
   TrackerConfig config_;
   Radar radar_;
   FreePlots before_;
+  double sorted_rad_ = 0.0;  ///< angle of the beam when they were sorted
 };
 
 }  // namespace wakeline

@@ -40,12 +40,12 @@ inline double allowed_misses(const TrackerConfig& config, const Track& track) no
 /// begun to coast.
 inline bool confirm_or_coast(const TrackerConfig& config, const Radar& radar,
                              Track& track) noexcept {
-  const bool was_confirmed = track.confirmed();
-  if (was_confirmed || is_confirmable(config, radar, track))
+  const bool was_seen = track.status == TrackStatus::kConfirmed;
+  if (track.confirmed() || is_confirmable(config, radar, track))
     track.status = track.misses == 0                    ? TrackStatus::kConfirmed
                    : track.misses <= config.shown_scans ? TrackStatus::kCoasting
                                                         : TrackStatus::kHeld;
-  return was_confirmed && track.misses == 1;
+  return was_seen && track.misses > 0;
 }
 
 /// Why a track is to be deleted, or `kNone`.

@@ -48,6 +48,25 @@ class CandidatePlots {
     }
   }
 
+  /// Leaves the plots for which a predicate holds.
+  template <class Predicate>
+  void keep_if(const Predicate& predicate) noexcept {
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < count_; ++k)
+      if (predicate(plots_[k])) plots_[left++] = plots_[k];
+    count_ = left;
+  }
+
+  /// Weighs each plot by the probability that it is free still: clutter about it is so much denser.
+  /// Leaves out those that are not free.
+  void thin(std::span<const double> free_probability) noexcept {
+    const auto free = [&](const CandidatePlot& plot) {
+      return free_probability[static_cast<std::size_t>(plot.plot)];
+    };
+    keep_if([&](const CandidatePlot& plot) { return free(plot) > 0.0; });
+    for (std::size_t k = 0; k < count_; ++k) plots_[k].clutter_per_m2 /= free(plots_[k]);
+  }
+
   /// Whether a plot of that likelihood is among the likeliest.
   [[nodiscard]] bool admits(double likelihood) const noexcept {
     return count_ < kMost || likelihood > plots_.back().likelihood;

@@ -8,8 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "wakeline/core/archive.hpp"
 #include "wakeline/track/association_probabilities.hpp"
 #include "wakeline/track/config.hpp"
+#include "wakeline/track/scan_plots.hpp"
 #include "wakeline/track/track.hpp"
 
 namespace wakeline {
@@ -38,6 +40,36 @@ class PlotOwnership {
     free_.assign(static_cast<std::size_t>(plots), 1.0);
     clutter_.assign(static_cast<std::size_t>(plots), 1.0);
     owner_.assign(static_cast<std::size_t>(plots), {});
+  }
+
+  /// Goes on to that many plots; nobody owns the new ones.
+  void extend(int plots) noexcept {
+    free_.resize(static_cast<std::size_t>(plots), 1.0);
+    clutter_.resize(static_cast<std::size_t>(plots), 1.0);
+    owner_.resize(static_cast<std::size_t>(plots));
+  }
+
+  /// Leaves the plots that wait.
+  void drop_settled(const ScanPlots& plots) noexcept {
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      if (!plots[static_cast<int>(k)].waits) continue;
+      free_[left] = free_[k];
+      clutter_[left] = clutter_[k];
+      owner_[left++] = owner_[k];
+    }
+    free_.resize(left);
+    clutter_.resize(left);
+    owner_.resize(left);
+  }
+
+  /// Saves or restores what is known of that many plots, except who owns them.
+  void archive(Archive& fields, int plots) {
+    fields(free_, free_.capacity());
+    fields(clutter_, clutter_.capacity());
+    const auto count = static_cast<std::size_t>(plots);
+    if (free_.size() != count || clutter_.size() != count) fields.fail();
+    if (fields.loading()) owner_.assign(count, {});
   }
 
   /// Adds one track, updated, with what association gave it of its candidates.

@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
+
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/fields.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
+#include "wakeline/video/video_plot.hpp"
 
 namespace wakeline {
+
+struct Plot;
 
 /// What a console knows of its radar and of the vessels it looks at.
 struct Radar {
@@ -42,6 +47,9 @@ struct Radar {
         .position(range_m, bearing_rad, true);
   }
 
+  /// The same of a plot, with its own covariance where it has one.
+  [[nodiscard]] Gaussian<2> position(const Plot& plot) const noexcept;
+
   friend bool operator==(const Radar&, const Radar&) = default;
 
   void validate() const { validate_fields(*this); }
@@ -53,6 +61,27 @@ struct Plot {
   double range_m = 0.0;
   double bearing_rad = 0.0;
   OwnShip own = {};
+  /// Of range_m and bearing_rad, in place of the radar's errors of both, to which the extent of the
+  /// echo and the errors of own ship add; zero: the radar's.
+  Mat<double, 2, 2> covariance = Mat<double, 2, 2>::Zero();
 };
+
+/// An echo of radar video as a plot that carries its own covariance.
+inline Plot plot_of(const VideoPlot& echo, const OwnShip& own = {}) noexcept {
+  return {echo.time_s, echo.range_m, echo.bearing_rad, own, echo.covariance};
+}
+
+inline Gaussian<2> Radar::position(const Plot& plot) const noexcept {
+  if (plot.covariance.isZero(0.0)) return position(plot.range_m, plot.bearing_rad, plot.own);
+  const Mat<double, 2, 2>& r = plot.covariance;
+  Gaussian<2> fix = PolarErrors{std::sqrt(r(0, 0)), std::sqrt(r(1, 1)), extent_std_m,
+                                bearing_offset_rad, plot.own}
+                        .position(plot.range_m, plot.bearing_rad, true);
+  const Vec<double, 2> u = towards(plot.bearing_rad - bearing_offset_rad);
+  const Vec<double, 2> across(-u[1], u[0]);
+  const double common_m2 = plot.range_m * (r(0, 1) + r(1, 0)) / 2;
+  fix.covariance += common_m2 * (u * across.transpose() + across * u.transpose());
+  return fix;
+}
 
 }  // namespace wakeline

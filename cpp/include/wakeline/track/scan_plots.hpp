@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "wakeline/core/archive.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/core/status.hpp"
 #include "wakeline/track/place_index.hpp"
@@ -20,7 +22,10 @@ namespace wakeline {
 struct ScanPlot {
   Gaussian<2> position;  ///< [north, east], m
   double time_s;
-  int input;  ///< its index among the plots given to the tracker
+  int input;        ///< its index among the plots given to the tracker; -1: of an earlier call
+  double beam_rad;  ///< angle of the beam that saw it, unwrapped; NaN where it is not known
+  double wait_until_rad;  ///< it waits while the beam is before that angle
+  bool waits;             ///< for the next call
 };
 
 /// The usable plots of one scan, found by position. Memory is taken by the constructor.
@@ -39,13 +44,28 @@ class ScanPlots {
   void convert(const Radar& radar, std::span<const Plot> plots, double time_s,
                double slack_s) noexcept {
     plots_.clear();
+    (void)add(radar, plots, time_s, slack_s,
+              [](const Plot&) { return std::numeric_limits<double>::quiet_NaN(); });
+  }
+
+  /// The same beside those that wait; `beam_rad(plot)` is the angle of the beam that saw a plot.
+  /// Returns how many are taken.
+  template <class BeamAngle>
+  int add(const Radar& radar, std::span<const Plot> plots, double time_s, double slack_s,
+          const BeamAngle& beam_rad) noexcept {
+    const int before = size();
     index_.clear();
     earliest_s_ = scan_s_ = time_s;
+    for (int k = 0; k < before; ++k) {
+      const ScanPlot& plot = plots_[static_cast<std::size_t>(k)];
+      index_.add(plot.position.mean, plot.position.covariance.trace(), k);
+      earliest_s_ = std::min(earliest_s_, plot.time_s);
+    }
     constexpr double kRounding = std::numeric_limits<double>::epsilon();
-    const std::size_t count = std::min(plots.size(), plots_.capacity());
+    const std::size_t count = std::min(plots.size(), plots_.capacity() - plots_.size());
     for (std::size_t k = 0; k < count; ++k) {
       const Plot& plot = plots[k];
-      const Gaussian<2> position = radar.position(plot.range_m, plot.bearing_rad, plot.own);
+      const Gaussian<2> position = radar.position(plot);
       const bool usable = std::fabs(plot.time_s - time_s) <= slack_s && plot.range_m >= 0.0 &&
                           kRounding * std::fabs(plot.bearing_rad) <= radar.bearing_std_rad &&
                           in_range(position.mean) &&
@@ -54,10 +74,47 @@ class ScanPlots {
       if (!usable) continue;
       const double plot_s = std::min(plot.time_s, time_s);
       index_.add(position.mean, position.covariance.trace(), size());
-      plots_.push_back({position, plot_s, static_cast<int>(k)});
+      plots_.push_back({position, plot_s, static_cast<int>(k), beam_rad(plot),
+                        -std::numeric_limits<double>::infinity(), false});
       earliest_s_ = std::min(earliest_s_, plot_s);
     }
     index_.sort();
+    return size() - before;
+  }
+
+  /// Has a plot wait for the next sector.
+  void keep(int index) noexcept { plots_[static_cast<std::size_t>(index)].waits = true; }
+  /// Has it wait until the beam has that angle.
+  void keep_until(int index, double beam_rad) noexcept {
+    double& until_rad = plots_[static_cast<std::size_t>(index)].wait_until_rad;
+    until_rad = std::max(until_rad, beam_rad);
+  }
+
+  /// Leaves the plots that wait; their places have changed.
+  void drop_settled() noexcept {
+    std::erase_if(plots_, [](const ScanPlot& plot) { return !plot.waits; });
+    for (ScanPlot& plot : plots_) {
+      plot.waits = false;
+      plot.input = -1;
+    }
+  }
+
+  /// Saves or restores the plots that wait.
+  void archive(Archive& fields) {
+    auto count = static_cast<std::uint64_t>(plots_.size());
+    fields(count);
+    if (count > plots_.capacity()) fields.fail();
+    if (!fields.ok()) return;
+    plots_.resize(static_cast<std::size_t>(count));
+    for (ScanPlot& plot : plots_) {
+      fields(plot.position.mean);
+      fields(plot.position.covariance);
+      fields(plot.time_s);
+      fields(plot.beam_rad);
+      fields(plot.wait_until_rad);
+      plot.input = -1;
+      plot.waits = false;
+    }
   }
 
   /// Calls `f(index)` for every plot in a square about a position: `reach_m(variance_m2)` is its
@@ -65,8 +122,16 @@ class ScanPlots {
   template <class Reach, class Function>
   void for_each_near(const Vec<double, 2>& position, const Reach& reach_m,
                      Function&& function) const {
-    index_.for_each_near(position, reach_m, function);
+    index_.for_each_near(position, reach_m, [&](int index) {
+      if ((*this)[index].time_s <= latest_s_) function(index);
+    });
   }
+
+  /// Hides the plots after a time from `for_each_near`, until the next call.
+  void hide_after(double time_s) noexcept { latest_s_ = time_s; }
+
+  /// Time of the earliest plot, or of the scan.
+  [[nodiscard]] double earliest_s() const noexcept { return earliest_s_; }
 
   [[nodiscard]] int size() const noexcept { return static_cast<int>(plots_.size()); }
   [[nodiscard]] const ScanPlot& operator[](int index) const noexcept {
@@ -87,6 +152,7 @@ class ScanPlots {
   PlaceIndex index_;
   double earliest_s_ = 0.0;
   double scan_s_ = 0.0;
+  double latest_s_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace wakeline

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -98,7 +99,7 @@ inline Gaussian<4> at_constant_velocity(const Gaussian<4>& kinematics, double dt
 }
 
 /// Whether the speed in a belief over `[x, vx, y, vy]` is above a limit by that many of its
-/// standard deviations.
+/// standard deviations, or by three tenths of the limit if that is less.
 inline bool exceeds_speed(const Gaussian<4>& kinematics, double limit_mps, double sigmas) noexcept {
   const Vec<double, 2> velocity(kinematics.mean[1], kinematics.mean[3]);
   const double speed_mps = velocity.norm();
@@ -106,7 +107,8 @@ inline bool exceeds_speed(const Gaussian<4>& kinematics, double limit_mps, doubl
   const auto rows = Eigen::seqN(1, Eigen::fix<2>, Eigen::fix<2>);
   const Mat<double, 2, 2> covariance = kinematics.covariance(rows, rows);
   const Vec<double, 2> along = velocity / speed_mps;
-  return speed_mps - limit_mps > sigmas * std::sqrt(along.dot(covariance * along));
+  const double margin_mps = sigmas * std::sqrt(along.dot(covariance * along));
+  return speed_mps - limit_mps > std::min(margin_mps, 0.3 * limit_mps);
 }
 
 /// By so many standard deviations a confirmed track exceeds the speed limit before it is lost.
@@ -131,6 +133,9 @@ struct Track {
   int duplicate_scans = 0;    ///< in a row that a senior track was on the same target
   double plot_m2 = 0.0;       ///< variance of its last plot, per axis (mean of both)
   LearnedPlots learned = {};  ///< what the clutter map has learned of its own plots
+  double looked_s = 0.0;      ///< when the radar last looked: a plot or a miss
+  double passed_rad = 0.0;    ///< angle of the beam when it last passed the target, unwrapped
+  double look_rad = 0.0;      ///< before that angle the beam does not reach its gate
   bool hushed = false;        ///< followed, but neither shown nor reported: the operator's word
 
   [[nodiscard]] bool confirmed() const noexcept { return status != TrackStatus::kTentative; }
@@ -187,6 +192,9 @@ struct Track {
     fields(duplicate_scans);
     fields(plot_m2);
     learned.archive(fields);
+    fields(looked_s);
+    fields(passed_rad);
+    fields(look_rad);
     fields(hushed);
   }
 };

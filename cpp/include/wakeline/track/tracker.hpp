@@ -19,6 +19,7 @@
 #include "wakeline/simd/side_by_side.hpp"
 #include "wakeline/track/association.hpp"
 #include "wakeline/track/association_probabilities.hpp"
+#include "wakeline/track/beam.hpp"
 #include "wakeline/track/clutter_density.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/duplicates.hpp"
@@ -79,7 +80,27 @@ class Tracker {
   /// Processes the plots of one scan, a whole turn of the antenna that ends at `time_s`: a track
   /// without a plot has missed it. Rejects a scan that is before the last one
   /// (`kNegativeTimeStep`) or after `latest_time_s()` (`kNotFinite`): nothing changes.
-  ScanReport process(double time_s, std::span<const Plot> plots) noexcept;
+  ScanReport process(double time_s, std::span<const Plot> plots) noexcept {
+    return step(time_s, plots, nullptr);
+  }
+
+  /// Processes a part of the antenna's turn.
+  ///
+  /// Tracks whose gate the beam has passed are updated or have missed, once a turn; others, and
+  /// plots that may be theirs, wait for the next sector, so that `plot_track_id` is 0 for these.
+  /// Where sectors leave a gap, tracks are neither updated nor miss; a track that the beam has not
+  /// passed for two periods coasts by time, a miss a period. A sector of no width lets time pass.
+  /// One of a whole turn is `process`. Rejects a sector of another radar or from nowhere to nowhere
+  /// (`kNotFinite`), or of a time that `process` rejects: nothing changes.
+  ScanReport sector(const Sector& sector) noexcept {
+    const double width_rad = Beam::width_rad(sector.from_rad, sector.to_rad);
+    if (sector.radar != 0 || std::isnan(width_rad)) {
+      events_.clear();
+      plot_track_id_.clear();
+      return {Status::kNotFinite, {}, {}, 0};
+    }
+    return step(sector.time_s, sector.plots, Beam::is_turn(width_rad) ? nullptr : &sector);
+  }
 
   /// Calls `f(track)` for every track, tentative and hushed ones too, older ones first. Each has
   /// the estimate of its own time; `kinematics_at` has all at one.
@@ -168,13 +189,13 @@ class Tracker {
   static constexpr double kClockPeriods = 10.0;
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 6;
-  static constexpr std::size_t kGroup = 32;  ///< tracks that are stepped together
+  static constexpr std::uint32_t kArchiveVersion = 7;
+  static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
+  static constexpr std::size_t kGroup = 32;      ///< tracks that are stepped together
 
   /// Calls `f(slots)` for a few tracks at a time, which stay in the cache from stage to stage.
   template <class Function>
-  void for_each_group(const Function& function) {
-    const std::span<const int> slots = tracks_.slots();
+  void for_each_group(std::span<const int> slots, const Function& function) {
     for (std::size_t first = 0; first < slots.size(); first += kGroup)
       function(slots.subspan(first, std::min(kGroup, slots.size() - first)));
   }
@@ -184,19 +205,246 @@ class Tracker {
     return candidates_[static_cast<std::size_t>(track.slot)];
   }
 
+  ScanReport step(double time_s, std::span<const Plot> plots, const Sector* sector) noexcept;
+
+  /// Moves the beam over a sector, or a whole turn without one, and takes the plots. Returns how
+  /// many are taken.
+  int sweep(const Sector* sector, std::span<const Plot> plots, double dt_s) noexcept {
+    own_.north_m += dt_s * own_.vnorth_mps;
+    own_.east_m += dt_s * own_.veast_mps;
+    double half_rad = kPi<double>;
+    if (sector != nullptr) {
+      const double width_rad = Beam::width_rad(sector->from_rad, sector->to_rad);
+      beam_.sweep(sector->from_rad, width_rad, dt_s, radar_.period_s);
+      half_rad = width_rad / 2;
+    } else {
+      beam_.turn();
+    }
+    const double middle_rad = beam_.angle_rad() - half_rad;
+    const int taken = plots_.add(
+        radar_, plots, time_s_, std::max(kClockPeriods * radar_.period_s, dt_s),
+        [&](const Plot& plot) {
+          return sector == nullptr ? middle_rad : Beam::unwrapped(plot.bearing_rad, middle_rad);
+        });
+    if (sector != nullptr && sector->own && in_range(sector->own->position<double>()))
+      own_ = *sector->own;
+    else if (taken > 0)
+      own_ = plots[static_cast<std::size_t>(plots_[plots_.size() - 1].input)].own;
+    return taken;
+  }
+
+  /// Lists the tracks that are due and those that wait. A track is due when the beam has passed its
+  /// gate; where it has a plot in the gate without outliers, when the beam has passed that.
+  void list_due() noexcept {
+    due_.clear();
+    waiting_.clear();
+    arcs_.clear();
+    const double beam_rad = beam_.angle_rad();
+    for (const int slot : tracks_.slots()) {
+      Track& track = tracks_.at(slot);
+      if (whole_turn_) {
+        track.passed_rad = beam_rad - kPi<double>;
+        track.look_rad = beam_rad;
+        due_.push_back(slot);
+        continue;
+      }
+      if (beam_rad < track.look_rad) continue;
+      BeamArc arc = arc_of(track, config_.outlier_variance());
+      if (arc.from_rad > beam_rad) continue;
+      if (arc.to_rad > beam_rad) {
+        const BeamArc usual = arc_of(track, 1.0);
+        if (!beam_.has_swept(usual) || !has_plot_near(track)) {
+          waiting_.push_back(slot);
+          continue;
+        }
+        arc = usual;
+      }
+      if (beam_.has_swept(arc)) {
+        due_.push_back(slot);
+        arcs_.push_back(arc);
+      } else {
+        pass(track, arc);  // a part was left out
+      }
+    }
+    if (!whole_turn_) defer();
+  }
+
+  [[nodiscard]] BeamArc arc_of(const Track& track, double plot_factor) const noexcept {
+    return gate_arc(track, time_s_, gate_.threshold(), plot_factor, radar_, own_);
+  }
+
+  [[nodiscard]] bool has_plot_near(const Track& track) const noexcept {
+    bool found = false;
+    for_each_near(track, [&](int) { found = true; });
+    return found;
+  }
+
+  /// Notes that the beam has passed a track.
+  void pass(Track& track, const BeamArc& arc) noexcept {
+    track.passed_rad = arc.centre_rad;
+    track.look_rad = next_look_rad(track, arc);
+  }
+
+  /// Has tracks wait that compete for a plot with one that waits, so that association is of both;
+  /// for half of the time that the beam needs to reach their gate again.
+  void defer() noexcept {
+    is_contested_.assign(static_cast<std::size_t>(plots_.size()), 0);
+    const auto contest = [&](int slot) {
+      for_each_near(tracks_.at(slot),
+                    [&](int plot) { is_contested_[static_cast<std::size_t>(plot)] = 1; });
+    };
+    for (const int slot : waiting_) contest(slot);
+    for (bool changed = !waiting_.empty(); changed;) {
+      changed = false;
+      std::size_t left = 0;
+      for (std::size_t k = 0; k < due_.size(); ++k) {
+        const BeamArc& arc = arcs_[k];
+        const double longest_rad = (Beam::kTurn - (arc.to_rad - arc.from_rad)) / 2;
+        bool waits = false;
+        if (beam_.angle_rad() < arc.to_rad + longest_rad)
+          for_each_near(tracks_.at(due_[k]), [&](int plot) {
+            waits = waits || is_contested_[static_cast<std::size_t>(plot)] != 0;
+          });
+        if (waits) {
+          contest(due_[k]);
+          waiting_.push_back(due_[k]);
+          changed = true;
+        } else {
+          arcs_[left] = arc;
+          due_[left++] = due_[k];
+        }
+      }
+      due_.resize(left);
+      arcs_.resize(left);
+    }
+    for (std::size_t k = 0; k < due_.size(); ++k) pass(tracks_.at(due_[k]), arcs_[k]);
+  }
+
+  /// Calls `f(plot)` for the plots in the gate of a track, those of outliers left out.
+  template <class Function>
+  void for_each_near(const Track& track, const Function& function) const noexcept {
+    const Gaussian<4> now = at_constant_velocity(track.kinematics, time_s_ - track.time_s);
+    plots_.for_each_near(
+        {now.mean[0], now.mean[2]}, [&](double plot_m2) { return gate_reach_m(now, plot_m2); },
+        [&](int index) {
+          const ScanPlot& plot = plots_[index];
+          const Gaussian<4> then =
+              at_constant_velocity(track.kinematics, plot.time_s - track.time_s);
+          if (innovation_squared(then, plot.position.mean, plot.position.covariance) <=
+              gate_.threshold())
+            function(index);
+        });
+  }
+
+  /// Where the beam may reach the gate of a track again, with room for what both do in a turn.
+  [[nodiscard]] double next_look_rad(const Track& track, const BeamArc& arc) const noexcept {
+    const double range_m = (track.position() - own_.position<double>()).norm();
+    const double way_m = kPointedPeriods * radar_.max_speed_mps * radar_.period_s;
+    const double way_rad = way_m < range_m ? std::asin(way_m / range_m) : kPi<double>;
+    const double wide_rad = arc.to_rad - arc.from_rad + way_rad;
+    return arc.centre_rad + Beam::kTurn - std::min(wide_rad, kPi<double>);
+  }
+
+  /// Existence and visibility of the tracks that are due, as of now.
+  void predict_existence(bool first) noexcept {
+    double of_s = 0.0;
+    ExistencePrediction existence(config_, of_s);
+    for (const int slot : due_) {
+      Track& track = tracks_.at(slot);
+      const double dt_s = first ? 0.0 : time_s_ - track.looked_s;
+      if (dt_s != of_s) existence = ExistencePrediction(config_, of_s = dt_s);
+      existence.predict(track);
+      track.looked_s = time_s_;
+    }
+  }
+
+  /// Lets tracks coast by time that the beam has not passed for long; returns none that is due.
+  void coast_by_time() noexcept {
+    touched_.assign(touched_.size(), 0);
+    for (const int slot : due_) touched_[static_cast<std::size_t>(slot)] = 1;
+    for (const int slot : tracks_.slots()) {
+      Track& track = tracks_.at(slot);
+      const double silent_s = time_s_ - track.looked_s;
+      if (!(silent_s > kSilentPeriods * radar_.period_s) || is_awaited(track)) continue;
+      const double periods = std::floor(silent_s / radar_.period_s) - kSilentPeriods + 1.0;
+      for (double k = 0.0; k < periods; ++k) track.count(false);
+      track.looked_s += periods * radar_.period_s;
+      ExistencePrediction(config_, periods * radar_.period_s).predict(track);
+      PredictionStep<Estimator> step{&estimator_at(slot), time_s_ - track.time_s};
+      steps_.predict({&step, 1});
+      touched_[static_cast<std::size_t>(slot)] = 1;
+      track.nis = std::numeric_limits<double>::quiet_NaN();
+      if (step.status != Status::kOk) continue;
+      track.time_s = time_s_;
+      track.kinematics = step.kinematics;
+    }
+  }
+
+  /// Has the plots wait that may be of a track which waits, or ahead of the beam, and lists the
+  /// tracks that wait and have a candidate in common with one that is due.
+  void list_rivals() noexcept {
+    rivals_.clear();
+    is_candidate_.assign(static_cast<std::size_t>(plots_.size()), 0);
+    for (const int slot : due_)
+      for (const CandidatePlot& plot : candidates_of(tracks_.at(slot)))
+        is_candidate_[static_cast<std::size_t>(plot.plot)] = 1;
+    for (const int slot : waiting_) {
+      const Track& track = tracks_.at(slot);
+      const Gaussian<4> now = at_constant_velocity(track.kinematics, time_s_ - track.time_s);
+      const auto reach_m = [&](double plot_m2) { return gate_reach_m(now, plot_m2); };
+      bool is_rival = false;
+      plots_.for_each_near({now.mean[0], now.mean[2]}, reach_m, [&](int plot) {
+        plots_.keep(plot);
+        is_rival = is_rival || is_candidate_[static_cast<std::size_t>(plot)] != 0;
+      });
+      if (is_rival) rivals_.push_back(slot);
+    }
+    for (int plot = 0; plot < plots_.size(); ++plot)
+      if (std::max(plots_[plot].beam_rad, plots_[plot].wait_until_rad) > beam_.angle_rad())
+        plots_.keep(plot);
+  }
+
+  /// Leaves a track the plots of one turn.
+  ///
+  /// Where the plots of a turn have one time, as in recordings, and the gate of a track is on both
+  /// sides of where a turn ends, plots of two turns are in it. Those half a period after the first
+  /// wait for the next turn.
+  void choose_turn(const Track& track) noexcept {
+    plots_.hide_after(std::numeric_limits<double>::infinity());
+    const double half_period_s = 0.5 * radar_.period_s;
+    if (!(time_s_ - plots_.earliest_s() > half_period_s)) return;
+    const Gaussian<4> now = at_constant_velocity(track.kinematics, time_s_ - track.time_s);
+    const Vec<double, 2> position(now.mean[0], now.mean[2]);
+    const auto reach_m = [&](double plot_m2) { return gate_reach_m(now, plot_m2); };
+    double first_s = time_s_;
+    plots_.for_each_near(position, reach_m,
+                         [&](int plot) { first_s = std::min(first_s, plots_[plot].time_s); });
+    plots_.for_each_near(position, reach_m, [&](int plot) {
+      if (plots_[plot].time_s > first_s + half_period_s)
+        plots_.keep_until(plot, beam_.angle_rad() + Beam::kTurn);
+    });
+    plots_.hide_after(first_s + half_period_s);
+  }
+
+  /// How far a plot of such a variance may be from a belief and in its gate, about.
+  [[nodiscard]] double gate_reach_m(const Gaussian<4>& belief, double plot_m2) const noexcept {
+    const double own_m2 = belief.covariance(0, 0) + belief.covariance(2, 2);
+    return std::sqrt(gate_.threshold() * (own_m2 + config_.outlier_variance() * plot_m2));
+  }
+
   /// Predicts tracks, each to the time of its plot.
-  void predict(std::span<const int> slots, const ExistencePrediction& existence) noexcept {
+  void predict(std::span<const int> slots) noexcept {
     std::array<PredictionStep<Estimator>, kGroup> steps;
     std::array<Track*, kGroup> track_of;
     std::array<double, kGroup> time_of;
     std::size_t count = 0;
     for (const int slot : slots) {
-      Track& track = tracks_.at(slot);
-      existence.predict(track);
+      const Track& track = tracks_.at(slot);
+      if (!whole_turn_) choose_turn(track);
       const double time_s = expected_time_s(track, plots_, radar_.max_speed_mps);
       if (!(time_s > track.time_s)) continue;
       steps[count] = {&estimator_at(slot), time_s - track.time_s};
-      track_of[count] = &track;
+      track_of[count] = &tracks_.at(slot);
       time_of[count++] = time_s;
     }
     steps_.predict({steps.data(), count});
@@ -208,14 +456,21 @@ class Tracker {
   }
 
   /// Gates of tracks, and the likelihoods of the plots inside.
-  void find_candidates(std::span<const int> slots) noexcept {
+  void find_candidates(std::span<const int> slots, bool due) noexcept {
     for (const int slot : slots) {
       const Track& track = tracks_.at(slot);
       CandidatePlots& candidates = candidates_of(track);
+      if (!whole_turn_) choose_turn(track);
       modes_.read(estimator_at(slot));
       const TimeAlignment alignment(track, radar_.period_s, maneuver_m2s3(track));
       candidates.choose(gate_.validate(track, modes_, alignment, plots_), track, modes_,
                         config_.outlier_probability, clutter_, plots_);
+      // What a track that waits may own as an outlier is not known before it is due.
+      if (!due)
+        candidates.keep_if([&](const CandidatePlot& plot) {
+          return innovation_squared(track.kinematics, plot.z, plot.nominal_r) <= gate_.threshold();
+        });
+      candidates.thin(ownership_.free_probability());
       if (config_.association == Association::kProbabilistic)
         multitarget_.claim(track, Detection(config_, track.visibility), candidates);
     }
@@ -238,9 +493,11 @@ class Tracker {
   }
 
   /// Assigns plots to tracks, where each may have one at most.
-  void associate(std::span<const int> slots) noexcept {
-    if (config_.association != Association::kProbabilistic)
-      assignment_.assign(config_, tracks_, slots, candidates_, plots_.size());
+  void associate() noexcept {
+    if (config_.association == Association::kProbabilistic) return;
+    competing_.assign(due_.begin(), due_.end());
+    competing_.insert(competing_.end(), rivals_.begin(), rivals_.end());
+    assignment_.assign(config_, tracks_, competing_, candidates_, plots_.size());
   }
 
   [[nodiscard]] AssociationWeights weights_of(const Track& track) noexcept {
@@ -299,18 +556,21 @@ class Tracker {
 
   void confirm_and_delete() noexcept {
     tracks_.remove_if([&](Track& track) {
+      if (touched_[static_cast<std::size_t>(track.slot)] == 0) return false;
       if (confirm_or_coast(config_, radar_, track)) announce(TrackEvent::kCoasting, track);
       const LossReason reason = reason_to_delete(config_, radar_, track);
       if (reason != LossReason::kNone) announce(TrackEvent::kLost, track, reason);
       return reason != LossReason::kNone;
     });
+    std::erase_if(due_, [&](int slot) { return !tracks_.in_use(slot); });
   }
 
   void delete_duplicates() noexcept {
-    for (const int slot : duplicates_.find(tracks_, tracks_.slots())) {
+    for (const int slot : duplicates_.find(tracks_, due_)) {
       announce(TrackEvent::kLost, tracks_.at(slot), LossReason::kDuplicate);
       tracks_.remove(slot);
     }
+    std::erase_if(due_, [&](int slot) { return !tracks_.in_use(slot); });
   }
 
   /// Numbers the tracks that were confirmed in this scan.
@@ -328,7 +588,7 @@ class Tracker {
     newest_before_ = next_tentative_id_ + 1;
     room_.reset();
     initiation_.initiate(
-        plots_, ownership_, clutter_,
+        plots_, ownership_, clutter_, beam_.angle_rad(), whole_turn_,
         [&](double existence) { return room_.has_room_for(existence, tracks_); },
         [&](const TrackStart& start) {
           if (Track* track = open(start)) track->history = 3u;
@@ -355,6 +615,9 @@ class Tracker {
     estimator_at(track.slot) = estimator;
     track.id = track.tentative_id = next_tentative_id_--;
     track.time_s = start.time_s;
+    track.looked_s = time_s_;
+    track.passed_rad = start.beam_rad;
+    track.look_rad = start.beam_rad;
     track.kinematics = start.belief;
     track.plot_m2 = track.position_variance_m2();
     track.existence = start.existence;
@@ -380,7 +643,7 @@ class Tracker {
     plot_track_id_.assign(count, 0);
     for (int plot = 0; plot < plots_.size(); ++plot) {
       const PlotOwnership::Owner& owner = ownership_.owner(plot);
-      if (owner.slot < 0 || !tracks_.in_use(owner.slot)) continue;
+      if (plots_[plot].input < 0 || owner.slot < 0 || !tracks_.in_use(owner.slot)) continue;
       const Track& track = tracks_.at(owner.slot);
       if (track.hushed) continue;
       if (track.id == owner.track_id || track.tentative_id == owner.track_id)
@@ -437,6 +700,10 @@ class Tracker {
     fields(next_tentative_id_);
     clutter_.archive(fields);
     initiation_.archive(fields);
+    beam_.archive(fields);
+    fields(own_);
+    plots_.archive(fields);
+    ownership_.archive(fields, plots_.size());
     tracks_.archive(fields);
     if (!fields.ok()) return;
     for (const int slot : tracks_.slots()) estimator_at(slot).archive(fields);
@@ -455,6 +722,18 @@ class Tracker {
   std::int64_t next_id_ = 1;
   std::int64_t next_tentative_id_ = -1;
   std::int64_t newest_before_ = 0;  ///< number of the newest tentative track before this scan
+
+  Beam beam_;
+  bool whole_turn_ = true;      ///< of this call
+  OwnShip own_;                 ///< as of the last plot, moved on
+  std::vector<int> due_;        ///< slots of the tracks whose gate the beam has passed
+  std::vector<int> waiting_;    ///< and of those whose gate it is in
+  std::vector<int> rivals_;     ///< of these that have a candidate in common with one that is due
+  std::vector<int> competing_;  ///< both
+  std::vector<char> touched_;   ///< by slot: whether this call has counted for the track
+  std::vector<BeamArc> arcs_;   ///< of the tracks that are due
+  std::vector<char> is_contested_;  ///< by plot: a track that waits competes for it
+  std::vector<char> is_candidate_;  ///< by plot: of a track that is due
 
   // The stages of a scan, in order
   ScanPlots plots_;
@@ -491,49 +770,69 @@ Tracker<Estimator, Steps>::Tracker(const Radar& radar, const TrackerConfig& conf
       multitarget_(config),
       assignment_(config),
       ownership_(config),
-      duplicates_(config, gate_.threshold()),
+      duplicates_(config, radar.period_s, gate_.threshold()),
       initiation_(radar, config),
       room_(config.max_tracks) {
   const auto plots = static_cast<std::size_t>(config.max_plots);
+  for (std::vector<int>* slots : {&due_, &waiting_, &rivals_, &competing_})
+    slots->reserve(estimators_.size());
+  touched_.resize(estimators_.size());
+  arcs_.reserve(estimators_.size());
+  is_candidate_.reserve(plots);
+  is_contested_.reserve(plots);
   plot_track_id_.reserve(plots);
   events_.reserve(4 * estimators_.size() + plots + 1);
 }
 
 template <class Estimator, class Steps>
-ScanReport Tracker<Estimator, Steps>::process(double time_s, std::span<const Plot> plots) noexcept {
+ScanReport Tracker<Estimator, Steps>::step(double time_s, std::span<const Plot> plots,
+                                           const Sector* sector) noexcept {
   events_.clear();
   plot_track_id_.clear();
   if (!std::isfinite(time_s)) return {Status::kNotFinite, {}, {}, 0};
   if (started_ && time_s < time_s_) return {Status::kNegativeTimeStep, {}, {}, 0};
   if (time_s > latest_time_s()) return {Status::kNotFinite, {}, {}, 0};
-  const double dt_s = started_ ? time_s - time_s_ : 0.0;
+  const bool first = !started_;
+  whole_turn_ = sector == nullptr;
+  const double dt_s = first ? 0.0 : time_s - time_s_;
   time_s_ = time_s;
   started_ = true;
 
-  plots_.convert(radar_, plots, time_s, std::max(kClockPeriods * radar_.period_s, dt_s));
-  clutter_.evaluate(plots_, dt_s, radar_.period_s);
+  const int taken = sweep(sector, plots, dt_s);
+  clutter_.evaluate(plots_, whole_turn_ ? dt_s : radar_.period_s, radar_.period_s);
   multitarget_.clear(plots_.size());
-  ownership_.clear(plots_.size());
+  ownership_.extend(plots_.size());
 
-  const ExistencePrediction existence(config_, dt_s);
-  for_each_group([&](std::span<const int> slots) {
-    predict(slots, existence);
-    find_candidates(slots);
+  list_due();
+  predict_existence(first);
+  coast_by_time();
+  for_each_group(due_, [&](std::span<const int> slots) {
+    predict(slots);
+    find_candidates(slots, true);
   });
-  associate(tracks_.slots());
-  for_each_group([&](std::span<const int> slots) { update(slots); });
+  plots_.hide_after(std::numeric_limits<double>::infinity());
+  list_rivals();
+  for_each_group(rivals_, [&](std::span<const int> slots) {
+    predict(slots);
+    find_candidates(slots, false);
+  });
+  plots_.hide_after(std::numeric_limits<double>::infinity());
+  associate();
+  for_each_group(due_, [&](std::span<const int> slots) { update(slots); });
 
   confirm_and_delete();
   delete_duplicates();
   number_confirmed();
   clutter_.learn(
       plots_, ownership_.clutter_probability(), [&](int slot) { return ownership_.plot_of(slot); },
-      tracks_, tracks_.slots());
+      tracks_, due_);
   initiate();
   report_room();
 
   report_owners(std::min(plots.size(), static_cast<std::size_t>(config_.max_plots)));
-  return {Status::kOk, plot_track_id_, events_, static_cast<int>(plots.size()) - plots_.size()};
+  ownership_.drop_settled(plots_);
+  plots_.drop_settled();
+  return {Status::kOk, plot_track_id_, events_, static_cast<int>(plots.size()) - taken};
 }
 
 template <class Estimator, class Steps>
@@ -561,9 +860,11 @@ std::int64_t Tracker<Estimator, Steps>::designate(double time_s, double north_m,
       kinematics_from<double>(position, initiation_.prior_velocity(), Mat<double, 2, 2>::Zero());
   room_.reset();
   if (!room_.has_room_for(kDesignatedExistence, tracks_)) return 0;
-  Track* track = open({belief, time_s, kDesignatedExistence, {}});
+  Track* track = open({belief, time_s, beam_.angle_rad(), kDesignatedExistence, {}});
   if (track == nullptr) return 0;
   track->tentative_id = 0;
+  track->passed_rad = beam_.last_rad(std::atan2(east_m - own_.east_m, north_m - own_.north_m) +
+                                     radar_.bearing_offset_rad);
   track->scans = track->hits = 0;
   confirm_designated(*track);
   return track->id;

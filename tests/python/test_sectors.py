@@ -1,0 +1,185 @@
+"""Turns of the antenna in sectors."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import wakeline as wl
+from wakeline.recording import Tracks
+from wakeline.tracking import median_step_s, read_settings
+
+TURN = 2.0 * np.pi
+
+
+def sectors_of(scan, edges_rad, own):
+    """A scan as sectors between edges that begin and end at north."""
+    bearing_rad = scan.bearing_rad % TURN
+    for from_rad, to_rad in itertools.pairwise(edges_rad):
+        inside = (bearing_rad >= from_rad) & (bearing_rad < to_rad)
+        yield {
+            "from_rad": from_rad,
+            "to_rad": to_rad,
+            "time_s": scan.time_s,
+            "range_m": scan.range_m[inside],
+            "bearing_rad": scan.bearing_rad[inside],
+            "plot_time_s": scan.plot_time_s[inside],
+            "own": own,
+        }
+
+
+def own_at(episode, scan):
+    """Own ship at a scan."""
+    if len(scan):
+        return wl.OwnShip(north_m=scan.own_north_m[0], east_m=scan.own_east_m[0])
+    if episode.own is None:
+        return wl.OwnShip()
+    north_m, east_m = episode.own.position_at(np.array([scan.time_s]))[0]
+    return wl.OwnShip(north_m=north_m, east_m=east_m)
+
+
+def score(name, edges_rad):
+    """Score of a bundled recording tracked in sectors, or by turns without edges."""
+    recording = wl.recording.load(name)
+    settings, tables = read_settings().knowing(recording.radar), []
+    for episode in recording:
+        tracker = settings.make_tracker(median_step_s(episode))
+        for scan in episode.scans:
+            own = own_at(episode, scan)
+            if edges_rad is None:
+                whole = next(iter(sectors_of(scan, [0.0, TURN], own)))
+                tracker.sector(**whole)
+            else:
+                for sector in sectors_of(scan, edges_rad, own):
+                    tracker.sector(**sector)
+            table = tracker.tracks()
+            tables.append(
+                Tracks(
+                    track_id=table.track_id.astype(str),
+                    time_s=table.time_s,
+                    state=table.mean,
+                    scenario=np.full(len(table), episode.name),
+                )
+            )
+    return wl.metrics.score(Tracks.joined(tables), recording).overall
+
+
+@pytest.mark.parametrize("name", ["joyride", "autoferry"])
+def test_sectors_of_any_width_score_as_turns_do(name):
+    turns = score(name, None)
+    uneven = np.concatenate(
+        [[0.0], np.sort(np.random.default_rng(3).uniform(0.0, TURN, 20)), [TURN]]
+    )
+    for edges_rad in (*(np.linspace(0.0, TURN, n + 1) for n in (8, 16, 32, 64)), uneven):
+        of = score(name, edges_rad)
+        # Two boats that pass near own ship and each other cost a number on autoferry.
+        assert of.ids - turns.ids <= (name == "autoferry")
+        assert of.switches - turns.switches <= (name == "autoferry")
+        assert of.coverage >= turns.coverage - 1.0 / 70.0
+        for error, rel in (
+            ("position_rmse_m", 0.05),
+            ("velocity_rmse_mps", 0.08),
+            ("course_rms_deg", 0.15),
+            ("speed_rmse_mps", 0.05),
+        ):
+            wanted = getattr(turns.errors, error)
+            assert getattr(of.errors, error) == pytest.approx(wanted, rel=rel), error
+
+
+RADAR = wl.Radar(range_std_m=8.0, bearing_std_rad=np.deg2rad(0.5), period_s=2.5, max_speed_mps=25.0)
+
+
+def turns(count, seed=1):
+    """Plots of some vessels, turn by turn: ranges, bearings and times."""
+    rng = np.random.default_rng(seed)
+    bearing_rad = np.array([0.1, 1.0, 2.5, 4.0, 6.1])
+    for k in range(count):
+        seen = rng.random(5) < 0.9
+        yield (
+            (2000.0 + 300.0 * np.arange(5) + 10.0 * k + 8.0 * rng.standard_normal(5))[seen],
+            (bearing_rad + 0.009 * rng.standard_normal(5))[seen],
+            (2.5 * k + 2.5 * bearing_rad / TURN)[seen],
+        )
+
+
+def test_a_whole_turn_as_a_sector_gives_the_bits_of_a_scan():
+    scans, sectors = wl.Tracker(RADAR), wl.Tracker([RADAR])
+    for k, (range_m, bearing_rad, plot_time_s) in enumerate(turns(30)):
+        plots = {"range_m": range_m, "bearing_rad": bearing_rad, "plot_time_s": plot_time_s}
+        scans.process(2.5 * (k + 1), **plots)
+        sectors.sector(
+            radar=0, from_rad=0.3 * k, to_rad=0.3 * k + TURN, time_s=2.5 * (k + 1), **plots
+        )
+        assert scans.save() == sectors.save()
+    assert len(scans.tracks()) == 5
+
+
+def test_a_track_is_there_when_the_beam_has_passed_it():
+    tracker = wl.Tracker([RADAR])
+    for k, (range_m, bearing_rad, plot_time_s) in enumerate(turns(20)):
+        for n in range(32):
+            edges = TURN * n / 32, TURN * (n + 1) / 32
+            inside = (bearing_rad >= edges[0]) & (bearing_rad < edges[1])
+            report = tracker.sector(
+                from_rad=edges[0],
+                to_rad=edges[1],
+                time_s=2.5 * (k + (n + 1) / 32),
+                range_m=range_m[inside],
+                bearing_rad=bearing_rad[inside],
+                plot_time_s=plot_time_s[inside],
+                own=wl.OwnShip(),
+            )
+            assert report.plot_track_id.shape == (inside.sum(),)
+            assert report.rejected_plots == 0
+    table = tracker.tracks()
+    assert len(table) == 5
+    assert (table.time_s == tracker.time_s).all()
+    assert (table.hits + table.misses <= 20).all()
+
+
+def test_the_covariance_of_a_plot_takes_the_place_of_the_radars_errors():
+    def position_std_m(**covariance):
+        tracker = wl.Tracker(RADAR)
+        for k in range(30):
+            tracker.process(2.5 * k, range_m=[2000.0], bearing_rad=[0.0], **covariance)
+        return np.sqrt(tracker.tracks().covariance[0].diagonal()[[0, 2]])
+
+    of_radar = position_std_m()
+    own = np.diag([8.0**2, np.deg2rad(0.5) ** 2])
+    np.testing.assert_allclose(position_std_m(covariance=own[None]), of_radar, rtol=1e-9)
+    np.testing.assert_array_equal(position_std_m(covariance=np.zeros((1, 2, 2))), of_radar)
+    assert (position_std_m(covariance=16.0 * own[None]) > 1.5 * of_radar).all()
+    with pytest.raises(ValueError, match=r"covariance must have shape \(1, 2, 2\)"):
+        position_std_m(covariance=own)
+    tracker = wl.Tracker(RADAR)
+    broken = {"range_m": [2000.0], "bearing_rad": [0.0], "covariance": -own[None]}
+    assert tracker.process(0.0, **broken).rejected_plots == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "error"),
+    [
+        ({"radar": 1}, ValueError),
+        ({"from_rad": np.nan}, ValueError),
+        ({"to_rad": 20.0}, ValueError),
+        ({"from_rad": 20.0}, ValueError),
+        ({"time_s": np.nan}, wl.FilterError),
+        ({"time_s": 1.0}, wl.FilterError),
+        ({"time_s": 1e9}, wl.FilterError),
+        ({"bearing_rad": [0.1, 0.2]}, ValueError),
+    ],
+)
+def test_a_sector_that_makes_no_sense_is_rejected_and_changes_nothing(change, error):
+    tracker = wl.Tracker([RADAR])
+    good = {"from_rad": 0.0, "to_rad": 1.0, "time_s": 5.0, "range_m": [1e3], "bearing_rad": [0.1]}
+    tracker.sector(**good)
+    before = tracker.save()
+    with pytest.raises(error):
+        tracker.sector(**(good | change))
+    assert tracker.save() == before
+
+
+def test_several_radars_are_not_taken_in_silence():
+    for radars in ([], [RADAR, RADAR]):
+        with pytest.raises(ValueError, match="radar must be one Radar"):
+            wl.Tracker(radars)
