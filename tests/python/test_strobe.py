@@ -235,7 +235,7 @@ def test_video_that_is_no_picture_is_rejected():
 def test_settings_that_are_invalid_are_rejected():
     video = blob_video((100, 100, 90))
     strobe = wl.RadiusGate(radius_m=60.0)
-    with pytest.raises(ValueError, match="least_amplitude must be at least 1, got 0"):
+    with pytest.raises(ValueError, match="least_amplitude must be 1 to 65535, got 0"):
         wl.strobe_echo(video, strobe, [0.0, 0.0], least_amplitude=0)
     with pytest.raises(ValueError, match="pedestal"):
         wl.strobe_echo(video, strobe, [0.0, 0.0], pedestal=1)

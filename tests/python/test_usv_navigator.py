@@ -373,7 +373,7 @@ def test_errors_name_what_is_wrong():
         navigator.run(log["time_s"], log["imu"][1:])
     with pytest.raises(ValueError, match=r"imu_std must have shape \(20, 2\), got \(20, 3\)"):
         navigator.run(**sensors(log), imu_std=log["imu"])
-    with pytest.raises(ValueError, match="yaw_rate_std_rad_s must be finite and not negative"):
+    with pytest.raises(ValueError, match="yaw_rate_std_rad_s must be 0 to 1000"):
         navigator.run(**sensors(log), imu_std=np.full((20, 2), [0.1, -0.1]))
     with pytest.raises(ValueError, match=r"time_s must be finite and not decrease.*row 1"):
         navigator.run(log["time_s"][::-1], log["imu"])
@@ -389,7 +389,7 @@ def test_errors_name_what_is_wrong():
         navigator.predict(-1.0)
     with pytest.raises(wl.FilterError, match="predict: not finite"):
         navigator.predict(1.0, [np.nan, 0, 0])
-    with pytest.raises(ValueError, match="heading_std_rad must be finite and positive"):
+    with pytest.raises(ValueError, match="heading_std_rad must be"):
         navigator.update_heading(0.0, 0.0)
 
 
