@@ -84,7 +84,7 @@ int follow(const Estimator& estimator) {
   MadeUpRadar radar;
   StrobeTracker tracker(kRadar, {.least_amplitude = 40, .radius_m = 30.0}, estimator);
   PlotExtractor<> extractor({.cfar = {.threshold_factor = 5.0}, .min_cells = 6});
-  tracker.designate(0.0, 1200.0, -260.0, 10.0);
+  (void)tracker.designate(0.0, 1200.0, -260.0, 10.0);
   int shared = 0;
   for (int k = 0; k < 32 * kSweeps; ++k) {
     const Sweep<> sweep = radar.sweep();
