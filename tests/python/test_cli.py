@@ -242,6 +242,18 @@ def test_each_scenario_has_separate_pictures(tmp_path, pictures):
     assert drawn == ["map-run_1.png", "map-run_2.png", "time-run_1.png", "time-run_2.png"]
 
 
+def test_of_many_scenarios_the_first_are_drawn(tmp_path, pictures, capsys, monkeypatch):
+    monkeypatch.setattr(outputs, "MOST_DRAWN", 2)
+    rows = [(str(k), *row) for k in range(4) for row in boat(8)]
+    plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")
+    out = tmp_path / "out"
+    assert track(plots, "--out", out) == 0
+    drawn = {path.name for path in out.glob("map-*.png")}
+    assert drawn == {"map-0.png", "map-1.png"}
+    assert "the first 2 of 4 scenarios are drawn" in capsys.readouterr().out
+    assert len(set(read_tracks(out / "tracks.csv").scenario)) == 4
+
+
 def test_scenarios_of_like_names_do_not_overwrite_each_others_pictures(tmp_path, pictures):
     names = ("a b", "a_b", "A_B", "a_b-2")
     rows = [(name, *boat(1)[0]) for name in names]

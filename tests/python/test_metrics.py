@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wakeline import metrics, recording, scenario
+from wakeline.metrics import scoring
 from wakeline.recording import Episode, Scan, TargetTruth, Tracks
 
 SCANS, PERIOD_S = 60, 2.0
@@ -422,3 +423,20 @@ def test_what_is_not_a_number_is_rejected_by_name(name, values, error, words):
 def test_a_masked_error_is_none():
     assert np.isnan(metrics.rmse(np.ma.array([3.0, 4.0], mask=[True, False])))
     assert metrics.rmse(np.ma.array([3, 4], mask=False)) == np.sqrt(12.5)
+
+
+@pytest.mark.parametrize("spread_m", [0.0, 10.0, 300.0, 1e5, 1e9])
+@pytest.mark.parametrize("size", [(0, 3), (3, 0), (1, 1), (40, 60), (150, 120)])
+def test_near_pairs_by_a_grid_are_those_of_all_distances(spread_m, size, monkeypatch):
+    rng = np.random.default_rng(7)
+    a_m, b_m = (rng.uniform(-spread_m, spread_m, (n, 2)) for n in size)
+    b_m[::17] = np.nan
+    b_m[1::5] = a_m[0] + [49.0, 0.0] if len(a_m) else 0.0
+    of_all = scoring._pairs_within(50.0, a_m, b_m)
+    distance_m = np.hypot(*(a_m[:, None] - b_m).transpose(2, 0, 1))
+    monkeypatch.setattr(scoring, "_FEW_PAIRS", -1)
+    by_grid = scoring._pairs_within(50.0, a_m, b_m)
+    wanted = np.nonzero(distance_m < 50.0)
+    for pairs in (of_all, by_grid):
+        assert np.array_equal(pairs[:2], wanted)
+        assert np.array_equal(pairs[2], distance_m[wanted])
