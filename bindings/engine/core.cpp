@@ -43,7 +43,20 @@ void define_core(py::module_& parent) {
       .value("not_positive_definite", Status::kNotPositiveDefinite,
              "a covariance is not positive definite")
       .value("negative_time_step", Status::kNegativeTimeStep, "the time step is negative")
+      .value("gated", Status::kGated, "the measurement is outside the gate: predicted only")
       .finalize();
+  // A number in arithmetic and comparisons, a word where it is shown.
+  const py::object shown = m.attr("Status");
+  shown.attr("__str__") = py::cpp_function([](const py::object& s) { return s.attr("name"); },
+                                           py::name("__str__"), py::is_method(shown));
+  shown.attr("__format__") = py::cpp_function(
+      [](const py::object& s, const py::str& format) {
+        const std::string text = format;
+        const bool number = !text.empty() && std::string_view("bcdeEfFgGnoxX%").find(text.back()) !=
+                                                 std::string_view::npos;
+        return (number ? py::int_(s.cast<long>()) : s.attr("name")).attr("__format__")(format);
+      },
+      py::name("__format__"), py::is_method(shown), py::arg("format_spec"));
 
   py::class_<PyGaussian> gaussian(m, "Gaussian", R"(A Gaussian belief.
 

@@ -22,10 +22,30 @@ struct AsPython<AnyFilter> {
   static py::object of(const AnyFilter& filter);
 };
 
+/// True of an estimator whose modes change once per prediction, so that their probabilities depend
+/// on how time is divided into steps: its chain is a matrix without a period, and two transitions
+/// differ from one.
+bool changes_per_prediction(const AnyEstimator& estimator);
+
+/// Warns of such an estimator: `steps` says what it is used with, "steps of 3 s and 1 s".
+void warn_of_steps(const AnyEstimator& estimator, const std::string& steps);
+
 /// An estimator of several models in Python.
 struct AnyMixture : AnyEstimator {
   using AnyEstimator::AnyEstimator;
+
+  /// Warns at the first step that is not about as long as the first one.
+  void note_step(double dt_s);
+
+ private:
+  double first_step_s_ = 0.0;
+  bool warned_ = false;
 };
+
+/// True where two steps differ by more than a radar's period does.
+inline bool are_uneven(double shortest_s, double longest_s) {
+  return shortest_s > 0.0 && longest_s > 1.25 * shortest_s;
+}
 
 /// One kind of estimator in Python: a class of its own, all over the one composed at run time.
 template <class KindType>
@@ -94,10 +114,21 @@ auto visit_sensor(const py::handle& sensor, Function&& function) {
   return std::visit(function, to_sensor(sensor));
 }
 
+/// Throws TypeError for an estimator of a class derived in Python, whose methods nothing in C++
+/// would call.
+inline void require_own_class(const py::handle& estimator) {
+  const auto* known = py::detail::get_type_info(Py_TYPE(estimator.ptr()));
+  if (known != nullptr && known->type == Py_TYPE(estimator.ptr())) return;
+  throw py::type_error(class_name(estimator) +
+                       " is derived in Python from an estimator, and the engine would ignore its "
+                       "methods: give one of the engine's classes");
+}
+
 /// Filters from a sequence of them.
 inline std::vector<AnyFilter> to_filters(const py::sequence& sequence) {
   std::vector<AnyFilter> filters;
   for (py::handle item : sequence) {
+    if (is_a<AnyFilter>(item) || is_a<PyEstimator<AlphaBeta<>>>(item)) require_own_class(item);
     if (is_a<AnyFilter>(item))
       filters.push_back(item.cast<const AnyFilter&>());
     else if (is_a<PyEstimator<AlphaBeta<>>>(item))

@@ -81,15 +81,17 @@ Array nees_of(const DoubleArray& error, const DoubleArray& covariance) {
 
 SetDistance set_distance(const DoubleArray& truth_m, const DoubleArray& tracks_m, double cutoff_m,
                          double order) {
-  const auto points = [](const char* name, const DoubleArray& array, py::ssize_t axes) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto points = [](const char* name, const DoubleArray& array,
+                         py::ssize_t axes) -> Eigen::Map<const Rows> {
+    if (array.size() == 0) return {nullptr, 0, axes < 0 ? 0 : axes};
     require_shape(array.ndim() == 2 && (axes < 0 || array.shape(1) == axes), name,
                   axes < 0 ? "(N, D)" : "(N, " + std::to_string(axes) + ")", array);
     for (py::ssize_t k = 0; k < array.size(); ++k) require_finite(name, array.data()[k]);
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    return Eigen::Map<const Rows>(array.data(), array.shape(0), array.shape(1));
+    return {array.data(), array.shape(0), array.shape(1)};
   };
   const auto targets = points("truth_m", truth_m, -1);
-  const auto tracks = points("tracks_m", tracks_m, truth_m.shape(1));
+  const auto tracks = points("tracks_m", tracks_m, targets.rows() > 0 ? targets.cols() : -1);
   // Tracks by their first coordinate: those of a target's pairs follow each other.
   std::vector<std::pair<double, int>> sorted;
   for (int k = 0; k < tracks.rows(); ++k)
@@ -139,9 +141,9 @@ With the cut-off c, the order p and the best pairing of targets with tracks,
 Parameters
 ----------
 truth_m : (N, D) array_like
-    True positions.
+    True positions; `[]` for none.
 tracks_m : (M, D) array_like
-    Estimated positions.
+    Estimated positions; `[]` for none.
 cutoff_m : float
     Distance at which a pair is as bad as a missed target and a false track.
 order : float

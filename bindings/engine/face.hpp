@@ -24,6 +24,8 @@ void define_face(py::class_<Estimator>& face) {
           "predict",
           [](Estimator& estimator, double dt_s, const std::optional<DoubleArray>& acceleration) {
             const auto known = to_acceleration(acceleration);
+            if constexpr (std::is_same_v<Estimator, AnyEstimator>)
+              if (estimator.has_modes()) static_cast<AnyMixture&>(estimator).note_step(dt_s);
             require_ok(known ? estimator.predict(dt_s, *known) : estimator.predict(dt_s),
                        "predict");
           },

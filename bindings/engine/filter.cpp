@@ -164,7 +164,17 @@ FilterError
 
   py::class_<PyKalman, AnyFilter> kalman(
       m, "Kalman", "The Kalman filter: exact for linear motion and linear sensors.");
-  define_plain<AnyLinearMotion>(kalman, &any_kalman);
+  define_plain<AnyMotion>(kalman, [](const AnyMotion& motion) {
+    return std::visit(
+        []<class Motion>(const Motion& model) -> AnyFilter {
+          if constexpr (LinearMotionModel<Motion>)
+            return any_kalman(model);
+          else
+            throw py::type_error(std::string("motion of Kalman must be linear, got ") +
+                                 Motion::kName + ": use Ekf or Ukf");
+        },
+        motion);
+  });
   py::class_<PyEkf, AnyFilter> ekf(
       m, "Ekf", "The extended Kalman filter: motion and sensor linearized about the mean.");
   define_plain<AnyMotion>(ekf, [](const AnyMotion& motion) { return any_filter<Ekf>(motion); });

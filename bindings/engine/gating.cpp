@@ -107,7 +107,7 @@ void define_contains(py::class_<Strobe>& strobe) {
 
 void define_strobes(py::module_& m) {
   auto circle = define_struct<RadiusGate>(
-      m, "RadiusGate", "A circle of fixed radius around the predicted position.");
+      m, "RadiusGate", "A circle of fixed radius around the predicted position.", {.called = true});
   define_contains(circle);
 
   py::class_<PyCovarianceStrobe> ellipse(m, "CovarianceStrobe",
@@ -233,7 +233,7 @@ void define_gating(py::module_& parent) {
   py::module_ m = parent.def_submodule("gating", "Gates and strobes for a target's plot.");
   define_struct<ChiSquareGate>(
       m, "ChiSquareGate",
-      "The ellipsoid that holds the target's own plot with a given probability.")
+      "The ellipsoid that holds the target's own plot with a given probability.", {.called = true})
       .def("threshold", &ChiSquareGate::threshold, py::arg("dof"),
            "Largest normalized innovation squared inside, for `dof` measured quantities, at least "
            "1; else NaN.");

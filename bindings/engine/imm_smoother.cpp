@@ -39,6 +39,7 @@ int smooth_all(const AnyImm& prototype, const Recordings& recordings) {
 RunResult smooth(const PyEstimator<AnyImm>& estimator, const RunArguments& arguments) {
   const AnySensor sensor = to_sensor(arguments.sensor);
   require_linear(estimator, sensor);
+  warn_of_uneven_steps(estimator, arguments.dt_s);
   const AnyImm prototype = estimator.get();  // as another thread may change it meanwhile
   return run_recordings(run_layout(estimator), arguments, sensor,
                         [&](const Recordings& recordings) {
@@ -60,7 +61,7 @@ smoothings; each thread takes one recording after the other. If a step is too lo
 
 Parameters
 ----------
-z, dt_s, sensor, start, own_position_m, own_velocity_mps, acceleration_mps2, gate
+z, dt_s, sensor, start, own_position_m, own_velocity_mps, acceleration_mps2, gate, reopen_after
     As of `run`.
 
 Returns

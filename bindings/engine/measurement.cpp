@@ -50,7 +50,8 @@ void define_measurement(py::module_& parent) {
   Sensors::for_each([&]<class Sensor>(std::type_identity<Sensor>) {
     // Own ship moves, so that a sensor that has one can be written to.
     constexpr bool kMoves = requires(const Sensor& one) { one.own; };
-    auto sensor = define_struct<Sensor>(m, Sensor::kName, Sensor::kSummary, {.writable = kMoves});
+    auto sensor = define_struct<Sensor>(m, Sensor::kName, Sensor::kSummary,
+                                        {.writable = kMoves, .called = true});
     define_sensor(sensor);
   });
 

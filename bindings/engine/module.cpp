@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
+#include "support/border.hpp"
 #include "support/types.hpp"
 
 PYBIND11_MODULE(_engine, m) {
@@ -17,4 +18,5 @@ PYBIND11_MODULE(_engine, m) {
   wakeline::python::define_video(m);
   wakeline::python::define_batch(m);
   wakeline::python::define_benchmark(m);
+  wakeline::python::finish_border(m);
 }

@@ -69,13 +69,14 @@ void define_motion(py::module_& parent) {
   py::module_ m = parent.def_submodule("motion", "Motion models.");
 
   define_struct<WhiteAcceleration>(
-      m, "WhiteAcceleration",
-      "Continuous white acceleration per axis; Q is consistent for any dt.");
+      m, "WhiteAcceleration", "Continuous white acceleration per axis; Q is consistent for any dt.",
+      {.called = true});
   define_struct<PiecewiseAcceleration>(
       m, "PiecewiseAcceleration",
-      "Acceleration constant over each step, Q = G s² Gᵀ: the papers' form.");
+      "Acceleration constant over each step, Q = G s² Gᵀ: the papers' form.", {.called = true});
   define_struct<WhiteJerk>(m, "WhiteJerk",
-                           "Continuous white jerk per axis, for states with an acceleration.");
+                           "Continuous white jerk per axis, for states with an acceleration.",
+                           {.called = true});
   py::class_<ProcessNoise> noise(m, "ProcessNoise", "One of the process-noise policies.");
   define_copies(noise);
   noise.def(py::init<WhiteAcceleration>(), py::arg("policy"))
@@ -88,7 +89,7 @@ void define_motion(py::module_& parent) {
   py::implicitly_convertible<WhiteJerk, ProcessNoise>();
 
   Motions::for_each([&]<class Motion>(std::type_identity<Motion>) {
-    auto model = define_struct<Motion>(m, Motion::kName, Motion::kSummary);
+    auto model = define_struct<Motion>(m, Motion::kName, Motion::kSummary, {.called = true});
     define_model(model);
   });
 }

@@ -340,7 +340,7 @@ matrix : (K, K) array
     Rows sum to 1.
 period_s : float, optional
     The time step of the matrix; the chain is then in continuous time. Default: the matrix is applied once per
-    prediction.
+    prediction, whatever its step, so that all steps must be equal; uneven steps and trackers warn of it.
 
 Raises
 ------

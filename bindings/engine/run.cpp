@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "run.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "lanes/lanes.hpp"
@@ -102,6 +103,51 @@ const double* per_scan(const char* name, const DoubleArray& array, std::size_t s
   return array.data();
 }
 
+bool changes_per_prediction(const AnyEstimator& estimator) {
+  const auto once = [](const auto& chain) {
+    if (chain.continuous()) return false;
+    const Eigen::MatrixXd one = chain.transition(1.0);
+    return !(one * one).isApprox(one, 1e-9);
+  };
+  return std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { kind.chain(); })
+          return once(kind.chain());
+        else if constexpr (requires { kind.variant(); })
+          return std::visit([&](const auto& one) { return once(one.chain()); }, kind.variant());
+        else
+          return false;
+      },
+      estimator.variant());
+}
+
+void warn_of_steps(const AnyEstimator& estimator, const std::string& steps) {
+  if (!changes_per_prediction(estimator)) return;
+  const std::string text =
+      "the ModeChain has no period, so that its modes change once per "
+      "prediction whatever " +
+      steps + ": give period_s, or use ModeChain.from_sojourn_s";
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+void AnyMixture::note_step(double dt_s) {
+  if (warned_ || !(dt_s > 0.0)) return;
+  if (first_step_s_ == 0.0) first_step_s_ = dt_s;
+  if (!are_uneven(std::min(dt_s, first_step_s_), std::max(dt_s, first_step_s_))) return;
+  warned_ = true;
+  warn_of_steps(*this, "the steps, here " + number_text(first_step_s_) + " s and " +
+                           number_text(dt_s) + " s");
+}
+
+void warn_of_uneven_steps(const AnyEstimator& estimator, const py::object& dt_s) {
+  const DoubleArray steps = DoubleArray::ensure(dt_s);
+  if (!steps || steps.size() < 2) return;
+  const auto [shortest, longest] = std::minmax_element(steps.data(), steps.data() + steps.size());
+  if (are_uneven(*shortest, *longest))
+    warn_of_steps(estimator, "the steps, here of " + number_text(*shortest) + " s to " +
+                                 number_text(*longest) + " s");
+}
+
 RunLayout run_layout(const AnyFilter& filter) { return {filter.layout(), 0, false}; }
 
 RunLayout run_layout(const AnyEstimator& estimator) {
@@ -126,7 +172,15 @@ RunResult run_recordings(const RunLayout& layout, const RunArguments& arguments,
   const std::vector<double> steps_s = parse_steps(arguments.dt_s, in.scans);
   in.dt_s = steps_s.data();
   const std::vector<AnyBelief> starts = parse_starts(arguments.start, in.runs, layout.layout);
-  in.gate = arguments.gate ? &*arguments.gate : nullptr;
+  if (arguments.gate) {
+    in.gate = std::get_if<RadiusGate>(&*arguments.gate);
+    in.nis_gate = std::get_if<ChiSquareGate>(&*arguments.gate);
+  }
+  if (arguments.reopen_after) {
+    if (!arguments.gate) throw py::value_error("reopen_after needs a gate, got None");
+    require(*arguments.reopen_after >= 1, "reopen_after", "at least 1", *arguments.reopen_after);
+    in.reopen_after = *arguments.reopen_after;
+  }
   const bool carried =
       std::visit([](const auto& one) { return own_ship_of(one) != nullptr; }, sensor);
   const auto of_own_ship = [&](const char* name, const std::optional<DoubleArray>& array) {

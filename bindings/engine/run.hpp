@@ -34,7 +34,8 @@ struct RunArguments {
   std::optional<DoubleArray> own_position_m;
   std::optional<DoubleArray> own_velocity_mps;
   std::optional<DoubleArray> acceleration_mps2;
-  std::optional<RadiusGate> gate;
+  std::optional<std::variant<RadiusGate, ChiSquareGate>> gate;
+  std::optional<int> reopen_after;
 };
 
 /// Of an estimator, what `run` allocates its results by.
@@ -66,8 +67,13 @@ void require_starts(Estimator estimator, const std::vector<AnyBelief>& starts) {
       throw FilterError("start of run " + std::to_string(run) + ": " + to_string(started));
 }
 
+/// Warns where the steps are uneven and the estimator's modes change once per prediction.
+void warn_of_uneven_steps(const AnyEstimator& estimator, const py::object& dt_s);
+
 template <class Estimator>
 RunResult run(const Estimator& prototype, const RunArguments& arguments) {
+  if constexpr (std::is_base_of_v<AnyEstimator, Estimator>)
+    warn_of_uneven_steps(prototype, arguments.dt_s);
   const AnySensor sensor = to_sensor(arguments.sensor);
   require_linear(prototype, sensor);
   const Estimator estimator = prototype;  // as another thread may change it meanwhile
@@ -98,13 +104,15 @@ void define_run(py::class_<Estimator, Options...>& face, const char* name, const
                  const std::optional<DoubleArray>& own_position_m,
                  const std::optional<DoubleArray>& own_velocity_mps,
                  const std::optional<DoubleArray>& acceleration_mps2,
-                 const std::optional<RadiusGate>& gate) {
+                 const std::optional<std::variant<RadiusGate, ChiSquareGate>>& gate,
+                 const std::optional<int>& reopen_after) {
         return function(estimator, {z, dt_s, sensor, start, own_position_m, own_velocity_mps,
-                                    acceleration_mps2, gate});
+                                    acceleration_mps2, gate, reopen_after});
       },
       py::arg("z"), py::arg("dt_s"), py::arg("sensor"), py::arg("start"),
       py::arg("own_position_m") = py::none(), py::arg("own_velocity_mps") = py::none(),
-      py::arg("acceleration_mps2") = py::none(), py::arg("gate") = py::none(), doc);
+      py::arg("acceleration_mps2") = py::none(), py::arg("gate") = py::none(),
+      py::arg("reopen_after") = py::none(), doc);
 }
 
 /// Adds `RunResult`.
@@ -127,8 +135,12 @@ own_velocity_mps : (T, 2) array, optional
     Its velocity over ground at each reading, which range rates are measured from.
 acceleration_mps2 : (T, 2) array, optional
     Known acceleration, north and east, in the step before each reading.
-gate : RadiusGate, optional
-    A reading farther from the predicted position counts as missed.
+gate : RadiusGate or ChiSquareGate, optional
+    A reading outside is not used, and its status is `gated`: outside the circle about the predicted
+    position, or with a larger normalized innovation squared (`nis`) than the ellipsoid's.
+reopen_after : int, optional
+    After so many readings outside the gate in a row, all are used until one is inside again: the
+    target is elsewhere, not its readings. Default: never.
 
 Returns
 -------
@@ -142,7 +154,8 @@ RunResult
 Raises
 ------
 ValueError
-    When a shape does not fit, or a sensor of range rates moves without `own_velocity_mps`.
+    When a shape does not fit, a sensor of range rates moves without `own_velocity_mps`, or
+    `reopen_after` is without a gate or less than 1.
 FilterError
     When an estimator cannot start. A later step that fails is reported in `status`: an invalid
     reading leaves the prediction, an invalid `dt_s` leaves the belief unchanged.)";

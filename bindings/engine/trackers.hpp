@@ -35,7 +35,10 @@ inline const AnyEstimator& to_mixture(const py::handle& estimator) {
   if (!is_a<AnyMixture>(estimator))
     throw py::type_error("estimator must be one of several models (MultiModelEstimator), got " +
                          class_name(estimator));
-  return estimator.cast<const AnyMixture&>();
+  require_own_class(estimator);
+  const auto& mixture = estimator.cast<const AnyMixture&>();
+  warn_of_steps(mixture, "the steps of a tracker, which are those of its scans and plots");
+  return mixture;
 }
 
 /// A column given as one number for all rows or one for each.

@@ -53,11 +53,21 @@ class DoubleArray : public py::array_t<double, py::array::c_style | py::array::f
   static py::object filled(py::handle numbers) {
     const auto& numpy = py::detail::npy_api::get();
     const bool plain = Py_TYPE(numbers.ptr()) == numpy.PyArray_Type_;
-    if (plain || !numpy.PyArray_Check_(numbers.ptr()) || !py::hasattr(numbers, "filled"))
-      return real(py::array::ensure(numbers));
+    if (plain || !numpy.PyArray_Check_(numbers.ptr()) || !py::hasattr(numbers, "filled")) {
+      py::array array = real(py::array::ensure(numbers));
+      return array && array.dtype().kind() == 'O' ? known(numbers, array) : array;
+    }
     real(py::reinterpret_borrow<py::array>(numbers));
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     return numbers.attr("astype")(py::dtype::of<double>()).attr("filled")(kNaN);
+  }
+
+  /// Objects as numbers; what pandas does not know (NA) is NaN.
+  static py::object known(py::handle numbers, const py::array& objects) {
+    if (!py::hasattr(numbers, "to_numpy")) return objects;
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    return numbers.attr("to_numpy")(py::arg("dtype") = py::dtype::of<double>(),
+                                    py::arg("na_value") = kNaN);
   }
 
   static py::array real(py::array numbers) {

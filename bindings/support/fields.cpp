@@ -5,6 +5,8 @@
 #include <cctype>
 #include <memory>
 
+#include "support/border.hpp"
+
 namespace wakeline::python {
 namespace {
 
@@ -189,7 +191,10 @@ void define_properties(const py::handle& type, const StructTable& table) {
     const py::cpp_function getter(
         [type, &row, inner, part](const py::object& own) {
           const void* one = value_of(type, own);
-          return part ? part_of(own, row.of(one), inner) : get(row, one);
+          if (!part) return get(row, one);
+          py::object inside = part_of(own, row.of(one), inner);
+          if (is_copy(own)) make_copy(inside);
+          return inside;
         },
         py::is_method(type), (self + ") -> " + kind).c_str());
     py::object setter = py::none();
@@ -197,6 +202,11 @@ void define_properties(const py::handle& type, const StructTable& table) {
       setter = py::cpp_function(
           [type, &table, &row](const py::object& own, const py::object& to) {
             void* const now = value_of(type, own);
+            if (is_copy(own))
+              throw py::attribute_error(
+                  std::string(row.name) + " cannot be set, because this " + name_of(type) +
+                  " is a copy of one in use: set it in one of your own (copy.copy) and make a new "
+                  "object with that");
             const Owned changed(table, table.copy(now));
             set(row, changed.get(), to);
             if (row.kind->number)
@@ -236,6 +246,12 @@ void define_fields(py::handle type, const StructTable& table) {
       "__init__",
       [type, &table](py::detail::value_and_holder& holder, const py::args& positional,
                      const py::kwargs& named) {
+        const py::handle made = reinterpret_cast<PyObject*>(Py_TYPE(holder.inst));
+        if (table.called && !made.is(type))
+          throw py::type_error(
+              name_of(made) + " is derived in Python from " + name_of(type) +
+              ", whose methods the engine calls in C++: it would ignore those of " + name_of(made) +
+              " (custom models are structs of C++)");
         Owned one(table, table.make());
         fill(table, type, one.get(), positional, named);
         holder.value_ptr() = one.release();
@@ -279,6 +295,7 @@ void define_fields(py::handle type, const StructTable& table) {
       "fields() -> tuple\n\nThe table of its fields: name, type, default, unit, rule and a "
       "sentence on each."));
   define_properties(type, table);
+  if (table.writable) note_writable(type);
   define_arguments(type);
 }
 

@@ -116,6 +116,13 @@ struct FieldRow {
   [[nodiscard]] void* of(void* one) const { return static_cast<char*>(one) + offset; }
 };
 
+/// How a struct looks in Python.
+struct StructLooks {
+  int positional = 0;     ///< arguments that need no keyword
+  bool writable = false;  ///< fields can be set
+  bool called = false;    ///< the engine calls its methods: it cannot be derived from in Python
+};
+
 /// What Python needs of a struct, whatever its type.
 struct StructTable {
   std::vector<FieldRow> rows;
@@ -123,20 +130,22 @@ struct StructTable {
   void* (*copy)(const void* one);
   void (*destroy)(void* one);
   void (*validate)(const void* one);
-  int positional = 0;     ///< arguments that need no keyword
-  bool writable = false;  ///< fields can be set
+  int positional = 0;
+  bool writable = false;
+  bool called = false;
 };
 
 template <HasFields Struct>
-StructTable table_of(int positional, bool writable) {
+StructTable table_of(const StructLooks& looks) {
   StructTable table{
       {},
       []() -> void* { return new Struct(); },
       [](const void* one) -> void* { return new Struct(*static_cast<const Struct*>(one)); },
       [](void* one) { delete static_cast<Struct*>(one); },
       [](const void* one) { validated(*static_cast<const Struct*>(one)); },
-      positional,
-      writable};
+      looks.positional,
+      looks.writable,
+      looks.called};
   const Struct one;
   for_each_field(one, [&]<class Value>(const auto& entry, const Value& value) {
     const auto offset = reinterpret_cast<const char*>(&value) - reinterpret_cast<const char*>(&one);
@@ -153,17 +162,11 @@ std::string class_doc(const StructTable& table, const char* doc);
 /// `repr`. The table must outlive it.
 void define_fields(py::handle type, const StructTable& table);
 
-/// How a struct looks in Python.
-struct StructLooks {
-  int positional = 0;     ///< arguments that need no keyword
-  bool writable = false;  ///< fields can be set
-};
-
 /// A parameter struct as a Python class; all it has to do with its fields comes from their table.
 template <HasFields Struct>
 py::class_<Struct> define_struct(py::handle scope, const char* name, const char* doc,
                                  const StructLooks& looks = {}) {
-  static const StructTable table = table_of<Struct>(looks.positional, looks.writable);
+  static const StructTable table = table_of<Struct>(looks);
   py::class_<Struct> type(scope, name, class_doc(table, doc).c_str());
   define_fields(type, table);
   return type;

@@ -36,7 +36,7 @@ def turning_imm(kind=wl.Ekf, rates_deg_s=(0.0, 1.0, -1.0), stay=0.95):
         kind(wl.CoordinatedTurn(turn_rate_rad_s=np.deg2rad(rate), noise=SMALL_NOISE))
         for rate in rates_deg_s
     ]
-    return wl.Imm(filters, wl.ModeChain(matrix))
+    return wl.Imm(filters, wl.ModeChain(matrix, period_s=DT_S))
 
 
 def mixed_imm():

@@ -49,8 +49,7 @@ def test_a_gaussian_holds_a_copy():
     mean, covariance = np.zeros(2), np.eye(2)
     belief = wl.Gaussian(mean, covariance)
     mean += 1.0
-    belief.mean[0] = 7.0
-    belief.covariance[0, 0] = 7.0
+    covariance += 1.0
     np.testing.assert_array_equal(belief.mean, [0.0, 0.0])
     np.testing.assert_array_equal(belief.covariance, np.eye(2))
 
@@ -144,6 +143,7 @@ def test_names_of_the_status_values():
         "not_finite",
         "not_positive_definite",
         "negative_time_step",
+        "gated",
     }
     assert int(wl.Status.ok) == 0
 
@@ -154,6 +154,11 @@ def test_a_status_is_its_number():
     assert (status != wl.Status.ok).tolist() == [False, True, False]
     assert np.isin(status, [wl.Status.missed]).tolist() == [False, True, False]
     assert {wl.Status.missed: "m"}[1] == "m"
+
+
+def test_a_status_is_shown_as_its_name():
+    assert [str(status) for status in wl.Status] == [status.name for status in wl.Status]
+    assert f"{wl.Status.gated}, {wl.Status.ok:>4}, {wl.Status.gated:02d}" == "gated,   ok, 06"
 
 
 def test_a_filter_error_is_a_runtime_error():

@@ -3,6 +3,7 @@
 import copy
 import pickle
 import time
+from contextlib import nullcontext
 from itertools import pairwise
 from threading import Thread
 
@@ -25,6 +26,7 @@ from cases import (
     START_MEAN,
     readings,
     stepwise,
+    turning_imm,
 )
 from wakeline.scenario import RadarSimulator, Scenario, Segment, Truth
 
@@ -242,14 +244,77 @@ def test_a_moving_own_ship_sees_the_same_vessel():
 
 
 @pytest.mark.parametrize("name", ESTIMATORS)
-def test_a_reading_outside_the_gate_is_a_missed_one(name):
+@pytest.mark.parametrize(
+    "gate", [wl.RadiusGate(radius_m=700.0), wl.ChiSquareGate(probability=1.0 - 1e-9)], ids=type
+)
+def test_a_reading_outside_the_gate_is_as_one_that_is_missed(name, gate):
     z = readings()
     z[7, 0] += 900.0
     reported = run(ESTIMATORS[name](), np.where(np.arange(len(z))[:, None] == 7, np.nan, z))
-    gated = run(ESTIMATORS[name](), z, gate=wl.RadiusGate(radius_m=700.0))
-    assert (gated.status == np.where(np.arange(len(z)) == 7, int(wl.Status.missed), 0)).all()
-    for field in FIELDS:
+    gated = run(ESTIMATORS[name](), z, gate=gate)
+    assert (gated.status == np.where(np.arange(len(z)) == 7, int(wl.Status.gated), 0)).all()
+    for field in set(FIELDS) - {"status"}:
         np.testing.assert_array_equal(getattr(gated, field), getattr(reported, field))
+
+
+@pytest.mark.parametrize(
+    "gate", [wl.RadiusGate(radius_m=700.0), wl.ChiSquareGate(probability=1.0 - 1e-9)], ids=type
+)
+def test_a_gate_reopens_after_readings_outside_in_a_row(gate):
+    z = readings(60)
+    z[20:, 0] += 1500.0
+    z[10, 0] += 1500.0
+    lost = run(ekf(), z, gate=gate)
+    assert (lost.status[20:26] == wl.Status.gated).all()
+    found = run(ekf(), z, gate=gate, reopen_after=3)
+    assert found.status[10] == wl.Status.gated
+    assert found.status[20:24].tolist() == [wl.Status.gated] * 3 + [wl.Status.ok]
+    assert found.status[-1] == wl.Status.ok
+    many = ekf().run(np.stack([z, readings(60), z]), DT_S, RADAR, START, gate=gate, reopen_after=3)
+    np.testing.assert_array_equal(many.status, [found.status, 0 * found.status, found.status])
+    with pytest.raises(ValueError, match="reopen_after"):
+        run(ekf(), z, gate=gate, reopen_after=0)
+    with pytest.raises(ValueError, match="reopen_after"):
+        run(ekf(), z, reopen_after=3)
+
+
+@pytest.mark.parametrize("north_m", [0.0, 5e-4, 0.5, 500.0])
+@pytest.mark.parametrize("own", [wl.OwnShip(), wl.OwnShip(north_m=300.0, east_m=-200.0)])
+def test_a_start_at_the_antenna_converges(north_m, own):
+    sensor = wl.RangeBearing(own=own)
+    doppler = wl.RangeBearingDoppler(own=own)
+    place = [own.north_m + 5000.0 * np.cos(0.6), own.east_m + 5000.0 * np.sin(0.6)]
+    mean = [own.north_m + north_m, 0.0, own.east_m, 0.0]
+    start = wl.Gaussian(mean, np.diag([1e8, 100.0, 1e8, 100.0]))
+    for z, one in (([5000.0, 0.6], sensor), ([5000.0, 0.6, 0.0], doppler)):
+        for estimator in (ekf(), turning_imm(), wl.Ukf(wl.ConstantVelocity())):
+            result = estimator.run(np.tile(z, (30, 1)), 3.0, one, start)
+            assert (result.status == wl.Status.ok).all()
+            assert np.hypot(*(result.mean[-1, [0, 2]] - place)) < 1.0
+            many = estimator.run(np.tile(z, (9, 30, 1)), 3.0, one, start)
+            np.testing.assert_allclose(many.mean[4, -1], result.mean[-1], rtol=1e-6, atol=1e-6)
+
+
+@pytest.mark.parametrize("estimator", [turning_imm, lambda: per_prediction()], ids=["time", "step"])
+def test_modes_that_change_once_per_prediction_warn_of_uneven_steps(estimator):
+    uneven = np.where(np.arange(12) % 3, DT_S, DT_S / 10)
+    z = readings(12)
+    warned = estimator is not turning_imm
+    caught = pytest.warns(UserWarning, match="no period") if warned else nullcontext()
+    with caught:
+        estimator().run(z, uneven, RADAR, START)
+    one = estimator()
+    one.start(START)
+    one.predict(DT_S)
+    one.predict(DT_S * 1.01)  # a turn of the antenna
+    caught = pytest.warns(UserWarning, match="no period") if warned else nullcontext()
+    with caught:
+        one.predict(DT_S / 10)
+    estimator().run(z, DT_S, RADAR, START)
+
+
+def per_prediction():
+    return wl.Imm([ekf(), ekf()], wl.ModeChain([[0.9, 0.1], [0.2, 0.8]]))
 
 
 def test_a_step_is_true_where_its_reading_was_taken():

@@ -333,6 +333,15 @@ def test_ospa_of_one_pair_is_their_distance():
     assert pickle.loads(pickle.dumps(with_one_more)).gospa_m == with_one_more.gospa_m
 
 
+def test_no_points_need_no_columns():
+    for points in ([], np.zeros((0, 2)), [[]]):
+        false = metrics.set_distance(points, [[0.0, 0.0]], cutoff_m=50.0)
+        assert (false.gospa_m, false.false_tracks) == (pytest.approx(50 / 2**0.5), 1250.0)
+        assert metrics.set_distance([[0.0, 0.0]], points, cutoff_m=50.0).missed == 1250.0
+        assert metrics.set_distance(points, points).gospa_m == 0.0
+    assert metrics.gospa is metrics.set_distance
+
+
 def test_sets_of_the_wrong_shape():
     with pytest.raises(ValueError, match=r"truth_m must have shape \(N, D\), got \(2,\)"):
         metrics.set_distance(np.zeros(2), np.zeros((1, 2)))

@@ -356,7 +356,7 @@ def test_no_filters_and_too_many_are_rejected(count):
 
 @pytest.mark.parametrize("what", [3, None, MOTIONS["ConstantVelocity"]])
 def test_what_is_no_filter_is_rejected_by_name(what):
-    with pytest.raises(TypeError, match="filters must be Kalman, .* or AlphaBeta"):
+    with pytest.raises(TypeError, match=r"filters must be Kalman, .* or AlphaBeta"):
         wl.Imm([what], wl.ModeChain([[1.0]]))
 
 

@@ -289,6 +289,7 @@ def recorded():
     return episode.scans
 
 
+@pytest.mark.filterwarnings("ignore:the ModeChain has no period")
 @pytest.mark.parametrize("build", BUILD.values(), ids=BUILD)
 def test_a_tracker_keeps_its_tracks_with_any_estimator(build):
     tracker = wl.Tracker(TRACKER_RADAR, estimator=build())

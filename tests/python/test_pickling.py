@@ -113,6 +113,7 @@ def test_a_navigator_continues_bit_for_bit(states, filter):
     np.testing.assert_array_equal(again.innovation_covariance, got.innovation_covariance)
 
 
+@pytest.mark.filterwarnings("ignore:the ModeChain has no period")
 @pytest.mark.parametrize("estimator", [None, OF_ALL_KINDS["ModeHistory"]])
 def test_a_tracker_continues_bit_for_bit(estimator):
     tracker = wl.Tracker(wl.Radar(period_s=DT_S), estimator=estimator)
@@ -239,6 +240,7 @@ def test_closest_approaches(way):
         )
 
 
+@pytest.mark.filterwarnings("ignore:the ModeChain has no period")
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("estimator", [None, OF_ALL_KINDS["SwitchingGridImm"]])
 def test_what_a_tracker_reports(estimator, way):

@@ -654,8 +654,10 @@ def test_the_settings_of_a_tracker_are_a_copy():
     config = wl.TrackerConfig(max_tracks=10)
     tracker = wl.Tracker(RADAR, config)
     config.max_tracks = 99
-    tracker.config.max_tracks = 99
-    tracker.radar.period_s = 99.0
+    with pytest.raises(AttributeError, match="max_tracks"):
+        tracker.config.max_tracks = 99
+    with pytest.raises(AttributeError, match="period_s"):
+        tracker.radar.period_s = 99.0
     assert tracker.config.max_tracks == 10
     assert tracker.radar == RADAR
 
@@ -677,6 +679,7 @@ def test_models_of_ships_are_those_of_the_estimator_for_ships():
     assert ships != wl.VesselModels()
 
 
+@pytest.mark.filterwarnings("ignore:the ModeChain has no period")
 def test_a_track_reports_the_turn_rates_of_models_that_change_theirs():
     known_turn = wl.Ekf(wl.CoordinatedTurn(noise=wl.WhiteAcceleration(psd_m2s3=0.05)))
     recorded = scans(40, clutter=0.5)
@@ -707,6 +710,14 @@ def test_another_estimator_tracks():
     assert table.mode_probability.shape == (len(table), 4)
     assert (np.array(table.status) != "tentative").sum() == 4
     np.testing.assert_allclose(table.mode_probability.sum(axis=1), 1.0, atol=1e-12)
+
+
+def test_a_chain_without_a_period_warns_in_a_tracker():
+    filters = [wl.Ekf(wl.ConstantVelocity()), wl.Ekf(wl.CoordinatedTurnRate())]
+    matrix = [[0.95, 0.05], [0.1, 0.9]]
+    with pytest.warns(UserWarning, match="no period"):
+        wl.Tracker(RADAR, estimator=wl.Imm(filters, wl.ModeChain(matrix)))
+    wl.Tracker(RADAR, estimator=wl.Imm(filters, wl.ModeChain(matrix, period_s=3.0)))
 
 
 def test_one_tracker_a_thread_is_as_good_as_one_after_the_other():

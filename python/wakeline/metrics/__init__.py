@@ -19,6 +19,8 @@ from .results import EpisodeScore, Score, Summary, TargetScore
 from .scoring import score
 from .states import Errors, rmse
 
+gospa = set_distance  # by the name that the metric has
+
 __all__ = [
     "EpisodeScore",
     "Errors",
@@ -29,6 +31,7 @@ __all__ = [
     "TargetScore",
     "by_segment",
     "detection_delays_scans",
+    "gospa",
     "nees",
     "right_mode",
     "rmse",

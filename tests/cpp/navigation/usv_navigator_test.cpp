@@ -448,7 +448,7 @@ TYPED_TEST(EveryUsvModel, RejectsAnOutlierAndReportsIt) {
   const auto outlier = navigator.update(gnss(), Vec2(log.back().fix + Vec2(500, 0)));
   EXPECT_TRUE(outlier.rejected);
   EXPECT_FALSE(outlier);
-  EXPECT_EQ(outlier.status, Status::kMissed);
+  EXPECT_EQ(outlier.status, Status::kGated);
   EXPECT_GT(outlier.nis, 100);
   EXPECT_TRUE(test::matrices_identical(navigator.estimate().mean, before.mean));
   EXPECT_TRUE(test::matrices_identical(navigator.estimate().covariance, before.covariance));
@@ -715,7 +715,7 @@ void expect_absurd_readings_to_do_nothing(const std::vector<Instant>& log, doubl
   Navigator navigator;
   ASSERT_EQ(navigator.start(start_of(log.front())), Status::kOk);
   const auto outcome = [](const auto& reading) {
-    return reading.status == (reading.rejected ? Status::kMissed : Status::kOk);
+    return reading.status == (reading.rejected ? Status::kGated : Status::kOk);
   };
   const int first = 100, last = first + steps;
   for (int k = 1; k < last + 100; ++k) {

@@ -36,7 +36,7 @@ struct UsvOutliers {
   void validate() const { validate_fields(*this); }
 };
 
-/// Result of a reading. A rejected one has status `kMissed` and leaves the belief unchanged;
+/// Result of a reading. A rejected one has status `kGated` and leaves the belief unchanged;
 /// innovation and NIS are those before any widening. The NIS of an implausible one is infinite.
 template <int M, class Scalar = double>
 struct [[nodiscard]] UsvReading : Step<M, Scalar> {
@@ -340,7 +340,7 @@ class UsvNavigator {
   template <class Reading>
   static Reading rejected(Reading reading) noexcept {
     reading.rejected = true;
-    reading.status = Status::kMissed;
+    reading.status = Status::kGated;
     return reading;
   }
 
