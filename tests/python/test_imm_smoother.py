@@ -21,7 +21,8 @@ def imm(*filters):
     return wl.Imm(
         filters=list(filters),
         chain=wl.ModeChain(
-            np.full((modes, modes), 0.1 / (modes - 1)) + (0.9 - 0.1 / (modes - 1)) * np.eye(modes)
+            np.full((modes, modes), 0.1 / (modes - 1)) + (0.9 - 0.1 / (modes - 1)) * np.eye(modes),
+            period_s=DT_S,
         ),
     )
 
