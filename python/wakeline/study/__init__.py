@@ -14,6 +14,7 @@ from __future__ import annotations
 from . import (
     a823,
     ais_forecast,
+    association,
     dead_reckoning,
     fuzzy_alpha_beta,
     imm,
@@ -31,6 +32,7 @@ __all__ = [
     "Study",
     "a823",
     "ais_forecast",
+    "association",
     "dead_reckoning",
     "fuzzy_alpha_beta",
     "imm",
@@ -54,6 +56,7 @@ _STUDIES = {
         dead_reckoning,
         search,
         usv_navigation,
+        association,
     )
 }
 
