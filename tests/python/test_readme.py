@@ -58,7 +58,7 @@ WITHOUT = {
         },
     ),
     "visibility": ("tracker", {"visible_time_s": 0.0}),
-    "showing coasting tracks": ("tracker", {"shown_scans": 0}),
+    "showing coasting tracks": ("tracker", {"shown_probability": 1.0}),
     "probabilistic association (GNN instead)": ("tracker", {"association": "global_nearest"}),
 }
 BOATS = {"fast boat": "joyride", "close boats": "autoferry"}

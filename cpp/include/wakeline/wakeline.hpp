@@ -136,6 +136,7 @@
 #include "wakeline/track/beam.hpp"
 #include "wakeline/track/clutter_density.hpp"
 #include "wakeline/track/clutter_map.hpp"
+#include "wakeline/track/clutter_rings.hpp"
 #include "wakeline/track/compiled.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/duplicates.hpp"

@@ -14,7 +14,8 @@ namespace {
 
 using namespace test;
 
-const Detection kDetection(TrackerConfig{}, 1.0);
+const DetectionProbability kProbability{TrackerConfig{}};
+const Detection kDetection = kProbability.of(1.0);
 
 /// A track in that slot which exists with that probability.
 Track track_in(int slot, double existence = 0.9) {
@@ -23,52 +24,136 @@ Track track_in(int slot, double existence = 0.9) {
   return track;
 }
 
-TEST(LinearMultitarget, OneTrackAloneHasTheWeightsOfPda) {
-  LinearMultitarget multitarget(TrackerConfig{});
+/// The weights of tracks, which are all that there are, with slots from 0 on.
+std::vector<AssociationWeights> weights_of(const std::vector<Track>& tracks,
+                                           const std::vector<CandidatePlots>& candidates,
+                                           int plots) {
+  BeliefPropagation propagation(TrackerConfig{});
+  propagation.clear(plots);
+  std::vector<int> slots;
+  for (const Track& track : tracks) {
+    propagation.claim(track, kDetection, candidates[std::size_t(track.slot)]);
+    slots.push_back(track.slot);
+  }
+  propagation.propagate(slots);
+  std::vector<AssociationWeights> weights;
+  for (const Track& track : tracks)
+    weights.push_back(propagation.weights(track, kDetection, candidates[std::size_t(track.slot)]));
+  return weights;
+}
+
+/// The probability that a candidate is the target's, and so that the target exists.
+double owned(const AssociationWeights& weights, const Track& track,
+             const CandidatePlots& candidates, std::size_t k) {
+  double sum = 1.0 - track.existence + track.existence * weights.none;
+  for (std::size_t j = 0; j < candidates.size(); ++j)
+    sum += track.existence * weights.plot[j] * candidates[j].likelihood;
+  return track.existence * weights.plot[k] * candidates[k].likelihood / sum;
+}
+
+/// The same by enumeration of all joint events, of which each plot is in one claim at most.
+std::vector<std::vector<double>> exactly_owned(const std::vector<Track>& tracks,
+                                               const std::vector<CandidatePlots>& candidates) {
+  std::vector<std::vector<double>> owned(tracks.size(),
+                                         std::vector<double>(CandidatePlots::kMost, 0.0));
+  std::vector<int> chosen(tracks.size(), -1);
+  double total = 0.0;
+  const auto enumerate = [&](const auto& self, std::size_t track, double weight) -> void {
+    if (track == tracks.size()) {
+      total += weight;
+      for (std::size_t t = 0; t < tracks.size(); ++t)
+        if (chosen[t] >= 0) owned[t][std::size_t(chosen[t])] += weight;
+      return;
+    }
+    const double e = tracks[track].existence;
+    chosen[track] = -1;
+    self(self, track + 1, weight * (1.0 - e + e * kDetection.missed));
+    for (std::size_t k = 0; k < candidates[track].size(); ++k) {
+      const CandidatePlot& plot = candidates[track][k];
+      bool taken = false;
+      for (std::size_t t = 0; t < track; ++t)
+        taken =
+            taken || (chosen[t] >= 0 && candidates[t][std::size_t(chosen[t])].plot == plot.plot);
+      if (taken) continue;
+      chosen[track] = int(k);
+      self(self, track + 1, weight * e * likelihood_ratio(kDetection, plot));
+    }
+    chosen[track] = -1;
+  };
+  enumerate(enumerate, 0, 1.0);
+  for (std::vector<double>& of_track : owned)
+    for (double& probability : of_track) probability /= total;
+  return owned;
+}
+
+TEST(BeliefPropagation, OneTrackAloneHasTheWeightsOfPda) {
   const CandidatePlots candidates =
       candidates_of({candidate(0, 3e-3, 1e-6), candidate(2, 1e-3, 2e-6)});
-  const Track track = track_in(5);
-  multitarget.clear(3);
-  multitarget.claim(track, kDetection, candidates);
-  const AssociationWeights weights = multitarget.weights(track, kDetection, candidates);
+  const AssociationWeights weights = weights_of({track_in(0)}, {candidates}, 3)[0];
   EXPECT_EQ(weights.none, kDetection.missed);
   EXPECT_FALSE(weights.assigned);
   EXPECT_DOUBLE_EQ(weights.plot[0], kDetection.detected / 1e-6);
   EXPECT_DOUBLE_EQ(weights.plot[1], kDetection.detected / 2e-6);
 }
 
-TEST(LinearMultitarget, WhatAnotherTrackClaimsIsDenserClutter) {
-  LinearMultitarget multitarget(TrackerConfig{});
+TEST(BeliefPropagation, OnePlotIsSharedExactly) {
   const CandidatePlots shared = candidates_of({candidate(0, 3e-3, 1e-6)});
-  double before = 0.0;
   for (const double existence : {0.99, 0.5, 0.1, 0.0}) {
-    const Track track = track_in(0), other = track_in(1, existence);
-    multitarget.clear(1);
-    multitarget.claim(track, kDetection, shared);
-    multitarget.claim(other, kDetection, shared);
-    const double weight = multitarget.weights(track, kDetection, shared).plot[0];
-    EXPECT_GT(weight, before) << "the less probable the other, the less it claims";
-    before = weight;
+    const std::vector<Track> tracks{track_in(0), track_in(1, existence), track_in(2, 0.3)};
+    const std::vector<CandidatePlots> candidates{shared, shared, shared};
+    const auto weights = weights_of(tracks, candidates, 1);
+    const auto exact = exactly_owned(tracks, candidates);
+    for (const std::size_t t : {0u, 1u, 2u})
+      EXPECT_NEAR(owned(weights[t], tracks[t], shared, 0), exact[t][0], 1e-3) << existence;
   }
-  EXPECT_DOUBLE_EQ(before, kDetection.detected / 1e-6) << "a track that is not there claims none";
 }
 
-TEST(LinearMultitarget, TheOrderOfTracksDoesNotMatter) {
-  LinearMultitarget forwards(TrackerConfig{}), backwards(TrackerConfig{});
-  const CandidatePlots both = candidates_of({candidate(0, 3e-3, 1e-6), candidate(1, 2e-3, 1e-6)});
-  forwards.clear(2);
-  backwards.clear(2);
-  for (const int slot : {0, 1, 2}) {
-    forwards.claim(track_in(slot, 0.3 + 0.2 * slot), kDetection, both);
-    backwards.claim(track_in(2 - slot, 0.3 + 0.2 * (2 - slot)), kDetection, both);
-  }
-  for (const int slot : {0, 1, 2})
-    for (const std::size_t k : {0u, 1u}) {
-      const Track track = track_in(slot);
-      EXPECT_NEAR(forwards.weights(track, kDetection, both).plot[k] /
-                      backwards.weights(track, kDetection, both).plot[k],
-                  1.0, 1e-9);
+TEST(BeliefPropagation, IsCloseToTheJointProbabilitiesOfAllEvents) {
+  Draw draw(11);
+  double squared = 0.0;
+  int count = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    constexpr int kTracks = 4, kPlots = 4;
+    std::vector<Track> tracks;
+    std::vector<CandidatePlots> candidates(kTracks);
+    for (int slot = 0; slot < kTracks; ++slot) {
+      tracks.push_back(track_in(slot, draw.uniform(0.01, 0.99)));
+      for (int plot = 0; plot < kPlots; ++plot)
+        if (draw.uniform(0.0, 1.0) < 0.7)
+          candidates[std::size_t(slot)].add(
+              candidate(plot, std::exp(draw.uniform(-14.0, -6.0)), 1e-5));
     }
+    const auto weights = weights_of(tracks, candidates, kPlots);
+    const auto exact = exactly_owned(tracks, candidates);
+    for (std::size_t t = 0; t < kTracks; ++t)
+      for (std::size_t k = 0; k < candidates[t].size(); ++k, ++count)
+        squared += std::pow(owned(weights[t], tracks[t], candidates[t], k) - exact[t][k], 2);
+  }
+  EXPECT_LT(std::sqrt(squared / count), 0.06);
+}
+
+TEST(BeliefPropagation, TwoTentativeTracksShareTwoPlotsAndNeitherLosesExistence) {
+  // Each is a little nearer to its own plot.
+  const std::vector<Track> tracks{track_in(0, 0.08), track_in(1, 0.08)};
+  const std::vector<CandidatePlots> candidates{
+      candidates_of({candidate(0, 1.1e-3, 1e-7), candidate(1, 1e-3, 1e-7)}),
+      candidates_of({candidate(0, 1e-3, 1e-7), candidate(1, 1.1e-3, 1e-7)})};
+  const auto weights = weights_of(tracks, candidates, 2);
+  for (const std::size_t t : {0u, 1u})
+    EXPECT_GT(owned(weights[t], tracks[t], candidates[t], 0) +
+                  owned(weights[t], tracks[t], candidates[t], 1),
+              0.9);
+}
+
+TEST(BeliefPropagation, TheOrderOfTracksDoesNotMatter) {
+  const CandidatePlots both = candidates_of({candidate(0, 3e-3, 1e-6), candidate(1, 2e-3, 1e-6)});
+  const std::vector<CandidatePlots> candidates{both, both, both};
+  const std::vector<Track> tracks{track_in(0, 0.3), track_in(1, 0.5), track_in(2, 0.7)};
+  const auto forwards = weights_of(tracks, candidates, 2);
+  const auto backwards = weights_of({tracks[2], tracks[1], tracks[0]}, candidates, 2);
+  for (const std::size_t t : {0u, 1u, 2u})
+    for (const std::size_t k : {0u, 1u})
+      EXPECT_NEAR(forwards[t].plot[k] / backwards[2 - t].plot[k], 1.0, 1e-9);
 }
 
 /// What an assignment of plots to tracks costs: its negative log-likelihood ratio.
@@ -115,7 +200,7 @@ TEST(PlotAssignment, GlobalNearestIsTheBestOfAllAssignmentsAndNearestIsNotBetter
     for (const Association association : {Association::kGlobalNearest, Association::kNearest}) {
       const TrackerConfig config{.association = association, .max_tracks = kTracks};
       PlotAssignment assignment(config);
-      assignment.assign(config, tracks, tracks.slots(), candidates, kPlots);
+      assignment.assign(kProbability, tracks, tracks.slots(), candidates, kPlots);
       std::vector<int> plot_of, used;
       for (int slot = 0; slot < kTracks; ++slot) {
         const int plot = assignment.plot_of(slot);
@@ -143,7 +228,7 @@ TEST(PlotAssignment, ConfirmedTracksChooseFirst) {
   candidates[std::size_t(tentative)].add(candidate(0, 1e-2, 1e-6));
   candidates[std::size_t(confirmed.slot)].add(candidate(0, 1e-3, 1e-6));
   PlotAssignment assignment(config);
-  assignment.assign(config, tracks, tracks.slots(), candidates, 1);
+  assignment.assign(kProbability, tracks, tracks.slots(), candidates, 1);
   EXPECT_EQ(assignment.plot_of(confirmed.slot), 0);
   EXPECT_EQ(assignment.plot_of(tentative), PlotAssignment::kNone);
 

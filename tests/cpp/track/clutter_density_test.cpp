@@ -17,10 +17,7 @@ TEST(ClutterDensity, IsTheFloorWhereNothingIsLearned) {
   ClutterDensity clutter(kConfig);
   const ScanPlots plots = scan_of({plot_at(1000.0, 0.0, 0.0), plot_at(500.0, 500.0, 0.0)}, 0.0);
   clutter.evaluate(plots, 0.0, 2.5);
-  for (const int plot : {0, 1}) {
-    EXPECT_EQ(clutter.per_m2(plot), 1e-7);
-    EXPECT_EQ(clutter.without({}, plots, plot), 1e-7);
-  }
+  for (const int plot : {0, 1}) EXPECT_EQ(clutter.without({}, plots, plot), 1e-7);
 }
 
 TEST(ClutterDensity, RisesWhereClutterIsLearnedAndOnlyThere) {
@@ -31,8 +28,8 @@ TEST(ClutterDensity, RisesWhereClutterIsLearnedAndOnlyThere) {
     const ScanPlots plots =
         scan_of({plot_at(1000.0, 0.0, 2.5 * scan), plot_at(-900.0, 700.0, 2.5 * scan)}, 2.5 * scan);
     clutter.evaluate(plots, scan > 0 ? 2.5 : 0.0, 2.5);
-    EXPECT_EQ(clutter.per_m2(1), 1e-7) << "what a track owns is not learned";
-    EXPECT_TRUE(scan == 0 || clutter.per_m2(0) > 1e-7);
+    EXPECT_EQ(clutter.without({}, plots, 1), 1e-7) << "what a track owns is not learned";
+    EXPECT_TRUE(scan == 0 || clutter.without({}, plots, 0) > 1e-7);
     clutter.learn(
         plots, clutter_probability, [](int) { return -1; }, tracks, tracks.slots());
   }
@@ -47,13 +44,23 @@ TEST(ClutterDensity, OfATrackLeavesOutItsOwnPlots) {
     const ScanPlots plots = scan_of({plot_at(1000.0, 0.0, 2.5 * scan)}, 2.5 * scan);
     clutter.evaluate(plots, scan > 0 ? 2.5 : 0.0, 2.5);
     if (scan > 0) {
-      EXPECT_GT(clutter.per_m2(0), 2e-7);
+      EXPECT_GT(clutter.without({}, plots, 0), 2e-7);
       EXPECT_NEAR(clutter.without(tracks.at(slot).learned, plots, 0) / 1e-7, 1.0, 1e-6)
           << "all that was learned is its own";
     }
     clutter.learn(
         plots, clutter_probability, [](int) { return 0; }, tracks, tracks.slots());
   }
+}
+
+TEST(ClutterDensity, IsThatOfTheRangeWhereItIsLarger) {
+  ClutterDensity clutter(kConfig);
+  std::vector<Plot> plots;
+  for (int k = 0; k < 100; ++k) plots.push_back({0.0, 3000.0, deg(3.6 * k), {}});
+  const ScanPlots scan = scan_of(plots, 0.0);
+  clutter.evaluate(scan, 0.0, 2.5);
+  clutter.learn_rings(scan, std::vector<double>(100, 1.0), 0.0, 1.0);
+  for (const int plot : {0, 50}) EXPECT_GT(clutter.without({}, scan, plot), 2e-6);
 }
 
 }  // namespace

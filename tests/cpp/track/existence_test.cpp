@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace wakeline::existence_test {
 namespace {
@@ -44,9 +45,10 @@ TEST(Existence, VisibilityTendsToItsLongRun) {
 TEST(Existence, FallsByTheMissFactor) {
   const TrackerConfig config;
   Track track = track_of(0.8, 1.0);
-  const double missed = Detection(config, 1.0).missed;
-  EXPECT_DOUBLE_EQ(missed, 1.0 - config.detection());
-  update_existence(config, {missed, missed, false}, track);
+  const double missed = DetectionProbability(config).of(1.0).missed;
+  EXPECT_DOUBLE_EQ(missed, 1.0 - config.detection_probability * config.in_gate());
+  update_existence(config, DetectionProbability(config).of(track.visibility),
+                   {missed, missed, false}, track);
   const double odds = track.existence / (1.0 - track.existence);
   EXPECT_NEAR(odds, 0.8 / 0.2 * missed, 1e-12);
 }
@@ -54,20 +56,23 @@ TEST(Existence, FallsByTheMissFactor) {
 TEST(Existence, RisesByTheLikelihoodRatioOfTheScan) {
   const TrackerConfig config;
   Track track = track_of(0.2, 1.0);
-  const double missed = Detection(config, 1.0).missed;
-  update_existence(config, {50.0, missed, false}, track);
+  const double missed = DetectionProbability(config).of(1.0).missed;
+  update_existence(config, DetectionProbability(config).of(track.visibility), {50.0, missed, false},
+                   track);
   EXPECT_NEAR(track.existence / (1.0 - track.existence), 0.2 / 0.8 * 50.0, 1e-9);
 }
 
 TEST(Existence, AMissSpeaksAgainstVisibilityAndAPlotForIt) {
   const TrackerConfig config;
   Track missed = track_of(0.9, 0.7), seen = missed, assigned = missed;
-  const double none = Detection(config, 0.7).missed;
-  update_existence(config, {none, none, false}, missed);
-  EXPECT_NEAR(missed.visibility, 0.7 * (1.0 - config.detection()) / none, 1e-12) << "Bayes' rule";
-  update_existence(config, {none + 10.0, none, false}, seen);
+  const double none = DetectionProbability(config).of(0.7).missed;
+  update_existence(config, DetectionProbability(config).of(0.7), {none, none, false}, missed);
+  EXPECT_NEAR(missed.visibility,
+              0.7 * (1.0 - config.detection_probability * config.in_gate()) / none, 1e-12)
+      << "Bayes' rule";
+  update_existence(config, DetectionProbability(config).of(0.7), {none + 10.0, none, false}, seen);
   EXPECT_GT(seen.visibility, 0.95);
-  update_existence(config, {10.0, 0.0, true}, assigned);
+  update_existence(config, DetectionProbability(config).of(0.7), {10.0, 0.0, true}, assigned);
   EXPECT_EQ(assigned.visibility, 1.0);
 }
 
@@ -79,7 +84,8 @@ TEST(Existence, VisibilityStaysAProbabilityHoweverSureTheRadarIs) {
     for (const bool assigned : {false, true})
       for (const double total : {1.0 - 1e-16, 1.0, 0.0}) {
         Track track = track_of(0.5, visibility);
-        update_existence(config, {total, assigned ? 0.0 : 1.0, assigned}, track);
+        update_existence(config, DetectionProbability(config).of(track.visibility),
+                         {total, assigned ? 0.0 : 1.0, assigned}, track);
         EXPECT_TRUE(track.visibility >= 0.0 && track.visibility <= 1.0) << track.visibility;
       }
 }
@@ -87,15 +93,44 @@ TEST(Existence, VisibilityStaysAProbabilityHoweverSureTheRadarIs) {
 TEST(Existence, IsNeverCertain) {
   const TrackerConfig config;
   Track track = track_of(0.5, 1.0);
-  for (int k = 0; k < 100; ++k) update_existence(config, {1e9, 0.1, false}, track);
+  for (int k = 0; k < 100; ++k)
+    update_existence(config, DetectionProbability(config).of(track.visibility), {1e9, 0.1, false},
+                     track);
   EXPECT_LT(track.existence, 1.0);
   EXPECT_GT(track.existence, 0.9999);
 }
 
 TEST(Detection, OfATargetThatIsNeverVisibleIsNone) {
-  const Detection detection(TrackerConfig{}, 0.0);
+  const Detection detection = DetectionProbability(TrackerConfig{}).of(0.0);
   EXPECT_EQ(detection.detected, 0.0);
   EXPECT_EQ(detection.missed, 1.0);
+}
+
+TEST(DetectionProbability, BeginsWithTheConfiguredOneAndIsThatOfTheLastLooks) {
+  const TrackerConfig config{.detection_probability = 0.7};
+  DetectionProbability learned(config);
+  EXPECT_DOUBLE_EQ(learned.value(), 0.7);
+  for (const double share : {0.5, 0.9}) {
+    for (int look = 0; look < 5000; ++look) learned.learn(look % 10 < 10.0 * share ? 1.0 : 0.0);
+    learned.evaluate();
+    EXPECT_NEAR(learned.value(), share, 0.01);
+  }
+}
+
+TEST(DetectionProbability, StaysUntilItIsEvaluated) {
+  DetectionProbability learned{TrackerConfig{}};
+  const double before = learned.value();
+  for (int look = 0; look < 100; ++look) learned.learn(0.0);
+  EXPECT_EQ(learned.value(), before);
+  learned.evaluate();
+  EXPECT_LT(learned.value(), before);
+}
+
+TEST(DetectionProbability, AsManyMissesAreLikelyAsItAllows) {
+  const DetectionProbability half{TrackerConfig{.detection_probability = 0.5}};
+  EXPECT_NEAR(half.likely_misses(0.125), 3.0, 1e-12);
+  EXPECT_EQ(half.likely_misses(1.0), 0.0);
+  EXPECT_EQ(half.likely_misses(0.0), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -23,7 +23,9 @@ struct Scene {
 
   std::vector<TrackStart> scan(const std::vector<Plot>& plots, double time_s,
                                const Track* owner = nullptr, bool room = true) {
-    const ScanPlots scan = scan_of(plots, time_s);
+    ScanPlots scan(100);
+    (void)scan.add(kStageRadar, plots, time_s, 25.0,
+                   [&](const Plot& plot) { return beam_rad + plot.bearing_rad; });
     clutter.evaluate(scan, 2.5, 2.5);
     ownership.clear(scan.size());
     if (owner != nullptr) {
@@ -34,8 +36,8 @@ struct Scene {
     }
     std::vector<TrackStart> starts;
     initiation.initiate(
-        scan, ownership, clutter, beam_rad += 6.283185307179586, true, [&](double) { return room; },
-        [&](const TrackStart& start) { starts.push_back(start); });
+        scan, ownership, clutter, 0.8, beam_rad += 6.283185307179586, true,
+        [&](double) { return room; }, [&](const TrackStart& start) { starts.push_back(start); });
     return starts;
   }
 };
@@ -49,17 +51,53 @@ TEST(Initiation, StartsFromTwoPlotsWithinTheSpeedLimit) {
   EXPECT_GT(starts[0].belief.mean[1], 3.0);
   EXPECT_LT(starts[0].belief.mean[1], 8.0) << "tempered by the speed limit";
   EXPECT_EQ(starts[0].time_s, 2.5);
-  EXPECT_NEAR(starts[0].existence, scene.config.initial_existence, 1e-6) << "no clutter is known";
+}
+
+/// The existence of the start from two plots that are so far apart, and scans.
+double existence_of(double way_m, int scans, const TrackerConfig& config) {
+  Scene scene(config);
+  (void)scene.scan({plot_at(1000.0, 1.0, 0.0)}, 0.0);
+  for (int k = 1; k < scans; ++k) (void)scene.scan({}, 2.5 * k);
+  const auto starts = scene.scan({plot_at(1000.0 + way_m, 1.0, 2.5 * scans)}, 2.5 * scans);
+  return starts.size() == 1 ? starts[0].existence : 0.0;
+}
+
+TEST(Initiation, ExistenceFallsWithTheDistanceTheMissesAndTheDensity) {
+  const TrackerConfig rare{.birth_density_per_m2 = 1e-14};
+  EXPECT_GT(existence_of(10.0, 1, rare), 1.5 * existence_of(50.0, 1, rare));
+  EXPECT_GT(existence_of(10.0, 1, rare), 5.0 * existence_of(10.0, 2, rare));
+  EXPECT_GT(existence_of(10.0, 2, rare), 0.0);
+  EXPECT_EQ(existence_of(10.0, 3, rare), 0.0) << "only the two scans before are remembered";
+  TrackerConfig dense = rare;
+  dense.clutter_density_per_m2 *= 3.0;
+  EXPECT_NEAR(existence_of(10.0, 1, rare) / existence_of(10.0, 1, dense), 9.0, 0.01)
+      << "either plot may be clutter";
+  TrackerConfig never = rare;
+  never.birth_density_per_m2 = 0.0;
+  EXPECT_EQ(existence_of(10.0, 1, never), 0.0);
+}
+
+TEST(Initiation, ExistenceIsThatOfAPoissonSea) {
+  // A target is born with β in a unit of area and scan and seen with PD; clutter has ρ.
+  const TrackerConfig config{.clutter_density_per_m2 = 1e-6, .birth_density_per_m2 = 1e-11};
+  const double std_mps = config.start_speed_factor * kStageRadar.max_speed_mps / std::sqrt(2.0);
+  const Gaussian<2> plot = kStageRadar.position(1000.0, 0.0, {});
+  Mat<double, 2, 2> s = 2.0 * plot.covariance;
+  s.diagonal().array() += std::pow(2.5 * std_mps, 2);
+  const double likelihood =
+      1.0 / (2.0 * std::numbers::pi * std::sqrt(s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0)));
+  const double odds = 1e-11 / 1e-6 * 0.8 * likelihood / 1e-6;
+  EXPECT_NEAR(existence_of(0.0, 1, config) / (odds / (1.0 + odds)), 1.0, 1e-6);
 }
 
 TEST(Initiation, APlotThatATrackOwnsStartsNone) {
   Scene scene;
   const Track owner = track_at(0, Vec<double, 4>::Zero(), Vec<double, 4>::Ones());
-  (void)scene.scan({plot_at(1000.0, 0.0, 0.0)}, 0.0);
-  EXPECT_TRUE(scene.scan({plot_at(1010.0, 0.0, 2.5)}, 2.5, &owner).empty());
-  EXPECT_TRUE(scene.scan({plot_at(1010.0, 0.0, 5.0)}, 5.0).empty())
-      << "nor does it when the next is free";
-  EXPECT_EQ(scene.scan({plot_at(1010.0, 0.0, 7.5)}, 7.5).size(), 1u);
+  (void)scene.scan({plot_at(1000.0, 1.0, 0.0)}, 0.0);
+  EXPECT_TRUE(scene.scan({plot_at(1010.0, 1.0, 2.5)}, 2.5, &owner).empty());
+  EXPECT_EQ(scene.scan({plot_at(1010.0, 1.0, 5.0)}, 5.0).size(), 1u)
+      << "the one before that is free, and the one between is not counted";
+  EXPECT_EQ(scene.scan({plot_at(1010.0, 1.0, 7.5)}, 7.5).size(), 1u);
 }
 
 TEST(Initiation, NothingStartsWithoutRoom) {

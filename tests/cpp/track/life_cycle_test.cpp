@@ -35,25 +35,46 @@ TEST(LifeCycle, ConfirmsMOfTheLastNWithThisScanAmongThem) {
 }
 
 TEST(LifeCycle, AConfirmedTrackCoastsThenIsHeldAndComesBack) {
-  const TrackerConfig config{.shown_scans = 2};
+  const TrackerConfig config;
   Track track = seen("111");
-  EXPECT_FALSE(confirm_or_coast(config, kRadar, track));
+  EXPECT_FALSE(confirm_or_coast(config, kRadar, 2.0, track));
   EXPECT_EQ(track.status, TrackStatus::kConfirmed);
   const TrackStatus expected[] = {TrackStatus::kCoasting, TrackStatus::kCoasting,
                                   TrackStatus::kHeld, TrackStatus::kHeld};
   for (int missed = 1; missed <= 4; ++missed) {
     track.count(false);
-    EXPECT_EQ(confirm_or_coast(config, kRadar, track), missed == 1) << "begins to coast once";
+    EXPECT_EQ(confirm_or_coast(config, kRadar, 2.0, track), missed == 1) << "begins to coast once";
     EXPECT_EQ(track.status, expected[missed - 1]) << missed;
   }
   track.count(true);
-  EXPECT_FALSE(confirm_or_coast(config, kRadar, track));
+  EXPECT_FALSE(confirm_or_coast(config, kRadar, 2.0, track));
   EXPECT_EQ(track.status, TrackStatus::kConfirmed);
+}
+
+TEST(LifeCycle, ATrackWhosePlotAnotherTrackHasIsShown) {
+  Track track = seen("111", TrackStatus::kConfirmed);
+  for (int missed = 1; missed <= 10; ++missed) {
+    track.count(false, true);
+    (void)confirm_or_coast({}, kRadar, 2.0, track);
+    EXPECT_EQ(track.status, TrackStatus::kCoasting) << missed;
+  }
+}
+
+TEST(LifeCycle, ATrackFarAboveTheSpeedLimitIsHeldUntilItIsSlower) {
+  Track track = seen("111", TrackStatus::kConfirmed);
+  const auto status_at = [&](double speed_mps) {
+    track.kinematics.mean[1] = speed_mps;
+    (void)confirm_or_coast({}, kRadar, 2.0, track);
+    return track.status;
+  };
+  EXPECT_EQ(status_at(1.1 * kRadar.max_speed_mps), TrackStatus::kConfirmed);
+  EXPECT_EQ(status_at(1.3 * kRadar.max_speed_mps), TrackStatus::kHeld);
+  EXPECT_EQ(status_at(0.9 * kRadar.max_speed_mps), TrackStatus::kConfirmed);
 }
 
 TEST(LifeCycle, ATentativeTrackThatIsNotConfirmableStaysTentative) {
   Track track = seen("10");
-  EXPECT_FALSE(confirm_or_coast(TrackerConfig{}, kRadar, track));
+  EXPECT_FALSE(confirm_or_coast(TrackerConfig{}, kRadar, 2.0, track));
   EXPECT_EQ(track.status, TrackStatus::kTentative);
 }
 
@@ -68,6 +89,15 @@ TEST(LifeCycle, AllowsMoreMissesToATrackThatWasSeenMore) {
   EXPECT_EQ(reason(seen("11000")), LossReason::kMissed);
   EXPECT_EQ(reason(seen("110000", TrackStatus::kCoasting)), LossReason::kNone);
   EXPECT_EQ(reason(seen("1100000", TrackStatus::kCoasting)), LossReason::kMissed);
+}
+
+TEST(LifeCycle, AStartInDenseClutterIsNotDeletedBeforeItIsMoreDoubtful) {
+  const TrackerConfig config;
+  Track track = seen("11");
+  track.existence = track.start_existence = 0.1 * config.drop_existence;
+  EXPECT_EQ(reason_to_delete(config, kRadar, track), LossReason::kNone);
+  track.existence *= 0.2;
+  EXPECT_EQ(reason_to_delete(config, kRadar, track), LossReason::kDoubtful);
 }
 
 TEST(LifeCycle, DeletesWhatIsDoubtfulTooFastOrLostInPosition) {

@@ -21,6 +21,13 @@ std::vector<int> found_near(const PlaneIndex& index, const Place& place, double 
   return names;
 }
 
+std::vector<int> found_nearest(const PlaneIndex& index, const Place& place, double reach_m,
+                               int most) {
+  std::vector<int> names;
+  index.for_each_nearest(place, reach_m, most, [&](int name) { names.push_back(name); });
+  return names;
+}
+
 /// Looks at every point.
 std::vector<int> near(const std::vector<Place>& points, const Place& place, double reach_m) {
   std::vector<int> names;
@@ -60,7 +67,16 @@ TEST(PlaneIndex, FindsWhatLookingAtEveryPointFinds) {
       std::vector<int> names = found_near(index, place, reach_m);
       std::sort(names.begin(), names.end());
       EXPECT_EQ(names, near(points, place, reach_m));
+      std::vector<int> nearest = found_nearest(index, place, reach_m, 1 << 20);
+      std::sort(nearest.begin(), nearest.end());
+      EXPECT_EQ(nearest, names);
+      const std::vector<int> few = found_nearest(index, place, reach_m, 5);
+      EXPECT_EQ(few.size(), std::min<std::size_t>(5, names.size()));
+      for (const int name : few) EXPECT_TRUE(std::binary_search(names.begin(), names.end(), name));
     }
+    EXPECT_EQ(
+        found_nearest(index, {0.0, 0.0}, std::numeric_limits<double>::infinity(), 1 << 20).size(),
+        size);
     EXPECT_EQ(found_near(index, {0.0, 0.0}, std::numeric_limits<double>::infinity()).size(), size);
   }
 }
@@ -73,12 +89,27 @@ TEST(PlaneIndex, PointsOfOnePlaceComeInTheOrderOfTheirNames) {
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
 }
 
+TEST(PlaneIndex, TheNearestOfAGridAreNear) {
+  std::vector<Place> points;
+  for (int k = 0; k < 2500; ++k) points.emplace_back(k / 50, k % 50);
+  const PlaneIndex index = index_of_points(points);
+  const std::vector<int> names = found_nearest(index, {20.1, 30.1}, 25.0, 60);
+  EXPECT_EQ(names.size(), 60u);
+  for (const int name : names)
+    EXPECT_LT((points[static_cast<std::size_t>(name)] - Place(20.1, 30.1)).cwiseAbs().maxCoeff(),
+              26.0);
+  EXPECT_EQ(names.front(), 20 * 50 + 30);
+}
+
 TEST(PlaneIndex, NothingIsNearWhatIsNoPlace) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const PlaneIndex index = index_of_points({{0.0, 0.0}, {1.0, 1.0}});
   EXPECT_TRUE(found_near(index, {kNan, 0.0}, 10.0).empty());
   EXPECT_TRUE(found_near(index, {0.0, kNan}, 10.0).empty());
   EXPECT_TRUE(found_near(index, {0.0, 0.0}, kNan).empty());
+  EXPECT_TRUE(found_nearest(index, {kNan, 0.0}, 10.0, 9).empty());
+  EXPECT_TRUE(found_nearest(index, {0.0, kNan}, 10.0, 9).empty());
+  EXPECT_TRUE(found_nearest(index, {0.0, 0.0}, kNan, 9).empty());
 }
 
 TEST(PlaneIndex, ForgetsWhenCleared) {

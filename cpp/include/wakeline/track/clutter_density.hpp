@@ -8,21 +8,22 @@
 #include <vector>
 
 #include "wakeline/track/clutter_map.hpp"
+#include "wakeline/track/clutter_rings.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/scan_plots.hpp"
 #include "wakeline/track/track_list.hpp"
 
 namespace wakeline {
 
-/// The density of false plots about each plot of a scan: a floor, and what the clutter map has
-/// learned above it. Memory is taken by the constructor.
+/// The density of false plots about each plot of a scan: that of its range, or that of its cell in
+/// the clutter map where it is larger. Memory is taken by the constructor.
 class ClutterDensity {
  public:
   explicit ClutterDensity(const TrackerConfig& config)
-      : floor_per_m2_(config.clutter_density_per_m2),
+      : rings_(config.clutter_density_per_m2, config.clutter_memory_s),
         map_weight_(config.clutter_weight),
         map_(config.clutter_cell_m, config.clutter_memory_s) {
-    per_m2_.reserve(static_cast<std::size_t>(config.max_plots));
+    mapped_per_m2_.reserve(static_cast<std::size_t>(config.max_plots));
   }
 
   /// Evaluates the density at all plots of a scan, `dt_s` after the scan before.
@@ -30,10 +31,10 @@ class ClutterDensity {
     // The map as it was when it had learned the scan before: a period later it has faded by one.
     learned_s_ = plots.scan_s() - std::min(dt_s, period_s);
     period_s_ = period_s;
-    per_m2_.clear();
+    mapped_per_m2_.clear();
     for (const ScanPlot& plot : plots)
-      per_m2_.push_back(floor_per_m2_ +
-                        map_weight_ * map_.density(plot.position.mean, learned_s_, period_s));
+      mapped_per_m2_.push_back(map_weight_ *
+                               map_.density(plot.position.mean, learned_s_, period_s));
   }
 
   /// At a plot of the scan, without the part that the map has learned of a target's own plots: they
@@ -42,19 +43,19 @@ class ClutterDensity {
                                int plot) const noexcept {
     const double of_own =
         map_weight_ * map_.density_of(own, plots[plot].position.mean, learned_s_, period_s_);
-    return std::max(per_m2(plot) - of_own, floor_per_m2_);
+    return std::max(mapped_per_m2_[static_cast<std::size_t>(plot)] - of_own,
+                    rings_.density(plots[plot].range_m));
   }
 
-  /// At a plot of the scan.
-  [[nodiscard]] double per_m2(int plot) const noexcept {
-    return per_m2_[static_cast<std::size_t>(plot)];
+  /// Learns by range, with the probability of each plot that no target owns it; `turns` of the
+  /// antenna ended `dt_s` after those before.
+  void learn_rings(const ScanPlots& plots, std::span<const double> free_probability, double dt_s,
+                   double turns) noexcept {
+    rings_.learn(plots, free_probability, dt_s, turns);
   }
 
-  /// Without anything learned.
-  [[nodiscard]] double floor_per_m2() const noexcept { return floor_per_m2_; }
-
-  /// Learns each plot of the scan that does not wait with the probability that it is clutter, and
-  /// notes for the tracks of these slots how much of that came from their own plots:
+  /// Learns in the map each plot of the scan that does not wait with the probability that it is
+  /// clutter, and notes for the tracks of these slots how much of that came from their own plots:
   /// `plot_of(slot)`, or -1.
   template <class PlotOf>
   void learn(const ScanPlots& plots, std::span<const double> clutter_probability,
@@ -79,13 +80,16 @@ class ClutterDensity {
   }
 
   /// Saves or restores what was learned.
-  void archive(Archive& fields) { map_.archive(fields); }
+  void archive(Archive& fields) {
+    rings_.archive(fields);
+    map_.archive(fields);
+  }
 
  private:
-  double floor_per_m2_;
+  ClutterRings rings_;
   double map_weight_;
   ClutterMap map_;
-  std::vector<double> per_m2_;  ///< of each plot
+  std::vector<double> mapped_per_m2_;  ///< of each plot, by the map
   double learned_s_ = 0.0;
   double period_s_ = 1.0;
 };

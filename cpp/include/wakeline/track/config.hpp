@@ -29,7 +29,7 @@ struct TrackerConfig {
   double detection_probability = 0.8;
   double gate_probability = 0.95;
   double clutter_density_per_m2 = 1e-7;
-  double outlier_probability = 0.2;
+  double outlier_probability = 0.11;
   double outlier_scale = 4.0;
   double clutter_cell_m = 150.0;
   double clutter_memory_s = 60.0;
@@ -39,24 +39,24 @@ struct TrackerConfig {
   Association association = Association::kProbabilistic;
 
   // Start
-  double initial_existence = 0.08;
+  double birth_density_per_m2 = 3e-10;
   double free_plot = 0.8;
   double start_gate_sigma = 3.0;
-  double start_speed_factor = 1.0;
+  double start_speed_factor = 0.5;
 
   // Confirm
-  double confirm_existence = 0.99;
+  double confirm_existence = 0.995;
   int confirm_hits = 3;
   int confirm_window = 5;
 
   // Coast and drop
   double survival_time_s = 1000.0;
   double drop_existence = 0.005;
-  int tentative_misses = 4;
+  int tentative_misses = 6;
   double coast_scans = 5.0;
   double coast_scans_per_hit = 0.3;
   int coast_scans_max = 15;
-  int shown_scans = 4;
+  double shown_probability = 0.003;
   double drop_position_std_m = 100.0;
   double drop_speed_factor = 1.0;
 
@@ -74,11 +74,11 @@ struct TrackerConfig {
     constexpr Rule kScans = between(0, 1'000'000), kCell{.low = 1.0, .high = 1e6, .or_zero = true};
     return field_table(
         field("detection_probability", &C::detection_probability, kProbability, "1",
-              "Probability PD that a visible target gives a plot in a scan."),
+              "Probability PD that a visible target gives a plot in a scan, before it is learned."),
         field("gate_probability", &C::gate_probability, inside(0, 1), "1",
               "Probability PG that the plot of a target is in its gate."),
         field("clutter_density_per_m2", &C::clutter_density_per_m2, between(1e-15, 1), "1/m²",
-              "False plots per area and scan where the clutter map has found none."),
+              "False plots per area and scan, at the least; what is more is learned."),
         field("outlier_probability", &C::outlier_probability, from_to_below(0, 1), "1",
               "Share of plots whose error is an outlier."),
         field("outlier_scale", &C::outlier_scale, between(1, 1000), "1",
@@ -97,14 +97,15 @@ struct TrackerConfig {
               "Association of plots with tracks: 'probabilistic' weighs every plot in the gate "
               "(PDA) less what other tracks claim of it, 'global_nearest' gives each track one "
               "plot by the best total (GNN), 'nearest' by the best pair first."),
-        field("initial_existence", &C::initial_existence, kProbability, "1",
-              "Probability that two plots a speed limit apart are a target."),
+        field("birth_density_per_m2", &C::birth_density_per_m2, between(0, 1), "1/m²",
+              "New targets per area and scan; 0: none but designated ones."),
         field("free_plot", &C::free_plot, kProbability, "1",
               "A plot starts a track when it belongs to no other with this probability."),
         field("start_gate_sigma", &C::start_gate_sigma, between(0, 1000), "sigma",
               "Plot errors by which the speed limit of a start is widened."),
         field("start_speed_factor", &C::start_speed_factor, between(0, 1000), "1",
-              "Prior speed of a start over the speed limit of the radar; 0: no prior."),
+              "Prior speed of a start over the speed limit of the radar; 0: the speed of two plots "
+              "is taken as it is."),
         field("confirm_existence", &C::confirm_existence, kProbability, "1",
               "A track is confirmed above this probability of existence, with `confirm_hits` of "
               "its last `confirm_window` scans."),
@@ -115,7 +116,8 @@ struct TrackerConfig {
         field("survival_time_s", &C::survival_time_s, kTime, "s",
               "Mean time until a target leaves."),
         field("drop_existence", &C::drop_existence, kProbability, "1",
-              "A track below this probability of existence is dropped."),
+              "A tentative track below this probability of existence, and below a third of that of "
+              "its start, is dropped."),
         field("tentative_misses", &C::tentative_misses, kScans, "scans",
               "A tentative track is dropped after more misses in a row."),
         field("coast_scans", &C::coast_scans, kScans, "scans",
@@ -125,8 +127,10 @@ struct TrackerConfig {
               "Further misses allowed for each plot that the track has had."),
         field("coast_scans_max", &C::coast_scans_max, kScans, "scans",
               "Upper limit of the misses in a row of a confirmed track."),
-        field("shown_scans", &C::shown_scans, kScans, "scans",
-              "A coasting track is shown for this many scans, then held without being shown."),
+        field(
+            "shown_probability", &C::shown_probability, kProbability, "1",
+            "A coasting track is held without being shown when a target that is there has so many "
+            "misses in a row with less than this probability."),
         field("drop_position_std_m", &C::drop_position_std_m, between(0.1, 1e9), "m",
               "A track with a larger standard deviation of its position is dropped; the limit is "
               "raised to two plot errors and, for a confirmed track, to what a vessel runs in "
@@ -149,12 +153,11 @@ struct TrackerConfig {
               "Room for the plots of a scan; those beyond it are rejected."));
   }
 
-  /// PD PG: a visible target gives a plot, and that in its gate. Where there are outliers the gate
-  /// is theirs, and holds all other plots.
-  [[nodiscard]] double detection() const noexcept {
+  /// PG: the plot of a target is in its gate. Where there are outliers the gate is theirs, and
+  /// holds all other plots.
+  [[nodiscard]] double in_gate() const noexcept {
     const double w = outlier_probability;
-    const double in_gate = w > 0.0 ? 1.0 - w + w * gate_probability : gate_probability;
-    return detection_probability * in_gate;
+    return w > 0.0 ? 1.0 - w + w * gate_probability : gate_probability;
   }
 
   /// k², by which the covariance of an outlier is larger; 1 where there are none.

@@ -138,7 +138,7 @@ class Duplicates {
   [[nodiscard]] bool has_senior(const TrackList& tracks, const Track& track) const noexcept {
     const auto reach = [&](double other_m2) { return reach_m(widest_m2(track) + other_m2); };
     bool found = false;
-    positions_.for_each_near(track.position(), reach, [&](int slot) {
+    positions_.for_each_nearest(track.position(), reach, kMostNear, [&](int slot) {
       const Track& other = tracks.at(slot);
       if (found || &other == &track || ends_[static_cast<std::size_t>(slot)] != 0 ||
           !is_senior(other, track))
@@ -152,6 +152,8 @@ class Duplicates {
     });
     return found;
   }
+
+  static constexpr int kMostNear = 128;  ///< tracks that one is compared with
 
   double longest_s_;  ///< between the times of two tracks that are compared
   double distance_;

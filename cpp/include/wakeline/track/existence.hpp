@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wakeline/core/archive.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/track.hpp"
 
@@ -16,12 +17,65 @@ namespace wakeline {
 
 /// Detection of a target by the radar, given that it exists.
 struct Detection {
-  double detected;  ///< PD pv: it gives a plot
-  double missed;    ///< 1 - PD PG pv: it gives none in its gate
+  double detected;        ///< PD pv: it gives a plot
+  double missed;          ///< 1 - PD PG pv: it gives none in its gate
+  double visible_missed;  ///< pv (1 - PD PG): it gives none although it is visible
 
-  Detection(const TrackerConfig& config, double visibility) noexcept
-      : detected(config.detection_probability * visibility),
-        missed(1.0 - config.detection() * visibility) {}
+  /// With the probability PD that a visible target gives a plot and PG that it is in the gate.
+  Detection(double detection_probability, double in_gate, double visibility) noexcept
+      : detected(detection_probability * visibility),
+        missed(1.0 - detection_probability * in_gate * visibility),
+        visible_missed(visibility * (1.0 - detection_probability * in_gate)) {}
+};
+
+/// The probability PD that a visible target gives a plot, learned from the confirmed tracks.
+///
+/// It is the share of looks at them in which they had a plot, of about the last thousand looks. It
+/// begins with the configured probability, which counts as twenty looks.
+class DetectionProbability {
+ public:
+  explicit DetectionProbability(const TrackerConfig& config)
+      : in_gate_(config.in_gate()), seen_(kPriorLooks * config.detection_probability) {
+    evaluate();
+  }
+
+  /// Evaluates what has been learned; until the next time the value stays.
+  void evaluate() noexcept { value_ = std::clamp(seen_ / looks_, kLeast, kMost); }
+
+  [[nodiscard]] double value() const noexcept { return value_; }
+
+  /// Learns a look at a confirmed target, which had a plot with that probability.
+  void learn(double seen) noexcept {
+    seen_ = kMemory * seen_ + seen;
+    looks_ = kMemory * looks_ + 1.0;
+  }
+
+  /// Detection of a target of that visibility.
+  [[nodiscard]] Detection of(double visibility) const noexcept {
+    return {value_, in_gate_, visibility};
+  }
+
+  /// How many misses in a row a target that is there has with at least that probability.
+  [[nodiscard]] double likely_misses(double probability) const noexcept {
+    return std::log(probability) / std::log(1.0 - value_);
+  }
+
+  /// Saves or restores what has been learned.
+  void archive(Archive& fields) {
+    fields(seen_);
+    fields(looks_);
+    evaluate();
+  }
+
+ private:
+  static constexpr double kPriorLooks = 20.0;
+  static constexpr double kMemory = 0.999;
+  static constexpr double kLeast = 0.2, kMost = 0.98;
+
+  double in_gate_;
+  double seen_;
+  double looks_ = kPriorLooks;
+  double value_;
 };
 
 /// What a time step does to existence and visibility, the same for all tracks: a target may leave,
@@ -54,13 +108,12 @@ struct ScanLikelihood {
 };
 
 /// Bayes' rule for "the target exists" and "it is visible".
-inline void update_existence(const TrackerConfig& config, const ScanLikelihood& scan,
-                             Track& track) noexcept {
+inline void update_existence(const TrackerConfig& config, const Detection& detection,
+                             const ScanLikelihood& scan, Track& track) noexcept {
   constexpr double kMostExistence = 0.99999;
   if (config.visible_time_s > 0.0) {
     const double seen = std::max(scan.total - scan.none, 0.0);  // their sum is rounded
-    const double visible =
-        scan.assigned ? seen : track.visibility * (1.0 - config.detection()) + seen;
+    const double visible = scan.assigned ? seen : detection.visible_missed + seen;
     const double either = scan.assigned ? visible : visible + (1.0 - track.visibility);
     if (either > 0.0) track.visibility = visible / either;
   }

@@ -7,11 +7,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/archive.hpp"
+#include "wakeline/core/cholesky.hpp"
 #include "wakeline/track/clutter_density.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/place_index.hpp"
@@ -33,13 +36,13 @@ struct FreePlot {
 class FreePlots {
  public:
   explicit FreePlots(int max_plots)
-      : capacity_(3 * static_cast<std::size_t>(max_plots)), index_(3 * max_plots) {
+      : capacity_(4 * static_cast<std::size_t>(max_plots)), index_(4 * max_plots) {
     plots_.reserve(capacity_);
   }
 
-  /// Calls `f(earlier)` for every plot that a target under the speed limit can have given in the
-  /// turn before, by the angle of the beam or by time, and at most `longest_s` before it gave
-  /// `later`.
+  /// Calls `f(earlier)` for the plots, at most `kMostNear` nearest ones, that a target under the
+  /// speed limit can have given in one of the two turns before, by the angle of the beam or by
+  /// time, and at most `longest_s` before it gave `later`.
   template <class Function>
   void for_each_before(const ScanPlot& later, double max_speed_mps, double period_s, double sigmas,
                        double longest_s, Function&& function) const {
@@ -48,12 +51,13 @@ class FreePlots {
     const auto reach_m = [&](double earlier_m2) {
       return way_m + sigmas * std::sqrt(earlier_m2 + variance_m2);
     };
-    index_.for_each_near(later.position.mean, reach_m, [&](int k) {
+    index_.for_each_nearest(later.position.mean, reach_m, kMostNear, [&](int k) {
       const FreePlot& plot = plots_[static_cast<std::size_t>(k)];
       const double dt_s = later.time_s - plot.time_s;
       constexpr double kTurn = 2 * kPi<double>;
-      const bool turn_before = !(std::abs(later.beam_rad - plot.beam_rad - kTurn) > kTurn / 2) ||
-                               std::abs(dt_s - period_s) < 0.5 * period_s;
+      const double turns = (later.beam_rad - plot.beam_rad) / kTurn;
+      const bool turn_before =
+          !(std::abs(turns - 1.5) > 1.0) || std::abs(dt_s - 1.5 * period_s) < period_s;
       if (turn_before && dt_s > 0.0 && dt_s <= longest_s &&
           within_speed_limit(plot.position, later.position, dt_s, max_speed_mps, sigmas))
         function(plot);
@@ -108,6 +112,8 @@ class FreePlots {
     index_.sort();
   }
 
+  static constexpr int kMostNear = 32;
+
   std::size_t capacity_;
   std::vector<FreePlot> plots_;
   std::size_t found_ = 0;  ///< the first of them
@@ -124,28 +130,29 @@ struct TrackStart {
   LearnedPlots learned;  ///< what the clutter map has learned of its plots
 };
 
-/// Two-point initiation: a free plot, and one of the scan before that is near enough for the speed
-/// limit, start a track. Memory is taken by the constructor.
+/// Two-point initiation: a free plot, and one of the two scans before that is near enough for the
+/// speed limit, start a track. Memory is taken by the constructor.
 class TrackInitiation {
  public:
   TrackInitiation(const Radar& radar, const TrackerConfig& config)
       : config_(config), radar_(radar), before_(config.max_plots) {}
 
   /// Calls `start(TrackStart)` for every pair, as long as `has_room(existence)`; then keeps the
-  /// free plots for the next turn. Plots that wait are left out. The beam has passed that angle,
+  /// free plots for the next turns. Plots that wait are left out. The beam has passed that angle,
   /// and a whole turn or a sector.
   template <class HasRoom, class Start>
   void initiate(const ScanPlots& plots, const PlotOwnership& ownership,
-                const ClutterDensity& clutter, double beam_rad, bool whole_turn,
-                const HasRoom& has_room, const Start& start) {
+                const ClutterDensity& clutter, double detection_probability, double beam_rad,
+                bool whole_turn, const HasRoom& has_room, const Start& start) {
     const double longest_s = std::max(config_.coast_scans_max, kLeastScans) * radar_.period_s;
     for (int k = 0; k < plots.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
       if (plots[k].waits || !(ownership.free_probability()[at] > config_.free_plot)) continue;
-      if (!has_room(existence(clutter.per_m2(k), clutter))) continue;
+      if (!has_room(kMostExistence)) break;
       const auto pair = [&](const FreePlot& earlier) {
         const LearnedPlots own{earlier.position.mean, 1.0, earlier.time_s};
-        const double probability = existence(clutter.without(own, plots, k), clutter);
+        const double probability =
+            existence(earlier, plots[k], clutter.without(own, plots, k), detection_probability);
         if (!has_room(probability)) return;
         start(TrackStart{belief(earlier, plots[k]), plots[k].time_s, plots[k].beam_rad, probability,
                          clutter.with(own, plots, k, ownership.clutter_probability()[at])});
@@ -163,32 +170,47 @@ class TrackInitiation {
     return {Vec<double, 2>::Zero(), std_mps * std_mps / 2 * Mat<double, 2, 2>::Identity()};
   }
 
-  /// Saves or restores the free plots of the scan before.
+  /// Saves or restores the free plots of the scans before.
   void archive(Archive& fields) {
     before_.archive(fields);
     fields(sorted_rad_);
   }
 
  private:
-  /// Free plots pair with those of the turn before alone, so that they are sorted in after a part
-  /// of a turn, and dropped after two.
+  /// Free plots pair with those of the two turns before, so that they are sorted in after a part of
+  /// a turn, and dropped after three.
   void keep_free(const ScanPlots& plots, const PlotOwnership& ownership, double beam_rad,
                  bool whole_turn) noexcept {
     constexpr double kTurn = 2 * kPi<double>;
     const bool sorts = whole_turn || beam_rad - sorted_rad_ >= kTurn / 4;
-    if (sorts) before_.drop_before(beam_rad - (whole_turn ? 1.0 : 2.25) * kTurn);
+    if (sorts) before_.drop_before(beam_rad - (whole_turn ? 2.0 : 3.25) * kTurn);
     before_.add(plots, ownership.free_probability(), config_.free_plot);
     if (!sorts) return;
     before_.sort();
     sorted_rad_ = beam_rad;
   }
 
+  static constexpr double kMostExistence = 0.3;  ///< of two plots, however near
   static constexpr int kLeastScans = 2;  ///< so far apart two plots of a start may be at least
 
-  /// Probability of existence, which falls with the density of clutter.
-  [[nodiscard]] double existence(double clutter_per_m2,
-                                 const ClutterDensity& clutter) const noexcept {
-    return config_.initial_existence * clutter.floor_per_m2() / clutter_per_m2;
+  /// Probability that two plots are a target's and not clutter of density ρ: odds of β/ρ for the
+  /// first, with the birth density β; of PD N(z₂; z₁) / ρ for the second, with the prior of the
+  /// velocity; and 1 - PD for each scan between.
+  [[nodiscard]] double existence(const FreePlot& earlier, const ScanPlot& later,
+                                 double clutter_per_m2,
+                                 double detection_probability) const noexcept {
+    const double dt_s = later.time_s - earlier.time_s;
+    const Cholesky<2> factor(earlier.position.covariance + later.position.covariance +
+                             dt_s * dt_s * prior_velocity().covariance);
+    if (!factor.ok()) return 0.0;
+    const Vec<double, 2> way = later.position.mean - earlier.position.mean;
+    const double likelihood =
+        std::exp(-0.5 * (factor.squared_norm(way) + factor.log_determinant())) /
+        (2.0 * std::numbers::pi);
+    const double missed = std::max(std::round(dt_s / radar_.period_s) - 1.0, 0.0);
+    const double odds = config_.birth_density_per_m2 / clutter_per_m2 * detection_probability *
+                        likelihood / clutter_per_m2 * std::pow(1.0 - detection_probability, missed);
+    return std::min(odds / (1.0 + odds), kMostExistence);
   }
 
   [[nodiscard]] Gaussian<4> belief(const FreePlot& earlier, const ScanPlot& later) const noexcept {

@@ -36,15 +36,32 @@ inline double allowed_misses(const TrackerConfig& config, const Track& track) no
                   double(config.coast_scans_max));
 }
 
-/// Confirms a track, or lets a confirmed one coast, by the scans counted. True when it has just
-/// begun to coast.
-inline bool confirm_or_coast(const TrackerConfig& config, const Radar& radar,
+/// Below which probability of existence a tentative track is deleted. In dense clutter all starts
+/// are doubtful, and one is not deleted before it has become more so.
+inline double least_existence(const TrackerConfig& config, const Track& track) noexcept {
+  constexpr double kDoubt = 0.3;  // of the existence at the start
+  return std::min(config.drop_existence, kDoubt * track.start_existence);
+}
+
+/// Whether a track is so much faster than vessels are that it is not shown. One that is at the
+/// limit is kept and shown, until its speed is beyond doubt.
+inline bool is_too_fast_to_show(const TrackerConfig& config, const Radar& radar,
+                                const Track& track) noexcept {
+  constexpr double kToSpare = 1.2;
+  return track.speed_mps() > kToSpare * speed_limit_mps(config, radar);
+}
+
+/// Confirms a track, or lets a confirmed one coast, by the scans counted: it is shown for so many
+/// misses in a row. True when it has just begun to coast.
+inline bool confirm_or_coast(const TrackerConfig& config, const Radar& radar, double shown_misses,
                              Track& track) noexcept {
   const bool was_seen = track.status == TrackStatus::kConfirmed;
   if (track.confirmed() || is_confirmable(config, radar, track))
-    track.status = track.misses == 0                    ? TrackStatus::kConfirmed
-                   : track.misses <= config.shown_scans ? TrackStatus::kCoasting
-                                                        : TrackStatus::kHeld;
+    track.status =
+        track.unexplained_misses > shown_misses || is_too_fast_to_show(config, radar, track)
+            ? TrackStatus::kHeld
+        : track.misses == 0 ? TrackStatus::kConfirmed
+                            : TrackStatus::kCoasting;
   return was_seen && track.misses > 0;
 }
 
@@ -52,7 +69,8 @@ inline bool confirm_or_coast(const TrackerConfig& config, const Radar& radar,
 inline LossReason reason_to_delete(const TrackerConfig& config, const Radar& radar,
                                    const Track& track) noexcept {
   if (track.misses > allowed_misses(config, track)) return LossReason::kMissed;
-  if (!track.confirmed() && track.existence < config.drop_existence) return LossReason::kDoubtful;
+  if (!track.confirmed() && track.existence < least_existence(config, track))
+    return LossReason::kDoubtful;
   if (exceeds_speed(track.kinematics, speed_limit_mps(config, radar),
                     track.confirmed() ? kSpeedSigmas : 0.0))
     return LossReason::kTooFast;

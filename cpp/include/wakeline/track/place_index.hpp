@@ -52,6 +52,16 @@ class PlaceIndex {
         layer.places.for_each_near(position, reach_m(layer.largest_m2), function);
   }
 
+  /// The same for the nearest places of each layer, at most so many of a layer, about from the
+  /// nearest on. Where all is crowded on one spot, a search takes no longer than elsewhere.
+  template <class Reach, class Function>
+  void for_each_nearest(const Vec<double, 2>& position, const Reach& reach_m, int most,
+                        Function&& function) const {
+    for (const Layer& layer : layers_)
+      if (!layer.places.empty())
+        layer.places.for_each_nearest(position, reach_m(layer.largest_m2), most, function);
+  }
+
  private:
   /// Standard deviations below 32, 128, 512 m, 2 km, and any.
   static constexpr int kLayers = 5;

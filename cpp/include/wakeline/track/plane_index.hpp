@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <limits>
 #include <vector>
 
 #include "wakeline/core/types.hpp"
@@ -75,6 +77,32 @@ class PlaneIndex {
     }
   }
 
+  /// Calls `f(name)` for the points in that square, from the nearest strip outwards and in each
+  /// strip from the nearest point outwards, until it has been called so many times.
+  template <class Function>
+  void for_each_nearest(const Vec<double, 2>& position, double reach_m, int most,
+                        Function&& function) const {
+    const double south = position[0] - reach_m;
+    const double north = position[0] + reach_m;
+    const std::ptrdiff_t strips = std::ssize(south_m_);
+    std::ptrdiff_t up =
+        first_not_below(south_m_.begin(), strips, position[0], [](double m) { return m; }) -
+        south_m_.begin();
+    std::ptrdiff_t down = up - 1;
+    while (most > 0 && (up < strips || down >= 0)) {
+      const double above_m = up < strips ? south_m_[at(up)] - position[0] : kNowhere;
+      const double below_m = down < 0            ? kNowhere
+                             : down + 1 < strips ? position[0] - south_m_[at(down + 1)]
+                                                 : 0.0;
+      if (!(std::min(above_m, below_m) <= reach_m)) return;
+      visit_strip(above_m < below_m ? up++ : down--, position[1], reach_m, [&](const Point& point) {
+        if (!(point.north >= south && point.north <= north)) return true;
+        function(point.name);
+        return --most > 0;
+      });
+    }
+  }
+
   [[nodiscard]] bool empty() const noexcept { return points_.empty(); }
 
  private:
@@ -83,6 +111,27 @@ class PlaneIndex {
     double east;
     int name;
   };
+
+  static constexpr double kNowhere = std::numeric_limits<double>::infinity();
+
+  static std::size_t at(std::ptrdiff_t index) noexcept { return static_cast<std::size_t>(index); }
+
+  /// Calls `f(point)` for the points of a strip within reach, from the nearest to an east outwards,
+  /// as long as it returns true.
+  template <class Function>
+  void visit_strip(std::ptrdiff_t strip, double east_m, double reach_m,
+                   const Function& function) const {
+    const auto begin = points_.begin() + strip * per_strip_;
+    const auto end = points_.begin() + std::min((strip + 1) * per_strip_, std::ssize(points_));
+    auto right = first_not_below(begin, end - begin, east_m, [](const Point& p) { return p.east; });
+    auto left = right;
+    while (right != end || left != begin) {
+      const double right_m = right != end ? right->east - east_m : kNowhere;
+      const double left_m = left != begin ? east_m - std::prev(left)->east : kNowhere;
+      if (!(std::min(right_m, left_m) <= reach_m)) return;
+      if (!function(right_m <= left_m ? *right++ : *--left)) return;
+    }
+  }
 
   /// The first of `size` sorted elements whose `key` is not below a limit. In steps without a
   /// branch, which a processor would guess wrong every other time.

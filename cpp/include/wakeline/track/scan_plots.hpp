@@ -26,6 +26,7 @@ struct ScanPlot {
   double beam_rad;  ///< angle of the beam that saw it, unwrapped; NaN where it is not known
   double wait_until_rad;  ///< it waits while the beam is before that angle
   bool waits;             ///< for the next call
+  double range_m = 0.0;   ///< from the antenna
 };
 
 /// The usable plots of one scan, found by position. Memory is taken by the constructor.
@@ -75,7 +76,7 @@ class ScanPlots {
       const double plot_s = std::min(plot.time_s, time_s);
       index_.add(position.mean, position.covariance.trace(), size());
       plots_.push_back({position, plot_s, static_cast<int>(k), beam_rad(plot),
-                        -std::numeric_limits<double>::infinity(), false});
+                        -std::numeric_limits<double>::infinity(), false, plot.range_m});
       earliest_s_ = std::min(earliest_s_, plot_s);
     }
     index_.sort();
@@ -112,17 +113,19 @@ class ScanPlots {
       fields(plot.time_s);
       fields(plot.beam_rad);
       fields(plot.wait_until_rad);
+      fields(plot.range_m);
       plot.input = -1;
       plot.waits = false;
     }
   }
 
-  /// Calls `f(index)` for every plot in a square about a position: `reach_m(variance_m2)` is its
-  /// half side for plots whose covariance has at most that trace.
+  /// Calls `f(index)` for the plots in a square about a position: `reach_m(variance_m2)` is its
+  /// half side for plots whose covariance has at most that trace. Of more than `kMostNear` plots
+  /// that are known about as well, for the nearest.
   template <class Reach, class Function>
   void for_each_near(const Vec<double, 2>& position, const Reach& reach_m,
                      Function&& function) const {
-    index_.for_each_near(position, reach_m, [&](int index) {
+    index_.for_each_nearest(position, reach_m, kMostNear, [&](int index) {
       if ((*this)[index].time_s <= latest_s_) function(index);
     });
   }
@@ -148,6 +151,8 @@ class ScanPlots {
   }
 
  private:
+  static constexpr int kMostNear = 128;
+
   std::vector<ScanPlot> plots_;
   PlaceIndex index_;
   double earliest_s_ = 0.0;

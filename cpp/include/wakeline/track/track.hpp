@@ -20,7 +20,7 @@ enum class TrackStatus : std::uint8_t {
   kTentative,  ///< perhaps a target
   kConfirmed,  ///< a target, seen in this scan
   kCoasting,   ///< a target not seen in the last scan or scans
-  kHeld,       ///< a target not seen for longer: kept, but not shown
+  kHeld,       ///< a target not seen for longer, or far too fast: kept, but not shown
 };
 
 enum class TrackEvent : std::uint8_t {
@@ -121,22 +121,24 @@ struct Track {
   std::int64_t tentative_id = 0;
   std::array<char, 32> name{};  ///< given by the operator, zero-terminated
   TrackStatus status = TrackStatus::kTentative;
-  double time_s = 0.0;          ///< of the estimate
-  Gaussian<4> kinematics = {};  ///< of the estimate, `[x, vx, y, vy]`
-  double existence = 0.0;       ///< probability that there is such a target
-  double visibility = 1.0;      ///< probability that the radar can see it
+  double time_s = 0.0;           ///< of the estimate
+  Gaussian<4> kinematics = {};   ///< of the estimate, `[x, vx, y, vy]`
+  double existence = 0.0;        ///< probability that there is such a target
+  double start_existence = 1.0;  ///< the same when it started
+  double visibility = 1.0;       ///< probability that the radar can see it
   double nis = std::numeric_limits<double>::quiet_NaN();  ///< of the most probable plot of the scan
   int scans = 0;
   int hits = 0;
-  int misses = 0;             ///< in a row
-  std::uint32_t history = 0;  ///< bit k: seen k scans ago
-  int duplicate_scans = 0;    ///< in a row that a senior track was on the same target
-  double plot_m2 = 0.0;       ///< variance of its last plot, per axis (mean of both)
-  LearnedPlots learned = {};  ///< what the clutter map has learned of its own plots
-  double looked_s = 0.0;      ///< when the radar last looked: a plot or a miss
-  double passed_rad = 0.0;    ///< angle of the beam when it last passed the target, unwrapped
-  double look_rad = 0.0;      ///< before that angle the beam does not reach its gate
-  bool hushed = false;        ///< followed, but neither shown nor reported: the operator's word
+  int misses = 0;              ///< in a row
+  int unexplained_misses = 0;  ///< of these, without those in which another track had its plot
+  std::uint32_t history = 0;   ///< bit k: seen k scans ago
+  int duplicate_scans = 0;     ///< in a row that a senior track was on the same target
+  double plot_m2 = 0.0;        ///< variance of its last plot, per axis (mean of both)
+  LearnedPlots learned = {};   ///< what the clutter map has learned of its own plots
+  double looked_s = 0.0;       ///< when the radar last looked: a plot or a miss
+  double passed_rad = 0.0;     ///< angle of the beam when it last passed the target, unwrapped
+  double look_rad = 0.0;       ///< before that angle the beam does not reach its gate
+  bool hushed = false;         ///< followed, but neither shown nor reported: the operator's word
 
   [[nodiscard]] bool confirmed() const noexcept { return status != TrackStatus::kTentative; }
   /// Confirmed, and not silent for so long that it is only held.
@@ -165,12 +167,13 @@ struct Track {
   }
   [[nodiscard]] std::string_view label() const noexcept { return name.data(); }
 
-  /// Counts a scan in which the target was seen, or not.
-  void count(bool seen) noexcept {
+  /// Counts a scan in which the target was seen, or not, be it that another track had its plot.
+  void count(bool seen, bool shared = false) noexcept {
     ++scans;
     history = (history << 1) | (seen ? 1u : 0u);
     hits += seen;
     misses = seen ? 0 : misses + 1;
+    unexplained_misses = seen ? 0 : unexplained_misses + !shared;
   }
 
   /// Saves or restores all but the slot.
@@ -183,11 +186,13 @@ struct Track {
     fields(kinematics.mean);
     fields(kinematics.covariance);
     fields(existence);
+    fields(start_existence);
     fields(visibility);
     fields(nis);
     fields(scans);
     fields(hits);
     fields(misses);
+    fields(unexplained_misses);
     fields(history);
     fields(duplicate_scans);
     fields(plot_m2);

@@ -18,13 +18,17 @@ template <class Track>
 class TrackListOf {
  public:
   explicit TrackListOf(int capacity)
-      : pool_(static_cast<std::size_t>(capacity)), in_use_(pool_.size(), 0) {
-    slots_.reserve(pool_.size());
+      : pool_(static_cast<std::size_t>(capacity)),
+        in_use_(pool_.size(), 0),
+        place_(pool_.size(), 0) {
+    slots_.reserve(2 * pool_.size());  // with gaps
     vacant_.reserve(pool_.size());
     for (int slot = capacity; slot-- > 0;) vacant_.push_back(slot);
   }
 
-  [[nodiscard]] int size() const noexcept { return static_cast<int>(slots_.size()); }
+  [[nodiscard]] int size() const noexcept {
+    return static_cast<int>(pool_.size() - vacant_.size());
+  }
   [[nodiscard]] bool full() const noexcept { return vacant_.empty(); }
 
   /// The slots in use, those of older tracks first; valid until a track is opened or removed.
@@ -53,6 +57,8 @@ class TrackListOf {
   Track& open() noexcept {
     const int slot = vacant_.back();
     vacant_.pop_back();
+    if (slots_.size() == slots_.capacity()) close_gaps();
+    place_[static_cast<std::size_t>(slot)] = slots_.size();
     slots_.push_back(slot);
     in_use_[static_cast<std::size_t>(slot)] = 1;
     at(slot) = {};
@@ -62,9 +68,21 @@ class TrackListOf {
 
   /// Removes the track of a slot in use.
   void remove(int slot) noexcept {
+    vacate(slot);
+    close_gaps();
+  }
+
+  /// The same for one of many: it leaves a gap in the list of slots, for `close_gaps`.
+  void vacate(int slot) noexcept {
     in_use_[static_cast<std::size_t>(slot)] = 0;
     vacant_.push_back(slot);
-    slots_.erase(std::find(slots_.begin(), slots_.end(), slot));
+    slots_[place_[static_cast<std::size_t>(slot)]] = kGap;
+  }
+
+  /// Makes the list of slots one without gaps.
+  void close_gaps() noexcept {
+    slots_.erase(std::remove(slots_.begin(), slots_.end(), kGap), slots_.end());
+    number_places();
   }
 
   /// Removes the tracks for which the predicate holds, which is called for all in order.
@@ -77,6 +95,7 @@ class TrackListOf {
       return true;
     };
     slots_.erase(std::remove_if(slots_.begin(), slots_.end(), ends), slots_.end());
+    number_places();
   }
 
   /// Saves or restores the tracks; fails when the bytes are not a list of this capacity.
@@ -91,9 +110,17 @@ class TrackListOf {
       at(slot).archive(fields);
       at(slot).slot = slot;
     }
+    number_places();
   }
 
  private:
+  static constexpr int kGap = -1;
+
+  void number_places() noexcept {
+    for (std::size_t place = 0; place < slots_.size(); ++place)
+      place_[static_cast<std::size_t>(slots_[place])] = place;
+  }
+
   /// Whether each slot is either in use or vacant, once; notes which are in use.
   bool is_partition() noexcept {
     if (slots_.size() + vacant_.size() != pool_.size()) return false;
@@ -111,8 +138,9 @@ class TrackListOf {
   }
 
   std::vector<Track> pool_;
-  std::vector<char> in_use_;  ///< by slot
-  std::vector<int> slots_;    ///< in use, of older tracks first
+  std::vector<char> in_use_;        ///< by slot
+  std::vector<std::size_t> place_;  ///< by slot, where it is in `slots_`
+  std::vector<int> slots_;          ///< in use, of older tracks first; between removals with gaps
   std::vector<int> vacant_;
 };
 

@@ -57,8 +57,8 @@ struct [[nodiscard]] ScanReport {
 /// arguments and its output its own. All memory is taken by the constructor; `process` neither
 /// allocates nor throws. A tracker may be used from one thread at a time; trackers share nothing.
 /// `Steps` predicts and updates the estimators of many tracks at once. Sources: D. Mušicki,
-/// R. Evans, "Joint integrated probabilistic data association" and its linear multitarget form,
-/// IEEE Trans. AES-40, 2004, and IET RSN 2008; Bar-Shalom, Li, Multitarget-Multisensor Tracking,
+/// R. Evans, "Joint integrated probabilistic data association", IEEE Trans. AES-40, 2004; J. L.
+/// Williams, R. A. Lau, IEEE Trans. AES-50, 2014; Bar-Shalom, Li, Multitarget-Multisensor Tracking,
 /// 1995.
 template <class Estimator, class Steps = SideBySide<Estimator>>
 class Tracker {
@@ -189,7 +189,7 @@ class Tracker {
   static constexpr double kClockPeriods = 10.0;
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 7;
+  static constexpr std::uint32_t kArchiveVersion = 8;
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
   static constexpr std::size_t kGroup = 32;      ///< tracks that are stepped together
 
@@ -472,7 +472,7 @@ class Tracker {
         });
       candidates.thin(ownership_.free_probability());
       if (config_.association == Association::kProbabilistic)
-        multitarget_.claim(track, Detection(config_, track.visibility), candidates);
+        propagation_.claim(track, detection_probability_.of(track.visibility), candidates);
     }
   }
 
@@ -494,16 +494,18 @@ class Tracker {
 
   /// Assigns plots to tracks, where each may have one at most.
   void associate() noexcept {
-    if (config_.association == Association::kProbabilistic) return;
     competing_.assign(due_.begin(), due_.end());
     competing_.insert(competing_.end(), rivals_.begin(), rivals_.end());
-    assignment_.assign(config_, tracks_, competing_, candidates_, plots_.size());
+    if (config_.association == Association::kProbabilistic)
+      propagation_.propagate(competing_);
+    else
+      assignment_.assign(detection_probability_, tracks_, competing_, candidates_, plots_.size());
   }
 
-  [[nodiscard]] AssociationWeights weights_of(const Track& track) noexcept {
-    const Detection detection(config_, track.visibility);
+  [[nodiscard]] AssociationWeights weights_of(const Track& track,
+                                              const Detection& detection) noexcept {
     return config_.association == Association::kProbabilistic
-               ? multitarget_.weights(track, detection, candidates_of(track))
+               ? propagation_.weights(track, detection, candidates_of(track))
                : assignment_.weights(track, detection, candidates_of(track));
   }
 
@@ -515,7 +517,7 @@ class Tracker {
     std::size_t count = 0;
     for (std::size_t k = 0; k < slots.size(); ++k) {
       const Track& track = tracks_.at(slots[k]);
-      weights[k] = weights_of(track);
+      weights[k] = weights_of(track, detection_probability_.of(track.visibility));
       readings_[k].list(candidates_of(track), weights[k], config_.outlier_probability);
       if (readings_[k].empty()) continue;
       steps[count] = {&estimator_at(slots[k]), readings_[k].fixes(), weights[k].none,
@@ -525,6 +527,7 @@ class Tracker {
     steps_.update({steps.data(), count});
     for (std::size_t k = 0; k < slots.size(); ++k) {
       Track& track = tracks_.at(slots[k]);
+      const Detection detection = detection_probability_.of(track.visibility);
       const AssociationProbabilities probabilities = readings_[k].probabilities();
       note_best_plot(track, probabilities);
       ScanLikelihood scan{weights[k].none, weights[k].none, weights[k].assigned};
@@ -533,10 +536,21 @@ class Tracker {
         if (step_of[k]->total > 0.0) scan.total = step_of[k]->total;
       }
       if (scan.total > 0.0 && !(readings_[k].empty() && is_awaited(track)))
-        update_existence(config_, scan, track);
+        update_existence(config_, detection, scan, track);
       ownership_.add(track, candidates_of(track), weights[k], probabilities);
-      if (probabilities.any > 0.5 || !is_awaited(track)) track.count(probabilities.any > 0.5);
+      const bool seen = probabilities.any > 0.5;
+      if (!seen && is_awaited(track)) continue;
+      const bool shared = !seen && seen_alone(detection_probability_.of(track.visibility),
+                                              candidates_of(track)) > 0.5;
+      track.count(seen, shared);
+      if (!shared && is_sure(track)) detection_probability_.learn(probabilities.any);
     }
+  }
+
+  /// Whether a track is of a target that is there, so that its misses are those of the radar.
+  [[nodiscard]] static bool is_sure(const Track& track) noexcept {
+    constexpr int kScans = 8, kMisses = 6;
+    return track.confirmed() && track.scans > kScans && track.misses < kMisses;
   }
 
   /// Notes what a track keeps of its most probable plot, before the track takes the updated belief.
@@ -555,9 +569,11 @@ class Tracker {
   }
 
   void confirm_and_delete() noexcept {
+    const double shown_misses = detection_probability_.likely_misses(config_.shown_probability);
     tracks_.remove_if([&](Track& track) {
       if (touched_[static_cast<std::size_t>(track.slot)] == 0) return false;
-      if (confirm_or_coast(config_, radar_, track)) announce(TrackEvent::kCoasting, track);
+      if (confirm_or_coast(config_, radar_, shown_misses, track))
+        announce(TrackEvent::kCoasting, track);
       const LossReason reason = reason_to_delete(config_, radar_, track);
       if (reason != LossReason::kNone) announce(TrackEvent::kLost, track, reason);
       return reason != LossReason::kNone;
@@ -568,8 +584,9 @@ class Tracker {
   void delete_duplicates() noexcept {
     for (const int slot : duplicates_.find(tracks_, due_)) {
       announce(TrackEvent::kLost, tracks_.at(slot), LossReason::kDuplicate);
-      tracks_.remove(slot);
+      tracks_.vacate(slot);
     }
+    tracks_.close_gaps();
     std::erase_if(due_, [&](int slot) { return !tracks_.in_use(slot); });
   }
 
@@ -588,11 +605,12 @@ class Tracker {
     newest_before_ = next_tentative_id_ + 1;
     room_.reset();
     initiation_.initiate(
-        plots_, ownership_, clutter_, beam_.angle_rad(), whole_turn_,
-        [&](double existence) { return room_.has_room_for(existence, tracks_); },
+        plots_, ownership_, clutter_, detection_probability_.value(), beam_.angle_rad(),
+        whole_turn_, [&](double existence) { return room_.has_room_for(existence, tracks_); },
         [&](const TrackStart& start) {
           if (Track* track = open(start)) track->history = 3u;
         });
+    tracks_.close_gaps();
     for (const int slot : tracks_.slots())
       if (is_new(tracks_.at(slot))) announce(TrackEvent::kStarted, tracks_.at(slot));
     newest_before_ = next_tentative_id_ + 1;
@@ -609,7 +627,7 @@ class Tracker {
       const int weakest = room_.make_room();
       if (!is_new(tracks_.at(weakest)))
         announce(TrackEvent::kLost, tracks_.at(weakest), LossReason::kDisplaced);
-      tracks_.remove(weakest);
+      tracks_.vacate(weakest);
     }
     Track& track = tracks_.open();
     estimator_at(track.slot) = estimator;
@@ -620,7 +638,7 @@ class Tracker {
     track.look_rad = start.beam_rad;
     track.kinematics = start.belief;
     track.plot_m2 = track.position_variance_m2();
-    track.existence = start.existence;
+    track.existence = track.start_existence = start.existence;
     track.learned = start.learned;
     track.scans = track.hits = 2;
     room_.add(track);
@@ -698,6 +716,7 @@ class Tracker {
     fields(full_);
     fields(next_id_);
     fields(next_tentative_id_);
+    detection_probability_.archive(fields);
     clutter_.archive(fields);
     initiation_.archive(fields);
     beam_.archive(fields);
@@ -734,6 +753,7 @@ class Tracker {
   std::vector<BeamArc> arcs_;   ///< of the tracks that are due
   std::vector<char> is_contested_;  ///< by plot: a track that waits competes for it
   std::vector<char> is_candidate_;  ///< by plot: of a track that is due
+  DetectionProbability detection_probability_;
 
   // The stages of a scan, in order
   ScanPlots plots_;
@@ -741,7 +761,7 @@ class Tracker {
   ModePositions modes_;  ///< of the track at hand
   TrackGate gate_;
   std::vector<CandidatePlots> candidates_;  ///< by slot
-  LinearMultitarget multitarget_;
+  BeliefPropagation propagation_;
   PlotAssignment assignment_;
   std::array<TrackReadings, kGroup> readings_;  ///< of the tracks at hand
   PlotOwnership ownership_;
@@ -763,11 +783,12 @@ Tracker<Estimator, Steps>::Tracker(const Radar& radar, const TrackerConfig& conf
       steps_(prototype),
       tracks_(config.max_tracks),
       estimators_(static_cast<std::size_t>(config.max_tracks), prototype),
+      detection_probability_(config),
       plots_(config.max_plots),
       clutter_(config),
       gate_(config),
       candidates_(static_cast<std::size_t>(config.max_tracks)),
-      multitarget_(config),
+      propagation_(config),
       assignment_(config),
       ownership_(config),
       duplicates_(config, radar.period_s, gate_.threshold()),
@@ -799,8 +820,9 @@ ScanReport Tracker<Estimator, Steps>::step(double time_s, std::span<const Plot> 
   started_ = true;
 
   const int taken = sweep(sector, plots, dt_s);
+  detection_probability_.evaluate();
   clutter_.evaluate(plots_, whole_turn_ ? dt_s : radar_.period_s, radar_.period_s);
-  multitarget_.clear(plots_.size());
+  propagation_.clear(plots_.size());
   ownership_.extend(plots_.size());
 
   list_due();
@@ -828,6 +850,8 @@ ScanReport Tracker<Estimator, Steps>::step(double time_s, std::span<const Plot> 
       tracks_, due_);
   initiate();
   report_room();
+  clutter_.learn_rings(plots_, ownership_.free_probability(), dt_s,
+                       whole_turn_ ? 1.0 : dt_s / radar_.period_s);
 
   report_owners(std::min(plots.size(), static_cast<std::size_t>(config_.max_plots)));
   ownership_.drop_settled(plots_);
@@ -861,6 +885,7 @@ std::int64_t Tracker<Estimator, Steps>::designate(double time_s, double north_m,
   room_.reset();
   if (!room_.has_room_for(kDesignatedExistence, tracks_)) return 0;
   Track* track = open({belief, time_s, beam_.angle_rad(), kDesignatedExistence, {}});
+  tracks_.close_gaps();
   if (track == nullptr) return 0;
   track->tentative_id = 0;
   track->passed_rad = beam_.last_rad(std::atan2(east_m - own_.east_m, north_m - own_.north_m) +
