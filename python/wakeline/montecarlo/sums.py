@@ -21,7 +21,7 @@ from .candidate import Candidate, named
 
 _KINEMATICS = {4: slice(4), 5: slice(4), 6: [0, 1, 3, 4]}
 _NEES_BAND = eval.consistency_bounds(0.95, 4, 1)
-_FINE = [int(core.Status.ok), int(core.Status.missed)]
+_FINE = [int(status) for status in (core.Status.ok, core.Status.missed, core.Status.gated)]
 
 
 @dataclass(frozen=True)

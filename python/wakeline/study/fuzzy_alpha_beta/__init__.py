@@ -128,7 +128,7 @@ def loss_probability(
         start=[wl.two_point(sensor, *z[:2], period_s) for z in runs.z],
         gate=wl.RadiusGate(radius_m=gate_m),
     )
-    missed = done.status == int(wl.Status.missed)
+    missed = np.isin(done.status, [wl.Status.missed, wl.Status.gated])
     in_a_row = np.lib.stride_tricks.sliding_window_view(missed, LOST_AFTER, axis=1).all(axis=-1)
     return float(in_a_row.any(axis=1).mean())
 
