@@ -13,6 +13,7 @@
 
 namespace wakeline::python {
 
+void define_calibration(py::module_& track);     // calibration.cpp
 void define_strobe_tracker(py::module_& track);  // strobe_tracker.cpp
 
 namespace {
@@ -146,7 +147,9 @@ Radar one_of(const std::variant<Radar, std::vector<Radar>>& radar) {
 /// Raises FilterError where a scan of that time is rejected as too far ahead.
 void require_time(const AnyTracker& tracker, const char* what, double time_s) {
   const double latest_s = tracker.visit([](const auto& one) { return one.latest_time_s(); });
-  if (std::isfinite(time_s) && time_s > latest_s)
+  const double true_s =
+      tracker.visit([&](const auto& one) { return one.radar().true_time_s(time_s); });
+  if (std::isfinite(time_s) && true_s > latest_s)
     throw FilterError(std::string(what) + ": time_s must be at most " + std::to_string(latest_s) +
                       ", an hour after the last scan, got " + std::to_string(time_s));
 }
@@ -585,6 +588,7 @@ designated or dropped again.)")
       "of machine.");
 
   define_strobe_tracker(m);
+  define_calibration(m);
 }
 
 }  // namespace wakeline::python

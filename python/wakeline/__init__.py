@@ -102,6 +102,8 @@ from ._engine.navigation import (
     rhumb_line,
 )
 from ._engine.track import (
+    Calibration,
+    CalibrationConfig,
     Event,
     Radar,
     StrobeTracker,
@@ -162,6 +164,8 @@ __all__ = [
     "AlphaBetaSmoother",
     "BayesianAlphaBeta",
     "BenedictBordner",
+    "Calibration",
+    "CalibrationConfig",
     "ChiSquareGate",
     "ConstantGains",
     "CovarianceStrobe",

@@ -22,4 +22,4 @@ def test_the_example_runs(example, tmp_path, monkeypatch, capsys):
 def test_examples_have_the_same_names_in_both_languages():
     names = {path.stem for path in (ROOT / "cpp/examples").glob("*.cpp")}
     assert {path.stem for path in EXAMPLES} == names
-    assert len(names) == 7
+    assert len(names) == 8

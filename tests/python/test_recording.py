@@ -578,7 +578,7 @@ def test_a_pipe_that_is_no_text_is_not_read_again(tmp_path):
 def test_a_turned_scan_keeps_its_ranges_about_own_ship(file):
     plots = file("time_s,range_m,bearing_deg\n0,100,175\n0,50,0\n")
     (scan,) = only(read_plots(plots, own=(10.0, 20.0))).scans
-    turned = scan.turned(np.radians(10.0))
+    turned = scan.without_offsets(0.0, np.radians(-10.0), 0.0)
     np.testing.assert_allclose(turned.range_bearing[:, 0], scan.range_m)
     np.testing.assert_allclose(np.degrees(turned.bearing_rad), [-175.0, 10.0])
     from_own_m = turned.position_m - np.column_stack([turned.own_north_m, turned.own_east_m])

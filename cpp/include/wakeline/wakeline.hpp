@@ -134,6 +134,7 @@
 #include "wakeline/track/association.hpp"
 #include "wakeline/track/association_probabilities.hpp"
 #include "wakeline/track/beam.hpp"
+#include "wakeline/track/calibration.hpp"
 #include "wakeline/track/clutter_density.hpp"
 #include "wakeline/track/clutter_map.hpp"
 #include "wakeline/track/clutter_rings.hpp"

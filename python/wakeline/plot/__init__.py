@@ -5,6 +5,7 @@ and ``..._panel`` draws into the caller's axes or figure; :func:`map`, :func:`sc
 ``..._figure`` make a figure, which :func:`save` writes.
 """
 
+from .calibration import calibration_figure
 from .comparison import (
     error_panel,
     mark_switches,
@@ -56,6 +57,7 @@ __all__ = [
     "PALETTE",
     "TEXT_PT",
     "biases_over_time",
+    "calibration_figure",
     "circle_outline",
     "course_over_time",
     "course_panel",

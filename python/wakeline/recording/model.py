@@ -77,12 +77,19 @@ class Scan:
             own_east_m=own_east_m,
         )
 
-    def turned(self, by_rad: float) -> Scan:
-        """The scan with its plots rotated about own ship, clockwise by an angle."""
-        bearing_rad = wrap_angle(self.bearing_rad + by_rad)
+    def without_offsets(self, range_m: float, bearing_rad: float, time_s: float) -> Scan:
+        """The scan with offsets of its radar, measured minus true, removed from its plots.
+
+        Own ship stays where it was at each plot; the time of the scan remains.
+        """
         own_m = np.column_stack([self.own_north_m, self.own_east_m])
         return Scan.of_plots(
-            self.time_s, self.number, self.plot_time_s, self.range_m, bearing_rad, lambda _: own_m
+            self.time_s,
+            self.number,
+            self.plot_time_s - time_s,
+            np.maximum(self.range_m - range_m, 0.0),
+            wrap_angle(self.bearing_rad - bearing_rad),
+            lambda _: own_m,
         )
 
     def __len__(self) -> int:

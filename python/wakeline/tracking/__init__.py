@@ -14,6 +14,7 @@ plots into scans.
 
 from __future__ import annotations
 
+from .calibrated import calibrate, read_reports
 from .encounters import (
     DangerLimits,
     DangerZone,
@@ -48,11 +49,13 @@ __all__ = [
     "TrackedEpisode",
     "TrackedRecording",
     "Watched",
+    "calibrate",
     "follow_video",
     "has_names",
     "median_step_s",
     "open_recording",
     "read_designations",
+    "read_reports",
     "read_settings",
     "track_episode",
     "track_recording",

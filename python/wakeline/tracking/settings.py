@@ -126,7 +126,9 @@ class Settings:
     def make_tracker(self, period_s: float | None = None) -> wl.Tracker:
         """A new tracker; `period_s` is that of the antenna if the settings do not give it."""
         return wl.Tracker(
-            self._radar(period_s), _engine("tracker", self.tracker), _engine("models", self.models)
+            self.make_radar(period_s),
+            _engine("tracker", self.tracker),
+            _engine("models", self.models),
         )
 
     def make_strobe_tracker(
@@ -137,7 +139,7 @@ class Settings:
         open_ones = {k: v for k, v in estimated.items() if self.strobes[k] == default[k]}
         if "radius_m" not in open_ones:
             open_ones.pop("max_radius_m", None)
-        radar = self._radar(period_s)
+        radar = self.make_radar(period_s)
         return wl.StrobeTracker(
             radar,
             _engine("strobes", self.strobes | open_ones),
@@ -165,7 +167,8 @@ class Settings:
         room = ", ".join(f"{name} = {getattr(self, section)[name]}" for name in names)
         return [f"a tracker with {room} takes about {octets / 1e6:.0f} MB of memory"]
 
-    def _radar(self, period_s: float | None) -> wl.Radar:
+    def make_radar(self, period_s: float | None = None) -> wl.Radar:
+        """The radar; `period_s` is that of the antenna if the settings do not give it."""
         return _engine("radar", self.radar | {"period_s": self.period_s or period_s or 0.0})
 
     def knowing(self, radar: Mapping[str, Value]) -> Settings:
@@ -187,6 +190,15 @@ class Settings:
     def danger_zones(self) -> list[DangerZone]:
         """Areas with separate limits of danger."""
         return [_zone(self.danger, **zone) for zone in self.zones]
+
+    def calibrated(self, result: wl.track.CalibrationResult) -> Settings:
+        """These settings with the offsets of the radar that a calibration determined."""
+        radar = _as_in_file("radar", result.applied_to(self.make_radar()))
+        return replace(self, radar=radar | {"period_s": self.radar["period_s"]})
+
+    def radar_toml(self) -> str:
+        """The section ``[radar]`` of :meth:`toml`."""
+        return "\n".join(self._section("radar"))
 
     def toml(self) -> str:
         """Every setting with a line of explanation; reading it gives the same settings."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -29,7 +28,7 @@ class TrackedEpisode:
     Attributes
     ----------
     episode : Episode
-        With the bearing offset of the radar removed from its plots.
+        With the offsets of the radar removed from its plots.
     tracks : Tracks
         One row per displayed track and scan, at the time of the scan: predicted to it, or moved
         back to it from a later plot of the scan.
@@ -71,7 +70,7 @@ class TrackedRecording(Tracks):
     Attributes
     ----------
     recording : Recording
-        As tracked, with the bearing offset of the radar removed from its plots.
+        As tracked, with the offsets of the radar removed from its plots.
     episodes : list of TrackedEpisode
         One for each episode of the recording.
     settings : Settings
@@ -239,7 +238,7 @@ def tracked_episode(
         own = None
     tracks = _joined(tables, episode.name if named else None)
     tracks, encounters = watch_tracks(tracks, own, settings.danger_limits, settings.danger_zones)
-    shown = _without_offset(episode, math.radians(settings.radar["bearing_offset_deg"]))
+    shown = _without_offsets(episode, settings.make_radar())
     return TrackedEpisode(
         shown, tracks, events, plot_track_id, rejected_plots, elapsed_s, encounters, own is not None
     )
@@ -255,11 +254,12 @@ def has_names(recording: Recording) -> bool:
     return any(episode.name for episode in recording)
 
 
-def _without_offset(episode: Episode, bearing_offset_rad: float) -> Episode:
-    """The episode with the radar's bearing offset removed."""
-    if bearing_offset_rad == 0.0:
+def _without_offsets(episode: Episode, radar: wl.Radar) -> Episode:
+    """The episode with the radar's offsets removed from its plots."""
+    offsets = radar.range_offset_m, radar.bearing_offset_rad, radar.time_offset_s
+    if offsets == (0.0, 0.0, 0.0):
         return episode
-    return replace(episode, scans=[scan.turned(-bearing_offset_rad) for scan in episode.scans])
+    return replace(episode, scans=[scan.without_offsets(*offsets) for scan in episode.scans])
 
 
 def _process(tracker: wl.Tracker, end_s: float, scan: Scan) -> wl.track.ScanReport:

@@ -21,6 +21,8 @@ struct Radar {
   double period_s = 3.0;
   double max_speed_mps = 30.0;
   double bearing_offset_rad = 0.0;
+  double range_offset_m = 0.0;
+  double time_offset_s = 0.0;
 
   static constexpr auto fields() noexcept {
     using R = Radar;
@@ -37,18 +39,25 @@ struct Radar {
             "Speed limit of the vessels: no faster track starts, and a confirmed one is lost above "
             "it by three standard deviations of its speed."),
         field("bearing_offset_rad", &R::bearing_offset_rad, kFinite, "rad",
-              "Measured minus true bearing; subtracted from every plot."));
+              "Measured minus true bearing; subtracted from every plot."),
+        field("range_offset_m", &R::range_offset_m, between(-1e5, 1e5), "m",
+              "Measured minus true range; subtracted from every plot."),
+        field("time_offset_s", &R::time_offset_s, between(-3600, 3600), "s",
+              "Clock of the radar minus true time; subtracted from the times of scans and plots."));
   }
 
   /// A plot seen from own ship as a position with its covariance.
   [[nodiscard]] Gaussian<2> position(double range_m, double bearing_rad,
                                      const OwnShip& own) const noexcept {
     return PolarErrors{range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, own}
-        .position(range_m, bearing_rad, true);
+        .position(range_m - range_offset_m, bearing_rad, true);
   }
 
   /// The same of a plot, with its own covariance where it has one.
   [[nodiscard]] Gaussian<2> position(const Plot& plot) const noexcept;
+
+  /// A time by the radar's clock as true time.
+  [[nodiscard]] double true_time_s(double time_s) const noexcept { return time_s - time_offset_s; }
 
   friend bool operator==(const Radar&, const Radar&) = default;
 
@@ -74,12 +83,13 @@ inline Plot plot_of(const VideoPlot& echo, const OwnShip& own = {}) noexcept {
 inline Gaussian<2> Radar::position(const Plot& plot) const noexcept {
   if (plot.covariance.isZero(0.0)) return position(plot.range_m, plot.bearing_rad, plot.own);
   const Mat<double, 2, 2>& r = plot.covariance;
+  const double range_m = plot.range_m - range_offset_m;
   Gaussian<2> fix = PolarErrors{std::sqrt(r(0, 0)), std::sqrt(r(1, 1)), extent_std_m,
                                 bearing_offset_rad, plot.own}
-                        .position(plot.range_m, plot.bearing_rad, true);
+                        .position(range_m, plot.bearing_rad, true);
   const Vec<double, 2> u = towards(plot.bearing_rad - bearing_offset_rad);
   const Vec<double, 2> across(-u[1], u[0]);
-  const double common_m2 = plot.range_m * (r(0, 1) + r(1, 0)) / 2;
+  const double common_m2 = range_m * (r(0, 1) + r(1, 0)) / 2;
   fix.covariance += common_m2 * (u * across.transpose() + across * u.transpose());
   return fix;
 }

@@ -67,13 +67,15 @@ class ScanPlots {
     for (std::size_t k = 0; k < count; ++k) {
       const Plot& plot = plots[k];
       const Gaussian<2> position = radar.position(plot);
-      const bool usable = std::fabs(plot.time_s - time_s) <= slack_s && plot.range_m >= 0.0 &&
+      const double true_s = radar.true_time_s(plot.time_s);
+      const bool usable = std::fabs(true_s - time_s) <= slack_s &&
+                          plot.range_m >= std::max(0.0, radar.range_offset_m) &&
                           kRounding * std::fabs(plot.bearing_rad) <= radar.bearing_std_rad &&
                           in_range(position.mean) &&
                           in_range(std::sqrt(position.covariance.trace())) &&
                           Cholesky<2>(position.covariance).ok();
       if (!usable) continue;
-      const double plot_s = std::min(plot.time_s, time_s);
+      const double plot_s = std::min(true_s, time_s);
       index_.add(position.mean, position.covariance.trace(), size());
       plots_.push_back({position, plot_s, static_cast<int>(k), beam_rad(plot),
                         -std::numeric_limits<double>::infinity(), false, plot.range_m});

@@ -58,7 +58,7 @@ struct StrobeReport {
 /// - An echo that touches the edge of its strobe, fills it or is shared is measured and reported.
 /// - Cells on land and in excluded areas are empty. Nothing is acquired there.
 ///
-/// Bearings are those of the radar; the tracker subtracts `Radar::bearing_offset_rad`. Sweeps
+/// Azimuths, ranges and times are those of the radar; the tracker subtracts its offsets. Sweeps
 /// follow each other clockwise, at any steps; a sector is a turn with a gap. The own ship that
 /// carries the radar may move. All memory is taken by the constructor; from then on nothing but
 /// `save` and `restore` allocates or throws. Use from one thread at a time.
@@ -207,12 +207,15 @@ class StrobeTracker {
 
   // Strobes ---------------------------------------------------------------------------------------
 
-  /// A position as the radar sees it: from the antenna, turned by the bearing offset.
+  /// A position as the radar sees it: from the antenna, with the offsets of range and bearing.
   [[nodiscard]] Vec<double, 2> on_picture(const Vec<double, 2>& position,
                                           const OwnShip& own) const noexcept {
     const Vec<double, 2> u = towards(radar_.bearing_offset_rad);
     const Vec<double, 2> d = position - own.position<double>();
-    return {u[0] * d[0] - u[1] * d[1], u[1] * d[0] + u[0] * d[1]};
+    const double range_m = d.norm();
+    const double longer =
+        range_m > 0.0 ? std::max(0.0, 1.0 + radar_.range_offset_m / range_m) : 1.0;
+    return longer * Vec<double, 2>(u[0] * d[0] - u[1] * d[1], u[1] * d[0] + u[0] * d[1]);
   }
 
   /// The angle at which the beam next passes a position.
@@ -482,10 +485,12 @@ StrobeTracker<Estimator, Amplitude>::StrobeTracker(const Radar& radar,
 }
 
 template <class Estimator, std::unsigned_integral Amplitude>
-StrobeReport StrobeTracker<Estimator, Amplitude>::process(const Sweep<Amplitude>& sweep,
+StrobeReport StrobeTracker<Estimator, Amplitude>::process(const Sweep<Amplitude>& given,
                                                           const OwnShip& own) noexcept {
   readings_.clear();
   events_.clear();
+  Sweep<Amplitude> sweep = given;
+  sweep.time_s = radar_.true_time_s(given.time_s);
   const bool first = !running_;
   const SweepStatus status = admit(sweep, own);
   if (rejected(status)) return {status, {}, {}};
@@ -548,14 +553,14 @@ int StrobeTracker<Estimator, Amplitude>::acquire(std::span<const VideoPlot> plot
   for (const VideoPlot& plot : plots) {
     if (!running_ || land_.excludes(plot.bearing_rad, plot.range_m)) continue;
     const Gaussian<2> position = radar_.position(plot.range_m, plot.bearing_rad, own);
-    if (!in_range(position.mean) || !(plot.time_s <= time_s_) ||
-        is_tracked(position.mean, plot.time_s))
+    const double plot_s = radar_.true_time_s(plot.time_s);
+    if (!in_range(position.mean) || !(plot_s <= time_s_) || is_tracked(position.mean, plot_s))
       continue;
     const double passed_rad =
-        unwrapped(plot.bearing_rad, beam_rad_ - rate_rad_s_ * (time_s_ - plot.time_s));
+        unwrapped(plot.bearing_rad, beam_rad_ - rate_rad_s_ * (time_s_ - plot_s));
     double near_rad = passed_rad + kTurn;
     while (near_rad < beam_rad_) near_rad += kTurn;
-    StrobeTrack* track = open(position, plot.time_s, near_rad, own);
+    StrobeTrack* track = open(position, plot_s, near_rad, own);
     if (track == nullptr) continue;
     track->id = track->tentative_id = next_tentative_id_--;
     track->hits = 1;

@@ -78,7 +78,9 @@ class Tracker {
   Tracker& operator=(Tracker&&) noexcept = default;
 
   /// Processes the plots of one scan, a whole turn of the antenna that ends at `time_s`: a track
-  /// without a plot has missed it. Rejects a scan that is before the last one
+  /// without a plot has missed it. Times of scan and plots are by the radar's clock; `time_s()`,
+  /// tracks and events have true time (`Radar::time_offset_s`). Rejects a scan that is before the
+  /// last one
   /// (`kNegativeTimeStep`) or after `latest_time_s()` (`kNotFinite`): nothing changes.
   ScanReport process(double time_s, std::span<const Plot> plots) noexcept {
     return step(time_s, plots, nullptr);
@@ -810,6 +812,7 @@ ScanReport Tracker<Estimator, Steps>::step(double time_s, std::span<const Plot> 
                                            const Sector* sector) noexcept {
   events_.clear();
   plot_track_id_.clear();
+  time_s = radar_.true_time_s(time_s);
   if (!std::isfinite(time_s)) return {Status::kNotFinite, {}, {}, 0};
   if (started_ && time_s < time_s_) return {Status::kNegativeTimeStep, {}, {}, 0};
   if (time_s > latest_time_s()) return {Status::kNotFinite, {}, {}, 0};

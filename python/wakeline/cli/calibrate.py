@@ -1,0 +1,212 @@
+"""``wakeline calibrate``: the offsets of a radar from AIS or GNSS reports."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+from typing import Any
+
+import wakeline as wl
+from wakeline import plot
+from wakeline._brief import many
+from wakeline.recording import Recording, radar_names
+from wakeline.recording.azimuths import AZIMUTHS
+from wakeline.recording.files import replacing_together
+from wakeline.tracking import calibrate, open_recording, read_reports, read_settings
+from wakeline.tracking.calibrated import vessel_names
+
+from . import outputs, report
+
+_RADAR, _PICTURE = "radar.toml", "calibration.png"
+_ABOUT = """\
+Compares the plots of vessels with their position reports (AIS, GNSS) and finds
+the constant offsets of the radar in range, bearing and time, measured minus
+true, with their standard deviations. An offset is reported if there are enough
+plots of reported vessels and its standard deviation is small; one vessel on a
+steady course, or vessels all on one bearing, are not enough.
+
+Writes radar.toml, radar parameters with the offsets found (wakeline track
+--radar radar.toml), and a picture of the errors before and after.
+"""
+_COLUMNS = """\
+columns, separated by commas, recognized by name in any order:
+  RECORDING  as for wakeline track
+  --own      as for wakeline track
+  --ais      time (UTC), mmsi, latitude, longitude; optional course and speed over
+             ground; or, in the plane of the recording, time_s, target, north_m,
+             east_m; optional vnorth_mps, veast_mps, scenario
+"""
+_UNITS = (
+    ("range", "m", 1.0, "m"),
+    ("bearing", "rad", 180.0 / math.pi, "°"),
+    ("time", "s", 1.0, "s"),
+)
+
+
+def add_to(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the program."""
+    parser = commands.add_parser(
+        "calibrate",
+        help="find the offsets of a radar from AIS or GNSS reports",
+        description=_ABOUT,
+        epilog=_COLUMNS,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "plots",
+        type=Path,
+        metavar="RECORDING",
+        help="radar plots as CSV, radar video, or the name of a bundled recording",
+    )
+    parser.add_argument(
+        "--ais", type=Path, metavar="FILE", required=True, help="position reports of vessels"
+    )
+    parser.add_argument(
+        "--own", type=Path, metavar="SCANS.csv", help="own ship, and the list of scans"
+    )
+    parser.add_argument(
+        "--origin",
+        type=_origin,
+        metavar="LAT,LON",
+        help="degrees, where north 0, east 0 of the recording is; for reports in latitude and "
+        "longitude",
+    )
+    parser.add_argument(
+        "--position-std",
+        type=float,
+        default=5.0,
+        metavar="M",
+        help="m, standard deviation of a reported position per axis (default 5)",
+    )
+    parser.add_argument(
+        "--azimuth",
+        choices=AZIMUTHS,
+        default="north",
+        help="origin of bearings and azimuths: north (default), or the bow, to which heading_deg "
+        "of --own is added",
+    )
+    outputs.add_columns(parser)
+    parser.add_argument(
+        "--radar",
+        metavar="NAME|F.toml",
+        help=f"radar parameters: {', '.join(radar_names())}, or a TOML file with keys of [radar]; "
+        "overrides [radar] of --config",
+    )
+    parser.add_argument("--config", type=Path, metavar="F.toml", help="settings")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help="the offsets as JSON")
+    parser.set_defaults(run=run, inputs=inputs)
+
+
+def _origin(text: str) -> tuple[float, float]:
+    try:
+        latitude_deg, longitude_deg = map(float, text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"wanted LAT,LON in degrees such as 63.44,10.40, got {text!r}"
+        ) from None
+    return latitude_deg, longitude_deg
+
+
+def inputs(arguments: argparse.Namespace) -> list[Path]:
+    """The input files of the command line."""
+    files = [arguments.plots, arguments.ais, arguments.own, arguments.config]
+    if arguments.radar is not None and arguments.radar not in radar_names():
+        files.append(Path(arguments.radar))
+    return [file for file in files if file is not None]
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do what the command line asks for."""
+    written = {arguments.out / _RADAR, arguments.out / _PICTURE}
+    outputs.check_no_input("--out", written, inputs(arguments))
+    settings = read_settings(arguments.config, arguments.radar)
+    recording = open_recording(
+        arguments.plots,
+        arguments.own,
+        period_s=settings.period_s,
+        azimuth=arguments.azimuth,
+        columns=dict(arguments.columns),
+    )
+    columns = dict(arguments.columns)
+    reports = read_reports(arguments.ais, recording, origin_deg=arguments.origin, columns=columns)
+    settings = settings.knowing(recording.radar)
+    found = calibrate(recording, reports, config=settings, position_std_m=arguments.position_std)
+    names = vessel_names(reports)
+    print(_about(recording, found))
+    print(_offset_table(found))
+    if len(found.vessel_id):
+        print(f"\n{_vessel_table(found, names)}")
+    outputs.make_folder(arguments.out)
+    with replacing_together(arguments.out, written) as fresh:
+        (fresh / _RADAR).write_text(settings.calibrated(found).radar_toml(), encoding="utf-8")
+    files = [_RADAR]
+    if outputs.can_draw():
+        plot.save(plot.calibration_figure(found, names), arguments.out / _PICTURE)
+        files.append(_PICTURE)
+    print(f"written to {arguments.out}: {', '.join(files)}")
+    if len(files) == 1:
+        print(outputs.HOW_TO_GET_PICTURES)
+    if arguments.json is not None:
+        outputs.write_json(
+            arguments.json, "calibrate", _rows(found), vessels=_vessels(found, names)
+        )
+
+
+def _about(recording: Recording, found: wl.track.CalibrationResult) -> str:
+    scans, plots = sum(map(len, recording)), sum(one.plot_count for one in recording)
+    lines = [f"{recording.name}: {many(scans, 'scan')}, {many(plots, 'plot')}"]
+    lines += [f"note: {note}" for note in recording.notes]
+    matches = many(round(found.matches), "plot")
+    lines.append(f"{matches} of {many(len(found.vessel_id), 'reported vessel')}")
+    return "\n".join(lines)
+
+
+def _offsets(found: wl.track.CalibrationResult) -> list[tuple[str, str, float, str, Any]]:
+    return [
+        (name, key, scale, unit, getattr(found, f"{name}_{key}"))
+        for name, key, scale, unit in _UNITS
+    ]
+
+
+def _offset_table(found: wl.track.CalibrationResult) -> str:
+    rows = [["offset", "measured minus true", "std", ""]]
+    for name, _, scale, unit, one in _offsets(found):
+        known = math.isfinite(one.value)
+        value = f"{scale * one.value:+.2f} {unit}" if known and one.determined else "-"
+        std = f"{scale * one.std:.2f} {unit}" if known else "-"
+        rows.append([name, value, std, "" if one.determined else f"not determined: {one.verdict}"])
+    return report.aligned(rows, left=1, text=(3,))
+
+
+def _vessel_table(found: wl.track.CalibrationResult, names: list[str]) -> str:
+    rows = [["vessel", "plots", "echo along", "to starboard"]]
+    columns = (found.vessel_id, found.vessel_matches, found.vessel_along_m, found.vessel_across_m)
+    for vessel, matches, along_m, across_m in zip(*columns, strict=True):
+        rows.append([names[vessel], f"{matches:.0f}", f"{along_m:+.1f} m", f"{across_m:+.1f} m"])
+    return report.aligned(rows)
+
+
+def _rows(found: wl.track.CalibrationResult) -> list[dict[str, Any]]:
+    """One row per offset, in SI units; missing values are null."""
+    return [
+        {
+            "offset": f"{name}_{key}",
+            "value": one.value if math.isfinite(one.value) else None,
+            "std": one.std if math.isfinite(one.std) else None,
+            "determined": one.determined,
+            "verdict": one.verdict,
+        }
+        for name, key, _, _, one in _offsets(found)
+    ]
+
+
+def _vessels(found: wl.track.CalibrationResult, names: list[str]) -> list[dict[str, Any]]:
+    columns = (found.vessel_id, found.vessel_matches, found.vessel_along_m, found.vessel_across_m)
+    return [
+        {"vessel": names[k], "plots": n, "along_m": along_m, "across_m": across_m}
+        for k, n, along_m, across_m in zip(*(column.tolist() for column in columns), strict=True)
+    ]
