@@ -80,7 +80,7 @@ HOMES = {
         "RangeBearingDoppler",
     ],
     "filter": ["Estimator", "Filter", "RunResult"],
-    "gating": ["RadiusGate"],
+    "gating": ["ChiSquareGate", "RadiusGate"],
     "video": ["ScanImage", "VideoPlots"],
     "motion": [
         "ConstantAcceleration",

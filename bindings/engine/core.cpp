@@ -54,7 +54,8 @@ void define_core(py::module_& parent) {
         const std::string text = format;
         const bool number = !text.empty() && std::string_view("bcdeEfFgGnoxX%").find(text.back()) !=
                                                  std::string_view::npos;
-        return (number ? py::int_(s.cast<long>()) : s.attr("name")).attr("__format__")(format);
+        const py::object value = number ? py::object(py::int_(s.cast<long>())) : s.attr("name");
+        return value.attr("__format__")(format);
       },
       py::name("__format__"), py::is_method(shown), py::arg("format_spec"));
 

@@ -18,8 +18,8 @@ def brief(thing: Any, *facts: str, name: str = "") -> str:
 
 
 def cut(text: str) -> str:
-    """Text of a user or a file as messages quote it: at most 80 characters."""
-    return text if len(text) <= _MOST_QUOTED else f"{text[: _MOST_QUOTED - 3]}..."
+    """Text of a user or a file as messages quote it: both ends, at most 80 characters."""
+    return text if len(text) <= _MOST_QUOTED else f"{text[:38]}...{text[-39:]}"
 
 
 def quoted(value: Any) -> str:

@@ -135,6 +135,7 @@ def estimator(rule, carry):
     return wl.SwitchingGridImm(TURN, GRID_RAD_S, threshold=T, rule=rule, carry=carry)
 
 
+@pytest.mark.filterwarnings("ignore:the ModeChain has no period")
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize(
     ("rule", "carry"),

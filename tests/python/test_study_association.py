@@ -10,7 +10,7 @@ from wakeline.study import association
 MUST = {
     "crossings": (60.0, 0.99, 0),
     "abreast": (60.0, 0.95, 0),
-    "clutter_300": (66.0, 0.97, 1),
+    "clutter_300": (70.0, 0.97, 1),
     "clutter_1000": (80.0, 0.92, 1),
     "merged": (50.0, 0.97, 0),
 }
