@@ -427,11 +427,11 @@ inline Calibration::Offsets Calibration::voted() const {
     const double level = 1.0 + 9.0 * count.mean();
     for (int i = 0; i < kRangeBins; ++i)
       for (int j = 0; j < kBearingBins; ++j) {
-        double near = 0.0;
+        double votes_near = 0.0;
         for (int k = std::max(i - 1, 0); k <= std::min(i + 1, kRangeBins - 1); ++k)
           for (int l = std::max(j - 1, 0); l <= std::min(j + 1, kBearingBins - 1); ++l)
-            near += (k == i && l == j ? 1.0 : 0.5) * count(k, l);
-        votes(i, j) += std::log1p(near / level);
+            votes_near += (k == i && l == j ? 1.0 : 0.5) * count(k, l);
+        votes(i, j) += std::log1p(votes_near / level);
       }
   }
   Eigen::Index i = 0, j = 0;
