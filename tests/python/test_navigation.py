@@ -364,7 +364,7 @@ def test_a_window_step_by_step_is_its_run_and_bridges_missing_fixes():
 
 
 def test_bad_windows_are_rejected():
-    with pytest.raises(ValueError, match="max_fixes must be 2 to .*, got 1"):
+    with pytest.raises(ValueError, match=r"max_fixes must be 2 to .*, got 1"):
         nav.DriftWindow(max_fixes=1)
     window = nav.DriftWindow()
     with pytest.raises(wl.FilterError, match="negative time step"):
