@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from wakeline._brief import quoted
+
 _OPEN, _CLOSE = "([{", ")]}"
-_MOST = 60  # characters of a value
 
 
 @dataclass
@@ -43,8 +44,7 @@ def sentence(message: str, positional: list[Any], named: dict[str, Any]) -> str:
         parameters = list(_parameters(signature))
         if not constructor and parameters and parameters[0].name == "self":
             owner = parameters[0].annotation.rpartition(".")[2]
-            return_name = f"{owner}.{name}"
-            troubles.append(_trouble(return_name, parameters[1:], positional[1:], named))
+            troubles.append(_trouble(f"{owner}.{name}", parameters[1:], positional[1:], named))
         else:
             troubles.append(_trouble(name, parameters, positional, named))
     # Of several, what is wrong with the one that is nearest to the call.
@@ -138,11 +138,15 @@ def _fits_one(value: Any, annotation: str) -> bool:
             return False
         return value is not None
     if kind == "Sequence":
-        inner = annotation[annotation.index("[") + 1 : -1] if "[" in annotation else "object"
-        return hasattr(value, "__len__") and all(_fits(one, inner) for one in value)
+        return hasattr(value, "__len__") and all(_fits(one, _inner(annotation)) for one in value)
     if kind in ("object", "Any", ""):
         return True
     return any(base.__name__ == kind for base in type(value).__mro__)
+
+
+def _inner(sequence: str) -> str:
+    """The annotation of what is in a sequence."""
+    return sequence.partition("[")[2][:-1] or "object"
 
 
 _WORDS = {
@@ -166,7 +170,7 @@ def _words(annotation: str) -> str:
     for one in _split(annotation, "|"):
         kind = one.partition("[")[0].rpartition(".")[2]
         if kind == "Sequence":
-            inner = one[one.index("[") + 1 : -1] if "[" in one else "object"
+            inner = _inner(one)
             word = "a sequence" if inner == "object" else f"a sequence of {_words(inner)}"
         else:
             word = _WORDS.get(kind, kind)
@@ -184,8 +188,7 @@ def _shown(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return f"an array of {value.dtype} of shape {value.shape}"
     if value is None or isinstance(value, (str, bytes, bool, int, float)):
-        text = repr(value)
-        return text if len(text) <= _MOST else text[:_MOST] + "..."
+        return quoted(value)
     kind = type(value)
     bases = [b for b in kind.__mro__[1:] if b.__module__.startswith("wakeline.")]
     derived = bases and not kind.__module__.startswith("wakeline.")

@@ -10,13 +10,12 @@ from typing import Any
 import wakeline as wl
 from wakeline import plot
 from wakeline._brief import many
-from wakeline.recording import Recording, radar_names
-from wakeline.recording.azimuths import AZIMUTHS
+from wakeline.recording import Recording
 from wakeline.recording.files import replacing_together
 from wakeline.tracking import calibrate, open_recording, read_reports, read_settings
 from wakeline.tracking.calibrated import vessel_names
 
-from . import outputs, report
+from . import options, outputs, report
 
 _RADAR, _PICTURE = "radar.toml", "calibration.png"
 _ABOUT = """\
@@ -62,9 +61,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--ais", type=Path, metavar="FILE", required=True, help="position reports of vessels"
     )
-    parser.add_argument(
-        "--own", type=Path, metavar="SCANS.csv", help="own ship, and the list of scans"
-    )
+    options.add_own(parser)
     parser.add_argument(
         "--origin",
         type=_origin,
@@ -79,20 +76,8 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         metavar="M",
         help="m, standard deviation of a reported position per axis (default 5)",
     )
-    parser.add_argument(
-        "--azimuth",
-        choices=AZIMUTHS,
-        default="north",
-        help="origin of bearings and azimuths: north (default), or the bow, to which heading_deg "
-        "of --own is added",
-    )
-    outputs.add_columns(parser)
-    parser.add_argument(
-        "--radar",
-        metavar="NAME|F.toml",
-        help=f"radar parameters: {', '.join(radar_names())}, or a TOML file with keys of [radar]; "
-        "overrides [radar] of --config",
-    )
+    options.add_columns(parser)
+    options.add_radar(parser)
     parser.add_argument("--config", type=Path, metavar="F.toml", help="settings")
     parser.add_argument(
         "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
@@ -113,10 +98,7 @@ def _origin(text: str) -> tuple[float, float]:
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:
     """The input files of the command line."""
-    files = [arguments.plots, arguments.ais, arguments.own, arguments.config]
-    if arguments.radar is not None and arguments.radar not in radar_names():
-        files.append(Path(arguments.radar))
-    return [file for file in files if file is not None]
+    return options.files(arguments, "plots", "ais", "own", "config")
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -124,14 +106,14 @@ def run(arguments: argparse.Namespace) -> None:
     written = {arguments.out / _RADAR, arguments.out / _PICTURE}
     outputs.check_no_input("--out", written, inputs(arguments))
     settings = read_settings(arguments.config, arguments.radar)
+    columns = dict(arguments.columns)
     recording = open_recording(
         arguments.plots,
         arguments.own,
         period_s=settings.period_s,
         azimuth=arguments.azimuth,
-        columns=dict(arguments.columns),
+        columns=columns,
     )
-    columns = dict(arguments.columns)
     reports = read_reports(arguments.ais, recording, origin_deg=arguments.origin, columns=columns)
     settings = settings.knowing(recording.radar)
     found = calibrate(recording, reports, config=settings, position_std_m=arguments.position_std)
@@ -184,9 +166,9 @@ def _offset_table(found: wl.track.CalibrationResult) -> str:
 
 def _vessel_table(found: wl.track.CalibrationResult, names: list[str]) -> str:
     rows = [["vessel", "plots", "echo along", "to starboard"]]
-    columns = (found.vessel_id, found.vessel_matches, found.vessel_along_m, found.vessel_across_m)
-    for vessel, matches, along_m, across_m in zip(*columns, strict=True):
-        rows.append([names[vessel], f"{matches:.0f}", f"{along_m:+.1f} m", f"{across_m:+.1f} m"])
+    for one in _vessels(found, names):
+        along, across = (f"{one[key]:+.1f} m" for key in ("along_m", "across_m"))
+        rows.append([one["vessel"], f"{one['plots']:.0f}", along, across])
     return report.aligned(rows)
 
 

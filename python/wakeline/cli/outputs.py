@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import csv
 import errno
 import json
@@ -34,25 +33,6 @@ _PICTURES = ("map", "time")
 _MOST_OCTETS = 120  # of a scenario in a file name, which some file systems limit to 143
 
 _held: dict[Path, int] = {}  # folders of this command, with a descriptor each that has the lock
-
-
-def add_columns(parser: argparse.ArgumentParser) -> None:
-    """Add the option that names columns of tables."""
-    parser.add_argument(
-        "--columns",
-        action="append",
-        type=_pair,
-        default=[],
-        metavar="NAME=OURS",
-        help="what the column NAME of a table is, such as rho=range_m; may be repeated",
-    )
-
-
-def _pair(text: str) -> tuple[str, str]:
-    name, equals, ours = text.partition("=")
-    if not (name and equals and ours):
-        raise argparse.ArgumentTypeError(f"wanted NAME=OURS such as rho=range_m, got {text!r}")
-    return name, ours
 
 
 def make_folder(folder: Path) -> None:

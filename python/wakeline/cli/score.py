@@ -19,7 +19,7 @@ from wakeline.recording import (
     read_tracks,
 )
 
-from . import outputs, report
+from . import options, outputs, report
 
 
 def add_to(commands: argparse._SubParsersAction) -> None:
@@ -43,7 +43,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--gate", type=float, default=50.0, metavar="M", help="m, largest distance (default 50)"
     )
-    outputs.add_columns(parser)
+    options.add_columns(parser)
     parser.add_argument("--json", type=Path, metavar="F", help="write the score as JSON")
     parser.set_defaults(run=run, inputs=inputs)
 

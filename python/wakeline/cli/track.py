@@ -12,8 +12,7 @@ from typing import Any
 
 from wakeline import FilterError, metrics
 from wakeline._brief import many
-from wakeline.recording import Recording, radar_names
-from wakeline.recording.azimuths import AZIMUTHS
+from wakeline.recording import Recording
 from wakeline.recording.files import replacing_together
 from wakeline.tracking import (
     VESSELS,
@@ -31,7 +30,7 @@ from wakeline.tracking import (
     write_tables,
 )
 
-from . import outputs, report
+from . import options, outputs, report
 
 _MOST_ALARMS, _MOST_ENCOUNTERS = 20, 10
 
@@ -91,18 +90,9 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         help="radar plots as CSV, or radar video: ASTERIX category 240, also in a network capture "
         "(pcap) or compressed (gzip)",
     )
-    parser.add_argument(
-        "--own", type=Path, metavar="SCANS.csv", help="own ship, and the list of scans"
-    )
-    parser.add_argument(
-        "--azimuth",
-        choices=AZIMUTHS,
-        default="north",
-        help="origin of bearings and azimuths: north (default), or the bow, to which heading_deg "
-        "of --own is added",
-    )
+    options.add_own(parser)
     parser.add_argument("--truth", type=Path, metavar="TRUTH.csv", help="truth, drawn and scored")
-    outputs.add_columns(parser)
+    options.add_columns(parser)
     parser.add_argument(
         "--range-scale",
         type=float,
@@ -110,12 +100,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         help="of radar video with several range scales in turn, the one to track, by its range in "
         "metres (default the longest)",
     )
-    parser.add_argument(
-        "--radar",
-        metavar="NAME|F.toml",
-        help=f"radar parameters: {', '.join(radar_names())}, or a TOML file with keys of [radar]; "
-        "overrides [radar] of --config",
-    )
+    options.add_radar(parser)
     parser.add_argument(
         "--vessels",
         choices=VESSELS,
@@ -206,10 +191,7 @@ def _opened(
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:
     """The input files of the command line."""
-    files = [arguments.plots, arguments.own, arguments.truth, arguments.config, arguments.acquire]
-    if arguments.radar is not None and arguments.radar not in radar_names():
-        files.append(Path(arguments.radar))
-    return [file for file in files if file is not None]
+    return options.files(arguments, "plots", "own", "truth", "config", "acquire")
 
 
 def _radar_text(

@@ -1,0 +1,60 @@
+"""Options about a recording that several commands have, and the files they name."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from wakeline.recording import radar_names
+from wakeline.recording.azimuths import AZIMUTHS
+
+
+def add_own(parser: argparse.ArgumentParser) -> None:
+    """Add the options of own ship: its file, and where bearings begin."""
+    parser.add_argument(
+        "--own", type=Path, metavar="SCANS.csv", help="own ship, and the list of scans"
+    )
+    parser.add_argument(
+        "--azimuth",
+        choices=AZIMUTHS,
+        default="north",
+        help="origin of bearings and azimuths: north (default), or the bow, to which heading_deg "
+        "of --own is added",
+    )
+
+
+def add_radar(parser: argparse.ArgumentParser) -> None:
+    """Add the option of the radar."""
+    parser.add_argument(
+        "--radar",
+        metavar="NAME|F.toml",
+        help=f"radar parameters: {', '.join(radar_names())}, or a TOML file with keys of [radar]; "
+        "overrides [radar] of --config",
+    )
+
+
+def add_columns(parser: argparse.ArgumentParser) -> None:
+    """Add the option that names columns of tables."""
+    parser.add_argument(
+        "--columns",
+        action="append",
+        type=_pair,
+        default=[],
+        metavar="NAME=OURS",
+        help="what the column NAME of a table is, such as rho=range_m; may be repeated",
+    )
+
+
+def files(arguments: argparse.Namespace, *names: str) -> list[Path]:
+    """The input files that are given, of the named arguments and of ``--radar``."""
+    found = [getattr(arguments, name) for name in names]
+    if arguments.radar is not None and arguments.radar not in radar_names():
+        found.append(Path(arguments.radar))
+    return [file for file in found if file is not None]
+
+
+def _pair(text: str) -> tuple[str, str]:
+    name, equals, ours = text.partition("=")
+    if not (name and equals and ours):
+        raise argparse.ArgumentTypeError(f"wanted NAME=OURS such as rho=range_m, got {text!r}")
+    return name, ours
