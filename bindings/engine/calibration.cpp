@@ -7,7 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "support/columns.hpp"
 #include "support/fields.hpp"
+#include "support/option.hpp"
+#include "support/thread_lock.hpp"
 #include "support/types.hpp"
 
 namespace wakeline::python {
@@ -18,99 +21,81 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-const char* verdict_text(CalibrationVerdict verdict) {
-  switch (verdict) {
-    case CalibrationVerdict::kDetermined:
-      return "determined";
-    case CalibrationVerdict::kFewMatches:
-      return "few matches";
-    case CalibrationVerdict::kPoorGeometry:
-      return "poor geometry";
-  }
-  return "";
-}
-
-CalibrationVerdict verdict_of(const std::string& text) {
-  for (const auto verdict : {CalibrationVerdict::kDetermined, CalibrationVerdict::kFewMatches})
-    if (text == verdict_text(verdict)) return verdict;
-  return CalibrationVerdict::kPoorGeometry;
-}
-
-/// Numbers (n,) of an argument that may be one for all rows.
-struct Column {
-  Column(const char* name, const DoubleArray& values, py::ssize_t rows)
-      : values_(values), each_(values.ndim() > 0) {
-    require_shape(!each_ || (values.ndim() == 1 && values.size() == rows), name, shape_text({rows}),
-                  values);
-  }
-  double operator[](std::size_t row) const { return values_.data()[each_ ? row : 0]; }
-
- private:
-  DoubleArray values_;
-  bool each_;
+/// A calibration that several threads may use.
+struct PyCalibration : Calibration, ThreadLock {
+  using Calibration::Calibration;
 };
 
-int add_reports(Calibration& calibration, std::int64_t vessel, const DoubleArray& time_s,
+int add_reports(PyCalibration& calibration, std::int64_t vessel, const DoubleArray& time_s,
                 const DoubleArray& north_m, const DoubleArray& east_m,
                 const DoubleArray& vnorth_mps, const DoubleArray& veast_mps,
                 const DoubleArray& position_std_m) {
   require_shape(time_s.ndim() <= 1, "time_s", "(n,)", time_s);
   const py::ssize_t rows = time_s.size();
-  const Column north("north_m", north_m, rows), east("east_m", east_m, rows);
-  const Column vnorth("vnorth_mps", vnorth_mps, rows), veast("veast_mps", veast_mps, rows);
-  const Column std("position_std_m", position_std_m, rows);
+  const DoubleArray north = column("north_m", north_m, rows);
+  const DoubleArray east = column("east_m", east_m, rows);
+  const DoubleArray vnorth = column("vnorth_mps", vnorth_mps, rows);
+  const DoubleArray veast = column("veast_mps", veast_mps, rows);
+  const DoubleArray std = column("position_std_m", position_std_m, rows);
+  const auto hold = calibration.hold();
   int left_out = 0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(rows); ++k)
-    if (!ok(calibration.report(
-            {vessel, time_s.data()[k], north[k], east[k], vnorth[k], veast[k], std[k]})))
+  for (py::ssize_t k = 0; k < rows; ++k)
+    if (!ok(calibration.report({vessel, time_s.data()[k], north.data()[k], east.data()[k],
+                                vnorth.data()[k], veast.data()[k], std.data()[k]})))
       ++left_out;
   return left_out;
 }
 
-void add_plots(Calibration& calibration, const DoubleArray& time_s, const DoubleArray& range_m,
+void add_plots(PyCalibration& calibration, const DoubleArray& time_s, const DoubleArray& range_m,
                const DoubleArray& bearing_rad, const DoubleArray& own_north_m,
                const DoubleArray& own_east_m, const DoubleArray& own_vnorth_mps,
                const DoubleArray& own_veast_mps, double own_position_std_m,
                double heading_std_rad) {
   require_shape(range_m.ndim() == 1, "range_m", "(n,)", range_m);
   const py::ssize_t rows = range_m.size();
-  const Column time("time_s", time_s, rows), bearing("bearing_rad", bearing_rad, rows);
-  const Column north("own_north_m", own_north_m, rows), east("own_east_m", own_east_m, rows);
-  const Column vnorth("own_vnorth_mps", own_vnorth_mps, rows);
-  const Column veast("own_veast_mps", own_veast_mps, rows);
+  const DoubleArray time = column("time_s", time_s, rows);
+  const DoubleArray bearing = column("bearing_rad", bearing_rad, rows);
+  const DoubleArray north = column("own_north_m", own_north_m, rows);
+  const DoubleArray east = column("own_east_m", own_east_m, rows);
+  const DoubleArray vnorth = column("own_vnorth_mps", own_vnorth_mps, rows);
+  const DoubleArray veast = column("own_veast_mps", own_veast_mps, rows);
   require(own_position_std_m >= 0.0, "own_position_std_m", "not negative", own_position_std_m);
   require(heading_std_rad >= 0.0, "heading_std_rad", "not negative", heading_std_rad);
   std::vector<Plot> plots(static_cast<std::size_t>(rows));
   for (std::size_t k = 0; k < plots.size(); ++k)
-    plots[k] = {time[k], range_m.data()[k], bearing[k],
-                OwnShip{.north_m = north[k],
-                        .east_m = east[k],
-                        .vnorth_mps = vnorth[k],
-                        .veast_mps = veast[k],
+    plots[k] = {time.data()[k], range_m.data()[k], bearing.data()[k],
+                OwnShip{.north_m = north.data()[k],
+                        .east_m = east.data()[k],
+                        .vnorth_mps = vnorth.data()[k],
+                        .veast_mps = veast.data()[k],
                         .position_std_m = own_position_std_m,
                         .heading_std_rad = heading_std_rad}};
+  const auto hold = calibration.hold();
   const py::gil_scoped_release release;
   calibration.plots(plots);
 }
 
-/// An array (n,) of a member of each row.
+CalibrationResult solve(const PyCalibration& calibration) {
+  const auto hold = calibration.hold();
+  const py::gil_scoped_release release;
+  return calibration.solve();
+}
+
+/// A member of each row.
 template <class Row, class Value>
-auto column(std::vector<Row> CalibrationResult::*rows, Value Row::*member) {
+auto column_of_member(std::vector<Row> CalibrationResult::*rows, Value Row::*member) {
   return [rows, member](const CalibrationResult& result) {
-    py::array_t<Value> values(std::ssize(result.*rows));
-    Value* to = values.mutable_data();
-    for (const Row& row : result.*rows) *to++ = row.*member;
-    return values;
+    return column_of<Value>(result.*rows, [&](const Row& row) { return row.*member; });
   };
 }
 
 py::tuple offset_state(const CalibratedOffset& one) {
-  return py::make_tuple(one.value, one.std, verdict_text(one.verdict));
+  return py::make_tuple(one.value, one.std, word_of(one.verdict));
 }
 
 CalibratedOffset offset_of(const py::tuple& state) {
   return {state[0].cast<double>(), state[1].cast<double>(),
-          verdict_of(state[2].cast<std::string>())};
+          to_option<CalibrationVerdict>("verdict", state[2].cast<std::string>())};
 }
 
 }  // namespace
@@ -125,7 +110,7 @@ void define_calibration(py::module_& m) {
                     "m, rad or s; NaN without any plot of a reported vessel")
       .def_readonly("std", &CalibratedOffset::std, "its standard deviation")
       .def_property_readonly(
-          "verdict", [](const CalibratedOffset& one) { return verdict_text(one.verdict); },
+          "verdict", [](const CalibratedOffset& one) { return word_of(one.verdict); },
           "'determined', 'few matches' (too few plots of reported vessels, or no more than by "
           "chance) or 'poor geometry' (the standard deviation is above the limit)")
       .def_property_readonly("determined", &CalibratedOffset::determined,
@@ -133,7 +118,7 @@ void define_calibration(py::module_& m) {
       .def(py::pickle(&offset_state, &offset_of))
       .def("__repr__", [](const CalibratedOffset& one) {
         return "<CalibratedOffset: " + std::to_string(one.value) + " +- " +
-               std::to_string(one.std) + ", " + verdict_text(one.verdict) + ">";
+               std::to_string(one.std) + ", " + word_of(one.verdict) + ">";
       });
 
   using R = CalibrationResult;
@@ -160,7 +145,7 @@ gate.)");
       .def("applied_to", &R::applied_to, py::arg("radar"),
            "The parameters of a radar with the offsets that were determined.");
   const auto row = [&](const char* name, auto rows, auto member, const char* doc) {
-    result.def_property_readonly(name, column(rows, member), doc);
+    result.def_property_readonly(name, column_of_member(rows, member), doc);
   };
   row("vessel_id", &R::vessels, &V::vessel, "(v,) number of each vessel");
   row("vessel_matches", &R::vessels, &V::matches, "(v,) number of its plots");
@@ -180,14 +165,13 @@ gate.)");
       "(n,) probability that the plot is the vessel's");
   result.def("__repr__", [](const R& one) {
     return "<CalibrationResult: " + std::to_string(std::lround(one.matches)) + " matches of " +
-           std::to_string(one.vessels.size()) + " vessels; range " +
-           verdict_text(one.range_m.verdict) + ", bearing " +
-           verdict_text(one.bearing_rad.verdict) + ", time " + verdict_text(one.time_s.verdict) +
-           ">";
+           std::to_string(one.vessels.size()) + " vessels; range " + word_of(one.range_m.verdict) +
+           ", bearing " + word_of(one.bearing_rad.verdict) + ", time " +
+           word_of(one.time_s.verdict) + ">";
   });
 
-  py::class_<Calibration> calibration(m, "Calibration",
-                                      R"(Range, bearing and time offset of a radar from reports.
+  py::class_<PyCalibration> calibration(m, "Calibration",
+                                        R"(Range, bearing and time offset of a radar from reports.
 
 Plots of vessels whose positions are known by their reports (AIS, GNSS) give the three offsets with
 their standard deviations, by robust weighted least squares. Each vessel's echo may have a constant
@@ -257,12 +241,11 @@ Raises
 ------
 ValueError
     When a shape does not fit or a standard deviation is negative.)")
-      .def("solve", &Calibration::solve, py::call_guard<py::gil_scoped_release>(),
-           "CalibrationResult from all that was given so far.")
-      .def_property_readonly("radar", [](const Calibration& one) { return Radar(one.radar()); })
-      .def_property_readonly("config",
-                             [](const Calibration& one) { return CalibrationConfig(one.config()); })
-      .def("_arguments", [](const Calibration& one) {
+      .def("solve", &solve, "CalibrationResult from all that was given so far.")
+      .def_property_readonly("radar", [](const PyCalibration& one) { return Radar(one.radar()); })
+      .def_property_readonly(
+          "config", [](const PyCalibration& one) { return CalibrationConfig(one.config()); })
+      .def("_arguments", [](const PyCalibration& one) {
         return Arguments()
             .with("radar", Radar(one.radar()))
             .with("config", CalibrationConfig(one.config()));

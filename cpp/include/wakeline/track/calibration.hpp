@@ -89,6 +89,12 @@ enum class CalibrationVerdict : std::uint8_t {
   kPoorGeometry,  ///< its standard deviation is above the limit
 };
 
+constexpr std::array<Word<CalibrationVerdict>, 3> words_of(CalibrationVerdict) noexcept {
+  return {{{"determined", CalibrationVerdict::kDetermined},
+           {"few matches", CalibrationVerdict::kFewMatches},
+           {"poor geometry", CalibrationVerdict::kPoorGeometry}}};
+}
+
 /// One offset of the radar.
 struct CalibratedOffset {
   double value = std::numeric_limits<double>::quiet_NaN();  ///< measured minus true
@@ -276,10 +282,10 @@ class Calibration {
     Pair sight;     // towards the vessel, along and across its course
     Pair variance;  // of the residuals
 
-    /// What the offsets of radar and vessel explain of the residual.
-    [[nodiscard]] Pair explained(const Offsets& radar, const Pair& vessel_m) const noexcept {
-      return {radar[0] - rate[0] * radar[2] + sight.dot(vessel_m),
-              radar[1] - rate[1] * radar[2] + cross().dot(vessel_m)};
+    /// What the offsets of radar and vessel leave of the residual.
+    [[nodiscard]] Pair rest(const Offsets& radar, const Pair& vessel_m) const noexcept {
+      return residual - Pair{radar[0] - rate[0] * radar[2] + sight.dot(vessel_m),
+                             radar[1] - rate[1] * radar[2] + cross().dot(vessel_m)};
     }
     [[nodiscard]] Pair cross() const noexcept { return Pair{-sight[1], sight[0]} / range_m; }
   };
@@ -447,7 +453,7 @@ inline void Calibration::weigh(Solution& s, const Pair& slack) const {
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     const Candidate& c = candidates_[k];
     const auto vessel = static_cast<std::size_t>(c.vessel);
-    const Pair rest = c.residual - c.explained(s.offsets, s.vessel_m[vessel]);
+    const Pair rest = c.rest(s.offsets, s.vessel_m[vessel]);
     const Pair variance = c.variance.cwiseProduct(s.scale) + slack;
     const double d2 = rest.cwiseAbs2().cwiseQuotient(variance).sum();
     s.weight[k] = 1.0 / (1.0 + std::exp(0.5 * (d2 - kGate)));
@@ -469,8 +475,7 @@ inline void Calibration::balance(Solution& s) const {
     n.add({0.0, 1.0, -c.rate[1]}, c.cross(), c.residual[1], weight[1]);
   }
   // Without any geometry the offsets of the radar have a wide prior, so that they remain finite.
-  const double turn = kPi<double>;
-  const Offsets unknown{1e6, turn, 1e4};
+  const Offsets unknown{1e6, kPi<double>, 1e4};
   Mat<double, 3, 3> information = unknown.cwiseAbs2().cwiseInverse().asDiagonal();
   Offsets side = Offsets::Zero();
   const Mat<double, 2, 2> prior = Mat<double, 2, 2>::Identity() / s.vessel_variance_m2;
@@ -515,7 +520,7 @@ inline void Calibration::spread(Solution& s) const {
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     const Candidate& c = candidates_[k];
     const auto v = static_cast<std::size_t>(c.vessel);
-    const Pair rest = c.residual - c.explained(s.offsets, s.vessel_m[v]);
+    const Pair rest = c.rest(s.offsets, s.vessel_m[v]);
     squares += s.weight[k] * rest.cwiseAbs2().cwiseQuotient(c.variance);
     count += s.weight[k];
     if (s.weight[k] < 0.5) continue;
@@ -596,7 +601,7 @@ inline CalibrationResult Calibration::solve() const {
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     const Candidate& c = candidates_[k];
     const auto v = static_cast<std::size_t>(c.vessel);
-    const Pair rest = c.residual - c.explained(s.offsets, s.vessel_m[v]);
+    const Pair rest = c.rest(s.offsets, s.vessel_m[v]);
     result.pairs.push_back({vessels_[v].last.vessel, c.time_s, c.range_m, c.bearing_rad,
                             c.residual[0], c.residual[1], rest[0], rest[1], s.weight[k]});
   }

@@ -15,6 +15,7 @@
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/archive.hpp"
 #include "wakeline/core/cholesky.hpp"
+#include "wakeline/track/beam.hpp"
 #include "wakeline/track/clutter_density.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/place_index.hpp"
@@ -54,8 +55,7 @@ class FreePlots {
     index_.for_each_nearest(later.position.mean, reach_m, kMostNear, [&](int k) {
       const FreePlot& plot = plots_[static_cast<std::size_t>(k)];
       const double dt_s = later.time_s - plot.time_s;
-      constexpr double kTurn = 2 * kPi<double>;
-      const double turns = (later.beam_rad - plot.beam_rad) / kTurn;
+      const double turns = (later.beam_rad - plot.beam_rad) / Beam::kTurn;
       const bool turn_before =
           !(std::abs(turns - 1.5) > 1.0) || std::abs(dt_s - 1.5 * period_s) < period_s;
       if (turn_before && dt_s > 0.0 && dt_s <= longest_s &&
@@ -75,7 +75,6 @@ class FreePlots {
   /// Drops the plots up to an angle of the beam.
   void drop_before(double beam_rad) noexcept {
     std::erase_if(plots_, [&](const FreePlot& plot) { return !(plot.beam_rad > beam_rad); });
-    found_ = 0;
   }
 
   /// Has those found that there are now.
@@ -181,9 +180,8 @@ class TrackInitiation {
   /// a turn, and dropped after three.
   void keep_free(const ScanPlots& plots, const PlotOwnership& ownership, double beam_rad,
                  bool whole_turn) noexcept {
-    constexpr double kTurn = 2 * kPi<double>;
-    const bool sorts = whole_turn || beam_rad - sorted_rad_ >= kTurn / 4;
-    if (sorts) before_.drop_before(beam_rad - (whole_turn ? 2.0 : 3.25) * kTurn);
+    const bool sorts = whole_turn || beam_rad - sorted_rad_ >= Beam::kTurn / 4;
+    if (sorts) before_.drop_before(beam_rad - (whole_turn ? 2.0 : 3.25) * Beam::kTurn);
     before_.add(plots, ownership.free_probability(), config_.free_plot);
     if (!sorts) return;
     before_.sort();

@@ -20,6 +20,7 @@
 #include "wakeline/gating/radius_gate.hpp"
 #include "wakeline/gating/strobe_echo.hpp"
 #include "wakeline/measurement/own_ship.hpp"
+#include "wakeline/track/beam.hpp"
 #include "wakeline/track/plot_likelihood.hpp"
 #include "wakeline/track/radar.hpp"
 #include "wakeline/track/strobe_config.hpp"
@@ -113,12 +114,7 @@ class StrobeTracker {
   /// The belief of a track of this tracker at a time, before its estimate at constant velocity; NaN
   /// where the time is not finite or so far ahead that the prediction fails.
   [[nodiscard]] Gaussian<4> kinematics_at(const StrobeTrack& track, double time_s) const noexcept {
-    if (time_s <= track.time_s)
-      return at_constant_velocity(track.kinematics, time_s - track.time_s);
-    Estimator ahead = estimator_of(track);
-    if (ahead.predict(time_s - track.time_s) == Status::kOk) return kinematics_of(ahead.estimate());
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    return {Vec<double, 4>::Constant(kNaN), Mat<double, 4, 4>::Constant(kNaN)};
+    return wakeline::kinematics_at(track, estimator_of(track), time_s);
   }
 
   /// Deletes a track; false when there is none of that number.
@@ -158,7 +154,7 @@ class StrobeTracker {
 
  private:
   static constexpr std::uint32_t kArchiveVersion = 1;
-  static constexpr double kTurn = 2 * kPi<double>;
+  static constexpr double kTurn = Beam::kTurn;
   static constexpr double kSameAzimuth = 1e-3;  ///< widths
   static constexpr double kGap = 1.5;           ///< widths
   /// Beside a strobe, in widths: the sweep there shows whether an echo continues outside.
@@ -184,7 +180,7 @@ class StrobeTracker {
     const double turns = std::round((rate_rad_s_ * dt_s - least_rad) / kTurn);
     const double step_rad = least_rad + kTurn * std::max(0.0, turns);
     if (step_rad <= kSameAzimuth * sweep.azimuth_width_rad) return SweepStatus::kRepeated;
-    beam_rad_ = unwrapped(sweep.azimuth_rad, beam_rad_ + step_rad);
+    beam_rad_ = Beam::unwrapped(sweep.azimuth_rad, beam_rad_ + step_rad);
     if (beam_rad_ - mark_rad_ >= kTurn && sweep.time_s > mark_s_) {
       rate_rad_s_ = (beam_rad_ - mark_rad_) / (sweep.time_s - mark_s_);
       mark_rad_ = beam_rad_;
@@ -193,11 +189,6 @@ class StrobeTracker {
     return !recent_.continues(sweep)                   ? SweepStatus::kGeometryChanged
            : step_rad > kGap * sweep.azimuth_width_rad ? SweepStatus::kGap
                                                        : SweepStatus::kOk;
-  }
-
-  /// An angle as one of the beam, the one nearest to `near_rad`.
-  [[nodiscard]] static double unwrapped(double angle_rad, double near_rad) noexcept {
-    return near_rad + wrap_angle(angle_rad - near_rad);
   }
 
   /// When the beam will have an angle.
@@ -230,7 +221,7 @@ class StrobeTracker {
     const Vec<double, 2> centre = on_picture(track.strobe.centre_m, own);
     const double half_rad =
         RadiusGate{track.strobe.radius_m}.half_angle_rad(centre) + kMargin * width_rad_;
-    track.pass_rad = unwrapped(std::atan2(centre[1], centre[0]), near_rad);
+    track.pass_rad = Beam::unwrapped(std::atan2(centre[1], centre[0]), near_rad);
     track.from_rad = track.pass_rad - half_rad;
     track.due_rad = track.pass_rad + half_rad;
   }
@@ -281,7 +272,8 @@ class StrobeTracker {
     list_rivals(track, own);
     const StrobeEcho echo = strobe_echo<kEchoes>(
         recent_.from(track.from_rad), RadiusGate{strobe.radius_m}, centre, echo_, rivals_);
-    const double passed_rad = echo ? unwrapped(echo.bearing_rad, track.pass_rad) : track.pass_rad;
+    const double passed_rad =
+        echo ? Beam::unwrapped(echo.bearing_rad, track.pass_rad) : track.pass_rad;
     const double time_s = std::max(recent_.time_s(passed_rad), track.time_s);
     LossReason reason = take(track, time_s, echo, own) ? LossReason::kNone : LossReason::kFailed;
     count(track, bool(echo));
@@ -557,7 +549,7 @@ int StrobeTracker<Estimator, Amplitude>::acquire(std::span<const VideoPlot> plot
     if (!in_range(position.mean) || !(plot_s <= time_s_) || is_tracked(position.mean, plot_s))
       continue;
     const double passed_rad =
-        unwrapped(plot.bearing_rad, beam_rad_ - rate_rad_s_ * (time_s_ - plot_s));
+        Beam::unwrapped(plot.bearing_rad, beam_rad_ - rate_rad_s_ * (time_s_ - plot_s));
     double near_rad = passed_rad + kTurn;
     while (near_rad < beam_rad_) near_rad += kTurn;
     StrobeTrack* track = open(position, plot_s, near_rad, own);

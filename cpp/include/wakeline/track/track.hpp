@@ -98,16 +98,20 @@ inline Gaussian<4> at_constant_velocity(const Gaussian<4>& kinematics, double dt
   return {step * kinematics.mean, step * kinematics.covariance * step.transpose()};
 }
 
+/// Of the velocity in a belief over `[x, vx, y, vy]`.
+inline Mat<double, 2, 2> velocity_covariance(const Gaussian<4>& kinematics) noexcept {
+  const auto rows = Eigen::seqN(1, Eigen::fix<2>, Eigen::fix<2>);
+  return kinematics.covariance(rows, rows);
+}
+
 /// Whether the speed in a belief over `[x, vx, y, vy]` is above a limit by that many of its
 /// standard deviations, or by three tenths of the limit if that is less.
 inline bool exceeds_speed(const Gaussian<4>& kinematics, double limit_mps, double sigmas) noexcept {
   const Vec<double, 2> velocity(kinematics.mean[1], kinematics.mean[3]);
   const double speed_mps = velocity.norm();
   if (!(speed_mps > limit_mps)) return false;
-  const auto rows = Eigen::seqN(1, Eigen::fix<2>, Eigen::fix<2>);
-  const Mat<double, 2, 2> covariance = kinematics.covariance(rows, rows);
   const Vec<double, 2> along = velocity / speed_mps;
-  const double margin_mps = sigmas * std::sqrt(along.dot(covariance * along));
+  const double margin_mps = sigmas * std::sqrt(along.dot(velocity_covariance(kinematics) * along));
   return speed_mps - limit_mps > std::min(margin_mps, 0.3 * limit_mps);
 }
 
@@ -162,8 +166,7 @@ struct Track {
     return {kinematics.mean[1], kinematics.mean[3]};
   }
   [[nodiscard]] Mat<double, 2, 2> velocity_covariance() const noexcept {
-    const auto rows = Eigen::seqN(1, Eigen::fix<2>, Eigen::fix<2>);
-    return kinematics.covariance(rows, rows);
+    return wakeline::velocity_covariance(kinematics);
   }
   [[nodiscard]] std::string_view label() const noexcept { return name.data(); }
 

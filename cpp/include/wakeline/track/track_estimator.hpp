@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/track/mode_positions.hpp"
+#include "wakeline/track/track.hpp"
 
 namespace wakeline {
 
@@ -31,6 +33,18 @@ concept TrackEstimator = std::copyable<Estimator> &&
   constant.estimate();
   estimator.archive(fields);
 };
+
+/// The belief of a track at a time: before its estimate at constant velocity, after it by its
+/// estimator; NaN where the time is not finite or so far ahead that the prediction fails.
+template <class Track, class Estimator>
+[[nodiscard]] Gaussian<4> kinematics_at(const Track& track, const Estimator& estimator,
+                                        double time_s) noexcept {
+  if (time_s <= track.time_s) return at_constant_velocity(track.kinematics, time_s - track.time_s);
+  Estimator ahead = estimator;
+  if (ahead.predict(time_s - track.time_s) == Status::kOk) return kinematics_of(ahead.estimate());
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  return {Vec<double, 4>::Constant(kNaN), Mat<double, 4, 4>::Constant(kNaN)};
+}
 
 /// Distinguishes estimators of different models or chains, by their estimates after a slow start
 /// and after fast ones, two time steps and a reading.

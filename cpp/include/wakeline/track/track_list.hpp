@@ -88,14 +88,9 @@ class TrackListOf {
   /// Removes the tracks for which the predicate holds, which is called for all in order.
   template <class Predicate>
   void remove_if(Predicate&& predicate) noexcept {
-    const auto ends = [&](int slot) {
-      if (!predicate(at(slot))) return false;
-      in_use_[static_cast<std::size_t>(slot)] = 0;
-      vacant_.push_back(slot);
-      return true;
-    };
-    slots_.erase(std::remove_if(slots_.begin(), slots_.end(), ends), slots_.end());
-    number_places();
+    for (const int slot : slots_)
+      if (predicate(at(slot))) vacate(slot);
+    close_gaps();
   }
 
   /// Saves or restores the tracks; fails when the bytes are not a list of this capacity.

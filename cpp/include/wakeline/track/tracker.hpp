@@ -326,16 +326,13 @@ class Tracker {
   template <class Function>
   void for_each_near(const Track& track, const Function& function) const noexcept {
     const Gaussian<4> now = at_constant_velocity(track.kinematics, time_s_ - track.time_s);
-    plots_.for_each_near(
-        {now.mean[0], now.mean[2]}, [&](double plot_m2) { return gate_reach_m(now, plot_m2); },
-        [&](int index) {
-          const ScanPlot& plot = plots_[index];
-          const Gaussian<4> then =
-              at_constant_velocity(track.kinematics, plot.time_s - track.time_s);
-          if (innovation_squared(then, plot.position.mean, plot.position.covariance) <=
-              gate_.threshold())
-            function(index);
-        });
+    for_each_in_reach(now, [&](int index) {
+      const ScanPlot& plot = plots_[index];
+      const Gaussian<4> then = at_constant_velocity(track.kinematics, plot.time_s - track.time_s);
+      if (innovation_squared(then, plot.position.mean, plot.position.covariance) <=
+          gate_.threshold())
+        function(index);
+    });
   }
 
   /// Where the beam may reach the gate of a track again, with room for what both do in a turn.
@@ -386,16 +383,17 @@ class Tracker {
   /// tracks that wait and have a candidate in common with one that is due.
   void list_rivals() noexcept {
     rivals_.clear();
-    is_candidate_.assign(static_cast<std::size_t>(plots_.size()), 0);
-    for (const int slot : due_)
-      for (const CandidatePlot& plot : candidates_of(tracks_.at(slot)))
-        is_candidate_[static_cast<std::size_t>(plot.plot)] = 1;
+    if (!waiting_.empty()) {
+      is_candidate_.assign(static_cast<std::size_t>(plots_.size()), 0);
+      for (const int slot : due_)
+        for (const CandidatePlot& plot : candidates_of(tracks_.at(slot)))
+          is_candidate_[static_cast<std::size_t>(plot.plot)] = 1;
+    }
     for (const int slot : waiting_) {
       const Track& track = tracks_.at(slot);
       const Gaussian<4> now = at_constant_velocity(track.kinematics, time_s_ - track.time_s);
-      const auto reach_m = [&](double plot_m2) { return gate_reach_m(now, plot_m2); };
       bool is_rival = false;
-      plots_.for_each_near({now.mean[0], now.mean[2]}, reach_m, [&](int plot) {
+      for_each_in_reach(now, [&](int plot) {
         plots_.keep(plot);
         is_rival = is_rival || is_candidate_[static_cast<std::size_t>(plot)] != 0;
       });
@@ -416,16 +414,21 @@ class Tracker {
     const double half_period_s = 0.5 * radar_.period_s;
     if (!(time_s_ - plots_.earliest_s() > half_period_s)) return;
     const Gaussian<4> now = at_constant_velocity(track.kinematics, time_s_ - track.time_s);
-    const Vec<double, 2> position(now.mean[0], now.mean[2]);
-    const auto reach_m = [&](double plot_m2) { return gate_reach_m(now, plot_m2); };
     double first_s = time_s_;
-    plots_.for_each_near(position, reach_m,
-                         [&](int plot) { first_s = std::min(first_s, plots_[plot].time_s); });
-    plots_.for_each_near(position, reach_m, [&](int plot) {
+    for_each_in_reach(now, [&](int plot) { first_s = std::min(first_s, plots_[plot].time_s); });
+    for_each_in_reach(now, [&](int plot) {
       if (plots_[plot].time_s > first_s + half_period_s)
         plots_.keep_until(plot, beam_.angle_rad() + Beam::kTurn);
     });
     plots_.hide_after(first_s + half_period_s);
+  }
+
+  /// Calls `f(plot)` for the plots that may be in the gate of a belief, about.
+  template <class Function>
+  void for_each_in_reach(const Gaussian<4>& now, const Function& function) const noexcept {
+    plots_.for_each_near(
+        {now.mean[0], now.mean[2]}, [&](double plot_m2) { return gate_reach_m(now, plot_m2); },
+        function);
   }
 
   /// How far a plot of such a variance may be from a belief and in its gate, about.
@@ -487,10 +490,8 @@ class Tracker {
     PredictionStep<Estimator> step{&ahead, dt_s};
     steps_.predict({&step, 1});
     if (step.status != Status::kOk) return 0.0;
-    Mat<double, 4, 4> straight = Mat<double, 4, 4>::Identity();
-    straight(0, 1) = straight(2, 3) = dt_s;
     const Mat<double, 4, 4> covariance =
-        step.kinematics.covariance - straight * track.kinematics.covariance * straight.transpose();
+        step.kinematics.covariance - at_constant_velocity(track.kinematics, dt_s).covariance;
     return std::max(0.0, (covariance(0, 0) + covariance(2, 2)) / 2) / (dt_s * dt_s * dt_s);
   }
 
@@ -865,11 +866,7 @@ ScanReport Tracker<Estimator, Steps>::step(double time_s, std::span<const Plot> 
 template <class Estimator, class Steps>
 Gaussian<4> Tracker<Estimator, Steps>::kinematics_at(const Track& track,
                                                      double time_s) const noexcept {
-  if (time_s <= track.time_s) return at_constant_velocity(track.kinematics, time_s - track.time_s);
-  Estimator ahead = estimator_of(track);
-  if (ahead.predict(time_s - track.time_s) == Status::kOk) return kinematics_of(ahead.estimate());
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  return {Vec<double, 4>::Constant(kNaN), Mat<double, 4, 4>::Constant(kNaN)};
+  return wakeline::kinematics_at(track, estimator_of(track), time_s);
 }
 
 template <class Estimator, class Steps>
