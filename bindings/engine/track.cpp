@@ -579,8 +579,8 @@ designated or dropped again.)")
             return tracker.visit([](const auto& one) { return one.latest_time_s(); });
           },
           "Until when a scan is processed and a target can be designated: an hour after the last "
-          "scan, or ever before the first one. A radar that was silent for longer goes on by a "
-          "scan without plots an hour after the last one.")
+          "scan, or ever before the first one. After a longer silence of the radar a scan "
+          "without plots is needed an hour after the last one.")
       .def("_arguments", &tracker_arguments);
   define_keeping(
       tracker,

@@ -161,7 +161,7 @@ struct CalibrationResult {
 /// position, along and across its course, which is estimated with them as N(0, s² I); u_r and u_a
 /// the directions of sight and across it. s² is estimated, too, with `position_offset_std_m` as if
 /// it had been found in one direction of one vessel. With fewer than three vessels s is taken for
-/// so large that only geometry tells the offsets of radar and vessel apart: one vessel on a steady
+/// so large that only geometry separates the offsets of radar and vessel: one vessel on a steady
 /// course determines none. The noise is that of the radar, of the reports and of the interpolation;
 /// its size and its correlation from plot to plot are estimated from the residuals, so that the
 /// standard deviations of the offsets hold for echoes that wander about the hull.

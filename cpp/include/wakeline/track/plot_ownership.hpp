@@ -42,7 +42,7 @@ class PlotOwnership {
     owner_.assign(static_cast<std::size_t>(plots), {});
   }
 
-  /// Goes on to that many plots; nobody owns the new ones.
+  /// Makes room for that many plots; nobody owns the new ones.
   void extend(int plots) noexcept {
     free_.resize(static_cast<std::size_t>(plots), 1.0);
     clutter_.resize(static_cast<std::size_t>(plots), 1.0);

@@ -126,8 +126,8 @@ class Tracker {
   [[nodiscard]] Gaussian<4> kinematics_at(const Track& track, double time_s) const noexcept;
 
   /// Until when a scan is processed and a target can be designated: an hour after the last scan, or
-  /// ever before the first one. A time further ahead is of another clock. A radar that was silent
-  /// for longer goes on by a scan without plots an hour after the last one.
+  /// ever before the first one. A time further ahead is of another clock. After a longer silence
+  /// of the radar a scan without plots is needed an hour after the last one.
   [[nodiscard]] double latest_time_s() const noexcept {
     return started_ ? time_s_ + kLongestSilence_s : std::numeric_limits<double>::infinity();
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 //
-// A compiler that is told to read C++17.
+// A unit that is compiled as C++17.
 #ifdef WAKELINE_COMPILE_FAIL
 #undef __cplusplus
 #define __cplusplus 201703L
