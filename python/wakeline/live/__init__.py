@@ -1,0 +1,1 @@
+"""The live system: data from the network in, tracks, alarms and a screen out."""
