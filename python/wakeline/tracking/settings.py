@@ -110,6 +110,21 @@ class Settings:
         """The engine's settings, with the period of the recording."""
         return cls(**{section: _defaults(section) for section in KEYS})
 
+    @classmethod
+    def of(cls, document: Mapping[str, Any], path: str | Path) -> Settings:
+        """The defaults, changed by the sections of a document; `path` is its name in messages."""
+        settings = cls.default()
+        for section, values in document.items():
+            if section == "zone":
+                settings = replace(settings, zones=_read_zones(values, path))
+                continue
+            if section not in KEYS:
+                known = _one_of([*KEYS, "zone"])
+                raise SettingsError(f"{path}: unknown section {cut(section)}; {known}")
+            settings = _changed(settings, section, values, path)
+        _check_zones(settings, path)
+        return settings
+
     @property
     def period_s(self) -> float | None:
         """Period of the antenna, None if the recording gives it."""
@@ -125,11 +140,11 @@ class Settings:
 
     def make_tracker(self, period_s: float | None = None) -> wl.Tracker:
         """A new tracker; `period_s` is that of the antenna if the settings do not give it."""
-        return wl.Tracker(
-            self.make_radar(period_s),
-            _engine("tracker", self.tracker),
-            _engine("models", self.models),
-        )
+        return self.tracker_of(self.make_radar(period_s))
+
+    def tracker_of(self, radar: wl.Radar) -> wl.Tracker:
+        """A new tracker for another radar."""
+        return wl.Tracker(radar, _engine("tracker", self.tracker), _engine("models", self.models))
 
     def make_strobe_tracker(
         self, period_s: float, bits: int = 8, **estimated: float
@@ -240,15 +255,7 @@ def read_settings(
     if isinstance(config, wl.TrackerConfig):
         settings = replace(settings, tracker=config.as_dict())
     elif config is not None and not isinstance(config, Settings):
-        for section, values in read_toml(Path(config)).items():
-            if section == "zone":
-                settings = replace(settings, zones=_read_zones(values, config))
-                continue
-            if section not in KEYS:
-                known = _one_of([*KEYS, "zone"])
-                raise SettingsError(f"{config}: unknown section {cut(section)}; {known}")
-            settings = _changed(settings, section, values, config)
-        _check_zones(settings, config)
+        settings = Settings.of(read_toml(Path(config)), config)
     if isinstance(radar, wl.Radar):
         settings = replace(settings, radar=_as_in_file("radar", radar))
     elif radar is not None:

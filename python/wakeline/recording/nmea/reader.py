@@ -143,7 +143,7 @@ def read_nmea(
         if not abs(variation_deg) <= 180:
             raise ValueError(f"variation_deg must be from -180 to 180, got {variation_deg}")
     first_day, path, report = _day(date), Path(path), NmeaReport()
-    octets, rows = sentences_of(path, wanted=f"a log of {_SENTENCES}"), _Rows()
+    octets, rows = sentences_of(path, wanted=f"a log of {_SENTENCES}"), Rows()
     lines = lines_of(octets)
     for sentence in sentences(lines, report):
         rows.read(sentence)
@@ -220,7 +220,7 @@ def _nothing_read(path: Path, octets: bytes, report: NmeaReport, problem: str) -
 # ------------------------------------------------------------------ sentences
 
 
-class _Rows:
+class Rows:
     """The rows read so far.
 
     Attributes
@@ -283,7 +283,7 @@ class _Rows:
             self.of[name].append((s.line, s.kind, stamp, valid, *values, *marks))
 
 
-def _rmc(s: Sentence, rows: _Rows) -> None:
+def _rmc(s: Sentence, rows: Rows) -> None:
     time_s, place = s.time_of_day_s(0), s.place_deg(2)
     if s.faults:
         return
@@ -298,7 +298,7 @@ def _rmc(s: Sentence, rows: _Rows) -> None:
         rows.variation.append((s.line, variation_rad))
 
 
-def _gga(s: Sentence, rows: _Rows) -> None:
+def _gga(s: Sentence, rows: Rows) -> None:
     time_s, place = s.time_of_day_s(0), s.place_deg(1)
     if s.faults:
         return
@@ -307,7 +307,7 @@ def _gga(s: Sentence, rows: _Rows) -> None:
     _add_fix_with_hdop(rows, s, time_s, place, _DIFFERENTIAL if quality == _SBAS else quality)
 
 
-def _gns(s: Sentence, rows: _Rows) -> None:
+def _gns(s: Sentence, rows: Rows) -> None:
     time_s, place = s.time_of_day_s(0), s.place_deg(1)
     if s.faults:
         return
@@ -317,14 +317,14 @@ def _gns(s: Sentence, rows: _Rows) -> None:
 
 
 def _add_fix_with_hdop(
-    rows: _Rows, s: Sentence, time_s: float, place_deg: tuple[float, float], quality: int
+    rows: Rows, s: Sentence, time_s: float, place_deg: tuple[float, float], quality: int
 ) -> None:
     valid = quality not in (*_NOT_MEASURED, _NOT_SAID)
     stamp = rows.stamp(s, time_s, valid=valid, place_deg=place_deg)
     _add_fix(rows, s, stamp, valid, place_deg, quality, s.number(7, 0.0, 1000.0))
 
 
-def _gll(s: Sentence, rows: _Rows) -> None:
+def _gll(s: Sentence, rows: Rows) -> None:
     place, time_s = s.place_deg(0), s.time_of_day_s(4)
     if s.faults:
         return
@@ -335,7 +335,7 @@ def _gll(s: Sentence, rows: _Rows) -> None:
 
 
 def _add_fix(
-    rows: _Rows,
+    rows: Rows,
     s: Sentence,
     stamp: int | None,
     valid: bool,
@@ -348,7 +348,7 @@ def _add_fix(
         rows.add_where_known("fixes", s, valid, *values, stamp=stamp, marks=_UNMARKED_FIX)
 
 
-def _vtg(s: Sentence, rows: _Rows) -> None:
+def _vtg(s: Sentence, rows: Rows) -> None:
     if rows.timed and rows.timed[-1][3][:-3] == s.address[:-3]:
         rows.before_vtg[s.line] = len(rows.timed) - 1
     quality = _quality(s, 8)
@@ -358,15 +358,15 @@ def _vtg(s: Sentence, rows: _Rows) -> None:
     rows.add_where_known("ground", s, valid, speed_mps, course_rad, marks=_UNMARKED_GROUND)
 
 
-def _hdt(s: Sentence, rows: _Rows) -> None:
+def _hdt(s: Sentence, rows: Rows) -> None:
     rows.add_where_known("heading", s, True, s.angle_rad(0))
 
 
-def _ths(s: Sentence, rows: _Rows) -> None:
+def _ths(s: Sentence, rows: Rows) -> None:
     rows.add_where_known("heading", s, s.letter(1, "AEMSV") in ("A", "S"), s.angle_rad(0))
 
 
-def _hdg(s: Sentence, rows: _Rows) -> None:
+def _hdg(s: Sentence, rows: Rows) -> None:
     deviation_rad = s.signed_rad(1)
     heading_rad = s.angle_rad(0) + (0.0 if math.isnan(deviation_rad) else deviation_rad)
     variation_rad = s.signed_rad(3)
@@ -374,28 +374,28 @@ def _hdg(s: Sentence, rows: _Rows) -> None:
         rows.add_where_known("compass", s, True, heading_rad % math.tau, variation_rad)
 
 
-def _hdm(s: Sentence, rows: _Rows) -> None:
+def _hdm(s: Sentence, rows: Rows) -> None:
     rows.add_where_known("compass", s, True, s.angle_rad(0), math.nan)
 
 
-def _vhw(s: Sentence, rows: _Rows) -> None:
+def _vhw(s: Sentence, rows: Rows) -> None:
     rows.add_where_known("heading", s, True, s.angle_rad(0))
     rows.add_where_known("compass", s, True, s.angle_rad(2), math.nan)
     rows.add_where_known("water", s, True, _speed_mps(s, 4), math.nan)
 
 
-def _vbw(s: Sentence, rows: _Rows) -> None:
+def _vbw(s: Sentence, rows: Rows) -> None:
     for name, k in (("water", 0), ("bottom", 3)):
         valid = s.letter(k + 2, "AV") == "A"
         rows.add_where_known(name, s, valid, _knots(s, k), _knots(s, k + 1))
 
 
-def _rot(s: Sentence, rows: _Rows) -> None:
+def _rot(s: Sentence, rows: Rows) -> None:
     rate_deg_min = s.number(0, -_MAX_RATE_DEG_MIN, _MAX_RATE_DEG_MIN)
     rows.add_where_known("turn", s, s.letter(1, "AV") == "A", math.radians(rate_deg_min) / 60.0)
 
 
-def _zda(s: Sentence, rows: _Rows) -> None:
+def _zda(s: Sentence, rows: Rows) -> None:
     time_s = s.time_of_day_s(0)
     rows.stamp(s, time_s, s.day_in_fields(1))
 
@@ -461,7 +461,7 @@ class _Times:
 
     def __init__(
         self,
-        rows: _Rows,
+        rows: Rows,
         beside: Beside | None,
         first_day: float,
         reorder_s: float,

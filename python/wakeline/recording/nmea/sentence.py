@@ -229,17 +229,12 @@ def sentences(lines: Sequence[bytes], report: NmeaReport) -> list[Sentence]:
     with_checksum: set[str] = set()
     report.lines = len(lines)
     for line, text in enumerate(lines, 1):
-        pieces = _PIECE.findall(text)
-        if not pieces and text.strip():
-            report.add(line, "no sentence", f"wanted a sentence that begins with $, {_got(text)}")
-        for piece in pieces:
-            fault = _unsound(piece)
+        for piece, fault in pieces_of(text):
             if fault is not None:
                 report.add(line, *fault)
                 continue
-            star = piece.rfind(b"*")
-            address, kind, body = _parted(piece[1:] if star < 0 else piece[1:star])
-            if star < 0:
+            address, kind, body = parted(piece)
+            if b"*" not in piece:
                 unchecked.append((line, address, kind, body))
                 continue
             with_checksum.add(kind)
@@ -265,6 +260,21 @@ def _whole(
         report.sentences[kind] += 1
         if kind in FIELDS:
             yield Sentence(line, address, kind, body.decode("ascii"))
+
+
+def pieces_of(text: bytes) -> Iterator[tuple[bytes, tuple[str, str] | None]]:
+    """Each sentence in a line with the kind and reason of its fault, None if it is valid."""
+    pieces = _PIECE.findall(text)
+    if not pieces and text.strip():
+        yield text, ("no sentence", f"wanted a sentence that begins with $, {_got(text)}")
+    for piece in pieces:
+        yield piece, _unsound(piece)
+
+
+def parted(piece: bytes) -> tuple[str, str, bytes]:
+    """Address, kind and fields of a valid sentence, without its checksum."""
+    star = piece.rfind(b"*")
+    return _parted(piece[1:] if star < 0 else piece[1:star])
 
 
 def _unsound(piece: bytes) -> tuple[str, str] | None:

@@ -1,0 +1,219 @@
+"""AIS: parts of messages to messages, and messages to vessels."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+from wakeline._units import KNOT_MPS
+
+from .problems import Problems
+
+HOW_TO_GET = "AIS needs pyais: pip install 'wakeline[live]'"
+_PART_S = 10.0  # the parts of a message follow each other within this time
+_MOST_OPEN = 256  # messages with missing parts
+_MOST_VESSELS = 20_000
+FORGET_S = 900.0
+_GROUP = re.compile(rb"\\(?:[^\\*]*,)?g:(\d+)-(\d+)-(\d+)")
+_POSITION_TYPES = (1, 2, 3, 4, 18, 19, 27)
+_CLASS_B = (18, 19, 24)
+
+
+class _Open(NamedTuple):
+    """A message with missing parts."""
+
+    begin_s: float
+    parts: dict[int, bytes]
+
+
+class AisAssembly:
+    """Whole messages of one source from sentences that may interleave.
+
+    Parts belong together by count, sequence number and channel, or by the group of their TAG
+    blocks; they must follow each other within 10 s.
+    """
+
+    def __init__(self) -> None:
+        self._open: dict[tuple, _Open] = {}
+
+    def feed(
+        self, time_s: float, line: bytes, piece: bytes, problems: Problems
+    ) -> tuple[bytes, ...] | None:
+        """The sentences of a message, when the last of them is there."""
+        fields = piece.split(b",")
+        if len(fields) < 7:
+            problems.add("AIS fields", f"wanted 7 fields, got {len(fields)}")
+            return None
+        try:
+            count, number = int(fields[1]), int(fields[2])
+        except ValueError:
+            problems.add("AIS part", "wanted the number of parts and of this one")
+            return None
+        if count == 1:
+            return (piece,)
+        if not 1 <= number <= count <= 9:
+            problems.add("AIS part", f"wanted part 1 to {count} of 9, got {number}")
+            return None
+        group = _GROUP.match(line)
+        key = (fields[0], count, fields[3], fields[4], group[3] if group else b"")
+        open_one = self._open.get(key)
+        expired = open_one is not None and not 0.0 <= time_s - open_one.begin_s <= _PART_S
+        if open_one is None or expired or number in open_one.parts:
+            if open_one is not None:
+                problems.add("AIS part missing", f"message of {count} parts is not complete")
+            open_one = self._open[key] = _Open(time_s, {})
+        open_one.parts[number] = piece
+        if len(open_one.parts) == count:
+            del self._open[key]
+            return tuple(open_one.parts[k] for k in range(1, count + 1))
+        while len(self._open) > _MOST_OPEN:
+            problems.add("AIS part missing", "too many messages are not complete")
+            del self._open[next(iter(self._open))]
+        return None
+
+
+@dataclass
+class AisVessel:
+    """What AIS says of a vessel; NaN and empty where unknown.
+
+    Attributes
+    ----------
+    mmsi : int
+    time_s : float
+        Of its last position.
+    latitude_deg, longitude_deg, course_rad, speed_mps, heading_rad : float
+    accurate : bool
+        Whether it reports an error of the position below 10 m.
+    name, callsign : str
+    ship_type : int
+    to_bow_m, to_stern_m, to_port_m, to_starboard_m : float
+        From the reference of its position.
+    is_class_b : bool
+    messages : int
+    """
+
+    mmsi: int
+    time_s: float = -math.inf
+    latitude_deg: float = math.nan
+    longitude_deg: float = math.nan
+    course_rad: float = math.nan
+    speed_mps: float = math.nan
+    heading_rad: float = math.nan
+    accurate: bool = False
+    name: str = ""
+    callsign: str = ""
+    ship_type: int = 0
+    to_bow_m: float = math.nan
+    to_stern_m: float = math.nan
+    to_port_m: float = math.nan
+    to_starboard_m: float = math.nan
+    is_class_b: bool = False
+    messages: int = 0
+
+    @property
+    def position_std_m(self) -> float:
+        """Standard deviation of its position, per axis."""
+        return 5.0 if self.accurate else 10.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """Its values by name."""
+        return asdict(self)
+
+
+def decoded(sentences: tuple[bytes, ...]) -> Any:
+    """The message of its sentences, by pyais.
+
+    Raises
+    ------
+    ValueError
+        When it cannot be decoded.
+    ModuleNotFoundError
+        When pyais is not installed.
+    """
+    try:
+        import pyais
+    except ModuleNotFoundError:
+        raise ModuleNotFoundError(HOW_TO_GET) from None
+    try:
+        return pyais.decode(*sentences)
+    except Exception as error:  # noqa: BLE001 - of any class, by octets of anyone
+        raise ValueError(f"{type(error).__name__} {error}") from None
+
+
+class AisPicture:
+    """The vessels of all AIS messages.
+
+    Attributes
+    ----------
+    vessels : dict of int to AisVessel
+    """
+
+    def __init__(self) -> None:
+        self.vessels: dict[int, AisVessel] = {}
+
+    def add(self, time_s: float, message: Any) -> tuple[AisVessel, bool] | None:
+        """Add a message; its vessel and whether its position is new, None for other messages."""
+        kind = int(message.msg_type)
+        if kind not in (*_POSITION_TYPES, 5, 24):
+            return None
+        mmsi = int(message.mmsi)
+        vessel = self.vessels.get(mmsi)
+        if vessel is None:
+            self._make_room(time_s)
+            vessel = self.vessels[mmsi] = AisVessel(mmsi)
+        vessel.messages += 1
+        vessel.is_class_b = vessel.is_class_b or kind in _CLASS_B
+        if kind in (5, 19, 24):
+            _take_static(vessel, message)
+        return vessel, kind in _POSITION_TYPES and _take_position(vessel, time_s, message)
+
+    def _make_room(self, time_s: float) -> None:
+        if len(self.vessels) < _MOST_VESSELS:
+            return
+        self.forget(time_s)
+        if len(self.vessels) >= _MOST_VESSELS:
+            oldest = min(self.vessels.values(), key=lambda vessel: vessel.time_s)
+            del self.vessels[oldest.mmsi]
+
+    def forget(self, time_s: float) -> None:
+        """Drop vessels without a position for 15 minutes."""
+        old = [m for m, vessel in self.vessels.items() if time_s - vessel.time_s > FORGET_S]
+        for mmsi in old:
+            del self.vessels[mmsi]
+
+
+def _take_position(vessel: AisVessel, time_s: float, message: Any) -> bool:
+    latitude, longitude = float(message.lat), float(message.lon)
+    if not (abs(latitude) <= 90.0 and abs(longitude) <= 180.0):
+        return False
+    speed_kn = getattr(message, "speed", None)
+    course_deg = getattr(message, "course", None)
+    heading_deg = getattr(message, "heading", None)
+    slow = speed_kn is not None and 0.0 <= speed_kn < 102.25
+    vessel.time_s = time_s
+    vessel.latitude_deg, vessel.longitude_deg = latitude, longitude
+    vessel.speed_mps = float(speed_kn) * KNOT_MPS if slow else math.nan
+    good = course_deg is not None and 0.0 <= course_deg < 360.0
+    vessel.course_rad = math.radians(course_deg) if good else math.nan
+    good = heading_deg is not None and 0 <= heading_deg < 360
+    vessel.heading_rad = math.radians(heading_deg) if good else math.nan
+    vessel.accurate = bool(getattr(message, "accuracy", False))
+    return True
+
+
+def _take_static(vessel: AisVessel, message: Any) -> None:
+    names = {"shipname": "name", "callsign": "callsign"}
+    for theirs, ours in names.items():
+        text = getattr(message, theirs, None)
+        if text:
+            setattr(vessel, ours, str(text).strip("@ ").rstrip())
+    kind = getattr(message, "ship_type", None)
+    if kind is not None:
+        vessel.ship_type = int(kind)
+    ends = [getattr(message, f"to_{end}", None) for end in ("bow", "stern", "port", "starboard")]
+    if all(end is not None for end in ends) and any(ends):
+        vessel.to_bow_m, vessel.to_stern_m, vessel.to_port_m, vessel.to_starboard_m = map(
+            float, ends
+        )

@@ -1,0 +1,418 @@
+"""Settings of a live session: inputs, outputs, radars and own ship, in Python and as TOML."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import MISSING, dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import wakeline as wl
+from wakeline._brief import cut, quoted
+from wakeline.tracking.settings import Settings, SettingsError, read_toml
+
+IN_SCHEMES = (
+    "udp",
+    "tcp",
+    "tcp-listen",
+    "serial",
+    "stdin",
+    "file",
+    "pcap",
+    "signalk",
+)
+OUT_SCHEMES = ("udp", "tcp", "tcp-listen", "serial", "file", "stdout")
+IN_FORMATS = ("", "nmea", "json", "cat240", "cat048", "cat010", "signalk")
+OUT_FORMATS = ("json", "ttm", "tll", "cat062", "cat010")
+AZIMUTHS = ("north", "bow")
+
+
+def _key(default: Any, sentence: str) -> Any:
+    """A setting with the sentence that explains it."""
+    if isinstance(default, (dict, list)):
+        return field(default_factory=lambda: type(default)(default), metadata={"about": sentence})
+    return field(default=default, metadata={"about": sentence})
+
+
+@dataclass(frozen=True)
+class InputConfig:
+    """One source of data.
+
+    Attributes
+    ----------
+    url : str
+        ``udp://HOST:PORT``, ``udp://GROUP:PORT?iface=ADDRESS``, ``tcp://HOST:PORT``,
+        ``tcp-listen://HOST:PORT``, ``serial:/dev/NAME?baud=38400``, ``stdin:``, ``file:PATH``,
+        ``pcap:PATH``, ``signalk://HOST:PORT``; ``name``, ``format`` and ``radar`` may be given
+        as its query.
+    name : str
+        The name in the status; default the URL without its query.
+    format : str
+        One of `IN_FORMATS`; empty: each message is recognized by its first octets.
+    radar : str
+        Name of the radar of video or plots that do not name one; default the first.
+    """
+
+    url: str = _key("", "Where data come from: udp://0.0.0.0:10110, tcp://HOST:PORT, ...")
+    name: str = _key("", "Name in the status; empty: the URL without its query.")
+    format: str = _key("", f"One of {', '.join(filter(None, IN_FORMATS))}; empty: recognized.")
+    radar: str = _key("", "Radar of its video or plots where they name none; empty: the first.")
+
+    def __post_init__(self) -> None:
+        _take_query(self, ("name", "format", "radar"), IN_SCHEMES)
+        _check_choice("format", self.format, IN_FORMATS)
+
+    @property
+    def scheme(self) -> str:
+        """The part of the URL before the colon."""
+        return urlsplit(self.url).scheme
+
+    @property
+    def is_stream(self) -> bool:
+        """Whether octets come without the borders of messages."""
+        return self.scheme not in ("", "udp", "pcap")
+
+
+@dataclass(frozen=True)
+class OutputConfig:
+    """One receiver of tracks.
+
+    Attributes
+    ----------
+    url : str
+        ``udp://HOST:PORT``, ``tcp://HOST:PORT``, ``tcp-listen://HOST:PORT``,
+        ``serial:/dev/NAME?baud=38400``, ``file:PATH`` or ``stdout:``; ``name`` and ``format`` may
+        be given as its query.
+    name : str
+        The name in the status; default the URL without its query.
+    format : str
+        One of `OUT_FORMATS`; default ``json`` to files and the standard output, else ``ttm``.
+    """
+
+    url: str = _key("", "Where tracks go: udp://127.0.0.1:10111, file:tracks.jsonl, ...")
+    name: str = _key("", "Name in the status; empty: the URL without its query.")
+    format: str = _key("", f"One of {', '.join(OUT_FORMATS)}; empty: json to files, else ttm.")
+
+    def __post_init__(self) -> None:
+        _take_query(self, ("name", "format"), OUT_SCHEMES)
+        if not self.format:
+            json_too = self.scheme in ("file", "stdout")
+            object.__setattr__(self, "format", "json" if json_too else "ttm")
+        _check_choice("format", self.format, OUT_FORMATS)
+
+    @property
+    def scheme(self) -> str:
+        """The part of the URL before the colon."""
+        return urlsplit(self.url).scheme
+
+
+@dataclass(frozen=True)
+class RadarConfig:
+    """One radar.
+
+    Attributes
+    ----------
+    name : str
+    azimuth : str
+        Origin of its bearings and azimuths: "north" or "bow".
+    position_deg : (float, float), optional
+        Latitude and longitude of a radar ashore; default aboard own ship.
+    forward_m, starboard_m : float
+        Position of the antenna aboard, from the reference point of own ship.
+    settings : dict of str to float
+        Keys of ``[radar]`` of :class:`wakeline.tracking.Settings`.
+    """
+
+    name: str = _key("A", "Name of the radar in data and tracks.")
+    azimuth: str = _key("north", "Origin of its bearings: north or bow.")
+    position_deg: Sequence[float] = _key(
+        (), "Latitude and longitude of a radar ashore; empty: aboard own ship. [degrees]"
+    )
+    forward_m: float = _key(0.0, "Antenna forward of own ship's reference point. [m]")
+    starboard_m: float = _key(0.0, "Antenna to starboard of the reference point. [m]")
+    settings: Mapping[str, float] = _key({}, "")
+
+    def __post_init__(self) -> None:
+        _check_choice("azimuth", self.azimuth, AZIMUTHS)
+        _check_place("position_deg", self.position_deg)
+
+    def make_radar(self, default: Settings) -> wl.Radar:
+        """The tracker's radar; keys that are not given are those of the default."""
+        return replace(default, radar=default.radar | dict(self.settings)).make_radar()
+
+
+@dataclass(frozen=True)
+class OwnConfig:
+    """Sources of own ship's position, heading and velocity.
+
+    Attributes
+    ----------
+    position, heading, velocity : sequence of str
+        Sources in order of preference, before all others: a sentence (``GGA``), a talker with it
+        (``GPGGA``), either at an input (``GPGGA@NAME``), or ``@NAME`` alone.
+    dwell_s : float
+        A better source must have been there for this long before it is used.
+    position_age_s, heading_age_s, velocity_age_s : float
+        An older reading is not used.
+    position_std_m, heading_std_deg : float
+        Standard deviations of a reading, per axis, and of a heading.
+    variation_deg : float
+        Magnetic variation, positive east; NaN: that of the sentences.
+    gnss_forward_m, gnss_starboard_m : float
+        Position of the antenna of the GNSS receiver, from the reference point of own ship.
+    place_deg : (float, float), optional
+        Latitude and longitude of a station that does not move.
+    fixed_heading_deg : float
+        Heading of such a station.
+    """
+
+    position: Sequence[str] = _key((), "Preferred sources of position: GGA, GPGGA, GGA@NAME, ...")
+    heading: Sequence[str] = _key((), "Preferred sources of heading.")
+    velocity: Sequence[str] = _key((), "Preferred sources of velocity over ground.")
+    dwell_s: float = _key(10.0, "A better source is used after being there for this long. [s]")
+    position_age_s: float = _key(10.0, "An older position is not used. [s]")
+    heading_age_s: float = _key(3.0, "An older heading is not used. [s]")
+    velocity_age_s: float = _key(10.0, "An older velocity is not used. [s]")
+    position_std_m: float = _key(
+        1.0, "Error of a position that changes from fix to fix, per axis. [m]"
+    )
+    heading_std_deg: float = _key(0.5, "Standard deviation of a heading. [degrees]")
+    variation_deg: float = _key(
+        float("nan"), "Magnetic variation, east positive; nan: that of the sentences. [degrees]"
+    )
+    gnss_forward_m: float = _key(0.0, "GNSS antenna forward of own ship's reference point. [m]")
+    gnss_starboard_m: float = _key(0.0, "GNSS antenna to starboard of the reference point. [m]")
+    place_deg: Sequence[float] = _key(
+        (), "Latitude and longitude of a station that does not move. [degrees]"
+    )
+    fixed_heading_deg: float = _key(0.0, "Heading of such a station. [degrees]")
+
+    def __post_init__(self) -> None:
+        _check_place("place_deg", self.place_deg)
+        for name in ("dwell_s", "position_age_s", "heading_age_s", "velocity_age_s"):
+            if not getattr(self, name) >= 0.0:
+                raise SettingsError(f"{name} must be 0 or more, got {getattr(self, name)}")
+
+
+@dataclass(frozen=True)
+class SessionConfig:
+    """The session itself.
+
+    Attributes
+    ----------
+    origin_deg : (float, float), optional
+        Latitude and longitude of north 0, east 0; default the first position of own ship, or the
+        first radar ashore.
+    status_s : float
+        Interval of the status line.
+    record : str
+        File that the session is recorded to; empty: none.
+    segment_mb, most_mb : float
+        Size at which a new segment of the record begins, and of all segments together before the
+        oldest is removed.
+    """
+
+    origin_deg: Sequence[float] = _key(
+        (), "Latitude and longitude of north 0, east 0; empty: the first position. [degrees]"
+    )
+    status_s: float = _key(1.0, "Interval of the status line; 0: none. [s]")
+    record: str = _key("", "File that the session is recorded to; empty: none.")
+    segment_mb: float = _key(256.0, "A new segment of the record begins at this size. [MB]")
+    most_mb: float = _key(4096.0, "Size of all segments before the oldest is removed. [MB]")
+
+    def __post_init__(self) -> None:
+        _check_place("origin_deg", self.origin_deg)
+        if not 0.0 < self.segment_mb <= self.most_mb:
+            raise SettingsError(
+                f"segment_mb must be above 0 and at most most_mb, got {self.segment_mb}"
+            )
+
+
+@dataclass(frozen=True)
+class LiveConfig:
+    """All settings of a live session.
+
+    Attributes
+    ----------
+    inputs : tuple of InputConfig
+    outputs : tuple of OutputConfig
+    radars : tuple of RadarConfig
+        Without any, one radar "A" aboard, as ``[radar]`` describes it.
+    own : OwnConfig
+    session : SessionConfig
+    settings : Settings
+        Tracker, motion models, danger limits and zones, and what radars have in common.
+    """
+
+    inputs: tuple[InputConfig, ...] = ()
+    outputs: tuple[OutputConfig, ...] = ()
+    radars: tuple[RadarConfig, ...] = ()
+    own: OwnConfig = field(default_factory=OwnConfig)
+    session: SessionConfig = field(default_factory=SessionConfig)
+    settings: Settings = field(default_factory=Settings.default)
+
+    def __post_init__(self) -> None:
+        for name in ("inputs", "outputs"):
+            named = tuple(_named(each) for each in getattr(self, name))
+            _check_once(name, [each.name for each in named])
+            object.__setattr__(self, name, named)
+        object.__setattr__(self, "radars", tuple(self.radars) or (RadarConfig(),))
+        _check_once("radars", [radar.name for radar in self.radars])
+        for one in self.inputs:
+            if one.radar:
+                _check_choice("radar", one.radar, [radar.name for radar in self.radars])
+
+    def toml(self) -> str:
+        """Every setting with a line of explanation; reading it gives the same settings."""
+        lists = [
+            ("input", self.inputs or (InputConfig(),)),
+            ("output", self.outputs or (OutputConfig(url="stdout:"),)),
+            ("radar", self.radars),
+        ]
+        lines = list(_section("session", self.session))
+        lines += _section("own", self.own)
+        for name, each in lists:
+            empty = not getattr(self, f"{name}s")
+            for one in each:
+                mark = "# " if empty else ""
+                lines += [f"{mark}{line}" for line in _section(f"[{name}]", one)]
+        common = self.settings.toml().partition("[tracker]")
+        before = common[0].rstrip().rpartition("\n")[2]
+        return "\n".join(lines) + f"\n{before}\n[tracker]{common[2]}"
+
+
+def read_config(path: str | Path) -> LiveConfig:
+    """Read the settings of a live session.
+
+    Raises
+    ------
+    SettingsError
+        When the file cannot be read, a key is unknown, or a value is out of range.
+    """
+    return config_of(read_toml(Path(path)), path)
+
+
+def config_of(document: Mapping[str, Any], path: str | Path = "settings") -> LiveConfig:
+    """The settings in the sections of a document; `path` is its name in messages."""
+    rest = dict(document)
+    inputs = _read_list(rest.pop("input", []), "input", InputConfig, path)
+    outputs = _read_list(rest.pop("output", []), "output", OutputConfig, path)
+    given = rest.pop("radar", [])
+    session = _read_one(rest.pop("session", {}), "session", SessionConfig, path)
+    own = _read_one(rest.pop("own", {}), "own", OwnConfig, path)
+    common = given if isinstance(given, dict) else {}
+    settings = Settings.of(rest | ({"radar": common} if common else {}), path)
+    radars = () if common else _read_radars(given, settings, path)
+    try:
+        return LiveConfig(inputs, outputs, radars, own, session, settings)
+    except SettingsError as error:
+        raise SettingsError(f"{path}: {error}") from None
+
+
+def _read_radars(given: Any, settings: Settings, path: str | Path) -> tuple[RadarConfig, ...]:
+    _check_list(given, "radar", path)
+    ours = {one.name for one in fields(RadarConfig)} - {"settings"}
+    radars = []
+    for values in given:
+        keys = {key: value for key, value in values.items() if key in ours}
+        engine = {key: value for key, value in values.items() if key not in ours}
+        Settings.of({"radar": engine}, path)
+        radars.append(_read_one(keys | {"settings": engine}, "radar", RadarConfig, path))
+    return tuple(radars)
+
+
+def _read_list(given: Any, section: str, kind: type, path: str | Path) -> tuple[Any, ...]:
+    _check_list(given, section, path)
+    return tuple(_read_one(values, section, kind, path) for values in given)
+
+
+def _check_list(given: Any, section: str, path: str | Path) -> None:
+    if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
+        raise SettingsError(f"{path}: {section} must be sections [[{section}]]")
+
+
+def _read_one(values: Any, section: str, kind: type, path: str | Path) -> Any:
+    if not isinstance(values, dict):
+        raise SettingsError(f"{path}: {section} must be a section with keys")
+    known = {one.name: one for one in fields(kind)}
+    given = {}
+    for key, value in values.items():
+        if key not in known:
+            raise SettingsError(
+                f"{path}: unknown key {cut(key)} in [{section}]; known: {', '.join(known)}"
+            )
+        given[key] = _as_type(value, _default(known[key]), f"{path}: [{section}] {key}")
+    try:
+        return kind(**given)
+    except SettingsError as error:
+        raise SettingsError(f"{path}: [{section}] {error}") from None
+
+
+def _default(one: Any) -> Any:
+    return one.default_factory() if one.default is MISSING else one.default
+
+
+def _as_type(value: Any, default: Any, place: str) -> Any:
+    """The value as the type of the default."""
+    if isinstance(default, float) and isinstance(value, (int, float)) and value is not True:
+        return float(value)
+    if isinstance(default, tuple) and isinstance(value, (list, tuple)):
+        return tuple(value)
+    if isinstance(default, str) and isinstance(value, str):
+        return value
+    if isinstance(default, dict) and isinstance(value, dict):
+        return value
+    what = {float: "a number", tuple: "a list", str: "a text", dict: "a section"}[type(default)]
+    raise SettingsError(f"{place} must be {what}, got {quoted(value)}")
+
+
+def _section(name: str, values: Any) -> Iterator[str]:
+    yield f"[{name}]"
+    for one in fields(values):
+        value = getattr(values, one.name)
+        if one.name == "settings":
+            yield from (f"{key} = {json.dumps(each)}" for key, each in value.items())
+            continue
+        yield f"# {one.metadata['about']}"
+        text = "nan" if isinstance(value, float) and math.isnan(value) else json.dumps(value)
+        yield f"{one.name} = {text}"
+    yield ""
+
+
+def _take_query(values: Any, names: Sequence[str], schemes: Sequence[str]) -> None:
+    """Settings from the query of the URL where they are not given."""
+    url = urlsplit(values.url)
+    if values.url and url.scheme not in schemes:
+        raise SettingsError(
+            f"url must begin with one of {', '.join(schemes)} and a colon, got {quoted(values.url)}"
+        )
+    query = parse_qs(url.query)
+    for name in names:
+        if name in query and not getattr(values, name):
+            object.__setattr__(values, name, query[name][-1])
+
+
+def _named(one: Any) -> Any:
+    return one if one.name else replace(one, name=one.url.partition("?")[0])
+
+
+def _check_choice(name: str, value: str, choices: Sequence[str]) -> None:
+    if value not in choices:
+        known = ", ".join(filter(None, choices))
+        raise SettingsError(f"{name} must be one of {known}, got {quoted(value)}")
+
+
+def _check_place(name: str, place: Sequence[float]) -> None:
+    if len(place) not in (0, 2) or (
+        len(place) == 2 and not (abs(place[0]) <= 90 and abs(place[1]) <= 360)
+    ):
+        raise SettingsError(f"{name} must be latitude and longitude in degrees, got {place!r}")
+
+
+def _check_once(name: str, names: Sequence[str]) -> None:
+    twice = sorted({one for one in names if names.count(one) > 1})
+    if twice:
+        raise SettingsError(f"{name} must have different names, got {quoted(twice[0])} twice")

@@ -1,0 +1,33 @@
+"""What is wrong with the data of a source: counted by kind, with the last example."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+from wakeline._brief import cut
+
+_MOST_KINDS = 32
+
+
+@dataclass
+class Problems:
+    """Problems of one source.
+
+    Attributes
+    ----------
+    count : Counter
+        Problems by kind.
+    last : str
+        The last one, in words.
+    """
+
+    count: Counter[str] = field(default_factory=Counter)
+    last: str = ""
+
+    def add(self, kind: str, reason: str, times: int = 1) -> None:
+        """Count a problem."""
+        if kind not in self.count and len(self.count) >= _MOST_KINDS:
+            kind = "other"
+        self.count[kind] += times
+        self.last = f"{kind}: {cut(reason)}"

@@ -1,0 +1,143 @@
+"""Sectors of one radar from its plots and its marks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+_TAU = 2.0 * math.pi
+_CLOCK_S = 5.0  # a sensor's clock that is farther off is not trusted
+_DISAGREE = 20  # messages in a row before the offset of a clock is found again
+_DAY_S = 86400.0
+_MOST_WAITING = 20_000  # plots
+
+
+class PlotRow(NamedTuple):
+    """A plot as the radar measures it."""
+
+    time_s: float
+    range_m: float
+    bearing_rad: float
+    range_var_m2: float = 0.0
+    bearing_var_rad2: float = 0.0
+
+
+class Sector(NamedTuple):
+    """A part of the antenna's turn with its plots."""
+
+    from_rad: float
+    to_rad: float
+    time_s: float
+    plots: list[PlotRow]
+
+
+@dataclass
+class SensorClock:
+    """The clock of a sensor against that of the session.
+
+    Clocks of sensors are often wrong and seldom drift: one that is off by more than 5 s is
+    corrected by its first offset, until 20 messages in a row disagree with that by 5 s.
+
+    Attributes
+    ----------
+    offset_s : float
+        Added to the sensor's times.
+    sets : int
+        How often the offset was found.
+    """
+
+    offset_s: float = 0.0
+    sets: int = 0
+    _astray: int = 0
+
+    def time_s(self, sensor_s: float, received_s: float) -> float:
+        """The session's time of a time in UTC seconds."""
+        off_s = received_s - (sensor_s + self.offset_s)
+        if abs(off_s) <= _CLOCK_S:
+            self._astray = 0
+        else:
+            self._astray += 1
+            if self.sets == 0 or self._astray >= _DISAGREE:
+                self.offset_s += off_s
+                self.sets += 1
+                self._astray = 0
+        if self.sets == 0:
+            self.sets = 1
+        return sensor_s + self.offset_s
+
+    def of_day_s(self, time_of_day_s: float, received_s: float) -> float:
+        """The session's time of a time of day, on the day nearest to its arrival."""
+        near_s = received_s - self.offset_s
+        days = round((near_s - time_of_day_s) / _DAY_S)
+        return self.time_s(time_of_day_s + _DAY_S * days, received_s)
+
+
+@dataclass
+class RadarFeed:
+    """Plots of one radar until their sector ends.
+
+    A radar that marks its sectors ends them itself. Of one that does not, a turn ends a period
+    after its first plot, or where a plot is a period later.
+
+    Attributes
+    ----------
+    name : str
+    period_s : float
+        Of the antenna, as configured; measured from its marks.
+    """
+
+    name: str
+    period_s: float
+    clock: SensorClock = field(default_factory=SensorClock)
+    plots: int = 0
+    sectors: int = 0
+    unused: int = 0
+    last_s: float = -math.inf
+    _waiting: list[PlotRow] = field(default_factory=list)
+    _marks: bool = False
+    _turn_begin_s: float | None = None
+
+    def add(self, plot: PlotRow) -> list[Sector]:
+        """Add a plot; the turn that ends before it, of a radar without marks."""
+        self.plots += 1
+        ended = [] if self._marks else self.pass_to(plot.time_s)
+        if len(self._waiting) < _MOST_WAITING:
+            self._waiting.append(plot)
+        else:
+            self.unused += 1
+        if self._turn_begin_s is None:
+            self._turn_begin_s = plot.time_s
+        return ended
+
+    def mark(self, from_rad: float, to_rad: float, time_s: float) -> list[Sector]:
+        """End a sector; the plots until now are in it, or waited for an earlier one."""
+        self._marks, self.last_s = True, time_s
+        self.sectors += 1
+        plots, self._waiting = self._waiting, []
+        return [Sector(from_rad, to_rad, time_s, plots)]
+
+    def pass_to(self, time_s: float) -> list[Sector]:
+        """The turns that end until a time, of a radar without marks."""
+        begin_s = self._turn_begin_s
+        if self._marks or begin_s is None or time_s < begin_s + 0.9 * self.period_s:
+            return []
+        turns = max(round((time_s - begin_s) / self.period_s), 1)
+        end_s = max((plot.time_s for plot in self._waiting), default=begin_s)
+        self._turn_begin_s = begin_s + turns * self.period_s if turns > 1 else None
+        plots, self._waiting = self._waiting, []
+        self.last_s = end_s
+        self.sectors += 1
+        return [Sector(0.0, _TAU, end_s, plots)]
+
+
+def columns(plots: list[PlotRow]) -> tuple[np.ndarray, ...]:
+    """Times, ranges, bearings, and variances (n, 2, 2) or None of plots."""
+    table = np.array(plots, dtype=float).reshape(len(plots), 5)
+    covariance = None
+    if len(plots) and table[:, 3].any():
+        covariance = np.zeros((len(plots), 2, 2))
+        covariance[:, 0, 0], covariance[:, 1, 1] = table[:, 3], table[:, 4]
+    return table[:, 0], table[:, 1], table[:, 2], covariance

@@ -1,0 +1,640 @@
+"""A live session without network: octets with their times in, tracks out."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+import wakeline as wl
+from wakeline.measurement import OwnShip
+
+from . import json_lines
+from .ais import AisPicture
+from .config import LiveConfig, OutputConfig, RadarConfig, config_of, read_config
+from .engine import LiveTrack, TrackEngine
+from .outputs import Output, make_output
+from .own_ship import Missing, OwnShipSources, Pose, SourceKey
+from .radar_feed import PlotRow, RadarFeed, Sector, columns
+from .sources import Source
+
+Sweeps = Callable[[str, np.ndarray, float, float, np.ndarray], None]
+"""Called with radar, azimuth_rad (n,), heading_rad (NaN: azimuths from north), range_m of the end
+of the last cell, and cells (n, C) of uint8."""
+
+CLOCK = "clock"
+_HISTORY = 60  # past positions of a track in the picture
+_HISTORY_S = 5.0
+_MOST_EVENTS = 500
+
+
+class Watcher(Protocol):
+    """What decides on alarms: told of every picture, asked by operators."""
+
+    def update(self, session: Session, time_s: float) -> list[dict[str, Any]]:
+        """Events of a new picture."""
+
+    def command(self, session: Session, command: Mapping[str, Any]) -> dict[str, Any] | None:
+        """The answer to an operator; None for a command of another."""
+
+    def picture(self, session: Session) -> dict[str, Any]:
+        """What it adds to :meth:`Session.picture`."""
+
+
+class Session:
+    """Tracks from what sources send, in the order in which it is fed.
+
+    The same octets at the same times give the same tracks, bit for bit: nothing depends on the
+    clock of the machine or on a network.
+
+    Parameters
+    ----------
+    config : LiveConfig, dict, str or Path, optional
+        Settings, as sections of a TOML file, or its path.
+
+    Attributes
+    ----------
+    config : LiveConfig
+    inputs : dict of str to Source
+        By name. What is fed from another name becomes an input of datagrams.
+    tracker : TrackEngine
+    outputs : dict of str to Output
+        Whose `send` receives octets.
+    own : OwnShipSources
+    ais : AisPicture
+    sweeps : list of callable
+        Called with the sweeps of radar video: radar, azimuths, heading, range and cells.
+    watchers : list of Watcher
+    listeners : list of callable
+        Called with every event, track update and alarm: kind and values.
+    time_s : float
+        Of the last octets; -inf before the first.
+
+    Examples
+    --------
+    >>> import wakeline as wl
+    >>> session = wl.live.Session()
+    >>> session.feed(0.0, "test", b'{"radar":"A","time_s":0,"range_m":900,"bearing_rad":1}\\n')
+    >>> session.picture()["status"]["radars"]["A"]["plots"]
+    1
+    """
+
+    def __init__(self, config: LiveConfig | Mapping[str, Any] | str | Path | None = None) -> None:
+        self.config = _config(config)
+        self.time_s = -math.inf
+        self.inputs = {one.name: Source(one) for one in self.config.inputs}
+        self.outputs: dict[str, Output] = {}
+        for one in self.config.outputs:
+            self.add_output(one)
+        self.radars = {one.name: one for one in self.config.radars}
+        engine_radars = [one.make_radar(self.config.settings) for one in self.config.radars]
+        self.tracker = TrackEngine(engine_radars, self.config.settings)
+        self.feeds = {
+            one.name: RadarFeed(one.name, radar.period_s)
+            for one, radar in zip(self.config.radars, engine_radars, strict=True)
+        }
+        self.own = OwnShipSources(self.config.own)
+        self.ais = AisPicture()
+        self.plane: wl.LocalPlane | None = None
+        self.frozen = ""
+        self.sweeps: list[Sweeps] = []
+        self.watchers: list[Watcher] = []
+        self.listeners: list[Callable[[str, dict[str, Any]], None]] = []
+        self.events: deque[dict[str, Any]] = deque(maxlen=_MOST_EVENTS)
+        self._history: dict[int, deque[tuple[float, float, float]]] = {}
+        self._seen: dict[int, tuple[int, int, str]] = {}
+        self._edge_rad: dict[str, float] = {}
+        if self.config.session.origin_deg:
+            self._set_origin(*self.config.session.origin_deg)
+        for one in self.config.radars:
+            if one.position_deg and self.plane is None:
+                self._set_origin(*one.position_deg)
+        if self.config.own.place_deg:
+            if self.plane is None:
+                self._set_origin(*self.config.own.place_deg)
+            self.own.fix_place(*self.to_plane(*self.config.own.place_deg))
+
+    # ------------------------------------------------------------------ in
+
+    def feed(self, time_s: float, source: str, octets: bytes) -> None:
+        """Take octets that a source sent.
+
+        Parameters
+        ----------
+        time_s : float
+            When they were received, UTC seconds. A time before the last one counts as that.
+        source : str
+            Name of an input; ``"clock"`` with no octets lets time pass.
+        octets : bytes
+            A datagram, or the next piece of a stream.
+
+        Raises
+        ------
+        ValueError
+            When the time is not finite. What is wrong with the octets is counted, never raised.
+        """
+        if not math.isfinite(time_s):
+            raise ValueError(f"time_s must be finite, got {time_s}")
+        self.time_s = time_s = max(time_s, self.time_s)
+        if source != CLOCK:
+            one = self.inputs.get(source) or self._new_input(source)
+            for kind, values in one.read(time_s, octets):
+                self._take(time_s, one, kind, values)
+        self._pass(time_s)
+
+    def _new_input(self, name: str) -> Source:
+        self.inputs[name] = Source.unknown(name)
+        return self.inputs[name]
+
+    def _take(self, time_s: float, source: Source, kind: str, values: Any) -> None:
+        try:
+            getattr(self, f"_take_{kind}")(time_s, source, values)
+        except wl.FilterError as error:
+            source.problems.add("tracker", str(error))
+
+    def _take_own(self, time_s: float, source: Source, reading: Any) -> None:
+        key = SourceKey(reading.sentence, reading.talker, source.name)
+        self._add_own(time_s, key, reading.quantity, reading.values)
+
+    def _add_own(
+        self, time_s: float, key: SourceKey, quantity: str, values: tuple[float, ...]
+    ) -> None:
+        own = self.own
+        if quantity == "position":
+            if self.plane is None:
+                self._set_origin(*values)
+            own.position.add(time_s, key, self.to_plane(*values))
+        elif quantity == "magnetic":
+            own.add_magnetic(time_s, key, values[0])
+        elif quantity == "variation":
+            own.learn_variation(values[0])
+        else:
+            getattr(own, quantity).add(time_s, key, values)
+
+    def _take_ais(self, time_s: float, source: Source, message: Any) -> None:
+        found = self.ais.add(time_s, message.message)
+        if found is None:
+            return
+        vessel, is_new = found
+        if not is_new:
+            return
+        if message.own:
+            key = SourceKey("VDO", "AI", source.name)
+            self._add_own(time_s, key, "position", (vessel.latitude_deg, vessel.longitude_deg))
+            del self.ais.vessels[vessel.mmsi]
+            return
+        if self.plane is None:
+            return
+        north_m, east_m = self.to_plane(vessel.latitude_deg, vessel.longitude_deg)
+        speed, course = vessel.speed_mps, vessel.course_rad
+        self._report(
+            source="ais",
+            identity=str(vessel.mmsi),
+            time_s=time_s,
+            north_m=north_m,
+            east_m=east_m,
+            position_std_m=vessel.position_std_m,
+            vnorth_mps=speed * math.cos(course),
+            veast_mps=speed * math.sin(course),
+        )
+
+    def _report(self, **report: Any) -> None:
+        """Give a report with an identity to the tracker."""
+        for event in self.tracker.report(**report):
+            self._event(event)
+
+    def _take_json(self, time_s: float, source: Source, line: tuple[str, str, dict]) -> None:
+        kind, radar, values = line
+        if kind in ("plot", "sector"):
+            feed = self.feeds.get(radar or source.radar or next(iter(self.feeds)))
+            if feed is None:
+                source.problems.add("radar", f"wanted one of {', '.join(self.feeds)}, got {radar}")
+                return
+            when_s = feed.clock.time_s(values["time_s"], time_s)
+            if kind == "plot":
+                stds = values.get("range_std_m", 0.0), values.get("bearing_std_rad", 0.0)
+                plot = PlotRow(
+                    when_s, values["range_m"], values["bearing_rad"], stds[0] ** 2, stds[1] ** 2
+                )
+                self._sectors(feed, feed.add(plot))
+            else:
+                self._sectors(feed, feed.mark(values["from_rad"], values["to_rad"], when_s))
+        elif kind == "own":
+            self._take_json_own(time_s, source, values)
+        else:
+            self._take_json_report(time_s, source, values)
+
+    def _take_json_own(self, time_s: float, source: Source, values: dict[str, float]) -> None:
+        key = SourceKey("JSON", "", source.name)
+        when_s = source.clock.time_s(values.get("time_s", time_s), time_s)
+        if "latitude_deg" in values:
+            place = values["latitude_deg"], values["longitude_deg"]
+            self._add_own(when_s, key, "position", place)
+        elif "north_m" in values:
+            self.own.position.add(when_s, key, (values["north_m"], values["east_m"]))
+        if "heading_rad" in values:
+            self._add_own(when_s, key, "heading", (values["heading_rad"] % (2.0 * math.pi),))
+        if "course_rad" in values and "speed_mps" in values:
+            self._add_own(when_s, key, "velocity", _velocity(values))
+
+    def _take_json_report(self, time_s: float, source: Source, values: dict[str, Any]) -> None:
+        if "latitude_deg" in values:
+            if self.plane is None:
+                return
+            north_m, east_m = self.to_plane(values["latitude_deg"], values["longitude_deg"])
+        elif "north_m" in values:
+            north_m, east_m = values["north_m"], values["east_m"]
+        else:
+            source.problems.add("report", "wanted a position")
+            return
+        vnorth_mps, veast_mps = _velocity(values)
+        self._report(
+            source=values["source"],
+            identity=values["identity"],
+            time_s=source.clock.time_s(values["time_s"], time_s),
+            north_m=north_m,
+            east_m=east_m,
+            position_std_m=values.get("position_std_m", 10.0),
+            vnorth_mps=vnorth_mps,
+            veast_mps=veast_mps,
+        )
+
+    # ------------------------------------------------------------------ sectors
+
+    def _pass(self, time_s: float) -> None:
+        """What happens by time alone."""
+        self.own.choose(time_s)
+        for feed in self.feeds.values():
+            self._sectors(feed, feed.pass_to(time_s))
+        for event in self.tracker.coast(time_s):
+            self._event(event)
+
+    def _sectors(self, feed: RadarFeed, sectors: Sequence[Sector]) -> None:
+        for sector in sectors:
+            self._sector(feed, sector)
+
+    def _sector(self, feed: RadarFeed, sector: Sector) -> None:
+        radar = self.radars[feed.name]
+        from_bow = radar.azimuth == "bow"
+        antenna = self._antenna(radar, sector.time_s, needs_heading=from_bow)
+        if isinstance(antenna, Missing):
+            self.frozen = f"tracks frozen: {antenna.reason}"
+            feed.unused += len(sector.plots)
+            self._edge_rad.pop(feed.name, None)
+            return
+        self.frozen = ""
+        end, own = antenna
+        plot_time_s, range_m, bearing_rad, covariance = columns(sector.plots)
+        if len(sector.plots) and not radar.position_deg:
+            range_m, bearing_rad = self._seen_from(
+                own, radar, plot_time_s, range_m, bearing_rad, from_bow
+            )
+        from_rad, to_rad = sector.from_rad, sector.to_rad
+        if from_bow:
+            to_rad = to_rad + end.heading_rad
+            from_rad = self._edge_rad.get(feed.name, from_rad + end.heading_rad)
+            self._edge_rad[feed.name] = to_rad
+            width_rad = sector.to_rad - sector.from_rad
+            if width_rad >= 2.0 * math.pi - 1e-9:
+                from_rad, to_rad = 0.0, 2.0 * math.pi
+            elif not 0.0 <= (to_rad - from_rad) % (2 * math.pi) <= 2.0 * width_rad + 0.1:
+                from_rad = sector.from_rad + end.heading_rad
+        index = list(self.radars).index(feed.name)
+        events = self.tracker.sector(
+            index,
+            from_rad,
+            to_rad,
+            sector.time_s,
+            range_m,
+            bearing_rad,
+            plot_time_s,
+            own,
+            covariance,
+        )
+        for event in events:
+            self._event(event)
+        self._publish(feed.name)
+
+    def _antenna(
+        self, radar: RadarConfig, time_s: float, *, needs_heading: bool
+    ) -> tuple[Pose, OwnShip] | Missing:
+        """Own ship and the antenna at a time."""
+        if radar.position_deg:
+            north_m, east_m = self.to_plane(*radar.position_deg)
+            return Pose(time_s, north_m, east_m, *(0.0,) * 6), OwnShip(
+                north_m=north_m, east_m=east_m
+            )
+        pose = self.own.at(time_s, needs_heading=needs_heading)
+        if isinstance(pose, Missing):
+            return pose
+        antenna = pose.antenna(radar.forward_m, radar.starboard_m)
+        if not needs_heading:
+            antenna = _with_true_bearings(antenna)
+        return pose, antenna
+
+    def _seen_from(
+        self,
+        own: OwnShip,
+        radar: RadarConfig,
+        time_s: np.ndarray,
+        range_m: np.ndarray,
+        bearing_rad: np.ndarray,
+        from_bow: bool,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Ranges and true bearings of plots from where the antenna is at the end of the sector."""
+        ranges, bearings = np.empty(len(time_s)), np.empty(len(time_s))
+        rows = zip(time_s.tolist(), range_m.tolist(), bearing_rad.tolist(), strict=True)
+        for k, (when_s, r, b) in enumerate(rows):
+            antenna = self._antenna(radar, when_s, needs_heading=from_bow)
+            if isinstance(antenna, Missing):
+                ranges[k], bearings[k] = r, b
+                continue
+            pose, then = antenna
+            true_rad = b + pose.heading_rad if from_bow else b
+            north_m = then.north_m - own.north_m + r * math.cos(true_rad)
+            east_m = then.east_m - own.east_m + r * math.sin(true_rad)
+            ranges[k], bearings[k] = math.hypot(north_m, east_m), math.atan2(east_m, north_m)
+        return ranges, bearings
+
+    # ------------------------------------------------------------------ out
+
+    def _publish(self, radar: str) -> None:
+        """Report the tracks that a sector has updated."""
+        tracks = self.tracker.tracks(tentative=True)
+        now: dict[int, tuple[int, int, str]] = {}
+        updated = []
+        for track in tracks:
+            if track.track_id <= 0:
+                continue
+            now[track.track_id] = track.hits, track.misses, track.status
+            if self._seen.get(track.track_id) != now[track.track_id]:
+                updated.append(track)
+                self._remember(track)
+        for gone in self._seen.keys() - now.keys():
+            self._history.pop(gone, None)
+        self._seen = now
+        if updated:
+            for output in self.outputs.values():
+                output.tracks(self, radar, updated)
+            for track in updated:
+                self._tell("track", self.describe(track) | {"radar": radar})
+        for watcher in self.watchers:
+            for event in watcher.update(self, self.tracker.time_s):
+                self._event(event)
+
+    def _remember(self, track: LiveTrack) -> None:
+        past = self._history.setdefault(track.track_id, deque(maxlen=_HISTORY))
+        if not past or track.time_s - past[-1][0] >= _HISTORY_S:
+            past.append((track.time_s, track.north_m, track.east_m))
+
+    def _event(self, event: dict[str, Any]) -> None:
+        self.events.append(event)
+        for output in self.outputs.values():
+            output.event(self, event)
+        self._tell("event", event)
+
+    def _tell(self, kind: str, values: dict[str, Any]) -> None:
+        for listener in self.listeners:
+            listener(kind, values)
+
+    def add_output(self, config: OutputConfig | str) -> Output:
+        """Add a receiver of tracks; its `send` is called with octets."""
+        if isinstance(config, str):
+            config = LiveConfig(outputs=(OutputConfig(config),)).outputs[0]
+        self.outputs[config.name] = make_output(config)
+        return self.outputs[config.name]
+
+    def describe(self, track: LiveTrack) -> dict[str, Any]:
+        """A track as in the picture and in JSON lines."""
+        values: dict[str, Any] = {
+            "track_id": track.track_id,
+            "status": track.status,
+            "name": track.name,
+            "time_s": track.time_s,
+            "north_m": track.north_m,
+            "east_m": track.east_m,
+            "vnorth_mps": track.mean[1],
+            "veast_mps": track.mean[3],
+            "covariance": track.covariance,
+            "course_rad": track.course_rad,
+            "speed_mps": track.speed_mps,
+            "mode": track.mode,
+            "mode_probability": track.mode_probability,
+            "existence": track.existence,
+            "hits": track.hits,
+            "misses": track.misses,
+        }
+        place = self.to_degrees(track.north_m, track.east_m)
+        if place is not None:
+            values["latitude_deg"], values["longitude_deg"] = place
+        own = self.own.at(track.time_s)
+        if isinstance(own, Pose):
+            north_m, east_m = track.north_m - own.north_m, track.east_m - own.east_m
+            values["range_m"] = math.hypot(north_m, east_m)
+            values["bearing_rad"] = math.atan2(east_m, north_m) % (2.0 * math.pi)
+            values["cpa"] = self._closest_approach(own, track)
+        return values
+
+    def _closest_approach(self, own: Pose, track: LiveTrack) -> dict[str, float] | None:
+        if not math.isfinite(own.vnorth_mps):
+            return None
+        state = np.array([own.north_m, own.vnorth_mps, own.east_m, own.veast_mps])
+        covariance = np.diag([0.0, own.velocity_std_mps**2] * 2)
+        approach = wl.navigation.closest_approach(
+            state, np.array(track.mean), covariance, np.array(track.covariance)
+        )
+        limits = self.config.settings.danger_limits
+        return {
+            "cpa_m": float(approach.cpa_m),
+            "tcpa_s": float(approach.tcpa_s),
+            "probability": float(approach.probability(limits.cpa_limit_m, limits.tcpa_limit_s)),
+        }
+
+    def picture(self) -> dict[str, Any]:
+        """All that a screen shows, ready for JSON: SI units, radians, positions also in degrees.
+
+        Its keys are ``version``, ``time_s``, ``origin_deg``, ``own``, ``radars``, ``tracks``,
+        ``ais``, ``alarms``, ``zones`` and ``status``.
+        """
+        time_s = self.time_s if math.isfinite(self.time_s) else 0.0
+        picture = {
+            "version": json_lines.VERSION,
+            "time_s": time_s,
+            "origin_deg": self.origin_deg,
+            "own": self._own_picture(time_s),
+            "radars": [self._radar_picture(name, time_s) for name in self.radars],
+            "tracks": [
+                self.describe(track) | {"history": list(self._history.get(track.track_id, ()))}
+                for track in self.tracker.tracks(
+                    max(time_s, self.tracker.time_s) if self.tracker.time_s else None
+                )
+            ],
+            "ais": [self._vessel_picture(vessel, time_s) for vessel in self.ais.vessels.values()],
+            "alarms": [],
+            "zones": [],
+            "status": self.status(),
+        }
+        for watcher in self.watchers:
+            picture |= watcher.picture(self)
+        return json_lines.finite_only(picture)
+
+    def _own_picture(self, time_s: float) -> dict[str, Any] | None:
+        pose = self.own.at(time_s)
+        if isinstance(pose, Missing):
+            return None
+        values = pose._asdict()
+        place = self.to_degrees(pose.north_m, pose.east_m)
+        if place is not None:
+            values["latitude_deg"], values["longitude_deg"] = place
+        values["speed_mps"] = math.hypot(pose.vnorth_mps, pose.veast_mps)
+        values["course_rad"] = math.atan2(pose.veast_mps, pose.vnorth_mps) % (2.0 * math.pi)
+        return values
+
+    def _radar_picture(self, name: str, time_s: float) -> dict[str, Any]:
+        config, feed = self.radars[name], self.feeds[name]
+        antenna = self._antenna(config, time_s, needs_heading=config.azimuth == "bow")
+        known = not isinstance(antenna, Missing)
+        return {
+            "name": name,
+            "azimuth": config.azimuth,
+            "aboard": not config.position_deg,
+            "period_s": feed.period_s,
+            "north_m": antenna[1].north_m if known else None,
+            "east_m": antenna[1].east_m if known else None,
+        }
+
+    def _vessel_picture(self, vessel: Any, time_s: float) -> dict[str, Any]:
+        values = vessel.as_dict() | {"age_s": time_s - vessel.time_s}
+        if self.plane is not None and math.isfinite(vessel.latitude_deg):
+            values["north_m"], values["east_m"] = self.to_plane(
+                vessel.latitude_deg, vessel.longitude_deg
+            )
+        return values
+
+    def status(self) -> dict[str, Any]:
+        """Rates, losses, ages and problems of all sources, ready for JSON."""
+        time_s = self.time_s if math.isfinite(self.time_s) else 0.0
+        return json_lines.finite_only(
+            {
+                "time_s": time_s,
+                "frozen": self.frozen,
+                "inputs": {name: one.status(time_s) for name, one in self.inputs.items()},
+                "outputs": {name: one.status() for name, one in self.outputs.items()},
+                "radars": {
+                    name: {
+                        "plots": feed.plots,
+                        "sectors": feed.sectors,
+                        "unused_plots": feed.unused,
+                        "age_s": time_s - feed.last_s,
+                        "clock_offset_s": feed.clock.offset_s,
+                    }
+                    for name, feed in self.feeds.items()
+                },
+                "own": self.own.status(time_s, lambda n, e: self.to_degrees(n, e)),
+                "tracks": sum(track.track_id > 0 for track in self.tracker.tracks()),
+                "ais_vessels": len(self.ais.vessels),
+            }
+        )
+
+    # ------------------------------------------------------------------ operators
+
+    def command(self, command: Mapping[str, Any]) -> dict[str, Any]:
+        """Do what an operator asks for.
+
+        ``{"command": "acquire", "north_m": ..., "east_m": ...}`` (or latitude_deg, longitude_deg),
+        ``{"command": "drop", "track_id": ..., "hush": true}``,
+        ``{"command": "rename", "track_id": ..., "name": ...}``, and those of the watchers.
+
+        Returns
+        -------
+        dict
+            ``{"ok": true, ...}``, or ``{"ok": false, "error": ...}``.
+        """
+        try:
+            name = command.get("command")
+            if name == "acquire":
+                return self._acquire(command)
+            if name == "drop":
+                found = self.tracker.drop(
+                    int(command["track_id"]), hush=bool(command.get("hush", True))
+                )
+                return _answer(found, "no track has that number")
+            if name == "rename":
+                found = self.tracker.rename(int(command["track_id"]), str(command["name"]))
+                return _answer(found, "no track has that number")
+            for watcher in self.watchers:
+                answer = watcher.command(self, command)
+                if answer is not None:
+                    return answer
+            return _answer(False, f"unknown command {str(name)[:40]!r}")
+        except KeyError as error:
+            return _answer(False, f"wanted {error.args[0]}")
+        except (ValueError, TypeError, OverflowError, wl.FilterError) as error:
+            return _answer(False, str(error)[:200])
+
+    def _acquire(self, command: Mapping[str, Any]) -> dict[str, Any]:
+        if "latitude_deg" in command:
+            if self.plane is None:
+                return _answer(False, "the session has no position yet")
+            place = self.to_plane(float(command["latitude_deg"]), float(command["longitude_deg"]))
+        else:
+            place = float(command["north_m"]), float(command["east_m"])
+        std_m = float(command.get("position_std_m", 50.0))
+        track_id = self.tracker.designate(self.tracker.time_s, *place, std_m)
+        return _answer(track_id > 0, "there is no room for another track") | {"track_id": track_id}
+
+    # ------------------------------------------------------------------ places
+
+    @property
+    def origin_deg(self) -> tuple[float, float] | None:
+        """Latitude and longitude of north 0, east 0; None while unknown."""
+        if self.plane is None:
+            return None
+        return math.degrees(self.plane.latitude_rad), math.degrees(self.plane.longitude_rad)
+
+    def _set_origin(self, latitude_deg: float, longitude_deg: float) -> None:
+        self.plane = wl.LocalPlane(
+            latitude_rad=math.radians(latitude_deg), longitude_rad=math.radians(longitude_deg)
+        )
+
+    def to_plane(self, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
+        """[north, east] of a place; the origin must be known."""
+        position = self.plane.position_m(
+            latitude_rad=math.radians(latitude_deg), longitude_rad=math.radians(longitude_deg)
+        )
+        return float(position[0]), float(position[1])
+
+    def to_degrees(self, north_m: float, east_m: float) -> tuple[float, float] | None:
+        """Latitude and longitude of a place; None while the origin is unknown."""
+        if self.plane is None:
+            return None
+        latitude_rad, longitude_rad = self.plane.place([north_m, east_m])
+        return math.degrees(float(latitude_rad)), math.degrees(float(longitude_rad))
+
+
+def _config(config: LiveConfig | Mapping[str, Any] | str | Path | None) -> LiveConfig:
+    if config is None:
+        return LiveConfig()
+    if isinstance(config, LiveConfig):
+        return config
+    if isinstance(config, Mapping):
+        return config_of(config)
+    return read_config(config)
+
+
+def _velocity(values: Mapping[str, float]) -> tuple[float, float]:
+    speed, course = values.get("speed_mps", math.nan), values.get("course_rad", math.nan)
+    return speed * math.cos(course), speed * math.sin(course)
+
+
+def _with_true_bearings(own: OwnShip) -> OwnShip:
+    """The antenna of a radar that gives true bearings: its errors of heading are the radar's."""
+    return OwnShip(**(own.as_dict() | {"heading_std_rad": 0.0}))
+
+
+def _answer(good: bool, error: str) -> dict[str, Any]:
+    return {"ok": True} if good else {"ok": False, "error": error}

@@ -1,0 +1,134 @@
+"""The inputs of a session: octets to readings, plots and sectors, with counts."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from .config import InputConfig
+from .json_lines import BadLine, read_line
+from .lines import LineAssembly
+from .nmea import AisMessage, NmeaDecoder
+from .problems import Problems
+from .radar_feed import SensorClock
+
+_RATE_S = 5.0
+_TWICE_S = 2.0  # the same message of redundant senders comes within this time
+_REDUNDANT = ("cat240", "cat048", "cat010")
+
+
+@dataclass
+class Rate:
+    """Messages and octets of the last 5 s."""
+
+    messages: int = 0
+    octets: int = 0
+    _recent: deque[list[float]] = field(default_factory=deque)
+
+    def add(self, time_s: float, octets: int) -> None:
+        """Count a message."""
+        self.messages += 1
+        self.octets += octets
+        if self._recent and time_s - self._recent[-1][0] < 0.5:
+            self._recent[-1][1] += 1
+            self._recent[-1][2] += octets
+        else:
+            self._recent.append([time_s, 1, octets])
+        self._forget(time_s)
+
+    def _forget(self, time_s: float) -> None:
+        while self._recent and time_s - self._recent[0][0] > _RATE_S:
+            self._recent.popleft()
+
+    def per_s(self, time_s: float) -> tuple[float, float]:
+        """Messages and octets a second."""
+        self._forget(time_s)
+        span_s = max(time_s - self._recent[0][0], 1.0) if self._recent else 1.0
+        return tuple(sum(one[k] for one in self._recent) / span_s for k in (1, 2))
+
+
+class Source:
+    """One input.
+
+    Attributes
+    ----------
+    config : InputConfig
+    problems : Problems
+    rate : Rate
+    duplicates : int
+        Messages dropped because another sender of the same data was first.
+    clock : SensorClock
+        Of times in JSON lines.
+    last_s : float
+    """
+
+    def __init__(self, config: InputConfig) -> None:
+        self.config = config
+        self.problems, self.rate, self.clock = Problems(), Rate(), SensorClock()
+        self.duplicates = 0
+        self.last_s = -math.inf
+        self.connection = ""
+        self._nmea = NmeaDecoder(config.is_stream)
+        self._lines = LineAssembly(config.is_stream)
+        self._format = config.format
+
+    @classmethod
+    def unknown(cls, name: str) -> Source:
+        """An input that is not configured: datagrams of any format."""
+        return cls(InputConfig(name=name, url=""))
+
+    @property
+    def name(self) -> str:
+        return self.config.name
+
+    @property
+    def radar(self) -> str:
+        return self.config.radar
+
+    def read(self, time_s: float, octets: bytes) -> Iterator[tuple[str, Any]]:
+        """What the next octets hold: kind and values."""
+        self.rate.add(time_s, len(octets))
+        self.last_s = time_s
+        kind = self._format or self._recognized(octets)
+        if kind == "nmea":
+            for reading in self._nmea.feed(time_s, octets, self.problems):
+                yield ("ais" if isinstance(reading, AisMessage) else "own"), reading
+        elif kind == "json":
+            for line in self._lines.feed(octets, self.problems):
+                try:
+                    yield "json", read_line(line)
+                except BadLine as error:
+                    self.problems.add("JSON", str(error))
+        elif octets:
+            self.problems.add("unknown", f"wanted NMEA or JSON, got {octets[:24]!r}")
+
+    def _recognized(self, octets: bytes) -> str:
+        head = octets[:64].lstrip()
+        kind = ""
+        if head[:1] in (b"$", b"!", b"\\") or head.startswith(b"UdPbC"):
+            kind = "nmea"
+        elif head[:1] == b"{":
+            kind = "json"
+        if kind and self.config.is_stream and self.config.url:
+            self._format = kind
+        return kind
+
+    def status(self, time_s: float) -> dict[str, Any]:
+        """Counts, rates, age and problems."""
+        messages, octets = self.rate.per_s(time_s)
+        return {
+            "url": self.config.url,
+            "format": self._format,
+            "connection": self.connection,
+            "messages": self.rate.messages,
+            "octets": self.rate.octets,
+            "messages_per_s": round(messages, 2),
+            "octets_per_s": round(octets, 1),
+            "age_s": time_s - self.last_s,
+            "duplicates": self.duplicates,
+            "problems": dict(self.problems.count),
+            "last_problem": self.problems.last,
+        }
