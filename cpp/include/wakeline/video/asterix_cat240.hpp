@@ -17,26 +17,26 @@
 #include <string>
 
 #include "wakeline/core/angle.hpp"
+#include "wakeline/core/asterix.hpp"
 #include "wakeline/video/sweep.hpp"
 
 namespace wakeline {
 
 /// The radar and area that sent a record (I240/010).
-struct Cat240Source {
-  std::uint8_t area = 0;    ///< SAC
-  std::uint8_t system = 0;  ///< SIC
-
-  bool operator==(const Cat240Source&) const = default;
-};
+using Cat240Source = asterix::Source;
 
 namespace cat240 {
 
+using asterix::ItemForm;
+using asterix::kAzimuthTurn;
+using asterix::kBlockHeader;
+using asterix::kDay;
+using asterix::kLongestBlock;
+using asterix::kTicksPerSecond;
+using asterix::Length;
+using asterix::number;
+
 inline constexpr unsigned kCategory = 240;
-inline constexpr std::size_t kBlockHeader = 3;                 ///< CAT, LEN
-inline constexpr std::size_t kLongestBlock = 0xFFFF;           ///< octets, header included
-inline constexpr double kAzimuthTurn = 65536.0;                ///< azimuth steps per revolution
-inline constexpr double kTicksPerSecond = 128.0;               ///< ticks of the time of day
-inline constexpr double kDay = 86400.0;                        ///< s
 inline constexpr double kLight = 299792458.0;                  ///< m/s
 inline constexpr double kFemtosecondRange = 0.5e-15 * kLight;  ///< m, round trip
 inline constexpr std::uint64_t kFemtosPerNano = 1000000;
@@ -60,19 +60,6 @@ enum Item : std::size_t {
   kItems
 };
 
-/// How the length of an item is encoded.
-enum class Length : std::uint8_t {
-  kFixed,     ///< this number of octets
-  kRepeated,  ///< an octet n, then n times this number of octets
-  kOwn,       ///< its first octet is its length, including itself
-};
-
-struct ItemForm {
-  const char* name;
-  Length length;
-  std::size_t octets;
-};
-
 inline constexpr std::array<ItemForm, kItems> kForms{{
     {"I240/010", Length::kFixed, 2},
     {"I240/000", Length::kFixed, 1},
@@ -89,13 +76,6 @@ inline constexpr std::array<ItemForm, kItems> kForms{{
     {"RE", Length::kOwn, 1},
     {"SP", Length::kOwn, 1},
 }};
-
-/// An unsigned number, most significant octet first.
-inline std::uint64_t number(std::span<const std::byte> octets) noexcept {
-  std::uint64_t value = 0;
-  for (const std::byte octet : octets) value = value << 8 | std::to_integer<std::uint64_t>(octet);
-  return value;
-}
 
 }  // namespace cat240
 

@@ -256,53 +256,15 @@ class Cat240Reader {
   /// Splits a record into its items; false, and the reason, when they do not end within `limit`.
   bool split(std::size_t begin, std::size_t limit, Record& record,
              Cat240Problem& problem) const noexcept {
-    using namespace cat240;
-    const auto fail = [&](Cat240Fault fault, const char* item, std::size_t wanted,
-                          std::size_t came) {
-      problem = {fault, base_ + begin, item, wanted, came};
-      return false;
-    };
-    const std::size_t specification = specification_octets(begin, limit);
-    if (specification > kSpecification)
-      return fail(Cat240Fault::kFieldSpecification, "FSPEC", kSpecification, specification);
-    if (begin + specification > limit)
-      return fail(Cat240Fault::kItemLength, "FSPEC", specification, limit - begin);
-    std::size_t at = begin + specification;
-    for (std::size_t item = 0; item < 7 * specification; ++item) {
-      if (!has(octets_.subspan(begin, specification), item)) continue;
-      const std::size_t octets = item_octets(kForms[item], at, limit);
-      if (octets > limit - at)
-        return fail(Cat240Fault::kItemLength, kForms[item].name, octets, limit - at);
-      record.items[item] = octets_.subspan(at, octets);
-      at += octets;
-    }
-    record.end = at;
-    return true;
-  }
-
-  /// Octets of the field specification: its lowest bit is set while another octet follows.
-  [[nodiscard]] std::size_t specification_octets(std::size_t begin,
-                                                 std::size_t limit) const noexcept {
-    std::size_t octets = 1;
-    while (octets <= kSpecification && begin + octets <= limit &&
-           (octets_[begin + octets - 1] & std::byte{1}) != std::byte{0})
-      ++octets;
-    return octets;
-  }
-
-  [[nodiscard]] static bool has(Octets specification, std::size_t item) noexcept {
-    return (specification[item / 7] & std::byte{0x80} >> static_cast<int>(item % 7)) !=
-           std::byte{0};
-  }
-
-  /// Octets of an item that starts there, or 1 where its length is past the limit.
-  [[nodiscard]] std::size_t item_octets(const cat240::ItemForm& form, std::size_t at,
-                                        std::size_t limit) const noexcept {
-    if (form.length == cat240::Length::kFixed) return form.octets;
-    if (at >= limit) return 1;
-    const auto given = std::to_integer<std::size_t>(octets_[at]);
-    if (form.length == cat240::Length::kRepeated) return 1 + given * form.octets;
-    return std::max<std::size_t>(given, 1);
+    const asterix::Split found =
+        asterix::split(cat240::kForms, octets_.subspan(begin, limit - begin), record.items);
+    record.end = begin + found.octets;
+    if (found.flaw == asterix::Flaw::kNone) return true;
+    const Cat240Fault fault = found.flaw == asterix::Flaw::kSpecification
+                                  ? Cat240Fault::kFieldSpecification
+                                  : Cat240Fault::kItemLength;
+    problem = {fault, base_ + begin, found.item, found.wanted, found.came};
+    return false;
   }
 
   Cat240Event interpret(std::size_t begin, const Record& record) noexcept {
@@ -442,7 +404,6 @@ class Cat240Reader {
 
   static constexpr std::byte kMark{cat240::kCategory};
   static constexpr int kHalfTurn = 0x8000;
-  static constexpr std::size_t kSpecification = cat240::kItems / 7;
 
   Octets octets_;
   bool last_ = true;

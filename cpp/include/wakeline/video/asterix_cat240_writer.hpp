@@ -86,8 +86,8 @@ class Cat240Writer {
              kResolution, kCounters, parts.item, kTimeOfDay});
     put_labels(2);
     put(4, sequence_);
-    put(2, steps(sweep.azimuth_rad - 0.5 * sweep.azimuth_width_rad));
-    put(2, steps(sweep.azimuth_rad + 0.5 * sweep.azimuth_width_rad));
+    put(2, asterix::azimuth_steps(sweep.azimuth_rad - 0.5 * sweep.azimuth_width_rad));
+    put(2, asterix::azimuth_steps(sweep.azimuth_rad + 0.5 * sweep.azimuth_width_rad));
     put(4, static_cast<std::uint64_t>(start_cell));
     put(4, duration.count);
     put(2, sizeof(Amplitude) == 1 ? 4 : 5);
@@ -96,7 +96,7 @@ class Cat240Writer {
     put(1, parts.count);
     for (const Amplitude amplitude : sweep.amplitude) put(sizeof(Amplitude), amplitude);
     for (std::size_t k = octets; k < parts.octets(); ++k) put(1, 0);
-    put(3, ticks(sweep.time_s));
+    put(3, asterix::day_ticks(sweep.time_s));
     if (!end()) return Cat240Written::kNoRoom;
     ++sequence_;
     return Cat240Written::kOk;
@@ -159,32 +159,16 @@ class Cat240Writer {
     }
   };
 
-  static std::uint64_t steps(double azimuth_rad) noexcept {
-    const double turns = compass_angle(azimuth_rad) / (2 * kPi<double>);
-    return static_cast<std::uint64_t>(std::llround(turns * cat240::kAzimuthTurn)) & 0xFFFFu;
-  }
-
-  static std::uint64_t ticks(double time_s) noexcept {
-    using namespace cat240;
-    const double of_day = time_s - kDay * std::floor(time_s / kDay);
-    const auto count = static_cast<std::uint64_t>(std::llround(of_day * kTicksPerSecond));
-    return count % static_cast<std::uint64_t>(kDay * kTicksPerSecond);
-  }
-
   void begin(std::span<std::byte> out) noexcept {
-    out_ = out;
-    at_ = 0;
+    block_.begin(cat240::kCategory, out);
     size_ = 0;
-    put(1, cat240::kCategory);
-    put(2, 0);
   }
 
   /// Writes the field specification of these items.
   void specify(std::initializer_list<cat240::Item> items) noexcept {
-    unsigned first = 0, second = 0;
-    for (const cat240::Item item : items) (item < 7 ? first : second) |= 0x80u >> item % 7;
-    put(1, first | (second != 0 ? 1u : 0u));
-    if (second != 0) put(1, second);
+    std::uint64_t bits = 0;
+    for (const cat240::Item item : items) bits |= std::uint64_t{1} << item;
+    block_.specify(bits);
   }
 
   void put_labels(unsigned message_type) noexcept {
@@ -193,28 +177,17 @@ class Cat240Writer {
     put(1, message_type);
   }
 
-  /// Appends a number of so many octets, most significant first; past the capacity it is only
-  /// counted.
-  void put(std::size_t octets, std::uint64_t value) noexcept {
-    if (at_ + octets <= out_.size())
-      for (std::size_t k = 0; k < octets; ++k)
-        out_[at_ + k] = static_cast<std::byte>(value >> 8 * (octets - 1 - k) & 0xFF);
-    at_ += octets;
-  }
+  void put(std::size_t octets, std::uint64_t value) noexcept { block_.put(octets, value); }
 
   /// Writes the length of the block.
   bool end() noexcept {
-    if (at_ > out_.size()) return false;
-    size_ = at_;
-    out_[1] = static_cast<std::byte>(size_ >> 8);
-    out_[2] = static_cast<std::byte>(size_ & 0xFF);
-    return true;
+    size_ = block_.end() ? block_.size() : 0;
+    return size_ > 0;
   }
 
   Cat240Source source_;
   std::uint32_t sequence_ = 0;
-  std::span<std::byte> out_;
-  std::size_t at_ = 0;
+  asterix::BlockWriter block_;
   std::size_t size_ = 0;
 };
 
