@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <optional>
+#include <span>
+#include <variant>
+#include <vector>
 
 #include "estimators.hpp"
 #include "lanes/lanes.hpp"
@@ -42,10 +46,11 @@ using VesselTracker = Tracker<VesselImm, VesselSteps>;
 /// A tracker with any estimator.
 class AnyTracker {
  public:
-  AnyTracker(const Radar& radar, const TrackerConfig& config, const AnyEstimator& estimator)
-      : tracker_(Tracker<AnyEstimator>(radar, config, estimator)) {}
-  AnyTracker(const Radar& radar, const TrackerConfig& config, const VesselImm& imm)
-      : tracker_(VesselTracker(radar, config, imm)) {}
+  AnyTracker(std::span<const Radar> radars, const TrackerConfig& config,
+             const AnyEstimator& estimator)
+      : tracker_(Tracker<AnyEstimator>(radars, config, estimator)) {}
+  AnyTracker(std::span<const Radar> radars, const TrackerConfig& config, const VesselImm& imm)
+      : tracker_(VesselTracker(radars, config, imm)) {}
 
   template <class Function>
   auto visit(const Function& function) {
@@ -115,40 +120,68 @@ struct PyTracks {
 };
 
 /// A tracker with an estimator given by hand.
-AnyTracker tracker_with(const Radar& radar, const TrackerConfig& config,
+AnyTracker tracker_with(std::span<const Radar> radars, const TrackerConfig& config,
                         const py::object& estimator) {
   const AnyEstimator& any = to_mixture(estimator);
   if (const auto* imm = std::get_if<AnyImm>(&any.variant()))
-    if (const auto vessel = as_vessel_imm(*imm)) return AnyTracker(radar, config, *vessel);
-  return AnyTracker(radar, config, any);
+    if (const auto vessel = as_vessel_imm(*imm)) return AnyTracker(radars, config, *vessel);
+  return AnyTracker(radars, config, any);
 }
 
 py::object python_estimator(const VesselImm& imm) { return py::cast(as_any_imm(imm)); }
 py::object python_estimator(const AnyEstimator& estimator) { return to_python(estimator); }
 
+/// Radars by number, of which some may have been removed: one alone is not a list.
+using Radars = std::variant<Radar, std::vector<std::optional<Radar>>>;
+
+template <class Tracker>
+Radars radars_of(const Tracker& tracker) {
+  if (tracker.radar_numbers() == 1) return tracker.radar();
+  std::vector<std::optional<Radar>> radars;
+  for (int number = 0; number < tracker.radar_numbers(); ++number)
+    radars.push_back(tracker.has_radar(number) ? std::optional(tracker.radar(number))
+                                               : std::nullopt);
+  return radars;
+}
+
 Arguments tracker_arguments(const AnyTracker& any) {
   return any.visit([](const auto& tracker) {
     return Arguments()
-        .with("radar", Radar(tracker.radar()))
+        .with("radar", radars_of(tracker))
         .with("config", TrackerConfig(tracker.config()))
         .with("estimator", python_estimator(tracker.prototype()));
   });
 }
 
-/// The radar, also of a list of one.
-Radar one_of(const std::variant<Radar, std::vector<Radar>>& radar) {
-  if (const auto* one = std::get_if<Radar>(&radar)) return *one;
-  const auto& list = std::get<std::vector<Radar>>(radar);
-  require(list.size() == 1, "radar", "one Radar, as several are not joined into one picture yet",
-          static_cast<int>(list.size()));
-  return list.front();
+AnyTracker make_tracker(const Radars& radars, const TrackerConfig& config,
+                        const VesselModels& models, const py::object& estimator) {
+  if (const auto* one = std::get_if<Radar>(&radars))
+    return make_tracker(std::vector<std::optional<Radar>>{*one}, config, models, estimator);
+  const auto& wanted = std::get<std::vector<std::optional<Radar>>>(radars);
+  std::vector<Radar> list;
+  const auto known = std::find_if(wanted.begin(), wanted.end(),
+                                  [](const auto& radar) { return radar.has_value(); });
+  require(known != wanted.end(), "radar", "one Radar at least", static_cast<int>(wanted.size()));
+  for (const auto& radar : wanted) list.push_back(radar.value_or(**known));
+  AnyTracker tracker = estimator.is_none()
+                           ? AnyTracker(list, config, vessel_imm(list.front(), models))
+                           : tracker_with(list, config, estimator);
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    if (!wanted[k]) tracker.visit([&](auto& one) { (void)one.remove_radar(static_cast<int>(k)); });
+  return tracker;
+}
+
+/// Raises ValueError unless the tracker has a radar of that number.
+void require_radar(const AnyTracker& tracker, int radar) {
+  require(tracker.visit([&](const auto& one) { return one.has_radar(radar); }), "radar",
+          "the number of a radar of this tracker", radar);
 }
 
 /// Raises FilterError where a scan of that time is rejected as too far ahead.
-void require_time(const AnyTracker& tracker, const char* what, double time_s) {
+void require_time(const AnyTracker& tracker, const char* what, double time_s, int radar = 0) {
   const double latest_s = tracker.visit([](const auto& one) { return one.latest_time_s(); });
   const double true_s =
-      tracker.visit([&](const auto& one) { return one.radar().true_time_s(time_s); });
+      tracker.visit([&](const auto& one) { return one.radar(radar).true_time_s(time_s); });
   if (std::isfinite(time_s) && true_s > latest_s)
     throw FilterError(std::string(what) + ": time_s must be at most " + std::to_string(latest_s) +
                       ", an hour after the last scan, got " + std::to_string(time_s));
@@ -214,6 +247,7 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
                        .heading_std_rad = heading_std_rad};
       });
   const auto hold = tracker.lock();  // the report is the tracker's memory
+  require_radar(tracker, 0);
   require_time(tracker, "process", time_s);
   return reported(plots.size(), "process", [&] {
     return tracker.visit([&](auto& one) { return one.process(time_s, plots); });
@@ -224,7 +258,6 @@ PyReport sector(AnyTracker& tracker, int radar, double from_rad, double to_rad, 
                 const DoubleArray& range_m, const DoubleArray& bearing_rad,
                 const py::object& plot_time_s, const OwnShip& own,
                 const std::optional<DoubleArray>& covariance) {
-  require(radar == 0, "radar", "0, the index of the tracker's radar", radar);
   require_finite("from_rad", from_rad);
   require_finite("to_rad", to_rad);
   require(!std::isnan(Beam::width_rad(from_rad, to_rad)), "to_rad",
@@ -233,7 +266,8 @@ PyReport sector(AnyTracker& tracker, int radar, double from_rad, double to_rad, 
   const std::vector<Plot> plots = plots_of(time_s, range_m, bearing_rad, plot_time_s, covariance,
                                            [&](std::size_t) { return own; });
   const auto hold = tracker.lock();  // the report is the tracker's memory
-  require_time(tracker, "sector", time_s);
+  require_radar(tracker, radar);
+  require_time(tracker, "sector", time_s, radar);
   const Sector part{radar, from_rad, to_rad, time_s, plots, own};
   return reported(plots.size(), "sector",
                   [&] { return tracker.visit([&](auto& one) { return one.sector(part); }); });
@@ -258,7 +292,7 @@ PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<do
       of_each_mode(tracker, wanted, [](const auto& one) { return one.mode_probability(); }),
       numbers([](const T& t) { return t.nis; }),
       numbers([](const T& t) { return t.existence; }),
-      numbers([](const T& t) { return t.visibility; }),
+      numbers([&](const T& t) { return tracker.visibility(t); }),
       py::none(),
       counts([](const T& t) { return t.hits; }),
       counts([](const T& t) { return t.misses; }),
@@ -382,13 +416,15 @@ void define_track(py::module_& parent) {
 
   py::class_<AnyTracker> tracker(
       m, "Tracker",
-      R"(Tracks all vessels in the plots of a radar, turn by turn or sector by sector.
+      R"(Tracks all vessels in the plots of one or several radars, turn by turn or sector by sector.
 
 Calls from several threads are made one after the other; trackers share nothing.
 
 Parameters
 ----------
-radar : Radar or list of one Radar
+radar : Radar or list of Radar
+    The radars, numbered from 0; None in the list: a number without a radar. A track is updated by
+    every radar that covers it, and a miss counts only where no other radar has seen it.
 config : TrackerConfig, optional
 models : VesselModels, optional
     Motion models of the estimator.
@@ -401,20 +437,15 @@ ValueError
     When a setting is invalid.)");
   define_arguments(tracker);
   tracker
-      .def(py::init([](const std::variant<Radar, std::vector<Radar>>& radar, const TrackerConfig& c,
-                       const VesselModels& v, const py::object& estimator) {
-             const Radar r = one_of(radar);
-             return estimator.is_none() ? AnyTracker(r, c, vessel_imm(r, v))
-                                        : tracker_with(r, c, estimator);
-           }),
-           py::arg("radar"), py::arg_v("config", TrackerConfig{}, "TrackerConfig()"),
+      .def(py::init(&make_tracker), py::arg("radar"),
+           py::arg_v("config", TrackerConfig{}, "TrackerConfig()"),
            py::arg_v("models", VesselModels{}, "VesselModels()"), py::arg("estimator") = py::none())
       .def("process", &process, py::arg("time_s"), py::kw_only(), py::arg("range_m"),
            py::arg("bearing_rad"), py::arg("plot_time_s") = py::none(),
            py::arg("own_north_m") = 0.0, py::arg("own_east_m") = 0.0,
            py::arg("heading_std_rad") = 0.0, py::arg("own_position_std_m") = 0.0,
            py::arg("covariance") = py::none(),
-           R"(Process the plots of one scan, a whole turn of the antenna.
+           R"(Process the plots of one scan, a whole turn of the antenna of radar 0.
 
 Parameters
 ----------
@@ -456,12 +487,13 @@ sectors overlap the beam does not go back.
 Parameters
 ----------
 radar : int
-    0, the index of the tracker's radar.
+    Number of the radar.
 from_rad, to_rad : float
     The beam went clockwise from one bearing, as the radar measures it, to the other; a turn apart:
     a whole turn, as `process` takes it. Equal: time passes.
 time_s : float
-    At the end of the sector; not before the last one nor after `latest_time_s`.
+    At the end of the sector; not before the last one of this radar, nor more than a period before
+    that of another one, nor after `latest_time_s`.
 range_m, bearing_rad : (n,) arrays
 plot_time_s : float or (n,) array
     Time of each plot.
@@ -482,6 +514,35 @@ ValueError
 FilterError
     When the time is not finite, before the last sector or after `latest_time_s`; the tracker is
     unchanged.)")
+      .def(
+          "add_radar",
+          [](AnyTracker& tracker, const Radar& radar) {
+            return tracker.visit([&](auto& one) { return one.add_radar(radar); });
+          },
+          py::arg("radar"), "Add a radar and return its number, the least that is free.")
+      .def(
+          "remove_radar",
+          [](AnyTracker& tracker, int radar) {
+            return tracker.visit([&](auto& one) { return one.remove_radar(radar); });
+          },
+          py::arg("radar"),
+          R"(Remove a radar and what was learned of it; tracks go on by the others.
+
+False when there is none of that number or it is the last one.)")
+      .def(
+          "set_radar",
+          [](AnyTracker& tracker, int number, const Radar& radar) {
+            tracker.visit([&](auto& one) { one.set_radar(number, radar); });
+          },
+          py::arg("number"), py::arg("radar"),
+          R"(Change the settings of a radar, such as the errors and the period of another range scale.
+
+All tracks are kept.
+
+Raises
+------
+ValueError
+    When there is no radar of that number.)")
       .def(
           "tracks",
           [](const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {

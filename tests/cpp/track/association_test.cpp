@@ -188,6 +188,7 @@ TEST(PlotAssignment, GlobalNearestIsTheBestOfAllAssignmentsAndNearestIsNotBetter
   for (int trial = 0; trial < 200; ++trial) {
     constexpr int kTracks = 4, kPlots = 5;
     TrackList tracks(kTracks);
+    const std::vector<Look> looks(kTracks);
     std::vector<CandidatePlots> candidates(kTracks);
     for (CandidatePlots& of_track : candidates) {
       tracks.open().status = TrackStatus::kConfirmed;
@@ -200,7 +201,7 @@ TEST(PlotAssignment, GlobalNearestIsTheBestOfAllAssignmentsAndNearestIsNotBetter
     for (const Association association : {Association::kGlobalNearest, Association::kNearest}) {
       const TrackerConfig config{.association = association, .max_tracks = kTracks};
       PlotAssignment assignment(config);
-      assignment.assign(kProbability, tracks, tracks.slots(), candidates, kPlots);
+      assignment.assign(kProbability, looks, tracks, tracks.slots(), candidates, kPlots);
       std::vector<int> plot_of, used;
       for (int slot = 0; slot < kTracks; ++slot) {
         const int plot = assignment.plot_of(slot);
@@ -224,11 +225,12 @@ TEST(PlotAssignment, ConfirmedTracksChooseFirst) {
   const int tentative = tracks.open().slot;
   Track& confirmed = tracks.open();
   confirmed.status = TrackStatus::kConfirmed;
+  const std::vector<Look> looks(2);
   std::vector<CandidatePlots> candidates(2);
   candidates[std::size_t(tentative)].add(candidate(0, 1e-2, 1e-6));
   candidates[std::size_t(confirmed.slot)].add(candidate(0, 1e-3, 1e-6));
   PlotAssignment assignment(config);
-  assignment.assign(kProbability, tracks, tracks.slots(), candidates, 1);
+  assignment.assign(kProbability, looks, tracks, tracks.slots(), candidates, 1);
   EXPECT_EQ(assignment.plot_of(confirmed.slot), 0);
   EXPECT_EQ(assignment.plot_of(tentative), PlotAssignment::kNone);
 

@@ -22,7 +22,6 @@ TEST(ClutterDensity, IsTheFloorWhereNothingIsLearned) {
 
 TEST(ClutterDensity, RisesWhereClutterIsLearnedAndOnlyThere) {
   ClutterDensity clutter(kConfig);
-  TrackList tracks(1);
   const std::vector<double> clutter_probability{1.0, 0.0};
   for (int scan = 0; scan < 20; ++scan) {
     const ScanPlots plots =
@@ -30,26 +29,25 @@ TEST(ClutterDensity, RisesWhereClutterIsLearnedAndOnlyThere) {
     clutter.evaluate(plots, scan > 0 ? 2.5 : 0.0, 2.5);
     EXPECT_EQ(clutter.without({}, plots, 1), 1e-7) << "what a track owns is not learned";
     EXPECT_TRUE(scan == 0 || clutter.without({}, plots, 0) > 1e-7);
-    clutter.learn(
-        plots, clutter_probability, [](int) { return -1; }, tracks, tracks.slots());
+    clutter.learn(plots, clutter_probability, [](int) { return -1; }, {}, {});
   }
 }
 
 TEST(ClutterDensity, OfATrackLeavesOutItsOwnPlots) {
   ClutterDensity clutter(kConfig);
-  TrackList tracks(1);
-  const int slot = tracks.open().slot;
+  std::vector<Look> looks(1);
+  const std::vector<int> slots{0};
   const std::vector<double> clutter_probability{0.7};
   for (int scan = 0; scan < 10; ++scan) {
     const ScanPlots plots = scan_of({plot_at(1000.0, 0.0, 2.5 * scan)}, 2.5 * scan);
     clutter.evaluate(plots, scan > 0 ? 2.5 : 0.0, 2.5);
     if (scan > 0) {
       EXPECT_GT(clutter.without({}, plots, 0), 2e-7);
-      EXPECT_NEAR(clutter.without(tracks.at(slot).learned, plots, 0) / 1e-7, 1.0, 1e-6)
+      EXPECT_NEAR(clutter.without(looks[0].learned, plots, 0) / 1e-7, 1.0, 1e-6)
           << "all that was learned is its own";
     }
     clutter.learn(
-        plots, clutter_probability, [](int) { return 0; }, tracks, tracks.slots());
+        plots, clutter_probability, [](int) { return 0; }, looks, slots);
   }
 }
 

@@ -23,14 +23,14 @@ Track& open(TrackList& tracks, std::int64_t id, const Vec<double, 4>& mean) {
 }
 
 std::vector<int> found(Duplicates& duplicates, TrackList& tracks) {
-  const std::span<const int> slots = duplicates.find(tracks, tracks.slots());
+  const std::span<const int> slots = duplicates.find(tracks, tracks.slots(), kPeriod_s);
   return {slots.begin(), slots.end()};
 }
 
 TEST(Duplicates, OfTwoTracksOnOneTargetTheSeniorStays) {
   const TrackerConfig config{.duplicate_scans = 3};
   TrackList tracks(10);
-  Duplicates duplicates(config, kPeriod_s, kThreshold);
+  Duplicates duplicates(config, kThreshold);
   const int senior = open(tracks, 4, {0.0, 5.0, 0.0, 0.0}).slot;
   const int junior = open(tracks, 7, {3.0, 5.0, -2.0, 0.0}).slot;
   open(tracks, 2, {500.0, 5.0, 0.0, 0.0});
@@ -42,7 +42,7 @@ TEST(Duplicates, OfTwoTracksOnOneTargetTheSeniorStays) {
 
 TEST(Duplicates, TheCountBeginsAnewWhereTheyPart) {
   TrackList tracks(10);
-  Duplicates duplicates(TrackerConfig{.duplicate_scans = 2}, kPeriod_s, kThreshold);
+  Duplicates duplicates(TrackerConfig{.duplicate_scans = 2}, kThreshold);
   open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
   Track& junior = open(tracks, 2, {3.0, 5.0, 0.0, 0.0});
   EXPECT_TRUE(found(duplicates, tracks).empty());
@@ -55,7 +55,7 @@ TEST(Duplicates, TheCountBeginsAnewWhereTheyPart) {
 
 TEST(Duplicates, ATentativeOneGoesAtOnceAndAVelocityTellsTargetsApart) {
   TrackList tracks(10);
-  Duplicates duplicates(TrackerConfig{}, kPeriod_s, kThreshold);
+  Duplicates duplicates(TrackerConfig{}, kThreshold);
   open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
   const int same = open(tracks, -3, {3.0, 5.0, 0.0, 0.0}).slot;
   open(tracks, -4, {0.0, -9.0, 0.0, 0.0});
@@ -65,7 +65,7 @@ TEST(Duplicates, ATentativeOneGoesAtOnceAndAVelocityTellsTargetsApart) {
 // A track that is to be deleted itself is no reason to delete another.
 TEST(Duplicates, OfManyOnOneTargetOneStays) {
   TrackList tracks(10);
-  Duplicates duplicates(TrackerConfig{}, kPeriod_s, kThreshold);
+  Duplicates duplicates(TrackerConfig{}, kThreshold);
   for (int k = 1; k <= 6; ++k) open(tracks, -k, {double(k), 5.0, 0.0, 0.0});
   EXPECT_EQ(found(duplicates, tracks).size(), 5u);
   TrackList chain(10);  // each near the next only
@@ -77,7 +77,7 @@ TEST(Duplicates, OneVesselOfAKnownLengthIsOneTarget) {
   const auto count = [](double length_m, double speed_mps) {
     TrackList tracks(10);
     Duplicates duplicates(TrackerConfig{.vessel_length_m = length_m, .duplicate_scans = 1},
-                          kPeriod_s, kThreshold);
+                          kThreshold);
     open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
     open(tracks, 2, {80.0, speed_mps, 0.0, 0.0});
     return found(duplicates, tracks).size();
@@ -90,7 +90,7 @@ TEST(Duplicates, OneVesselOfAKnownLengthIsOneTarget) {
 
 TEST(Duplicates, TwoTracksAreComparedAtOneTime) {
   TrackList tracks(10);
-  Duplicates duplicates(TrackerConfig{}, kPeriod_s, kThreshold);
+  Duplicates duplicates(TrackerConfig{}, kThreshold);
   open(tracks, 1, {0.0, 20.0, 0.0, 0.0});
   Track& there = open(tracks, -1, {50.0, 20.0, 0.0, 0.0});
   Track& here = open(tracks, -2, {0.0, 20.0, 0.0, 0.0});

@@ -16,7 +16,7 @@ struct Scene {
   TrackerConfig config;
   ClutterDensity clutter{config};
   PlotOwnership ownership{config};
-  TrackInitiation initiation{kStageRadar, config};
+  TrackInitiation initiation{config};
   double beam_rad = 0.0;
 
   explicit Scene(const TrackerConfig& with = {}) : config(with) {}
@@ -36,7 +36,7 @@ struct Scene {
     }
     std::vector<TrackStart> starts;
     initiation.initiate(
-        scan, ownership, clutter, 0.8, beam_rad += 6.283185307179586, true,
+        kStageRadar, scan, ownership, clutter, 0.8, beam_rad += 6.283185307179586, true,
         [&](double) { return room; }, [&](const TrackStart& start) { starts.push_back(start); });
     return starts;
   }

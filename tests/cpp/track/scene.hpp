@@ -157,7 +157,8 @@ inline void expect_sound(const VesselTracker& tracker) {
     EXPECT_TRUE(is_covariance(track.kinematics.covariance)) << track.id << "\n"
                                                             << track.kinematics.covariance;
     EXPECT_TRUE(track.existence >= 0.0 && track.existence <= 1.0) << track.existence;
-    EXPECT_TRUE(track.visibility >= 0.0 && track.visibility <= 1.0) << track.visibility;
+    const double visibility = tracker.visibility(track);
+    EXPECT_TRUE(visibility >= 0.0 && visibility <= 1.0) << visibility;
     EXPECT_TRUE(std::isnan(track.nis) || (track.nis >= 0.0 && std::isfinite(track.nis)))
         << track.nis;
     EXPECT_TRUE(std::isfinite(track.time_s));

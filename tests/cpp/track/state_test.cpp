@@ -80,8 +80,6 @@ void expect_same(const Outcome& a, const Outcome& b) {
     EXPECT_TRUE(matrices_identical(x.kinematics.covariance, y.kinematics.covariance));
     EXPECT_TRUE(matrices_identical(a.mode_probability[k], b.mode_probability[k]));
     EXPECT_EQ(std::bit_cast<std::uint64_t>(x.existence), std::bit_cast<std::uint64_t>(y.existence));
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(x.visibility),
-              std::bit_cast<std::uint64_t>(y.visibility));
     EXPECT_TRUE(std::isnan(x.nis) ? std::isnan(y.nis) : x.nis == y.nis);
     EXPECT_EQ(x.scans, y.scans);
     EXPECT_EQ(x.hits, y.hits);

@@ -15,6 +15,7 @@
 #include "wakeline/association/nearest_neighbour.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/existence.hpp"
+#include "wakeline/track/look.hpp"
 #include "wakeline/track/plot_likelihood.hpp"
 #include "wakeline/track/track_list.hpp"
 
@@ -173,9 +174,9 @@ class PlotAssignment {
   }
 
   /// Assigns plots of a scan, of which there are so many, to the tracks of these slots.
-  void assign(const DetectionProbability& detection_probability, const TrackList& tracks,
-              std::span<const int> slots, std::span<const CandidatePlots> candidates_of_slot,
-              int plots) noexcept {
+  void assign(const DetectionProbability& detection_probability, std::span<const Look> looks,
+              const TrackList& tracks, std::span<const int> slots,
+              std::span<const CandidatePlots> candidates_of_slot, int plots) noexcept {
     assigned_.assign(static_cast<std::size_t>(plots), 0);
     for (const bool confirmed : {true, false}) {
       candidates_.clear(plots);
@@ -185,7 +186,8 @@ class PlotAssignment {
         if (track.confirmed() != confirmed) continue;
         row_slot_.push_back(slot);
         candidates_.start_row(0.0);
-        const Detection detection = detection_probability.of(track.visibility);
+        const Detection detection =
+            detection_probability.of(looks[static_cast<std::size_t>(slot)].visibility);
         for (const CandidatePlot& plot : candidates_of_slot[static_cast<std::size_t>(slot)])
           if (assigned_[static_cast<std::size_t>(plot.plot)] == 0)
             candidates_.add(plot.plot,

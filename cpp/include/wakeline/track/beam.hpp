@@ -18,7 +18,7 @@ namespace wakeline {
 /// A part of the antenna's turn: what a radar has seen while its beam went clockwise from one angle
 /// to another.
 struct Sector {
-  int radar = 0;  ///< its index; a tracker has one radar, 0
+  int radar = 0;  ///< its index
   double from_rad = 0.0;
   double to_rad = 0.0;  ///< one turn after `from_rad`: a whole turn
   double time_s = 0.0;  ///< at the end
@@ -115,12 +115,12 @@ class Beam {
 /// usual ones, in the turn after `passed_rad`.
 ///
 /// A gate that reaches the antenna has the whole turn about its centre.
-inline BeamArc gate_arc(const Track& track, double time_s, double threshold, double plot_factor,
-                        const Radar& radar, const OwnShip& own) noexcept {
+inline BeamArc gate_arc(const Track& track, double passed_rad, double time_s, double threshold,
+                        double plot_factor, const Radar& radar, const OwnShip& own) noexcept {
   const double dt_s = time_s - track.time_s;
   const Vec<double, 2> d = track.position() + dt_s * track.velocity() - own.position<double>();
   const double range_m = d.norm();
-  const double near_rad = track.passed_rad + Beam::kTurn;
+  const double near_rad = passed_rad + Beam::kTurn;
   const double centre_rad =
       Beam::unwrapped(std::atan2(d[1], d[0]) + radar.bearing_offset_rad, near_rad);
   const Gaussian<4> now = at_constant_velocity(track.kinematics, dt_s);

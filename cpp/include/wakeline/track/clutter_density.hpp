@@ -10,8 +10,8 @@
 #include "wakeline/track/clutter_map.hpp"
 #include "wakeline/track/clutter_rings.hpp"
 #include "wakeline/track/config.hpp"
+#include "wakeline/track/look.hpp"
 #include "wakeline/track/scan_plots.hpp"
-#include "wakeline/track/track_list.hpp"
 
 namespace wakeline {
 
@@ -59,7 +59,7 @@ class ClutterDensity {
   /// `plot_of(slot)`, or -1.
   template <class PlotOf>
   void learn(const ScanPlots& plots, std::span<const double> clutter_probability,
-             const PlotOf& plot_of, TrackList& tracks, std::span<const int> slots) noexcept {
+             const PlotOf& plot_of, std::span<Look> looks, std::span<const int> slots) noexcept {
     for (int plot = 0; plot < plots.size(); ++plot)
       if (!plots[plot].waits)
         map_.add(plots[plot].position.mean, plots.scan_s(),
@@ -67,7 +67,7 @@ class ClutterDensity {
     for (const int slot : slots) {
       const int plot = plot_of(slot);
       if (plot < 0) continue;
-      LearnedPlots& own = tracks.at(slot).learned;
+      LearnedPlots& own = looks[static_cast<std::size_t>(slot)].learned;
       own = with(own, plots, plot, clutter_probability[static_cast<std::size_t>(plot)]);
     }
   }

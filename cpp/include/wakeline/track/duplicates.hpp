@@ -62,9 +62,8 @@ inline bool same_vessel(const Track& known, const Gaussian<4>& then, const Track
 /// Finds tracks that are on the same target as a senior one. Memory is taken by the constructor.
 class Duplicates {
  public:
-  Duplicates(const TrackerConfig& config, double period_s, double velocity_threshold)
-      : longest_s_(2.0 * period_s),
-        distance_(config.duplicate_distance),
+  Duplicates(const TrackerConfig& config, double velocity_threshold)
+      : distance_(config.duplicate_distance),
         length_m_(config.vessel_length_m),
         scans_(config.duplicate_scans),
         velocity_threshold_(velocity_threshold),
@@ -75,7 +74,10 @@ class Duplicates {
 
   /// Which tracks of these slots are to be deleted, in order: tentative ones at once, those with a
   /// number after some scans in a row, which it counts. Valid until the next call.
-  std::span<const int> find(TrackList& tracks, std::span<const int> slots) noexcept {
+  /// Tracks whose times are more than two periods of the antenna apart are not compared.
+  std::span<const int> find(TrackList& tracks, std::span<const int> slots,
+                            double period_s) noexcept {
+    longest_s_ = 2.0 * period_s;
     index(tracks, slots);
     found_.clear();
     for (const int slot : slots) {
@@ -155,7 +157,7 @@ class Duplicates {
 
   static constexpr int kMostNear = 128;  ///< tracks that one is compared with
 
-  double longest_s_;  ///< between the times of two tracks that are compared
+  double longest_s_ = 0.0;  ///< between the times of two tracks that are compared
   double distance_;
   double length_m_;
   int scans_;

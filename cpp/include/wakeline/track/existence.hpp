@@ -94,9 +94,9 @@ struct ExistencePrediction {
     memory = std::exp(-(hide + show) * dt_s);
   }
 
-  void predict(Track& track) const noexcept {
-    track.existence *= survival;
-    track.visibility = long_run + (track.visibility - long_run) * memory;
+  [[nodiscard]] double existence(double before) const noexcept { return before * survival; }
+  [[nodiscard]] double visibility(double before) const noexcept {
+    return long_run + (before - long_run) * memory;
   }
 };
 
@@ -109,13 +109,14 @@ struct ScanLikelihood {
 
 /// Bayes' rule for "the target exists" and "it is visible".
 inline void update_existence(const TrackerConfig& config, const Detection& detection,
-                             const ScanLikelihood& scan, Track& track) noexcept {
+                             const ScanLikelihood& scan, Track& track,
+                             double& visibility) noexcept {
   constexpr double kMostExistence = 0.99999;
   if (config.visible_time_s > 0.0) {
     const double seen = std::max(scan.total - scan.none, 0.0);  // their sum is rounded
     const double visible = scan.assigned ? seen : detection.visible_missed + seen;
-    const double either = scan.assigned ? visible : visible + (1.0 - track.visibility);
-    if (either > 0.0) track.visibility = visible / either;
+    const double either = scan.assigned ? visible : visible + (1.0 - visibility);
+    if (either > 0.0) visibility = visible / either;
   }
   const double exists = track.existence * scan.total;
   track.existence = std::min(exists / (1.0 - track.existence + exists), kMostExistence);

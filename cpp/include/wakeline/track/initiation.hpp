@@ -133,39 +133,40 @@ struct TrackStart {
 /// speed limit, start a track. Memory is taken by the constructor.
 class TrackInitiation {
  public:
-  TrackInitiation(const Radar& radar, const TrackerConfig& config)
-      : config_(config), radar_(radar), before_(config.max_plots) {}
+  explicit TrackInitiation(const TrackerConfig& config)
+      : config_(config), before_(config.max_plots) {}
 
   /// Calls `start(TrackStart)` for every pair, as long as `has_room(existence)`; then keeps the
   /// free plots for the next turns. Plots that wait are left out. The beam has passed that angle,
   /// and a whole turn or a sector.
   template <class HasRoom, class Start>
-  void initiate(const ScanPlots& plots, const PlotOwnership& ownership,
+  void initiate(const Radar& radar, const ScanPlots& plots, const PlotOwnership& ownership,
                 const ClutterDensity& clutter, double detection_probability, double beam_rad,
                 bool whole_turn, const HasRoom& has_room, const Start& start) {
-    const double longest_s = std::max(config_.coast_scans_max, kLeastScans) * radar_.period_s;
+    const double longest_s = std::max(config_.coast_scans_max, kLeastScans) * radar.period_s;
     for (int k = 0; k < plots.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
       if (plots[k].waits || !(ownership.free_probability()[at] > config_.free_plot)) continue;
       if (!has_room(kMostExistence)) break;
       const auto pair = [&](const FreePlot& earlier) {
         const LearnedPlots own{earlier.position.mean, 1.0, earlier.time_s};
-        const double probability =
-            existence(earlier, plots[k], clutter.without(own, plots, k), detection_probability);
+        const double probability = existence(radar, earlier, plots[k],
+                                             clutter.without(own, plots, k), detection_probability);
         if (!has_room(probability)) return;
-        start(TrackStart{belief(earlier, plots[k]), plots[k].time_s, plots[k].beam_rad, probability,
+        start(TrackStart{belief(radar, earlier, plots[k]), plots[k].time_s, plots[k].beam_rad,
+                         probability,
                          clutter.with(own, plots, k, ownership.clutter_probability()[at])});
       };
-      before_.for_each_before(plots[k], radar_.max_speed_mps, radar_.period_s,
+      before_.for_each_before(plots[k], radar.max_speed_mps, radar.period_s,
                               config_.start_gate_sigma, longest_s, pair);
     }
     keep_free(plots, ownership, beam_rad, whole_turn);
   }
 
   /// What is believed of a velocity before it is measured.
-  [[nodiscard]] Gaussian<2> prior_velocity() const noexcept {
+  [[nodiscard]] Gaussian<2> prior_velocity(const Radar& radar) const noexcept {
     const double factor = config_.start_speed_factor > 0.0 ? config_.start_speed_factor : 1.0;
-    const double std_mps = factor * radar_.max_speed_mps;
+    const double std_mps = factor * radar.max_speed_mps;
     return {Vec<double, 2>::Zero(), std_mps * std_mps / 2 * Mat<double, 2, 2>::Identity()};
   }
 
@@ -194,29 +195,30 @@ class TrackInitiation {
   /// Probability that two plots are a target's and not clutter of density ρ: odds of β/ρ for the
   /// first, with the birth density β; of PD N(z₂; z₁) / ρ for the second, with the prior of the
   /// velocity; and 1 - PD for each scan between.
-  [[nodiscard]] double existence(const FreePlot& earlier, const ScanPlot& later,
+  [[nodiscard]] double existence(const Radar& radar, const FreePlot& earlier, const ScanPlot& later,
                                  double clutter_per_m2,
                                  double detection_probability) const noexcept {
     const double dt_s = later.time_s - earlier.time_s;
     const Cholesky<2> factor(earlier.position.covariance + later.position.covariance +
-                             dt_s * dt_s * prior_velocity().covariance);
+                             dt_s * dt_s * prior_velocity(radar).covariance);
     if (!factor.ok()) return 0.0;
     const Vec<double, 2> way = later.position.mean - earlier.position.mean;
     const double likelihood =
         std::exp(-0.5 * (factor.squared_norm(way) + factor.log_determinant())) /
         (2.0 * std::numbers::pi);
-    const double missed = std::max(std::round(dt_s / radar_.period_s) - 1.0, 0.0);
+    const double missed = std::max(std::round(dt_s / radar.period_s) - 1.0, 0.0);
     const double odds = config_.birth_density_per_m2 / clutter_per_m2 * detection_probability *
                         likelihood / clutter_per_m2 * std::pow(1.0 - detection_probability, missed);
     return std::min(odds / (1.0 + odds), kMostExistence);
   }
 
-  [[nodiscard]] Gaussian<4> belief(const FreePlot& earlier, const ScanPlot& later) const noexcept {
+  [[nodiscard]] Gaussian<4> belief(const Radar& radar, const FreePlot& earlier,
+                                   const ScanPlot& later) const noexcept {
     const Gaussian<4> of_plots =
         two_point<double>(with_outliers(earlier.position), with_outliers(later.position),
                           later.time_s - earlier.time_s);
     if (!(config_.start_speed_factor > 0.0)) return of_plots;
-    return with_speed_prior(of_plots, std::sqrt(prior_velocity().covariance(0, 0)));
+    return with_speed_prior(of_plots, std::sqrt(prior_velocity(radar).covariance(0, 0)));
   }
 
   /// With the covariance of nominal and outlier errors together.
@@ -226,7 +228,6 @@ class TrackInitiation {
   }
 
   TrackerConfig config_;
-  Radar radar_;
   FreePlots before_;
   double sorted_rad_ = 0.0;  ///< angle of the beam when they were sorted
 };

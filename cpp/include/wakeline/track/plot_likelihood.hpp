@@ -36,15 +36,15 @@ class CandidatePlots {
 
   void clear() noexcept { count_ = 0; }
 
-  /// Chooses the likeliest of a track's validated plots, each with the density of clutter about it.
-  void choose(std::span<const ValidatedPlot> validated, const Track& track,
+  /// Chooses the likeliest of a track's validated plots, each with the density of clutter about it,
+  /// where the clutter map has learned its own.
+  void choose(std::span<const ValidatedPlot> validated, const LearnedPlots& own,
               const ModePositions& modes, double outlier_probability, const ClutterDensity& clutter,
               const ScanPlots& plots) noexcept {
     clear();
     for (const ValidatedPlot& plot : validated) {
       const double likelihood = plot_likelihood(plot, modes, outlier_probability);
-      if (admits(likelihood))
-        add({plot, likelihood, clutter.without(track.learned, plots, plot.plot)});
+      if (admits(likelihood)) add({plot, likelihood, clutter.without(own, plots, plot.plot)});
     }
   }
 

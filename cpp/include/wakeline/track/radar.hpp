@@ -23,6 +23,10 @@ struct Radar {
   double bearing_offset_rad = 0.0;
   double range_offset_m = 0.0;
   double time_offset_s = 0.0;
+  double min_range_m = 0.0;
+  double max_range_m = 0.0;
+  double blind_from_rad = 0.0;
+  double blind_to_rad = 0.0;
 
   static constexpr auto fields() noexcept {
     using R = Radar;
@@ -43,7 +47,19 @@ struct Radar {
         field("range_offset_m", &R::range_offset_m, between(-1e5, 1e5), "m",
               "Measured minus true range; subtracted from every plot."),
         field("time_offset_s", &R::time_offset_s, between(-3600, 3600), "s",
-              "Clock of the radar minus true time; subtracted from the times of scans and plots."));
+              "Clock of the radar minus true time; subtracted from the times of scans and plots."),
+        field("min_range_m", &R::min_range_m, between(0, 1e6), "m",
+              "Range from which the radar sees targets; a track nearer than that has no misses."),
+        field(
+            "max_range_m", &R::max_range_m, between(0, 1e6), "m",
+            "Range up to which the radar sees targets, as a track beyond it has no misses; 0: the "
+            "radar sees any."),
+        field(
+            "blind_from_rad", &R::blind_from_rad, kFinite, "rad",
+            "From this bearing clockwise to `blind_to_rad`, as the radar measures it, targets are "
+            "hidden by a mast or by land, and a track there has no misses."),
+        field("blind_to_rad", &R::blind_to_rad, kFinite, "rad",
+              "End of the blind sector; equal to `blind_from_rad`: there is none."));
   }
 
   /// A plot seen from own ship as a position with its covariance.
@@ -55,6 +71,18 @@ struct Radar {
 
   /// The same of a plot, with its own covariance where it has one.
   [[nodiscard]] Gaussian<2> position(const Plot& plot) const noexcept;
+
+  /// Whether the radar sees targets at all ranges and bearings.
+  [[nodiscard]] bool covers_all() const noexcept {
+    return min_range_m == 0.0 && max_range_m == 0.0 && blind_from_rad == blind_to_rad;
+  }
+
+  /// Whether it sees targets at a range and bearing, as it measures them.
+  [[nodiscard]] bool covers(double range_m, double bearing_rad) const noexcept {
+    const bool in_range = range_m >= min_range_m && (max_range_m == 0.0 || range_m <= max_range_m);
+    return in_range && !(compass_angle(bearing_rad - blind_from_rad) <
+                         compass_angle(blind_to_rad - blind_from_rad));
+  }
 
   /// A time by the radar's clock as true time.
   [[nodiscard]] double true_time_s(double time_s) const noexcept { return time_s - time_offset_s; }

@@ -129,7 +129,6 @@ struct Track {
   Gaussian<4> kinematics = {};   ///< of the estimate, `[x, vx, y, vy]`
   double existence = 0.0;        ///< probability that there is such a target
   double start_existence = 1.0;  ///< the same when it started
-  double visibility = 1.0;       ///< probability that the radar can see it
   double nis = std::numeric_limits<double>::quiet_NaN();  ///< of the most probable plot of the scan
   int scans = 0;
   int hits = 0;
@@ -138,11 +137,10 @@ struct Track {
   std::uint32_t history = 0;   ///< bit k: seen k scans ago
   int duplicate_scans = 0;     ///< in a row that a senior track was on the same target
   double plot_m2 = 0.0;        ///< variance of its last plot, per axis (mean of both)
-  LearnedPlots learned = {};   ///< what the clutter map has learned of its own plots
-  double looked_s = 0.0;       ///< when the radar last looked: a plot or a miss
-  double passed_rad = 0.0;     ///< angle of the beam when it last passed the target, unwrapped
-  double look_rad = 0.0;       ///< before that angle the beam does not reach its gate
-  bool hushed = false;         ///< followed, but neither shown nor reported: the operator's word
+  double looked_s = 0.0;       ///< when a radar last looked: a plot or a miss
+  double seen_until_s = -std::numeric_limits<double>::infinity();
+  ///< until then a miss does not count: another sensor has seen it
+  bool hushed = false;  ///< followed, but neither shown nor reported: the operator's word
 
   [[nodiscard]] bool confirmed() const noexcept { return status != TrackStatus::kTentative; }
   /// Confirmed, and not silent for so long that it is only held.
@@ -190,7 +188,6 @@ struct Track {
     fields(kinematics.covariance);
     fields(existence);
     fields(start_existence);
-    fields(visibility);
     fields(nis);
     fields(scans);
     fields(hits);
@@ -199,10 +196,8 @@ struct Track {
     fields(history);
     fields(duplicate_scans);
     fields(plot_m2);
-    learned.archive(fields);
     fields(looked_s);
-    fields(passed_rad);
-    fields(look_rad);
+    fields(seen_until_s);
     fields(hushed);
   }
 };

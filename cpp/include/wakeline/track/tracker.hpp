@@ -19,18 +19,12 @@
 #include "wakeline/simd/side_by_side.hpp"
 #include "wakeline/track/association.hpp"
 #include "wakeline/track/association_probabilities.hpp"
-#include "wakeline/track/beam.hpp"
-#include "wakeline/track/clutter_density.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/duplicates.hpp"
-#include "wakeline/track/existence.hpp"
-#include "wakeline/track/initiation.hpp"
 #include "wakeline/track/life_cycle.hpp"
 #include "wakeline/track/mode_positions.hpp"
 #include "wakeline/track/plot_likelihood.hpp"
-#include "wakeline/track/plot_ownership.hpp"
-#include "wakeline/track/radar.hpp"
-#include "wakeline/track/scan_plots.hpp"
+#include "wakeline/track/radar_state.hpp"
 #include "wakeline/track/time_alignment.hpp"
 #include "wakeline/track/track_estimator.hpp"
 #include "wakeline/track/track_gate.hpp"
@@ -50,16 +44,17 @@ struct [[nodiscard]] ScanReport {
   int rejected_plots = 0;
 };
 
-/// Keeps tracks of all vessels a radar sees, scan by scan.
+/// Keeps tracks of all vessels that some radars see, scan by scan.
 ///
-/// Each track is an estimator with a probability of existence and of visibility. `process` is the
-/// list of stages a scan goes through; each stage is a header of this folder, with its input as
-/// arguments and its output its own. All memory is taken by the constructor; `process` neither
-/// allocates nor throws. A tracker may be used from one thread at a time; trackers share nothing.
-/// `Steps` predicts and updates the estimators of many tracks at once. Sources: D. Mušicki,
-/// R. Evans, "Joint integrated probabilistic data association", IEEE Trans. AES-40, 2004; J. L.
-/// Williams, R. A. Lau, IEEE Trans. AES-50, 2014; Bar-Shalom, Li, Multitarget-Multisensor Tracking,
-/// 1995.
+/// Each track is an estimator with a probability of existence, and of visibility to each radar.
+/// It is updated by every radar that covers it; a miss counts in its life only where no other radar
+/// has seen it within a period. `process` is the list of stages a scan goes through; each stage is
+/// a header of this folder, with its input as arguments and its output its own. All memory is taken
+/// by the constructor; `process` neither allocates nor throws. A tracker may be used from one
+/// thread at a time; trackers share nothing. `Steps` predicts and updates the estimators of many
+/// tracks at once. Sources: D. Mušicki, R. Evans, "Joint integrated probabilistic data
+/// association", IEEE Trans. AES-40, 2004; J. L. Williams, R. A. Lau, IEEE Trans. AES-50, 2014;
+/// Bar-Shalom, Li, Multitarget-Multisensor Tracking, 1995.
 template <class Estimator, class Steps = SideBySide<Estimator>>
 class Tracker {
   static_assert(TrackEstimator<Estimator>,
@@ -72,18 +67,24 @@ class Tracker {
 
  public:
   /// Throws `std::invalid_argument` on a setting that makes no sense.
-  Tracker(const Radar& radar, const TrackerConfig& config, const Estimator& prototype);
+  Tracker(const Radar& radar, const TrackerConfig& config, const Estimator& prototype)
+      : Tracker(std::span(&radar, 1), config, prototype) {}
+
+  /// The same with several radars, `kMostRadars` at most, which are numbered from 0.
+  Tracker(std::span<const Radar> radars, const TrackerConfig& config, const Estimator& prototype);
+
+  static constexpr int kMostRadars = 16;
 
   Tracker(Tracker&&) noexcept = default;
   Tracker& operator=(Tracker&&) noexcept = default;
 
-  /// Processes the plots of one scan, a whole turn of the antenna that ends at `time_s`: a track
-  /// without a plot has missed it. Times of scan and plots are by the radar's clock; `time_s()`,
-  /// tracks and events have true time (`Radar::time_offset_s`). Rejects a scan that is before the
-  /// last one
-  /// (`kNegativeTimeStep`) or after `latest_time_s()` (`kNotFinite`): nothing changes.
+  /// Processes the plots of one scan, a whole turn of the first radar that ends at `time_s`: a
+  /// track without a plot has missed it. Times of scan and plots are by the radar's clock;
+  /// `time_s()`, tracks and events have true time (`Radar::time_offset_s`). Rejects a scan that is
+  /// before the last one of its radar, or more than a period before that of another one
+  /// (`kNegativeTimeStep`), or after `latest_time_s()` (`kNotFinite`): nothing changes.
   ScanReport process(double time_s, std::span<const Plot> plots) noexcept {
-    return step(time_s, plots, nullptr);
+    return step(0, time_s, plots, nullptr);
   }
 
   /// Processes a part of the antenna's turn.
@@ -92,16 +93,56 @@ class Tracker {
   /// plots that may be theirs, wait for the next sector, so that `plot_track_id` is 0 for these.
   /// Where sectors leave a gap, tracks are neither updated nor miss; a track that the beam has not
   /// passed for two periods coasts by time, a miss a period. A sector of no width lets time pass.
-  /// One of a whole turn is `process`. Rejects a sector of another radar or from nowhere to nowhere
-  /// (`kNotFinite`), or of a time that `process` rejects: nothing changes.
+  /// One of a whole turn is `process`. Rejects a sector of a radar that is not known or from
+  /// nowhere to nowhere (`kNotFinite`), or of a time that `process` rejects: nothing changes.
   ScanReport sector(const Sector& sector) noexcept {
     const double width_rad = Beam::width_rad(sector.from_rad, sector.to_rad);
-    if (sector.radar != 0 || std::isnan(width_rad)) {
-      events_.clear();
-      plot_track_id_.clear();
-      return {Status::kNotFinite, {}, {}, 0};
-    }
-    return step(sector.time_s, sector.plots, Beam::is_turn(width_rad) ? nullptr : &sector);
+    if (std::isnan(width_rad)) return rejected(Status::kNotFinite);
+    return step(sector.radar, sector.time_s, sector.plots,
+                Beam::is_turn(width_rad) ? nullptr : &sector);
+  }
+
+  /// Adds a radar and returns its number, the least that is free; takes memory. Throws
+  /// `std::invalid_argument` on a setting that makes no sense, and when there are `kMostRadars`.
+  int add_radar(const Radar& radar);
+
+  /// Removes a radar and what was learned of it; tracks go on by the others. False when there is
+  /// none of that number or it is the last one.
+  bool remove_radar(int number) noexcept {
+    if (!has_radar(number) || radars_in_use() == 1) return false;
+    radars_[static_cast<std::size_t>(number)].in_use = false;
+    at_hand_ = 0;
+    while (!has_radar(at_hand_)) ++at_hand_;
+    return true;
+  }
+
+  /// Changes the settings of a radar, such as the errors and the period of another range scale,
+  /// and keeps all tracks. Throws `std::invalid_argument` on a setting that makes no sense and when
+  /// there is no radar of that number.
+  void set_radar(int number, const Radar& radar) {
+    require(has_radar(number), "radar", "the number of a radar of this tracker", number);
+    radars_[static_cast<std::size_t>(number)].radar = validated(radar);
+  }
+
+  [[nodiscard]] bool has_radar(int number) const noexcept {
+    return number >= 0 && number < static_cast<int>(radars_.size()) &&
+           radars_[static_cast<std::size_t>(number)].in_use;
+  }
+
+  /// One more than the largest number of a radar.
+  [[nodiscard]] int radar_numbers() const noexcept { return static_cast<int>(radars_.size()); }
+
+  /// The radar of that number, which is known.
+  [[nodiscard]] const Radar& radar(int number = 0) const noexcept {
+    return radars_[static_cast<std::size_t>(number)].radar;
+  }
+
+  /// The probability that a radar can see the target of a track; of those that can, the largest.
+  [[nodiscard]] double visibility(const Track& track) const noexcept {
+    double largest = 0.0;
+    for (const RadarState& radar : radars_)
+      if (radar.in_use) largest = std::max(largest, radar.look(track).visibility);
+    return largest;
   }
 
   /// Calls `f(track)` for every track, tentative and hushed ones too, older ones first. Each has
@@ -176,7 +217,6 @@ class Tracker {
   [[nodiscard]] bool restore(std::span<const std::byte> bytes);
 
   [[nodiscard]] const Estimator& prototype() const noexcept { return prototype_; }
-  [[nodiscard]] const Radar& radar() const noexcept { return radar_; }
   [[nodiscard]] const TrackerConfig& config() const noexcept { return config_; }
 
   /// Whether there was a scan.
@@ -191,7 +231,7 @@ class Tracker {
   static constexpr double kClockPeriods = 10.0;
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 8;
+  static constexpr std::uint32_t kArchiveVersion = 9;
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
   static constexpr std::size_t kGroup = 32;      ///< tracks that are stepped together
 
@@ -202,36 +242,64 @@ class Tracker {
       function(slots.subspan(first, std::min(kGroup, slots.size() - first)));
   }
 
+  /// Of the radar at hand.
+  RadarState& state() noexcept { return radars_[static_cast<std::size_t>(at_hand_)]; }
+  [[nodiscard]] const RadarState& state() const noexcept {
+    return radars_[static_cast<std::size_t>(at_hand_)];
+  }
+  Look& look_at(const Track& track) noexcept { return state().look(track); }
+
+  [[nodiscard]] int radars_in_use() const noexcept {
+    return static_cast<int>(std::count_if(radars_.begin(), radars_.end(),
+                                          [](const RadarState& radar) { return radar.in_use; }));
+  }
+
+  /// The longest period of all radars.
+  [[nodiscard]] double longest_period_s() const noexcept {
+    double longest_s = 0.0;
+    for (const RadarState& radar : radars_)
+      if (radar.in_use) longest_s = std::max(longest_s, radar.radar.period_s);
+    return longest_s;
+  }
+
+  ScanReport rejected(Status status) noexcept {
+    events_.clear();
+    plot_track_id_.clear();
+    return {status, {}, {}, 0};
+  }
+
   Estimator& estimator_at(int slot) noexcept { return estimators_[static_cast<std::size_t>(slot)]; }
   CandidatePlots& candidates_of(const Track& track) noexcept {
     return candidates_[static_cast<std::size_t>(track.slot)];
   }
 
-  ScanReport step(double time_s, std::span<const Plot> plots, const Sector* sector) noexcept;
+  ScanReport step(int radar, double time_s, std::span<const Plot> plots,
+                  const Sector* sector) noexcept;
 
   /// Moves the beam over a sector, or a whole turn without one, and takes the plots. Returns how
   /// many are taken.
   int sweep(const Sector* sector, std::span<const Plot> plots, double dt_s) noexcept {
-    own_.north_m += dt_s * own_.vnorth_mps;
-    own_.east_m += dt_s * own_.veast_mps;
+    state().own.north_m += dt_s * state().own.vnorth_mps;
+    state().own.east_m += dt_s * state().own.veast_mps;
     double half_rad = kPi<double>;
     if (sector != nullptr) {
       const double width_rad = Beam::width_rad(sector->from_rad, sector->to_rad);
-      beam_.sweep(sector->from_rad, width_rad, dt_s, radar_.period_s);
+      state().beam.sweep(sector->from_rad, width_rad, dt_s, state().radar.period_s);
       half_rad = width_rad / 2;
     } else {
-      beam_.turn();
+      state().beam.turn();
     }
-    const double middle_rad = beam_.angle_rad() - half_rad;
-    const int taken = plots_.add(
-        radar_, plots, time_s_, std::max(kClockPeriods * radar_.period_s, dt_s),
-        [&](const Plot& plot) {
+    const double middle_rad = state().beam.angle_rad() - half_rad;
+    const int taken = state().plots.add(
+        state().radar, plots, state().time_s,
+        std::max(kClockPeriods * state().radar.period_s, dt_s), [&](const Plot& plot) {
           return sector == nullptr ? middle_rad : Beam::unwrapped(plot.bearing_rad, middle_rad);
         });
     if (sector != nullptr && sector->own && in_range(sector->own->position<double>()))
-      own_ = *sector->own;
+      state().own = *sector->own;
     else if (taken > 0)
-      own_ = plots[static_cast<std::size_t>(plots_[plots_.size() - 1].input)].own;
+      state().own =
+          plots[static_cast<std::size_t>(state().plots[state().plots.size() - 1].input)].own;
     return taken;
   }
 
@@ -241,27 +309,28 @@ class Tracker {
     due_.clear();
     waiting_.clear();
     arcs_.clear();
-    const double beam_rad = beam_.angle_rad();
+    const double beam_rad = state().beam.angle_rad();
     for (const int slot : tracks_.slots()) {
       Track& track = tracks_.at(slot);
+      Look& look = look_at(track);
       if (whole_turn_) {
-        track.passed_rad = beam_rad - kPi<double>;
-        track.look_rad = beam_rad;
-        due_.push_back(slot);
+        look.passed_rad = beam_rad - kPi<double>;
+        look.look_rad = beam_rad;
+        if (is_covered(track)) due_.push_back(slot);
         continue;
       }
-      if (beam_rad < track.look_rad) continue;
+      if (beam_rad < look.look_rad) continue;
       BeamArc arc = arc_of(track, config_.outlier_variance());
       if (arc.from_rad > beam_rad) continue;
       if (arc.to_rad > beam_rad) {
         const BeamArc usual = arc_of(track, 1.0);
-        if (!beam_.has_swept(usual) || !has_plot_near(track)) {
+        if (!state().beam.has_swept(usual) || !has_plot_near(track)) {
           waiting_.push_back(slot);
           continue;
         }
         arc = usual;
       }
-      if (beam_.has_swept(arc)) {
+      if (state().beam.has_swept(arc) && is_covered(track)) {
         due_.push_back(slot);
         arcs_.push_back(arc);
       } else {
@@ -272,7 +341,14 @@ class Tracker {
   }
 
   [[nodiscard]] BeamArc arc_of(const Track& track, double plot_factor) const noexcept {
-    return gate_arc(track, time_s_, gate_.threshold(), plot_factor, radar_, own_);
+    return gate_arc(track, state().look(track).passed_rad, state().time_s, gate_.threshold(),
+                    plot_factor, state().radar, state().own);
+  }
+
+  /// Whether the radar covers the place where a track is now.
+  [[nodiscard]] bool is_covered(const Track& track) const noexcept {
+    return state().radar.covers_all() ||
+           state().covers(track.position() + (state().time_s - track.time_s) * track.velocity());
   }
 
   [[nodiscard]] bool has_plot_near(const Track& track) const noexcept {
@@ -283,14 +359,14 @@ class Tracker {
 
   /// Notes that the beam has passed a track.
   void pass(Track& track, const BeamArc& arc) noexcept {
-    track.passed_rad = arc.centre_rad;
-    track.look_rad = next_look_rad(track, arc);
+    look_at(track).passed_rad = arc.centre_rad;
+    look_at(track).look_rad = next_look_rad(track, arc);
   }
 
   /// Has tracks wait that compete for a plot with one that waits, so that association is of both;
   /// for half of the time that the beam needs to reach their gate again.
   void defer() noexcept {
-    is_contested_.assign(static_cast<std::size_t>(plots_.size()), 0);
+    is_contested_.assign(static_cast<std::size_t>(state().plots.size()), 0);
     const auto contest = [&](int slot) {
       for_each_near(tracks_.at(slot),
                     [&](int plot) { is_contested_[static_cast<std::size_t>(plot)] = 1; });
@@ -303,7 +379,7 @@ class Tracker {
         const BeamArc& arc = arcs_[k];
         const double longest_rad = (Beam::kTurn - (arc.to_rad - arc.from_rad)) / 2;
         bool waits = false;
-        if (beam_.angle_rad() < arc.to_rad + longest_rad)
+        if (state().beam.angle_rad() < arc.to_rad + longest_rad)
           for_each_near(tracks_.at(due_[k]), [&](int plot) {
             waits = waits || is_contested_[static_cast<std::size_t>(plot)] != 0;
           });
@@ -325,9 +401,9 @@ class Tracker {
   /// Calls `f(plot)` for the plots in the gate of a track, those of outliers left out.
   template <class Function>
   void for_each_near(const Track& track, const Function& function) const noexcept {
-    const Gaussian<4> now = at_constant_velocity(track.kinematics, time_s_ - track.time_s);
+    const Gaussian<4> now = at_constant_velocity(track.kinematics, state().time_s - track.time_s);
     for_each_in_reach(now, [&](int index) {
-      const ScanPlot& plot = plots_[index];
+      const ScanPlot& plot = state().plots[index];
       const Gaussian<4> then = at_constant_velocity(track.kinematics, plot.time_s - track.time_s);
       if (innovation_squared(then, plot.position.mean, plot.position.covariance) <=
           gate_.threshold())
@@ -337,23 +413,37 @@ class Tracker {
 
   /// Where the beam may reach the gate of a track again, with room for what both do in a turn.
   [[nodiscard]] double next_look_rad(const Track& track, const BeamArc& arc) const noexcept {
-    const double range_m = (track.position() - own_.position<double>()).norm();
-    const double way_m = kPointedPeriods * radar_.max_speed_mps * radar_.period_s;
+    const double range_m = (track.position() - state().position()).norm();
+    const double way_m = kPointedPeriods * state().radar.max_speed_mps * state().radar.period_s;
     const double way_rad = way_m < range_m ? std::asin(way_m / range_m) : kPi<double>;
     const double wide_rad = arc.to_rad - arc.from_rad + way_rad;
     return arc.centre_rad + Beam::kTurn - std::min(wide_rad, kPi<double>);
   }
 
+  /// Has the tracks that were designated before the first scan begin with it.
+  void begin_looks() noexcept {
+    for (const int slot : tracks_.slots()) {
+      tracks_.at(slot).looked_s = time_s_;
+      for (RadarState& radar : radars_) radar.look(tracks_.at(slot)).looked_s = time_s_;
+    }
+  }
+
   /// Existence and visibility of the tracks that are due, as of now.
-  void predict_existence(bool first) noexcept {
+  void predict_existence() noexcept {
     double of_s = 0.0;
-    ExistencePrediction existence(config_, of_s);
+    ExistencePrediction prediction(config_, of_s);
+    const auto over = [&](double dt_s) -> const ExistencePrediction& {
+      if (dt_s != of_s) prediction = ExistencePrediction(config_, of_s = dt_s);
+      return prediction;
+    };
+    const double now_s = state().time_s;
     for (const int slot : due_) {
       Track& track = tracks_.at(slot);
-      const double dt_s = first ? 0.0 : time_s_ - track.looked_s;
-      if (dt_s != of_s) existence = ExistencePrediction(config_, of_s = dt_s);
-      existence.predict(track);
-      track.looked_s = time_s_;
+      Look& look = look_at(track);
+      look.visibility = over(std::max(now_s - look.looked_s, 0.0)).visibility(look.visibility);
+      track.existence = over(std::max(now_s - track.looked_s, 0.0)).existence(track.existence);
+      look.looked_s = now_s;
+      track.looked_s = std::max(track.looked_s, now_s);
     }
   }
 
@@ -361,14 +451,23 @@ class Tracker {
   void coast_by_time() noexcept {
     touched_.assign(touched_.size(), 0);
     for (const int slot : due_) touched_[static_cast<std::size_t>(slot)] = 1;
+    const double period_s = longest_period_s();
     for (const int slot : tracks_.slots()) {
       Track& track = tracks_.at(slot);
       const double silent_s = time_s_ - track.looked_s;
-      if (!(silent_s > kSilentPeriods * radar_.period_s) || is_awaited(track)) continue;
-      const double periods = std::floor(silent_s / radar_.period_s) - kSilentPeriods + 1.0;
-      for (double k = 0.0; k < periods; ++k) track.count(false);
-      track.looked_s += periods * radar_.period_s;
-      ExistencePrediction(config_, periods * radar_.period_s).predict(track);
+      if (!(silent_s > kSilentPeriods * period_s) || is_awaited(track)) continue;
+      const double periods = std::floor(silent_s / period_s) - kSilentPeriods + 1.0;
+      if (!(time_s_ < track.seen_until_s))
+        for (double k = 0.0; k < periods; ++k) track.count(false);
+      track.looked_s += periods * period_s;
+      const ExistencePrediction prediction(config_, periods * period_s);
+      track.existence = prediction.existence(track.existence);
+      for (RadarState& radar : radars_) {
+        Look& look = radar.look(track);
+        look.visibility = prediction.visibility(look.visibility);
+        look.looked_s = std::max(look.looked_s, track.looked_s);
+        look.misses += static_cast<int>(periods);
+      }
       PredictionStep<Estimator> step{&estimator_at(slot), time_s_ - track.time_s};
       steps_.predict({&step, 1});
       touched_[static_cast<std::size_t>(slot)] = 1;
@@ -384,24 +483,25 @@ class Tracker {
   void list_rivals() noexcept {
     rivals_.clear();
     if (!waiting_.empty()) {
-      is_candidate_.assign(static_cast<std::size_t>(plots_.size()), 0);
+      is_candidate_.assign(static_cast<std::size_t>(state().plots.size()), 0);
       for (const int slot : due_)
         for (const CandidatePlot& plot : candidates_of(tracks_.at(slot)))
           is_candidate_[static_cast<std::size_t>(plot.plot)] = 1;
     }
     for (const int slot : waiting_) {
       const Track& track = tracks_.at(slot);
-      const Gaussian<4> now = at_constant_velocity(track.kinematics, time_s_ - track.time_s);
+      const Gaussian<4> now = at_constant_velocity(track.kinematics, state().time_s - track.time_s);
       bool is_rival = false;
       for_each_in_reach(now, [&](int plot) {
-        plots_.keep(plot);
+        state().plots.keep(plot);
         is_rival = is_rival || is_candidate_[static_cast<std::size_t>(plot)] != 0;
       });
       if (is_rival) rivals_.push_back(slot);
     }
-    for (int plot = 0; plot < plots_.size(); ++plot)
-      if (std::max(plots_[plot].beam_rad, plots_[plot].wait_until_rad) > beam_.angle_rad())
-        plots_.keep(plot);
+    for (int plot = 0; plot < state().plots.size(); ++plot)
+      if (std::max(state().plots[plot].beam_rad, state().plots[plot].wait_until_rad) >
+          state().beam.angle_rad())
+        state().plots.keep(plot);
   }
 
   /// Leaves a track the plots of one turn.
@@ -410,23 +510,24 @@ class Tracker {
   /// sides of where a turn ends, plots of two turns are in it. Those half a period after the first
   /// wait for the next turn.
   void choose_turn(const Track& track) noexcept {
-    plots_.hide_after(std::numeric_limits<double>::infinity());
-    const double half_period_s = 0.5 * radar_.period_s;
-    if (!(time_s_ - plots_.earliest_s() > half_period_s)) return;
-    const Gaussian<4> now = at_constant_velocity(track.kinematics, time_s_ - track.time_s);
-    double first_s = time_s_;
-    for_each_in_reach(now, [&](int plot) { first_s = std::min(first_s, plots_[plot].time_s); });
+    state().plots.hide_after(std::numeric_limits<double>::infinity());
+    const double half_period_s = 0.5 * state().radar.period_s;
+    if (!(state().time_s - state().plots.earliest_s() > half_period_s)) return;
+    const Gaussian<4> now = at_constant_velocity(track.kinematics, state().time_s - track.time_s);
+    double first_s = state().time_s;
+    for_each_in_reach(now,
+                      [&](int plot) { first_s = std::min(first_s, state().plots[plot].time_s); });
     for_each_in_reach(now, [&](int plot) {
-      if (plots_[plot].time_s > first_s + half_period_s)
-        plots_.keep_until(plot, beam_.angle_rad() + Beam::kTurn);
+      if (state().plots[plot].time_s > first_s + half_period_s)
+        state().plots.keep_until(plot, state().beam.angle_rad() + Beam::kTurn);
     });
-    plots_.hide_after(first_s + half_period_s);
+    state().plots.hide_after(first_s + half_period_s);
   }
 
   /// Calls `f(plot)` for the plots that may be in the gate of a belief, about.
   template <class Function>
   void for_each_in_reach(const Gaussian<4>& now, const Function& function) const noexcept {
-    plots_.for_each_near(
+    state().plots.for_each_near(
         {now.mean[0], now.mean[2]}, [&](double plot_m2) { return gate_reach_m(now, plot_m2); },
         function);
   }
@@ -446,7 +547,7 @@ class Tracker {
     for (const int slot : slots) {
       const Track& track = tracks_.at(slot);
       if (!whole_turn_) choose_turn(track);
-      const double time_s = expected_time_s(track, plots_, radar_.max_speed_mps);
+      const double time_s = expected_time_s(track, state().plots, state().radar.max_speed_mps);
       if (!(time_s > track.time_s)) continue;
       steps[count] = {&estimator_at(slot), time_s - track.time_s};
       track_of[count] = &tracks_.at(slot);
@@ -467,25 +568,26 @@ class Tracker {
       CandidatePlots& candidates = candidates_of(track);
       if (!whole_turn_) choose_turn(track);
       modes_.read(estimator_at(slot));
-      const TimeAlignment alignment(track, radar_.period_s, maneuver_m2s3(track));
-      candidates.choose(gate_.validate(track, modes_, alignment, plots_), track, modes_,
-                        config_.outlier_probability, clutter_, plots_);
+      const TimeAlignment alignment(track, state().radar.period_s, maneuver_m2s3(track));
+      candidates.choose(gate_.validate(track, modes_, alignment, state().plots),
+                        look_at(track).learned, modes_, config_.outlier_probability,
+                        state().clutter, state().plots);
       // What a track that waits may own as an outlier is not known before it is due.
       if (!due)
         candidates.keep_if([&](const CandidatePlot& plot) {
           return innovation_squared(track.kinematics, plot.z, plot.nominal_r) <= gate_.threshold();
         });
-      candidates.thin(ownership_.free_probability());
+      candidates.thin(state().ownership.free_probability());
       if (config_.association == Association::kProbabilistic)
-        propagation_.claim(track, detection_probability_.of(track.visibility), candidates);
+        propagation_.claim(track, detection_of(track), candidates);
     }
   }
 
   /// How fast a position gets less certain than by its velocity as it is known, as the target may
   /// maneuver: m² per axis over the cube of the time. 0 where all plots are of the track's period.
   [[nodiscard]] double maneuver_m2s3(const Track& track) noexcept {
-    const double dt_s = plots_.greatest_lag_s(track.time_s);
-    if (!(dt_s > radar_.period_s)) return 0.0;
+    const double dt_s = state().plots.greatest_lag_s(track.time_s);
+    if (!(dt_s > state().radar.period_s)) return 0.0;
     Estimator ahead = estimator_of(track);
     PredictionStep<Estimator> step{&ahead, dt_s};
     steps_.predict({&step, 1});
@@ -502,7 +604,12 @@ class Tracker {
     if (config_.association == Association::kProbabilistic)
       propagation_.propagate(competing_);
     else
-      assignment_.assign(detection_probability_, tracks_, competing_, candidates_, plots_.size());
+      assignment_.assign(state().detection_probability, state().looks, tracks_, competing_,
+                         candidates_, state().plots.size());
+  }
+
+  [[nodiscard]] Detection detection_of(const Track& track) const noexcept {
+    return state().detection_probability.of(state().look(track).visibility);
   }
 
   [[nodiscard]] AssociationWeights weights_of(const Track& track,
@@ -520,7 +627,7 @@ class Tracker {
     std::size_t count = 0;
     for (std::size_t k = 0; k < slots.size(); ++k) {
       const Track& track = tracks_.at(slots[k]);
-      weights[k] = weights_of(track, detection_probability_.of(track.visibility));
+      weights[k] = weights_of(track, detection_of(track));
       readings_[k].list(candidates_of(track), weights[k], config_.outlier_probability);
       if (readings_[k].empty()) continue;
       steps[count] = {&estimator_at(slots[k]), readings_[k].fixes(), weights[k].none,
@@ -530,7 +637,7 @@ class Tracker {
     steps_.update({steps.data(), count});
     for (std::size_t k = 0; k < slots.size(); ++k) {
       Track& track = tracks_.at(slots[k]);
-      const Detection detection = detection_probability_.of(track.visibility);
+      const Detection detection = detection_of(track);
       const AssociationProbabilities probabilities = readings_[k].probabilities();
       note_best_plot(track, probabilities);
       ScanLikelihood scan{weights[k].none, weights[k].none, weights[k].assigned};
@@ -539,21 +646,31 @@ class Tracker {
         if (step_of[k]->total > 0.0) scan.total = step_of[k]->total;
       }
       if (scan.total > 0.0 && !(readings_[k].empty() && is_awaited(track)))
-        update_existence(config_, detection, scan, track);
-      ownership_.add(track, candidates_of(track), weights[k], probabilities);
+        update_existence(config_, detection, scan, track, look_at(track).visibility);
+      state().ownership.add(track, candidates_of(track), weights[k], probabilities);
       const bool seen = probabilities.any > 0.5;
       if (!seen && is_awaited(track)) continue;
-      const bool shared = !seen && seen_alone(detection_probability_.of(track.visibility),
-                                              candidates_of(track)) > 0.5;
-      track.count(seen, shared);
-      if (!shared && is_sure(track)) detection_probability_.learn(probabilities.any);
+      const bool shared = !seen && seen_alone(detection_of(track), candidates_of(track)) > 0.5;
+      note_look(track, seen, shared);
+      if (!shared && is_sure(track)) state().detection_probability.learn(probabilities.any);
     }
   }
 
+  /// Counts a look of the radar at hand, unless it is a miss of a track that another sensor sees.
+  void note_look(Track& track, bool seen, bool shared) noexcept {
+    constexpr double kPeriods = 0.9;  // before the same radar looks again
+    const double now_s = state().time_s;
+    Look& look = look_at(track);
+    look.misses = seen ? 0 : look.misses + 1;
+    if (seen || !(now_s < track.seen_until_s)) track.count(seen, shared);
+    if (seen && radars_.size() > 1)
+      track.seen_until_s = std::max(track.seen_until_s, now_s + kPeriods * state().radar.period_s);
+  }
+
   /// Whether a track is of a target that is there, so that its misses are those of the radar.
-  [[nodiscard]] static bool is_sure(const Track& track) noexcept {
+  [[nodiscard]] bool is_sure(const Track& track) const noexcept {
     constexpr int kScans = 8, kMisses = 6;
-    return track.confirmed() && track.scans > kScans && track.misses < kMisses;
+    return track.confirmed() && track.scans > kScans && state().look(track).misses < kMisses;
   }
 
   /// Notes what a track keeps of its most probable plot, before the track takes the updated belief.
@@ -562,7 +679,7 @@ class Tracker {
     if (probabilities.best < 0) return;
     const CandidatePlot& best = candidates_of(track)[std::size_t(probabilities.best)];
     track.nis = innovation_squared(track.kinematics, best.z, best.nominal_r);
-    track.plot_m2 = plots_[best.plot].position.covariance.trace() / 2;
+    track.plot_m2 = state().plots[best.plot].position.covariance.trace() / 2;
   }
 
   /// Whether a track was designated for a time to which the scans have not come yet: until then it
@@ -572,12 +689,13 @@ class Tracker {
   }
 
   void confirm_and_delete() noexcept {
-    const double shown_misses = detection_probability_.likely_misses(config_.shown_probability);
+    const double shown_misses =
+        state().detection_probability.likely_misses(config_.shown_probability);
     tracks_.remove_if([&](Track& track) {
       if (touched_[static_cast<std::size_t>(track.slot)] == 0) return false;
-      if (confirm_or_coast(config_, radar_, shown_misses, track))
+      if (confirm_or_coast(config_, state().radar, shown_misses, track))
         announce(TrackEvent::kCoasting, track);
-      const LossReason reason = reason_to_delete(config_, radar_, track);
+      const LossReason reason = reason_to_delete(config_, state().radar, track);
       if (reason != LossReason::kNone) announce(TrackEvent::kLost, track, reason);
       return reason != LossReason::kNone;
     });
@@ -585,7 +703,7 @@ class Tracker {
   }
 
   void delete_duplicates() noexcept {
-    for (const int slot : duplicates_.find(tracks_, due_)) {
+    for (const int slot : duplicates_.find(tracks_, due_, longest_period_s())) {
       announce(TrackEvent::kLost, tracks_.at(slot), LossReason::kDuplicate);
       tracks_.vacate(slot);
     }
@@ -607,11 +725,17 @@ class Tracker {
   void initiate() noexcept {
     newest_before_ = next_tentative_id_ + 1;
     room_.reset();
-    initiation_.initiate(
-        plots_, ownership_, clutter_, detection_probability_.value(), beam_.angle_rad(),
-        whole_turn_, [&](double existence) { return room_.has_room_for(existence, tracks_); },
+    state().initiation.initiate(
+        state().radar, state().plots, state().ownership, state().clutter,
+        state().detection_probability.value(), state().beam.angle_rad(), whole_turn_,
+        [&](double existence) { return room_.has_room_for(existence, tracks_); },
         [&](const TrackStart& start) {
-          if (Track* track = open(start)) track->history = 3u;
+          Track* track = open(start);
+          if (track == nullptr) return;
+          track->history = 3u;
+          Look& look = look_at(*track);
+          look.passed_rad = look.look_rad = start.beam_rad;
+          look.learned = start.learned;
         });
     tracks_.close_gaps();
     for (const int slot : tracks_.slots())
@@ -637,13 +761,11 @@ class Tracker {
     track.id = track.tentative_id = next_tentative_id_--;
     track.time_s = start.time_s;
     track.looked_s = time_s_;
-    track.passed_rad = start.beam_rad;
-    track.look_rad = start.beam_rad;
     track.kinematics = start.belief;
     track.plot_m2 = track.position_variance_m2();
     track.existence = track.start_existence = start.existence;
-    track.learned = start.learned;
     track.scans = track.hits = 2;
+    for (RadarState& radar : radars_) radar.open(track, time_s_);
     room_.add(track);
     return &track;
   }
@@ -662,13 +784,13 @@ class Tracker {
   /// Reports whose the plots are, by the numbers that the tracks have now.
   void report_owners(std::size_t count) noexcept {
     plot_track_id_.assign(count, 0);
-    for (int plot = 0; plot < plots_.size(); ++plot) {
-      const PlotOwnership::Owner& owner = ownership_.owner(plot);
-      if (plots_[plot].input < 0 || owner.slot < 0 || !tracks_.in_use(owner.slot)) continue;
+    for (int plot = 0; plot < state().plots.size(); ++plot) {
+      const PlotOwnership::Owner& owner = state().ownership.owner(plot);
+      if (state().plots[plot].input < 0 || owner.slot < 0 || !tracks_.in_use(owner.slot)) continue;
       const Track& track = tracks_.at(owner.slot);
       if (track.hushed) continue;
       if (track.id == owner.track_id || track.tentative_id == owner.track_id)
-        plot_track_id_[static_cast<std::size_t>(plots_[plot].input)] = track.id;
+        plot_track_id_[static_cast<std::size_t>(state().plots[plot].input)] = track.id;
     }
   }
 
@@ -687,7 +809,7 @@ class Tracker {
     for (const int slot : tracks_.slots()) {
       Track& track = tracks_.at(slot);
       const double dt_s = time_s - track.time_s;
-      if (std::abs(dt_s) > kPointedPeriods * radar_.period_s) continue;
+      if (std::abs(dt_s) > kPointedPeriods * longest_period_s()) continue;
       const double distance = innovation_squared(at_constant_velocity(track.kinematics, dt_s),
                                                  position.mean, position.covariance);
       if (distance <= least) {
@@ -712,42 +834,48 @@ class Tracker {
     fields(version);
     fields(models);
     if (version != kArchiveVersion || models != own_models) fields.fail();
-    fields.rules(radar_, config_);
+    fields.rules(config_);
+    auto count = static_cast<std::uint64_t>(radars_.size());
+    fields(count);
+    if (count != radars_.size()) fields.fail();
+    if (!fields.ok()) return;
+    for (const RadarState& radar : radars_) {
+      bool in_use = radar.in_use;
+      fields(in_use);
+      if (in_use != radar.in_use) fields.fail();
+      if (radar.in_use) fields.rules(radar.radar);
+    }
     if (!fields.ok()) return;
     fields(time_s_);
     fields(started_);
     fields(full_);
     fields(next_id_);
     fields(next_tentative_id_);
-    detection_probability_.archive(fields);
-    clutter_.archive(fields);
-    initiation_.archive(fields);
-    beam_.archive(fields);
-    fields(own_);
-    plots_.archive(fields);
-    ownership_.archive(fields, plots_.size());
     tracks_.archive(fields);
+    if (!fields.ok()) return;
+    for (RadarState& radar : radars_)
+      if (radar.in_use) radar.archive(fields, tracks_.slots());
     if (!fields.ok()) return;
     for (const int slot : tracks_.slots()) estimator_at(slot).archive(fields);
   }
 
-  Radar radar_;
   TrackerConfig config_;
   Estimator prototype_;
   Steps steps_;
 
+  std::vector<RadarState> radars_;  ///< by number
+  int at_hand_ = 0;                 ///< number of the radar of this call
+
   TrackList tracks_;
   std::vector<Estimator> estimators_;  ///< by slot
-  double time_s_ = 0.0;
+  double time_s_ = 0.0;                ///< of the last scan of any radar
   bool started_ = false;
   bool full_ = false;  ///< since the event that says so
   std::int64_t next_id_ = 1;
   std::int64_t next_tentative_id_ = -1;
   std::int64_t newest_before_ = 0;  ///< number of the newest tentative track before this scan
 
-  Beam beam_;
   bool whole_turn_ = true;      ///< of this call
-  OwnShip own_;                 ///< as of the last plot, moved on
   std::vector<int> due_;        ///< slots of the tracks whose gate the beam has passed
   std::vector<int> waiting_;    ///< and of those whose gate it is in
   std::vector<int> rivals_;     ///< of these that have a candidate in common with one that is due
@@ -756,20 +884,15 @@ class Tracker {
   std::vector<BeamArc> arcs_;   ///< of the tracks that are due
   std::vector<char> is_contested_;  ///< by plot: a track that waits competes for it
   std::vector<char> is_candidate_;  ///< by plot: of a track that is due
-  DetectionProbability detection_probability_;
 
   // The stages of a scan, in order
-  ScanPlots plots_;
-  ClutterDensity clutter_;
   ModePositions modes_;  ///< of the track at hand
   TrackGate gate_;
   std::vector<CandidatePlots> candidates_;  ///< by slot
   BeliefPropagation propagation_;
   PlotAssignment assignment_;
   std::array<TrackReadings, kGroup> readings_;  ///< of the tracks at hand
-  PlotOwnership ownership_;
   Duplicates duplicates_;
-  TrackInitiation initiation_;
   TrackRoom room_;
   std::vector<std::int64_t> plot_track_id_;
   std::vector<Event> events_;
@@ -778,25 +901,21 @@ class Tracker {
 // Not inline, so that a program with `extern template class Tracker<...>` does not compile them.
 
 template <class Estimator, class Steps>
-Tracker<Estimator, Steps>::Tracker(const Radar& radar, const TrackerConfig& config,
+Tracker<Estimator, Steps>::Tracker(std::span<const Radar> radars, const TrackerConfig& config,
                                    const Estimator& prototype)
-    : radar_(validated(radar)),
-      config_(validated(config)),
+    : config_(validated(config)),
       prototype_(prototype),
       steps_(prototype),
       tracks_(config.max_tracks),
       estimators_(static_cast<std::size_t>(config.max_tracks), prototype),
-      detection_probability_(config),
-      plots_(config.max_plots),
-      clutter_(config),
       gate_(config),
       candidates_(static_cast<std::size_t>(config.max_tracks)),
       propagation_(config),
       assignment_(config),
-      ownership_(config),
-      duplicates_(config, radar.period_s, gate_.threshold()),
-      initiation_(radar, config),
+      duplicates_(config, gate_.threshold()),
       room_(config.max_tracks) {
+  require(!radars.empty(), "radars", "one Radar at least", 0);
+  for (const Radar& radar : radars) add_radar(radar);
   const auto plots = static_cast<std::size_t>(config.max_plots);
   for (std::vector<int>* slots : {&due_, &waiting_, &rivals_, &competing_})
     slots->reserve(estimators_.size());
@@ -809,57 +928,76 @@ Tracker<Estimator, Steps>::Tracker(const Radar& radar, const TrackerConfig& conf
 }
 
 template <class Estimator, class Steps>
-ScanReport Tracker<Estimator, Steps>::step(double time_s, std::span<const Plot> plots,
+int Tracker<Estimator, Steps>::add_radar(const Radar& radar) {
+  auto place = std::find_if(radars_.begin(), radars_.end(),
+                            [](const RadarState& known) { return !known.in_use; });
+  require(place != radars_.end() || radars_.size() < kMostRadars, "radar",
+          "at most kMostRadars radars", static_cast<int>(radars_.size()) + 1);
+  RadarState state(validated(radar), config_);
+  place = place == radars_.end() ? radars_.insert(place, std::move(state))
+                                 : (*place = std::move(state), place);
+  for (const int slot : tracks_.slots()) place->open(tracks_.at(slot), time_s_);
+  return static_cast<int>(place - radars_.begin());
+}
+
+template <class Estimator, class Steps>
+ScanReport Tracker<Estimator, Steps>::step(int radar, double time_s, std::span<const Plot> plots,
                                            const Sector* sector) noexcept {
+  if (!has_radar(radar)) return rejected(Status::kNotFinite);
+  const RadarState& before = radars_[static_cast<std::size_t>(radar)];
+  time_s = before.radar.true_time_s(time_s);
+  if (!std::isfinite(time_s) || time_s > latest_time_s()) return rejected(Status::kNotFinite);
+  if (before.started && time_s < before.time_s) return rejected(Status::kNegativeTimeStep);
+  if (started_ && time_s < time_s_ - before.radar.period_s)
+    return rejected(Status::kNegativeTimeStep);
   events_.clear();
   plot_track_id_.clear();
-  time_s = radar_.true_time_s(time_s);
-  if (!std::isfinite(time_s)) return {Status::kNotFinite, {}, {}, 0};
-  if (started_ && time_s < time_s_) return {Status::kNegativeTimeStep, {}, {}, 0};
-  if (time_s > latest_time_s()) return {Status::kNotFinite, {}, {}, 0};
-  const bool first = !started_;
+  at_hand_ = radar;
   whole_turn_ = sector == nullptr;
-  const double dt_s = first ? 0.0 : time_s - time_s_;
-  time_s_ = time_s;
-  started_ = true;
+  const double dt_s = state().started ? time_s - state().time_s : 0.0;
+  time_s_ = started_ ? std::max(time_s_, time_s) : time_s;
+  if (!started_) begin_looks();
+  started_ = state().started = true;
+  state().time_s = time_s;
 
   const int taken = sweep(sector, plots, dt_s);
-  detection_probability_.evaluate();
-  clutter_.evaluate(plots_, whole_turn_ ? dt_s : radar_.period_s, radar_.period_s);
-  propagation_.clear(plots_.size());
-  ownership_.extend(plots_.size());
+  state().detection_probability.evaluate();
+  state().clutter.evaluate(state().plots, whole_turn_ ? dt_s : state().radar.period_s,
+                           state().radar.period_s);
+  propagation_.clear(state().plots.size());
+  state().ownership.extend(state().plots.size());
 
   list_due();
-  predict_existence(first);
+  predict_existence();
   coast_by_time();
   for_each_group(due_, [&](std::span<const int> slots) {
     predict(slots);
     find_candidates(slots, true);
   });
-  plots_.hide_after(std::numeric_limits<double>::infinity());
+  state().plots.hide_after(std::numeric_limits<double>::infinity());
   list_rivals();
   for_each_group(rivals_, [&](std::span<const int> slots) {
     predict(slots);
     find_candidates(slots, false);
   });
-  plots_.hide_after(std::numeric_limits<double>::infinity());
+  state().plots.hide_after(std::numeric_limits<double>::infinity());
   associate();
   for_each_group(due_, [&](std::span<const int> slots) { update(slots); });
 
   confirm_and_delete();
   delete_duplicates();
   number_confirmed();
-  clutter_.learn(
-      plots_, ownership_.clutter_probability(), [&](int slot) { return ownership_.plot_of(slot); },
-      tracks_, due_);
+  state().clutter.learn(
+      state().plots, state().ownership.clutter_probability(),
+      [&](int slot) { return state().ownership.plot_of(slot); }, state().looks, due_);
   initiate();
   report_room();
-  clutter_.learn_rings(plots_, ownership_.free_probability(), dt_s,
-                       whole_turn_ ? 1.0 : dt_s / radar_.period_s);
+  state().clutter.learn_rings(state().plots, state().ownership.free_probability(), dt_s,
+                              whole_turn_ ? 1.0 : dt_s / state().radar.period_s);
 
   report_owners(std::min(plots.size(), static_cast<std::size_t>(config_.max_plots)));
-  ownership_.drop_settled(plots_);
-  plots_.drop_settled();
+  state().ownership.drop_settled(state().plots);
+  state().plots.drop_settled();
   return {Status::kOk, plot_track_id_, events_, static_cast<int>(plots.size()) - taken};
 }
 
@@ -880,16 +1018,14 @@ std::int64_t Tracker<Estimator, Steps>::designate(double time_s, double north_m,
     confirm_designated(*known);
     return known->id;
   }
-  const Gaussian<4> belief =
-      kinematics_from<double>(position, initiation_.prior_velocity(), Mat<double, 2, 2>::Zero());
+  const Gaussian<4> belief = kinematics_from<double>(
+      position, state().initiation.prior_velocity(state().radar), Mat<double, 2, 2>::Zero());
   room_.reset();
   if (!room_.has_room_for(kDesignatedExistence, tracks_)) return 0;
-  Track* track = open({belief, time_s, beam_.angle_rad(), kDesignatedExistence, {}});
+  Track* track = open({belief, time_s, state().beam.angle_rad(), kDesignatedExistence, {}});
   tracks_.close_gaps();
   if (track == nullptr) return 0;
   track->tentative_id = 0;
-  track->passed_rad = beam_.last_rad(std::atan2(east_m - own_.east_m, north_m - own_.north_m) +
-                                     radar_.bearing_offset_rad);
   track->scans = track->hits = 0;
   confirm_designated(*track);
   return track->id;
@@ -904,7 +1040,10 @@ std::vector<std::byte> Tracker<Estimator, Steps>::save() const {
 
 template <class Estimator, class Steps>
 bool Tracker<Estimator, Steps>::restore(std::span<const std::byte> bytes) {
-  Tracker other(radar_, config_, prototype_);
+  std::vector<Radar> radars;
+  for (const RadarState& radar : radars_) radars.push_back(radar.radar);
+  Tracker other(radars, config_, prototype_);
+  for (std::size_t k = 0; k < radars_.size(); ++k) other.radars_[k].in_use = radars_[k].in_use;
   if (!read_state(bytes, [&](Archive& fields) { other.archive(fields); })) return false;
   *this = std::move(other);
   return true;

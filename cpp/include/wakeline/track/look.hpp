@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "wakeline/core/archive.hpp"
+#include "wakeline/track/clutter_map.hpp"
+
+namespace wakeline {
+
+/// What is known of a track as one radar sees it.
+struct Look {
+  double visibility = 1.0;    ///< probability that the radar can see the target
+  double looked_s = 0.0;      ///< when the radar last looked: a plot or a miss
+  double passed_rad = 0.0;    ///< angle of the beam when it last passed the target, unwrapped
+  double look_rad = 0.0;      ///< before that angle the beam does not reach its gate
+  int misses = 0;             ///< of this radar, in a row
+  LearnedPlots learned = {};  ///< what the clutter map has learned of the target's own plots
+
+  void archive(Archive& fields) {
+    fields(visibility);
+    fields(looked_s);
+    fields(passed_rad);
+    fields(look_rad);
+    fields(misses);
+    learned.archive(fields);
+  }
+};
+
+}  // namespace wakeline

@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Several radars in one picture.
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "support/malloc_fence.hpp"
+#include "track/scene.hpp"
+
+namespace wakeline::radars_test {
+namespace {
+
+using namespace test;
+
+constexpr double kTurn = Beam::kTurn;
+
+const Radar kFine{.range_std_m = 10.0,
+                  .bearing_std_rad = deg(0.5),
+                  .extent_std_m = 2.0,
+                  .period_s = 2.5,
+                  .max_speed_mps = 20.0};
+const Radar kCoarse{.range_std_m = 25.0,
+                    .bearing_std_rad = deg(1.2),
+                    .extent_std_m = 2.0,
+                    .period_s = 3.0,
+                    .max_speed_mps = 20.0};
+
+/// A radar on shore whose antenna is north at time 0.
+struct Station {
+  int number;
+  Radar radar;
+  OwnShip place = {};
+  double detection = 0.9;
+  double late_s = 0.0;  ///< of its clock
+  int sectors = 16;     ///< of a turn
+
+  [[nodiscard]] Vec<double, 2> position() const { return place.position<double>(); }
+  [[nodiscard]] double end_s(int sector) const {
+    return radar.period_s * (sector + 1) / sectors + late_s;
+  }
+};
+
+/// Feeds the sectors of some stations to a tracker, in the order of their ends, up to a time;
+/// `f(time_s)` after each.
+template <class Function>
+void watch(VesselTracker& tracker, const std::vector<Station>& stations,
+           const std::vector<Boat>& boats, double from_s, double to_s, std::uint64_t seed,
+           Function&& f) {
+  std::vector<std::pair<double, std::pair<const Station*, int>>> order;
+  for (const Station& station : stations)
+    for (int sector = 0; station.end_s(sector) <= to_s; ++sector)
+      if (station.end_s(sector) > from_s)
+        order.push_back({station.end_s(sector), {&station, sector}});
+  std::sort(order.begin(), order.end());
+  for (const auto& [end_s, of] : order) {
+    const auto& [station, number] = of;
+    Sea sea((seed << 32) + 10'000 * static_cast<std::uint64_t>(station->number + 1) +
+                static_cast<std::uint64_t>(number),
+            station->radar);
+    const double width_rad = kTurn / station->sectors, begin_rad = width_rad * number;
+    std::vector<Plot> plots;
+    for (const Boat& boat : boats) {
+      const double middle_s = end_s - station->radar.period_s / station->sectors / 2;
+      const Vec<double, 2> d = boat.at(middle_s) - station->position();
+      const double into_rad = compass_angle(std::atan2(d[1], d[0]) - begin_rad);
+      if (into_rad >= width_rad || sea.draw.uniform(0.0, 1.0) > station->detection ||
+          !station->radar.covers(d.norm(), std::atan2(d[1], d[0])))
+        continue;
+      const double time_s =
+          end_s - (1.0 - into_rad / width_rad) * station->radar.period_s / station->sectors;
+      Plot plot = sea.plot(boat.at(time_s) - station->position(), time_s);
+      plot.own = station->place;
+      plots.push_back(plot);
+    }
+    const double from_rad = compass_angle(begin_rad);
+    const ScanReport report = tracker.sector(
+        {station->number, from_rad, from_rad + width_rad, end_s, plots, station->place});
+    EXPECT_EQ(report.status, Status::kOk);
+    f(end_s, report);
+  }
+}
+
+void nothing(double, const ScanReport&) {}
+
+VesselTracker tracker_of(const std::vector<Radar>& radars) {
+  return VesselTracker(radars, {}, vessel_imm(radars.front()));
+}
+
+std::vector<Boat> fleet(int count, std::uint64_t seed) {
+  Draw draw(seed);
+  std::vector<Boat> boats;
+  while (static_cast<int>(boats.size()) < count) {
+    const Boat boat{{draw.uniform(-4000.0, 4000.0), draw.uniform(1000.0, 7000.0)},
+                    {draw.uniform(-8.0, 8.0), draw.uniform(-8.0, 8.0)}};
+    if (std::all_of(boats.begin(), boats.end(), [&](const Boat& other) {
+          return (other.start_m - boat.start_m).norm() > 600.0;
+        }))
+      boats.push_back(boat);
+  }
+  return boats;
+}
+
+/// How well a tracker has followed boats.
+struct Score {
+  double sum_m2 = 0.0;
+  double missed = 0.0, matched = 0.0, extra = 0.0;
+
+  void add(const VesselTracker& tracker, const std::vector<Boat>& boats, double time_s) {
+    std::vector<Vec<double, 2>> at;
+    tracker.for_each([&](const Track& track) {
+      if (!track.shown()) return;
+      const Gaussian<4> now = tracker.kinematics_at(track, time_s);
+      at.push_back({now.mean[0], now.mean[2]});
+    });
+    double found = 0.0;
+    for (const Boat& boat : boats) {
+      double least_m = 200.0;
+      for (const Vec<double, 2>& place : at)
+        least_m = std::min(least_m, (place - boat.at(time_s)).norm());
+      if (least_m < 200.0) {
+        sum_m2 += least_m * least_m;
+        ++found;
+      } else {
+        ++missed;
+      }
+    }
+    matched += found;
+    extra += std::max(static_cast<double>(at.size()) - found, 0.0);
+  }
+  [[nodiscard]] double rms_m() const { return std::sqrt(sum_m2 / matched); }
+};
+
+Score score_of(const std::vector<Station>& stations, const std::vector<Boat>& boats,
+               std::uint64_t seed) {
+  std::vector<Radar> radars;
+  std::vector<Station> numbered = stations;
+  for (Station& station : numbered) {
+    station.number = static_cast<int>(radars.size());
+    radars.push_back(station.radar);
+  }
+  VesselTracker tracker = tracker_of(radars);
+  Score score;
+  double next_s = 30.0;
+  watch(tracker, numbered, boats, 0.0, 150.0, seed, [&](double time_s, const ScanReport&) {
+    if (time_s < next_s) return;
+    next_s += 2.5;
+    score.add(tracker, boats, time_s);
+  });
+  return score;
+}
+
+TEST(Radars, TwoAreBetterThanTheBetterAloneAndShowEachVesselOnce) {
+  const Station fine{0, kFine}, coarse{1, kCoarse, {.north_m = 2000.0}};
+  for (const std::uint64_t seed : {1, 2}) {
+    const std::vector<Boat> boats = fleet(12, seed);
+    const Score alone = score_of({fine}, boats, seed), other = score_of({coarse}, boats, seed);
+    const Score both = score_of({fine, coarse}, boats, seed);
+    EXPECT_LT(both.rms_m(), 0.95 * std::min(alone.rms_m(), other.rms_m()));
+    EXPECT_LT(both.missed, 0.01 * both.matched);
+    EXPECT_LT(both.extra, 0.005 * both.matched) << "a vessel is shown twice";
+  }
+}
+
+TEST(Radars, ARadarThatDoesNotCoverATrackLeavesItAlone) {
+  Radar blind = kCoarse;
+  blind.max_range_m = 1000.0;
+  const std::vector<Boat> boats = fleet(8, 3);
+  VesselTracker alone = tracker_of({kFine}), both = tracker_of({kFine, blind});
+  const Station fine{0, kFine}, short_sighted{1, blind, {.east_m = -2000.0}};
+  watch(alone, {fine}, boats, 0.0, 60.0, 3, nothing);
+  watch(both, {fine, short_sighted}, boats, 0.0, 60.0, 3, nothing);
+  const std::vector<const Track*> expected = tracks_of(alone, true);
+  const std::vector<const Track*> tracks = tracks_of(both, true);
+  ASSERT_EQ(tracks.size(), expected.size());
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    EXPECT_EQ(tracks[k]->kinematics.mean, expected[k]->kinematics.mean);
+    EXPECT_EQ(tracks[k]->existence, expected[k]->existence);
+    EXPECT_EQ(tracks[k]->misses, expected[k]->misses);
+  }
+}
+
+TEST(Radars, HandOverFromOneCoverageToAnotherKeepsTheNumber) {
+  Radar west = kFine, east = kCoarse;
+  west.max_range_m = east.max_range_m = 3000.0;
+  VesselTracker tracker = tracker_of({west, east});
+  const std::vector<Boat> boats{{{0.0, 1500.0}, {0.0, 12.0}}, {{600.0, 4800.0}, {0.0, -12.0}}};
+  std::set<std::int64_t> shown;
+  watch(tracker, {{0, west}, {1, east, {.east_m = 5000.0}}}, boats, 0.0, 240.0, 4,
+        [&](double, const ScanReport& report) {
+          EXPECT_TRUE(events_of(report, TrackEvent::kLost).empty());
+          for (const Track* track : tracks_of(tracker, true)) shown.insert(track->id);
+        });
+  EXPECT_EQ(shown.size(), boats.size());
+}
+
+TEST(Radars, OneThatFallsSilentOrComesBackLosesNoTrack) {
+  VesselTracker tracker = tracker_of({kFine, kCoarse});
+  const Station fine{0, kFine}, coarse{1, kCoarse, {.north_m = 1500.0}};
+  const std::vector<Boat> boats = fleet(8, 5);
+  watch(tracker, {fine, coarse}, boats, 0.0, 60.0, 5, nothing);
+  const std::set<std::int64_t> before = ids_of(tracker);
+  ASSERT_EQ(tracks_of(tracker, true).size(), boats.size());
+  watch(tracker, {coarse}, boats, 60.0, 120.0, 6, nothing);
+  watch(tracker, {fine, coarse}, boats, 120.0, 160.0, 7, nothing);
+  for (const Boat& boat : boats) {
+    const Track* track = track_at(tracker, boat.at(160.0));
+    ASSERT_NE(track, nullptr);
+    EXPECT_TRUE(before.contains(track->id));
+  }
+}
+
+TEST(Radars, AreAddedRemovedAndChangedWhileTracksGoOn) {
+  VesselTracker tracker = tracker_of({kFine});
+  const Station fine{0, kFine};
+  const std::vector<Boat> boats = fleet(8, 8);
+  watch(tracker, {fine}, boats, 0.0, 50.0, 1, nothing);
+  const std::set<std::int64_t> before = ids_of(tracker);
+  EXPECT_EQ(tracker.add_radar(kCoarse), 1);
+  const Station coarse{1, kCoarse};
+  watch(tracker, {fine, coarse}, boats, 50.0, 80.0, 2, nothing);
+  EXPECT_TRUE(tracker.remove_radar(0));
+  EXPECT_FALSE(tracker.remove_radar(0)) << "there is none of that number";
+  EXPECT_FALSE(tracker.remove_radar(1)) << "it is the last one";
+  EXPECT_FALSE(tracker.has_radar(0));
+  EXPECT_NE(tracker.process(81.0, {}).status, Status::kOk);
+  watch(tracker, {coarse}, boats, 80.0, 110.0, 3, nothing);
+  Radar scale = kCoarse;  // another range scale
+  scale.range_std_m = 5.0;
+  scale.period_s = 1.5;
+  tracker.set_radar(1, scale);
+  EXPECT_EQ(tracker.radar(1), scale);
+  EXPECT_THROW(tracker.set_radar(0, scale), std::invalid_argument);
+  watch(tracker, {{1, scale}}, boats, 111.0, 140.0, 4, nothing);
+  for (const Boat& boat : boats) {
+    const Track* track = track_at(tracker, boat.at(140.0));
+    ASSERT_NE(track, nullptr);
+    EXPECT_TRUE(before.contains(track->id));
+  }
+  EXPECT_EQ(tracker.add_radar(kFine), 0) << "the least number that is free";
+}
+
+TEST(Radars, AreSavedAndRestoredBitForBit) {
+  const Station fine{0, kFine}, coarse{1, kCoarse, {.north_m = 1500.0}};
+  const std::vector<Boat> boats = fleet(10, 9);
+  VesselTracker tracker = tracker_of({kFine, kCoarse}), restored = tracker_of({kFine, kCoarse});
+  watch(tracker, {fine, coarse}, boats, 0.0, 37.0, 1, nothing);
+  ASSERT_TRUE(restored.restore(tracker.save()));
+  for (VesselTracker* one : {&tracker, &restored})
+    watch(*one, {fine, coarse}, boats, 37.0, 70.0, 2, nothing);
+  EXPECT_EQ(tracker.save(), restored.save());
+  VesselTracker other = tracker_of({kFine, kFine});
+  EXPECT_FALSE(other.restore(tracker.save())) << "its radars are others";
+}
+
+TEST(Radars, ASectorOfAnUnknownOneOrFromLongAgoIsRejected) {
+  VesselTracker tracker = tracker_of({kFine, kCoarse});
+  EXPECT_EQ(tracker.sector({0, 0.0, 1.0, 100.0}).status, Status::kOk);
+  const std::vector<std::byte> before = tracker.save();
+  for (const int number : {-1, 2})
+    EXPECT_EQ(tracker.sector({number, 0.0, 1.0, 101.0}).status, Status::kNotFinite);
+  EXPECT_EQ(tracker.sector({1, 0.0, 1.0, 96.9}).status, Status::kNegativeTimeStep);
+  EXPECT_EQ(tracker.save(), before);
+  EXPECT_EQ(tracker.sector({1, 0.0, 1.0, 97.1}).status, Status::kOk) << "within its period";
+  EXPECT_EQ(tracker.time_s(), 100.0);
+}
+
+TEST(Radars, TheirSectorsTakeNoMemory) {
+  VesselTracker tracker = tracker_of({kFine, kCoarse});
+  const Station fine{0, kFine}, coarse{1, kCoarse};
+  const std::vector<Boat> boats = fleet(10, 10);
+  watch(tracker, {fine, coarse}, boats, 0.0, 40.0, 1, nothing);
+  const std::vector<Plot> plots{exact_plot(boats[0].at(40.1), 40.1)};
+  const NoHeap fence;
+  for (int k = 0; k < 40; ++k)
+    (void)tracker.sector({k % 2, 0.4 * k, 0.4 * k + 0.4, 40.2 + 0.1 * k, plots});
+  EXPECT_EQ(fence.allocations(), 0);
+}
+
+}  // namespace
+}  // namespace wakeline::radars_test
