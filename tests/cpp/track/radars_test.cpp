@@ -42,43 +42,66 @@ struct Station {
   }
 };
 
-/// Feeds the sectors of some stations to a tracker, in the order of their ends, up to a time;
-/// `f(time_s)` after each.
+/// The plots of some boats, in order: one a turn each, when the beam passes it.
+std::vector<Plot> record(const Station& station, const std::vector<Boat>& boats, double to_s,
+                         std::uint64_t seed) {
+  Sea sea(1000 * seed + static_cast<std::uint64_t>(station.number), station.radar);
+  std::vector<Plot> plots;
+  const auto angle_rad = [&](const Boat& boat, double time_s) {
+    const Vec<double, 2> d = boat.at(time_s) - station.position();
+    return std::atan2(d[1], d[0]);
+  };
+  for (const Boat& boat : boats)
+    for (double pass_rad = compass_angle(angle_rad(boat, 0.0));; pass_rad += kTurn) {
+      double time_s = 0.0;
+      for (int k = 0; k < 5; ++k) {
+        time_s = pass_rad / kTurn * station.radar.period_s + station.late_s;
+        pass_rad = Beam::unwrapped(angle_rad(boat, time_s), pass_rad);
+      }
+      if (time_s > to_s) break;
+      const bool detected = sea.draw.uniform(0.0, 1.0) < station.detection;
+      Plot plot = sea.plot(boat.at(time_s) - station.position(), time_s);
+      plot.own = station.place;
+      if (detected && station.radar.covers(plot.range_m, plot.bearing_rad)) plots.push_back(plot);
+    }
+  std::sort(plots.begin(), plots.end(),
+            [](const Plot& a, const Plot& b) { return a.time_s < b.time_s; });
+  return plots;
+}
+
+/// Feeds the sectors of some stations to a tracker, in the order of their ends; `f(time_s, report)`
+/// after each.
 template <class Function>
 void watch(VesselTracker& tracker, const std::vector<Station>& stations,
            const std::vector<Boat>& boats, double from_s, double to_s, std::uint64_t seed,
            Function&& f) {
-  std::vector<std::pair<double, std::pair<const Station*, int>>> order;
-  for (const Station& station : stations)
-    for (int sector = 0; station.end_s(sector) <= to_s; ++sector)
-      if (station.end_s(sector) > from_s)
-        order.push_back({station.end_s(sector), {&station, sector}});
-  std::sort(order.begin(), order.end());
-  for (const auto& [end_s, of] : order) {
-    const auto& [station, number] = of;
-    Sea sea((seed << 32) + 10'000 * static_cast<std::uint64_t>(station->number + 1) +
-                static_cast<std::uint64_t>(number),
-            station->radar);
-    const double width_rad = kTurn / station->sectors, begin_rad = width_rad * number;
+  struct Part {
+    double end_s;
+    const Station* station;
+    int sector;
     std::vector<Plot> plots;
-    for (const Boat& boat : boats) {
-      const double middle_s = end_s - station->radar.period_s / station->sectors / 2;
-      const Vec<double, 2> d = boat.at(middle_s) - station->position();
-      const double into_rad = compass_angle(std::atan2(d[1], d[0]) - begin_rad);
-      if (into_rad >= width_rad || sea.draw.uniform(0.0, 1.0) > station->detection ||
-          !station->radar.covers(d.norm(), std::atan2(d[1], d[0])))
-        continue;
-      const double time_s =
-          end_s - (1.0 - into_rad / width_rad) * station->radar.period_s / station->sectors;
-      Plot plot = sea.plot(boat.at(time_s) - station->position(), time_s);
-      plot.own = station->place;
-      plots.push_back(plot);
+  };
+  std::vector<Part> parts;
+  for (const Station& station : stations) {
+    const std::vector<Plot> plots = record(station, boats, to_s, seed);
+    auto next = plots.begin();
+    for (int sector = 0; station.end_s(sector) <= to_s; ++sector) {
+      const double end_s = station.end_s(sector);
+      const auto first = next;
+      next =
+          std::find_if(first, plots.end(), [&](const Plot& plot) { return plot.time_s > end_s; });
+      if (end_s > from_s) parts.push_back({end_s, &station, sector, {first, next}});
     }
-    const double from_rad = compass_angle(begin_rad);
-    const ScanReport report = tracker.sector(
-        {station->number, from_rad, from_rad + width_rad, end_s, plots, station->place});
+  }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.end_s < b.end_s; });
+  for (const Part& part : parts) {
+    const double width_rad = kTurn / part.station->sectors;
+    const double from_rad = compass_angle(width_rad * part.sector);
+    const ScanReport report = tracker.sector({part.station->number, from_rad, from_rad + width_rad,
+                                              part.end_s, part.plots, part.station->place});
     EXPECT_EQ(report.status, Status::kOk);
-    f(end_s, report);
+    f(part.end_s, report);
   }
 }
 
@@ -129,6 +152,12 @@ struct Score {
     matched += found;
     extra += std::max(static_cast<double>(at.size()) - found, 0.0);
   }
+  void add(const Score& other) {
+    sum_m2 += other.sum_m2;
+    missed += other.missed;
+    matched += other.matched;
+    extra += other.extra;
+  }
   [[nodiscard]] double rms_m() const { return std::sqrt(sum_m2 / matched); }
 };
 
@@ -153,14 +182,16 @@ Score score_of(const std::vector<Station>& stations, const std::vector<Boat>& bo
 
 TEST(Radars, TwoAreBetterThanTheBetterAloneAndShowEachVesselOnce) {
   const Station fine{0, kFine}, coarse{1, kCoarse, {.north_m = 2000.0}};
-  for (const std::uint64_t seed : {1, 2}) {
+  Score alone, other, both;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
     const std::vector<Boat> boats = fleet(12, seed);
-    const Score alone = score_of({fine}, boats, seed), other = score_of({coarse}, boats, seed);
-    const Score both = score_of({fine, coarse}, boats, seed);
-    EXPECT_LT(both.rms_m(), 0.95 * std::min(alone.rms_m(), other.rms_m()));
-    EXPECT_LT(both.missed, 0.01 * both.matched);
-    EXPECT_LT(both.extra, 0.005 * both.matched) << "a vessel is shown twice";
+    alone.add(score_of({fine}, boats, seed));
+    other.add(score_of({coarse}, boats, seed));
+    both.add(score_of({fine, coarse}, boats, seed));
   }
+  EXPECT_LT(both.rms_m(), 0.95 * std::min(alone.rms_m(), other.rms_m()));
+  EXPECT_LE(both.missed, std::min(alone.missed, other.missed));
+  EXPECT_LT(both.extra, 0.005 * both.matched) << "a vessel is shown twice";
 }
 
 TEST(Radars, ARadarThatDoesNotCoverATrackLeavesItAlone) {
@@ -188,7 +219,8 @@ TEST(Radars, HandOverFromOneCoverageToAnotherKeepsTheNumber) {
   const std::vector<Boat> boats{{{0.0, 1500.0}, {0.0, 12.0}}, {{600.0, 4800.0}, {0.0, -12.0}}};
   std::set<std::int64_t> shown;
   watch(tracker, {{0, west}, {1, east, {.east_m = 5000.0}}}, boats, 0.0, 240.0, 4,
-        [&](double, const ScanReport& report) {
+        [&](double tt, const ScanReport& report) {
+          nothing(tt, report);
           EXPECT_TRUE(events_of(report, TrackEvent::kLost).empty());
           for (const Track* track : tracks_of(tracker, true)) shown.insert(track->id);
         });

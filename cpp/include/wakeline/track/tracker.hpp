@@ -316,7 +316,7 @@ class Tracker {
       if (whole_turn_) {
         look.passed_rad = beam_rad - kPi<double>;
         look.look_rad = beam_rad;
-        if (is_covered(track)) due_.push_back(slot);
+        if (may_be_seen(track)) due_.push_back(slot);
         continue;
       }
       if (beam_rad < look.look_rad) continue;
@@ -330,7 +330,7 @@ class Tracker {
         }
         arc = usual;
       }
-      if (state().beam.has_swept(arc) && is_covered(track)) {
+      if (state().beam.has_swept(arc) && may_be_seen(track)) {
         due_.push_back(slot);
         arcs_.push_back(arc);
       } else {
@@ -345,7 +345,12 @@ class Tracker {
                     plot_factor, state().radar, state().own);
   }
 
-  /// Whether the radar covers the place where a track is now.
+  /// Whether the radar covers the place where a track is now, or has a plot there all the same.
+  [[nodiscard]] bool may_be_seen(const Track& track) const noexcept {
+    return is_covered(track) || has_plot_near(track);
+  }
+
+  /// Whether the radar covers the place where a track is now. A miss outside says nothing.
   [[nodiscard]] bool is_covered(const Track& track) const noexcept {
     return state().radar.covers_all() ||
            state().covers(track.position() + (state().time_s - track.time_s) * track.velocity());
@@ -359,8 +364,9 @@ class Tracker {
 
   /// Notes that the beam has passed a track.
   void pass(Track& track, const BeamArc& arc) noexcept {
-    look_at(track).passed_rad = arc.centre_rad;
-    look_at(track).look_rad = next_look_rad(track, arc);
+    Look& look = look_at(track);
+    look.passed_rad = std::max(arc.centre_rad, state().beam.last_rad(arc.centre_rad) - Beam::kTurn);
+    look.look_rad = next_look_rad(track, arc);
   }
 
   /// Has tracks wait that compete for a plot with one that waits, so that association is of both;
@@ -439,6 +445,7 @@ class Tracker {
     const double now_s = state().time_s;
     for (const int slot : due_) {
       Track& track = tracks_.at(slot);
+      if (!is_covered(track)) continue;
       Look& look = look_at(track);
       look.visibility = over(std::max(now_s - look.looked_s, 0.0)).visibility(look.visibility);
       track.existence = over(std::max(now_s - track.looked_s, 0.0)).existence(track.existence);
@@ -645,11 +652,12 @@ class Tracker {
         track.kinematics = step_of[k]->kinematics;
         if (step_of[k]->total > 0.0) scan.total = step_of[k]->total;
       }
-      if (scan.total > 0.0 && !(readings_[k].empty() && is_awaited(track)))
+      const bool may_miss = !is_awaited(track) && is_covered(track);
+      if (scan.total > 0.0 && (may_miss || !readings_[k].empty()))
         update_existence(config_, detection, scan, track, look_at(track).visibility);
       state().ownership.add(track, candidates_of(track), weights[k], probabilities);
       const bool seen = probabilities.any > 0.5;
-      if (!seen && is_awaited(track)) continue;
+      if (!seen && !may_miss) continue;
       const bool shared = !seen && seen_alone(detection_of(track), candidates_of(track)) > 0.5;
       note_look(track, seen, shared);
       if (!shared && is_sure(track)) state().detection_probability.learn(probabilities.any);
@@ -663,6 +671,7 @@ class Tracker {
     Look& look = look_at(track);
     look.misses = seen ? 0 : look.misses + 1;
     if (seen || !(now_s < track.seen_until_s)) track.count(seen, shared);
+    if (seen) track.looked_s = std::max(track.looked_s, now_s);
     if (seen && radars_.size() > 1)
       track.seen_until_s = std::max(track.seen_until_s, now_s + kPeriods * state().radar.period_s);
   }
