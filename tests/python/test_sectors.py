@@ -1,6 +1,7 @@
 """Turns of the antenna in sectors."""
 
 import itertools
+import pickle
 
 import numpy as np
 import pytest
@@ -179,7 +180,66 @@ def test_a_sector_that_makes_no_sense_is_rejected_and_changes_nothing(change, er
     assert tracker.save() == before
 
 
-def test_several_radars_are_not_taken_in_silence():
-    for radars in ([], [RADAR, RADAR]):
-        with pytest.raises(ValueError, match="radar must be one Radar"):
-            wl.Tracker(radars)
+def quiet(number, time_s):
+    """A sector without a plot."""
+    return {
+        "radar": number,
+        "from_rad": 0.0,
+        "to_rad": 1.0,
+        "time_s": time_s,
+        "range_m": [],
+        "bearing_rad": [],
+    }
+
+
+def test_radars_are_added_changed_and_removed_and_pickled_so():
+    other = wl.Radar(range_std_m=25.0, period_s=3.0)
+    tracker = wl.Tracker([RADAR, other])
+    assert tracker.add_radar(other) == 2
+    assert tracker.remove_radar(1)
+    assert not tracker.remove_radar(1)
+    with pytest.raises(ValueError, match="radar must be the number of a radar"):
+        tracker.sector(**quiet(1, 5.0))
+    with pytest.raises(ValueError, match="radar must be the number of a radar"):
+        tracker.set_radar(1, other)
+    tracker.set_radar(2, RADAR)
+    tracker.sector(**quiet(2, 5.0))
+    copy = pickle.loads(pickle.dumps(tracker))
+    assert copy.save() == tracker.save()
+    for one in (tracker, copy):
+        one.sector(**quiet(0, 4.0))
+        assert one.add_radar(other) == 1
+    with pytest.raises(ValueError, match="one Radar at least"):
+        wl.Tracker([])
+
+
+def test_a_vessel_seen_by_two_radars_has_one_track():
+    """Both have their own place, errors and period; the picture is one."""
+    places = [wl.OwnShip(), wl.OwnShip(north_m=3000.0, east_m=-1000.0)]
+    radars = [RADAR, wl.Radar(range_std_m=20.0, bearing_std_rad=0.01, period_s=3.0)]
+    tracker = wl.Tracker(radars)
+    rng = np.random.default_rng(1)
+    turns = sorted(
+        (turn * radar.period_s, number)
+        for number, radar in enumerate(radars)
+        for turn in range(1, int(120 / radar.period_s))
+    )
+    for time_s, number in turns:
+        d = np.array([2000.0 + 5.0 * time_s, 1500.0 - 4.0 * time_s])
+        d -= [places[number].north_m, places[number].east_m]
+        radar = radars[number]
+        tracker.sector(
+            radar=number,
+            from_rad=0.0,
+            to_rad=2 * np.pi,
+            time_s=time_s,
+            range_m=[np.hypot(*d) + radar.range_std_m * rng.normal()],
+            bearing_rad=[np.arctan2(d[1], d[0]) + radar.bearing_std_rad * rng.normal()],
+            own=places[number],
+        )
+    tracks = tracker.tracks()
+    assert tracks.track_id.tolist() == [1]
+    north_m, vnorth_mps, east_m, veast_mps = tracks.mean[0]
+    time_s = tracker.time_s
+    assert np.hypot(north_m - 2000 - 5 * time_s, east_m - 1500 + 4 * time_s) < 30.0
+    assert np.hypot(vnorth_mps - 5, veast_mps + 4) < 1.0
