@@ -386,12 +386,12 @@ def test_the_list_is_json_and_the_log_has_every_change(tmp_path):
 def test_notifications_of_signal_k():
     alarms = Alarms(zones=[Zone(outline_m=SQUARE)], config=QUIET)
     (event,) = alarms.update(0.0, table({1: (50.0, 50.0)}))
-    path, value = notification("radar", event.alarm, 0.0)
+    path, value = notification("radar", event.alarm.as_dict(0.0))
     assert path.startswith("notifications.radar.radar.guardZone.1.")
     assert value["state"] == "alarm"
     assert value["method"] == ["visual", "sound"]
     (event,) = alarms.update(1.0, table({}))
-    assert notification("radar", event.alarm, 1.0) == (path, None)
+    assert notification("radar", event.alarm.as_dict(1.0)) == (path, None)
 
 
 def test_time_never_goes_back():

@@ -604,17 +604,17 @@ class Alarms:
         self._changes.append(AlarmEvent(self.time_s, change, replace(alarm)))
 
 
-def notification(radar: str, alarm: Alarm, time_s: float) -> tuple[str, dict[str, Any] | None]:
-    """Path and value of the Signal K notification of an alarm; None once it has ended."""
-    name = alarm.kind.title().replace(" ", "")
-    name = name[0].lower() + name[1:]
-    where = f"guardZone.{alarm.zone_id}." if alarm.zone_id else ""
-    path = f"notifications.radar.{radar}.{where}{name}.{alarm.alarm_id}"
-    if alarm.state_at(time_s) == "ended":
+def notification(radar: str, alarm: Mapping[str, Any]) -> tuple[str, dict[str, Any] | None]:
+    """Path and value of the Signal K notification of an alarm of a list; None once it has ended."""
+    words = alarm["kind"].split()
+    name = words[0] + "".join(word.capitalize() for word in words[1:])
+    where = f"guardZone.{alarm['zone_id']}." if alarm["zone_id"] else ""
+    path = f"notifications.radar.{radar}.{where}{name}.{alarm['alarm_id']}"
+    if alarm["state"] == "ended":
         return path, None
-    state = {"alarm": "alarm", "warning": "warn", "caution": "alert"}[alarm.priority]
-    method = ["visual", "sound"] if alarm.sounds_at(time_s) else ["visual"]
-    return path, {"state": state, "method": method, "message": alarm.text}
+    state = {"alarm": "alarm", "warning": "warn", "caution": "alert"}[alarm["priority"]]
+    method = ["visual", "sound"] if alarm["sounds"] else ["visual"]
+    return path, {"state": state, "method": method, "message": alarm["text"]}
 
 
 class AlarmLog:

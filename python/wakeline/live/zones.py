@@ -264,6 +264,17 @@ class Zones:
         removed = self._watched.pop(zone_id, None)
         return None if removed is None else removed.zone
 
+    def adopt(self, other: Zones) -> None:
+        """Take the zones of another collection, and keep who is inside those that both have."""
+        kept = self._watched
+        self._watched = {}
+        for zone in other:
+            before = kept.get(zone.zone_id)
+            self._watched[zone.zone_id] = (
+                _Watched(zone) if before is None else _Watched(zone, before.inside, before.seen)
+            )
+        self._next_id = max(self._next_id, other._next_id)
+
     def keeps_out(self, place_m: ArrayLike) -> NDArray[np.bool_]:
         """Whether places (n, 2) are in an exclusion zone or on land."""
         place_m = np.asarray(place_m, dtype=float).reshape(-1, 2)

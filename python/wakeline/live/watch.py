@@ -1,0 +1,162 @@
+"""Zones and alarms as a watcher of a session."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import wakeline as wl
+
+from .alarms import AlarmConfig, AlarmEvent, AlarmLog, Alarms, Disagreement, Sensor
+from .zones import Zone, Zones
+
+_LIMITS = ("cpa_limit_m", "tcpa_limit_s", "alarm_probability")
+
+
+class AlarmBoard:
+    """The alarms of a session, with the commands of operators and the log.
+
+    Parameters
+    ----------
+    limits : wakeline.DangerLimits, optional
+    zones : Zones or sequence of Zone, optional
+    config : AlarmConfig, optional
+    log : AlarmLog, optional
+        Receives every change.
+
+    Attributes
+    ----------
+    alarms : Alarms
+    """
+
+    def __init__(
+        self,
+        limits: wl.DangerLimits | None = None,
+        zones: Zones | Sequence[Zone] = (),
+        config: AlarmConfig | None = None,
+        log: AlarmLog | None = None,
+    ) -> None:
+        self.alarms = Alarms(limits, zones, config)
+        self._log = log
+
+    def take(self, time_s: float, tracks: Any, **others: Any) -> list[AlarmEvent]:
+        """Take the picture at a time: :meth:`Alarms.update`."""
+        return self._logged(self.alarms.update(time_s, tracks, **others))
+
+    def _logged(self, events: list[AlarmEvent]) -> list[AlarmEvent]:
+        if self._log is not None and events:
+            self._log.write(events)
+        return events
+
+    def keeps_out(self, place_m: ArrayLike) -> NDArray[np.bool_]:
+        """Whether places (n, 2) are in an exclusion zone or on land."""
+        return self.alarms.zones.keeps_out(place_m)
+
+    def obey(self, command: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Do what an operator asks for; None if it concerns neither zones nor alarms.
+
+        ``zone`` (a :class:`Zone` as an object), ``zone_delete`` (zone_id), ``limits`` (cpa_limit_m,
+        tcpa_limit_s, alarm_probability), ``acknowledge`` and ``silence`` (alarm_id, or "all").
+
+        Raises
+        ------
+        ValueError, TypeError, KeyError
+            When a value is missing or invalid; nothing is changed.
+        """
+        alarms, name = self.alarms, command.get("command")
+        if name == "zone":
+            return {"ok": True, "zone": alarms.set_zone(command["zone"]).as_dict()}
+        if name == "zone_delete":
+            return _answer(alarms.delete_zone(command["zone_id"]), "no zone has that number")
+        if name == "limits":
+            changed = {key: float(command[key]) for key in _LIMITS if key in command}
+            now = alarms.limits.as_dict() | changed
+            now["clear_probability"] = min(now["clear_probability"], now["alarm_probability"])
+            alarms.limits = wl.DangerLimits(**now)
+            return {"ok": True}
+        if name in ("acknowledge", "silence"):
+            found = getattr(alarms, name)(command["alarm_id"])
+            return _answer(found, "no alarm with that number lasts")
+        return None
+
+    def shown(self) -> dict[str, Any]:
+        """What it adds to the picture."""
+        limits = self.alarms.limits.as_dict()
+        return {
+            "alarms": self.alarms.list(),
+            "zones": self.alarms.zones.list(),
+            "encounters": self.alarms.encounters(),
+            "limits": {key: limits[key] for key in _LIMITS},
+        }
+
+
+class AlarmWatcher(AlarmBoard):
+    """The alarms of a :class:`wakeline.live.Session`: one of its ``watchers``."""
+
+    def update(self, session: Any, time_s: float) -> list[dict[str, Any]]:
+        """Changes of alarms at a new picture, as events of the session."""
+        own = session.own.at(time_s)
+        known = hasattr(own, "north_m") and np.isfinite([own.vnorth_mps, own.veast_mps]).all()
+        events = self.take(
+            time_s,
+            columns(session.tracker.tracks(), lambda one: one.mean),
+            own=[own.north_m, own.vnorth_mps, own.east_m, own.veast_mps] if known else None,
+            heading_rad=own.heading_rad if hasattr(own, "heading_rad") else float("nan"),
+            events=[SimpleNamespace(**one) for one in getattr(session, "news", ())],
+            sensors=_sensors(session, time_s),
+            disagreements=_disagreements(session),
+        )
+        return [event_of(one) for one in events]
+
+    def command(self, session: Any, command: Mapping[str, Any]) -> dict[str, Any] | None:
+        """The answer to an operator; None for a command of another."""
+        if command.get("command") == "drop" and "track_id" in command:
+            self.alarms.forget(int(command["track_id"]))
+            return None
+        return self.obey(command)
+
+    def picture(self, session: Any) -> dict[str, Any]:
+        """What it adds to the picture."""
+        return self.shown()
+
+
+def event_of(event: AlarmEvent) -> dict[str, Any]:
+    """For JSON lines."""
+    time_s, change, alarm = event
+    return {"kind": "alarm", "change": change} | alarm.as_dict(time_s)
+
+
+def columns(tracks: Iterable[Any], mean_of: Any) -> SimpleNamespace:
+    """Tracks as columns, for :meth:`Alarms.update`."""
+    tracks = [one for one in tracks if one.track_id > 0]
+    return SimpleNamespace(
+        track_id=np.array([one.track_id for one in tracks], dtype=np.int64),
+        mean=np.array([mean_of(one) for one in tracks], dtype=float).reshape(-1, 4),
+        covariance=np.array([one.covariance for one in tracks], dtype=float).reshape(-1, 4, 4),
+        status=np.array([one.status for one in tracks], dtype=str),
+        name=np.array([one.name for one in tracks], dtype=str),
+    )
+
+
+def _sensors(session: Any, time_s: float) -> list[Sensor]:
+    """Radars, silent after three turns, and the other inputs, after 15 s."""
+    sensors = [
+        Sensor(f"radar {name}", time_s - feed.last_s, max(3.0 * (feed.period_s or 0.0), 10.0))
+        for name, feed in session.feeds.items()
+        if feed.last_s > float("-inf")
+    ]
+    if session.frozen:
+        sensors.append(Sensor(session.frozen, float("inf"), 0.0))
+    return sensors
+
+
+def _disagreements(session: Any) -> list[Disagreement]:
+    return [Disagreement(*one) for one in getattr(session, "disagreements", lambda: ())()]
+
+
+def _answer(good: bool, error: str) -> dict[str, Any]:
+    return {"ok": True} if good else {"ok": False, "error": error}

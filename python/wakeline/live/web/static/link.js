@@ -1,0 +1,100 @@
+// The two streams of the server: pictures and commands as JSON, echoes as octets.
+
+const WAIT_MS = [200, 500, 1000, 2000, 4000];
+
+class Stream {
+  constructor(path, onMessage, onState) {
+    this.path = path;
+    this.onMessage = onMessage;
+    this.onState = onState;
+    this.failures = 0;
+    this.wanted = true;
+    this.open();
+  }
+
+  open() {
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    this.socket = new WebSocket(`${scheme}://${location.host}${this.path}`);
+    this.socket.binaryType = "arraybuffer";
+    this.socket.onopen = () => {
+      this.failures = 0;
+      this.onState(true);
+    };
+    this.socket.onmessage = (event) => this.onMessage(event.data);
+    this.socket.onclose = () => {
+      this.onState(false);
+      if (!this.wanted) return;
+      setTimeout(() => this.wanted && this.open(), WAIT_MS[Math.min(this.failures, WAIT_MS.length - 1)]);
+      this.failures += 1;
+    };
+  }
+
+  send(text) {
+    if (this.socket.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(text);
+    return true;
+  }
+
+  close() {
+    this.wanted = false;
+    this.socket.close();
+  }
+}
+
+export class Link {
+  constructor({ onHello, onPicture, onEchoes, onGap, onState }) {
+    this.number = 0;
+    this.waiting = new Map();
+    this.onEchoes = onEchoes;
+    this.onGap = onGap;
+    this.pictures = new Stream(
+      "/picture",
+      (data) => {
+        const message = JSON.parse(data);
+        if (message.type === "hello") onHello(message);
+        else if (message.type === "picture") onPicture(message);
+        else if (message.type === "answer") this.answered(message);
+      },
+      (open) => {
+        if (!open) {
+          for (const done of this.waiting.values()) done({ ok: false, error: "the connection was lost" });
+          this.waiting.clear();
+        }
+        onState(open);
+      },
+    );
+    this.echoes = null;
+  }
+
+  /** Echoes are sent only while they are shown. */
+  showEchoes(shown) {
+    if (shown && !this.echoes) {
+      this.echoes = new Stream(
+        "/echoes",
+        (data) => (typeof data === "string" ? this.onGap(JSON.parse(data).rows) : this.onEchoes(data)),
+        () => {},
+      );
+    } else if (!shown && this.echoes) {
+      this.echoes.close();
+      this.echoes = null;
+    }
+  }
+
+  /** Resolves to {ok, error}. */
+  command(command) {
+    this.number += 1;
+    const number = this.number;
+    return new Promise((done) => {
+      if (!this.pictures.send(JSON.stringify({ ...command, number }))) {
+        done({ ok: false, error: "there is no connection" });
+        return;
+      }
+      this.waiting.set(number, done);
+    });
+  }
+
+  answered(message) {
+    this.waiting.get(message.number)?.(message);
+    this.waiting.delete(message.number);
+  }
+}

@@ -1,0 +1,131 @@
+// What the server has sent, and where everything is now.
+
+const PAST_S = 6;
+const MOST_PAST = 60;
+const LOST_S = 30;
+const MOST_AHEAD_S = 4;
+const MOST_AGE_S = 30;
+
+export class Store {
+  constructor() {
+    this.tracks = new Map();
+    this.ais = new Map();
+    this.lost = new Map(); // targets that were lost a short time ago
+    this.plots = [];
+    this.alarms = [];
+    this.zones = [];
+    this.encounters = [];
+    this.radars = [];
+    this.status = {};
+    this.limits = null;
+    this.own = null;
+    this.replay = null;
+    this.origin_deg = null;
+    this.note = null;
+    this.time_s = 0;
+    this.received_ms = 0;
+    this.version = 0;
+    this.columns = { track: [], ais: [] };
+  }
+
+  hello(message) {
+    this.columns = { track: message.track_columns, ais: message.ais_columns };
+  }
+
+  take(message, now_ms) {
+    const back = message.time_s < this.time_s - 1;
+    if (message.all || back) {
+      this.tracks.clear();
+      this.ais.clear();
+      this.lost.clear();
+    }
+    Object.assign(this, { time_s: message.time_s, received_ms: now_ms, version: message.version });
+    for (const name of ["own", "replay"]) this[name] = message[name];
+    for (const name of ["radars", "alarms", "zones", "encounters", "status", "limits", "origin_deg", "note", "plots"]) {
+      if (name in message) this[name] = message[name] ?? (Array.isArray(this[name]) ? [] : null);
+    }
+    for (const row of message.tracks ?? []) {
+      const track = this.row(this.columns.track, row);
+      const before = this.tracks.get(track.id);
+      track.past = before?.past ?? [];
+      for (const point of message.past?.[track.id] ?? []) this.addPast(track, point);
+      this.addPast(track, [track.time, track.north, track.east]);
+      this.tracks.set(track.id, track);
+      this.lost.delete(track.id);
+    }
+    for (const row of message.ais ?? []) {
+      const vessel = this.row(this.columns.ais, row);
+      this.ais.set(vessel.id, vessel);
+    }
+    for (const id of message.gone ?? []) {
+      const track = this.tracks.get(id);
+      if (track) this.lost.set(id, { ...track, lost_s: message.time_s, ...this.at(track, message.time_s) });
+      this.tracks.delete(id);
+    }
+    for (const id of message.ais_gone ?? []) this.ais.delete(id);
+    for (const [id, track] of this.lost) if (message.time_s - track.lost_s > LOST_S) this.lost.delete(id);
+    return back;
+  }
+
+  row(columns, values) {
+    return Object.fromEntries(columns.map((name, k) => [name, values[k]]));
+  }
+
+  addPast(track, [time, north, east]) {
+    const last = track.past.at(-1);
+    if (last && time - last[0] < PAST_S) return;
+    track.past.push([time, north, east]);
+    if (track.past.length > MOST_PAST) track.past.shift();
+  }
+
+  /** The time of the picture now: it goes on between messages. */
+  now(now_ms) {
+    const speed = this.replay ? (this.replay.paused ? 0 : this.replay.speed) : 1;
+    const ahead_s = ((now_ms - this.received_ms) / 1000) * speed;
+    const end_s = this.replay?.end_s ?? Infinity;
+    return Math.min(this.time_s + Math.min(ahead_s, MOST_AHEAD_S * Math.max(speed, 1)), Math.max(end_s, this.time_s));
+  }
+
+  /** Where a track or vessel is at a time, by its velocity. */
+  at(track, time_s) {
+    const dt = Math.max(-MOST_AGE_S, Math.min(MOST_AGE_S, time_s - track.time));
+    return { north: track.north + dt * track.vnorth, east: track.east + dt * track.veast };
+  }
+
+  ownAt(time_s) {
+    const own = this.own;
+    if (!own) {
+      const radar = this.radars.find((one) => one.north_m !== null && one.north_m !== undefined);
+      return { known: false, north: radar?.north_m ?? 0, east: radar?.east_m ?? 0, vnorth: 0, veast: 0, heading: null, course: null, speed: 0 };
+    }
+    const dt = Math.min(time_s - this.time_s, MOST_AGE_S);
+    const [vnorth, veast] = [own.vnorth_mps ?? 0, own.veast_mps ?? 0];
+    const speed = Math.hypot(vnorth, veast);
+    return {
+      known: true,
+      north: own.north_m + dt * vnorth,
+      east: own.east_m + dt * veast,
+      vnorth,
+      veast,
+      heading: own.heading_rad ?? null,
+      course: speed > 0.25 ? Math.atan2(veast, vnorth) : null,
+      speed,
+    };
+  }
+
+  /** The encounter of a track with own ship, else the likeliest with another. */
+  dangerOf(id) {
+    let worst = null;
+    for (const one of this.encounters) {
+      if (one.first !== id && one.second !== id) continue;
+      if (one.first === 0) return one;
+      if (!worst || one.probability > worst.probability) worst = one;
+    }
+    return worst;
+  }
+
+  /** Alarms that last, of a track. */
+  alarmsOf(id) {
+    return this.alarms.filter((alarm) => alarm.state !== "ended" && alarm.tracks.includes(id));
+  }
+}
