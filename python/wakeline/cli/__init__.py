@@ -17,7 +17,19 @@ from wakeline import FilterError, __version__, _starting
 from wakeline._brief import with_short_quotes
 from wakeline.recording.files import check_writable, remove_begun
 
-from . import bench, calibrate, demo, interrupt, navigate, outputs, score, search, study, track
+from . import (
+    bench,
+    calibrate,
+    demo,
+    interrupt,
+    live,
+    navigate,
+    outputs,
+    score,
+    search,
+    study,
+    track,
+)
 
 _BAD_INPUT = 2
 _NOBODY_READS = 141
@@ -105,7 +117,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         title="commands", required=True, metavar="COMMAND", parser_class=_Parser
     )
-    for command in (demo, track, calibrate, navigate, search, score, study, bench):
+    for command in (demo, track, live, calibrate, navigate, search, score, study, bench):
         command.add_to(commands)
     return parser
 

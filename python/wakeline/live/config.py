@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields, replace
+from dataclasses import MISSING, asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -265,6 +265,25 @@ class LiveConfig:
             if one.radar:
                 _check_choice("radar", one.radar, [radar.name for radar in self.radars])
 
+    def as_document(self) -> dict[str, Any]:
+        """The sections of a TOML file, from which :func:`config_of` makes the same settings."""
+        radars = [asdict(one) for one in self.radars]
+        settings = self.settings
+        return {
+            "session": asdict(self.session),
+            "own": {key: value for key, value in asdict(self.own).items() if not _is_nan(value)},
+            "input": [asdict(one) for one in self.inputs],
+            "output": [asdict(one) for one in self.outputs],
+            "radar": [
+                {key: value for key, value in one.items() if key != "settings"}
+                | settings.radar
+                | dict(one["settings"])
+                for one in radars
+            ],
+            **{name: dict(getattr(settings, name)) for name in ("tracker", "models", "danger")},
+            "zone": list(settings.zones),
+        }
+
     def toml(self) -> str:
         """Every setting with a line of explanation; reading it gives the same settings."""
         lists = [
@@ -377,9 +396,13 @@ def _section(name: str, values: Any) -> Iterator[str]:
             yield from (f"{key} = {json.dumps(each)}" for key, each in value.items())
             continue
         yield f"# {one.metadata['about']}"
-        text = "nan" if isinstance(value, float) and math.isnan(value) else json.dumps(value)
+        text = "nan" if _is_nan(value) else json.dumps(value)
         yield f"{one.name} = {text}"
     yield ""
+
+
+def _is_nan(value: Any) -> bool:
+    return isinstance(value, float) and math.isnan(value)
 
 
 def _take_query(values: Any, names: Sequence[str], schemes: Sequence[str]) -> None:

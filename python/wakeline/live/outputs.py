@@ -60,9 +60,8 @@ class JsonOutput(Output):
     """JSON lines of track updates and events."""
 
     def tracks(self, session: Session, radar: str, updated: Sequence[LiveTrack]) -> None:
-        for track in updated:
-            values = session.describe(track) | {"radar": radar}
-            self._send(write_line("track", values))
+        for values in session.describe(updated):
+            self._send(write_line("track", values | {"radar": radar}))
 
     def event(self, session: Session, event: dict[str, Any]) -> None:
         self._send(write_line(event.get("type", "event"), event))

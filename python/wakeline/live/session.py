@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -17,6 +20,7 @@ from . import json_lines
 from .ais import AisPicture
 from .config import LiveConfig, OutputConfig, RadarConfig, config_of, read_config
 from .engine import LiveTrack, TrackEngine
+from .metrics import metrics_of
 from .outputs import Output, make_output
 from .own_ship import Missing, OwnShipSources, Pose, SourceKey
 from .radar_feed import PlotRow, RadarFeed, Sector, columns
@@ -27,6 +31,9 @@ Sweeps = Callable[[str, np.ndarray, float, float, np.ndarray], None]
 of the last cell, and cells (n, C) of uint8."""
 
 CLOCK = "clock"
+_CONNECTION = " from "  # between the names of an input that listens and of a peer
+_MOST_CONNECTIONS = 64
+_PASS_S = 0.02  # between looks at what happens by time alone
 _HISTORY = 60  # past positions of a track in the picture
 _HISTORY_S = 5.0
 _MOST_EVENTS = 500
@@ -73,6 +80,10 @@ class Session:
         Called with every event, track update and alarm: kind and values.
     time_s : float
         Of the last octets; -inf before the first.
+    journal : callable, optional
+        Called with an operator's command before it is done; returns the time of it.
+    lock : RLock
+        Held by whoever feeds the session or asks it, where there are several threads.
 
     Examples
     --------
@@ -86,6 +97,10 @@ class Session:
     def __init__(self, config: LiveConfig | Mapping[str, Any] | str | Path | None = None) -> None:
         self.config = _config(config)
         self.time_s = -math.inf
+        self.lock = threading.RLock()
+        self._passed_s = -math.inf
+        self.journal: Callable[[Mapping[str, Any]], float] | None = None
+        self.lost = 0
         self.inputs = {one.name: Source(one) for one in self.config.inputs}
         self.outputs: dict[str, Output] = {}
         for one in self.config.outputs:
@@ -144,11 +159,24 @@ class Session:
             one = self.inputs.get(source) or self._new_input(source)
             for kind, values in one.read(time_s, octets):
                 self._take(time_s, one, kind, values)
+            if one.video is not None and one.video.show is None and self.sweeps:
+                one.video.show = partial(self._show, one)
         self._pass(time_s)
 
     def _new_input(self, name: str) -> Source:
-        self.inputs[name] = Source.unknown(name)
-        return self.inputs[name]
+        """An input of datagrams, or a connection to an input that listens."""
+        parent = self.inputs.get(name.partition(_CONNECTION)[0])
+        connections = [one for one in self.inputs if _CONNECTION in one]
+        if len(connections) >= _MOST_CONNECTIONS:
+            del self.inputs[min(connections, key=lambda one: self.inputs[one].last_s)]
+        one = Source.unknown(name) if parent is None else Source(replace(parent.config, name=name))
+        self.inputs[name] = one
+        return one
+
+    def url_of(self, name: str) -> str:
+        """The URL of an input; '' of one that is not configured."""
+        one = self.inputs.get(name) or self.inputs.get(name.partition(_CONNECTION)[0])
+        return "" if one is None else one.config.url
 
     def _take(self, time_s: float, source: Source, kind: str, values: Any) -> None:
         try:
@@ -157,7 +185,7 @@ class Session:
             source.problems.add("tracker", str(error))
 
     def _take_own(self, time_s: float, source: Source, reading: Any) -> None:
-        key = SourceKey(reading.sentence, reading.talker, source.name)
+        key = SourceKey(reading.sentence, reading.talker, source.group)
         self._add_own(time_s, key, reading.quantity, reading.values)
 
     def _add_own(
@@ -183,7 +211,7 @@ class Session:
         if not is_new:
             return
         if message.own:
-            key = SourceKey("VDO", "AI", source.name)
+            key = SourceKey("VDO", "AI", source.group)
             self._add_own(time_s, key, "position", (vessel.latitude_deg, vessel.longitude_deg))
             del self.ais.vessels[vessel.mmsi]
             return
@@ -210,9 +238,8 @@ class Session:
     def _take_json(self, time_s: float, source: Source, line: tuple[str, str, dict]) -> None:
         kind, radar, values = line
         if kind in ("plot", "sector"):
-            feed = self.feeds.get(radar or source.radar or next(iter(self.feeds)))
+            feed = self._feed_of(source, radar)
             if feed is None:
-                source.problems.add("radar", f"wanted one of {', '.join(self.feeds)}, got {radar}")
                 return
             when_s = feed.clock.time_s(values["time_s"], time_s)
             if kind == "plot":
@@ -228,8 +255,25 @@ class Session:
         else:
             self._take_json_report(time_s, source, values)
 
+    def _take_radar(self, time_s: float, source: Source, one: PlotRow | Sector) -> None:
+        """Take a plot or a sector of the radar of an input, on the session's clock."""
+        feed = self._feed_of(source, "")
+        if feed is None:
+            return
+        if isinstance(one, PlotRow):
+            self._sectors(feed, feed.add(one))
+        else:
+            self._sectors(feed, feed.mark(one.from_rad, one.to_rad, one.time_s))
+
+    def _feed_of(self, source: Source, radar: str) -> RadarFeed | None:
+        """The radar of that name, else that of the input, else the first."""
+        feed = self.feeds.get(radar or source.radar or next(iter(self.feeds)))
+        if feed is None:
+            source.problems.add("radar", f"wanted one of {', '.join(self.feeds)}, got {radar}")
+        return feed
+
     def _take_json_own(self, time_s: float, source: Source, values: dict[str, float]) -> None:
-        key = SourceKey("JSON", "", source.name)
+        key = SourceKey("JSON", "", source.group)
         when_s = source.clock.time_s(values.get("time_s", time_s), time_s)
         if "latitude_deg" in values:
             place = values["latitude_deg"], values["longitude_deg"]
@@ -265,9 +309,29 @@ class Session:
 
     # ------------------------------------------------------------------ sectors
 
+    def _show(
+        self, source: Source, azimuth_rad: np.ndarray, range_m: float, cells: np.ndarray
+    ) -> None:
+        """Give sweeps to those who show them."""
+        feed = self._feed_of(source, "")
+        if feed is None:
+            return
+        heading = None
+        if self.radars[feed.name].azimuth == "bow":
+            heading = self.own.heading_at(self.time_s)
+        heading_rad = math.nan if heading is None else heading[0]
+        for show in self.sweeps:
+            show(feed.name, azimuth_rad, heading_rad, range_m, cells)
+
     def _pass(self, time_s: float) -> None:
         """What happens by time alone."""
+        if time_s - self._passed_s < _PASS_S:
+            return
+        self._passed_s = time_s
         self.own.choose(time_s)
+        for one in self.inputs.values():
+            for kind, values in one.pass_to(time_s):
+                self._take(time_s, one, kind, values)
         for feed in self.feeds.values():
             self._sectors(feed, feed.pass_to(time_s))
         for event in self.tracker.coast(time_s):
@@ -380,8 +444,9 @@ class Session:
         if updated:
             for output in self.outputs.values():
                 output.tracks(self, radar, updated)
-            for track in updated:
-                self._tell("track", self.describe(track) | {"radar": radar})
+            if self.listeners:
+                for values in self.describe(updated):
+                    self._tell("track", values | {"radar": radar})
         for watcher in self.watchers:
             for event in watcher.update(self, self.tracker.time_s):
                 self._event(event)
@@ -408,51 +473,77 @@ class Session:
         self.outputs[config.name] = make_output(config)
         return self.outputs[config.name]
 
-    def describe(self, track: LiveTrack) -> dict[str, Any]:
-        """A track as in the picture and in JSON lines."""
-        values: dict[str, Any] = {
-            "track_id": track.track_id,
-            "status": track.status,
-            "name": track.name,
-            "time_s": track.time_s,
-            "north_m": track.north_m,
-            "east_m": track.east_m,
-            "vnorth_mps": track.mean[1],
-            "veast_mps": track.mean[3],
-            "covariance": track.covariance,
-            "course_rad": track.course_rad,
-            "speed_mps": track.speed_mps,
-            "mode": track.mode,
-            "mode_probability": track.mode_probability,
-            "existence": track.existence,
-            "hits": track.hits,
-            "misses": track.misses,
-        }
-        place = self.to_degrees(track.north_m, track.east_m)
-        if place is not None:
-            values["latitude_deg"], values["longitude_deg"] = place
-        own = self.own.at(track.time_s)
+    def describe(self, tracks: Sequence[LiveTrack]) -> list[dict[str, Any]]:
+        """Tracks as in the picture and in JSON lines."""
+        if not tracks:
+            return []
+        mean = np.array([track.mean for track in tracks])
+        places = self._degrees_of(mean[:, [0, 2]])
+        own = self.own.at(tracks[0].time_s)
+        relative = [{}] * len(tracks)
         if isinstance(own, Pose):
-            north_m, east_m = track.north_m - own.north_m, track.east_m - own.east_m
-            values["range_m"] = math.hypot(north_m, east_m)
-            values["bearing_rad"] = math.atan2(east_m, north_m) % (2.0 * math.pi)
-            values["cpa"] = self._closest_approach(own, track)
-        return values
+            relative = self._relative(own, tracks, mean)
+        return [
+            {
+                "track_id": track.track_id,
+                "status": track.status,
+                "name": track.name,
+                "time_s": track.time_s,
+                "north_m": track.north_m,
+                "east_m": track.east_m,
+                "vnorth_mps": track.mean[1],
+                "veast_mps": track.mean[3],
+                "covariance": track.covariance,
+                "course_rad": track.course_rad,
+                "speed_mps": track.speed_mps,
+                "mode": track.mode,
+                "mode_probability": track.mode_probability,
+                "existence": track.existence,
+                "hits": track.hits,
+                "misses": track.misses,
+            }
+            | place
+            | more
+            for track, place, more in zip(tracks, places, relative, strict=True)
+        ]
 
-    def _closest_approach(self, own: Pose, track: LiveTrack) -> dict[str, float] | None:
+    def _degrees_of(self, position_m: np.ndarray) -> list[dict[str, float]]:
+        if self.plane is None:
+            return [{}] * len(position_m)
+        latitude, longitude = (np.degrees(each).tolist() for each in self.plane.place(position_m))
+        return [
+            {"latitude_deg": one, "longitude_deg": other}
+            for one, other in zip(latitude, longitude, strict=True)
+        ]
+
+    def _relative(
+        self, own: Pose, tracks: Sequence[LiveTrack], mean: np.ndarray
+    ) -> list[dict[str, Any]]:
+        """Range, bearing and closest approach to own ship."""
+        north_m, east_m = mean[:, 0] - own.north_m, mean[:, 2] - own.east_m
+        rows = [
+            {"range_m": r, "bearing_rad": b}
+            for r, b in zip(
+                np.hypot(north_m, east_m).tolist(),
+                (np.arctan2(east_m, north_m) % (2.0 * np.pi)).tolist(),
+                strict=True,
+            )
+        ]
         if not math.isfinite(own.vnorth_mps):
-            return None
+            return rows
         state = np.array([own.north_m, own.vnorth_mps, own.east_m, own.veast_mps])
         covariance = np.diag([0.0, own.velocity_std_mps**2] * 2)
         approach = wl.navigation.closest_approach(
-            state, np.array(track.mean), covariance, np.array(track.covariance)
+            state, mean, covariance, np.array([track.covariance for track in tracks])
         )
         limits = self.config.settings.danger_limits
-        return {
-            "cpa_m": float(approach.cpa_m),
-            "tcpa_s": float(approach.tcpa_s),
-            "probability": float(approach.probability(limits.cpa_limit_m, limits.tcpa_limit_s)),
-        }
+        probability = approach.probability(limits.cpa_limit_m, limits.tcpa_limit_s)
+        columns = (approach.cpa_m, approach.tcpa_s, probability)
+        for row, cpa_m, tcpa_s, share in zip(
+            rows, *(np.atleast_1d(one).tolist() for one in columns), strict=True
+        ):
+            row["cpa"] = {"cpa_m": cpa_m, "tcpa_s": tcpa_s, "probability": share}
+        return rows
 
     def picture(self) -> dict[str, Any]:
         """All that a screen shows, ready for JSON: SI units, radians, positions also in degrees.
@@ -468,10 +559,8 @@ class Session:
             "own": self._own_picture(time_s),
             "radars": [self._radar_picture(name, time_s) for name in self.radars],
             "tracks": [
-                self.describe(track) | {"history": list(self._history.get(track.track_id, ()))}
-                for track in self.tracker.tracks(
-                    max(time_s, self.tracker.time_s) if self.tracker.time_s else None
-                )
+                values | {"history": list(self._history.get(values["track_id"], ()))}
+                for values in self.describe(self.tracker.tracks(self._shown_s(time_s)))
             ],
             "ais": [self._vessel_picture(vessel, time_s) for vessel in self.ais.vessels.values()],
             "alarms": [],
@@ -481,6 +570,10 @@ class Session:
         for watcher in self.watchers:
             picture |= watcher.picture(self)
         return json_lines.finite_only(picture)
+
+    def _shown_s(self, time_s: float) -> float | None:
+        """The time of the tracks in the picture; None before the first sector."""
+        return max(time_s, self.tracker.time_s) if self.tracker.time_s else None
 
     def _own_picture(self, time_s: float) -> dict[str, Any] | None:
         pose = self.own.at(time_s)
@@ -522,6 +615,7 @@ class Session:
             {
                 "time_s": time_s,
                 "frozen": self.frozen,
+                "lost_batches": self.lost,
                 "inputs": {name: one.status(time_s) for name, one in self.inputs.items()},
                 "outputs": {name: one.status() for name, one in self.outputs.items()},
                 "radars": {
@@ -540,10 +634,14 @@ class Session:
             }
         )
 
+    def metrics(self) -> str:
+        """The status as text for Prometheus."""
+        return metrics_of(self.status())
+
     # ------------------------------------------------------------------ operators
 
-    def command(self, command: Mapping[str, Any]) -> dict[str, Any]:
-        """Do what an operator asks for.
+    def command(self, command: Mapping[str, Any], time_s: float | None = None) -> dict[str, Any]:
+        """Do what an operator asks for, at a time or at that of the last octets.
 
         ``{"command": "acquire", "north_m": ..., "east_m": ...}`` (or latitude_deg, longitude_deg),
         ``{"command": "drop", "track_id": ..., "hush": true}``,
@@ -554,6 +652,14 @@ class Session:
         dict
             ``{"ok": true, ...}``, or ``{"ok": false, "error": ...}``.
         """
+        with self.lock:
+            if time_s is None and self.journal is not None:
+                time_s = self.journal(command)
+            if time_s is not None:
+                self.time_s = max(time_s, self.time_s)
+            return self._command(command)
+
+    def _command(self, command: Mapping[str, Any]) -> dict[str, Any]:
         try:
             name = command.get("command")
             if name == "acquire":
@@ -584,7 +690,8 @@ class Session:
         else:
             place = float(command["north_m"]), float(command["east_m"])
         std_m = float(command.get("position_std_m", 50.0))
-        track_id = self.tracker.designate(self.tracker.time_s, *place, std_m)
+        time_s = self.tracker.time_s or (self.time_s if math.isfinite(self.time_s) else 0.0)
+        track_id = self.tracker.designate(time_s, *place, std_m)
         return _answer(track_id > 0, "there is no room for another track") | {"track_id": track_id}
 
     # ------------------------------------------------------------------ places

@@ -14,6 +14,7 @@ from .lines import LineAssembly
 from .nmea import AisMessage, NmeaDecoder
 from .problems import Problems
 from .radar_feed import SensorClock
+from .video_feed import VideoFeed
 
 _RATE_S = 5.0
 _TWICE_S = 2.0  # the same message of redundant senders comes within this time
@@ -71,6 +72,7 @@ class Source:
         self.duplicates = 0
         self.last_s = -math.inf
         self.connection = ""
+        self.video: VideoFeed | None = None
         self._nmea = NmeaDecoder(config.is_stream)
         self._lines = LineAssembly(config.is_stream)
         self._format = config.format
@@ -83,6 +85,11 @@ class Source:
     @property
     def name(self) -> str:
         return self.config.name
+
+    @property
+    def group(self) -> str:
+        """Its name, or that of the input that a peer has connected to."""
+        return self.name.partition(" from ")[0]
 
     @property
     def radar(self) -> str:
@@ -102,8 +109,19 @@ class Source:
                     yield "json", read_line(line)
                 except BadLine as error:
                     self.problems.add("JSON", str(error))
+        elif kind == "cat240":
+            self.video = self.video or VideoFeed()
+            for each in self.video.feed(time_s, octets, self.problems):
+                yield "radar", each
         elif octets:
-            self.problems.add("unknown", f"wanted NMEA or JSON, got {octets[:24]!r}")
+            wanted = "wanted NMEA, JSON or ASTERIX 240"
+            self.problems.add("unknown", f"{wanted}, got {octets[:24]!r}")
+
+    def pass_to(self, time_s: float) -> Iterator[tuple[str, Any]]:
+        """What ends by time alone."""
+        if self.video is not None:
+            for each in self.video.pass_to(time_s, self.problems):
+                yield "radar", each
 
     def _recognized(self, octets: bytes) -> str:
         head = octets[:64].lstrip()
@@ -112,6 +130,8 @@ class Source:
             kind = "nmea"
         elif head[:1] == b"{":
             kind = "json"
+        elif octets[:1] == b"\xf0":
+            kind = "cat240"
         if kind and self.config.is_stream and self.config.url:
             self._format = kind
         return kind
@@ -119,6 +139,7 @@ class Source:
     def status(self, time_s: float) -> dict[str, Any]:
         """Counts, rates, age and problems."""
         messages, octets = self.rate.per_s(time_s)
+        video = self.video
         return {
             "url": self.config.url,
             "format": self._format,
@@ -128,7 +149,9 @@ class Source:
             "messages_per_s": round(messages, 2),
             "octets_per_s": round(octets, 1),
             "age_s": time_s - self.last_s,
-            "duplicates": self.duplicates,
+            "duplicates": self.duplicates + (video.duplicates if video else 0),
+            "lost_sweeps": video.lost if video else 0,
+            "late_sweeps": video.late if video else 0,
             "problems": dict(self.problems.count),
             "last_problem": self.problems.last,
         }

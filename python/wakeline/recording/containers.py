@@ -135,6 +135,33 @@ def video_of(path: str | Path, contents: Contents) -> Iterator[bytes]:
     return _unpacked(_decompressed(Path(path), None), _video_in, contents)
 
 
+class Datagram(NamedTuple):
+    """What a packet of a capture carries: when, to whom, and the octets."""
+
+    time_s: float | None
+    address: str
+    port: int
+    octets: bytes
+
+
+def datagrams_of(path: str | Path) -> Iterator[Datagram]:
+    """The datagrams of a network capture, and the octets of its TCP connections, in order.
+
+    RecordingError when the file cannot be read or is not a capture.
+    """
+    contents = Contents()
+    packets = _packets_of(_Stream(_decompressed(Path(path), None)), contents)
+    if packets is None:
+        raise RecordingError(path, "not a network capture", wanted="pcap or pcapng")
+    fragments, connections = _Fragments(), _Connections()
+    for packet in packets:
+        payload = _payload_of(packet, fragments) if packet.whole else None
+        if payload is not None:
+            _, _, address, _, port = payload.receiver.split()
+            for octets in connections.in_order(payload):
+                yield Datagram(packet.time_s, address, int(port), octets)
+
+
 def instead_of_text(octets: bytes) -> str | None:
     """What a file is by its octets, and what to do; None if it may be text."""
     named = next((name for magic, name in _BINARY.items() if octets.startswith(magic)), None)

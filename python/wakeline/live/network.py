@@ -1,0 +1,485 @@
+"""Inputs and outputs of a live session: sockets, serial lines, files, each in its thread."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import queue
+import select
+import socket
+import struct
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+from wakeline.recording.containers import datagrams_of
+
+from .config import InputConfig, OutputConfig, SettingsError
+
+Take = Callable[[str, list[tuple[float, bytes]]], None]
+"""Called with the name of an input and its messages: times and octets."""
+
+_WAIT_S = 0.2  # until a thread looks whether it should end
+_BATCH = 64
+_RECEIVE_BUFFER = 16 << 20
+_PIECE = 1 << 16
+_BACK_OFF_S = (0.25, 10.0)  # first and longest
+_MOST_CLIENTS = 32
+_MOST_QUEUED = 1 << 20  # octets for a client that does not read
+HOW_TO_GET_SERIAL = "serial lines need pyserial: pip install 'wakeline[live]'"
+
+
+class _Thread:
+    """A thread that ends when it is closed."""
+
+    def __init__(self, name: str) -> None:
+        self.connection = "starting"
+        self.restarts = 0
+        self._ends = threading.Event()
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def close(self) -> None:
+        """Ask the thread to end."""
+        self._ends.set()
+
+    def join(self) -> None:
+        self._thread.join(2.0)
+
+    @property
+    def is_done(self) -> bool:
+        """Whether it has ended by itself."""
+        return not self._thread.is_alive()
+
+    def _run(self) -> None:
+        """Work, and begin again with growing pauses after an error."""
+        pause_s = _BACK_OFF_S[0]
+        while not self._ends.is_set():
+            began_s = time.monotonic()
+            try:
+                if self._work():
+                    self.connection = "ended"
+                    return
+                self.connection = "closed by the other side"
+            except (OSError, SettingsError) as error:
+                self.connection = _in_words(error)
+            if time.monotonic() - began_s > 2.0 * _BACK_OFF_S[1]:
+                pause_s = _BACK_OFF_S[0]
+            self.restarts += 1
+            self._ends.wait(pause_s)
+            pause_s = min(2.0 * pause_s, _BACK_OFF_S[1])
+
+    def _work(self) -> bool:
+        """Work until an error; True if all is done."""
+        raise NotImplementedError
+
+
+class NetworkInput(_Thread):
+    """One input of a session, received in a thread.
+
+    A connection that fails is made again, after pauses from 0.25 to 10 s.
+
+    Parameters
+    ----------
+    config : InputConfig
+    take : callable
+        Called in the thread with the name and the messages.
+    """
+
+    def __init__(self, config: InputConfig, take: Take) -> None:
+        super().__init__(config.name)
+        self.config, self._take = config, take
+        self._url, self._query = urlsplit(config.url), parse_qs(urlsplit(config.url).query)
+        self.port = self._url.port if self._url.netloc else None
+        self._listener: socket.socket | None = None
+        if config.scheme == "udp":
+            self._listener = self._udp_socket()
+        elif config.scheme == "tcp-listen":
+            self._listener = _listening(self._url.hostname or "127.0.0.1", self._url.port)
+        if self._listener is not None:
+            self.port = self._listener.getsockname()[1]
+
+    def _work(self) -> bool:
+        return {
+            "udp": self._udp,
+            "tcp": self._tcp,
+            "tcp-listen": self._tcp_listen,
+            "serial": self._serial,
+            "stdin": self._stdin,
+            "file": self._file,
+            "pcap": self._pcap,
+        }[self.config.scheme]()
+
+    # ------------------------------------------------------------------ datagrams
+
+    def _udp_socket(self) -> socket.socket:
+        host, port = self._url.hostname or "127.0.0.1", self._url.port
+        if port is None:
+            raise SettingsError(f"input {self.config.url} needs a port")
+        one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        for option in (getattr(socket, "SO_RCVBUFFORCE", 33), socket.SO_RCVBUF):
+            with contextlib.suppress(OSError):
+                one.setsockopt(socket.SOL_SOCKET, option, _RECEIVE_BUFFER)
+                break
+        if 224 <= int(host.split(".")[0] if host[0].isdigit() else 0) <= 239:
+            interface = self._query.get("iface", ["0.0.0.0"])[-1]
+            one.bind((host, port))
+            member = struct.pack("4s4s", socket.inet_aton(host), socket.inet_aton(interface))
+            one.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+        else:
+            one.bind((host, port))
+        return one
+
+    def _udp(self) -> bool:
+        one = self._listener
+        one.settimeout(_WAIT_S)
+        self.connection = f"listening on port {self.port}"
+        while not self._ends.is_set():
+            try:
+                octets = one.recv(_PIECE)
+            except TimeoutError:
+                continue
+            first_s = time.time()
+            batch = [(first_s, octets)]
+            one.setblocking(False)
+            with contextlib.suppress(BlockingIOError):
+                while len(batch) < _BATCH:
+                    octets = one.recv(_PIECE)
+                    batch.append((time.time(), octets))
+            one.settimeout(_WAIT_S)
+            self._take(self.config.name, batch)
+        one.close()
+        return True
+
+    # ------------------------------------------------------------------ streams
+
+    def _tcp(self) -> bool:
+        address = self._url.hostname or "127.0.0.1", self._url.port
+        self.connection = f"connecting to {address[0]} port {address[1]}"
+        with socket.create_connection(address, 5.0) as one:
+            _probe(one)
+            self.connection = "connected"
+            return self._stream(one, self.config.name)
+
+    def _stream(self, one: socket.socket, name: str) -> bool:
+        one.settimeout(_WAIT_S)
+        while not self._ends.is_set():
+            try:
+                octets = one.recv(_PIECE)
+            except TimeoutError:
+                continue
+            if not octets:
+                return False
+            self._take(name, [(time.time(), octets)])
+        return True
+
+    def _tcp_listen(self) -> bool:
+        listener, clients = self._listener, {}
+        listener.setblocking(False)
+        try:
+            while not self._ends.is_set():
+                self.connection = f"port {self.port}, {len(clients)} connected"
+                ready, _, _ = select.select([listener, *clients], [], [], _WAIT_S)
+                for one in ready:
+                    if one is listener:
+                        with contextlib.suppress(OSError):
+                            self._accept(listener, clients)
+                    elif not self._receive(one, clients[one]):
+                        del clients[one]
+                        one.close()
+        finally:
+            for one in [listener, *clients]:
+                one.close()
+        return True
+
+    def _accept(self, listener: socket.socket, clients: dict[socket.socket, str]) -> None:
+        one, (host, port, *_) = listener.accept()
+        if len(clients) >= _MOST_CLIENTS:
+            one.close()
+            return
+        one.setblocking(False)
+        _probe(one)
+        clients[one] = f"{self.config.name} from {host}:{port}"
+
+    def _receive(self, one: socket.socket, name: str) -> bool:
+        try:
+            octets = one.recv(_PIECE)
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False
+        if octets:
+            self._take(name, [(time.time(), octets)])
+        return bool(octets)
+
+    def _serial(self) -> bool:
+        try:
+            import serial
+        except ModuleNotFoundError:
+            raise SettingsError(HOW_TO_GET_SERIAL) from None
+        path, baud = self._url.path, int(self._query.get("baud", ["4800"])[-1])
+        with serial.Serial(path, baud, timeout=_WAIT_S) as one:
+            self.connection = f"open at {baud} baud"
+            while not self._ends.is_set():
+                octets = one.read(max(one.in_waiting, 1))
+                if octets:
+                    self._take(self.config.name, [(time.time(), octets)])
+        return True
+
+    def _stdin(self) -> bool:
+        self.connection = "reading"
+        descriptor = sys.stdin.buffer.raw if hasattr(sys.stdin.buffer, "raw") else sys.stdin.buffer
+        while not self._ends.is_set():
+            ready, _, _ = select.select([descriptor], [], [], _WAIT_S)
+            if ready:
+                octets = descriptor.read(_PIECE)
+                if not octets:
+                    return True
+                self._take(self.config.name, [(time.time(), octets)])
+        return True
+
+    def _file(self) -> bool:
+        self.connection = "reading"
+        with Path(self._path()).open("rb") as file:
+            while not self._ends.is_set() and (octets := file.read(_PIECE)):
+                self._take(self.config.name, [(time.time(), octets)])
+        return True
+
+    def _pcap(self) -> bool:
+        """The datagrams of a capture, as far apart as they were."""
+        self.connection, offset_s = "reading", None
+        for datagram in datagrams_of(self._path()):
+            if datagram.time_s is not None:
+                offset_s = time.time() - datagram.time_s if offset_s is None else offset_s
+                if self._ends.wait(max(datagram.time_s + offset_s - time.time(), 0.0)):
+                    return True
+            self._take(self.config.name, [(time.time(), datagram.octets)])
+        return True
+
+    def _path(self) -> str:
+        return self._url.netloc + self._url.path
+
+
+class NetworkOutput(_Thread):
+    """One output of a session, sent in a thread.
+
+    What a receiver does not take waits, up to 1 MiB; beyond that the oldest messages are dropped.
+
+    Parameters
+    ----------
+    config : OutputConfig
+    """
+
+    def __init__(self, config: OutputConfig) -> None:
+        super().__init__(config.name)
+        self.config = config
+        self._url, self._query = urlsplit(config.url), parse_qs(urlsplit(config.url).query)
+        self._waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        self._queued = 0
+        self.dropped = 0
+        self.port = self._url.port if self._url.netloc else None
+        self._udp: socket.socket | None = None
+        self._listener: socket.socket | None = None
+        if config.scheme == "udp":
+            self._udp = self._udp_socket()
+        elif config.scheme == "tcp-listen":
+            self._listener = _listening(self._url.hostname or "127.0.0.1", self._url.port)
+            self.port = self._listener.getsockname()[1]
+
+    def send(self, octets: bytes) -> None:
+        """Send a message; it never waits."""
+        if self._udp is not None:
+            try:
+                self._udp.send(octets)
+                self.connection = "sending"
+            except OSError as error:
+                self.dropped += 1
+                if error.errno not in (errno.ECONNREFUSED, errno.EAGAIN):
+                    self.connection = _in_words(error)
+            return
+        if self._queued > _MOST_QUEUED:
+            self.dropped += 1
+            return
+        self._queued += len(octets)
+        self._waiting.put(octets)
+
+    def start(self) -> None:
+        if self._udp is None:
+            super().start()
+
+    def join(self) -> None:
+        if self._udp is None:
+            super().join()
+
+    def _udp_socket(self) -> socket.socket:
+        if self._url.port is None:
+            raise SettingsError(f"output {self.config.url} needs a port")
+        one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
+        interface = self._query.get("iface", [None])[-1]
+        if interface:
+            one.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
+        one.connect((self._url.hostname or "127.0.0.1", self._url.port))
+        one.setblocking(False)
+        return one
+
+    def _work(self) -> bool:
+        if self.config.scheme == "tcp":
+            address = self._url.hostname or "127.0.0.1", self._url.port
+            self.connection = f"connecting to {address[0]} port {address[1]}"
+            with socket.create_connection(address, 5.0) as one:
+                _probe(one)
+                self.connection = "connected"
+                one.settimeout(10.0)
+                return self._each(one.sendall)
+        if self.config.scheme == "tcp-listen":
+            return self._serve()
+        if self.config.scheme == "serial":
+            return self._write_serial()
+        return self._write_file()
+
+    def _each(self, send: Callable[[bytes], Any]) -> bool:
+        """Give each message to a function, until the output is closed and nothing waits."""
+        while True:
+            octets = self._next()
+            if octets is not None:
+                send(octets)
+            elif self._ends.is_set():
+                return True
+
+    def _next(self) -> bytes | None:
+        try:
+            octets = self._waiting.get(timeout=0.05 if self._ends.is_set() else _WAIT_S)
+        except queue.Empty:
+            return None
+        self._queued -= len(octets)
+        return octets
+
+    def _write_file(self) -> bool:
+        if self.config.scheme == "stdout":
+            return self._each(_write_stdout)
+        with Path(self._url.netloc + self._url.path).open("ab", buffering=0) as file:
+            self.connection = "writing"
+            return self._each(file.write)
+
+    def _write_serial(self) -> bool:
+        try:
+            import serial
+        except ModuleNotFoundError:
+            raise SettingsError(HOW_TO_GET_SERIAL) from None
+        baud = int(self._query.get("baud", ["4800"])[-1])
+        with serial.Serial(self._url.path, baud, write_timeout=5.0) as one:
+            self.connection = f"open at {baud} baud"
+            return self._each(one.write)
+
+    def _serve(self) -> bool:
+        clients: dict[socket.socket, _Client] = {}
+        self._listener.setblocking(False)
+        try:
+            while True:
+                self.connection = f"port {self.port}, {len(clients)} connected"
+                octets = self._next() if not clients or not self._waiting.empty() else None
+                with contextlib.suppress(OSError):
+                    one, _ = self._listener.accept()
+                    one.setblocking(False)
+                    if len(clients) < _MOST_CLIENTS:
+                        _probe(one)
+                        clients[one] = _Client(one)
+                    else:
+                        one.close()
+                for one, client in list(clients.items()):
+                    if octets is not None:
+                        self.dropped += client.add(octets)
+                    if not client.flush():
+                        del clients[one]
+                        one.close()
+                if octets is None:
+                    if self._ends.is_set():
+                        return True
+                    if clients:
+                        self._ends.wait(0.01)
+        finally:
+            for one in [self._listener, *clients]:
+                one.close()
+
+
+class _Client:
+    """A client of a listening output, with what it has not read yet."""
+
+    def __init__(self, one: socket.socket) -> None:
+        self._socket, self._waiting, self._queued = one, deque[bytes](), 0
+
+    def add(self, octets: bytes) -> int:
+        """Add a message; the number of older ones dropped."""
+        self._waiting.append(octets)
+        self._queued += len(octets)
+        dropped = 0
+        while self._queued > _MOST_QUEUED and len(self._waiting) > 2:
+            begun = self._waiting.popleft()  # of which a part may be sent already
+            old = self._waiting.popleft()
+            self._waiting.appendleft(begun)
+            self._queued -= len(old)
+            dropped += 1
+        return dropped
+
+    def flush(self) -> bool:
+        """Send what the client takes; False if it is gone."""
+        try:
+            while self._waiting:
+                sent = self._socket.send(self._waiting[0])
+                self._queued -= sent
+                if sent < len(self._waiting[0]):
+                    self._waiting[0] = self._waiting[0][sent:]
+                    return True
+                self._waiting.popleft()
+            return self._socket.recv(_PIECE) != b""
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False
+
+
+def _write_stdout(octets: bytes) -> None:
+    sys.stdout.write(octets.decode("ascii", "replace"))
+    sys.stdout.flush()
+
+
+def _listening(host: str, port: int | None) -> socket.socket:
+    if port is None:
+        raise SettingsError(f"tcp-listen://{host} needs a port")
+    one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    one.bind((host, port))
+    one.listen(_MOST_CLIENTS)
+    return one
+
+
+def _probe(one: socket.socket) -> None:
+    """Ask a silent peer after 30 s whether it is there, so that a half-open connection ends."""
+    one.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for name, value in (("TCP_KEEPIDLE", 30), ("TCP_KEEPINTVL", 5), ("TCP_KEEPCNT", 3)):
+        if hasattr(socket, name):
+            one.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
+
+
+def _in_words(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return str(error)
+
+
+def close_all(threads: Iterable[_Thread]) -> None:
+    """End all threads."""
+    threads = list(threads)
+    for one in threads:
+        one.close()
+    for one in threads:
+        one.join()

@@ -1,0 +1,194 @@
+"""A live session on the network: inputs, clock, operators, record and outputs."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import queue
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from .network import NetworkInput, NetworkOutput, close_all
+from .record import Record, Recorder, at_microsecond, read_session
+from .session import CLOCK, Session
+
+_TICK_S = 0.5
+_MOST_WAITING = 20_000  # batches that the session has not taken
+
+
+class Service:
+    """Runs a session: what its inputs receive is recorded and fed in one order.
+
+    Parameters
+    ----------
+    session : Session
+    record : str or Path, optional
+        File to record to. If it exists, the session first continues from it: its records are fed
+        again, so that tracks keep their numbers.
+
+    Attributes
+    ----------
+    session : Session
+    inputs : list of NetworkInput
+    outputs : list of NetworkOutput
+    lost : int
+        Batches of messages dropped because the session was too slow.
+    """
+
+    def __init__(self, session: Session, record: str | Path | None = None) -> None:
+        self.session = session
+        self.inputs = [
+            NetworkInput(one, self.take) for one in session.config.inputs if one.scheme != "signalk"
+        ]
+        self.outputs = [NetworkOutput(one) for one in session.config.outputs]
+        self.lost = 0
+        self.ends = threading.Event()
+        self._waiting: queue.Queue[tuple[str, list[tuple[float, bytes]]]] = queue.Queue(
+            _MOST_WAITING
+        )
+        self._recorder: Recorder | None = None
+        self._record = record
+        self._tick_s = -math.inf
+
+    def take(self, name: str, messages: list[tuple[float, bytes]]) -> None:
+        """Take messages of an input, from any thread."""
+        try:
+            self._waiting.put_nowait((name, messages))
+        except queue.Full:
+            self.lost += 1
+
+    def _journal(self, command: Mapping[str, Any]) -> float:
+        """Record what an operator asks for; its time."""
+        time_s = max(at_microsecond(time.time()), self.session.time_s)
+        if self._recorder is not None:
+            self._recorder.command(time_s, dict(command))
+        return time_s
+
+    def run(self, *, every_s: float = 0.0, report: Callable[[], None] | None = None) -> None:
+        """Run until `stop`, or until all inputs have ended.
+
+        Parameters
+        ----------
+        every_s : float
+            Interval at which `report` is called.
+        report : callable, optional
+        """
+        try:
+            self._begin()
+            next_s = time.monotonic() + every_s
+            while not self.ends.is_set():
+                self._step()
+                if report is not None and every_s > 0.0 and time.monotonic() >= next_s:
+                    next_s = max(next_s + every_s, time.monotonic())
+                    report()
+                done = self.inputs and all(one.is_done for one in self.inputs)
+                if done and self._waiting.empty():
+                    break
+            if report is not None:
+                report()
+        finally:
+            self.close()
+
+    def stop(self) -> None:
+        """End `run` soon; may be called by a signal handler."""
+        self.ends.set()
+
+    def _begin(self) -> None:
+        if self._record is not None:
+            path = Path(self._record)
+            if path.exists() and path.stat().st_size > 0:
+                for record in read_session(path):
+                    feed_record(self.session, record)
+            limits = self.session.config.session
+            self._recorder = Recorder(
+                path,
+                self.session.config.as_document(),
+                round(limits.segment_mb * 1e6),
+                round(limits.most_mb * 1e6),
+            )
+            self._recorder.begin(max(at_microsecond(time.time()), self.session.time_s))
+        self.session.journal = self._journal
+        for one in self.outputs:
+            self.session.outputs[one.config.name].send = one.send
+            one.start()
+        for one in self.inputs:
+            one.start()
+
+    def _step(self) -> None:
+        """Feed what has arrived, and let time pass twice a second."""
+        with contextlib.suppress(queue.Empty):
+            name, messages = self._waiting.get(timeout=0.1)
+            self._feed(name, messages)
+            for _ in range(100):
+                name, messages = self._waiting.get_nowait()
+                self._feed(name, messages)
+        now_s = time.time()
+        if not 0.0 <= now_s - self._tick_s < _TICK_S:
+            self._tick_s = now_s
+            self._take_note()
+            with self.session.lock:
+                time_s = max(at_microsecond(now_s), self.session.time_s)
+                if self._recorder is not None:
+                    self._recorder.clock(time_s)
+                self.session.feed(time_s, CLOCK, b"")
+
+    def _feed(self, name: str, messages: list[tuple[float, bytes]]) -> None:
+        session, recorder = self.session, self._recorder
+        with session.lock:
+            for when_s, octets in messages:
+                time_s = max(at_microsecond(when_s), session.time_s)
+                if recorder is not None:
+                    recorder.data(time_s, name, session.url_of(name), octets)
+                session.feed(time_s, name, octets)
+
+    def _take_note(self) -> None:
+        """Bring connections and losses into the status."""
+        for one in self.inputs:
+            self.session.inputs[one.config.name].connection = one.connection
+        for one in self.outputs:
+            output = self.session.outputs[one.config.name]
+            output.connection, output.dropped = one.connection, one.dropped
+        self.session.lost = self.lost
+
+    def close(self) -> None:
+        """End inputs, feed what they have received, and end outputs and record."""
+        close_all(self.inputs)
+        with contextlib.suppress(queue.Empty):
+            while True:
+                name, messages = self._waiting.get_nowait()
+                self._feed(name, messages)
+        self._take_note()
+        close_all(self.outputs)
+        if self._recorder is not None:
+            self._recorder.close()
+
+
+def feed_record(session: Session, record: Record) -> None:
+    """Feed a record of a session file to a session."""
+    if record.values is None:
+        session.feed(record.time_s, record.input, record.octets)
+    elif "command" in record.values:
+        session.command(record.values["command"], record.time_s)
+    elif "clock" in record.values:
+        session.feed(record.time_s, CLOCK, b"")
+
+
+def replay(
+    path: str | Path,
+    speed: float = math.inf,
+    ends: threading.Event | None = None,
+) -> Iterator[Record]:
+    """The records of a session file, as far apart in time as they were, divided by `speed`."""
+    ends = ends or threading.Event()
+    begin_s = start_s = None
+    for record in read_session(path):
+        if begin_s is None:
+            begin_s, start_s = record.time_s, time.monotonic()
+        if math.isfinite(speed):
+            due_s = start_s + (record.time_s - begin_s) / speed
+            if ends.wait(max(due_s - time.monotonic(), 0.0)):
+                return
+        yield record
