@@ -48,7 +48,7 @@ def demo_config(tracks: str, ttm_port: int = TTM_PORT) -> LiveConfig:
     """The settings of the demonstration; `tracks` is the file of JSON lines."""
     joyride = {
         key: value for key, value in recording.load("joyride").radar.items() if value is not None
-    }
+    } | {"max_range_m": 6000.0}
     return LiveConfig(
         inputs=(
             InputConfig("udp://127.0.0.1:0?name=boat", format="nmea"),
@@ -75,6 +75,7 @@ _STRAIT_RADAR = {
     "extent_std_m": 20.0,
     "period_s": 2.5,
     "max_speed_mps": 20.0,
+    "max_range_m": 6144.0,
 }
 
 

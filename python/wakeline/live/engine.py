@@ -73,25 +73,30 @@ class LiveTrack:
 
 
 class TrackEngine:
-    """Tracks of all radars of a session.
-
-    Each radar has a tracker; a track's number is unique in the session.
+    """The tracker of all radars of a session.
 
     Parameters
     ----------
     radars : sequence of Radar
     settings : Settings
         Of tracker and motion models.
+
+    Attributes
+    ----------
+    late_sectors : int
+        Sectors that came too late to be used.
     """
 
     def __init__(self, radars: Sequence[wl.Radar], settings: Settings) -> None:
         self.radars = list(radars)
-        self._trackers = [settings.tracker_of(radar) for radar in self.radars]
+        self.late_sectors = 0
+        self._tracker = settings.tracker_of(self.radars)
+        self._last_s = [-math.inf] * len(self.radars)
 
     @property
     def time_s(self) -> float:
         """The latest time of any sector; 0 before the first."""
-        return max(tracker.time_s for tracker in self._trackers)
+        return self._tracker.time_s
 
     def sector(
         self,
@@ -106,102 +111,108 @@ class TrackEngine:
         covariance: np.ndarray | None = None,
     ) -> list[dict[str, Any]]:
         """Process a part of a radar's turn; the events of tracks."""
-        tracker = self._trackers[radar]
+        time_s = max(time_s, self._last_s[radar])
         events = list(self._catch_up(radar, time_s))
-        report = tracker.sector(
-            radar=0,
+        if time_s < self.time_s - self.radars[radar].period_s:
+            self.late_sectors += 1
+            return events
+        report = self._tracker.sector(
+            radar=radar,
             from_rad=from_rad,
             to_rad=to_rad,
-            time_s=max(time_s, tracker.time_s),
+            time_s=time_s,
             range_m=range_m,
             bearing_rad=bearing_rad,
             plot_time_s=plot_time_s,
             own=own,
             covariance=covariance,
         )
-        return events + self._events(radar, report.events)
+        self._last_s[radar] = time_s
+        return events + _events(report.events)
 
     def coast(self, time_s: float) -> list[dict[str, Any]]:
         """Let time pass for radars that are silent for two periods."""
-        events = []
-        for radar, tracker in enumerate(self._trackers):
-            if 0.0 < tracker.time_s < time_s - 2.0 * self.radars[radar].period_s:
+        events: list[dict[str, Any]] = []
+        for radar, last_s in enumerate(self._last_s):
+            if self.time_s > 0.0 and last_s < time_s - 2.0 * self.radars[radar].period_s:
                 events += self._catch_up(radar, time_s)
-                events += self._pass(radar, time_s)
+                events += self._pass(radar, max(time_s, last_s))
         return events
 
     def _catch_up(self, radar: int, time_s: float) -> Iterator[dict[str, Any]]:
         """Steps of an hour over a longer silence."""
-        tracker = self._trackers[radar]
-        while time_s > tracker.latest_time_s:
-            yield from self._pass(radar, tracker.latest_time_s)
+        while self.time_s > 0.0 and time_s > self._tracker.latest_time_s:
+            yield from self._pass(radar, self._tracker.latest_time_s)
 
     def _pass(self, radar: int, time_s: float) -> list[dict[str, Any]]:
-        report = self._trackers[radar].sector(
-            radar=0, from_rad=0.0, to_rad=0.0, time_s=time_s, range_m=[], bearing_rad=[]
+        report = self._tracker.sector(
+            radar=radar, from_rad=0.0, to_rad=0.0, time_s=time_s, range_m=[], bearing_rad=[]
         )
-        return self._events(radar, report.events)
+        self._last_s[radar] = time_s
+        return _events(report.events)
 
-    def _events(self, radar: int, events: Sequence[wl.Event]) -> list[dict[str, Any]]:
-        return [
-            {
-                "event": event.kind,
-                "track_id": self._number(radar, event.track_id),
-                "time_s": event.time_s,
-                "reason": event.reason,
-            }
-            for event in events
-            if event.track_id > 0
-        ]
+    def tracks(self, time_s: float | None = None) -> list[LiveTrack]:
+        """All shown tracks, at a time or at that of the last sector."""
+        return list(self._rows(self._tracker.tracks(time_s=time_s)))
 
-    def tracks(self, time_s: float | None = None, *, tentative: bool = False) -> list[LiveTrack]:
-        """All tracks, at a time or at that of the last sector."""
-        return [
-            track
-            for radar, tracker in enumerate(self._trackers)
-            for track in self._rows(radar, tracker.tracks(time_s=time_s, tentative=tentative))
-        ]
+    def updated(self, seen: dict[int, tuple[int, int]]) -> tuple[list[LiveTrack], set[int]]:
+        """Tracks whose hits or misses are not those in `seen`, which is brought up to date.
 
-    def _rows(self, radar: int, table: wl.track.TrackTable) -> Iterator[LiveTrack]:
+        With them the numbers of all shown tracks.
+        """
+        table = self._tracker.tracks()
+        ids = table.track_id.tolist()
+        now = list(zip(table.hits.tolist(), table.misses.tolist(), strict=True))
+        rows = [k for k, one in enumerate(ids) if seen.get(one) != now[k]]
+        seen.update((ids[k], now[k]) for k in rows)
+        return list(self._rows(table, rows)), set(ids)
+
+    def _rows(
+        self, table: wl.track.TrackTable, rows: Sequence[int] | None = None
+    ) -> Iterator[LiveTrack]:
+        """Tracks of a table, or of some of its rows."""
+        which = np.arange(len(table)) if rows is None else np.array(rows, dtype=np.int64)
+        status, name = table.status, table.name
         columns = zip(
-            table.track_id.tolist(),
-            table.status,
-            table.name,
-            table.time_s.tolist(),
-            table.mean.tolist(),
-            table.covariance.tolist(),
-            table.mode_probability.tolist(),
-            table.existence.tolist(),
-            table.hits.tolist(),
-            table.misses.tolist(),
+            table.track_id[which].tolist(),
+            [status[k] for k in which.tolist()],
+            [name[k] for k in which.tolist()],
+            table.time_s[which].tolist(),
+            table.mean[which].tolist(),
+            table.covariance[which].tolist(),
+            table.mode_probability[which].tolist(),
+            table.existence[which].tolist(),
+            table.hits[which].tolist(),
+            table.misses[which].tolist(),
             strict=True,
         )
-        for track_id, *values in columns:
-            yield LiveTrack(self._number(radar, track_id), *values)
-
-    def _number(self, radar: int, track_id: int) -> int:
-        return track_id * len(self._trackers) + (radar if track_id > 0 else -radar)
-
-    def _tracker_of(self, track_id: int) -> tuple[wl.Tracker, int]:
-        own_id, radar = divmod(abs(track_id), len(self._trackers))
-        return self._trackers[radar], own_id if track_id > 0 else -own_id
+        yield from (LiveTrack(*values) for values in columns)
 
     def designate(self, time_s: float, north_m: float, east_m: float, std_m: float = 50.0) -> int:
         """Confirm the track at a position, or start one; its number, 0 without room."""
-        tracker = self._trackers[0]
-        track_id = tracker.designate(max(time_s, tracker.time_s), north_m, east_m, std_m)
-        return self._number(0, track_id)
+        return self._tracker.designate(max(time_s, self.time_s), north_m, east_m, std_m)
 
     def drop(self, track_id: int, *, hush: bool = False) -> bool:
         """End a track; False if there is none with that number."""
-        tracker, number = self._tracker_of(track_id)
-        return tracker.drop(number, hush=hush)
+        return self._tracker.drop(track_id, hush=hush)
 
     def rename(self, track_id: int, name: str) -> bool:
         """Name a track; False if there is none with that number."""
-        tracker, number = self._tracker_of(track_id)
-        return tracker.rename(number, name)
+        return self._tracker.rename(track_id, name)
 
     def report(self, **report: Any) -> list[dict[str, Any]]:
         """Take a position report with an identity; the events of tracks."""
         return []
+
+
+def _events(events: Sequence[wl.Event]) -> list[dict[str, Any]]:
+    return [
+        {
+            "event": event.kind,
+            "track_id": event.track_id,
+            "time_s": event.time_s,
+            "reason": event.reason,
+        }
+        for event in events
+        if event.track_id > 0
+    ]

@@ -64,7 +64,7 @@ class JsonOutput(Output):
             self._send(write_line("track", values | {"radar": radar}))
 
     def event(self, session: Session, event: dict[str, Any]) -> None:
-        self._send(write_line(event.get("type", "event"), event))
+        self._send(write_line(event.get("kind", "event"), event))
 
 
 def make_output(config: OutputConfig) -> Output:

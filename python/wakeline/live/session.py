@@ -25,6 +25,7 @@ from .outputs import Output, make_output
 from .own_ship import Missing, OwnShipSources, Pose, SourceKey
 from .radar_feed import PlotRow, RadarFeed, Sector, columns
 from .sources import Source
+from .watch import AlarmWatcher
 
 Sweeps = Callable[[str, np.ndarray, float, float, np.ndarray], None]
 """Called with radar, azimuth_rad (n,), heading_rad (NaN: azimuths from north), range_m of the end
@@ -33,6 +34,7 @@ of the last cell, and cells (n, C) of uint8."""
 CLOCK = "clock"
 _CONNECTION = " from "  # between the names of an input that listens and of a peer
 _MOST_CONNECTIONS = 64
+_WATCH_S = 0.5  # between looks for alarms
 _PASS_S = 0.02  # between looks at what happens by time alone
 _HISTORY = 60  # past positions of a track in the picture
 _HISTORY_S = 5.0
@@ -76,6 +78,9 @@ class Session:
     sweeps : list of callable
         Called with the sweeps of radar video: radar, azimuths, heading, range and cells.
     watchers : list of Watcher
+        The first decides on alarms and zones.
+    news : list of dict
+        Events of tracks since the watchers were last told.
     listeners : list of callable
         Called with every event, track update and alarm: kind and values.
     time_s : float
@@ -117,11 +122,13 @@ class Session:
         self.plane: wl.LocalPlane | None = None
         self.frozen = ""
         self.sweeps: list[Sweeps] = []
-        self.watchers: list[Watcher] = []
+        self.watchers: list[Watcher] = [AlarmWatcher(self.config.settings.danger_limits)]
         self.listeners: list[Callable[[str, dict[str, Any]], None]] = []
         self.events: deque[dict[str, Any]] = deque(maxlen=_MOST_EVENTS)
         self._history: dict[int, deque[tuple[float, float, float]]] = {}
-        self._seen: dict[int, tuple[int, int, str]] = {}
+        self._seen: dict[int, tuple[int, int]] = {}
+        self._watched_s = -math.inf
+        self.news: list[dict[str, Any]] = []
         self._edge_rad: dict[str, float] = {}
         if self.config.session.origin_deg:
             self._set_origin(*self.config.session.origin_deg)
@@ -232,8 +239,7 @@ class Session:
 
     def _report(self, **report: Any) -> None:
         """Give a report with an identity to the tracker."""
-        for event in self.tracker.report(**report):
-            self._event(event)
+        self._tracker_events(self.tracker.report(**report))
 
     def _take_json(self, time_s: float, source: Source, line: tuple[str, str, dict]) -> None:
         kind, radar, values = line
@@ -334,8 +340,7 @@ class Session:
                 self._take(time_s, one, kind, values)
         for feed in self.feeds.values():
             self._sectors(feed, feed.pass_to(time_s))
-        for event in self.tracker.coast(time_s):
-            self._event(event)
+        self._tracker_events(self.tracker.coast(time_s))
 
     def _sectors(self, feed: RadarFeed, sectors: Sequence[Sector]) -> None:
         for sector in sectors:
@@ -379,8 +384,7 @@ class Session:
             own,
             covariance,
         )
-        for event in events:
-            self._event(event)
+        self._tracker_events(events)
         self._publish(feed.name)
 
     def _antenna(
@@ -428,33 +432,38 @@ class Session:
 
     def _publish(self, radar: str) -> None:
         """Report the tracks that a sector has updated."""
-        tracks = self.tracker.tracks(tentative=True)
-        now: dict[int, tuple[int, int, str]] = {}
-        updated = []
-        for track in tracks:
-            if track.track_id <= 0:
-                continue
-            now[track.track_id] = track.hits, track.misses, track.status
-            if self._seen.get(track.track_id) != now[track.track_id]:
-                updated.append(track)
-                self._remember(track)
-        for gone in self._seen.keys() - now.keys():
+        updated, shown = self.tracker.updated(self._seen)
+        for track in updated:
+            self._remember(track)
+        for gone in self._seen.keys() - shown:
+            del self._seen[gone]
             self._history.pop(gone, None)
-        self._seen = now
         if updated:
             for output in self.outputs.values():
                 output.tracks(self, radar, updated)
             if self.listeners:
                 for values in self.describe(updated):
                     self._tell("track", values | {"radar": radar})
-        for watcher in self.watchers:
-            for event in watcher.update(self, self.tracker.time_s):
+        if self.tracker.time_s - self._watched_s >= _WATCH_S:
+            self._watched_s = self.tracker.time_s
+            events = [
+                event
+                for watcher in self.watchers
+                for event in watcher.update(self, self.tracker.time_s)
+            ]
+            self.news.clear()
+            for event in events:
                 self._event(event)
 
     def _remember(self, track: LiveTrack) -> None:
         past = self._history.setdefault(track.track_id, deque(maxlen=_HISTORY))
         if not past or track.time_s - past[-1][0] >= _HISTORY_S:
             past.append((track.time_s, track.north_m, track.east_m))
+
+    def _tracker_events(self, events: Sequence[dict[str, Any]]) -> None:
+        for event in events:
+            self.news.append(event)
+            self._event(event)
 
     def _event(self, event: dict[str, Any]) -> None:
         self.events.append(event)
@@ -629,7 +638,7 @@ class Session:
                     for name, feed in self.feeds.items()
                 },
                 "own": self.own.status(time_s, lambda n, e: self.to_degrees(n, e)),
-                "tracks": sum(track.track_id > 0 for track in self.tracker.tracks()),
+                "tracks": len(self.tracker.tracks()),
                 "ais_vessels": len(self.ais.vessels),
             }
         )

@@ -142,8 +142,8 @@ class Settings:
         """A new tracker; `period_s` is that of the antenna if the settings do not give it."""
         return self.tracker_of(self.make_radar(period_s))
 
-    def tracker_of(self, radar: wl.Radar) -> wl.Tracker:
-        """A new tracker for another radar."""
+    def tracker_of(self, radar: wl.Radar | Sequence[wl.Radar]) -> wl.Tracker:
+        """A new tracker for other radars."""
         return wl.Tracker(radar, _engine("tracker", self.tracker), _engine("models", self.models))
 
     def make_strobe_tracker(
