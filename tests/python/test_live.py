@@ -1,0 +1,425 @@
+"""A live session without network: what it is fed decides its tracks, bit for bit."""
+
+import csv
+import json
+import math
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import wakeline as wl
+from wakeline.live.config import config_of
+from wakeline.live.lines import LineAssembly
+from wakeline.live.nmea import AisMessage, NmeaDecoder
+from wakeline.live.own_ship import Missing, OwnShipSources, SourceKey
+from wakeline.live.problems import Problems
+from wakeline.live.radar_feed import SensorClock
+from wakeline.tracking.settings import SettingsError
+
+HALO = Path(__file__).parents[1] / "data" / "halo_udp10110" / "udp10110.csv"
+JOYRIDE = {"name": "A", "range_std_m": 6.0, "bearing_std_deg": 0.3, "extent_std_m": 6.5}
+HDT = SourceKey("HDT", "GP", "x")
+HDM = SourceKey("HDM", "GP", "x")
+
+
+def halo():
+    with HALO.open() as file:
+        return [(float(row["time_s"]), row["sentence"].encode()) for row in csv.DictReader(file)]
+
+
+def joyride_lines(count=None):
+    """The bundled recording as JSON lines, with their times."""
+    episode = wl.recording.load("joyride").episodes[0]
+    for scan in episode.scans[:count]:
+        t = scan.time_s
+        own = {"north_m": float(scan.own_north_m[0]), "east_m": float(scan.own_east_m[0])}
+        yield t, {"own": own}
+        for range_m, bearing_rad in zip(scan.range_m, scan.bearing_rad, strict=True):
+            plot = {"time_s": t, "range_m": float(range_m), "bearing_rad": float(bearing_rad)}
+            yield t, {"radar": "A"} | plot
+        yield t, {"radar": "A", "sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+
+
+def joyride_session():
+    return wl.live.Session({"radar": [JOYRIDE | {"period_s": 2.5, "max_speed_mps": 25.0}]})
+
+
+def written(session):
+    lines = []
+    session.add_output("file:tracks.jsonl").send = lines.append
+    return lines
+
+
+# ------------------------------------------------------------------ tracks
+
+
+def test_plots_as_json_lines_give_the_track_of_the_recording():
+    session, whole = joyride_session(), wl.track_recording("joyride")
+    lines = written(session)
+    for t, line in joyride_lines():
+        session.feed(t, "plots", json.dumps(line).encode())
+    rows = [json.loads(line) for line in lines]
+    tracks = [row for row in rows if row["type"] == "track"]
+    assert {row["track_id"] for row in tracks} == set(map(int, whole.ids()))
+    last = tracks[-1]
+    np.testing.assert_allclose([last["north_m"], last["east_m"]], whole.state[-1, [0, 2]], atol=15)
+
+
+def test_a_session_fed_twice_gives_the_same_lines():
+    def lines():
+        session = joyride_session()
+        out = written(session)
+        for t, line in joyride_lines(60):
+            session.feed(t, "plots", json.dumps(line).encode())
+        return out
+
+    assert lines() == lines() != []
+
+
+def test_bearings_from_the_bow_give_the_track_of_true_bearings():
+    def last(azimuth, offset_rad):
+        radar = JOYRIDE | {"period_s": 2.5, "max_speed_mps": 25.0, "azimuth": azimuth}
+        session = wl.live.Session({"radar": [radar], "own": {"heading_std_deg": 0.0}})
+        for t, line in joyride_lines(50):
+            if "own" in line:
+                line["own"]["heading_rad"] = offset_rad
+            if "bearing_rad" in line:
+                line["bearing_rad"] -= offset_rad
+            session.feed(t, "x", json.dumps(line).encode())
+        return session.tracker.tracks()[0].mean
+
+    np.testing.assert_allclose(last("bow", 1.3), last("north", 0.0), atol=0.5)
+
+
+def test_plots_without_marks_are_grouped_by_the_period():
+    session = joyride_session()
+    for t, line in joyride_lines():
+        if "sector" not in line:
+            session.feed(t, "x", json.dumps(line).encode())
+    assert session.status()["radars"]["A"]["sectors"] > 100
+    assert len(session.tracker.tracks()) == 1
+
+
+def test_without_a_position_tracks_are_frozen_and_the_operator_is_told():
+    session = wl.live.Session()
+    for t, line in joyride_lines(3):
+        if "own" not in line:
+            session.feed(t, "x", json.dumps(line).encode())
+    assert "position" in session.status()["frozen"]
+    assert session.status()["radars"]["A"]["unused_plots"] > 0
+
+
+def test_a_radar_ashore_needs_no_own_ship():
+    session = wl.live.Session({"radar": [{"name": "A", "position_deg": [54.0, 10.0]}]})
+    for k in range(20):
+        t = 3.0 * k
+        plot = {"time_s": t, "range_m": 2000.0 - 15.0 * k, "bearing_rad": 0.7}
+        session.feed(t, "x", json.dumps(plot).encode())
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+        session.feed(t, "x", json.dumps(mark).encode())
+    (track,) = session.picture()["tracks"]
+    assert track["speed_mps"] == pytest.approx(5.0, abs=1.0)
+    assert track["latitude_deg"] > 54.0
+
+
+def test_operators_name_drop_and_acquire():
+    session = joyride_session()
+    for t, line in joyride_lines(60):
+        session.feed(t, "x", json.dumps(line).encode())
+    (track,) = session.tracker.tracks()
+    answer = session.command({"command": "rename", "track_id": track.track_id, "name": "boat"})
+    assert answer == {"ok": True}
+    assert session.tracker.tracks()[0].name == "boat"
+    assert session.command({"command": "drop", "track_id": track.track_id})["ok"]
+    assert session.tracker.tracks() == []
+    answer = session.command({"command": "acquire", "north_m": 100.0, "east_m": 2.0})
+    assert answer["ok"]
+    assert answer["track_id"] in [one.track_id for one in session.tracker.tracks()]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        {},
+        {"command": "sink"},
+        {"command": "drop"},
+        {"command": "drop", "track_id": "x"},
+        {"command": "rename", "track_id": 99, "name": "x"},
+        {"command": "acquire", "north_m": math.inf, "east_m": 0.0},
+        {"command": "acquire", "latitude_deg": 1.0, "longitude_deg": 1.0},
+    ],
+)
+def test_a_wrong_command_is_answered(command):
+    answer = wl.live.Session().command(command)
+    assert answer["ok"] is False
+    assert answer["error"]
+
+
+# ------------------------------------------------------------------ own ship
+
+
+def test_of_contradicting_sources_the_status_says_which_is_used_and_why():
+    session = wl.live.Session()
+    for t, sentence in halo():
+        session.feed(t, "udp", sentence)
+    own = session.status()["own"]
+    assert sum(one["count"] for one in own["position"]["sources"]) == 17
+    assert own["position"]["source"].startswith("BMGLL")
+    assert own["heading"]["source"].startswith("BMHDT")
+    (magnetic,) = [one for one in own["heading"]["sources"] if "HDM" in one["source"]]
+    assert "variation" in magnetic["why_not"]
+    assert len(own["velocity"]["sources"]) == 2
+    for one in own.values():
+        assert one["why"]
+    assert session.status()["inputs"]["udp"]["problems"] == {}
+
+
+def test_a_preferred_source_is_used():
+    session = wl.live.Session({"own": {"position": ["CHGLL"], "velocity": ["BOVTG@udp"]}})
+    for t, sentence in halo():
+        session.feed(t, "udp", sentence)
+    own = session.status()["own"]
+    assert own["position"]["source"].startswith("CHGLL")
+    assert own["velocity"]["source"].startswith("BOVTG")
+
+
+def sources(**config):
+    return OwnShipSources(wl.live.OwnConfig(**config))
+
+
+def test_a_silent_source_is_replaced_at_once_and_comes_back_after_the_dwell():
+    own = sources(variation_deg=0.0, dwell_s=10.0, heading_age_s=3.0)
+    for t in np.arange(0.0, 60.0):
+        own.add_magnetic(t, HDM, 1.0)
+        if not 20.0 < t < 30.0:
+            own.heading.add(t, HDT, (2.0,))
+        own.choose(t)
+        if t in (19.0, 25.0, 35.0, 45.0):
+            used = str(own.heading.used.key)
+            assert ("HDT" in used) == (t in (19.0, 45.0)), t
+
+
+def test_heading_is_interpolated_across_north_and_predicted_with_the_rate():
+    own = sources()
+    for k, heading_deg in enumerate((350.0, 354.0, 358.0, 2.0, 6.0)):
+        own.heading.add(0.5 * k, HDT, (math.radians(heading_deg),))
+    assert math.degrees(own.heading_at(1.25)[0]) % 360.0 == pytest.approx(0.0, abs=1e-6)
+    ahead, std = own.heading_at(2.5)
+    assert math.degrees(ahead) == pytest.approx(10.0)
+    assert std > own.heading_at(1.25)[1]
+    assert own.heading_at(10.0) is None
+
+
+def test_position_is_that_of_the_time_and_of_the_reference_point():
+    own = sources(gnss_forward_m=10.0, position_age_s=5.0)
+    for t in range(5):
+        own.position.add(t, SourceKey("GGA", "GP", "x"), (8.0 * t, 0.0))
+        own.heading.add(t, HDT, (0.0,))
+    pose = own.at(2.5)
+    assert (pose.north_m, pose.east_m) == pytest.approx((10.0, 0.0))
+    assert own.at(5.0).north_m == pytest.approx(30.0)
+    assert own.at(5.0).position_std_m > pose.position_std_m
+    antenna = pose.antenna(-4.0, 2.0)
+    assert (antenna.north_m, antenna.east_m) == pytest.approx((6.0, 2.0))
+    gone = own.at(30.0)
+    assert isinstance(gone, Missing)
+    assert "position" in gone.reason
+
+
+@pytest.mark.parametrize("off_s", [0.4, 3 * 3600.0, -86400.0 * 1024 * 7, 86399.0])
+def test_a_clock_that_is_off_is_held(off_s):
+    clock = SensorClock()
+    times = [clock.time_s(t + off_s, t + 0.1) for t in np.arange(1.7e9, 1.7e9 + 30.0)]
+    np.testing.assert_allclose(np.diff(times), 1.0, atol=1e-6)
+    assert abs(times[-1] - (1.7e9 + 29.0)) < 5.0
+
+
+def test_a_time_of_day_is_on_the_day_nearest_to_its_arrival():
+    midnight = 86400.0 * 20_000
+    clock = SensorClock()
+    for t in np.arange(midnight - 3.0, midnight + 3.0, 0.25):
+        assert clock.of_day_s(t % 86400.0, t + 0.3) == pytest.approx(t)
+
+
+# ------------------------------------------------------------------ lines and AIS
+
+
+def ais_lines():
+    return [sentence for _, sentence in halo() if sentence.startswith(b"!")]
+
+
+def messages(pieces, is_stream=True):
+    pytest.importorskip("pyais")
+    decoder, problems = NmeaDecoder(is_stream), Problems()
+    found = [
+        one.message.asdict()
+        for k, piece in enumerate(pieces)
+        for one in decoder.feed(0.001 * k, piece, problems)
+        if isinstance(one, AisMessage)
+    ]
+    return found, problems
+
+
+def test_ais_agrees_with_gpsdecode_line_by_line():
+    if shutil.which("gpsdecode") is None:
+        pytest.skip("gpsdecode is not installed")
+    octets = b"\r\n".join(ais_lines()) + b"\r\n"
+    done = subprocess.run(["gpsdecode", "-j"], input=octets, capture_output=True, check=True)
+    theirs = [json.loads(line) for line in done.stdout.splitlines()]
+    ours, problems = messages([octets])
+    assert problems.count == {}
+    assert len({one["mmsi"] for one in ours if one["msg_type"] != 5}) == 129
+    ours = [one for one in ours if one["msg_type"] != 24]  # gpsdecode waits for its other part
+    assert len(ours) == len(theirs) > 100
+    same = {"speed": 0.05, "course": 0.05, "lon": 1e-6, "lat": 1e-6, "heading": 0, "mmsi": 0}
+    same |= {"to_bow": 0, "to_stern": 0, "imo": 0}
+    for mine, its in zip(ours, theirs, strict=True):
+        assert mine["msg_type"] == its["type"]
+        for key in same.keys() & its.keys() & mine.keys():
+            assert mine[key] == pytest.approx(its[key], abs=same[key]), key
+        for key in {"shipname", "callsign"} & its.keys() & mine.keys():
+            assert mine[key].strip() == its[key].strip()
+
+
+def test_bytes_cut_at_every_offset_give_the_same_messages():
+    lines = [line for line in ais_lines() if line.startswith(b"!AIVDM,2")][:4] + ais_lines()[:3]
+    octets = b"\r\n".join(lines) + b"\r\n"
+    whole, _ = messages([octets])
+    assert len(whole) == 5
+    for cut in range(1, len(octets)):
+        assert messages([octets[:cut], octets[cut:]])[0] == whole
+    assert messages([octets[k : k + 1] for k in range(len(octets))])[0] == whole
+
+
+def test_interleaved_parts_and_tag_blocks_give_the_same_messages():
+    parts = [line for line in ais_lines() if line.startswith(b"!AIVDM,2")]
+    alone, _ = messages([line + b"\r\n" for line in parts])
+    assert len(alone) == 4
+    first = [line for line in parts if line.split(b",")[2] == b"1"]
+    second = [line for line in parts if line.split(b",")[2] == b"2"]
+    renumbered = []
+    for half in (first, second):
+        for k, line in enumerate(half):
+            fields = line[1 : line.rindex(b"*")].split(b",")
+            fields[3] = b"%d" % k
+            body = b",".join(fields)
+            checksum = 0
+            for octet in body:
+                checksum ^= octet
+            tag = b"g:%d-2-%d" % (1 if half is first else 2, 100 + k)
+            sum_of_tag = 0
+            for octet in tag:
+                sum_of_tag ^= octet
+            renumbered.append(b"\\%s*%02X\\!%s*%02X" % (tag, sum_of_tag, body, checksum))
+    mixed, problems = messages([line + b"\r\n" for line in renumbered])
+    assert mixed == alone
+    assert problems.count == {}
+
+
+@given(st.lists(st.binary(max_size=80), max_size=20))
+def test_lines_do_not_depend_on_the_cuts(pieces):
+    octets = b"".join(pieces)
+    cut, whole = LineAssembly(True), LineAssembly(True)
+    got = [line for piece in pieces for line in cut.feed(piece, Problems())]
+    got += cut.finish(Problems())
+    want = [*whole.feed(octets, Problems()), *whole.finish(Problems())]
+    assert got == want == [line for line in re.split(rb"[\r\n]+", octets) if line.strip()]
+
+
+# ------------------------------------------------------------------ rubbish
+
+
+@settings(max_examples=100)
+@given(st.lists(st.tuples(st.sampled_from(["nmea", "json", "cat240", ""]), st.binary())))
+def test_no_octets_are_fatal(pieces):
+    inputs = [
+        {"url": f"udp://127.0.0.1:1?name={kind or 'any'}", "format": kind}
+        for kind in ("nmea", "json", "cat240", "")
+    ]
+    session = wl.live.Session({"input": inputs})
+    for k, (kind, octets) in enumerate(pieces):
+        session.feed(float(k), kind or "any", octets)
+    json.dumps(session.picture(), allow_nan=False)
+    assert session.metrics()
+
+
+@settings(max_examples=40)
+@given(
+    st.dictionaries(
+        st.sampled_from(["radar", "sector", "own", "report", "time_s", "range_m", "version"]),
+        st.recursive(
+            st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=5),
+            lambda inner: st.dictionaries(
+                st.sampled_from(["time_s", "from_rad", "to_rad", "north_m", "east_m"]), inner
+            ),
+            max_leaves=5,
+        ),
+    )
+)
+def test_no_json_is_fatal(line):
+    session = wl.live.Session()
+    session.feed(0.0, "x", json.dumps(line).encode())
+    json.dumps(session.picture(), allow_nan=False)
+
+
+def test_rubbish_is_counted_and_named():
+    session = wl.live.Session()
+    session.feed(0.0, "nmea", b"$GPGGA,1,2*00\r\n")
+    session.feed(0.0, "json", b'{"time_s": 1}')
+    session.feed(0.0, "json", b'{"version": 2, "own": {}}')
+    session.feed(0.0, "x", b"\x01\x02")
+    inputs = session.status()["inputs"]
+    assert inputs["nmea"]["problems"] == {"checksum": 1}
+    assert inputs["json"]["problems"] == {"JSON": 2}
+    assert "version" in inputs["json"]["last_problem"]
+    assert inputs["x"]["problems"] == {"unknown": 1}
+
+
+# ------------------------------------------------------------------ settings
+
+
+def test_printed_settings_read_back_the_same(tmp_path):
+    config = config_of(
+        {
+            "input": [{"url": "udp://0.0.0.0:10110?name=boat&format=nmea"}],
+            "output": [{"url": "file:x.jsonl"}, {"url": "udp://127.0.0.1:1"}],
+            "radar": [{"name": "A", "azimuth": "bow", "forward_m": 3.0, "period_s": 2.5}],
+            "own": {"position": ["GGA", "@boat"], "dwell_s": 4.0},
+            "tracker": {"max_tracks": 50},
+        }
+    )
+    path = tmp_path / "live.toml"
+    path.write_text(config.toml())
+    again = wl.live.read_config(path)
+    assert again.inputs == config.inputs
+    assert again.outputs == config.outputs
+    assert again.radars == config.radars
+    assert again.settings.tracker == config.settings.tracker
+    assert again.own.position == config.own.position
+    assert [one.format for one in config.outputs] == ["json", "ttm"]
+    assert config_of(config.as_document()).as_document() == config.as_document()
+
+
+@pytest.mark.parametrize(
+    ("document", "names"),
+    [
+        ({"input": [{"url": "ftp://x"}]}, "ftp"),
+        ({"input": [{"url": "udp://x:1", "format": "cat999"}]}, "format"),
+        ({"input": [{"url": "udp://x:1", "radar": "B"}]}, "radar"),
+        ({"input": [{"url": "udp://x:1"}, {"url": "udp://x:1"}]}, "udp://x:1"),
+        ({"radar": [{"name": "A", "range_std": 1.0}]}, "range_std"),
+        ({"own": {"dwell_s": -1.0}}, "dwell_s"),
+        ({"own": {"place_deg": [1.0]}}, "place_deg"),
+        ({"own": {"dwell_s": "long"}}, "dwell_s"),
+        ({"harbor": {}}, "harbor"),
+    ],
+)
+def test_errors_name_the_setting(document, names):
+    with pytest.raises(SettingsError, match=re.escape(names)):
+        config_of(document)

@@ -1,0 +1,358 @@
+"""A live session on the loopback: sockets, session files, replay, restart."""
+
+import json
+import math
+import os
+import random
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+import wakeline as wl
+from wakeline.cli import main
+from wakeline.live.config import InputConfig, LiveConfig, OutputConfig, RadarConfig
+from wakeline.live.network import NetworkInput, NetworkOutput
+from wakeline.live.record import Recorder, at_microsecond, read_session, segments_of
+from wakeline.live.service import Service, feed_record
+from wakeline.recording import RecordingError
+
+ASHORE = RadarConfig("A", position_deg=(54.0, 10.0), settings={"period_s": 2.0})
+
+
+def turn(k, begin_s):
+    """The lines of one turn with two vessels."""
+    t = begin_s + 2.0 * k
+    plots = [
+        {"time_s": t, "range_m": 2000.0 - 12.0 * k, "bearing_rad": 0.7},
+        {"time_s": t, "range_m": 1500.0 + 9.0 * k, "bearing_rad": 3.9},
+    ]
+    mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+    return t, "".join(f"{json.dumps(line)}\n" for line in [*plots, mark]).encode()
+
+
+def until(condition, within_s=5.0):
+    end_s = time.monotonic() + within_s
+    while not condition():
+        assert time.monotonic() < end_s, "nothing happened in time"
+        time.sleep(0.01)
+
+
+@pytest.fixture
+def taken():
+    class Taken(list):
+        def __call__(self, name, messages):
+            self.extend((name, octets) for _, octets in messages)
+
+        @property
+        def octets(self):
+            return b"".join(octets for _, octets in self)
+
+    return Taken()
+
+
+def opened(url, taken):
+    one = NetworkInput(LiveConfig(inputs=(InputConfig(url),)).inputs[0], taken)
+    one.start()
+    return one
+
+
+# ------------------------------------------------------------------ inputs and outputs
+
+
+def test_udp_unicast(taken):
+    one = opened("udp://127.0.0.1:0", taken)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for k in range(5):
+            sender.sendto(b"%d" % k, ("127.0.0.1", one.port))
+    until(lambda: taken.octets == b"01234")
+    one.close()
+
+
+def test_udp_multicast_on_the_interface(taken):
+    one = opened("udp://239.192.0.21:0?iface=127.0.0.1", taken)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        loopback = socket.inet_aton("127.0.0.1")
+        sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, loopback)
+        sender.sendto(b"x", ("239.192.0.21", one.port))
+    until(lambda: taken.octets == b"x")
+    one.close()
+
+
+def test_a_tcp_client_connects_again(taken):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        one = opened(f"tcp://127.0.0.1:{server.getsockname()[1]}", taken)
+        for octets in (b"a", b"b"):
+            peer, _ = server.accept()
+            peer.sendall(octets)
+            until(lambda octets=octets: taken.octets.endswith(octets))
+            peer.close()
+        one.close()
+    assert one.restarts >= 1
+
+
+def test_a_tcp_server_tells_its_clients_apart(taken):
+    one = opened("tcp-listen://127.0.0.1:0?name=in", taken)
+    clients = [socket.create_connection(("127.0.0.1", one.port)) for _ in range(2)]
+    for k, client in enumerate(clients):
+        client.sendall(b"%d" % k)
+    until(lambda: len(taken) == 2)
+    assert len({name for name, _ in taken}) == 2
+    assert all(name.startswith("in from 127.0.0.1:") for name, _ in taken)
+    for client in clients:
+        client.close()
+    one.close()
+
+
+def test_files_and_captures_end(taken, tmp_path):
+    path = tmp_path / "x.nmea"
+    path.write_bytes(b"$GPGGA\r\n")
+    one = opened(f"file:{path}", taken)
+    until(lambda: one.is_done)
+    assert taken.octets == b"$GPGGA\r\n"
+    capture = tmp_path / "x.pcap"
+    recorder = Recorder(capture, {})
+    recorder.data(1.0, "a", "udp://127.0.0.1:5", b"datagram")
+    recorder.close()
+    one = opened(f"pcap:{capture}", taken)
+    until(lambda: one.is_done)
+    assert taken[-1][1] == b"datagram"
+
+
+def test_a_serial_line(taken):
+    serial = pytest.importorskip("serial")
+    assert serial
+    controller, line = os.openpty()
+    one = opened(f"serial:{os.ttyname(line)}?baud=38400", taken)
+    until(lambda: "baud" in one.connection)
+    os.write(controller, b"$GPHDT,1.0,T*07\r\n")
+    until(lambda: b"HDT" in taken.octets)
+    one.close()
+    one.join()
+    os.close(controller)
+    os.close(line)
+
+
+def test_an_output_serves_clients_and_drops_for_one_that_does_not_read():
+    one = NetworkOutput(OutputConfig("tcp-listen://127.0.0.1:0"))
+    one.start()
+    stalled = socket.create_connection(("127.0.0.1", one.port))
+    reader = socket.create_connection(("127.0.0.1", one.port))
+    got = []
+    thread = threading.Thread(target=lambda: got.extend(iter(lambda: reader.recv(1 << 16), b"")))
+    thread.start()
+    until(lambda: "2 connected" in one.connection)
+    longest_s = 0.0
+    for k in range(300):
+        began_s = time.perf_counter()
+        one.send(b"%06d" % k + b"x" * 65536)
+        longest_s = max(longest_s, time.perf_counter() - began_s)
+        time.sleep(0.002)
+    until(lambda: one.dropped > 0)
+    assert longest_s < 0.05
+    until(lambda: b"".join(got)[-65536 - 6 :].startswith(b"000299"))
+    one.close()
+    one.join()
+    stalled.close()
+    thread.join(5.0)
+    reader.close()
+
+
+# ------------------------------------------------------------------ sessions
+
+
+def run_demo_like(record, turns, begin_s):
+    """A service that is sent some turns by UDP; its session and the lines it wrote."""
+    config = LiveConfig(inputs=(InputConfig("udp://127.0.0.1:0?name=in"),), radars=(ASHORE,))
+    session, lines = wl.live.Session(config), []
+    session.add_output("file:x").send = lines.append
+    service = Service(session, record)
+    thread = threading.Thread(target=service.run)
+    thread.start()
+    port = service.inputs[0].port
+    before = session.feeds["A"].sectors
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for k in turns:
+            sender.sendto(turn(k, begin_s)[1], ("127.0.0.1", port))
+            time.sleep(0.01)
+    until(lambda: session.feeds["A"].sectors >= before + len(turns))
+    service.stop()
+    thread.join(10.0)
+    return session, lines
+
+
+def replayed(path):
+    session, lines = wl.live.Session(LiveConfig(radars=(ASHORE,))), []
+    session.add_output("file:x").send = lines.append
+    for record in read_session(path):
+        feed_record(session, record)
+    return session, lines
+
+
+def test_a_session_replays_bit_for_bit_and_goes_on_with_the_same_numbers(tmp_path):
+    path = tmp_path / "s.pcap"
+    begin_s = time.time()
+    first, lines = run_demo_like(path, range(12), begin_s)
+    assert len(first.tracker.tracks()) == 2
+    assert replayed(path)[1] == lines
+    numbers = {one.track_id for one in first.tracker.tracks()}
+    again, more = run_demo_like(path, range(12, 16), begin_s)
+    assert {one.track_id for one in again.tracker.tracks()} == numbers
+    assert replayed(path)[1][-len(more) :] == more
+
+
+def test_what_operators_did_is_replayed(tmp_path):
+    path = tmp_path / "s.pcap"
+    session = wl.live.Session(LiveConfig(radars=(ASHORE,)))
+    service = Service(session, path)
+    service._begin()
+    for k in range(8):
+        t, octets = turn(k, 1000.0)
+        service._feed("x", [(t, octets)])
+    number = session.tracker.tracks()[0].track_id
+    assert session.command({"command": "rename", "track_id": number, "name": "ferry"})["ok"]
+    service.close()
+    again, _ = replayed(path)
+    assert {one.track_id: one.name for one in again.tracker.tracks()}[number] == "ferry"
+
+
+def test_a_cut_file_loses_its_last_record_only(tmp_path):
+    whole, rng = tmp_path / "s.pcap", random.Random(1)
+    recorder = Recorder(whole, {"radar": []})
+    recorder.begin(0.0)
+    for k in range(40):
+        recorder.data(float(k), "x", "udp://127.0.0.1:7", b"%d" % k * (k + 1))
+    recorder.close()
+    octets = whole.read_bytes()
+    records = [record for record in read_session(whole) if record.values is None]
+    assert [record.time_s for record in records] == list(range(40))
+    for cut in (rng.randrange(400, len(octets)) for _ in range(20)):
+        part = tmp_path / f"cut{cut}.pcap"
+        part.write_bytes(octets[:cut])
+        kept = [record for record in read_session(part) if record.values is None]
+        assert kept == records[: len(kept)]
+        onward = Recorder(part, {"radar": []})
+        onward.data(99.0, "x", "udp://127.0.0.1:7", b"on")
+        onward.close()
+        on = [record for record in read_session(part) if record.values is None]
+        assert on[:-1] == kept
+        assert on[-1].octets == b"on"
+
+
+def test_segments_are_rotated_within_the_cap(tmp_path):
+    path = tmp_path / "s.pcap"
+    recorder = Recorder(path, {"radar": []}, segment_octets=5000, most_octets=20000)
+    recorder.begin(0.0)
+    for k in range(500):
+        recorder.data(float(k), "x", "udp://127.0.0.1:7", bytes(200))
+    recorder.close()
+    segments = segments_of(path)
+    assert 2 < len(segments)
+    assert sum(segment.stat().st_size for segment in segments) < 26000
+    times = [record.time_s for record in read_session(path) if record.values is None]
+    assert times == [float(k) for k in range(500 - len(times), 500)]
+
+
+def test_another_file_is_no_session(tmp_path):
+    (tmp_path / "x.pcap").write_bytes(b"nothing")
+    for name in ("x.pcap", "missing.pcap"):
+        with pytest.raises(RecordingError):
+            list(read_session(tmp_path / name))
+
+
+def test_times_of_a_session_file_are_exact():
+    for time_s in (0.1, 1.7e9 + 0.123456, 1795717706.9999999):
+        assert at_microsecond(at_microsecond(time_s)) == at_microsecond(time_s)
+
+
+# ------------------------------------------------------------------ the command
+
+
+def started(*arguments, cwd):
+    return subprocess.Popen(
+        [sys.executable, "-m", "wakeline", "live", *arguments],
+        cwd=cwd,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def test_the_demonstration_tracks_and_stops_on_sigterm(tmp_path):
+    process = started("--demo", "--record", "s.pcap", cwd=tmp_path)
+    tracks = tmp_path / "wakeline-live" / "tracks.jsonl"
+    try:
+        until(lambda: tracks.exists() and b'"type":"track"' in tracks.read_bytes(), 40.0)
+    finally:
+        process.send_signal(signal.SIGTERM)
+        output, _ = process.communicate(timeout=20.0)
+    assert process.returncode == 0, output
+    assert "tracks" in output
+    lines = tracks.read_bytes()
+    for speed in ("max", "50"):
+        again = tmp_path / f"{speed}.jsonl"
+        replay = ["live", "--replay", str(tmp_path / "s.pcap"), "--speed", speed, "--quiet"]
+        assert main([*replay, "--out", f"file:{again}"]) == 0
+        assert again.read_bytes() == lines
+
+
+def free_port():
+    with socket.create_server(("127.0.0.1", 0)) as one:
+        return one.getsockname()[1]
+
+
+def test_a_killed_process_goes_on_with_the_same_numbers(tmp_path):
+    port, begin_s = free_port(), time.time()
+    arguments = ("--in", f"tcp-listen://127.0.0.1:{port}", "--out", "file:tracks.jsonl")
+    arguments += ("--own", "54,10", "--record", "s.pcap")
+    ids, sent = [], 0
+    for _ in range(2):
+        process = started(*arguments, cwd=tmp_path)
+        try:
+            until(lambda process=process: "in 0/s" in process.stdout.readline(), 30.0)
+            with socket.create_connection(("127.0.0.1", port)) as sender:
+                for sent in range(sent, sent + 10):
+                    sender.sendall(turn(sent, begin_s)[1])
+                last = begin_s + 2.0 * sent
+                until(lambda last=last: f'"time_s":{last}' in read_tracks(tmp_path), 10.0)
+        finally:
+            process.kill()
+            process.communicate(timeout=10.0)
+        rows = [json.loads(line) for line in read_tracks(tmp_path).splitlines()]
+        ids.append({row["track_id"] for row in rows if row["type"] == "track"})
+        sent += 1
+    assert len(ids[0]) == 2
+    assert ids[1] == ids[0]
+
+
+def read_tracks(folder):
+    path = folder / "tracks.jsonl"
+    return path.read_text().rpartition("\n")[0] if path.exists() else ""
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["--in", "ftp://x"],
+        ["--in", "udp://127.0.0.1"],
+        ["--replay", "missing.pcap"],
+        ["--own", "here", "--in", "stdin:"],
+        ["--speed", "0", "--demo"],
+    ],
+)
+def test_a_wrong_command_line_is_one_line(arguments, capsys):
+    assert main(["live", *arguments]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_settings_are_printed_and_read(tmp_path, capsys):
+    assert main(["live", "--print-config", "--in", "udp://0.0.0.0:10110"]) == 0
+    path = tmp_path / "live.toml"
+    path.write_text(capsys.readouterr().out)
+    assert main(["live", str(path), "--print-config"]) == 0
+    assert capsys.readouterr().out == path.read_text()
