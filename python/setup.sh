@@ -67,6 +67,9 @@ missing_packages() {
     has_header gtest/gtest.h || echo libgtest-dev
     has_header benchmark/benchmark.h || echo libbenchmark-dev
     has_header nlohmann/json.hpp || echo nlohmann-json3-dev
+    command -v tshark >/dev/null || echo tshark
+    command -v gpsbabel >/dev/null || echo gpsbabel
+    command -v ogrinfo >/dev/null || echo gdal-bin
   fi
   if [[ $purpose == sanitize ]]; then has_sanitizers || echo clang-14 libclang-rt-14-dev; fi
 }

@@ -21,6 +21,7 @@ from . import (
     bench,
     calibrate,
     demo,
+    export,
     interrupt,
     live,
     navigate,
@@ -117,7 +118,18 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         title="commands", required=True, metavar="COMMAND", parser_class=_Parser
     )
-    for command in (demo, track, live, calibrate, navigate, search, score, study, bench):
+    for command in (
+        demo,
+        track,
+        live,
+        calibrate,
+        navigate,
+        search,
+        score,
+        export,
+        study,
+        bench,
+    ):
         command.add_to(commands)
     return parser
 

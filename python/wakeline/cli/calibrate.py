@@ -62,12 +62,9 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "--ais", type=Path, metavar="FILE", required=True, help="position reports of vessels"
     )
     options.add_own(parser)
-    parser.add_argument(
-        "--origin",
-        type=_origin,
-        metavar="LAT,LON",
-        help="degrees, where north 0, east 0 of the recording is; for reports in latitude and "
-        "longitude",
+    options.add_origin(
+        parser,
+        "degrees, where north 0, east 0 of the recording is; for reports in latitude and longitude",
     )
     parser.add_argument(
         "--position-std",
@@ -84,16 +81,6 @@ def add_to(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--json", type=Path, metavar="F", help="the offsets as JSON")
     parser.set_defaults(run=run, inputs=inputs)
-
-
-def _origin(text: str) -> tuple[float, float]:
-    try:
-        latitude_deg, longitude_deg = map(float, text.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"wanted LAT,LON in degrees such as 63.44,10.40, got {text!r}"
-        ) from None
-    return latitude_deg, longitude_deg
 
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:

@@ -45,12 +45,29 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_origin(parser: argparse.ArgumentParser, help_text: str, *, required: bool = False) -> None:
+    """Add the option of the position of the plane's origin."""
+    parser.add_argument(
+        "--origin", type=_origin, metavar="LAT,LON", required=required, help=help_text
+    )
+
+
 def files(arguments: argparse.Namespace, *names: str) -> list[Path]:
     """The input files that are given, of the named arguments and of ``--radar``."""
     found = [getattr(arguments, name) for name in names]
     if arguments.radar is not None and arguments.radar not in radar_names():
         found.append(Path(arguments.radar))
     return [file for file in found if file is not None]
+
+
+def _origin(text: str) -> tuple[float, float]:
+    try:
+        latitude_deg, longitude_deg = map(float, text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"wanted LAT,LON in degrees such as 63.44,10.40, got {text!r}"
+        ) from None
+    return latitude_deg, longitude_deg
 
 
 def _pair(text: str) -> tuple[str, str]:

@@ -24,6 +24,7 @@ from .plots_writer import write_plots
 from .radars import load_radar, radar_names
 from .scans import revolution_s, scan_numbers
 from .tracks_csv import Tracks, read_tracks, write_tracks
+from .tracks_export import export_tracks
 from .truth import TargetTruth
 from .video import RadarVideo
 
@@ -42,6 +43,7 @@ __all__ = [
     "TargetTruth",
     "Tracks",
     "VideoReport",
+    "export_tracks",
     "is_video",
     "load",
     "load_ais",
