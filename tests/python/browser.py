@@ -150,16 +150,14 @@ class Browser:
 
     def press(self, selector):
         """Click an element."""
-        element = self._call(
-            "POST", "/element", {"using": "css selector", "value": selector}
-        )
+        element = self._call("POST", "/element", {"using": "css selector", "value": selector})
         self._call("POST", f"/element/{element[_ELEMENT]}/click", {})
 
     def type(self, selector, text):
         """Replace the text of a field."""
-        element = self._call(
-            "POST", "/element", {"using": "css selector", "value": selector}
-        )[_ELEMENT]
+        element = self._call("POST", "/element", {"using": "css selector", "value": selector})[
+            _ELEMENT
+        ]
         self._call("POST", f"/element/{element}/clear", {})
         self._call("POST", f"/element/{element}/value", {"text": text})
 

@@ -127,7 +127,7 @@ class AlarmWatcher(AlarmBoard):
 def event_of(event: AlarmEvent) -> dict[str, Any]:
     """For JSON lines."""
     time_s, change, alarm = event
-    return {"kind": "alarm", "change": change} | alarm.as_dict(time_s)
+    return {"type": "alarm", "change": change, "time_s": time_s} | alarm.as_dict(time_s)
 
 
 def columns(tracks: Iterable[Any], mean_of: Any) -> SimpleNamespace:

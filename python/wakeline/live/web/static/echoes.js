@@ -128,9 +128,27 @@ export class Echoes {
     this.changed = true;
   }
 
+  /** Draw what differs from what is shown: new rows, another view, and trails once a second. */
   draw(view, settings, palette, time_s, own) {
+    const { canvas } = this.painter;
+    const [north, east] = [view.center[0] - own.north, view.center[1] - own.east];
+    const moved = settings.trails === "true" ? [own.north, own.east] : [];
+    const key = [
+      ...[north, east, ...moved].map((v) => (v * view.scale * 2).toFixed(0)),
+      view.rotation.toFixed(4), view.range_m, ...view.middle, canvas.width, canvas.height,
+      settings.gain, settings.trails, settings.trailMinutes, palette.background,
+      this.radars.size && settings.trails !== "off" ? Math.floor(time_s) : 0,
+    ].join();
+    if (!this.changed && key === this.key) return;
+    this.key = key;
     this.painter.draw([...this.radars.entries()], view, settings, palette, Echoes.stamp(time_s), own);
     this.changed = false;
+  }
+
+  blank(palette) {
+    const key = `${palette.background} ${this.painter.canvas.width} ${this.painter.canvas.height}`;
+    if (key !== this.key) this.painter.blank(palette);
+    this.key = key;
   }
 }
 
@@ -305,6 +323,12 @@ class GlPainter {
     }
   }
 
+  blank(palette) {
+    const { gl } = this;
+    gl.clearColor(...rgb(palette.background).map((v) => v / 255), 1);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+  }
+
   draw(radars, view, settings, palette, now, own) {
     const { gl, places, canvas } = this;
     if (gl.isContextLost()) return;
@@ -350,7 +374,6 @@ class PlainPainter {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d", { alpha: false });
-    this.drawn_ms = -Infinity;
     this.key = "";
   }
 
@@ -379,11 +402,19 @@ class PlainPainter {
     }
   }
 
+  blank(palette) {
+    this.context.fillStyle = palette.background;
+    this.context.fillRect(0, 0, this.canvas.width, this.canvas.height);
+  }
+
   draw(radars, view, settings, palette, now, own) {
     const { canvas, context } = this;
-    context.fillStyle = radars.length ? palette.beyond : palette.background;
+    if (!radars.length) {
+      this.blank(palette);
+      return;
+    }
+    context.fillStyle = palette.beyond;
     context.fillRect(0, 0, canvas.width, canvas.height);
-    if (!radars.length) return;
     const [, radar] = radars[0];
     const [width, height] = [Math.ceil(view.width / 1.5), Math.ceil(view.height / 1.5)];
     this.table(radar, view, width, height, [view.center[0] - own.north, view.center[1] - own.east]);

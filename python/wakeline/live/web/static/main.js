@@ -24,7 +24,8 @@ const DEFAULTS = {
 };
 
 // Settings: as they were, changed by the part of the address after #.
-const chosen = new Set();
+const chosen = new Set(); // by the operator, here or before; kept for the next time
+const given = new Set(); // by the address, for this time
 function readSettings() {
   const settings = structuredClone(DEFAULTS);
   try {
@@ -35,13 +36,17 @@ function readSettings() {
         chosen.add(name);
       }
     }
-    Object.assign(settings.show, kept.show);
+    for (const name of Object.keys(DEFAULTS.show)) {
+      if (typeof kept.show?.[name] !== "boolean") continue;
+      settings.show[name] = kept.show[name];
+      chosen.add(`show-${name}`);
+    }
   } catch {
     // a broken store is no store
   }
-  const given = new URLSearchParams(location.hash.slice(1));
-  for (const [name, text] of given) {
-    chosen.add(name);
+  const address = new URLSearchParams(location.hash.slice(1));
+  for (const [name, text] of address) {
+    given.add(name);
     if (name in settings.show) settings.show[name] = text !== "0";
     else if (typeof DEFAULTS[name] === "number") settings[name] = Number(text);
     else if (typeof DEFAULTS[name] === "boolean") settings[name] = text !== "0";
@@ -49,7 +54,7 @@ function readSettings() {
   }
   if (!(settings.palette in PALETTES)) settings.palette = DEFAULTS.palette;
   if (!(settings.units in RANGES_M)) settings.units = DEFAULTS.units;
-  settings.range_m = Number(given.get("range")) || null;
+  settings.range_m = Number(address.get("range")) || null;
   return settings;
 }
 
@@ -67,8 +72,8 @@ let offered = null; // place of the card without a target
 
 function keep() {
   try {
-    const kept = Object.fromEntries(Object.keys(DEFAULTS).filter((name) => name === "show" || chosen.has(name)).map((name) => [name, settings[name]]));
-    localStorage.setItem(KEPT, JSON.stringify({ ...kept, gl: true }));
+    const pick = (values, prefix) => Object.fromEntries(Object.keys(values).filter((name) => chosen.has(prefix + name)).map((name) => [name, values[name]]));
+    localStorage.setItem(KEPT, JSON.stringify({ ...pick(settings, ""), show: pick(settings.show, "show-") }));
   } catch {
     // private windows have no store
   }
@@ -125,7 +130,7 @@ function fit() {
   away.sort((a, b) => a - b);
   const targets_m = away.length ? 1.4 * away[Math.floor(0.95 * (away.length - 1))] : 0;
   view.fit(reach ? 0.85 * reach : targets_m, settings.units);
-  if (!chosen.has("vectorMinutes")) {
+  if (!chosen.has("vectorMinutes") && !given.has("vectorMinutes")) {
     settings.vectorMinutes = view.range_m < 2000 ? 1 : view.range_m < 6000 ? 3 : 6;
     applySettings();
   }
@@ -388,6 +393,7 @@ for (const [id, name, numeric] of [["up", "up"], ["motion", "motion"], ["vectors
 for (const name of Object.keys(settings.show)) {
   byId(`show-${name}`).addEventListener("change", (event) => {
     settings.show[name] = event.target.checked;
+    chosen.add(`show-${name}`);
     applySettings();
     keep();
   });
@@ -570,7 +576,8 @@ function frame(now_ms) {
   view.follow(here);
   const palette = PALETTES[settings.palette];
   const scene = { view, store, settings, palette, own: here, time_s, now_ms, selected, blink, sketch: tools.sketch, measures: tools.measures, cursor: tools.cursor, keyed: tools.keyed };
-  if (settings.show.echoes || echoes.painter.drawn !== false) echoes.draw(view, settings, palette, time_s, here);
+  if (settings.show.echoes) echoes.draw(view, settings, palette, time_s, here);
+  else echoes.blank(palette);
   overlay.draw(scene);
   placeCard();
   showCursor(here);

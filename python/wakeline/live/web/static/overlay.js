@@ -38,7 +38,10 @@ export class Overlay {
     if (settings.show.past) for (const one of targets) this.drawPast(one);
     for (const one of targets) this.drawVector(one);
     if (settings.show.uncertainty) for (const one of targets) this.drawEllipse(one);
-    for (const danger of store.encounters) this.drawEncounter(danger);
+    const dangers = new Set(store.dangers);
+    for (const one of store.encounters) {
+      if (dangers.has(one) || one.first === scene.selected || one.second === scene.selected) this.drawEncounter(one);
+    }
     for (const one of targets) this.drawTarget(one);
     for (const one of store.lost.values()) this.drawLost(one);
     const vessels = settings.show.ais ? this.drawAis(time_s) : [];
@@ -165,13 +168,7 @@ export class Overlay {
   targets(time_s) {
     const { view, store, selected } = this.scene;
     const shown = [];
-    const dangers = new Map();
-    for (const one of store.encounters) {
-      for (const id of [one.first, one.second]) {
-        const known = dangers.get(id);
-        if (!known || one.first === 0 || one.probability > known.probability) dangers.set(id, one);
-      }
-    }
+    const dangers = store.dangerOfEach();
     const alarmed = new Map();
     for (const alarm of store.alarms) {
       if (alarm.state === "ended") continue;

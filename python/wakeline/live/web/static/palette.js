@@ -28,7 +28,7 @@ export const PALETTES = {
     trail: [56, 102, 140],
   },
   night: {
-    background: "#000000", beyond: "#000000", ink: "#c9846f", muted: "#a5705e", ring: "#3a231c",
+    background: "#000000", beyond: "#000000", ink: "#c9846f", muted: "#b07a66", ring: "#3a231c",
     own: "#d08a72", target: "#c98d3a", danger: "#ff4a3d", lost: "#b8762a", ais: "#7f9a45",
     selected: "#d8a63e", vector: "#c98d3a", past: "#c98d3a", plot: "#97743a", zone: "#b0608a",
     exclusion: "#8672b8", land: "#806a3a", measure: "#c9846f", label: "#c9906f", halo: "#000000",

@@ -64,10 +64,11 @@ export class Panel {
       if (one.ahead_s >= 0 && one.probability >= 0.01) return 1;
       return one.ahead_s >= 0 ? 2 : 3;
     };
+    const dangers = store.dangerOfEach();
     const all = [...store.tracks.values()].map((track) => {
       const place = store.at(track, time_s);
       const [north, east] = [place.north - own.north, place.east - own.east];
-      const danger = store.dangerOf(track.id);
+      const danger = dangers.get(track.id) ?? null;
       const other = danger && danger.first !== 0;
       return {
         track,

@@ -113,19 +113,19 @@ export class Store {
     };
   }
 
-  /** The encounter of a track with own ship, else the likeliest with another. */
-  dangerOf(id) {
-    let worst = null;
-    for (const one of this.encounters) {
-      if (one.first !== id && one.second !== id) continue;
-      if (one.first === 0) return one;
-      if (!worst || one.probability > worst.probability) worst = one;
-    }
-    return worst;
+  /** Dangerous encounters: those of own ship, or, ashore, of any two. */
+  get dangers() {
+    return this.own ? this.encounters.filter((one) => one.first === 0) : this.encounters;
   }
 
-  /** Alarms that last, of a track. */
-  alarmsOf(id) {
-    return this.alarms.filter((alarm) => alarm.state !== "ended" && alarm.tracks.includes(id));
+  /** The likeliest danger of each track. */
+  dangerOfEach() {
+    const worst = new Map();
+    for (const one of this.dangers) {
+      for (const id of [one.first, one.second]) {
+        if (!(worst.get(id)?.probability >= one.probability)) worst.set(id, one);
+      }
+    }
+    return worst;
   }
 }
