@@ -200,6 +200,13 @@ class RunGate {
   double threshold_ = 0.0;
 };
 
+/// `to = from` of an estimator, not inlined: it is rare, and inlined it would keep a second
+/// estimator in the registers of the loop.
+template <class To, class From>
+[[gnu::cold, gnu::noinline]] void assign_apart(To& to, const From& from) noexcept {
+  to = from;
+}
+
 /// An observer of a run that does nothing.
 struct Unwatched {
   template <class Estimator>
@@ -259,7 +266,7 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
       if (in.gate != nullptr)
         outside = read && !in.gate->template contains<Scalar>(estimated_position(estimator),
                                                               seen.position(z).mean);
-    if (in.nis_gate != nullptr) before = estimator;
+    if (in.nis_gate != nullptr) assign_apart(before, estimator);
     Mask used = read && (open || !outside);
     Step<kM, Scalar> step = failed_step<kM, Scalar>(Status::kMissed);
     step.innovation.setConstant(kNaN);
@@ -274,7 +281,7 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
         const Mask beyond = done && !gate.contains(taken.nis, int(taken.innovation.size()));
         outside = outside || beyond;
         if (any(beyond && !open)) {
-          estimator = *before;
+          assign_apart(estimator, *before);
           used = used && (open || !beyond);
           continue;
         }

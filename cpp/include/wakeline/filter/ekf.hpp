@@ -72,8 +72,12 @@ class Ekf : public Belief<MotionType, ScalarType> {
   template <class Sensor>
   Step<Sensor::kMeasurements, Scalar> update(const Sensor& sensor,
                                              const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
-    return with_model(
-        sensor, [&](const auto& model) { return correct(model, sensor.observe(z)).scored(); });
+    // Without a lambda between, which GCC 12 does not always inline `correct` through.
+    if constexpr (SensorVariant<Sensor>)
+      return with_model(
+          sensor, [&](const auto& model) { return correct(model, sensor.observe(z)).scored(); });
+    else
+      return correct(sensor, sensor.observe(z)).scored();
   }
 
   /// The same with an observed reading; the likelihood in two factors.

@@ -202,12 +202,22 @@ class Ukf : public Belief<MotionType, ScalarType> {
         MeasuredPoints<kComponents, Sensor, Scalar>(sensor, x, sigma).differences;
     const Scalar w = unscented_.template weight<Scalar>(kStates);
     Vec<Scalar, M> shift;
-    for (int m = 0; m < M; ++m) shift[m] = w * differences.row(m).sum();
-    Mat<Scalar, kStates, kPoints> kept = sigma.colwise() - x;
-    kept.template leftCols<differences.ColsAtCompileTime>() -= gain * differences;
-    const Mat<Scalar, M, M> rest =
-        r + unscented_.template centre_correction<Scalar>() * shift * shift.transpose();
-    const Mat<Scalar, kStates, M> pushed = gain * rest;
+    for (int m = 0; m < M; ++m) {
+      Scalar sum = Scalar(0);
+      for (int k = 0; k < differences.cols(); ++k) sum += differences(m, k);
+      shift[m] = w * sum;
+    }
+    Mat<Scalar, kStates, kPoints> kept = sigma;
+    for (int k = 0; k < kPoints; ++k)
+      for (int i = 0; i < kStates; ++i) kept(i, k) -= x[i];
+    const auto explained = product(gain, differences);
+    for (int k = 0; k < explained.cols(); ++k)
+      for (int i = 0; i < kStates; ++i) kept(i, k) -= explained(i, k);
+    Mat<Scalar, M, M> rest = r;
+    for (int n = 0; n < M; ++n)
+      for (int m = 0; m < M; ++m)
+        rest(m, n) += unscented_.template centre_correction<Scalar>() * shift[m] * shift[n];
+    const Mat<Scalar, kStates, M> pushed = product(gain, rest);
     Mat<Scalar, kStates, kStates> p;
     unroll_lower<kStates>([&](int i, int j) {
       Scalar sum = Scalar(0);

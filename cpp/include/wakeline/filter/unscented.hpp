@@ -94,13 +94,13 @@ struct MovedPoints {
       const Mat<Scalar, N, N> f = motion.matrix(dt_s);
       centre = product(f, mean);
       differences = product(f, points);
+      for (int k = 0; k < 2 * N; ++k)
+        for (int i = 0; i < N; ++i) differences(i, k) -= centre[i];
     } else {
       centre = motion.transition(mean, dt_s);
       for (int k = 0; k < 2 * N; ++k)
-        differences.col(k) = motion.transition(Vec<Scalar, N>(points.col(k)), dt_s);
+        differences.col(k) = motion.transition(Vec<Scalar, N>(points.col(k)), dt_s) - centre;
     }
-    for (int k = 0; k < 2 * N; ++k)
-      for (int i = 0; i < N; ++i) differences(i, k) -= centre[i];
   }
 };
 

@@ -72,12 +72,18 @@ concept PositionSensor = requires(const Sensor& sensor,
   { sensor.position(z) } -> std::convertible_to<Gaussian<2>>;
 };
 
+/// A sensor chosen at run time, whose measurement model `visit_model` gives.
+template <class Sensor>
+concept SensorVariant = requires(const Sensor& sensor) {
+  sensor.variant();
+};
+
 /// Calls `function` with the measurement model of a sensor: the sensor itself, or what one that is
-/// chosen at run time is by its `visit_model`.
+/// chosen at run time is.
 template <class Sensor, class Function>
 [[gnu::always_inline]] inline decltype(auto) with_model(const Sensor& sensor,
                                                         Function&& function) noexcept {
-  if constexpr (requires { sensor.visit_model(function); })
+  if constexpr (SensorVariant<Sensor>)
     return sensor.visit_model(function);
   else
     return function(sensor);

@@ -8,7 +8,6 @@
 #include "wakeline/core/fields.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/measurement/own_ship.hpp"
-#include "wakeline/simd/flatten.hpp"
 #include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
@@ -37,11 +36,19 @@ Mat<Scalar, 2, 2> oriented_covariance(const Vec<Scalar, 2>& u, Scalar along,
 /// sr² along the bearing and (r sb)² across it. Source: Bar-Shalom, Li, Kirubarajan, 10.4.2; paper
 /// A, equation (6).
 template <class Scalar>
-Gaussian<2, Scalar> convert_plain(Scalar range_m, Scalar bearing_rad, Scalar range_var_m2,
-                                  Scalar bearing_var_rad2) noexcept {
+Gaussian<2, Scalar> convert_plain(Scalar range_m, Scalar bearing_rad, double range_var_m2,
+                                  double bearing_var_rad2) noexcept {
+  using Real = RealOf<Scalar>;
   const Vec<Scalar, 2> u = towards(bearing_rad);
   return {range_m * u,
-          oriented_covariance<Scalar>(u, range_var_m2, range_m * range_m * bearing_var_rad2)};
+          oriented_covariance<Scalar>(u, Scalar(Real(range_var_m2)),
+                                      range_m * range_m * Scalar(Real(bearing_var_rad2)))};
+}
+
+/// exp(x) - 1 of what is the same from step to step. Unlike `std::expm1`, which sets `errno`, the
+/// compiler takes it out of a loop.
+[[gnu::const, gnu::noinline]] inline double expm1_of_constant(double x) noexcept {
+  return std::expm1(x);
 }
 
 /// Unbiased conversion of a polar plot to north/east relative to the antenna: the plain point times
@@ -50,16 +57,17 @@ Gaussian<2, Scalar> convert_plain(Scalar range_m, Scalar bearing_rad, Scalar ran
 /// S. Z. Kang, Y. Bar-Shalom, "Unbiased converted measurements for tracking", IEEE Trans. AES-34,
 /// 1998, equations (10) and (12), written along and across the bearing to avoid cancellation.
 template <class Scalar>
-Gaussian<2, Scalar> convert_unbiased(Scalar range_m, Scalar bearing_rad, Scalar range_var_m2,
-                                     Scalar bearing_var_rad2) noexcept {
-  using std::exp, std::expm1;
+Gaussian<2, Scalar> convert_unbiased(Scalar range_m, Scalar bearing_rad, double range_var_m2,
+                                     double bearing_var_rad2) noexcept {
+  const auto constant = [](double x) { return Scalar(RealOf<Scalar>(x)); };
   const Vec<Scalar, 2> u = towards(bearing_rad);
   const Scalar range2 = range_m * range_m;
-  const Scalar shrink = expm1(-2 * bearing_var_rad2);  // exp(-2 sb²) - 1
-  const Scalar along =
-      range2 * (expm1(bearing_var_rad2) + shrink / 2) + range_var_m2 * (1 + shrink / 2);
-  const Scalar across = -(range2 + range_var_m2) * shrink / 2;
-  return {exp(bearing_var_rad2 / 2) * range_m * u, oriented_covariance<Scalar>(u, along, across)};
+  const double shrink = expm1_of_constant(-2 * bearing_var_rad2);  // exp(-2 sb²) - 1
+  const Scalar along = range2 * constant(expm1_of_constant(bearing_var_rad2) + shrink / 2) +
+                       constant(range_var_m2 * (1 + shrink / 2));
+  const Scalar across = (range2 + constant(range_var_m2)) * constant(-shrink / 2);
+  return {constant(1 + expm1_of_constant(bearing_var_rad2 / 2)) * range_m * u,
+          oriented_covariance<Scalar>(u, along, across)};
 }
 
 /// r sb² / sr: twice the bias r sb² / 2 of the plain conversion, relative to the range error.
@@ -101,15 +109,12 @@ struct PolarErrors {
     return variance(kAngleStd, bearing_std_rad) + own.heading_std_rad * own.heading_std_rad;
   }
 
-  /// Plot `[range, bearing]` to north/east in the plane, with all errors. Not inlined: its sines
-  /// and exponentials are long beside a call, and every estimator that takes such a plot has them.
+  /// Plot `[range, bearing]` to north/east in the plane, with all errors.
   template <class Scalar>
-  [[gnu::noinline]] WAKELINE_FLATTEN Gaussian<2, Scalar> position(Scalar range_m,
-                                                                  Scalar bearing_rad,
-                                                                  bool unbiased) const noexcept {
+  Gaussian<2, Scalar> position(Scalar range_m, Scalar bearing_rad, bool unbiased) const noexcept {
     const Scalar bearing = bearing_rad - Scalar(bearing_offset_rad);
-    const Scalar range_var = Scalar(range_variance_m2());
-    const Scalar bearing_var = Scalar(bearing_variance_rad2());
+    const double range_var = range_variance_m2();
+    const double bearing_var = bearing_variance_rad2();
     Gaussian<2, Scalar> fix = unbiased ? convert_unbiased(range_m, bearing, range_var, bearing_var)
                                        : convert_plain(range_m, bearing, range_var, bearing_var);
     fix.mean += own.position<Scalar>();

@@ -502,8 +502,8 @@ class UsvNavigator {
     const Cholesky<M, Scalar> factor(expected);
     if (!factor.ok()) return;
     const Vec<Scalar, kStates> error =
-        factor.whiten_rows(ph) * factor.template whiten<1>(innovation);
-    belief.covariance.diagonal() += error.cwiseAbs2();
+        product(factor.whiten_rows(ph), Vec<Scalar, M>(factor.template whiten<1>(innovation)));
+    for (int i = 0; i < kStates; ++i) belief.covariance(i, i) += square(error[i]);
     (void)filter_.assign(belief);
     by_gyro_.setZero();
   }
