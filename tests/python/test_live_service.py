@@ -24,12 +24,12 @@ from wakeline.recording import RecordingError
 ASHORE = RadarConfig("A", position_deg=(54.0, 10.0), settings={"period_s": 2.0})
 
 
-def turn(k, begin_s):
+def turn(k, begin_s, period_s=2.0):
     """The lines of one turn with two vessels."""
-    t = begin_s + 2.0 * k
+    t = begin_s + period_s * k
     plots = [
-        {"time_s": t, "range_m": 2000.0 - 12.0 * k, "bearing_rad": 0.7},
-        {"time_s": t, "range_m": 1500.0 + 9.0 * k, "bearing_rad": 3.9},
+        {"time_s": t, "range_m": 2000.0 - 6.0 * period_s * k, "bearing_rad": 0.7},
+        {"time_s": t, "range_m": 1500.0 + 5.0 * period_s * k, "bearing_rad": 3.9},
     ]
     mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
     return t, "".join(f"{json.dumps(line)}\n" for line in [*plots, mark]).encode()
@@ -306,27 +306,34 @@ def free_port():
 
 
 def test_a_killed_process_goes_on_with_the_same_numbers(tmp_path):
-    port, begin_s = free_port(), time.time()
-    arguments = ("--in", f"tcp-listen://127.0.0.1:{port}", "--out", "file:tracks.jsonl")
-    arguments += ("--own", "54,10", "--record", "s.pcap")
-    ids, sent = [], 0
+    port = free_port()
+    (tmp_path / "live.toml").write_text(
+        '[[radar]]\nname = "A"\nposition_deg = [54, 10]\nperiod_s = 0.2\n'
+        f'[[input]]\nurl = "tcp-listen://127.0.0.1:{port}"\n'
+        '[[output]]\nurl = "file:tracks.jsonl"\n'
+    )
+    texts, begin_s = [], time.time()
     for _ in range(2):
-        process = started(*arguments, cwd=tmp_path)
+        process = started("live.toml", "--record", "s.pcap", cwd=tmp_path)
         try:
             until(lambda process=process: "in 0/s" in process.stdout.readline(), 30.0)
+            first = math.ceil((time.time() - begin_s) / 0.2)
             with socket.create_connection(("127.0.0.1", port)) as sender:
-                for sent in range(sent, sent + 10):
-                    sender.sendall(turn(sent, begin_s)[1])
-                last = begin_s + 2.0 * sent
-                until(lambda last=last: f'"time_s":{last}' in read_tracks(tmp_path), 10.0)
+                for k in range(first, first + 15):
+                    sender.sendall(turn(k, begin_s, 0.2)[1])
+                    time.sleep(0.1)
+                last = f'"time_s":{begin_s + 0.2 * k}'
+                until(lambda last=last: last in read_tracks(tmp_path), 10.0)
         finally:
             process.kill()
             process.communicate(timeout=10.0)
-        rows = [json.loads(line) for line in read_tracks(tmp_path).splitlines()]
-        ids.append({row["track_id"] for row in rows if row["type"] == "track"})
-        sent += 1
-    assert len(ids[0]) == 2
-    assert ids[1] == ids[0]
+        texts.append(read_tracks(tmp_path))
+    again = tmp_path / "again.jsonl"
+    replay = ["live", "--replay", str(tmp_path / "s.pcap"), "--speed", "max", "--quiet"]
+    assert main([*replay, "--out", f"file:{again}"]) == 0
+    second = texts[1][len(texts[0]) :].partition("\n")[2]
+    assert second in again.read_text()
+    assert '"type":"track"' in second
 
 
 def read_tracks(folder):

@@ -16,6 +16,7 @@ import numpy as np
 import wakeline as wl
 from wakeline._engine import benchmark
 from wakeline._progress import progress
+from wakeline.live import benchmark as benchmark_live
 
 from . import outputs, report
 
@@ -72,12 +73,26 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         description="Measures throughput per estimator on this machine, from Python: the best of "
         f"{REPEATS} times, with ratios within the run.",
     )
+    parser.add_argument(
+        "what",
+        nargs="?",
+        choices=("engine", "live"),
+        default="engine",
+        help="the engine (default), or live sessions on the loopback: latency, losses, processor, "
+        "memory; about three minutes",
+    )
     parser.add_argument("--json", type=Path, metavar="F", help="write the figures as JSON")
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
+    if arguments.what == "live":
+        rows = list(progress(benchmark_live.figures(), 12, "measuring"))
+        print(benchmark_live.table(rows))
+        if arguments.json is not None:
+            outputs.write_json(arguments.json, "bench live", rows, seed=SEED)
+        return
     works = _works()
     rows = [measured(work) for work in progress(works, len(works), "measuring")]
     add_ratios(rows)

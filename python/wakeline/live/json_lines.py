@@ -55,6 +55,7 @@ _NEEDED = {
     "own": (),
     "report": ("source", "identity", "time_s"),
 }
+_ENCODER = json.JSONEncoder(separators=(",", ":"), allow_nan=False)
 _TEXTS = ("source", "identity", "name")
 
 
@@ -122,8 +123,12 @@ def _first_words(error: Exception) -> str:
 
 def write_line(kind: str, values: Mapping[str, Any]) -> bytes:
     """One line of output; NaN and infinity become null."""
-    line = {"version": VERSION, "type": kind} | dict(finite_only(values))
-    return json.dumps(line, separators=(",", ":"), allow_nan=False).encode() + b"\n"
+    line = {"version": VERSION, "type": kind} | dict(values)
+    try:
+        text = _ENCODER.encode(line)
+    except ValueError:
+        text = _ENCODER.encode(finite_only(line))
+    return text.encode() + b"\n"
 
 
 def finite_only(value: Any) -> Any:

@@ -34,6 +34,7 @@ of the last cell, and cells (n, C) of uint8."""
 CLOCK = "clock"
 _CONNECTION = " from "  # between the names of an input that listens and of a peer
 _MOST_CONNECTIONS = 64
+_PUBLISH_S = 0.03  # between reports of tracks
 _WATCH_S = 0.5  # between looks for alarms
 _PASS_S = 0.02  # between looks at what happens by time alone
 _HISTORY = 60  # past positions of a track in the picture
@@ -127,7 +128,7 @@ class Session:
         self.events: deque[dict[str, Any]] = deque(maxlen=_MOST_EVENTS)
         self._history: dict[int, deque[tuple[float, float, float]]] = {}
         self._seen: dict[int, tuple[int, int]] = {}
-        self._watched_s = -math.inf
+        self._watched_s = self._published_s = -math.inf
         self.news: list[dict[str, Any]] = []
         self._edge_rad: dict[str, float] = {}
         if self.config.session.origin_deg:
@@ -341,6 +342,8 @@ class Session:
         for feed in self.feeds.values():
             self._sectors(feed, feed.pass_to(time_s))
         self._tracker_events(self.tracker.coast(time_s))
+        if self.tracker.time_s > self._published_s:
+            self._publish(next(iter(self.feeds)))
 
     def _sectors(self, feed: RadarFeed, sectors: Sequence[Sector]) -> None:
         for sector in sectors:
@@ -385,7 +388,8 @@ class Session:
             covariance,
         )
         self._tracker_events(events)
-        self._publish(feed.name)
+        if self.tracker.time_s - self._published_s >= _PUBLISH_S:
+            self._publish(feed.name)
 
     def _antenna(
         self, radar: RadarConfig, time_s: float, *, needs_heading: bool
@@ -431,7 +435,8 @@ class Session:
     # ------------------------------------------------------------------ out
 
     def _publish(self, radar: str) -> None:
-        """Report the tracks that a sector has updated."""
+        """Report the tracks that sectors have updated."""
+        self._published_s = self.tracker.time_s
         updated, shown = self.tracker.updated(self._seen)
         for track in updated:
             self._remember(track)
