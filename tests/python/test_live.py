@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wakeline as wl
+from wakeline._engine.video import Cat240Encoder
 from wakeline.live.config import config_of
 from wakeline.live.lines import LineAssembly
 from wakeline.live.nmea import AisMessage, NmeaDecoder
@@ -126,6 +127,15 @@ def test_a_radar_ashore_needs_no_own_ship():
     (track,) = session.picture()["tracks"]
     assert track["speed_mps"] == pytest.approx(5.0, abs=1.0)
     assert track["latitude_deg"] > 54.0
+
+
+def test_plots_in_an_exclusion_zone_start_no_track():
+    zone = {"kind": "exclusion", "outline_m": [[-1e5, -1e5], [-1e5, 1e5], [1e5, 1e5], [1e5, -1e5]]}
+    session = wl.live.Session({"radar": [JOYRIDE], "guard_zone": [zone]})
+    for t, line in joyride_lines(40):
+        session.feed(t, "x", json.dumps(line).encode())
+    assert session.tracker.tracks() == []
+    assert session.status()["radars"]["A"]["excluded_plots"] > 40
 
 
 def test_operators_name_drop_and_acquire():
@@ -379,6 +389,56 @@ def test_rubbish_is_counted_and_named():
     assert inputs["json"]["problems"] == {"JSON": 2}
     assert "version" in inputs["json"]["last_problem"]
     assert inputs["x"]["problems"] == {"unknown": 1}
+
+
+# ------------------------------------------------------------------ other senders
+
+
+def delta(context, **values):
+    rows = [{"path": path, "value": value} for path, value in values.items()]
+    return json.dumps({"context": context, "updates": [{"values": rows}]}).encode()
+
+
+def test_signalk_gives_own_ship_and_vessels():
+    session = wl.live.Session({"input": [{"url": "signalk://127.0.0.1:3000?name=sk"}]})
+    me = "vessels.urn:mrn:imo:mmsi:211000001"
+    session.feed(0.0, "sk", json.dumps({"self": me}).encode())
+    place = {"latitude": 54.0, "longitude": 10.0}
+    moving = {"navigation.speedOverGround": 5.0, "navigation.courseOverGroundTrue": 0.0}
+    turned = {"navigation.headingTrue": 0.1, "navigation.position": place}
+    session.feed(0.1, "sk", delta(me, **turned, **moving))
+    other = "vessels.urn:mrn:imo:mmsi:211000002"
+    session.feed(0.2, "sk", delta(other, **{"navigation.position": place, "": {"name": "NOOR"}}))
+    session.feed(0.2, "sk", b"[]")
+    picture = session.picture()
+    assert picture["own"]["vnorth_mps"] == pytest.approx(5.0)
+    assert picture["own"]["heading_rad"] == pytest.approx(0.1)
+    (vessel,) = picture["ais"]
+    assert (vessel["mmsi"], vessel["name"]) == (211000002, "NOOR")
+    assert session.status()["inputs"]["sk"]["problems"] == {"Signal K": 1}
+
+
+def test_messages_of_redundant_groups_count_once():
+    inputs = [{"url": f"udp://127.0.0.1:1?name={name}", "radar": "A"} for name in "ab"]
+    session = wl.live.Session({"input": inputs, "radar": [{"name": "A", "azimuth": "north"}]})
+    encoder = Cat240Encoder(1, 2)
+    for k in range(200):
+        message = encoder.encode(
+            np.zeros((1, 64), np.uint8),
+            np.array([0.01 * k]),
+            np.array([0.001 * k]),
+            azimuth_width_rad=0.01,
+            start_range_m=0.0,
+            cell_m=10.0,
+        )
+        if k % 5 != 1:
+            session.feed(0.001 * k, "a", message)
+        if k % 5 != 2:
+            session.feed(0.001 * k, "b", message)
+    session.feed(1.0, "clock", b"")
+    inputs = session.status()["inputs"]
+    assert inputs["a"]["lost_sweeps"] == inputs["b"]["lost_sweeps"] == 0
+    assert inputs["a"]["duplicates"] + inputs["b"]["duplicates"] == 120
 
 
 # ------------------------------------------------------------------ settings

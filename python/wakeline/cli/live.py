@@ -211,14 +211,14 @@ def _screen(arguments: argparse.Namespace, session: Session) -> Iterator[None]:
         yield
         return
     try:
-        from wakeline.live.web import WebServer
+        from wakeline.live.web import serve
     except ModuleNotFoundError:
         raise ValueError("--web needs aiohttp: pip install 'wakeline[live]'") from None
 
     host, _, port = arguments.web.rpartition(":")
     if not port.isdecimal():
         raise ValueError(f"--web must be [HOST:]PORT, got {arguments.web!r}")
-    server = WebServer(session, host or "127.0.0.1", int(port), token=arguments.token)
+    server = serve(session, host or "127.0.0.1", int(port), token=arguments.token)
     print(f"screen at {server.url}", flush=True)
     try:
         yield

@@ -158,16 +158,29 @@ class AisPicture:
         kind = int(message.msg_type)
         if kind not in (*_POSITION_TYPES, 5, 24):
             return None
-        mmsi = int(message.mmsi)
+        vessel = self._vessel(time_s, int(message.mmsi))
+        vessel.is_class_b = vessel.is_class_b or kind in _CLASS_B
+        if kind in (5, 19, 24):
+            _take_static(vessel, message)
+        return vessel, kind in _POSITION_TYPES and _take_position(vessel, time_s, message)
+
+    def update(self, time_s: float, mmsi: int, values: dict[str, Any]) -> tuple[AisVessel, bool]:
+        """Take values by the names of `AisVessel`; the vessel and whether its position is new."""
+        vessel = self._vessel(time_s, mmsi)
+        for name, value in values.items():
+            setattr(vessel, name, value)
+        is_new = "latitude_deg" in values
+        if is_new:
+            vessel.time_s = time_s
+        return vessel, is_new
+
+    def _vessel(self, time_s: float, mmsi: int) -> AisVessel:
         vessel = self.vessels.get(mmsi)
         if vessel is None:
             self._make_room(time_s)
             vessel = self.vessels[mmsi] = AisVessel(mmsi)
         vessel.messages += 1
-        vessel.is_class_b = vessel.is_class_b or kind in _CLASS_B
-        if kind in (5, 19, 24):
-            _take_static(vessel, message)
-        return vessel, kind in _POSITION_TYPES and _take_position(vessel, time_s, message)
+        return vessel
 
     def _make_room(self, time_s: float) -> None:
         if len(self.vessels) < _MOST_VESSELS:

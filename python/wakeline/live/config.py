@@ -14,6 +14,8 @@ import wakeline as wl
 from wakeline._brief import cut, quoted
 from wakeline.tracking.settings import Settings, SettingsError, read_toml
 
+from .zones import Zone
+
 IN_SCHEMES = (
     "udp",
     "tcp",
@@ -63,6 +65,8 @@ class InputConfig:
 
     def __post_init__(self) -> None:
         _take_query(self, ("name", "format", "radar"), IN_SCHEMES)
+        if self.scheme == "signalk":
+            object.__setattr__(self, "format", "signalk")
         _check_choice("format", self.format, IN_FORMATS)
 
     @property
@@ -73,7 +77,7 @@ class InputConfig:
     @property
     def is_stream(self) -> bool:
         """Whether octets come without the borders of messages."""
-        return self.scheme not in ("", "udp", "pcap")
+        return self.scheme not in ("", "udp", "pcap", "signalk")
 
 
 @dataclass(frozen=True)
@@ -245,6 +249,8 @@ class LiveConfig:
     session : SessionConfig
     settings : Settings
         Tracker, motion models, danger limits and zones, and what radars have in common.
+    guard_zones : tuple of dict
+        Zones that alarms or tracks depend on: :class:`wakeline.live.zones.Zone` as objects.
     """
 
     inputs: tuple[InputConfig, ...] = ()
@@ -253,6 +259,7 @@ class LiveConfig:
     own: OwnConfig = field(default_factory=OwnConfig)
     session: SessionConfig = field(default_factory=SessionConfig)
     settings: Settings = field(default_factory=Settings.default)
+    guard_zones: tuple[Mapping[str, Any], ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("inputs", "outputs"):
@@ -264,6 +271,11 @@ class LiveConfig:
         for one in self.inputs:
             if one.radar:
                 _check_choice("radar", one.radar, [radar.name for radar in self.radars])
+        for one in self.guard_zones:
+            try:
+                Zone.of(one)
+            except (ValueError, TypeError) as error:
+                raise SettingsError(f"[[guard_zone]]: {error}") from None
 
     def as_document(self) -> dict[str, Any]:
         """The sections of a TOML file, from which :func:`config_of` makes the same settings."""
@@ -282,6 +294,7 @@ class LiveConfig:
             ],
             **{name: dict(getattr(settings, name)) for name in ("tracker", "models", "danger")},
             "zone": list(settings.zones),
+            "guard_zone": [dict(one) for one in self.guard_zones],
         }
 
     def toml(self) -> str:
@@ -300,6 +313,8 @@ class LiveConfig:
                 lines += [f"{mark}{line}" for line in _section(f"[{name}]", one)]
         common = self.settings.toml().partition("[tracker]")
         before = common[0].rstrip().rpartition("\n")[2]
+        for zone in self.guard_zones:
+            lines += ["[[guard_zone]]", *(f"{k} = {json.dumps(v)}" for k, v in zone.items()), ""]
         return "\n".join(lines) + f"\n{before}\n[tracker]{common[2]}"
 
 
@@ -320,13 +335,15 @@ def config_of(document: Mapping[str, Any], path: str | Path = "settings") -> Liv
     inputs = _read_list(rest.pop("input", []), "input", InputConfig, path)
     outputs = _read_list(rest.pop("output", []), "output", OutputConfig, path)
     given = rest.pop("radar", [])
+    guard_zones = rest.pop("guard_zone", [])
+    _check_list(guard_zones, "guard_zone", path)
     session = _read_one(rest.pop("session", {}), "session", SessionConfig, path)
     own = _read_one(rest.pop("own", {}), "own", OwnConfig, path)
     common = given if isinstance(given, dict) else {}
     settings = Settings.of(rest | ({"radar": common} if common else {}), path)
     radars = () if common else _read_radars(given, settings, path)
     try:
-        return LiveConfig(inputs, outputs, radars, own, session, settings)
+        return LiveConfig(inputs, outputs, radars, own, session, settings, tuple(guard_zones))
     except SettingsError as error:
         raise SettingsError(f"{path}: {error}") from None
 

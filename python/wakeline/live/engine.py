@@ -14,7 +14,7 @@ from wakeline.measurement import OwnShip
 from wakeline.tracking import MODE_NAMES
 from wakeline.tracking.settings import Settings
 
-_STATE = 4
+_SILENT_TURNS = 2.5  # a sector that is a little late still comes before the miss
 
 
 @dataclass(frozen=True)
@@ -131,10 +131,10 @@ class TrackEngine:
         return events + _events(report.events)
 
     def coast(self, time_s: float) -> list[dict[str, Any]]:
-        """Let time pass for radars that are silent for two periods."""
+        """Let time pass for radars that are silent for more than two periods."""
         events: list[dict[str, Any]] = []
         for radar, last_s in enumerate(self._last_s):
-            if self.time_s > 0.0 and last_s < time_s - 2.0 * self.radars[radar].period_s:
+            if self.time_s > 0.0 and last_s < time_s - _SILENT_TURNS * self.radars[radar].period_s:
                 events += self._catch_up(radar, time_s)
                 events += self._pass(radar, max(time_s, last_s))
         return events

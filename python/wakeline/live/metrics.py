@@ -12,7 +12,8 @@ _COUNTERS = {
     "dropped": "Messages that a receiver did not take in time.",
     "plots": "Plots received.",
     "sectors": "Sectors received.",
-    "unused_plots": "Plots not used.",
+    "unused_plots": "Plots not used, because own ship was not known.",
+    "excluded_plots": "Plots in exclusion zones or on land.",
     "lost_sweeps": "Sweeps missing according to the sender's count.",
 }
 _GAUGES = {

@@ -19,6 +19,7 @@ from urllib.parse import parse_qs, urlsplit
 
 from wakeline.recording.containers import datagrams_of
 
+from . import signalk
 from .config import InputConfig, OutputConfig, SettingsError
 
 Take = Callable[[str, list[tuple[float, bytes]]], None]
@@ -115,6 +116,7 @@ class NetworkInput(_Thread):
             "stdin": self._stdin,
             "file": self._file,
             "pcap": self._pcap,
+            "signalk": self._signalk,
         }[self.config.scheme]()
 
     # ------------------------------------------------------------------ datagrams
@@ -263,6 +265,19 @@ class NetworkInput(_Thread):
                     return True
             self._take(self.config.name, [(time.time(), datagram.octets)])
         return True
+
+    def _signalk(self) -> bool:
+        self.connection = "connecting"
+
+        def take(time_s: float, octets: bytes) -> None:
+            self.connection = "connected"
+            self._take(self.config.name, [(time_s, octets)])
+
+        try:
+            host, port = self._url.hostname or "127.0.0.1", self._url.port or 3000
+            return signalk.receive(host, port, take, self._ends.is_set)
+        except ModuleNotFoundError as error:
+            raise SettingsError(str(error)) from None
 
     def _path(self) -> str:
         return self._url.netloc + self._url.path

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
+
+import wakeline as wl
 
 from .config import OutputConfig
 from .engine import LiveTrack
@@ -11,6 +14,9 @@ from .json_lines import write_line
 
 if TYPE_CHECKING:
     from .session import Session
+
+
+_LEAST_INTERVAL_S = 3.0  # OpenCPN draws no trail of a target that comes more often than 2 s
 
 
 class Output:
@@ -67,9 +73,85 @@ class JsonOutput(Output):
         self._send(write_line(event.get("kind", "event"), event))
 
 
+class WireOutput(Output):
+    """Sentences or datagrams of the feeds of :mod:`wakeline.wire`, which have all shown tracks.
+
+    They are sent when the session knows where it is.
+    """
+
+    def __init__(self, config: OutputConfig) -> None:
+        super().__init__(config)
+        self._feed: Any = None
+
+    def tracks(self, session: Session, radar: str, updated: Sequence[LiveTrack]) -> None:
+        if session.plane is None:
+            return
+        if self._feed is None:
+            self._feed = self._make(session)
+        shown = session.shown
+        columns = {
+            "track_id": shown.track_id,
+            "estimate_time_s": shown.time_s,
+            "mean": shown.mean,
+            "coasting": shown.coasting,
+            "name": shown.names,
+        }
+        for octets in self._feed.update(session.time_s, **columns, **self._more(session)):
+            self._send(octets)
+
+    def _make(self, session: Session) -> Any:
+        """The feed."""
+        raise NotImplementedError
+
+    def _more(self, session: Session) -> dict[str, Any]:
+        """What else the feed is given."""
+        raise NotImplementedError
+
+
+class TtmOutput(WireOutput):
+    """NMEA 0183: OSD with TTM, or TLL."""
+
+    def _make(self, session: Session) -> Any:
+        periods = [radar.period_s for radar in session.tracker.radars]
+        interval_s = max(_LEAST_INTERVAL_S, *periods)
+        return wl.wire.TtmFeed(
+            session.plane, interval_s=interval_s, tll=self.config.format == "tll"
+        )
+
+    def _more(self, session: Session) -> dict[str, Any]:
+        heading = session.own.heading_at(session.time_s)
+        return {
+            "own": session.fix_of_receivers(),
+            "heading_rad": math.nan if heading is None else heading[0],
+        }
+
+
+class AsterixOutput(WireOutput):
+    """System tracks of ASTERIX category 062, or tracks of 010."""
+
+    def _make(self, session: Session) -> Any:
+        feed = wl.wire.Cat062Feed if self.config.format == "cat062" else wl.wire.Cat010Feed
+        return feed(session.plane)
+
+    def _more(self, session: Session) -> dict[str, Any]:
+        return {"covariance": session.shown.covariance}
+
+
+_KINDS = {
+    "json": JsonOutput,
+    "ttm": TtmOutput,
+    "tll": TtmOutput,
+    "cat062": AsterixOutput,
+    "cat010": AsterixOutput,
+}
+
+
 def make_output(config: OutputConfig) -> Output:
     """The output of a format."""
-    return {"json": JsonOutput}.get(config.format, Output)(config)
+    kind = _KINDS[config.format]
+    if kind is not JsonOutput and not hasattr(wl, "wire"):
+        return Output(config)
+    return kind(config)
 
 
 def _nowhere(octets: bytes) -> None:

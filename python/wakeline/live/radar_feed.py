@@ -95,6 +95,7 @@ class RadarFeed:
     plots: int = 0
     sectors: int = 0
     unused: int = 0
+    excluded: int = 0
     last_s: float = -math.inf
     _waiting: list[PlotRow] = field(default_factory=list)
     _marks: bool = False

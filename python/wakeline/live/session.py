@@ -17,15 +17,17 @@ import wakeline as wl
 from wakeline.measurement import OwnShip
 
 from . import json_lines
-from .ais import AisPicture
+from .ais import AisPicture, AisVessel
 from .config import LiveConfig, OutputConfig, RadarConfig, config_of, read_config
 from .engine import LiveTrack, TrackEngine
 from .metrics import metrics_of
 from .outputs import Output, make_output
 from .own_ship import Missing, OwnShipSources, Pose, SourceKey
 from .radar_feed import PlotRow, RadarFeed, Sector, columns
-from .sources import Source
+from .shown import Shown
+from .sources import Receivers, Source
 from .watch import AlarmWatcher
+from .zones import Zone
 
 Sweeps = Callable[[str, np.ndarray, float, float, np.ndarray], None]
 """Called with radar, azimuth_rad (n,), heading_rad (NaN: azimuths from north), range_m of the end
@@ -34,7 +36,8 @@ of the last cell, and cells (n, C) of uint8."""
 CLOCK = "clock"
 _CONNECTION = " from "  # between the names of an input that listens and of a peer
 _MOST_CONNECTIONS = 64
-_PUBLISH_S = 0.03  # between reports of tracks
+_PUBLISH_S = 0.03  # between reports of tracks after small sectors
+_WIDE_RAD = 0.15
 _WATCH_S = 0.5  # between looks for alarms
 _PASS_S = 0.02  # between looks at what happens by time alone
 _HISTORY = 60  # past positions of a track in the picture
@@ -74,6 +77,8 @@ class Session:
     tracker : TrackEngine
     outputs : dict of str to Output
         Whose `send` receives octets.
+    shown : Shown
+        The shown tracks, each as of its last update.
     own : OwnShipSources
     ais : AisPicture
     sweeps : list of callable
@@ -107,7 +112,8 @@ class Session:
         self._passed_s = -math.inf
         self.journal: Callable[[Mapping[str, Any]], float] | None = None
         self.lost = 0
-        self.inputs = {one.name: Source(one) for one in self.config.inputs}
+        self._shared = Receivers()
+        self.inputs = {one.name: Source(one, self._shared) for one in self.config.inputs}
         self.outputs: dict[str, Output] = {}
         for one in self.config.outputs:
             self.add_output(one)
@@ -121,14 +127,21 @@ class Session:
         self.own = OwnShipSources(self.config.own)
         self.ais = AisPicture()
         self.plane: wl.LocalPlane | None = None
+        self.shown = Shown()
         self.frozen = ""
         self.sweeps: list[Sweeps] = []
-        self.watchers: list[Watcher] = [AlarmWatcher(self.config.settings.danger_limits)]
+        self.watchers: list[Watcher] = [
+            AlarmWatcher(
+                self.config.settings.danger_limits,
+                zones=[Zone.of(zone) for zone in self.config.guard_zones],
+            )
+        ]
         self.listeners: list[Callable[[str, dict[str, Any]], None]] = []
         self.events: deque[dict[str, Any]] = deque(maxlen=_MOST_EVENTS)
         self._history: dict[int, deque[tuple[float, float, float]]] = {}
         self._seen: dict[int, tuple[int, int]] = {}
         self._watched_s = self._published_s = -math.inf
+        self._unpublished = ""  # the radar of sectors whose tracks are not reported yet
         self.news: list[dict[str, Any]] = []
         self._edge_rad: dict[str, float] = {}
         if self.config.session.origin_deg:
@@ -177,7 +190,10 @@ class Session:
         connections = [one for one in self.inputs if _CONNECTION in one]
         if len(connections) >= _MOST_CONNECTIONS:
             del self.inputs[min(connections, key=lambda one: self.inputs[one].last_s)]
-        one = Source.unknown(name) if parent is None else Source(replace(parent.config, name=name))
+        if parent is None:
+            one = Source.unknown(name, self._shared)
+        else:
+            one = Source(replace(parent.config, name=name), self._shared)
         self.inputs[name] = one
         return one
 
@@ -223,6 +239,15 @@ class Session:
             self._add_own(time_s, key, "position", (vessel.latitude_deg, vessel.longitude_deg))
             del self.ais.vessels[vessel.mmsi]
             return
+        self._report_vessel(time_s, vessel)
+
+    def _take_vessel(self, time_s: float, source: Source, reading: Any) -> None:
+        vessel, is_new = self.ais.update(time_s, reading.mmsi, reading.values)
+        if is_new:
+            self._report_vessel(time_s, vessel)
+
+    def _report_vessel(self, time_s: float, vessel: AisVessel) -> None:
+        """Give the position of a vessel to the tracker."""
         if self.plane is None:
             return
         north_m, east_m = self.to_plane(vessel.latitude_deg, vessel.longitude_deg)
@@ -341,9 +366,10 @@ class Session:
                 self._take(time_s, one, kind, values)
         for feed in self.feeds.values():
             self._sectors(feed, feed.pass_to(time_s))
+        before_s = self.tracker.time_s
         self._tracker_events(self.tracker.coast(time_s))
-        if self.tracker.time_s > self._published_s:
-            self._publish(next(iter(self.feeds)))
+        if self._unpublished or self.tracker.time_s > before_s:
+            self._publish()
 
     def _sectors(self, feed: RadarFeed, sectors: Sequence[Sector]) -> None:
         for sector in sectors:
@@ -365,6 +391,13 @@ class Session:
             range_m, bearing_rad = self._seen_from(
                 own, radar, plot_time_s, range_m, bearing_rad, from_bow
             )
+        kept = self._outside(own, range_m, bearing_rad)
+        if not kept.all():
+            feed.excluded += int(np.sum(~kept))
+            plot_time_s, range_m, bearing_rad = (
+                one[kept] for one in (plot_time_s, range_m, bearing_rad)
+            )
+            covariance = None if covariance is None else covariance[kept]
         from_rad, to_rad = sector.from_rad, sector.to_rad
         if from_bow:
             to_rad = to_rad + end.heading_rad
@@ -388,8 +421,21 @@ class Session:
             covariance,
         )
         self._tracker_events(events)
-        if self.tracker.time_s - self._published_s >= _PUBLISH_S:
-            self._publish(feed.name)
+        self._unpublished = feed.name
+        wide = sector.to_rad - sector.from_rad > _WIDE_RAD
+        if wide or self.time_s - self._published_s >= _PUBLISH_S:
+            self._publish()
+
+    def _outside(self, own: OwnShip, range_m: np.ndarray, bearing_rad: np.ndarray) -> np.ndarray:
+        """Whether plots (n,) are outside exclusion zones and land."""
+        kept = np.ones(len(range_m), dtype=bool)
+        for watcher in self.watchers:
+            keeps_out = getattr(watcher, "keeps_out", None)
+            if keeps_out is not None and len(range_m):
+                north_m = own.north_m + range_m * np.cos(bearing_rad)
+                east_m = own.east_m + range_m * np.sin(bearing_rad)
+                kept &= ~keeps_out(np.column_stack([north_m, east_m]))
+        return kept
 
     def _antenna(
         self, radar: RadarConfig, time_s: float, *, needs_heading: bool
@@ -434,16 +480,20 @@ class Session:
 
     # ------------------------------------------------------------------ out
 
-    def _publish(self, radar: str) -> None:
+    def _publish(self) -> None:
         """Report the tracks that sectors have updated."""
-        self._published_s = self.tracker.time_s
+        self._published_s = self.time_s
+        radar, self._unpublished = self._unpublished, ""
         updated, shown = self.tracker.updated(self._seen)
+        gone = sorted(self._seen.keys() - shown)
+        self.shown.take(updated)
+        self.shown.drop(gone)
         for track in updated:
             self._remember(track)
-        for gone in self._seen.keys() - shown:
-            del self._seen[gone]
-            self._history.pop(gone, None)
-        if updated:
+        for track_id in gone:
+            del self._seen[track_id]
+            self._history.pop(track_id, None)
+        if updated or gone:
             for output in self.outputs.values():
                 output.tracks(self, radar, updated)
             if self.listeners:
@@ -637,6 +687,7 @@ class Session:
                         "plots": feed.plots,
                         "sectors": feed.sectors,
                         "unused_plots": feed.unused,
+                        "excluded_plots": feed.excluded,
                         "age_s": time_s - feed.last_s,
                         "clock_offset_s": feed.clock.offset_s,
                     }
@@ -676,6 +727,10 @@ class Session:
     def _command(self, command: Mapping[str, Any]) -> dict[str, Any]:
         try:
             name = command.get("command")
+            for watcher in self.watchers:
+                answer = watcher.command(self, command)
+                if answer is not None:
+                    return answer
             if name == "acquire":
                 return self._acquire(command)
             if name == "drop":
@@ -686,10 +741,6 @@ class Session:
             if name == "rename":
                 found = self.tracker.rename(int(command["track_id"]), str(command["name"]))
                 return _answer(found, "no track has that number")
-            for watcher in self.watchers:
-                answer = watcher.command(self, command)
-                if answer is not None:
-                    return answer
             return _answer(False, f"unknown command {str(name)[:40]!r}")
         except KeyError as error:
             return _answer(False, f"wanted {error.args[0]}")
@@ -709,6 +760,22 @@ class Session:
         return _answer(track_id > 0, "there is no room for another track") | {"track_id": track_id}
 
     # ------------------------------------------------------------------ places
+
+    def fix_of_receivers(self) -> OwnShip:
+        """Own ship as receivers of TTM have it: the last fix, not predicted; ashore the radar."""
+        pose = self.own.at(self.time_s)
+        if isinstance(pose, Missing):
+            antenna = self._antenna(self.config.radars[0], self.time_s, needs_heading=False)
+            return OwnShip() if isinstance(antenna, Missing) else antenna[1]
+        source = self.own.position.fresh(self.time_s)
+        place_m = (pose.north_m, pose.east_m) if source is None else source.value[-1]
+        known = math.isfinite(pose.vnorth_mps)
+        return OwnShip(
+            north_m=place_m[0],
+            east_m=place_m[1],
+            vnorth_mps=pose.vnorth_mps if known else 0.0,
+            veast_mps=pose.veast_mps if known else 0.0,
+        )
 
     @property
     def origin_deg(self) -> tuple[float, float] | None:

@@ -8,17 +8,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from .asterix_feed import CATEGORIES, AsterixFeed
 from .config import InputConfig
 from .json_lines import BadLine, read_line
 from .lines import LineAssembly
 from .nmea import AisMessage, NmeaDecoder
 from .problems import Problems
 from .radar_feed import SensorClock
+from .signalk import SignalkDecoder, VesselReading
 from .video_feed import VideoFeed
 
 _RATE_S = 5.0
+_LONGEST_LINE = 1 << 16
 _TWICE_S = 2.0  # the same message of redundant senders comes within this time
-_REDUNDANT = ("cat240", "cat048", "cat010")
+_PLOTS = ("cat048", "cat010")
 
 
 @dataclass
@@ -51,6 +54,33 @@ class Rate:
         return tuple(sum(one[k] for one in self._recent) / span_s for k in (1, 2))
 
 
+class RecentMessages:
+    """Messages of the last 2 s, to drop those that come again by another way."""
+
+    def __init__(self) -> None:
+        self._time_s: dict[int, float] = {}
+
+    def is_new(self, time_s: float, octets: bytes) -> bool:
+        """Whether the message has not come in the last 2 s."""
+        key, times = hash(octets), self._time_s
+        is_new = time_s - times.get(key, -math.inf) > _TWICE_S
+        if is_new:
+            times.pop(key, None)
+            times[key] = time_s
+            while len(times) > 1 and time_s - times[next(iter(times))] > _TWICE_S:
+                del times[next(iter(times))]
+        return is_new
+
+
+@dataclass
+class Receivers:
+    """What the inputs of a session share: video and plots of each radar by its name."""
+
+    video: dict[str, VideoFeed] = field(default_factory=dict)
+    plots: dict[str, AsterixFeed] = field(default_factory=dict)
+    recent: RecentMessages = field(default_factory=RecentMessages)
+
+
 class Source:
     """One input.
 
@@ -66,21 +96,22 @@ class Source:
     last_s : float
     """
 
-    def __init__(self, config: InputConfig) -> None:
-        self.config = config
+    def __init__(self, config: InputConfig, shared: Receivers | None = None) -> None:
+        self.config, self._shared = config, shared or Receivers()
         self.problems, self.rate, self.clock = Problems(), Rate(), SensorClock()
         self.duplicates = 0
         self.last_s = -math.inf
         self.connection = ""
         self.video: VideoFeed | None = None
         self._nmea = NmeaDecoder(config.is_stream)
-        self._lines = LineAssembly(config.is_stream)
+        self._lines = LineAssembly(config.is_stream, _LONGEST_LINE)
+        self._signalk = SignalkDecoder()
         self._format = config.format
 
     @classmethod
-    def unknown(cls, name: str) -> Source:
+    def unknown(cls, name: str, shared: Receivers) -> Source:
         """An input that is not configured: datagrams of any format."""
-        return cls(InputConfig(name=name, url=""))
+        return cls(InputConfig(name=name, url=""), shared)
 
     @property
     def name(self) -> str:
@@ -109,13 +140,29 @@ class Source:
                     yield "json", read_line(line)
                 except BadLine as error:
                     self.problems.add("JSON", str(error))
-        elif kind == "cat240":
-            self.video = self.video or VideoFeed()
-            for each in self.video.feed(time_s, octets, self.problems):
+        elif kind == "signalk":
+            for line in self._lines.feed(octets, self.problems):
+                for reading in self._signalk.feed(line, self.problems):
+                    yield ("vessel" if isinstance(reading, VesselReading) else "own"), reading
+        elif kind == "cat240" or kind in _PLOTS:
+            if not self._shared.recent.is_new(time_s, octets):
+                self.duplicates += 1
+                return
+            for each in self._receiver(kind).feed(time_s, octets, self.problems):
                 yield "radar", each
         elif octets:
-            wanted = "wanted NMEA, JSON or ASTERIX 240"
+            wanted = "wanted NMEA, JSON or ASTERIX"
             self.problems.add("unknown", f"{wanted}, got {octets[:24]!r}")
+
+    def _receiver(self, kind: str) -> VideoFeed | AsterixFeed:
+        """What decodes the messages of its radar."""
+        if kind in _PLOTS:
+            if self.radar not in self._shared.plots:
+                self._shared.plots[self.radar] = AsterixFeed()
+            return self._shared.plots[self.radar]
+        if self.video is None:
+            self.video = self._shared.video.setdefault(self.radar, VideoFeed())
+        return self.video
 
     def pass_to(self, time_s: float) -> Iterator[tuple[str, Any]]:
         """What ends by time alone."""
@@ -132,6 +179,8 @@ class Source:
             kind = "json"
         elif octets[:1] == b"\xf0":
             kind = "cat240"
+        elif octets[:1] and octets[0] in CATEGORIES:
+            kind = "cat048"
         if kind and self.config.is_stream and self.config.url:
             self._format = kind
         return kind

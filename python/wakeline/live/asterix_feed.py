@@ -1,0 +1,80 @@
+"""Plots of radars in ASTERIX as they arrive: categories 048 with 034, and 010."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import wakeline as wl
+
+from .problems import Problems
+from .radar_feed import PlotRow, Sector, SensorClock
+
+CATEGORIES = (10, 34, 48)
+_PLOT, _NORTH, _SECTOR = 0, 1, 2
+_TURN_RAD = 2.0 * math.pi
+_SAME_RAD = 1e-6
+
+
+class AsterixFeed:
+    """Plots of one radar, and the sectors that its north and sector marks end.
+
+    Of several radars at an input the first one counts.
+
+    Attributes
+    ----------
+    clock : SensorClock
+    test_plots : int
+        Plots of simulated and test targets, which are left out.
+    """
+
+    def __init__(self) -> None:
+        self.clock = SensorClock()
+        self.test_plots = 0
+        self._decoder = wl.wire.AsterixDecoder()
+        self._source: int | None = None
+        self._edge_rad = math.nan
+        self._edge_s = -math.inf
+
+    def feed(self, time_s: float, octets: bytes, problems: Problems) -> Iterator[PlotRow | Sector]:
+        """Take a datagram; its plots, and the sectors that end with it."""
+        found = self._decoder.decode(octets, time_s)
+        for _, text, item in found.problems:
+            problems.add(f"ASTERIX {item}".strip(), text)
+        rows = zip(
+            found.kind.tolist(),
+            found.source.tolist(),
+            found.time_s.tolist(),
+            found.range_m.tolist(),
+            found.bearing_rad.tolist(),
+            found.test.tolist(),
+            strict=True,
+        )
+        for kind, source, at_s, range_m, bearing_rad, is_test in rows:
+            if self._source is None:
+                self._source = source
+            if source != self._source:
+                problems.add("other radar", f"source {divmod(source, 256)} at this input")
+                continue
+            when_s = self.clock.time_s(at_s, time_s) if math.isfinite(at_s) else time_s
+            if kind == _PLOT:
+                if is_test:
+                    self.test_plots += 1
+                elif math.isfinite(range_m + bearing_rad):
+                    yield PlotRow(when_s, range_m, bearing_rad)
+            elif kind == _NORTH:
+                yield from self._pass_to(0.0, when_s)
+            elif math.isfinite(bearing_rad):
+                yield from self._pass_to(bearing_rad % _TURN_RAD, when_s)
+
+    def _pass_to(self, azimuth_rad: float, time_s: float) -> Iterator[Sector]:
+        """The sector from the last mark; a whole turn where the marks are those of north."""
+        from_rad, from_s = self._edge_rad, self._edge_s
+        width_rad = (azimuth_rad - from_rad) % _TURN_RAD
+        if width_rad < _SAME_RAD or width_rad > _TURN_RAD - _SAME_RAD:
+            if time_s - from_s < 0.2:  # north and the sector that begins there
+                return
+            width_rad = _TURN_RAD
+        self._edge_rad, self._edge_s = azimuth_rad, time_s
+        if math.isfinite(from_rad):
+            yield Sector(from_rad, from_rad + width_rad, time_s, [])
