@@ -276,8 +276,9 @@ void survive(Association association, std::uint64_t seed, bool rotating) {
 }
 
 TEST(Fuzz, EveryNumberStaysSound) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
     survive(Association::kProbabilistic, seed, seed % 2 == 0);
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     survive(Association::kGlobalNearest, seed, seed % 2 == 0);
     survive(Association::kNearest, seed, seed % 2 == 0);
   }

@@ -103,8 +103,11 @@ TEST(Saving, ARestoredTrackerGoesOnBitForBit) {
     EXPECT_EQ(restored.time_s(), tracker.time_s());
     for (std::size_t k = cut; k < cut + 55; ++k) {
       expect_same(process(restored, scans[k]), process(tracker, scans[k]));
-      ASSERT_EQ(restored.save(), tracker.save()) << "scan " << k;
+      if (k % 9 == 0) {
+        ASSERT_EQ(restored.save(), tracker.save()) << "scan " << k;
+      }
     }
+    ASSERT_EQ(restored.save(), tracker.save());
   }
 }
 
