@@ -72,6 +72,26 @@ def test_plots_as_json_lines_give_the_track_of_the_recording():
     np.testing.assert_allclose([last["north_m"], last["east_m"]], whole.state[-1, [0, 2]], atol=15)
 
 
+def test_lines_have_the_values_of_the_picture():
+    session = wl.live.Session({"radar": [JOYRIDE], "session": {"origin_deg": [54.0, 10.0]}})
+    lines, heard = written(session), []
+    session.listeners.append(lambda kind, values: heard.append(values))
+    for t, line in joyride_lines(60):
+        session.feed(t, "x", json.dumps(line).encode())
+    rows = [json.loads(line) for line in lines]
+    assert len(rows) == len(heard) > 30
+    for row, values in zip(rows, heard, strict=True):
+        if row["type"] == "alarm":
+            assert row["alarm"].keys() == values.keys()
+            continue
+        assert row.keys() - {"version", "type"} == values.keys()
+        for name in ("north_m", "latitude_deg", "range_m", "speed_mps", "track_id"):
+            if name in values:
+                assert row[name] == pytest.approx(values[name], rel=1e-6, abs=1e-3)
+        if "covariance" in values:
+            np.testing.assert_allclose(row["covariance"], values["covariance"], rtol=1e-6)
+
+
 def test_a_session_fed_twice_gives_the_same_lines():
     def lines():
         session = joyride_session()

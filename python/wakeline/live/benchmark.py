@@ -24,7 +24,7 @@ from wakeline._engine.video import Cat240Encoder
 from .config import InputConfig, LiveConfig, OutputConfig, RadarConfig
 from .network import NetworkOutput
 from .service import Service
-from .session import CLOCK, Session
+from .session import Session
 
 SWEEPS, CELLS, PERIOD_S = 4096, 2048, 1.25
 CELL_M = 6.0
@@ -232,9 +232,8 @@ def many_tracks(tracks: int = 1000, false_plots: int = 400, turns: int = 40) -> 
         bearing_rad = np.arctan2(seen[:, 1], seen[:, 0]) + rng.normal(0.0, 0.0035, len(seen))
         lines = _turn_of_lines(t, range_m, bearing_rad)
         began_s = time.process_time()
-        for line in lines:
-            session.feed(t, "plots", line)
-        session.feed(t, CLOCK, b"")
+        for when_s, line in lines:
+            session.feed(when_s, "plots", line)
         if k >= turns // 2:
             cpu_s += time.process_time() - began_s
     share = cpu_s / (PERIOD_S * (turns - turns // 2))
@@ -243,8 +242,10 @@ def many_tracks(tracks: int = 1000, false_plots: int = 400, turns: int = 40) -> 
     yield _figure("1000 tracks with every output, processor", 100.0 * share, "% of a core", 10.0)
 
 
-def _turn_of_lines(t: float, range_m: np.ndarray, bearing_rad: np.ndarray) -> list[bytes]:
-    """A turn as 32 messages of plots with the mark of their sector."""
+def _turn_of_lines(
+    t: float, range_m: np.ndarray, bearing_rad: np.ndarray
+) -> list[tuple[float, bytes]]:
+    """A turn as 32 messages, with their times, of plots and the mark of their sector."""
     bearing_rad = bearing_rad % (2.0 * np.pi)
     order = np.argsort(bearing_rad)
     edges = np.linspace(0.0, 2.0 * np.pi, 33)
@@ -258,7 +259,7 @@ def _turn_of_lines(t: float, range_m: np.ndarray, bearing_rad: np.ndarray) -> li
             for r, b in zip(range_m[rows].tolist(), bearing_rad[rows].tolist(), strict=True)
         ]
         mark = {"from_rad": edges[k], "to_rad": edges[k + 1], "time_s": when_s}
-        messages.append("".join([*plots, json.dumps({"sector": mark})]).encode())
+        messages.append((when_s, "".join([*plots, json.dumps({"sector": mark})]).encode()))
     return messages
 
 

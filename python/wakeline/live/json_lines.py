@@ -131,6 +131,49 @@ def write_line(kind: str, values: Mapping[str, Any]) -> bytes:
     return text.encode() + b"\n"
 
 
+_ROW = "[%.8g,%.8g,%.8g,%.8g]"
+_TRACK = (
+    '{"version":1,"type":"track","track_id":%d,"status":"%s","name":%s,"time_s":%.6f,'
+    '"north_m":%.3f,"east_m":%.3f,"vnorth_mps":%.5f,"veast_mps":%.5f,'
+    f'"covariance":[{_ROW},{_ROW},{_ROW},{_ROW}],'
+    '"course_rad":%.6f,"speed_mps":%.5f,"mode":"%s","mode_probability":[%s],"existence":%.6g,'
+    '"hits":%d,"misses":%d%s%s%s,"radar":%s}\n'
+)
+_PLACE = ',"latitude_deg":%.9f,"longitude_deg":%.9f'
+_SEEN = ',"range_m":%.3f,"bearing_rad":%.7f'
+_CPA = ',"cpa":{"cpa_m":%.2f,"tcpa_s":%.2f,"probability":%.5f}'
+
+
+def track_line(track: Mapping[str, Any], radar: str) -> bytes:
+    """The line of a track as :meth:`Session.describe` has it; written once for many a second."""
+    cpa = track.get("cpa")
+    text = _TRACK % (
+        track["track_id"],
+        track["status"],
+        _ENCODER.encode(track["name"]),
+        track["time_s"],
+        track["north_m"],
+        track["east_m"],
+        track["vnorth_mps"],
+        track["veast_mps"],
+        *(value for row in track["covariance"] for value in row),
+        track["course_rad"],
+        track["speed_mps"],
+        track["mode"],
+        ",".join([f"{value:.6g}" for value in track["mode_probability"]]),
+        track["existence"],
+        track["hits"],
+        track["misses"],
+        _PLACE % (track["latitude_deg"], track["longitude_deg"]) if "latitude_deg" in track else "",
+        _SEEN % (track["range_m"], track["bearing_rad"]) if "range_m" in track else "",
+        _CPA % (cpa["cpa_m"], cpa["tcpa_s"], cpa["probability"]) if cpa else "",
+        _ENCODER.encode(radar),
+    )
+    if "nan" in text or "inf" in text:
+        return write_line("track", {**track, "radar": radar})
+    return text.encode()
+
+
 def finite_only(value: Any) -> Any:
     """A value for JSON, with null for numbers that are not finite."""
     if isinstance(value, Mapping):

@@ -10,7 +10,7 @@ import wakeline as wl
 
 from .config import OutputConfig
 from .engine import LiveTrack
-from .json_lines import write_line
+from .json_lines import track_line, write_line
 
 if TYPE_CHECKING:
     from .session import Session
@@ -67,10 +67,13 @@ class JsonOutput(Output):
 
     def tracks(self, session: Session, radar: str, updated: Sequence[LiveTrack]) -> None:
         for values in session.describe(updated):
-            self._send(write_line("track", values | {"radar": radar}))
+            self._send(track_line(values, radar))
 
     def event(self, session: Session, event: dict[str, Any]) -> None:
-        self._send(write_line(event.get("kind", "event"), event))
+        is_alarm = event.get("kind") == "alarm"
+        self._send(
+            write_line("alarm", {"alarm": event}) if is_alarm else write_line("event", event)
+        )
 
 
 class WireOutput(Output):

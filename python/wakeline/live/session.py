@@ -36,8 +36,8 @@ of the last cell, and cells (n, C) of uint8."""
 CLOCK = "clock"
 _CONNECTION = " from "  # between the names of an input that listens and of a peer
 _MOST_CONNECTIONS = 64
-_PUBLISH_S = 0.03  # between reports of tracks after small sectors
-_WIDE_RAD = 0.15
+_PUBLISH_S = 0.03, 60e-6  # between reports of tracks: least, and for each track
+_WIDE_RAD = 1.0  # a sector after which they are reported at once
 _WATCH_S = 0.5  # between looks for alarms
 _PASS_S = 0.02  # between looks at what happens by time alone
 _HISTORY = 60  # past positions of a track in the picture
@@ -368,7 +368,8 @@ class Session:
             self._sectors(feed, feed.pass_to(time_s))
         before_s = self.tracker.time_s
         self._tracker_events(self.tracker.coast(time_s))
-        if self._unpublished or self.tracker.time_s > before_s:
+        news = self._unpublished or self.tracker.time_s > before_s
+        if news and self._is_due():
             self._publish()
 
     def _sectors(self, feed: RadarFeed, sectors: Sequence[Sector]) -> None:
@@ -423,7 +424,7 @@ class Session:
         self._tracker_events(events)
         self._unpublished = feed.name
         wide = sector.to_rad - sector.from_rad > _WIDE_RAD
-        if wide or self.time_s - self._published_s >= _PUBLISH_S:
+        if wide or self._is_due():
             self._publish()
 
     def _outside(self, own: OwnShip, range_m: np.ndarray, bearing_rad: np.ndarray) -> np.ndarray:
@@ -479,6 +480,11 @@ class Session:
         return ranges, bearings
 
     # ------------------------------------------------------------------ out
+
+    def _is_due(self) -> bool:
+        """Whether the last report of tracks is long enough ago; many take longer to list."""
+        least_s, each_s = _PUBLISH_S
+        return self.time_s - self._published_s >= max(least_s, each_s * len(self.shown))
 
     def _publish(self) -> None:
         """Report the tracks that sectors have updated."""
