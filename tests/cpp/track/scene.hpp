@@ -135,6 +135,9 @@ class Ledger {
         case TrackEvent::kFull:
           EXPECT_EQ(event.track_id, 0);
           break;
+        default:
+          EXPECT_TRUE(event.track_id == 0 || ids.contains(event.track_id)) << event.track_id;
+          break;
       }
       EXPECT_EQ(event.reason != LossReason::kNone, event.kind == TrackEvent::kLost)
           << to_string(event.kind) << " for the reason " << to_string(event.reason);

@@ -28,7 +28,12 @@ enum class TrackEvent : std::uint8_t {
   kConfirmed,
   kCoasting,
   kLost,
-  kFull,  ///< `max_tracks` is reached; again only when there has been room in between
+  kFull,               ///< `max_tracks` is reached; again only when there has been room in between
+  kIdentified,         ///< the track is believed to be of a vessel that reports
+  kIdentityLost,       ///< it is believed so no longer
+  kIdentityDisagrees,  ///< a report of the track's vessel is far from it; again after it was near
+  kIdentityJumps,      ///< a report is farther from the one before than a vessel runs
+  kIdentityShared,     ///< the vessel that reports may be on a track which another one is on
 };
 
 constexpr const char* to_string(TrackEvent event) noexcept {
@@ -43,6 +48,16 @@ constexpr const char* to_string(TrackEvent event) noexcept {
       return "lost";
     case TrackEvent::kFull:
       return "full";
+    case TrackEvent::kIdentified:
+      return "identified";
+    case TrackEvent::kIdentityLost:
+      return "identity_lost";
+    case TrackEvent::kIdentityDisagrees:
+      return "identity_disagrees";
+    case TrackEvent::kIdentityJumps:
+      return "identity_jumps";
+    case TrackEvent::kIdentityShared:
+      return "identity_shared";
   }
   return "unknown";
 }
@@ -85,10 +100,11 @@ constexpr const char* to_string(LossReason reason) noexcept {
 /// it gets the next positive one, for good.
 struct Event {
   TrackEvent kind;
-  std::int64_t track_id;      ///< 0 of `kFull`
+  std::int64_t track_id;      ///< 0 of `kFull`, and where no track is meant
   std::int64_t tentative_id;  ///< the number before it was confirmed; 0 for a designated track
   double time_s;
   LossReason reason = LossReason::kNone;  ///< of a lost track
+  std::array<char, 32> identity = {};     ///< of the vessel that reports, zero-terminated
 };
 
 /// A belief over `[x, vx, y, vy]` moved in time, also backwards, at constant velocity.
@@ -96,6 +112,12 @@ inline Gaussian<4> at_constant_velocity(const Gaussian<4>& kinematics, double dt
   Mat<double, 4, 4> step = Mat<double, 4, 4>::Identity();
   step(0, 1) = step(2, 3) = dt_s;
   return {step * kinematics.mean, step * kinematics.covariance * step.transpose()};
+}
+
+/// The position in a belief over `[x, vx, y, vy]`.
+inline Gaussian<2> position_in(const Gaussian<4>& kinematics) noexcept {
+  const auto rows = Eigen::seqN(0, Eigen::fix<2>, Eigen::fix<2>);
+  return {kinematics.mean(rows), kinematics.covariance(rows, rows)};
 }
 
 /// Of the velocity in a belief over `[x, vx, y, vy]`.
@@ -123,6 +145,8 @@ struct Track {
   int slot = 0;  ///< place in the tracker's memory, as long as the track lives
   std::int64_t id = 0;
   std::int64_t tentative_id = 0;
+  std::int64_t birth = 0;       ///< no other track has this number
+  int identity = -1;            ///< number of the vessel that reports, which it is; -1: none
   std::array<char, 32> name{};  ///< given by the operator, zero-terminated
   TrackStatus status = TrackStatus::kTentative;
   double time_s = 0.0;           ///< of the estimate
@@ -181,6 +205,8 @@ struct Track {
   void archive(Archive& fields) {
     fields(id);
     fields(tentative_id);
+    fields(birth);
+    fields(identity);
     fields(name);
     fields(status);
     fields(time_s);

@@ -16,11 +16,13 @@
 #include <vector>
 
 #include "wakeline/core/utf8.hpp"
+#include "wakeline/measurement/kinematic_fix.hpp"
 #include "wakeline/simd/side_by_side.hpp"
 #include "wakeline/track/association.hpp"
 #include "wakeline/track/association_probabilities.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/duplicates.hpp"
+#include "wakeline/track/identities.hpp"
 #include "wakeline/track/life_cycle.hpp"
 #include "wakeline/track/mode_positions.hpp"
 #include "wakeline/track/plot_likelihood.hpp"
@@ -42,6 +44,13 @@ struct [[nodiscard]] ScanReport {
   /// Not finite, out of range, behind the antenna, of so many turns that the bearing is lost, of
   /// another time than the scan, or beyond `max_plots`.
   int rejected_plots = 0;
+};
+
+/// The result of a report. The events are valid until the next call.
+struct [[nodiscard]] ReportResult {
+  Status status = Status::kOk;  ///< `kGated`: it has changed no track
+  std::int64_t track_id = 0;    ///< of the track that its vessel is believed to be; 0: none
+  std::span<const Event> events;
 };
 
 /// Keeps tracks of all vessels that some radars see, scan by scan.
@@ -145,6 +154,47 @@ class Tracker {
     return largest;
   }
 
+  /// Takes the position that a vessel reports of itself.
+  ///
+  /// The report may be `kOldestReport_s` before the last scan or after it, and reports of one
+  /// identity come in their order. It is of the track that its identity is believed to be, which is
+  /// decided by where the reports of the identity are, one after the other, and of a new track
+  /// where there is none near and the vessel has reported before. It updates the track only while
+  /// they agree, so that an identity that is wrong, stolen or old drags no track away; events tell
+  /// of it. A track that reports is kept while its vessel can be silent. Rejects what is not valid
+  /// or later than that (`kNotFinite`), and what is older than that or than the last report of the
+  /// same identity
+  /// (`kNegativeTimeStep`): nothing changes. Takes the velocity where the estimator has a form for
+  /// it, as `Imm` has.
+  ReportResult report(const PositionReport& report) noexcept;
+
+  static constexpr double kOldestReport_s = 120.0;
+
+  /// The vessel that a track is believed to be by its reports, or null; `time_s` is that of its
+  /// last report.
+  [[nodiscard]] const Identity* identity_of(const Track& track) const noexcept {
+    return track.identity < 0 ? nullptr : &identities_[track.identity];
+  }
+
+  /// How probable it is that a track is the vessel of `identity_of`; 0 without one.
+  [[nodiscard]] double identity_probability(const Track& track) const noexcept {
+    const Identity* identity = identity_of(track);
+    if (identity == nullptr) return 0.0;
+    for (const Identity::Candidate& candidate : identity->candidates)
+      if (candidate.is(track)) return identity->probability(candidate);
+    return 0.0;
+  }
+
+  /// The track of the vessel that reports under an identity, or null.
+  [[nodiscard]] const Track* find(std::string_view source,
+                                  std::string_view identity) const noexcept {
+    const int number = identities_.find(source, identity);
+    if (number < 0) return nullptr;
+    for (const int slot : tracks_.slots())
+      if (tracks_.at(slot).identity == number) return &tracks_.at(slot);
+    return nullptr;
+  }
+
   /// Calls `f(track)` for every track, tentative and hushed ones too, older ones first. Each has
   /// the estimate of its own time; `kinematics_at` has all at one.
   template <class Function>
@@ -232,6 +282,11 @@ class Tracker {
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
   static constexpr std::uint32_t kArchiveVersion = 9;
+  /// Vessels per area that an identity may be of when it is not of the track at hand.
+  static constexpr double kOtherVessels_per_m2 = 1e-8;
+  static constexpr double kMostReportEvidence = 4.0;  ///< of a report, log odds
+  static constexpr double kReportGate = 16.0;         ///< squared standard deviations
+  static constexpr double kSure = 0.9;  ///< a report updates a track that it is of by this much
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
   static constexpr std::size_t kGroup = 32;      ///< tracks that are stepped together
 
@@ -575,7 +630,9 @@ class Tracker {
       CandidatePlots& candidates = candidates_of(track);
       if (!whole_turn_) choose_turn(track);
       modes_.read(estimator_at(slot));
-      const TimeAlignment alignment(track, state().radar.period_s, maneuver_m2s3(track));
+      const TimeAlignment alignment(
+          track, state().radar.period_s,
+          maneuver_m2s3(track, state().plots.greatest_lag_s(track.time_s)));
       candidates.choose(gate_.validate(track, modes_, alignment, state().plots),
                         look_at(track).learned, modes_, config_.outlier_probability,
                         state().clutter, state().plots);
@@ -592,8 +649,7 @@ class Tracker {
 
   /// How fast a position gets less certain than by its velocity as it is known, as the target may
   /// maneuver: m² per axis over the cube of the time. 0 where all plots are of the track's period.
-  [[nodiscard]] double maneuver_m2s3(const Track& track) noexcept {
-    const double dt_s = state().plots.greatest_lag_s(track.time_s);
+  [[nodiscard]] double maneuver_m2s3(const Track& track, double dt_s) noexcept {
     if (!(dt_s > state().radar.period_s)) return 0.0;
     Estimator ahead = estimator_of(track);
     PredictionStep<Estimator> step{&ahead, dt_s};
@@ -704,7 +760,9 @@ class Tracker {
       if (touched_[static_cast<std::size_t>(track.slot)] == 0) return false;
       if (confirm_or_coast(config_, state().radar, shown_misses, track))
         announce(TrackEvent::kCoasting, track);
-      const LossReason reason = reason_to_delete(config_, state().radar, track);
+      LossReason reason = reason_to_delete(config_, state().radar, track);
+      if (reason == LossReason::kUncertain && time_s_ < track.seen_until_s)
+        reason = LossReason::kNone;  // its vessel will report
       if (reason != LossReason::kNone) announce(TrackEvent::kLost, track, reason);
       return reason != LossReason::kNone;
     });
@@ -767,7 +825,7 @@ class Tracker {
     }
     Track& track = tracks_.open();
     estimator_at(track.slot) = estimator;
-    track.id = track.tentative_id = next_tentative_id_--;
+    track.id = track.tentative_id = track.birth = next_tentative_id_--;
     track.time_s = start.time_s;
     track.looked_s = time_s_;
     track.kinematics = start.belief;
@@ -788,6 +846,174 @@ class Tracker {
     track.hushed = false;
     track.status = TrackStatus::kConfirmed;
     if (track.id <= 0) track.id = next_id_++;
+  }
+
+  /// The position of a report so long after it, as a track moves.
+  [[nodiscard]] Gaussian<2> reported_position(const PositionReport& report, const Track& track,
+                                              double late_s) noexcept {
+    const double period_s = longest_period_s();
+    const TimeAlignment alignment(track, period_s,
+                                  late_s > period_s ? maneuver_m2s3(track, late_s) : 0.0);
+    const double extent_m = state().radar.extent_std_m;
+    const double variance_m2 = report.position_std_m * report.position_std_m + extent_m * extent_m;
+    return {report.position_m + late_s * track.velocity(),
+            variance_m2 * Mat<double, 2, 2>::Identity() + alignment.added_m2(late_s)};
+  }
+
+  /// Whether a track may be the one that reports, about: so far a vessel runs off its course.
+  [[nodiscard]] bool is_about(const Track& track, const PositionReport& report) const noexcept {
+    constexpr double kSigmas = 8.0;
+    const double dt_s = report.time_s - track.time_s;
+    const double off_m = (track.position() + dt_s * track.velocity() - report.position_m).norm();
+    return off_m <=
+           kSigmas * (track.position_std_m() + report.position_std_m + state().radar.extent_std_m) +
+               state().radar.max_speed_mps * std::abs(dt_s);
+  }
+
+  /// Weighs all tracks by a report, and notes which of them it agrees with, in `due_`. Where it
+  /// fits several, the better ones gain as much on the others as their likelihoods differ.
+  void weigh_identity(const PositionReport& report, Identity& identity) noexcept {
+    due_.clear();
+    evidence_.assign(tracks_.slots().size(), -std::numeric_limits<double>::infinity());
+    for (Identity::Candidate& candidate : identity.candidates)
+      if (candidate.slot >= 0 &&
+          !(tracks_.in_use(candidate.slot) && candidate.is(tracks_.at(candidate.slot))))
+        candidate = {};
+    double best = 0.0;
+    for (std::size_t k = 0; k < evidence_.size(); ++k) {
+      const Track& track = tracks_.at(tracks_.slots()[k]);
+      if (!is_about(track, report)) continue;
+      const Gaussian<2> then = position_in(kinematics_at(track, report.time_s));
+      const Gaussian<2> fix = reported_position(report, track, 0.0);
+      const Cholesky<2> factor(fix.covariance + then.covariance);
+      if (!factor.ok()) continue;
+      const double distance = factor.squared_norm(fix.mean - then.mean);
+      evidence_[k] = -0.5 * (distance + factor.log_determinant()) -
+                     std::log(2.0 * kPi<double> * kOtherVessels_per_m2);
+      best = std::max(best, evidence_[k]);
+      if (distance <= kReportGate) due_.push_back(track.slot);
+    }
+    const double excess = std::max(best - kMostReportEvidence, 0.0);
+    for (std::size_t k = 0; k < evidence_.size(); ++k) {
+      const Track& track = tracks_.at(tracks_.slots()[k]);
+      const double evidence = std::max(evidence_[k] - excess, -kMostReportEvidence);
+      const bool known = std::any_of(identity.candidates.begin(), identity.candidates.end(),
+                                     [&](const auto& candidate) { return candidate.is(track); });
+      if (known || evidence > 0.0) identity.weigh(track, evidence);
+    }
+  }
+
+  /// Predicts a track to a time after its own.
+  void predict_to(Track& track, double time_s) noexcept {
+    if (!(time_s > track.time_s)) return;
+    PredictionStep<Estimator> step{&estimator_at(track.slot), time_s - track.time_s};
+    steps_.predict({&step, 1});
+    if (step.status != Status::kOk) return;
+    track.time_s = time_s;
+    track.kinematics = step.kinematics;
+  }
+
+  /// Gives the identity to the track that it is believed to be; null when there is none.
+  Track* identify(int number) noexcept {
+    Identity& identity = identities_[number];
+    Track* before = nullptr;
+    for (const int slot : tracks_.slots())
+      if (tracks_.at(slot).identity == number) before = &tracks_.at(slot);
+    const Identity::Candidate* best = identity.likeliest();
+    Track* now =
+        best != nullptr && identity.probability(*best) > 0.5 ? &tracks_.at(best->slot) : nullptr;
+    if (now == before) return now;
+    if (before != nullptr) {
+      before->identity = -1;
+      announce(TrackEvent::kIdentityLost, before, identity);
+    }
+    if (now == nullptr) return nullptr;
+    if (now->identity >= 0) {
+      announce(TrackEvent::kIdentityShared, now, identity);
+      if (identity_probability(*now) >= identity.probability(*best)) return nullptr;
+    }
+    now->identity = number;
+    announce(TrackEvent::kIdentified, now, identity);
+    return now;
+  }
+
+  /// Updates a track by a report of its vessel, which it is with that probability.
+  void take_report(const PositionReport& report, const Identity& identity, double probability,
+                   Track& track) noexcept {
+    predict_to(track, report.time_s);
+    Estimator& estimator = estimator_at(track.slot);
+    const double late_s = track.time_s - report.time_s;
+    const Gaussian<2> fix = reported_position(report, track, late_s);
+    const double weight = probability / kOtherVessels_per_m2;
+    double share = 0.0;
+    const auto with_velocity = [&] {
+      Alternative<KinematicFix> reading{{}, {}, weight};
+      const double velocity_m2s2 = report.velocity_std_mps * report.velocity_std_mps;
+      reading.z << fix.mean[0], report.velocity_mps[0], fix.mean[1], report.velocity_mps[1];
+      reading.sensor.covariance.setZero();
+      for (const int i : {0, 1}) {
+        reading.sensor.covariance(2 * i + 1, 2 * i + 1) = velocity_m2s2;
+        for (const int j : {0, 1}) reading.sensor.covariance(2 * i, 2 * j) = fix.covariance(i, j);
+      }
+      return reading;
+    };
+    constexpr bool kTakesVelocity = requires(Alternative<KinematicFix> reading) {
+      estimator.update(std::span<const Alternative<KinematicFix>>(&reading, 1), 1.0,
+                       std::span(&share, 1));
+    };
+    const bool at_once = late_s <= longest_period_s();
+    bool taken = false;
+    if constexpr (kTakesVelocity)
+      if (report.has_velocity() && at_once) {
+        const Alternative<KinematicFix> reading = with_velocity();
+        (void)estimator.update(std::span<const Alternative<KinematicFix>>(&reading, 1),
+                               1.0 - probability, std::span(&share, 1));
+        taken = true;
+      }
+    if (!taken) {
+      const Alternative<Fix> reading{Fix{fix.covariance}, fix.mean, weight};
+      (void)estimator.update(std::span<const Alternative<Fix>>(&reading, 1), 1.0 - probability,
+                             std::span(&share, 1));
+    }
+    track.kinematics = kinematics_of(estimator.estimate());
+    note_report(identity, probability, track);
+  }
+
+  /// The vessel of a track is there, and may be silent for a while.
+  void note_report(const Identity& identity, double probability, Track& track) noexcept {
+    track.existence = 1.0 - (1.0 - track.existence) * (1.0 - probability);
+    track.count(true);
+    track.seen_until_s = std::max(track.seen_until_s, identity.time_s + identity.patience_s());
+    if (!track.confirmed()) {
+      track.status = TrackStatus::kConfirmed;
+      number_confirmed();
+    } else {
+      track.status = TrackStatus::kConfirmed;
+    }
+  }
+
+  /// Starts a track of a vessel that reports where no radar has seen it.
+  Track* start_reported(const PositionReport& report, Identity& identity) noexcept {
+    Gaussian<2> velocity = state().initiation.prior_velocity(state().radar);
+    if (report.has_velocity())
+      velocity = {report.velocity_mps, report.velocity_std_mps * report.velocity_std_mps *
+                                           Mat<double, 2, 2>::Identity()};
+    const Gaussian<2> position{report.position_m, report.position_std_m * report.position_std_m *
+                                                      Mat<double, 2, 2>::Identity()};
+    room_.reset();
+    if (!room_.has_room_for(kDesignatedExistence, tracks_)) return nullptr;
+    newest_before_ = next_tentative_id_ + 1;
+    Track* track = open({kinematics_from<double>(position, velocity, Mat<double, 2, 2>::Zero()),
+                         report.time_s,
+                         state().beam.angle_rad(),
+                         kDesignatedExistence,
+                         {}});
+    tracks_.close_gaps();
+    newest_before_ = next_tentative_id_ + 1;
+    if (track == nullptr) return nullptr;
+    announce(TrackEvent::kStarted, *track);
+    identity.weigh(*track, Identity::kMostLogOdds);
+    return track;
   }
 
   /// Reports whose the plots are, by the numbers that the tracks have now.
@@ -829,6 +1055,14 @@ class Tracker {
     return nearest;
   }
 
+  /// The vessel that is believed to be on a track has changed, or what it reports.
+  void announce(TrackEvent kind, const Track* track, const Identity& identity) noexcept {
+    if (events_.size() < events_.capacity() && (track == nullptr || !track->hushed))
+      events_.push_back({kind, track == nullptr ? 0 : track->id,
+                         track == nullptr ? 0 : track->tentative_id, time_s_, LossReason::kNone,
+                         identity.name});
+  }
+
   void announce(TrackEvent kind, const Track& track,
                 LossReason reason = LossReason::kNone) noexcept {
     if (events_.size() < events_.capacity() && !track.hushed)
@@ -860,6 +1094,7 @@ class Tracker {
     fields(full_);
     fields(next_id_);
     fields(next_tentative_id_);
+    identities_.archive(fields);
     tracks_.archive(fields);
     if (!fields.ok()) return;
     for (RadarState& radar : radars_)
@@ -875,6 +1110,7 @@ class Tracker {
   std::vector<RadarState> radars_;  ///< by number
   int at_hand_ = 0;                 ///< number of the radar of this call
 
+  Identities identities_;
   TrackList tracks_;
   std::vector<Estimator> estimators_;  ///< by slot
   double time_s_ = 0.0;                ///< of the last scan of any radar
@@ -884,13 +1120,14 @@ class Tracker {
   std::int64_t next_tentative_id_ = -1;
   std::int64_t newest_before_ = 0;  ///< number of the newest tentative track before this scan
 
-  bool whole_turn_ = true;      ///< of this call
-  std::vector<int> due_;        ///< slots of the tracks whose gate the beam has passed
-  std::vector<int> waiting_;    ///< and of those whose gate it is in
-  std::vector<int> rivals_;     ///< of these that have a candidate in common with one that is due
-  std::vector<int> competing_;  ///< both
-  std::vector<char> touched_;   ///< by slot: whether this call has counted for the track
-  std::vector<BeamArc> arcs_;   ///< of the tracks that are due
+  bool whole_turn_ = true;        ///< of this call
+  std::vector<int> due_;          ///< slots of the tracks whose gate the beam has passed
+  std::vector<int> waiting_;      ///< and of those whose gate it is in
+  std::vector<int> rivals_;       ///< of these that have a candidate in common with one that is due
+  std::vector<int> competing_;    ///< both
+  std::vector<double> evidence_;  ///< by place in the list of tracks, of a report
+  std::vector<char> touched_;     ///< by slot: whether this call has counted for the track
+  std::vector<BeamArc> arcs_;     ///< of the tracks that are due
   std::vector<char> is_contested_;  ///< by plot: a track that waits competes for it
   std::vector<char> is_candidate_;  ///< by plot: of a track that is due
 
@@ -915,6 +1152,7 @@ Tracker<Estimator, Steps>::Tracker(std::span<const Radar> radars, const TrackerC
     : config_(validated(config)),
       prototype_(prototype),
       steps_(prototype),
+      identities_(2 * config.max_tracks),
       tracks_(config.max_tracks),
       estimators_(static_cast<std::size_t>(config.max_tracks), prototype),
       gate_(config),
@@ -930,6 +1168,7 @@ Tracker<Estimator, Steps>::Tracker(std::span<const Radar> radars, const TrackerC
     slots->reserve(estimators_.size());
   touched_.resize(estimators_.size());
   arcs_.reserve(estimators_.size());
+  evidence_.reserve(estimators_.size());
   is_candidate_.reserve(plots);
   is_contested_.reserve(plots);
   plot_track_id_.reserve(plots);
@@ -1038,6 +1277,44 @@ std::int64_t Tracker<Estimator, Steps>::designate(double time_s, double north_m,
   track->scans = track->hits = 0;
   confirm_designated(*track);
   return track->id;
+}
+
+template <class Estimator, class Steps>
+ReportResult Tracker<Estimator, Steps>::report(const PositionReport& report) noexcept {
+  events_.clear();
+  plot_track_id_.clear();
+  if (!report.is_valid() || (started_ && report.time_s > time_s_ + kOldestReport_s))
+    return {Status::kNotFinite, 0, {}};
+  if (started_ && report.time_s < time_s_ - kOldestReport_s)
+    return {Status::kNegativeTimeStep, 0, {}};
+  const int number = identities_.find_or_add(report.source, report.identity);
+  Identity& identity = identities_[number];
+  if (!(report.time_s > identity.time_s)) return {Status::kNegativeTimeStep, 0, {}};
+  if (!identity.reported())
+    for (const int slot : tracks_.slots())
+      if (tracks_.at(slot).identity == number) tracks_.at(slot).identity = -1;
+
+  const bool jumped_before = identity.jumps;
+  identity.note(report, state().radar.max_speed_mps);
+  weigh_identity(report, identity);
+  Track* track = identify(number);
+  if (track == nullptr && due_.empty() && identity.in_a_row > 0) {
+    track = start_reported(report, identity);
+    if (track != nullptr) {
+      (void)identify(number);
+      note_report(identity, kSure, *track);
+      return {Status::kOk, track->id, events_};
+    }
+  }
+  if (identity.jumps && !jumped_before) announce(TrackEvent::kIdentityJumps, track, identity);
+  if (track == nullptr) return {Status::kGated, 0, events_};
+  const bool agrees = std::find(due_.begin(), due_.end(), track->slot) != due_.end();
+  if (!agrees && !identity.disagrees) announce(TrackEvent::kIdentityDisagrees, track, identity);
+  identity.disagrees = !agrees;
+  const double probability = identity_probability(*track);
+  if (!agrees || identity.jumps || probability < kSure) return {Status::kGated, track->id, events_};
+  take_report(report, identity, probability, *track);
+  return {Status::kOk, track->id, events_};
 }
 
 template <class Estimator, class Steps>

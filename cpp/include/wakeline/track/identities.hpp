@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Vessels that report where they are, by AIS or GNSS, and which tracks they are.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "wakeline/core/archive.hpp"
+#include "wakeline/core/types.hpp"
+#include "wakeline/core/utf8.hpp"
+#include "wakeline/track/track.hpp"
+
+namespace wakeline {
+
+/// The position that a vessel reports of itself, such as by AIS.
+struct PositionReport {
+  std::string_view source = "ais";  ///< of 1 to 15 bytes: the same identity of two sources is two
+  std::string_view identity = {};   ///< of 1 to 31 bytes, UTF-8
+  double time_s = 0.0;              ///< of the position, true time
+  Vec<double, 2> position_m = Vec<double, 2>::Zero();  ///< [north, east]
+  double position_std_m = 10.0;                        ///< per axis
+  Vec<double, 2> velocity_mps = Vec<double, 2>::Zero();
+  double velocity_std_mps = 0.0;  ///< per axis; 0: the velocity is not known
+  [[nodiscard]] bool has_velocity() const noexcept { return velocity_std_mps > 0.0; }
+
+  /// Whether every number is finite and in range, and the texts are such.
+  [[nodiscard]] bool is_valid() const noexcept {
+    return !source.empty() && source.size() <= kMostSource && !identity.empty() &&
+           identity.size() <= kMostIdentity && is_utf8(source) && is_utf8(identity) &&
+           in_range(time_s) && in_range(position_m) && position_std_m > 0.0 &&
+           in_range(position_std_m) && in_range(velocity_mps) && velocity_std_mps >= 0.0 &&
+           in_range(velocity_std_mps);
+  }
+
+  static constexpr std::size_t kMostSource = 15, kMostIdentity = 31;
+};
+
+/// A vessel that reports, and what is believed of which track it is.
+///
+/// The reports of an identity are of one of a few tracks near them or of none. The logarithm of the
+/// odds of each grows by log N(report; track) - log ρ with every report, where ρ is the density of
+/// vessels that it may be of instead, in bounds: an identity that is stolen or wrong is let go of
+/// after a few reports.
+struct Identity {
+  /// One of the tracks that it may be.
+  struct Candidate {
+    std::int64_t birth = 0;           ///< of the track
+    int slot = -1;                    ///< -1: none
+    double log_odds = kLeastLogOdds;  ///< against being of no track
+
+    [[nodiscard]] bool is(const Track& track) const noexcept {
+      return slot == track.slot && birth == track.birth;
+    }
+
+    void archive(Archive& fields) {
+      fields(birth);
+      fields(slot);
+      fields(log_odds);
+    }
+  };
+
+  static constexpr std::size_t kMostCandidates = 3;
+  static constexpr double kLeastLogOdds = -8.0, kMostLogOdds = 8.0;
+
+  std::array<char, PositionReport::kMostSource + 1> source = {};
+  std::array<char, PositionReport::kMostIdentity + 1> name = {};
+  double time_s = -std::numeric_limits<double>::infinity();  ///< of the last report
+  double interval_s = 0.0;  ///< between the last two; 0 after the first
+  Vec<double, 2> position_m = Vec<double, 2>::Zero();
+  double position_std_m = 0.0;
+  bool disagrees = false;  ///< its last report was far from the track that it is
+  bool jumps = false;      ///< it was lately where a vessel cannot run after its report before
+  int in_a_row = 0;        ///< reports between which a vessel can have run
+  std::array<Candidate, kMostCandidates> candidates = {};
+
+  [[nodiscard]] bool reported() const noexcept { return std::isfinite(time_s); }
+
+  /// Whether a report is where a vessel under the speed limit can be after the last one.
+  [[nodiscard]] bool can_be_at(const PositionReport& report, double max_speed_mps) const noexcept {
+    constexpr double kSigmas = 4.0;
+    const double way_m = max_speed_mps * (report.time_s - time_s) +
+                         kSigmas * (report.position_std_m + position_std_m);
+    return reported() && (report.position_m - position_m).norm() <= way_m;
+  }
+
+  /// How long its silence is that of a vessel which is still there.
+  [[nodiscard]] double patience_s() const noexcept {
+    constexpr double kIntervals = 2.5, kLeast_s = 20.0, kFirst_s = 60.0, kMost_s = 480.0;
+    return interval_s > 0.0 ? std::clamp(kIntervals * interval_s, kLeast_s, kMost_s) : kFirst_s;
+  }
+
+  /// Notes a report.
+  void note(const PositionReport& report, double max_speed_mps) noexcept {
+    constexpr int kSteady = 2;
+    in_a_row = can_be_at(report, max_speed_mps) ? in_a_row + 1 : 0;
+    jumps = reported() && in_a_row < (jumps ? kSteady : 1);
+    interval_s = reported() ? report.time_s - time_s : 0.0;
+    time_s = report.time_s;
+    position_m = report.position_m;
+    position_std_m = report.position_std_m;
+  }
+
+  /// The probability of each candidate: of its odds against those of the others and of none.
+  [[nodiscard]] double probability(const Candidate& candidate) const noexcept {
+    double sum = 1.0;
+    for (const Candidate& other : candidates)
+      if (other.slot >= 0) sum += std::exp(other.log_odds);
+    return candidate.slot < 0 ? 0.0 : std::exp(candidate.log_odds) / sum;
+  }
+
+  /// The likeliest track, or null when there is none.
+  [[nodiscard]] const Candidate* likeliest() const noexcept {
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : candidates)
+      if (candidate.slot >= 0 && (best == nullptr || candidate.log_odds > best->log_odds))
+        best = &candidate;
+    return best;
+  }
+
+  /// Adds evidence for a track; an unlikely candidate makes room for it.
+  void weigh(const Track& track, double log_ratio) noexcept {
+    Candidate* place = &candidates[0];
+    for (Candidate& candidate : candidates) {
+      if (candidate.is(track)) {
+        candidate.log_odds =
+            std::clamp(candidate.log_odds + log_ratio, kLeastLogOdds, kMostLogOdds);
+        return;
+      }
+      if (place->slot >= 0 && (candidate.slot < 0 || candidate.log_odds < place->log_odds))
+        place = &candidate;
+    }
+    if (place->slot < 0 || log_ratio > place->log_odds)
+      *place = {track.birth, track.slot, std::clamp(log_ratio, kLeastLogOdds, kMostLogOdds)};
+  }
+
+  void archive(Archive& fields) {
+    fields(source);
+    fields(name);
+    fields(time_s);
+    fields(interval_s);
+    fields(position_m);
+    fields(position_std_m);
+    fields(disagrees);
+    fields(jumps);
+    fields(in_a_row);
+    for (Candidate& candidate : candidates) candidate.archive(fields);
+  }
+};
+
+/// The identities that have reported, at most a fixed number. Memory is taken by the constructor.
+class Identities {
+ public:
+  explicit Identities(int capacity) : capacity_(static_cast<std::size_t>(capacity)) {
+    identities_.reserve(capacity_);
+  }
+
+  /// The number of the one of that source and name; -1 where it has not reported.
+  [[nodiscard]] int find(std::string_view source, std::string_view name) const noexcept {
+    const auto is_it = [&](const Identity& one) {
+      return name == one.name.data() && source == one.source.data();
+    };
+    const auto found = std::find_if(identities_.begin(), identities_.end(), is_it);
+    return found == identities_.end() ? -1 : static_cast<int>(found - identities_.begin());
+  }
+
+  /// The same, added where it has not reported; the one that has been silent for longest makes
+  /// room.
+  int find_or_add(std::string_view source, std::string_view name) noexcept {
+    const int known = find(source, name);
+    if (known >= 0) return known;
+    Identity one;
+    std::copy(source.begin(), source.end(), one.source.begin());
+    std::copy(name.begin(), name.end(), one.name.begin());
+    if (identities_.size() < capacity_) {
+      identities_.push_back(one);
+      return static_cast<int>(identities_.size()) - 1;
+    }
+    const auto silent =
+        std::min_element(identities_.begin(), identities_.end(),
+                         [](const Identity& a, const Identity& b) { return a.time_s < b.time_s; });
+    *silent = one;
+    return static_cast<int>(silent - identities_.begin());
+  }
+
+  [[nodiscard]] Identity& operator[](int number) noexcept {
+    return identities_[static_cast<std::size_t>(number)];
+  }
+  [[nodiscard]] const Identity& operator[](int number) const noexcept {
+    return identities_[static_cast<std::size_t>(number)];
+  }
+  [[nodiscard]] auto begin() const noexcept { return identities_.begin(); }
+  [[nodiscard]] auto end() const noexcept { return identities_.end(); }
+
+  void archive(Archive& fields) {
+    auto count = static_cast<std::uint64_t>(identities_.size());
+    fields(count);
+    if (count > capacity_) fields.fail();
+    if (!fields.ok()) return;
+    identities_.resize(static_cast<std::size_t>(count));
+    for (Identity& identity : identities_) identity.archive(fields);
+  }
+
+ private:
+  std::size_t capacity_;
+  std::vector<Identity> identities_;
+};
+
+}  // namespace wakeline
